@@ -1,0 +1,31 @@
+// The surface of one octree leaf as it is stored, sent and drawn: indexed, quantised triangles.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/pose.h"
+
+namespace bonemill {
+
+// Position in quantisation steps from the leaf's origin; unit normal (out of the bone) in octahedral coding,
+// signed 8 bit per coordinate. 8 bytes, as meshoptimizer's vertex codec wants a multiple of 4.
+struct PackedVertex {
+    uint16_t x, y, z;
+    int8_t octahedral_u, octahedral_v;
+    bool operator==(const PackedVertex&) const = default;
+};
+static_assert(sizeof(PackedVertex) == 8);
+
+struct NodeMesh {
+    uint32_t leaf = 0;                                      // LeafId
+    uint32_t revision = 0;                                  // leaf version the mesh was made from
+    Eigen::Vector3f origin = Eigen::Vector3f::Zero();       // V, m: vertex = origin + step ∘ (x, y, z)
+    Eigen::Vector3f step = Eigen::Vector3f::Zero();         // V, m
+    std::vector<PackedVertex> vertices;
+    std::vector<uint32_t> indices;                          // 3 per triangle, counter-clockwise seen from outside
+
+    bool isEmpty() const noexcept { return indices.empty(); }
+};
+
+}  // namespace bonemill
