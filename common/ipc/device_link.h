@@ -1,0 +1,71 @@
+// The link between device_daemon (writes DeviceSample) and haptic_server (writes WrenchCommand): POSIX shared
+// memory with one seqlock per direction and a futex for whoever waits.
+//
+// Whoever starts first makes the memory; each side may die and come back. The newest value is all that
+// counts: nothing queues. Reading and writing are RT-safe (bounded; a wake is one system call, made only when
+// the peer waits); open, peerIsAlive and the destructor are not. One thread per DeviceLink.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "common/ipc/device_messages.h"
+
+namespace bonemill {
+
+enum class LinkSide { kServer, kDaemon };
+
+struct LinkMemory;
+
+class DeviceLink {
+  public:
+    // "/bonemill_<session>", a name for shm_open.
+    static std::string nameOfSession(uint32_t session);
+
+    // Creates or attaches. The memory of dead processes is taken over (a living peer's content is kept, else
+    // it starts empty). Throws UserError: memory that is not ours, a peer built with another layout, this
+    // side already taken by a living process, no permission.
+    static DeviceLink create(const std::string& name, LinkSide side);
+
+    DeviceLink(DeviceLink&& other) noexcept;
+    DeviceLink& operator=(DeviceLink&&) = delete;
+    // Removes the memory if the peer is gone too.
+    ~DeviceLink();
+
+    // Daemon. Publishes and wakes; `sequence` is filled in and returned.
+    uint64_t writeSample(DeviceSample sample) noexcept;
+    // Server. The newest sample, also if it was read before (compare `sequence`). False: none yet, or the
+    // writer died in the middle of one; `sample` is untouched then. Not validated: see isPlausible.
+    bool readSample(DeviceSample& sample) noexcept;
+    // Server. Sleeps until there is a sample newer than the last one read (true) or deadline_ns
+    // (CLOCK_MONOTONIC).
+    bool waitForSample(int64_t deadline_ns) noexcept;
+
+    // The same in the other direction: the server writes, the daemon reads and waits.
+    uint64_t writeCommand(WrenchCommand command) noexcept;
+    bool readCommand(WrenchCommand& command) noexcept;
+    bool waitForCommand(int64_t deadline_ns) noexcept;
+
+    // Says "this process runs" where there is nothing to write. Every write beats, too.
+    void beat(int64_t now_ns) noexcept;
+    // The peer's last beat, CLOCK_MONOTONIC; 0: never.
+    int64_t peerHeartbeatNs() const noexcept;
+    int32_t peerPid() const noexcept;  // 0: never attached
+    // Asks the kernel whether the peer's process holds its side of the link. Not RT-safe.
+    bool peerIsAlive() const noexcept;
+
+    const std::string& name() const noexcept { return name_; }
+
+  private:
+    DeviceLink(std::string name, LinkSide side, int file, LinkMemory* memory) noexcept;
+
+    std::string name_;
+    LinkSide side_;
+    int file_;
+    LinkMemory* memory_;
+    uint64_t written_ = 0;       // sequence of this side's last write
+    uint32_t read_version_ = 0;  // seqlock version of the last value read
+};
+
+}  // namespace bonemill

@@ -1,0 +1,57 @@
+// What device_daemon and haptic_server say to each other through shared memory.
+//
+// Frames: D device base, T tool frame of the handle. Units: m, N, N·m; stamps CLOCK_MONOTONIC ns of this
+// machine. Everything here is RT-safe.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace bonemill {
+
+struct DeviceSample {
+    uint64_t sequence;  // 1, 2, ...: set by the link, continues when a daemon is restarted
+    int64_t stamp_ns;   // when the joints were read
+    double p_DT[3];
+    double q_DT[4];    // w, x, y, z
+    uint32_t buttons;  // Button bits
+    uint32_t flags;    // DeviceFlag bits
+};
+
+struct WrenchCommand {
+    uint64_t sequence;          // 1, 2, ...: set by the link
+    int64_t stamp_ns;           // when the wrench was computed
+    double f_hand_D[3];         // on the hand
+    double t_hand_D[3];         // on the hand, about the handle's tool point
+    uint64_t answers_sequence;  // of the DeviceSample this wrench answers
+    uint32_t flags;
+    uint32_t reserved;
+};
+
+enum DeviceFlag : uint32_t {
+    kDeviceFlagSimulated = 1u << 0,     // no hand and no motor behind this sample
+    kDeviceFlagForceLimited = 1u << 1,  // the last wrench was reduced by the device's safety
+};
+
+static_assert(std::is_trivially_copyable_v<DeviceSample> && std::is_standard_layout_v<DeviceSample>);
+static_assert(sizeof(DeviceSample) == 80 && offsetof(DeviceSample, p_DT) == 16 &&
+              offsetof(DeviceSample, q_DT) == 40 && offsetof(DeviceSample, buttons) == 72 &&
+              offsetof(DeviceSample, flags) == 76);
+static_assert(std::is_trivially_copyable_v<WrenchCommand> && std::is_standard_layout_v<WrenchCommand>);
+static_assert(sizeof(WrenchCommand) == 80 && offsetof(WrenchCommand, f_hand_D) == 16 &&
+              offsetof(WrenchCommand, t_hand_D) == 40 && offsetof(WrenchCommand, answers_sequence) == 64 &&
+              offsetof(WrenchCommand, flags) == 72);
+
+// Accepted distance of |q| from 1: far above rounding, far below what a torn or random quaternion shows.
+inline constexpr double kQuaternionNormTolerance = 1e-3;
+// No device of this world reaches further from its base than this (m): refuses garbage that happens to be
+// finite.
+inline constexpr double kLargestDeviceReach = 10.0;
+
+// May the server act on it? Finite, a rotation, within reach.
+bool isPlausible(const DeviceSample& sample) noexcept;
+// May the daemon act on it? Finite (limits are the business of the device's safety).
+bool isPlausible(const WrenchCommand& command) noexcept;
+
+}  // namespace bonemill

@@ -1,0 +1,29 @@
+// The one clock of the simulator: CLOCK_MONOTONIC, the same for all processes of one machine.
+//
+// RT-safe (vDSO, no system call), any thread.
+#pragma once
+
+#include <time.h>
+
+#include <cstdint>
+
+namespace bonemill {
+
+inline constexpr int64_t kNsPerSecond = 1'000'000'000;
+inline constexpr int64_t kNsPerMillisecond = 1'000'000;
+
+inline int64_t monotonicNowNs() noexcept {
+    timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return int64_t(now.tv_sec) * kNsPerSecond + now.tv_nsec;
+}
+
+inline constexpr timespec timespecOfNs(int64_t ns) noexcept {
+    return {time_t(ns / kNsPerSecond), long(ns % kNsPerSecond)};
+}
+
+inline constexpr double secondsOfNs(int64_t ns) noexcept {
+    return double(ns) / double(kNsPerSecond);
+}
+
+}  // namespace bonemill

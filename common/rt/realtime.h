@@ -1,0 +1,37 @@
+// Makes the calling thread as real-time as this machine allows, and says in plain sentences what is missing.
+//
+// Start-up only: system calls, allocation. Nothing throws: the caller decides what a missing permission means
+// (`--best-effort-rt`).
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace bonemill {
+
+inline constexpr int kAnyCore = -1;
+
+struct RealtimeRequest {
+    int priority = 80;    // SCHED_FIFO, 1..99; below the kernel's own 99, above interrupt threads (50)
+    int core = kAnyCore;  // pin to this core, or leave the choice to the kernel
+};
+
+struct RealtimeReport {
+    std::vector<std::string> missing;  // not granted: deadlines are best effort
+    std::vector<std::string> advice;   // granted, but the machine is not set up to keep deadlines well
+
+    void append(const RealtimeReport& other);
+};
+
+// Calling thread: SCHED_FIFO, pinned, stack prefaulted.
+RealtimeReport makeThreadRealtime(const RealtimeRequest& request);
+
+// Whole process: present and future pages stay in memory, and freed heap stays with the process.
+RealtimeReport lockMemory();
+
+inline constexpr size_t kPrefaultedStackBytes = 256 * 1024;
+// Touches the stack below the caller so that the tick meets no page fault there.
+void prefaultStack() noexcept;
+
+}  // namespace bonemill
