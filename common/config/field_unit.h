@@ -1,0 +1,15 @@
+// The unit that a scene field carries as the suffix of its name.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace bonemill {
+
+// "mm/s" for max_speed_mm_per_s; empty for a plain number. Any thread; not RT-safe.
+std::string_view unitOfField(std::string_view field_name) noexcept;
+
+// A number as people write it (0.25, 100000, 1e+09): the shortest text that reads back as the same double.
+std::string numberText(double value);
+
+}  // namespace bonemill

@@ -1,0 +1,51 @@
+#include "common/config/scene_file.h"
+
+#include <fstream>
+#include <system_error>
+
+#include "common/config/scene_check.h"
+#include "common/config/scene_text.h"
+#include "common/config/user_error.h"
+
+namespace bonemill {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uintmax_t kMaxSceneBytes =
+    4 << 20;  // a scene is written by hand: a megabyte is already 10,000 waypoints
+
+std::string readSceneText(const fs::path& file) {
+    const auto fail = [&file](const std::string& why) -> UserError {
+        return UserError(file.string() + ": " + why);
+    };
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (status.type() == fs::file_type::not_found) throw fail("scene file not found");
+    if (error) throw fail("scene file cannot be reached: " + error.message());
+    if (!fs::is_regular_file(status)) throw fail("is not a file; a scene is a .textproto file");
+    const uintmax_t size = fs::file_size(file, error);
+    if (error) throw fail("scene file cannot be reached: " + error.message());
+    if (size > kMaxSceneBytes)
+        throw fail("is " + std::to_string(size) + " bytes; a scene has at most " +
+                   std::to_string(kMaxSceneBytes));
+
+    std::ifstream stream(file, std::ios::binary);
+    std::string text(size, '\0');
+    if (!stream.read(text.data(), std::streamsize(size))) throw fail("scene file cannot be read");
+    return text;
+}
+
+}  // namespace
+
+LoadedScene loadScene(const fs::path& file) {
+    ParsedScene parsed = parseSceneText(readSceneText(file), file.string());
+    checkScene(parsed, file.string());
+    return {std::move(parsed.scene), fs::absolute(file).parent_path().lexically_normal(), file};
+}
+
+fs::path resolvePath(const LoadedScene& loaded, const std::string& path_in_scene) {
+    return (loaded.directory / path_in_scene).lexically_normal();
+}
+
+}  // namespace bonemill

@@ -1,0 +1,25 @@
+// Loads a scene: one text file (deploy/scenes/*.textproto, schema proto/scene.proto) says everything.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "proto/scene.pb.h"
+
+namespace bonemill {
+
+struct LoadedScene {
+    scene::Scene scene;
+    std::filesystem::path directory;  // absolute folder of `file`: where the scene's relative paths start
+    std::filesystem::path file;       // as given
+};
+
+// Reads and checks a scene. Throws UserError with "file:line: ..." for a missing, unreadable or too large
+// file, bad syntax, an unknown field, a value outside its range and fields in conflict. Start-up only.
+LoadedScene loadScene(const std::filesystem::path& file);
+
+// Where a path written in the scene points: absolute paths stay, relative ones start at the scene file's
+// folder.
+std::filesystem::path resolvePath(const LoadedScene& loaded, const std::string& path_in_scene);
+
+}  // namespace bonemill

@@ -1,0 +1,191 @@
+#include "common/config/scene_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "common/config/field_unit.h"
+#include "common/config/scene_table.h"
+#include "common/config/user_error.h"
+
+namespace bonemill {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SceneFile : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("bonemill_scene_" + std::to_string(getpid()));
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    fs::path write(const std::string& text) const {
+        const fs::path file = folder_ / "s.textproto";
+        std::ofstream(file, std::ios::binary) << text;
+        return file;
+    }
+    // The message without the folder, which differs from run to run.
+    std::string refusal(const std::string& text) const { return refusalOf(write(text)); }
+    std::string refusalOf(const fs::path& file) const {
+        try {
+            loadScene(file);
+        } catch (const UserError& error) {
+            const std::string message = error.what();
+            const std::string prefix = folder_.string() + "/";
+            return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
+        }
+        return "accepted";
+    }
+    fs::path folder_;
+};
+
+TEST_F(SceneFile, loadsFieldsAndKeepsDefaults) {
+    const LoadedScene loaded =
+        loadScene(write("name: 'a' volume { path: 'v.nrrd' iso_value: 600 }\n"
+                        "device { p_WD_mm { x: 1 y: -2.5 } }"));
+    EXPECT_EQ(loaded.scene.name(), "a");
+    EXPECT_EQ(loaded.scene.volume().iso_value(), 600.0);
+    EXPECT_EQ(loaded.scene.device().p_wd_mm().y(), -2.5);
+    EXPECT_EQ(loaded.scene.coupling().max_speed_mm_per_s(), 500.0);
+    EXPECT_FALSE(loaded.scene.volume().has_window_low());
+}
+
+TEST_F(SceneFile, relativePathsStartAtTheSceneFile) {
+    const LoadedScene loaded = loadScene(write("volume { path: 'v.nrrd' }"));
+    EXPECT_EQ(resolvePath(loaded, "sub/../v.nrrd"), folder_ / "v.nrrd");
+    EXPECT_EQ(resolvePath(loaded, "/data/v.nrrd"), "/data/v.nrrd");
+}
+
+TEST_F(SceneFile, refusesWhatIsNotAReadableFile) {
+    EXPECT_EQ(refusalOf(folder_ / "none.textproto"), "none.textproto: scene file not found");
+    EXPECT_EQ(refusalOf(folder_ / "none" / "s.textproto"), "none/s.textproto: scene file not found");
+    EXPECT_EQ(refusalOf(folder_), folder_.string() + ": is not a file; a scene is a .textproto file");
+    EXPECT_EQ(refusal(std::string(5 << 20, ' ')),
+              "s.textproto: is 5242880 bytes; a scene has at most 4194304");
+}
+
+TEST_F(SceneFile, misspeltFieldNamesTheNearestOne) {
+    EXPECT_EQ(
+        refusal("volume { path: 'v' }\n\ncoupling {\n  max_sped_mm_per_s: 3\n}"),
+        "s.textproto:4: unknown field `max_sped_mm_per_s` in Coupling; did you mean `max_speed_mm_per_s`?");
+    EXPECT_EQ(refusal("volume { iso: 3 }").substr(0, 52),
+              "s.textproto:1: unknown field `iso` in Volume; known ");
+    EXPECT_EQ(refusal("coupling { static_dampin: 3 }"),
+              "s.textproto:1: unknown field `static_dampin` in Coupling; did you mean `static_damping`?");
+    EXPECT_EQ(refusal("device { link_length: 3 }"),
+              "s.textproto:1: unknown field `link_length` in Device; did you mean `link_length_mm`?");
+}
+
+TEST_F(SceneFile, badSyntaxNamesTheLine) {
+    EXPECT_EQ(refusal("name: 'a'\nvolume {\n").substr(0, 14), "s.textproto:3:");
+    EXPECT_EQ(refusal("name: 'a'\nname: 'b'").substr(0, 14), "s.textproto:2:");
+    EXPECT_EQ(refusal("milling {\nenabled: ture }").substr(0, 14), "s.textproto:2:");
+    EXPECT_EQ(refusal("volume { shell_scaling_factor: -1 }").substr(0, 14), "s.textproto:1:");
+    EXPECT_EQ(refusal(std::string("\x7f"
+                                  "ELF\0\1\2",
+                                  7))
+                  .substr(0, 14),
+              "s.textproto:1:");
+}
+
+TEST_F(SceneFile, valueOutsideItsRangeNamesFieldValueRangeAndUnit) {
+    EXPECT_EQ(refusal("volume { path: 'v' }\ncoupling {\n  max_speed_mm_per_s: -3\n}"),
+              "s.textproto:3: field `coupling.max_speed_mm_per_s` = -3 is outside 1 .. 100000 (mm/s)");
+    EXPECT_EQ(refusal("volume { path: 'v' }\ntool { burr_radius_mm: -1 }"),
+              "s.textproto:2: field `tool.burr_radius_mm` = -1 is outside 0.01 .. 50 (mm)");
+    EXPECT_EQ(refusal("volume { path: 'v' }\ntool { shape { sphere { radius_mm: 1 } }\nshape { sphere "
+                      "{\nradius_mm: 0 } } }"),
+              "s.textproto:4: field `tool.shape[1].sphere.radius_mm` = 0 is outside 0.01 .. 100 (mm)");
+    EXPECT_EQ(refusal("volume { path: 'v' leaf_voxels: 40 }"),
+              "s.textproto:1: field `volume.leaf_voxels` = 40 is outside 4 .. 31 (voxels)");
+    EXPECT_EQ(refusal("device { p_WD_mm { z: 1e7 } }"),
+              "s.textproto:1: field `device.p_WD_mm.z` = 1e+07 is outside -1000000 .. 1000000 (mm)");
+}
+
+TEST_F(SceneFile, listElementsWithoutALineOfTheirOwnNameTheNearestLine) {
+    EXPECT_EQ(
+        refusal("volume { path: 'v' }\nsimulated_operator { waypoint: [ { time_s: 0 },\n { time_s: -5 } ] }"),
+        "s.textproto:3: field `simulated_operator.waypoint[1].time_s` = -5 is outside 0 .. 86400 (s)");
+}
+
+TEST_F(SceneFile, refusesWhatIsNotFinite) {
+    EXPECT_EQ(refusal("loop { rate_hz: nan }"),
+              "s.textproto:1: field `loop.rate_hz` = nan is not a finite number");
+    EXPECT_EQ(refusal("loop { rate_hz: inf }"),
+              "s.textproto:1: field `loop.rate_hz` = inf is not a finite number");
+    EXPECT_EQ(refusal("loop { rate_hz: -1e999 }"),
+              "s.textproto:1: field `loop.rate_hz` = -inf is not a finite number");
+}
+
+TEST_F(SceneFile, volumePathIsRequired) {
+    EXPECT_EQ(refusal(""),
+              "s.textproto: field `volume.path` is missing: name the file or DICOM folder of the bone");
+    EXPECT_EQ(refusal("name: 'x'\nvolume { }"),
+              "s.textproto:2: field `volume.path` is missing: name the file or DICOM folder of the bone");
+}
+
+TEST_F(SceneFile, windowAndIsoValueMustAgree) {
+    const std::string path = "volume { path: 'v'\n";
+    EXPECT_EQ(refusal(path + "window_low: 5 window_high: 5 }"),
+              "s.textproto:2: field `volume.window_low` = 5 is not below window_high = 5");
+    EXPECT_EQ(refusal(path + "window_low: 5 iso_value: 5 }"),
+              "s.textproto:2: field `volume.iso_value` = 5 is not above window_low = 5");
+    EXPECT_EQ(refusal(path + "window_high: 5 iso_value: 6 }"),
+              "s.textproto:2: field `volume.iso_value` = 6 is above window_high = 5");
+    EXPECT_EQ(refusal(path + "window_low: 0 window_high: 5 iso_value: 5 }"), "accepted");
+}
+
+TEST_F(SceneFile, waypointTimesMustIncrease) {
+    EXPECT_EQ(
+        refusal(
+            "volume { path: 'v' }\nsimulated_operator {\nwaypoint { time_s: 1 }\nwaypoint { time_s: 1 } }"),
+        "s.textproto:4: field `simulated_operator.waypoint[1].time_s` = 1 does not come after the waypoint "
+        "before "
+        "it (1 s): times must increase");
+}
+
+TEST_F(SceneFile, quaternionsMustHaveLengthOne) {
+    EXPECT_EQ(refusal("volume { path: 'v' }\ndevice { q_WD { w: 0 } }"),
+              "s.textproto:2: field `device.q_WD` has length 0, not 1 (w is 1 where it is not written: write "
+              "all of w, "
+              "x, y, z)");
+    EXPECT_NE(refusal("volume { path: 'v' }\ndevice { q_WD { x: 1 } }"), "accepted");
+    EXPECT_EQ(refusal("volume { path: 'v' }\ndevice { q_WD { w: 0.7071 x: 0.7071 } }"), "accepted");
+}
+
+TEST_F(SceneFile, toolIsMadeOfShapesOrOfAMesh) {
+    EXPECT_EQ(refusal("volume { path: 'v' }\ntool { shape { } }"),
+              "s.textproto:2: field `tool.shape[0]` is empty: give it a sphere, capsule, cylinder or cone");
+    EXPECT_NE(refusal("volume { path: 'v' }\ntool { shape { sphere { } } mesh_path: 'a.stl' }"), "accepted");
+}
+
+TEST_F(SceneFile, textsMustBePrintableUtf8) {
+    EXPECT_EQ(refusal("name: 'a\\xff'"), "s.textproto:1: field `name` is not UTF-8 text");
+    EXPECT_EQ(refusal("name: 'a\\xc3'"), "s.textproto:1: field `name` is not UTF-8 text");
+    EXPECT_EQ(refusal("volume { path: 'a\\0b' }"),
+              "s.textproto:1: field `volume.path` holds a control character");
+    EXPECT_EQ(refusal("name: 'Zähne' volume { path: 'v' }"), "accepted");
+}
+
+TEST(FieldUnit, isTheSuffixOfTheName) {
+    EXPECT_EQ(unitOfField("max_speed_mm_per_s"), "mm/s");
+    EXPECT_EQ(unitOfField("hand_stiffness_n_per_m"), "N/m");
+    EXPECT_EQ(unitOfField("angular_friction_nm_s_per_rad"), "N·m·s/rad");
+    EXPECT_EQ(unitOfField("static_damping"), "");
+}
+
+TEST(SceneTable, schemaRowsHaveUnitDefaultAndRange) {
+    const std::string table = describeDefaults();
+    EXPECT_NE(table.find("| `coupling.max_speed_mm_per_s` | mm/s | 500 | 1 .. 100000 |"), std::string::npos);
+    EXPECT_NE(table.find("| `tool.shape[].sphere.radius_mm` | mm | 1 | 0.01 .. 100 |"), std::string::npos);
+    EXPECT_NE(table.find("| `volume.leaf_voxels` | voxels | not set | 4 .. 31 |"), std::string::npos);
+    EXPECT_NE(table.find("| `device.p_WD_mm` | mm | not set | x, y, z |"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bonemill
