@@ -51,7 +51,7 @@ class DeviceLink {
     void beat(int64_t now_ns) noexcept;
     // The peer's last beat, CLOCK_MONOTONIC; 0: never.
     int64_t peerHeartbeatNs() const noexcept;
-    int32_t peerPid() const noexcept;  // 0: never attached
+    int32_t peerPid() const noexcept;  // 0: not attached
     // Asks the kernel whether the peer's process holds its side of the link. Not RT-safe.
     bool peerIsAlive() const noexcept;
 
@@ -64,7 +64,6 @@ class DeviceLink {
     LinkSide side_;
     int file_;
     LinkMemory* memory_;
-    uint64_t written_ = 0;       // sequence of this side's last write
     uint32_t read_version_ = 0;  // seqlock version of the last value read
 };
 

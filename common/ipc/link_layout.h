@@ -25,12 +25,13 @@ struct LinkPeer {
     std::atomic<int32_t> pid;
     uint32_t reserved;
     std::atomic<int64_t> heartbeat_ns;
+    std::atomic<uint64_t> last_sequence;  // of what this side wrote; a restarted process counts on from it
 };
 
 template <class T>
 struct alignas(64) LinkChannel {
     Seqlock<T> value;                  // its counter is the futex word
-    std::atomic<uint32_t> is_awaited;  // the reader sleeps, or is about to: the writer has to wake it
+    std::atomic<uint32_t> is_awaited;  // the reader sleeps, or is about to: the writer must wake it
 };
 
 struct LinkMemory {
@@ -43,9 +44,9 @@ struct LinkMemory {
     LinkChannel<WrenchCommand> command;
 };
 static_assert(std::is_standard_layout_v<LinkMemory>);
-static_assert(sizeof(LinkPeer) == 16 && sizeof(LinkChannel<DeviceSample>) == 128);
+static_assert(sizeof(LinkPeer) == 24 && sizeof(LinkChannel<DeviceSample>) == 128);
 static_assert(offsetof(LinkMemory, layout_version) == 8 && offsetof(LinkMemory, size) == 12 &&
-              offsetof(LinkMemory, server) == 16 && offsetof(LinkMemory, daemon) == 32 &&
+              offsetof(LinkMemory, server) == 16 && offsetof(LinkMemory, daemon) == 40 &&
               offsetof(LinkMemory, sample) == 64 && offsetof(LinkMemory, command) == 192 &&
               sizeof(LinkMemory) == 320);
 

@@ -31,6 +31,7 @@ class StaleRamp {
     StaleRampConfig config_;
     bool is_stale_ = true;
     int64_t ramp_start_ns_ = INT64_MIN;
+    int64_t updated_ns_ = INT64_MIN;
     double factor_at_start_ = 0.0;
     double factor_ = 0.0;
 };
