@@ -1,0 +1,58 @@
+// The tick's view of the device in a live session: shared memory in, shared memory out, telemetry into a ring.
+#pragma once
+
+#include <atomic>
+
+#include "common/ipc/device_link.h"
+#include "common/ipc/stale_ramp.h"
+#include "common/rt/spsc_ring.h"
+#include "haptic_server/tick/haptic_tick.h"
+
+namespace bonemill {
+
+struct DeviceLinkIoConfig {
+    int64_t period_ns = 1'000'000;
+    StaleRampConfig ramp;
+    Pose X_WD;
+};
+
+// All members but the constructor and stop() belong to the tick thread and are RT-safe; read() waits.
+class DeviceLinkIo final : public TickIo {
+  public:
+    DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link, SpscRing<TickRecord>& telemetry);
+
+    // Wakes on a new device sample, or by itself one period after the last tick when the device is silent. Before the
+    // very first sample there is nothing to simulate: it only waits.
+    bool read(DeviceInput& input) noexcept override;
+    int64_t write(const Wrench& wrench_hand_W) noexcept override;
+    int64_t now() noexcept override;
+    void push(const TickRecord& record) noexcept override;
+
+    // Any thread, also a signal handler: read() returns false within kStopCheckNs.
+    void stop() noexcept { is_stopping_.store(true, std::memory_order_relaxed); }
+    // Any thread: samples that no daemon of ours would send.
+    uint64_t implausibleSamples() const noexcept { return implausible_.load(std::memory_order_relaxed); }
+
+    static constexpr int64_t kStopCheckNs = 50'000'000;
+
+  private:
+    bool waitForFirstSample() noexcept;
+    void take(const DeviceSample& sample) noexcept;
+
+    DeviceLinkIoConfig config_;
+    DeviceLink& link_;
+    SpscRing<TickRecord>& telemetry_;
+    StaleRamp ramp_;
+    Eigen::Quaterniond R_DW_;
+    Pose X_WT_device_;
+    uint32_t buttons_ = 0;
+    uint64_t sequence_ = 0;        // of the sample in use
+    int64_t sample_stamp_ns_ = 0;  // when its joints were read
+    int64_t first_start_ns_ = 0;
+    int64_t last_start_ns_ = 0;
+    bool is_stale_ = false;
+    std::atomic<bool> is_stopping_{false};
+    std::atomic<uint64_t> implausible_{0};
+};
+
+}  // namespace bonemill

@@ -1,0 +1,126 @@
+#include "haptic_server/app/scene_setup.h"
+
+#include <cmath>
+
+#include "haptic_server/volume/import/import_volume.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kMillimetre = 1e-3;
+constexpr double kDegree = M_PI / 180;
+constexpr int kDefaultLeafCells = 16;
+
+Eigen::Vector3d metres(const scene::Vec3& mm) { return kMillimetre * Eigen::Vector3d(mm.x(), mm.y(), mm.z()); }
+
+ToolShape shapeOf(const scene::Tool::Shape& shape) {
+    switch (shape.kind_case()) {
+        case scene::Tool::Shape::kCapsule:
+            return CapsuleShape{metres(shape.capsule().from_mm()), metres(shape.capsule().to_mm()),
+                                shape.capsule().radius_mm() * kMillimetre};
+        case scene::Tool::Shape::kCylinder:
+            return CylinderShape{metres(shape.cylinder().from_mm()), metres(shape.cylinder().to_mm()),
+                                 shape.cylinder().radius_mm() * kMillimetre};
+        case scene::Tool::Shape::kCone:
+            return ConeShape{metres(shape.cone().from_mm()), metres(shape.cone().to_mm()),
+                             shape.cone().from_radius_mm() * kMillimetre, shape.cone().to_radius_mm() * kMillimetre};
+        default:
+            return SphereShape{metres(shape.sphere().center_mm()), shape.sphere().radius_mm() * kMillimetre};
+    }
+}
+
+DensityWindow windowOf(const scene::Volume& volume) {
+    DensityWindow window;
+    if (volume.has_window_low()) window.low = volume.window_low();
+    if (volume.has_window_high()) window.high = volume.window_high();
+    if (volume.has_iso_value()) window.iso = volume.iso_value();
+    window.smallest_piece_voxels = volume.smallest_piece_voxels();
+    return window;
+}
+
+Eigen::Vector3i leafCellsOf(const scene::Volume& volume, const VolumeGeometry& geometry) {
+    if (volume.has_octree_depth()) return LeafLattice::leafCellsOfDepth(geometry, int(volume.octree_depth()));
+    return Eigen::Vector3i::Constant(volume.has_leaf_voxels() ? int(volume.leaf_voxels()) : kDefaultLeafCells);
+}
+
+std::string textOf(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+void remarkOnShellSpacing(Simulation& simulation, const scene::Scene& scene) {
+    const double shell_spacing = scene.volume().shell_scaling_factor() * simulation.bone->volume.spacing().maxCoeff();
+    const double sdf_spacing = simulation.tool.sdf.spacing();
+    if (shell_spacing <= sdf_spacing * (1 + 1e-9)) return;
+    simulation.remarks.push_back("point-shell spacing " + textOf(shell_spacing / kMillimetre) +
+                                 " mm is coarser than the tool's distance grid (" + textOf(sdf_spacing / kMillimetre) +
+                                 " mm): contact can miss thin features; lower volume.shell_scaling_factor");
+}
+
+}  // namespace
+
+TickConfig tickConfigOf(const scene::Scene& scene) {
+    TickConfig config;
+    config.dt = 1 / scene.loop().rate_hz();
+    config.burr_radius = scene.tool().burr_radius_mm() * kMillimetre;
+    config.contact = {.point_stiffness = scene.contact().point_stiffness_n_per_mm() / kMillimetre,
+                      .full_stiffness_contacts = scene.contact().full_stiffness_contacts()};
+    const scene::Coupling& coupling = scene.coupling();
+    config.coupling = {.translation_stiffness = coupling.translation_stiffness_n_per_mm() / kMillimetre,
+                       .rotation_stiffness = coupling.rotation_stiffness_nmm_per_rad() * kMillimetre,
+                       .max_speed = coupling.max_speed_mm_per_s() * kMillimetre,
+                       .max_angular_speed = coupling.max_angular_speed_deg_per_s() * kDegree,
+                       .static_damping = coupling.static_damping(),
+                       .max_force = coupling.max_force_n(),
+                       .max_torque = coupling.max_torque_nmm() * kMillimetre};
+    config.milling = {.enabled = scene.milling().enabled(),
+                      .removal_rate = scene.milling().removal_rate_density_per_s() * kDensityCountsPerUnit,
+                      .addition_rate = scene.milling().addition_rate_density_per_s() * kDensityCountsPerUnit};
+    return config;
+}
+
+ToolConfig toolConfigOf(const LoadedScene& loaded) {
+    const scene::Tool& tool = loaded.scene.tool();
+    ToolConfig config;
+    for (const scene::Tool::Shape& shape : tool.shape()) config.shapes.push_back(shapeOf(shape));
+    if (tool.has_mesh_path()) config.mesh_path = resolvePath(loaded, tool.mesh_path());
+    config.burr_radius = tool.burr_radius_mm() * kMillimetre;
+    config.sdf_nodes = {int(tool.sdf_nodes_x()), int(tool.sdf_nodes_y()), int(tool.sdf_nodes_z())};
+    config.sdf_spacing = tool.sdf_spacing_mm() * kMillimetre;
+    if (tool.has_sdf_origin_mm()) config.sdf_origin_T = metres(tool.sdf_origin_mm());
+    return config;
+}
+
+Pose devicePoseOf(const scene::Device& device) {
+    const scene::Quaternion& q = device.q_wd();
+    return {metres(device.p_wd_mm()), Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
+}
+
+Simulation makeSimulation(const LoadedScene& loaded) {
+    const scene::Scene& scene = loaded.scene;
+    const ToolConfig tool_config = toolConfigOf(loaded);
+    Simulation simulation{.tick = tickConfigOf(scene),
+                          .bone = nullptr,
+                          .mapping = {},
+                          .tool = buildTool(tool_config),
+                          .tool_surface = toolSurface(tool_config),
+                          .X_WD = devicePoseOf(scene.device()),
+                          .remarks = {}};
+    const RawVolume raw = importVolume(resolvePath(loaded, scene.volume().path()), {scene.volume().series_uid()});
+    simulation.remarks.push_back(raw.description);
+    simulation.mapping = chooseMapping(raw, windowOf(scene.volume()));
+    if (simulation.mapping.is_iso_proposed)
+        simulation.remarks.push_back("no volume.iso_value in the scene: " + textOf(simulation.mapping.iso_value) +
+                                     " proposed from the histogram");
+    VoxelVolume volume = densify(raw, simulation.mapping);
+    removeSmallPieces(volume, scene.volume().smallest_piece_voxels());
+    const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), raw.geometry);
+    simulation.bone =
+        std::make_unique<BoneModel>(std::move(volume), leaf_cells, int(scene.volume().shell_scaling_factor()));
+    for (const std::string& warning : simulation.tool.warnings) simulation.remarks.push_back(warning);
+    remarkOnShellSpacing(simulation, scene);
+    return simulation;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,35 @@
+// Turns a scene file into the SI configuration and the objects that the tick works on. Start-up only.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/scene_file.h"
+#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tool/build/build_tool.h"
+#include "haptic_server/volume/import/densify.h"
+
+namespace bonemill {
+
+inline constexpr const char* kPresetName = "thesis_2012";
+
+struct Simulation {
+    TickConfig tick;
+    std::unique_ptr<BoneModel> bone;
+    DensityMapping mapping;
+    BuiltTool tool;
+    TriangleSurface tool_surface;
+    Pose X_WD;                          // device base in the world
+    std::vector<std::string> remarks;   // for people: what was read, proposed, or looks unwise
+};
+
+// Imports the volume, builds tree, shell and tool. Throws UserError.
+Simulation makeSimulation(const LoadedScene& loaded);
+
+TickConfig tickConfigOf(const scene::Scene& scene);
+ToolConfig toolConfigOf(const LoadedScene& loaded);
+Pose devicePoseOf(const scene::Device& device);
+
+}  // namespace bonemill

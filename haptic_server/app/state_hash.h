@@ -1,0 +1,25 @@
+// Digest of everything a run decided: FNV-1a, 64 bit, over bytes. Equal runs give equal digests on every compiler.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "haptic_server/tick/tick_record.h"
+#include "haptic_server/volume/voxel_volume.h"
+
+namespace bonemill {
+
+class StateHash {
+  public:
+    void addBytes(const void* data, size_t size) noexcept;
+    // Poses, wrench, contacts, removal and faults of a tick; not its measured times.
+    void addRecord(const TickRecord& record) noexcept;
+    // All densities without the border of air.
+    void addVolume(const VoxelVolume& volume) noexcept;
+    uint64_t value() const noexcept { return value_; }
+
+  private:
+    uint64_t value_ = 14695981039346656037ull;  // FNV-1a offset basis
+};
+
+}  // namespace bonemill

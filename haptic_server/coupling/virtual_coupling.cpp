@@ -1,0 +1,78 @@
+#include "haptic_server/coupling/virtual_coupling.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+namespace bonemill {
+namespace {
+
+// Rotation from the SPO to the device, scalar part >= 0.
+Eigen::Quaterniond rotationError(const Pose& spo, const Pose& device) noexcept {
+    Eigen::Quaterniond error = device.rotation * spo.rotation.conjugate();
+    if (error.w() < 0) error.coeffs() = -error.coeffs();
+    return error;
+}
+
+// The equilibrium matrix mixes N/m with N·m/rad; measuring rotations in this length (m/rad) balances its rows.
+constexpr double kRotationLength = 0.03;
+// Smallest ratio of LU pivots taken for a regular matrix.
+constexpr double kMinPivotRatio = 1e-12;
+
+bool limitNorm(Eigen::Ref<Eigen::Vector3d> v, double most) noexcept {
+    const double norm = v.norm();
+    if (norm <= most) return false;
+    v *= most / norm;
+    return true;
+}
+
+}  // namespace
+
+Wrench couplingWrench(const CouplingConfig& config, const Pose& spo, const Pose& device) noexcept {
+    return {config.translation_stiffness * (device.position - spo.position),
+            config.rotation_stiffness * rotationError(spo, device).vec()};
+}
+
+Matrix6d couplingDerivative(const CouplingConfig& config, const Pose& spo, const Pose& device) noexcept {
+    const Eigen::Quaterniond error = rotationError(spo, device);
+    Matrix6d derivative = Matrix6d::Zero();
+    derivative.topLeftCorner<3, 3>().diagonal().setConstant(-config.translation_stiffness);
+    derivative.bottomRightCorner<3, 3>() =
+        -0.5 * config.rotation_stiffness * (error.w() * Eigen::Matrix3d::Identity() + skew(error.vec()));
+    return derivative;
+}
+
+EquilibriumStep solveEquilibrium(const CouplingConfig& config, const Wrench& wrench, const Matrix6d& derivative,
+                                 double dt) noexcept {
+    Vector6d scale;
+    scale << 1, 1, 1, 1 / kRotationLength, 1 / kRotationLength, 1 / kRotationLength;
+    Vector6d w;
+    w << wrench.force, wrench.torque;
+    EquilibriumStep result;
+    const Matrix6d scaled = scale.asDiagonal() * derivative * scale.asDiagonal();
+    if (!scaled.allFinite() || !w.allFinite()) return result;
+    const Eigen::PartialPivLU<Matrix6d> lu(scaled);
+    const auto pivots = lu.matrixLU().diagonal().cwiseAbs();
+    if (!(pivots.minCoeff() > kMinPivotRatio * pivots.maxCoeff())) return result;
+    const Vector6d negative_scaled_wrench = -scale.cwiseProduct(w);
+    result.step = scale.cwiseProduct(lu.solve(negative_scaled_wrench));
+    result.is_valid = result.step.allFinite();
+    if (!result.is_valid) return {};
+    const bool translation_clamped = limitNorm(result.step.head<3>(), config.max_speed * dt);
+    const bool rotation_clamped = limitNorm(result.step.tail<3>(), config.max_angular_speed * dt);
+    result.is_clamped = translation_clamped || rotation_clamped;
+    return result;
+}
+
+bool limitWrench(const CouplingConfig& config, Wrench& wrench) noexcept {
+    if (!wrench.isFinite()) {
+        wrench = {};
+        return true;
+    }
+    const double excess = std::max(wrench.force.norm() / config.max_force, wrench.torque.norm() / config.max_torque);
+    if (excess <= 1) return false;
+    wrench.force /= excess;
+    wrench.torque /= excess;
+    return true;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,49 @@
+// The thesis' removal and addition of material (§4.2.2): voxels inside the burr sphere lose or gain density per time.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "haptic_server/contact/point_shell.h"
+
+namespace bonemill {
+
+struct MillingConfig {
+    bool enabled = true;
+    double removal_rate = 12750 * kDensityCountsPerUnit;   // density counts/s; default: from full to nothing in 20 ms
+    double addition_rate = 12750 * kDensityCountsPerUnit;  // density counts/s
+};
+
+struct MillingResult {
+    IndexBox changed;             // voxels whose density changed; empty if none
+    uint32_t removed_voxels = 0;  // fell below the iso-value
+    uint32_t added_voxels = 0;    // rose to the iso-value or above
+    bool shell_is_complete = true;
+};
+
+// Owns the scratch memory of one burr. Construction allocates; apply() is RT-safe (tick thread only).
+class TimedMilling {
+  public:
+    TimedMilling(const MillingConfig& config, const VoxelVolume& volume, double burr_radius);
+
+    // Changes the voxels with |voxel - p_VB| < burr radius by rate·dt, then the leaf versions, density ranges and
+    // point-shell with them. direction -1 removes, +1 adds.
+    MillingResult apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell, const Eigen::Vector3d& p_VB,
+                        int direction, double dt) noexcept;
+
+  private:
+    struct Change {
+        size_t offset;
+        Density density;
+    };
+    void collectChanges(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, int amount, MillingResult& result) noexcept;
+
+    MillingConfig config_;
+    double burr_radius_;
+    double carry_ = 0;  // fraction of a density count left over from earlier ticks, same direction
+    int carry_direction_ = 0;
+    std::vector<Change> changes_;
+    size_t change_count_ = 0;
+};
+
+}  // namespace bonemill

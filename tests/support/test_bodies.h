@@ -1,0 +1,60 @@
+// Analytic bodies and tools for tests: the density is the linear ramp of an exact signed distance.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "haptic_server/tick/bone_model.h"
+#include "haptic_server/tool/sdf_grid.h"
+
+namespace bonemill::test {
+
+using DistanceFunction = std::function<double(const Eigen::Vector3d& p_V)>;  // m, negative inside
+
+inline constexpr Density kTestIso = 32768;
+
+inline VolumeGeometry cubeGeometry(int voxels, double spacing) {
+    VolumeGeometry geometry;
+    geometry.dims.setConstant(voxels);
+    geometry.spacing.setConstant(spacing);
+    return geometry;
+}
+
+// Iso-surface where distance(p_V) = 0; full density 2 voxels inside, air 2 voxels outside.
+inline VoxelVolume bodyVolume(const VolumeGeometry& geometry, const DistanceFunction& distance) {
+    VoxelVolume volume(geometry, kTestIso);
+    const double ramp = 4 * geometry.spacing.maxCoeff();
+    for (int k = 0; k < geometry.dims.z(); ++k)
+        for (int j = 0; j < geometry.dims.y(); ++j)
+            for (int i = 0; i < geometry.dims.x(); ++i) {
+                const Eigen::Vector3d p_V = geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k));
+                const double density = kTestIso - distance(p_V) / ramp * kMaxDensity;
+                volume.set(i, j, k, Density(std::lround(std::clamp(density, 0.0, double(kMaxDensity)))));
+            }
+    return volume;
+}
+
+inline DistanceFunction sphereAt(const Eigen::Vector3d& center, double radius) {
+    return [=](const Eigen::Vector3d& p) { return (p - center).norm() - radius; };
+}
+
+// Bone below the plane through `point` with outward normal `normal`.
+inline DistanceFunction halfSpace(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
+    return [=](const Eigen::Vector3d& p) { return normal.dot(p - point); };
+}
+
+// Spherical tool around T's origin.
+inline SdfGrid sphereTool(double radius, double spacing) {
+    const int half = int(std::ceil(radius / spacing)) + 3;
+    const int nodes = 2 * half + 1;
+    const Eigen::Vector3d origin = Eigen::Vector3d::Constant(-half * spacing);
+    std::vector<float> values;
+    for (int k = 0; k < nodes; ++k)
+        for (int j = 0; j < nodes; ++j)
+            for (int i = 0; i < nodes; ++i)
+                values.push_back(float((origin + spacing * Eigen::Vector3d(i, j, k)).norm() - radius));
+    return SdfGrid(Eigen::Vector3i::Constant(nodes), spacing, origin, std::move(values));
+}
+
+}  // namespace bonemill::test

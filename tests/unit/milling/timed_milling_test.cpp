@@ -1,0 +1,107 @@
+#include "haptic_server/milling/timed_milling.h"
+
+#include <gtest/gtest.h>
+
+#include "haptic_server/tick/bone_model.h"
+#include "tests/support/test_bodies.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kVoxel = 0.5e-3;
+constexpr double kRadius = 2.2e-3;
+constexpr double kDt = 1e-3;
+
+BoneModel solidBlock() {
+    return BoneModel(test::bodyVolume(test::cubeGeometry(33, kVoxel), [](const Eigen::Vector3d&) { return -1.0; }),
+                     Eigen::Vector3i::Constant(8), 1);
+}
+
+TEST(TimedMilling, TakesExactlyTheVoxelsInsideTheBurr) {
+    BoneModel bone = solidBlock();
+    TimedMilling milling({.removal_rate = 1e9}, bone.volume, kRadius);  // at once
+    const Eigen::Vector3d center(8.1e-3, 7.9e-3, 8.3e-3);
+    const MillingResult result = milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
+    uint32_t expected = 0;
+    for (int k = 0; k < 33; ++k)
+        for (int j = 0; j < 33; ++j)
+            for (int i = 0; i < 33; ++i) {
+                const bool inside = (kVoxel * Eigen::Vector3d(i, j, k) - center).norm() < kRadius;
+                expected += inside;
+                ASSERT_EQ(bone.volume.at(i, j, k), inside ? 0 : kMaxDensity);
+            }
+    EXPECT_EQ(result.removed_voxels, expected);
+    EXPECT_EQ(result.added_voxels, 0u);
+}
+
+TEST(TimedMilling, RateIsDensityPerTimeWhateverTheTick) {
+    for (const double dt : {0.25e-3, 1e-3, 4e-3}) {
+        BoneModel bone = solidBlock();
+        const double rate = 1'000'003.7;  // counts/s: nothing divides evenly
+        TimedMilling milling({.removal_rate = rate}, bone.volume, kRadius);
+        const double duration = 0.032;
+        for (int n = 0; n < int(duration / dt + 0.5); ++n)
+            milling.apply(bone.volume, bone.lattice, bone.shell, {8e-3, 8e-3, 8e-3}, -1, dt);
+        EXPECT_NEAR(kMaxDensity - bone.volume.at(16, 16, 16), rate * duration, 1.01) << dt;
+    }
+}
+
+TEST(TimedMilling, AddingUndoesRemovingAndSaturates) {
+    BoneModel bone = solidBlock();
+    TimedMilling milling({.removal_rate = 1e9, .addition_rate = 1e9}, bone.volume, kRadius);
+    const Eigen::Vector3d center(8e-3, 8e-3, 8e-3);
+    const MillingResult removed = milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
+    const MillingResult added = milling.apply(bone.volume, bone.lattice, bone.shell, center, +1, kDt);
+    EXPECT_EQ(removed.removed_voxels, added.added_voxels);
+    for (size_t i = bone.volume.offset(0, 0, 0); i <= bone.volume.offset(2, 0, 0); ++i) EXPECT_EQ(bone.volume.at(i), kMaxDensity);
+    EXPECT_EQ(bone.volume.at(16, 16, 16), kMaxDensity);
+    const MillingResult again = milling.apply(bone.volume, bone.lattice, bone.shell, center, +1, kDt);
+    EXPECT_TRUE(again.changed.isEmpty());
+}
+
+TEST(TimedMilling, AnUnchangedVoxelMarksNoLeaf) {
+    BoneModel bone = solidBlock();
+    TimedMilling milling({.removal_rate = 1e9}, bone.volume, kRadius);
+    const Eigen::Vector3d center(8e-3, 8e-3, 8e-3);
+    milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
+    std::vector<uint32_t> versions;
+    for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf) versions.push_back(bone.lattice.version(leaf));
+    milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);  // nothing left there
+    for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf) {
+        EXPECT_EQ(bone.lattice.version(leaf), versions[leaf]);
+        EXPECT_EQ(bone.lattice.version(leaf) % 2, 0u);
+    }
+}
+
+TEST(TimedMilling, WorksAtAndBeyondTheBorder) {
+    BoneModel bone = solidBlock();
+    TimedMilling milling({.removal_rate = 1e9}, bone.volume, kRadius);
+    for (const Eigen::Vector3d& center : {Eigen::Vector3d(-1e-3, 0, 0), Eigen::Vector3d(17e-3, 17e-3, 17e-3),
+                                          Eigen::Vector3d(1e3, -1e3, 0), Eigen::Vector3d(-5e8, 5e8, 5e8)})
+        milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
+    EXPECT_EQ(bone.volume.at(0, 0, 0), 0);
+    EXPECT_EQ(bone.volume.at(32, 32, 32), 0);
+    EXPECT_EQ(bone.volume.at(-1, 0, 0), 0);  // the border stays air also when adding
+    TimedMilling adding({.addition_rate = 1e9}, bone.volume, kRadius);
+    adding.apply(bone.volume, bone.lattice, bone.shell, {0, 0, 0}, +1, kDt);
+    EXPECT_EQ(bone.volume.at(0, 0, 0), kMaxDensity);
+    EXPECT_EQ(bone.volume.at(-1, 0, 0), 0);
+}
+
+TEST(TimedMilling, ShellAndRangesFollow) {
+    BoneModel bone = solidBlock();
+    TimedMilling milling({.removal_rate = 4e6}, bone.volume, kRadius);
+    for (int n = 0; n < 40; ++n)
+        milling.apply(bone.volume, bone.lattice, bone.shell, {8e-3 + n * 0.1e-3, 8e-3, 8e-3}, -1, kDt);
+    const LeafLattice fresh_lattice(bone.volume, Eigen::Vector3i::Constant(8));
+    const PointShell fresh_shell(bone.volume, fresh_lattice, 1);
+    EXPECT_EQ(bone.shell.pointCount(), fresh_shell.pointCount());
+    for (LeafId leaf = 0; leaf < fresh_lattice.leafCount(); ++leaf) {
+        EXPECT_EQ(bone.shell.pointCount(leaf), fresh_shell.pointCount(leaf));
+        EXPECT_EQ(bone.lattice.range(0, leaf).min, fresh_lattice.range(0, leaf).min);
+        EXPECT_EQ(bone.lattice.range(0, leaf).max, fresh_lattice.range(0, leaf).max);
+    }
+}
+
+}  // namespace
+}  // namespace bonemill
