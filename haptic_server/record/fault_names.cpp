@@ -1,0 +1,51 @@
+#include "haptic_server/record/fault_names.h"
+
+#include "haptic_server/tick/tick_record.h"
+
+namespace bonemill {
+namespace {
+
+const char* nameOf(uint32_t fault) {
+    switch (TickFault(fault)) {
+        case kFaultNone:
+            break;
+        case kFaultOverrun:
+            return "overrun";
+        case kFaultStaleDevice:
+            return "stale_device";
+        case kFaultBadDevicePose:
+            return "bad_device_pose";
+        case kFaultSolve:
+            return "solve";
+        case kFaultMotionClamped:
+            return "motion_clamped";
+        case kFaultForceClamped:
+            return "force_clamped";
+        case kFaultShellOverflow:
+            return "shell_overflow";
+        case kFaultContactOverflow:
+            return "contact_overflow";
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+std::vector<std::string> faultList(uint32_t faults) {
+    std::vector<std::string> names;
+    for (int bit = 0; bit < 32; ++bit) {
+        const uint32_t fault = 1u << bit;
+        if (!(faults & fault)) continue;
+        const char* const name = nameOf(fault);
+        names.push_back(name ? name : "unknown_bit_" + std::to_string(bit));
+    }
+    return names;
+}
+
+std::string faultNames(uint32_t faults) {
+    std::string text;
+    for (const std::string& name : faultList(faults)) text += (text.empty() ? "" : ", ") + name;
+    return text.empty() ? "none" : text;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,17 @@
+// Words for the TickFault bits. Any thread; allocates.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace bonemill {
+
+// One short name per set bit, lowest bit first ("overrun", "stale_device", ...); "unknown_bit_N" for a bit
+// without one.
+std::vector<std::string> faultList(uint32_t faults);
+
+// The same for people: "overrun, stale_device", or "none".
+std::string faultNames(uint32_t faults);
+
+}  // namespace bonemill

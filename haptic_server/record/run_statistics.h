@@ -1,0 +1,92 @@
+// What a run was like, from its tick records: rates, latencies, contacts, forces, material, faults.
+//
+// One normal thread; allocates once per second of run.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/rt/latency_histogram.h"
+#include "haptic_server/tick/tick_record.h"
+
+namespace bonemill {
+
+class RunStatistics {
+  public:
+    // period_ns: nominal time between ticks, > 0.
+    explicit RunStatistics(int64_t period_ns) : period_ns_(period_ns) {}
+
+    // Records in the order of their ticks; those the ring dropped may be missing.
+    void add(const TickRecord& record);
+    // SpscRing::dropped(): ticks that ran but are not in these statistics (their number still counts in the
+    // rates).
+    void setLostRecords(uint64_t lost_records) { lost_records_ = lost_records; }
+
+    uint64_t ticks() const { return has_records_ ? last_tick_ - first_tick_ + 1 : 0; }
+    double durationS() const;   // from the first to the last tick's start
+    double meanRateHz() const;  // ticks per elapsed time; 0 with fewer than two ticks
+    const std::vector<double>& ratesHz() const {
+        return rates_hz_;
+    }  // of every whole second since the first tick
+    uint64_t droppedTicks() const {
+        return dropped_ticks_;
+    }  // periods of the schedule in which no tick started
+    uint64_t lostRecords() const { return lost_records_; }
+
+    const LatencyHistogram& wakeupLatency() const { return wakeup_latency_; }
+    const LatencyHistogram& forceReady() const { return force_ready_; }  // wake-up to wrench written
+    const LatencyHistogram& tickCompute() const {
+        return tick_compute_;
+    }  // wake-up to end of the tick's work
+
+    double meanContacts() const { return records_ ? double(contacts_sum_) / double(records_) : 0.0; }
+    uint32_t maxContacts() const { return max_contacts_; }
+    double maxForce() const { return max_force_; }              // N
+    double maxTorque() const { return max_torque_; }            // N·m
+    double maxPenetration() const { return max_penetration_; }  // m
+    double removed() const { return removed_; }                 // m³
+    double added() const { return added_; }                     // m³
+    uint64_t removedVoxels() const { return removed_voxels_; }
+    uint64_t addedVoxels() const { return added_voxels_; }
+    uint32_t faults() const { return faults_; }  // every TickFault bit that was ever set
+
+    // One JSON object, keys with unit suffixes.
+    std::string toJson() const;
+    // Throws UserError when the file cannot be written.
+    void writeJson(const std::string& path) const;
+
+  private:
+    void addSchedule(const TickRecord& record);
+    void addFaults(uint32_t faults);
+
+    int64_t period_ns_;
+    bool has_records_ = false;
+    uint64_t records_ = 0;
+    uint64_t first_tick_ = 0;
+    uint64_t last_tick_ = 0;
+    int64_t first_start_ns_ = 0;
+    int64_t last_start_ns_ = 0;
+    int64_t last_due_ns_ = 0;
+    uint64_t ticks_this_second_ = 0;
+    std::vector<double> rates_hz_;
+    uint64_t dropped_ticks_ = 0;
+    uint64_t lost_records_ = 0;
+    LatencyHistogram wakeup_latency_;
+    LatencyHistogram force_ready_;
+    LatencyHistogram tick_compute_;
+    uint64_t contacts_sum_ = 0;
+    uint32_t max_contacts_ = 0;
+    double max_force_ = 0.0;
+    double max_torque_ = 0.0;
+    double max_penetration_ = 0.0;
+    double removed_ = 0.0;
+    double added_ = 0.0;
+    uint64_t removed_voxels_ = 0;
+    uint64_t added_voxels_ = 0;
+    uint32_t faults_ = 0;
+    std::array<uint64_t, 32> fault_ticks_{};
+};
+
+}  // namespace bonemill
