@@ -1,0 +1,163 @@
+#include "haptic_server/tick/haptic_tick.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "haptic_server/mesh/mesh_check.h"
+#include "haptic_server/mesh/mesher.h"
+#include "tests/support/scripted_io.h"
+#include "tests/support/test_bodies.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kVoxel = 0.125e-3;
+constexpr double kBurr = 1e-3;
+constexpr double kTop = 6e-3;  // bone fills z < kTop (V)
+
+// A slab in a volume whose frame V is turned and shifted against W.
+struct Bench {
+    explicit Bench(const Pose& X_WV = {{0.1, -0.2, 0.3}, expRotation({0.4, -0.9, 0.2})})
+        : bone(slab(X_WV), Eigen::Vector3i::Constant(16), 1), tool(test::sphereTool(kBurr, kVoxel)) {
+        config.burr_radius = kBurr;
+    }
+    static VoxelVolume slab(const Pose& X_WV) {
+        VolumeGeometry geometry = test::cubeGeometry(64, kVoxel);
+        geometry.X_WV = X_WV;
+        return test::bodyVolume(geometry, test::halfSpace({0, 0, kTop}, Eigen::Vector3d::UnitZ()));
+    }
+    Pose atV(const Eigen::Vector3d& p_V) const { return bone.volume.geometry().X_WV * Pose{p_V, Eigen::Quaterniond::Identity()}; }
+    Eigen::Vector3d inV(const double (&p_W)[3]) const {
+        return bone.volume.geometry().X_WV.inverse() * Eigen::Vector3d(p_W[0], p_W[1], p_W[2]);
+    }
+    std::vector<TickRecord> run(const std::vector<DeviceInput>& inputs) {
+        HapticTick tick(config, bone, tool, nullptr);
+        test::ScriptedIo io(inputs);
+        while (tick.tick(io)) {}
+        return io.records;
+    }
+    double boneVolume() const {
+        std::vector<NodeMesh> meshes;
+        Mesher mesher(bone.volume, bone.lattice);
+        mesher.pass([&](NodeMesh&& mesh) { meshes.push_back(std::move(mesh)); });
+        return meshVolume(meshes, MeshGrid(bone.volume, bone.lattice));
+    }
+
+    TickConfig config;
+    BoneModel bone;
+    SdfGrid tool;
+};
+
+const Eigen::Vector3d kStart(3.95e-3, 4.05e-3, kTop + kBurr + 0.3e-3);
+
+TEST(HapticTick, FreeSpaceIsFree) {
+    Bench bench;
+    const Pose start = bench.atV(kStart);
+    const auto records = bench.run(test::straightPath(start, start.position, 50, 0));
+    for (const TickRecord& r : records) {
+        EXPECT_EQ(r.contacts, 0u);
+        EXPECT_LT(Eigen::Vector3d(r.f_hand_W).norm(), 1e-9);
+        EXPECT_EQ(r.faults, 0u);
+    }
+}
+
+TEST(HapticTick, PressingPushesBackAlongTheSurfaceNormalInTheWorld) {
+    Bench bench;
+    const Pose start = bench.atV(kStart);
+    const Eigen::Vector3d end = bench.atV(kStart - Eigen::Vector3d(0, 0, 1.0e-3)).position;
+    auto inputs = test::straightPath(start, end, 200, 0);
+    inputs.insert(inputs.end(), 500, inputs.back());
+    const TickRecord last = bench.run(inputs).back();
+    const Eigen::Vector3d up_W = bench.bone.volume.geometry().X_WV.rotation * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d force(last.f_hand_W[0], last.f_hand_W[1], last.f_hand_W[2]);
+    EXPECT_GT(last.contacts, 0u);
+    EXPECT_GT(force.dot(up_W), 0.5);
+    EXPECT_GT(force.dot(up_W) / force.norm(), 0.99);
+    // Equilibrium: what the hand feels is the coupling's stretch.
+    const double stretch = (Eigen::Vector3d(last.p_WT[0], last.p_WT[1], last.p_WT[2]) - end).norm();
+    EXPECT_NEAR(force.norm(), 3000 * stretch, 1e-6);
+}
+
+TEST(HapticTick, SpeedLimitHoldsTheToolBack) {
+    Bench bench;
+    const Pose start = bench.atV(kStart);
+    auto inputs = test::straightPath(start, start.position, 2, 0);
+    inputs[1].X_WT_device.position.x() += 0.05;
+    const auto records = bench.run(inputs);
+    EXPECT_TRUE(records[1].faults & kFaultMotionClamped);
+    const double moved = std::abs(records[1].p_WT[0] - records[0].p_WT[0]);
+    EXPECT_NEAR(moved, 0.5 * 0.5e-3, 1e-9);  // (1 - alpha) * 0.5 m/s * 1 ms
+}
+
+TEST(HapticTick, BadDevicePosesAreRefusedAndNothingNonFiniteComesOut) {
+    Bench bench;
+    const Pose start = bench.atV(kStart);
+    auto inputs = test::straightPath(start, start.position, 6, kButtonRemove);
+    inputs[2].X_WT_device.position.x() = std::numeric_limits<double>::quiet_NaN();
+    inputs[3].X_WT_device.rotation.coeffs().setZero();
+    inputs[4].X_WT_device.position.x() = std::numeric_limits<double>::infinity();
+    const auto records = bench.run(inputs);
+    for (size_t n = 0; n < records.size(); ++n) {
+        EXPECT_EQ(bool(records[n].faults & kFaultBadDevicePose), n >= 2 && n <= 4) << n;
+        for (const double v : records[n].f_hand_W) EXPECT_TRUE(std::isfinite(v));
+        for (const double v : records[n].p_WT) EXPECT_TRUE(std::isfinite(v));
+    }
+}
+
+TEST(HapticTick, StaleDeviceMillsNothingAndForceFollowsTheRamp) {
+    Bench bench;
+    const Pose start = bench.atV(kStart - Eigen::Vector3d(0, 0, 1e-3));
+    auto inputs = test::straightPath(start, start.position, 300, 0);
+    for (size_t n = 200; n < 300; ++n) {
+        inputs[n].buttons = kButtonRemove;
+        inputs[n].is_stale = true;
+        inputs[n].force_factor = 0.25;
+    }
+    const auto records = bench.run(inputs);
+    const auto force = [](const TickRecord& r) { return Eigen::Vector3d(r.f_hand_W[0], r.f_hand_W[1], r.f_hand_W[2]).norm(); };
+    EXPECT_GT(force(records[199]), 0.1);
+    EXPECT_NEAR(force(records[299]), 0.25 * force(records[199]), 0.05 * force(records[199]));
+    EXPECT_TRUE(records[250].faults & kFaultStaleDevice);
+    for (const TickRecord& r : records) EXPECT_EQ(r.removed_voxels, 0u);
+}
+
+// The corridor is where the trajectory says: a straight feed into a slab leaves a round-bottomed hole.
+TEST(HapticTick, CorridorHasTheVolumeOfTheSweptBurr) {
+    Bench bench;
+    const double volume_before = bench.boneVolume();
+    const Pose start = bench.atV(kStart);
+    const Eigen::Vector3d end = bench.atV(kStart - Eigen::Vector3d(0, 0, 4.3e-3)).position;
+    auto inputs = test::straightPath(start, end, 4000, kButtonRemove);
+    inputs.insert(inputs.end(), 1000, inputs.back());  // dwell: the bottom wears until the springs relax
+    const auto records = bench.run(inputs);
+    double removed = 0;
+    for (const TickRecord& r : records) removed += r.removed;
+    const TickRecord& last = records.back();
+    EXPECT_LT((bench.inV(last.p_WT) - (kStart - Eigen::Vector3d(0, 0, 4.3e-3))).norm(), 0.05e-3);
+    const double depth = kTop - bench.inV(last.p_WT).z();  // of the burr centre below the surface
+    const double swept = M_PI * kBurr * kBurr * depth + 2.0 / 3 * M_PI * std::pow(kBurr, 3);
+    EXPECT_NEAR(removed / swept, 1, 0.03);
+    EXPECT_NEAR((volume_before - bench.boneVolume()) / swept, 1, 0.03);
+    // Straight: the tool kept to the axis.
+    for (const TickRecord& r : records) EXPECT_LT((bench.inV(r.p_WT) - kStart).head<2>().norm(), 0.1e-3);
+}
+
+TEST(HapticTick, TwoRunsAreBitIdentical) {
+    const auto run_once = [] {
+        Bench bench;
+        const Pose start = bench.atV(kStart);
+        const Eigen::Vector3d end = bench.atV(kStart - Eigen::Vector3d(1e-3, 0.3e-3, 3e-3)).position;
+        return bench.run(test::straightPath(start, end, 1500, kButtonRemove));
+    };
+    const auto a = run_once(), b = run_once();
+    ASSERT_EQ(a.size(), b.size());
+    for (size_t n = 0; n < a.size(); ++n) {
+        ASSERT_EQ(0, std::memcmp(a[n].p_WT, b[n].p_WT, sizeof a[n].p_WT)) << n;
+        ASSERT_EQ(0, std::memcmp(a[n].f_hand_W, b[n].f_hand_W, sizeof a[n].f_hand_W)) << n;
+        ASSERT_EQ(a[n].removed_voxels, b[n].removed_voxels);
+    }
+}
+
+}  // namespace
+}  // namespace bonemill
