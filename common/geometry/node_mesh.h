@@ -28,4 +28,13 @@ struct NodeMesh {
     bool isEmpty() const noexcept { return indices.empty(); }
 };
 
+// Octahedral coding of a unit vector n (Cigolle et al. 2014, "Survey of Efficient Representations for Independent
+// Unit Vectors"): (u, v) = (n.x, n.y) / (|n.x| + |n.y| + |n.z|), folded over the diagonals when n.z < 0, times 127.
+// Thread-safe, never throws. The worst error of a normal is below 1.5 degrees.
+struct OctahedralNormal {
+    int8_t u, v;
+};
+OctahedralNormal encodeNormal(const Eigen::Vector3f& unit_normal) noexcept;
+Eigen::Vector3f decodeNormal(int8_t octahedral_u, int8_t octahedral_v) noexcept;
+
 }  // namespace bonemill

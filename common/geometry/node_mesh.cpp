@@ -1,0 +1,40 @@
+#include "common/geometry/node_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bonemill {
+namespace {
+
+constexpr float kOctahedralScale = 127;
+
+float signNotZero(float value) noexcept {
+    return value < 0 ? -1.0f : 1.0f;
+}
+
+// The lower half of the octahedron, folded outwards over the diagonals; its own inverse.
+void fold(float& u, float& v) noexcept {
+    const float folded_u = (1 - std::abs(v)) * signNotZero(u);
+    v = (1 - std::abs(u)) * signNotZero(v);
+    u = folded_u;
+}
+
+}  // namespace
+
+OctahedralNormal encodeNormal(const Eigen::Vector3f& unit_normal) noexcept {
+    const float sum = unit_normal.cwiseAbs().sum();
+    float u = unit_normal.x() / sum;
+    float v = unit_normal.y() / sum;
+    if (unit_normal.z() < 0) fold(u, v);
+    return {int8_t(std::floor(u * kOctahedralScale + 0.5f)), int8_t(std::floor(v * kOctahedralScale + 0.5f))};
+}
+
+Eigen::Vector3f decodeNormal(int8_t octahedral_u, int8_t octahedral_v) noexcept {
+    float u = std::max(float(octahedral_u) / kOctahedralScale, -1.0f);
+    float v = std::max(float(octahedral_v) / kOctahedralScale, -1.0f);
+    const float z = 1 - std::abs(u) - std::abs(v);
+    if (z < 0) fold(u, v);
+    return Eigen::Vector3f(u, v, z).normalized();
+}
+
+}  // namespace bonemill

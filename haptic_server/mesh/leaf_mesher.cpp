@@ -1,0 +1,127 @@
+#include "haptic_server/mesh/leaf_mesher.h"
+
+#include <algorithm>
+
+#include "haptic_server/mesh/marching_cubes_table.h"
+
+namespace bonemill {
+namespace {
+
+constexpr uint32_t kNoVertex = UINT32_MAX;
+
+// Steps from the low voxel to the iso-value, rounded to nearest; low and high lie on different sides of iso.
+int stepsToIso(Density low, Density high, Density iso, int steps_per_cell) noexcept {
+    const int64_t rise = std::abs(int64_t(high) - low);
+    const int64_t to_iso = std::abs(int64_t(iso) - low);
+    const int64_t steps = (2 * to_iso * steps_per_cell + rise) / (2 * rise);
+    return int(std::clamp<int64_t>(steps, 1, steps_per_cell - 1));
+}
+
+}  // namespace
+
+LeafMesher::LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice)
+    : volume_(volume), lattice_(lattice), grid_(volume, lattice) {}
+
+NodeMesh LeafMesher::mesh(LeafId leaf) {
+    NodeMesh mesh;
+    mesh.leaf = leaf;
+    mesh.revision = lattice_.version(leaf);
+    mesh.origin = grid_.leafOrigin(leaf);
+    mesh.step = grid_.step();
+    if (readVoxels(lattice_.cellsOf(leaf))) meshCells(mesh);
+    return mesh;
+}
+
+// Copies the corners of the cells, so that a write meanwhile cannot contradict itself; true when they hold
+// surface.
+bool LeafMesher::readVoxels(const IndexBox& cells) {
+    first_voxel_ = cells.min;
+    cells_ = cells.max - cells.min + Eigen::Vector3i::Ones();
+    stride_[1] = size_t(cells_.x()) + 1;
+    stride_[2] = stride_[1] * (size_t(cells_.y()) + 1);
+    density_.resize(stride_[2] * (size_t(cells_.z()) + 1));
+
+    const Density iso = volume_.iso();
+    bool any_inside = false;
+    bool any_outside = false;
+    Density* out = density_.data();
+    for (int k = 0; k <= cells_.z(); ++k)
+        for (int j = 0; j <= cells_.y(); ++j) {
+            const size_t row = volume_.offset(cells.min.x(), cells.min.y() + j, cells.min.z() + k);
+            for (int i = 0; i <= cells_.x(); ++i) {
+                const Density d = volume_.at(row + size_t(i));
+                (d >= iso ? any_inside : any_outside) = true;
+                *out++ = d;
+            }
+        }
+    return any_inside && any_outside;
+}
+
+void LeafMesher::meshCells(NodeMesh& mesh) {
+    edge_vertex_.assign(3 * density_.size(), kNoVertex);
+    const Density iso = volume_.iso();
+    for (int k = 0; k < cells_.z(); ++k)
+        for (int j = 0; j < cells_.y(); ++j) {
+            const Density* row = density_.data() + cornerIndex({0, j, k});
+            // The four corners of a cell on its low x side; those of the high side are the next one's,
+            // shifted.
+            const auto side = [&](int i) noexcept {
+                return int(row[i] >= iso) | int(row[size_t(i) + stride_[1]] >= iso) << 2 |
+                       int(row[size_t(i) + stride_[2]] >= iso) << 4 |
+                       int(row[size_t(i) + stride_[1] + stride_[2]] >= iso) << 6;
+            };
+            int low = side(0);
+            for (int i = 0; i < cells_.x(); ++i) {
+                const int high = side(i + 1);
+                const int config = low | high << 1;
+                if (config != 0 && config != 255) emitCell(config, {i, j, k}, mesh);
+                low = high;
+            }
+        }
+}
+
+void LeafMesher::emitCell(int config, const Eigen::Vector3i& cell, NodeMesh& mesh) {
+    const CubeTriangles& triangles = cubeTriangles()[size_t(config)];
+    for (int t = 0; t < triangles.count; ++t)
+        for (const uint8_t edge : triangles.edges[size_t(t)]) {
+            const CubeEdge e = kCubeEdges[edge];
+            const Eigen::Vector3i low(e.low_corner & 1, e.low_corner >> 1 & 1, e.low_corner >> 2 & 1);
+            mesh.indices.push_back(vertexOnEdge(cell + low, e.axis, mesh));
+        }
+}
+
+uint32_t LeafMesher::vertexOnEdge(const Eigen::Vector3i& local, int axis, NodeMesh& mesh) {
+    uint32_t& vertex = edge_vertex_[3 * cornerIndex(local) + size_t(axis)];
+    if (vertex == kNoVertex) {
+        vertex = uint32_t(mesh.vertices.size());
+        mesh.vertices.push_back(makeVertex(local, axis));
+    }
+    return vertex;
+}
+
+PackedVertex LeafMesher::makeVertex(const Eigen::Vector3i& local, int axis) const {
+    const size_t low = cornerIndex(local);
+    const size_t high = low + stride_[axis];
+    const int steps = stepsToIso(density_[low], density_[high], volume_.iso(), grid_.stepsPerCell());
+    Eigen::Vector3i position = local * grid_.stepsPerCell();
+    position[axis] += steps;
+
+    const Eigen::Vector3i voxel = first_voxel_ + local;
+    const Eigen::Vector3i next = voxel + Eigen::Vector3i::Unit(axis);
+    const float fraction = float(steps) / float(grid_.stepsPerCell());
+    const Eigen::Vector3f gradient = volume_.gradient(voxel.x(), voxel.y(), voxel.z()) * (1 - fraction) +
+                                     volume_.gradient(next.x(), next.y(), next.z()) * fraction;
+    const float norm = gradient.norm();
+    // A one-voxel plate or grain has no gradient: the way out of the bone along the edge is a normal too.
+    const float way_out = density_[low] > density_[high] ? 1.0f : -1.0f;
+    const Eigen::Vector3f normal =
+        norm > 0 ? Eigen::Vector3f(-gradient / norm) : Eigen::Vector3f(way_out * Eigen::Vector3f::Unit(axis));
+    const OctahedralNormal packed = encodeNormal(normal);
+    return {uint16_t(position.x()), uint16_t(position.y()), uint16_t(position.z()), packed.u, packed.v};
+}
+
+NodeMesh meshLeaf(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf) {
+    return LeafMesher(volume, lattice).mesh(leaf);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,51 @@
+// Iso-surface of one octree leaf: marching cubes over the leaf's cells, vertices on the grid edges.
+//
+// A vertex lies where the density, interpolated linearly along its edge, equals the iso-value, rounded to the
+// steps of MeshGrid and kept one step away from both voxels, so that vertices of different edges never
+// coincide. Its normal is minus the density gradient (VoxelVolume::gradient), interpolated by the same
+// fraction. Position and normal depend only on the voxels around the edge, in integer or IEEE single
+// arithmetic: the leaves that share an edge get the same vertex, bit for bit. A voxel is inside the bone when
+// its density >= iso.
+//
+// Not RT-safe (allocates). A volume being written gives a mesh of mixed voxels: compare versions (class
+// Mesher).
+#pragma once
+
+#include <vector>
+
+#include "haptic_server/mesh/mesh_grid.h"
+
+namespace bonemill {
+
+// One leaf after another with reused memory; one thread at a time. Volume and lattice must outlive it.
+class LeafMesher {
+  public:
+    LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice);
+
+    // revision = the leaf's version before its voxels were read. Empty without surface.
+    NodeMesh mesh(LeafId leaf);
+
+  private:
+    bool readVoxels(const IndexBox& cells);
+    void meshCells(NodeMesh& mesh);
+    void emitCell(int config, const Eigen::Vector3i& cell, NodeMesh& mesh);
+    uint32_t vertexOnEdge(const Eigen::Vector3i& local, int axis, NodeMesh& mesh);
+    PackedVertex makeVertex(const Eigen::Vector3i& local, int axis) const;
+
+    size_t cornerIndex(const Eigen::Vector3i& local) const noexcept {
+        return size_t(local.x()) + stride_[1] * size_t(local.y()) + stride_[2] * size_t(local.z());
+    }
+
+    const VoxelVolume& volume_;
+    const LeafLattice& lattice_;
+    MeshGrid grid_;
+    Eigen::Vector3i first_voxel_;  // of the leaf in hand; locals count from here
+    Eigen::Vector3i cells_;        // of the leaf in hand, per axis
+    size_t stride_[3] = {1, 0, 0};
+    std::vector<Density> density_;       // cells_ + 1 corners per axis, x fastest
+    std::vector<uint32_t> edge_vertex_;  // per corner and axis: vertex on the edge that starts there
+};
+
+NodeMesh meshLeaf(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf);
+
+}  // namespace bonemill

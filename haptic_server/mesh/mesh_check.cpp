@@ -1,0 +1,92 @@
+#include "haptic_server/mesh/mesh_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace bonemill {
+namespace {
+
+using Point = std::array<int, 3>;
+
+std::vector<Point> distinctPoints(std::span<const NodeMesh> meshes, const MeshGrid& grid) {
+    std::vector<Point> points;
+    for (const NodeMesh& mesh : meshes)
+        for (const PackedVertex& vertex : mesh.vertices) {
+            const Eigen::Vector3i s = grid.stepsOf(mesh.leaf, vertex);
+            points.push_back({s.x(), s.y(), s.z()});
+        }
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    return points;
+}
+
+struct Edge {
+    uint32_t low, high;  // point numbers
+    bool runs_up;        // the triangle goes from low to high
+    auto operator<=>(const Edge&) const = default;
+};
+
+std::vector<Edge> sortedEdges(std::span<const NodeMesh> meshes, const MeshGrid& grid,
+                              const std::vector<Point>& points) {
+    std::vector<Edge> edges;
+    for (const NodeMesh& mesh : meshes) {
+        std::vector<uint32_t> number;
+        for (const PackedVertex& vertex : mesh.vertices) {
+            const Eigen::Vector3i s = grid.stepsOf(mesh.leaf, vertex);
+            const auto found = std::lower_bound(points.begin(), points.end(), Point{s.x(), s.y(), s.z()});
+            number.push_back(uint32_t(found - points.begin()));
+        }
+        for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+            for (size_t corner = 0; corner < 3; ++corner) {
+                const uint32_t from = number[mesh.indices[i + corner]];
+                const uint32_t to = number[mesh.indices[i + (corner + 1) % 3]];
+                edges.push_back({std::min(from, to), std::max(from, to), from < to});
+            }
+    }
+    std::sort(edges.begin(), edges.end());
+    return edges;
+}
+
+void countEdges(const std::vector<Edge>& edges, MeshCheck& check) {
+    for (size_t first = 0; first < edges.size();) {
+        size_t end = first + 1;
+        while (end < edges.size() && edges[end].low == edges[first].low &&
+               edges[end].high == edges[first].high)
+            ++end;
+        if (end - first == 1) ++check.open_edges;
+        if (end - first > 2) ++check.crowded_edges;
+        if (end - first == 2 && edges[first].runs_up == edges[first + 1].runs_up) ++check.misoriented_edges;
+        first = end;
+    }
+}
+
+}  // namespace
+
+double meshVolume(std::span<const NodeMesh> meshes, const MeshGrid& grid) {
+    double six_volumes = 0;
+    for (const NodeMesh& mesh : meshes) {
+        const auto position = [&](uint32_t index) {
+            return grid.position(grid.stepsOf(mesh.leaf, mesh.vertices[index]));
+        };
+        for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+            six_volumes += position(mesh.indices[i])
+                               .dot(position(mesh.indices[i + 1]).cross(position(mesh.indices[i + 2])));
+    }
+    return six_volumes / 6;
+}
+
+MeshCheck checkMesh(std::span<const NodeMesh> meshes, const MeshGrid& grid) {
+    MeshCheck check;
+    const std::vector<Point> points = distinctPoints(meshes, grid);
+    const std::vector<Edge> edges = sortedEdges(meshes, grid, points);
+    check.vertices = points.size();
+    check.triangles = edges.size() / 3;
+    countEdges(edges, check);
+    check.volume = meshVolume(meshes, grid);
+    return check;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,29 @@
+// Is the surface closed, and what does it enclose? Vertices of different leaves are the same when they lie on
+// the same integer point of the grid: exact, no tolerance. For tests and reports; not RT-safe, thread-safe.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "haptic_server/mesh/mesh_grid.h"
+
+namespace bonemill {
+
+struct MeshCheck {
+    size_t triangles = 0;
+    size_t vertices = 0;           // distinct points over all leaves
+    size_t open_edges = 0;         // with one triangle
+    size_t crowded_edges = 0;      // with more than two
+    size_t misoriented_edges = 0;  // with two triangles that run along it the same way
+    double volume = 0;  // m³ enclosed; positive when triangles are counter-clockwise seen from outside
+
+    // Every edge joins exactly two triangles of the same orientation, also across leaves.
+    bool isClosed() const noexcept { return open_edges + crowded_edges + misoriented_edges == 0; }
+};
+
+MeshCheck checkMesh(std::span<const NodeMesh> meshes, const MeshGrid& grid);
+
+// Signed volume only, m³: divergence theorem over the triangles. Meaningful for a closed surface.
+double meshVolume(std::span<const NodeMesh> meshes, const MeshGrid& grid);
+
+}  // namespace bonemill

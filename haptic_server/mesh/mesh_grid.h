@@ -1,0 +1,43 @@
+// The integer grid on which the vertices of all node meshes lie: the same point is the same integer in every
+// leaf.
+//
+// A cell is stepsPerCell() steps wide on each axis; steps 0 are voxel (0, 0, 0), and voxel (i, j, k) lies at
+// stepsPerCell() * (i, j, k). Thread-safe after construction; the lattice must outlive it.
+#pragma once
+
+#include "common/geometry/node_mesh.h"
+#include "haptic_server/volume/leaf_lattice.h"
+
+namespace bonemill {
+
+class MeshGrid {
+  public:
+    // Throws std::invalid_argument when a leaf is so large (over 21845 cells) that 16 bits cannot hold its
+    // vertices.
+    MeshGrid(const VoxelVolume& volume, const LeafLattice& lattice);
+
+    int stepsPerCell() const noexcept { return steps_per_cell_; }
+
+    // First cell's low corner: V, m, and the same in steps.
+    Eigen::Vector3f leafOrigin(LeafId leaf) const noexcept;
+    Eigen::Vector3f step() const noexcept { return step_.cast<float>(); }
+    Eigen::Vector3i leafOriginSteps(LeafId leaf) const noexcept {
+        return lattice_.cellsOf(leaf).min * steps_per_cell_;
+    }
+
+    Eigen::Vector3i stepsOf(LeafId leaf, const PackedVertex& vertex) const noexcept {
+        return leafOriginSteps(leaf) + Eigen::Vector3i(vertex.x, vertex.y, vertex.z);
+    }
+    // V, m. Exactly the same result for the same steps, whichever leaf they come from.
+    Eigen::Vector3d position(const Eigen::Vector3i& steps) const noexcept {
+        return step_.cwiseProduct(steps.cast<double>());
+    }
+
+  private:
+    const LeafLattice& lattice_;
+    int steps_per_cell_;
+    Eigen::Vector3d spacing_;  // m
+    Eigen::Vector3d step_;     // m
+};
+
+}  // namespace bonemill

@@ -1,0 +1,53 @@
+#include "haptic_server/mesh/mesher.h"
+
+#include <utility>
+
+namespace bonemill {
+namespace {
+
+constexpr uint32_t kNeverMeshed = 1;  // odd: no version at rest equals it
+
+bool isBeingWritten(uint32_t version) noexcept {
+    return (version & 1) != 0;
+}
+
+}  // namespace
+
+Mesher::Mesher(const VoxelVolume& volume, const LeafLattice& lattice)
+    : lattice_(lattice),
+      leaf_mesher_(volume, lattice),
+      meshed_version_(lattice.leafCount(), kNeverMeshed),
+      has_mesh_(lattice.leafCount(), false) {}
+
+Mesher::PassResult Mesher::pass(const Sink& sink, uint32_t max_leaves) {
+    PassResult result;
+    const uint32_t count = lattice_.leafCount();
+    const LeafId start = next_leaf_;
+    for (uint32_t n = 0; n < count; ++n) {
+        const LeafId leaf = (start + n) % count;
+        const uint32_t version = lattice_.version(leaf);
+        if (version == meshed_version_[leaf]) continue;
+        if (isBeingWritten(version) || result.read == max_leaves) {
+            ++result.pending;
+            continue;
+        }
+        ++result.read;
+        next_leaf_ = (leaf + 1) % count;
+        if (!tryMesh(leaf, sink)) ++result.pending;
+    }
+    return result;
+}
+
+// False when a write got in between: the leaf stays due.
+bool Mesher::tryMesh(LeafId leaf, const Sink& sink) {
+    NodeMesh mesh = leaf_mesher_.mesh(leaf);
+    // The voxels were read with acquire, so this read cannot be older than they are.
+    if (isBeingWritten(mesh.revision) || lattice_.version(leaf) != mesh.revision) return false;
+    meshed_version_[leaf] = mesh.revision;
+    const bool had_mesh = has_mesh_[leaf];
+    has_mesh_[leaf] = !mesh.isEmpty();
+    if (had_mesh || !mesh.isEmpty()) sink(std::move(mesh));
+    return true;
+}
+
+}  // namespace bonemill

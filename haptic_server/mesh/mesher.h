@@ -1,0 +1,46 @@
+// Keeps the node meshes up with the voxels: finds the leaves that changed, meshes them, hands the results on.
+//
+// Runs in its own normal thread beside the tick, which writes voxels between LeafLattice::beginWrite and
+// endWrite. Takes no lock: a leaf is read between two reads of its version, and read again in a later pass if
+// the version was odd or moved. Not RT-safe; all members from one thread.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "haptic_server/mesh/leaf_mesher.h"
+
+namespace bonemill {
+
+class Mesher {
+  public:
+    // Volume and lattice must outlive the mesher.
+    Mesher(const VoxelVolume& volume, const LeafLattice& lattice);
+
+    using Sink = std::function<void(NodeMesh&&)>;
+    static constexpr uint32_t kAllLeaves = std::numeric_limits<uint32_t>::max();
+
+    struct PassResult {
+        uint32_t read = 0;     // leaves whose voxels were read
+        uint32_t pending = 0;  // leaves still to be read: beyond the budget, or being written
+    };
+
+    // Meshes the leaves whose voxels changed since they were last meshed (at first: all), at most max_leaves
+    // of them; goes on from there in the next pass. The sink gets each mesh that changed; a leaf that lost
+    // its surface once comes as an empty mesh, one that never had any does not come. Exceptions of the sink
+    // pass through; that leaf counts as meshed.
+    PassResult pass(const Sink& sink, uint32_t max_leaves = kAllLeaves);
+
+  private:
+    bool tryMesh(LeafId leaf, const Sink& sink);
+
+    const LeafLattice& lattice_;
+    LeafMesher leaf_mesher_;
+    std::vector<uint32_t> meshed_version_;
+    std::vector<bool> has_mesh_;  // what the sink was told last
+    LeafId next_leaf_ = 0;        // where the next pass starts, so that busy leaves do not starve the others
+};
+
+}  // namespace bonemill
