@@ -1,0 +1,119 @@
+#include "haptic_server/tool/build/mesh_file.h"
+
+#include <assimp/BaseImporter.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "common/config/user_error.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kMetresPerFileUnit = 1e-3;
+constexpr uintmax_t kLargestFile = uintmax_t(512) << 20;  // 10 million binary STL triangles
+
+constexpr size_t kStlHeader = 80;
+constexpr size_t kStlTriangle = 50;
+
+std::string lowerExtension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return extension.empty() ? extension : extension.substr(1);
+}
+
+std::string readBytes(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    std::error_code error;
+    if (!std::filesystem::exists(path, error))
+        throw UserError(name + ": there is no such mesh file; check tool.mesh_path");
+    if (!std::filesystem::is_regular_file(path, error))
+        throw UserError(name + ": not a file; name an .stl or .obj file");
+    const uintmax_t size = std::filesystem::file_size(path, error);
+    if (error || size > kLargestFile)
+        throw UserError(name + ": too large for a tool; simplify the mesh below 512 MiB");
+    if (size == 0) throw UserError(name + ": the file is empty; export the tool's mesh again");
+    std::string bytes(size, '\0');
+    std::ifstream file(path, std::ios::binary);
+    if (!file.read(bytes.data(), std::streamsize(size)))
+        throw UserError(name + ": cannot be read; check its permissions");
+    return bytes;
+}
+
+// Binary STL may start with "solid" too: then its length still tells.
+bool isTextStl(std::string_view bytes) {
+    return bytes.substr(0, 5) == "solid" && bytes.substr(0, 4096).find('\0') == std::string_view::npos;
+}
+
+// A binary STL says how long it must be; the loader's own check knows nothing better to say than "cannot
+// determine".
+void checkBinaryStl(std::string_view bytes, const std::string& name) {
+    if (bytes.size() < kStlHeader + sizeof(uint32_t))
+        throw UserError(name +
+                        ": not an STL file: neither text starting with \"solid\" nor long enough for binary");
+    uint32_t count = 0;
+    std::memcpy(&count, bytes.data() + kStlHeader, sizeof count);
+    const uint64_t needed = kStlHeader + sizeof count + uint64_t(count) * kStlTriangle;
+    if (needed != bytes.size())
+        throw UserError(name + ": damaged or not an STL file: its header announces " + std::to_string(count) +
+                        " triangles, which take " + std::to_string(needed) + " bytes, but it has " +
+                        std::to_string(bytes.size()) + "; export it again");
+    if (count == 0) throw UserError(name + ": holds no triangles; export the tool's surface as triangles");
+}
+
+// Content must not choose one of the library's fifty other loaders.
+void keepOnlyLoader(Assimp::Importer& importer, const std::string& extension) {
+    for (size_t i = importer.GetImporterCount(); i-- > 0;) {
+        Assimp::BaseImporter* loader = importer.GetImporter(i);
+        const std::string_view extensions = loader->GetInfo()->mFileExtensions;
+        if (extensions == extension) continue;
+        importer.UnregisterLoader(loader);
+        delete loader;  // unregistering passes the ownership on
+    }
+}
+
+std::vector<Eigen::Vector3d> cornersOf(const aiScene& scene) {
+    std::vector<Eigen::Vector3d> corners;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+        const aiMesh& mesh = *scene.mMeshes[m];
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            if (face.mNumIndices != 3) continue;
+            for (int c = 0; c < 3; ++c) {
+                const aiVector3D& v = mesh.mVertices[face.mIndices[c]];
+                corners.push_back(kMetresPerFileUnit * Eigen::Vector3d(v.x, v.y, v.z));
+            }
+        }
+    }
+    return corners;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> readMeshFile(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    const std::string extension = lowerExtension(path);
+    if (extension != "stl" && extension != "obj")
+        throw UserError(name + ": a tool's mesh is an .stl or .obj file; convert it to one of them");
+    const std::string bytes = readBytes(path);
+    if (extension == "stl" && !isTextStl(bytes)) checkBinaryStl(bytes, name);
+
+    Assimp::Importer importer;
+    keepOnlyLoader(importer, extension);
+    const aiScene* scene =
+        importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, extension.c_str());
+    if (scene == nullptr)
+        throw UserError(name + ": cannot be read as ." + extension + ": " + importer.GetErrorString() +
+                        "; export the tool's mesh again");
+    return cornersOf(*scene);
+}
+
+}  // namespace bonemill

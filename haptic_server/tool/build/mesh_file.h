@@ -1,0 +1,15 @@
+// Reads the triangles of a mesh file. Start-up only: allocates and throws.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "common/geometry/pose.h"
+
+namespace bonemill {
+
+// Three corners per triangle in m, from an .stl (binary or text) or .obj file in mm; larger polygons are cut
+// up, lines and points left out. Throws UserError, naming the file and what to do, if it cannot be read.
+std::vector<Eigen::Vector3d> readMeshFile(const std::filesystem::path& path);
+
+}  // namespace bonemill

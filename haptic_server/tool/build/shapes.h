@@ -1,0 +1,47 @@
+// Solid shapes a tool is made of, and their exact signed distances.
+//
+// Frame T, m; negative inside. Checked shapes (checkShape) only, for the other functions. Not for the tick.
+// Formulas: a solid of revolution's distance is that of its profile in the half-plane (along the axis, off
+// the axis).
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "common/geometry/pose.h"
+
+namespace bonemill {
+
+// Defaults as in message Tool of proto/scene.proto.
+struct SphereShape {
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+    double radius = 1.0e-3;
+};
+struct CapsuleShape {  // all points within `radius` of the segment
+    Eigen::Vector3d from = Eigen::Vector3d::Zero();
+    Eigen::Vector3d to = Eigen::Vector3d::Zero();
+    double radius = 0.8e-3;
+};
+struct CylinderShape {  // flat ends
+    Eigen::Vector3d from = Eigen::Vector3d::Zero();
+    Eigen::Vector3d to = Eigen::Vector3d::Zero();
+    double radius = 0.8e-3;
+};
+struct ConeShape {  // truncated, flat ends; one of the radii may be zero
+    Eigen::Vector3d from = Eigen::Vector3d::Zero();
+    Eigen::Vector3d to = Eigen::Vector3d::Zero();
+    double from_radius = 0.8e-3;
+    double to_radius = 0.4e-3;
+};
+using ToolShape = std::variant<SphereShape, CapsuleShape, CylinderShape, ConeShape>;
+
+// Throws UserError unless every number is finite, radii are positive (a cone: one of them) and flat ends lie
+// apart. `name`: what the message calls the shape, such as "tool.shape[2]".
+void checkShape(const ToolShape& shape, const std::string& name);
+
+double signedDistance(const ToolShape& shape, const Eigen::Vector3d& p_T);
+
+// The tight axis-parallel box.
+Eigen::AlignedBox3d boundingBox(const ToolShape& shape);
+
+}  // namespace bonemill

@@ -1,0 +1,34 @@
+// A closed triangle mesh: what is left of a file's triangles once they are welded and found to bound a solid.
+// Start-up only: allocates and throws.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/geometry/pose.h"
+
+namespace bonemill {
+
+struct TriangleMesh {
+    using Triangle = std::array<uint32_t, 3>;  // vertices, counter-clockwise seen from outside
+
+    std::vector<Eigen::Vector3d> vertices;  // m
+    std::vector<Triangle> triangles;
+    std::vector<Triangle> neighbours;  // of each triangle, across its edge (corner e, corner e+1)
+
+    Eigen::AlignedBox3d box() const;
+    Eigen::Vector3d vertex(uint32_t triangle, int corner) const {
+        return vertices[triangles[triangle][corner % 3]];
+    }
+    // Twice the triangle's area times its outward unit normal.
+    Eigen::Vector3d areaNormal(uint32_t triangle) const;
+};
+
+// Welds identical corners (three per triangle, m), drops triangles that thereby lose a corner, turns an
+// inside-out mesh. Throws UserError, naming `file` and what to do, unless the corners are finite, of a tool's
+// size, and form a closed surface: every edge in exactly two triangles that run it in opposite directions.
+TriangleMesh closedMesh(const std::vector<Eigen::Vector3d>& corners, const std::string& file);
+
+}  // namespace bonemill

@@ -1,0 +1,94 @@
+// The tool as the contact loop sees it: signed distances at the nodes of a regular grid, interpolated between
+// them.
+//
+// Frame T (docs/frames.md): origin at the burr centre, +y along the shaft towards the hand. Units m; negative
+// inside. Node (i, j, k) lies at origin + spacing·(i, j, k). Outside of the grid there is no tool and hence
+// no contact. Queries are const, noexcept and RT-safe: any thread; a NaN point counts as outside. Thesis:
+// "Haptic Milling Simulation in Six Degrees-of-Freedom", KTH 2012, a grid of 22×128×22 nodes.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "common/geometry/pose.h"
+
+namespace bonemill {
+
+class SdfGrid {
+  public:
+    // What a query outside of the grid returns: farther than any contact distance (m).
+    static constexpr float kOutsideDistance = 1e9f;
+
+    // `values`: one distance per node, x fastest. Throws std::invalid_argument unless there are at least 2
+    // nodes per axis, one finite value for each, a positive spacing and a finite origin. Allocates; not
+    // RT-safe.
+    SdfGrid(const Eigen::Vector3i& nodes, double spacing, const Eigen::Vector3d& origin_T,
+            std::vector<float> values);
+
+    const Eigen::Vector3i& nodes() const noexcept { return nodes_; }
+    double spacing() const noexcept { return spacing_; }
+    const Eigen::Vector3d& origin() const noexcept { return origin_T_; }
+    const std::vector<float>& values() const noexcept { return values_; }
+    float at(int i, int j, int k) const noexcept { return values_[offset(i, j, k)]; }
+    Eigen::Vector3d nodePosition(int i, int j, int k) const noexcept {
+        return origin_T_ + spacing_ * Eigen::Vector3d(i, j, k);
+    }
+
+    // From the first node to the last.
+    const Eigen::AlignedBox3d& gridBox() const noexcept { return grid_box_; }
+    // distance() is nowhere negative outside of this box: the nodes inside the tool, grown by one spacing and
+    // cut at the grid's end. Empty if no node is inside.
+    const Eigen::AlignedBox3d& box() const noexcept { return box_; }
+
+    bool contains(const Eigen::Vector3d& p_T) const noexcept;
+
+    // Trilinear distance; kOutsideDistance outside of the grid.
+    float distance(const Eigen::Vector3d& p_T) const noexcept;
+
+    // Exact gradient of distance(), one-sided (from the higher cell) on a cell's face; zero outside of the
+    // grid.
+    Eigen::Vector3d gradient(const Eigen::Vector3d& p_T) const noexcept;
+
+    // The contact loop's distance(): single precision throughout.
+    float distanceAt(const Eigen::Vector3f& p_T) const noexcept {
+        const Eigen::Array3f u = (p_T - origin_f_).array() * inverse_spacing_f_;
+        if (!((u >= 0.0f).all() && (u <= last_f_).all())) return kOutsideDistance;  // this way round for NaN
+        const int i = std::min(int(u.x()), last_cell_.x());
+        const int j = std::min(int(u.y()), last_cell_.y());
+        const int k = std::min(int(u.z()), last_cell_.z());
+        const float fx = u.x() - float(i), fy = u.y() - float(j), fz = u.z() - float(k);
+        const float* v = values_.data() + offset(i, j, k);
+        const auto alongX = [fx](const float* a) noexcept { return a[0] + fx * (a[1] - a[0]); };
+        const float v00 = alongX(v), v10 = alongX(v + stride_y_);
+        const float v01 = alongX(v + stride_z_), v11 = alongX(v + stride_z_ + stride_y_);
+        const float v0 = v00 + fy * (v10 - v00), v1 = v01 + fy * (v11 - v01);
+        return v0 + fz * (v1 - v0);
+    }
+
+  private:
+    struct Cell {
+        const float* corner;       // value at the cell's lowest node
+        Eigen::Vector3d fraction;  // 0..1 inside the cell
+    };
+    Cell cellOf(const Eigen::Vector3d& p_T) const noexcept;  // p_T inside the grid
+
+    size_t offset(int i, int j, int k) const noexcept {
+        return size_t(i) + stride_y_ * size_t(j) + stride_z_ * size_t(k);
+    }
+
+    Eigen::Vector3i nodes_;
+    double spacing_;
+    Eigen::Vector3d origin_T_;
+    std::vector<float> values_;
+    size_t stride_y_;
+    size_t stride_z_;
+    Eigen::AlignedBox3d grid_box_;
+    Eigen::AlignedBox3d box_;
+    Eigen::Vector3i last_cell_;
+    Eigen::Vector3f origin_f_;
+    float inverse_spacing_f_;
+    Eigen::Array3f last_f_;
+};
+
+}  // namespace bonemill
