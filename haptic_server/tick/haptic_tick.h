@@ -16,7 +16,7 @@ struct DeviceInput {
     uint32_t buttons = 0;      // Button bits
     double force_factor = 1;   // 1 fresh device; ramps to 0 while it is stale
     bool is_stale = false;     // no fresh sample: nothing is milled
-    double t_s = 0;            // since the session's first tick; real or simulated
+    double t_s = 0;            // since the session's first tick, or the trajectory file's own time
     int64_t start_ns = 0;      // when this tick began, CLOCK_MONOTONIC
     int64_t deadline_ns = INT64_MAX;  // work that ends later is an overrun
     int64_t wakeup_latency_ns = 0;

@@ -16,16 +16,15 @@ enum TickFault : uint32_t {
     kFaultMotionClamped = 1u << 4,    // the speed limit of the coupling acted
     kFaultForceClamped = 1u << 5,     // the wrench limit acted
     kFaultShellOverflow = 1u << 6,    // the point-shell pool is full: some milled surface has no contact points
-    kFaultContactOverflow = 1u << 7,  // reserved for a bounded contact list
 };
 
 struct TickRecord {
     uint64_t tick;
-    int64_t start_ns;          // CLOCK_MONOTONIC at wake-up; simulated time in `simulate`
+    int64_t start_ns;          // CLOCK_MONOTONIC at wake-up
     int64_t wakeup_latency_ns; // from the instant that should have woken the tick to start_ns
     int64_t force_ns;          // start -> wrench written
     int64_t compute_ns;        // start -> end of the tick's work
-    double t_s;                // since the first tick
+    double t_s;                // since the session's first tick; in `simulate` the trajectory's time
     double p_WT[3];            // SPO, m
     double q_WT[4];            // w, x, y, z
     double p_WT_device[3];

@@ -1,0 +1,61 @@
+#include "haptic_server/app/recorder.h"
+
+#include "common/rt/clock.h"
+
+namespace bonemill {
+
+Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const std::string& trace_path)
+    : ring_(ring), statistics_(period_ns) {
+    if (!trace_path.empty()) trace_.emplace(trace_path);
+}
+
+void Recorder::drain() {
+    TickRecord record;
+    bool any = false;
+    while (ring_.tryPop(record)) {
+        any = true;
+        statistics_.add(record);
+        if (trace_) trace_->write(record);
+        addToWindow(record);
+    }
+    if (!any) return;
+    const std::lock_guard lock(mutex_);
+    latest_ = record;
+    health_.ticks = statistics_.ticks();
+    health_.dropped_ticks = statistics_.droppedTicks();
+    health_.faults = statistics_.faults();
+    health_.removed = statistics_.removed();
+}
+
+void Recorder::addToWindow(const TickRecord& record) {
+    if (window_start_ns_ == 0) window_start_ns_ = record.start_ns;
+    const int64_t elapsed = record.start_ns - window_start_ns_;
+    if (elapsed >= kNsPerSecond) {
+        const std::lock_guard lock(mutex_);
+        health_.rate_hz = double(window_.count()) / secondsOfNs(elapsed);
+        health_.tick_p50_us = double(window_.percentileNs(50)) * 1e-3;
+        health_.tick_p99_us = double(window_.percentileNs(99)) * 1e-3;
+        health_.tick_max_us = double(window_.maxNs()) * 1e-3;
+        window_ = {};
+        window_start_ns_ = record.start_ns;
+    }
+    window_.record(record.compute_ns);
+}
+
+bool Recorder::finish() {
+    drain();
+    statistics_.setLostRecords(ring_.dropped());
+    return !trace_ || trace_->close();
+}
+
+std::optional<TickRecord> Recorder::latest() const {
+    const std::lock_guard lock(mutex_);
+    return latest_;
+}
+
+LoopHealth Recorder::health() const {
+    const std::lock_guard lock(mutex_);
+    return health_;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,55 @@
+// The recorder thread's work: empties the tick's ring into trace and statistics and keeps the newest record at hand.
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "common/rt/spsc_ring.h"
+#include "haptic_server/record/run_statistics.h"
+#include "haptic_server/record/trace_writer.h"
+
+namespace bonemill {
+
+// What clients are shown of the loop's health.
+struct LoopHealth {
+    uint64_t ticks = 0;
+    double rate_hz = 0;      // over the last full second
+    double tick_p50_us = 0;  // of the same second
+    double tick_p99_us = 0;
+    double tick_max_us = 0;
+    uint64_t dropped_ticks = 0;
+    uint32_t faults = 0;
+    double removed = 0;      // m³
+};
+
+class Recorder {
+  public:
+    // trace_path empty: no trace. Throws UserError when the trace cannot be created.
+    Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const std::string& trace_path);
+
+    // Recorder thread: takes what is in the ring. Call every few milliseconds.
+    void drain();
+    // After the tick has ended: takes the rest, closes the trace. False: some of the trace is lost.
+    bool finish();
+
+    // Any normal thread.
+    std::optional<TickRecord> latest() const;
+    LoopHealth health() const;
+    // After finish() only.
+    const RunStatistics& statistics() const { return statistics_; }
+
+  private:
+    void addToWindow(const TickRecord& record);
+
+    SpscRing<TickRecord>& ring_;
+    RunStatistics statistics_;
+    std::optional<TraceWriter> trace_;
+    LatencyHistogram window_;       // tick compute time in the second under way
+    int64_t window_start_ns_ = 0;
+    mutable std::mutex mutex_;      // guards the two below
+    std::optional<TickRecord> latest_;
+    LoopHealth health_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,173 @@
+#include "haptic_server/app/server.h"
+
+#include <signal.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cmath>
+#include <future>
+#include <thread>
+
+#include "common/config/user_error.h"
+#include "common/rt/clock.h"
+#include "common/rt/realtime.h"
+#include "haptic_server/app/device_link_io.h"
+#include "haptic_server/app/show_session.h"
+#include "haptic_server/app/surface_export.h"
+#include "haptic_server/mesh/mesher.h"
+#include "haptic_server/record/fault_names.h"
+
+namespace bonemill {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr size_t kRingRecords = 8192;      // 8 s at 1 kHz: a stalled disk loses nothing
+constexpr uint32_t kLeavesPerPass = 256;   // keeps the mesher's answer to milling quick while it meshes the whole bone
+constexpr int kTickPriority = 80;
+constexpr auto kPublishPeriod = 16ms;
+constexpr auto kMeshPeriod = 8ms;
+constexpr auto kRecordPeriod = 4ms;
+
+DeviceLinkIoConfig ioConfigOf(const scene::Loop& loop, const Simulation& simulation) {
+    DeviceLinkIoConfig config;
+    config.period_ns = int64_t(std::llround(1e9 / loop.rate_hz()));
+    config.ramp.stale_after_ns = int64_t(loop.stale_after_ms() * 1e6);
+    config.ramp.ramp_down_ns = int64_t(loop.ramp_ms() * 1e6);
+    config.X_WD = simulation.X_WD;
+    return config;
+}
+
+int coreOf(int option) { return option == kLastCore ? int(std::thread::hardware_concurrency()) - 1 : option; }
+
+// SIGINT and SIGTERM are taken by the main thread alone, with sigtimedwait; all threads inherit this mask.
+sigset_t blockStopSignals() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    return signals;
+}
+
+class Server {
+  public:
+    explicit Server(const ServerOptions& options)
+        : options_(options),
+          stop_signals_(blockStopSignals()),
+          loaded_(loadScene(options.scene)),
+          link_(DeviceLink::create(DeviceLink::nameOfSession(options.session), LinkSide::kServer)),
+          simulation_(makeSimulation(loaded_)),
+          reset_(*simulation_.bone),
+          ring_(kRingRecords),
+          io_(ioConfigOf(loaded_.scene.loop(), simulation_), link_, ring_),
+          tick_(simulation_.tick, *simulation_.bone, simulation_.tool.sdf, &reset_),
+          recorder_(ring_, ioConfigOf(loaded_.scene.loop(), simulation_).period_ns, options.trace),
+          publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
+          show_(publisher_, loaded_.scene, simulation_, outbox_, recorder_, reset_, stop_requested_) {
+        for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
+    }
+
+    int run() {
+        startTick();
+        std::jthread recorder([this](std::stop_token stop) { loop(stop, kRecordPeriod, [this] { recorder_.drain(); }); });
+        std::jthread mesher([this](std::stop_token stop) { meshUntil(stop); });
+        std::jthread publisher([this](std::stop_token stop) { loop(stop, kPublishPeriod, [this] { show_.round(); }); });
+        waitForTheEnd();
+        io_.stop();
+        tick_thread_.join();
+        recorder = {};
+        mesher = {};
+        publisher = {};
+        return finish();
+    }
+
+  private:
+    // Starts the tick thread and waits until it is real-time, or is known not to be.
+    void startTick() {
+        std::promise<RealtimeReport> promise;
+        std::future<RealtimeReport> granted = promise.get_future();
+        tick_thread_ = std::jthread([this, &promise] {
+            promise.set_value(makeThreadRealtime({kTickPriority, coreOf(options_.rt_core)}));
+            while (tick_.tick(io_)) {}
+        });
+        RealtimeReport report = granted.get();
+        report.append(lockMemory());
+        for (const std::string& advice : report.advice) spdlog::info("real time: {}", advice);
+        for (const std::string& missing : report.missing) spdlog::warn("real time: {}", missing);
+        if (report.missing.empty() || options_.best_effort_rt) return;
+        io_.stop();
+        tick_thread_.join();
+        throw UserError("this machine does not grant real time: " + report.missing.front() +
+                        "; see docs/realtime.md, or go on without guarantees with --best-effort-rt");
+    }
+
+    template <class Work>
+    static void loop(const std::stop_token& stop, std::chrono::milliseconds period, Work work) {
+        while (!stop.stop_requested()) {
+            work();
+            std::this_thread::sleep_for(period);
+        }
+    }
+
+    void meshUntil(const std::stop_token& stop) {
+        Mesher mesher(simulation_.bone->volume, simulation_.bone->lattice);
+        while (!stop.stop_requested()) {
+            const auto result = mesher.pass([this](NodeMesh&& mesh) { outbox_.put(std::move(mesh)); }, kLeavesPerPass);
+            if (result.pending == 0) std::this_thread::sleep_for(kMeshPeriod);
+        }
+    }
+
+    void waitForTheEnd() {
+        spdlog::info("session {} of scene '{}' waits for a device", options_.session, loaded_.scene.name());
+        int64_t first_tick_ns = 0;
+        while (!stop_requested_) {
+            constexpr timespec kPoll{0, 50'000'000};
+            if (const int signal = sigtimedwait(&stop_signals_, nullptr, &kPoll); signal > 0) {
+                spdlog::info("{} received: shutting down", signal == SIGINT ? "SIGINT" : "SIGTERM");
+                return;
+            }
+            if (!first_tick_ns && recorder_.health().ticks > 0) {
+                first_tick_ns = monotonicNowNs();
+                spdlog::info("the device is there: the loop runs");
+            }
+            if (first_tick_ns && options_.seconds > 0 && secondsOfNs(monotonicNowNs() - first_tick_ns) > options_.seconds) return;
+        }
+        spdlog::info("shut down by a client's command");
+    }
+
+    int finish() {
+        const bool trace_is_whole = recorder_.finish();
+        if (!trace_is_whole) spdlog::error("{}: part of the trace could not be written (disk full?)", options_.trace);
+        const RunStatistics& statistics = recorder_.statistics();
+        spdlog::info("{} ticks, {:.1f} Hz, tick p99 {:.1f} us, {} dropped, faults: {}", statistics.ticks(),
+                     statistics.meanRateHz(), double(statistics.tickCompute().percentileNs(99)) * 1e-3,
+                     statistics.droppedTicks(), faultNames(statistics.faults()));
+        if (!options_.report.empty()) statistics.writeJson(options_.report);
+        saveVolume(options_.save_volume, *simulation_.bone);
+        if (!options_.save_mesh.empty()) saveMesh(options_.save_mesh, *simulation_.bone, meshWholeBone(*simulation_.bone));
+        return trace_is_whole ? 0 : 1;
+    }
+
+    ServerOptions options_;
+    sigset_t stop_signals_;
+    LoadedScene loaded_;
+    DeviceLink link_;
+    Simulation simulation_;
+    VolumeReset reset_;
+    SpscRing<TickRecord> ring_;
+    DeviceLinkIo io_;
+    HapticTick tick_;
+    Recorder recorder_;
+    MeshOutbox outbox_;
+    std::atomic<bool> stop_requested_{false};
+    Publisher publisher_;
+    ShowSession show_;
+    std::jthread tick_thread_;
+};
+
+}  // namespace
+
+int runServer(const ServerOptions& options) { return Server(options).run(); }
+
+}  // namespace bonemill

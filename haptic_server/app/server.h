@@ -1,0 +1,28 @@
+// The live server: tick, mesher, publisher and recorder threads around one bone.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace bonemill {
+
+inline constexpr int kLastCore = -2;
+
+struct ServerOptions {
+    std::string scene;
+    uint32_t session = 1;
+    uint32_t domain = 0;
+    double seconds = 0;       // after the first tick; 0: until a signal or a shut_down command
+    std::string trace;        // files to write; empty: none
+    std::string report;
+    std::string save_volume;
+    std::string save_mesh;
+    int rt_core = kLastCore;  // core of the tick thread; kAnyCore (-1) leaves the choice to the kernel
+    bool best_effort_rt = false;
+};
+
+// Runs until told to stop; returns the process' exit code. Throws UserError at start-up, also when real-time
+// permissions are missing and best_effort_rt is not set. Files are written also after SIGINT/SIGTERM.
+int runServer(const ServerOptions& options);
+
+}  // namespace bonemill

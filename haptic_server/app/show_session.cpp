@@ -1,0 +1,125 @@
+#include "haptic_server/app/show_session.h"
+
+#include <cmath>
+
+#include "common/rt/clock.h"
+#include "haptic_server/record/fault_names.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int64_t kStatusPeriodNs = 250 * kNsPerMillisecond;
+
+template <class Repeated, class Vector>
+void assign(Repeated* out, const Vector& v) {
+    out->Clear();
+    for (Eigen::Index i = 0; i < v.size(); ++i) out->Add(v[i]);
+}
+
+void fillCamera(const scene::Camera& camera, topics::Camera* out) {
+    if (camera.has_target_mm()) {
+        out->set_has_target(true);
+        const scene::Vec3& t = camera.target_mm();
+        assign(out->mutable_target_m(), Eigen::Vector3d(t.x(), t.y(), t.z()) * 1e-3);
+    }
+    out->set_distance_m(camera.has_distance_mm() ? camera.distance_mm() * 1e-3 : 0);
+    out->set_azimuth_rad(camera.azimuth_deg() * M_PI / 180);
+    out->set_elevation_rad(camera.elevation_deg() * M_PI / 180);
+    if (camera.has_up()) assign(out->mutable_up(), Eigen::Vector3d(camera.up().x(), camera.up().y(), camera.up().z()));
+}
+
+void fillTool(const TriangleSurface& surface, topics::TriangleMesh* out) {
+    for (const Eigen::Vector3f& p : surface.positions)
+        for (int axis = 0; axis < 3; ++axis) out->add_vertices_m(p[axis]);
+    for (const Eigen::Vector3f& n : surface.normals)
+        for (int axis = 0; axis < 3; ++axis) out->add_normals(n[axis]);
+    for (const uint32_t index : surface.indices) out->add_indices(index);
+}
+
+// Box of all leaves with surface, V: what the camera has to show.
+Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
+    Eigen::AlignedBox3d box;
+    for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
+        bone.shell.forEachBlock(leaf, [&box](const ShellBlock& block, uint32_t count) {
+            for (uint32_t i = 0; i < count; ++i) box.extend(Eigen::Vector3d(block.x[i], block.y[i], block.z[i]));
+        });
+    if (box.isEmpty()) box.extend(Eigen::Vector3d::Zero());
+    return box;
+}
+
+topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulation) {
+    topics::SceneInfo info;
+    info.set_name(scene.name());
+    const Pose& X_WV = simulation.bone->volume.geometry().X_WV;
+    const Eigen::Quaterniond& q = X_WV.rotation;
+    assign(info.mutable_p_wv_m(), X_WV.position);
+    assign(info.mutable_q_wv(), Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()));
+    const Eigen::AlignedBox3d box = boneBox(*simulation.bone);
+    assign(info.mutable_bone_min_m(), box.min());
+    assign(info.mutable_bone_max_m(), box.max());
+    info.set_burr_radius_m(simulation.tick.burr_radius);
+    fillTool(simulation.tool_surface, info.mutable_tool());
+    fillCamera(scene.camera(), info.mutable_camera());
+    info.set_leaf_count(simulation.bone->lattice.leafCount());
+    return info;
+}
+
+}  // namespace
+
+ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
+                         MeshOutbox& outbox, const Recorder& recorder, VolumeReset& reset,
+                         std::atomic<bool>& stop_requested)
+    : publisher_(publisher),
+      scene_name_(scene.name()),
+      outbox_(outbox),
+      recorder_(recorder),
+      reset_(reset),
+      stop_requested_(stop_requested) {
+    publisher_.publishSceneInfo(sceneInfo(scene, simulation));
+}
+
+void ShowSession::round() {
+    const std::vector<NodeMesh> meshes = outbox_.takeAll();
+    for (const NodeMesh& mesh : meshes) publisher_.publishNode(mesh);
+    if (const auto latest = recorder_.latest()) publisher_.publishToolState(*latest);
+    for (const topics::Command& command : publisher_.takeCommands()) publisher_.acknowledge(command, carryOut(command));
+    if (!meshes.empty() || monotonicNowNs() - last_status_ns_ > kStatusPeriodNs) publishStatus();
+}
+
+void ShowSession::publishStatus() {
+    last_status_ns_ = monotonicNowNs();
+    const LoopHealth health = recorder_.health();
+    topics::Status status;
+    status.set_scene(scene_name_);
+    status.set_preset(kPresetName);
+    status.set_ticks(health.ticks);
+    status.set_rate_hz(health.rate_hz);
+    status.set_tick_p50_us(health.tick_p50_us);
+    status.set_tick_p99_us(health.tick_p99_us);
+    status.set_tick_max_us(health.tick_max_us);
+    status.set_dropped_ticks(health.dropped_ticks);
+    status.set_faults(health.faults);
+    status.set_fault_text(faultNames(health.faults));
+    status.set_removed_mm3(health.removed * 1e9);
+    const auto latest = recorder_.latest();
+    status.set_device_stale(!latest || (latest->faults & kFaultStaleDevice));
+    publisher_.publishStatus(std::move(status));
+}
+
+std::string ShowSession::carryOut(const topics::Command& command) {
+    switch (command.action_case()) {
+        case topics::Command::kResetVolume:
+            reset_.request();
+            return "done";
+        case topics::Command::kPauseMilling:
+            reset_.pauseMilling(command.pause_milling());
+            return "done";
+        case topics::Command::kShutDown:
+            stop_requested_ = true;
+            return "done";
+        default:
+            return "refused: this server does not know the action";
+    }
+}
+
+}  // namespace bonemill

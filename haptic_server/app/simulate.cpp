@@ -1,0 +1,127 @@
+#include "haptic_server/app/simulate.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "common/config/user_error.h"
+#include "common/rt/clock.h"
+#include "haptic_server/app/scene_setup.h"
+#include "haptic_server/app/state_hash.h"
+#include "haptic_server/app/surface_export.h"
+#include "haptic_server/record/fault_names.h"
+#include "haptic_server/record/run_statistics.h"
+#include "haptic_server/record/trace_writer.h"
+#include "haptic_server/record/trajectory_reader.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kCubicMillimetre = 1e-9;  // m³
+constexpr double kTickSpacingTolerance = 0.01;
+
+// Rows in, records out; time comes from the file, only tick_us is measured.
+class FileIo final : public TickIo {
+  public:
+    explicit FileIo(const std::vector<TrajectoryRow>& rows) : rows_(rows) {}
+
+    bool read(DeviceInput& input) noexcept override {
+        if (next_ == rows_.size()) return false;
+        const TrajectoryRow& row = rows_[next_++];
+        input = {};
+        input.X_WT_device = row.X_WT;
+        input.buttons = row.buttons;
+        input.t_s = row.t_s;
+        input.start_ns = monotonicNowNs();
+        return true;
+    }
+    int64_t write(const Wrench&) noexcept override { return monotonicNowNs(); }
+    int64_t now() noexcept override { return monotonicNowNs(); }
+    void push(const TickRecord& record) noexcept override { record_ = record; }
+    const TickRecord& lastRecord() const noexcept { return record_; }
+
+  private:
+    const std::vector<TrajectoryRow>& rows_;
+    size_t next_ = 0;
+    TickRecord record_{};
+};
+
+// One row is one tick: a file sampled at another rate would silently mean another speed.
+void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::string& file) {
+    if (rows.size() < 2) return;
+    const double spacing = (rows.back().t_s - rows.front().t_s) / double(rows.size() - 1);
+    if (std::abs(spacing / dt - 1) < kTickSpacingTolerance) return;
+    throw UserError(file + ": rows are " + std::to_string(spacing * 1e3) + " ms apart on average, but the scene's loop has " +
+                    std::to_string(dt * 1e3) + " ms per tick; resample the trajectory or set loop.rate_hz to " +
+                    std::to_string(1 / spacing));
+}
+
+std::string hexOf(uint64_t value) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+    return text;
+}
+
+nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
+    const auto us = [](double ns) { return ns * 1e-3; };
+    const LatencyHistogram& compute = statistics.tickCompute();
+    return {{"ticks", statistics.ticks()},
+            {"removed_voxels", statistics.removedVoxels()},
+            {"removed_mm3", statistics.removed() / kCubicMillimetre},
+            {"added_voxels", statistics.addedVoxels()},
+            {"added_mm3", statistics.added() / kCubicMillimetre},
+            {"max_contacts", statistics.maxContacts()},
+            {"max_penetration_m", statistics.maxPenetration()},
+            {"max_force_n", statistics.maxForce()},
+            {"max_torque_nm", statistics.maxTorque()},
+            {"faults", statistics.faults()},
+            {"fault_names", faultNames(statistics.faults())},
+            {"tick_us",
+             {{"mean", us(compute.meanNs())},
+              {"p50", us(double(compute.percentileNs(50)))},
+              {"p99", us(double(compute.percentileNs(99)))},
+              {"p99_9", us(double(compute.percentileNs(99.9)))},
+              {"max", us(double(compute.maxNs()))}}},
+            {"state_hash", hexOf(hash.value())}};
+}
+
+}  // namespace
+
+std::string simulate(const SimulateOptions& options) {
+    const LoadedScene loaded = loadScene(options.scene);
+    const std::vector<TrajectoryRow> rows = readTrajectory(options.trajectory);
+    checkSpacing(rows, 1 / loaded.scene.loop().rate_hz(), options.trajectory);
+    std::optional<TraceWriter> trace;
+    if (!options.trace.empty()) trace.emplace(options.trace);
+    Simulation simulation = makeSimulation(loaded);
+    BoneModel& bone = *simulation.bone;
+    const double volume_before = checkMesh(meshWholeBone(bone), MeshGrid(bone.volume, bone.lattice)).volume;
+
+    HapticTick tick(simulation.tick, bone, simulation.tool.sdf, nullptr);
+    RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * 1e9)));
+    StateHash hash;
+    FileIo io(rows);
+    while (tick.tick(io)) {
+        hash.addRecord(io.lastRecord());
+        statistics.add(io.lastRecord());
+        if (trace) trace->write(io.lastRecord());
+    }
+    hash.addVolume(bone.volume);
+    if (trace && !trace->close()) throw UserError(options.trace + ": the trace could not be written to its end (disk full?)");
+
+    const std::vector<NodeMesh> meshes = meshWholeBone(bone);
+    const MeshCheck mesh = checkMesh(meshes, MeshGrid(bone.volume, bone.lattice));
+    saveVolume(options.save_volume, bone);
+    saveMesh(options.save_mesh, bone, meshes);
+    nlohmann::json json = totals(statistics, hash);
+    json["scene"] = loaded.scene.name();
+    json["preset"] = kPresetName;
+    json["iso_value"] = simulation.mapping.iso_value;
+    json["shell_points"] = bone.shell.pointCount();
+    json["bone_mm3"] = mesh.volume / kCubicMillimetre;
+    json["bone_before_mm3"] = volume_before / kCubicMillimetre;
+    json["mesh"] = {{"triangles", mesh.triangles}, {"vertices", mesh.vertices}, {"is_closed", mesh.isClosed()}};
+    return json.dump();
+}
+
+}  // namespace bonemill

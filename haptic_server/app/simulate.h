@@ -1,0 +1,19 @@
+// `haptic_server simulate`: the very tick of a live session, driven by a file, without real time or processes.
+#pragma once
+
+#include <string>
+
+namespace bonemill {
+
+struct SimulateOptions {
+    std::string scene;
+    std::string trajectory;
+    std::string trace;        // empty: none
+    std::string save_volume;  // empty: none
+    std::string save_mesh;    // empty: none
+};
+
+// Runs all rows and returns the JSON object with totals and `state_hash` (docs/simulate.md). Throws UserError.
+std::string simulate(const SimulateOptions& options);
+
+}  // namespace bonemill

@@ -1,0 +1,24 @@
+#include "haptic_server/app/surface_export.h"
+
+#include "haptic_server/mesh/mesher.h"
+#include "haptic_server/mesh/stl.h"
+#include "haptic_server/volume/import/nrrd_writer.h"
+
+namespace bonemill {
+
+std::vector<NodeMesh> meshWholeBone(const BoneModel& bone) {
+    std::vector<NodeMesh> meshes;
+    Mesher mesher(bone.volume, bone.lattice);
+    mesher.pass([&meshes](NodeMesh&& mesh) { meshes.push_back(std::move(mesh)); });
+    return meshes;
+}
+
+void saveVolume(const std::string& path, const BoneModel& bone) {
+    if (!path.empty()) writeNrrd(path, bone.volume);
+}
+
+void saveMesh(const std::string& path, const BoneModel& bone, const std::vector<NodeMesh>& meshes) {
+    if (!path.empty()) saveStl(path, meshes, MeshGrid(bone.volume, bone.lattice), bone.volume.geometry().X_WV);
+}
+
+}  // namespace bonemill
