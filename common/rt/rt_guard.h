@@ -5,6 +5,10 @@
 // is nothing.
 #pragma once
 
+#ifdef BONEMILL_RT_GUARD
+#include <atomic>
+#endif
+
 namespace bonemill {
 
 #ifdef BONEMILL_RT_GUARD
@@ -15,8 +19,15 @@ inline constinit thread_local int scope_depth = 0;
 
 class [[nodiscard]] RtScope {
   public:
-    RtScope() noexcept { ++rt_guard::scope_depth; }
-    ~RtScope() { --rt_guard::scope_depth; }
+    // The fences keep the depth in memory: compilers know that malloc and free look at no variable of ours.
+    RtScope() noexcept {
+        ++rt_guard::scope_depth;
+        std::atomic_signal_fence(std::memory_order_seq_cst);
+    }
+    ~RtScope() {
+        std::atomic_signal_fence(std::memory_order_seq_cst);
+        --rt_guard::scope_depth;
+    }
     RtScope(const RtScope&) = delete;
     RtScope& operator=(const RtScope&) = delete;
 };

@@ -27,19 +27,16 @@ class RunStatistics {
     uint64_t ticks() const { return has_records_ ? last_tick_ - first_tick_ + 1 : 0; }
     double durationS() const;   // from the first to the last tick's start
     double meanRateHz() const;  // ticks per elapsed time; 0 with fewer than two ticks
-    const std::vector<double>& ratesHz() const {
-        return rates_hz_;
-    }  // of every whole second since the first tick
-    uint64_t droppedTicks() const {
-        return dropped_ticks_;
-    }  // periods of the schedule in which no tick started
+    // Of every whole second since the first tick.
+    const std::vector<double>& ratesHz() const { return rates_hz_; }
+    // Periods of the schedule in which no tick started.
+    uint64_t droppedTicks() const { return dropped_ticks_; }
     uint64_t lostRecords() const { return lost_records_; }
 
+    // forceReady: wake-up to wrench written; tickCompute: wake-up to the end of the tick's work.
     const LatencyHistogram& wakeupLatency() const { return wakeup_latency_; }
-    const LatencyHistogram& forceReady() const { return force_ready_; }  // wake-up to wrench written
-    const LatencyHistogram& tickCompute() const {
-        return tick_compute_;
-    }  // wake-up to end of the tick's work
+    const LatencyHistogram& forceReady() const { return force_ready_; }
+    const LatencyHistogram& tickCompute() const { return tick_compute_; }
 
     double meanContacts() const { return records_ ? double(contacts_sum_) / double(records_) : 0.0; }
     uint32_t maxContacts() const { return max_contacts_; }

@@ -1,0 +1,37 @@
+// Counts what this thread does to the heap and to locks while an RtProbe lives. For tests that prove that a
+// tick does neither; not in sanitizer builds, which replace the same functions (there the target
+// bonemill::rt_probe does not exist, so a test that needs it is listed under `if(NOT BONEMILL_SANITIZE)`).
+#pragma once
+
+#include <cstdint>
+
+namespace bonemill {
+
+// One at a time per thread. The counters stay readable after stop(), where a test may allocate again.
+class RtProbe {
+  public:
+    RtProbe() noexcept;
+    ~RtProbe() { stop(); }
+    RtProbe(const RtProbe&) = delete;
+    RtProbe& operator=(const RtProbe&) = delete;
+
+    void stop() noexcept;
+
+    uint64_t heapCalls() const noexcept { return heap_calls_; }
+    uint64_t lockCalls() const noexcept { return lock_calls_; }
+    // Name of the first function counted, for the failure message; "none".
+    const char* firstCall() const noexcept { return first_call_; }
+
+    // For the interposed functions.
+    void countHeapCall(const char* function) noexcept;
+    void countLockCall(const char* function) noexcept;
+
+  private:
+    void noteFirst(const char* function) noexcept;
+
+    uint64_t heap_calls_ = 0;
+    uint64_t lock_calls_ = 0;
+    const char* first_call_ = "none";
+};
+
+}  // namespace bonemill
