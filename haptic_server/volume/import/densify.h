@@ -1,0 +1,51 @@
+// From raw values to the bone's densities: window, iso-value, small pieces.
+//
+// Not RT-safe (allocates); no shared state.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "haptic_server/volume/voxel_volume.h"
+
+namespace bonemill {
+
+// What the scene asks for; raw values (HU for CT).
+struct DensityWindow {
+    std::optional<double> low;           // becomes density 0; absent: lowest finite value of the data
+    std::optional<double> high;          // becomes density 255; absent: highest finite value
+    std::optional<double> iso;           // bone surface; absent: proposeIsoValue()
+    uint32_t smallest_piece_voxels = 0;  // pieces with fewer voxels are removed; 0 and 1 keep everything
+};
+
+// What was used in the end.
+struct DensityMapping {
+    double low = 0;
+    double high = 1;
+    double iso_value = 0;
+    bool is_iso_proposed = false;
+    Density iso = 0;  // density of iso_value, 0 < iso < kMaxDensity
+
+    // Linear, clamped to 0 .. kMaxDensity, rounded to nearest; NaN becomes 0 (air).
+    Density density(double raw) const noexcept;
+    double raw(double density_counts) const noexcept { return low + (high - low) * density_counts / kMaxDensity; }
+};
+
+// Throws UserError when the window is empty, the iso-value lies outside it or at its edge, or no value is finite.
+DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window);
+
+VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping);
+// chooseMapping, densify and removeSmallPieces in one.
+VoxelVolume densify(const RawVolume& raw, const DensityWindow& window);
+
+struct PieceCount {
+    uint64_t pieces_kept = 0;
+    uint64_t pieces_removed = 0;
+    uint64_t voxels_removed = 0;
+};
+
+// Connected pieces (6 neighbours: voxels that share a face) of density >= iso with fewer than `smallest_piece_voxels`
+// voxels go to iso - 1, just below the surface, so that nothing of them is felt or drawn.
+PieceCount removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels);
+
+}  // namespace bonemill

@@ -1,0 +1,180 @@
+#include "haptic_server/volume/import/dicom_folder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/config/user_error.h"
+#include "haptic_server/volume/import/dicom_frames.h"
+#include "haptic_server/volume/import/dicom_scan.h"
+#include "haptic_server/volume/import/dicom_series.h"
+#include "haptic_server/volume/import/import_limits.h"
+#include "haptic_server/volume/import/itk_image_file.h"
+#include "haptic_server/volume/import/physical_frame.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kMaxEdge = 16384;  // detectors of today have 4096; more is a damaged header
+
+// Files that are left out on purpose, by reason, with one example each.
+class LeftOut {
+  public:
+    void add(const std::string& reason, const std::filesystem::path& file) {
+        for (Entry& entry : entries_)
+            if (entry.reason == reason) return void(++entry.count);
+        entries_.push_back({reason, file.filename().string(), 1});
+    }
+    std::string text() const {
+        std::string text;
+        for (const Entry& entry : entries_)
+            text += (text.empty() ? "" : ", ") + std::to_string(entry.count) + " " + entry.reason + " (" +
+                    entry.example + (entry.count > 1 ? ", ...)" : ")");
+        return text;
+    }
+
+  private:
+    struct Entry {
+        std::string reason, example;
+        int count;
+    };
+    std::vector<Entry> entries_;
+};
+
+// What all images of one file have in common.
+DicomSlice headerOf(const ItkImageFile& image, const std::filesystem::path& path) {
+    const ItkImageHeader& header = image.header();
+    DicomSlice slice;
+    slice.path = path;
+    slice.series_uid = image.dicomTag("0020|000e");
+    slice.series_description = image.dicomTag("0008|103e");
+    slice.is_ct = image.dicomTag("0008|0060") == "CT";
+    if (header.dims.size() < 2 || header.dims[0] > kMaxEdge || header.dims[1] > kMaxEdge)
+        throw UserError(path.string() + ": claims an image of absurd size; the header is damaged");
+    slice.columns = int(header.dims[0]);
+    slice.rows = int(header.dims[1]);
+    slice.position_mm = Eigen::Vector3d(header.origin.data());
+    slice.row_direction = Eigen::Vector3d(header.axis[0].data());
+    slice.column_direction = Eigen::Vector3d(header.axis[1].data());
+    slice.pixel_spacing_mm = {header.spacing[0], header.spacing[1]};
+    return slice;
+}
+
+// The slices of one file; none, and the reason: a file that cannot belong to a volume.
+std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& left_out) {
+    const ItkImageFile image(ItkFormat::kDicom, path);
+    const size_t frames = image.header().dims.size() > 2 ? size_t(image.header().dims[2]) : 1;
+    if (image.header().components != 1 || image.dicomTag("0028|0004").rfind("PALETTE", 0) == 0) {
+        left_out.add("colour images (RGB or palette)", path);
+        return {};
+    }
+    if (frames == 1 && (image.dicomTag("0020|0032").empty() || image.dicomTag("0020|0037").empty())) {
+        left_out.add("images without a position in the patient", path);
+        return {};
+    }
+    DicomSlice slice = headerOf(image, path);
+    if (frames == 1) return {slice};
+    const std::vector<Eigen::Vector3d> positions = framePositions(path);
+    if (positions.size() != frames) {
+        left_out.add("multi-frame images that do not say where each frame lies", path);
+        return {};
+    }
+    std::vector<DicomSlice> slices;
+    for (size_t f = 0; f < frames; ++f) {
+        slice.frame = int(f);
+        slice.position_mm = positions[f];
+        slices.push_back(slice);
+    }
+    return slices;
+}
+
+// Damage must not pass as "not an image": the volume would silently lose a slice.
+std::vector<DicomSlice> inspect(const std::filesystem::path& path, LeftOut& left_out) {
+    const DicomScan scan = scanDicomFile(path);
+    switch (scan.kind) {
+        case DicomKind::kNotDicom: left_out.add("files that are not DICOM", path); return {};
+        case DicomKind::kNoImage: left_out.add("DICOM files without an image", path); return {};
+        case DicomKind::kCutShort:
+            throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
+        case DicomKind::kImage: break;
+    }
+    return readHeader(path, left_out);
+}
+
+void readSlices(const std::vector<DicomSlice>& slices, std::vector<float>& values) {
+    std::filesystem::path read_path;
+    std::vector<float> pixels;
+    for (const DicomSlice& slice : slices) {
+        if (slice.path != read_path) {
+            pixels.clear();
+            ItkImageFile(ItkFormat::kDicom, slice.path).appendValues(pixels);
+            read_path = slice.path;
+        }
+        const size_t size = size_t(slice.columns) * size_t(slice.rows), begin = size * size_t(slice.frame);
+        if (pixels.size() % size != 0 || pixels.size() < begin + size)
+            throw UserError(slice.path.string() + ": holds fewer pixels than its header says; the file is damaged");
+        values.insert(values.end(), pixels.begin() + ptrdiff_t(begin), pixels.begin() + ptrdiff_t(begin + size));
+    }
+}
+
+// Air is negative on no other scale.
+bool reachesAir(const std::vector<float>& values) {
+    return std::any_of(values.begin(), values.end(), [](float v) { return v <= -500; });
+}
+
+RawVolume readStack(const DicomStack& stack, const std::string& name) {
+    const DicomSlice& first = stack.slices.front();
+    const size_t depth = stack.slices.size();
+    constexpr uint64_t kPixelBytes = 4;  // a multi-frame file is read as a whole
+    checkVolumeSize({uint64_t(first.columns), uint64_t(first.rows), depth}, kPixelBytes, name);
+    RawVolume raw;
+    raw.values.reserve(size_t(first.columns) * size_t(first.rows) * depth);
+    readSlices(stack.slices, raw.values);
+    FileFrame frame;
+    frame.dims = {first.columns, first.rows, int(depth)};
+    frame.spacing_mm = {first.pixel_spacing_mm.x(), first.pixel_spacing_mm.y(), stack.slice_spacing_mm};
+    frame.directions << first.row_direction, first.column_direction, first.normal();
+    frame.origin_mm = first.position_mm;
+    makeRightHanded(frame, name, raw.geometry, raw.values);
+    raw.is_hounsfield = first.is_ct && reachesAir(raw.values);
+    raw.description = "DICOM series " + first.series_uid +
+                      (first.series_description.empty() ? "" : " (" + first.series_description + ")") + ", " +
+                      std::to_string(depth) + " slices";
+    if (!stack.left_out.empty()) raw.description += "; other series left out: " + stack.left_out;
+    return raw;
+}
+
+std::vector<std::filesystem::path> filesOf(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    std::error_code error;
+    for (std::filesystem::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error))
+        if (entry->is_regular_file()) files.push_back(entry->path());
+    if (error) throw UserError("cannot list the folder " + folder.string() + ": " + error.message());
+    std::sort(files.begin(), files.end());  // the same messages and choices on every file system
+    return files;
+}
+
+}  // namespace
+
+RawVolume importDicomFolder(const std::filesystem::path& folder, const std::string& series_uid) {
+    const auto files = filesOf(folder);
+    if (files.empty()) throw UserError(folder.string() + ": the folder is empty; a DICOM series is needed");
+    LeftOut left_out;
+    std::vector<DicomSlice> slices;
+    for (const auto& file : files)
+        for (const DicomSlice& slice : inspect(file, left_out)) slices.push_back(slice);
+    if (slices.empty())
+        throw UserError(folder.string() + ": holds no DICOM slice that can be used: " + left_out.text());
+    RawVolume raw = readStack(chooseStack(slices, series_uid, folder.string()), folder.string());
+    if (!left_out.text().empty()) raw.description += "; files left out: " + left_out.text();
+    return raw;
+}
+
+RawVolume importDicomFile(const std::filesystem::path& file) {
+    LeftOut left_out;
+    const auto slices = inspect(file, left_out);
+    if (slices.empty()) throw UserError(file.string() + ": cannot be used: " + left_out.text());
+    return readStack(chooseStack(slices, {}, file.string()), file.string());
+}
+
+}  // namespace bonemill

@@ -1,0 +1,56 @@
+#include "haptic_server/volume/import/import_limits.h"
+
+#include <fstream>
+
+#include "common/config/user_error.h"
+
+namespace bonemill {
+namespace {
+
+std::string sizeText(const std::vector<uint64_t>& dims) {
+    std::string text;
+    for (const uint64_t n : dims) text += (text.empty() ? "" : " x ") + std::to_string(n);
+    return text;
+}
+
+// Linux: MemAvailable. 0 when it cannot be read, which means no limit.
+uint64_t availableMemory() {
+    std::ifstream meminfo("/proc/meminfo");
+    std::string key, unit;
+    uint64_t kib = 0;
+    while (meminfo >> key >> kib) {
+        std::getline(meminfo, unit);
+        if (key == "MemAvailable:") return kib * 1024;
+    }
+    return 0;
+}
+
+}  // namespace
+
+void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel, const std::string& file) {
+    if (dims.size() != 3)
+        throw UserError(file + ": has " + std::to_string(dims.size()) + " dimensions (" + sizeText(dims) +
+                        "); one volume of three is needed");
+    uint64_t voxels = 1;
+    for (const uint64_t n : dims) {
+        if (n < 2) throw UserError(file + ": is only " + sizeText(dims) + " voxels; a volume needs 2 or more per axis");
+        if (n > kMaxVoxels || (voxels *= n) > kMaxVoxels)
+            throw UserError(file + ": claims " + sizeText(dims) + " voxels, more than 2^31; crop or resample it");
+    }
+    // The file's own samples and our float copy exist at the same time.
+    const uint64_t needed = voxels * (bytes_per_voxel + sizeof(float));
+    const uint64_t available = availableMemory();
+    if (available != 0 && needed > available)
+        throw UserError(file + ": " + sizeText(dims) + " voxels need " + std::to_string(needed >> 20) +
+                        " MiB to import and only " + std::to_string(available >> 20) +
+                        " MiB of memory are free; crop or resample it");
+}
+
+void checkStoredBytes(uint64_t payload_bytes, uint64_t stored_bytes, bool may_be_compressed, const std::string& file) {
+    const uint64_t at_most = may_be_compressed ? stored_bytes * kMaxDeflateRatio : stored_bytes;
+    if (payload_bytes > at_most)
+        throw UserError(file + ": the header promises " + std::to_string(payload_bytes) + " bytes of voxels, but only " +
+                        std::to_string(stored_bytes) + " bytes are stored; the file is cut short or damaged");
+}
+
+}  // namespace bonemill

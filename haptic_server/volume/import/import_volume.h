@@ -1,0 +1,28 @@
+// Reads a scanned volume from any format we accept; the one entrance for files of bone.
+//
+//   folder                DICOM series (docs/volumes.md: how a series is chosen, ordered and checked)
+//   .nrrd .nhdr           NRRD, attached or detached, raw/gzip/text, either byte order
+//   .nii .nii.gz          NIfTI-1
+//   .mha .mhd             MetaImage
+//   .inv3                 InVesalius project
+//   .dcm                  one multi-frame DICOM file
+//
+// Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up only: allocates,
+// not RT-safe; not for two threads at once (the DICOM library keeps global state).
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "haptic_server/volume/raw_volume.h"
+
+namespace bonemill {
+
+struct ImportOptions {
+    std::string series_uid;  // which DICOM series of the folder; empty: the one with the most slices
+};
+
+// Throws UserError with one message: what is wrong, in which file, what to do.
+RawVolume importVolume(const std::filesystem::path& path, const ImportOptions& options = {});
+
+}  // namespace bonemill

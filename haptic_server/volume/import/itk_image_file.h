@@ -1,0 +1,51 @@
+// The only door to ITK's readers: one image file, header first, pixels when its size has been found sensible.
+//
+// No Eigen and no ITK type in here: ITK brings an Eigen of its own that cannot share a source file with ours.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace bonemill {
+
+enum class ItkFormat { kNrrd, kNifti, kMetaImage, kDicom };
+
+struct ItkImageHeader {
+    std::vector<uint64_t> dims;  // all axes of the file
+    unsigned components = 1;     // values per voxel
+    uint64_t bytes_per_voxel = 0;
+    // First three axes, LPS, in the file's unit of length (mm unless it says otherwise); unit axes where it has fewer.
+    std::array<double, 3> spacing{1, 1, 1};
+    std::array<double, 3> origin{};
+    std::array<std::array<double, 3>, 3> axis{};  // where each index axis points
+};
+
+// Start-up only, one thread. Throws UserError with one message naming the file.
+class ItkImageFile {
+  public:
+    // Reads the header.
+    ItkImageFile(ItkFormat format, const std::filesystem::path& path);
+    ~ItkImageFile();
+    ItkImageFile(const ItkImageFile&) = delete;
+    ItkImageFile& operator=(const ItkImageFile&) = delete;
+
+    const ItkImageHeader& header() const { return header_; }
+
+    // Value of a DICOM tag as text without padding, such as "0020|0032"; empty when absent.
+    std::string dicomTag(const char* tag) const;
+
+    // Appends all samples, rescaled as the file says (HU for CT), first axis fastest.
+    void appendValues(std::vector<float>& values);
+
+  private:
+    struct Reader;
+    std::string file_;
+    std::unique_ptr<Reader> reader_;
+    ItkImageHeader header_;
+};
+
+}  // namespace bonemill

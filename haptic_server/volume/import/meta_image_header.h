@@ -1,0 +1,17 @@
+// Checks a MetaImage header before the MetaIO library trusts its numbers.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace bonemill {
+
+struct MetaImageHeader {
+    std::string data_file;       // empty: attached (LOCAL); a list of files or a pattern stays as it is written
+    bool is_compressed = false;
+};
+
+// Throws UserError naming the file when it is no three-dimensional MetaImage.
+MetaImageHeader readMetaImageHeader(const std::filesystem::path& path);
+
+}  // namespace bonemill

@@ -1,0 +1,118 @@
+#include "haptic_server/volume/import/nrrd_header.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "common/config/user_error.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kMaxHeaderBytes = size_t(1) << 20;
+// Decimal text in mm carries 15 digits or more; anything further away is another geometry.
+constexpr double kGeometryTolerance = 1e-9;
+
+std::string trimmed(const std::string& text) {
+    const auto first = text.find_first_not_of(" \t\r");
+    if (first == std::string::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+// Field names ignore blanks and case: "data file", "datafile", "Data File".
+std::string fieldName(const std::string& text) {
+    std::string name;
+    for (const char c : text)
+        if (c != ' ' && c != '\t') name += char(std::tolower(static_cast<unsigned char>(c)));
+    return name;
+}
+
+double mmPerUnit(const std::string& units, const std::filesystem::path& path) {
+    const auto open = units.find('"');
+    const auto close = units.find('"', open + 1);
+    const std::string unit = open == std::string::npos || close == std::string::npos
+                                 ? units.substr(0, units.find(' '))
+                                 : units.substr(open + 1, close - open - 1);
+    if (unit.empty() || unit == "mm" || unit == "millimeter" || unit == "???") return 1;
+    if (unit == "m") return 1000;
+    if (unit == "cm") return 10;
+    if (unit == "um" || unit == "micron") return 1e-3;
+    throw UserError(path.string() + ": space units \"" + unit + "\" are not known; use mm, cm, m or um");
+}
+
+}  // namespace
+
+NrrdHeader readNrrdHeader(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string line;
+    if (!std::getline(file, line) || line.rfind("NRRD000", 0) != 0)
+        throw UserError(path.string() + ": is not a NRRD file (it does not start with NRRD000)");
+    NrrdHeader header;
+    size_t bytes = line.size();
+    while (std::getline(file, line) && !trimmed(line).empty()) {
+        if ((bytes += line.size() + 1) > kMaxHeaderBytes)
+            throw UserError(path.string() + ": the NRRD header does not end; the file is damaged");
+        const auto colon = line.find(':');
+        if (line[0] == '#' || colon == std::string::npos) continue;
+        if (line.compare(colon, 2, ":=") == 0) {
+            if (line.substr(0, colon) == kNrrdGeometryKey)
+                header.exact_geometry = geometryFromText(line.substr(colon + 2));
+            continue;
+        }
+        const std::string name = fieldName(line.substr(0, colon)), value = trimmed(line.substr(colon + 1));
+        if (name == "encoding") header.encoding = fieldName(value);
+        if (name == "datafile") header.data_file = value;
+        if (name == "spaceunits" || name == "units") header.mm_per_unit = mmPerUnit(value, path);
+    }
+    return header;
+}
+
+std::string geometryToText(const VolumeGeometry& geometry) {
+    const auto& q = geometry.X_WV.rotation;
+    const auto& p = geometry.X_WV.position;
+    const auto& s = geometry.spacing;
+    const auto& n = geometry.dims;
+    char text[512];
+    std::snprintf(text, sizeof text, "%d %d %d %a %a %a %a %a %a %a %a %a %a", n.x(), n.y(), n.z(), s.x(), s.y(), s.z(),
+                  p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+    return text;
+}
+
+std::optional<VolumeGeometry> geometryFromText(const std::string& text) {
+    std::istringstream words(text);
+    double number[13];
+    for (double& n : number) {
+        std::string word;
+        if (!(words >> word)) return std::nullopt;
+        char* end = nullptr;
+        n = std::strtod(word.c_str(), &end);
+        if (end == word.c_str() || !std::isfinite(n)) return std::nullopt;
+    }
+    for (int a = 0; a < 3; ++a)
+        if (number[a] < 1 || number[a] > 1e9) return std::nullopt;
+    VolumeGeometry geometry;
+    geometry.dims = Eigen::Vector3d(number[0], number[1], number[2]).cast<int>();
+    geometry.spacing = {number[3], number[4], number[5]};
+    geometry.X_WV.position = {number[6], number[7], number[8]};
+    geometry.X_WV.rotation = Eigen::Quaterniond(number[9], number[10], number[11], number[12]);
+    if (std::abs(geometry.X_WV.rotation.norm() - 1) > kGeometryTolerance) return std::nullopt;
+    return geometry;
+}
+
+bool isSameGeometry(const VolumeGeometry& a, const VolumeGeometry& b) {
+    if (a.dims != b.dims) return false;
+    const Eigen::Vector3d steps = a.dims.cast<double>();
+    const double scale = (steps.cwiseProduct(a.spacing)).norm() + a.X_WV.position.norm();
+    for (int corner = 0; corner < 4; ++corner) {  // origin and the end of each axis fix the whole grid
+        Eigen::Vector3d index = Eigen::Vector3d::Zero();
+        if (corner > 0) index[corner - 1] = steps[corner - 1];
+        const Eigen::Vector3d difference =
+            a.X_WV * a.spacing.cwiseProduct(index) - b.X_WV * b.spacing.cwiseProduct(index);
+        if (!(difference.norm() <= kGeometryTolerance * scale)) return false;
+    }
+    return true;
+}
+
+}  // namespace bonemill

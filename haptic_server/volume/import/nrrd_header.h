@@ -1,0 +1,31 @@
+// What our own reading of a NRRD header adds to ITK's: units, where the data are, and our exact geometry.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "haptic_server/volume/raw_volume.h"
+
+namespace bonemill {
+
+struct NrrdHeader {
+    std::string encoding;                       // "raw", "gzip", "ascii", ...
+    std::string data_file;                      // empty: attached
+    double mm_per_unit = 1;                     // from "space units"
+    std::optional<VolumeGeometry> exact_geometry;  // from nrrd_writer.h
+};
+
+// Reads at most 1 MiB. Throws UserError when it is no NRRD file or its units are not lengths.
+NrrdHeader readNrrdHeader(const std::filesystem::path& path);
+
+inline constexpr const char* kNrrdGeometryKey = "bonemill geometry";
+
+// "nx ny nz sx sy sz px py pz qw qx qy qz": voxels, then hexadecimal floats in m.
+std::string geometryToText(const VolumeGeometry& geometry);
+std::optional<VolumeGeometry> geometryFromText(const std::string& text);
+
+// Same voxels at the same places within rounding of decimal text?
+bool isSameGeometry(const VolumeGeometry& a, const VolumeGeometry& b);
+
+}  // namespace bonemill

@@ -1,0 +1,43 @@
+// Test bodies whose surface is known exactly, and their densities on any grid.
+//
+// Frames: W is the world (and the written file's LPS frame); B is the body's own frame. Lengths in m, angles in rad.
+// In B (definitions are repeated in docs/volumes.md):
+//   slab       |z| <= thickness / 2, endless in x and y
+//   sphere     |p| <= radius
+//   hole       plate |z| <= thickness / 2 with a round hole x² + y² < radius²
+//   wedge      edge along y through the origin, solid towards -z, full opening angle `angle`
+//   thin-wall  |x| <= thickness / 2 and z <= 0: a wall with a free upper edge
+// Thread-safe; signedDistance does not allocate.
+#pragma once
+
+#include "haptic_server/volume/raw_volume.h"
+
+namespace bonemill {
+
+enum class BodyKind { kSlab, kSphere, kHole, kWedge, kThinWall };
+
+struct AnalyticBody {
+    BodyKind kind = BodyKind::kSphere;
+    double radius = 4e-3;
+    double thickness = 4e-3;
+    double angle = 0.7;  // 0 < angle < pi
+    Pose X_WB;
+};
+
+// Exact distance from a point in W to the surface, negative inside the solid.
+double signedDistance(const AnalyticBody& body, const Eigen::Vector3d& p_W) noexcept;
+
+// Density falls linearly from full to 0 while the signed distance goes from -kRampVoxels to +kRampVoxels voxels (of the
+// largest spacing): wide enough that no corner of a cell with a piece of the surface is clamped.
+inline constexpr double kRampVoxels = 2.0;
+
+double bodyDensity(const AnalyticBody& body, const VolumeGeometry& geometry, const Eigen::Vector3d& p_W,
+                   double full) noexcept;
+
+// Values 0 .. full, iso-surface at full / 2, rounded to whole numbers as an integer file stores them.
+RawVolume sampleBody(const AnalyticBody& body, const VolumeGeometry& geometry, double full);
+
+// A grid along the axes of W whose middle is the origin of W.
+VolumeGeometry centredGrid(const Eigen::Vector3i& dims, double voxel_size);
+
+}  // namespace bonemill

@@ -1,0 +1,16 @@
+// Proposes the raw value of the bone surface when the scene gives none.
+#pragma once
+
+#include "haptic_server/volume/raw_volume.h"
+
+namespace bonemill {
+
+// From the histogram of the finite values; rule and measured table in docs/volumes.md.
+//   1. Hounsfield scale (is_hounsfield, or shifted by +1024 as some exports are): half-way between the peak of soft
+//      tissue and the median of what is clearly bone, kept within 200 .. 300 HU.
+//   2. No soft tissue, or another scale (industrial CT, phantoms): half-way between background and the next material.
+//   3. Only one material stands out: Otsu's threshold.
+// Deterministic. Allocates; not RT-safe. Throws UserError when the values are all alike or none is finite.
+double proposeIsoValue(const RawVolume& raw);
+
+}  // namespace bonemill

@@ -1,0 +1,15 @@
+// NRRD, NIfTI and MetaImage through ITK.
+#pragma once
+
+#include <filesystem>
+
+#include "haptic_server/volume/raw_volume.h"
+
+namespace bonemill {
+
+// Throw UserError with one message naming the file.
+RawVolume importNrrd(const std::filesystem::path& path);
+RawVolume importNifti(const std::filesystem::path& path);
+RawVolume importMetaImage(const std::filesystem::path& path);
+
+}  // namespace bonemill
