@@ -1,0 +1,102 @@
+#include "common/dds/endpoint.h"
+
+#include <dds/dds.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace bonemill::dds {
+namespace {
+
+Entity createTopic(const Participant& participant, const TopicDescription& description) {
+    return requireEntity(
+        dds_create_topic(participant.handle(), description.type, description.name, nullptr, nullptr),
+        std::string("topic ") + description.name);
+}
+
+void logOffered(dds_entity_t, const dds_offered_incompatible_qos_status_t status, void* topic) {
+    spdlog::warn(
+        "DDS: a reader of {} does not match this program's writer (QoS policy {}): another version of "
+        "bonemill?",
+        static_cast<const char*>(topic), status.last_policy_id);
+}
+
+void logRequested(dds_entity_t, const dds_requested_incompatible_qos_status_t status, void* topic) {
+    spdlog::warn(
+        "DDS: a writer of {} does not match this program's reader (QoS policy {}): another version of "
+        "bonemill?",
+        static_cast<const char*>(topic), status.last_policy_id);
+}
+
+struct DeleteListener {
+    void operator()(dds_listener_t* listener) const { dds_delete_listener(listener); }
+};
+
+// Without it, programs of different versions ignore each other in silence. Called on Cyclone's threads.
+std::unique_ptr<dds_listener_t, DeleteListener> mismatchListener(const char* topic) {
+    std::unique_ptr<dds_listener_t, DeleteListener> listener(dds_create_listener(const_cast<char*>(topic)));
+    dds_lset_offered_incompatible_qos(listener.get(), logOffered);
+    dds_lset_requested_incompatible_qos(listener.get(), logRequested);
+    return listener;
+}
+
+}  // namespace
+
+AnyWriter::AnyWriter(const Participant& participant, const TopicDescription& description)
+    : topic_(createTopic(participant, description)),
+      writer_(requireEntity(dds_create_writer(participant.handle(), topic_.handle(), description.qos.get(),
+                                              mismatchListener(description.name).get()),
+                            std::string("writer of ") + description.name)),
+      name_(description.name) {}
+
+bool AnyWriter::write(const void* sample) {
+    return check(dds_write(writer_.handle(), sample), "write");
+}
+
+bool AnyWriter::dispose(const void* sample) {
+    return check(dds_dispose(writer_.handle(), sample), "dispose");
+}
+
+bool AnyWriter::check(int32_t result, const char* action) {
+    if (result == DDS_RETCODE_OK) return true;
+    if (!has_failed_) spdlog::error("DDS: cannot {} {}: {}", action, name_, dds_strretcode(result));
+    has_failed_ = true;
+    return false;
+}
+
+int AnyWriter::matchedReaders() const {
+    dds_publication_matched_status_t status{};
+    dds_get_publication_matched_status(writer_.handle(), &status);
+    return static_cast<int>(status.current_count);
+}
+
+AnyReader::AnyReader(const Participant& participant, const TopicDescription& description)
+    : topic_(createTopic(participant, description)),
+      reader_(requireEntity(dds_create_reader(participant.handle(), topic_.handle(), description.qos.get(),
+                                              mismatchListener(description.name).get()),
+                            std::string("reader of ") + description.name)) {}
+
+int AnyReader::matchedWriters() const {
+    dds_subscription_matched_status_t status{};
+    dds_get_subscription_matched_status(reader_.handle(), &status);
+    return static_cast<int>(status.current_count);
+}
+
+AnyReader::Batch::Batch(int32_t reader, size_t max_samples) : reader_(reader) {
+    const size_t wanted = std::min(max_samples, kBatch);
+    std::array<dds_sample_info_t, kBatch> infos;
+    const int32_t taken =
+        dds_take(reader_, samples_.data(), infos.data(), wanted, static_cast<uint32_t>(wanted));
+    size_ = static_cast<size_t>(std::max(taken, 0));
+    for (size_t i = 0; i < size_; ++i) {
+        infos_[i] = {infos[i].valid_data, infos[i].instance_state == DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE,
+                     infos[i].publication_handle};
+    }
+}
+
+AnyReader::Batch::~Batch() {
+    if (size_ > 0) dds_return_loan(reader_, samples_.data(), static_cast<int32_t>(size_));
+}
+
+}  // namespace bonemill::dds

@@ -1,0 +1,128 @@
+// Typed writer and reader of one topic. One thread per object; not for the tick. Constructors throw
+// UserError. Peers that do not match because of their QoS or type are logged.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "common/dds/participant.h"
+#include "common/dds/topic_traits.h"
+
+namespace bonemill::dds {
+
+struct SampleInfo {
+    bool has_data = false;     // false: only the key fields of the sample are set
+    bool is_disposed = false;  // the key is gone on purpose; a writer that merely left does not dispose
+    uint64_t writer = 0;       // who wrote or disposed
+};
+
+class AnyWriter {
+  public:
+    AnyWriter(const Participant& participant, const TopicDescription& description);
+
+    // False when DDS refused; the first refusal is logged.
+    bool write(const void* sample);
+    bool dispose(const void* sample);
+    int matchedReaders() const;
+
+  private:
+    bool check(int32_t result, const char* action);
+
+    Entity topic_;
+    Entity writer_;
+    std::string name_;
+    bool has_failed_ = false;
+};
+
+class AnyReader {
+  public:
+    static constexpr size_t kBatch = 64;
+    // Samples on loan from Cyclone, given back on destruction.
+    class Batch {
+      public:
+        Batch(int32_t reader, size_t max_samples);
+        Batch(const Batch&) = delete;
+        Batch& operator=(const Batch&) = delete;
+        ~Batch();
+
+        size_t size() const noexcept { return size_; }
+        const void* sample(size_t i) const noexcept { return samples_[i]; }
+        const SampleInfo& info(size_t i) const noexcept { return infos_[i]; }
+
+      private:
+        int32_t reader_;
+        size_t size_ = 0;
+        std::array<void*, kBatch> samples_{};
+        std::array<SampleInfo, kBatch> infos_{};
+    };
+
+    AnyReader(const Participant& participant, const TopicDescription& description);
+
+    int32_t handle() const noexcept { return reader_.handle(); }
+    int matchedWriters() const;
+
+  private:
+    Entity topic_;
+    Entity reader_;
+};
+
+template <class Sample>
+class Writer {
+  public:
+    explicit Writer(const Participant& participant) : writer_(participant, describeTopic<Sample>()) {}
+
+    bool write(const Sample& sample) { return writer_.write(&sample); }
+    // Only the key fields of `sample` count. The instance stays registered, so that a reader that was away
+    // learns it.
+    bool dispose(const Sample& sample) { return writer_.dispose(&sample); }
+    int matchedReaders() const { return writer_.matchedReaders(); }
+
+  private:
+    AnyWriter writer_;
+};
+
+template <class Sample>
+class Reader {
+  public:
+    explicit Reader(const Participant& participant) : reader_(participant, describeTopic<Sample>()) {}
+
+    // Calls handle(const Sample&, const SampleInfo&) for at most `max_samples` new samples; returns how many.
+    // The sample lives only during the call.
+    template <class Handler>
+    size_t take(size_t max_samples, Handler&& handle) {
+        size_t taken = 0;
+        while (taken < max_samples) {
+            const AnyReader::Batch batch(reader_.handle(), max_samples - taken);
+            if (batch.size() == 0) break;
+            for (size_t i = 0; i < batch.size(); ++i) {
+                handle(*static_cast<const Sample*>(batch.sample(i)), batch.info(i));
+            }
+            taken += batch.size();
+        }
+        return taken;
+    }
+
+    int32_t handle() const noexcept { return reader_.handle(); }
+    int matchedWriters() const { return reader_.matchedWriters(); }
+
+  private:
+    AnyReader reader_;
+};
+
+// Lets the sample's payload point at `bytes`, which must outlive the write: no copy.
+template <class Sample>
+void setPayload(Sample& sample, const std::string& bytes) {
+    sample.payload._length = sample.payload._maximum = static_cast<uint32_t>(bytes.size());
+    sample.payload._buffer = reinterpret_cast<uint8_t*>(const_cast<char*>(bytes.data()));
+    sample.payload._release = false;
+}
+
+template <class Sample>
+std::span<const uint8_t> payloadOf(const Sample& sample) {
+    return {sample.payload._buffer, sample.payload._length};
+}
+
+}  // namespace bonemill::dds

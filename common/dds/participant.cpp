@@ -1,0 +1,63 @@
+#include "common/dds/participant.h"
+
+#include <dds/dds.h>
+
+#include <cstdlib>
+#include <map>
+#include <mutex>
+
+#include "common/config/user_error.h"
+#include "local_profile.h"
+
+namespace bonemill::dds {
+
+// The configured domain, shared by every participant of this process: Cyclone creates each domain id only
+// once.
+class Domain {
+  public:
+    explicit Domain(uint32_t id) {
+        if (const char* uri = std::getenv("CYCLONEDDS_URI"); uri != nullptr && *uri != '\0') return;
+        entity_ = requireEntity(dds_create_domain(id, kLocalProfile), "DDS domain " + std::to_string(id));
+    }
+
+  private:
+    Entity entity_;
+};
+
+namespace {
+
+// The mutex spans creation and deletion: a domain being deleted must be gone before it is created again.
+std::mutex domains_mutex;
+
+std::shared_ptr<Domain> acquireDomain(uint32_t id) {
+    static std::map<uint32_t, std::weak_ptr<Domain>> domains;
+    const std::lock_guard lock(domains_mutex);
+    std::shared_ptr<Domain> domain = domains[id].lock();
+    if (!domain) {
+        domain = std::make_shared<Domain>(id);
+        domains[id] = domain;
+    }
+    return domain;
+}
+
+}  // namespace
+
+Participant::Participant(uint32_t domain) {
+    if (domain > kMaxDomain) {
+        throw UserError("DDS domain " + std::to_string(domain) + " does not exist: choose 0 to " +
+                        std::to_string(kMaxDomain));
+    }
+    domain_ = acquireDomain(domain);
+    entity_ = requireEntity(dds_create_participant(domain, nullptr, nullptr),
+                            "participant in DDS domain " + std::to_string(domain));
+}
+
+Participant::Participant(Participant&&) noexcept = default;
+
+Participant::~Participant() {
+    entity_ = Entity();
+    const std::lock_guard lock(domains_mutex);
+    domain_.reset();
+}
+
+}  // namespace bonemill::dds

@@ -1,0 +1,33 @@
+// A program's membership in one DDS domain. Not for the tick.
+//
+// Network settings come from CYCLONEDDS_URI; when that is unset, from the built-in copy of
+// deploy/dds/local.xml (loopback only). Endpoints that do not match because of their QoS or type are logged.
+#pragma once
+
+#include <memory>
+
+#include "common/dds/entity.h"
+
+namespace bonemill::dds {
+
+// Ports of higher domain ids do not fit in 16 bits.
+inline constexpr uint32_t kMaxDomain = 230;
+
+class Domain;
+
+class Participant {
+  public:
+    // Throws UserError when the domain cannot be joined.
+    explicit Participant(uint32_t domain);
+    Participant(Participant&&) noexcept;
+
+    ~Participant();
+
+    int32_t handle() const noexcept { return entity_.handle(); }
+
+  private:
+    std::shared_ptr<Domain> domain_;  // outlives entity_
+    Entity entity_;
+};
+
+}  // namespace bonemill::dds

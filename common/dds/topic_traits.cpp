@@ -1,0 +1,59 @@
+#include "common/dds/topic_traits.h"
+
+namespace bonemill::dds {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kMaxBlocking = 1s;
+// Bounds what a flood of commands can take of the server's memory.
+constexpr int kMaxQueuedCommands = 1024;
+
+// State that a late joiner must have: the newest sample per key. Measured: such a writer never waits for a
+// reader.
+Qos stateQos() {
+    Qos qos;
+    qos.reliable(kMaxBlocking).transientLocal().keepLast(1).disposeOnRequestOnly();
+    return qos;
+}
+
+Qos streamQos() {
+    Qos qos;
+    qos.bestEffort().keepLast(1);
+    return qos;
+}
+
+Qos commandQos() {
+    Qos qos;
+    qos.reliable(kMaxBlocking).keepAll(kMaxQueuedCommands);
+    return qos;
+}
+
+}  // namespace
+
+template <>
+TopicDescription describeTopic<NodeMeshSample>() {
+    return {"bonemill_node_mesh", &bonemill_dds_NodeMeshSample_desc, stateQos()};
+}
+
+template <>
+TopicDescription describeTopic<SceneInfoSample>() {
+    return {"bonemill_scene_info", &bonemill_dds_SceneInfoSample_desc, stateQos()};
+}
+
+template <>
+TopicDescription describeTopic<ToolStateSample>() {
+    return {"bonemill_tool_state", &bonemill_dds_ToolStateSample_desc, streamQos()};
+}
+
+template <>
+TopicDescription describeTopic<StatusSample>() {
+    return {"bonemill_status", &bonemill_dds_StatusSample_desc, stateQos()};
+}
+
+template <>
+TopicDescription describeTopic<CommandSample>() {
+    return {"bonemill_command", &bonemill_dds_CommandSample_desc, commandQos()};
+}
+
+}  // namespace bonemill::dds

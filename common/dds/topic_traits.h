@@ -1,0 +1,35 @@
+// The five topics: name, type descriptor and quality of service of each envelope of proto/topics.idl.
+#pragma once
+
+#include <topics.h>
+
+#include "common/dds/qos.h"
+
+namespace bonemill::dds {
+
+using NodeMeshSample = bonemill_dds_NodeMeshSample;
+using SceneInfoSample = bonemill_dds_SceneInfoSample;
+using ToolStateSample = bonemill_dds_ToolStateSample;
+using StatusSample = bonemill_dds_StatusSample;
+using CommandSample = bonemill_dds_CommandSample;
+
+struct TopicDescription {
+    const char* name;  // of static storage
+    const dds_topic_descriptor_t* type;
+    Qos qos;
+};
+
+template <class Sample>
+TopicDescription describeTopic();
+template <>
+TopicDescription describeTopic<NodeMeshSample>();
+template <>
+TopicDescription describeTopic<SceneInfoSample>();
+template <>
+TopicDescription describeTopic<ToolStateSample>();
+template <>
+TopicDescription describeTopic<StatusSample>();
+template <>
+TopicDescription describeTopic<CommandSample>();
+
+}  // namespace bonemill::dds

@@ -1,0 +1,24 @@
+// Sleeps until one of several readers has samples. Not for the tick.
+#pragma once
+
+#include <chrono>
+#include <vector>
+
+#include "common/dds/participant.h"
+
+namespace bonemill::dds {
+
+class WaitSet {
+  public:
+    explicit WaitSet(const Participant& participant);
+
+    void add(int32_t reader);
+    // True when a reader has samples to take, false when `timeout` passed before.
+    bool wait(std::chrono::nanoseconds timeout) const;
+
+  private:
+    Entity set_;
+    std::vector<Entity> conditions_;
+};
+
+}  // namespace bonemill::dds

@@ -1,0 +1,53 @@
+// Decides which received commands the server carries out: each (sender, sequence) once. One thread; not
+// RT-safe.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <unordered_map>
+
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+// What clients read in Status about the last command.
+struct CommandAcknowledgement {
+    uint64_t sender = 0;
+    uint32_t sequence = 0;
+    std::string result;
+};
+
+class CommandInbox {
+  public:
+    // What to do with one received payload: carry out `command`, or tell the sender `acknowledgement`, or
+    // (both empty: malformed, or a repetition of a command still being carried out) nothing.
+    struct Decision {
+        std::optional<topics::Command> command;
+        std::optional<CommandAcknowledgement> acknowledgement;
+    };
+
+    // `envelope_sender` is the key of the sample. Bytes that are no command of that sender are counted and
+    // dropped.
+    Decision receive(uint64_t envelope_sender, std::span<const uint8_t> payload);
+
+    // Remembers how a command ended, for senders that repeat it because they missed the acknowledgement.
+    CommandAcknowledgement finish(const topics::Command& command, const std::string& result);
+
+    uint64_t malformedCount() const noexcept { return malformed_count_; }
+
+  private:
+    struct Sender {
+        uint32_t sequence = 0;    // the last one received
+        std::string result;       // of that one; empty: not finished
+        uint64_t last_heard = 0;  // receive counter, to forget the quietest
+    };
+    Sender& senderState(uint64_t id);
+
+    std::unordered_map<uint64_t, Sender> senders_;
+    uint64_t received_count_ = 0;
+    uint64_t malformed_count_ = 0;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,146 @@
+#include "haptic_server/publish/publisher.h"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+
+#include "common/mesh/mesh_codec.h"
+
+namespace bonemill {
+namespace {
+
+// A flood of commands must not keep the publisher thread from publishing.
+constexpr size_t kMaxCommandsPerCall = 1024;
+
+int64_t unixTime_ns() {
+    const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(since_epoch).count();
+}
+
+template <class Sample, class Message>
+bool writeMessage(dds::Writer<Sample>& writer, uint32_t session, const Message& message) {
+    const std::string bytes = message.SerializeAsString();
+    Sample sample{};
+    sample.session = session;
+    dds::setPayload(sample, bytes);
+    return writer.write(sample);
+}
+
+template <size_t N>
+void assign(google::protobuf::RepeatedField<double>* field, const double (&values)[N]) {
+    field->Assign(values, values + N);
+}
+
+topics::ToolState toolState(const TickRecord& record, uint64_t epoch) {
+    topics::ToolState state;
+    state.set_epoch(epoch);
+    state.set_tick(record.tick);
+    state.set_stamp_ns(unixTime_ns());
+    assign(state.mutable_p_wt_m(), record.p_WT);
+    assign(state.mutable_q_wt(), record.q_WT);
+    assign(state.mutable_p_wt_device_m(), record.p_WT_device);
+    assign(state.mutable_q_wt_device(), record.q_WT_device);
+    assign(state.mutable_force_n(), record.f_hand_W);
+    assign(state.mutable_torque_nm(), record.t_hand_W);
+    state.set_contacts(record.contacts);
+    state.set_max_penetration_m(record.max_penetration);
+    state.set_buttons(record.buttons);
+    return state;
+}
+
+}  // namespace
+
+Publisher::Publisher(const PublisherOptions& options)
+    : session_(options.session),
+      epoch_(options.epoch != 0 ? options.epoch : static_cast<uint64_t>(unixTime_ns())),
+      participant_(options.domain),
+      node_writer_(participant_),
+      scene_info_writer_(participant_),
+      tool_state_writer_(participant_),
+      status_writer_(participant_),
+      command_reader_(participant_) {}
+
+bool Publisher::publishNode(const NodeMesh& mesh) {
+    const auto known = nodes_.find(mesh.leaf);
+    Node node = known != nodes_.end() ? known->second : Node{0, false, false};
+    if (known != nodes_.end() && mesh.revision <= node.revision) return true;
+
+    // A dispose is kept for every late joiner, so a node that never had a mesh gets none.
+    if (!mesh.isEmpty() && !writeNode(mesh)) return false;
+    if (mesh.isEmpty() && node.was_written && !disposeNode(mesh.leaf)) return false;
+
+    if (node.has_mesh) digest_.remove(mesh.leaf, node.revision);
+    if (!mesh.isEmpty()) digest_.add(mesh.leaf, mesh.revision);
+    nodes_[mesh.leaf] = {mesh.revision, !mesh.isEmpty(), node.was_written || !mesh.isEmpty()};
+    return true;
+}
+
+bool Publisher::writeNode(const NodeMesh& mesh) {
+    const std::string bytes = encodeNodeMesh(mesh, epoch_);
+    dds::NodeMeshSample sample{};
+    sample.session = session_;
+    sample.node = mesh.leaf;
+    sample.revision = mesh.revision;
+    dds::setPayload(sample, bytes);
+    return node_writer_.write(sample);
+}
+
+bool Publisher::disposeNode(uint32_t leaf) {
+    dds::NodeMeshSample key{};
+    key.session = session_;
+    key.node = leaf;
+    return node_writer_.dispose(key);
+}
+
+bool Publisher::publishSceneInfo(topics::SceneInfo info) {
+    info.set_epoch(epoch_);
+    return writeMessage(scene_info_writer_, session_, info);
+}
+
+bool Publisher::publishToolState(const TickRecord& record) {
+    return writeMessage(tool_state_writer_, session_, toolState(record, epoch_));
+}
+
+bool Publisher::publishStatus(topics::Status status) {
+    status.set_last_command_sender(status_.last_command_sender());
+    status.set_last_command_sequence(status_.last_command_sequence());
+    status.set_last_command_result(status_.last_command_result());
+    status_ = std::move(status);
+    return writeStatus();
+}
+
+bool Publisher::writeStatus() {
+    status_.set_epoch(epoch_);
+    status_.set_node_count(digest_.count());
+    status_.set_node_digest(digest_.value());
+    return writeMessage(status_writer_, session_, status_);
+}
+
+std::vector<topics::Command> Publisher::takeCommands() {
+    std::vector<topics::Command> commands;
+    const uint64_t malformed_before = inbox_.malformedCount();
+    command_reader_.take(
+        kMaxCommandsPerCall, [&](const dds::CommandSample& sample, const dds::SampleInfo& info) {
+            if (!info.has_data || sample.session != session_) return;
+            CommandInbox::Decision decision = inbox_.receive(sample.sender, dds::payloadOf(sample));
+            if (decision.acknowledgement) show(*decision.acknowledgement);
+            if (decision.command) commands.push_back(std::move(*decision.command));
+        });
+    if (malformed_before == 0 && inbox_.malformedCount() > 0) {
+        spdlog::warn("dropped a malformed command; more of them are only counted");
+    }
+    return commands;
+}
+
+void Publisher::acknowledge(const topics::Command& command, const std::string& result) {
+    show(inbox_.finish(command, result));
+}
+
+void Publisher::show(const CommandAcknowledgement& acknowledgement) {
+    status_.set_last_command_sender(acknowledgement.sender);
+    status_.set_last_command_sequence(acknowledgement.sequence);
+    status_.set_last_command_result(acknowledgement.result);
+    writeStatus();
+}
+
+}  // namespace bonemill

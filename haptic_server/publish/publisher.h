@@ -1,0 +1,86 @@
+// Everything haptic_server shows to the clients, and what they ask of it: the five topics of one session.
+//
+// Owned by the publisher thread; every member from that thread, never from the tick (a write can take
+// milliseconds). No reader, however slow, gone or killed, blocks a write. Nothing is disposed when the
+// publisher goes: clients keep the last picture. A restarted server is a new Publisher with a later epoch and
+// replaces the model on every client.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "common/dds/endpoint.h"
+#include "common/dds/node_digest.h"
+#include "common/geometry/node_mesh.h"
+#include "haptic_server/publish/command_inbox.h"
+#include "haptic_server/tick/tick_record.h"
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+struct PublisherOptions {
+    uint32_t domain = 0;   // DDS domain, 0 to dds::kMaxDomain
+    uint32_t session = 1;  // one server per session; clients name the same
+    uint64_t epoch = 0;    // unix ns, later than that of any earlier server of the session; 0: now
+};
+
+class Publisher {
+  public:
+    // Throws UserError when the DDS domain cannot be joined.
+    explicit Publisher(const PublisherOptions& options);
+
+    // Shows a node's surface; an empty mesh removes the node. A mesh is written once: one that is not newer
+    // (revision) than the last one of its leaf is ignored. False: DDS refused, and the clients keep the older
+    // mesh.
+    bool publishNode(const NodeMesh& mesh);
+
+    // The epoch is filled in.
+    bool publishSceneInfo(topics::SceneInfo info);
+    // Best effort, for 60 to 100 calls per second; the time stamp is that of the call.
+    bool publishToolState(const TickRecord& record);
+    // Epoch, node count, node digest and last command are filled in. Clients take a server for lost that
+    // publishes no status for 3 s: call at least once per second, and right after the last of a group of
+    // nodes.
+    bool publishStatus(topics::Status status);
+
+    // Commands that arrived, each valid and new; carry each out and acknowledge() it. What is invalid is
+    // answered or counted here.
+    std::vector<topics::Command> takeCommands();
+    // Tells the sender, through Status at once, how the command ended: "done" or "refused: <why>".
+    void acknowledge(const topics::Command& command, const std::string& result);
+
+    uint64_t epoch() const noexcept { return epoch_; }
+    const NodeDigest& digest() const noexcept { return digest_; }
+    uint64_t malformedCommands() const noexcept { return inbox_.malformedCount(); }
+    // Clients that listen to the status now.
+    int clientCount() const { return status_writer_.matchedReaders(); }
+
+  private:
+    struct Node {
+        uint32_t revision;
+        bool has_mesh;
+        bool was_written;
+    };
+    bool writeNode(const NodeMesh& mesh);
+    bool disposeNode(uint32_t leaf);
+    bool writeStatus();
+    void show(const CommandAcknowledgement& acknowledgement);
+
+    uint32_t session_;
+    uint64_t epoch_;
+    std::unordered_map<uint32_t, Node> nodes_;
+    NodeDigest digest_;
+    topics::Status status_;  // as last published
+    CommandInbox inbox_;
+
+    dds::Participant participant_;
+    dds::Writer<dds::NodeMeshSample> node_writer_;
+    dds::Writer<dds::SceneInfoSample> scene_info_writer_;
+    dds::Writer<dds::ToolStateSample> tool_state_writer_;
+    dds::Writer<dds::StatusSample> status_writer_;
+    dds::Reader<dds::CommandSample> command_reader_;
+};
+
+}  // namespace bonemill

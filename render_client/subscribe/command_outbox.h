@@ -1,0 +1,54 @@
+// Commands on their way to the server: one after the other, repeated until acknowledged or timed out. One
+// thread.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+struct CommandOutcome {
+    uint32_t sequence = 0;
+    bool is_acknowledged = false;  // false: no answer in time
+    std::string result;            // what the server said, or why there is no answer
+};
+
+class CommandOutbox {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    // `sender` must differ between clients; not 0.
+    explicit CommandOutbox(uint64_t sender) : sender_(sender) {}
+
+    // Fills in sender and sequence; returns the sequence.
+    uint32_t enqueue(topics::Command command);
+    // The server's last acknowledgement; those of other senders are ignored.
+    void acknowledge(const topics::Status& status);
+    // Gives up on the command under way after its timeout; else passes it to `write` when it is due. A
+    // timeout runs from the first step() that finds the command at the head. `is_connected`: a server
+    // listens.
+    void step(Clock::time_point now, bool is_connected,
+              const std::function<void(const topics::Command&)>& write);
+
+    std::vector<CommandOutcome> takeOutcomes();
+    uint64_t sender() const noexcept { return sender_; }
+
+  private:
+    void finish(bool is_acknowledged, std::string result);
+
+    uint64_t sender_;
+    uint32_t last_sequence_ = 0;
+    std::deque<topics::Command> waiting_;  // the first one is under way
+    std::optional<Clock::time_point> started_;
+    std::optional<Clock::time_point> written_;
+    std::vector<CommandOutcome> outcomes_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,103 @@
+#include "render_client/subscribe/payloads.h"
+
+#include <google/protobuf/stubs/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/mesh/mesh_codec.h"
+
+namespace bonemill {
+namespace {
+
+// A quaternion that went through double arithmetic stays far closer to unit length than this.
+constexpr double kUnitTolerance = 1e-3;
+
+template <class Field>
+bool isFinite(const Field& field) {
+    return std::ranges::all_of(field, [](auto value) { return std::isfinite(value); });
+}
+
+template <class Field>
+bool isVector(const Field& field) {
+    return field.size() == 3 && isFinite(field);
+}
+
+template <class Field>
+bool isQuaternion(const Field& field) {
+    if (field.size() != 4 || !isFinite(field)) return false;
+    const double norm = Eigen::Quaterniond(field[0], field[1], field[2], field[3]).norm();
+    return std::abs(norm - 1) < kUnitTolerance;
+}
+
+bool isDrawable(const topics::TriangleMesh& mesh) {
+    const int coordinates = mesh.vertices_m_size();
+    const auto vertex_count = static_cast<uint32_t>(coordinates / 3);
+    const auto& indices = mesh.indices();
+    return coordinates % 3 == 0 && mesh.normals_size() == coordinates && indices.size() % 3 == 0 &&
+           isFinite(mesh.vertices_m()) && isFinite(mesh.normals()) &&
+           std::ranges::all_of(indices, [&](uint32_t index) { return index < vertex_count; });
+}
+
+bool isUsable(const topics::Camera& camera) {
+    return (!camera.has_target() || isVector(camera.target_m())) &&
+           (camera.up().empty() || isVector(camera.up())) && std::isfinite(camera.distance_m()) &&
+           camera.distance_m() >= 0 && std::isfinite(camera.azimuth_rad()) &&
+           std::isfinite(camera.elevation_rad());
+}
+
+bool isUsable(const topics::SceneInfo& info) {
+    return isVector(info.p_wv_m()) && isQuaternion(info.q_wv()) && isVector(info.bone_min_m()) &&
+           isVector(info.bone_max_m()) && std::isfinite(info.burr_radius_m()) && info.burr_radius_m() >= 0 &&
+           isDrawable(info.tool()) && isUsable(info.camera());
+}
+
+bool isUsable(const topics::ToolState& state) {
+    return isVector(state.p_wt_m()) && isQuaternion(state.q_wt()) && isVector(state.p_wt_device_m()) &&
+           isQuaternion(state.q_wt_device()) && isVector(state.force_n()) && isVector(state.torque_nm()) &&
+           std::isfinite(state.max_penetration_m());
+}
+
+bool isUsable(const topics::Status& status) {
+    const double numbers[] = {status.rate_hz(), status.tick_p50_us(), status.tick_p99_us(),
+                              status.tick_max_us(), status.removed_mm3()};
+    return isFinite(numbers);
+}
+
+template <class Message>
+std::optional<Message> parse(std::span<const uint8_t> payload) {
+    // Bad bytes are counted by the caller; a hostile peer must not fill the log.
+    const google::protobuf::LogSilencer silencer;
+    Message message;
+    if (payload.size() > static_cast<size_t>(std::numeric_limits<int>::max()) ||
+        !message.ParseFromArray(payload.data(), static_cast<int>(payload.size())) || message.epoch() == 0 ||
+        !isUsable(message))
+        return std::nullopt;
+    return message;
+}
+
+}  // namespace
+
+std::optional<ReceivedNode> parseNode(std::span<const uint8_t> payload, uint32_t leaf, uint32_t revision) {
+    const std::string_view bytes(reinterpret_cast<const char*>(payload.data()), payload.size());
+    ReceivedNode node;
+    std::optional<NodeMesh> mesh = decodeNodeMesh(bytes, leaf, node.epoch);
+    if (!mesh || mesh->isEmpty() || mesh->revision != revision || node.epoch == 0) return std::nullopt;
+    node.mesh = std::move(*mesh);
+    return node;
+}
+
+std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload) {
+    return parse<topics::SceneInfo>(payload);
+}
+
+std::optional<topics::ToolState> parseToolState(std::span<const uint8_t> payload) {
+    return parse<topics::ToolState>(payload);
+}
+
+std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {
+    return parse<topics::Status>(payload);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,28 @@
+// What comes off the wire, checked: nothing when the bytes are not what the rest of the client may rely on.
+// Thread-safe; never throws on any bytes (other than std::bad_alloc).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "common/geometry/node_mesh.h"
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+struct ReceivedNode {
+    NodeMesh mesh;  // at least one triangle
+    uint64_t epoch = 0;
+};
+
+// `leaf` and `revision` are those of the sample's envelope.
+std::optional<ReceivedNode> parseNode(std::span<const uint8_t> payload, uint32_t leaf, uint32_t revision);
+
+// Vectors have their length, numbers are finite, quaternions are of unit length, the tool's triangles name
+// vertices.
+std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload);
+std::optional<topics::ToolState> parseToolState(std::span<const uint8_t> payload);
+std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload);
+
+}  // namespace bonemill

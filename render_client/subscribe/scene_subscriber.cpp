@@ -1,0 +1,130 @@
+#include "render_client/subscribe/scene_subscriber.h"
+
+#include <spdlog/spdlog.h>
+
+#include <random>
+
+#include "render_client/subscribe/payloads.h"
+
+namespace bonemill {
+namespace {
+
+// One sample per session is kept, so more than this many at once is a flood of foreign sessions.
+constexpr size_t kMaxSmallSamples = 256;
+
+uint64_t randomSender() {
+    std::random_device device;
+    uint64_t sender = 0;
+    while (sender == 0) sender = (static_cast<uint64_t>(device()) << 32) | device();
+    return sender;
+}
+
+}  // namespace
+
+SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
+    : session_(options.session),
+      outbox_(randomSender()),
+      participant_(options.domain),
+      node_reader_(participant_),
+      scene_info_reader_(participant_),
+      tool_state_reader_(participant_),
+      status_reader_(participant_),
+      command_writer_(participant_),
+      wait_set_(participant_) {
+    wait_set_.add(node_reader_.handle());
+    wait_set_.add(scene_info_reader_.handle());
+    wait_set_.add(tool_state_reader_.handle());
+    wait_set_.add(status_reader_.handle());
+}
+
+SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
+    takeSceneInfo();
+    takeStatus();
+    takeNodes(max_nodes);
+    takeToolState();
+    outbox_.step(CommandOutbox::Clock::now(), command_writer_.matchedReaders() > 0,
+                 [this](const topics::Command& command) {
+                     const std::string bytes = command.SerializeAsString();
+                     dds::CommandSample sample{};
+                     sample.session = session_;
+                     sample.sender = command.sender();
+                     dds::setPayload(sample, bytes);
+                     command_writer_.write(sample);
+                 });
+    return model_.takeChanges();
+}
+
+void SceneSubscriber::takeStatus() {
+    status_reader_.take(kMaxSmallSamples,
+                        [this](const dds::StatusSample& sample, const dds::SampleInfo& info) {
+                            if (!info.has_data || sample.session != session_) return;
+                            std::optional<topics::Status> status = parseStatus(dds::payloadOf(sample));
+                            if (!status) return dropMalformed("status");
+                            if (!enterEpoch(status->epoch())) return;
+                            outbox_.acknowledge(*status);
+                            status_ = std::move(status);
+                        });
+}
+
+void SceneSubscriber::takeSceneInfo() {
+    scene_info_reader_.take(
+        kMaxSmallSamples, [this](const dds::SceneInfoSample& sample, const dds::SampleInfo& info) {
+            if (!info.has_data || sample.session != session_) return;
+            std::optional<topics::SceneInfo> scene_info = parseSceneInfo(dds::payloadOf(sample));
+            if (!scene_info) return dropMalformed("scene info");
+            if (enterEpoch(scene_info->epoch())) scene_info_ = std::move(scene_info);
+        });
+}
+
+void SceneSubscriber::takeToolState() {
+    tool_state_reader_.take(
+        kMaxSmallSamples, [this](const dds::ToolStateSample& sample, const dds::SampleInfo& info) {
+            if (!info.has_data || sample.session != session_) return;
+            std::optional<topics::ToolState> state = parseToolState(dds::payloadOf(sample));
+            if (!state) return dropMalformed("tool state");
+            if (!enterEpoch(state->epoch())) return;
+            if (tool_state_ && state->tick() < tool_state_->tick()) return;
+            tool_state_ = std::move(state);
+        });
+}
+
+void SceneSubscriber::takeNodes(size_t max_nodes) {
+    node_reader_.take(max_nodes, [this](const dds::NodeMeshSample& sample, const dds::SampleInfo& info) {
+        if (sample.session != session_) return;
+        // Of a key that was written and then disposed only the older sample may be left, marked as disposed.
+        if (info.is_disposed) return model_.removeNode(sample.node, info.writer);
+        if (!info.has_data) return;
+        std::optional<ReceivedNode> node = parseNode(dds::payloadOf(sample), sample.node, sample.revision);
+        if (!node) return dropMalformed("node mesh");
+        enterEpoch(node->epoch);
+        // Also of an older run: the model remembers its writer, whose late removals must not count.
+        model_.applyNode(std::move(node->mesh), node->epoch, info.writer);
+    });
+}
+
+bool SceneSubscriber::enterEpoch(uint64_t epoch) {
+    const uint64_t epoch_before = model_.epoch();
+    if (!model_.enterEpoch(epoch)) return false;
+    if (model_.epoch() != epoch_before) {
+        scene_info_.reset();
+        tool_state_.reset();
+        status_.reset();
+    }
+    last_heard_ = std::chrono::steady_clock::now();
+    return true;
+}
+
+void SceneSubscriber::dropMalformed(const char* what) {
+    if (malformed_count_++ == 0) spdlog::warn("dropped a malformed {}; more of them are only counted", what);
+}
+
+bool SceneSubscriber::isComplete() const {
+    return status_ && status_->node_count() == digest().count() && status_->node_digest() == digest().value();
+}
+
+bool SceneSubscriber::hasServer() const {
+    return last_heard_ && std::chrono::steady_clock::now() - *last_heard_ < kServerTimeout &&
+           status_reader_.matchedWriters() > 0;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,86 @@
+// The client's end of a session: what the server shows, kept up to date, and the way to send it commands.
+//
+// One thread (the render thread): poll() takes what has arrived and never waits. Bytes that do not make sense
+// are counted and dropped. A server that leaves changes nothing in the model; one that restarts replaces it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "common/dds/endpoint.h"
+#include "common/dds/wait_set.h"
+#include "proto/topics.pb.h"
+#include "render_client/subscribe/command_outbox.h"
+#include "render_client/subscribe/scene_model.h"
+
+namespace bonemill {
+
+struct SubscriberOptions {
+    uint32_t domain = 0;   // DDS domain, 0 to dds::kMaxDomain
+    uint32_t session = 1;  // that of the server
+};
+
+class SceneSubscriber {
+  public:
+    static constexpr size_t kAllNodes = std::numeric_limits<size_t>::max();
+
+    // Throws UserError when the DDS domain cannot be joined. Needs no server yet.
+    explicit SceneSubscriber(const SubscriberOptions& options);
+
+    // Takes and decodes what has arrived, at most `max_nodes` node samples (the rest stays for the next
+    // call), sends the commands that are due, and returns the nodes that changed since the last call.
+    SceneModel::Changes poll(size_t max_nodes = kAllNodes);
+    // True when poll() has something to take, false when `timeout` passed before.
+    bool waitForData(std::chrono::nanoseconds timeout) const { return wait_set_.wait(timeout); }
+
+    // The newest ones of the current server run; nothing before the first.
+    const std::optional<topics::SceneInfo>& sceneInfo() const noexcept { return scene_info_; }
+    const std::optional<topics::ToolState>& toolState() const noexcept { return tool_state_; }
+    const std::optional<topics::Status>& status() const noexcept { return status_; }
+
+    // Every node of the newest status is here, and no other. False in the short while between a changed node
+    // and the status that counts it.
+    bool isComplete() const;
+    // A server of this session is there: it is matched, and something came from it within kServerTimeout.
+    bool hasServer() const;
+    static constexpr std::chrono::seconds kServerTimeout{3};
+
+    // Queues a command (sender and sequence are filled in) and returns its sequence; poll() sends it.
+    uint32_t sendCommand(topics::Command command) { return outbox_.enqueue(std::move(command)); }
+    // How commands ended since the last call, acknowledged by the server or given up 5 s after their turn
+    // came.
+    std::vector<CommandOutcome> takeOutcomes() { return outbox_.takeOutcomes(); }
+
+    uint64_t epoch() const noexcept { return model_.epoch(); }
+    const NodeDigest& digest() const noexcept { return model_.digest(); }
+    uint64_t malformedSamples() const noexcept { return malformed_count_; }
+
+  private:
+    void takeStatus();
+    void takeSceneInfo();
+    void takeNodes(size_t max_nodes);
+    void takeToolState();
+    bool enterEpoch(uint64_t epoch);
+    void dropMalformed(const char* what);
+
+    uint32_t session_;
+    SceneModel model_;
+    std::optional<topics::SceneInfo> scene_info_;
+    std::optional<topics::ToolState> tool_state_;
+    std::optional<topics::Status> status_;
+    std::optional<std::chrono::steady_clock::time_point> last_heard_;
+    uint64_t malformed_count_ = 0;
+    CommandOutbox outbox_;
+
+    dds::Participant participant_;
+    dds::Reader<dds::NodeMeshSample> node_reader_;
+    dds::Reader<dds::SceneInfoSample> scene_info_reader_;
+    dds::Reader<dds::ToolStateSample> tool_state_reader_;
+    dds::Reader<dds::StatusSample> status_reader_;
+    dds::Writer<dds::CommandSample> command_writer_;
+    dds::WaitSet wait_set_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,130 @@
+// Random and mutated bytes through every parser of the topics: no crash (nor a sanitizer report), and what is
+// accepted holds the promises that the renderer relies on.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+
+#include "common/mesh/mesh_codec.h"
+#include "haptic_server/publish/command_inbox.h"
+#include "render_client/subscribe/payloads.h"
+#include "tests/support/synthetic_nodes.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int kRounds = 20000;
+
+using Bytes = std::span<const uint8_t>;
+
+// Valid bytes with a few bits, bytes, or the length changed; now and then only noise.
+std::string mutated(const std::string& valid, std::mt19937& random) {
+    const auto below = [&](size_t n) { return std::uniform_int_distribution<size_t>(0, n - 1)(random); };
+    std::string bytes = valid;
+    if (below(20) == 0) {
+        bytes.resize(below(200));
+        for (char& c : bytes) c = static_cast<char>(random());
+        return bytes;
+    }
+    for (size_t changes = 1 + below(4); changes > 0 && !bytes.empty(); --changes) {
+        switch (below(4)) {
+            case 0:
+                bytes[below(bytes.size())] ^= static_cast<char>(1u << below(8));
+                break;
+            case 1:
+                bytes[below(bytes.size())] = static_cast<char>(random());
+                break;
+            case 2:
+                bytes.resize(below(bytes.size() + 1));
+                break;
+            default:
+                bytes.insert(below(bytes.size() + 1), 1, static_cast<char>(random()));
+                break;
+        }
+    }
+    return bytes;
+}
+
+// Returns how many of the mutated byte strings were accepted.
+int fuzz(const std::string& valid, const std::function<bool(Bytes)>& accepts) {
+    std::mt19937 random(20121);
+    int accepted = 0;
+    for (int round = 0; round < kRounds; ++round) {
+        const std::string bytes = mutated(valid, random);
+        accepted += accepts({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+    }
+    EXPECT_TRUE(accepts({reinterpret_cast<const uint8_t*>(valid.data()), valid.size()}));
+    EXPECT_LT(accepted, kRounds);
+    return accepted;
+}
+
+TEST(TopicsFuzz, NodeMesh) {
+    fuzz(encodeNodeMesh(syntheticNode(3, 8), 42), [](Bytes bytes) {
+        const auto node = parseNode(bytes, 3, 8);
+        if (!node) return false;
+        EXPECT_FALSE(node->mesh.indices.empty());
+        EXPECT_EQ(node->mesh.indices.size() % 3, 0u);
+        for (const uint32_t index : node->mesh.indices) EXPECT_LT(index, node->mesh.vertices.size());
+        EXPECT_TRUE(node->mesh.origin.allFinite() && node->mesh.step.allFinite());
+        return true;
+    });
+}
+
+TEST(TopicsFuzz, SceneInfo) {
+    fuzz(syntheticSceneInfo().SerializeAsString(), [](Bytes bytes) {
+        const auto info = parseSceneInfo(bytes);
+        if (!info) return false;
+        EXPECT_EQ(info->p_wv_m_size(), 3);
+        EXPECT_EQ(info->q_wv_size(), 4);
+        EXPECT_EQ(info->tool().vertices_m_size(), info->tool().normals_size());
+        for (const uint32_t index : info->tool().indices()) {
+            EXPECT_LT(3 * index + 2, static_cast<uint32_t>(info->tool().vertices_m_size()));
+        }
+        return true;
+    });
+}
+
+TEST(TopicsFuzz, ToolState) {
+    topics::ToolState state;
+    state.set_epoch(1);
+    for (auto* vector : {state.mutable_p_wt_m(), state.mutable_p_wt_device_m(), state.mutable_force_n(),
+                         state.mutable_torque_nm()}) {
+        vector->Resize(3, 0.5);
+    }
+    for (auto* quaternion : {state.mutable_q_wt(), state.mutable_q_wt_device()}) quaternion->Resize(4, 0.5);
+    fuzz(state.SerializeAsString(), [](Bytes bytes) {
+        const auto parsed = parseToolState(bytes);
+        if (!parsed) return false;
+        for (const double coordinate : parsed->p_wt_m()) EXPECT_TRUE(std::isfinite(coordinate));
+        EXPECT_EQ(parsed->q_wt_size(), 4);
+        return true;
+    });
+}
+
+TEST(TopicsFuzz, Status) {
+    topics::Status status;
+    status.set_epoch(1);
+    status.set_scene("tooth");
+    status.set_rate_hz(1000);
+    status.set_node_digest(0x0123456789abcdef);
+    fuzz(status.SerializeAsString(), [](Bytes bytes) {
+        const auto parsed = parseStatus(bytes);
+        return parsed && std::isfinite(parsed->rate_hz());
+    });
+}
+
+TEST(TopicsFuzz, Command) {
+    topics::Command command;
+    command.set_sender(7);
+    command.set_sequence(3);
+    command.set_pause_milling(true);
+    fuzz(command.SerializeAsString(), [](Bytes bytes) {
+        CommandInbox inbox;
+        const auto decision = inbox.receive(7, bytes);
+        EXPECT_TRUE(!decision.command || decision.command->action_case() != topics::Command::ACTION_NOT_SET);
+        return decision.command.has_value();
+    });
+}
+
+}  // namespace
+}  // namespace bonemill

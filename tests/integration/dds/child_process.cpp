@@ -1,0 +1,66 @@
+#include "tests/integration/dds/child_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <stdexcept>
+
+#include "tests/support/dds_session.h"
+
+namespace bonemill {
+
+ChildProcess::ChildProcess(const std::string& name) {
+    int input[2], output[2];
+    // Close-on-exec: a child that held another one's pipe would keep that one from ending.
+    if (pipe2(input, O_CLOEXEC) != 0 || pipe2(output, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, input[0], STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, output[1], STDOUT_FILENO);
+    std::string path = std::string(BONEMILL_HELPER_DIR) + "/" + name;
+    std::string domain = std::to_string(testDomain()), session = std::to_string(testSession());
+    char* const arguments[] = {path.data(), domain.data(), session.data(), nullptr};
+    const int failure = posix_spawn(&pid_, path.c_str(), &actions, nullptr, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    close(input[0]);
+    close(output[1]);
+    to_child_ = input[1];
+    from_child_ = output[0];
+    if (failure != 0) throw std::runtime_error("cannot start " + path);
+}
+
+ChildProcess::~ChildProcess() {
+    kill();
+    close(to_child_);
+    close(from_child_);
+}
+
+void ChildProcess::kill() {
+    if (pid_ <= 0) return;
+    ::kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+    pid_ = -1;
+}
+
+std::string ChildProcess::readLine() {
+    std::string line;
+    char c = 0;
+    pollfd output{from_child_, POLLIN, 0};
+    while (poll(&output, 1, 30000) > 0 && read(from_child_, &c, 1) == 1) {
+        if (c == '\n') return line;
+        line += c;
+    }
+    return {};
+}
+
+std::string ChildProcess::ask(const std::string& line) {
+    const std::string text = line + "\n";
+    if (write(to_child_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) return {};
+    return readLine();
+}
+
+}  // namespace bonemill

@@ -1,0 +1,28 @@
+// A helper program of the test with its stdin and stdout on pipes; killed when the object goes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace bonemill {
+
+class ChildProcess {
+  public:
+    // `name` of a program beside the test; it gets the test's domain and session as arguments.
+    explicit ChildProcess(const std::string& name);
+    ChildProcess(const ChildProcess&) = delete;
+    ChildProcess& operator=(const ChildProcess&) = delete;
+    ~ChildProcess();
+
+    // The next line that it prints; empty when it ends or stays silent for 30 s.
+    std::string readLine();
+    std::string ask(const std::string& line);
+    void kill();  // SIGKILL
+
+  private:
+    int pid_ = -1;
+    int to_child_ = -1;
+    int from_child_ = -1;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,56 @@
+// A SceneSubscriber of the test's session that remembers the model it was told, as a renderer would.
+#pragma once
+
+#include <chrono>
+#include <map>
+
+#include "render_client/subscribe/scene_subscriber.h"
+#include "tests/support/dds_session.h"
+
+namespace bonemill {
+
+struct ClientProbe {
+    SceneSubscriber subscriber{{.domain = testDomain(), .session = testSession()}};
+    std::map<uint32_t, NodeMesh> nodes;
+    uint32_t changes = 0;
+    uint32_t clearings = 0;
+
+    void poll() {
+        SceneModel::Changes update = subscriber.poll();
+        if (update.is_cleared) {
+            nodes.clear();
+            ++clearings;
+        }
+        changes += static_cast<uint32_t>(update.nodes.size());
+        for (NodeMesh& node : update.nodes) {
+            if (node.isEmpty()) {
+                nodes.erase(node.leaf);
+            } else {
+                nodes[node.leaf] = std::move(node);
+            }
+        }
+    }
+
+    // Polls until the condition holds; gives up after 30 s.
+    template <class Condition>
+    bool pollUntil(Condition&& condition) {
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+        while (!condition()) {
+            if (std::chrono::steady_clock::now() > deadline) return false;
+            subscriber.waitForData(std::chrono::milliseconds(20));
+            poll();
+        }
+        return true;
+    }
+
+    std::string digestLine() const {
+        return std::to_string(subscriber.digest().count()) + ' ' +
+               std::to_string(subscriber.digest().value());
+    }
+    // Complete, and in the state that the server answered with.
+    bool pollUntilComplete(const std::string& digest_line) {
+        return pollUntil([&] { return subscriber.isComplete() && digestLine() == digest_line; });
+    }
+};
+
+}  // namespace bonemill

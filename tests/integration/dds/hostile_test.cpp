@@ -1,0 +1,65 @@
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "haptic_server/publish/publisher.h"
+#include "tests/integration/dds/client_probe.h"
+#include "tests/support/synthetic_nodes.h"
+
+namespace bonemill {
+namespace {
+
+template <class Sample>
+Sample garbage(const std::string& bytes) {
+    Sample sample{};
+    sample.session = testSession();
+    dds::setPayload(sample, bytes);
+    return sample;
+}
+
+TEST(HostilePayloads, AreCountedAndDroppedByClients) {
+    Publisher publisher({.domain = testDomain(), .session = testSession()});
+    ASSERT_TRUE(publisher.publishNode(syntheticNode(1, 2)));
+    ASSERT_TRUE(publisher.publishStatus({}));
+    ClientProbe client;
+    ASSERT_TRUE(client.pollUntil([&] { return client.subscriber.isComplete(); }));
+
+    dds::Participant intruder(testDomain());
+    dds::Writer<dds::NodeMeshSample> nodes(intruder);
+    dds::Writer<dds::SceneInfoSample> scene_infos(intruder);
+    dds::Writer<dds::StatusSample> statuses(intruder);
+    const std::string bytes = "\xff\x01 this is no message";
+    const std::string nothing;
+    auto node = garbage<dds::NodeMeshSample>(bytes);
+    for (node.node = 0; node.node < 3; ++node.node) ASSERT_TRUE(nodes.write(node));
+    dds::setPayload(node, nothing);
+    ASSERT_TRUE(nodes.write(node));
+    ASSERT_TRUE(scene_infos.write(garbage<dds::SceneInfoSample>(bytes)));
+    ASSERT_TRUE(statuses.write(garbage<dds::StatusSample>(bytes)));
+
+    ASSERT_TRUE(client.pollUntil([&] { return client.subscriber.malformedSamples() >= 6; }));
+    EXPECT_EQ(client.nodes.size(), 1u);
+    EXPECT_TRUE(client.subscriber.isComplete());
+    ASSERT_TRUE(publisher.publishNode(syntheticNode(1, 4)));
+    ASSERT_TRUE(publisher.publishStatus({}));
+    EXPECT_TRUE(
+        client.pollUntil([&] { return client.subscriber.isComplete() && client.nodes.at(1).revision == 4; }));
+}
+
+TEST(HostilePayloads, AreCountedAndDroppedByTheServer) {
+    Publisher publisher({.domain = testDomain(), .session = testSession()});
+    dds::Participant intruder(testDomain());
+    dds::Writer<dds::CommandSample> commands(intruder);
+    const std::string bytes = "\xff\x01 this is no message";
+    auto sample = garbage<dds::CommandSample>(bytes);
+    sample.sender = 5;
+    for (int i = 0; i < 1000 && publisher.malformedCommands() == 0; ++i) {
+        ASSERT_TRUE(commands.write(sample));  // again and again: the first ones precede the match
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        EXPECT_TRUE(publisher.takeCommands().empty());
+    }
+    EXPECT_GT(publisher.malformedCommands(), 0u);
+}
+
+}  // namespace
+}  // namespace bonemill

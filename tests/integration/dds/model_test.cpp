@@ -1,0 +1,151 @@
+#include <gtest/gtest.h>
+
+#include "common/mesh/mesh_codec.h"
+#include "haptic_server/publish/publisher.h"
+#include "tests/integration/dds/child_process.h"
+#include "tests/integration/dds/client_probe.h"
+#include "tests/support/synthetic_nodes.h"
+
+namespace bonemill {
+namespace {
+
+void expectSameSurface(const NodeMesh& received, const NodeMesh& published) {
+    uint64_t epoch = 0;
+    const auto expected = decodeNodeMesh(encodeNodeMesh(published, 1), published.leaf, epoch);
+    ASSERT_TRUE(expected);
+    EXPECT_EQ(received.revision, published.revision);
+    EXPECT_EQ(received.vertices, expected->vertices);
+    EXPECT_EQ(received.indices, expected->indices);
+    EXPECT_EQ(received.origin, published.origin);
+}
+
+TEST(Topics, LateJoinerGetsExactlyTheCurrentModel) {
+    ChildProcess server("synthetic_server");
+    server.ask("nodes 0 300 2");
+    server.ask("nodes 0 100 4");
+    server.ask("nodes 50 10 6");
+    server.ask("empty 7 6");
+    server.ask("empty 299 4");
+    const std::string state = server.ask("empty 298 4");
+
+    ClientProbe client;
+    ASSERT_TRUE(client.pollUntilComplete(state));
+    EXPECT_EQ(client.nodes.size(), 297u);
+    EXPECT_EQ(client.changes, 297u) << "no older revision, no removed node";
+    for (const auto& [leaf, mesh] : client.nodes) {
+        const uint32_t revision = leaf >= 100 ? 2 : leaf >= 50 && leaf < 60 ? 6 : 4;
+        expectSameSurface(mesh, syntheticNode(leaf, revision));
+    }
+    EXPECT_FALSE(client.nodes.contains(7));
+    EXPECT_TRUE(client.subscriber.hasServer());
+    ASSERT_TRUE(client.pollUntil([&] { return client.subscriber.sceneInfo().has_value(); }));
+    EXPECT_EQ(client.subscriber.sceneInfo()->name(), "synthetic");
+    ASSERT_TRUE(client.pollUntil([&] { return client.subscriber.toolState().has_value(); }));
+    EXPECT_EQ(client.subscriber.malformedSamples(), 0u);
+}
+
+TEST(Topics, ThirtyNodesAPollAddUpToTheModel) {
+    ChildProcess server("synthetic_server");
+    const std::string state = server.ask("nodes 0 200 2");
+    ClientProbe client;
+    uint32_t most_at_once = 0;
+    ASSERT_TRUE(client.pollUntil([&] { return client.subscriber.status().has_value(); }));
+    ASSERT_TRUE(client.pollUntil([&] {
+        most_at_once = std::max(most_at_once, static_cast<uint32_t>(client.subscriber.poll(30).nodes.size()));
+        return client.subscriber.isComplete();
+    }));
+    EXPECT_LE(most_at_once, 30u);
+    EXPECT_EQ(client.digestLine(), state);
+}
+
+TEST(Topics, ChangesAndRemovalsReachWatchingAndLateClients) {
+    ChildProcess server("synthetic_server");
+    ClientProbe watching;
+    ASSERT_TRUE(watching.pollUntilComplete(server.ask("nodes 0 20 2")));
+    ASSERT_TRUE(watching.pollUntilComplete(server.ask("nodes 3 1 4")));
+    ASSERT_TRUE(watching.pollUntilComplete(server.ask("empty 4 4")));
+    EXPECT_FALSE(watching.nodes.contains(4));
+    EXPECT_EQ(watching.nodes.at(3).revision, 4u);
+
+    ClientProbe late;
+    ASSERT_TRUE(late.pollUntilComplete(server.ask("empty 5 4")));
+    EXPECT_EQ(late.nodes.size(), 18u);
+
+    const std::string state = server.ask("nodes 4 1 6");
+    ASSERT_TRUE(watching.pollUntilComplete(state));
+    ASSERT_TRUE(late.pollUntilComplete(state));
+    EXPECT_EQ(late.nodes.at(4).revision, 6u) << "a removed node can come back";
+    EXPECT_EQ(watching.clearings + late.clearings, 0u);
+}
+
+TEST(Topics, KilledClientDisturbsNobody) {
+    Publisher publisher({.domain = testDomain(), .session = testSession()});
+    ChildProcess victim("synthetic_client"), survivor("synthetic_client");
+    constexpr uint32_t kNodes = 50;
+    for (uint32_t leaf = 0; leaf < kNodes; ++leaf) ASSERT_TRUE(publisher.publishNode(syntheticNode(leaf, 0)));
+    ASSERT_TRUE(publisher.publishStatus({}));
+    ASSERT_FALSE(victim.readLine().empty());
+
+    for (uint32_t revision = 2; revision <= 200; revision += 2) {
+        if (revision == 60) victim.kill();
+        for (uint32_t leaf = 0; leaf < kNodes; ++leaf) {
+            ASSERT_TRUE(publisher.publishNode(syntheticNode(leaf, revision)));
+        }
+        ASSERT_TRUE(publisher.publishStatus({}));
+    }
+    const std::string last_state =
+        std::to_string(publisher.digest().count()) + ' ' + std::to_string(publisher.digest().value());
+    std::string seen = survivor.readLine();
+    while (!seen.empty() && seen != last_state) seen = survivor.readLine();
+    EXPECT_EQ(seen, last_state);
+}
+
+TEST(Topics, LostServerLeavesTheModelAndARestartedOneReplacesIt) {
+    ClientProbe client;
+    EXPECT_FALSE(client.subscriber.hasServer());
+    std::string first_state;
+    {
+        ChildProcess server("synthetic_server");
+        first_state = server.ask("nodes 0 30 8");
+        ASSERT_TRUE(client.pollUntilComplete(first_state));
+        EXPECT_TRUE(client.subscriber.hasServer());
+    }
+    ASSERT_TRUE(client.pollUntil([&] { return !client.subscriber.hasServer(); }));
+    EXPECT_EQ(client.digestLine(), first_state);
+    EXPECT_EQ(client.nodes.size(), 30u);
+    const uint64_t first_epoch = client.subscriber.epoch();
+
+    ChildProcess restarted("synthetic_server");
+    ASSERT_TRUE(client.pollUntilComplete(restarted.ask("nodes 10 5 2")));
+    EXPECT_GT(client.subscriber.epoch(), first_epoch);
+    EXPECT_EQ(client.clearings, 1u);
+    ASSERT_EQ(client.nodes.size(), 5u);
+    for (const auto& [leaf, mesh] : client.nodes) expectSameSurface(mesh, syntheticNode(leaf, 2));
+    EXPECT_TRUE(client.subscriber.hasServer());
+}
+
+TEST(Topics, OtherSessionsOfTheDomainAreIgnored) {
+    Publisher other({.domain = testDomain(), .session = testSession() + 1});
+    ASSERT_TRUE(other.publishNode(syntheticNode(1000, 2)));
+    ASSERT_TRUE(other.publishStatus({}));
+    ChildProcess server("synthetic_server");
+    ClientProbe client;
+    ASSERT_TRUE(client.pollUntilComplete(server.ask("nodes 0 5 2")));
+    EXPECT_FALSE(client.nodes.contains(1000));
+}
+
+TEST(Publisher, IgnoresMeshesThatAreNotNewerAndCountsOnlyNodesWithAMesh) {
+    Publisher publisher({.domain = testDomain(), .session = testSession()});
+    NodeDigest expected;
+    expected.add(1, 6);
+    EXPECT_TRUE(publisher.publishNode(syntheticNode(1, 6)));
+    EXPECT_TRUE(publisher.publishNode(syntheticNode(1, 4)));
+    EXPECT_TRUE(publisher.publishNode(emptyNode(2, 2)));
+    EXPECT_EQ(publisher.digest(), expected);
+    EXPECT_TRUE(publisher.publishNode(emptyNode(1, 8)));
+    EXPECT_TRUE(publisher.publishNode(syntheticNode(1, 6)));
+    EXPECT_EQ(publisher.digest(), NodeDigest());
+}
+
+}  // namespace
+}  // namespace bonemill

@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+#include <spdlog/sinks/ringbuffer_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <map>
+#include <thread>
+
+#include "common/config/user_error.h"
+#include "common/dds/endpoint.h"
+#include "common/dds/wait_set.h"
+#include "tests/support/dds_session.h"
+
+namespace bonemill::dds {
+namespace {
+
+using namespace std::chrono_literals;
+
+NodeMeshSample nodeSample(uint32_t node, uint32_t revision) {
+    NodeMeshSample sample{};
+    sample.session = testSession();
+    sample.node = node;
+    sample.revision = revision;
+    return sample;
+}
+
+class DdsTest : public testing::Test {
+  protected:
+    // Node -> payload, or "disposed", or "left" for a key whose writer is gone.
+    using Seen = std::map<uint32_t, std::string>;
+
+    // Takes until `node` was seen, or for 10 s.
+    static Seen takeUntil(const Participant& participant, Reader<NodeMeshSample>& reader, uint32_t node) {
+        WaitSet wait_set(participant);
+        wait_set.add(reader.handle());
+        Seen seen;
+        while (!seen.contains(node) && wait_set.wait(10s)) {
+            reader.take(1000, [&](const NodeMeshSample& sample, const SampleInfo& info) {
+                if (sample.session != testSession()) return;
+                const auto payload = payloadOf(sample);
+                seen[sample.node] = info.is_disposed ? "disposed"
+                                    : info.has_data  ? std::string(payload.begin(), payload.end())
+                                                     : "left";
+            });
+        }
+        return seen;
+    }
+
+    Participant participant_{testDomain()};
+};
+
+TEST_F(DdsTest, LateReaderGetsTheNewestSamplePerKeyAndDisposedKeys) {
+    Writer<NodeMeshSample> writer(participant_);
+    const std::string payload = "newest";
+    for (uint32_t node = 0; node < 10; ++node) {
+        for (uint32_t revision = 0; revision < 5; ++revision) {
+            NodeMeshSample sample = nodeSample(node, revision);
+            setPayload(sample, revision == 4 ? payload : std::string("old"));
+            EXPECT_TRUE(writer.write(sample));
+        }
+    }
+    EXPECT_TRUE(writer.dispose(nodeSample(3, 0)));
+    EXPECT_TRUE(writer.write(nodeSample(99, 0)));
+
+    Participant late(testDomain());
+    Reader<NodeMeshSample> reader(late);
+    Seen seen = takeUntil(late, reader, 99);
+    ASSERT_EQ(seen.size(), 11u);
+    EXPECT_EQ(seen[3], "disposed");
+    seen.erase(3);
+    seen.erase(99);
+    for (const auto& [node, text] : seen) EXPECT_EQ(text, "newest") << node;
+}
+
+TEST_F(DdsTest, WriterThatLeavesDoesNotDispose) {
+    Reader<NodeMeshSample> reader(participant_);
+    {
+        Participant server(testDomain());
+        Writer<NodeMeshSample> writer(server);
+        EXPECT_TRUE(writer.write(nodeSample(1, 1)));
+        EXPECT_EQ(takeUntil(participant_, reader, 1).at(1), "");
+    }
+    EXPECT_EQ(takeUntil(participant_, reader, 1).at(1), "left");
+}
+
+TEST_F(DdsTest, TakeKeepsTheRestForTheNextCall) {
+    Writer<NodeMeshSample> writer(participant_);
+    Reader<NodeMeshSample> reader(participant_);
+    for (uint32_t node = 0; node < 200; ++node) EXPECT_TRUE(writer.write(nodeSample(node, 1)));
+    const auto ignore = [](const NodeMeshSample&, const SampleInfo&) {};
+    EXPECT_EQ(reader.take(150, ignore), 150u);
+    EXPECT_EQ(reader.take(150, ignore), 50u);
+    EXPECT_EQ(reader.take(150, ignore), 0u);
+}
+
+TEST_F(DdsTest, PayloadIsNotCopiedIntoTheSample) {
+    const std::string bytes = "payload";
+    NodeMeshSample sample{};
+    setPayload(sample, bytes);
+    EXPECT_EQ(static_cast<const void*>(payloadOf(sample).data()), static_cast<const void*>(bytes.data()));
+    EXPECT_FALSE(sample.payload._release);
+}
+
+TEST_F(DdsTest, LogsAWriterThatDoesNotMatch) {
+    const auto sink = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(100);
+    const auto logger_before = spdlog::default_logger();
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", sink));
+
+    Reader<NodeMeshSample> reader(participant_);
+    Participant other(testDomain());
+    TopicDescription description = describeTopic<NodeMeshSample>();
+    description.qos.bestEffort();
+    const AnyWriter writer(other, description);
+    for (int i = 0; i < 1000 && sink->last_raw().empty(); ++i) std::this_thread::sleep_for(10ms);
+
+    spdlog::set_default_logger(logger_before);
+    const auto lines = sink->last_formatted();
+    ASSERT_FALSE(lines.empty());
+    EXPECT_NE(lines[0].find("bonemill_node_mesh"), std::string::npos) << lines[0];
+    EXPECT_EQ(writer.matchedReaders(), 0);
+}
+
+TEST(Participant, RefusesADomainThatHasNoPorts) {
+    EXPECT_THROW(Participant(kMaxDomain + 1), UserError);
+}
+
+TEST(Participant, RefusesABadProfile) {
+    setenv("CYCLONEDDS_URI", "<CycloneDDS><Domain><NoSuchElement/></Domain></CycloneDDS>", 1);
+    EXPECT_THROW(Participant(testDomain() + 1), UserError);
+    unsetenv("CYCLONEDDS_URI");
+}
+
+TEST(Participant, DomainCanBeJoinedAgainAfterItWasLeft) {
+    for (int i = 0; i < 3; ++i) {
+        Participant first(testDomain() + 1);
+        Participant second(testDomain() + 1);
+        EXPECT_NE(first.handle(), second.handle());
+    }
+}
+
+}  // namespace
+}  // namespace bonemill::dds

@@ -1,0 +1,90 @@
+#include "haptic_server/publish/command_inbox.h"
+
+#include <gtest/gtest.h>
+
+namespace bonemill {
+namespace {
+
+topics::Command resetCommand(uint64_t sender, uint32_t sequence) {
+    topics::Command command;
+    command.set_sender(sender);
+    command.set_sequence(sequence);
+    command.set_reset_volume(true);
+    return command;
+}
+
+class CommandInboxTest : public testing::Test {
+  protected:
+    CommandInbox::Decision receive(uint64_t envelope_sender, const topics::Command& command) {
+        return receiveBytes(envelope_sender, command.SerializeAsString());
+    }
+    CommandInbox::Decision receiveBytes(uint64_t envelope_sender, const std::string& bytes) {
+        return inbox_.receive(envelope_sender,
+                              {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+    }
+
+    CommandInbox inbox_;
+};
+
+TEST_F(CommandInboxTest, CarriesACommandOutOnceAndAcknowledgesRepetitions) {
+    const auto first = receive(7, resetCommand(7, 1));
+    ASSERT_TRUE(first.command);
+    EXPECT_TRUE(first.command->reset_volume());
+
+    const auto repeated_before_the_end = receive(7, resetCommand(7, 1));
+    EXPECT_FALSE(repeated_before_the_end.command);
+    EXPECT_FALSE(repeated_before_the_end.acknowledgement);
+
+    inbox_.finish(*first.command, "done");
+    const auto repeated = receive(7, resetCommand(7, 1));
+    EXPECT_FALSE(repeated.command);
+    ASSERT_TRUE(repeated.acknowledgement);
+    EXPECT_EQ(repeated.acknowledgement->sender, 7u);
+    EXPECT_EQ(repeated.acknowledgement->sequence, 1u);
+    EXPECT_EQ(repeated.acknowledgement->result, "done");
+}
+
+TEST_F(CommandInboxTest, IgnoresOlderSequences) {
+    ASSERT_TRUE(receive(7, resetCommand(7, 5)).command);
+    const auto older = receive(7, resetCommand(7, 4));
+    EXPECT_FALSE(older.command);
+    EXPECT_FALSE(older.acknowledgement);
+}
+
+TEST_F(CommandInboxTest, SendersDoNotDisturbEachOther) {
+    EXPECT_TRUE(receive(7, resetCommand(7, 5)).command);
+    EXPECT_TRUE(receive(8, resetCommand(8, 1)).command);
+    EXPECT_TRUE(receive(7, resetCommand(7, 6)).command);
+}
+
+TEST_F(CommandInboxTest, AnswersAnUnknownAction) {
+    topics::Command command = resetCommand(7, 1);
+    command.clear_action();
+    const auto decision = receive(7, command);
+    EXPECT_FALSE(decision.command);
+    ASSERT_TRUE(decision.acknowledgement);
+    EXPECT_NE(decision.acknowledgement->result.find("refused"), std::string::npos);
+    EXPECT_TRUE(receive(7, command).acknowledgement) << "a repetition is answered too";
+    EXPECT_EQ(inbox_.malformedCount(), 0u);
+}
+
+TEST_F(CommandInboxTest, CountsAndDropsWhatIsNoCommandOfThatSender) {
+    const auto is_dropped = [](const CommandInbox::Decision& d) { return !d.command && !d.acknowledgement; };
+    EXPECT_TRUE(is_dropped(receiveBytes(7, "\xff\xff\xff not a command")));
+    EXPECT_TRUE(is_dropped(receiveBytes(7, "")));
+    EXPECT_TRUE(is_dropped(receive(7, resetCommand(8, 1))));
+    EXPECT_TRUE(is_dropped(receive(7, resetCommand(7, 0))));
+    EXPECT_EQ(inbox_.malformedCount(), 4u);
+    EXPECT_TRUE(receive(7, resetCommand(7, 1)).command);
+}
+
+TEST_F(CommandInboxTest, StillKnowsABusySenderAfterAFloodOfInventedOnes) {
+    for (uint64_t invented = 1000; invented < 6000; ++invented) {
+        const auto decision = receive(7, resetCommand(7, 1));
+        EXPECT_EQ(decision.command.has_value(), invented == 1000);
+        ASSERT_TRUE(receive(invented, resetCommand(invented, 1)).command);
+    }
+}
+
+}  // namespace
+}  // namespace bonemill
