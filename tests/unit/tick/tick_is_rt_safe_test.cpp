@@ -1,0 +1,63 @@
+// tick() allocates nothing and takes no lock: counted by replaced heap and lock functions, over everything a tick does.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "haptic_server/tick/haptic_tick.h"
+#include "tests/support/rt_guard/rt_probe.h"
+#include "tests/support/scripted_io.h"
+#include "tests/support/test_bodies.h"
+
+namespace bonemill {
+namespace {
+
+class TickIsRtSafe : public testing::Test {
+  protected:
+    TickIsRtSafe()
+        : bone_(test::bodyVolume(test::cubeGeometry(64, 0.125e-3), test::halfSpace({0, 0, 5e-3}, Eigen::Vector3d::UnitZ())),
+                Eigen::Vector3i::Constant(16), 1),
+          tool_(test::sphereTool(1e-3, 0.125e-3)),
+          reset_(bone_),
+          tick_({}, bone_, tool_, &reset_) {}
+
+    // Runs the inputs under the probe; what the test itself keeps is allocated before.
+    void expectQuiet(const std::vector<DeviceInput>& inputs) {
+        test::ScriptedIo io(inputs);
+        RtProbe probe;
+        while (tick_.tick(io)) {}
+        probe.stop();
+        EXPECT_EQ(probe.heapCalls(), 0u) << probe.firstCall();
+        EXPECT_EQ(probe.lockCalls(), 0u) << probe.firstCall();
+        records_ = io.records;
+    }
+    static Pose at(double z) { return {{4e-3, 4e-3, z}, Eigen::Quaterniond::Identity()}; }
+
+    BoneModel bone_;
+    SdfGrid tool_;
+    VolumeReset reset_;
+    HapticTick tick_;
+    std::vector<TickRecord> records_;
+};
+
+TEST_F(TickIsRtSafe, WhileMillingAndAddingAndResetting) {
+    expectQuiet(test::straightPath(at(6.2e-3), {4e-3, 4e-3, 3e-3}, 1000, kButtonRemove));
+    EXPECT_GT(records_.back().contacts + records_[500].removed_voxels, 0u);
+    expectQuiet(test::straightPath(at(3e-3), {4e-3, 4e-3, 6e-3}, 300, kButtonAdd));
+    reset_.request();
+    expectQuiet(test::straightPath(at(6.2e-3), {4e-3, 4e-3, 6.2e-3}, 500, 0));
+    EXPECT_FALSE(reset_.isRunning());
+}
+
+TEST_F(TickIsRtSafe, WhileFaultsHappen) {
+    auto inputs = test::straightPath(at(6e-3), {4e-3, 4e-3, 5.5e-3}, 100, kButtonRemove);
+    inputs[20].X_WT_device.position.setConstant(std::numeric_limits<double>::quiet_NaN());
+    inputs[30].X_WT_device.position.x() += 1;
+    inputs[40].is_stale = true;
+    inputs[50].X_WT_device.rotation.coeffs().setZero();
+    expectQuiet(inputs);
+    EXPECT_TRUE(tick_.latchedFaults() & kFaultBadDevicePose);
+    EXPECT_TRUE(tick_.latchedFaults() & kFaultMotionClamped);
+}
+
+}  // namespace
+}  // namespace bonemill
