@@ -26,7 +26,8 @@ Mesher::PassResult Mesher::pass(const Sink& sink, uint32_t max_leaves) {
     for (uint32_t n = 0; n < count; ++n) {
         const LeafId leaf = (start + n) % count;
         const uint32_t version = lattice_.version(leaf);
-        if (version == meshed_version_[leaf]) continue;
+        const bool is_due = isBeingWritten(version) || version != meshed_version_[leaf];
+        if (!is_due) continue;
         if (isBeingWritten(version) || result.read == max_leaves) {
             ++result.pending;
             continue;

@@ -1,0 +1,141 @@
+#include "common/mesh/mesh_codec.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "proto/topics.pb.h"
+#include "tests/support/node_meshes.h"
+
+namespace bonemill {
+namespace {
+
+constexpr uint64_t kEpoch = 1'700'000'000'123'456'789;
+
+topics::NodeMesh messageOf(const NodeMesh& mesh) {
+    topics::NodeMesh message;
+    EXPECT_TRUE(message.ParseFromString(encodeNodeMesh(mesh, kEpoch)));
+    return message;
+}
+
+bool isRefused(const topics::NodeMesh& message) {
+    uint64_t epoch = 42;
+    const bool refused = !decodeNodeMesh(message.SerializeAsString(), 1, epoch).has_value();
+    EXPECT_TRUE(!refused || epoch == 42) << "a refused mesh leaves the epoch alone";
+    return refused;
+}
+
+TEST(MeshCodec, RoundTripKeepsTheSurface) {
+    for (const int side : {1, 2, 7, 16, 40}) {
+        const NodeMesh mesh = test::sheetMesh(side, unsigned(side));
+        uint64_t epoch = 0;
+        const auto back = decodeNodeMesh(encodeNodeMesh(mesh, kEpoch), mesh.leaf, epoch);
+        ASSERT_TRUE(back.has_value());
+        EXPECT_EQ(epoch, kEpoch);
+        EXPECT_EQ(back->leaf, mesh.leaf);
+        EXPECT_EQ(back->revision, mesh.revision);
+        EXPECT_EQ(back->origin, mesh.origin);
+        EXPECT_EQ(back->step, mesh.step);
+        EXPECT_EQ(back->vertices.size(), mesh.vertices.size());
+        EXPECT_EQ(test::triangleKeys(*back), test::triangleKeys(mesh));
+    }
+}
+
+TEST(MeshCodec, EmptyMeshComesBackEmpty) {
+    NodeMesh mesh;
+    mesh.revision = 8;
+    mesh.step.setConstant(1e-6f);
+    uint64_t epoch = 0;
+    const auto back = decodeNodeMesh(encodeNodeMesh(mesh, 5), 77, epoch);
+    ASSERT_TRUE(back.has_value());
+    EXPECT_TRUE(back->isEmpty());
+    EXPECT_TRUE(back->vertices.empty());
+    EXPECT_EQ(back->leaf, 77u);
+    EXPECT_EQ(back->revision, 8u);
+}
+
+TEST(MeshCodec, EqualMeshesGiveEqualBytes) {
+    EXPECT_EQ(encodeNodeMesh(test::sheetMesh(12, 3), 1), encodeNodeMesh(test::sheetMesh(12, 3), 1));
+}
+
+TEST(MeshCodec, CodedSizeIsFarBelowTheRawBuffers) {
+    const NodeMesh mesh = test::sheetMesh(20, 1);
+    const size_t raw = mesh.vertices.size() * sizeof(PackedVertex) + mesh.indices.size() * sizeof(uint32_t);
+    EXPECT_LT(encodeNodeMesh(mesh, 1).size(), raw / 2);
+}
+
+TEST(MeshCodec, UnusedVerticesAreDropped) {
+    NodeMesh mesh = test::sheetMesh(3, 1);
+    mesh.vertices.push_back({1, 2, 3, 4, 5});
+    uint64_t epoch = 0;
+    const auto back = decodeNodeMesh(encodeNodeMesh(mesh, 1), 1, epoch);
+    ASSERT_TRUE(back.has_value());
+    EXPECT_EQ(back->vertices.size(), mesh.vertices.size() - 1);
+}
+
+TEST(MeshCodec, RefusesIndexBeyondTheVertices) {
+    const topics::NodeMesh large = messageOf(test::sheetMesh(9, 1));
+    topics::NodeMesh mixed = messageOf(test::sheetMesh(4, 1));
+    mixed.set_indices(large.indices());
+    mixed.set_index_count(large.index_count());
+    EXPECT_TRUE(isRefused(mixed));
+}
+
+TEST(MeshCodec, RefusesCountsThatTheBytesCannotHold) {
+    const topics::NodeMesh good = messageOf(test::sheetMesh(5, 1));
+    ASSERT_FALSE(isRefused(good));
+    for (const uint32_t count :
+         {0u, 1u, 3u, good.index_count() - 3, good.index_count() + 3, 4294967295u, 4294967292u}) {
+        topics::NodeMesh bad = good;
+        bad.set_index_count(count);
+        EXPECT_TRUE(isRefused(bad)) << count << " indices";
+    }
+    for (const uint32_t count : {0u, 1u, good.vertex_count() - 1, good.index_count() + 1, 4294967295u}) {
+        topics::NodeMesh bad = good;
+        bad.set_vertex_count(count);
+        EXPECT_TRUE(isRefused(bad)) << count << " vertices";
+    }
+}
+
+TEST(MeshCodec, RefusesBadOriginAndStep) {
+    const topics::NodeMesh good = messageOf(test::sheetMesh(5, 1));
+    const auto refusedWith = [&](auto change) {
+        topics::NodeMesh bad = good;
+        change(bad);
+        return isRefused(bad);
+    };
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float kInf = std::numeric_limits<float>::infinity();
+    EXPECT_TRUE(refusedWith([](auto& m) { m.clear_origin_m(); }));
+    EXPECT_TRUE(refusedWith([](auto& m) { m.add_origin_m(0); }));
+    EXPECT_TRUE(refusedWith([](auto& m) { m.set_origin_m(1, kNan); }));
+    EXPECT_TRUE(refusedWith([](auto& m) { m.set_origin_m(2, kInf); }));
+    EXPECT_TRUE(refusedWith([](auto& m) { m.clear_step_m(); }));
+    EXPECT_TRUE(refusedWith([](auto& m) { m.set_step_m(0, kNan); }));
+    EXPECT_TRUE(refusedWith([](auto& m) { m.set_step_m(0, 0); }));
+    EXPECT_TRUE(refusedWith([](auto& m) { m.set_step_m(0, -1e-6f); }));
+}
+
+// The message cut just before its counts is, byte for byte, that of an emptied leaf; nothing else may pass.
+TEST(MeshCodec, NeverShowsPartOfATruncatedMesh) {
+    const std::string bytes = encodeNodeMesh(test::sheetMesh(6, 1), kEpoch);
+    int accepted = 0;
+    for (size_t length = 0; length < bytes.size(); ++length) {
+        uint64_t epoch = 0;
+        const auto mesh = decodeNodeMesh(std::string_view(bytes).substr(0, length), 1, epoch);
+        if (!mesh) continue;
+        ++accepted;
+        EXPECT_TRUE(mesh->isEmpty() && mesh->vertices.empty()) << length;
+    }
+    EXPECT_LE(accepted, 1);
+}
+
+TEST(MeshCodec, RefusesBuffersWithoutCounts) {
+    topics::NodeMesh message = messageOf(test::sheetMesh(5, 1));
+    message.clear_vertex_count();
+    message.clear_index_count();
+    EXPECT_TRUE(isRefused(message));
+}
+
+}  // namespace
+}  // namespace bonemill
