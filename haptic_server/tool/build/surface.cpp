@@ -22,7 +22,7 @@ struct Ring {
 void appendBand(TriangleSurface& surface, uint32_t base, int segment) {
     const auto a = base + uint32_t(segment), b = base + uint32_t((segment + 1) % kSegments);
     const uint32_t c = a + kSegments, d = b + kSegments;
-    surface.indices.insert(surface.indices.end(), {a, c, b, b, c, d});
+    surface.indices.insert(surface.indices.end(), {a, b, c, b, d, c});
 }
 
 // Rings in order along the axis; one smooth piece of surface.
@@ -46,8 +46,10 @@ void revolve(const Vector3d& origin, const Vector3d& axis, const std::vector<Rin
 // Half a ball from latitude `from` in quarter turns (-1: pole, 0: equator).
 void appendQuarter(std::vector<Ring>& rings, double center, double radius, int from) {
     for (int i = 0; i <= kQuarterRings; ++i) {
-        const double latitude = (from + double(i) / kQuarterRings) * std::numbers::pi / 2;
-        const double sine = std::sin(latitude), cosine = std::cos(latitude);
+        const double quarter_turns = from + double(i) / kQuarterRings;
+        const double sine = std::sin(quarter_turns * std::numbers::pi / 2);
+        const double cosine =
+            std::sin((1 - std::abs(quarter_turns)) * std::numbers::pi / 2);  // exactly 0 at a pole
         rings.push_back({center + radius * sine, radius * cosine, sine, cosine});
     }
 }

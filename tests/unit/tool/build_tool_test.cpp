@@ -1,0 +1,191 @@
+#include "haptic_server/tool/build/build_tool.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "common/config/user_error.h"
+#include "tests/unit/tool/mesh_test_support.h"
+
+namespace bonemill {
+namespace {
+
+using Eigen::Vector3d;
+
+std::string joined(const std::vector<std::string>& warnings) {
+    std::string all;
+    for (const std::string& warning : warnings) all += warning + "\n";
+    return all;
+}
+
+void expectRefused(const ToolConfig& config, const std::string& words) {
+    try {
+        buildTool(config);
+        ADD_FAILURE() << "accepted, expected: " << words;
+    } catch (const UserError& e) {
+        EXPECT_EQ(std::string(e.what()).find("tool"), 0u) << e.what();
+        EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+    }
+}
+
+template <class Visit>
+void forEachNode(const SdfGrid& sdf, Visit&& visit) {
+    for (int k = 0; k < sdf.nodes().z(); ++k)
+        for (int j = 0; j < sdf.nodes().y(); ++j)
+            for (int i = 0; i < sdf.nodes().x(); ++i) visit(sdf.nodePosition(i, j, k), sdf.at(i, j, k));
+}
+
+// The demo's tool in its own formulas: burr of 1 mm, endless shaft of 0.8 mm.
+double demoTool(const Vector3d& p) {
+    const double shaft = std::hypot(p.x(), p.z(), std::min(p.y(), 0.0)) - 0.8e-3;
+    return std::min(p.norm() - 1e-3, shaft);
+}
+
+TEST(BuildTool, DemoToolFitsItsGrid) {
+    const BuiltTool tool = buildTool({});
+    EXPECT_EQ(joined(tool.warnings), "");
+    EXPECT_EQ(tool.sdf.nodes(), Eigen::Vector3i(22, 128, 22));
+    EXPECT_EQ(tool.sdf.spacing(), 0.125e-3);
+    EXPECT_NEAR(tool.sdf.origin().y(), -1e-3 - 3 * 0.125e-3, 1e-15);
+    EXPECT_NEAR(tool.sdf.gridBox().center().x(), 0, 1e-15);
+    EXPECT_NEAR(tool.sdf.gridBox().center().z(), 0, 1e-15);
+    EXPECT_EQ(tool.sdf.box().max().y(), tool.sdf.gridBox().max().y());  // the shaft leaves at the far end
+}
+
+TEST(BuildTool, DemoToolIsExactAtNodes) {
+    forEachNode(buildTool({}).sdf,
+                [](const Vector3d& p, float value) { ASSERT_FLOAT_EQ(value, float(demoTool(p))); });
+}
+
+TEST(BuildTool, DemoToolIsOfSecondOrderBetweenNodes) {
+    const SdfGrid sdf = buildTool({}).sdf;
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> unit(0, 1);
+    int checked = 0;
+    for (int n = 0; n < 50000; ++n) {
+        const Vector3d t(unit(random), unit(random), unit(random));
+        const Vector3d p = sdf.gridBox().min() + t.cwiseProduct(sdf.gridBox().sizes());
+        const double burr = p.norm() - 1e-3, shaft = std::hypot(p.x(), p.z(), std::min(p.y(), 0.0)) - 0.8e-3;
+        const double r =
+            std::min({p.norm(), std::hypot(p.x(), p.z()), 1e-3}) - std::sqrt(3.0) * sdf.spacing();
+        // Away from the crease between burr and shaft, and from the axis.
+        if (std::abs(burr - shaft) < 4 * sdf.spacing() || r < 0.3e-3) continue;
+        ++checked;
+        ASSERT_NEAR(sdf.distance(p), demoTool(p), sdf.spacing() * sdf.spacing() / (4 * r) + 1e-9)
+            << p.transpose();
+    }
+    EXPECT_GT(checked, 10000);
+}
+
+TEST(BuildTool, RotatedCylinderIsExactAtNodes) {
+    const Pose X_TS{Vector3d(0.2e-3, -0.4e-3, 0.1e-3), Eigen::Quaterniond(0.9, 0.2, -0.3, 0.25).normalized()};
+    ToolConfig config;
+    config.shapes = {CylinderShape{X_TS.position, X_TS * Vector3d(0, 4e-3, 0), 0.9e-3}};
+    config.sdf_nodes = {40, 50, 40};
+    const BuiltTool tool = buildTool(config);
+    const Pose X_ST = X_TS.inverse();
+    int inside = 0;
+    forEachNode(tool.sdf, [&](const Vector3d& p, float value) {
+        const Vector3d p_S = X_ST * p;
+        const Eigen::Vector2d beyond(std::hypot(p_S.x(), p_S.z()) - 0.9e-3, std::abs(p_S.y() - 2e-3) - 2e-3);
+        const double expected = beyond.cwiseMax(0).norm() + std::min(beyond.maxCoeff(), 0.0);
+        inside += value < 0;
+        ASSERT_NEAR(value, expected, 1e-9);
+    });
+    const double volume = inside * std::pow(tool.sdf.spacing(), 3);
+    EXPECT_NEAR(volume, std::numbers::pi * 0.9e-3 * 0.9e-3 * 4e-3, 0.03 * volume);
+}
+
+TEST(BuildTool, UnionIsTheNearestShape) {
+    ToolConfig config;
+    const SphereShape burr{Vector3d::Zero(), 1e-3};
+    const ConeShape neck{{0, 0, 0}, {0, 5e-3, 0}, 0.4e-3, 0.9e-3};
+    config.shapes = {burr, neck};
+    forEachNode(buildTool(config).sdf, [&](const Vector3d& p, float value) {
+        ASSERT_EQ(value, float(std::min(signedDistance(burr, p), signedDistance(neck, p))));
+    });
+}
+
+TEST(BuildTool, MeshAndShapeAgree) {
+    const auto path = std::filesystem::path(testing::TempDir()) / "bonemill_build_tool_box.stl";
+    test::writeBytes(path, test::binaryStl(test::boxSoup({-0.75f, -1, -0.5f}, {0.75f, 12, 0.5f})));
+    ToolConfig config;
+    config.mesh_path = path;
+    const BuiltTool tool = buildTool(config);
+    std::filesystem::remove(path);
+    EXPECT_EQ(joined(tool.warnings), "");
+    const Vector3d center(0, 5.5e-3, 0), half(0.75e-3, 6.5e-3, 0.5e-3);
+    forEachNode(tool.sdf, [&](const Vector3d& p, float value) {
+        const Vector3d beyond = (p - center).cwiseAbs() - half;
+        ASSERT_NEAR(value, beyond.cwiseMax(0).norm() + std::min(beyond.maxCoeff(), 0.0), 1e-9);
+    });
+}
+
+TEST(BuildTool, GridStandsWhereAsked) {
+    ToolConfig config;
+    config.sdf_origin_T = Vector3d(-1.4e-3, -1.2e-3, -1.3e-3);
+    const BuiltTool tool = buildTool(config);
+    EXPECT_EQ(tool.sdf.origin(), *config.sdf_origin_T);
+    EXPECT_EQ(tool.sdf.box().max().y(), tool.sdf.gridBox().max().y());
+    EXPECT_EQ(joined(tool.warnings), "");
+}
+
+TEST(BuildTool, WarnsWhenTheGridCutsTheTool) {
+    ToolConfig config;
+    config.burr_radius = 1.5125e-3;
+    const std::string wide = joined(buildTool(config).warnings);
+    EXPECT_NE(wide.find("sticks out of its distance grid by 0.200 mm at the -x side"), std::string::npos)
+        << wide;
+    EXPECT_NE(wide.find("at the -z side"), std::string::npos) << wide;
+    EXPECT_EQ(wide.find("y side"), std::string::npos) << wide;
+
+    config = {};
+    config.sdf_origin_T = Vector3d(-1.2e-3, -0.5e-3, -1.3125e-3);
+    const std::string burr_cut = joined(buildTool(config).warnings);
+    EXPECT_NE(burr_cut.find("by 0.500 mm at the -y side"), std::string::npos) << burr_cut;
+    EXPECT_EQ(burr_cut.find("x side"), std::string::npos) << burr_cut;
+}
+
+TEST(BuildTool, WarnsOfATinyBurr) {
+    ToolConfig config;
+    config.burr_radius = 0.24e-3;
+    const std::string warnings = joined(buildTool(config).warnings);
+    EXPECT_NE(warnings.find("burr_radius_mm 0.240 is below 2 spacings"), std::string::npos) << warnings;
+}
+
+TEST(BuildTool, WarnsWhenTheBurrIsElsewhere) {
+    ToolConfig config;
+    config.shapes = {SphereShape{{0, 3e-3, 0}, 1e-3}};
+    const std::string warnings = joined(buildTool(config).warnings);
+    EXPECT_NE(warnings.find("origin of frame T"), std::string::npos) << warnings;
+}
+
+TEST(BuildTool, RefusesBadConfigs) {
+    const auto with = [](auto&& change) {
+        ToolConfig config;
+        change(config);
+        return config;
+    };
+    expectRefused(with([](ToolConfig& c) { c.burr_radius = -1e-3; }), "burr_radius_mm");
+    expectRefused(with([](ToolConfig& c) { c.burr_radius = std::nan(""); }), "burr_radius_mm");
+    expectRefused(with([](ToolConfig& c) { c.sdf_spacing = 0; }), "sdf_spacing_mm");
+    expectRefused(with([](ToolConfig& c) { c.sdf_nodes.y() = 1; }), "sdf_nodes: 22 x 1 x 22");
+    expectRefused(with([](ToolConfig& c) { c.sdf_nodes.setConstant(2000000000); }), "sdf_nodes");
+    expectRefused(with([](ToolConfig& c) { c.sdf_origin_T = Vector3d(0, std::nan(""), 0); }),
+                  "sdf_origin_mm");
+    expectRefused(with([](ToolConfig& c) {
+                      c.shapes = {SphereShape{}, SphereShape{{0, 0, 0}, -1}};
+                  }),
+                  "tool.shape[1]");
+    expectRefused(with([](ToolConfig& c) { c.sdf_origin_T = Vector3d(1, 1, 1); }),
+                  "no node of its distance grid");
+    expectRefused(with([](ToolConfig& c) {
+                      c.shapes = {SphereShape{}};
+                      c.mesh_path = "burr.stl";
+                  }),
+                  "both shape and mesh_path");
+}
+
+}  // namespace
+}  // namespace bonemill
