@@ -1,0 +1,63 @@
+// The device loop in its own real-time thread, and the thread that looks after it.
+#pragma once
+
+#include <atomic>
+#include <future>
+
+#include "common/ipc/device_link.h"
+#include "common/rt/realtime.h"
+#include "device_daemon/app/device_setup.h"
+#include "device_daemon/app/options.h"
+#include "device_daemon/app/run_statistics.h"
+
+namespace bonemill {
+
+class Daemon {
+  public:
+    // Throws UserError (session taken, no permission, ...).
+    Daemon(const DeviceSetup& setup, const DaemonOptions& options);
+
+    // Blocks until the scenario, --seconds or a signal ends it and the force has ramped to zero. SIGINT and
+    // SIGTERM must be blocked in the calling thread. Throws UserError: no real-time scheduling without
+    // --best-effort-rt, nobody answered within --wait-seconds.
+    void run();
+
+    const RunStatistics& statistics() const noexcept { return statistics_; }
+
+  private:
+    // Written by the loop, read by the watcher: single values, each complete in itself, so relaxed order is
+    // enough.
+    struct Progress {
+        std::atomic<bool> is_attached = false;  // haptic_server has answered a sample of this run
+        std::atomic<bool> is_stale = false;
+        std::atomic<int> waypoint = -1;
+        std::atomic<double> scenario_time = 0;
+        std::atomic<bool> is_finished = false;
+    };
+
+    void runLoop(std::promise<RealtimeReport> readiness);
+    void tick(int64_t instant_ns, double elapsed) noexcept;
+    void attachToServer(const WrenchCommand& command, uint64_t sequence) noexcept;
+    void recordTick(const WrenchCommand* command, uint64_t sequence) noexcept;
+    bool shouldEnd() const noexcept;
+
+    void acceptRealtime(const RealtimeReport& report) const;
+    void watch();
+    void reportProgress(int& shown_waypoint, bool& shown_stale) const;
+    std::string phaseOf(int waypoint) const;
+
+    DeviceSetup setup_;
+    DaemonOptions options_;
+    double end_time_;  // of the scenario, s
+    AresKinematics kinematics_;
+    AresEmulator emulator_;
+    DeviceLoop loop_;
+    DeviceLink link_;
+    uint64_t first_sequence_ = 0;  // of this run's samples; 0 before the first
+    uint64_t last_sequence_ = 0;
+    RunStatistics statistics_;
+    Progress progress_;
+    std::atomic<bool> should_stop_ = false;
+};
+
+}  // namespace bonemill

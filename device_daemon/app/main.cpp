@@ -1,0 +1,51 @@
+// device_daemon: the device side of the simulator (docs/device.md).
+#include <signal.h>
+
+#include <iostream>
+
+#include "common/config/scene_file.h"
+#include "common/config/user_error.h"
+#include "common/log/log.h"
+#include "device_daemon/app/daemon.h"
+
+namespace {
+
+bonemill::DeviceSetup loadSetup(const std::string& file) {
+    const bonemill::LoadedScene loaded = bonemill::loadScene(file);
+    try {
+        return bonemill::deviceSetupOf(loaded.scene);
+    } catch (const bonemill::UserError& error) {
+        throw bonemill::UserError(file + ": " + error.what());
+    }
+}
+
+// Every thread inherits it: the watcher takes the signals when it is ready for them.
+void blockStopSignals() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        const auto options = bonemill::parseOptions(argc, argv);
+        if (!options) return 0;
+        bonemill::setUpLog("device_daemon", options->log_level);
+        const bonemill::DeviceSetup setup = loadSetup(options->scene);
+        blockStopSignals();
+        bonemill::Daemon daemon(setup, *options);
+        daemon.run();
+        std::cout << bonemill::jsonLineOf(daemon.statistics()) << std::endl;
+        return 0;
+    } catch (const bonemill::UserError& error) {
+        std::cerr << "error: " << error.what() << std::endl;
+        return bonemill::kUserErrorExitCode;
+    } catch (const std::exception& error) {
+        std::cerr << "error: " << error.what() << std::endl;
+        return 1;
+    }
+}

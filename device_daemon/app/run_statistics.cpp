@@ -1,0 +1,40 @@
+#include "device_daemon/app/run_statistics.h"
+
+#include <spdlog/fmt/fmt.h>
+
+namespace bonemill {
+namespace {
+
+constexpr double kNsPerUs = 1e3;
+
+std::string quoted(const std::string& text) {
+    std::string json = "\"";
+    for (const char c : text) {  // control characters were refused when the scene was read
+        if (c == '"' || c == '\\') json += '\\';
+        json += c;
+    }
+    return json + '"';
+}
+
+std::string percentilesOf(const LatencyHistogram& histogram) {
+    return fmt::format(R"({{"p50":{:.1f},"p99":{:.1f},"p99_9":{:.1f},"max":{:.1f}}})",
+                       histogram.percentileNs(50) / kNsPerUs, histogram.percentileNs(99) / kNsPerUs,
+                       histogram.percentileNs(99.9) / kNsPerUs, histogram.maxNs() / kNsPerUs);
+}
+
+}  // namespace
+
+std::string jsonLineOf(const RunStatistics& s) {
+    const double rate_hz = s.wall_time > 0 ? s.ticks / s.wall_time : 0;
+    return fmt::format(
+        R"({{"ticks":{},"missed_periods":{},"wall_s":{:.3f},"scenario_s":{:.3f},"rate_hz":{:.2f},)"
+        R"("wakeup_latency_us":{},"compute_us":{},"attached_ticks":{},"late_answers":{},)"
+        R"("max_tracking_mm":{:.4f},"max_force_n":{:.4f},"max_torque_nmm":{:.3f},"clipped_ticks":{},)"
+        R"("rate_limited_ticks":{},"stop_ticks":{},"failed_poses":{},"final_phase":{}}})",
+        s.ticks, s.missed_periods, s.wall_time, s.scenario_time, rate_hz, percentilesOf(s.wakeup_latency),
+        percentilesOf(s.compute_time), s.attached_ticks, s.late_answers, 1e3 * s.max_tracking_error,
+        s.max_force, 1e3 * s.max_torque, s.clipped_ticks, s.rate_limited_ticks, s.stop_ticks, s.failed_poses,
+        quoted(s.final_phase));
+}
+
+}  // namespace bonemill

@@ -1,0 +1,87 @@
+#include "device_daemon/driver/ares_emulator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace bonemill {
+namespace {
+
+constexpr double kSubstepRate_hz = 25000;
+constexpr double kRoundingSlack = 1e-6;  // so that 1 ms makes 25 substeps, not 26
+
+}  // namespace
+
+AresEmulator::AresEmulator(const AresKinematics& kinematics, const AresPlant& plant,
+                           const HandImpedance& hand, const OperatorPath& path)
+    : kinematics_(kinematics), plant_(plant), hand_(hand), path_(path) {
+    state_.target = path_.at(0);
+    state_.target.buttons = 0;
+    state_.X_DT = state_.target.X_DT;
+}
+
+void AresEmulator::advance(double dt, const Vector6d& actuator_forces) noexcept {
+    if (!(dt > 0)) return;
+    const int substeps = static_cast<int>(std::ceil(dt * kSubstepRate_hz - kRoundingSlack));
+    for (int i = 0; i < substeps; ++i) substep(dt / substeps, actuator_forces);
+}
+
+JointReading AresEmulator::readJoints(double elapsed) noexcept {
+    advance(std::min(elapsed, kLongestElapsed), held_forces_);
+    JointReading reading;
+    reading.buttons = state_.target.buttons;
+    kinematics_.inverse(state_.X_DT, reading.q);  // always reachable: moveBody() never leaves the workspace
+    if (plant_.encoder_step > 0) {
+        reading.q = (reading.q / plant_.encoder_step).array().round() * plant_.encoder_step;
+    }
+    return reading;
+}
+
+void AresEmulator::substep(double h, const Vector6d& actuator_forces) noexcept {
+    if (scenario_runs_) {
+        state_.scenario_time += h;
+        state_.target = path_.at(state_.scenario_time);
+    }
+    const double settled = -std::expm1(-2 * std::numbers::pi * plant_.amplifier_bandwidth_hz * h);
+    state_.actuator_forces += settled * (actuator_forces - state_.actuator_forces);
+
+    Matrix6d J_inv;
+    if (kinematics_.inverseJacobian(state_.X_DT, J_inv)) {
+        pushBody(h, wrenchOf(J_inv, state_.actuator_forces));
+        moveBody(h);
+    }
+}
+
+void AresEmulator::pushBody(double h, const Wrench& drive) noexcept {
+    const double mass = plant_.moving_mass + hand_.mass;
+    const double inertia = plant_.moving_inertia + hand_.inertia;
+    const HandTarget& target = state_.target;
+
+    const Eigen::Vector3d pull = hand_.stiffness * (target.X_DT.position - state_.X_DT.position);
+    const double damping = plant_.viscous_friction + hand_.damping;
+    Eigen::Vector3d momentum = mass * state_.v_DT + h * (drive.force + pull + hand_.damping * target.v_DT);
+    // Implicit Coulomb friction: it takes momentum, at most all of it.
+    const double friction = h * plant_.coulomb_friction;
+    const double size = momentum.norm();
+    momentum *= size > friction ? 1 - friction / size : 0.0;
+    state_.v_DT = momentum / (mass + h * damping);
+
+    const Eigen::Vector3d twist =
+        hand_.angular_stiffness * logRotation(target.X_DT.rotation * state_.X_DT.rotation.conjugate());
+    const double angular_damping = plant_.angular_friction + hand_.angular_damping;
+    state_.w_DT = (inertia * state_.w_DT + h * (drive.torque + twist + hand_.angular_damping * target.w_DT)) /
+                  (inertia + h * angular_damping);
+}
+
+void AresEmulator::moveBody(double h) noexcept {
+    const Pose next = state_.X_DT.incremented(h * state_.v_DT, h * state_.w_DT);
+    state_.at_stop = kinematics_.workspaceFaults(next) != kWorkspaceOk;
+    if (state_.at_stop) {
+        state_.v_DT.setZero();
+        state_.w_DT.setZero();
+    } else {
+        state_.X_DT = next;
+    }
+}
+
+}  // namespace bonemill

@@ -1,0 +1,92 @@
+// The simulated ARES with a simulated hand on its handle: one coupled dynamic system driven by actuator
+// forces.
+//
+// Plant: the six amplifiers (first-order pole each) push the sliders; the handle with everything that moves
+// along is one rigid body of isotropic mass and inertia with viscous friction and Coulomb friction against
+// translation; the hand's mass rides on it and its spring and damper pull towards the OperatorPath. Gravity
+// is balanced, as on a counterweighted device. The encoders report slider positions in whole steps.
+// Integrated at 25 kHz or finer (semi-implicit Euler, damping and Coulomb friction implicit, so that the body
+// truly sticks). Leaving the workspace is stopped dead, like running into a mechanical stop.
+//
+// Deterministic: the same forces give the same motion bit for bit. Not thread-safe; RT-safe after
+// construction.
+#pragma once
+
+#include "device_daemon/driver/joint_device.h"
+#include "device_daemon/driver/operator_path.h"
+#include "device_daemon/kinematics/ares_kinematics.h"
+
+namespace bonemill {
+
+// Defaults: middle of the ranges of ALGORITHMS (simulated plant).
+struct AresPlant {
+    double moving_mass = 0.25;        // kg
+    double moving_inertia = 1e-4;     // kg·m², about every axis
+    double viscous_friction = 2;      // N·s/m
+    double angular_friction = 0.004;  // N·m·s/rad
+    double coulomb_friction = 0.2;    // N, against translation
+    double amplifier_bandwidth_hz = 500;
+    double encoder_step = 5e-6;  // m; 0 is an ideal encoder
+};
+
+// All zero: nobody holds the handle.
+struct HandImpedance {
+    double mass = 0.1;               // kg
+    double damping = 8;              // N·s/m
+    double stiffness = 600;          // N/m
+    double inertia = 5e-5;           // kg·m²
+    double angular_damping = 0.02;   // N·m·s/rad
+    double angular_stiffness = 1.0;  // N·m/rad
+};
+
+struct EmulatorState {
+    Pose X_DT;                                       // the true handle pose, before quantisation
+    Eigen::Vector3d v_DT = Eigen::Vector3d::Zero();  // m/s
+    Eigen::Vector3d w_DT = Eigen::Vector3d::Zero();  // rad/s, in D
+    Vector6d actuator_forces = Vector6d::Zero();     // N, after the amplifiers
+    HandTarget target;                               // what the hand pulls towards
+    double scenario_time = 0;                        // s
+    bool at_stop = false;                            // the last substep ran into the workspace's limits
+};
+
+class AresEmulator final : public JointDevice {
+  public:
+    // Starts at rest where the path starts, which must be inside the workspace. Mass and inertia of plant and
+    // hand together must be positive.
+    AresEmulator(const AresKinematics& kinematics, const AresPlant& plant, const HandImpedance& hand,
+                 const OperatorPath& path);
+
+    // Lets the scenario's time run; before that the hand rests at the path's start with no button pressed.
+    void startScenario() noexcept { scenario_runs_ = true; }
+    bool isScenarioDone() const noexcept {
+        return scenario_runs_ && state_.scenario_time >= path_.duration();
+    }
+
+    // Moves the plant by dt with these amplifier inputs.
+    void advance(double dt, const Vector6d& actuator_forces) noexcept;
+
+    // advance() under the forces applied last, at most kLongestElapsed, then the quantised joints.
+    JointReading readJoints(double elapsed) noexcept override;
+    void applyForces(const Vector6d& actuator_forces) noexcept override { held_forces_ = actuator_forces; }
+
+    // Bounds the work of one call after a long pause of the loop; the emulated world stands still for the
+    // rest.
+    static constexpr double kLongestElapsed = 0.05;  // s
+
+    const EmulatorState& state() const noexcept { return state_; }
+
+  private:
+    void substep(double h, const Vector6d& actuator_forces) noexcept;
+    void pushBody(double h, const Wrench& drive) noexcept;
+    void moveBody(double h) noexcept;
+
+    AresKinematics kinematics_;
+    AresPlant plant_;
+    HandImpedance hand_;
+    OperatorPath path_;
+    Vector6d held_forces_ = Vector6d::Zero();
+    bool scenario_runs_ = false;
+    EmulatorState state_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,141 @@
+// Device loop, emulated device and simulated hand against a virtual wall, in simulated time with the one tick
+// of delay of the real arrangement.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "device_daemon/driver/ares_emulator.h"
+#include "device_daemon/loop/device_loop.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kPeriod = 1e-3;  // s
+constexpr int64_t kPeriodNs = 1'000'000;
+constexpr double kWallStiffness = 1200;  // N/m, resists z < 0 of the handle
+
+class ClosedLoop {
+  public:
+    explicit ClosedLoop(const OperatorPath& path)
+        : emulator(AresKinematics{}, {}, {}, path), loop(AresKinematics{}, emulator, {}, path.at(0).X_DT) {
+        emulator.startScenario();
+    }
+
+    // One period; the server computes the answer to this period's sample, the device gets it in the next one.
+    void step(bool server_answers = true) {
+        now_ns += kPeriodNs;
+        DeviceSample sample;
+        ASSERT_TRUE(loop.read(kPeriod, sample));
+        loop.write(&command, now_ns);
+        if (!server_answers) return;
+        command = {};
+        command.stamp_ns = now_ns;
+        command.f_hand_D[2] = sample.p_DT[2] < 0 ? -kWallStiffness * sample.p_DT[2] : 0;
+        if (force_override) std::copy_n(force_override, 3, command.f_hand_D);
+    }
+    void run(double seconds) {
+        for (int i = 0; i < std::lround(seconds / kPeriod); ++i) step();
+    }
+
+    AresEmulator emulator;
+    DeviceLoop loop;
+    WrenchCommand command{};
+    int64_t now_ns = 1'000'000'000;
+    const double* force_override = nullptr;
+};
+
+OperatorPath pressIntoTheWall() {
+    return OperatorPath({{0, {{0, 0, 0.005}, Eigen::Quaterniond::Identity()}, 0},
+                         {1.0, {{0, 0, -0.006}, Eigen::Quaterniond::Identity()}, 0}});
+}
+
+TEST(ClosedLoop, HandAndWallSettleWhereTheirSpringsBalance) {
+    const HandImpedance hand;
+    ClosedLoop loop(pressIntoTheWall());
+    loop.run(2.0);
+    double lowest = 1, highest = -1;
+    for (int i = 0; i < 500; ++i) {
+        loop.step();
+        const double z = loop.emulator.state().X_DT.position.z();
+        lowest = std::min(lowest, z);
+        highest = std::max(highest, z);
+    }
+    const double balance = -0.006 * hand.stiffness / (hand.stiffness + kWallStiffness);
+    const double coulomb_play = AresPlant{}.coulomb_friction / (hand.stiffness + kWallStiffness);
+    EXPECT_NEAR((lowest + highest) / 2, balance, coulomb_play + 5e-6);
+    EXPECT_LT(highest - lowest, 5e-6);  // no buzz: less than an encoder step
+}
+
+TEST(ClosedLoop, SamplesShowTheTruePoseWithinTheEncoders) {
+    ClosedLoop loop(pressIntoTheWall());
+    for (int i = 0; i < 1500; ++i) {
+        loop.step();
+        const Pose& truth = loop.emulator.state().X_DT;
+        EXPECT_LT((loop.loop.pose().position - truth.position).norm(), 2e-5);
+        EXPECT_LT(logRotation(loop.loop.pose().rotation * truth.rotation.conjugate()).norm(), 5e-4);
+    }
+    EXPECT_EQ(loop.loop.failedPoses(), 0u);
+}
+
+TEST(ClosedLoop, ForceRampsToZeroWhenTheServerFallsSilentAndComesBack) {
+    ClosedLoop loop(pressIntoTheWall());
+    loop.run(2.5);
+    const double pressing = loop.loop.actuatorForces().norm();
+    EXPECT_GT(pressing, 0.5);
+    for (int i = 0; i < 15; ++i) loop.step(false);
+    EXPECT_NEAR(loop.loop.actuatorForces().norm(), pressing, 0.05 * pressing);  // silence within tolerance
+    double before = loop.loop.actuatorForces().norm();
+    for (int i = 0; i < 60; ++i) {
+        loop.step(false);
+        const double now = loop.loop.actuatorForces().norm();
+        EXPECT_LT(before - now, 0.05 * pressing);  // no jump on the way down
+        before = now;
+    }
+    EXPECT_TRUE(loop.loop.isPeerStale());
+    EXPECT_EQ(loop.loop.actuatorForces(), Vector6d::Zero());
+    loop.run(2.0);
+    EXPECT_FALSE(loop.loop.isPeerStale());
+    EXPECT_NEAR(loop.loop.actuatorForces().norm(), pressing, 0.15 * pressing);
+}
+
+TEST(ClosedLoop, ReleaseRampsToZeroAndStaysThere) {
+    ClosedLoop loop(pressIntoTheWall());
+    loop.run(2.0);
+    loop.loop.release();
+    EXPECT_FALSE(loop.loop.isReleased());
+    loop.run(0.06);
+    EXPECT_TRUE(loop.loop.isReleased());
+    EXPECT_EQ(loop.loop.actuatorForces(), Vector6d::Zero());
+}
+
+TEST(ClosedLoop, NonFiniteCommandsAreSilence) {
+    ClosedLoop loop(pressIntoTheWall());
+    loop.run(2.0);
+    constexpr double kBad[3] = {std::numeric_limits<double>::quiet_NaN(), 0, 0};
+    loop.force_override = kBad;
+    for (int i = 0; i < 200; ++i) {
+        loop.step();
+        ASSERT_TRUE(loop.loop.actuatorForces().allFinite());
+    }
+    EXPECT_TRUE(loop.loop.isPeerStale());
+    EXPECT_EQ(loop.loop.actuatorForces(), Vector6d::Zero());
+}
+
+TEST(ClosedLoop, AnExcessiveForceIsLimitedAndSaidSo) {
+    ClosedLoop loop(OperatorPath{});
+    constexpr double kHuge[3] = {0, 0, 1000};
+    loop.force_override = kHuge;
+    for (int i = 0; i < 200; ++i) {
+        loop.step();
+        EXPECT_LE(loop.loop.actuatorForces().cwiseAbs().maxCoeff(),
+                  ForceLimits{}.max_actuator_force * (1 + 1e-12));
+    }
+    EXPECT_TRUE(loop.loop.limitEvents() & kForceClamped);
+    DeviceSample sample;
+    ASSERT_TRUE(loop.loop.read(kPeriod, sample));
+    EXPECT_TRUE(sample.flags & kDeviceFlagForceLimited);
+}
+
+}  // namespace
+}  // namespace bonemill

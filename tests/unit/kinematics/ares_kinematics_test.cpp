@@ -1,0 +1,195 @@
+#include "device_daemon/kinematics/ares_kinematics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace bonemill {
+namespace {
+
+constexpr double kSpecifiedHalfRange = 0.025;                       // m: 50 x 50 x 50 mm
+constexpr double kSpecifiedRotation = 40 * std::numbers::pi / 180;  // rad, about any axis
+constexpr double kSpecifiedForce = 50;                              // N
+constexpr double kSpecifiedTorque = 1;                              // N·m
+
+class PoseSampler {
+  public:
+    Pose next() {
+        std::uniform_real_distribution<double> uniform(-1, 1);
+        std::normal_distribution<double> normal;
+        Pose X_DT;
+        for (double& coordinate : X_DT.position) coordinate = kSpecifiedHalfRange * uniform(generator_);
+        const Eigen::Vector3d axis(normal(generator_), normal(generator_), normal(generator_));
+        X_DT.rotation = expRotation(axis.normalized() * (kSpecifiedRotation * uniform(generator_)));
+        return X_DT;
+    }
+    Vector6d nextTwist() {
+        std::normal_distribution<double> normal;
+        Vector6d twist;
+        for (double& component : twist) component = normal(generator_);
+        return twist;
+    }
+
+  private:
+    std::mt19937_64 generator_{20120101};
+};
+
+Matrix6d jacobianAt(const AresKinematics& kinematics, const Pose& X_DT) {
+    Matrix6d J_inv;
+    EXPECT_TRUE(kinematics.inverseJacobian(X_DT, J_inv));
+    return J_inv;
+}
+
+TEST(AresKinematics, NeutralPoseIsTheMiddleOfEveryStroke) {
+    const AresKinematics kinematics;
+    ASSERT_TRUE(kinematics.isBuildable());
+    Vector6d q;
+    ASSERT_TRUE(kinematics.inverse(Pose{}, q));
+    for (const double slider : q) EXPECT_NEAR(slider, kinematics.geometry().stroke / 2, 1e-15);
+    EXPECT_NEAR(kinematics.neutralHeight(), 0.26516, 1e-5);
+}
+
+TEST(AresKinematics, RaisingThePlatformRaisesEverySliderAlike) {
+    const AresKinematics kinematics;
+    Vector6d q;
+    ASSERT_TRUE(kinematics.inverse({{0, 0, 0.02}, Eigen::Quaterniond::Identity()}, q));
+    for (const double slider : q) EXPECT_NEAR(slider, kinematics.geometry().stroke / 2 + 0.02, 1e-15);
+}
+
+TEST(AresKinematics, JacobianMatchesFiniteDifferences) {
+    const AresKinematics kinematics;
+    PoseSampler sampler;
+    constexpr double kStep = 1e-6;
+    for (int i = 0; i < 200; ++i) {
+        const Pose X_DT = sampler.next();
+        const Matrix6d J_inv = jacobianAt(kinematics, X_DT);
+        for (int k = 0; k < 6; ++k) {
+            const Vector6d step = kStep * Vector6d::Unit(k);
+            Vector6d above, below;
+            ASSERT_TRUE(kinematics.inverse(X_DT.incremented(step.head<3>(), step.tail<3>()), above));
+            ASSERT_TRUE(kinematics.inverse(X_DT.incremented(-step.head<3>(), -step.tail<3>()), below));
+            const Vector6d difference = (above - below) / (2 * kStep);
+            EXPECT_LT((difference - J_inv.col(k)).cwiseAbs().maxCoeff(), 1e-8) << "column " << k;
+        }
+    }
+}
+
+TEST(AresKinematics, ActuatorsAndHandExchangeTheSamePower) {
+    const AresKinematics kinematics;
+    PoseSampler sampler;
+    for (int i = 0; i < 200; ++i) {
+        const Matrix6d J_inv = jacobianAt(kinematics, sampler.next());
+        const Vector6d w = sampler.nextTwist();
+        const Vector6d twist = sampler.nextTwist();
+        const Vector6d forces = actuatorForces(J_inv, {w.head<3>(), w.tail<3>()});
+        EXPECT_NEAR(forces.dot(J_inv * twist), w.dot(twist), 1e-9);
+        const Wrench back = wrenchOf(J_inv, forces);
+        EXPECT_LT((back.force - w.head<3>()).norm() + (back.torque - w.tail<3>()).norm(), 1e-9);
+    }
+}
+
+TEST(AresKinematics, StaysFarFromSingularitiesAndWithinTheActuatorsForce) {
+    const AresKinematics kinematics;
+    PoseSampler sampler;
+    double worst_index = 1, worst_for_force = 0, worst_for_torque = 0;
+    int outside_stroke = 0;
+    constexpr int kPoses = 4000;
+    for (int i = 0; i < kPoses; ++i) {
+        const Pose X_DT = sampler.next();
+        const Matrix6d J_inv = jacobianAt(kinematics, X_DT);
+        EXPECT_EQ(kinematics.workspaceFaults(X_DT) & ~kWorkspaceStroke, 0u);
+        outside_stroke += kinematics.workspaceFaults(X_DT) != kWorkspaceOk;
+        worst_index = std::min(worst_index, singularityIndex(J_inv));
+        // Actuator i needs at most |row i| per unit of wrench, whatever the wrench's direction.
+        Matrix6d forces_per_wrench;
+        for (int k = 0; k < 6; ++k) {
+            const Vector6d w = Vector6d::Unit(k);
+            forces_per_wrench.col(k) = actuatorForces(J_inv, {w.head<3>(), w.tail<3>()});
+        }
+        for (int k = 0; k < kLegCount; ++k) {
+            worst_for_force =
+                std::max(worst_for_force, kSpecifiedForce * forces_per_wrench.row(k).head<3>().norm());
+            worst_for_torque =
+                std::max(worst_for_torque, kSpecifiedTorque * forces_per_wrench.row(k).tail<3>().norm());
+        }
+    }
+    EXPECT_GE(worst_index, 0.22);
+    EXPECT_LE(worst_for_force, 48);
+    EXPECT_LE(worst_for_torque, 19);
+    EXPECT_LE(outside_stroke, kPoses / 1000);  // extreme corners only
+    RecordProperty("singularity_index", std::to_string(worst_index));
+    RecordProperty("actuator_n_for_50_n", std::to_string(worst_for_force));
+    RecordProperty("actuator_n_for_1_nm", std::to_string(worst_for_torque));
+}
+
+TEST(AresKinematics, ForwardNeedsFewIterations) {
+    const AresKinematics kinematics;
+    PoseSampler sampler;
+    for (int i = 0; i < 1000; ++i) {
+        const Pose X_DT = sampler.next();
+        Vector6d q;
+        ASSERT_TRUE(kinematics.inverse(X_DT, q));
+        const ForwardSolution cold = kinematics.forward(q, Pose{});
+        EXPECT_TRUE(cold.converged);
+        EXPECT_LE(cold.iterations, 5);
+        // One loop period at 0.5 m/s and 240 deg/s away.
+        const ForwardSolution warm = kinematics.forward(q, X_DT.incremented({5e-4, 0, 0}, {0, 4.2e-3, 0}));
+        EXPECT_TRUE(warm.converged);
+        EXPECT_LE(warm.iterations, 2);
+    }
+}
+
+TEST(AresKinematics, SaysThatALinkIsTooShort) {
+    const AresKinematics kinematics;
+    const Pose far{{0.2, 0, 0}, Eigen::Quaterniond::Identity()};
+    Vector6d q;
+    Matrix6d J_inv;
+    EXPECT_FALSE(kinematics.inverse(far, q));
+    EXPECT_FALSE(kinematics.inverseJacobian(far, J_inv));
+    EXPECT_EQ(kinematics.workspaceFaults(far), kWorkspaceUnreachable);
+}
+
+TEST(AresKinematics, ReportsStrokeAndLean) {
+    const AresKinematics kinematics;
+    const double half_stroke = kinematics.geometry().stroke / 2;
+    const auto identity = Eigen::Quaterniond::Identity();
+    EXPECT_EQ(kinematics.workspaceFaults({{0, 0, half_stroke - 1e-6}, identity}), kWorkspaceOk);
+    EXPECT_EQ(kinematics.workspaceFaults({{0, 0, half_stroke + 1e-6}, identity}), kWorkspaceStroke);
+    EXPECT_EQ(kinematics.workspaceFaults({{0, 0, -half_stroke - 1e-6}, identity}), kWorkspaceStroke);
+    // Away from the pair at 0 degrees: by 104 mm its links lean to 0.42, by 123 mm they are too short.
+    EXPECT_FALSE(kinematics.workspaceFaults({{-0.102, 0, 0}, identity}) & kWorkspaceLean);
+    EXPECT_TRUE(kinematics.workspaceFaults({{-0.110, 0, 0}, identity}) & kWorkspaceLean);
+    EXPECT_EQ(kinematics.workspaceFaults({{-0.130, 0, 0}, identity}), kWorkspaceUnreachable);
+}
+
+TEST(AresKinematics, ForwardOfImpossibleJointsDoesNotConverge) {
+    const AresKinematics kinematics;
+    Vector6d q = Vector6d::Constant(kinematics.geometry().stroke / 2);
+    q[0] += 0.5;
+    EXPECT_FALSE(kinematics.forward(q, Pose{}).converged);
+    q[0] = std::numeric_limits<double>::quiet_NaN();
+    const ForwardSolution solution = kinematics.forward(q, Pose{});
+    EXPECT_FALSE(solution.converged);
+    EXPECT_TRUE(solution.X_DT.isFinite());
+}
+
+TEST(AresKinematics, RefusesAGeometryThatCannotBeBuilt) {
+    AresGeometry geometry;
+    geometry.link_length = 0.05;
+    EXPECT_FALSE(AresKinematics(geometry).isBuildable());
+}
+
+TEST(AresKinematics, SingularityIndexIsZeroWhenLegsCannotHoldThePlatform) {
+    // All links in one common direction: no force sideways, no torque about that axis.
+    Matrix6d J_inv = jacobianAt(AresKinematics{}, Pose{});
+    EXPECT_GT(singularityIndex(J_inv), 0.25);
+    for (int i = 0; i < kLegCount; ++i) J_inv.block<1, 3>(i, 0) = Eigen::RowVector3d(0, 0, 1);
+    EXPECT_LT(singularityIndex(J_inv), 1e-7);
+    EXPECT_FALSE(actuatorForces(J_inv, {{1, 0, 0}, {0, 0, 0}}).allFinite());
+}
+
+}  // namespace
+}  // namespace bonemill
