@@ -1,0 +1,25 @@
+// render_client: shows a session (docs/viewer.md).
+#include <iostream>
+
+#include "common/config/user_error.h"
+#include "common/log/log.h"
+#include "render_client/app/offscreen_viewer.h"
+#include "render_client/app/stop_signal.h"
+#include "render_client/app/window_viewer.h"
+
+int main(int argc, char** argv) {
+    try {
+        const auto options = bonemill::parseOptions(argc, argv);
+        if (!options) return 0;
+        bonemill::setUpLog("render_client", options->log_level);
+        bonemill::catchStopSignals();
+        options->offscreen ? bonemill::runOffscreen(*options) : bonemill::runWindow(*options);
+        return 0;
+    } catch (const bonemill::UserError& error) {
+        std::cerr << "error: " << error.what() << std::endl;
+        return bonemill::kUserErrorExitCode;
+    } catch (const std::exception& error) {
+        std::cerr << "error: " << error.what() << std::endl;
+        return 1;
+    }
+}

@@ -1,0 +1,79 @@
+#include "render_client/app/offscreen_viewer.h"
+
+#include <spdlog/spdlog.h>
+
+#include <cinttypes>
+#include <cstdio>
+
+#include "common/config/user_error.h"
+#include "render_client/app/scene_feed.h"
+#include "render_client/app/stop_signal.h"
+#include "render_client/offscreen/osmesa_context.h"
+
+namespace bonemill {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr float kReferenceHeight = 800;  // pixels at which text has its nominal size
+constexpr float kSmallestText = 0.7f;
+
+void makeFolder(const std::filesystem::path& folder) {
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    if (failure) throw UserError("--out " + folder.string() + ": " + failure.message());
+}
+
+void waitUntilComplete(SceneFeed& feed, const ClientOptions& options) {
+    const Clock::time_point end = Clock::now() + options.offscreen->timeout;
+    feed.updateUntil(end, [&] { return feed.isComplete() || stopRequested(); });
+    if (feed.isComplete() || stopRequested()) return;
+    throw std::runtime_error(
+        "the model was not complete after " + std::to_string(options.offscreen->timeout.count()) +
+        " s: is a haptic_server running in domain " + std::to_string(options.subscriber.domain) +
+        ", session " + std::to_string(options.subscriber.session) + "?");
+}
+
+void printLine(uint32_t frame, const std::string& file, const RenderScene& scene, SceneFeed& feed) {
+    const SceneSubscriber& subscriber = feed.subscriber();
+    const uint64_t tick = subscriber.toolState() ? subscriber.toolState()->tick() : 0;
+    std::printf(
+        "{\"frame\":%u,\"file\":\"%s\",\"nodes\":%zu,\"triangles\":%zu,\"revision_digest\":\"%016" PRIx64
+        "\",\"complete\":%s,\"server\":%s,\"epoch\":%" PRIu64 ",\"tick\":%" PRIu64 "}\n",
+        frame, file.c_str(), scene.nodeCount(), scene.triangleCount(), subscriber.digest().value(),
+        feed.isComplete() ? "true" : "false", subscriber.hasServer() ? "true" : "false", subscriber.epoch(),
+        tick);
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+void runOffscreen(const ClientOptions& options) {
+    const OffscreenOptions& wish = *options.offscreen;
+    makeFolder(wish.directory);
+    const OsmesaContext context(options.width, options.height);
+    spdlog::info("off screen, {}", context.gl().describe());
+    RenderScene scene(context.gl());
+    scene.setViewOverrides(options.view);
+    SceneFeed feed(options.subscriber, scene);
+
+    Clock::time_point due = Clock::now() + wish.interval;
+    if (wish.wait_complete) {
+        waitUntilComplete(feed, options);
+        due = Clock::now();
+    }
+    const float ui_scale = std::max(float(options.height) / kReferenceHeight, kSmallestText);
+    for (uint32_t frame = 0; frame < wish.frames; ++frame) {
+        feed.updateUntil(due, stopRequested);
+        if (stopRequested()) return;
+        due = Clock::now() + wish.interval;
+        feed.update();
+        scene.draw(options.width, options.height, ui_scale);
+        char name[32];
+        std::snprintf(name, sizeof name, "frame_%04u.png", frame);
+        writePng(context.read(), wish.directory / name);
+        printLine(frame, name, scene, feed);
+    }
+}
+
+}  // namespace bonemill

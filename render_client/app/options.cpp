@@ -1,0 +1,119 @@
+#include "render_client/app/options.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <iostream>
+
+#include "common/config/user_error.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kMmToMetres = 1e-3;
+constexpr double kDegreesToRadians = M_PI / 180;
+constexpr int kMinSize = 64;
+constexpr int kMaxSize = 8192;  // pixels; every OpenGL 3.3 driver in use can do it
+
+// What the command line holds before units are converted.
+struct RawOptions {
+    bool offscreen = false;
+    OffscreenOptions offscreen_options;
+    uint32_t interval_ms = 500;
+    uint32_t timeout_s = 60;
+    std::string size;
+    std::optional<double> azimuth_deg, elevation_deg, distance_mm;
+    std::vector<double> target_mm;
+};
+
+void parseSize(const std::string& text, ClientOptions& options) {
+    int width = 0, height = 0, used = 0;
+    const int fields = std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &used);
+    const auto in_range = [](int size) { return size >= kMinSize && size <= kMaxSize; };
+    if (fields != 2 || size_t(used) != text.size() || !in_range(width) || !in_range(height)) {
+        throw UserError("--size " + text + ": expected WxH, each " + std::to_string(kMinSize) + " to " +
+                        std::to_string(kMaxSize) + " pixels, such as 1280x800");
+    }
+    options.width = width;
+    options.height = height;
+}
+
+void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
+    app.add_option("--domain", options.subscriber.domain, "DDS domain of the server")
+        ->check(CLI::Range(uint32_t{0}, dds::kMaxDomain))
+        ->capture_default_str();
+    app.add_option("--session", options.subscriber.session, "Number that haptic_server was started with")
+        ->capture_default_str();
+    app.add_option("--size", raw.size, "Picture or window, pixels (default 1280x800)")->type_name("WxH");
+    app.add_option("--camera-azimuth-deg", raw.azimuth_deg, "Eye: 0 in front of the patient, 90 at the left")
+        ->check(CLI::Range(-360.0, 360.0));
+    app.add_option("--camera-elevation-deg", raw.elevation_deg, "Eye above the horizon")
+        ->check(CLI::Range(-89.0, 89.0));
+    app.add_option("--camera-distance-mm", raw.distance_mm, "Eye to target")
+        ->check(CLI::Range(OrbitCamera::kMinDistance / kMmToMetres, OrbitCamera::kMaxDistance / kMmToMetres));
+    app.add_option("--camera-target-mm", raw.target_mm, "Point to look at, world frame")
+        ->expected(3)
+        ->check(CLI::Range(-1e6, 1e6))
+        ->type_name("X Y Z");
+    app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
+        ->capture_default_str();
+
+    auto* offscreen =
+        app.add_flag("--offscreen", raw.offscreen, "Write PNG pictures instead of opening a window");
+    app.add_option("--frames", raw.offscreen_options.frames, "How many pictures")
+        ->check(CLI::Range(1u, 1000000u))
+        ->capture_default_str()
+        ->needs(offscreen);
+    auto* out = app.add_option("--out", raw.offscreen_options.directory,
+                               "Folder for frame_0000.png, frame_0001.png, ...");
+    out->needs(offscreen);
+    offscreen->needs(out);
+    app.add_option("--interval-ms", raw.interval_ms, "Time between pictures")
+        ->check(CLI::Range(0u, 3600000u))
+        ->capture_default_str()
+        ->needs(offscreen);
+    app.add_flag("--wait-complete", raw.offscreen_options.wait_complete,
+                 "Take the first picture when the whole model has arrived")
+        ->needs(offscreen);
+    app.add_option("--timeout-s", raw.timeout_s, "Give up --wait-complete after this")
+        ->check(CLI::Range(1u, 86400u))
+        ->capture_default_str()
+        ->needs(offscreen);
+}
+
+ClientOptions convert(const RawOptions& raw, ClientOptions options) {
+    if (!raw.size.empty()) parseSize(raw.size, options);
+    if (raw.azimuth_deg) options.view.azimuth = *raw.azimuth_deg * kDegreesToRadians;
+    if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegreesToRadians;
+    if (raw.distance_mm) options.view.distance = *raw.distance_mm * kMmToMetres;
+    if (!raw.target_mm.empty()) {
+        options.view.target =
+            kMmToMetres * Eigen::Vector3d(raw.target_mm[0], raw.target_mm[1], raw.target_mm[2]);
+    }
+    if (raw.offscreen) {
+        options.offscreen = raw.offscreen_options;
+        options.offscreen->interval = std::chrono::milliseconds(raw.interval_ms);
+        options.offscreen->timeout = std::chrono::seconds(raw.timeout_s);
+    }
+    return options;
+}
+
+}  // namespace
+
+std::optional<ClientOptions> parseOptions(int argc, const char* const* argv) {
+    ClientOptions options;
+    RawOptions raw;
+    CLI::App app{
+        "Shows the session of a haptic_server in a window, or off screen as pictures (docs/viewer.md)."};
+    addOptions(app, raw, options);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        std::cout << app.help();
+        return std::nullopt;
+    } catch (const CLI::ParseError& error) {
+        throw UserError(std::string(error.what()) + " (see render_client --help)");
+    }
+    return convert(raw, options);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,34 @@
+// Command line of render_client.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "render_client/scene/render_scene.h"
+#include "render_client/subscribe/scene_subscriber.h"
+
+namespace bonemill {
+
+struct OffscreenOptions {
+    uint32_t frames = 1;
+    std::filesystem::path directory;
+    std::chrono::milliseconds interval{500};
+    bool wait_complete = false;
+    std::chrono::seconds timeout{60};  // of wait_complete
+};
+
+struct ClientOptions {
+    SubscriberOptions subscriber;
+    ViewOverrides view;
+    int width = 1280;  // pixels
+    int height = 800;
+    std::optional<OffscreenOptions> offscreen;  // not given: a window
+    std::string log_level = "info";
+};
+
+// Empty after --help (already printed). Throws UserError.
+std::optional<ClientOptions> parseOptions(int argc, const char* const* argv);
+
+}  // namespace bonemill

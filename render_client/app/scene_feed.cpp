@@ -1,0 +1,40 @@
+#include "render_client/app/scene_feed.h"
+
+#include <spdlog/spdlog.h>
+
+#include <stdexcept>
+
+namespace bonemill {
+
+void SceneFeed::update() {
+    const SceneModel::Changes changes = subscriber_.poll();
+    if (changes.is_cleared) scene_.clearNodes();
+    try {
+        for (const NodeMesh& node : changes.nodes) scene_.setNode(node);
+        const auto& info = subscriber_.sceneInfo();
+        if (info && info->epoch() != info_epoch_) {
+            info_epoch_ = info->epoch();
+            scene_.setSceneInfo(*info);
+        }
+    } catch (const std::invalid_argument& error) {
+        spdlog::warn("the server sent what cannot be drawn: {}", error.what());
+    }
+    if (subscriber_.toolState()) scene_.setToolState(*subscriber_.toolState());
+    if (subscriber_.status()) scene_.setStatus(*subscriber_.status());
+    updateConnection();
+}
+
+// While the bone is being milled the model is always a node or two behind its newest status: what was
+// complete once is called live from then on.
+void SceneFeed::updateConnection() {
+    const bool has_server = subscriber_.hasServer();
+    if (has_server && subscriber_.isComplete()) complete_epoch_ = subscriber_.epoch();
+    had_server_ = had_server_ || has_server;
+    scene_.setConnection(!has_server && had_server_ ? Connection::kServerLost
+                         : !has_server              ? Connection::kNoServer
+                         : complete_epoch_ != 0 && complete_epoch_ == subscriber_.epoch()
+                             ? Connection::kLive
+                             : Connection::kReceiving);
+}
+
+}  // namespace bonemill

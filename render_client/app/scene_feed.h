@@ -1,0 +1,49 @@
+// Moves what the subscriber received into the scene that is drawn. Thread: the one of the OpenGL context.
+#pragma once
+
+#include <chrono>
+
+#include "render_client/scene/render_scene.h"
+#include "render_client/subscribe/scene_subscriber.h"
+
+namespace bonemill {
+
+class SceneFeed {
+  public:
+    // Throws UserError when the DDS domain cannot be joined. The scene must outlive the feed.
+    SceneFeed(const SubscriberOptions& options, RenderScene& scene) : subscriber_(options), scene_(scene) {}
+
+    // Takes everything that has arrived. Never waits.
+    void update();
+    // Goes on updating until then, so that nothing piles up. Ends early when `stop` says so.
+    template <class Stop>
+    void updateUntil(std::chrono::steady_clock::time_point end, Stop&& stop);
+
+    // The scene shows exactly the server's model.
+    bool isComplete() const {
+        return subscriber_.hasServer() && scene_.hasSceneInfo() && subscriber_.isComplete();
+    }
+
+    SceneSubscriber& subscriber() { return subscriber_; }
+
+  private:
+    void updateConnection();
+
+    SceneSubscriber subscriber_;
+    RenderScene& scene_;
+    uint64_t info_epoch_ = 0;      // of the scene info that was passed on; 0: none
+    uint64_t complete_epoch_ = 0;  // server run whose model was complete once; 0: none
+    bool had_server_ = false;
+};
+
+template <class Stop>
+void SceneFeed::updateUntil(std::chrono::steady_clock::time_point end, Stop&& stop) {
+    constexpr std::chrono::milliseconds kSlice{20};  // how late `stop` may be noticed
+    while (!stop()) {
+        const auto left = end - std::chrono::steady_clock::now();
+        if (left <= left.zero()) return;
+        if (subscriber_.waitForData(std::min<std::chrono::nanoseconds>(left, kSlice))) update();
+    }
+}
+
+}  // namespace bonemill

@@ -1,0 +1,104 @@
+// The OpenGL 3.3 core functions this program uses, loaded from whichever context is current.
+//
+// Thread: a GlApi belongs to the thread whose context was current when it was loaded. Not RT-safe.
+#pragma once
+
+#include <GL/glcorearb.h>
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#define BONEMILL_GL_FUNCTIONS(X)                                               \
+    X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                                   \
+    X(PFNGLATTACHSHADERPROC, AttachShader)                                     \
+    X(PFNGLBINDBUFFERPROC, BindBuffer)                                         \
+    X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                               \
+    X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)                             \
+    X(PFNGLBINDTEXTUREPROC, BindTexture)                                       \
+    X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                               \
+    X(PFNGLBLENDFUNCPROC, BlendFunc)                                           \
+    X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer)                               \
+    X(PFNGLBUFFERDATAPROC, BufferData)                                         \
+    X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                 \
+    X(PFNGLCLEARPROC, Clear)                                                   \
+    X(PFNGLCLEARCOLORPROC, ClearColor)                                         \
+    X(PFNGLCOLORMASKPROC, ColorMask)                                           \
+    X(PFNGLCOMPILESHADERPROC, CompileShader)                                   \
+    X(PFNGLCREATEPROGRAMPROC, CreateProgram)                                   \
+    X(PFNGLCREATESHADERPROC, CreateShader)                                     \
+    X(PFNGLCULLFACEPROC, CullFace)                                             \
+    X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                                   \
+    X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)                         \
+    X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                                   \
+    X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)                       \
+    X(PFNGLDELETESHADERPROC, DeleteShader)                                     \
+    X(PFNGLDELETETEXTURESPROC, DeleteTextures)                                 \
+    X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                         \
+    X(PFNGLDEPTHFUNCPROC, DepthFunc)                                           \
+    X(PFNGLDEPTHMASKPROC, DepthMask)                                           \
+    X(PFNGLDISABLEPROC, Disable)                                               \
+    X(PFNGLDRAWARRAYSPROC, DrawArrays)                                         \
+    X(PFNGLDRAWBUFFERPROC, DrawBuffer)                                         \
+    X(PFNGLDRAWELEMENTSPROC, DrawElements)                                     \
+    X(PFNGLENABLEPROC, Enable)                                                 \
+    X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)               \
+    X(PFNGLFINISHPROC, Finish)                                                 \
+    X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer)               \
+    X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)                     \
+    X(PFNGLGENBUFFERSPROC, GenBuffers)                                         \
+    X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                               \
+    X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)                             \
+    X(PFNGLGENTEXTURESPROC, GenTextures)                                       \
+    X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                               \
+    X(PFNGLGETERRORPROC, GetError)                                             \
+    X(PFNGLGETINTEGERVPROC, GetIntegerv)                                       \
+    X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                           \
+    X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                     \
+    X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                             \
+    X(PFNGLGETSHADERIVPROC, GetShaderiv)                                       \
+    X(PFNGLGETSTRINGPROC, GetString)                                           \
+    X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                         \
+    X(PFNGLLINKPROGRAMPROC, LinkProgram)                                       \
+    X(PFNGLPIXELSTOREIPROC, PixelStorei)                                       \
+    X(PFNGLREADBUFFERPROC, ReadBuffer)                                         \
+    X(PFNGLREADPIXELSPROC, ReadPixels)                                         \
+    X(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC, RenderbufferStorageMultisample) \
+    X(PFNGLSHADERSOURCEPROC, ShaderSource)                                     \
+    X(PFNGLTEXIMAGE2DPROC, TexImage2D)                                         \
+    X(PFNGLTEXPARAMETERIPROC, TexParameteri)                                   \
+    X(PFNGLUNIFORM1FPROC, Uniform1f)                                           \
+    X(PFNGLUNIFORM1IPROC, Uniform1i)                                           \
+    X(PFNGLUNIFORM2FPROC, Uniform2f)                                           \
+    X(PFNGLUNIFORM3FPROC, Uniform3f)                                           \
+    X(PFNGLUNIFORMMATRIX3FVPROC, UniformMatrix3fv)                             \
+    X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)                             \
+    X(PFNGLUSEPROGRAMPROC, UseProgram)                                         \
+    X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                       \
+    X(PFNGLVIEWPORTPROC, Viewport)
+
+namespace bonemill {
+
+// The driver refused something: a missing function, a shader, a framebuffer, a call.
+class GlError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+struct GlApi {
+#define BONEMILL_GL_MEMBER(type, name) type name = nullptr;
+    BONEMILL_GL_FUNCTIONS(BONEMILL_GL_MEMBER)
+#undef BONEMILL_GL_MEMBER
+
+    // `address_of("glClear")` comes from the current context. Throws GlError naming the first missing
+    // function.
+    static GlApi load(const std::function<void*(const char*)>& address_of);
+
+    // For people: renderer and version of the current context.
+    std::string describe() const;
+
+    // Throws GlError with the code and `where` when an earlier call failed.
+    void check(const char* where) const;
+};
+
+}  // namespace bonemill

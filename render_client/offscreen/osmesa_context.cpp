@@ -1,0 +1,58 @@
+#include "render_client/offscreen/osmesa_context.h"
+
+#include <GL/osmesa.h>
+
+#include <string>
+
+namespace bonemill {
+namespace {
+
+OSMesaContext makeContext() {
+    constexpr int kAttributes[] = {OSMESA_FORMAT,
+                                   OSMESA_RGBA,
+                                   OSMESA_DEPTH_BITS,
+                                   24,
+                                   OSMESA_PROFILE,
+                                   OSMESA_CORE_PROFILE,
+                                   OSMESA_CONTEXT_MAJOR_VERSION,
+                                   3,
+                                   OSMESA_CONTEXT_MINOR_VERSION,
+                                   3,
+                                   0};
+    OSMesaContext context = OSMesaCreateContextAttribs(kAttributes, nullptr);
+    if (!context) throw GlError("OSMesa cannot make an OpenGL 3.3 core context: is libosmesa6 complete?");
+    return context;
+}
+
+}  // namespace
+
+OsmesaContext::OsmesaContext(int width, int height)
+    : width_(width), height_(height), context_(makeContext()), buffer_(size_t(width) * size_t(height) * 4) {
+    if (!OSMesaMakeCurrent(static_cast<OSMesaContext>(context_), buffer_.data(), GL_UNSIGNED_BYTE, width,
+                           height)) {
+        OSMesaDestroyContext(static_cast<OSMesaContext>(context_));
+        throw GlError("OSMesa refuses a picture of " + std::to_string(width) + "x" + std::to_string(height) +
+                      " pixels");
+    }
+    gl_ = GlApi::load([](const char* name) { return reinterpret_cast<void*>(OSMesaGetProcAddress(name)); });
+}
+
+OsmesaContext::~OsmesaContext() {
+    OSMesaDestroyContext(static_cast<OSMesaContext>(context_));
+}
+
+Picture OsmesaContext::read() const {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl_.Finish();
+    Picture picture(width_, height_);
+    std::vector<uint8_t> row(size_t(width_) * 3);
+    gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
+    for (int y = 0; y < height_; ++y) {  // OpenGL counts rows from below
+        gl_.ReadPixels(0, height_ - 1 - y, width_, 1, GL_RGB, GL_UNSIGNED_BYTE, row.data());
+        std::copy(row.begin(), row.end(), picture.row(y));
+    }
+    gl_.check("reading the picture");
+    return picture;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,121 @@
+#include "render_client/scene/hud.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace bonemill {
+namespace {
+
+constexpr double kMetresToMm = 1e3;
+
+std::string number(double value, int decimals, const char* unit) {
+    if (!std::isfinite(value)) return "\u2013";
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f%s", decimals, value, unit);
+    return text;
+}
+
+double norm(const google::protobuf::RepeatedField<double>& v) {
+    return v.size() == 3 ? std::hypot(v[0], v[1], v[2]) : std::nan("");
+}
+
+// Three significant digits or so, whatever the size.
+std::string readable(double value, const char* unit) {
+    const double magnitude = std::abs(value);
+    return number(value, magnitude < 10 ? 2 : magnitude < 1000 ? 1 : 0, unit);
+}
+
+void addStatusRows(const topics::Status& status, std::vector<HudRow>& rows) {
+    rows.push_back({"Loop", number(status.rate_hz(), 1, " Hz")});
+    rows.push_back({"Tick p99", readable(status.tick_p99_us(), " \u00b5s")});
+}
+
+void addToolRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
+    rows.push_back({"Force", readable(norm(tool.force_n()), " N")});
+    rows.push_back({"Torque", readable(norm(tool.torque_nm()) * 1e3, " mN\u00b7m")});
+    rows.push_back({"Contacts", std::to_string(tool.contacts())});
+    const bool removes = tool.buttons() & 1u;
+    const bool adds = tool.buttons() & 2u;
+    rows.push_back({"Burr",
+                    removes ? "removing"
+                    : adds  ? "adding"
+                            : "idle",
+                    removes || adds ? HudTone::kWarning : HudTone::kPlain});
+}
+
+void addFaultRow(const topics::Status& status, std::vector<HudRow>& rows) {
+    if (status.device_stale()) rows.push_back({"Device", "no fresh samples", HudTone::kAlarm});
+    if (status.faults() == 0) return rows.push_back({"Faults", "none", HudTone::kGood});
+    char code[16];
+    std::snprintf(code, sizeof code, "0x%x", status.faults());
+    rows.push_back({"Faults", status.fault_text().empty() ? code : status.fault_text(), HudTone::kAlarm});
+}
+
+std::string stateText(const HudInput& input) {
+    switch (input.connection) {
+        case Connection::kNoServer:
+            return "waiting for a server";
+        case Connection::kReceiving: {
+            std::string text = "receiving " + std::to_string(input.node_count);
+            if (input.status) text += " of " + std::to_string(input.status->node_count());
+            return text + " nodes";
+        }
+        case Connection::kLive:
+            return "live, " + std::to_string(input.node_count) + " nodes";
+        case Connection::kServerLost:
+            return "server lost";
+    }
+    return "";
+}
+
+HudTone stateTone(Connection connection) {
+    switch (connection) {
+        case Connection::kLive:
+            return HudTone::kGood;
+        case Connection::kReceiving:
+            return HudTone::kWarning;
+        case Connection::kNoServer:
+            return HudTone::kWarning;
+        case Connection::kServerLost:
+            return HudTone::kAlarm;
+    }
+    return HudTone::kPlain;
+}
+
+}  // namespace
+
+Hud makeHud(const HudInput& input) {
+    Hud hud;
+    hud.title = input.info && !input.info->name().empty() ? input.info->name()
+                : input.status                            ? input.status->scene()
+                                                          : "bonemill";
+    hud.state = stateText(input);
+    hud.state_tone = stateTone(input.connection);
+    if (input.status) addStatusRows(*input.status, hud.rows);
+    if (input.tool) addToolRows(*input.tool, hud.rows);
+    if (input.status) {
+        hud.rows.push_back({"Removed", readable(input.status->removed_mm3(), " mm\u00b3")});
+        hud.rows.push_back({"Preset", input.status->preset()});
+        addFaultRow(*input.status, hud.rows);
+    }
+    return hud;
+}
+
+std::vector<HudRow> helpRows() {
+    return {{"Left drag", "orbit"},  {"Right or middle drag", "pan"}, {"Wheel", "zoom"},
+            {"R", "reset the view"}, {"C", "put the bone back"},      {"H", "show or hide this"},
+            {"Esc", "quit"}};
+}
+
+ScaleBar makeScaleBar(double metres_per_pixel, double max_pixels) {
+    const double longest = metres_per_pixel * max_pixels;
+    if (!(longest > 0) || !std::isfinite(longest)) return {};
+    const double decade = std::pow(10.0, std::floor(std::log10(longest) + 1e-9));
+    const double length = decade * (longest >= 5 * decade ? 5 : longest >= 2 * decade ? 2 : 1);
+    const double length_mm = length * kMetresToMm;
+    char text[32];
+    std::snprintf(text, sizeof text, "%g mm", length_mm);
+    return {length, text};
+}
+
+}  // namespace bonemill

@@ -1,0 +1,55 @@
+// What the head-up display says, without how it is drawn. Pure functions, any thread.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+// How the viewer stands with its server.
+enum class Connection {
+    kNoServer,    // none found yet
+    kReceiving,   // the model is still arriving
+    kLive,        // the model is complete
+    kServerLost,  // there was one
+};
+
+enum class HudTone { kPlain, kGood, kWarning, kAlarm };
+
+struct HudRow {
+    std::string label;
+    std::string value;  // UTF-8, unit included
+    HudTone tone = HudTone::kPlain;
+};
+
+struct Hud {
+    std::string title;
+    std::string state;
+    HudTone state_tone = HudTone::kPlain;
+    std::vector<HudRow> rows;
+};
+
+struct HudInput {
+    std::optional<topics::SceneInfo> info;
+    std::optional<topics::Status> status;
+    std::optional<topics::ToolState> tool;
+    Connection connection = Connection::kNoServer;
+    size_t node_count = 0;  // nodes the viewer holds
+};
+
+Hud makeHud(const HudInput& input);
+
+// The keys and mouse buttons of the window.
+std::vector<HudRow> helpRows();
+
+// A round length (1, 2 or 5 times a power of ten, m) that spans at most max_pixels, and its name.
+struct ScaleBar {
+    double length = 0;
+    std::string label;
+};
+ScaleBar makeScaleBar(double metres_per_pixel, double max_pixels);
+
+}  // namespace bonemill

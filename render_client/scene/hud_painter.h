@@ -1,0 +1,52 @@
+// Draws the head-up display, the scale bar and the help page over the finished picture.
+//
+// Thread: the one of the context. Pixels count from the upper left corner.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "render_client/gl/gl_object.h"
+#include "render_client/gl/program.h"
+#include "render_client/scene/font_atlas.h"
+#include "render_client/scene/hud.h"
+
+namespace bonemill {
+
+class HudPainter {
+  public:
+    explicit HudPainter(const GlApi& gl);
+
+    // Into the bound framebuffer. ui_scale 1 suits a picture 800 pixels high.
+    void paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel, bool show_help, int width,
+               int height, float ui_scale);
+
+  private:
+    struct Vertex {
+        float x, y, u, v;
+        float r, g, b, a;
+        float half_width, half_height, radius;
+    };
+    using Colour = std::array<float, 4>;
+
+    void box(float x, float y, float width, float height, float radius, const Colour& colour);
+    void quad(const std::array<float, 4>& rectangle, const std::array<float, 4>& uv, const Colour& colour,
+              const std::array<float, 3>& shape);
+    // Returns the pen's x after the text; y is the base line.
+    float text(float x, float y, std::string_view utf8, FontStyle style, const Colour& colour);
+    void layOutPanel(const Hud& hud);
+    void layOutScaleBar(const ScaleBar& bar, double metres_per_pixel, int width, int height);
+    void layOutHelp(int width, int height);
+    void flush(int width, int height);
+    static Colour colourOf(HudTone tone);
+
+    const GlApi& gl_;
+    Program program_;
+    GlVertexArray layout_;
+    GlBuffer buffer_;
+    std::unique_ptr<FontAtlas> font_;
+    std::vector<Vertex> vertices_;
+    float em_ = 14;  // pixels: height of the font, unit of the layout
+};
+
+}  // namespace bonemill

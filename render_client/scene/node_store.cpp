@@ -1,0 +1,80 @@
+#include "render_client/scene/node_store.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace bonemill {
+namespace {
+
+// No part of the box can be seen when all its corners lie beyond one face of the view volume.
+bool mayBeVisible(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_from_model) {
+    Eigen::Matrix<float, 4, 8> corners;
+    for (int i = 0; i < 8; ++i) {
+        const auto corner = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(i));
+        corners.col(i) = clip_from_model * corner.homogeneous();
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto value = corners.row(axis).array();
+        const auto w = corners.row(3).array();
+        if ((value > w).all() || (value < -w).all()) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+void NodeStore::set(const NodeMesh& mesh) {
+    if (mesh.isEmpty()) return remove(mesh.leaf);
+    if (*std::max_element(mesh.indices.begin(), mesh.indices.end()) >= mesh.vertices.size()) {
+        throw std::invalid_argument("node " + std::to_string(mesh.leaf) + ": a triangle without its vertex");
+    }
+    Node node{GlVertexArray(gl_),
+              GlBuffer(gl_),
+              GlBuffer(gl_),
+              GLsizei(mesh.indices.size()),
+              mesh.origin,
+              mesh.step,
+              {}};
+    for (const PackedVertex& v : mesh.vertices) {
+        node.box.extend(mesh.origin + mesh.step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z)));
+    }
+    gl_.BindVertexArray(node.layout.name());
+    gl_.BindBuffer(GL_ARRAY_BUFFER, node.vertices.name());
+    gl_.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(mesh.vertices.size() * sizeof(PackedVertex)),
+                   mesh.vertices.data(), GL_DYNAMIC_DRAW);
+    gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, node.indices.name());
+    gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, GLsizeiptr(mesh.indices.size() * sizeof(uint32_t)),
+                   mesh.indices.data(), GL_DYNAMIC_DRAW);
+    constexpr GLsizei kStride = sizeof(PackedVertex);
+    gl_.VertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, kStride, nullptr);
+    gl_.VertexAttribPointer(1, 2, GL_BYTE, GL_FALSE, kStride,
+                            reinterpret_cast<const void*>(offsetof(PackedVertex, octahedral_u)));
+    gl_.EnableVertexAttribArray(0);
+    gl_.EnableVertexAttribArray(1);
+    gl_.BindVertexArray(0);
+    nodes_.insert_or_assign(mesh.leaf, std::move(node));
+}
+
+size_t NodeStore::triangleCount() const {
+    size_t count = 0;
+    for (const auto& [leaf, node] : nodes_) count += size_t(node.index_count) / 3;
+    return count;
+}
+
+size_t NodeStore::draw(const Program& program, const Eigen::Matrix4f& clip_from_V) const {
+    const GLint origin = program.uniform("origin");
+    const GLint step = program.uniform("step");
+    size_t triangles = 0;
+    for (const auto& [leaf, node] : nodes_) {
+        if (!mayBeVisible(node.box, clip_from_V)) continue;
+        program.set(origin, node.origin);
+        program.set(step, node.step);
+        gl_.BindVertexArray(node.layout.name());
+        gl_.DrawElements(GL_TRIANGLES, node.index_count, GL_UNSIGNED_INT, nullptr);
+        triangles += size_t(node.index_count) / 3;
+    }
+    gl_.BindVertexArray(0);
+    return triangles;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,45 @@
+// The bone on the GPU: one vertex and one index buffer per octree leaf, drawn in ascending order of the leaf.
+//
+// Thread: the one of the context. The same nodes give the same picture in whatever order they arrived.
+#pragma once
+
+#include <map>
+
+#include "common/geometry/node_mesh.h"
+#include "render_client/gl/gl_object.h"
+#include "render_client/gl/program.h"
+
+namespace bonemill {
+
+class NodeStore {
+  public:
+    explicit NodeStore(const GlApi& gl) : gl_(gl) {}
+
+    // Replaces the leaf's mesh; an empty one removes it. Throws std::invalid_argument when an index has no
+    // vertex.
+    void set(const NodeMesh& mesh);
+    void remove(uint32_t leaf) { nodes_.erase(leaf); }
+    void clear() { nodes_.clear(); }
+
+    size_t nodeCount() const { return nodes_.size(); }
+    size_t triangleCount() const;
+
+    // Draws what may be inside the view volume of clip_from_V with the program in use (uniforms origin and
+    // step). Returns the number of triangles drawn.
+    size_t draw(const Program& program, const Eigen::Matrix4f& clip_from_V) const;
+
+  private:
+    struct Node {
+        GlVertexArray layout;
+        GlBuffer vertices;
+        GlBuffer indices;
+        GLsizei index_count;
+        Eigen::Vector3f origin;   // V, m
+        Eigen::Vector3f step;     // V, m
+        Eigen::AlignedBox3f box;  // V, m
+    };
+    const GlApi& gl_;
+    std::map<uint32_t, Node> nodes_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,74 @@
+// Everything a viewer shows, fed with plain updates and drawn into any OpenGL 3.3 core context.
+//
+// Thread: the one of the context, which must be current for every call. The picture depends only on the
+// newest updates, the view and the size, not on the order in which the updates came.
+#pragma once
+
+#include <optional>
+
+#include "render_client/scene/hud_painter.h"
+#include "render_client/scene/scene_renderer.h"
+
+namespace bonemill {
+
+// Replaces parts of the scene file's first view. W, m, rad.
+struct ViewOverrides {
+    std::optional<Eigen::Vector3d> target;
+    std::optional<double> distance;
+    std::optional<double> azimuth;
+    std::optional<double> elevation;
+};
+
+class RenderScene {
+  public:
+    // Throws GlError (driver) or UserError (font).
+    explicit RenderScene(const GlApi& gl);
+
+    // Replaces the node's mesh; an empty one removes it. Throws std::invalid_argument on a mesh that
+    // contradicts itself.
+    void setNode(const NodeMesh& mesh) { nodes_.set(mesh); }
+    void removeNode(uint32_t leaf) { nodes_.remove(leaf); }
+    void clearNodes() { nodes_.clear(); }
+
+    // The first scene, and every scene of another name, resets the view. Throws std::invalid_argument on a
+    // bad message.
+    void setSceneInfo(const topics::SceneInfo& info);
+    void setToolState(const topics::ToolState& tool) { hud_input_.tool = tool; }
+    void setStatus(const topics::Status& status) { hud_input_.status = status; }
+    void setConnection(Connection connection) { hud_input_.connection = connection; }
+
+    OrbitCamera& camera() { return camera_; }
+    void setViewOverrides(const ViewOverrides& overrides);
+    // Back to the first view, at the next draw().
+    void resetView() { view_pending_ = true; }
+    void toggleHelp() { show_help_ = !show_help_; }
+    void showHud(bool show) { show_hud_ = show; }
+
+    size_t nodeCount() const { return nodes_.nodeCount(); }
+    size_t triangleCount() const { return nodes_.triangleCount(); }
+    size_t trianglesDrawn() const { return renderer_.trianglesDrawn(); }
+    bool hasSceneInfo() const { return hud_input_.info.has_value(); }
+
+    // Into `target`, a framebuffer of this size (pixels). ui_scale 1 suits 800 pixels of height.
+    void draw(int width, int height, float ui_scale, GLuint target = 0);
+
+  private:
+    void applyFirstView(double aspect);
+    FrameView makeView() const;
+
+    NodeStore nodes_;
+    ToolMesh tool_;
+    SceneRenderer renderer_;
+    HudPainter hud_painter_;
+    HudInput hud_input_;
+    Pose X_WV_;
+    Eigen::AlignedBox3d bone_V_;
+    OrbitCamera camera_;
+    ViewOverrides overrides_;
+    bool view_pending_ = true;
+    bool show_help_ = false;
+    bool show_hud_ = true;
+    const GlApi& gl_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,98 @@
+#include "render_client/scene/render_targets.h"
+
+#include <algorithm>
+
+namespace bonemill {
+
+RenderTargets::RenderTargets(const GlApi& gl, int width, int height)
+    : gl_(gl),
+      width_(width),
+      height_(height),
+      scene_(gl),
+      resolved_(gl),
+      occlusion_(gl),
+      shadow_(gl),
+      scene_colour_(gl),
+      scene_depth_(gl),
+      colour_texture_(gl),
+      depth_texture_(gl),
+      occlusion_texture_(gl),
+      shadow_texture_(gl) {
+    makeScene();
+    makeResolved();
+    makeOcclusion();
+    makeShadow();
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl_.check("making the render targets");
+}
+
+void RenderTargets::makeScene() {
+    GLint most_samples = 0;
+    gl_.GetIntegerv(GL_MAX_SAMPLES, &most_samples);
+    const GLsizei samples = std::min(most_samples, kWantedSamples);
+    gl_.BindRenderbuffer(GL_RENDERBUFFER, scene_colour_.name());
+    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width_, height_);
+    gl_.BindRenderbuffer(GL_RENDERBUFFER, scene_depth_.name());
+    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, width_, height_);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, scene_.name());
+    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, scene_colour_.name());
+    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, scene_depth_.name());
+    checkComplete("scene");
+}
+
+void RenderTargets::makeResolved() {
+    makeTexture(colour_texture_, GL_RGBA8, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
+    makeTexture(depth_texture_, GL_DEPTH_COMPONENT24, width_, height_, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
+                GL_NEAREST);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, resolved_.name());
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour_texture_.name(), 0);
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_texture_.name(), 0);
+    checkComplete("resolved scene");
+}
+
+void RenderTargets::makeOcclusion() {
+    makeTexture(occlusion_texture_, GL_RG16F, occlusionWidth(), occlusionHeight(), GL_RG, GL_FLOAT,
+                GL_NEAREST);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, occlusion_.name());
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, occlusion_texture_.name(),
+                             0);
+    checkComplete("occlusion");
+}
+
+void RenderTargets::makeShadow() {
+    makeTexture(shadow_texture_, GL_DEPTH_COMPONENT24, kShadowSize, kShadowSize, GL_DEPTH_COMPONENT,
+                GL_UNSIGNED_INT, GL_LINEAR);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, shadow_.name());
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, shadow_texture_.name(), 0);
+    gl_.DrawBuffer(GL_NONE);
+    gl_.ReadBuffer(GL_NONE);
+    checkComplete("shadow");
+}
+
+void RenderTargets::makeTexture(const GlTexture& texture, GLint format, int width, int height, GLenum layout,
+                                GLenum type, GLint filter) const {
+    gl_.BindTexture(GL_TEXTURE_2D, texture.name());
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, layout, type, nullptr);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+void RenderTargets::resolve() const {
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, scene_.name());
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.name());
+    gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_,
+                        GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+}
+
+void RenderTargets::checkComplete(const char* what) const {
+    const GLenum status = gl_.CheckFramebufferStatus(GL_FRAMEBUFFER);
+    if (status == GL_FRAMEBUFFER_COMPLETE) return;
+    throw GlError(std::string("the driver refuses the ") + what + " buffer of " + std::to_string(width_) +
+                  "x" + std::to_string(height_) + " pixels (status " + std::to_string(status) + ")");
+}
+
+}  // namespace bonemill

@@ -1,0 +1,338 @@
+#include "render_client/scene/shaders.h"
+
+namespace bonemill::shaders {
+
+// The light rig is fixed to the camera, so that what one looks at is always lit: a warm key from the upper
+// left with a shadow, a cool fill from the right, a rim from behind, and a hemisphere.
+const char kLighting[] = R"(
+uniform sampler2DShadow shadow_map;
+uniform vec3 key_direction;   // C, towards the light
+uniform float shadow_texel;   // m in the world per texel of the shadow map
+uniform mat4 shadow_from_camera;
+
+const vec3 kKeyColour = vec3(1.00, 0.94, 0.85) * 2.35;
+const vec3 kFillColour = vec3(0.60, 0.70, 0.92) * 0.30;
+const vec3 kRimColour = vec3(0.75, 0.86, 1.00);
+const vec3 kSky = vec3(0.27, 0.29, 0.33);
+const vec3 kGround = vec3(0.17, 0.12, 0.09);
+const vec3 kFillDirection = normalize(vec3(0.85, -0.15, 0.45));
+
+vec3 toneMap(vec3 linear) {
+    // Narkowicz' fit of the ACES film curve, then the display's gamma.
+    vec3 film = (linear * (2.51 * linear + 0.03)) / (linear * (2.43 * linear + 0.59) + 0.14);
+    return pow(clamp(film, 0.0, 1.0), vec3(1.0 / 2.2));
+}
+
+float keyVisibility(vec3 p_C, vec3 normal) {
+    vec3 offset = normal * shadow_texel * (1.5 + 2.5 * (1.0 - max(dot(normal, key_direction), 0.0)));
+    vec4 clip = shadow_from_camera * vec4(p_C + offset, 1.0);
+    vec3 uvw = clip.xyz * 0.5 + 0.5;
+    if (any(lessThan(uvw.xy, vec2(0.0))) || any(greaterThan(uvw.xy, vec2(1.0)))) return 1.0;
+    uvw.z = clamp(uvw.z, 0.0, 1.0);
+    vec2 texel = 1.3 / vec2(textureSize(shadow_map, 0));
+    float sum = 0.0;
+    for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) sum += texture(shadow_map, vec3(uvw.xy + vec2(x, y) * texel, uvw.z));
+    return sum / 9.0;
+}
+
+vec3 hemisphere(vec3 normal) { return mix(kGround, kSky, 0.5 + 0.5 * normal.y); }
+)";
+
+const char kMeshVertex[] = R"(
+layout(location = 0) in vec3 steps;
+layout(location = 1) in vec2 octahedral;
+uniform vec3 origin;
+uniform vec3 step;
+uniform mat4 camera_from_model;
+uniform mat4 clip_from_camera;
+out vec3 p_C;
+out vec3 n_C;
+out vec3 p_M;
+
+vec3 unitVector(vec2 uv) {
+    vec3 v = vec3(uv, 1.0 - abs(uv.x) - abs(uv.y));
+    if (v.z < 0.0) v.xy = (1.0 - abs(v.yx)) * vec2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0);
+    return normalize(v);
+}
+
+void main() {
+    p_M = origin + step * steps;
+    p_C = (camera_from_model * vec4(p_M, 1.0)).xyz;
+    n_C = mat3(camera_from_model) * unitVector(octahedral / 127.0);
+    gl_Position = clip_from_camera * vec4(p_C, 1.0);
+}
+)";
+
+const char kToolVertex[] = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+uniform mat4 camera_from_model;
+uniform mat4 clip_from_camera;
+out vec3 p_C;
+out vec3 n_C;
+out vec3 p_M;
+
+void main() {
+    p_M = position;
+    p_C = (camera_from_model * vec4(p_M, 1.0)).xyz;
+    n_C = mat3(camera_from_model) * normal;
+    gl_Position = clip_from_camera * vec4(p_C, 1.0);
+}
+)";
+
+const char kDepthVertex[] = R"(
+layout(location = 0) in vec3 steps;
+uniform vec3 origin;
+uniform vec3 step;
+uniform mat4 clip_from_model;
+void main() { gl_Position = clip_from_model * vec4(origin + step * steps, 1.0); }
+)";
+
+const char kDepthFragment[] = "void main() {}\n";
+
+const char kFullScreenVertex[] = R"(
+out vec2 uv;
+void main() {
+    uv = vec2(gl_VertexID == 1 ? 2.0 : 0.0, gl_VertexID == 2 ? 2.0 : 0.0);
+    gl_Position = vec4(uv * 2.0 - 1.0, 1.0, 1.0);
+}
+)";
+
+const char kBackgroundFragment[] = R"(
+in vec2 uv;
+out vec4 colour;
+void main() {
+    vec3 base = mix(vec3(0.055, 0.066, 0.082), vec3(0.165, 0.200, 0.240), smoothstep(0.0, 1.0, uv.y));
+    float vignette = 1.0 - 0.45 * dot(uv - 0.5, uv - 0.5);
+    // One grey level of ordered noise hides the steps of an 8-bit gradient.
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;
+    colour = vec4(base * vignette + noise / 255.0, 1.0);
+}
+)";
+
+const char kBoneFragment[] = R"(
+in vec3 p_C;
+in vec3 n_C;
+in vec3 p_M;
+uniform float grain_size;  // m, of the faint mottling
+out vec4 colour;
+
+float hash(vec3 cell) { return fract(sin(dot(cell, vec3(127.1, 311.7, 74.7))) * 43758.5453); }
+
+float valueNoise(vec3 p) {
+    vec3 cell = floor(p), f = fract(p);
+    f = f * f * (3.0 - 2.0 * f);
+    vec4 low = vec4(hash(cell), hash(cell + vec3(1, 0, 0)), hash(cell + vec3(0, 1, 0)), hash(cell + vec3(1, 1, 0)));
+    cell.z += 1.0;
+    vec4 high = vec4(hash(cell), hash(cell + vec3(1, 0, 0)), hash(cell + vec3(0, 1, 0)), hash(cell + vec3(1, 1, 0)));
+    vec4 z = mix(low, high, f.z);
+    return mix(mix(z.x, z.y, f.x), mix(z.z, z.w, f.x), f.y);
+}
+
+void main() {
+    vec3 to_eye = normalize(-p_C);
+    vec3 normal = normalize(n_C);
+    bool inside = !gl_FrontFacing;  // an open border, or the eye inside the bone
+    if (inside) normal = -normal;
+
+    float mottling = valueNoise(p_M / grain_size) * 0.65 + valueNoise(p_M / grain_size * 2.7 + 11.0) * 0.35;
+    vec3 albedo = mix(vec3(0.69, 0.55, 0.38), vec3(0.82, 0.71, 0.54), mottling);
+    if (inside) albedo = vec3(0.42, 0.16, 0.12);
+
+    float facing = dot(normal, key_direction);
+    float visible = keyVisibility(p_C, normal);
+    const float kWrap = 0.12;  // light that bone lets through
+    float key = max((facing + kWrap) / (1.0 + kWrap), 0.0) * mix(0.06, 1.0, visible);
+    vec3 light = kKeyColour * key + kFillColour * max(dot(normal, kFillDirection), 0.0) + hemisphere(normal);
+    // Light inside the bone gives the edge of the shadow a warm tint.
+    light += vec3(0.34, 0.13, 0.05) * key * (1.0 - visible);
+
+    vec3 half_way = normalize(key_direction + to_eye);
+    float gloss = pow(max(dot(normal, half_way), 0.0), 42.0) * 0.34 * visible * step(0.0, facing);
+    float rim = pow(1.0 - max(dot(normal, to_eye), 0.0), 4.0) * (0.35 + 0.65 * max(normal.y, 0.0));
+    colour = vec4(toneMap(albedo * light * 0.62 + kKeyColour * gloss * 0.4 + kRimColour * rim * 0.16), 1.0);
+}
+)";
+
+const char kToolFragment[] = R"(
+in vec3 p_C;
+in vec3 n_C;
+in vec3 p_M;
+uniform float burr_radius;  // m
+uniform vec3 milling_glow;  // linear colour, 0 when idle
+out vec4 colour;
+
+// A photographer's tent: bright panels over a dark studio, seen in the mirror of the metal.
+vec3 studio(vec3 direction) {
+    float panel = smoothstep(0.35, 0.75, dot(direction, key_direction));
+    float strip = smoothstep(0.80, 0.93, dot(direction, kFillDirection));
+    float horizon = smoothstep(-0.25, 0.35, direction.y);
+    return mix(vec3(0.05, 0.05, 0.06), vec3(0.50, 0.55, 0.62), horizon) + panel * vec3(1.5, 1.42, 1.3)
+         + strip * vec3(0.45, 0.6, 0.9);
+}
+
+void main() {
+    vec3 to_eye = normalize(-p_C);
+    vec3 normal = normalize(n_C);
+    if (!gl_FrontFacing) normal = -normal;
+
+    float radial = length(p_M) / max(burr_radius, 1e-6);
+    float burr = 1.0 - smoothstep(1.03, 1.08, radial);
+    float shaft_cut = 1.0 - smoothstep(0.0, 0.25, radial - 1.02);
+    // Spiral flutes of a round burr: ridges over the angle about the shaft (+y of T), twisted along it.
+    float angle = atan(p_M.z, p_M.x);
+    float around = length(p_M.xz) / max(burr_radius, 1e-6);
+    float flute = sin(10.0 * angle + 2.2 * p_M.y / max(burr_radius, 1e-6));
+    float groove = burr * smoothstep(0.15, 0.55, around) * smoothstep(-0.2, -0.9, flute);
+
+    vec3 metal = mix(vec3(0.72, 0.74, 0.77), vec3(0.90, 0.78, 0.52), burr);
+    vec3 mirror = studio(reflect(-to_eye, normal));
+    float visible = keyVisibility(p_C, normal);
+    vec3 diffuse = kKeyColour * max(dot(normal, key_direction), 0.0) * visible + hemisphere(normal);
+    float fresnel = pow(1.0 - max(dot(normal, to_eye), 0.0), 5.0);
+    vec3 shaded = metal * (mirror * mix(0.45, 0.75, visible) + diffuse * 0.16) + fresnel * 0.5;
+    shaded *= 1.0 - 0.65 * groove - 0.25 * shaft_cut * (1.0 - burr);
+    shaded *= 1.0 - 0.55 * burr * min(dot(milling_glow, vec3(1.0)), 1.0);  // leave room for the glow
+    shaded += milling_glow * burr * (0.40 + 0.9 * pow(1.0 - max(dot(normal, to_eye), 0.0), 1.5)) * (1.0 - 0.6 * groove);
+    colour = vec4(toneMap(shaded), 1.0);
+}
+)";
+
+const char kGhostFragment[] = R"(
+in vec3 p_C;
+in vec3 n_C;
+uniform float strength;
+out vec4 colour;
+void main() {
+    float edge = pow(1.0 - abs(dot(normalize(n_C), normalize(-p_C))), 1.5);
+    colour = vec4(0.35, 0.80, 1.0, strength * (0.03 + 0.60 * edge * edge));
+}
+)";
+
+// Scalable ambient obscurance (McGuire, Mara, Luebke: High Performance Graphics 2012), from the depth buffer
+// alone, at half resolution. The 4 x 4 rotation pattern is averaged out exactly by the 4 x 4 gather of the
+// composite.
+const char kOcclusionFragment[] = R"(
+in vec2 uv;
+uniform sampler2D depth_map;
+uniform vec2 near_far;
+uniform vec2 tangents;      // of the half field of view, x and y
+uniform float radius;       // m
+uniform float max_radius;   // in picture heights
+out vec2 occlusion_depth;
+
+const int kSamples = 14;
+
+float eyeDepth(ivec2 texel) {
+    float z = texelFetch(depth_map, clamp(texel, ivec2(0), textureSize(depth_map, 0) - 1), 0).r * 2.0 - 1.0;
+    return 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - z * (near_far.y - near_far.x));
+}
+vec3 position(ivec2 texel, vec2 size) {
+    vec2 ndc = (vec2(texel) + 0.5) / size * 2.0 - 1.0;
+    float depth = eyeDepth(texel);
+    return vec3(ndc * tangents * depth, -depth);
+}
+vec3 nearest(vec3 center, vec3 a, vec3 b) {
+    return abs(a.z - center.z) < abs(b.z - center.z) ? a - center : center - b;
+}
+
+void main() {
+    vec2 size = vec2(textureSize(depth_map, 0));
+    ivec2 texel = ivec2(uv * size);
+    if (texelFetch(depth_map, texel, 0).r >= 1.0) { occlusion_depth = vec2(1.0, near_far.y); return; }
+    vec3 p = position(texel, size);
+    vec3 dx = nearest(p, position(texel + ivec2(1, 0), size), position(texel - ivec2(1, 0), size));
+    vec3 dy = nearest(p, position(texel + ivec2(0, 1), size), position(texel - ivec2(0, 1), size));
+    vec3 normal = normalize(cross(dx, dy));
+
+    float picture_radius = min(radius / (2.0 * tangents.y * -p.z), max_radius);  // in picture heights
+    float world_radius = picture_radius * 2.0 * tangents.y * -p.z;
+    ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
+    float turn = float((cell.x * 4 + cell.y * 5 + (cell.x & cell.y)) % 16) / 16.0 * 6.2831853;
+    float sum = 0.0;
+    for (int i = 0; i < kSamples; ++i) {
+        float along = (float(i) + 0.5) / float(kSamples);
+        float angle = along * 6.2831853 * 5.0 + turn;
+        vec2 offset = vec2(cos(angle), sin(angle)) * along * picture_radius * size.y;
+        vec3 v = position(texel + ivec2(offset), size) - p;
+        float squared = dot(v, v);
+        float falloff = max(1.0 - squared / (world_radius * world_radius), 0.0);
+        float above = dot(v, normal) / (sqrt(squared) + 1e-9) - 0.08;
+        sum += falloff * falloff * max(above, 0.0);
+    }
+    float occlusion = clamp(1.0 - 2.9 * sum / float(kSamples), 0.0, 1.0);
+    occlusion_depth = vec2(occlusion, -p.z);
+}
+)";
+
+const char kCompositeFragment[] = R"(
+in vec2 uv;
+uniform sampler2D colour_map;
+uniform sampler2D depth_map;
+uniform sampler2D occlusion_map;
+uniform vec2 near_far;
+uniform float depth_tolerance;  // m
+out vec4 colour;
+
+void main() {
+    vec3 shaded = texture(colour_map, uv).rgb;
+    float stored = texelFetch(depth_map, ivec2(gl_FragCoord.xy), 0).r;
+    if (stored < 1.0) {
+        float z = stored * 2.0 - 1.0;
+        float depth = 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - z * (near_far.y - near_far.x));
+        ivec2 limit = textureSize(occlusion_map, 0) - 1;
+        ivec2 base = ivec2(floor(gl_FragCoord.xy * 0.5 - 0.5)) - 1;
+        float sum = 0.0, weights = 1e-4;
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 4; ++x) {
+                vec2 sample_ = texelFetch(occlusion_map, clamp(base + ivec2(x, y), ivec2(0), limit), 0).rg;
+                float weight = max(1.0 - abs(sample_.g - depth) / depth_tolerance, 0.0) + 1e-4;
+                sum += sample_.r * weight;
+                weights += weight;
+            }
+        float occlusion = sum / weights;
+        // Crevices of bone keep a warm tint instead of turning grey.
+        shaded *= mix(vec3(0.24, 0.15, 0.11), vec3(1.0), occlusion);
+    }
+    colour = vec4(shaded, 1.0);
+}
+)";
+
+const char kHudVertex[] = R"(
+layout(location = 0) in vec2 position;  // pixels from the upper left corner
+layout(location = 1) in vec2 uv;        // glyph: in the font atlas; box: pixels from its centre
+layout(location = 2) in vec4 colour;
+layout(location = 3) in vec3 box;       // half width, half height, corner radius; radius < 0 marks a glyph
+uniform vec2 viewport;
+out vec2 f_uv;
+out vec4 f_colour;
+flat out vec3 f_box;
+void main() {
+    f_uv = uv;
+    f_colour = colour;
+    f_box = box;
+    gl_Position = vec4(position.x / viewport.x * 2.0 - 1.0, 1.0 - position.y / viewport.y * 2.0, 0.0, 1.0);
+}
+)";
+
+const char kHudFragment[] = R"(
+in vec2 f_uv;
+in vec4 f_colour;
+flat in vec3 f_box;
+uniform sampler2D font;
+out vec4 colour;
+void main() {
+    float cover;
+    if (f_box.z < 0.0) {
+        cover = texture(font, f_uv).r;
+    } else {
+        vec2 outside = abs(f_uv) - f_box.xy + f_box.z;
+        float distance = length(max(outside, 0.0)) + min(max(outside.x, outside.y), 0.0) - f_box.z;
+        cover = clamp(0.5 - distance, 0.0, 1.0);
+    }
+    colour = vec4(f_colour.rgb, f_colour.a * cover);
+}
+)";
+
+}  // namespace bonemill::shaders

@@ -1,0 +1,23 @@
+// GLSL sources (without #version) of everything that is drawn. Colours are linear until toneMap().
+#pragma once
+
+namespace bonemill::shaders {
+
+// Vertex attributes of meshes: 0 position (quantisation steps), 1 normal (octahedral ±127, or a vector for
+// the tool).
+extern const char kMeshVertex[];   // bone nodes
+extern const char kToolVertex[];   // the tool
+extern const char kDepthVertex[];  // shadow casters, bone or tool
+extern const char kDepthFragment[];
+extern const char kFullScreenVertex[];  // 3 vertices, no attributes
+extern const char kBackgroundFragment[];
+extern const char kLighting[];  // goes before the next two
+extern const char kBoneFragment[];
+extern const char kToolFragment[];
+extern const char kGhostFragment[];
+extern const char kOcclusionFragment[];
+extern const char kCompositeFragment[];
+extern const char kHudVertex[];
+extern const char kHudFragment[];
+
+}  // namespace bonemill::shaders

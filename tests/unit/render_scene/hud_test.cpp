@@ -1,0 +1,102 @@
+#include "render_client/scene/hud.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace bonemill {
+namespace {
+
+const HudRow* find(const Hud& hud, const std::string& label) {
+    const auto row =
+        std::find_if(hud.rows.begin(), hud.rows.end(), [&](const HudRow& r) { return r.label == label; });
+    return row == hud.rows.end() ? nullptr : &*row;
+}
+
+HudInput liveInput() {
+    HudInput input;
+    topics::SceneInfo info;
+    info.set_name("skull");
+    input.info = info;
+    topics::Status status;
+    status.set_preset("thesis_2012");
+    status.set_rate_hz(999.84);
+    status.set_tick_p99_us(187.42);
+    status.set_removed_mm3(12.345);
+    status.set_node_count(40);
+    input.status = status;
+    topics::ToolState tool;
+    for (const double v : {3.0, 0.0, 4.0}) tool.add_force_n(v);
+    for (const double v : {0.0, 0.012, 0.0}) tool.add_torque_nm(v);
+    tool.set_contacts(17);
+    tool.set_buttons(1);
+    input.tool = tool;
+    input.connection = Connection::kLive;
+    input.node_count = 40;
+    return input;
+}
+
+TEST(Hud, ShowsWhatTheServerMeasuresWithUnits) {
+    const Hud hud = makeHud(liveInput());
+    EXPECT_EQ(hud.title, "skull");
+    EXPECT_EQ(hud.state, "live, 40 nodes");
+    EXPECT_EQ(hud.state_tone, HudTone::kGood);
+    ASSERT_TRUE(find(hud, "Loop"));
+    EXPECT_EQ(find(hud, "Loop")->value, "999.8 Hz");
+    EXPECT_EQ(find(hud, "Tick p99")->value, "187.4 \u00b5s");
+    EXPECT_EQ(find(hud, "Force")->value, "5.00 N");
+    EXPECT_EQ(find(hud, "Torque")->value, "12.0 mN\u00b7m");
+    EXPECT_EQ(find(hud, "Contacts")->value, "17");
+    EXPECT_EQ(find(hud, "Burr")->value, "removing");
+    EXPECT_EQ(find(hud, "Removed")->value, "12.3 mm\u00b3");
+    EXPECT_EQ(find(hud, "Preset")->value, "thesis_2012");
+    EXPECT_EQ(find(hud, "Faults")->value, "none");
+}
+
+TEST(Hud, AlarmsAboutFaultsAndAStaleDevice) {
+    HudInput input = liveInput();
+    input.status->set_faults(0x22);
+    EXPECT_EQ(find(makeHud(input), "Faults")->value, "0x22");
+    EXPECT_EQ(find(makeHud(input), "Faults")->tone, HudTone::kAlarm);
+    input.status->set_fault_text("stale device");
+    EXPECT_EQ(find(makeHud(input), "Faults")->value, "stale device");
+    EXPECT_FALSE(find(makeHud(input), "Device"));
+    input.status->set_device_stale(true);
+    ASSERT_TRUE(find(makeHud(input), "Device"));
+    EXPECT_EQ(find(makeHud(input), "Device")->tone, HudTone::kAlarm);
+}
+
+TEST(Hud, SaysHowItStandsWithTheServer) {
+    HudInput input;
+    EXPECT_EQ(makeHud(input).state, "waiting for a server");
+    EXPECT_TRUE(makeHud(input).rows.empty());
+    input = liveInput();
+    input.connection = Connection::kReceiving;
+    input.node_count = 12;
+    EXPECT_EQ(makeHud(input).state, "receiving 12 of 40 nodes");
+    input.connection = Connection::kServerLost;
+    EXPECT_EQ(makeHud(input).state, "server lost");
+    EXPECT_EQ(makeHud(input).state_tone, HudTone::kAlarm);
+}
+
+TEST(Hud, NumbersThatAreNoneBecomeADash) {
+    HudInput input = liveInput();
+    input.status->set_rate_hz(std::numeric_limits<double>::quiet_NaN());
+    input.tool->clear_force_n();
+    const Hud hud = makeHud(input);
+    EXPECT_EQ(find(hud, "Loop")->value, "\u2013");
+    EXPECT_EQ(find(hud, "Force")->value, "\u2013");
+}
+
+TEST(ScaleBar, IsTheLongestRoundLengthThatFits) {
+    EXPECT_DOUBLE_EQ(makeScaleBar(1e-5, 250).length, 2e-3);
+    EXPECT_EQ(makeScaleBar(1e-5, 250).label, "2 mm");
+    EXPECT_EQ(makeScaleBar(1e-5, 99).label, "0.5 mm");
+    EXPECT_EQ(makeScaleBar(1e-3, 60).label, "50 mm");
+    EXPECT_EQ(makeScaleBar(1e-5, 100).label, "1 mm");
+    EXPECT_EQ(makeScaleBar(0, 100).length, 0);
+}
+
+}  // namespace
+}  // namespace bonemill
