@@ -73,15 +73,18 @@ std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& l
     }
     DicomSlice slice = headerOf(image, path);
     if (frames == 1) return {slice};
-    const std::vector<Eigen::Vector3d> positions = framePositions(path);
-    if (positions.size() != frames) {
+    const std::vector<DicomFrame> places = readFrames(path);
+    if (places.size() != frames) {
         left_out.add("multi-frame images that do not say where each frame lies", path);
         return {};
     }
     std::vector<DicomSlice> slices;
     for (size_t f = 0; f < frames; ++f) {
         slice.frame = int(f);
-        slice.position_mm = positions[f];
+        slice.position_mm = places[f].position_mm;
+        slice.row_direction = places[f].row_direction;
+        slice.column_direction = places[f].column_direction;
+        slice.pixel_spacing_mm = places[f].pixel_spacing_mm;
         slices.push_back(slice);
     }
     return slices;

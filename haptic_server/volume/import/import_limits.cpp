@@ -46,11 +46,11 @@ void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel
                         " MiB of memory are free; crop or resample it");
 }
 
-void checkStoredBytes(uint64_t payload_bytes, uint64_t stored_bytes, bool may_be_compressed, const std::string& file) {
-    const uint64_t at_most = may_be_compressed ? stored_bytes * kMaxDeflateRatio : stored_bytes;
-    if (payload_bytes > at_most)
-        throw UserError(file + ": the header promises " + std::to_string(payload_bytes) + " bytes of voxels, but only " +
-                        std::to_string(stored_bytes) + " bytes are stored; the file is cut short or damaged");
+void checkStoredBytes(uint64_t promised_bytes, uint64_t stored_bytes, const std::string& file) {
+    if (promised_bytes > stored_bytes)
+        throw UserError(file + ": the header promises " + std::to_string(promised_bytes) +
+                        " bytes of voxels, the file cannot hold more than " + std::to_string(stored_bytes) +
+                        "; it is cut short or damaged");
 }
 
 }  // namespace bonemill

@@ -17,7 +17,7 @@ inline constexpr uint64_t kMaxDeflateRatio = 1040;
 // kMaxVoxels in all, and the import fits into the memory that is free now.
 void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel, const std::string& file);
 
-// Throws UserError when `stored_bytes` on disk cannot hold `payload_bytes`, even compressed.
-void checkStoredBytes(uint64_t payload_bytes, uint64_t stored_bytes, bool may_be_compressed, const std::string& file);
+// Throws UserError when fewer bytes are stored than the header promises.
+void checkStoredBytes(uint64_t promised_bytes, uint64_t stored_bytes, const std::string& file);
 
 }  // namespace bonemill

@@ -49,7 +49,7 @@ MetaImageHeader readMetaImageHeader(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::map<std::string, std::string> fields;
     std::string line;
-    size_t bytes = 0;
+    uint64_t bytes = 0;
     while (!fields.count("ElementDataFile") && bytes < kMaxHeaderBytes && std::getline(file, line)) {
         bytes += line.size() + 1;
         const auto equals = line.find('=');
@@ -62,7 +62,7 @@ MetaImageHeader readMetaImageHeader(const std::filesystem::path& path) {
         throw UserError(file_name + ": has NDims = " + fields["NDims"] + "; one volume of 3 dimensions is needed");
     checkCounts(fields, file_name);
     const std::string& data = fields["ElementDataFile"];
-    return {data == "LOCAL" || data == "Local" || data == "local" ? "" : data, isTrue(fields["CompressedData"])};
+    return {data == "LOCAL" || data == "Local" || data == "local" ? "" : data, isTrue(fields["CompressedData"]), bytes};
 }
 
 }  // namespace bonemill

@@ -1,6 +1,7 @@
 // Checks a MetaImage header before the MetaIO library trusts its numbers.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -9,6 +10,7 @@ namespace bonemill {
 struct MetaImageHeader {
     std::string data_file;       // empty: attached (LOCAL); a list of files or a pattern stays as it is written
     bool is_compressed = false;
+    uint64_t bytes = 0;          // length of the header; attached data begin here
 };
 
 // Throws UserError naming the file when it is no three-dimensional MetaImage.

@@ -49,7 +49,7 @@ class Header {
 
 }  // namespace
 
-void checkNiftiHeader(const std::filesystem::path& path) {
+uint64_t readNiftiDataOffset(const std::filesystem::path& path) {
     const Header header(path);
     const std::string file = path.string();
     if (!header.isComplete()) throw UserError(file + ": is too short (or its gzip is too damaged) for a NIfTI file");
@@ -63,6 +63,7 @@ void checkNiftiHeader(const std::filesystem::path& path) {
     const float data_offset = header.at<float>(kVoxOffsetOffset);
     if (!(data_offset >= float(kHeaderBytes) && double(data_offset) < kMaxExtensionBytes))
         throw UserError(file + ": its NIfTI header puts the voxels at an impossible place; the file is damaged");
+    return uint64_t(data_offset);
 }
 
 }  // namespace bonemill

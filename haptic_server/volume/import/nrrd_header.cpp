@@ -50,9 +50,11 @@ NrrdHeader readNrrdHeader(const std::filesystem::path& path) {
     if (!std::getline(file, line) || line.rfind("NRRD000", 0) != 0)
         throw UserError(path.string() + ": is not a NRRD file (it does not start with NRRD000)");
     NrrdHeader header;
-    size_t bytes = line.size();
-    while (std::getline(file, line) && !trimmed(line).empty()) {
-        if ((bytes += line.size() + 1) > kMaxHeaderBytes)
+    header.bytes = line.size() + 1;
+    while (std::getline(file, line)) {
+        header.bytes += line.size() + 1;
+        if (trimmed(line).empty()) break;
+        if (header.bytes > kMaxHeaderBytes)
             throw UserError(path.string() + ": the NRRD header does not end; the file is damaged");
         const auto colon = line.find(':');
         if (line[0] == '#' || colon == std::string::npos) continue;

@@ -1,6 +1,7 @@
 // What our own reading of a NRRD header adds to ITK's: units, where the data are, and our exact geometry.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 namespace bonemill {
 
 struct NrrdHeader {
+    uint64_t bytes = 0;                         // length of the header; attached data begin here
     std::string encoding;                       // "raw", "gzip", "ascii", ...
     std::string data_file;                      // empty: attached
     double mm_per_unit = 1;                     // from "space units"

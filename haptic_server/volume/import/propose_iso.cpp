@@ -227,12 +227,18 @@ std::optional<double> halfWayFromSoftTissue(const std::vector<float>& values, do
     return (h.centre(peak) + bone) / 2;
 }
 
+constexpr double kLeastMaterialShare = 0.15;  // of all that is denser than the background; less is an edge or a cavity
+
+// Background is the material with the most voxels.
 std::optional<double> halfWayAboveBackground(const Histogram& h, const std::vector<Mode>& modes) {
-    if (modes.size() < 2) return std::nullopt;
     const auto background =
         std::max_element(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) { return a.mass < b.mass; });
-    if (background + 1 == modes.end()) return std::nullopt;
-    return (peakValue(h, *background) + peakValue(h, *(background + 1))) / 2;
+    double mass_above = 0;
+    for (auto mode = background; mode != modes.end(); ++mode) mass_above += mode == background ? 0 : mode->mass;
+    for (auto mode = background; mode != modes.end(); ++mode)
+        if (mode != background && mode->mass >= kLeastMaterialShare * mass_above)
+            return (peakValue(h, *background) + peakValue(h, *mode)) / 2;
+    return std::nullopt;
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "haptic_server/volume/import/volume_file.h"
 
+#include <optional>
+
 #include "common/config/user_error.h"
 #include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/itk_image_file.h"
@@ -7,22 +9,16 @@
 #include "haptic_server/volume/import/nifti_header.h"
 #include "haptic_server/volume/import/nrrd_header.h"
 #include "haptic_server/volume/import/physical_frame.h"
+#include "haptic_server/volume/import/stored_bytes.h"
 
 namespace bonemill {
 namespace {
 
 struct FileFacts {
     std::string format;
+    std::optional<StoredData> data;  // nothing: spread over several files
     double mm_per_unit = 1;
-    uint64_t stored_bytes = 0;   // that can hold voxels; 0: not known
-    bool may_be_compressed = false;
 };
-
-uint64_t sizeOf(const std::filesystem::path& path) {
-    std::error_code error;
-    const auto size = std::filesystem::file_size(path, error);
-    return error ? 0 : uint64_t(size);
-}
 
 // Axes of one voxel beyond the third do not make it less of a volume.
 std::vector<uint64_t> volumeDims(std::vector<uint64_t> dims) {
@@ -51,8 +47,8 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
     const std::vector<uint64_t> dims = volumeDims(header.dims);
     checkVolumeSize(dims, header.bytes_per_voxel, file);
     const uint64_t voxels = dims[0] * dims[1] * dims[2];
-    if (facts.stored_bytes != 0)
-        checkStoredBytes(voxels * header.bytes_per_voxel, facts.stored_bytes, facts.may_be_compressed, file);
+    const uint64_t needed = voxels * header.bytes_per_voxel;
+    if (facts.data) checkStoredBytes(needed, countStoredBytes(*facts.data, needed), file);
     RawVolume raw;
     raw.values.reserve(size_t(voxels));
     image.appendValues(raw.values);
@@ -61,12 +57,22 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
     return raw;
 }
 
+using Packing = StoredData::Packing;
+
+// A data file that is named, but no list or pattern of several files.
+bool isOneFile(const std::string& name) {
+    return name.rfind("LIST", 0) != 0 && name.find('%') == std::string::npos && name.find(' ') == std::string::npos;
+}
+
 }  // namespace
 
 RawVolume importNrrd(const std::filesystem::path& path) {
     const NrrdHeader header = readNrrdHeader(path);
-    FileFacts facts{"NRRD", header.mm_per_unit, sizeOf(path), header.encoding != "raw"};
-    if (!header.data_file.empty()) facts.stored_bytes = sizeOf(path.parent_path() / header.data_file);
+    FileFacts facts{"NRRD", StoredData{path, header.bytes}, header.mm_per_unit};
+    if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
+    // ITK's NRRD library finds short gzip data itself.
+    if (header.encoding != "raw") facts.data->packing = Packing::kOther;
+    if (!isOneFile(header.data_file)) facts.data.reset();
     RawVolume raw = readThrough(ItkFormat::kNrrd, path, facts);
     if (header.exact_geometry && isSameGeometry(*header.exact_geometry, raw.geometry))
         raw.geometry = *header.exact_geometry;
@@ -74,14 +80,18 @@ RawVolume importNrrd(const std::filesystem::path& path) {
 }
 
 RawVolume importNifti(const std::filesystem::path& path) {
-    checkNiftiHeader(path);
-    return readThrough(ItkFormat::kNifti, path, {"NIfTI", 1, sizeOf(path), path.extension() == ".gz"});
+    const uint64_t begin = readNiftiDataOffset(path);
+    if (path.extension() == ".gz")
+        return readThrough(ItkFormat::kNifti, path, {"NIfTI", StoredData{path, 0, Packing::kDeflate, begin}});
+    return readThrough(ItkFormat::kNifti, path, {"NIfTI", StoredData{path, begin}});
 }
 
 RawVolume importMetaImage(const std::filesystem::path& path) {
     const MetaImageHeader header = readMetaImageHeader(path);
-    FileFacts facts{"MetaImage", 1, sizeOf(path), header.is_compressed};
-    if (!header.data_file.empty()) facts.stored_bytes = sizeOf(path.parent_path() / header.data_file);
+    FileFacts facts{"MetaImage", StoredData{path, header.bytes}};
+    if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
+    if (header.is_compressed) facts.data->packing = Packing::kDeflate;
+    if (!isOneFile(header.data_file)) facts.data.reset();
     return readThrough(ItkFormat::kMetaImage, path, facts);
 }
 

@@ -77,11 +77,22 @@ void makeBody(const BodyArguments& arguments) {
     std::cout << "wrote " << arguments.file << ", surface at " << full / 2 << "\n";
 }
 
+// CLI::Range lets NaN pass.
+CLI::Validator within(double low, double high) {
+    return {[=](std::string& text) -> std::string {
+                double value = 0;
+                if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
+                return text + " is not a number from " + CLI::detail::to_string(low) + " to " +
+                       CLI::detail::to_string(high);
+            },
+            "NUMBER"};
+}
+
 void addTooth(CLI::App& app, ToothArguments& arguments) {
     CLI::App* tooth = app.add_subcommand("tooth", "molar-like tooth as a DICOM CT series, 256x256x161, 0.125 mm, HU");
     tooth->add_option("--out", arguments.folder, "folder to write to")->required();
     tooth->add_option("--noise-hu", arguments.scan.noise_hu, "standard deviation of the noise")
-        ->check(CLI::Range(0.0, 500.0))
+        ->check(within(0, 500))
         ->capture_default_str();
     tooth->add_option("--seed", arguments.scan.seed, "seed of the noise")->capture_default_str();
 }
@@ -93,7 +104,7 @@ void addBody(CLI::App& app, BodyArguments& arguments) {
         ->check(CLI::IsMember({"slab", "sphere", "hole", "wedge", "thin-wall"}));
     body->add_option("--out", arguments.file, "NRRD file to write")->required();
     const auto number = [&](const char* name, double& value, double low, double high, const char* help) {
-        body->add_option(name, value, help)->check(CLI::Range(low, high))->capture_default_str();
+        body->add_option(name, value, help)->check(within(low, high))->capture_default_str();
     };
     number("--voxel-mm", arguments.voxel_mm, 1e-3, 100, "edge of a voxel");
     number("--radius-mm", arguments.radius_mm, 1e-3, 1e4, "sphere and hole");
@@ -106,11 +117,11 @@ void addBody(CLI::App& app, BodyArguments& arguments) {
         ->capture_default_str();
     body->add_option("--rotate-deg", arguments.rotate_deg, "about x, then y, then z of the world")
         ->expected(3)
-        ->check(CLI::Range(-360.0, 360.0))
+        ->check(within(-360, 360))
         ->capture_default_str();
     body->add_option("--offset-mm", arguments.offset_mm, "of the body from the middle of the grid")
         ->expected(3)
-        ->check(CLI::Range(-1e4, 1e4))
+        ->check(within(-1e4, 1e4))
         ->capture_default_str();
 }
 

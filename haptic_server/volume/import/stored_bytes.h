@@ -1,0 +1,21 @@
+// How many bytes of voxels a file really holds: some libraries take a short file for a whole one.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+namespace bonemill {
+
+struct StoredData {
+    enum class Packing { kPlain, kDeflate, kOther };  // deflate: with a zlib or gzip head; other: cannot be counted
+
+    std::filesystem::path file;
+    uint64_t begin = 0;          // first byte of the data (of the packed data) in the file
+    Packing packing = Packing::kPlain;
+    uint64_t skip_unpacked = 0;  // bytes before the voxels once unpacked (NIfTI packs its header, too)
+};
+
+// Bytes of voxels that can be read, counted up to `needed`. Throws UserError when the packed data are damaged.
+uint64_t countStoredBytes(const StoredData& data, uint64_t needed);
+
+}  // namespace bonemill

@@ -1,0 +1,95 @@
+#include "tests/unit/volume_import/dicom_bytes.h"
+
+#include <algorithm>
+
+#include "tests/unit/volume_import/volume_files.h"
+
+namespace bonemill {
+namespace {
+
+std::string number(uint32_t value, int bytes) {
+    std::string text;
+    for (int b = 0; b < bytes; ++b) text += char(value >> (8 * b) & 0xff);
+    return text;
+}
+
+std::string element(uint32_t tag, const std::string& vr, std::string value) {
+    const bool is_long = vr == "OB" || vr == "OW" || vr == "SQ" || vr == "UN";
+    if (value.size() % 2) value += vr == "UI" || vr == "OB" ? '\0' : ' ';
+    std::string bytes = number(tag >> 16, 2) + number(tag & 0xffff, 2) + vr;
+    bytes += is_long ? std::string(2, '\0') + number(uint32_t(value.size()), 4) : number(uint32_t(value.size()), 2);
+    return bytes + value;
+}
+
+std::string shortElement(uint32_t tag, int value) { return element(tag, "US", number(uint32_t(value), 2)); }
+
+std::string item(const std::string& content) { return number(0xe000fffe, 4) + number(uint32_t(content.size()), 4) + content; }
+
+std::string decimal(double value) {
+    std::string text = std::to_string(value);
+    return text.substr(0, 16);
+}
+
+const char* sopClass(const DicomImage& image) {
+    if (!image.frame_positions.empty()) return "1.2.840.10008.5.1.4.1.1.2.1";        // Enhanced CT
+    return image.samples_per_pixel == 1 ? "1.2.840.10008.5.1.4.1.1.2" : "1.2.840.10008.5.1.4.1.1.7";
+}
+
+std::string meta(const DicomImage& image) {
+    const std::string content = element(0x00020001, "OB", std::string("\0\1", 2)) +
+                                element(0x00020002, "UI", sopClass(image)) +
+                                element(0x00020003, "UI", image.sop_uid) +
+                                element(0x00020010, "UI", "1.2.840.10008.1.2.1") +
+                                element(0x00020012, "UI", "1.2.3.4.5");
+    return std::string(128, '\0') + "DICM" + element(0x00020000, "UL", number(uint32_t(content.size()), 4)) + content;
+}
+
+std::string pixelBytes(const DicomImage& image) {
+    std::string bytes;
+    for (const int16_t v : image.pixels) bytes += image.bits == 8 ? std::string(1, char(v)) : number(uint16_t(v), 2);
+    return bytes;
+}
+
+std::string functionalGroups(const DicomImage& image) {
+    const std::string shared = element(0x00209116, "SQ", item(element(0x00200037, "DS", image.orientation))) +
+                               element(0x00289110, "SQ", item(element(0x00180050, "DS", "1") +
+                                                              element(0x00280030, "DS", image.pixel_spacing)));
+    std::string frames;
+    for (const std::string& position : image.frame_positions)
+        frames += item(element(0x00209113, "SQ", item(element(0x00200032, "DS", position))));
+    return element(0x52009229, "SQ", item(shared)) + element(0x52009230, "SQ", frames);
+}
+
+}  // namespace
+
+std::string dicomBytes(const DicomImage& image) {
+    const bool is_enhanced = !image.frame_positions.empty();
+    std::string bytes = meta(image) + element(0x00080016, "UI", sopClass(image)) +
+                        element(0x00080018, "UI", image.sop_uid) + element(0x00080060, "CS", image.modality) +
+                        element(0x00100010, "PN", "TEST^FILE") + element(0x0020000d, "UI", "1.2.3") +
+                        element(0x0020000e, "UI", image.series_uid);
+    if (!is_enhanced && !image.position.empty())
+        bytes += element(0x00200032, "DS", image.position) + element(0x00200037, "DS", image.orientation);
+    bytes += shortElement(0x00280002, image.samples_per_pixel) + element(0x00280004, "CS", image.photometric);
+    if (image.samples_per_pixel > 1) bytes += shortElement(0x00280006, 0);
+    if (is_enhanced) bytes += element(0x00280008, "IS", std::to_string(image.frame_positions.size()));
+    bytes += shortElement(0x00280010, image.rows) + shortElement(0x00280011, image.columns);
+    if (!is_enhanced) bytes += element(0x00280030, "DS", image.pixel_spacing);
+    bytes += shortElement(0x00280100, image.bits) + shortElement(0x00280101, image.bits) +
+             shortElement(0x00280102, image.bits - 1) + shortElement(0x00280103, image.bits == 16 ? 1 : 0);
+    if (image.samples_per_pixel == 1)
+        bytes += element(0x00281052, "DS", decimal(image.intercept)) + element(0x00281053, "DS", decimal(image.slope));
+    if (image.photometric == "PALETTE COLOR")
+        for (const uint32_t table : {0x1101u, 0x1102u, 0x1103u})
+            bytes += element(0x00280000 | table, "US", number(256, 2) + number(0, 2) + number(8, 2));
+    if (image.photometric == "PALETTE COLOR")
+        for (const uint32_t table : {0x1201u, 0x1202u, 0x1203u})
+            bytes += element(0x00280000 | table, "OW", std::string(256, char(table)));
+    if (is_enhanced) bytes += functionalGroups(image);
+    if (image.has_pixels) bytes += element(0x7fe00010, image.bits == 8 ? "OB" : "OW", pixelBytes(image));
+    return bytes;
+}
+
+void writeDicomFile(const std::filesystem::path& path, const DicomImage& image) { writeBytes(path, dicomBytes(image)); }
+
+}  // namespace bonemill

@@ -1,0 +1,233 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "haptic_server/volume/import/dicom_scan.h"
+#include "haptic_server/volume/import/import_volume.h"
+#include "tests/unit/volume_import/dicom_bytes.h"
+#include "tests/unit/volume_import/expect_user_error.h"
+#include "tests/unit/volume_import/temporary_folder.h"
+#include "tests/unit/volume_import/volume_files.h"
+
+namespace bonemill {
+namespace {
+
+std::string triple(const Eigen::Vector3d& v) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.8f\\%.8f\\%.8f", v.x(), v.y(), v.z());
+    return text;
+}
+
+DicomImage sliceOf(const SampleVolume& sample, int k) {
+    DicomImage image;
+    image.rows = sample.dims.y();
+    image.columns = sample.dims.x();
+    char spacing[48];
+    std::snprintf(spacing, sizeof spacing, "%g\\%g", sample.spacing_mm.y(), sample.spacing_mm.x());
+    image.pixel_spacing = spacing;
+    image.orientation = triple(sample.directions.col(0)) + "\\" + triple(sample.directions.col(1));
+    image.position = triple(sample.origin_mm + sample.directions.col(2) * sample.spacing_mm.z() * k);
+    image.sop_uid = "1.2.3.4." + std::to_string(k + 1);
+    const auto all = sample.values();
+    const auto size = sample.dims.x() * sample.dims.y();
+    image.pixels.assign(all.begin() + size * k, all.begin() + size * (k + 1));
+    return image;
+}
+
+// File names in no order that means anything.
+void writeSeries(const std::filesystem::path& folder, const SampleVolume& sample) {
+    std::vector<int> names(size_t(sample.dims.z()));
+    for (size_t n = 0; n < names.size(); ++n) names[n] = int(n);
+    std::shuffle(names.begin(), names.end(), std::mt19937(7));
+    std::filesystem::create_directories(folder);
+    for (int k = 0; k < sample.dims.z(); ++k)
+        writeDicomFile(folder / ("I" + std::to_string(names[size_t(k)] * 10)), sliceOf(sample, k));
+}
+
+SampleVolume nineSlices() {
+    SampleVolume sample;
+    sample.dims.z() = 9;
+    return sample;
+}
+
+TEST(Dicom, slicesAreOrderedByPlaceAlongTheNormal) {
+    const TemporaryFolder folder;
+    SampleVolume sample = nineSlices();
+    sample.directions = Eigen::AngleAxisd(0.4, Eigen::Vector3d(3, 1, 2).normalized()).toRotationMatrix();
+    writeSeries(folder.path(), sample);
+    EXPECT_NO_THROW(expectSamePlaces(importVolume(folder.path()), sample, 1e-8));
+}
+
+// Feet first, sagittal and a stack that was acquired downwards all end as one right-handed grid.
+TEST(Dicom, anyOrientationBecomesRightHanded) {
+    const TemporaryFolder folder;
+    int number = 0;
+    for (const Eigen::Vector3d& normal : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(1, 0, 0)}) {
+        SampleVolume sample = nineSlices();
+        const Eigen::Vector3d row = normal.x() == 0 ? Eigen::Vector3d(1, 0, 0) : Eigen::Vector3d(0, 1, 0);
+        sample.directions << row, normal.cross(row), normal;
+        for (const double order : {1.0, -1.0}) {
+            sample.directions.col(2) = order * normal;
+            const auto series = folder / ("s" + std::to_string(number++));
+            writeSeries(series, sample);
+            const RawVolume raw = importVolume(series);
+            EXPECT_NO_THROW(expectSamePlaces(raw, sample, 1e-9));
+            EXPECT_NEAR(raw.geometry.X_WV.rotation.toRotationMatrix().determinant(), 1, 1e-12);
+        }
+    }
+}
+
+TEST(Dicom, storedValuesBecomeHounsfield) {
+    const TemporaryFolder folder;
+    SampleVolume sample;
+    for (int k = 0; k < 3; ++k) {
+        DicomImage image = sliceOf(sample, k);
+        image.slope = 2;
+        image.intercept = -1024;
+        writeDicomFile(folder / std::to_string(k), image);
+    }
+    const RawVolume raw = importVolume(folder.path());
+    const auto stored = sample.values();
+    for (size_t n = 0; n < stored.size(); ++n) EXPECT_EQ(raw.values[n], 2.0f * stored[n] - 1024);
+    EXPECT_TRUE(raw.is_hounsfield);
+}
+
+TEST(Dicom, filesThatAreNoImagesAreLeftOutAndNamed) {
+    const TemporaryFolder folder;
+    writeSeries(folder.path(), nineSlices());
+    writeBytes(folder / "readme.txt", "not DICOM");
+    DicomImage report;
+    report.has_pixels = false;
+    writeDicomFile(folder / "DICOMDIR", report);
+    const RawVolume raw = importVolume(folder.path());
+    EXPECT_NO_THROW(expectSamePlaces(raw, nineSlices()));
+    EXPECT_NE(raw.description.find("readme.txt"), std::string::npos) << raw.description;
+    EXPECT_NE(raw.description.find("DICOMDIR"), std::string::npos) << raw.description;
+}
+
+TEST(Dicom, largestSeriesIsTakenUnlessOneIsNamed) {
+    const TemporaryFolder folder;
+    writeSeries(folder / "large", nineSlices());
+    const SampleVolume small;
+    for (int k = 0; k < 3; ++k) {
+        DicomImage image = sliceOf(small, k);
+        image.series_uid = "9.8.7";
+        writeDicomFile(folder / ("small" + std::to_string(k)), image);
+    }
+    const RawVolume largest = importVolume(folder.path());
+    EXPECT_EQ(largest.geometry.dims.z(), 9);
+    EXPECT_NE(largest.description.find("9.8.7"), std::string::npos) << largest.description;
+    EXPECT_EQ(importVolume(folder.path(), {.series_uid = "9.8.7"}).geometry.dims.z(), 3);
+    expectUserError([&] { importVolume(folder.path(), {.series_uid = "5.5"}); }, {"5.5", "9.8.7", "1.2.3.4"});
+}
+
+TEST(Dicom, multiFrameFileIsOrderedByTheFramesPlaces) {
+    const TemporaryFolder folder;
+    SampleVolume sample;
+    DicomImage image = sliceOf(sample, 0);
+    image.pixels.clear();
+    for (const int k : {2, 0, 1}) {  // acquired in any order
+        const DicomImage slice = sliceOf(sample, k);
+        image.frame_positions.push_back(slice.position);
+        image.pixels.insert(image.pixels.end(), slice.pixels.begin(), slice.pixels.end());
+    }
+    writeDicomFile(folder / "a.dcm", image);
+    EXPECT_NO_THROW(expectSamePlaces(importVolume(folder / "a.dcm"), sample));
+    EXPECT_NO_THROW(expectSamePlaces(importVolume(folder.path()), sample));
+}
+
+TEST(DicomErrors, emptyFolderAndFolderOfText) {
+    const TemporaryFolder folder;
+    expectUserError([&] { importVolume(folder.path()); }, {folder.path().string(), "empty"});
+    writeBytes(folder / "notes.txt", std::string(1000, 'x'));
+    expectUserError([&] { importVolume(folder.path()); }, {"notes.txt", "not DICOM"});
+}
+
+TEST(DicomErrors, truncatedSliceIsNamed) {
+    const TemporaryFolder folder;
+    writeSeries(folder.path(), nineSlices());
+    const std::string bytes = readBytes(folder / "I40");
+    writeBytes(folder / "I40", bytes.substr(0, bytes.size() - 7));
+    expectUserError([&] { importVolume(folder.path()); }, {"I40", "cut short"});
+    writeBytes(folder / "I40", bytes.substr(0, 300));
+    expectUserError([&] { importVolume(folder.path()); }, {"I40", "cut short"});
+}
+
+TEST(DicomErrors, missingSliceNamesItsNeighbours) {
+    const TemporaryFolder folder;
+    const SampleVolume sample = nineSlices();
+    for (int k = 0; k < 9; ++k)
+        if (k != 4) writeDicomFile(folder / ("slice" + std::to_string(k)), sliceOf(sample, k));
+    expectUserError([&] { importVolume(folder.path()); }, {"1 slice(s) missing", "slice3", "slice5", "33.750 mm"});
+}
+
+TEST(DicomErrors, duplicateSliceNamesBoth) {
+    const TemporaryFolder folder;
+    const SampleVolume sample = nineSlices();
+    for (int k = 0; k < 9; ++k) writeDicomFile(folder / ("slice" + std::to_string(k)), sliceOf(sample, k));
+    writeDicomFile(folder / "copy", sliceOf(sample, 2));
+    expectUserError([&] { importVolume(folder.path()); }, {"same place", "copy", "slice2"});
+}
+
+TEST(DicomErrors, gantryTiltIsRefusedWithItsAngle) {
+    const TemporaryFolder folder;
+    SampleVolume sample = nineSlices();
+    sample.directions.col(2) = Eigen::Vector3d(0, std::sin(0.2), std::cos(0.2));  // 11.46 degrees
+    writeSeries(folder.path(), sample);
+    expectUserError([&] { importVolume(folder.path()); }, {"tilted", "11.46 degrees"});
+}
+
+TEST(DicomErrors, colourIsRefused) {
+    for (const char* photometric : {"RGB", "PALETTE COLOR"}) {
+        const TemporaryFolder folder;
+        for (int k = 0; k < 3; ++k) {
+            DicomImage image = sliceOf(SampleVolume(), k);
+            image.photometric = photometric;
+            image.bits = 8;
+            image.samples_per_pixel = image.photometric == "RGB" ? 3 : 1;
+            image.pixels.assign(size_t(image.rows * image.columns * image.samples_per_pixel), 7);
+            writeDicomFile(folder / ("colour" + std::to_string(k)), image);
+        }
+        expectUserError([&] { importVolume(folder.path()); }, {"3 colour images", "colour0"});
+    }
+}
+
+TEST(DicomErrors, singleSliceIsNoVolume) {
+    const TemporaryFolder folder;
+    writeDicomFile(folder / "only", sliceOf(SampleVolume(), 0));
+    expectUserError([&] { importVolume(folder.path()); }, {"2 or more slices", "only"});
+}
+
+TEST(DicomErrors, sliceWithoutPositionIsRefused) {
+    const TemporaryFolder folder;
+    for (int k = 0; k < 3; ++k) {
+        DicomImage image = sliceOf(SampleVolume(), k);
+        image.position.clear();
+        writeDicomFile(folder / ("scan" + std::to_string(k)), image);
+    }
+    expectUserError([&] { importVolume(folder.path()); }, {"without a position", "scan0"});
+}
+
+TEST(DicomScanTest, tellsKindsApart) {
+    const TemporaryFolder folder;
+    const DicomImage image = sliceOf(SampleVolume(), 0);
+    writeDicomFile(folder / "image", image);
+    EXPECT_EQ(scanDicomFile(folder / "image").kind, DicomKind::kImage);
+    DicomImage report = image;
+    report.has_pixels = false;
+    writeDicomFile(folder / "report", report);
+    EXPECT_EQ(scanDicomFile(folder / "report").kind, DicomKind::kNoImage);
+    writeBytes(folder / "text", "hello");
+    EXPECT_EQ(scanDicomFile(folder / "text").kind, DicomKind::kNotDicom);
+    writeBytes(folder / "empty", "");
+    EXPECT_EQ(scanDicomFile(folder / "empty").kind, DicomKind::kNotDicom);
+    const std::string bytes = dicomBytes(image);
+    for (size_t size = 200; size + 1 < bytes.size(); size += 13) {
+        writeBytes(folder / "cut", bytes.substr(0, size));
+        const DicomKind kind = scanDicomFile(folder / "cut").kind;
+        EXPECT_TRUE(kind == DicomKind::kCutShort || kind == DicomKind::kNoImage) << size;  // cut between two elements
+    }
+}
+
+}  // namespace
+}  // namespace bonemill

@@ -1,0 +1,148 @@
+// NRRD, NIfTI and MetaImage: every sample must lie where the format's definition puts it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/volume/import/nrrd_writer.h"
+#include "tests/unit/volume_import/expect_user_error.h"
+#include "tests/unit/volume_import/temporary_folder.h"
+#include "tests/unit/volume_import/volume_files.h"
+
+namespace bonemill {
+namespace {
+
+SampleVolume rotatedSample() {
+    SampleVolume sample;
+    sample.directions = (Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, 2, 3).normalized())).toRotationMatrix();
+    return sample;
+}
+
+SampleVolume leftHandedSample() {
+    SampleVolume sample = rotatedSample();
+    sample.directions.col(0) = -sample.directions.col(0);
+    return sample;
+}
+
+// Axes in another order: posterior, inferior, right.
+SampleVolume permutedSample() {
+    SampleVolume sample;
+    sample.directions << 0, 0, -1, 1, 0, 0, 0, -1, 0;
+    return sample;
+}
+
+const Storage kStorages[] = {{false, false, false}, {true, false, false}, {false, true, false},
+                             {true, true, false},   {false, false, true}, {false, true, true}};
+
+void expectProperRotation(const RawVolume& raw) {
+    EXPECT_NEAR(raw.geometry.X_WV.rotation.toRotationMatrix().determinant(), 1, 1e-12);
+}
+
+TEST(Nrrd, everyStorageAndEveryHandednessKeepsItsPlaces) {
+    const TemporaryFolder folder;
+    for (const auto& sample : {SampleVolume(), rotatedSample(), leftHandedSample(), permutedSample()})
+        for (const Storage& storage : kStorages) {
+            const auto path = folder / (storage.is_detached ? "a.nhdr" : "a.nrrd");
+            writeNrrdFile(path, sample, storage);
+            const RawVolume raw = importVolume(path);
+            EXPECT_NO_THROW(expectSamePlaces(raw, sample));
+            expectProperRotation(raw);
+        }
+}
+
+TEST(Nrrd, rightAnteriorSuperiorBecomesLps) {
+    const TemporaryFolder folder;
+    const SampleVolume lps = rotatedSample();
+    SampleVolume ras = lps;
+    const Eigen::Vector3d flip(-1, -1, 1);
+    ras.directions = flip.asDiagonal() * lps.directions;
+    ras.origin_mm = flip.asDiagonal() * lps.origin_mm;
+    writeNrrdFile(folder / "a.nrrd", ras, {}, "right-anterior-superior");
+    EXPECT_NO_THROW(expectSamePlaces(importVolume(folder / "a.nrrd"), lps));
+}
+
+TEST(Nrrd, leftHandedFileIsSaidToBeFlipped) {
+    const TemporaryFolder folder;
+    writeNrrdFile(folder / "a.nrrd", leftHandedSample(), {});
+    EXPECT_NE(importVolume(folder / "a.nrrd").description.find("reversed"), std::string::npos);
+}
+
+TEST(Nrrd, spaceUnitsAreHonoured) {
+    const TemporaryFolder folder;
+    SampleVolume sample;
+    writeNrrdFile(folder / "a.nrrd", sample, {});
+    std::string bytes = readBytes(folder / "a.nrrd");
+    bytes.insert(bytes.find("endian:"), "space units: \"cm\" \"cm\" \"cm\"\n");
+    writeBytes(folder / "b.nrrd", bytes);
+    sample.spacing_mm *= 10;
+    sample.origin_mm *= 10;
+    EXPECT_NO_THROW(expectSamePlaces(importVolume(folder / "b.nrrd"), sample));
+    bytes.replace(bytes.find("\"cm\""), 4, "\"parsec\"");
+    writeBytes(folder / "c.nrrd", bytes);
+    expectUserError([&] { importVolume(folder / "c.nrrd"); }, {"c.nrrd", "parsec", "mm"});
+}
+
+TEST(Nrrd, oldFileWithSpacingsOnlyIsRead) {
+    const TemporaryFolder folder;
+    SampleVolume sample;
+    sample.origin_mm.setZero();
+    writeNrrdFile(folder / "a.nrrd", sample, {});
+    const std::string bytes = readBytes(folder / "a.nrrd");
+    const std::string data = bytes.substr(bytes.find("\n\n") + 2);
+    writeBytes(folder / "b.nrrd",
+               "NRRD0001\ntype: short\ndimension: 3\nsizes: 5 4 3\nspacings: 0.5 0.75 1.25\nendian: little\n"
+               "encoding: raw\n\n" + data);
+    EXPECT_NO_THROW(expectSamePlaces(importVolume(folder / "b.nrrd"), sample));
+}
+
+TEST(Nifti, everyStorageAndEveryHandednessKeepsItsPlaces) {
+    const TemporaryFolder folder;
+    for (const auto& sample : {SampleVolume(), rotatedSample(), leftHandedSample(), permutedSample()})
+        for (const Storage& storage : kStorages) {
+            if (storage.is_detached) continue;
+            const auto path = folder / (storage.is_compressed ? "a.nii.gz" : "a.nii");
+            writeNiftiFile(path, sample, storage);
+            const RawVolume raw = importVolume(path);
+            EXPECT_NO_THROW(expectSamePlaces(raw, sample, 1e-8));  // the header holds float
+            expectProperRotation(raw);
+        }
+}
+
+TEST(MetaImage, everyStorageAndEveryHandednessKeepsItsPlaces) {
+    const TemporaryFolder folder;
+    for (const auto& sample : {SampleVolume(), rotatedSample(), leftHandedSample(), permutedSample()})
+        for (const Storage& storage : kStorages) {
+            const auto path = folder / (storage.is_detached ? "a.mhd" : "a.mha");
+            writeMetaImageFile(path, sample, storage);
+            const RawVolume raw = importVolume(path);
+            EXPECT_NO_THROW(expectSamePlaces(raw, sample));
+            expectProperRotation(raw);
+        }
+}
+
+TEST(Formats, permutedAxesGiveAnExactRotation) {
+    const TemporaryFolder folder;
+    writeNrrdFile(folder / "a.nrrd", permutedSample(), {});
+    const Eigen::Matrix3d R = importVolume(folder / "a.nrrd").geometry.X_WV.rotation.toRotationMatrix();
+    const Eigen::Matrix3d rounded = R.array().round();
+    EXPECT_LT((R - rounded).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(Formats, nonFiniteValuesPassAndAreCounted) {
+    const TemporaryFolder folder;
+    VolumeGeometry geometry;
+    geometry.dims = {3, 3, 3};
+    geometry.spacing.setConstant(1e-3);
+    std::vector<float> values(27, 1.0f);
+    values[4] = std::numeric_limits<float>::quiet_NaN();
+    values[5] = std::numeric_limits<float>::infinity();
+    writeNrrd(folder / "a.nrrd", geometry, std::span<const float>(values));
+    const RawVolume raw = importVolume(folder / "a.nrrd");
+    EXPECT_TRUE(std::isnan(raw.values[4]));
+    EXPECT_TRUE(std::isinf(raw.values[5]));
+    EXPECT_NE(raw.description.find("2 values are not finite"), std::string::npos) << raw.description;
+}
+
+}  // namespace
+}  // namespace bonemill

@@ -1,0 +1,83 @@
+// The program as a user runs it.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+
+#include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/volume/import/phantom/analytic_body.h"
+#include "tests/unit/volume_import/temporary_folder.h"
+
+namespace bonemill {
+namespace {
+
+struct Outcome {
+    int code = -1;
+    std::string output;  // stdout and stderr
+};
+
+Outcome runMakePhantom(const std::string& arguments) {
+    Outcome outcome;
+    FILE* pipe = popen((std::string(BONEMILL_BIN_DIR) + "/make_phantom " + arguments + " 2>&1").c_str(), "r");
+    if (!pipe) return outcome;
+    char buffer[256];
+    while (std::fgets(buffer, sizeof buffer, pipe)) outcome.output += buffer;
+    const int status = pclose(pipe);
+    if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
+    return outcome;
+}
+
+TEST(MakePhantom, bodyFileHoldsTheStatedSurface) {
+    const TemporaryFolder folder;
+    const std::string file = (folder / "hole.nrrd").string();
+    const Outcome outcome = runMakePhantom("body --kind hole --out " + file +
+                                           " --voxel-mm 0.2 --bits 8 --dims 40 41 42 --rotate-deg 10 20 30"
+                                           " --offset-mm 0.5 -0.25 0.125 --radius-mm 1.5 --thickness-mm 3");
+    ASSERT_EQ(outcome.code, 0) << outcome.output;
+    const RawVolume raw = importVolume(file);
+    AnalyticBody body;
+    body.kind = BodyKind::kHole;
+    body.radius = 1.5e-3;
+    body.thickness = 3e-3;
+    constexpr double kDegree = EIGEN_PI / 180;
+    body.X_WB.rotation = Eigen::AngleAxisd(30 * kDegree, Eigen::Vector3d::UnitZ()) *
+                         Eigen::AngleAxisd(20 * kDegree, Eigen::Vector3d::UnitY()) *
+                         Eigen::AngleAxisd(10 * kDegree, Eigen::Vector3d::UnitX());
+    body.X_WB.position = {0.5e-3, -0.25e-3, 0.125e-3};
+    EXPECT_EQ(raw.values, sampleBody(body, raw.geometry, 255).values);
+    EXPECT_EQ(raw.geometry.dims, Eigen::Vector3i(40, 41, 42));
+    EXPECT_LT((raw.geometry.X_WV * (raw.geometry.spacing.cwiseProduct(Eigen::Vector3d(19.5, 20, 20.5)))).norm(), 1e-12);
+}
+
+TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
+    const TemporaryFolder folder;
+    const std::string out = " --out " + (folder / "a.nrrd").string();
+    const std::pair<std::string, std::string> cases[] = {
+        {"", "subcommand"},
+        {"body --kind sphere", "--out"},
+        {"body --kind cube" + out, "cube"},
+        {"body --kind sphere --radius-mm -1" + out, "--radius-mm"},
+        {"body --kind sphere --radius-mm nan" + out, "--radius-mm"},
+        {"body --kind slab --bits 12" + out, "--bits"},
+        {"body --kind slab --dims 1 2 3" + out, "--dims"},
+        {"body --kind slab --dims 64 64" + out, "--dims"},
+        {"body --kind slab --voxel-mm 0" + out, "--voxel-mm"},
+        {"body --kind wedge --angle-deg 180" + out, "--angle-deg"},
+        {"body --kind slab --thicknes-mm 3" + out, "--thicknes-mm"},
+        {"body --kind slab --out /nonexistent/a.nrrd", "/nonexistent/a.nrrd"},
+        {"tooth", "--out"},
+        {"tooth --noise-hu -5 --out " + folder.path().string(), "--noise-hu"},
+    };
+    for (const auto& [arguments, word] : cases) {
+        const Outcome outcome = runMakePhantom(arguments);
+        EXPECT_EQ(outcome.code, 2) << arguments;
+        EXPECT_EQ(outcome.output.rfind("error: ", 0), 0u) << outcome.output;
+        EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+        EXPECT_NE(outcome.output.find(word), std::string::npos) << outcome.output;
+    }
+}
+
+TEST(MakePhantom, helpIsNoError) { EXPECT_EQ(runMakePhantom("body --help").code, 0); }
+
+}  // namespace
+}  // namespace bonemill

@@ -1,0 +1,100 @@
+// Histograms made here, of the shapes that real scans have.
+#include "haptic_server/volume/import/propose_iso.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "haptic_server/volume/import/phantom/analytic_body.h"
+#include "tests/unit/volume_import/expect_user_error.h"
+
+namespace bonemill {
+namespace {
+
+struct Material {
+    double mean, sigma, share;
+};
+
+RawVolume mixtureOf(const std::vector<Material>& materials, double offset = 0) {
+    std::mt19937 random(11);
+    RawVolume raw;
+    raw.geometry.dims = {100, 100, 40};
+    for (const Material& m : materials) {
+        std::normal_distribution<double> value(m.mean + offset, m.sigma);
+        const auto count = size_t(m.share * 400000);
+        for (size_t n = 0; n < count; ++n) raw.values.push_back(float(std::round(value(random))));
+    }
+    raw.values.resize(400000, raw.values.front());
+    return raw;
+}
+
+const std::vector<Material> kHead = {{-1000, 15, 0.5}, {-90, 25, 0.05}, {40, 20, 0.3}, {500, 200, 0.1}, {1200, 200, 0.05}};
+
+TEST(ProposeIso, hounsfieldHeadGivesABoneThreshold) {
+    RawVolume head = mixtureOf(kHead);
+    head.is_hounsfield = true;
+    const double iso = proposeIsoValue(head);
+    EXPECT_GE(iso, 200);
+    EXPECT_LE(iso, 300);
+    head.is_hounsfield = false;  // a NRRD does not say so, but air at -1000 does
+    EXPECT_EQ(proposeIsoValue(head), iso);
+}
+
+TEST(ProposeIso, scaleShiftedBy1024IsRecognised) {
+    const double iso = proposeIsoValue(mixtureOf({{-1000, 15, 0.5}, {40, 20, 0.35}, {700, 300, 0.15}}, 1024));
+    EXPECT_GE(iso, 1224);
+    EXPECT_LE(iso, 1324);
+}
+
+TEST(ProposeIso, weakBoneLowersTheThreshold) {
+    const double strong = proposeIsoValue(mixtureOf({{-1000, 15, 0.4}, {30, 15, 0.4}, {900, 100, 0.2}}));
+    const double weak = proposeIsoValue(mixtureOf({{-1000, 15, 0.4}, {30, 15, 0.4}, {350, 40, 0.2}}));
+    EXPECT_EQ(strong, 300);
+    EXPECT_LT(weak, 250);
+    EXPECT_GE(weak, 200);
+}
+
+// Industrial CT of a tooth: air, dentine, enamel, and a pulp cavity darker than the air outside.
+TEST(ProposeIso, industrialScanGivesTheMiddleOfAirAndDentine) {
+    const double iso = proposeIsoValue(mixtureOf({{390, 15, 0.7}, {150, 40, 0.02}, {825, 20, 0.2}, {1190, 25, 0.08}}));
+    EXPECT_NEAR(iso, (390 + 825) / 2.0, 15);
+}
+
+TEST(ProposeIso, eightBitScanWorksLikeSixteen) {
+    const double iso = proposeIsoValue(mixtureOf({{77, 3, 0.7}, {30, 8, 0.02}, {162, 4, 0.2}, {232, 5, 0.08}}));
+    EXPECT_NEAR(iso, 119.5, 3);
+}
+
+TEST(ProposeIso, dryToothInHounsfieldIsCutAtHalfMaximum) {
+    EXPECT_NEAR(proposeIsoValue(mixtureOf({{-1000, 10, 0.9}, {1600, 30, 0.07}, {2900, 30, 0.03}})), 300, 30);
+}
+
+TEST(ProposeIso, analyticBodyIsCutInTheMiddle) {
+    AnalyticBody slab;
+    slab.kind = BodyKind::kSlab;
+    slab.thickness = 6e-3;
+    for (const double full : {255.0, 65535.0})
+        EXPECT_NEAR(proposeIsoValue(sampleBody(slab, centredGrid({40, 40, 64}, 0.25e-3), full)), full / 2, 0.01 * full);
+}
+
+TEST(ProposeIso, oddValuesDoNotMoveIt) {
+    RawVolume raw = mixtureOf({{390, 15, 0.75}, {825, 20, 0.25}});
+    const double iso = proposeIsoValue(raw);
+    raw.values[0] = std::numeric_limits<float>::quiet_NaN();
+    raw.values[1] = std::numeric_limits<float>::infinity();
+    raw.values[2] = 1e30f;
+    EXPECT_NEAR(proposeIsoValue(raw), iso, 5);
+}
+
+TEST(ProposeIso, constantVolumeIsRefused) {
+    RawVolume raw;
+    raw.geometry.dims = {4, 4, 4};
+    raw.values.assign(64, 7);
+    expectUserError([&] { proposeIsoValue(raw); }, {"alike"});
+    raw.values.assign(64, std::numeric_limits<float>::quiet_NaN());
+    expectUserError([&] { proposeIsoValue(raw); }, {"alike"});
+}
+
+}  // namespace
+}  // namespace bonemill
