@@ -194,21 +194,21 @@ uint64_t publish(LinkChannel<Message>& channel, LinkPeer& self, Message& message
     return message.sequence;
 }
 
+bool isComplete(uint32_t version) noexcept {
+    return (version & 1u) == 0;
+}
+
 template <class Message>
 bool waitForNewer(LinkChannel<Message>& channel, uint32_t read_version, int64_t deadline_ns) noexcept {
     const std::atomic<uint32_t>& counter = channel.value.counter();
-    const auto isNewer = [read_version](uint32_t version) {
-        return version != read_version && (version & 1u) == 0;
-    };
     uint32_t version = counter.load(std::memory_order_acquire);
-    for (bool is_time_left = true; !isNewer(version) && is_time_left;) {
+    for (bool is_time_left = true; is_time_left && (version == read_version || !isComplete(version));) {
         channel.is_awaited.exchange(1, std::memory_order_acq_rel);
-        version = counter.load(std::memory_order_acquire);
-        if (!isNewer(version)) is_time_left = futexWait(counter, version, deadline_ns);
+        is_time_left = futexWait(counter, version, deadline_ns);  // returns at once if the counter moved on
         version = counter.load(std::memory_order_acquire);
     }
     channel.is_awaited.store(0, std::memory_order_relaxed);
-    return isNewer(version);
+    return version != read_version && isComplete(version);
 }
 
 }  // namespace

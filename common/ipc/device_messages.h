@@ -32,6 +32,7 @@ struct WrenchCommand {
 enum DeviceFlag : uint32_t {
     kDeviceFlagSimulated = 1u << 0,     // no hand and no motor behind this sample
     kDeviceFlagForceLimited = 1u << 1,  // the last wrench was reduced by the device's safety
+    kDeviceFlagLeaving = 1u << 2,       // last sample: the daemon shuts down in order, nothing is wrong
 };
 
 static_assert(std::is_trivially_copyable_v<DeviceSample> && std::is_standard_layout_v<DeviceSample>);

@@ -31,7 +31,7 @@ class LatencyHistogram {
     static constexpr int kSubBucketBits = 7;  // 128 buckets per octave: 1/128 < 1 %
     static constexpr size_t bucketOf(int64_t duration_ns) noexcept;
     static constexpr int64_t bucketEndNs(size_t bucket) noexcept;
-    static constexpr size_t kBuckets = 28 * 128;  // up to 2^34 ns > kLargestNs
+    static constexpr size_t kBuckets = size_t(28) << kSubBucketBits;  // up to 2^34 ns > kLargestNs
 
     std::array<uint64_t, kBuckets> buckets_{};
     uint64_t count_ = 0;

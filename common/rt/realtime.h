@@ -30,7 +30,7 @@ RealtimeReport makeThreadRealtime(const RealtimeRequest& request);
 // Whole process: present and future pages stay in memory, and freed heap stays with the process.
 RealtimeReport lockMemory();
 
-inline constexpr size_t kPrefaultedStackBytes = 256 * 1024;
+inline constexpr size_t kPrefaultedStackBytes = size_t(256) * 1024;
 // Touches the stack below the caller so that the tick meets no page fault there.
 void prefaultStack() noexcept;
 

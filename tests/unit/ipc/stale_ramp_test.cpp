@@ -82,7 +82,7 @@ TEST(StaleRamp, recoversSmoothlyFromWhereItWas) {
 }
 
 TEST(StaleRamp, isContinuousWhateverThePeerDoes) {
-    std::mt19937 random(3);
+    std::mt19937_64 random(3);
     SimulatedRun run;
     double last = 0;
     const double steepest = 1.0 / 50 + 1e-9;  // ramp down, per ms
@@ -90,7 +90,7 @@ TEST(StaleRamp, isContinuousWhateverThePeerDoes) {
         const bool is_fresh = random() % 2;
         const int count = int(random() % 100);
         for (int i = 0; i < count; ++i) {
-            if (random() % 50 == 0) run.stamp_ns = int64_t(random()) * int64_t(random());  // garbage
+            if (random() % 50 == 0) run.stamp_ns = int64_t(random());  // garbage
             const double factor = run.tick(is_fresh);
             ASSERT_GE(factor, 0.0);
             ASSERT_LE(factor, 1.0);

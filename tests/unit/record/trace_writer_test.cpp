@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <span>
 #include <sstream>
 #include <vector>
 
@@ -41,12 +42,11 @@ std::vector<std::string> cellsOf(const std::string& line) {
 
 std::vector<double> expectedCells(const TickRecord& r) {
     std::vector<double> cells{r.t_s};
-    cells.insert(cells.end(), r.p_WT, r.p_WT + 3);
-    cells.insert(cells.end(), r.q_WT, r.q_WT + 4);
-    cells.insert(cells.end(), r.p_WT_device, r.p_WT_device + 3);
-    cells.insert(cells.end(), r.q_WT_device, r.q_WT_device + 4);
-    cells.insert(cells.end(), r.f_hand_W, r.f_hand_W + 3);
-    cells.insert(cells.end(), r.t_hand_W, r.t_hand_W + 3);
+    const std::span<const double> vectors[] = {r.p_WT,        r.q_WT,     r.p_WT_device,
+                                               r.q_WT_device, r.f_hand_W, r.t_hand_W};
+    for (const auto& vector : vectors) {
+        for (const double component : vector) cells.push_back(component);
+    }
     cells.insert(cells.end(), {double(r.contacts), r.max_penetration, double(r.removed_voxels),
                                r.removed * 1e9, double(r.faults), double(r.compute_ns) / 1e3});
     return cells;

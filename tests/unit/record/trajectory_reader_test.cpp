@@ -117,7 +117,8 @@ TEST(TrajectoryReader, readsFiles) {
 
 TEST(TrajectoryReader, anyBytesGiveRowsOrAUserError) {
     std::mt19937 random(5);
-    const std::string alphabet("0123456789.,-e\n\r\t nainfx\0\xff", 28);
+    const char bytes[] = "0123456789.,-e\n\r\t nainfx\0\xff";
+    const std::string alphabet(bytes, sizeof(bytes) - 1);
     int refused = 0;
     for (int round = 0; round < 3000; ++round) {
         std::string text = round % 2 ? kHeader : "";
