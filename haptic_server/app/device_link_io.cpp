@@ -21,18 +21,9 @@ DeviceLinkIo::DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link, S
 
 bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     if (first_start_ns_ == 0 && !waitForFirstSample()) return false;
-    if (is_stopping_.load(std::memory_order_relaxed)) return false;
-    const int64_t patience = is_stale_ ? config_.period_ns : kPatiencePeriods * config_.period_ns;
-    const int64_t deadline = last_start_ns_ == 0 ? 0 : last_start_ns_ + patience;
-    const bool is_new = link_.waitForSample(deadline);
+    if (is_stopping_.load(std::memory_order_relaxed) || hasDeviceLeft()) return false;
+    const int64_t due = first_start_ns_ == 0 ? sample_stamp_ns_ : waitForDue();
     const int64_t start = monotonicNowNs();
-
-    DeviceSample sample;
-    int64_t woken_by = deadline;
-    if (link_.readSample(sample) && sample.sequence != sequence_) {
-        take(sample);
-        woken_by = sample.stamp_ns;
-    }
     input.force_factor = ramp_.update(start, sample_stamp_ns_);
     is_stale_ = ramp_.isStale();
     input.is_stale = is_stale_;
@@ -42,9 +33,19 @@ bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     input.t_s = secondsOfNs(start - first_start_ns_);
     input.start_ns = start;
     input.deadline_ns = start + config_.period_ns;
-    input.wakeup_latency_ns = std::max<int64_t>(0, start - ((is_new || deadline == 0) ? woken_by : deadline));
+    input.wakeup_latency_ns = std::max<int64_t>(0, start - due);
     last_start_ns_ = start;
     return true;
+}
+
+int64_t DeviceLinkIo::waitForDue() noexcept {
+    const int64_t patience = is_stale_ ? config_.period_ns : kPatiencePeriods * config_.period_ns;
+    const int64_t deadline = last_start_ns_ + patience;
+    link_.waitForSample(deadline);
+    DeviceSample sample;
+    if (!link_.readSample(sample) || sample.sequence == sequence_) return deadline;
+    take(sample);
+    return sample.stamp_ns;
 }
 
 bool DeviceLinkIo::waitForFirstSample() noexcept {
@@ -68,6 +69,7 @@ void DeviceLinkIo::take(const DeviceSample& sample) noexcept {
     X_WT_device_ = config_.X_WD * Pose{p_DT, q_DT.normalized()};
     buttons_ = sample.buttons;
     sequence_ = sample.sequence;
+    if (sample.flags & kDeviceFlagLeaving) has_device_left_.store(true, std::memory_order_relaxed);
     sample_stamp_ns_ = sample.stamp_ns;
 }
 

@@ -14,6 +14,7 @@ struct DeviceLinkIoConfig {
     int64_t period_ns = 1'000'000;
     StaleRampConfig ramp;
     Pose X_WD;
+    bool ends_with_device = false;  // end the session when the device leaves in order
 };
 
 // All members but the constructor and stop() belong to the tick thread and are RT-safe; read() waits.
@@ -22,7 +23,8 @@ class DeviceLinkIo final : public TickIo {
     DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link, SpscRing<TickRecord>& telemetry);
 
     // Wakes on a new device sample, or by itself one period after the last tick when the device is silent. Before the
-    // very first sample there is nothing to simulate: it only waits.
+    // very first sample there is nothing to simulate: it only waits. False after stop(), and when the device has said
+    // goodbye while ends_with_device is set.
     bool read(DeviceInput& input) noexcept override;
     int64_t write(const Wrench& wrench_hand_W) noexcept override;
     int64_t now() noexcept override;
@@ -35,8 +37,15 @@ class DeviceLinkIo final : public TickIo {
 
     static constexpr int64_t kStopCheckNs = 50'000'000;
 
+    // Any thread: the device said goodbye.
+    bool hasDeviceLeft() const noexcept {
+        return config_.ends_with_device && has_device_left_.load(std::memory_order_relaxed);
+    }
+
   private:
     bool waitForFirstSample() noexcept;
+    // Waits for the next tick and returns the instant that should have woken it.
+    int64_t waitForDue() noexcept;
     void take(const DeviceSample& sample) noexcept;
 
     DeviceLinkIoConfig config_;
@@ -52,6 +61,7 @@ class DeviceLinkIo final : public TickIo {
     int64_t last_start_ns_ = 0;
     bool is_stale_ = false;
     std::atomic<bool> is_stopping_{false};
+    std::atomic<bool> has_device_left_{false};
     std::atomic<uint64_t> implausible_{0};
 };
 

@@ -25,6 +25,7 @@ void addServerOptions(CLI::App& app, bonemill::ServerOptions& server) {
     app.add_option("--save-volume", server.save_volume, "write the milled volume (NRRD) at the end");
     app.add_option("--save-mesh", server.save_mesh, "write the milled surface (STL, mm) at the end");
     app.add_option("--rt-core", server.rt_core, "core of the haptic thread; -1: any");
+    app.add_flag("--until-device-leaves", server.until_device_leaves, "stop when device_daemon shuts down in order");
     app.add_flag("--best-effort-rt", server.best_effort_rt, "go on without real-time permissions");
 }
 

@@ -29,8 +29,9 @@ constexpr auto kPublishPeriod = 16ms;
 constexpr auto kMeshPeriod = 8ms;
 constexpr auto kRecordPeriod = 4ms;
 
-DeviceLinkIoConfig ioConfigOf(const scene::Loop& loop, const Simulation& simulation) {
+DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& loop, const Simulation& simulation) {
     DeviceLinkIoConfig config;
+    config.ends_with_device = options.until_device_leaves;
     config.period_ns = int64_t(std::llround(1e9 / loop.rate_hz()));
     config.ramp.stale_after_ns = int64_t(loop.stale_after_ms() * 1e6);
     config.ramp.ramp_down_ns = int64_t(loop.ramp_ms() * 1e6);
@@ -60,9 +61,9 @@ class Server {
           simulation_(makeSimulation(loaded_)),
           reset_(*simulation_.bone),
           ring_(kRingRecords),
-          io_(ioConfigOf(loaded_.scene.loop(), simulation_), link_, ring_),
+          io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), link_, ring_),
           tick_(simulation_.tick, *simulation_.bone, simulation_.tool.sdf, &reset_),
-          recorder_(ring_, ioConfigOf(loaded_.scene.loop(), simulation_).period_ns, options.trace),
+          recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace),
           publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
           show_(publisher_, loaded_.scene, simulation_, outbox_, recorder_, reset_, stop_requested_) {
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
@@ -125,6 +126,10 @@ class Server {
             constexpr timespec kPoll{0, 50'000'000};
             if (const int signal = sigtimedwait(&stop_signals_, nullptr, &kPoll); signal > 0) {
                 spdlog::info("{} received: shutting down", signal == SIGINT ? "SIGINT" : "SIGTERM");
+                return;
+            }
+            if (io_.hasDeviceLeft()) {
+                spdlog::info("the device has left: session ends");
                 return;
             }
             if (!first_tick_ns && recorder_.health().ticks > 0) {

@@ -19,6 +19,7 @@ struct ServerOptions {
     std::string save_mesh;
     int rt_core = kLastCore;  // core of the tick thread; kAnyCore (-1) leaves the choice to the kernel
     bool best_effort_rt = false;
+    bool until_device_leaves = false;  // end when the daemon shuts down in order
 };
 
 // Runs until told to stop; returns the process' exit code. Throws UserError at start-up, also when real-time
