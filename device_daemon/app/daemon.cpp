@@ -87,6 +87,7 @@ void Daemon::runLoop(std::promise<RealtimeReport> readiness) {
         last_instant_ns = instant_ns;
         if (shouldEnd()) loop_.release();
     }
+    sayGoodbye();
     statistics_.wall_time = secondsOfNs(monotonicNowNs() - start_ns);
     statistics_.missed_periods = timer.missedPeriods();
     statistics_.scenario_time = emulator_.state().scenario_time;
@@ -102,6 +103,7 @@ void Daemon::tick(int64_t instant_ns, double elapsed) noexcept {
     if (loop_.read(elapsed, sample)) {
         sample.stamp_ns = monotonicNowNs();
         last_sequence_ = link_.writeSample(sample);
+        last_sample_ = sample;
         if (first_sequence_ == 0) first_sequence_ = last_sequence_;
     }
     WrenchCommand command;
@@ -112,6 +114,14 @@ void Daemon::tick(int64_t instant_ns, double elapsed) noexcept {
     statistics_.wakeup_latency.record(woke_ns - instant_ns);
     statistics_.compute_time.record(monotonicNowNs() - woke_ns);
     recordTick(has_command ? &command : nullptr, last_sequence_);
+}
+
+// Lets the server tell an orderly end from a fault.
+void Daemon::sayGoodbye() noexcept {
+    if (first_sequence_ == 0) return;
+    last_sample_.stamp_ns = monotonicNowNs();
+    last_sample_.flags |= kDeviceFlagLeaving;
+    link_.writeSample(last_sample_);
 }
 
 void Daemon::attachToServer(const WrenchCommand& command, uint64_t sequence) noexcept {

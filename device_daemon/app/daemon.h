@@ -37,6 +37,7 @@ class Daemon {
 
     void runLoop(std::promise<RealtimeReport> readiness);
     void tick(int64_t instant_ns, double elapsed) noexcept;
+    void sayGoodbye() noexcept;
     void attachToServer(const WrenchCommand& command, uint64_t sequence) noexcept;
     void recordTick(const WrenchCommand* command, uint64_t sequence) noexcept;
     bool shouldEnd() const noexcept;
@@ -54,6 +55,7 @@ class Daemon {
     DeviceLoop loop_;
     DeviceLink link_;
     uint64_t first_sequence_ = 0;  // of this run's samples; 0 before the first
+    DeviceSample last_sample_{};
     uint64_t last_sequence_ = 0;
     RunStatistics statistics_;
     Progress progress_;
