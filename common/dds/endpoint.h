@@ -119,6 +119,8 @@ void setPayload(Sample& sample, const std::string& bytes) {
     sample.payload._buffer = reinterpret_cast<uint8_t*>(const_cast<char*>(bytes.data()));
     sample.payload._release = false;
 }
+template <class Sample>
+void setPayload(Sample&, std::string&&) = delete;
 
 template <class Sample>
 std::span<const uint8_t> payloadOf(const Sample& sample) {

@@ -50,11 +50,11 @@ class DdsTest : public testing::Test {
 
 TEST_F(DdsTest, LateReaderGetsTheNewestSamplePerKeyAndDisposedKeys) {
     Writer<NodeMeshSample> writer(participant_);
-    const std::string payload = "newest";
+    const std::string newest = "newest", old = "old";
     for (uint32_t node = 0; node < 10; ++node) {
         for (uint32_t revision = 0; revision < 5; ++revision) {
             NodeMeshSample sample = nodeSample(node, revision);
-            setPayload(sample, revision == 4 ? payload : std::string("old"));
+            setPayload(sample, revision == 4 ? newest : old);
             EXPECT_TRUE(writer.write(sample));
         }
     }
