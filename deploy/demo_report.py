@@ -1,0 +1,482 @@
+#!/usr/bin/env python3
+"""Turns what deploy/demo left behind (traces, server and device reports, pictures) into plots, report.md, report.json.
+
+Python's standard library and gnuplot only.
+"""
+
+import argparse
+import csv
+import datetime
+import json
+import math
+import os
+import pathlib
+import platform
+import shutil
+import subprocess
+import sys
+
+# Eriksson, Haptic Milling Simulation in Six Degrees-of-Freedom, KTH 2012, section 5.3: mean haptic rate, 20 s,
+# Pentium 4, point-shell scaling factor 3.
+THESIS_RATE_HZ = {"corridor": 983, "wall": 991}
+WANTED_RATE_HZ = 995
+TITLES = {
+    "corridor": "Milling a straight corridor from the crown into the tooth (thesis, figure 34)",
+    "wall": "Pressing the shaft against the wall of the milled hole (thesis, figure 35)",
+    "skull": "Milling a pit into the mastoid of a CT head",
+}
+FAULT_MEANING = {
+    "overrun": "the tick's own work took longer than its period",
+    "stale_device": "no fresh device sample: the force ramped to zero",
+    "bad_device_pose": "the device sent an impossible pose: the last good one was kept",
+    "solve": "no equilibrium found: the tool kept its pose",
+    "motion_clamped": "the speed limit of the virtual coupling acted",
+    "force_clamped": "the limit of force or torque on the hand acted",
+    "shell_overflow": "some milled surface had no contact points",
+}
+
+
+def fail(message):
+    sys.exit(f"demo_report: {message}")
+
+
+# --- reading ---------------------------------------------------------------------------------------------------
+
+
+def read_json(path):
+    try:
+        return json.loads(path.read_text())
+    except (OSError, ValueError) as error:
+        fail(f"{path}: {error}")
+
+
+def read_trace(path):
+    with open(path, newline="") as file:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+
+def json_lines(path):
+    """Every line of a log that is a JSON object."""
+    found = []
+    for line in path.read_text(errors="replace").splitlines() if path.exists() else []:
+        if line.startswith("{"):
+            found.append(json.loads(line))
+    return found
+
+
+def histogram_percentile(histogram, percent):
+    """histogram: latency in us -> count."""
+    wanted = percent / 100 * sum(histogram.values())
+    seen = 0
+    for latency in sorted(histogram):
+        seen += histogram[latency]
+        if seen >= wanted:
+            return latency
+    return None
+
+
+def read_cyclictest(path):
+    """The machine's own wake-up latency; None where it could not be measured."""
+    if not path.exists():
+        return None
+    thread = read_json(path)["thread"]["0"]
+    histogram = {int(latency): count for latency, count in thread["histogram"].items()}
+    return {
+        "p50": histogram_percentile(histogram, 50),
+        "p99": histogram_percentile(histogram, 99),
+        "p99_9": histogram_percentile(histogram, 99.9),
+        "max": thread["max"],
+        "mean": round(thread["avg"], 3),
+    }
+
+
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+def memory_gib():
+    for line in pathlib.Path("/proc/meminfo").read_text().splitlines():
+        if line.startswith("MemTotal"):
+            return round(int(line.split()[1]) / 2**20, 1)
+    return None
+
+
+def machine():
+    return {
+        "processor": processor(),
+        "cores": os.cpu_count(),
+        "memory_gib": memory_gib(),
+        "kernel": platform.release(),
+        "preempt_rt": "PREEMPT_RT" in platform.version(),
+        "load_average_1min": round(os.getloadavg()[0], 2),
+    }
+
+
+def real_time_remarks(log):
+    """What the server says about the machine's real-time abilities."""
+    remarks = []
+    for line in log.read_text(errors="replace").splitlines() if log.exists() else []:
+        if "real time: " in line:
+            remarks.append(line.split("real time: ", 1)[1])
+    return remarks
+
+
+def collect_run(out, name):
+    trace = out / f"trace_{name}.csv"
+    report = read_json(out / "logs" / f"server_{name}.json")
+    devices = json_lines(out / "logs" / f"device_{name}.log")
+    return {
+        "name": name,
+        "title": TITLES.get(name, name),
+        "trace": trace.name,
+        "loop": report,
+        "device": devices[-1] if devices else None,
+        "cyclictest_us": read_cyclictest(out / "logs" / f"cyclictest_{name}.json"),
+        "real_time_remarks": real_time_remarks(out / "logs" / f"server_{name}.log"),
+        "thesis_rate_hz": THESIS_RATE_HZ.get(name),
+    }
+
+
+# --- pictures --------------------------------------------------------------------------------------------------
+
+
+def live_frames(frames):
+    """Those during which the server's loop went on."""
+    live = []
+    for frame in frames:
+        if frame.get("tick", 0) > (live[-1]["tick"] if live else 0):
+            live.append(frame)
+    return live
+
+
+def choose_pictures(out, name):
+    """before: the whole bone before the device came; during: the middle of the run; after: the last one while
+    the loop ran. Copied beside the report; returns their names."""
+    folder = out / f"frames_{name}"
+    chosen = {"before": folder / "before" / "frame_0000.png"}
+    frames = live_frames(json_lines(out / "logs" / f"client_{name}.log"))
+    if frames:
+        half = frames[-1]["tick"] / 2
+        chosen["during"] = folder / min(frames, key=lambda frame: abs(frame["tick"] - half))["file"]
+        chosen["after"] = folder / frames[-1]["file"]
+    pictures = {}
+    for moment, source in chosen.items():
+        if source.exists():
+            shutil.copyfile(source, out / f"{name}_{moment}.png")
+            pictures[moment] = f"{name}_{moment}.png"
+    return pictures
+
+
+# --- plots -----------------------------------------------------------------------------------------------------
+
+
+def gnuplot(script):
+    result = subprocess.run(["gnuplot"], input=script, text=True, capture_output=True, check=False)
+    if result.returncode:
+        fail(f"gnuplot: {result.stderr.strip()}")
+
+
+def rate_in_windows(rows, window_s=0.1):
+    """Ticks per second in windows of window_s."""
+    counts = {}
+    for row in rows:
+        index = int(row["t_s"] / window_s)
+        counts[index] = counts.get(index, 0) + 1
+    whole = range(max(counts)) if counts else []  # the last window is not full
+    return [((i + 0.5) * window_s, counts.get(i, 0) / window_s) for i in whole]
+
+
+def shaft_direction(row):
+    """Tool's +y (along the shaft, to the hand) in the world: a point on the unit sphere."""
+    w, x, y, z = (row[f"spo_q{c}"] for c in "wxyz")
+    return (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x))
+
+
+def data_block(name, rows):
+    lines = [" ".join(f"{value:.9g}" for value in row) for row in rows]
+    return f"${name} << END_OF_DATA\n" + "\n".join(lines) + "\nEND_OF_DATA\n"
+
+
+def plot_time_series(rows, title, path):
+    force = [(r["t_s"], r["fx_n"], r["fy_n"], r["fz_n"], math.hypot(r["fx_n"], r["fy_n"], r["fz_n"])) for r in rows]
+    torque = [
+        (r["t_s"], *(1e3 * r[f"t{c}_nm"] for c in "xyz"), 1e3 * math.hypot(r["tx_nm"], r["ty_nm"], r["tz_nm"]))
+        for r in rows
+    ]
+    compute = [(r["t_s"], r["tick_us"], r["contacts"]) for r in rows]
+    components = "".join(
+        f'${{block}} using 1:{column} with lines lc rgb "{colour}" title "{axis}", '
+        for column, axis, colour in ((2, "x", "#d06050"), (3, "y", "#50a060"), (4, "z", "#5080d0"))
+    )
+    norm = '${block} using 1:5 with lines lc rgb "#202020" title "norm"'
+    gnuplot(
+        data_block("rate", rate_in_windows(rows))
+        + data_block("force", force)
+        + data_block("torque", torque)
+        + data_block("compute", compute)
+        + f"""
+set terminal pngcairo size 1200,1300 font "DejaVu Sans,11"
+set output "{path}"
+set multiplot layout 4,1 title "{title}" font ",14"
+set lmargin 10
+set rmargin 10
+set grid lc rgb "#dddddd"
+set xrange [0:{max(r["t_s"] for r in rows):.3f}]
+set key top right horizontal
+set ylabel "rate, Hz"
+set yrange [0:1200]
+plot 1000 with lines dt 2 lc rgb "#888888" title "nominal", $rate with steps lw 1.5 lc rgb "#2050a0" title "haptic rate, 100 ms windows"
+set yrange [*:*]
+set ylabel "force on the hand, N"
+plot {(components + norm).replace("${block}", "$force")}
+set ylabel "torque on the hand, N·mm"
+plot {(components + norm).replace("${block}", "$torque")}
+set ylabel "tick, µs"
+set y2label "contacts"
+set y2tics
+set ytics nomirror
+set xlabel "time, s"
+plot $compute using 1:3 axes x1y2 with lines lc rgb "#c0a060" title "contacts", $compute using 1:2 with lines lc rgb "#2050a0" title "tick's own work"
+"""
+    )
+
+
+def plot_orientation(rows, title, path):
+    points = [(*shaft_direction(r), r["t_s"]) for r in rows[::5]]
+    centre = [sum(p[a] for p in points) / len(points) for a in range(3)]
+    reach = max(1e-4, 1.1 * max(abs(p[a] - centre[a]) for p in points for a in range(3)))
+    zoom = "".join(f"set {a}range [{c - reach:.9g}:{c + reach:.9g}]\n" for a, c in zip("xyz", centre))
+    tics = "".join(f'set {a}tics {2 * reach / 3:.2g} format "%.3g"\n' for a in "xyz")
+    gnuplot(
+        data_block("path", points)
+        + f"""
+set terminal pngcairo size 1400,700 font "DejaVu Sans,11"
+set output "{path}"
+set multiplot layout 1,2 title "{title}: shaft direction on the unit sphere" font ",14"
+set palette rgbformulae 33,13,10
+set cblabel "time, s"
+set cbrange [0:{rows[-1]["t_s"]:.3f}]
+set xlabel "x"
+set ylabel "y"
+set zlabel "z"
+set view equal xyz
+set view 65,40,1.3
+set xyplane 0
+set parametric
+set isosamples 25,25
+set urange [0:2*pi]
+set vrange [-pi/2:pi/2]
+set xrange [-1:1]
+set yrange [-1:1]
+set zrange [-1:1]
+splot cos(u)*cos(v),sin(u)*cos(v),sin(v) with lines lc rgb "#d8d8d8" lw 0.3 notitle, $path using 1:2:3:4 with linespoints pt 7 ps 0.5 lc palette title "whole sphere"
+unset parametric
+unset view
+set view 65,40,1.3
+{zoom}{tics}set title "zoomed: {2 * reach:.3g} wide ({math.degrees(2 * math.asin(min(1, reach))):.2g}°)"
+splot $path using 1:2:3:4 with linespoints pt 7 ps 0.5 lc palette notitle
+"""
+    )
+
+
+def plot_run(out, run):
+    """Plots of one run; with fewer than two ticks there is nothing to plot."""
+    rows = read_trace(out / run["trace"])
+    if len(rows) < 2:
+        return {}
+    name, title = run["name"], run["title"]
+    plots = {"time": f"plot_{name}.png", "orientation": f"orientation_{name}.png"}
+    plot_time_series(rows, title, out / plots["time"])
+    plot_orientation(rows, title, out / plots["orientation"])
+    return plots
+
+
+# --- report ----------------------------------------------------------------------------------------------------
+
+
+def number(value, digits=1):
+    return "–" if value is None else f"{value:.{digits}f}"
+
+
+def rate_table(runs):
+    lines = [
+        "| run | mean loop rate | slowest second | thesis, 2012 | dropped ticks | faults (ticks) |",
+        "|---|---|---|---|---|---|",
+    ]
+    for run in runs:
+        loop = run["loop"]
+        thesis = f"{run['thesis_rate_hz']} Hz" if run["thesis_rate_hz"] else "–"
+        faults = ", ".join(f"{name} ({count})" for name, count in loop["fault_ticks"].items()) or "none"
+        lines.append(
+            f"| {run['name']} | **{loop['mean_rate_hz']:.1f} Hz** | {loop['slowest_second_hz']:.0f} Hz | {thesis} "
+            f"| {loop['dropped_ticks']} of {loop['ticks'] + loop['dropped_ticks']} | {faults} |"
+        )
+    return lines
+
+
+def timing_table(runs):
+    lines = ["| run | µs | p50 | p99 | p99.9 | max |", "|---|---|---|---|---|---|"]
+    for run in runs:
+        loop = run["loop"]
+        rows = [
+            ("tick's own work", loop["tick_compute_us"]),
+            ("wake-up to force written", loop["force_ready_us"]),
+            ("wake-up latency of the tick", loop["wakeup_latency_us"]),
+            ("wake-up latency, machine alone (cyclictest)", run["cyclictest_us"]),
+        ]
+        for label, values in rows:
+            if values is None:
+                lines.append(f"| {run['name']} | {label} | not permitted here | | | |")
+            else:
+                columns = " | ".join(number(values[key]) for key in ("p50", "p99", "p99_9", "max"))
+                lines.append(f"| {run['name']} | {label} | {columns} |")
+    return lines
+
+
+def contact_table(runs):
+    lines = [
+        "| run | contacts, mean | contacts, max | force, max | torque, max | deepest penetration | bone removed |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for run in runs:
+        loop = run["loop"]
+        lines.append(
+            f"| {run['name']} | {loop['contacts_mean']:.0f} | {loop['contacts_max']} | {loop['force_max_n']:.2f} N "
+            f"| {1e3 * loop['torque_max_nm']:.1f} N·mm | {loop['penetration_max_mm']:.3f} mm "
+            f"| {loop['removed_mm3']:.2f} mm³ ({loop['removed_voxels']} voxels) |"
+        )
+    return lines
+
+
+def verdict(runs):
+    """One plain sentence per verification run."""
+    lines = []
+    for run in runs:
+        if run["thesis_rate_hz"] is None:
+            continue
+        rate = run["loop"]["mean_rate_hz"]
+        met = "meets" if rate >= WANTED_RATE_HZ else "**misses**"
+        lines.append(
+            f"- {run['name']}: {rate:.1f} Hz {met} the wanted {WANTED_RATE_HZ} Hz "
+            f"(thesis: {run['thesis_rate_hz']} Hz at point-shell scaling factor 3)."
+        )
+    return lines
+
+
+def machine_lines(report):
+    host = report["machine"]
+    kind = "PREEMPT_RT" if host["preempt_rt"] else "not PREEMPT_RT"
+    lines = [
+        f"{host['processor']}, {host['cores']} cores, {host['memory_gib']} GiB, Linux {host['kernel']} ({kind}); "
+        f"load average at the end {host['load_average_1min']}.",
+        "",
+    ]
+    if report["best_effort_rt"]:
+        lines.append(
+            "**This machine did not grant real-time scheduling or locked memory: everything ran with "
+            "`--best-effort-rt`, as one process among others.**"
+        )
+    else:
+        lines.append("The loops of haptic_server and device_daemon ran under SCHED_FIFO with locked memory.")
+    remarks = sorted({remark for run in report["runs"] for remark in run["real_time_remarks"]})
+    return lines + ["", *(f"- {remark}" for remark in remarks)]
+
+
+def fault_lines(runs):
+    names = sorted({name for run in runs for name in run["loop"]["fault_ticks"]})
+    if not names:
+        return ["No fault was raised."]
+    return [f"- `{name}`: {FAULT_MEANING.get(name, 'see docs')}." for name in names]
+
+
+def run_section(run):
+    lines = [f"## {run['title']}", ""]
+    if run["pictures"]:
+        moments = list(run["pictures"])
+        lines += ["| " + " | ".join(moments) + " |", "|" + "---|" * len(moments)]
+        lines += ["| " + " | ".join(f"![{m}]({run['pictures'][m]})" for m in moments) + " |", ""]
+    for label, plot in (("rate, force, torque, tick over time", "time"), ("shaft orientation", "orientation")):
+        if plot in run["plots"]:
+            lines += [f"![{label}]({run['plots'][plot]})", ""]
+    device = run["device"]
+    if device:
+        lines += [
+            f"Device side: {device['ticks']} ticks at {device['rate_hz']:.1f} Hz, {device['missed_periods']} missed "
+            f"periods, {device['late_answers']} late answers of the server, hand at most "
+            f"{device['max_tracking_mm']:.2f} mm from where it wanted to be.",
+            "",
+        ]
+    lines += [f"Every tick: [{run['trace']}]({run['trace']}) (columns: docs/simulate.md).", ""]
+    return lines
+
+
+LIMITS = """- Hand and device are simulated: a hand impedance that follows waypoints and reacts to the force, on an emulated
+  six-legged device whose dimensions are placeholders. No person felt this.
+- The thesis' runs were made by hand on other bone with a scaling factor of 3; the rates compare, the curves only in kind.
+- All three programs shared this machine, and the viewer drew on the processor. On two cores that costs latency.
+- The force model is the thesis' own, with its known errors (docs/architecture.md names them).
+- cyclictest ran right before each run, not during it: beside the loop it would disturb what it measures."""
+
+
+def write_markdown(out, report):
+    runs = report["runs"]
+    lines = [
+        "# bonemill demo",
+        "",
+        f"{report['date']}. Each run went in real time through haptic_server, device_daemon and render_client.",
+        "",
+        *verdict(runs),
+        "",
+        *rate_table(runs),
+        "",
+        "## Timing",
+        "",
+        *timing_table(runs),
+        "",
+        "A tick may take 1000 µs. The wake-up latency is the machine's share, the tick's own work is ours.",
+        "",
+        "## Contact and milling",
+        "",
+        *contact_table(runs),
+        "",
+        "## Faults",
+        "",
+        *fault_lines(runs),
+        "",
+        "## Machine",
+        "",
+        *machine_lines(report),
+        "",
+    ]
+    for run in runs:
+        lines += run_section(run)
+    lines += ["## What this does not show", "", LIMITS, ""]
+    (out / "report.md").write_text("\n".join(lines))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", required=True, type=pathlib.Path, help="folder with traces and logs/")
+    parser.add_argument("--best-effort-rt", action="store_true", help="the programs ran without real time")
+    parser.add_argument("names", nargs="+", help="runs, as in trace_NAME.csv")
+    arguments = parser.parse_args()
+    out = arguments.out
+    runs = [collect_run(out, name) for name in arguments.names]
+    for run in runs:
+        run["pictures"] = choose_pictures(out, run["name"])
+        run["plots"] = plot_run(out, run)
+    report = {
+        "date": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
+        "machine": machine(),
+        "best_effort_rt": arguments.best_effort_rt,
+        "runs": runs,
+    }
+    (out / "report.json").write_text(json.dumps(report, indent=2, ensure_ascii=False) + "\n")
+    write_markdown(out, report)
+
+
+if __name__ == "__main__":
+    main()
