@@ -105,7 +105,9 @@ void connect(TriangleMesh& mesh, const std::string& file) {
         throw UserError(file + ": the surface is not closed: " + std::to_string(open) +
                         " edges have one triangle only and " + std::to_string(crowded) + " more than two (" +
                         std::to_string(mesh.triangles.size()) +
-                        " triangles); fill the holes and merge the parts into one solid, then export again");
+                        " triangles); "
+                        "fill the holes and merge the parts into one solid, or if the file is cut short, "
+                        "just export again");
     if (turned > 0)
         throw UserError(
             file + ": triangles face different ways: " + std::to_string(turned) +
