@@ -1,11 +1,17 @@
 #include "device_daemon/app/options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
+#include <thread>
 
 #include "common/config/user_error.h"
 
 namespace bonemill {
+
+int defaultCore() noexcept {
+    return std::max(-1, static_cast<int>(std::thread::hardware_concurrency()) - 2);
+}
 
 std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
     DaemonOptions options;
@@ -24,7 +30,7 @@ std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
     app.add_flag("--hold", options.hold, "Rest at the last waypoint instead of leaving");
     app.add_flag("--best-effort-rt", options.best_effort_realtime,
                  "Go on without real-time scheduling and locked memory");
-    app.add_option("--core", options.core, "Processor core for the device loop (-1: any)")
+    app.add_option("--rt-core", options.core, "Processor core for the device loop (-1: any)")
         ->check(CLI::Range(-1, 4095))
         ->capture_default_str();
     app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")

@@ -7,6 +7,10 @@
 
 namespace bonemill {
 
+// The core beside the one that haptic_server takes for its tick (the last one); -1 (any) on a single-core
+// machine.
+int defaultCore() noexcept;
+
 struct DaemonOptions {
     std::string scene;
     uint32_t session = 0;
@@ -14,7 +18,7 @@ struct DaemonOptions {
     std::optional<double> wait_seconds;  // how long to wait for haptic_server; not given: for ever
     bool hold = false;
     bool best_effort_realtime = false;
-    int core = -1;
+    int core = defaultCore();
     std::string log_level = "info";
 };
 

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kPeriod = 1e-3;  // s
 constexpr int64_t kPeriodNs = 1'000'000;
-constexpr double kWallStiffness = 1200;  // N/m, resists z < 0 of the handle
+constexpr double kSoftWall = 1200;        // N/m, resists z < 0 of the handle
+constexpr double kThesisCoupling = 3000;  // N/m: what a rigid bone feels like through k_t = 3 N/mm
 
 class ClosedLoop {
   public:
@@ -31,7 +32,7 @@ class ClosedLoop {
         if (!server_answers) return;
         command = {};
         command.stamp_ns = now_ns;
-        command.f_hand_D[2] = sample.p_DT[2] < 0 ? -kWallStiffness * sample.p_DT[2] : 0;
+        command.f_hand_D[2] = sample.p_DT[2] < 0 ? -wall_stiffness * sample.p_DT[2] : 0;
         if (force_override) std::copy_n(force_override, 3, command.f_hand_D);
     }
     void run(double seconds) {
@@ -42,6 +43,7 @@ class ClosedLoop {
     DeviceLoop loop;
     WrenchCommand command{};
     int64_t now_ns = 1'000'000'000;
+    double wall_stiffness = kSoftWall;
     const double* force_override = nullptr;
 };
 
@@ -52,19 +54,22 @@ OperatorPath pressIntoTheWall() {
 
 TEST(ClosedLoop, HandAndWallSettleWhereTheirSpringsBalance) {
     const HandImpedance hand;
-    ClosedLoop loop(pressIntoTheWall());
-    loop.run(2.0);
-    double lowest = 1, highest = -1;
-    for (int i = 0; i < 500; ++i) {
-        loop.step();
-        const double z = loop.emulator.state().X_DT.position.z();
-        lowest = std::min(lowest, z);
-        highest = std::max(highest, z);
+    for (const double wall_stiffness : {kSoftWall, kThesisCoupling}) {
+        ClosedLoop loop(pressIntoTheWall());
+        loop.wall_stiffness = wall_stiffness;
+        loop.run(2.0);
+        double lowest = 1, highest = -1;
+        for (int i = 0; i < 500; ++i) {
+            loop.step();
+            const double z = loop.emulator.state().X_DT.position.z();
+            lowest = std::min(lowest, z);
+            highest = std::max(highest, z);
+        }
+        const double balance = -0.006 * hand.stiffness / (hand.stiffness + wall_stiffness);
+        const double coulomb_play = AresPlant{}.coulomb_friction / (hand.stiffness + wall_stiffness);
+        EXPECT_NEAR((lowest + highest) / 2, balance, coulomb_play + 5e-6) << wall_stiffness;
+        EXPECT_LT(highest - lowest, 5e-6) << wall_stiffness;  // no buzz: less than an encoder step
     }
-    const double balance = -0.006 * hand.stiffness / (hand.stiffness + kWallStiffness);
-    const double coulomb_play = AresPlant{}.coulomb_friction / (hand.stiffness + kWallStiffness);
-    EXPECT_NEAR((lowest + highest) / 2, balance, coulomb_play + 5e-6);
-    EXPECT_LT(highest - lowest, 5e-6);  // no buzz: less than an encoder step
 }
 
 TEST(ClosedLoop, SamplesShowTheTruePoseWithinTheEncoders) {

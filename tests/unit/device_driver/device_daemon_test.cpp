@@ -63,7 +63,7 @@ simulated_operator {
 // answers.
 uint64_t serveWall(uint32_t session, std::future<void> stop) {
     DeviceLink link = DeviceLink::create(DeviceLink::nameOfSession(session), LinkSide::kServer);
-    uint64_t answers = 0;
+    Served served;
     while (stop.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
         DeviceSample sample;
         if (!link.waitForSample(monotonicNowNs() + 10 * kNsPerMillisecond) || !link.readSample(sample))
@@ -73,9 +73,11 @@ uint64_t serveWall(uint32_t session, std::future<void> stop) {
         command.answers_sequence = sample.sequence;
         command.f_hand_D[2] = sample.p_DT[2] < 0 ? -1000 * sample.p_DT[2] : 0;
         link.writeCommand(command);
-        ++answers;
+        ++served.answers;
     }
-    return answers;
+    DeviceSample last{};
+    if (link.readSample(last)) served.last_flags = last.flags;
+    return served;
 }
 
 TEST_F(DeviceDaemonTest, PlaysTheScenarioWithAServerAndLeaves) {
@@ -84,7 +86,9 @@ TEST_F(DeviceDaemonTest, PlaysTheScenarioWithAServerAndLeaves) {
     const Outcome outcome = runDaemon("--scene " + sceneFile(kShortScene) + " --best-effort-rt --session " +
                                       std::to_string(session_) + " --wait-seconds 60");
     stop.set_value();
-    EXPECT_GT(server.get(), 50u);
+    const Served served = server.get();
+    EXPECT_GT(served.answers, 50u);
+    EXPECT_TRUE(served.last_flags & kDeviceFlagLeaving);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
     for (const char* phase :
          {"phase approach", "phase press", "\"final_phase\":\"done\"", "\"failed_poses\":0"}) {
