@@ -59,9 +59,13 @@ simulated_operator {
   waypoint { time_s: 0.5 p_WT_mm { z: -2 } phase: "done" }
 })";
 
-// Answers every sample with a spring that resists z < 0 of the handle, until told to stop. Returns the
-// answers.
-uint64_t serveWall(uint32_t session, std::future<void> stop) {
+struct Served {
+    uint64_t answers = 0;
+    uint32_t last_flags = 0;
+};
+
+// Answers every sample with a spring that resists z < 0 of the handle, until told to stop.
+Served serveWall(uint32_t session, std::future<void> stop) {
     DeviceLink link = DeviceLink::create(DeviceLink::nameOfSession(session), LinkSide::kServer);
     Served served;
     while (stop.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
