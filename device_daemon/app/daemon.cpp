@@ -149,7 +149,8 @@ void Daemon::recordTick(const WrenchCommand* command, uint64_t sequence) noexcep
     if (loop_.limitEvents() & kForceRateLimited) ++s.rate_limited_ticks;
     if (state.at_stop) ++s.stop_ticks;
 
-    progress_.is_stale.store(loop_.isPeerStale(), std::memory_order_relaxed);
+    // While this side ends the run, silence is its own doing.
+    progress_.is_stale.store(loop_.isPeerStale() && !shouldEnd(), std::memory_order_relaxed);
     progress_.waypoint.store(state.target.waypoint, std::memory_order_relaxed);
     progress_.scenario_time.store(state.scenario_time, std::memory_order_relaxed);
 }

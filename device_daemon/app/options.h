@@ -13,7 +13,7 @@ int defaultCore() noexcept;
 
 struct DaemonOptions {
     std::string scene;
-    uint32_t session = 0;
+    uint32_t session = 1;
     std::optional<double> seconds;       // of the scenario; not given: until the last waypoint
     std::optional<double> wait_seconds;  // how long to wait for haptic_server; not given: for ever
     bool hold = false;
