@@ -113,8 +113,11 @@ class Server {
 
     void meshUntil(const std::stop_token& stop) {
         Mesher mesher(simulation_.bone->volume, simulation_.bone->lattice);
+        uint64_t leaves_read = 0;
         while (!stop.stop_requested()) {
             const auto result = mesher.pass([this](NodeMesh&& mesh) { outbox_.put(std::move(mesh)); }, kLeavesPerPass);
+            leaves_read += result.read;
+            if (leaves_read >= simulation_.bone->lattice.leafCount()) outbox_.markWhole();
             if (result.pending == 0) std::this_thread::sleep_for(kMeshPeriod);
         }
     }

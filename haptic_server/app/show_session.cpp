@@ -79,10 +79,12 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
 }
 
 void ShowSession::round() {
+    const bool is_whole = outbox_.isWhole();  // before taking, so that all of the bone is among what was published
     const std::vector<NodeMesh> meshes = outbox_.takeAll();
     for (const NodeMesh& mesh : meshes) publisher_.publishNode(mesh);
     if (const auto latest = recorder_.latest()) publisher_.publishToolState(*latest);
     for (const topics::Command& command : publisher_.takeCommands()) publisher_.acknowledge(command, carryOut(command));
+    if (!is_whole) return;  // a status counts the nodes: clients would call part of the bone complete
     if (!meshes.empty() || monotonicNowNs() - last_status_ns_ > kStatusPeriodNs) publishStatus();
 }
 
