@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <new>
+#include <atomic>
 #include <thread>
 
 namespace bonemill {
@@ -92,19 +92,26 @@ TEST(Seqlock, countsPastTheEndWithoutLookingUnwritten) {
 }
 
 TEST(Seqlock, neverGivesATornValueAndNeverAnOlderOne) {
-    constexpr uint64_t kWrites = 100'000;
+    constexpr int kDifferentValues =
+        20'000;  // read while the writer writes: enough to meet many writes half done
     Seqlock<Value> lock;
-    std::thread writer([&lock] {
-        for (uint64_t i = 1; i <= kWrites; ++i) lock.write(valueOf(i));
+    std::atomic<bool> is_enough{false};
+    std::thread writer([&] {
+        for (uint64_t i = 1; !is_enough.load(std::memory_order_relaxed); ++i) {
+            lock.write(valueOf(i));
+            std::this_thread::yield();  // a gap, or the reader would hardly ever get through
+        }
     });
     uint64_t last = 0, torn = 0, older = 0;
-    while (last < kWrites) {
+    for (int different = 0; different < kDifferentValues;) {
         Value value{};
         if (!lock.tryRead(value)) continue;
         torn += !isWhole(value);
         older += value.number < last;
+        different += value.number != last;
         last = value.number;
     }
+    is_enough = true;
     writer.join();
     EXPECT_EQ(torn, 0u);
     EXPECT_EQ(older, 0u);
