@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <map>
+#include <optional>
 #include <thread>
 
 #include "haptic_server/mesh/mesh_check.h"
@@ -208,6 +211,50 @@ TEST(Mesher, RunsBesideATickThatWrites) {
     }
     expectEqualsFullRemesh(model, bone.volume, *bone.lattice);
     for (const auto& [leaf, mesh] : model.meshes) EXPECT_EQ(mesh.revision, bone.lattice->version(leaf));
+}
+
+// The tick rewrites a whole leaf with one of two bodies; whatever the mesher sends must be one of them, never
+// a mixture.
+TEST(Mesher, NeverSendsALeafHalfWritten) {
+    VoxelVolume volume(boxGeometry({16, 16, 16}), kIso);
+    LeafLattice lattice(volume, {32, 32, 32});
+    const auto body = [](bool is_large) {
+        return [is_large](int i, int j, int k) {
+            const double distance = (Eigen::Vector3d(i, j, k).array() - 7.5).matrix().norm();
+            return Density(std::clamp(kIso + 4000 * ((is_large ? 7 : 4) - distance), 0.0, 65535.0));
+        };
+    };
+    const IndexBox whole = test::wholeBox(volume);
+    std::vector<NodeMesh> pure;
+    for (const bool is_large : {false, true}) {
+        writeLikeTick(volume, lattice, whole, body(is_large));
+        pure.push_back(meshLeaf(volume, lattice, 0));
+    }
+    ASSERT_FALSE(test::sameMesh(pure[0], pure[1]));
+
+    Mesher mesher(volume, lattice);
+    std::atomic<bool> is_enough{false};
+    std::thread tick([&] {
+        std::mt19937 random(3);
+        std::uniform_int_distribution<int> rest_us(0, 1000);
+        for (bool is_large = false; !is_enough; is_large = !is_large) {
+            writeLikeTick(volume, lattice, whole, body(is_large));
+            // Rests of any length, so that writes fall into every part of the mesher's work and some leave it
+            // alone.
+            std::this_thread::sleep_for(std::chrono::microseconds(rest_us(random)));
+        }
+    });
+    size_t received = 0;
+    size_t mixtures = 0;
+    while (received < 200) {
+        mesher.pass([&](NodeMesh&& mesh) {
+            ++received;
+            if (!test::sameMesh(mesh, pure[0]) && !test::sameMesh(mesh, pure[1])) ++mixtures;
+        });
+    }
+    is_enough = true;
+    tick.join();
+    EXPECT_EQ(mixtures, 0u);
 }
 
 }  // namespace
