@@ -4,6 +4,7 @@
 
 #include <cinttypes>
 #include <cstdio>
+#include <iostream>
 
 #include "common/config/user_error.h"
 #include "render_client/app/scene_feed.h"
@@ -34,16 +35,19 @@ void waitUntilComplete(SceneFeed& feed, const ClientOptions& options) {
         ", session " + std::to_string(options.subscriber.session) + "?");
 }
 
-void printLine(uint32_t frame, const std::string& file, const RenderScene& scene, SceneFeed& feed) {
+// What the picture shows; to be taken before the drawing, which may take longer than the server's time-out.
+std::string describe(uint32_t frame, const std::string& file, const RenderScene& scene, SceneFeed& feed) {
     const SceneSubscriber& subscriber = feed.subscriber();
     const uint64_t tick = subscriber.toolState() ? subscriber.toolState()->tick() : 0;
-    std::printf(
-        "{\"frame\":%u,\"file\":\"%s\",\"nodes\":%zu,\"triangles\":%zu,\"revision_digest\":\"%016" PRIx64
-        "\",\"complete\":%s,\"server\":%s,\"epoch\":%" PRIu64 ",\"tick\":%" PRIu64 "}\n",
-        frame, file.c_str(), scene.nodeCount(), scene.triangleCount(), subscriber.digest().value(),
-        feed.isComplete() ? "true" : "false", subscriber.hasServer() ? "true" : "false", subscriber.epoch(),
-        tick);
-    std::fflush(stdout);
+    char line[512];
+    std::snprintf(line, sizeof line,
+                  "{\"frame\":%u,\"file\":\"%s\",\"nodes\":%zu,\"triangles\":%zu,"
+                  "\"revision_digest\":\"%016" PRIx64 "\",\"complete\":%s,\"server\":%s,\"epoch\":%" PRIu64
+                  ",\"tick\":%" PRIu64 "}",
+                  frame, file.c_str(), scene.nodeCount(), scene.triangleCount(), subscriber.digest().value(),
+                  feed.isComplete() ? "true" : "false", subscriber.hasServer() ? "true" : "false",
+                  subscriber.epoch(), tick);
+    return line;
 }
 
 }  // namespace
@@ -68,11 +72,12 @@ void runOffscreen(const ClientOptions& options) {
         if (stopRequested()) return;
         due = Clock::now() + wish.interval;
         feed.update();
-        scene.draw(options.width, options.height, ui_scale);
         char name[32];
         std::snprintf(name, sizeof name, "frame_%04u.png", frame);
+        const std::string description = describe(frame, name, scene, feed);
+        scene.draw(options.width, options.height, ui_scale);
         writePng(context.read(), wish.directory / name);
-        printLine(frame, name, scene, feed);
+        std::cout << description << std::endl;
     }
 }
 

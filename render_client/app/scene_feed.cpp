@@ -24,6 +24,13 @@ void SceneFeed::update() {
     updateConnection();
 }
 
+// Tool states are not kept for late clients: a loop that has ticked will send one soon.
+bool SceneFeed::isComplete() const {
+    const bool has_ticked = subscriber_.status() && subscriber_.status()->ticks() > 0;
+    return subscriber_.hasServer() && subscriber_.isComplete() && scene_.hasSceneInfo() &&
+           (!has_ticked || subscriber_.toolState());
+}
+
 // While the bone is being milled the model is always a node or two behind its newest status: what was
 // complete once is called live from then on.
 void SceneFeed::updateConnection() {

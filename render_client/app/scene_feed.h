@@ -19,10 +19,8 @@ class SceneFeed {
     template <class Stop>
     void updateUntil(std::chrono::steady_clock::time_point end, Stop&& stop);
 
-    // The scene shows exactly the server's model.
-    bool isComplete() const {
-        return subscriber_.hasServer() && scene_.hasSceneInfo() && subscriber_.isComplete();
-    }
+    // The scene shows exactly the server's model, and the tool if the server has one to show.
+    bool isComplete() const;
 
     SceneSubscriber& subscriber() { return subscriber_; }
 

@@ -26,6 +26,7 @@ std::string readable(double value, const char* unit) {
 }
 
 void addStatusRows(const topics::Status& status, std::vector<HudRow>& rows) {
+    if (status.ticks() == 0) return rows.push_back({"Loop", "waits for a device", HudTone::kWarning});
     rows.push_back({"Loop", number(status.rate_hz(), 1, " Hz")});
     rows.push_back({"Tick p99", readable(status.tick_p99_us(), " \u00b5s")});
 }

@@ -8,9 +8,10 @@
 namespace bonemill {
 namespace {
 
-constexpr double kGhostDistance = 1.5e-4;   // m
-constexpr double kGhostAngle = 0.03;        // rad
-constexpr double kShownBeyondView = 2.0;    // half picture diagonals at the target that the shadow map covers
+constexpr double kGhostDistance = 1.5e-4;  // m
+constexpr double kGhostAngle = 0.03;       // rad
+constexpr double kShownBeyondView =
+    2.0;  // half picture diagonals at the target that the shadow map covers when one is close
 constexpr double kOcclusionRadius = 0.10;   // of the bone's radius
 constexpr float kOcclusionPicture = 0.06f;  // at most this part of the picture's height
 constexpr double kGrain = 0.045;            // size of the mottling over the bone's radius
@@ -40,6 +41,28 @@ void extendBy(Eigen::AlignedBox3d& box_W, const Pose& X_WA, const Box& box_A) {
     }
 }
 
+struct KeyLight {
+    Eigen::Vector3f direction;           // C, towards the light
+    Eigen::Matrix4f shadow_from_camera;  // to the shadow map's -1 .. 1
+    float shadow_texel;                  // m
+};
+
+// From the upper left of the camera; its shadow map covers the sphere.
+KeyLight aimKeyLight(const OrbitCamera& camera, const Sphere& lit_W) {
+    const Eigen::Vector3d key_C = Eigen::Vector3d(-0.55, 0.70, 0.62).normalized();
+    const double half_size = std::max(lit_W.radius, 1e-4);
+    Eigen::Matrix3d R_LC;
+    R_LC.row(2) = -key_C;  // depth grows away from the light
+    R_LC.row(0) = Eigen::Vector3d::UnitY().cross(key_C).normalized();
+    R_LC.row(1) = key_C.cross(Eigen::Vector3d(R_LC.row(0)));
+    const Eigen::Vector3d center_C = camera.R_WC().transpose() * (lit_W.center - camera.eye());
+    Eigen::Matrix4d shadow_from_camera = Eigen::Matrix4d::Identity();
+    shadow_from_camera.topLeftCorner<3, 3>() = R_LC / half_size;
+    shadow_from_camera.topRightCorner<3, 1>() = -(R_LC * center_C) / half_size;
+    return {key_C.cast<float>(), shadow_from_camera.cast<float>(),
+            float(2 * half_size / RenderTargets::kShadowSize)};
+}
+
 }  // namespace
 
 bool isGhostVisible(const Pose& X_WT, const Pose& X_WT_device) {
@@ -50,13 +73,11 @@ bool isGhostVisible(const Pose& X_WT, const Pose& X_WT_device) {
 struct SceneRenderer::Frame {
     Eigen::Matrix4f camera_from_V;
     Eigen::Matrix4f clip_from_camera;
-    Eigen::Matrix4f shadow_from_camera;
     std::optional<Eigen::Matrix4f> camera_from_T;
     std::optional<Eigen::Matrix4f> camera_from_ghost;
-    Eigen::Vector3f key_direction;  // C
+    KeyLight key;
     Eigen::Vector2f near_far;
     Eigen::Vector2f tangents;  // of half the field of view
-    float shadow_texel;        // m
     float bone_radius;         // m
 };
 
@@ -118,22 +139,8 @@ SceneRenderer::Frame SceneRenderer::makeFrame(const FrameView& view, const ToolM
     frame.tangents = Eigen::Vector2d(tangent * aspect, tangent).cast<float>();
     frame.bone_radius = float(std::max(bone.radius, 1e-4));
 
-    // The shadow map covers the bone, or when one is close, only what is seen around the target.
-    const Eigen::Vector3d key_C = Eigen::Vector3d(-0.55, 0.70, 0.62).normalized();
-    frame.key_direction = key_C.cast<float>();
     const double shown = kShownBeyondView * camera.distance * tangent * std::hypot(1.0, aspect);
-    const Sphere lit = shown < bone.radius ? Sphere{camera.target, shown} : bone;
-    const double half_size = std::max(lit.radius, 1e-4);
-    Eigen::Matrix3d R_LC;
-    R_LC.row(2) = -key_C;  // depth grows away from the light
-    R_LC.row(0) = Eigen::Vector3d::UnitY().cross(key_C).normalized();
-    R_LC.row(1) = key_C.cross(Eigen::Vector3d(R_LC.row(0)));
-    const Eigen::Vector3d center_C = camera.R_WC().transpose() * (lit.center - camera.eye());
-    Eigen::Matrix4d shadow = Eigen::Matrix4d::Identity();
-    shadow.topLeftCorner<3, 3>() = R_LC / half_size;
-    shadow.topRightCorner<3, 1>() = -(R_LC * center_C) / half_size;
-    frame.shadow_from_camera = shadow.cast<float>();
-    frame.shadow_texel = float(2 * half_size / RenderTargets::kShadowSize);
+    frame.key = aimKeyLight(camera, shown < bone.radius ? Sphere{camera.target, shown} : bone);
     return frame;
 }
 
@@ -146,11 +153,11 @@ void SceneRenderer::drawShadowMap(const Frame& frame, const NodeStore& nodes, co
     gl_.Enable(GL_DEPTH_CLAMP);  // casters between the light and the map's near plane still cast
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
     depth_.use();
-    const Eigen::Matrix4f shadow_from_V = frame.shadow_from_camera * frame.camera_from_V;
+    const Eigen::Matrix4f shadow_from_V = frame.key.shadow_from_camera * frame.camera_from_V;
     depth_.set("clip_from_model", shadow_from_V);
     nodes.draw(depth_, shadow_from_V);
     if (frame.camera_from_T) {
-        depth_.set("clip_from_model", Eigen::Matrix4f(frame.shadow_from_camera * *frame.camera_from_T));
+        depth_.set("clip_from_model", Eigen::Matrix4f(frame.key.shadow_from_camera * *frame.camera_from_T));
         depth_.set("origin", Eigen::Vector3f(Eigen::Vector3f::Zero()));
         depth_.set("step", Eigen::Vector3f(Eigen::Vector3f::Ones()));
         tool.draw();
@@ -169,9 +176,9 @@ void SceneRenderer::setLight(const Program& program, const Frame& frame) const {
     gl_.ActiveTexture(GL_TEXTURE0);
     gl_.BindTexture(GL_TEXTURE_2D, targets_->shadowTexture());
     program.set("shadow_map", 0);
-    program.set("key_direction", frame.key_direction);
-    program.set("shadow_texel", frame.shadow_texel);
-    program.set("shadow_from_camera", frame.shadow_from_camera);
+    program.set("key_direction", frame.key.direction);
+    program.set("shadow_texel", frame.key.shadow_texel);
+    program.set("shadow_from_camera", frame.key.shadow_from_camera);
     program.set("clip_from_camera", frame.clip_from_camera);
 }
 

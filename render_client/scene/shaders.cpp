@@ -175,7 +175,7 @@ vec3 studio(vec3 direction) {
 void main() {
     vec3 to_eye = normalize(-p_C);
     vec3 normal = normalize(n_C);
-    if (!gl_FrontFacing) normal = -normal;
+    if (dot(normal, to_eye) < 0.0) normal = -normal;  // a tool file may have its triangles turned inside out
 
     float radial = length(p_M) / max(burr_radius, 1e-6);
     float burr = 1.0 - smoothstep(1.03, 1.08, radial);

@@ -69,6 +69,7 @@ class SphereServer {
         thread_ = std::thread([this] {
             while (!stop_) {
                 publisher_.publishStatus(test::makeStatus());
+                publisher_.publishToolState(restingTool());
                 std::this_thread::sleep_for(std::chrono::milliseconds(50));
             }
         });
@@ -80,6 +81,14 @@ class SphereServer {
     size_t nodeCount() const { return nodes_.size(); }
 
   private:
+    static TickRecord restingTool() {
+        TickRecord record{};
+        record.tick = 1000;
+        record.q_WT[0] = record.q_WT_device[0] = 1;
+        record.p_WT[0] = record.p_WT_device[0] = 0.012;
+        return record;
+    }
+
     Publisher publisher_;
     std::vector<NodeMesh> nodes_;
     std::atomic<bool> stop_ = false;

@@ -111,6 +111,7 @@ inline topics::Status makeStatus() {
     topics::Status status;
     status.set_scene("synthetic");
     status.set_preset("thesis_2012");
+    status.set_ticks(1000);
     status.set_rate_hz(999.8);
     status.set_tick_p99_us(187.4);
     status.set_removed_mm3(12.34);

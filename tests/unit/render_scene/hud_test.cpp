@@ -21,6 +21,7 @@ HudInput liveInput() {
     input.info = info;
     topics::Status status;
     status.set_preset("thesis_2012");
+    status.set_ticks(1000);
     status.set_rate_hz(999.84);
     status.set_tick_p99_us(187.42);
     status.set_removed_mm3(12.345);
@@ -78,6 +79,13 @@ TEST(Hud, SaysHowItStandsWithTheServer) {
     input.connection = Connection::kServerLost;
     EXPECT_EQ(makeHud(input).state, "server lost");
     EXPECT_EQ(makeHud(input).state_tone, HudTone::kAlarm);
+}
+
+TEST(Hud, ALoopThatNeverTickedHasNoNumbers) {
+    HudInput input = liveInput();
+    input.status->set_ticks(0);
+    EXPECT_EQ(find(makeHud(input), "Loop")->value, "waits for a device");
+    EXPECT_FALSE(find(makeHud(input), "Tick p99"));
 }
 
 TEST(Hud, NumbersThatAreNoneBecomeADash) {
