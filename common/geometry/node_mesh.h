@@ -18,19 +18,19 @@ struct PackedVertex {
 static_assert(sizeof(PackedVertex) == 8);
 
 struct NodeMesh {
-    uint32_t leaf = 0;                                      // LeafId
-    uint32_t revision = 0;                                  // leaf version the mesh was made from
-    Eigen::Vector3f origin = Eigen::Vector3f::Zero();       // V, m: vertex = origin + step ∘ (x, y, z)
-    Eigen::Vector3f step = Eigen::Vector3f::Zero();         // V, m
+    uint32_t leaf = 0;                                 // LeafId
+    uint32_t revision = 0;                             // leaf version the mesh was made from
+    Eigen::Vector3f origin = Eigen::Vector3f::Zero();  // V, m: vertex = origin + step ∘ (x, y, z)
+    Eigen::Vector3f step = Eigen::Vector3f::Zero();    // V, m
     std::vector<PackedVertex> vertices;
-    std::vector<uint32_t> indices;                          // 3 per triangle, counter-clockwise seen from outside
+    std::vector<uint32_t> indices;  // 3 per triangle, counter-clockwise seen from outside
 
     bool isEmpty() const noexcept { return indices.empty(); }
 };
 
-// Octahedral coding of a unit vector n (Cigolle et al. 2014, "Survey of Efficient Representations for Independent
-// Unit Vectors"): (u, v) = (n.x, n.y) / (|n.x| + |n.y| + |n.z|), folded over the diagonals when n.z < 0, times 127.
-// Thread-safe, never throws. The worst error of a normal is below 1.5 degrees.
+// Octahedral coding of a unit vector n (Cigolle et al. 2014, "Survey of Efficient Representations for
+// Independent Unit Vectors"): (u, v) = (n.x, n.y) / (|n.x| + |n.y| + |n.z|), folded over the diagonals when
+// n.z < 0, times 127. Thread-safe, never throws. The worst error of a normal is below 1.5 degrees.
 struct OctahedralNormal {
     int8_t u, v;
 };

@@ -59,6 +59,10 @@ bool hasPlausibleCounts(const topics::NodeMesh& message) {
            message.vertex_count() <= index_count;
 }
 
+const unsigned char* unsignedBytes(const std::string& s) {
+    return reinterpret_cast<const unsigned char*>(s.data());
+}
+
 bool decodeBuffers(const topics::NodeMesh& message, NodeMesh& mesh) {
     if (message.index_count() == 0) return message.vertices().empty() && message.indices().empty();
     mesh.vertices.resize(message.vertex_count());
@@ -67,10 +71,10 @@ bool decodeBuffers(const topics::NodeMesh& message, NodeMesh& mesh) {
         return reinterpret_cast<const unsigned char*>(s.data());
     };
     if (meshopt_decodeVertexBuffer(mesh.vertices.data(), mesh.vertices.size(), sizeof(PackedVertex),
-                                   bytesOf(message.vertices()), message.vertices().size()) != 0)
+                                   unsignedBytes(message.vertices()), message.vertices().size()) != 0)
         return false;
     if (meshopt_decodeIndexBuffer(mesh.indices.data(), mesh.indices.size(), sizeof(uint32_t),
-                                  bytesOf(message.indices()), message.indices().size()) != 0)
+                                  unsignedBytes(message.indices()), message.indices().size()) != 0)
         return false;
     return std::ranges::all_of(mesh.indices, [&](uint32_t index) { return index < mesh.vertices.size(); });
 }

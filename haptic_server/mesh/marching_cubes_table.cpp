@@ -7,7 +7,7 @@ namespace bonemill {
 namespace {
 
 using Loop = std::vector<uint8_t>;  // crossed edges in order
-constexpr int8_t kNotCrossed = -1;
+constexpr int kNotCrossed = -1;
 
 bool isInside(int config, int corner) {
     return (config >> corner & 1) != 0;
@@ -33,18 +33,18 @@ std::array<int, 4> faceCorners(int axis, int side) {
 
 // Adds the segments of one face: going round it, where the walk enters the inside the surface's loop goes on
 // to where that same inside run ends, so each run of inside corners is cut off by itself.
-void addFaceSegments(int config, const std::array<int, 4>& corners, std::array<int8_t, 12>& next) {
+void addFaceSegments(int config, const std::array<int, 4>& corners, std::array<int, 12>& next) {
     for (int i = 0; i < 4; ++i) {
         if (isInside(config, corners[i]) || !isInside(config, corners[(i + 1) % 4])) continue;
         int last = (i + 1) % 4;
         while (isInside(config, corners[(last + 1) % 4])) last = (last + 1) % 4;
         next[edgeBetween(corners[i], corners[(i + 1) % 4])] =
-            int8_t(edgeBetween(corners[last], corners[(last + 1) % 4]));
+            edgeBetween(corners[last], corners[(last + 1) % 4]);
     }
 }
 
 std::vector<Loop> traceLoops(int config) {
-    std::array<int8_t, 12> next;
+    std::array<int, 12> next;
     next.fill(kNotCrossed);
     for (int axis = 0; axis < 3; ++axis)
         for (int side = 0; side < 2; ++side) addFaceSegments(config, faceCorners(axis, side), next);
