@@ -67,9 +67,6 @@ bool decodeBuffers(const topics::NodeMesh& message, NodeMesh& mesh) {
     if (message.index_count() == 0) return message.vertices().empty() && message.indices().empty();
     mesh.vertices.resize(message.vertex_count());
     mesh.indices.resize(message.index_count());
-    const auto bytesOf = [](const std::string& s) {
-        return reinterpret_cast<const unsigned char*>(s.data());
-    };
     if (meshopt_decodeVertexBuffer(mesh.vertices.data(), mesh.vertices.size(), sizeof(PackedVertex),
                                    unsignedBytes(message.vertices()), message.vertices().size()) != 0)
         return false;
