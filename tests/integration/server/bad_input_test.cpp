@@ -1,0 +1,122 @@
+// Bad input: each one clear message on one line, exit code 2, nothing else.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/process.h"
+
+namespace bonemill {
+namespace {
+
+using test::run;
+using test::TemporaryFolder;
+using test::writeFile;
+
+class BadInput : public testing::Test {
+  protected:
+    BadInput() {
+        writeFile(folder_ / "t.csv", "t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons\n0,0,0,0,1,0,0,0,0\n0.001,0,0,0,1,0,0,0,0\n");
+        const auto made = run({"make_phantom", "body", "--kind", "sphere", "--out", folder_ / "ball.nrrd"});
+        EXPECT_EQ(made.exit_code, 0) << made.err;
+    }
+    std::string sceneOf(const std::string& text) {
+        writeFile(folder_ / "scene.textproto", text);
+        return folder_ / "scene.textproto";
+    }
+    std::string ball() { return sceneOf("volume { path: \"ball.nrrd\" }"); }
+
+    void expectRefused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
+        const auto finished = run(arguments);
+        EXPECT_EQ(finished.exit_code, 2) << finished.err;
+        EXPECT_EQ(finished.out, "");
+        EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
+        EXPECT_EQ(finished.err.rfind("error: ", 0), 0u) << finished.err;
+        for (const std::string& word : words) EXPECT_NE(finished.err.find(word), std::string::npos) << word << " in: " << finished.err;
+    }
+    void expectSceneRefused(const std::string& text, const std::vector<std::string>& words) {
+        expectRefused({"haptic_server", "simulate", "--scene", sceneOf(text), "--trajectory", folder_ / "t.csv"}, words);
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(BadInput, TheGoodCaseIsAccepted) {
+    const auto finished = run({"haptic_server", "simulate", "--scene", ball(), "--trajectory", folder_ / "t.csv"});
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+}
+
+TEST_F(BadInput, MissingSceneFile) {
+    expectRefused({"haptic_server", "--scene", folder_ / "none.textproto"}, {"none.textproto"});
+    expectRefused({"haptic_server", "simulate", "--scene", folder_ / "none.textproto", "--trajectory", folder_ / "t.csv"}, {"none.textproto"});
+    expectRefused({"device_daemon", "--scene", folder_ / "none.textproto"}, {"none.textproto"});
+}
+
+TEST_F(BadInput, MissingVolumeFile) { expectSceneRefused("volume { path: \"gone.nrrd\" }", {"gone.nrrd"}); }
+
+TEST_F(BadInput, EmptyFolder) {
+    std::filesystem::create_directory(folder_ / "empty");
+    expectSceneRefused("volume { path: \"empty\" }", {"empty"});
+}
+
+TEST_F(BadInput, TextInsteadOfDicom) {
+    std::filesystem::create_directory(folder_ / "texts");
+    writeFile(folder_ / "texts/slice.dcm", "this is a letter, not a picture\n");
+    expectSceneRefused("volume { path: \"texts\" }", {"texts"});
+}
+
+TEST_F(BadInput, TruncatedSlice) {
+    ASSERT_EQ(run({"make_phantom", "tooth", "--out", folder_ / "tooth"}).exit_code, 0);
+    const std::string slice = folder_ / "tooth/slice_0080.dcm";
+    std::filesystem::resize_file(slice, std::filesystem::file_size(slice) * 6 / 10);
+    expectSceneRefused("volume { path: \"tooth\" }", {"slice_0080.dcm"});
+}
+
+TEST_F(BadInput, MisspeltField) { expectSceneRefused("volume { path: \"ball.nrrd\" }\nmiling { enabled: true }", {"scene.textproto:2", "miling", "milling"}); }
+
+TEST_F(BadInput, NegativeRadius) {
+    expectSceneRefused("volume { path: \"ball.nrrd\" }\ntool {\n  burr_radius_mm: -1\n}", {"scene.textproto:3", "burr_radius_mm", "-1"});
+}
+
+TEST_F(BadInput, UnreadableStl) {
+    writeFile(folder_ / "tool.stl", "solid nothing\nfacet gibberish\n");
+    expectSceneRefused("volume { path: \"ball.nrrd\" }\ntool { mesh_path: \"tool.stl\" }", {"tool.stl"});
+    expectSceneRefused("volume { path: \"ball.nrrd\" }\ntool { mesh_path: \"gone.stl\" }", {"gone.stl"});
+}
+
+TEST_F(BadInput, BadTrajectories) {
+    const auto refuse = [&](const std::string& csv, const std::vector<std::string>& words) {
+        writeFile(folder_ / "bad.csv", csv);
+        expectRefused({"haptic_server", "simulate", "--scene", ball(), "--trajectory", folder_ / "bad.csv"}, words);
+    };
+    const std::string header = "t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons\n";
+    refuse("", {"bad.csv"});
+    refuse(header, {"bad.csv"});
+    refuse("t_s,px_m\n0,0\n", {"bad.csv"});
+    refuse(header + "0,0,0,nan,1,0,0,0,0\n", {"bad.csv:2"});
+    refuse(header + "0,0,0,0,3,0,0,0,0\n", {"bad.csv:2"});
+    refuse(header + "0,0,0,0,1,0,0,0,0\n0,0,0,0,1,0,0,0,0\n", {"bad.csv:3"});
+    refuse(header + "0,0,0,0,1,0,0,0,0\n0.5,0,0,0,1,0,0,0,0\n", {"bad.csv", "rate_hz"});
+}
+
+TEST_F(BadInput, UnwritableOutputs) {
+    const std::vector<std::string> base{"haptic_server", "simulate", "--scene", ball(), "--trajectory", folder_ / "t.csv"};
+    for (const char* option : {"--trace", "--save-volume", "--save-mesh"}) {
+        auto arguments = base;
+        arguments.insert(arguments.end(), {option, folder_ / "no/such/folder/file"});
+        expectRefused(arguments, {"no/such/folder/file"});
+    }
+}
+
+TEST_F(BadInput, WrongArguments) {
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"haptic_server", "--wrong"}, {"haptic_server"}, {"haptic_server", "simulate"},
+          {"make_phantom", "body", "--kind", "cube", "--out", folder_ / "x.nrrd"},
+          {"device_daemon", "--scene"}, {"render_client", "--offscreen"}}) {
+        const auto finished = run(arguments);
+        EXPECT_EQ(finished.exit_code, 2) << arguments[0] << ": " << finished.err;
+        EXPECT_NE(finished.err, "");
+    }
+}
+
+}  // namespace
+}  // namespace bonemill

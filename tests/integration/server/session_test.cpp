@@ -1,0 +1,137 @@
+// Whole sessions: haptic_server, device_daemon and render_client as processes.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "haptic_server/tick/tick_record.h"
+#include "tests/support/dds_session.h"
+#include "tests/support/process.h"
+
+namespace bonemill {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Process;
+using test::run;
+using test::TemporaryFolder;
+using test::writeFile;
+
+// A slab (top at z = 2 mm) that the simulated hand mills for three seconds.
+class Session : public testing::Test {
+  protected:
+    Session() : session_(std::to_string(testSession())), domain_(std::to_string(testDomain())) {
+        EXPECT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder_ / "slab.nrrd"}).exit_code, 0);
+        const std::string upright = "q_WT { w: 0.70710678 x: 0.70710678 }";
+        writeFile(folder_ / "s.textproto",
+                  "name: \"session\" volume { path: \"slab.nrrd\" }\n"
+                  "device { p_WD_mm { x: 0 y: 0.1 z: 2 } q_WD { w: 0.70710678 x: 0.70710678 } }\n"
+                  "simulated_operator {\n"
+                  "  waypoint { time_s: 0 p_WT_mm { x: 0 y: 0.1 z: 3.6 } " + upright + " phase: \"approach\" }\n"
+                  "  waypoint { time_s: 1 p_WT_mm { x: 0 y: 0.1 z: 3.1 } " + upright + " remove: true phase: \"mill\" }\n"
+                  "  waypoint { time_s: 3 p_WT_mm { x: 0 y: 0.1 z: 0.6 } " + upright + " phase: \"withdraw\" }\n"
+                  "  waypoint { time_s: 4 p_WT_mm { x: 0 y: 0.1 z: 3.6 } " + upright + " }\n"
+                  "}\n");
+    }
+    std::vector<std::string> server(const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments{"haptic_server", "--scene", folder_ / "s.textproto", "--session", session_,
+                                           "--domain", domain_, "--report", folder_ / "report.json", "--best-effort-rt"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
+    }
+    std::vector<std::string> daemon() {
+        return {"device_daemon", "--scene", folder_ / "s.textproto", "--session", session_, "--best-effort-rt"};
+    }
+    std::vector<std::string> client(const std::string& out, int frames, int interval_ms) {
+        return {"render_client", "--offscreen", "--frames", std::to_string(frames), "--interval-ms", std::to_string(interval_ms),
+                "--out", folder_ / out, "--size", "320x200", "--wait-complete", "--session", session_, "--domain", domain_};
+    }
+    nlohmann::json report() { return nlohmann::json::parse(test::readFile(folder_ / "report.json")); }
+
+    TemporaryFolder folder_;
+    std::string session_, domain_;
+};
+
+TEST_F(Session, AKilledClientChangesNothingForTheServer) {
+    Process server_process(server({"--until-device-leaves"}));
+    Process client_process(client("pictures", 1000, 50));
+    std::this_thread::sleep_for(500ms);
+    Process daemon_process(daemon());
+    std::this_thread::sleep_for(2500ms);
+    EXPECT_TRUE(client_process.isRunning());
+    client_process.signal(SIGKILL);
+    EXPECT_EQ(daemon_process.wait().exit_code, 0);
+    const auto finished = server_process.wait();
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    const auto json = report();
+    EXPECT_GT(json["ticks"], 3000);
+    EXPECT_EQ(json["lost_records"], 0);
+    EXPECT_GT(json["removed_voxels"], 200);
+    // Only what a busy machine causes may be missing: the session itself ran to its end without a fault.
+    EXPECT_FALSE(json["fault_ticks"].contains("solve"));
+    EXPECT_FALSE(json["fault_ticks"].contains("bad_device_pose"));
+}
+
+TEST_F(Session, ALateClientShowsTheSamePicture) {
+    Process server_process(server());
+    Process daemon_process(daemon());
+    EXPECT_EQ(daemon_process.wait().exit_code, 0);
+    std::this_thread::sleep_for(500ms);
+    const auto first = run(client("first", 1, 100));
+    const auto late = run(client("late", 1, 100));
+    EXPECT_EQ(first.exit_code, 0) << first.err;
+    EXPECT_EQ(late.exit_code, 0) << late.err;
+    const auto first_json = nlohmann::json::parse(first.out), late_json = nlohmann::json::parse(late.out);
+    EXPECT_EQ(first_json["revision_digest"], late_json["revision_digest"]);
+    EXPECT_TRUE(first_json["complete"] && late_json["complete"]);
+    EXPECT_GT(first_json["triangles"], 1000);
+    server_process.signal(SIGTERM);
+    EXPECT_EQ(server_process.wait().exit_code, 0);
+}
+
+TEST_F(Session, AKilledDaemonRampsTheForceDownAndANewOneGoesOn) {
+    Process server_process(server({"--trace", folder_ / "trace.csv"}));
+    {
+        Process daemon_process(daemon());
+        std::this_thread::sleep_for(2500ms);  // it presses and mills now
+        daemon_process.signal(SIGKILL);
+    }
+    std::this_thread::sleep_for(500ms);
+    Process second(daemon());
+    EXPECT_EQ(second.wait().exit_code, 0);
+    server_process.signal(SIGINT);
+    EXPECT_EQ(server_process.wait().exit_code, 0);
+    EXPECT_TRUE(report()["fault_ticks"].contains("stale_device"));
+
+    std::istringstream trace(test::readFile(folder_ / "trace.csv"));
+    std::string line;
+    std::getline(trace, line);
+    bool saw_zero_while_stale = false, saw_fresh_after_stale = false;
+    while (std::getline(trace, line)) {
+        std::vector<double> cells;
+        std::istringstream stream(line);
+        for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(std::stod(cell));
+        const bool is_stale = uint32_t(cells[25]) & kFaultStaleDevice;
+        if (is_stale) EXPECT_EQ(cells[23], 0) << "milled without a hand";
+        if (is_stale && cells[15] == 0 && cells[16] == 0 && cells[17] == 0) saw_zero_while_stale = true;
+        if (saw_zero_while_stale && !is_stale && cells[21] > 0) saw_fresh_after_stale = true;
+    }
+    EXPECT_TRUE(saw_zero_while_stale);
+    EXPECT_TRUE(saw_fresh_after_stale);
+}
+
+TEST_F(Session, WithoutPermissionTheServerSaysWhatIsMissing) {
+    const std::string drop = geteuid() == 0 ? "setpriv --bounding-set=-sys_nice,-ipc_lock --inh-caps=-sys_nice,-ipc_lock " : "";
+    const auto finished = run({"/bin/sh", "-c",
+                               "ulimit -r 0; exec " + drop + std::string(BONEMILL_BIN_DIR) + "/haptic_server --scene " +
+                                   (folder_ / "s.textproto") + " --session " + session_ + " --domain " + domain_});
+    EXPECT_EQ(finished.exit_code, 2) << finished.err;
+    EXPECT_NE(finished.err.find("error: "), std::string::npos) << finished.err;
+    EXPECT_NE(finished.err.find("--best-effort-rt"), std::string::npos) << finished.err;
+}
+
+}  // namespace
+}  // namespace bonemill

@@ -1,0 +1,101 @@
+#include "tests/support/process.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace bonemill::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::filesystem::path makeFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "bonemill_test_XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
+    return name;
+}
+
+void redirect(int descriptor, const std::filesystem::path& file) {
+    const int opened = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    dup2(opened, descriptor);
+    close(opened);
+}
+
+}  // namespace
+
+Process::Process(const std::vector<std::string>& arguments) : folder_(makeFolder()) {
+    const std::filesystem::path program =
+        arguments[0].find('/') == std::string::npos ? std::filesystem::path(BONEMILL_BIN_DIR) / arguments[0] : std::filesystem::path(arguments[0]);
+    std::vector<std::string> words = arguments;
+    words[0] = program.string();
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    pid_ = fork();
+    if (pid_ != 0) return;
+    redirect(STDOUT_FILENO, folder_ / "out");
+    redirect(STDERR_FILENO, folder_ / "err");
+    execv(argv[0], argv.data());
+    _exit(127);
+}
+
+Process::~Process() {
+    if (isRunning()) {
+        signal(SIGKILL);
+        waitpid(pid_, nullptr, 0);
+    }
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+}
+
+void Process::signal(int number) const { kill(pid_, number); }
+
+bool Process::isRunning() {
+    if (!has_ended_) has_ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;
+    return !has_ended_;
+}
+
+Finished Process::wait(std::chrono::seconds limit) {
+    const auto deadline = std::chrono::steady_clock::now() + limit;
+    while (isRunning() && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(10ms);
+    Finished finished;
+    if (has_ended_) {
+        finished.exit_code = WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+    } else {
+        signal(SIGKILL);
+        waitpid(pid_, nullptr, 0);
+        has_ended_ = true;
+    }
+    finished.out = readFile(folder_ / "out");
+    finished.err = readFile(folder_ / "err");
+    return finished;
+}
+
+std::string Process::errSoFar() const { return readFile(folder_ / "err"); }
+
+Finished run(const std::vector<std::string>& arguments) { return Process(arguments).wait(); }
+
+TemporaryFolder::TemporaryFolder() : path_(makeFolder()) {}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+void writeFile(const std::string& path, const std::string& content) { std::ofstream(path, std::ios::binary) << content; }
+
+std::string readFile(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream content;
+    content << file.rdbuf();
+    return content.str();
+}
+
+}  // namespace bonemill::test

@@ -1,0 +1,56 @@
+// Runs our programs as a user would: whole processes, exit codes, what they print.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace bonemill::test {
+
+struct Finished {
+    int exit_code = -1;  // 128 + signal when killed, -1 when it ran past the time limit (and was killed)
+    std::string out;
+    std::string err;
+};
+
+// A child process; its output goes to files in its own temporary folder. Killed when the object goes.
+class Process {
+  public:
+    // arguments[0]: program name in the build's bin folder, or a path.
+    explicit Process(const std::vector<std::string>& arguments);
+    Process(const Process&) = delete;
+    Process& operator=(const Process&) = delete;
+    ~Process();
+
+    void signal(int number) const;
+    bool isRunning();
+    Finished wait(std::chrono::seconds limit = std::chrono::seconds(120));
+    // What it has printed on stderr so far.
+    std::string errSoFar() const;
+
+  private:
+    std::filesystem::path folder_;
+    int pid_ = -1;
+    int status_ = 0;
+    bool has_ended_ = false;
+};
+
+Finished run(const std::vector<std::string>& arguments);
+
+// A folder that disappears with the object.
+class TemporaryFolder {
+  public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    std::filesystem::path path() const { return path_; }
+    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+
+  private:
+    std::filesystem::path path_;
+};
+
+void writeFile(const std::string& path, const std::string& content);
+std::string readFile(const std::string& path);
+
+}  // namespace bonemill::test
