@@ -239,6 +239,7 @@ set y2label "contacts"
 set y2tics
 set ytics nomirror
 set xlabel "time, s"
+set key top left
 plot $compute using 1:3 axes x1y2 with lines lc rgb "#c0a060" title "contacts", $compute using 1:2 with lines lc rgb "#2050a0" title "tick's own work"
 """
     )
