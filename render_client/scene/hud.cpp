@@ -45,7 +45,8 @@ void addToolRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
 }
 
 void addFaultRow(const topics::Status& status, std::vector<HudRow>& rows) {
-    if (status.device_stale()) rows.push_back({"Device", "no fresh samples", HudTone::kAlarm});
+    if (status.device_stale() && status.ticks() > 0)
+        rows.push_back({"Device", "no fresh samples", HudTone::kAlarm});
     if (status.faults() == 0) return rows.push_back({"Faults", "none", HudTone::kGood});
     char code[16];
     std::snprintf(code, sizeof code, "0x%x", status.faults());

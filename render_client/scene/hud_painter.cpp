@@ -9,7 +9,7 @@ namespace bonemill {
 namespace {
 
 constexpr float kFontPixels = 15;  // at ui_scale 1
-constexpr std::array<float, 4> kPanelColour{0.03f, 0.045f, 0.06f, 0.66f};
+constexpr std::array<float, 4> kPanelColour{0.03f, 0.045f, 0.06f, 0.74f};
 constexpr std::array<float, 4> kLabelColour{0.62f, 0.68f, 0.74f, 1};
 constexpr std::array<float, 4> kTitleColour{1, 1, 1, 1};
 constexpr std::array<float, 4> kLineColour{1, 1, 1, 0.14f};

@@ -151,7 +151,7 @@ void main() {
     vec3 half_way = normalize(key_direction + to_eye);
     float gloss = pow(max(dot(normal, half_way), 0.0), 42.0) * 0.34 * visible * step(0.0, facing);
     float rim = pow(1.0 - max(dot(normal, to_eye), 0.0), 4.0) * (0.35 + 0.65 * max(normal.y, 0.0));
-    colour = vec4(toneMap(albedo * light * 0.62 + kKeyColour * gloss * 0.4 + kRimColour * rim * 0.16), 1.0);
+    colour = vec4(toneMap(albedo * light * 0.56 + kKeyColour * gloss * 0.4 + kRimColour * rim * 0.16), 1.0);
 }
 )";
 
