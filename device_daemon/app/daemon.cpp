@@ -135,7 +135,7 @@ void Daemon::attachToServer(const WrenchCommand& command, uint64_t sequence) noe
 
 void Daemon::recordTick(const WrenchCommand* command, uint64_t sequence) noexcept {
     const EmulatorState& state = emulator_.state();
-    RunStatistics& s = statistics_;
+    LoopStatistics& s = statistics_;
     ++s.ticks;
     if (progress_.is_attached.load(std::memory_order_relaxed)) {
         ++s.attached_ticks;

@@ -8,7 +8,7 @@
 #include "common/rt/realtime.h"
 #include "device_daemon/app/device_setup.h"
 #include "device_daemon/app/options.h"
-#include "device_daemon/app/run_statistics.h"
+#include "device_daemon/app/loop_statistics.h"
 
 namespace bonemill {
 
@@ -22,7 +22,7 @@ class Daemon {
     // --best-effort-rt, nobody answered within --wait-seconds.
     void run();
 
-    const RunStatistics& statistics() const noexcept { return statistics_; }
+    const LoopStatistics& statistics() const noexcept { return statistics_; }
 
   private:
     // Written by the loop, read by the watcher: single values, each complete in itself, so relaxed order is
@@ -57,7 +57,7 @@ class Daemon {
     uint64_t first_sequence_ = 0;  // of this run's samples; 0 before the first
     DeviceSample last_sample_{};
     uint64_t last_sequence_ = 0;
-    RunStatistics statistics_;
+    LoopStatistics statistics_;
     Progress progress_;
     std::atomic<bool> should_stop_ = false;
 };

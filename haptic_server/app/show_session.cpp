@@ -80,8 +80,9 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
 
 void ShowSession::round() {
     const bool is_whole = outbox_.isWhole();  // before taking, so that all of the bone is among what was published
-    const std::vector<NodeMesh> meshes = outbox_.takeAll();
-    for (const NodeMesh& mesh : meshes) publisher_.publishNode(mesh);
+    std::vector<NodeMesh> meshes = outbox_.takeAll();
+    for (NodeMesh& mesh : meshes)
+        if (!publisher_.publishNode(mesh)) outbox_.put(std::move(mesh));  // next round; a newer revision wins
     if (const auto latest = recorder_.latest()) publisher_.publishToolState(*latest);
     for (const topics::Command& command : publisher_.takeCommands()) publisher_.acknowledge(command, carryOut(command));
     if (!is_whole) return;  // a status counts the nodes: clients would call part of the bone complete

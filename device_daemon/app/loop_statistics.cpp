@@ -1,4 +1,4 @@
-#include "device_daemon/app/run_statistics.h"
+#include "device_daemon/app/loop_statistics.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -24,7 +24,7 @@ std::string percentilesOf(const LatencyHistogram& histogram) {
 
 }  // namespace
 
-std::string jsonLineOf(const RunStatistics& s) {
+std::string jsonLineOf(const LoopStatistics& s) {
     const double rate_hz = s.wall_time > 0 ? s.ticks / s.wall_time : 0;
     return fmt::format(
         R"({{"ticks":{},"missed_periods":{},"wall_s":{:.3f},"scenario_s":{:.3f},"rate_hz":{:.2f},)"

@@ -8,7 +8,7 @@
 
 namespace bonemill {
 
-struct RunStatistics {
+struct LoopStatistics {
     uint64_t ticks = 0;
     uint64_t missed_periods = 0;
     double wall_time = 0;             // s
@@ -28,6 +28,6 @@ struct RunStatistics {
 };
 
 // One JSON object on one line, units in the names.
-std::string jsonLineOf(const RunStatistics& statistics);
+std::string jsonLineOf(const LoopStatistics& statistics);
 
 }  // namespace bonemill
