@@ -84,7 +84,7 @@ std::array<CubeTriangles, 256> buildTable() {
         for (const Loop& loop : traceLoops(config))
             if (!triangulate(loop, 0, loop.size() - 1, table[config]))
                 throw std::logic_error("marching cubes loop without a triangulation");
-    return table;
+    return kTable;
 }
 
 }  // namespace
@@ -100,8 +100,8 @@ bool shareCubeFace(int edge_a, int edge_b) noexcept {
 }
 
 const std::array<CubeTriangles, 256>& cubeTriangles() {
-    static const std::array<CubeTriangles, 256> table = buildTable();
-    return table;
+    static const std::array<CubeTriangles, 256> kTable = buildTable();
+    return kTable;
 }
 
 }  // namespace bonemill
