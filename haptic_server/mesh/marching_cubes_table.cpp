@@ -84,7 +84,7 @@ std::array<CubeTriangles, 256> buildTable() {
         for (const Loop& loop : traceLoops(config))
             if (!triangulate(loop, 0, loop.size() - 1, table[config]))
                 throw std::logic_error("marching cubes loop without a triangulation");
-    return kTable;
+    return table;
 }
 
 }  // namespace
