@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 
 #include "common/config/field_unit.h"
 #include "common/config/scene_table.h"
@@ -185,6 +186,24 @@ TEST(SceneTable, schemaRowsHaveUnitDefaultAndRange) {
     EXPECT_NE(table.find("| `tool.shape[].sphere.radius_mm` | mm | 1 | 0.01 .. 100 |"), std::string::npos);
     EXPECT_NE(table.find("| `volume.leaf_voxels` | voxels | not set | 4 .. 31 |"), std::string::npos);
     EXPECT_NE(table.find("| `device.p_WD_mm` | mm | not set | x, y, z |"), std::string::npos);
+}
+
+// BONEMILL_WRITE_DOCS=1 writes the table instead of comparing it.
+TEST(SceneTable, docsHoldTheTableOfTheSchema) {
+    const fs::path page = fs::path(BONEMILL_SOURCE_DIR) / "docs" / "scene.md";
+    std::ifstream stream(page);
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::string heading = "## Every field\n\n";
+    const size_t start = text.find(heading);
+    ASSERT_NE(start, std::string::npos) << page;
+    text.resize(start + heading.size());
+    if (std::getenv("BONEMILL_WRITE_DOCS")) {
+        stream.close();
+        std::ofstream(page) << text << describeDefaults();
+    }
+    std::ifstream again(page);
+    const std::string now{std::istreambuf_iterator<char>(again), {}};
+    EXPECT_EQ(now, text + describeDefaults()) << "run this test with BONEMILL_WRITE_DOCS=1";
 }
 
 }  // namespace
