@@ -1,33 +1,62 @@
-// Tick, mesher and a consumer of node meshes at once, as in the live server: clean under ThreadSanitizer, and the
-// streamed result is that of a full remesh.
+// Tick, mesher and publisher threads at once, as in the live server: clean under ThreadSanitizer, and what the mesher
+// streamed is a full remesh.
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <map>
 #include <thread>
 
+#include "common/rt/spsc_ring.h"
 #include "haptic_server/app/mesh_outbox.h"
 #include "haptic_server/mesh/mesher.h"
+#include "haptic_server/publish/publisher.h"
+#include "tests/support/dds_session.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill {
 namespace {
 
-TEST(TickBesideMesher, StreamedNodesEndAsTheFullRemesh) {
+// ScriptedIo whose records leave through the ring, as in a session.
+class RingIo final : public TickIo {
+  public:
+    RingIo(std::vector<DeviceInput> inputs, SpscRing<TickRecord>& ring) : script_(std::move(inputs)), ring_(ring) {}
+    bool read(DeviceInput& input) noexcept override { return script_.read(input); }
+    int64_t write(const Wrench& wrench) noexcept override { return script_.write(wrench); }
+    int64_t now() noexcept override { return script_.now(); }
+    void push(const TickRecord& record) noexcept override { ring_.tryPush(record); }
+
+  private:
+    test::ScriptedIo script_;
+    SpscRing<TickRecord>& ring_;
+};
+
+TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
     BoneModel bone(test::bodyVolume(test::cubeGeometry(44, 0.125e-3), test::halfSpace({0, 0, 4e-3}, Eigen::Vector3d::UnitZ())),
                    Eigen::Vector3i::Constant(8), 1);
     const SdfGrid tool = test::sphereTool(1e-3, 0.125e-3);
     TickConfig config;
     config.milling.removal_rate = 1e9;  // few ticks move much: ThreadSanitizer slows each a hundred times
     HapticTick tick(config, bone, tool, nullptr);
-    test::ScriptedIo io(test::straightPath({{2e-3, 3e-3, 4.8e-3}, Eigen::Quaterniond::Identity()}, {4.2e-3, 3e-3, 2e-3}, 150, kButtonRemove));
+    SpscRing<TickRecord> ring(1024);
+    RingIo io(test::straightPath({{2e-3, 3e-3, 4.8e-3}, Eigen::Quaterniond::Identity()}, {4.2e-3, 3e-3, 2e-3}, 150, kButtonRemove), ring);
+    Publisher publisher({.domain = testDomain(), .session = testSession(), .epoch = 0});
 
     MeshOutbox outbox;
     std::atomic<bool> is_milling{true};
     std::map<uint32_t, NodeMesh> shown;
-    const auto consume = [&] {
-        for (NodeMesh& mesh : outbox.takeAll()) shown[mesh.leaf] = std::move(mesh);
+    uint32_t removed = 0;
+    const auto publish = [&] {
+        for (NodeMesh& mesh : outbox.takeAll()) {
+            EXPECT_TRUE(publisher.publishNode(mesh));
+            shown[mesh.leaf] = std::move(mesh);
+        }
+        TickRecord record;
+        while (ring.tryPop(record)) {
+            removed += record.removed_voxels;
+            publisher.publishToolState(record);
+        }
+        publisher.publishStatus({});
     };
     std::thread tick_thread([&] {
         while (tick.tick(io)) {}
@@ -39,10 +68,10 @@ TEST(TickBesideMesher, StreamedNodesEndAsTheFullRemesh) {
         while (is_milling) mesher.pass(put, 16);
         while (mesher.pass(put).pending > 0) {}
     });
-    while (is_milling) consume();
+    while (is_milling) publish();
     tick_thread.join();
     mesher_thread.join();
-    consume();
+    publish();
 
     size_t surfaces = 0;
     for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf) {
@@ -57,8 +86,7 @@ TEST(TickBesideMesher, StreamedNodesEndAsTheFullRemesh) {
         EXPECT_TRUE(shown[leaf].vertices == full.vertices && shown[leaf].indices == full.indices) << leaf;
     }
     EXPECT_GT(surfaces, 10u);
-    uint32_t removed = 0;
-    for (const TickRecord& record : io.records) removed += record.removed_voxels;
+    EXPECT_EQ(publisher.digest().count(), surfaces);
     EXPECT_GT(removed, 1000u);
 }
 
