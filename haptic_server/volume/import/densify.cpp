@@ -43,7 +43,8 @@ DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window) 
     mapping.high = window.high.value_or(highest);
     const std::string window_text = number(mapping.low) + " .. " + number(mapping.high);
     if (!(mapping.low < mapping.high))
-        throw UserError("the density window " + window_text + " is empty; window_low must be below window_high");
+        throw UserError("the density window " + window_text +
+                        " is empty; window_low must be below window_high");
     mapping.is_iso_proposed = !window.iso;
     mapping.iso_value = window.iso ? *window.iso : proposeIsoValue(raw);
     mapping.iso = mapping.density(mapping.iso_value);
@@ -75,8 +76,12 @@ PieceCount removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels
     if (smallest_piece_voxels <= 1) return count;
     const Eigen::Vector3i n = volume.dims();
     const Density iso = volume.iso();
-    const ptrdiff_t steps[6] = {1,  -1, ptrdiff_t(volume.strideY()), -ptrdiff_t(volume.strideY()),
-                                ptrdiff_t(volume.strideZ()), -ptrdiff_t(volume.strideZ())};
+    const ptrdiff_t steps[6] = {1,
+                                -1,
+                                ptrdiff_t(volume.strideY()),
+                                -ptrdiff_t(volume.strideY()),
+                                ptrdiff_t(volume.strideZ()),
+                                -ptrdiff_t(volume.strideZ())};
     // The border of air stops the flood, so no index has to be checked.
     std::vector<bool> seen(volume.offset(n.x(), n.y(), n.z()) + 1);
     std::vector<size_t> piece;

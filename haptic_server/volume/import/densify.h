@@ -28,10 +28,13 @@ struct DensityMapping {
 
     // Linear, clamped to 0 .. kMaxDensity, rounded to nearest; NaN becomes 0 (air).
     Density density(double raw) const noexcept;
-    double raw(double density_counts) const noexcept { return low + (high - low) * density_counts / kMaxDensity; }
+    double raw(double density_counts) const noexcept {
+        return low + (high - low) * density_counts / kMaxDensity;
+    }
 };
 
-// Throws UserError when the window is empty, the iso-value lies outside it or at its edge, or no value is finite.
+// Throws UserError when the window is empty, the iso-value lies outside it or at its edge, or no value is
+// finite.
 DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window);
 
 VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping);
@@ -44,8 +47,9 @@ struct PieceCount {
     uint64_t voxels_removed = 0;
 };
 
-// Connected pieces (6 neighbours: voxels that share a face) of density >= iso with fewer than `smallest_piece_voxels`
-// voxels go to iso - 1, just below the surface, so that nothing of them is felt or drawn.
+// Connected pieces (6 neighbours: voxels that share a face) of density >= iso with fewer than
+// `smallest_piece_voxels` voxels go to iso - 1, just below the surface, so that nothing of them is felt or
+// drawn.
 PieceCount removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels);
 
 }  // namespace bonemill

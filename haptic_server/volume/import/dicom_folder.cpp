@@ -94,11 +94,16 @@ std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& l
 std::vector<DicomSlice> inspect(const std::filesystem::path& path, LeftOut& left_out) {
     const DicomScan scan = scanDicomFile(path);
     switch (scan.kind) {
-        case DicomKind::kNotDicom: left_out.add("files that are not DICOM", path); return {};
-        case DicomKind::kNoImage: left_out.add("DICOM files without an image", path); return {};
+        case DicomKind::kNotDicom:
+            left_out.add("files that are not DICOM", path);
+            return {};
+        case DicomKind::kNoImage:
+            left_out.add("DICOM files without an image", path);
+            return {};
         case DicomKind::kCutShort:
             throw UserError(path.string() + ": the DICOM file is cut short or damaged: " + scan.problem);
-        case DicomKind::kImage: break;
+        case DicomKind::kImage:
+            break;
     }
     return readHeader(path, left_out);
 }
@@ -114,8 +119,10 @@ void readSlices(const std::vector<DicomSlice>& slices, std::vector<float>& value
         }
         const size_t size = size_t(slice.columns) * size_t(slice.rows), begin = size * size_t(slice.frame);
         if (pixels.size() % size != 0 || pixels.size() < begin + size)
-            throw UserError(slice.path.string() + ": holds fewer pixels than its header says; the file is damaged");
-        values.insert(values.end(), pixels.begin() + ptrdiff_t(begin), pixels.begin() + ptrdiff_t(begin + size));
+            throw UserError(slice.path.string() +
+                            ": holds fewer pixels than its header says; the file is damaged");
+        values.insert(values.end(), pixels.begin() + ptrdiff_t(begin),
+                      pixels.begin() + ptrdiff_t(begin + size));
     }
 }
 

@@ -66,7 +66,8 @@ std::vector<DicomFrame> readFrames(const std::filesystem::path& path) {
     std::vector<DicomFrame> frames;
     for (size_t f = 1; f <= per_frame->GetNumberOfItems(); ++f) {  // GDCM counts items from 1
         std::vector<const gdcm::DataSet*> places{&per_frame->GetItem(f).GetNestedDataSet()};
-        if (shared && shared->GetNumberOfItems() > 0) places.push_back(&shared->GetItem(1).GetNestedDataSet());
+        if (shared && shared->GetNumberOfItems() > 0)
+            places.push_back(&shared->GetItem(1).GetNestedDataSet());
         const auto frame = readFrame(places);
         if (!frame) return {};
         frames.push_back(*frame);

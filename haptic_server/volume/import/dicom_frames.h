@@ -15,8 +15,8 @@ struct DicomFrame {
     Eigen::Vector2d pixel_spacing_mm = Eigen::Vector2d::Zero();  // along the row, along the column
 };
 
-// Of every frame, from the functional groups of an enhanced image (per frame, else shared); empty when the file does
-// not say all of it for each frame.
+// Of every frame, from the functional groups of an enhanced image (per frame, else shared); empty when the
+// file does not say all of it for each frame.
 std::vector<DicomFrame> readFrames(const std::filesystem::path& path);
 
 }  // namespace bonemill

@@ -149,8 +149,9 @@ class Scanner {
     void checkFits(const Element& element) const {
         if (element.length == kUndefinedLength || std::streamoff(element.length) <= size_ - position_) return;
         char problem[128];
-        std::snprintf(problem, sizeof problem, "element (%04x,%04x) claims %u bytes, %lld are left", element.tag >> 16,
-                      element.tag & 0xffff, element.length, static_cast<long long>(size_ - position_));
+        std::snprintf(problem, sizeof problem, "element (%04x,%04x) claims %u bytes, %lld are left",
+                      element.tag >> 16, element.tag & 0xffff, element.length,
+                      static_cast<long long>(size_ - position_));
         throw CutShort{problem};
     }
 
@@ -207,6 +208,8 @@ class Scanner {
 
 }  // namespace
 
-DicomScan scanDicomFile(const std::filesystem::path& path) { return Scanner(path).scan(); }
+DicomScan scanDicomFile(const std::filesystem::path& path) {
+    return Scanner(path).scan();
+}
 
 }  // namespace bonemill

@@ -1,7 +1,7 @@
 // Walks through the elements of a DICOM file without believing any length, before GDCM reads it.
 //
-// GDCM allocates what an element's length says (up to 4 GiB) and then finds the file too short; and a folder of a
-// study also holds files that are no images. This scan reads tags and lengths only.
+// GDCM allocates what an element's length says (up to 4 GiB) and then finds the file too short; and a folder
+// of a study also holds files that are no images. This scan reads tags and lengths only.
 #pragma once
 
 #include <filesystem>

@@ -15,7 +15,7 @@ namespace {
 constexpr double kDirectionStep = 1e-3;
 constexpr double kPixelSpacingStepMm = 1e-4;
 constexpr double kSamePlaceMm = 1e-3;
-constexpr double kSpacingTolerance = 0.02;      // of the median distance
+constexpr double kSpacingTolerance = 0.02;  // of the median distance
 constexpr double kSpacingToleranceMm = 2e-3;
 constexpr double kMaxTiltDegrees = 0.1;
 
@@ -72,9 +72,10 @@ void checkDistances(const std::vector<DicomSlice>& slices, const std::vector<dou
     std::sort(sorted.begin(), sorted.end());
     for (size_t s = 1; s < slices.size(); ++s)
         if (distances[s - 1] < kSamePlaceMm)
-            throw UserError(folder + ": two slices lie at the same place: " + nameAndPlace(slices[s - 1], places[s - 1]) +
-                            " and " + nameAndPlace(slices[s], places[s]) +
-                            "; remove the duplicates or name one series_uid");
+            throw UserError(
+                folder + ": two slices lie at the same place: " + nameAndPlace(slices[s - 1], places[s - 1]) +
+                " and " + nameAndPlace(slices[s], places[s]) +
+                "; remove the duplicates or name one series_uid");
     const double median = sorted[sorted.size() / 2];
     for (size_t s = 1; s < slices.size(); ++s) {
         const double excess = distances[s - 1] - median;
@@ -82,15 +83,17 @@ void checkDistances(const std::vector<DicomSlice>& slices, const std::vector<dou
         const double missing = distances[s - 1] / median - 1;
         const bool are_whole = missing > 0.5 && std::abs(missing - std::round(missing)) < 0.1;
         char text[96];
-        std::snprintf(text, sizeof text, are_whole ? "%.0f slice(s) missing" : "uneven slice spacing", missing);
+        std::snprintf(text, sizeof text, are_whole ? "%.0f slice(s) missing" : "uneven slice spacing",
+                      missing);
         char rest[96];
         std::snprintf(rest, sizeof rest, " (%.4g mm apart, the others %.4g mm)", distances[s - 1], median);
-        throw UserError(folder + ": " + text + " between " + nameAndPlace(slices[s - 1], places[s - 1]) + " and " +
-                        nameAndPlace(slices[s], places[s]) + rest + "; complete the series");
+        throw UserError(folder + ": " + text + " between " + nameAndPlace(slices[s - 1], places[s - 1]) +
+                        " and " + nameAndPlace(slices[s], places[s]) + rest + "; complete the series");
     }
 }
 
-void checkTilt(const std::vector<DicomSlice>& slices, const Eigen::Vector3d& normal, const std::string& folder) {
+void checkTilt(const std::vector<DicomSlice>& slices, const Eigen::Vector3d& normal,
+               const std::string& folder) {
     const Eigen::Vector3d along = slices.back().position_mm - slices.front().position_mm;
     const double tilt_degrees = std::atan2(along.cross(normal).norm(), along.dot(normal)) * 180 / EIGEN_PI;
     const Eigen::Vector3d step = along / double(slices.size() - 1);
@@ -98,13 +101,16 @@ void checkTilt(const std::vector<DicomSlice>& slices, const Eigen::Vector3d& nor
         const Eigen::Vector3d off = slices[s].position_mm - slices[0].position_mm - step * double(s);
         const double aside = (off - normal * normal.dot(off)).norm();
         if (aside > 0.1 * slices[0].pixel_spacing_mm.minCoeff())
-            throw UserError(folder + ": " + nameOf(slices[s]) +
-                            " is shifted sideways against the other slices; the series is not one straight stack");
+            throw UserError(
+                folder + ": " + nameOf(slices[s]) +
+                " is shifted sideways against the other slices; the series is not one straight stack");
     }
     if (tilt_degrees <= kMaxTiltDegrees) return;
     char text[160];
-    std::snprintf(text, sizeof text, "the gantry was tilted: slices are stacked %.2f degrees off their normal (%s to %s)",
-                  tilt_degrees, slices.front().path.filename().c_str(), slices.back().path.filename().c_str());
+    std::snprintf(text, sizeof text,
+                  "the gantry was tilted: slices are stacked %.2f degrees off their normal (%s to %s)",
+                  tilt_degrees, slices.front().path.filename().c_str(),
+                  slices.back().path.filename().c_str());
     throw UserError(folder + ": " + text + "; resample the series to a rectangular grid first");
 }
 

@@ -33,12 +33,16 @@ void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel
                         "); one volume of three is needed");
     uint64_t voxels = 1;
     for (const uint64_t n : dims) {
-        if (n < 2) throw UserError(file + ": is only " + sizeText(dims) + " voxels; a volume needs 2 or more per axis");
+        if (n < 2)
+            throw UserError(file + ": is only " + sizeText(dims) +
+                            " voxels; a volume needs 2 or more per axis");
         if (n > kMaxVoxels || (voxels *= n) > kMaxVoxels)
-            throw UserError(file + ": claims " + sizeText(dims) + " voxels, more than 2^31; crop or resample it");
+            throw UserError(file + ": claims " + sizeText(dims) +
+                            " voxels, more than 2^31; crop or resample it");
     }
-    // The file's own samples and our float copy exist at the same time.
-    const uint64_t needed = voxels * (bytes_per_voxel + sizeof(float));
+    // The file's own samples, our float copy and the copy that the child process hands over exist at the same
+    // time.
+    const uint64_t needed = voxels * (bytes_per_voxel + 2 * sizeof(float));
     const uint64_t available = availableMemory();
     if (available != 0 && needed > available)
         throw UserError(file + ": " + sizeText(dims) + " voxels need " + std::to_string(needed >> 20) +

@@ -10,11 +10,12 @@ namespace bonemill {
 
 inline constexpr uint64_t kMaxVoxels = uint64_t(1) << 31;
 
-// deflate shrinks at most 1032 : 1 (zlib technical details); a header that promises more than that is damaged.
+// deflate shrinks at most 1032 : 1 (zlib technical details); a header that promises more than that is
+// damaged.
 inline constexpr uint64_t kMaxDeflateRatio = 1040;
 
-// Throws UserError naming `file` unless `dims` are three axes of >= 2 voxels (one slice is no volume), at most
-// kMaxVoxels in all, and the import fits into the memory that is free now.
+// Throws UserError naming `file` unless `dims` are three axes of >= 2 voxels (one slice is no volume), at
+// most kMaxVoxels in all, and the import fits into the memory that is free now.
 void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel, const std::string& file);
 
 // Throws UserError when fewer bytes are stored than the header promises.

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 
 #include "common/config/user_error.h"
 #include "haptic_server/volume/import/dicom_folder.h"
+#include "haptic_server/volume/import/guarded_import.h"
 #include "haptic_server/volume/import/inv3_project.h"
 #include "haptic_server/volume/import/volume_file.h"
 
@@ -13,12 +13,14 @@ namespace bonemill {
 namespace {
 
 std::string lowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
     return text;
 }
 
 bool endsWith(const std::string& text, const std::string& ending) {
-    return text.size() >= ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+    return text.size() >= ending.size() &&
+           text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
 RawVolume importByType(const std::filesystem::path& path, const ImportOptions& options) {
@@ -32,30 +34,28 @@ RawVolume importByType(const std::filesystem::path& path, const ImportOptions& o
     if (endsWith(name, ".mha") || endsWith(name, ".mhd")) return importMetaImage(path);
     if (endsWith(name, ".inv3")) return importInv3(path);
     if (endsWith(name, ".dcm")) return importDicomFile(path);
-    throw UserError(path.string() +
-                    ": is of no known type; give a folder with a DICOM series or a file .nrrd, .nhdr, .nii, .nii.gz, "
-                    ".mha, .mhd, .inv3 or .dcm");
+    throw UserError(
+        path.string() +
+        ": is of no known type; give a folder with a DICOM series or a file .nrrd, .nhdr, .nii, .nii.gz, "
+        ".mha, .mhd, .inv3 or .dcm");
 }
 
 void describeNonFinite(RawVolume& raw) {
-    const auto count = std::count_if(raw.values.begin(), raw.values.end(), [](float v) { return !std::isfinite(v); });
+    const auto count =
+        std::count_if(raw.values.begin(), raw.values.end(), [](float v) { return !std::isfinite(v); });
     if (count > 0) raw.description += "; " + std::to_string(count) + " values are not finite";
 }
 
 }  // namespace
 
 RawVolume importVolume(const std::filesystem::path& path, const ImportOptions& options) {
-    try {
-        RawVolume raw = importByType(path, options);
-        describeNonFinite(raw);
-        return raw;
-    } catch (const UserError&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw UserError(path.string() + ": there is not enough memory to read it; crop or resample it");
-    } catch (const std::exception& error) {
-        throw UserError(path.string() + ": cannot be read: " + error.what());
-    }
+    return importGuarded(path, [&] { return importVolumeHere(path, options); });
+}
+
+RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOptions& options) {
+    RawVolume raw = importByType(path, options);
+    describeNonFinite(raw);
+    return raw;
 }
 
 }  // namespace bonemill

@@ -7,8 +7,9 @@
 //   .inv3                 InVesalius project
 //   .dcm                  one multi-frame DICOM file
 //
-// Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up only: allocates,
-// not RT-safe; not for two threads at once (the DICOM library keeps global state).
+// Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up only:
+// allocates and forks (guarded_import.h), so best before other threads run; not RT-safe, not for two threads
+// at once.
 #pragma once
 
 #include <filesystem>
@@ -24,5 +25,8 @@ struct ImportOptions {
 
 // Throws UserError with one message: what is wrong, in which file, what to do.
 RawVolume importVolume(const std::filesystem::path& path, const ImportOptions& options = {});
+
+// The same in this process: for debuggers and sanitizers. A damaged DICOM file may abort it.
+RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOptions& options = {});
 
 }  // namespace bonemill

@@ -23,8 +23,8 @@ static_assert(std::endian::native == std::endian::little, "the matrix is stored 
 constexpr uint64_t kMaxPlistBytes = 1 << 20;
 constexpr int kMaxEntries = 10000;
 
-// Bytes of the entry with this file name, in whatever folder of the archive; `accepts` is asked with the stated size
-// before anything is read.
+// Bytes of the entry with this file name, in whatever folder of the archive; `accepts` is asked with the
+// stated size before anything is read.
 std::vector<char> readEntry(const std::filesystem::path& path, const std::string& name,
                             const std::function<void(uint64_t)>& accepts) {
     const std::unique_ptr<archive, int (*)(archive*)> reader(archive_read_new(), archive_read_free);
@@ -127,15 +127,16 @@ RawVolume importInv3(const std::filesystem::path& path) {
     const size_t voxels = size_t(frame.dims.cast<int64_t>().prod());
     const std::vector<char> bytes = readEntry(path, project.matrix_file, [&](uint64_t size) {
         if (size != voxels * sizeof(int16_t))
-            throw UserError(file + ": " + project.matrix_file + " has " + std::to_string(size) + " bytes, its shape needs " +
-                            std::to_string(voxels * sizeof(int16_t)));
+            throw UserError(file + ": " + project.matrix_file + " has " + std::to_string(size) +
+                            " bytes, its shape needs " + std::to_string(voxels * sizeof(int16_t)));
     });
     RawVolume raw;
     const auto* samples = reinterpret_cast<const int16_t*>(bytes.data());
     raw.values.assign(samples, samples + voxels);
     reverseAxis(raw.values, frame.dims, 1);
     makeRightHanded(frame, file, raw.geometry, raw.values);
-    raw.is_hounsfield = project.modality == "CT" && *std::min_element(raw.values.begin(), raw.values.end()) <= -500;
+    raw.is_hounsfield =
+        project.modality == "CT" && *std::min_element(raw.values.begin(), raw.values.end()) <= -500;
     raw.description = describe(project);
     return raw;
 }

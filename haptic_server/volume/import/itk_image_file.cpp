@@ -1,56 +1,30 @@
 #include "haptic_server/volume/import/itk_image_file.h"
 
-#include <fcntl.h>
-#include <gdcmTrace.h>
 #include <itkGDCMImageIO.h>
 #include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
-#include <unistd.h>
 
 #include <sstream>
 
 #include "common/config/user_error.h"
+#include "haptic_server/volume/import/file_being_read.h"
+#include "haptic_server/volume/import/memory_cap.h"
 
 namespace bonemill {
 namespace {
 
-// The libraries' warnings would stand between the user and the one message that counts.
-void silenceLibraries() {
-    itk::Object::SetGlobalWarningDisplay(false);
-    gdcm::Trace::WarningOff();
-    gdcm::Trace::ErrorOff();
-    gdcm::Trace::DebugOff();
-}
-
-// MetaIO, the NIfTI library and the JPEG decoders print to stderr themselves. Start-up has one thread, so stderr can be
-// pointed elsewhere for the duration of a call.
-class QuietStderr {
-  public:
-    QuietStderr() : before_(dup(STDERR_FILENO)) {
-        const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-        if (before_ >= 0 && nowhere >= 0) dup2(nowhere, STDERR_FILENO);
-        if (nowhere >= 0) close(nowhere);
-    }
-    ~QuietStderr() {
-        if (before_ < 0) return;
-        dup2(before_, STDERR_FILENO);
-        close(before_);
-    }
-    QuietStderr(const QuietStderr&) = delete;
-    QuietStderr& operator=(const QuietStderr&) = delete;
-
-  private:
-    int before_;
-};
-
 itk::ImageIOBase::Pointer makeReader(ItkFormat format) {
     switch (format) {
-        case ItkFormat::kNrrd: return itk::NrrdImageIO::New().GetPointer();
-        case ItkFormat::kNifti: return itk::NiftiImageIO::New().GetPointer();
-        case ItkFormat::kMetaImage: return itk::MetaImageIO::New().GetPointer();
-        case ItkFormat::kDicom: break;
+        case ItkFormat::kNrrd:
+            return itk::NrrdImageIO::New().GetPointer();
+        case ItkFormat::kNifti:
+            return itk::NiftiImageIO::New().GetPointer();
+        case ItkFormat::kMetaImage:
+            return itk::MetaImageIO::New().GetPointer();
+        case ItkFormat::kDicom:
+            break;
     }
     return itk::GDCMImageIO::New().GetPointer();
 }
@@ -61,9 +35,18 @@ std::string plainMessage(const itk::ExceptionObject& error) {
     std::string text, word;
     while (words >> word) text += (text.empty() ? "" : " ") + word;
     const auto end_of_class = text.find("): ");
-    if (text.find("ERROR") < end_of_class && end_of_class != std::string::npos) text.erase(0, end_of_class + 3);
+    if (text.find("ERROR") < end_of_class && end_of_class != std::string::npos)
+        text.erase(0, end_of_class + 3);
     constexpr size_t kLongest = 300;
     return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+}
+
+// A reader holds the file, what it unpacks to and some tables; lengths that ask for more are damaged.
+uint64_t memoryFor(const std::string& file, uint64_t voxel_bytes) {
+    constexpr uint64_t kTables = 256 << 20;
+    std::error_code error;
+    const auto size = std::filesystem::file_size(file, error);
+    return kTables + 8 * (error ? 0 : uint64_t(size)) + 4 * voxel_bytes;
 }
 
 ItkImageHeader headerOf(const itk::ImageIOBase& io) {
@@ -92,19 +75,44 @@ void append(const std::vector<char>& buffer, std::vector<float>& values) {
 bool appendAs(itk::IOComponentEnum type, const std::vector<char>& buffer, std::vector<float>& values) {
     using Type = itk::IOComponentEnum;
     switch (type) {
-        case Type::UCHAR: append<unsigned char>(buffer, values); break;
-        case Type::CHAR: append<signed char>(buffer, values); break;
-        case Type::USHORT: append<unsigned short>(buffer, values); break;
-        case Type::SHORT: append<short>(buffer, values); break;
-        case Type::UINT: append<unsigned int>(buffer, values); break;
-        case Type::INT: append<int>(buffer, values); break;
-        case Type::ULONG: append<unsigned long>(buffer, values); break;
-        case Type::LONG: append<long>(buffer, values); break;
-        case Type::ULONGLONG: append<unsigned long long>(buffer, values); break;
-        case Type::LONGLONG: append<long long>(buffer, values); break;
-        case Type::FLOAT: append<float>(buffer, values); break;
-        case Type::DOUBLE: append<double>(buffer, values); break;
-        default: return false;
+        case Type::UCHAR:
+            append<unsigned char>(buffer, values);
+            break;
+        case Type::CHAR:
+            append<signed char>(buffer, values);
+            break;
+        case Type::USHORT:
+            append<unsigned short>(buffer, values);
+            break;
+        case Type::SHORT:
+            append<short>(buffer, values);
+            break;
+        case Type::UINT:
+            append<unsigned int>(buffer, values);
+            break;
+        case Type::INT:
+            append<int>(buffer, values);
+            break;
+        case Type::ULONG:
+            append<unsigned long>(buffer, values);
+            break;
+        case Type::LONG:
+            append<long>(buffer, values);
+            break;
+        case Type::ULONGLONG:
+            append<unsigned long long>(buffer, values);
+            break;
+        case Type::LONGLONG:
+            append<long long>(buffer, values);
+            break;
+        case Type::FLOAT:
+            append<float>(buffer, values);
+            break;
+        case Type::DOUBLE:
+            append<double>(buffer, values);
+            break;
+        default:
+            return false;
     }
     return true;
 }
@@ -117,8 +125,8 @@ struct ItkImageFile::Reader {
 
 ItkImageFile::ItkImageFile(ItkFormat format, const std::filesystem::path& path)
     : file_(path.string()), reader_(std::make_unique<Reader>()) {
-    silenceLibraries();
-    const QuietStderr quiet;
+    noteFileBeingRead(path);
+    const MemoryCap cap(memoryFor(file_, 0));
     try {
         reader_->io = makeReader(format);
         reader_->io->SetFileName(file_);
@@ -126,7 +134,10 @@ ItkImageFile::ItkImageFile(ItkFormat format, const std::filesystem::path& path)
         header_ = headerOf(*reader_->io);
     } catch (const itk::ExceptionObject& error) {
         throw UserError(file_ + ": its header cannot be read: " + plainMessage(error));
+    } catch (const std::exception& error) {  // of the libraries below ITK
+        throw UserError(file_ + ": its header cannot be read: " + error.what());
     }
+    if (header_.bytes_per_voxel == 0) throw UserError(file_ + ": its sample type is not a plain number");
 }
 
 ItkImageFile::~ItkImageFile() = default;
@@ -139,18 +150,23 @@ std::string ItkImageFile::dicomTag(const char* tag) const {
 }
 
 void ItkImageFile::appendValues(std::vector<float>& values) {
-    const QuietStderr quiet;
     itk::ImageIOBase& io = *reader_->io;
+    const uint64_t bytes = uint64_t(io.GetImageSizeInBytes());
+    const MemoryCap cap(memoryFor(file_, bytes) + bytes / header_.bytes_per_voxel * sizeof(float));
     try {
         itk::ImageIORegion region(io.GetNumberOfDimensions());
         for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) region.SetSize(a, io.GetDimensions(a));
         io.SetIORegion(region);
-        std::vector<char> buffer(size_t(io.GetImageSizeInBytes()));
+        std::vector<char> buffer(bytes);
         io.Read(buffer.data());
         if (!appendAs(io.GetComponentType(), buffer, values))
             throw UserError(file_ + ": its sample type is not a plain number");
     } catch (const itk::ExceptionObject& error) {
         throw UserError(file_ + ": its voxels cannot be read: " + plainMessage(error));
+    } catch (const UserError&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw UserError(file_ + ": its voxels cannot be read: " + error.what());
     }
 }
 

@@ -18,7 +18,8 @@ struct ItkImageHeader {
     std::vector<uint64_t> dims;  // all axes of the file
     unsigned components = 1;     // values per voxel
     uint64_t bytes_per_voxel = 0;
-    // First three axes, LPS, in the file's unit of length (mm unless it says otherwise); unit axes where it has fewer.
+    // First three axes, LPS, in the file's unit of length (mm unless it says otherwise); unit axes where it
+    // has fewer.
     std::array<double, 3> spacing{1, 1, 1};
     std::array<double, 3> origin{};
     std::array<std::array<double, 3>, 3> axis{};  // where each index axis points

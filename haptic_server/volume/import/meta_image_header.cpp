@@ -1,5 +1,6 @@
 #include "haptic_server/volume/import/meta_image_header.h"
 
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -17,7 +18,9 @@ std::string trimmed(const std::string& text) {
     return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-bool isTrue(const std::string& text) { return !text.empty() && (text[0] == 'T' || text[0] == 't' || text[0] == '1'); }
+bool isTrue(const std::string& text) {
+    return !text.empty() && (text[0] == 'T' || text[0] == 't' || text[0] == '1');
+}
 
 int countOf(const std::string& text) {
     std::istringstream words(text);
@@ -31,15 +34,25 @@ void checkCounts(const std::map<std::string, std::string>& fields, const std::st
     const auto checkCount = [&](const char* key, int wanted) {
         const auto field = fields.find(key);
         if (field != fields.end() && countOf(field->second) != wanted)
-            throw UserError(file + ": " + key + " = " + field->second + " does not hold " + std::to_string(wanted) +
-                            " number" + (wanted == 1 ? "" : "s"));
+            throw UserError(file + ": " + key + " = " + field->second + " does not hold " +
+                            std::to_string(wanted) + " number" + (wanted == 1 ? "" : "s"));
     };
     checkCount("DimSize", 3);
     checkCount("ElementSpacing", 3);
     checkCount("ElementSize", 3);
     for (const char* origin : {"Offset", "Position", "Origin", "CenterOfRotation"}) checkCount(origin, 3);
     for (const char* matrix : {"TransformMatrix", "Rotation", "Orientation"}) checkCount(matrix, 9);
-    for (const char* number : {"ElementNumberOfChannels", "HeaderSize", "CompressedDataSize"}) checkCount(number, 1);
+    for (const char* number : {"ElementNumberOfChannels", "HeaderSize", "CompressedDataSize"})
+        checkCount(number, 1);
+}
+
+// MetaIO allocates what this number says.
+uint64_t packedBytes(const std::string& text, const std::string& file) {
+    if (text.empty()) return 0;
+    const double bytes = std::strtod(text.c_str(), nullptr);
+    if (!(bytes >= 0 && bytes < 1e15))
+        throw UserError(file + ": CompressedDataSize = " + text + " is no size");
+    return uint64_t(bytes);
 }
 
 }  // namespace
@@ -57,12 +70,19 @@ MetaImageHeader readMetaImageHeader(const std::filesystem::path& path) {
         fields[trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
     }
     if (!fields.count("ElementDataFile") || !fields.count("DimSize") || !fields.count("ElementType"))
-        throw UserError(file_name + ": is not a MetaImage (DimSize, ElementType and ElementDataFile are needed)");
+        throw UserError(file_name +
+                        ": is not a MetaImage (DimSize, ElementType and ElementDataFile are needed)");
     if (fields["NDims"] != "3")
-        throw UserError(file_name + ": has NDims = " + fields["NDims"] + "; one volume of 3 dimensions is needed");
+        throw UserError(file_name + ": has NDims = " + fields["NDims"] +
+                        "; one volume of 3 dimensions is needed");
     checkCounts(fields, file_name);
+    MetaImageHeader header;
+    header.bytes = bytes;
+    header.is_compressed = isTrue(fields["CompressedData"]);
+    if (header.is_compressed) header.packed_bytes = packedBytes(fields["CompressedDataSize"], file_name);
     const std::string& data = fields["ElementDataFile"];
-    return {data == "LOCAL" || data == "Local" || data == "local" ? "" : data, isTrue(fields["CompressedData"]), bytes};
+    if (data != "LOCAL" && data != "Local" && data != "local") header.data_file = data;
+    return header;
 }
 
 }  // namespace bonemill

@@ -8,9 +8,10 @@
 namespace bonemill {
 
 struct MetaImageHeader {
-    std::string data_file;       // empty: attached (LOCAL); a list of files or a pattern stays as it is written
+    std::string data_file;  // empty: attached (LOCAL); a list of files or a pattern stays as it is written
     bool is_compressed = false;
-    uint64_t bytes = 0;          // length of the header; attached data begin here
+    uint64_t packed_bytes = 0;  // of the compressed voxels; 0: not stated
+    uint64_t bytes = 0;         // length of the header; attached data begin here
 };
 
 // Throws UserError naming the file when it is no three-dimensional MetaImage.

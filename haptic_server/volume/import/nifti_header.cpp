@@ -18,7 +18,10 @@ namespace {
 // Offsets of the fields in nifti1.h.
 constexpr size_t kHeaderBytes = 348;
 constexpr size_t kDimOffset = 40;
+constexpr size_t kPixdimOffset = 76;
 constexpr size_t kVoxOffsetOffset = 108;
+constexpr size_t kQuaternOffset = 256;
+constexpr size_t kSformEnd = 328;
 constexpr size_t kMagicOffset = 344;
 constexpr int kNifti2HeaderBytes = 540;
 constexpr double kMaxExtensionBytes = 64 << 20;
@@ -47,22 +50,39 @@ class Header {
     bool swapped_ = false;
 };
 
+// ITK takes the singular values of these numbers and aborts the process when one is not finite.
+bool isGeometryFinite(const Header& header) {
+    constexpr float kFarthest = 1e9f;
+    const auto isFine = [&](size_t offset) { return std::abs(header.at<float>(offset)) < kFarthest; };
+    for (size_t offset = kPixdimOffset; offset < kPixdimOffset + 16; offset += 4)
+        if (!isFine(offset)) return false;
+    for (size_t offset = kQuaternOffset; offset < kSformEnd; offset += 4)
+        if (!isFine(offset)) return false;
+    return true;
+}
+
 }  // namespace
 
 uint64_t readNiftiDataOffset(const std::filesystem::path& path) {
     const Header header(path);
     const std::string file = path.string();
-    if (!header.isComplete()) throw UserError(file + ": is too short (or its gzip is too damaged) for a NIfTI file");
-    if (header.at<int32_t>(0) == kNifti2HeaderBytes) throw UserError(file + ": is NIfTI-2; convert it to NIfTI-1");
+    if (!header.isComplete())
+        throw UserError(file + ": is too short (or its gzip is too damaged) for a NIfTI file");
+    if (header.at<int32_t>(0) == kNifti2HeaderBytes)
+        throw UserError(file + ": is NIfTI-2; convert it to NIfTI-1");
     if (header.at<int32_t>(0) != int32_t(kHeaderBytes) || header.magic() != "n+1")
         throw UserError(file + ": is not a single-file NIfTI-1 volume");
     const int axes = header.at<int16_t>(kDimOffset);
     bool dims_ok = axes >= 1 && axes <= 7;
     for (int a = 1; dims_ok && a <= axes; ++a) dims_ok = header.at<int16_t>(kDimOffset + 2 * size_t(a)) > 0;
-    if (!dims_ok) throw UserError(file + ": its NIfTI header states impossible dimensions; the file is damaged");
+    if (!dims_ok)
+        throw UserError(file + ": its NIfTI header states impossible dimensions; the file is damaged");
+    if (!isGeometryFinite(header))
+        throw UserError(file + ": its NIfTI header holds positions that are no numbers; the file is damaged");
     const float data_offset = header.at<float>(kVoxOffsetOffset);
     if (!(data_offset >= float(kHeaderBytes) && double(data_offset) < kMaxExtensionBytes))
-        throw UserError(file + ": its NIfTI header puts the voxels at an impossible place; the file is damaged");
+        throw UserError(file +
+                        ": its NIfTI header puts the voxels at an impossible place; the file is damaged");
     return uint64_t(data_offset);
 }
 

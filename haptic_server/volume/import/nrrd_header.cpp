@@ -77,8 +77,8 @@ std::string geometryToText(const VolumeGeometry& geometry) {
     const auto& s = geometry.spacing;
     const auto& n = geometry.dims;
     char text[512];
-    std::snprintf(text, sizeof text, "%d %d %d %a %a %a %a %a %a %a %a %a %a", n.x(), n.y(), n.z(), s.x(), s.y(), s.z(),
-                  p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
+    std::snprintf(text, sizeof text, "%d %d %d %a %a %a %a %a %a %a %a %a %a", n.x(), n.y(), n.z(), s.x(),
+                  s.y(), s.z(), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
     return text;
 }
 

@@ -11,10 +11,10 @@
 namespace bonemill {
 
 struct NrrdHeader {
-    uint64_t bytes = 0;                         // length of the header; attached data begin here
-    std::string encoding;                       // "raw", "gzip", "ascii", ...
-    std::string data_file;                      // empty: attached
-    double mm_per_unit = 1;                     // from "space units"
+    uint64_t bytes = 0;                            // length of the header; attached data begin here
+    std::string encoding;                          // "raw", "gzip", "ascii", ...
+    std::string data_file;                         // empty: attached
+    double mm_per_unit = 1;                        // from "space units"
     std::optional<VolumeGeometry> exact_geometry;  // from nrrd_writer.h
 };
 

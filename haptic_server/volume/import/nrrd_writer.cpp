@@ -65,7 +65,8 @@ template <class T>
 void write(const std::filesystem::path& path, const VolumeGeometry& geometry, std::span<const T> values,
            const char* type, NrrdEncoding encoding) {
     if (values.size() != geometry.voxelCount())
-        throw UserError(path.string() + ": " + std::to_string(values.size()) + " values do not fill the volume");
+        throw UserError(path.string() + ": " + std::to_string(values.size()) +
+                        " values do not fill the volume");
     std::ofstream file(path, std::ios::binary | std::ios::trunc);
     const std::string header = headerText(geometry, type, encoding);
     file.write(header.data(), std::streamsize(header.size()));
@@ -75,23 +76,24 @@ void write(const std::filesystem::path& path, const VolumeGeometry& geometry, st
     else
         file.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
     file.close();
-    if (!file) throw UserError("cannot write " + path.string() + "; check that the folder exists and has room");
+    if (!file)
+        throw UserError("cannot write " + path.string() + "; check that the folder exists and has room");
 }
 
 }  // namespace
 
-void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry, std::span<const uint8_t> values,
-               NrrdEncoding encoding) {
+void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
+               std::span<const uint8_t> values, NrrdEncoding encoding) {
     write(path, geometry, values, "uint8", encoding);
 }
 
-void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry, std::span<const uint16_t> values,
-               NrrdEncoding encoding) {
+void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
+               std::span<const uint16_t> values, NrrdEncoding encoding) {
     write(path, geometry, values, "uint16", encoding);
 }
 
-void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry, std::span<const float> values,
-               NrrdEncoding encoding) {
+void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
+               std::span<const float> values, NrrdEncoding encoding) {
     write(path, geometry, values, "float", encoding);
 }
 

@@ -16,7 +16,8 @@ constexpr double kMaxOriginMm = 1e7;
 void checkNumbers(const FileFrame& frame, const std::string& file) {
     const auto& s = frame.spacing_mm;
     const bool spacing_ok = s.allFinite() && s.minCoeff() >= kMinSpacingMm && s.maxCoeff() <= kMaxSpacingMm;
-    if (!spacing_ok) throw UserError(file + ": the voxel spacing is not a sensible length; the header is damaged");
+    if (!spacing_ok)
+        throw UserError(file + ": the voxel spacing is not a sensible length; the header is damaged");
     const auto& o = frame.origin_mm;
     if (!o.allFinite() || o.cwiseAbs().maxCoeff() > kMaxOriginMm)
         throw UserError(file + ": the origin is not a sensible position; the header is damaged");
@@ -28,14 +29,16 @@ void checkPerpendicular(const Eigen::Matrix3d& unit_axes, const std::string& fil
     for (int a = 0; a < 3; ++a) {
         const double cosine = unit_axes.col(a).dot(unit_axes.col((a + 1) % 3));
         if (std::abs(cosine) > kMaxAxisCosine)
-            throw UserError(file + ": the axes are not perpendicular (sheared volume or gantry tilt); resample it "
-                                   "to a rectangular grid first");
+            throw UserError(file +
+                            ": the axes are not perpendicular (sheared volume or gantry tilt); resample it "
+                            "to a rectangular grid first");
     }
 }
 
 // The rotation nearest to three almost perpendicular unit axes (polar decomposition).
 Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& axes) {
-    if ((axes.cwiseAbs() - axes.cwiseAbs2()).isZero(0)) return axes;  // a permutation with signs is exact already
+    if ((axes.cwiseAbs() - axes.cwiseAbs2()).isZero(0))
+        return axes;  // a permutation with signs is exact already
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
     return svd.matrixU() * svd.matrixV().transpose();
 }
@@ -49,7 +52,8 @@ void reverseAxis(std::vector<float>& values, const Eigen::Vector3i& dims, int ax
     for (size_t base = 0; base < values.size(); base += block) {
         for (size_t low = 0, high = block - stride; low < high; low += stride, high -= stride) {
             const auto first = values.begin() + ptrdiff_t(base);
-            std::swap_ranges(first + ptrdiff_t(low), first + ptrdiff_t(low + stride), first + ptrdiff_t(high));
+            std::swap_ranges(first + ptrdiff_t(low), first + ptrdiff_t(low + stride),
+                             first + ptrdiff_t(high));
         }
     }
 }

@@ -48,7 +48,8 @@ Histogram countInto(const std::vector<float>& values, double low, double width, 
 }
 
 // Bins of integer data hold a whole number of values, or some would be empty and look like valleys.
-Histogram binnedOver(const std::vector<float>& values, double low, double high, bool are_integers, size_t bins) {
+Histogram binnedOver(const std::vector<float>& values, double low, double high, bool are_integers,
+                     size_t bins) {
     double width = (high - low) / double(bins);
     if (are_integers) {
         width = std::max(1.0, std::ceil((high - low + 1) / double(bins)));
@@ -97,13 +98,13 @@ std::vector<double> smoothed(const std::vector<double>& count, double sigma_bins
 }
 
 constexpr double kSmoothingBins = 2.0;
-constexpr double kValleyRatio = 0.6;   // a valley must fall below this share of the lower of its two peaks
-constexpr double kLeastMass = 0.005;   // and a material must hold this share of the voxels
+constexpr double kValleyRatio = 0.6;  // a valley must fall below this share of the lower of its two peaks
+constexpr double kLeastMass = 0.005;  // and a material must hold this share of the voxels
 
 struct Mode {
-    size_t bin;      // peak
-    double height;   // of the smoothed histogram
-    double mass;     // share of all voxels between the valleys around it
+    size_t bin;     // peak
+    double height;  // of the smoothed histogram
+    double mass;    // share of all voxels between the valleys around it
 };
 
 // Peaks of the smoothed histogram that are separated by real valleys and hold a real share of the voxels.
@@ -113,7 +114,8 @@ std::vector<Mode> modesOf(const Histogram& h) {
     size_t valley = 0;  // lowest bin since the last accepted peak
     for (size_t b = 0; b < s.size(); ++b) {
         if (!peaks.empty() && s[b] < s[valley]) valley = b;
-        const bool is_peak = s[b] > 0 && (b == 0 || s[b] > s[b - 1]) && (b + 1 == s.size() || s[b] >= s[b + 1]);
+        const bool is_peak =
+            s[b] > 0 && (b == 0 || s[b] > s[b - 1]) && (b + 1 == s.size() || s[b] >= s[b + 1]);
         if (!is_peak) continue;
         if (!peaks.empty() && s[valley] > kValleyRatio * std::min(s[peaks.back()], s[b])) {
             if (s[b] <= s[peaks.back()]) continue;  // a shoulder of the last peak
@@ -125,7 +127,8 @@ std::vector<Mode> modesOf(const Histogram& h) {
     std::vector<Mode> modes;
     for (size_t p = 0; p < peaks.size(); ++p) {
         const auto lowest = [&](size_t from, size_t to) {
-            return size_t(std::min_element(s.begin() + ptrdiff_t(from), s.begin() + ptrdiff_t(to)) - s.begin());
+            return size_t(std::min_element(s.begin() + ptrdiff_t(from), s.begin() + ptrdiff_t(to)) -
+                          s.begin());
         };
         const size_t begin = p == 0 ? 0 : lowest(peaks[p - 1], peaks[p]);
         const size_t end = p + 1 == peaks.size() ? s.size() : lowest(peaks[p], peaks[p + 1]);
@@ -141,7 +144,8 @@ std::vector<Mode> modesOf(const Histogram& h) {
 double peakValue(const Histogram& h, const Mode& mode) {
     double weight = 0, sum = 0;
     const size_t reach = size_t(kSmoothingBins);
-    for (size_t b = mode.bin - std::min(mode.bin, reach); b < std::min(h.count.size(), mode.bin + reach + 1); ++b) {
+    for (size_t b = mode.bin - std::min(mode.bin, reach); b < std::min(h.count.size(), mode.bin + reach + 1);
+         ++b) {
         weight += h.count[b];
         sum += h.count[b] * h.centre(b);
     }
@@ -191,10 +195,10 @@ std::optional<double> waterValue(const RawVolume& raw, const Range& range, const
 constexpr double kSoftTissueBinHu = 5;
 constexpr double kSoftTissueLowHu = -50;  // fat lies below: its peak would hide the width of muscle and brain
 constexpr double kSoftTissueHighHu = 150;
-constexpr double kHighestHu = 4000;       // metal beyond
+constexpr double kHighestHu = 4000;  // metal beyond
 constexpr double kLeastSoftTissue = 0.01;
-constexpr double kBoneLowHu = 200;        // noise and contrast agent below
-constexpr double kBoneHighHu = 300;       // thin cortical walls vanish above
+constexpr double kBoneLowHu = 200;   // noise and contrast agent below
+constexpr double kBoneHighHu = 300;  // thin cortical walls vanish above
 constexpr double kNoiseSigmas = 3;
 
 // Upper edge of the noise of soft tissue: its peak, and sigma from the half width on the side of bone.
@@ -220,21 +224,24 @@ std::optional<double> halfWayFromSoftTissue(const std::vector<float>& values, do
     Histogram h = countInto(values, water + kSoftTissueLowHu, kSoftTissueBinHu, bins);
     h.low -= water;
     h.count = smoothed(h.count, kSmoothingBins);
-    const auto tissue_end = h.count.begin() + ptrdiff_t((kSoftTissueHighHu - kSoftTissueLowHu) / kSoftTissueBinHu);
+    const auto tissue_end =
+        h.count.begin() + ptrdiff_t((kSoftTissueHighHu - kSoftTissueLowHu) / kSoftTissueBinHu);
     if (std::accumulate(h.count.begin(), tissue_end, 0.0) < kLeastSoftTissue * h.total) return std::nullopt;
     const auto peak = size_t(std::max_element(h.count.begin(), tissue_end) - h.count.begin());
     const double bone = medianAbove(h, std::max(noiseEdge(h, peak), kBoneLowHu));
     return (h.centre(peak) + bone) / 2;
 }
 
-constexpr double kLeastMaterialShare = 0.15;  // of all that is denser than the background; less is an edge or a cavity
+constexpr double kLeastMaterialShare =
+    0.15;  // of all that is denser than the background; less is an edge or a cavity
 
 // Background is the material with the most voxels.
 std::optional<double> halfWayAboveBackground(const Histogram& h, const std::vector<Mode>& modes) {
-    const auto background =
-        std::max_element(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) { return a.mass < b.mass; });
+    const auto background = std::max_element(modes.begin(), modes.end(),
+                                             [](const Mode& a, const Mode& b) { return a.mass < b.mass; });
     double mass_above = 0;
-    for (auto mode = background; mode != modes.end(); ++mode) mass_above += mode == background ? 0 : mode->mass;
+    for (auto mode = background; mode != modes.end(); ++mode)
+        mass_above += mode == background ? 0 : mode->mass;
     for (auto mode = background; mode != modes.end(); ++mode)
         if (mode != background && mode->mass >= kLeastMaterialShare * mass_above)
             return (peakValue(h, *background) + peakValue(h, *mode)) / 2;
@@ -246,7 +253,8 @@ std::optional<double> halfWayAboveBackground(const Histogram& h, const std::vect
 double proposeIsoValue(const RawVolume& raw) {
     const Range range = finiteRange(raw.values);
     if (!(range.low < range.high))
-        throw UserError("no iso-value can be proposed: all values of the volume are alike (" + raw.description + ")");
+        throw UserError("no iso-value can be proposed: all values of the volume are alike (" +
+                        raw.description + ")");
     const Histogram h = histogramOf(raw.values, range);
     const std::vector<Mode> modes = modesOf(h);
     if (const auto water = waterValue(raw, range, h, modes))

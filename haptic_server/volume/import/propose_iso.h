@@ -6,7 +6,8 @@
 namespace bonemill {
 
 // From the histogram of the finite values; rule and measured table in docs/volumes.md.
-//   1. Hounsfield scale (is_hounsfield, or shifted by +1024 as some exports are): half-way between the peak of soft
+//   1. Hounsfield scale (is_hounsfield, or shifted by +1024 as some exports are): half-way between the peak
+//   of soft
 //      tissue and the median of what is clearly bone, kept within 200 .. 300 HU.
 //   2. No soft tissue, or another scale (industrial CT, phantoms): half-way between the background (most
 //      voxels) and the next denser material that is no mere edge or cavity.

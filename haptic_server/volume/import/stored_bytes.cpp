@@ -18,7 +18,8 @@ constexpr size_t kChunk = size_t(1) << 18;
 // Unpacks and throws away; gzip files may consist of several members.
 class InflateCounter {
   public:
-    explicit InflateCounter(const StoredData& data) : file_(data.file, std::ios::binary), name_(data.file.string()) {
+    explicit InflateCounter(const StoredData& data)
+        : file_(data.file, std::ios::binary), name_(data.file.string()) {
         file_.seekg(std::streamoff(data.begin));
         if (inflateInit2(&stream_, kAnyWrapper) != Z_OK) throw std::bad_alloc();
     }

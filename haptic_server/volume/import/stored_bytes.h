@@ -7,15 +7,20 @@
 namespace bonemill {
 
 struct StoredData {
-    enum class Packing { kPlain, kDeflate, kOther };  // deflate: with a zlib or gzip head; other: cannot be counted
+    enum class Packing {
+        kPlain,
+        kDeflate,
+        kOther
+    };  // deflate: with a zlib or gzip head; other: cannot be counted
 
     std::filesystem::path file;
-    uint64_t begin = 0;          // first byte of the data (of the packed data) in the file
+    uint64_t begin = 0;  // first byte of the data (of the packed data) in the file
     Packing packing = Packing::kPlain;
     uint64_t skip_unpacked = 0;  // bytes before the voxels once unpacked (NIfTI packs its header, too)
 };
 
-// Bytes of voxels that can be read, counted up to `needed`. Throws UserError when the packed data are damaged.
+// Bytes of voxels that can be read, counted up to `needed`. Throws UserError when the packed data are
+// damaged.
 uint64_t countStoredBytes(const StoredData& data, uint64_t needed);
 
 }  // namespace bonemill

@@ -61,7 +61,7 @@ using Packing = StoredData::Packing;
 
 // A data file that is named, but no list or pattern of several files.
 bool isOneFile(const std::string& name) {
-    return name.rfind("LIST", 0) != 0 && name.find('%') == std::string::npos && name.find(' ') == std::string::npos;
+    return name.rfind("LIST", 0) != 0 && name.find('%') == std::string::npos;
 }
 
 }  // namespace
@@ -90,6 +90,9 @@ RawVolume importMetaImage(const std::filesystem::path& path) {
     const MetaImageHeader header = readMetaImageHeader(path);
     FileFacts facts{"MetaImage", StoredData{path, header.bytes}};
     if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
+    if (header.packed_bytes > 0)
+        checkStoredBytes(header.packed_bytes, countStoredBytes(*facts.data, header.packed_bytes),
+                         path.string());
     if (header.is_compressed) facts.data->packing = Packing::kDeflate;
     if (!isOneFile(header.data_file)) facts.data.reset();
     return readThrough(ItkFormat::kMetaImage, path, facts);

@@ -7,7 +7,8 @@
 namespace bonemill {
 namespace {
 
-const BodyKind kKinds[] = {BodyKind::kSlab, BodyKind::kSphere, BodyKind::kHole, BodyKind::kWedge, BodyKind::kThinWall};
+const BodyKind kKinds[] = {BodyKind::kSlab, BodyKind::kSphere, BodyKind::kHole, BodyKind::kWedge,
+                           BodyKind::kThinWall};
 
 AnalyticBody bodyOf(BodyKind kind, std::mt19937& random) {
     std::uniform_real_distribution<double> number(-1, 1);
@@ -27,7 +28,8 @@ Eigen::Vector3d randomPoint(std::mt19937& random) {
     return {number(random), number(random), number(random)};
 }
 
-// A distance never changes faster than the point moves, and reaches zero within its own length along its gradient.
+// A distance never changes faster than the point moves, and reaches zero within its own length along its
+// gradient.
 TEST(AnalyticBody, isADistance) {
     std::mt19937 random(5);
     for (const BodyKind kind : kKinds) {
@@ -42,7 +44,8 @@ TEST(AnalyticBody, isADistance) {
                 const Eigen::Vector3d e = kStep * Eigen::Vector3d::Unit(a);
                 gradient[a] = (signedDistance(body, p + e) - signedDistance(body, p - e)) / (2 * kStep);
             }
-            if (std::abs(gradient.norm() - 1) > 1e-3) continue;  // on a ridge, where two surfaces are equally near
+            if (std::abs(gradient.norm() - 1) > 1e-3)
+                continue;  // on a ridge, where two surfaces are equally near
             EXPECT_NEAR(signedDistance(body, p - gradient * d), 0, 1e-6);
         }
     }

@@ -1,8 +1,9 @@
+#include "haptic_server/volume/import/densify.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "haptic_server/volume/import/densify.h"
 #include "tests/unit/volume_import/expect_user_error.h"
 
 namespace bonemill {

@@ -17,13 +17,18 @@ std::string element(uint32_t tag, const std::string& vr, std::string value) {
     const bool is_long = vr == "OB" || vr == "OW" || vr == "SQ" || vr == "UN";
     if (value.size() % 2) value += vr == "UI" || vr == "OB" ? '\0' : ' ';
     std::string bytes = number(tag >> 16, 2) + number(tag & 0xffff, 2) + vr;
-    bytes += is_long ? std::string(2, '\0') + number(uint32_t(value.size()), 4) : number(uint32_t(value.size()), 2);
+    bytes += is_long ? std::string(2, '\0') + number(uint32_t(value.size()), 4)
+                     : number(uint32_t(value.size()), 2);
     return bytes + value;
 }
 
-std::string shortElement(uint32_t tag, int value) { return element(tag, "US", number(uint32_t(value), 2)); }
+std::string shortElement(uint32_t tag, int value) {
+    return element(tag, "US", number(uint32_t(value), 2));
+}
 
-std::string item(const std::string& content) { return number(0xe000fffe, 4) + number(uint32_t(content.size()), 4) + content; }
+std::string item(const std::string& content) {
+    return number(0xe000fffe, 4) + number(uint32_t(content.size()), 4) + content;
+}
 
 std::string decimal(double value) {
     std::string text = std::to_string(value);
@@ -31,29 +36,31 @@ std::string decimal(double value) {
 }
 
 const char* sopClass(const DicomImage& image) {
-    if (!image.frame_positions.empty()) return "1.2.840.10008.5.1.4.1.1.2.1";        // Enhanced CT
+    if (!image.frame_positions.empty()) return "1.2.840.10008.5.1.4.1.1.2.1";  // Enhanced CT
     return image.samples_per_pixel == 1 ? "1.2.840.10008.5.1.4.1.1.2" : "1.2.840.10008.5.1.4.1.1.7";
 }
 
 std::string meta(const DicomImage& image) {
-    const std::string content = element(0x00020001, "OB", std::string("\0\1", 2)) +
-                                element(0x00020002, "UI", sopClass(image)) +
-                                element(0x00020003, "UI", image.sop_uid) +
-                                element(0x00020010, "UI", "1.2.840.10008.1.2.1") +
-                                element(0x00020012, "UI", "1.2.3.4.5");
-    return std::string(128, '\0') + "DICM" + element(0x00020000, "UL", number(uint32_t(content.size()), 4)) + content;
+    const std::string content =
+        element(0x00020001, "OB", std::string("\0\1", 2)) + element(0x00020002, "UI", sopClass(image)) +
+        element(0x00020003, "UI", image.sop_uid) + element(0x00020010, "UI", "1.2.840.10008.1.2.1") +
+        element(0x00020012, "UI", "1.2.3.4.5");
+    return std::string(128, '\0') + "DICM" + element(0x00020000, "UL", number(uint32_t(content.size()), 4)) +
+           content;
 }
 
 std::string pixelBytes(const DicomImage& image) {
     std::string bytes;
-    for (const int16_t v : image.pixels) bytes += image.bits == 8 ? std::string(1, char(v)) : number(uint16_t(v), 2);
+    for (const int16_t v : image.pixels)
+        bytes += image.bits == 8 ? std::string(1, char(v)) : number(uint16_t(v), 2);
     return bytes;
 }
 
 std::string functionalGroups(const DicomImage& image) {
-    const std::string shared = element(0x00209116, "SQ", item(element(0x00200037, "DS", image.orientation))) +
-                               element(0x00289110, "SQ", item(element(0x00180050, "DS", "1") +
-                                                              element(0x00280030, "DS", image.pixel_spacing)));
+    const std::string shared =
+        element(0x00209116, "SQ", item(element(0x00200037, "DS", image.orientation))) +
+        element(0x00289110, "SQ",
+                item(element(0x00180050, "DS", "1") + element(0x00280030, "DS", image.pixel_spacing)));
     std::string frames;
     for (const std::string& position : image.frame_positions)
         frames += item(element(0x00209113, "SQ", item(element(0x00200032, "DS", position))));
@@ -78,7 +85,8 @@ std::string dicomBytes(const DicomImage& image) {
     bytes += shortElement(0x00280100, image.bits) + shortElement(0x00280101, image.bits) +
              shortElement(0x00280102, image.bits - 1) + shortElement(0x00280103, image.bits == 16 ? 1 : 0);
     if (image.samples_per_pixel == 1)
-        bytes += element(0x00281052, "DS", decimal(image.intercept)) + element(0x00281053, "DS", decimal(image.slope));
+        bytes += element(0x00281052, "DS", decimal(image.intercept)) +
+                 element(0x00281053, "DS", decimal(image.slope));
     if (image.photometric == "PALETTE COLOR")
         for (const uint32_t table : {0x1101u, 0x1102u, 0x1103u})
             bytes += element(0x00280000 | table, "US", number(256, 2) + number(0, 2) + number(8, 2));
@@ -90,6 +98,8 @@ std::string dicomBytes(const DicomImage& image) {
     return bytes;
 }
 
-void writeDicomFile(const std::filesystem::path& path, const DicomImage& image) { writeBytes(path, dicomBytes(image)); }
+void writeDicomFile(const std::filesystem::path& path, const DicomImage& image) {
+    writeBytes(path, dicomBytes(image));
+}
 
 }  // namespace bonemill

@@ -12,9 +12,9 @@ struct DicomImage {
     std::string series_uid = "1.2.3.4";
     std::string sop_uid = "1.2.3.4.1";
     std::string modality = "CT";
-    std::string position = "0\\0\\0";              // empty: no Image Position
+    std::string position = "0\\0\\0";  // empty: no Image Position
     std::string orientation = "1\\0\\0\\0\\1\\0";
-    std::string pixel_spacing = "0.5\\0.5";        // row spacing first, as DICOM has it
+    std::string pixel_spacing = "0.5\\0.5";  // row spacing first, as DICOM has it
     std::string photometric = "MONOCHROME2";
     int rows = 4;
     int columns = 5;
@@ -22,9 +22,9 @@ struct DicomImage {
     int bits = 16;
     double slope = 1;
     double intercept = 0;
-    std::vector<int16_t> pixels;                   // stored values; 8-bit files keep their low bytes
+    std::vector<int16_t> pixels;  // stored values; 8-bit files keep their low bytes
     bool has_pixels = true;
-    std::vector<std::string> frame_positions;      // not empty: an enhanced multi-frame file
+    std::vector<std::string> frame_positions;  // not empty: an enhanced multi-frame file
 };
 
 // Preamble, meta header and data set.

@@ -1,7 +1,8 @@
 // Grouping and ordering from headers alone.
+#include "haptic_server/volume/import/dicom_series.h"
+
 #include <gtest/gtest.h>
 
-#include "haptic_server/volume/import/dicom_series.h"
 #include "tests/unit/volume_import/expect_user_error.h"
 
 namespace bonemill {

@@ -62,7 +62,8 @@ TEST(Dicom, slicesAreOrderedByPlaceAlongTheNormal) {
 TEST(Dicom, anyOrientationBecomesRightHanded) {
     const TemporaryFolder folder;
     int number = 0;
-    for (const Eigen::Vector3d& normal : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(1, 0, 0)}) {
+    for (const Eigen::Vector3d& normal :
+         {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(1, 0, 0)}) {
         SampleVolume sample = nineSlices();
         const Eigen::Vector3d row = normal.x() == 0 ? Eigen::Vector3d(1, 0, 0) : Eigen::Vector3d(0, 1, 0);
         sample.directions << row, normal.cross(row), normal;
@@ -158,7 +159,8 @@ TEST(DicomErrors, missingSliceNamesItsNeighbours) {
     const SampleVolume sample = nineSlices();
     for (int k = 0; k < 9; ++k)
         if (k != 4) writeDicomFile(folder / ("slice" + std::to_string(k)), sliceOf(sample, k));
-    expectUserError([&] { importVolume(folder.path()); }, {"1 slice(s) missing", "slice3", "slice5", "33.750 mm"});
+    expectUserError([&] { importVolume(folder.path()); },
+                    {"1 slice(s) missing", "slice3", "slice5", "33.750 mm"});
 }
 
 TEST(DicomErrors, duplicateSliceNamesBoth) {
@@ -225,7 +227,8 @@ TEST(DicomScanTest, tellsKindsApart) {
     for (size_t size = 200; size + 1 < bytes.size(); size += 13) {
         writeBytes(folder / "cut", bytes.substr(0, size));
         const DicomKind kind = scanDicomFile(folder / "cut").kind;
-        EXPECT_TRUE(kind == DicomKind::kCutShort || kind == DicomKind::kNoImage) << size;  // cut between two elements
+        EXPECT_TRUE(kind == DicomKind::kCutShort || kind == DicomKind::kNoImage)
+            << size;  // cut between two elements
     }
 }
 

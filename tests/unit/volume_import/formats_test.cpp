@@ -92,7 +92,8 @@ TEST(Nrrd, oldFileWithSpacingsOnlyIsRead) {
     const std::string data = bytes.substr(bytes.find("\n\n") + 2);
     writeBytes(folder / "b.nrrd",
                "NRRD0001\ntype: short\ndimension: 3\nsizes: 5 4 3\nspacings: 0.5 0.75 1.25\nendian: little\n"
-               "encoding: raw\n\n" + data);
+               "encoding: raw\n\n" +
+                   data);
     EXPECT_NO_THROW(expectSamePlaces(importVolume(folder / "b.nrrd"), sample));
 }
 

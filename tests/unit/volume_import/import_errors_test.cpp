@@ -12,7 +12,8 @@ namespace {
 class ImportErrors : public ::testing::Test {
   protected:
     // Imports the file with these bytes.
-    void expectRefused(const std::string& name, const std::string& bytes, std::initializer_list<std::string> words) {
+    void expectRefused(const std::string& name, const std::string& bytes,
+                       std::initializer_list<std::string> words) {
         writeBytes(folder_ / name, bytes);
         expectUserError([&] { importVolume(folder_ / name); }, words);
     }
@@ -93,7 +94,8 @@ TEST_F(ImportErrors, absurdSizesAreRefusedBeforeAnythingIsAllocated) {
     expectRefused("a.nrrd", replaced(nrrd, "sizes: 5 4 3", "sizes: 50000 50000 50000"), {"a.nrrd", "2^31"});
     expectRefused("a.nrrd", replaced(nrrd, "sizes: 5 4 3", "sizes: 1000 1000 1000"), {"a.nrrd", "cut short"});
     const std::string meta = sampleBytes("a.mha");
-    expectRefused("a.mha", replaced(meta, "DimSize = 5 4 3", "DimSize = 50000 50000 50000"), {"a.mha", "2^31"});
+    expectRefused("a.mha", replaced(meta, "DimSize = 5 4 3", "DimSize = 50000 50000 50000"),
+                  {"a.mha", "2^31"});
 }
 
 TEST_F(ImportErrors, twoDimensionsAndVectorsAreRefused) {
@@ -101,11 +103,13 @@ TEST_F(ImportErrors, twoDimensionsAndVectorsAreRefused) {
     expectRefused("a.nrrd",
                   "NRRD0004\ntype: uint8\ndimension: 2\nsizes: 4 4\nencoding: raw\n\n0123456789abcdef",
                   {"a.nrrd", "2 dimensions"});
-    expectRefused("b.nrrd",
-                  "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 3 2 2 2\nkinds: RGB-color domain domain domain\n"
-                  "encoding: raw\n\n0123456789abcdef01234567",
-                  {"b.nrrd", "3 values per voxel"});
-    expectRefused("c.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 1\nencoding: raw\n\n0123456789abcdef",
+    expectRefused(
+        "b.nrrd",
+        "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 3 2 2 2\nkinds: RGB-color domain domain domain\n"
+        "encoding: raw\n\n0123456789abcdef01234567",
+        {"b.nrrd", "3 values per voxel"});
+    expectRefused("c.nrrd",
+                  "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 1\nencoding: raw\n\n0123456789abcdef",
                   {"c.nrrd", "2 or more"});
 }
 

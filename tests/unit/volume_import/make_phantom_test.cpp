@@ -46,7 +46,9 @@ TEST(MakePhantom, bodyFileHoldsTheStatedSurface) {
     body.X_WB.position = {0.5e-3, -0.25e-3, 0.125e-3};
     EXPECT_EQ(raw.values, sampleBody(body, raw.geometry, 255).values);
     EXPECT_EQ(raw.geometry.dims, Eigen::Vector3i(40, 41, 42));
-    EXPECT_LT((raw.geometry.X_WV * (raw.geometry.spacing.cwiseProduct(Eigen::Vector3d(19.5, 20, 20.5)))).norm(), 1e-12);
+    EXPECT_LT(
+        (raw.geometry.X_WV * (raw.geometry.spacing.cwiseProduct(Eigen::Vector3d(19.5, 20, 20.5)))).norm(),
+        1e-12);
 }
 
 TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
@@ -77,7 +79,9 @@ TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
     }
 }
 
-TEST(MakePhantom, helpIsNoError) { EXPECT_EQ(runMakePhantom("body --help").code, 0); }
+TEST(MakePhantom, helpIsNoError) {
+    EXPECT_EQ(runMakePhantom("body --help").code, 0);
+}
 
 }  // namespace
 }  // namespace bonemill

@@ -29,7 +29,8 @@ RawVolume mixtureOf(const std::vector<Material>& materials, double offset = 0) {
     return raw;
 }
 
-const std::vector<Material> kHead = {{-1000, 15, 0.5}, {-90, 25, 0.05}, {40, 20, 0.3}, {500, 200, 0.1}, {1200, 200, 0.05}};
+const std::vector<Material> kHead = {
+    {-1000, 15, 0.5}, {-90, 25, 0.05}, {40, 20, 0.3}, {500, 200, 0.1}, {1200, 200, 0.05}};
 
 TEST(ProposeIso, hounsfieldHeadGivesABoneThreshold) {
     RawVolume head = mixtureOf(kHead);
@@ -57,12 +58,14 @@ TEST(ProposeIso, weakBoneLowersTheThreshold) {
 
 // Industrial CT of a tooth: air, dentine, enamel, and a pulp cavity darker than the air outside.
 TEST(ProposeIso, industrialScanGivesTheMiddleOfAirAndDentine) {
-    const double iso = proposeIsoValue(mixtureOf({{390, 15, 0.7}, {150, 40, 0.02}, {825, 20, 0.2}, {1190, 25, 0.08}}));
+    const double iso =
+        proposeIsoValue(mixtureOf({{390, 15, 0.7}, {150, 40, 0.02}, {825, 20, 0.2}, {1190, 25, 0.08}}));
     EXPECT_NEAR(iso, (390 + 825) / 2.0, 15);
 }
 
 TEST(ProposeIso, eightBitScanWorksLikeSixteen) {
-    const double iso = proposeIsoValue(mixtureOf({{77, 3, 0.7}, {30, 8, 0.02}, {162, 4, 0.2}, {232, 5, 0.08}}));
+    const double iso =
+        proposeIsoValue(mixtureOf({{77, 3, 0.7}, {30, 8, 0.02}, {162, 4, 0.2}, {232, 5, 0.08}}));
     EXPECT_NEAR(iso, 119.5, 3);
 }
 
@@ -75,7 +78,8 @@ TEST(ProposeIso, analyticBodyIsCutInTheMiddle) {
     slab.kind = BodyKind::kSlab;
     slab.thickness = 6e-3;
     for (const double full : {255.0, 65535.0})
-        EXPECT_NEAR(proposeIsoValue(sampleBody(slab, centredGrid({40, 40, 64}, 0.25e-3), full)), full / 2, 0.01 * full);
+        EXPECT_NEAR(proposeIsoValue(sampleBody(slab, centredGrid({40, 40, 64}, 0.25e-3), full)), full / 2,
+                    0.01 * full);
 }
 
 TEST(ProposeIso, oddValuesDoNotMoveIt) {

@@ -1,5 +1,5 @@
-// Real scans, where BONEMILL_CT_DATA names a folder that holds them (docs/volumes.md); skipped elsewhere. The same
-// behaviour is proven with made data in the other files.
+// Real scans, where BONEMILL_CT_DATA names a folder that holds them (docs/volumes.md); skipped elsewhere. The
+// same behaviour is proven with made data in the other files.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -13,7 +13,9 @@
 namespace bonemill {
 namespace {
 
-ToothTissue at(double x_mm, double y_mm, double z_mm) { return toothTissue(Eigen::Vector3d(x_mm, y_mm, z_mm) / 1000); }
+ToothTissue at(double x_mm, double y_mm, double z_mm) {
+    return toothTissue(Eigen::Vector3d(x_mm, y_mm, z_mm) / 1000);
+}
 
 struct Extent {
     Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = Eigen::Vector3d::Constant(-1e9);
@@ -50,7 +52,8 @@ TEST(ToothPhantom, hasItsParts) {
     EXPECT_EQ(at(5.2, 0, 14.6), ToothTissue::kEnamel);
     EXPECT_EQ(at(0, 0, 5), ToothTissue::kAir);         // between the roots
     EXPECT_EQ(at(-2.6, 0, 6), ToothTissue::kDentine);  // mesial root, between its two canals
-    EXPECT_LT(int(at(0.9, 0.1, 17.2)), int(ToothTissue::kDentine)) << "the caries must be open to the fissure";
+    EXPECT_LT(int(at(0.9, 0.1, 17.2)), int(ToothTissue::kDentine))
+        << "the caries must be open to the fissure";
 }
 
 // A vertical corridor down the tooth axis meets hard tissue, then the pulp.
@@ -62,7 +65,8 @@ TEST(ToothPhantom, corridorFromTheCrownMeetsItsTissuesInOrder) {
                                                ToothTissue::kPulp};
     std::vector<ToothTissue> without_caries;
     for (const ToothTissue t : met)
-        if (t != ToothTissue::kCaries && (without_caries.empty() || without_caries.back() != t)) without_caries.push_back(t);
+        if (t != ToothTissue::kCaries && (without_caries.empty() || without_caries.back() != t))
+            without_caries.push_back(t);
     EXPECT_EQ(without_caries, expected);
 }
 
@@ -90,7 +94,8 @@ TEST(ToothPhantom, comesBackFromItsDicomSeriesUnchanged) {
 TEST(ToothPhantom, turnedSeriesComesBackTurned) {
     const TemporaryFolder folder;
     VolumeGeometry geometry = coarseGrid();
-    geometry.X_WV.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 1, 0).normalized()));
+    geometry.X_WV.rotation =
+        Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 1, 0).normalized()));
     RawVolume tooth = scanTooth(coarseGrid(), {});
     tooth.geometry = geometry;
     writeCtSeries(folder.path(), tooth, {"PHANTOM^TOOTH", "test", "seed"});
@@ -116,7 +121,8 @@ TEST(ToothPhantom, edgesAreSoftAndTissuesPure) {
 TEST(ToothPhantom, noiseHasTheStatedSizeAndIsRepeatable) {
     VolumeGeometry air = coarseGrid();
     air.X_WV.position.z() = 30e-3;
-    const RawVolume a = scanTooth(air, {.noise_hu = 50, .seed = 1}), b = scanTooth(air, {.noise_hu = 50, .seed = 1});
+    const RawVolume a = scanTooth(air, {.noise_hu = 50, .seed = 1}),
+                    b = scanTooth(air, {.noise_hu = 50, .seed = 1});
     EXPECT_EQ(a.values, b.values);
     EXPECT_NE(a.values, scanTooth(air, {.noise_hu = 50, .seed = 2}).values);
     double sum = 0, squares = 0;

@@ -69,7 +69,8 @@ Eigen::Vector3d SampleVolume::place(double value) const {
 }
 
 void expectSamePlaces(const RawVolume& raw, const SampleVolume& sample, double tolerance) {
-    if (raw.values.size() != raw.geometry.voxelCount()) throw std::runtime_error("values do not fill the volume");
+    if (raw.values.size() != raw.geometry.voxelCount())
+        throw std::runtime_error("values do not fill the volume");
     std::set<float> seen;
     size_t next = 0;
     for (int k = 0; k < raw.geometry.dims.z(); ++k)
@@ -113,7 +114,7 @@ void writeNiftiFile(const std::filesystem::path& path, const SampleVolume& sampl
     put(0, int32_t(348));
     put(40, int16_t(3));
     for (int a = 0; a < 4; ++a) put(42 + 2 * size_t(a), int16_t(a < 3 ? sample.dims[a] : 1));
-    put(70, int16_t(4));   // DT_INT16
+    put(70, int16_t(4));  // DT_INT16
     put(72, int16_t(16));
     put(76, 1.0f);
     for (int a = 0; a < 3; ++a) put(80 + 4 * size_t(a), float(sample.spacing_mm[a]));
@@ -124,7 +125,8 @@ void writeNiftiFile(const std::filesystem::path& path, const SampleVolume& sampl
     for (int row = 0; row < 3; ++row) {
         const double sign = row < 2 ? -1 : 1;  // NIfTI is RAS
         for (int a = 0; a < 3; ++a)
-            put(280 + 16 * size_t(row) + 4 * size_t(a), float(sign * sample.directions(row, a) * sample.spacing_mm[a]));
+            put(280 + 16 * size_t(row) + 4 * size_t(a),
+                float(sign * sample.directions(row, a) * sample.spacing_mm[a]));
         put(292 + 16 * size_t(row), float(sign * sample.origin_mm[row]));
     }
     std::memcpy(header.data() + 344, "n+1", 4);
@@ -132,7 +134,8 @@ void writeNiftiFile(const std::filesystem::path& path, const SampleVolume& sampl
     writeBytes(path, storage.is_compressed ? deflated(bytes, kGzipWindow) : bytes);
 }
 
-void writeMetaImageFile(const std::filesystem::path& path, const SampleVolume& sample, const Storage& storage) {
+void writeMetaImageFile(const std::filesystem::path& path, const SampleVolume& sample,
+                        const Storage& storage) {
     std::string bytes = samplesAsBytes(sample.values(), storage.is_big_endian);
     if (storage.is_compressed) bytes = deflated(bytes, kZlibWindow);
     std::string header = "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = ";
@@ -163,12 +166,13 @@ void writeInv3File(const std::filesystem::path& path, const SampleVolume& sample
     const auto real = [](double v) { return "<real>" + std::to_string(v) + "</real>"; };
     const std::string plist =
         "<?xml version=\"1.0\"?>\n<!DOCTYPE plist PUBLIC \"x\" \"y\">\n<plist version=\"1.0\"><dict>"
-        "<key>matrix</key><dict><key>dtype</key><string>" + text.dtype +
-        "</string><key>filename</key><string>matrix.dat</string><key>shape</key><array>" + integer(n.z()) +
-        integer(n.y()) + integer(n.x()) + "</array></dict><key>modality</key><string>" + text.modality +
-        "</string><key>name</key><string>made by a test</string><key>spacing</key><array>" +
+        "<key>matrix</key><dict><key>dtype</key><string>" +
+        text.dtype + "</string><key>filename</key><string>matrix.dat</string><key>shape</key><array>" +
+        integer(n.z()) + integer(n.y()) + integer(n.x()) + "</array></dict><key>modality</key><string>" +
+        text.modality + "</string><key>name</key><string>made by a test</string><key>spacing</key><array>" +
         real(sample.spacing_mm.x()) + real(sample.spacing_mm.y()) + real(sample.spacing_mm.z()) +
-        "</array><key>window_level</key><real>100</real><key>window_width</key><real>400</real></dict></plist>";
+        "</array><key>window_level</key><real>100</real><key>window_width</key><real>400</real></dict></"
+        "plist>";
     archive* writer = archive_write_new();
     archive_write_add_filter_gzip(writer);
     archive_write_set_format_gnutar(writer);

@@ -1,5 +1,5 @@
-// Small volumes in every file format, written byte by byte, so that the importer is checked against the formats'
-// definitions and not against its own library.
+// Small volumes in every file format, written byte by byte, so that the importer is checked against the
+// formats' definitions and not against its own library.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,7 +36,8 @@ void writeNrrdFile(const std::filesystem::path& path, const SampleVolume& sample
                    const std::string& space = "left-posterior-superior");
 // `path` ends in .nii, or .nii.gz for compressed.
 void writeNiftiFile(const std::filesystem::path& path, const SampleVolume& sample, const Storage& storage);
-void writeMetaImageFile(const std::filesystem::path& path, const SampleVolume& sample, const Storage& storage);
+void writeMetaImageFile(const std::filesystem::path& path, const SampleVolume& sample,
+                        const Storage& storage);
 
 struct Inv3Text {
     std::string dtype = "int16";

@@ -24,11 +24,16 @@ double signedDistance(const AnalyticBody& body, const Eigen::Vector3d& p_W) noex
     const Eigen::Vector3d p = body.X_WB.inverse() * p_W;
     const double half = body.thickness / 2;
     switch (body.kind) {
-        case BodyKind::kSlab: return std::abs(p.z()) - half;
-        case BodyKind::kSphere: return p.norm() - body.radius;
-        case BodyKind::kHole: return rightAngledEdge(body.radius - std::hypot(p.x(), p.y()), std::abs(p.z()) - half);
-        case BodyKind::kWedge: return wedgeDistance(p.x(), p.z(), body.angle);
-        case BodyKind::kThinWall: return rightAngledEdge(std::abs(p.x()) - half, p.z());
+        case BodyKind::kSlab:
+            return std::abs(p.z()) - half;
+        case BodyKind::kSphere:
+            return p.norm() - body.radius;
+        case BodyKind::kHole:
+            return rightAngledEdge(body.radius - std::hypot(p.x(), p.y()), std::abs(p.z()) - half);
+        case BodyKind::kWedge:
+            return wedgeDistance(p.x(), p.z(), body.angle);
+        case BodyKind::kThinWall:
+            return rightAngledEdge(std::abs(p.x()) - half, p.z());
     }
     return 0;
 }
@@ -47,7 +52,8 @@ RawVolume sampleBody(const AnalyticBody& body, const VolumeGeometry& geometry, d
     for (int k = 0; k < geometry.dims.z(); ++k)
         for (int j = 0; j < geometry.dims.y(); ++j)
             for (int i = 0; i < geometry.dims.x(); ++i) {
-                const Eigen::Vector3d p_W = geometry.X_WV * geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k));
+                const Eigen::Vector3d p_W =
+                    geometry.X_WV * geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k));
                 raw.values.push_back(float(std::round(bodyDensity(body, geometry, p_W, full))));
             }
     return raw;

@@ -1,7 +1,7 @@
 // Test bodies whose surface is known exactly, and their densities on any grid.
 //
-// Frames: W is the world (and the written file's LPS frame); B is the body's own frame. Lengths in m, angles in rad.
-// In B (definitions are repeated in docs/volumes.md):
+// Frames: W is the world (and the written file's LPS frame); B is the body's own frame. Lengths in m, angles
+// in rad. In B (definitions are repeated in docs/volumes.md):
 //   slab       |z| <= thickness / 2, endless in x and y
 //   sphere     |p| <= radius
 //   hole       plate |z| <= thickness / 2 with a round hole x² + y² < radius²
@@ -27,8 +27,9 @@ struct AnalyticBody {
 // Exact distance from a point in W to the surface, negative inside the solid.
 double signedDistance(const AnalyticBody& body, const Eigen::Vector3d& p_W) noexcept;
 
-// Density falls linearly from full to 0 while the signed distance goes from -kRampVoxels to +kRampVoxels voxels (of the
-// largest spacing): wide enough that no corner of a cell with a piece of the surface is clamped.
+// Density falls linearly from full to 0 while the signed distance goes from -kRampVoxels to +kRampVoxels
+// voxels (of the largest spacing): wide enough that no corner of a cell with a piece of the surface is
+// clamped.
 inline constexpr double kRampVoxels = 2.0;
 
 double bodyDensity(const AnalyticBody& body, const VolumeGeometry& geometry, const Eigen::Vector3d& p_W,

@@ -9,13 +9,13 @@
 namespace bonemill {
 
 struct CtSeriesText {
-    std::string patient_name;        // DICOM person name
+    std::string patient_name;  // DICOM person name
     std::string series_description;
-    std::string uid_seed;            // equal seeds give equal UIDs, and equal files
+    std::string uid_seed;  // equal seeds give equal UIDs, and equal files
 };
 
-// Values must be whole HU within int16 (they are stored as such, slope 1, intercept 0); files slice_0001.dcm ... in
-// the order of the third axis. Creates the folder. Throws UserError when a file cannot be written.
+// Values must be whole HU within int16 (they are stored as such, slope 1, intercept 0); files slice_0001.dcm
+// ... in the order of the third axis. Creates the folder. Throws UserError when a file cannot be written.
 void writeCtSeries(const std::filesystem::path& folder, const RawVolume& volume, const CtSeriesText& text);
 
 // A valid UID under 2.25 (UUID-derived) from any text: the same text gives the same UID.

@@ -15,8 +15,8 @@ struct CtSlice {
     int columns = 0;
     int rows = 0;
     std::array<double, 3> spacing_mm{};
-    std::array<double, 3> position_mm{};              // centre of the first pixel
-    std::array<std::array<double, 3>, 3> axis{};      // row, column and slice direction in LPS
+    std::array<double, 3> position_mm{};          // centre of the first pixel
+    std::array<std::array<double, 3>, 3> axis{};  // row, column and slice direction in LPS
     std::span<const int16_t> hu;
     std::vector<std::pair<std::string, std::string>> tags;  // "gggg|eeee" and value
 };

@@ -34,8 +34,8 @@ struct BodyArguments {
 };
 
 void makeTooth(const ToothArguments& arguments) {
-    const std::string seed = "bonemill tooth, noise " + std::to_string(arguments.scan.noise_hu) + " HU, seed " +
-                             std::to_string(arguments.scan.seed);
+    const std::string seed = "bonemill tooth, noise " + std::to_string(arguments.scan.noise_hu) +
+                             " HU, seed " + std::to_string(arguments.scan.seed);
     const RawVolume tooth = scanTooth(toothGrid(), arguments.scan);
     writeCtSeries(arguments.folder, tooth, {"PHANTOM^TOOTH", "bonemill tooth phantom", seed});
     std::cout << "wrote " << tooth.geometry.dims.z() << " slices to " << arguments.folder << "\n";
@@ -89,7 +89,8 @@ CLI::Validator within(double low, double high) {
 }
 
 void addTooth(CLI::App& app, ToothArguments& arguments) {
-    CLI::App* tooth = app.add_subcommand("tooth", "molar-like tooth as a DICOM CT series, 256x256x161, 0.125 mm, HU");
+    CLI::App* tooth =
+        app.add_subcommand("tooth", "molar-like tooth as a DICOM CT series, 256x256x161, 0.125 mm, HU");
     tooth->add_option("--out", arguments.folder, "folder to write to")->required();
     tooth->add_option("--noise-hu", arguments.scan.noise_hu, "standard deviation of the noise")
         ->check(within(0, 500))
@@ -98,7 +99,8 @@ void addTooth(CLI::App& app, ToothArguments& arguments) {
 }
 
 void addBody(CLI::App& app, BodyArguments& arguments) {
-    CLI::App* body = app.add_subcommand("body", "analytic body as NRRD; the exact surfaces are in docs/volumes.md");
+    CLI::App* body =
+        app.add_subcommand("body", "analytic body as NRRD; the exact surfaces are in docs/volumes.md");
     body->add_option("--kind", arguments.kind, "slab, sphere, hole, wedge or thin-wall")
         ->required()
         ->check(CLI::IsMember({"slab", "sphere", "hole", "wedge", "thin-wall"}));
@@ -110,7 +112,9 @@ void addBody(CLI::App& app, BodyArguments& arguments) {
     number("--radius-mm", arguments.radius_mm, 1e-3, 1e4, "sphere and hole");
     number("--thickness-mm", arguments.thickness_mm, 1e-3, 1e4, "slab, plate with the hole and thin wall");
     number("--angle-deg", arguments.angle_deg, 1, 179, "full opening angle of the wedge");
-    body->add_option("--bits", arguments.bits, "8 or 16")->check(CLI::IsMember({8, 16}))->capture_default_str();
+    body->add_option("--bits", arguments.bits, "8 or 16")
+        ->check(CLI::IsMember({8, 16}))
+        ->capture_default_str();
     body->add_option("--dims", arguments.dims, "voxels per axis")
         ->expected(3)
         ->check(CLI::Range(2, 1024))
@@ -147,4 +151,6 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace bonemill
 
-int main(int argc, char** argv) { return bonemill::run(argc, argv); }
+int main(int argc, char** argv) {
+    return bonemill::run(argc, argv);
+}

@@ -7,14 +7,17 @@
 namespace bonemill {
 namespace {
 
-// All shapes in mm; sizes after textbook mean values of a lower molar (crown 11 x 10.5 mm, whole length about 19 mm).
+// All shapes in mm; sizes after textbook mean values of a lower molar (crown 11 x 10.5 mm, whole length about
+// 19 mm).
 constexpr double kNeckZ = 11.5;      // cemento-enamel junction
 constexpr double kFurcationZ = 9.0;  // where the root trunk splits
 constexpr double kRootTipZ = 0.55;
-constexpr double kReach = 6.5;       // nothing of the tooth lies further from its axis,
-constexpr double kHighest = 20.0;    // or higher
+constexpr double kReach = 6.5;     // nothing of the tooth lies further from its axis,
+constexpr double kHighest = 20.0;  // or higher
 
-double square(double x) { return x * x; }
+double square(double x) {
+    return x * x;
+}
 
 double smoothStep(double low, double high, double x) {
     const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
@@ -47,7 +50,8 @@ double occlusalHeight(double x, double y) {
 double crownSide(const Eigen::Vector3d& p) {
     constexpr double kExponent = 2.7;
     const double up = p.z() - 14.6;
-    const double sum = std::pow(std::abs(p.x()) / 5.5, kExponent) + std::pow(std::abs(p.y()) / 5.25, kExponent) +
+    const double sum = std::pow(std::abs(p.x()) / 5.5, kExponent) +
+                       std::pow(std::abs(p.y()) / 5.25, kExponent) +
                        std::pow(std::abs(up) / (up > 0 ? 7.0 : 5.6), kExponent);
     return (std::pow(sum, 1 / kExponent) - 1) * 5.0;
 }
@@ -72,7 +76,9 @@ double root(const Eigen::Vector3d& p, double side) {
     return (std::hypot(x, y) - 1) * std::min(rx, ry);
 }
 
-double trunk(const Eigen::Vector3d& p) { return ellipsoid(p, {0, 0, kNeckZ}, {4.5, 4.3, 3.2}); }
+double trunk(const Eigen::Vector3d& p) {
+    return ellipsoid(p, {0, 0, kNeckZ}, {4.5, 4.3, 3.2});
+}
 
 double rootPart(const Eigen::Vector3d& p) {
     const double ceiling = p.z() - (kNeckZ + 1.5);  // roots end inside the crown
@@ -80,30 +86,38 @@ double rootPart(const Eigen::Vector3d& p) {
     return blend(roots, trunk(p), 1.0);
 }
 
-double outerShape(const Eigen::Vector3d& p) { return blend(crown(p), rootPart(p), 0.6); }
+double outerShape(const Eigen::Vector3d& p) {
+    return blend(crown(p), rootPart(p), 0.6);
+}
 
 // Thickness grows from nothing at the neck to 1.9 mm under the cusps.
-double enamelThickness(double z) { return 1.3 * smoothStep(kNeckZ - 0.2, kNeckZ + 4, z) + 0.6 * smoothStep(15, 18, z); }
+double enamelThickness(double z) {
+    return 1.3 * smoothStep(kNeckZ - 0.2, kNeckZ + 4, z) + 0.6 * smoothStep(15, 18, z);
+}
 
 double canal(const Eigen::Vector3d& p, double side, double y_offset) {
     const double z = std::clamp(p.z(), kRootTipZ + 0.9, kNeckZ - 0.5);
     const double spread = y_offset * smoothStep(kNeckZ, 6, z);
     const double radius = 0.2 + 0.03 * (z - kRootTipZ);
-    const Eigen::Vector3d axis_point(rootAxisX(side, z) * (0.85 + 0.15 * smoothStep(kNeckZ, 7, z)), spread, z);
+    const Eigen::Vector3d axis_point(rootAxisX(side, z) * (0.85 + 0.15 * smoothStep(kNeckZ, 7, z)), spread,
+                                     z);
     return (p - axis_point).norm() - radius;
 }
 
 double pulp(const Eigen::Vector3d& p) {
     double shape = ellipsoid(p, {0, 0, 11.6}, {2.5, 2.0, 1.5});
     for (const double x : {-1.5, 1.5})
-        for (const double y : {-1.2, 1.2}) shape = blend(shape, ellipsoid(p, {x, y, 12.9}, {0.55, 0.5, 1.2}), 0.5);
+        for (const double y : {-1.2, 1.2})
+            shape = blend(shape, ellipsoid(p, {x, y, 12.9}, {0.55, 0.5, 1.2}), 0.5);
     shape = blend(shape, canal(p, -1, -1.0), 0.4);  // two canals in the mesial root, one in the distal
     shape = blend(shape, canal(p, -1, 1.0), 0.4);
     return blend(shape, canal(p, 1, 0.0), 0.4);
 }
 
 // Starts in the fissure and undermines the enamel.
-double caries(const Eigen::Vector3d& p) { return ellipsoid(p, {0.9, 0.1, 15.9}, {1.6, 1.3, 1.5}); }
+double caries(const Eigen::Vector3d& p) {
+    return ellipsoid(p, {0.9, 0.1, 15.9}, {1.6, 1.3, 1.5});
+}
 
 ToothTissue tissueAt(const Eigen::Vector3d& p_mm) {
     const double outer = outerShape(p_mm);
@@ -121,8 +135,7 @@ double meanHu(const VolumeGeometry& geometry, const Eigen::Vector3d& index) {
     for (int s = 0; s < kSamplesPerAxis * kSamplesPerAxis * kSamplesPerAxis; ++s) {
         const Eigen::Vector3d cell(s % kSamplesPerAxis, s / kSamplesPerAxis % kSamplesPerAxis,
                                    s / (kSamplesPerAxis * kSamplesPerAxis));
-        const Eigen::Vector3d offset =
-            ((cell.array() + 0.5) / kSamplesPerAxis - 0.5).matrix() * kBlurVoxels;
+        const Eigen::Vector3d offset = ((cell.array() + 0.5) / kSamplesPerAxis - 0.5).matrix() * kBlurVoxels;
         sum += kToothHu[int(toothTissue(geometry.X_WV * geometry.spacing.cwiseProduct(index + offset)))];
     }
     return sum / (kSamplesPerAxis * kSamplesPerAxis * kSamplesPerAxis);
@@ -174,7 +187,8 @@ class TissueMap {
                         toothTissue(geometry.X_WV * geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k))));
     }
     ToothTissue at(int i, int j, int k) const {
-        return tissue_[size_t(i + 1) + size_t(size_.x()) * (size_t(j + 1) + size_t(size_.y()) * size_t(k + 1))];
+        return tissue_[size_t(i + 1) +
+                       size_t(size_.x()) * (size_t(j + 1) + size_t(size_.y()) * size_t(k + 1))];
     }
     bool isUniformAround(int i, int j, int k) const {
         for (int n = 0; n < 27; ++n)
@@ -199,9 +213,11 @@ RawVolume scanTooth(const VolumeGeometry& geometry, const ToothScan& scan) {
     for (int k = 0; k < geometry.dims.z(); ++k)
         for (int j = 0; j < geometry.dims.y(); ++j)
             for (int i = 0; i < geometry.dims.x(); ++i) {
-                const double hu = tissues.isUniformAround(i, j, k) ? kToothHu[int(tissues.at(i, j, k))]
-                                                                   : meanHu(geometry, Eigen::Vector3d(i, j, k));
-                raw.values.push_back(float(std::round(hu + scan.noise_hu * noise(scan.seed, raw.values.size()))));
+                const double hu = tissues.isUniformAround(i, j, k)
+                                      ? kToothHu[int(tissues.at(i, j, k))]
+                                      : meanHu(geometry, Eigen::Vector3d(i, j, k));
+                raw.values.push_back(
+                    float(std::round(hu + scan.noise_hu * noise(scan.seed, raw.values.size()))));
             }
     return raw;
 }

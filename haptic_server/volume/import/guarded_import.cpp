@@ -1,0 +1,197 @@
+#include "haptic_server/volume/import/guarded_import.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <type_traits>
+
+#include "common/config/user_error.h"
+#include "haptic_server/volume/import/file_being_read.h"
+
+namespace bonemill {
+namespace {
+
+constexpr rlim_t kMostCpuSeconds = 600;  // the largest volumes take seconds
+constexpr size_t kNameBytes = 4096;
+
+char* file_being_read = nullptr;  // shared with the child
+
+class SharedName {
+  public:
+    SharedName() {
+        void* page = mmap(nullptr, kNameBytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+        if (page != MAP_FAILED) file_being_read = static_cast<char*>(page);
+    }
+    ~SharedName() {
+        if (file_being_read) munmap(file_being_read, kNameBytes);
+        file_being_read = nullptr;
+    }
+    SharedName(const SharedName&) = delete;
+    SharedName& operator=(const SharedName&) = delete;
+};
+
+class Pipe {
+  public:
+    Pipe() {
+        if (pipe2(ends_, O_CLOEXEC) != 0) throw UserError("cannot make a pipe; too many files are open");
+    }
+    ~Pipe() {
+        closeEnd(0);
+        closeEnd(1);
+    }
+    Pipe(const Pipe&) = delete;
+    Pipe& operator=(const Pipe&) = delete;
+
+    int end(int which) const { return ends_[which]; }
+    void closeEnd(int which) {
+        if (ends_[which] >= 0) close(ends_[which]);
+        ends_[which] = -1;
+    }
+
+  private:
+    int ends_[2];
+};
+
+// False at the end of the stream or on an error.
+bool transfer(ssize_t (*step)(int, char*, size_t), int file, void* bytes, size_t count) {
+    char* next = static_cast<char*>(bytes);
+    while (count > 0) {
+        const ssize_t done = step(file, next, count);
+        if (done < 0 && errno == EINTR) continue;
+        if (done <= 0) return false;
+        next += done;
+        count -= size_t(done);
+    }
+    return true;
+}
+bool readAll(int file, void* bytes, size_t count) {
+    return transfer([](int f, char* b, size_t n) { return ::read(f, b, n); }, file, bytes, count);
+}
+bool writeAll(int file, const void* bytes, size_t count) {
+    return transfer([](int f, char* b, size_t n) { return ::write(f, b, n); }, file, const_cast<void*>(bytes),
+                    count);
+}
+
+// What goes through the pipe first; then the text (description or error), then the values.
+struct Head {
+    bool is_volume;
+    bool is_hounsfield;
+    int32_t dims[3];
+    double spacing[3];
+    double position[3];
+    double rotation[4];  // Eigen's order
+    uint64_t text_bytes;
+    uint64_t values;
+};
+static_assert(std::is_trivially_copyable_v<Head>);
+
+void sendVolume(int file, const RawVolume& raw) {
+    Head head{};
+    head.is_volume = true;
+    head.is_hounsfield = raw.is_hounsfield;
+    std::copy_n(raw.geometry.dims.data(), 3, head.dims);
+    std::copy_n(raw.geometry.spacing.data(), 3, head.spacing);
+    std::copy_n(raw.geometry.X_WV.position.data(), 3, head.position);
+    std::copy_n(raw.geometry.X_WV.rotation.coeffs().data(), 4, head.rotation);
+    head.text_bytes = raw.description.size();
+    head.values = raw.values.size();
+    writeAll(file, &head, sizeof head) && writeAll(file, raw.description.data(), raw.description.size()) &&
+        writeAll(file, raw.values.data(), raw.values.size() * sizeof(float));
+}
+
+void sendError(int file, const std::string& message) {
+    Head head{};
+    head.text_bytes = message.size();
+    writeAll(file, &head, sizeof head) && writeAll(file, message.data(), message.size());
+}
+
+// False when the child died before it had handed over everything.
+bool receive(int file, RawVolume& raw, std::string& error) {
+    Head head;
+    if (!readAll(file, &head, sizeof head)) return false;
+    std::string text(head.text_bytes, '\0');
+    if (!readAll(file, text.data(), text.size())) return false;
+    if (!head.is_volume) {
+        error = text;
+        return true;
+    }
+    raw.description = text;
+    raw.is_hounsfield = head.is_hounsfield;
+    raw.geometry.dims = Eigen::Map<const Eigen::Vector3i>(head.dims);
+    raw.geometry.spacing = Eigen::Map<const Eigen::Vector3d>(head.spacing);
+    raw.geometry.X_WV.position = Eigen::Map<const Eigen::Vector3d>(head.position);
+    raw.geometry.X_WV.rotation = Eigen::Quaterniond(head.rotation);
+    raw.values.resize(head.values);
+    return readAll(file, raw.values.data(), raw.values.size() * sizeof(float));
+}
+
+[[noreturn]] void runChild(int file, const std::filesystem::path& path,
+                           const std::function<RawVolume()>& read) {
+    for (const int number : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT})
+        signal(number, SIG_DFL);
+    const rlimit no_core{0, 0}, cpu{kMostCpuSeconds, kMostCpuSeconds};
+    setrlimit(RLIMIT_CORE, &no_core);
+    setrlimit(RLIMIT_CPU, &cpu);
+    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    dup2(nowhere, STDERR_FILENO);  // the libraries' chatter would stand between the user and the one message
+    dup2(nowhere, STDOUT_FILENO);
+    try {
+        sendVolume(file, read());
+    } catch (const std::bad_alloc&) {
+        sendError(file, path.string() + ": there is not enough memory to read it; crop or resample it");
+    } catch (const UserError& error) {
+        sendError(file, error.what());
+    } catch (const std::exception& error) {
+        sendError(file, path.string() + ": cannot be read: " + error.what());
+    }
+    _exit(0);  // no destructor of the parent's objects may run twice
+}
+
+std::string nameOr(const std::filesystem::path& path) {
+    return file_being_read && file_being_read[0] ? std::string(file_being_read) : path.string();
+}
+
+}  // namespace
+
+void noteFileBeingRead(const std::filesystem::path& file) noexcept {
+    if (file_being_read) std::strncpy(file_being_read, file.c_str(), kNameBytes - 1);
+}
+
+RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read) {
+    const SharedName name;
+    Pipe pipe;
+    std::fflush(nullptr);  // or the child might write what is still buffered a second time
+    const pid_t child = fork();
+    if (child < 0) throw UserError("cannot start a process to read " + path.string() + "; memory is short");
+    if (child == 0) runChild(pipe.end(1), path, read);
+    pipe.closeEnd(1);
+    RawVolume raw;
+    std::string error;
+    bool is_complete = false;
+    try {
+        is_complete = receive(pipe.end(0), raw, error);
+    } catch (const std::bad_alloc&) {
+        error = path.string() + ": there is not enough memory to hold it; crop or resample it";
+        kill(child, SIGKILL);
+    }
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (!error.empty()) throw UserError(error);
+    if (!is_complete)
+        throw UserError(nameOr(path) + ": the library that reads such files gave up (" +
+                        (WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it ended early") +
+                        "); the file is damaged");
+    return raw;
+}
+
+}  // namespace bonemill

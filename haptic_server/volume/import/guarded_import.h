@@ -1,0 +1,20 @@
+// Runs a reader in a child process of its own, so that no file can bring this process down.
+//
+// Debian builds GDCM with its assertions on, and ITK's linear algebra aborts on numbers that are not finite:
+// a damaged file can end the process that reads it. The child hands the volume over through a pipe, writes
+// nothing to stderr, and is ended when it hangs or takes all memory. Start-up only: forks, so best before
+// other threads run.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "haptic_server/volume/raw_volume.h"
+
+namespace bonemill {
+
+// What `read` returns. Throws UserError: the one that `read` threw, or one that names the file it was reading
+// when it died (file_being_read.h; `path`, if it did not say).
+RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read);
+
+}  // namespace bonemill

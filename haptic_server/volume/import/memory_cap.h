@@ -1,0 +1,25 @@
+// Keeps a library from allocating whatever a damaged length field says.
+#pragma once
+
+#include <sys/resource.h>
+
+#include <cstdint>
+
+namespace bonemill {
+
+// While it lives, the process may map at most `extra_bytes` more than it does now; beyond that, allocation
+// fails with std::bad_alloc. Without effect under sanitizers, which map terabytes themselves. One thread,
+// start-up only.
+class MemoryCap {
+  public:
+    explicit MemoryCap(uint64_t extra_bytes);
+    ~MemoryCap();
+    MemoryCap(const MemoryCap&) = delete;
+    MemoryCap& operator=(const MemoryCap&) = delete;
+
+  private:
+    rlimit before_{};
+    bool is_set_ = false;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,54 @@
+#include "haptic_server/volume/import/guarded_import.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "haptic_server/volume/import/file_being_read.h"
+#include "tests/unit/volume_import/expect_user_error.h"
+
+namespace bonemill {
+namespace {
+
+TEST(GuardedImport, volumeComesThroughUnchanged) {
+    RawVolume sent;
+    sent.geometry.dims = {100, 50, 40};
+    sent.geometry.spacing = {0.1, 0.2, 0.3};
+    sent.geometry.X_WV.position = {1, 2, 3};
+    sent.geometry.X_WV.rotation = Eigen::Quaterniond(1, 2, 3, 4).normalized();
+    sent.description = "a volume";
+    sent.is_hounsfield = true;
+    for (size_t n = 0; n < sent.geometry.voxelCount(); ++n) sent.values.push_back(float(n) / 7);
+    const RawVolume got = importGuarded("file", [&] { return sent; });
+    EXPECT_EQ(got.geometry.dims, sent.geometry.dims);
+    EXPECT_EQ(got.geometry.spacing, sent.geometry.spacing);
+    EXPECT_EQ(got.geometry.X_WV.position, sent.geometry.X_WV.position);
+    EXPECT_EQ(got.geometry.X_WV.rotation.coeffs(), sent.geometry.X_WV.rotation.coeffs());
+    EXPECT_EQ(got.description, sent.description);
+    EXPECT_TRUE(got.is_hounsfield);
+    EXPECT_EQ(got.values, sent.values);
+}
+
+TEST(GuardedImport, errorsComeThrough) {
+    expectUserError([] { importGuarded("file", []() -> RawVolume { throw UserError("just so"); }); },
+                    {"just so"});
+    expectUserError([] { importGuarded("file", []() -> RawVolume { throw std::runtime_error("odd"); }); },
+                    {"file", "odd"});
+    expectUserError([] { importGuarded("file", []() -> RawVolume { throw std::bad_alloc(); }); },
+                    {"file", "memory"});
+}
+
+TEST(GuardedImport, deathOfTheReaderNamesTheFileItWasAt) {
+    expectUserError([] { importGuarded("folder", []() -> RawVolume { std::abort(); }); },
+                    {"folder", "gave up"});
+    const auto readAndDie = []() -> RawVolume {
+        noteFileBeingRead("folder/slice7");
+        std::abort();
+    };
+    expectUserError([&] { importGuarded("folder", readAndDie); }, {"folder/slice7", "damaged"});
+    expectUserError([] { importGuarded("file", []() -> RawVolume { _exit(0); }); }, {"file", "ended early"});
+}
+
+}  // namespace
+}  // namespace bonemill
