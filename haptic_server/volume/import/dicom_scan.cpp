@@ -86,6 +86,7 @@ class Scanner {
             position_ += element.length;
         }
         if (transfer_syntax == "1.2.840.10008.1.2.1.99") return false;
+        if (transfer_syntax.empty() && position_ >= size_) throw CutShort{"it ends after its first lines"};
         if (transfer_syntax.empty()) throw Unclear{};
         explicit_vr_ = transfer_syntax != "1.2.840.10008.1.2";
         big_endian_ = transfer_syntax == "1.2.840.10008.1.2.2";

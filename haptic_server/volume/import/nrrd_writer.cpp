@@ -26,9 +26,9 @@ std::string headerText(const VolumeGeometry& geometry, const char* type, NrrdEnc
     const Eigen::Vector3d spacing_mm = geometry.spacing * 1000;
     std::string text = "NRRD0004\n";
     text += std::string("type: ") + type + "\ndimension: 3\nspace: left-posterior-superior\nsizes:";
-    for (int a = 0; a < 3; ++a) text += " " + std::to_string(geometry.dims[a]);
+    for (int a = 0; a < 3; ++a) text += ' ' + std::to_string(geometry.dims[a]);
     text += "\nspace directions:";
-    for (int a = 0; a < 3; ++a) text += " " + vectorText(R_WV.col(a) * spacing_mm[a]);
+    for (int a = 0; a < 3; ++a) text += ' ' + vectorText(R_WV.col(a) * spacing_mm[a]);
     text += "\nkinds: domain domain domain\nendian: little\n";
     text += std::string("encoding: ") + (encoding == NrrdEncoding::kGzip ? "gzip" : "raw");
     text += "\nspace units: \"mm\" \"mm\" \"mm\"\n";

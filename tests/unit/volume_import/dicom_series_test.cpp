@@ -12,8 +12,8 @@ std::vector<DicomSlice> stackOf(int count, double step_mm) {
     std::vector<DicomSlice> slices;
     for (int k = 0; k < count; ++k) {
         DicomSlice slice;
-        slice.path = "slice" + std::to_string(k);
-        slice.series_uid = "1";
+        slice.path = std::string("slice") + std::to_string(k);
+        slice.series_uid = "1.2.3";
         slice.columns = slice.rows = 8;
         slice.position_mm = {5, 6, 100 - k * step_mm};
         slices.push_back(slice);

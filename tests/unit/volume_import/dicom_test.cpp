@@ -41,7 +41,7 @@ void writeSeries(const std::filesystem::path& folder, const SampleVolume& sample
     std::shuffle(names.begin(), names.end(), std::mt19937(7));
     std::filesystem::create_directories(folder);
     for (int k = 0; k < sample.dims.z(); ++k)
-        writeDicomFile(folder / ("I" + std::to_string(names[size_t(k)] * 10)), sliceOf(sample, k));
+        writeDicomFile(folder / (std::string("I") + std::to_string(names[size_t(k)] * 10)), sliceOf(sample, k));
 }
 
 SampleVolume nineSlices() {
@@ -69,7 +69,7 @@ TEST(Dicom, anyOrientationBecomesRightHanded) {
         sample.directions << row, normal.cross(row), normal;
         for (const double order : {1.0, -1.0}) {
             sample.directions.col(2) = order * normal;
-            const auto series = folder / ("s" + std::to_string(number++));
+            const auto series = folder / (std::string("s") + std::to_string(number++));
             writeSeries(series, sample);
             const RawVolume raw = importVolume(series);
             EXPECT_NO_THROW(expectSamePlaces(raw, sample, 1e-9));

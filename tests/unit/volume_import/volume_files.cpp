@@ -93,7 +93,7 @@ void writeNrrdFile(const std::filesystem::path& path, const SampleVolume& sample
     std::string header = "NRRD0004\n# made by a test\ntype: short\ndimension: 3\nspace: " + space +
                          "\nsizes: " + dimsText(sample.dims) + "\nspace directions:";
     for (int a = 0; a < 3; ++a)
-        header += " " + vectorText(sample.directions.col(a) * sample.spacing_mm[a], "(%.17g,%.17g,%.17g)");
+        header += ' ' + vectorText(sample.directions.col(a) * sample.spacing_mm[a], "(%.17g,%.17g,%.17g)");
     header += "\nspace origin: " + vectorText(sample.origin_mm, "(%.17g,%.17g,%.17g)");
     header += std::string("\nendian: ") + (storage.is_big_endian ? "big" : "little");
     header += std::string("\nencoding: ") + (storage.is_compressed ? "gzip" : "raw") + "\n";
@@ -143,7 +143,7 @@ void writeMetaImageFile(const std::filesystem::path& path, const SampleVolume& s
     if (storage.is_compressed)
         header += "\nCompressedData = True\nCompressedDataSize = " + std::to_string(bytes.size());
     header += "\nTransformMatrix =";
-    for (int a = 0; a < 3; ++a) header += " " + vectorText(sample.directions.col(a), "%.17g %.17g %.17g");
+    for (int a = 0; a < 3; ++a) header += ' ' + vectorText(sample.directions.col(a), "%.17g %.17g %.17g");
     header += "\nOffset = " + vectorText(sample.origin_mm, "%.17g %.17g %.17g");
     header += "\nElementSpacing = " + vectorText(sample.spacing_mm, "%.17g %.17g %.17g");
     header += "\nDimSize = " + dimsText(sample.dims) + "\nElementType = MET_SHORT\nElementDataFile = ";
@@ -162,8 +162,8 @@ void writeInv3File(const std::filesystem::path& path, const SampleVolume& sample
             for (int i = 0; i < n.x(); ++i) values.push_back(all[size_t(i + n.x() * (j + n.y() * k))]);
     std::string matrix = samplesAsBytes(values, false);
     matrix.resize(matrix.size() - size_t(text.missing_bytes));
-    const auto integer = [](int v) { return "<integer>" + std::to_string(v) + "</integer>"; };
-    const auto real = [](double v) { return "<real>" + std::to_string(v) + "</real>"; };
+    const auto integer = [](int v) { return std::string("<integer>") + std::to_string(v) + "</integer>"; };
+    const auto real = [](double v) { return std::string("<real>") + std::to_string(v) + "</real>"; };
     const std::string plist =
         "<?xml version=\"1.0\"?>\n<!DOCTYPE plist PUBLIC \"x\" \"y\">\n<plist version=\"1.0\"><dict>"
         "<key>matrix</key><dict><key>dtype</key><string>" +
