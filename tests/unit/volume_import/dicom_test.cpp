@@ -41,7 +41,8 @@ void writeSeries(const std::filesystem::path& folder, const SampleVolume& sample
     std::shuffle(names.begin(), names.end(), std::mt19937(7));
     std::filesystem::create_directories(folder);
     for (int k = 0; k < sample.dims.z(); ++k)
-        writeDicomFile(folder / (std::string("I") + std::to_string(names[size_t(k)] * 10)), sliceOf(sample, k));
+        writeDicomFile(folder / (std::string("I") + std::to_string(names[size_t(k)] * 10)),
+                       sliceOf(sample, k));
 }
 
 SampleVolume nineSlices() {
