@@ -326,7 +326,7 @@ def timing_table(runs):
             ("tick's own work", loop["tick_compute_us"]),
             ("wake-up to force written", loop["force_ready_us"]),
             ("wake-up latency of the tick", loop["wakeup_latency_us"]),
-            ("wake-up latency, machine alone (cyclictest)", run["cyclictest_us"]),
+            ("wake-up latency, machine idle (cyclictest)", run["cyclictest_us"]),
         ]
         for label, values in rows:
             if values is None:
@@ -419,7 +419,7 @@ LIMITS = """- Hand and device are simulated: a hand impedance that follows waypo
 - The thesis' runs were made by hand on other bone with a scaling factor of 3; the rates compare, the curves only in kind.
 - All three programs shared this machine, and the viewer drew on the processor. On two cores that costs latency.
 - The force model is the thesis' own, with its known errors (docs/architecture.md names them).
-- cyclictest ran right before each run, not during it: beside the loop it would disturb what it measures."""
+- cyclictest ran right before each run, while the server idled, not during it: it would disturb what it measures."""
 
 
 def write_markdown(out, report):
