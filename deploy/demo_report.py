@@ -258,13 +258,13 @@ set terminal pngcairo size 1400,700 font "DejaVu Sans,11"
 set output "{path}"
 set multiplot layout 1,2 title "{title}: shaft direction on the unit sphere" font ",14"
 set palette rgbformulae 33,13,10
-set cblabel "time, s"
+set cblabel "time, s" offset 1
 set cbrange [0:{rows[-1]["t_s"]:.3f}]
 set xlabel "x"
 set ylabel "y"
-set zlabel "z"
+set zlabel "z" offset 2
 set view equal xyz
-set view 65,40,1.3
+set view 65,40,1.1
 set xyplane 0
 set parametric
 set isosamples 25,25
@@ -276,7 +276,7 @@ set zrange [-1:1]
 splot cos(u)*cos(v),sin(u)*cos(v),sin(v) with lines lc rgb "#d8d8d8" lw 0.3 notitle, $path using 1:2:3:4 with linespoints pt 7 ps 0.5 lc palette title "whole sphere"
 unset parametric
 unset view
-set view 65,40,1.3
+set view 65,40,1.1
 {zoom}{tics}set title "zoomed: {2 * reach:.3g} wide ({math.degrees(2 * math.asin(min(1, reach))):.2g}°)"
 splot $path using 1:2:3:4 with linespoints pt 7 ps 0.5 lc palette notitle
 """
@@ -330,7 +330,7 @@ def timing_table(runs):
         ]
         for label, values in rows:
             if values is None:
-                lines.append(f"| {run['name']} | {label} | not permitted here | | | |")
+                lines.append(f"| {run['name']} | {label} | not measured here | | | |")
             else:
                 columns = " | ".join(number(values[key]) for key in ("p50", "p99", "p99_9", "max"))
                 lines.append(f"| {run['name']} | {label} | {columns} |")
