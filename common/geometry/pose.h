@@ -1,7 +1,8 @@
 // Rigid poses, rotation exponential and logarithm, wrenches.
 //
 // Conventions (docs/frames.md): X_AB maps coordinates in frame B to frame A; world increments are
-// p+ = p + x, R+ = exp(omega~) R. Units m, rad, N, N·m. Every function is RT-safe, thread-safe and never throws.
+// p+ = p + x, R+ = exp(omega~) R. Units m, rad, N, N·m. Every function is RT-safe, thread-safe and never
+// throws.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +19,8 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) noexcept;
 // Unit quaternion of the rotation vector theta (rad); series below 1e-6 rad.
 Eigen::Quaterniond expRotation(const Eigen::Vector3d& theta) noexcept;
 
-// Rotation vector (rad, norm <= pi) of a unit quaternion; series below 1e-6 rad. q and -q give the same result.
+// Rotation vector (rad, norm <= pi) of a unit quaternion; series below 1e-6 rad. q and -q give the same
+// result.
 Eigen::Vector3d logRotation(const Eigen::Quaterniond& q) noexcept;
 
 // Pose of frame B in frame A: p_A = R_AB p_B + p_AB. `rotation` is a unit quaternion.
@@ -26,7 +28,9 @@ struct Pose {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
 
-    Eigen::Vector3d operator*(const Eigen::Vector3d& point) const noexcept { return rotation * point + position; }
+    Eigen::Vector3d operator*(const Eigen::Vector3d& point) const noexcept {
+        return rotation * point + position;
+    }
     Pose operator*(const Pose& other) const noexcept {
         return {rotation * other.position + position, (rotation * other.rotation).normalized()};
     }
@@ -35,7 +39,8 @@ struct Pose {
         return {-(inverse_rotation * position), inverse_rotation};
     }
     // p+ = p + translation, q+ = exp(rotation_vector / 2) q: increments in the world (outer) frame.
-    Pose incremented(const Eigen::Vector3d& translation, const Eigen::Vector3d& rotation_vector) const noexcept {
+    Pose incremented(const Eigen::Vector3d& translation,
+                     const Eigen::Vector3d& rotation_vector) const noexcept {
         return {position + translation, (expRotation(rotation_vector) * rotation).normalized()};
     }
     bool isFinite() const noexcept { return position.allFinite() && rotation.coeffs().allFinite(); }
@@ -46,7 +51,9 @@ struct Wrench {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     Eigen::Vector3d torque = Eigen::Vector3d::Zero();
 
-    Wrench operator+(const Wrench& other) const noexcept { return {force + other.force, torque + other.torque}; }
+    Wrench operator+(const Wrench& other) const noexcept {
+        return {force + other.force, torque + other.torque};
+    }
     Wrench operator-() const noexcept { return {-force, -torque}; }
     // The same wrench expressed in frame A, when this one is expressed in frame B; the reference point stays.
     Wrench rotatedBy(const Eigen::Quaterniond& R_AB) const noexcept { return {R_AB * force, R_AB * torque}; }

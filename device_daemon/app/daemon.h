@@ -7,8 +7,8 @@
 #include "common/ipc/device_link.h"
 #include "common/rt/realtime.h"
 #include "device_daemon/app/device_setup.h"
-#include "device_daemon/app/options.h"
 #include "device_daemon/app/loop_statistics.h"
+#include "device_daemon/app/options.h"
 
 namespace bonemill {
 

@@ -49,6 +49,7 @@ void DeviceLoop::write(const WrenchCommand* newest, int64_t now_ns) noexcept {
         applied_wrench_ = wrenchOf(J_inv, actuator_forces_);
     } else {
         actuator_forces_ = limiter_.fadeOut(elapsed_);
+        applied_wrench_ = {};  // unknown without a pose
     }
     device_.applyForces(actuator_forces_);
 }

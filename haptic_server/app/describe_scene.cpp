@@ -15,13 +15,16 @@ constexpr int kMeasuredTicks = 4000;
 Pose waypointPose(const scene::SimulatedOperator::Waypoint& waypoint) {
     const scene::Vec3& p = waypoint.p_wt_mm();
     const scene::Quaternion& q = waypoint.q_wt();
-    return {Eigen::Vector3d(p.x(), p.y(), p.z()) * 1e-3, Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
+    return {Eigen::Vector3d(p.x(), p.y(), p.z()) * 1e-3,
+            Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
 }
 
 // Leads the device straight along the scenario's waypoints, spread over kMeasuredTicks.
 class ScenarioIo final : public TickIo {
   public:
-    explicit ScenarioIo(const scene::SimulatedOperator& scenario) : scenario_(scenario) { records.reserve(kMeasuredTicks); }
+    explicit ScenarioIo(const scene::SimulatedOperator& scenario) : scenario_(scenario) {
+        records.reserve(kMeasuredTicks);
+    }
 
     bool read(DeviceInput& input) noexcept override {
         const int waypoints = scenario_.waypoint_size();
@@ -30,8 +33,10 @@ class ScenarioIo final : public TickIo {
         const int from = std::min(int(at), waypoints - 1);
         const Pose a = waypointPose(scenario_.waypoint(from));
         const Pose b = waypointPose(scenario_.waypoint(std::min(from + 1, waypoints - 1)));
-        input.X_WT_device = {a.position + (at - from) * (b.position - a.position), a.rotation.slerp(at - from, b.rotation)};
-        input.buttons = (scenario_.waypoint(from).remove() ? kButtonRemove : 0u) | (scenario_.waypoint(from).add() ? kButtonAdd : 0u);
+        input.X_WT_device = {a.position + (at - from) * (b.position - a.position),
+                             a.rotation.slerp(at - from, b.rotation)};
+        input.buttons = (scenario_.waypoint(from).remove() ? kButtonRemove : 0u) |
+                        (scenario_.waypoint(from).add() ? kButtonAdd : 0u);
         input.start_ns = monotonicNowNs();
         return true;
     }
@@ -57,7 +62,8 @@ std::string percentilesUs(std::vector<int64_t> durations_ns) {
 void describeCost(const LoadedScene& loaded, Simulation& simulation, std::ostream& out) {
     ScenarioIo io(loaded.scene.simulated_operator());
     HapticTick tick(simulation.tick, *simulation.bone, simulation.tool.sdf, nullptr);
-    while (tick.tick(io)) {}
+    while (tick.tick(io)) {
+    }
     if (io.records.empty()) {
         out << "cost per tick: not measured, the scene has no simulated_operator.waypoint to follow\n";
         return;
@@ -67,7 +73,8 @@ void describeCost(const LoadedScene& loaded, Simulation& simulation, std::ostrea
         force.push_back(record.force_ns);
         if (record.buttons) milling.push_back(record.compute_ns - record.force_ns);
     }
-    out << "cost per tick on this machine, along the scenario's waypoints (" << io.records.size() << " ticks):\n"
+    out << "cost per tick on this machine, along the scenario's waypoints (" << io.records.size()
+        << " ticks):\n"
         << "  contact, coupling, equilibrium: " << percentilesUs(force) << '\n';
     if (!milling.empty()) out << "  timed milling and shell refresh: " << percentilesUs(milling) << '\n';
 }
@@ -81,17 +88,22 @@ std::string describeScene(const std::string& scene_file) {
     std::ostringstream out;
     out << "scene '" << loaded.scene.name() << "', preset " << kPresetName << '\n';
     for (const std::string& remark : simulation.remarks) out << "  " << remark << '\n';
+    for (const std::string& warning : simulation.warnings) out << "  warning: " << warning << '\n';
     const Eigen::Vector3d mm = bone.volume.spacing() * 1e3;
-    out << "volume: " << bone.volume.dims().transpose() << " voxels of " << mm.transpose() << " mm, iso-value "
-        << simulation.mapping.iso_value << ", window " << simulation.mapping.low << " .. " << simulation.mapping.high << '\n'
-        << "octree: " << bone.lattice.leavesPerAxis().transpose() << " leaves of " << bone.lattice.leafCells().transpose()
-        << " cells, " << bone.lattice.levelCount() << " levels\n"
-        << "point-shell: " << bone.shell.pointCount() << " points, scaling factor " << bone.shell.scalingFactor() << '\n'
+    out << "volume: " << bone.volume.dims().transpose() << " voxels of " << mm.transpose()
+        << " mm, iso-value " << simulation.mapping.iso_value << ", window " << simulation.mapping.low
+        << " .. " << simulation.mapping.high << '\n'
+        << "octree: " << bone.lattice.leavesPerAxis().transpose() << " leaves of "
+        << bone.lattice.leafCells().transpose() << " cells, " << bone.lattice.levelCount() << " levels\n"
+        << "point-shell: " << bone.shell.pointCount() << " points, scaling factor "
+        << bone.shell.scalingFactor() << '\n'
         << "tool: distance grid " << simulation.tool.sdf.nodes().transpose() << " nodes of "
-        << simulation.tool.sdf.spacing() * 1e3 << " mm, burr radius " << simulation.tick.burr_radius * 1e3 << " mm\n";
+        << simulation.tool.sdf.spacing() * 1e3 << " mm, burr radius " << simulation.tick.burr_radius * 1e3
+        << " mm\n";
     describeCost(loaded, simulation, out);
-    out << "\nwhat the scene file sets (all else has its default):\n" << loaded.scene.DebugString()
-        << "\nevery field, its unit, default and range:\n" << describeDefaults();
+    out << "\nwhat the scene file sets (all else has its default):\n"
+        << loaded.scene.DebugString() << "\nevery field, its unit, default and range:\n"
+        << describeDefaults();
     return out.str();
 }
 

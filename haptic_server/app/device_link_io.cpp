@@ -12,7 +12,8 @@ constexpr int64_t kPatiencePeriods = 2;
 
 }  // namespace
 
-DeviceLinkIo::DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link, SpscRing<TickRecord>& telemetry)
+DeviceLinkIo::DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link,
+                           SpscRing<TickRecord>& telemetry)
     : config_(config),
       link_(link),
       telemetry_(telemetry),
@@ -22,18 +23,19 @@ DeviceLinkIo::DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link, S
 bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     if (first_start_ns_ == 0 && !waitForFirstSample()) return false;
     if (is_stopping_.load(std::memory_order_relaxed) || hasDeviceLeft()) return false;
-    const int64_t due = first_start_ns_ == 0 ? sample_stamp_ns_ : waitForDue();
+    const bool is_first = first_start_ns_ == 0;
+    const int64_t due = is_first ? 0 : waitForDue();
     const int64_t start = monotonicNowNs();
     input.force_factor = ramp_.update(start, sample_stamp_ns_);
     is_stale_ = ramp_.isStale();
     input.is_stale = is_stale_;
     input.X_WT_device = X_WT_device_;
     input.buttons = buttons_;
-    if (first_start_ns_ == 0) first_start_ns_ = start;
+    if (is_first) first_start_ns_ = start;
     input.t_s = secondsOfNs(start - first_start_ns_);
     input.start_ns = start;
     input.deadline_ns = start + config_.period_ns;
-    input.wakeup_latency_ns = std::max<int64_t>(0, start - due);
+    input.wakeup_latency_ns = is_first ? 0 : std::max<int64_t>(0, start - due);
     last_start_ns_ = start;
     return true;
 }
@@ -43,9 +45,9 @@ int64_t DeviceLinkIo::waitForDue() noexcept {
     const int64_t deadline = last_start_ns_ + patience;
     link_.waitForSample(deadline);
     DeviceSample sample;
-    if (!link_.readSample(sample) || sample.sequence == sequence_) return deadline;
-    take(sample);
-    return sample.stamp_ns;
+    if (!link_.readSample(sample) || sample.sequence == sequence_ || !take(sample)) return deadline;
+    // The stamp comes from another process: never believe one from before the last tick or from the future.
+    return std::clamp(sample.stamp_ns, last_start_ns_, std::max(last_start_ns_, monotonicNowNs()));
 }
 
 bool DeviceLinkIo::waitForFirstSample() noexcept {
@@ -59,10 +61,10 @@ bool DeviceLinkIo::waitForFirstSample() noexcept {
     return true;
 }
 
-void DeviceLinkIo::take(const DeviceSample& sample) noexcept {
+bool DeviceLinkIo::take(const DeviceSample& sample) noexcept {
     if (!isPlausible(sample)) {
         implausible_.fetch_add(1, std::memory_order_relaxed);
-        return;
+        return false;
     }
     const Eigen::Map<const Eigen::Vector3d> p_DT(sample.p_DT);
     const Eigen::Quaterniond q_DT(sample.q_DT[0], sample.q_DT[1], sample.q_DT[2], sample.q_DT[3]);
@@ -71,6 +73,7 @@ void DeviceLinkIo::take(const DeviceSample& sample) noexcept {
     sequence_ = sample.sequence;
     if (sample.flags & kDeviceFlagLeaving) has_device_left_.store(true, std::memory_order_relaxed);
     sample_stamp_ns_ = sample.stamp_ns;
+    return true;
 }
 
 int64_t DeviceLinkIo::write(const Wrench& wrench_hand_W) noexcept {
@@ -84,8 +87,12 @@ int64_t DeviceLinkIo::write(const Wrench& wrench_hand_W) noexcept {
     return monotonicNowNs();
 }
 
-int64_t DeviceLinkIo::now() noexcept { return monotonicNowNs(); }
+int64_t DeviceLinkIo::now() noexcept {
+    return monotonicNowNs();
+}
 
-void DeviceLinkIo::push(const TickRecord& record) noexcept { telemetry_.tryPush(record); }
+void DeviceLinkIo::push(const TickRecord& record) noexcept {
+    telemetry_.tryPush(record);
+}
 
 }  // namespace bonemill

@@ -1,4 +1,5 @@
-// The tick's view of the device in a live session: shared memory in, shared memory out, telemetry into a ring.
+// The tick's view of the device in a live session: shared memory in, shared memory out, telemetry into a
+// ring.
 #pragma once
 
 #include <atomic>
@@ -22,9 +23,10 @@ class DeviceLinkIo final : public TickIo {
   public:
     DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link, SpscRing<TickRecord>& telemetry);
 
-    // Wakes on a new device sample, or by itself one period after the last tick when the device is silent. Before the
-    // very first sample there is nothing to simulate: it only waits. False after stop(), and when the device has said
-    // goodbye while ends_with_device is set.
+    // Wakes on a new device sample. When the device is silent it wakes by itself: two periods after the last
+    // tick, and every period once the device counts as stale. Before the very first sample there is nothing
+    // to simulate: it only waits. False after stop(), and when the device has said goodbye while
+    // ends_with_device is set.
     bool read(DeviceInput& input) noexcept override;
     int64_t write(const Wrench& wrench_hand_W) noexcept override;
     int64_t now() noexcept override;
@@ -46,7 +48,7 @@ class DeviceLinkIo final : public TickIo {
     bool waitForFirstSample() noexcept;
     // Waits for the next tick and returns the instant that should have woken it.
     int64_t waitForDue() noexcept;
-    void take(const DeviceSample& sample) noexcept;
+    bool take(const DeviceSample& sample) noexcept;  // false: implausible, refused
 
     DeviceLinkIoConfig config_;
     DeviceLink& link_;

@@ -19,19 +19,23 @@ void addServerOptions(CLI::App& app, bonemill::ServerOptions& server) {
     app.add_option("--scene", server.scene, "scene file (.textproto)");
     app.add_option("--session", server.session, "session number: names the device link and the topics");
     app.add_option("--domain", server.domain, "DDS domain, 0 to 230");
-    app.add_option("--seconds", server.seconds, "stop this long after the first tick; 0: run until SIGINT or SIGTERM");
+    app.add_option("--seconds", server.seconds,
+                   "stop this long after the first tick; 0: run until SIGINT or SIGTERM");
     app.add_option("--trace", server.trace, "write one CSV line per tick");
     app.add_option("--report", server.report, "write the run's statistics as JSON");
     app.add_option("--save-volume", server.save_volume, "write the milled volume (NRRD) at the end");
     app.add_option("--save-mesh", server.save_mesh, "write the milled surface (STL, mm) at the end");
     app.add_option("--rt-core", server.rt_core, "core of the haptic thread; -1: any");
-    app.add_flag("--until-device-leaves", server.until_device_leaves, "stop when device_daemon shuts down in order");
+    app.add_flag("--until-device-leaves", server.until_device_leaves,
+                 "stop when device_daemon shuts down in order");
     app.add_flag("--best-effort-rt", server.best_effort_rt, "go on without real-time permissions");
 }
 
 void addSimulateOptions(CLI::App& app, bonemill::SimulateOptions& simulate) {
     app.add_option("--scene", simulate.scene, "scene file (.textproto)")->required();
-    app.add_option("--trajectory", simulate.trajectory, "device poses: t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons")->required();
+    app.add_option("--trajectory", simulate.trajectory,
+                   "device poses: t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons")
+        ->required();
     app.add_option("--trace", simulate.trace, "write one CSV line per tick");
     app.add_option("--save-volume", simulate.save_volume, "write the milled volume (NRRD)");
     app.add_option("--save-mesh", simulate.save_mesh, "write the milled surface (STL, mm)");
@@ -48,7 +52,8 @@ int main(int argc, char** argv) {
     addServerOptions(app, server);
     app.add_flag("--describe-scene", describe, "print what the scene says and what runs, then stop");
     app.add_option("--log-level", log_level, "trace, debug, info, warn, error, off");
-    CLI::App* simulate_command = app.add_subcommand("simulate", "run a recorded trajectory as fast as possible, deterministic");
+    CLI::App* simulate_command =
+        app.add_subcommand("simulate", "run a recorded trajectory as fast as possible, deterministic");
     addSimulateOptions(*simulate_command, simulate);
     try {
         app.parse(argc, argv);
@@ -57,7 +62,8 @@ int main(int argc, char** argv) {
             std::cout << bonemill::simulate(simulate) << std::endl;
             return 0;
         }
-        if (server.scene.empty()) throw bonemill::UserError("no scene given; use --scene FILE (see deploy/scenes)");
+        if (server.scene.empty())
+            throw bonemill::UserError("no scene given; use --scene FILE (see deploy/scenes)");
         if (describe) {
             std::cout << bonemill::describeScene(server.scene);
             return 0;

@@ -1,4 +1,5 @@
-// The recorder thread's work: empties the tick's ring into trace and statistics and keeps the newest record at hand.
+// The recorder thread's work: empties the tick's ring into trace and statistics and keeps the newest record
+// at hand.
 #pragma once
 
 #include <mutex>
@@ -20,7 +21,7 @@ struct LoopHealth {
     double tick_max_us = 0;
     uint64_t dropped_ticks = 0;
     uint32_t faults = 0;
-    double removed = 0;      // m³
+    double removed = 0;  // m³
 };
 
 class Recorder {
@@ -45,9 +46,9 @@ class Recorder {
     SpscRing<TickRecord>& ring_;
     RunStatistics statistics_;
     std::optional<TraceWriter> trace_;
-    LatencyHistogram window_;       // tick compute time in the second under way
+    LatencyHistogram window_;  // tick compute time in the second under way
     int64_t window_start_ns_ = 0;
-    mutable std::mutex mutex_;      // guards the two below
+    mutable std::mutex mutex_;  // guards the two below
     std::optional<TickRecord> latest_;
     LoopHealth health_;
 };

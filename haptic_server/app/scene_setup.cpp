@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/config/user_error.h"
 #include "haptic_server/volume/import/import_volume.h"
 
 namespace bonemill {
@@ -11,7 +12,9 @@ constexpr double kMillimetre = 1e-3;
 constexpr double kDegree = M_PI / 180;
 constexpr int kDefaultLeafCells = 16;
 
-Eigen::Vector3d metres(const scene::Vec3& mm) { return kMillimetre * Eigen::Vector3d(mm.x(), mm.y(), mm.z()); }
+Eigen::Vector3d metres(const scene::Vec3& mm) {
+    return kMillimetre * Eigen::Vector3d(mm.x(), mm.y(), mm.z());
+}
 
 ToolShape shapeOf(const scene::Tool::Shape& shape) {
     switch (shape.kind_case()) {
@@ -23,7 +26,8 @@ ToolShape shapeOf(const scene::Tool::Shape& shape) {
                                  shape.cylinder().radius_mm() * kMillimetre};
         case scene::Tool::Shape::kCone:
             return ConeShape{metres(shape.cone().from_mm()), metres(shape.cone().to_mm()),
-                             shape.cone().from_radius_mm() * kMillimetre, shape.cone().to_radius_mm() * kMillimetre};
+                             shape.cone().from_radius_mm() * kMillimetre,
+                             shape.cone().to_radius_mm() * kMillimetre};
         default:
             return SphereShape{metres(shape.sphere().center_mm()), shape.sphere().radius_mm() * kMillimetre};
     }
@@ -38,9 +42,22 @@ DensityWindow windowOf(const scene::Volume& volume) {
     return window;
 }
 
+// Milling rescans the leaves it touches in the tick, so that leaves must stay small.
+constexpr int kMostLeafCells = 128;
+constexpr int kSlowLeafCells = 40;
+
 Eigen::Vector3i leafCellsOf(const scene::Volume& volume, const VolumeGeometry& geometry) {
-    if (volume.has_octree_depth()) return LeafLattice::leafCellsOfDepth(geometry, int(volume.octree_depth()));
-    return Eigen::Vector3i::Constant(volume.has_leaf_voxels() ? int(volume.leaf_voxels()) : kDefaultLeafCells);
+    if (volume.has_octree_depth()) {
+        const Eigen::Vector3i cells = LeafLattice::leafCellsOfDepth(geometry, int(volume.octree_depth()));
+        if (cells.maxCoeff() > kMostLeafCells)
+            throw UserError("volume.octree_depth: " + std::to_string(volume.octree_depth()) +
+                            " cuts this volume into leaves of " + std::to_string(cells.maxCoeff()) +
+                            " cells, more than " + std::to_string(kMostLeafCells) +
+                            "; raise it, or set volume.leaf_voxels instead");
+        return cells;
+    }
+    return Eigen::Vector3i::Constant(volume.has_leaf_voxels() ? int(volume.leaf_voxels())
+                                                              : kDefaultLeafCells);
 }
 
 std::string textOf(double value) {
@@ -49,13 +66,23 @@ std::string textOf(double value) {
     return text;
 }
 
-void remarkOnShellSpacing(Simulation& simulation, const scene::Scene& scene) {
-    const double shell_spacing = scene.volume().shell_scaling_factor() * simulation.bone->volume.spacing().maxCoeff();
+void warnOfLargeLeaves(Simulation& simulation) {
+    const int cells = simulation.bone->lattice.leafCells().maxCoeff();
+    if (cells > kSlowLeafCells)
+        simulation.warnings.push_back(
+            "octree leaves of " + std::to_string(cells) +
+            " cells make milling ticks long; raise volume.octree_depth or use volume.leaf_voxels");
+}
+
+void warnOfCoarseShell(Simulation& simulation, const scene::Scene& scene) {
+    const double shell_spacing =
+        scene.volume().shell_scaling_factor() * simulation.bone->volume.spacing().maxCoeff();
     const double sdf_spacing = simulation.tool.sdf.spacing();
     if (shell_spacing <= sdf_spacing * (1 + 1e-9)) return;
-    simulation.remarks.push_back("point-shell spacing " + textOf(shell_spacing / kMillimetre) +
-                                 " mm is coarser than the tool's distance grid (" + textOf(sdf_spacing / kMillimetre) +
-                                 " mm): contact can miss thin features; lower volume.shell_scaling_factor");
+    simulation.warnings.push_back("point-shell spacing " + textOf(shell_spacing / kMillimetre) +
+                                  " mm is coarser than the tool's distance grid (" +
+                                  textOf(sdf_spacing / kMillimetre) +
+                                  " mm): contact can miss thin features; lower volume.shell_scaling_factor");
 }
 
 }  // namespace
@@ -106,20 +133,23 @@ Simulation makeSimulation(const LoadedScene& loaded) {
                           .tool = buildTool(tool_config),
                           .tool_surface = toolSurface(tool_config),
                           .X_WD = devicePoseOf(scene.device()),
-                          .remarks = {}};
-    const RawVolume raw = importVolume(resolvePath(loaded, scene.volume().path()), {scene.volume().series_uid()});
+                          .remarks = {},
+                          .warnings = {}};
+    const RawVolume raw =
+        importVolume(resolvePath(loaded, scene.volume().path()), {scene.volume().series_uid()});
     simulation.remarks.push_back(raw.description);
     simulation.mapping = chooseMapping(raw, windowOf(scene.volume()));
     if (simulation.mapping.is_iso_proposed)
-        simulation.remarks.push_back("no volume.iso_value in the scene: " + textOf(simulation.mapping.iso_value) +
-                                     " proposed from the histogram");
+        simulation.remarks.push_back("no volume.iso_value in the scene: " +
+                                     textOf(simulation.mapping.iso_value) + " proposed from the histogram");
     VoxelVolume volume = densify(raw, simulation.mapping);
     removeSmallPieces(volume, scene.volume().smallest_piece_voxels());
     const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), raw.geometry);
-    simulation.bone =
-        std::make_unique<BoneModel>(std::move(volume), leaf_cells, int(scene.volume().shell_scaling_factor()));
-    for (const std::string& warning : simulation.tool.warnings) simulation.remarks.push_back(warning);
-    remarkOnShellSpacing(simulation, scene);
+    simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells,
+                                                  int(scene.volume().shell_scaling_factor()));
+    simulation.warnings = simulation.tool.warnings;
+    warnOfLargeLeaves(simulation);
+    warnOfCoarseShell(simulation, scene);
     return simulation;
 }
 

@@ -22,7 +22,8 @@ struct Simulation {
     BuiltTool tool;
     TriangleSurface tool_surface;
     Pose X_WD;                          // device base in the world
-    std::vector<std::string> remarks;   // for people: what was read, proposed, or looks unwise
+    std::vector<std::string> remarks;   // for people: what was read or proposed
+    std::vector<std::string> warnings;  // what the user would better change in the scene
 };
 
 // Imports the volume, builds tree, shell and tool. Throws UserError.

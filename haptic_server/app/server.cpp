@@ -22,14 +22,16 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr size_t kRingRecords = 8192;      // 8 s at 1 kHz: a stalled disk loses nothing
-constexpr uint32_t kLeavesPerPass = 256;   // keeps the mesher's answer to milling quick while it meshes the whole bone
+constexpr size_t kRingRecords = 8192;  // 8 s at 1 kHz: a stalled disk loses nothing
+constexpr uint32_t kLeavesPerPass =
+    256;  // keeps the mesher's answer to milling quick while it meshes the whole bone
 constexpr int kTickPriority = 80;
 constexpr auto kPublishPeriod = 16ms;
 constexpr auto kMeshPeriod = 8ms;
 constexpr auto kRecordPeriod = 4ms;
 
-DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& loop, const Simulation& simulation) {
+DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& loop,
+                              const Simulation& simulation) {
     DeviceLinkIoConfig config;
     config.ends_with_device = options.until_device_leaves;
     config.period_ns = int64_t(std::llround(1e9 / loop.rate_hz()));
@@ -39,7 +41,9 @@ DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& l
     return config;
 }
 
-int coreOf(int option) { return option == kLastCore ? int(std::thread::hardware_concurrency()) - 1 : option; }
+int coreOf(int option) {
+    return option == kLastCore ? int(std::thread::hardware_concurrency()) - 1 : option;
+}
 
 // SIGINT and SIGTERM are taken by the main thread alone, with sigtimedwait; all threads inherit this mask.
 sigset_t blockStopSignals() {
@@ -55,10 +59,10 @@ class Server {
   public:
     explicit Server(const ServerOptions& options)
         : options_(options),
-          stop_signals_(blockStopSignals()),
           loaded_(loadScene(options.scene)),
+          simulation_(makeSimulation(loaded_)),  // forks to read the volume: before signals, link and threads
+          stop_signals_(blockStopSignals()),
           link_(DeviceLink::create(DeviceLink::nameOfSession(options.session), LinkSide::kServer)),
-          simulation_(makeSimulation(loaded_)),
           reset_(*simulation_.bone),
           ring_(kRingRecords),
           io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), link_, ring_),
@@ -67,13 +71,18 @@ class Server {
           publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
           show_(publisher_, loaded_.scene, simulation_, outbox_, recorder_, reset_, stop_requested_) {
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
+        for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     }
+
+    ~Server() { io_.stop(); }  // whatever happened: the tick thread must be able to end before it is joined
 
     int run() {
         startTick();
-        std::jthread recorder([this](std::stop_token stop) { loop(stop, kRecordPeriod, [this] { recorder_.drain(); }); });
+        std::jthread recorder(
+            [this](std::stop_token stop) { loop(stop, kRecordPeriod, [this] { recorder_.drain(); }); });
         std::jthread mesher([this](std::stop_token stop) { meshUntil(stop); });
-        std::jthread publisher([this](std::stop_token stop) { loop(stop, kPublishPeriod, [this] { show_.round(); }); });
+        std::jthread publisher(
+            [this](std::stop_token stop) { loop(stop, kPublishPeriod, [this] { show_.round(); }); });
         waitForTheEnd();
         io_.stop();
         tick_thread_.join();
@@ -84,42 +93,53 @@ class Server {
     }
 
   private:
-    // Starts the tick thread and waits until it is real-time, or is known not to be.
+    // Starts the tick thread. It makes no tick before memory is locked and the permissions are accepted.
     void startTick() {
-        std::promise<RealtimeReport> promise;
-        std::future<RealtimeReport> granted = promise.get_future();
-        tick_thread_ = std::jthread([this, &promise] {
-            promise.set_value(makeThreadRealtime({kTickPriority, coreOf(options_.rt_core)}));
-            while (tick_.tick(io_)) {}
+        RealtimeReport report = lockMemory();
+        std::promise<RealtimeReport> thread_report;
+        std::promise<bool> permission;
+        std::future<RealtimeReport> granted = thread_report.get_future();
+        tick_thread_ = std::jthread([this, &thread_report, may_run = permission.get_future()]() mutable {
+            thread_report.set_value(makeThreadRealtime({kTickPriority, coreOf(options_.rt_core)}));
+            if (!may_run.get()) return;
+            while (tick_.tick(io_)) {
+            }
         });
-        RealtimeReport report = granted.get();
-        report.append(lockMemory());
+        report.append(granted.get());
         for (const std::string& advice : report.advice) spdlog::info("real time: {}", advice);
         for (const std::string& missing : report.missing) spdlog::warn("real time: {}", missing);
-        if (report.missing.empty() || options_.best_effort_rt) return;
-        io_.stop();
-        tick_thread_.join();
+        const bool is_accepted = report.missing.empty() || options_.best_effort_rt;
+        permission.set_value(is_accepted);
+        if (is_accepted) return;
         throw UserError("this machine does not grant real time: " + report.missing.front() +
-                        "; see docs/realtime.md, or go on without guarantees with --best-effort-rt");
+                        " Read docs/realtime.md, or go on without guarantees with --best-effort-rt.");
     }
 
+    // A thread's work until it is told to stop; a failure ends the session in order, with its files.
     template <class Work>
-    static void loop(const std::stop_token& stop, std::chrono::milliseconds period, Work work) {
-        while (!stop.stop_requested()) {
-            work();
-            std::this_thread::sleep_for(period);
+    void loop(const std::stop_token& stop, std::chrono::milliseconds period, Work work) {
+        try {
+            while (!stop.stop_requested()) {
+                work();
+                std::this_thread::sleep_for(period);
+            }
+        } catch (const std::exception& error) {
+            spdlog::error("{}: the session ends", error.what());
+            has_failed_ = true;
+            stop_requested_ = true;
         }
     }
 
     void meshUntil(const std::stop_token& stop) {
         Mesher mesher(simulation_.bone->volume, simulation_.bone->lattice);
-        uint64_t leaves_read = 0;
-        while (!stop.stop_requested()) {
-            const auto result = mesher.pass([this](NodeMesh&& mesh) { outbox_.put(std::move(mesh)); }, kLeavesPerPass);
-            leaves_read += result.read;
-            if (leaves_read >= simulation_.bone->lattice.leafCount()) outbox_.markWhole();
-            if (result.pending == 0) std::this_thread::sleep_for(kMeshPeriod);
-        }
+        loop(stop, kMeshPeriod, [&] {
+            Mesher::PassResult result;
+            do {
+                result =
+                    mesher.pass([this](NodeMesh&& mesh) { outbox_.put(std::move(mesh)); }, kLeavesPerPass);
+                if (mesher.hasMeshedAll()) outbox_.markWhole();
+            } while (result.read == kLeavesPerPass && !stop.stop_requested());
+        });
     }
 
     void waitForTheEnd() {
@@ -139,29 +159,43 @@ class Server {
                 first_tick_ns = monotonicNowNs();
                 spdlog::info("the device is there: the loop runs");
             }
-            if (first_tick_ns && options_.seconds > 0 && secondsOfNs(monotonicNowNs() - first_tick_ns) > options_.seconds) return;
+            if (first_tick_ns && options_.seconds > 0 &&
+                secondsOfNs(monotonicNowNs() - first_tick_ns) > options_.seconds)
+                return;
         }
-        spdlog::info("shut down by a client's command");
+        if (!has_failed_) spdlog::info("shut down by a client's command");
     }
 
     int finish() {
         const bool trace_is_whole = recorder_.finish();
-        if (!trace_is_whole) spdlog::error("{}: part of the trace could not be written (disk full?)", options_.trace);
+        if (!trace_is_whole)
+            spdlog::error("{}: part of the trace could not be written (disk full?)", options_.trace);
         const RunStatistics& statistics = recorder_.statistics();
         spdlog::info("{} ticks, {:.1f} Hz, tick p99 {:.1f} us, {} dropped, faults: {}", statistics.ticks(),
                      statistics.meanRateHz(), double(statistics.tickCompute().percentileNs(99)) * 1e-3,
                      statistics.droppedTicks(), faultNames(statistics.faults()));
-        if (!options_.report.empty()) statistics.writeJson(options_.report);
-        saveVolume(options_.save_volume, *simulation_.bone);
-        if (!options_.save_mesh.empty()) saveMesh(options_.save_mesh, *simulation_.bone, meshWholeBone(*simulation_.bone));
-        return trace_is_whole ? 0 : 1;
+        // Each on its own: one that fails must not cost the others.
+        bool all_written = trace_is_whole;
+        const auto write = [&all_written](const std::string& path, auto&& action) {
+            try {
+                if (!path.empty()) action();
+            } catch (const std::exception& error) {
+                spdlog::error("{}", error.what());
+                all_written = false;
+            }
+        };
+        write(options_.save_volume, [this] { saveVolume(options_.save_volume, *simulation_.bone); });
+        write(options_.save_mesh,
+              [this] { saveMesh(options_.save_mesh, *simulation_.bone, meshWholeBone(*simulation_.bone)); });
+        write(options_.report, [&] { statistics.writeJson(options_.report); });
+        return all_written && !has_failed_ ? 0 : 1;
     }
 
     ServerOptions options_;
-    sigset_t stop_signals_;
     LoadedScene loaded_;
-    DeviceLink link_;
     Simulation simulation_;
+    sigset_t stop_signals_;
+    DeviceLink link_;
     VolumeReset reset_;
     SpscRing<TickRecord> ring_;
     DeviceLinkIo io_;
@@ -169,6 +203,7 @@ class Server {
     Recorder recorder_;
     MeshOutbox outbox_;
     std::atomic<bool> stop_requested_{false};
+    std::atomic<bool> has_failed_{false};
     Publisher publisher_;
     ShowSession show_;
     std::jthread tick_thread_;
@@ -176,6 +211,10 @@ class Server {
 
 }  // namespace
 
-int runServer(const ServerOptions& options) { return Server(options).run(); }
+int runServer(const ServerOptions& options) {
+    for (const std::string& path : {options.report, options.save_volume, options.save_mesh})
+        requireWritable(path);
+    return Server(options).run();
+}
 
 }  // namespace bonemill

@@ -25,7 +25,8 @@ void fillCamera(const scene::Camera& camera, topics::Camera* out) {
     out->set_distance_m(camera.has_distance_mm() ? camera.distance_mm() * 1e-3 : 0);
     out->set_azimuth_rad(camera.azimuth_deg() * M_PI / 180);
     out->set_elevation_rad(camera.elevation_deg() * M_PI / 180);
-    if (camera.has_up()) assign(out->mutable_up(), Eigen::Vector3d(camera.up().x(), camera.up().y(), camera.up().z()));
+    if (camera.has_up())
+        assign(out->mutable_up(), Eigen::Vector3d(camera.up().x(), camera.up().y(), camera.up().z()));
 }
 
 void fillTool(const TriangleSurface& surface, topics::TriangleMesh* out) {
@@ -41,7 +42,8 @@ Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
     Eigen::AlignedBox3d box;
     for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
         bone.shell.forEachBlock(leaf, [&box](const ShellBlock& block, uint32_t count) {
-            for (uint32_t i = 0; i < count; ++i) box.extend(Eigen::Vector3d(block.x[i], block.y[i], block.z[i]));
+            for (uint32_t i = 0; i < count; ++i)
+                box.extend(Eigen::Vector3d(block.x[i], block.y[i], block.z[i]));
         });
     if (box.isEmpty()) box.extend(Eigen::Vector3d::Zero());
     return box;
@@ -79,13 +81,17 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
 }
 
 void ShowSession::round() {
-    const bool is_whole = outbox_.isWhole();  // before taking, so that all of the bone is among what was published
+    const bool is_whole =
+        outbox_.isWhole();  // before taking, so that all of the bone is among what was published
     std::vector<NodeMesh> meshes = outbox_.takeAll();
     for (NodeMesh& mesh : meshes)
         if (!publisher_.publishNode(mesh)) outbox_.put(std::move(mesh));  // next round; a newer revision wins
     if (const auto latest = recorder_.latest()) publisher_.publishToolState(*latest);
-    for (const topics::Command& command : publisher_.takeCommands()) publisher_.acknowledge(command, carryOut(command));
-    if (!is_whole) return;  // a status counts the nodes: clients would call part of the bone complete
+    if (!is_whole)
+        return;  // a status, also an acknowledging one, counts the nodes: part of the bone would look
+                 // complete
+    for (const topics::Command& command : publisher_.takeCommands())
+        publisher_.acknowledge(command, carryOut(command));
     if (!meshes.empty() || monotonicNowNs() - last_status_ns_ > kStatusPeriodNs) publishStatus();
 }
 

@@ -1,4 +1,5 @@
-// The publisher thread's work: scene, tool, status and node meshes to the clients, their commands to the tick.
+// The publisher thread's work: scene, tool, status and node meshes to the clients, their commands to the
+// tick.
 #pragma once
 
 #include <atomic>
@@ -13,8 +14,9 @@ namespace bonemill {
 class ShowSession {
   public:
     // Publishes the scene at once; bone_box is the bone's box in V. References must outlive this object.
-    ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation, MeshOutbox& outbox,
-                const Recorder& recorder, VolumeReset& reset, std::atomic<bool>& stop_requested);
+    ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
+                MeshOutbox& outbox, const Recorder& recorder, VolumeReset& reset,
+                std::atomic<bool>& stop_requested);
 
     // One round, about 60 times per second; publisher thread only.
     void round();

@@ -1,5 +1,7 @@
 #include "haptic_server/app/simulate.h"
 
+#include <spdlog/spdlog.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -17,8 +19,8 @@
 namespace bonemill {
 namespace {
 
-constexpr double kCubicMillimetre = 1e-9;  // m³
-constexpr double kTickSpacingTolerance = 0.01;
+constexpr double kCubicMillimetre = 1e-9;      // m³
+constexpr double kTickSpacingTolerance = 0.1;  // times are often written with three decimals
 
 // Rows in, records out; time comes from the file, only tick_us is measured.
 class FileIo final : public TickIo {
@@ -48,12 +50,14 @@ class FileIo final : public TickIo {
 
 // One row is one tick: a file sampled at another rate would silently mean another speed.
 void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::string& file) {
-    if (rows.size() < 2) return;
-    const double spacing = (rows.back().t_s - rows.front().t_s) / double(rows.size() - 1);
-    if (std::abs(spacing / dt - 1) < kTickSpacingTolerance) return;
-    throw UserError(file + ": rows are " + std::to_string(spacing * 1e3) + " ms apart on average, but the scene's loop has " +
-                    std::to_string(dt * 1e3) + " ms per tick; resample the trajectory or set loop.rate_hz to " +
-                    std::to_string(1 / spacing));
+    for (size_t n = 1; n < rows.size(); ++n) {
+        const double spacing = rows[n].t_s - rows[n - 1].t_s;
+        if (std::abs(spacing / dt - 1) < kTickSpacingTolerance) continue;
+        throw UserError(file + ":" + std::to_string(n + 2) + ": this row is " +
+                        std::to_string(spacing * 1e3) +
+                        " ms after the one before, but the scene's loop has " + std::to_string(dt * 1e3) +
+                        " ms per tick; resample the trajectory or set loop.rate_hz");
+    }
 }
 
 std::string hexOf(uint64_t value) {
@@ -91,9 +95,11 @@ std::string simulate(const SimulateOptions& options) {
     const LoadedScene loaded = loadScene(options.scene);
     const std::vector<TrajectoryRow> rows = readTrajectory(options.trajectory);
     checkSpacing(rows, 1 / loaded.scene.loop().rate_hz(), options.trajectory);
+    for (const std::string& path : {options.save_volume, options.save_mesh}) requireWritable(path);
     std::optional<TraceWriter> trace;
     if (!options.trace.empty()) trace.emplace(options.trace);
     Simulation simulation = makeSimulation(loaded);
+    for (const std::string& warning : simulation.warnings) spdlog::warn("{}", warning);
     BoneModel& bone = *simulation.bone;
     const double volume_before = checkMesh(meshWholeBone(bone), MeshGrid(bone.volume, bone.lattice)).volume;
 
@@ -107,7 +113,8 @@ std::string simulate(const SimulateOptions& options) {
         if (trace) trace->write(io.lastRecord());
     }
     hash.addVolume(bone.volume);
-    if (trace && !trace->close()) throw UserError(options.trace + ": the trace could not be written to its end (disk full?)");
+    if (trace && !trace->close())
+        throw UserError(options.trace + ": the trace could not be written to its end (disk full?)");
 
     const std::vector<NodeMesh> meshes = meshWholeBone(bone);
     const MeshCheck mesh = checkMesh(meshes, MeshGrid(bone.volume, bone.lattice));
@@ -120,7 +127,8 @@ std::string simulate(const SimulateOptions& options) {
     json["shell_points"] = bone.shell.pointCount();
     json["bone_mm3"] = mesh.volume / kCubicMillimetre;
     json["bone_before_mm3"] = volume_before / kCubicMillimetre;
-    json["mesh"] = {{"triangles", mesh.triangles}, {"vertices", mesh.vertices}, {"is_closed", mesh.isClosed()}};
+    json["mesh"] = {
+        {"triangles", mesh.triangles}, {"vertices", mesh.vertices}, {"is_closed", mesh.isClosed()}};
     return json.dump();
 }
 

@@ -1,4 +1,5 @@
-// `haptic_server simulate`: the very tick of a live session, driven by a file, without real time or processes.
+// `haptic_server simulate`: the very tick of a live session, driven by a file, without real time or
+// processes.
 #pragma once
 
 #include <string>
@@ -13,7 +14,8 @@ struct SimulateOptions {
     std::string save_mesh;    // empty: none
 };
 
-// Runs all rows and returns the JSON object with totals and `state_hash` (docs/simulate.md). Throws UserError.
+// Runs all rows and returns the JSON object with totals and `state_hash` (docs/simulate.md). Throws
+// UserError.
 std::string simulate(const SimulateOptions& options);
 
 }  // namespace bonemill

@@ -1,4 +1,5 @@
-// Digest of everything a run decided: FNV-1a, 64 bit, over bytes. Equal runs give equal digests on every compiler.
+// Digest of everything a run decided: FNV-1a, 64 bit, over bytes. Equal runs give equal digests on every
+// compiler.
 #pragma once
 
 #include <cstddef>

@@ -9,6 +9,10 @@
 
 namespace bonemill {
 
+// Before a run: throws UserError if the file could not be written after it; an empty path is fine. May leave
+// an empty file.
+void requireWritable(const std::string& path);
+
 std::vector<NodeMesh> meshWholeBone(const BoneModel& bone);
 // Throws UserError when a file cannot be written; an empty path writes nothing.
 void saveVolume(const std::string& path, const BoneModel& bone);

@@ -7,8 +7,8 @@ namespace {
 
 // Sums over the colliding points at unit stiffness; the stiffness of all points depends on their number.
 struct UnitSums {
-    Vector6d depth_direction = Vector6d::Zero();  // Σ d [n; r × n]
-    Matrix6d outer = Matrix6d::Zero();            // Σ J Jᵀ, J = [n; r × n]
+    Vector6d depth_direction = Vector6d::Zero();          // Σ d [n; r × n]
+    Matrix6d outer = Matrix6d::Zero();                    // Σ J Jᵀ, J = [n; r × n]
     Eigen::Matrix3d depth_n_r = Eigen::Matrix3d::Zero();  // Σ d n rᵀ
     uint32_t contacts = 0;
     float max_depth = 0;
@@ -47,7 +47,8 @@ Eigen::AlignedBox3d boxInV(const Eigen::AlignedBox3d& box_T, const Pose& X_VT) n
     return {center - half, center + half};
 }
 
-// Conservative: does the leaf's bounding sphere reach the tool's box in T? Skips leaves that only its box in V meets.
+// Conservative: does the leaf's bounding sphere reach the tool's box in T? Skips leaves that only its box in
+// V meets.
 bool mayTouch(const IndexBox& cells, const Eigen::Vector3d& spacing, const Eigen::AlignedBox3d& box_T,
               const Pose& X_TV) noexcept {
     const Eigen::Vector3d low = cells.min.cast<double>().cwiseProduct(spacing);
@@ -73,14 +74,17 @@ ContactResult scaled(const PenaltyContactConfig& config, const UnitSums& sums) n
 
 }  // namespace
 
-ContactResult penaltyContact(const PenaltyContactConfig& config, const VoxelVolume& volume, const LeafLattice& lattice,
-                             const PointShell& shell, const SdfGrid& tool_sdf, const Pose& X_VT) noexcept {
+ContactResult penaltyContact(const PenaltyContactConfig& config, const VoxelVolume& volume,
+                             const LeafLattice& lattice, const PointShell& shell, const SdfGrid& tool_sdf,
+                             const Pose& X_VT) noexcept {
     const Pose X_TV = X_VT.inverse();
-    const PointTest test{tool_sdf, X_TV.rotation.toRotationMatrix().cast<float>(), X_VT.position.cast<float>()};
+    const PointTest test{tool_sdf, X_TV.rotation.toRotationMatrix().cast<float>(),
+                         X_VT.position.cast<float>()};
     const Eigen::AlignedBox3d box_T = tool_sdf.box();
     UnitSums sums;
     lattice.forEachSurfaceLeaf(boxInV(box_T, X_VT), volume.spacing(), volume.iso(), [&](LeafId leaf) {
-        if (shell.pointCount(leaf) == 0 || !mayTouch(lattice.cellsOf(leaf), volume.spacing(), box_T, X_TV)) return;
+        if (shell.pointCount(leaf) == 0 || !mayTouch(lattice.cellsOf(leaf), volume.spacing(), box_T, X_TV))
+            return;
         shell.forEachBlock(leaf, [&](const ShellBlock& block, uint32_t count) { test(block, count, sums); });
     });
     return scaled(config, sums);

@@ -8,14 +8,15 @@
 namespace bonemill {
 
 struct PenaltyContactConfig {
-    double point_stiffness = 1200;       // N/m per contact point (thesis k_c = 1.2 N/mm)
+    double point_stiffness = 1200;          // N/m per contact point (thesis k_c = 1.2 N/mm)
     uint32_t full_stiffness_contacts = 10;  // eq 10: above it each stiffness becomes k·limit/N
 };
 
 // Contact wrench on the tool about the tool point (origin of T), axes V.
 struct ContactResult {
     Wrench wrench;
-    // ∂(force, torque)/∂(x, ω) as printed in eq 6-9; kept wrong where the thesis is (ALGORITHMS.md §1): eq 7 carries
+    // ∂(force, torque)/∂(x, ω) as printed in eq 6-9; kept wrong where the thesis is (docs/simulate.md): eq 7
+    // carries
     // + k d n~ although the bone's normals do not turn with the tool, eq 8 lacks + F~.
     Matrix6d derivative = Matrix6d::Zero();
     uint32_t contacts = 0;
@@ -23,7 +24,8 @@ struct ContactResult {
 };
 
 // Tests every shell point of the leaves that the tool's box meets. RT-safe; X_VT is the tool's pose in V.
-ContactResult penaltyContact(const PenaltyContactConfig& config, const VoxelVolume& volume, const LeafLattice& lattice,
-                             const PointShell& shell, const SdfGrid& tool_sdf, const Pose& X_VT) noexcept;
+ContactResult penaltyContact(const PenaltyContactConfig& config, const VoxelVolume& volume,
+                             const LeafLattice& lattice, const PointShell& shell, const SdfGrid& tool_sdf,
+                             const Pose& X_VT) noexcept;
 
 }  // namespace bonemill

@@ -1,6 +1,7 @@
 #include "haptic_server/contact/point_shell.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "haptic_server/contact/shell_point.h"
 
@@ -9,16 +10,19 @@ namespace {
 
 constexpr int kKeyBits = 10;  // blocks per axis of a leaf: at most 1024
 
-uint32_t packKey(int x, int y, int z) noexcept { return uint32_t(x | y << kKeyBits | z << 2 * kKeyBits); }
+uint32_t packKey(int x, int y, int z) noexcept {
+    return uint32_t(x | y << kKeyBits | z << 2 * kKeyBits);
+}
 
 bool isInside(uint32_t key, const IndexBox& blocks) noexcept {
     constexpr int kMask = (1 << kKeyBits) - 1;
-    const Eigen::Vector3i at(int(key) & kMask, int(key) >> kKeyBits & kMask, int(key) >> 2 * kKeyBits & kMask);
+    const Eigen::Vector3i at(int(key) & kMask, int(key) >> kKeyBits & kMask,
+                             int(key) >> 2 * kKeyBits & kMask);
     return (at.array() >= blocks.min.array()).all() && (at.array() <= blocks.max.array()).all();
 }
 
-// What a column of voxels (one x, the block's y and z range) holds; combined over the block's columns: a block with
-// voxels on both sides of the iso-surface has a crossed edge.
+// What a column of voxels (one x, the block's y and z range) holds; combined over the block's columns: a
+// block with voxels on both sides of the iso-surface has a crossed edge.
 enum ColumnState : uint8_t { kNoneInside = 0, kSomeInside = 1, kAllInside = 2 };
 
 // States of the columns x = box.min.x .. box.max.x; `states` holds that many.
@@ -52,9 +56,13 @@ Eigen::Vector3i blocksOf(const IndexBox& cells, int s) noexcept {
 
 }  // namespace
 
-PointShell::PointShell(const VoxelVolume& volume, const LeafLattice& lattice, int scaling_factor, size_t spare_points)
+PointShell::PointShell(const VoxelVolume& volume, const LeafLattice& lattice, int scaling_factor,
+                       size_t spare_points)
     : scaling_factor_(scaling_factor), leaves_(lattice.leafCount()) {
-    const Eigen::Vector3i most = ((lattice.leafCells().array() + scaling_factor - 1) / scaling_factor).matrix();
+    const Eigen::Vector3i most =
+        ((lattice.leafCells().array() + scaling_factor - 1) / scaling_factor).matrix();
+    if (most.maxCoeff() > 1 << kKeyBits)
+        throw std::invalid_argument("PointShell: leaves of more than 1024 blocks per axis");
     fresh_.resize(size_t(most.prod()));
     merged_.resize(fresh_.size());
     row_.resize(size_t(lattice.leafCells().x()) + 1);
@@ -79,11 +87,13 @@ PointShell::PointShell(const VoxelVolume& volume, const LeafLattice& lattice, in
         store(leaf);
     }
     // Milled surface also fragments: each leaf it enters wastes up to one block.
-    const size_t spare_blocks = spare_points / ShellBlock::kCapacity + std::min<size_t>(lattice.leafCount(), 4096);
+    const size_t spare_blocks =
+        spare_points / ShellBlock::kCapacity + std::min<size_t>(lattice.leafCount(), 4096);
     if (free_count_ < spare_blocks) add_blocks(spare_blocks - free_count_);
 }
 
-bool PointShell::refresh(const VoxelVolume& volume, const LeafLattice& lattice, const IndexBox& changed_voxels) noexcept {
+bool PointShell::refresh(const VoxelVolume& volume, const LeafLattice& lattice,
+                         const IndexBox& changed_voxels) noexcept {
     if (changed_voxels.isEmpty()) return true;
     const IndexBox cells{changed_voxels.min.array() - LeafLattice::kInfluence,
                          changed_voxels.max.array() + (LeafLattice::kInfluence - 1)};
@@ -105,7 +115,8 @@ bool PointShell::refresh(const VoxelVolume& volume, const LeafLattice& lattice, 
     return all_stored;
 }
 
-void PointShell::collectNew(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& blocks) noexcept {
+void PointShell::collectNew(const VoxelVolume& volume, const IndexBox& leaf_cells,
+                            const IndexBox& blocks) noexcept {
     const auto cells_of = [&](int x, int y, int z) {
         const Eigen::Vector3i first = leaf_cells.min + scaling_factor_ * Eigen::Vector3i(x, y, z);
         return IndexBox{first, (first.array() + (scaling_factor_ - 1)).matrix().cwiseMin(leaf_cells.max)};
@@ -135,9 +146,8 @@ void PointShell::mergeWithOld(LeafId leaf, const IndexBox& blocks) noexcept {
             if (isInside(block.key[i], blocks)) continue;
             while (next_fresh < fresh_size_ && fresh_[next_fresh].key < block.key[i])
                 merged_[merged_size_++] = fresh_[next_fresh++];
-            merged_[merged_size_++] = {{block.x[i], block.y[i], block.z[i]},
-                                       {block.nx[i], block.ny[i], block.nz[i]},
-                                       block.key[i]};
+            merged_[merged_size_++] = {
+                {block.x[i], block.y[i], block.z[i]}, {block.nx[i], block.ny[i], block.nz[i]}, block.key[i]};
         }
     });
     while (next_fresh < fresh_size_) merged_[merged_size_++] = fresh_[next_fresh++];

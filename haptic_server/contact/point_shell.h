@@ -1,11 +1,14 @@
-// The bone's contact points: one per s×s×s cells crossed by the iso-surface (thesis §4.2.3, scaling factor s).
+// The bone's contact points: one per s×s×s cells crossed by the iso-surface (thesis §4.2.3, scaling factor
+// s).
 //
-// The thesis leaves two choices open; ours: the point is the mean of the iso-crossings on all grid edges of the
-// s×s×s block (linear interpolation along each edge), its normal the gradient interpolated trilinearly from the
-// block's eight corners, pointing out of the bone. Blocks start at each leaf's first cell and are cut at its border.
+// The thesis leaves two choices open; ours: the point is the mean of the iso-crossings on all grid edges of
+// the s×s×s block (linear interpolation along each edge), its normal the gradient interpolated trilinearly
+// from the block's eight corners, pointing out of the bone. Blocks start at each leaf's first cell and are
+// cut at its border.
 //
-// Points live in fixed blocks of a pool sized at construction, in ascending order of their cells inside each leaf, so
-// that an incremental refresh gives the very bits of a full rebuild. Only the tick thread touches a PointShell.
+// Points live in fixed blocks of a pool sized at construction, in ascending order of their cells inside each
+// leaf, so that an incremental refresh gives the very bits of a full rebuild. Only the tick thread touches a
+// PointShell.
 #pragma once
 
 #include <cstdint>
@@ -33,12 +36,14 @@ struct ShellBlock {
 class PointShell {
   public:
     // Builds every leaf. `spare_points` is room for surface that milling will open. Allocates.
+    // Throws std::invalid_argument for leaves of more than 1024 blocks per axis.
     PointShell(const VoxelVolume& volume, const LeafLattice& lattice, int scaling_factor,
                size_t spare_points = kDefaultSparePoints);
 
-    // Rebuilds the points that the voxels in `changed_voxels` can influence. RT-safe. False: the pool is full and some
-    // leaves kept their old points.
-    bool refresh(const VoxelVolume& volume, const LeafLattice& lattice, const IndexBox& changed_voxels) noexcept;
+    // Rebuilds the points that the voxels in `changed_voxels` can influence. RT-safe. False: the pool is full
+    // and some leaves kept their old points.
+    bool refresh(const VoxelVolume& volume, const LeafLattice& lattice,
+                 const IndexBox& changed_voxels) noexcept;
 
     // Calls visit(const ShellBlock&, uint32_t count) for the leaf's points in order. RT-safe.
     template <class Visit>
@@ -79,7 +84,7 @@ class PointShell {
     std::vector<ShellPoint> merged_;  // scratch: all points of one leaf
     size_t fresh_size_ = 0;
     size_t merged_size_ = 0;
-    std::vector<uint8_t> row_;        // scratch: states of one row of voxel columns
+    std::vector<uint8_t> row_;  // scratch: states of one row of voxel columns
 };
 
 }  // namespace bonemill

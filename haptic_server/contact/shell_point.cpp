@@ -9,7 +9,8 @@ struct CrossingSum {
 };
 
 // Adds the crossings on all edges along `axis` between the voxels of the block.
-void addCrossings(const VoxelVolume& volume, const IndexBox& cells, int axis, CrossingSum& crossings) noexcept {
+void addCrossings(const VoxelVolume& volume, const IndexBox& cells, int axis,
+                  CrossingSum& crossings) noexcept {
     const size_t strides[3] = {1, volume.strideY(), volume.strideZ()};
     const Density iso = volume.iso();
     Eigen::Vector3i last = cells.max.array() + 1;
@@ -21,7 +22,8 @@ void addCrossings(const VoxelVolume& volume, const IndexBox& cells, int axis, Cr
                 const Density low = volume.at(here);
                 const Density high = volume.at(here + strides[axis]);
                 if ((low >= iso) == (high >= iso)) continue;
-                Eigen::Vector3f at(float(i - cells.min.x()), float(j - cells.min.y()), float(k - cells.min.z()));
+                Eigen::Vector3f at(float(i - cells.min.x()), float(j - cells.min.y()),
+                                   float(k - cells.min.z()));
                 at[axis] += (float(iso) - float(low)) / (float(high) - float(low));
                 crossings.sum += at;
                 ++crossings.count;
@@ -37,7 +39,8 @@ Eigen::Vector3f interpolatedGradient(const VoxelVolume& volume, const IndexBox& 
     for (int corner = 0; corner < 8; ++corner) {
         const Eigen::Vector3i bit(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
         const Eigen::Vector3i voxel = cells.min + bit.cwiseProduct(size);
-        const float weight = (bit.x() ? t.x() : 1 - t.x()) * (bit.y() ? t.y() : 1 - t.y()) * (bit.z() ? t.z() : 1 - t.z());
+        const float weight =
+            (bit.x() ? t.x() : 1 - t.x()) * (bit.y() ? t.y() : 1 - t.y()) * (bit.z() ? t.z() : 1 - t.z());
         gradient += weight * volume.gradient(voxel.x(), voxel.y(), voxel.z());
     }
     return gradient;

@@ -5,7 +5,8 @@
 
 namespace bonemill {
 
-// `cells` is a non-empty block crossed by the iso-surface. Position and normal in V; key is left to the caller.
+// `cells` is a non-empty block crossed by the iso-surface. Position and normal in V; key is left to the
+// caller.
 ShellPoint makeShellPoint(const VoxelVolume& volume, const IndexBox& cells) noexcept;
 
 }  // namespace bonemill

@@ -13,10 +13,18 @@ Eigen::Quaterniond rotationError(const Pose& spo, const Pose& device) noexcept {
     return error;
 }
 
-// The equilibrium matrix mixes N/m with N·m/rad; measuring rotations in this length (m/rad) balances its rows.
+// The equilibrium matrix mixes N/m with N·m/rad; measuring rotations in this length (m/rad) balances its
+// rows.
 constexpr double kRotationLength = 0.03;
 // Smallest ratio of LU pivots taken for a regular matrix.
 constexpr double kMinPivotRatio = 1e-12;
+// Share of the largest element that a singular matrix gets on its (negative) diagonal.
+constexpr double kRegularisation = 1e-6;
+
+bool isRegular(const Eigen::PartialPivLU<Matrix6d>& lu) noexcept {
+    const auto pivots = lu.matrixLU().diagonal().cwiseAbs();
+    return pivots.minCoeff() > kMinPivotRatio * pivots.maxCoeff();
+}
 
 bool limitNorm(Eigen::Ref<Eigen::Vector3d> v, double most) noexcept {
     const double norm = v.norm();
@@ -41,22 +49,25 @@ Matrix6d couplingDerivative(const CouplingConfig& config, const Pose& spo, const
     return derivative;
 }
 
-EquilibriumStep solveEquilibrium(const CouplingConfig& config, const Wrench& wrench, const Matrix6d& derivative,
-                                 double dt) noexcept {
+EquilibriumStep solveEquilibrium(const CouplingConfig& config, const Wrench& wrench,
+                                 const Matrix6d& derivative, double dt) noexcept {
     Vector6d scale;
     scale << 1, 1, 1, 1 / kRotationLength, 1 / kRotationLength, 1 / kRotationLength;
     Vector6d w;
     w << wrench.force, wrench.torque;
     EquilibriumStep result;
-    const Matrix6d scaled = scale.asDiagonal() * derivative * scale.asDiagonal();
+    Matrix6d scaled = scale.asDiagonal() * derivative * scale.asDiagonal();
     if (!scaled.allFinite() || !w.allFinite()) return result;
-    const Eigen::PartialPivLU<Matrix6d> lu(scaled);
-    const auto pivots = lu.matrixLU().diagonal().cwiseAbs();
-    if (!(pivots.minCoeff() > kMinPivotRatio * pivots.maxCoeff())) return result;
+    Eigen::PartialPivLU<Matrix6d> lu(scaled);
+    result.is_regular = isRegular(lu);
+    if (!result.is_regular) {
+        scaled.diagonal().array() -= kRegularisation * scaled.cwiseAbs().maxCoeff();
+        lu.compute(scaled);
+        if (!isRegular(lu)) return result;
+    }
     const Vector6d negative_scaled_wrench = -scale.cwiseProduct(w);
     result.step = scale.cwiseProduct(lu.solve(negative_scaled_wrench));
-    result.is_valid = result.step.allFinite();
-    if (!result.is_valid) return {};
+    if (!result.step.allFinite()) return {};
     const bool translation_clamped = limitNorm(result.step.head<3>(), config.max_speed * dt);
     const bool rotation_clamped = limitNorm(result.step.tail<3>(), config.max_angular_speed * dt);
     result.is_clamped = translation_clamped || rotation_clamped;
@@ -68,7 +79,8 @@ bool limitWrench(const CouplingConfig& config, Wrench& wrench) noexcept {
         wrench = {};
         return true;
     }
-    const double excess = std::max(wrench.force.norm() / config.max_force, wrench.torque.norm() / config.max_torque);
+    const double excess =
+        std::max(wrench.force.norm() / config.max_force, wrench.torque.norm() / config.max_torque);
     if (excess <= 1) return false;
     wrench.force /= excess;
     wrench.torque /= excess;

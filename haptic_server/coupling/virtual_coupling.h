@@ -9,30 +9,34 @@ namespace bonemill {
 
 struct CouplingConfig {
     double translation_stiffness = 3000;  // N/m (k_vct)
-    double rotation_stiffness = 1.0;      // N·m per unit quaternion vector part (k_vcr); k_vcr/2 per rad at small angles
-    double max_speed = 0.5;               // m/s
-    double max_angular_speed = 4.18879;   // rad/s = 240 °/s; the thesis' "0.073 rad per ms" is a slip (0.00419)
-    double static_damping = 0.5;          // α: the tool moves by (1 - α) of the step
-    double max_force = 50;                // N on the hand
-    double max_torque = 1;                // N·m on the hand
+    double rotation_stiffness =
+        1.0;                 // N·m per unit quaternion vector part (k_vcr); k_vcr/2 per rad at small angles
+    double max_speed = 0.5;  // m/s, of the step before damping: the tool moves at (1 - α) of it at most
+    double max_angular_speed =
+        4.18879;  // rad/s = 240 °/s, before damping; the thesis' "0.073 rad per ms" is a slip (0.00419)
+    double static_damping = 0.5;  // α: the tool moves by (1 - α) of the step
+    double max_force = 50;        // N on the hand
+    double max_torque = 1;        // N·m on the hand
 };
 
-// Coupling wrench on the tool about the tool point (eq 17-18, 32-33): springs from the SPO to the device pose. The
-// quaternion's sign is chosen for the shorter way round.
+// Coupling wrench on the tool about the tool point (eq 17-18, 32-33): springs from the SPO to the device
+// pose. The quaternion's sign is chosen for the shorter way round.
 Wrench couplingWrench(const CouplingConfig& config, const Pose& spo, const Pose& device) noexcept;
 
 // ∂(force, torque)/∂(x, ω) of couplingWrench (eq 19-22).
 Matrix6d couplingDerivative(const CouplingConfig& config, const Pose& spo, const Pose& device) noexcept;
 
 struct EquilibriumStep {
-    Vector6d step = Vector6d::Zero();  // (Δx, Δω) before damping
-    bool is_valid = false;             // false: the matrix was singular or something was not finite
+    Vector6d step = Vector6d::Zero();  // (Δx, Δω) before damping; zero if nothing finite could be found
+    bool is_regular = false;           // false: the matrix was singular or something was not finite
     bool is_clamped = false;           // a speed limit acted
 };
 
-// Solves W + derivative · step = 0 (eq 25) by LU and limits the step to the speeds allowed in dt, in direction.
-EquilibriumStep solveEquilibrium(const CouplingConfig& config, const Wrench& wrench, const Matrix6d& derivative,
-                                 double dt) noexcept;
+// Solves W + derivative · step = 0 (eq 25) by LU and limits the step to the speeds allowed in dt, in
+// direction. A singular matrix (the quaternion coupling at exactly 180°) is regularised, so that the tool
+// moves on.
+EquilibriumStep solveEquilibrium(const CouplingConfig& config, const Wrench& wrench,
+                                 const Matrix6d& derivative, double dt) noexcept;
 
 // What the hand may feel: non-finite → zero; above a limit → the whole wrench scaled by one factor.
 // Returns true if it changed the wrench.

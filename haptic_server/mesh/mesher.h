@@ -33,12 +33,16 @@ class Mesher {
     // pass through; that leaf counts as meshed.
     PassResult pass(const Sink& sink, uint32_t max_leaves = kAllLeaves);
 
+    // Every leaf has been meshed at least once: the sink has seen the whole bone.
+    bool hasMeshedAll() const noexcept { return meshed_leaves_ == meshed_version_.size(); }
+
   private:
     bool tryMesh(LeafId leaf, const Sink& sink);
 
     const LeafLattice& lattice_;
     LeafMesher leaf_mesher_;
     std::vector<uint32_t> meshed_version_;
+    size_t meshed_leaves_ = 0;    // leaves meshed at least once
     std::vector<bool> has_mesh_;  // what the sink was told last
     LeafId next_leaf_ = 0;        // where the next pass starts, so that busy leaves do not starve the others
 };

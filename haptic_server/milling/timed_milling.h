@@ -1,4 +1,5 @@
-// The thesis' removal and addition of material (§4.2.2): voxels inside the burr sphere lose or gain density per time.
+// The thesis' removal and addition of material (§4.2.2): voxels inside the burr sphere lose or gain density
+// per time.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,8 @@ namespace bonemill {
 
 struct MillingConfig {
     bool enabled = true;
-    double removal_rate = 12750 * kDensityCountsPerUnit;   // density counts/s; default: from full to nothing in 20 ms
+    double removal_rate =
+        12750 * kDensityCountsPerUnit;  // density counts/s; default: from full to nothing in 20 ms
     double addition_rate = 12750 * kDensityCountsPerUnit;  // density counts/s
 };
 
@@ -26,17 +28,18 @@ class TimedMilling {
   public:
     TimedMilling(const MillingConfig& config, const VoxelVolume& volume, double burr_radius);
 
-    // Changes the voxels with |voxel - p_VB| < burr radius by rate·dt, then the leaf versions, density ranges and
-    // point-shell with them. direction -1 removes, +1 adds.
-    MillingResult apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell, const Eigen::Vector3d& p_VB,
-                        int direction, double dt) noexcept;
+    // Changes the voxels with |voxel - p_VB| < burr radius by rate·dt, then the leaf versions, density ranges
+    // and point-shell with them. direction -1 removes, +1 adds.
+    MillingResult apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
+                        const Eigen::Vector3d& p_VB, int direction, double dt) noexcept;
 
   private:
     struct Change {
         size_t offset;
         Density density;
     };
-    void collectChanges(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, int amount, MillingResult& result) noexcept;
+    void collectChanges(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, int amount,
+                        MillingResult& result) noexcept;
 
     MillingConfig config_;
     double burr_radius_;

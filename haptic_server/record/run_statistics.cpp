@@ -15,7 +15,9 @@ namespace bonemill {
 namespace {
 
 // The instant that should have woken the tick: late wake-ups are latency, not gaps in the schedule.
-int64_t dueNs(const TickRecord& record) { return record.start_ns - record.wakeup_latency_ns; }
+int64_t dueNs(const TickRecord& record) {
+    return record.start_ns - record.wakeup_latency_ns;
+}
 
 double norm(const double (&v)[3]) {
     return std::hypot(v[0], v[1], v[2]);

@@ -1,4 +1,5 @@
-// The bone and all that is derived from it in the tick. Only the tick thread changes it; the mesher reads voxels.
+// The bone and all that is derived from it in the tick. Only the tick thread changes it; the mesher reads
+// voxels.
 #pragma once
 
 #include "haptic_server/contact/point_shell.h"

@@ -13,9 +13,12 @@ void copyTo(double (&out)[N], const Vector& v) noexcept {
     for (size_t i = 0; i < N; ++i) out[i] = v[Eigen::Index(i)];
 }
 
-Eigen::Vector4d wxyz(const Eigen::Quaterniond& q) noexcept { return {q.w(), q.x(), q.y(), q.z()}; }
+Eigen::Vector4d wxyz(const Eigen::Quaterniond& q) noexcept {
+    return {q.w(), q.x(), q.y(), q.z()};
+}
 
 constexpr double kQuaternionNormSlack = 1e-2;
+constexpr double kFarthest = 1e3;  // m from W's origin: beyond any scan, and squares stay finite
 
 }  // namespace
 
@@ -57,7 +60,8 @@ bool HapticTick::tick(TickIo& io) noexcept {
 Pose HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept {
     Pose pose = input.X_WT_device;
     const double norm = pose.rotation.norm();
-    if (!pose.isFinite() || !(std::abs(norm - 1) < kQuaternionNormSlack)) {
+    if (!pose.isFinite() || !(std::abs(norm - 1) < kQuaternionNormSlack) ||
+        !(pose.position.cwiseAbs().maxCoeff() < kFarthest)) {
         faults |= kFaultBadDevicePose;
         return device_;
     }
@@ -85,7 +89,7 @@ Wrench HapticTick::moveAndFeel(const ContactResult& contact, double force_factor
     const Wrench net = contact.wrench + couplingWrench(coupling, spo_, device_);
     const Matrix6d derivative = contact.derivative + couplingDerivative(coupling, spo_, device_);
     const EquilibriumStep solved = solveEquilibrium(coupling, net, derivative, config_.dt);
-    if (!solved.is_valid) faults |= kFaultSolve;
+    if (!solved.is_regular) faults |= kFaultSolve;
     if (solved.is_clamped) faults |= kFaultMotionClamped;
     const Vector6d moved = (1 - coupling.static_damping) * solved.step;
     spo_ = spo_.incremented(moved.head<3>(), moved.tail<3>());
@@ -98,6 +102,7 @@ Wrench HapticTick::moveAndFeel(const ContactResult& contact, double force_factor
 }
 
 MillingResult HapticTick::mill(const DeviceInput& input, uint32_t& faults) noexcept {
+    if (reset_) reset_->startIfRequested();
     if (reset_ && reset_->isRunning()) {
         if (!reset_->restoreSome(bone_)) faults |= kFaultShellOverflow;
         return {};
@@ -105,8 +110,8 @@ MillingResult HapticTick::mill(const DeviceInput& input, uint32_t& faults) noexc
     const bool remove = input.buttons & kButtonRemove;
     const bool add = input.buttons & kButtonAdd;
     if (input.is_stale || remove == add || (reset_ && reset_->isMillingPaused())) return {};
-    const MillingResult milled = milling_.apply(bone_.volume, bone_.lattice, bone_.shell, X_VW_ * spo_.position,
-                                                remove ? -1 : 1, config_.dt);
+    const MillingResult milled = milling_.apply(bone_.volume, bone_.lattice, bone_.shell,
+                                                X_VW_ * spo_.position, remove ? -1 : 1, config_.dt);
     if (!milled.shell_is_complete) faults |= kFaultShellOverflow;
     return milled;
 }

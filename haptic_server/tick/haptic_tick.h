@@ -1,5 +1,5 @@
-// One cycle of the haptic loop: read → pose → contact → solve → limit → write → mill → refresh shell → push telemetry.
-// The same tick runs behind the device link in real time and in `simulate` without it.
+// One cycle of the haptic loop: read → pose → contact → solve → limit → write → mill → refresh shell → push
+// telemetry. The same tick runs behind the device link in real time and in `simulate` without it.
 #pragma once
 
 #include "haptic_server/contact/penalty_contact.h"
@@ -12,17 +12,18 @@
 namespace bonemill {
 
 struct DeviceInput {
-    Pose X_WT_device;          // where the hand really holds the tool
-    uint32_t buttons = 0;      // Button bits
-    double force_factor = 1;   // 1 fresh device; ramps to 0 while it is stale
-    bool is_stale = false;     // no fresh sample: nothing is milled
-    double t_s = 0;            // since the session's first tick, or the trajectory file's own time
-    int64_t start_ns = 0;      // when this tick began, CLOCK_MONOTONIC
+    Pose X_WT_device;                 // where the hand really holds the tool
+    uint32_t buttons = 0;             // Button bits
+    double force_factor = 1;          // 1 fresh device; ramps to 0 while it is stale
+    bool is_stale = false;            // no fresh sample: nothing is milled
+    double t_s = 0;                   // since the session's first tick, or the trajectory file's own time
+    int64_t start_ns = 0;             // when this tick began, CLOCK_MONOTONIC
     int64_t deadline_ns = INT64_MAX;  // work that ends later is an overrun
     int64_t wakeup_latency_ns = 0;
 };
 
-// What a tick talks to. Implementations are RT-safe: no allocation, lock or system call beyond the wait in read().
+// What a tick talks to. Implementations are RT-safe: no allocation, lock or system call beyond the wait in
+// read().
 class TickIo {
   public:
     virtual ~TickIo() = default;
@@ -61,7 +62,8 @@ class HapticTick {
     ContactResult contactInWorld() const noexcept;
     Wrench moveAndFeel(const ContactResult& contact, double force_factor, uint32_t& faults) noexcept;
     MillingResult mill(const DeviceInput& input, uint32_t& faults) noexcept;
-    TickRecord makeRecord(const DeviceInput& input, const ContactResult& contact, const Wrench& wrench_hand) const noexcept;
+    TickRecord makeRecord(const DeviceInput& input, const ContactResult& contact,
+                          const Wrench& wrench_hand) const noexcept;
 
     TickConfig config_;
     BoneModel& bone_;

@@ -9,36 +9,36 @@ namespace bonemill {
 // Latched reasons why a tick was not what it should be (bit mask).
 enum TickFault : uint32_t {
     kFaultNone = 0,
-    kFaultOverrun = 1u << 0,          // the tick's own work took longer than its period
-    kFaultStaleDevice = 1u << 1,      // no fresh device sample: force ramps to zero
-    kFaultBadDevicePose = 1u << 2,    // non-finite or unnormalisable pose: the last good one is kept
-    kFaultSolve = 1u << 3,            // singular or non-finite equilibrium: the tool keeps its pose
-    kFaultMotionClamped = 1u << 4,    // the speed limit of the coupling acted
-    kFaultForceClamped = 1u << 5,     // the wrench limit acted
-    kFaultShellOverflow = 1u << 6,    // the point-shell pool is full: some milled surface has no contact points
+    kFaultOverrun = 1u << 0,        // the tick's own work took longer than its period
+    kFaultStaleDevice = 1u << 1,    // no fresh device sample: force ramps to zero
+    kFaultBadDevicePose = 1u << 2,  // non-finite or unnormalisable pose: the last good one is kept
+    kFaultSolve = 1u << 3,          // singular or non-finite equilibrium: the tool keeps its pose
+    kFaultMotionClamped = 1u << 4,  // the speed limit of the coupling acted
+    kFaultForceClamped = 1u << 5,   // the wrench limit acted
+    kFaultShellOverflow = 1u << 6,  // the point-shell pool is full: some milled surface has no contact points
 };
 
 struct TickRecord {
     uint64_t tick;
-    int64_t start_ns;          // CLOCK_MONOTONIC at wake-up
-    int64_t wakeup_latency_ns; // from the instant that should have woken the tick to start_ns
-    int64_t force_ns;          // start -> wrench written
-    int64_t compute_ns;        // start -> end of the tick's work
-    double t_s;                // since the session's first tick; in `simulate` the trajectory's time
-    double p_WT[3];            // SPO, m
-    double q_WT[4];            // w, x, y, z
+    int64_t start_ns;           // CLOCK_MONOTONIC at wake-up
+    int64_t wakeup_latency_ns;  // from the instant that should have woken the tick to start_ns
+    int64_t force_ns;           // start -> wrench written
+    int64_t compute_ns;         // start -> end of the tick's work
+    double t_s;                 // since the session's first tick; in `simulate` the trajectory's time
+    double p_WT[3];             // SPO, m
+    double q_WT[4];             // w, x, y, z
     double p_WT_device[3];
     double q_WT_device[4];
-    double f_hand_W[3];        // N, on the hand
-    double t_hand_W[3];        // N·m, on the hand about the SPO's tool point
-    double max_penetration;    // m
-    double removed;            // m³ in this tick
-    double added;              // m³ in this tick
+    double f_hand_W[3];      // N, on the hand
+    double t_hand_W[3];      // N·m, on the hand about the SPO's tool point
+    double max_penetration;  // m
+    double removed;          // m³ in this tick
+    double added;            // m³ in this tick
     uint32_t contacts;
-    uint32_t removed_voxels;   // voxels that fell below the iso-value in this tick
-    uint32_t added_voxels;     // voxels that rose to the iso-value or above in this tick
-    uint32_t buttons;          // kButtonRemove | kButtonAdd
-    uint32_t faults;           // TickFault bits of this tick
+    uint32_t removed_voxels;  // voxels that fell below the iso-value in this tick
+    uint32_t added_voxels;    // voxels that rose to the iso-value or above in this tick
+    uint32_t buttons;         // kButtonRemove | kButtonAdd
+    uint32_t faults;          // TickFault bits of this tick
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 

@@ -19,9 +19,12 @@ class VolumeReset {
     void pauseMilling(bool pause) noexcept { is_paused_.store(pause, std::memory_order_relaxed); }
     bool isMillingPaused() const noexcept { return is_paused_.load(std::memory_order_relaxed); }
 
-    // Tick thread, RT-safe: starts on a request; true while leaves are still to be looked at.
-    bool isRunning() noexcept;
-    // Tick thread, RT-safe: restores at most one changed leaf. False: the point-shell pool was full.
+    // Tick thread, RT-safe: takes up a request, from the first leaf on.
+    void startIfRequested() noexcept;
+    // Tick thread, RT-safe: leaves are still to be looked at.
+    bool isRunning() const noexcept { return is_running_; }
+    // Tick thread, RT-safe: looks at a bounded number of voxels, restores at most one changed leaf. False:
+    // the point-shell pool was full.
     bool restoreSome(BoneModel& bone) noexcept;
 
   private:

@@ -76,9 +76,11 @@ void LeafLattice::refreshParents(const IndexBox& leaves) noexcept {
         forEachIndex(nodes, [&](const Eigen::Vector3i& node) {
             DensityRange range;
             for (int octant = 0; octant < 8; ++octant) {
-                const Eigen::Vector3i child = 2 * node + Eigen::Vector3i(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
+                const Eigen::Vector3i child =
+                    2 * node + Eigen::Vector3i(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
                 if ((child.array() >= below.nodes.array()).any()) continue;
-                widen(range, below.range[size_t(child.x() + below.nodes.x() * (child.y() + below.nodes.y() * child.z()))]);
+                widen(range, below.range[size_t(child.x() + below.nodes.x() *
+                                                                (child.y() + below.nodes.y() * child.z()))]);
             }
             here.range[size_t(node.x() + here.nodes.x() * (node.y() + here.nodes.y() * node.z()))] = range;
         });
@@ -97,7 +99,8 @@ void LeafLattice::refreshRanges(const VoxelVolume& volume, const IndexBox& chang
 }
 
 void LeafLattice::beginWrite(const IndexBox& changed_voxels) noexcept {
-    const IndexBox leaves = leavesOfCells({changed_voxels.min.array() - kInfluence, changed_voxels.max.array() + (kInfluence - 1)});
+    const IndexBox leaves = leavesOfCells(
+        {changed_voxels.min.array() - kInfluence, changed_voxels.max.array() + (kInfluence - 1)});
     if (leaves.isEmpty()) return;
     forEachIndex(leaves, [&](const Eigen::Vector3i& leaf) {
         auto& version = versions_[leafId(leaf)];
@@ -107,7 +110,8 @@ void LeafLattice::beginWrite(const IndexBox& changed_voxels) noexcept {
 }
 
 void LeafLattice::endWrite(const IndexBox& changed_voxels) noexcept {
-    const IndexBox leaves = leavesOfCells({changed_voxels.min.array() - kInfluence, changed_voxels.max.array() + (kInfluence - 1)});
+    const IndexBox leaves = leavesOfCells(
+        {changed_voxels.min.array() - kInfluence, changed_voxels.max.array() + (kInfluence - 1)});
     if (leaves.isEmpty()) return;
     forEachIndex(leaves, [&](const Eigen::Vector3i& leaf) {
         auto& version = versions_[leafId(leaf)];

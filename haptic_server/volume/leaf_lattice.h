@@ -1,8 +1,8 @@
 // The octree over the volume: a lattice of leaves, min/max densities above them, and a version per leaf.
 //
 // Cells: cell (i, j, k) is the cube between voxels (i, j, k) and (i+1, j+1, k+1), for indices -1 .. dims-1.
-// Each leaf owns leaf_cells cells per axis (fewer at the far border); a leaf's voxels are the corners of its cells.
-// A node of level l covers 2^l leaves per axis; level 0 are the leaves, the top level is the root.
+// Each leaf owns leaf_cells cells per axis (fewer at the far border); a leaf's voxels are the corners of its
+// cells. A node of level l covers 2^l leaves per axis; level 0 are the leaves, the top level is the root.
 #pragma once
 
 #include <atomic>
@@ -47,11 +47,13 @@ class LeafLattice {
     // Leaves that own any of these cells (clamped to the lattice), both ends included.
     IndexBox leavesOfCells(const IndexBox& cells) const noexcept;
 
-    // RT-safe, tick thread only: the voxels in `box` changed. Rescans the leaves they belong to, renews up to the root.
+    // RT-safe, tick thread only: the voxels in `box` changed. Rescans the leaves they belong to, renews up to
+    // the root.
     void refreshRanges(const VoxelVolume& volume, const IndexBox& changed_voxels) noexcept;
 
-    // RT-safe, tick thread only: around a write to voxels in `box`. Leaves whose mesh or point-shell can change
-    // (voxels within kInfluence of their cells) get an odd version while being written, an even one after.
+    // RT-safe, tick thread only: around a write to voxels in `box`. Leaves whose mesh or point-shell can
+    // change (voxels within kInfluence of their cells) get an odd version while being written, an even one
+    // after.
     void beginWrite(const IndexBox& changed_voxels) noexcept;
     void endWrite(const IndexBox& changed_voxels) noexcept;
     static constexpr int kInfluence = 2;  // a cell's corners reach 1 voxel, their gradients one more
@@ -59,14 +61,15 @@ class LeafLattice {
     // Any thread. acquire: pairs with endWrite's release, so voxels read after it are at least that new.
     uint32_t version(LeafId id) const noexcept { return versions_[id].load(std::memory_order_acquire); }
 
-    // Tick thread only (the mesher computes its own from the voxels). Does the density range hold the iso-value?
+    // Tick thread only (the mesher computes its own from the voxels). Does the density range hold the
+    // iso-value?
     bool mayHoldSurface(LeafId id, Density iso) const noexcept {
         const DensityRange& r = levels_[0].range[id];
         return r.min < iso && r.max >= iso;
     }
 
-    // Top-down search: calls visit(LeafId) for every leaf whose cells meet `box` (V, m) and whose range holds iso,
-    // in ascending order of the lattice within each node. RT-safe, tick thread only.
+    // Top-down search: calls visit(LeafId) for every leaf whose cells meet `box` (V, m) and whose range holds
+    // iso, in ascending order of the lattice within each node. RT-safe, tick thread only.
     template <class Visit>
     void forEachSurfaceLeaf(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& spacing, Density iso,
                             Visit&& visit) const noexcept;
@@ -81,7 +84,8 @@ class LeafLattice {
     DensityRange scanLeaf(const VoxelVolume& volume, LeafId id) const noexcept;
     void refreshParents(const IndexBox& leaves) noexcept;
     template <class Visit>
-    void descend(int level, const Eigen::Vector3i& node, const IndexBox& leaves, Density iso, Visit& visit) const noexcept;
+    void descend(int level, const Eigen::Vector3i& node, const IndexBox& leaves, Density iso,
+                 Visit& visit) const noexcept;
 
     Eigen::Vector3i leaf_cells_;
     Eigen::Vector3i dims_;
@@ -90,11 +94,13 @@ class LeafLattice {
 };
 
 template <class Visit>
-void LeafLattice::forEachSurfaceLeaf(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& spacing, Density iso,
-                                     Visit&& visit) const noexcept {
+void LeafLattice::forEachSurfaceLeaf(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& spacing,
+                                     Density iso, Visit&& visit) const noexcept {
     // Clamp before the conversion to int: the box may lie anywhere.
-    const Eigen::Array3d low = (box.min().array() / spacing.array()).max(-1.0).min(dims_.cast<double>().array());
-    const Eigen::Array3d high = (box.max().array() / spacing.array()).max(-2.0).min(dims_.cast<double>().array() - 1);
+    const Eigen::Array3d low =
+        (box.min().array() / spacing.array()).max(-1.0).min(dims_.cast<double>().array());
+    const Eigen::Array3d high =
+        (box.max().array() / spacing.array()).max(-2.0).min(dims_.cast<double>().array() - 1);
     const IndexBox cells{low.floor().cast<int>().matrix(), high.floor().cast<int>().matrix()};
     if (cells.isEmpty()) return;
     descend(levelCount() - 1, Eigen::Vector3i::Zero(), leavesOfCells(cells), iso, visit);
@@ -112,7 +118,8 @@ void LeafLattice::descend(int level, const Eigen::Vector3i& node, const IndexBox
     if (level == 0) return visit(leafId(node));
     const auto& below = levels_[level - 1].nodes;
     for (int octant = 0; octant < 8; ++octant) {
-        const Eigen::Vector3i child = 2 * node + Eigen::Vector3i(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
+        const Eigen::Vector3i child =
+            2 * node + Eigen::Vector3i(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
         if ((child.array() < below.array()).all()) descend(level - 1, child, leaves, iso, visit);
     }
 }

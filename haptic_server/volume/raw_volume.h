@@ -9,11 +9,12 @@
 
 namespace bonemill {
 
-// Voxel (i, j, k) has its centre at X_WV * (spacing ∘ (i, j, k)). W is the file's physical frame (DICOM/LPS), in m.
+// Voxel (i, j, k) has its centre at X_WV * (spacing ∘ (i, j, k)). W is the file's physical frame (DICOM/LPS),
+// in m.
 struct VolumeGeometry {
-    Eigen::Vector3i dims = Eigen::Vector3i::Zero();        // voxels per axis
-    Eigen::Vector3d spacing = Eigen::Vector3d::Ones();     // m per voxel step
-    Pose X_WV;                                             // proper rotation: left-handed files are flipped at import
+    Eigen::Vector3i dims = Eigen::Vector3i::Zero();     // voxels per axis
+    Eigen::Vector3d spacing = Eigen::Vector3d::Ones();  // m per voxel step
+    Pose X_WV;  // proper rotation: left-handed files are flipped at import
 
     size_t voxelCount() const noexcept { return size_t(dims.x()) * size_t(dims.y()) * size_t(dims.z()); }
 };

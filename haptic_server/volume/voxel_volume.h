@@ -1,8 +1,9 @@
 // The bone: densities of all voxels, shared between the tick (only writer) and the mesher (reader).
 //
-// Voxel (i, j, k) of frame I lies at V-position spacing ∘ (i, j, k) and W-position X_WV * that (docs/frames.md).
-// A border of one voxel of air surrounds the data: indices -1 .. dims are readable, 0 .. dims-1 writable, so every
-// surface is closed. Density 0..255 of the thesis is stored as 16 bit, 257 counts per unit.
+// Voxel (i, j, k) of frame I lies at V-position spacing ∘ (i, j, k) and W-position X_WV * that
+// (docs/frames.md). A border of one voxel of air surrounds the data: indices -1 .. dims are readable, 0 ..
+// dims-1 writable, so every surface is closed. Density 0..255 of the thesis is stored as 16 bit, 257 counts
+// per unit.
 #pragma once
 
 #include <atomic>
@@ -24,7 +25,10 @@ struct IndexBox {
 
     bool isEmpty() const noexcept { return (min.array() > max.array()).any(); }
     void include(const Eigen::Vector3i& index) noexcept {
-        if (isEmpty()) { min = max = index; return; }
+        if (isEmpty()) {
+            min = max = index;
+            return;
+        }
         min = min.cwiseMin(index);
         max = max.cwiseMax(index);
     }
@@ -52,11 +56,12 @@ class VoxelVolume {
     size_t strideY() const noexcept { return stride_y_; }
     size_t strideZ() const noexcept { return stride_z_; }
 
-    // RT-safe; any thread may read, only the owner of the volume (the tick) writes. Acquire/release (plain moves on
-    // x86) keep each voxel between the odd and the even leaf version around its write: a reader that finds the same
-    // even LeafLattice::version before and after its reads saw one consistent node.
+    // RT-safe; any thread may read, only the owner of the volume (the tick) writes. Acquire/release (plain
+    // moves on x86) keep each voxel between the odd and the even leaf version around its write: a reader that
+    // finds the same even LeafLattice::version before and after its reads saw one consistent node.
     Density at(size_t offset) const noexcept {
-        return std::atomic_ref<Density>(const_cast<Density&>(density_[offset])).load(std::memory_order_acquire);
+        return std::atomic_ref<Density>(const_cast<Density&>(density_[offset]))
+            .load(std::memory_order_acquire);
     }
     Density at(int i, int j, int k) const noexcept { return at(offset(i, j, k)); }
     void set(size_t offset, Density value) noexcept {

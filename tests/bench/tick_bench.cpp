@@ -1,7 +1,8 @@
-// Cost of a tick on the thesis' tooth while milling a corridor, by the thesis' scaling factor and octree leaf size.
+// Cost of a tick on the thesis' tooth while milling a corridor, by the thesis' scaling factor and octree leaf
+// size.
 //
-// Prints p50/p99/p99.9/max in µs and the ratio of the medians to the thesis' own setting (s = 3, octree depth 3), all
-// settings in turn in the same process, several rounds: quote a figure only if the rounds agree.
+// Prints p50/p99/p99.9/max in µs and the ratio of the medians to the thesis' own setting (s = 3, octree depth
+// 3), all settings in turn in the same process, several rounds: quote a figure only if the rounds agree.
 #include <cstdio>
 #include <vector>
 
@@ -21,8 +22,10 @@ struct Setting {
     bool has_thesis_octree;  // depth 3; else leaves of 16³ cells
 };
 constexpr Setting kSettings[] = {
-    {"thesis: s=3, octree depth 3", 3, true}, {"s=1, octree depth 3", 1, true},
-    {"s=3, leaves of 16 cells", 3, false},    {"s=1, leaves of 16 cells", 1, false},
+    {"thesis: s=3, octree depth 3", 3, true},
+    {"s=1, octree depth 3", 1, true},
+    {"s=3, leaves of 16 cells", 3, false},
+    {"s=1, leaves of 16 cells", 1, false},
 };
 constexpr int kRounds = 3;
 constexpr int kTicks = 6000;
@@ -37,12 +40,14 @@ struct Cost {
 };
 
 void measure(const Setting& setting, const RawVolume& scan, const SdfGrid& tool, Cost& cost) {
-    const Eigen::Vector3i leaf_cells =
-        setting.has_thesis_octree ? LeafLattice::leafCellsOfDepth(scan.geometry, 3) : Eigen::Vector3i::Constant(16);
+    const Eigen::Vector3i leaf_cells = setting.has_thesis_octree
+                                           ? LeafLattice::leafCellsOfDepth(scan.geometry, 3)
+                                           : Eigen::Vector3i::Constant(16);
     BoneModel bone(densify(scan, DensityWindow{-1000, 3000, 600, 0}), leaf_cells, setting.scaling_factor);
     HapticTick tick({}, bone, tool, nullptr);
     test::ScriptedIo io(test::straightPath(kStart, kEnd, kTicks, kButtonRemove));
-    while (tick.tick(io)) {}
+    while (tick.tick(io)) {
+    }
     for (const TickRecord& record : io.records) {
         cost.force.record(record.force_ns);
         cost.milling.record(record.compute_ns - record.force_ns);
@@ -52,8 +57,9 @@ void measure(const Setting& setting, const RawVolume& scan, const SdfGrid& tool,
 
 void print(const char* what, const LatencyHistogram& h, const LatencyHistogram& reference) {
     const auto us = [&h](double percent) { return double(h.percentileNs(percent)) * 1e-3; };
-    std::printf("    %-22s p50 %7.1f  p99 %7.1f  p99.9 %7.1f  max %8.1f us   median ratio %.2f\n", what, us(50), us(99),
-                us(99.9), double(h.maxNs()) * 1e-3, double(h.percentileNs(50)) / double(reference.percentileNs(50)));
+    std::printf("    %-22s p50 %7.1f  p99 %7.1f  p99.9 %7.1f  max %8.1f us   median ratio %.2f\n", what,
+                us(50), us(99), us(99.9), double(h.maxNs()) * 1e-3,
+                double(h.percentileNs(50)) / double(reference.percentileNs(50)));
 }
 
 }  // namespace

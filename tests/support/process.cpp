@@ -31,8 +31,9 @@ void redirect(int descriptor, const std::filesystem::path& file) {
 }  // namespace
 
 Process::Process(const std::vector<std::string>& arguments) : folder_(makeFolder()) {
-    const std::filesystem::path program =
-        arguments[0].find('/') == std::string::npos ? std::filesystem::path(BONEMILL_BIN_DIR) / arguments[0] : std::filesystem::path(arguments[0]);
+    const std::filesystem::path program = arguments[0].find('/') == std::string::npos
+                                              ? std::filesystem::path(BONEMILL_BIN_DIR) / arguments[0]
+                                              : std::filesystem::path(arguments[0]);
     std::vector<std::string> words = arguments;
     words[0] = program.string();
     std::vector<char*> argv;
@@ -55,7 +56,9 @@ Process::~Process() {
     std::filesystem::remove_all(folder_, ignored);
 }
 
-void Process::signal(int number) const { kill(pid_, number); }
+void Process::signal(int number) const {
+    kill(pid_, number);
+}
 
 bool Process::isRunning() {
     if (!has_ended_) has_ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;
@@ -78,9 +81,13 @@ Finished Process::wait(std::chrono::seconds limit) {
     return finished;
 }
 
-std::string Process::errSoFar() const { return readFile(folder_ / "err"); }
+std::string Process::errSoFar() const {
+    return readFile(folder_ / "err");
+}
 
-Finished run(const std::vector<std::string>& arguments) { return Process(arguments).wait(); }
+Finished run(const std::vector<std::string>& arguments) {
+    return Process(arguments).wait();
+}
 
 TemporaryFolder::TemporaryFolder() : path_(makeFolder()) {}
 
@@ -89,7 +96,9 @@ TemporaryFolder::~TemporaryFolder() {
     std::filesystem::remove_all(path_, ignored);
 }
 
-void writeFile(const std::string& path, const std::string& content) { std::ofstream(path, std::ios::binary) << content; }
+void writeFile(const std::string& path, const std::string& content) {
+    std::ofstream(path, std::ios::binary) << content;
+}
 
 std::string readFile(const std::string& path) {
     std::ifstream file(path, std::ios::binary);

@@ -10,7 +10,9 @@ namespace bonemill::test {
 
 class ScriptedIo final : public TickIo {
   public:
-    explicit ScriptedIo(std::vector<DeviceInput> inputs) : inputs_(std::move(inputs)) { records.reserve(inputs_.size()); }
+    explicit ScriptedIo(std::vector<DeviceInput> inputs) : inputs_(std::move(inputs)) {
+        records.reserve(inputs_.size());
+    }
 
     bool read(DeviceInput& input) noexcept override {
         if (next_ == inputs_.size()) return false;
@@ -34,10 +36,12 @@ class ScriptedIo final : public TickIo {
 };
 
 // Device moving straight from `from` to `to` with these buttons, one input per tick.
-inline std::vector<DeviceInput> straightPath(const Pose& from, const Eigen::Vector3d& to, int ticks, uint32_t buttons) {
+inline std::vector<DeviceInput> straightPath(const Pose& from, const Eigen::Vector3d& to, int ticks,
+                                             uint32_t buttons) {
     std::vector<DeviceInput> inputs(size_t(ticks), DeviceInput{});
     for (int n = 0; n < ticks; ++n) {
-        inputs[size_t(n)].X_WT_device = {from.position + (to - from.position) * (double(n) / std::max(1, ticks - 1)), from.rotation};
+        inputs[size_t(n)].X_WT_device = {
+            from.position + (to - from.position) * (double(n) / std::max(1, ticks - 1)), from.rotation};
         inputs[size_t(n)].buttons = buttons;
         inputs[size_t(n)].t_s = n * 1e-3;
     }

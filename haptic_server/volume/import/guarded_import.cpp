@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -138,6 +139,10 @@ bool receive(int file, RawVolume& raw, std::string& error) {
                            const std::function<RawVolume()>& read) {
     for (const int number : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT})
         signal(number, SIG_DFL);
+    sigset_t all;
+    sigfillset(&all);
+    sigprocmask(SIG_UNBLOCK, &all, nullptr);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a reader without its parent would only hold on to what it inherited
     const rlimit no_core{0, 0}, cpu{kMostCpuSeconds, kMostCpuSeconds};
     setrlimit(RLIMIT_CORE, &no_core);
     setrlimit(RLIMIT_CPU, &cpu);

@@ -15,7 +15,8 @@ using test::writeFile;
 class BadInput : public testing::Test {
   protected:
     BadInput() {
-        writeFile(folder_ / "t.csv", "t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons\n0,0,0,0,1,0,0,0,0\n0.001,0,0,0,1,0,0,0,0\n");
+        writeFile(folder_ / "t.csv",
+                  "t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons\n0,0,0,0,1,0,0,0,0\n0.001,0,0,0,1,0,0,0,0\n");
         const auto made = run({"make_phantom", "body", "--kind", "sphere", "--out", folder_ / "ball.nrrd"});
         EXPECT_EQ(made.exit_code, 0) << made.err;
     }
@@ -31,27 +32,35 @@ class BadInput : public testing::Test {
         EXPECT_EQ(finished.out, "");
         EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
         EXPECT_EQ(finished.err.rfind("error: ", 0), 0u) << finished.err;
-        for (const std::string& word : words) EXPECT_NE(finished.err.find(word), std::string::npos) << word << " in: " << finished.err;
+        for (const std::string& word : words)
+            EXPECT_NE(finished.err.find(word), std::string::npos) << word << " in: " << finished.err;
     }
     void expectSceneRefused(const std::string& text, const std::vector<std::string>& words) {
-        expectRefused({"haptic_server", "simulate", "--scene", sceneOf(text), "--trajectory", folder_ / "t.csv"}, words);
+        expectRefused(
+            {"haptic_server", "simulate", "--scene", sceneOf(text), "--trajectory", folder_ / "t.csv"},
+            words);
     }
 
     TemporaryFolder folder_;
 };
 
 TEST_F(BadInput, TheGoodCaseIsAccepted) {
-    const auto finished = run({"haptic_server", "simulate", "--scene", ball(), "--trajectory", folder_ / "t.csv"});
+    const auto finished =
+        run({"haptic_server", "simulate", "--scene", ball(), "--trajectory", folder_ / "t.csv"});
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
 }
 
 TEST_F(BadInput, MissingSceneFile) {
     expectRefused({"haptic_server", "--scene", folder_ / "none.textproto"}, {"none.textproto"});
-    expectRefused({"haptic_server", "simulate", "--scene", folder_ / "none.textproto", "--trajectory", folder_ / "t.csv"}, {"none.textproto"});
+    expectRefused({"haptic_server", "simulate", "--scene", folder_ / "none.textproto", "--trajectory",
+                   folder_ / "t.csv"},
+                  {"none.textproto"});
     expectRefused({"device_daemon", "--scene", folder_ / "none.textproto"}, {"none.textproto"});
 }
 
-TEST_F(BadInput, MissingVolumeFile) { expectSceneRefused("volume { path: \"gone.nrrd\" }", {"gone.nrrd"}); }
+TEST_F(BadInput, MissingVolumeFile) {
+    expectSceneRefused("volume { path: \"gone.nrrd\" }", {"gone.nrrd"});
+}
 
 TEST_F(BadInput, EmptyFolder) {
     std::filesystem::create_directory(folder_ / "empty");
@@ -71,10 +80,24 @@ TEST_F(BadInput, TruncatedSlice) {
     expectSceneRefused("volume { path: \"tooth\" }", {"slice_0080.dcm"});
 }
 
-TEST_F(BadInput, MisspeltField) { expectSceneRefused("volume { path: \"ball.nrrd\" }\nmiling { enabled: true }", {"scene.textproto:2", "miling", "milling"}); }
+TEST_F(BadInput, MisspeltField) {
+    expectSceneRefused("volume { path: \"ball.nrrd\" }\nmiling { enabled: true }",
+                       {"scene.textproto:2", "miling", "milling"});
+}
 
 TEST_F(BadInput, NegativeRadius) {
-    expectSceneRefused("volume { path: \"ball.nrrd\" }\ntool {\n  burr_radius_mm: -1\n}", {"scene.textproto:3", "burr_radius_mm", "-1"});
+    expectSceneRefused("volume { path: \"ball.nrrd\" }\ntool {\n  burr_radius_mm: -1\n}",
+                       {"scene.textproto:3", "burr_radius_mm", "-1"});
+}
+
+TEST_F(BadInput, OctreeLeavesBeyondAllBounds) {
+    ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--dims", "300", "8", "8", "--out",
+                   folder_ / "bar.nrrd"})
+                  .exit_code,
+              0);
+    expectSceneRefused(
+        "volume { path: \"bar.nrrd\" window_low: 0 window_high: 65535 iso_value: 32768 octree_depth: 1 }",
+        {"octree_depth", "leaf_voxels"});
 }
 
 TEST_F(BadInput, UnreadableStl) {
@@ -86,7 +109,8 @@ TEST_F(BadInput, UnreadableStl) {
 TEST_F(BadInput, BadTrajectories) {
     const auto refuse = [&](const std::string& csv, const std::vector<std::string>& words) {
         writeFile(folder_ / "bad.csv", csv);
-        expectRefused({"haptic_server", "simulate", "--scene", ball(), "--trajectory", folder_ / "bad.csv"}, words);
+        expectRefused({"haptic_server", "simulate", "--scene", ball(), "--trajectory", folder_ / "bad.csv"},
+                      words);
     };
     const std::string header = "t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons\n";
     refuse("", {"bad.csv"});
@@ -95,11 +119,12 @@ TEST_F(BadInput, BadTrajectories) {
     refuse(header + "0,0,0,nan,1,0,0,0,0\n", {"bad.csv:2"});
     refuse(header + "0,0,0,0,3,0,0,0,0\n", {"bad.csv:2"});
     refuse(header + "0,0,0,0,1,0,0,0,0\n0,0,0,0,1,0,0,0,0\n", {"bad.csv:3"});
-    refuse(header + "0,0,0,0,1,0,0,0,0\n0.5,0,0,0,1,0,0,0,0\n", {"bad.csv", "rate_hz"});
+    refuse(header + "0,0,0,0,1,0,0,0,0\n0.5,0,0,0,1,0,0,0,0\n", {"bad.csv:3", "rate_hz"});
 }
 
 TEST_F(BadInput, UnwritableOutputs) {
-    const std::vector<std::string> base{"haptic_server", "simulate", "--scene", ball(), "--trajectory", folder_ / "t.csv"};
+    const std::vector<std::string> base{"haptic_server", "simulate",     "--scene",
+                                        ball(),          "--trajectory", folder_ / "t.csv"};
     for (const char* option : {"--trace", "--save-volume", "--save-mesh"}) {
         auto arguments = base;
         arguments.insert(arguments.end(), {option, folder_ / "no/such/folder/file"});
@@ -109,9 +134,12 @@ TEST_F(BadInput, UnwritableOutputs) {
 
 TEST_F(BadInput, WrongArguments) {
     for (const std::vector<std::string>& arguments :
-         {std::vector<std::string>{"haptic_server", "--wrong"}, {"haptic_server"}, {"haptic_server", "simulate"},
+         {std::vector<std::string>{"haptic_server", "--wrong"},
+          {"haptic_server"},
+          {"haptic_server", "simulate"},
           {"make_phantom", "body", "--kind", "cube", "--out", folder_ / "x.nrrd"},
-          {"device_daemon", "--scene"}, {"render_client", "--offscreen"}}) {
+          {"device_daemon", "--scene"},
+          {"render_client", "--offscreen"}}) {
         const auto finished = run(arguments);
         EXPECT_EQ(finished.exit_code, 2) << arguments[0] << ": " << finished.err;
         EXPECT_NE(finished.err, "");

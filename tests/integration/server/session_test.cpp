@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
@@ -24,30 +25,54 @@ using test::writeFile;
 class Session : public testing::Test {
   protected:
     Session() : session_(std::to_string(testSession())), domain_(std::to_string(testDomain())) {
-        EXPECT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder_ / "slab.nrrd"}).exit_code, 0);
+        EXPECT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder_ / "slab.nrrd"}).exit_code,
+                  0);
         const std::string upright = "q_WT { w: 0.70710678 x: 0.70710678 }";
         writeFile(folder_ / "s.textproto",
                   "name: \"session\" volume { path: \"slab.nrrd\" }\n"
                   "device { p_WD_mm { x: 0 y: 0.1 z: 2 } q_WD { w: 0.70710678 x: 0.70710678 } }\n"
                   "simulated_operator {\n"
-                  "  waypoint { time_s: 0 p_WT_mm { x: 0 y: 0.1 z: 3.6 } " + upright + " phase: \"approach\" }\n"
-                  "  waypoint { time_s: 1 p_WT_mm { x: 0 y: 0.1 z: 3.1 } " + upright + " remove: true phase: \"mill\" }\n"
-                  "  waypoint { time_s: 3 p_WT_mm { x: 0 y: 0.1 z: 0.6 } " + upright + " phase: \"withdraw\" }\n"
-                  "  waypoint { time_s: 4 p_WT_mm { x: 0 y: 0.1 z: 3.6 } " + upright + " }\n"
-                  "}\n");
+                  "  waypoint { time_s: 0 p_WT_mm { x: 0 y: 0.1 z: 3.6 } " +
+                      upright +
+                      " phase: \"approach\" }\n"
+                      "  waypoint { time_s: 1 p_WT_mm { x: 0 y: 0.1 z: 3.1 } " +
+                      upright +
+                      " remove: true phase: \"mill\" }\n"
+                      "  waypoint { time_s: 3 p_WT_mm { x: 0 y: 0.1 z: 0.6 } " +
+                      upright +
+                      " phase: \"withdraw\" }\n"
+                      "  waypoint { time_s: 4 p_WT_mm { x: 0 y: 0.1 z: 3.6 } " +
+                      upright +
+                      " }\n"
+                      "}\n");
     }
     std::vector<std::string> server(const std::vector<std::string>& more = {}) {
-        std::vector<std::string> arguments{"haptic_server", "--scene", folder_ / "s.textproto", "--session", session_,
-                                           "--domain", domain_, "--report", folder_ / "report.json", "--best-effort-rt"};
+        std::vector<std::string> arguments{
+            "haptic_server", "--scene",  folder_ / "s.textproto", "--session",       session_, "--domain",
+            domain_,         "--report", folder_ / "report.json", "--best-effort-rt"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
     }
     std::vector<std::string> daemon() {
-        return {"device_daemon", "--scene", folder_ / "s.textproto", "--session", session_, "--best-effort-rt"};
+        return {"device_daemon", "--scene", folder_ / "s.textproto",
+                "--session",     session_,  "--best-effort-rt"};
     }
     std::vector<std::string> client(const std::string& out, int frames, int interval_ms) {
-        return {"render_client", "--offscreen", "--frames", std::to_string(frames), "--interval-ms", std::to_string(interval_ms),
-                "--out", folder_ / out, "--size", "320x200", "--wait-complete", "--session", session_, "--domain", domain_};
+        return {"render_client",
+                "--offscreen",
+                "--frames",
+                std::to_string(frames),
+                "--interval-ms",
+                std::to_string(interval_ms),
+                "--out",
+                folder_ / out,
+                "--size",
+                "320x200",
+                "--wait-complete",
+                "--session",
+                session_,
+                "--domain",
+                domain_};
     }
     nlohmann::json report() { return nlohmann::json::parse(test::readFile(folder_ / "report.json")); }
 
@@ -75,21 +100,46 @@ TEST_F(Session, AKilledClientChangesNothingForTheServer) {
     EXPECT_FALSE(json["fault_ticks"].contains("bad_device_pose"));
 }
 
+// One viewer sees every change from the start, the other comes when all is done.
 TEST_F(Session, ALateClientShowsTheSamePicture) {
     Process server_process(server());
+    Process early(client("early", 1000, 250));
+    std::this_thread::sleep_for(500ms);
     Process daemon_process(daemon());
     EXPECT_EQ(daemon_process.wait().exit_code, 0);
-    std::this_thread::sleep_for(500ms);
-    const auto first = run(client("first", 1, 100));
+    std::this_thread::sleep_for(1500ms);
+    early.signal(SIGTERM);
+    const auto early_end = early.wait();
     const auto late = run(client("late", 1, 100));
-    EXPECT_EQ(first.exit_code, 0) << first.err;
+    EXPECT_EQ(early_end.exit_code, 0) << early_end.err;
     EXPECT_EQ(late.exit_code, 0) << late.err;
-    const auto first_json = nlohmann::json::parse(first.out), late_json = nlohmann::json::parse(late.out);
-    EXPECT_EQ(first_json["revision_digest"], late_json["revision_digest"]);
-    EXPECT_TRUE(first_json["complete"] && late_json["complete"]);
-    EXPECT_GT(first_json["triangles"], 1000);
+    std::vector<std::string> lines;
+    std::istringstream stream(early_end.out);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    ASSERT_GT(lines.size(), 5u);
+    const auto first_json = nlohmann::json::parse(lines.front());
+    const auto early_json = nlohmann::json::parse(lines.back()), late_json = nlohmann::json::parse(late.out);
+    EXPECT_NE(first_json["revision_digest"], early_json["revision_digest"]);  // it saw the milling
+    EXPECT_EQ(early_json["revision_digest"], late_json["revision_digest"]);
+    EXPECT_TRUE(early_json["complete"] && late_json["complete"]);
+    const auto picture = [this](const std::string& folder, const nlohmann::json& json) {
+        return test::readFile(folder_ / (folder + "/" + json["file"].get<std::string>()));
+    };
+    EXPECT_GT(late_json["triangles"], 1000);
+    EXPECT_EQ(early_json["triangles"], late_json["triangles"]);
+    EXPECT_FALSE(picture("late", late_json).empty());
     server_process.signal(SIGTERM);
     EXPECT_EQ(server_process.wait().exit_code, 0);
+}
+
+TEST_F(Session, AnOutputThatCannotBeWrittenIsRefusedBeforeTheSession) {
+    for (const char* option : {"--trace", "--save-volume", "--save-mesh"}) {
+        const auto finished = run(server({option, folder_ / "no/such/folder/file"}));
+        EXPECT_EQ(finished.exit_code, 2) << finished.err;
+        EXPECT_NE(finished.err.find("no/such/folder/file"), std::string::npos) << finished.err;
+    }
+    std::filesystem::create_directory(folder_ / "report.json");  // a folder where the report should go
+    EXPECT_EQ(run(server()).exit_code, 2);
 }
 
 TEST_F(Session, AKilledDaemonRampsTheForceDownAndANewOneGoesOn) {
@@ -110,24 +160,32 @@ TEST_F(Session, AKilledDaemonRampsTheForceDownAndANewOneGoesOn) {
     std::string line;
     std::getline(trace, line);
     bool saw_zero_while_stale = false, saw_fresh_after_stale = false;
+    double force_before = 0, largest_step_down = 0, largest_force = 0;
     while (std::getline(trace, line)) {
         std::vector<double> cells;
         std::istringstream stream(line);
         for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(std::stod(cell));
         const bool is_stale = uint32_t(cells[25]) & kFaultStaleDevice;
+        const double force = std::hypot(cells[15], cells[16], cells[17]);
+        if (is_stale) largest_step_down = std::max(largest_step_down, force_before - force);
+        largest_force = std::max(largest_force, force);
+        force_before = force;
         if (is_stale) EXPECT_EQ(cells[23], 0) << "milled without a hand";
         if (is_stale && cells[15] == 0 && cells[16] == 0 && cells[17] == 0) saw_zero_while_stale = true;
         if (saw_zero_while_stale && !is_stale && cells[21] > 0) saw_fresh_after_stale = true;
     }
     EXPECT_TRUE(saw_zero_while_stale);
+    EXPECT_LT(largest_step_down, 0.3 * largest_force) << "a ramp over 50 ms has no large steps";
     EXPECT_TRUE(saw_fresh_after_stale);
 }
 
 TEST_F(Session, WithoutPermissionTheServerSaysWhatIsMissing) {
-    const std::string drop = geteuid() == 0 ? "setpriv --bounding-set=-sys_nice,-ipc_lock --inh-caps=-sys_nice,-ipc_lock " : "";
-    const auto finished = run({"/bin/sh", "-c",
-                               "ulimit -r 0; exec " + drop + std::string(BONEMILL_BIN_DIR) + "/haptic_server --scene " +
-                                   (folder_ / "s.textproto") + " --session " + session_ + " --domain " + domain_});
+    const std::string drop =
+        geteuid() == 0 ? "setpriv --bounding-set=-sys_nice,-ipc_lock --inh-caps=-sys_nice,-ipc_lock " : "";
+    const auto finished =
+        run({"/bin/sh", "-c",
+             "ulimit -r 0; exec " + drop + std::string(BONEMILL_BIN_DIR) + "/haptic_server --scene " +
+                 (folder_ / "s.textproto") + " --session " + session_ + " --domain " + domain_});
     EXPECT_EQ(finished.exit_code, 2) << finished.err;
     EXPECT_NE(finished.err.find("error: "), std::string::npos) << finished.err;
     EXPECT_NE(finished.err.find("--best-effort-rt"), std::string::npos) << finished.err;

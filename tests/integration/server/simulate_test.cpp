@@ -62,7 +62,8 @@ TEST(Simulate, TwoRunsGiveTheSameHashAndAnotherPathAnotherOne) {
     writeFile(folder / "a.csv", plunge(0.03e-3, -0.08e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
     writeFile(folder / "b.csv", plunge(0.03e-3, -0.07e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
     const auto go = [&](const char* trajectory) {
-        return simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto", "--trajectory", folder / trajectory});
+        return simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto", "--trajectory",
+                             folder / trajectory});
     };
     const auto first = go("a.csv"), second = go("a.csv"), other = go("b.csv");
     EXPECT_EQ(first["state_hash"], second["state_hash"]);
@@ -77,13 +78,15 @@ TEST(Simulate, TraceHasTheDocumentedColumnsAndAddsUp) {
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
     writeFile(folder / "s.textproto", "volume { path: \"slab.nrrd\" }");
     writeFile(folder / "a.csv", plunge(0.03e-3, -0.08e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
-    const auto json = simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto", "--trajectory", folder / "a.csv",
-                                    "--trace", folder / "o.csv"});
+    const auto json = simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto",
+                                    "--trajectory", folder / "a.csv", "--trace", folder / "o.csv"});
     std::string header;
     const auto rows = readCsv(folder / "o.csv", header);
     EXPECT_EQ(header,
-              "t_s,spo_px_m,spo_py_m,spo_pz_m,spo_qw,spo_qx,spo_qy,spo_qz,dev_px_m,dev_py_m,dev_pz_m,dev_qw,dev_qx,dev_qy,"
-              "dev_qz,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,contacts,max_penetration_m,removed_voxels,removed_mm3,faults,tick_us");
+              "t_s,spo_px_m,spo_py_m,spo_pz_m,spo_qw,spo_qx,spo_qy,spo_qz,dev_px_m,dev_py_m,dev_pz_m,dev_qw,"
+              "dev_qx,dev_qy,"
+              "dev_qz,fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,contacts,max_penetration_m,removed_voxels,removed_mm3,"
+              "faults,tick_us");
     ASSERT_EQ(rows.size(), 900u);
     double removed_voxels = 0, removed_mm3 = 0;
     for (const auto& row : rows) {
@@ -91,7 +94,8 @@ TEST(Simulate, TraceHasTheDocumentedColumnsAndAddsUp) {
         removed_voxels += row[23];
         removed_mm3 += row[24];
         // What the hand feels is the coupling between the new tool pose and the device (eq 32).
-        for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(row[15 + axis], 3000 * (row[1 + axis] - row[8 + axis]), 1e-9);
+        for (int axis = 0; axis < 3; ++axis)
+            EXPECT_NEAR(row[15 + axis], 3000 * (row[1 + axis] - row[8 + axis]), 1e-9);
     }
     EXPECT_EQ(removed_voxels, json["removed_voxels"].get<double>());
     EXPECT_NEAR(removed_mm3, json["removed_mm3"].get<double>(), 1e-9);
@@ -104,17 +108,22 @@ TEST(Simulate, SavedVolumeGoesOnWhereTheRunEnded) {
     writeFile(folder / "s.textproto", "volume { path: \"slab.nrrd\" }");
     writeFile(folder / "mill.csv", plunge(0.03e-3, -0.08e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
     writeFile(folder / "away.csv", plunge(0, 0, 7e-3, 7e-3, 2, 0, 0));
-    const auto milled = simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto", "--trajectory",
-                                      folder / "mill.csv", "--save-volume", folder / "milled.nrrd", "--save-mesh", folder / "milled.stl"});
-    writeFile(folder / "again.textproto", "volume { path: \"milled.nrrd\" window_low: 0 window_high: 65535 iso_value: 32768 }");
-    const auto again = simulateOnce({"haptic_server", "simulate", "--scene", folder / "again.textproto", "--trajectory", folder / "away.csv"});
-    EXPECT_NEAR(again["bone_mm3"].get<double>(), milled["bone_mm3"].get<double>(), 1e-3 * milled["bone_mm3"].get<double>());
+    const auto milled = simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto",
+                                      "--trajectory", folder / "mill.csv", "--save-volume",
+                                      folder / "milled.nrrd", "--save-mesh", folder / "milled.stl"});
+    writeFile(folder / "again.textproto",
+              "volume { path: \"milled.nrrd\" window_low: 0 window_high: 65535 iso_value: 32768 }");
+    const auto again = simulateOnce({"haptic_server", "simulate", "--scene", folder / "again.textproto",
+                                     "--trajectory", folder / "away.csv"});
+    EXPECT_NEAR(again["bone_mm3"].get<double>(), milled["bone_mm3"].get<double>(),
+                1e-3 * milled["bone_mm3"].get<double>());
     EXPECT_LT(milled["bone_mm3"].get<double>(), milled["bone_before_mm3"].get<double>() - 3);
-    EXPECT_EQ(std::filesystem::file_size(folder / "milled.stl"), 84 + 50 * milled["mesh"]["triangles"].get<size_t>());
+    EXPECT_EQ(std::filesystem::file_size(folder / "milled.stl"),
+              84 + 50 * milled["mesh"]["triangles"].get<size_t>());
 }
 
-// The corridor in the tooth is where the trajectory says. Oracle: all voxels of the scan that lie inside the burr at any
-// traced tool position; independent of the tick's own milling.
+// The corridor in the tooth is where the trajectory says. Oracle: all voxels of the scan that lie inside the
+// burr at any traced tool position; independent of the tick's own milling.
 TEST(Simulate, CorridorInTheToothIsTheSweptBurr) {
     const TemporaryFolder folder;
     ASSERT_EQ(run({"make_phantom", "tooth", "--out", folder / "tooth"}).exit_code, 0);
@@ -122,8 +131,8 @@ TEST(Simulate, CorridorInTheToothIsTheSweptBurr) {
     writeFile(folder / "s.textproto", "volume { path: \"tooth\" iso_value: 600 octree_depth: 3 }");
     // From above a cusp straight down into the middle of the tooth, at 1 mm/s.
     writeFile(folder / "a.csv", plunge(2.7e-3, -2.45e-3, 21e-3, 12.2e-3, 8800, 400, 1));
-    const auto json = simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto", "--trajectory", folder / "a.csv",
-                                    "--trace", folder / "o.csv"});
+    const auto json = simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto",
+                                    "--trajectory", folder / "a.csv", "--trace", folder / "o.csv"});
     std::string header;
     const auto trace = readCsv(folder / "o.csv", header);
     const RawVolume raw = importVolume(folder / "tooth");
@@ -133,12 +142,14 @@ TEST(Simulate, CorridorInTheToothIsTheSweptBurr) {
     for (const auto& row : trace) {
         const Eigen::Vector3d center = X_VW * Eigen::Vector3d(row[1], row[2], row[3]);
         const Eigen::Vector3i low = ((center.array() - kBurr) / g.spacing.array()).floor().cast<int>().max(0);
-        const Eigen::Vector3i high = ((center.array() + kBurr) / g.spacing.array()).ceil().cast<int>().min(g.dims.array() - 1);
+        const Eigen::Vector3i high =
+            ((center.array() + kBurr) / g.spacing.array()).ceil().cast<int>().min(g.dims.array() - 1);
         for (int k = low.z(); k <= high.z(); ++k)
             for (int j = low.y(); j <= high.y(); ++j)
                 for (int i = low.x(); i <= high.x(); ++i)
                     if ((g.spacing.cwiseProduct(Eigen::Vector3d(i, j, k)) - center).norm() < kBurr)
-                        swept[size_t(i) + size_t(g.dims.x()) * (size_t(j) + size_t(g.dims.y()) * size_t(k))] = true;
+                        swept[size_t(i) + size_t(g.dims.x()) * (size_t(j) + size_t(g.dims.y()) * size_t(k))] =
+                            true;
     }
     size_t bone_in_sweep = 0;
     for (size_t n = 0; n < swept.size(); ++n) bone_in_sweep += swept[n] && raw.values[n] >= kIso;

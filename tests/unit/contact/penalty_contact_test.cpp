@@ -24,7 +24,9 @@ class SphereOnPlane : public testing::Test {
     ContactResult contactAt(const Pose& X_VT) const {
         return penaltyContact(config_, bone_.volume, bone_.lattice, bone_.shell, tool_, X_VT);
     }
-    static Pose pressed(double depth) { return {{5.01e-3, 4.97e-3, kBoneTop + kToolRadius - depth}, Eigen::Quaterniond::Identity()}; }
+    static Pose pressed(double depth) {
+        return {{5.01e-3, 4.97e-3, kBoneTop + kToolRadius - depth}, Eigen::Quaterniond::Identity()};
+    }
 
     PenaltyContactConfig config_;
     BoneModel bone_;
@@ -69,7 +71,8 @@ TEST_F(SphereOnPlane, FewContactsKeepFullStiffness) {
     ASSERT_LE(result.contacts, config_.full_stiffness_contacts);
     PenaltyContactConfig doubled = config_;
     doubled.point_stiffness *= 2;
-    const ContactResult stiff = penaltyContact(doubled, bone_.volume, bone_.lattice, bone_.shell, tool_, pressed(depth));
+    const ContactResult stiff =
+        penaltyContact(doubled, bone_.volume, bone_.lattice, bone_.shell, tool_, pressed(depth));
     EXPECT_NEAR(stiff.wrench.force.z() / result.wrench.force.z(), 2, 1e-12);
 }
 
@@ -111,14 +114,16 @@ TEST_F(SphereOnPlane, SumsArePointByPointTheThesisFormulas) {
     EXPECT_LT((result.derivative.bottomRightCorner(3, 3) - rotational).norm(), 1e-4 * rotational.norm());
 }
 
-// One bone point b with normal n, the tool a half space whose face looks along -n: the printed derivatives are right
-// but for the two errors that the baseline keeps (eq 7 turns the bone's normal with the tool; eq 8 lacks + F~).
+// One bone point b with normal n, the tool a half space whose face looks along -n: the printed derivatives
+// are right but for the two errors that the baseline keeps (eq 7 turns the bone's normal with the tool; eq 8
+// lacks + F~).
 TEST(PrintedDerivatives, EqualFiniteDifferencesButForTheTwoKnownErrors) {
     const double k = 1200;
     const Eigen::Vector3d n = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
     const Eigen::Vector3d r(2e-3, 5e-3, -1e-3);
     const double d = 0.3e-3;
-    // Contact wrench after the tool moved by x and turned by w about its point: depth of b below the turned face.
+    // Contact wrench after the tool moved by x and turned by w about its point: depth of b below the turned
+    // face.
     const auto wrench_at = [&](const Eigen::Vector3d& x, const Eigen::Vector3d& w) {
         const Eigen::Quaterniond turn = expRotation(w);
         const Eigen::Vector3d r_now = r - x;

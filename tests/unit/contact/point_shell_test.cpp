@@ -36,7 +36,8 @@ void expectSameBits(const PointShell& a, const PointShell& b, uint32_t leaves) {
     }
 }
 
-class PointShellAtScale : public testing::TestWithParam<std::tuple<int, int>> {};  // scaling factor, leaf cells
+class PointShellAtScale : public testing::TestWithParam<std::tuple<int, int>> {
+};  // scaling factor, leaf cells
 
 TEST_P(PointShellAtScale, PointsLieOnTheSphereAndNormalsPointOut) {
     const auto [s, leaf_cells] = GetParam();
@@ -72,11 +73,13 @@ TEST_P(PointShellAtScale, IncrementalRefreshGivesTheBitsOfAFullRebuild) {
     std::uniform_int_distribution<int> index(0, 36), density(0, kMaxDensity), extent(0, 5);
     for (int edit = 0; edit < 60; ++edit) {
         const Eigen::Vector3i low(index(random), index(random), index(random));
-        const IndexBox box = IndexBox{low, low + Eigen::Vector3i(extent(random), extent(random), extent(random))}
-                                 .clamped(Eigen::Vector3i::Zero(), Eigen::Vector3i::Constant(36));
+        const IndexBox box =
+            IndexBox{low, low + Eigen::Vector3i(extent(random), extent(random), extent(random))}.clamped(
+                Eigen::Vector3i::Zero(), Eigen::Vector3i::Constant(36));
         for (int k = box.min.z(); k <= box.max.z(); ++k)
             for (int j = box.min.y(); j <= box.max.y(); ++j)
-                for (int i = box.min.x(); i <= box.max.x(); ++i) volume.set(i, j, k, Density(density(random)));
+                for (int i = box.min.x(); i <= box.max.x(); ++i)
+                    volume.set(i, j, k, Density(density(random)));
         lattice.refreshRanges(volume, box);
         ASSERT_TRUE(shell.refresh(volume, lattice, box));
         expectSameBits(shell, PointShell(volume, lattice, s), lattice.leafCount());

@@ -11,7 +11,8 @@ TEST(Pose, LogInvertsExpUpToPi) {
     std::mt19937 random(1);
     std::normal_distribution<double> normal;
     for (const double angle : {0.0, 1e-9, 5e-7, 2e-6, 1e-3, 1.0, 3.0, 3.1415}) {
-        const Eigen::Vector3d theta = angle * Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+        const Eigen::Vector3d theta =
+            angle * Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
         EXPECT_LT((logRotation(expRotation(theta)) - theta).norm(), 1e-12 * (1 + angle)) << angle;
     }
 }
@@ -39,7 +40,10 @@ TEST(Pose, InverseAndIncrementFollowTheConventions) {
     EXPECT_LT((X_AB.inverse() * (X_AB * p) - p).norm(), 1e-15);
     const Eigen::Vector3d omega(0.01, -0.02, 0.03);
     const Pose moved = X_AB.incremented({0.1, 0, 0}, omega);
-    EXPECT_LT((moved.rotation.toRotationMatrix() - expRotation(omega).toRotationMatrix() * X_AB.rotation.toRotationMatrix()).norm(), 1e-14);
+    EXPECT_LT((moved.rotation.toRotationMatrix() -
+               expRotation(omega).toRotationMatrix() * X_AB.rotation.toRotationMatrix())
+                  .norm(),
+              1e-14);
     EXPECT_LT((moved.position - Eigen::Vector3d(1.1, 2, 3)).norm(), 1e-15);
 }
 

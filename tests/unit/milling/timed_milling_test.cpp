@@ -13,8 +13,9 @@ constexpr double kRadius = 2.2e-3;
 constexpr double kDt = 1e-3;
 
 BoneModel solidBlock() {
-    return BoneModel(test::bodyVolume(test::cubeGeometry(33, kVoxel), [](const Eigen::Vector3d&) { return -1.0; }),
-                     Eigen::Vector3i::Constant(8), 1);
+    return BoneModel(
+        test::bodyVolume(test::cubeGeometry(33, kVoxel), [](const Eigen::Vector3d&) { return -1.0; }),
+        Eigen::Vector3i::Constant(8), 1);
 }
 
 TEST(TimedMilling, TakesExactlyTheVoxelsInsideTheBurr) {
@@ -53,7 +54,8 @@ TEST(TimedMilling, AddingUndoesRemovingAndSaturates) {
     const MillingResult removed = milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
     const MillingResult added = milling.apply(bone.volume, bone.lattice, bone.shell, center, +1, kDt);
     EXPECT_EQ(removed.removed_voxels, added.added_voxels);
-    for (size_t i = bone.volume.offset(0, 0, 0); i <= bone.volume.offset(2, 0, 0); ++i) EXPECT_EQ(bone.volume.at(i), kMaxDensity);
+    for (size_t i = bone.volume.offset(0, 0, 0); i <= bone.volume.offset(2, 0, 0); ++i)
+        EXPECT_EQ(bone.volume.at(i), kMaxDensity);
     EXPECT_EQ(bone.volume.at(16, 16, 16), kMaxDensity);
     const MillingResult again = milling.apply(bone.volume, bone.lattice, bone.shell, center, +1, kDt);
     EXPECT_TRUE(again.changed.isEmpty());
@@ -65,7 +67,8 @@ TEST(TimedMilling, AnUnchangedVoxelMarksNoLeaf) {
     const Eigen::Vector3d center(8e-3, 8e-3, 8e-3);
     milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
     std::vector<uint32_t> versions;
-    for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf) versions.push_back(bone.lattice.version(leaf));
+    for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
+        versions.push_back(bone.lattice.version(leaf));
     milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);  // nothing left there
     for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf) {
         EXPECT_EQ(bone.lattice.version(leaf), versions[leaf]);

@@ -27,14 +27,17 @@ struct Bench {
         geometry.X_WV = X_WV;
         return test::bodyVolume(geometry, test::halfSpace({0, 0, kTop}, Eigen::Vector3d::UnitZ()));
     }
-    Pose atV(const Eigen::Vector3d& p_V) const { return bone.volume.geometry().X_WV * Pose{p_V, Eigen::Quaterniond::Identity()}; }
+    Pose atV(const Eigen::Vector3d& p_V) const {
+        return bone.volume.geometry().X_WV * Pose{p_V, Eigen::Quaterniond::Identity()};
+    }
     Eigen::Vector3d inV(const double (&p_W)[3]) const {
         return bone.volume.geometry().X_WV.inverse() * Eigen::Vector3d(p_W[0], p_W[1], p_W[2]);
     }
     std::vector<TickRecord> run(const std::vector<DeviceInput>& inputs) {
         HapticTick tick(config, bone, tool, nullptr);
         test::ScriptedIo io(inputs);
-        while (tick.tick(io)) {}
+        while (tick.tick(io)) {
+        }
         return io.records;
     }
     double boneVolume() const {
@@ -93,13 +96,14 @@ TEST(HapticTick, SpeedLimitHoldsTheToolBack) {
 TEST(HapticTick, BadDevicePosesAreRefusedAndNothingNonFiniteComesOut) {
     Bench bench;
     const Pose start = bench.atV(kStart);
-    auto inputs = test::straightPath(start, start.position, 6, kButtonRemove);
+    auto inputs = test::straightPath(start, start.position, 7, kButtonRemove);
     inputs[2].X_WT_device.position.x() = std::numeric_limits<double>::quiet_NaN();
     inputs[3].X_WT_device.rotation.coeffs().setZero();
     inputs[4].X_WT_device.position.x() = std::numeric_limits<double>::infinity();
+    inputs[5].X_WT_device.position.x() = 1e160;  // finite, but its square is not
     const auto records = bench.run(inputs);
     for (size_t n = 0; n < records.size(); ++n) {
-        EXPECT_EQ(bool(records[n].faults & kFaultBadDevicePose), n >= 2 && n <= 4) << n;
+        EXPECT_EQ(bool(records[n].faults & kFaultBadDevicePose), n >= 2 && n <= 5) << n;
         for (const double v : records[n].f_hand_W) EXPECT_TRUE(std::isfinite(v));
         for (const double v : records[n].p_WT) EXPECT_TRUE(std::isfinite(v));
     }
@@ -115,11 +119,37 @@ TEST(HapticTick, StaleDeviceMillsNothingAndForceFollowsTheRamp) {
         inputs[n].force_factor = 0.25;
     }
     const auto records = bench.run(inputs);
-    const auto force = [](const TickRecord& r) { return Eigen::Vector3d(r.f_hand_W[0], r.f_hand_W[1], r.f_hand_W[2]).norm(); };
+    const auto force = [](const TickRecord& r) {
+        return Eigen::Vector3d(r.f_hand_W[0], r.f_hand_W[1], r.f_hand_W[2]).norm();
+    };
     EXPECT_GT(force(records[199]), 0.1);
     EXPECT_NEAR(force(records[299]), 0.25 * force(records[199]), 0.05 * force(records[199]));
     EXPECT_TRUE(records[250].faults & kFaultStaleDevice);
     for (const TickRecord& r : records) EXPECT_EQ(r.removed_voxels, 0u);
+}
+
+TEST(HapticTick, WorkBeyondTheDeadlineIsAnOverrun) {
+    Bench bench;
+    const Pose start = bench.atV(kStart);
+    auto inputs = test::straightPath(start, start.position, 2, 0);
+    inputs[1].deadline_ns = 1;  // long past
+    const auto records = bench.run(inputs);
+    EXPECT_FALSE(records[0].faults & kFaultOverrun);
+    EXPECT_TRUE(records[1].faults & kFaultOverrun);
+}
+
+TEST(HapticTick, PausedMillingTakesNothingButIsFelt) {
+    Bench bench;
+    VolumeReset reset(bench.bone);
+    reset.pauseMilling(true);
+    HapticTick tick(bench.config, bench.bone, bench.tool, &reset);
+    const Pose start = bench.atV(kStart);
+    test::ScriptedIo io(test::straightPath(start, bench.atV(kStart - Eigen::Vector3d(0, 0, 1e-3)).position,
+                                           400, kButtonRemove));
+    while (tick.tick(io)) {
+    }
+    for (const TickRecord& r : io.records) EXPECT_EQ(r.removed_voxels, 0u);
+    EXPECT_GT(io.records.back().contacts, 0u);
 }
 
 // The corridor is where the trajectory says: a straight feed into a slab leaves a round-bottomed hole.

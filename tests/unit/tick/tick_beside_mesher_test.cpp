@@ -1,5 +1,5 @@
-// Tick, mesher and publisher threads at once, as in the live server: clean under ThreadSanitizer, and what the mesher
-// streamed is a full remesh.
+// Tick, mesher and publisher threads at once, as in the live server: clean under ThreadSanitizer, and what
+// the mesher streamed is a full remesh.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -20,7 +20,8 @@ namespace {
 // ScriptedIo whose records leave through the ring, as in a session.
 class RingIo final : public TickIo {
   public:
-    RingIo(std::vector<DeviceInput> inputs, SpscRing<TickRecord>& ring) : script_(std::move(inputs)), ring_(ring) {}
+    RingIo(std::vector<DeviceInput> inputs, SpscRing<TickRecord>& ring)
+        : script_(std::move(inputs)), ring_(ring) {}
     bool read(DeviceInput& input) noexcept override { return script_.read(input); }
     int64_t write(const Wrench& wrench) noexcept override { return script_.write(wrench); }
     int64_t now() noexcept override { return script_.now(); }
@@ -32,14 +33,17 @@ class RingIo final : public TickIo {
 };
 
 TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
-    BoneModel bone(test::bodyVolume(test::cubeGeometry(44, 0.125e-3), test::halfSpace({0, 0, 4e-3}, Eigen::Vector3d::UnitZ())),
+    BoneModel bone(test::bodyVolume(test::cubeGeometry(44, 0.125e-3),
+                                    test::halfSpace({0, 0, 4e-3}, Eigen::Vector3d::UnitZ())),
                    Eigen::Vector3i::Constant(8), 1);
     const SdfGrid tool = test::sphereTool(1e-3, 0.125e-3);
     TickConfig config;
     config.milling.removal_rate = 1e9;  // few ticks move much: ThreadSanitizer slows each a hundred times
     HapticTick tick(config, bone, tool, nullptr);
     SpscRing<TickRecord> ring(1024);
-    RingIo io(test::straightPath({{2e-3, 3e-3, 4.8e-3}, Eigen::Quaterniond::Identity()}, {4.2e-3, 3e-3, 2e-3}, 150, kButtonRemove), ring);
+    RingIo io(test::straightPath({{2e-3, 3e-3, 4.8e-3}, Eigen::Quaterniond::Identity()}, {4.2e-3, 3e-3, 2e-3},
+                                 150, kButtonRemove),
+              ring);
     Publisher publisher({.domain = testDomain(), .session = testSession(), .epoch = 0});
 
     MeshOutbox outbox;
@@ -59,14 +63,16 @@ TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
         publisher.publishStatus({});
     };
     std::thread tick_thread([&] {
-        while (tick.tick(io)) {}
+        while (tick.tick(io)) {
+        }
         is_milling = false;
     });
     std::thread mesher_thread([&] {
         Mesher mesher(bone.volume, bone.lattice);
         const auto put = [&](NodeMesh&& mesh) { outbox.put(std::move(mesh)); };
         while (is_milling) mesher.pass(put, 16);
-        while (mesher.pass(put).pending > 0) {}
+        while (mesher.pass(put).pending > 0) {
+        }
     });
     while (is_milling) publish();
     tick_thread.join();

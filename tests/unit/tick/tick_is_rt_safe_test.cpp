@@ -1,4 +1,5 @@
-// tick() allocates nothing and takes no lock: counted by replaced heap and lock functions, over everything a tick does.
+// tick() allocates nothing and takes no lock: counted by replaced heap and lock functions, over everything a
+// tick does.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -14,7 +15,8 @@ namespace {
 class TickIsRtSafe : public testing::Test {
   protected:
     TickIsRtSafe()
-        : bone_(test::bodyVolume(test::cubeGeometry(64, 0.125e-3), test::halfSpace({0, 0, 5e-3}, Eigen::Vector3d::UnitZ())),
+        : bone_(test::bodyVolume(test::cubeGeometry(64, 0.125e-3),
+                                 test::halfSpace({0, 0, 5e-3}, Eigen::Vector3d::UnitZ())),
                 Eigen::Vector3i::Constant(16), 1),
           tool_(test::sphereTool(1e-3, 0.125e-3)),
           reset_(bone_),
@@ -24,7 +26,8 @@ class TickIsRtSafe : public testing::Test {
     void expectQuiet(const std::vector<DeviceInput>& inputs) {
         test::ScriptedIo io(inputs);
         RtProbe probe;
-        while (tick_.tick(io)) {}
+        while (tick_.tick(io)) {
+        }
         probe.stop();
         EXPECT_EQ(probe.heapCalls(), 0u) << probe.firstCall();
         EXPECT_EQ(probe.lockCalls(), 0u) << probe.firstCall();

@@ -10,7 +10,8 @@ namespace {
 
 TEST(VolumeReset, GivesBackTheScannedBoneAndItsShell) {
     const auto make = [] {
-        return BoneModel(test::bodyVolume(test::cubeGeometry(40, 0.5e-3), test::sphereAt(Eigen::Vector3d::Constant(10e-3), 7e-3)),
+        return BoneModel(test::bodyVolume(test::cubeGeometry(40, 0.5e-3),
+                                          test::sphereAt(Eigen::Vector3d::Constant(10e-3), 7e-3)),
                          Eigen::Vector3i::Constant(8), 1);
     };
     BoneModel bone = make();
@@ -18,10 +19,13 @@ TEST(VolumeReset, GivesBackTheScannedBoneAndItsShell) {
     VolumeReset reset(bone);
     TimedMilling milling({.removal_rate = 1e9}, bone.volume, 2e-3);
     for (int n = 0; n < 20; ++n)
-        milling.apply(bone.volume, bone.lattice, bone.shell, Eigen::Vector3d(3e-3 + n * 0.5e-3, 9e-3, 11e-3), -1, 1e-3);
+        milling.apply(bone.volume, bone.lattice, bone.shell, Eigen::Vector3d(3e-3 + n * 0.5e-3, 9e-3, 11e-3),
+                      -1, 1e-3);
     ASSERT_NE(bone.volume.at(16, 18, 22), original.volume.at(16, 18, 22));
     EXPECT_FALSE(reset.isRunning());
     reset.request();
+    EXPECT_FALSE(reset.isRunning());
+    reset.startIfRequested();
     int ticks = 0;
     while (reset.isRunning()) {
         ASSERT_TRUE(reset.restoreSome(bone));
@@ -32,7 +36,8 @@ TEST(VolumeReset, GivesBackTheScannedBoneAndItsShell) {
         for (int j = 0; j < 40; ++j)
             for (int i = 0; i < 40; ++i) ASSERT_EQ(bone.volume.at(i, j, k), original.volume.at(i, j, k));
     EXPECT_EQ(bone.shell.pointCount(), original.shell.pointCount());
-    for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf) EXPECT_EQ(bone.lattice.version(leaf) % 2, 0u);
+    for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
+        EXPECT_EQ(bone.lattice.version(leaf) % 2, 0u);
 }
 
 }  // namespace
