@@ -143,23 +143,15 @@ def collect_run(out, name):
 # --- pictures --------------------------------------------------------------------------------------------------
 
 
-def live_frames(frames):
-    """Those during which the server's loop went on."""
-    live = []
-    for frame in frames:
-        if frame.get("tick", 0) > (live[-1]["tick"] if live else 0):
-            live.append(frame)
-    return live
-
-
-def choose_pictures(out, name):
+def choose_pictures(out, name, ticks):
     """before: the whole bone before the device came; during: the middle of the run; after: the last one while
     the loop ran. Copied beside the report; returns their names."""
     folder = out / f"frames_{name}"
     chosen = {"before": folder / "before" / "frame_0000.png"}
-    frames = live_frames(json_lines(out / "logs" / f"client_{name}.log"))
+    # Frames of the very end may already say that the server is gone.
+    frames = [f for f in json_lines(out / "logs" / f"client_{name}.log") if 0 < f.get("tick", 0) < ticks - 100]
     if frames:
-        half = frames[-1]["tick"] / 2
+        half = ticks / 2
         chosen["during"] = folder / min(frames, key=lambda frame: abs(frame["tick"] - half))["file"]
         chosen["after"] = folder / frames[-1]["file"]
     pictures = {}
@@ -418,7 +410,8 @@ LIMITS = """- Hand and device are simulated: a hand impedance that follows waypo
   six-legged device whose dimensions are placeholders. No person felt this.
 - The thesis' runs were made by hand on other bone with a scaling factor of 3; the rates compare, the curves only in kind.
 - All three programs shared this machine, and the viewer drew on the processor. On two cores that costs latency.
-- The force model is the thesis' own, with its known errors (docs/architecture.md names them).
+- The force model is the thesis' own, with its known errors (docs/architecture.md names them): the more points touch, the
+  softer each becomes, so a long shaft sinks deep into a wall.
 - cyclictest ran right before each run, while the server idled, not during it: it would disturb what it measures."""
 
 
@@ -467,7 +460,7 @@ def main():
     out = arguments.out
     runs = [collect_run(out, name) for name in arguments.names]
     for run in runs:
-        run["pictures"] = choose_pictures(out, run["name"])
+        run["pictures"] = choose_pictures(out, run["name"], run["loop"]["ticks"])
         run["plots"] = plot_run(out, run)
     report = {
         "date": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
