@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -158,6 +159,8 @@ TEST(Simulate, CorridorInTheToothIsTheSweptBurr) {
     EXPECT_NEAR(json["removed_mm3"].get<double>() / expected_mm3, 1, 0.03);
     const double surface_mm3 = json["bone_before_mm3"].get<double>() - json["bone_mm3"].get<double>();
     EXPECT_NEAR(surface_mm3 / expected_mm3, 1, 0.03);
+    std::printf("swept %.3f mm3, removed voxels %.3f mm3, between the surfaces %.3f mm3\n", expected_mm3,
+                json["removed_mm3"].get<double>(), surface_mm3);
     EXPECT_TRUE(json["mesh"]["is_closed"]);
     // And the burr was where the device was, but for the springs' give.
     const auto& last = trace.back();
