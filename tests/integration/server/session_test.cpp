@@ -170,7 +170,9 @@ TEST_F(Session, AKilledDaemonRampsTheForceDownAndANewOneGoesOn) {
         if (is_stale) largest_step_down = std::max(largest_step_down, force_before - force);
         largest_force = std::max(largest_force, force);
         force_before = force;
-        if (is_stale) EXPECT_EQ(cells[23], 0) << "milled without a hand";
+        if (is_stale) {
+            EXPECT_EQ(cells[23], 0) << "milled without a hand";
+        }
         if (is_stale && cells[15] == 0 && cells[16] == 0 && cells[17] == 0) saw_zero_while_stale = true;
         if (saw_zero_while_stale && !is_stale && cells[21] > 0) saw_fresh_after_stale = true;
     }
