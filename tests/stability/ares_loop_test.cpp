@@ -1,0 +1,84 @@
+// The device daemon's emulated ARES with its kinematics, limits and delay in the loop with the real tick.
+#include "device_daemon/driver/ares_emulator.h"
+#include "device_daemon/loop/device_loop.h"
+#include "tests/stability/case_test.h"
+#include "tests/stability/drive.h"
+#include "tests/stability/hard_scenes.h"
+
+namespace bonemill::test {
+namespace {
+
+constexpr int64_t kTick_ns = 1'000'000;
+
+// Frame D stands where the tool starts: the neutral handle pose is the start pose.
+class AresBench {
+  public:
+    AresBench(Scene& scene, const Pose& start, const Pose& target)
+        : X_WD_(start),
+          emulator_(AresKinematics{}, {}, {}, OperatorPath({{0, {}, 0}, {0.3, start.inverse() * target, 0}})),
+          loop_(AresKinematics{}, emulator_, {}, {}),
+          stepper_(scene) {
+        emulator_.startScenario();
+    }
+
+    // Force on the hand, or NaN if the device has no pose.
+    Eigen::Vector3d step() {
+        now_ns_ += kTick_ns;
+        DeviceSample sample;
+        if (!loop_.read(1e-3, sample)) return Eigen::Vector3d::Constant(kNan);
+        loop_.write(&command_, now_ns_);
+        stepper_.step(X_WD_ * loop_.pose());
+        const Wrench wrench_D = stepper_.wrenchOnHand().rotatedBy(X_WD_.rotation.conjugate());
+        command_ = {};
+        command_.stamp_ns = now_ns_;
+        for (int i = 0; i < 3; ++i) {
+            command_.f_hand_D[i] = wrench_D.force[i];
+            command_.t_hand_D[i] = wrench_D.torque[i];
+        }
+        return stepper_.wrenchOnHand().force;
+    }
+
+  private:
+    Pose X_WD_;
+    AresEmulator emulator_;
+    DeviceLoop loop_;
+    Stepper stepper_;
+    WrenchCommand command_{};
+    int64_t now_ns_ = 1'000'000'000;
+};
+
+double forceResidual(AresBench& bench) {
+    for (int n = 0; n < 1000; ++n) bench.step();
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double squares = 0;
+    constexpr int kTicks = 500;
+    for (int n = 0; n < kTicks; ++n) {
+        const Eigen::Vector3d force = bench.step();
+        sum += force;
+        squares += force.squaredNorm();
+    }
+    if (!(sum.norm() / kTicks > 0.5)) return kNan;  // it must press
+    return std::sqrt(std::max(0.0, squares / kTicks - (sum / kTicks).squaredNorm()));
+}
+
+double plane(const Variant& variant) {
+    Scene scene(planeBone(), burr(), variant);
+    AresBench bench(scene, abovePlane(0.5e-3), {abovePlane(-5e-3).position, expRotation({0.05, 0, 0.05})});
+    return forceResidual(bench);
+}
+
+double pegInHole(const Variant& variant) {
+    Scene scene(holeBone(), peg(), variant);
+    AresBench bench(scene, upright(kHoleMiddle),
+                    {kHoleMiddle + Eigen::Vector3d(2e-3, 0, 1e-3), expRotation({0.07, 0, 0.1})});
+    return forceResidual(bench);
+}
+
+const std::vector<StabilityCase> kCases{
+    {"ares_presses_on_plane", "N_rms", 0.05, plane, {}},
+    {"ares_peg_in_hole", "N_rms", 0.05, pegInHole, {}},
+};
+BONEMILL_STABILITY_CASES(Ares, kCases);
+
+}  // namespace
+}  // namespace bonemill::test

@@ -1,0 +1,70 @@
+#include "tests/stability/case_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+namespace bonemill::test {
+namespace {
+
+Expectation expectationOf(const StabilityCase& stability_case, const Variant& variant) {
+    const auto& fails = stability_case.fails_for;
+    if (std::find(fails.begin(), fails.end(), variant.name) == fails.end()) return Expectation::kHolds;
+    return variant.name == baselineVariant().name ? Expectation::kBaselineFails : Expectation::kKnownLimit;
+}
+
+void appendToReport(const std::string& line) {
+    const char* path = std::getenv("BONEMILL_STABILITY_REPORT");
+    if (!path) return;
+    std::ofstream file(path, std::ios::app);
+    file << line + "\n" << std::flush;  // one write per line: tests may run side by side
+}
+
+// NaN is beyond every bound.
+bool isWithin(double figure, double bound) {
+    return figure <= bound;
+}
+
+}  // namespace
+
+double StabilityTrial::measureAndReport() const {
+    const auto& [c, variant] = GetParam();
+    const double figure = c.measure(variant);
+    const bool pass = isWithin(figure, c.bound);
+    std::printf("%-34s %-12s %12.5g %s bound %.5g %s  %s\n", c.name.c_str(), variant.name.c_str(), figure,
+                pass ? "<=" : "> ", c.bound, c.unit, pass ? "holds" : "FAILS");
+    char line[256];
+    std::snprintf(line, sizeof line, "%s,%s,%.6g,%.6g,%s,%d", c.name.c_str(), variant.name.c_str(), figure,
+                  c.bound, c.unit, int(pass));
+    appendToReport(line);
+    return figure;
+}
+
+std::vector<Trial> trials(const std::vector<StabilityCase>& cases, Expectation expectation) {
+    std::vector<Trial> result;
+    for (const StabilityCase& c : cases)
+        for (const Variant& variant : allVariants())
+            if (expectationOf(c, variant) == expectation) result.push_back({c, variant});
+    return result;
+}
+
+std::string trialName(const testing::TestParamInfo<Trial>& info) {
+    return info.param.stability_case.name + "_" + info.param.variant.name;
+}
+
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(BaselineFails);
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(KnownLimit);
+
+TEST_P(Holds, Figure) {
+    EXPECT_PRED2(isWithin, measureAndReport(), GetParam().stability_case.bound);
+}
+TEST_P(BaselineFails, Figure) {
+    EXPECT_FALSE(isWithin(measureAndReport(), GetParam().stability_case.bound));
+}
+TEST_P(KnownLimit, Figure) {
+    EXPECT_FALSE(isWithin(measureAndReport(), GetParam().stability_case.bound));
+}
+
+}  // namespace bonemill::test

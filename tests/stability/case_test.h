@@ -1,0 +1,54 @@
+// One hard case = one figure and its bound, measured for every variant. A case holds if figure <= bound.
+//
+// A variant for which a case is known to fail, deterministically, is not left out: it runs in the suite
+// BaselineFails (thesis_2012) or KnownLimit (any other), which expects the figure beyond the bound, so that
+// the documentation's table stays true. Each run prints its figure and appends it to the CSV file named by
+// BONEMILL_STABILITY_REPORT (case, variant, measured, bound, unit, pass); docs/stability.md is filled from
+// it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/stability/variant.h"
+
+namespace bonemill::test {
+
+struct StabilityCase {
+    std::string name;  // snake_case
+    const char* unit;
+    double bound;
+    double (*measure)(const Variant&);
+    std::vector<std::string> fails_for;  // names of variants
+};
+
+struct Trial {
+    StabilityCase stability_case;
+    Variant variant;
+};
+
+class StabilityTrial : public testing::TestWithParam<Trial> {
+  protected:
+    // Measures, prints, appends; the figure.
+    double measureAndReport() const;
+};
+class Holds : public StabilityTrial {};
+class BaselineFails : public StabilityTrial {};
+class KnownLimit : public StabilityTrial {};
+
+enum class Expectation { kHolds, kBaselineFails, kKnownLimit };
+std::vector<Trial> trials(const std::vector<StabilityCase>& cases, Expectation expectation);
+std::string trialName(const testing::TestParamInfo<Trial>& info);
+
+}  // namespace bonemill::test
+
+// In the file of the cases, namespace bonemill::test.
+#define BONEMILL_STABILITY_CASES(group, cases)                                                              \
+    INSTANTIATE_TEST_SUITE_P(group, Holds, testing::ValuesIn(trials(cases, Expectation::kHolds)),           \
+                             trialName);                                                                    \
+    INSTANTIATE_TEST_SUITE_P(group, BaselineFails,                                                          \
+                             testing::ValuesIn(trials(cases, Expectation::kBaselineFails)), trialName);     \
+    INSTANTIATE_TEST_SUITE_P(group, KnownLimit, testing::ValuesIn(trials(cases, Expectation::kKnownLimit)), \
+                             trialName)

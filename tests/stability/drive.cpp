@@ -1,0 +1,83 @@
+#include "tests/stability/drive.h"
+
+#include <cmath>
+
+namespace bonemill::test {
+namespace {
+
+double spread(const std::vector<Eigen::Vector3d>& values, size_t first, size_t end) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (size_t n = first; n < end; ++n) mean += values[n] / double(end - first);
+    double sum = 0;
+    for (size_t n = first; n < end; ++n) sum += (values[n] - mean).squaredNorm();
+    return std::sqrt(sum / double(end - first));
+}
+
+double spread(const std::vector<Eigen::Vector3d>& values) {
+    return spread(values, 0, values.size());
+}
+
+}  // namespace
+
+Stepper::Stepper(Scene& scene) : tick_(scene.config, scene.bone, scene.tool, nullptr) {}
+
+const TickRecord& Stepper::step(const Pose& X_WT_device, uint32_t buttons) {
+    input_.X_WT_device = X_WT_device;
+    input_.buttons = buttons;
+    tick_.tick(*this);
+    return record_;
+}
+
+bool Stepper::read(DeviceInput& input) noexcept {
+    input = input_;
+    return true;
+}
+
+int64_t Stepper::write(const Wrench& wrench_hand_W) noexcept {
+    wrench_ = wrench_hand_W;
+    return 0;
+}
+
+ClosedLoop::ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start)
+    : plant(config.device, config.hand, start),
+      stepper(scene),
+      dt(scene.config.dt),
+      on_the_way_(size_t(config.delay_ticks)) {}
+
+void ClosedLoop::step(uint32_t buttons) {
+    stepper.step(plant.measured(), buttons);
+    on_the_way_.push_back(stepper.wrenchOnHand());
+    held_ = on_the_way_.front();
+    on_the_way_.pop_front();
+    plant.advance(dt, held_);
+}
+
+void ClosedLoop::dropTick() {
+    plant.advance(dt, held_);
+}
+
+void ClosedLoop::run(double seconds) {
+    const long ticks = std::lround(seconds / dt);
+    for (long n = 0; n < ticks; ++n) step();
+}
+
+Residual residual(ClosedLoop& loop, double seconds) {
+    std::vector<Eigen::Vector3d> force, torque, position;
+    Residual result;
+    const long ticks = std::lround(seconds / loop.dt);
+    for (long n = 0; n < ticks; ++n) {
+        loop.step();
+        result.is_finite &= loop.stepper.isFinite() && loop.plant.pose().isFinite();
+        force.push_back(loop.stepper.wrenchOnHand().force);
+        torque.push_back(loop.stepper.wrenchOnHand().torque);
+        position.push_back(loop.plant.pose().position);
+    }
+    const size_t half = force.size() / 2;
+    result.rms = spread(force);
+    result.torque_rms = spread(torque);
+    result.position_rms = spread(position);
+    result.growth = spread(position, half, position.size()) / std::max(spread(position, 0, half), 1e-12);
+    return result;
+}
+
+}  // namespace bonemill::test

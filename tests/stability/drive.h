@@ -1,0 +1,69 @@
+// Runs ticks of the real HapticTick: along a scripted device pose, or in a closed loop with the plant.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "tests/stability/plant.h"
+#include "tests/stability/scene.h"
+
+namespace bonemill::test {
+
+// One tick at a time with whatever device pose the caller says.
+class Stepper : private TickIo {
+  public:
+    explicit Stepper(Scene& scene);
+
+    const TickRecord& step(const Pose& X_WT_device, uint32_t buttons = 0);
+    const Wrench& wrenchOnHand() const noexcept { return wrench_; }
+    const Pose& spo() const noexcept { return tick_.spo(); }
+    const TickRecord& record() const noexcept { return record_; }
+    bool isFinite() const noexcept { return wrench_.isFinite() && spo().isFinite(); }
+
+  private:
+    bool read(DeviceInput& input) noexcept override;
+    int64_t write(const Wrench& wrench_hand_W) noexcept override;
+    int64_t now() noexcept override { return 0; }
+    void push(const TickRecord& record) noexcept override { record_ = record; }
+
+    HapticTick tick_;
+    DeviceInput input_;
+    Wrench wrench_;
+    TickRecord record_{};
+};
+
+struct LoopConfig {
+    int delay_ticks = 1;  // a wrench computed from sample k acts from sample k + delay on
+    DevicePlant device;
+    HandPlant hand;
+};
+
+class ClosedLoop {
+  public:
+    ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start);
+
+    void step(uint32_t buttons = 0);
+    // The controller misses a period: the device holds the last wrench.
+    void dropTick();
+    void run(double seconds);
+
+    Plant plant;
+    Stepper stepper;
+    double dt;
+
+  private:
+    std::deque<Wrench> on_the_way_;
+    Wrench held_;
+};
+
+// Signal of a window: spread about its mean, and whether it grows.
+struct Residual {
+    double rms = 0;           // of the force about its mean, N
+    double torque_rms = 0;    // N·m
+    double position_rms = 0;  // of the true handle position about its mean, m
+    double growth = 0;        // RMS of the second half over that of the first
+    bool is_finite = true;
+};
+Residual residual(ClosedLoop& loop, double seconds);
+
+}  // namespace bonemill::test

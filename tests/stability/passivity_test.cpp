@@ -1,0 +1,126 @@
+// Energy on closed paths without milling: none comes from nowhere, with every tick run or with some dropped.
+#include "tests/stability/case_test.h"
+#include "tests/stability/drive.h"
+#include "tests/stability/energy_meter.h"
+#include "tests/stability/hard_scenes.h"
+
+namespace bonemill::test {
+namespace {
+
+constexpr double kEnergySlack_uJ = 1;
+constexpr double kMicro = 1e6;
+
+// Corners visited in order at `speed`, with the turn between them spread evenly, and a rest at the end.
+std::vector<Pose> polyline(const std::vector<Pose>& corners, double speed, int rest_ticks) {
+    std::vector<Pose> path;
+    for (size_t c = 1; c < corners.size(); ++c) {
+        const Pose& a = corners[c - 1];
+        const Pose& b = corners[c];
+        const int ticks = std::max(1, int((b.position - a.position).norm() / (speed * 1e-3)));
+        for (int n = 0; n < ticks; ++n) {
+            const double s = double(n) / ticks;
+            path.push_back({a.position + s * (b.position - a.position), a.rotation.slerp(s, b.rotation)});
+        }
+    }
+    path.insert(path.end(), size_t(rest_ticks), corners.back());
+    return path;
+}
+
+// Energy gained over the path, µJ; 0 if none was.
+double gained(Scene& scene, const std::vector<Pose>& path, size_t drop_from = 0, size_t dropped = 0) {
+    Stepper stepper(scene);
+    AlgorithmEnergy meter;
+    double pressed = 0;
+    for (size_t n = 0; n < path.size(); ++n) {
+        if (n >= drop_from && n < drop_from + dropped) continue;
+        stepper.step(path[n]);
+        if (!stepper.isFinite()) return kNan;
+        meter.add(path[n], stepper.wrenchOnHand());
+        pressed = std::max(pressed, stepper.wrenchOnHand().force.norm());
+    }
+    return pressed > 0.1 ? std::max(0.0, -meter.energy() * kMicro) : kNan;
+}
+
+// Down, sideways, up, back, over a plane that lies askew in the grid; both ways round.
+double loopOverPlane(const Variant& variant) {
+    const Eigen::Vector3d normal = Eigen::Vector3d(0.3, 0.2, 1).normalized();
+    const Eigen::Vector3d side = normal.cross(Eigen::Vector3d(0.2, 1, 0)).normalized();
+    const auto at = [&](double along, double height, double turn) {
+        return Pose{kMiddle + along * side + (kBurrRadius + height) * normal, expRotation({turn, 0, turn})};
+    };
+    double worst = 0;
+    for (const double way : {-1.0, 1.0}) {
+        Scene scene(bodyVolume(boxOf(Eigen::Vector3d::Constant(5e-3)), halfSpace(kMiddle, normal)), burr(),
+                    variant);
+        const double x = way * 0.8e-3;
+        worst = std::max(worst,
+                         gained(scene, polyline({at(-x, 0.1e-3, 0), at(-x, -0.3e-3, 0), at(x, -0.3e-3, 0.1),
+                                                 at(x, 0.1e-3, 0.1), at(-x, 0.1e-3, 0)},
+                                                2e-3, 300)));
+    }
+    return worst;
+}
+
+// Round the hole, leaning on its wall, and tilting.
+double roundTheHole(const Variant& variant) {
+    Scene scene(holeBone(), peg(), variant);
+    std::vector<Pose> corners{upright(kHoleMiddle)};
+    for (int n = 0; n <= 24; ++n) {
+        const double a = 2 * M_PI * n / 24;
+        corners.push_back({kHoleMiddle + 0.3e-3 * Eigen::Vector3d(std::cos(a), 0, std::sin(a)),
+                           expRotation(0.03 * Eigen::Vector3d(std::sin(a), 0, std::cos(2 * a)))});
+    }
+    corners.push_back(upright(kHoleMiddle));
+    return gained(scene, polyline(corners, 2e-3, 300));
+}
+
+// Straight press and release at a brisk 20 mm/s.
+std::vector<Pose> pressAndRelease() {
+    return polyline({abovePlane(0.1e-3), abovePlane(-0.6e-3), abovePlane(0.1e-3)}, 20e-3, 300);
+}
+
+double worstDroppedTicks(const Variant& variant) {
+    double worst = 0;
+    const std::vector<Pose> path = pressAndRelease();
+    for (const size_t dropped : {5u, 10u, 20u, 50u})
+        for (const size_t from : {10u, 20u, 34u, 45u}) {  // going in, at the bottom, coming out
+            Scene scene(planeBone(), burr(), variant);
+            const double figure = gained(scene, path, from, dropped);
+            if (!(figure <= worst)) worst = figure;
+        }
+    return worst;
+}
+
+// The same at the port: the held force gives back at most what holding it that long explains.
+double droppedTicksAtThePort(const Variant& variant) {
+    constexpr double kSpeed = 20e-3, kDt = 1e-3, kDepth = 0.6e-3;
+    double worst = 0;
+    const std::vector<Pose> path = pressAndRelease();
+    for (const size_t dropped : {5u, 10u, 20u, 50u}) {
+        Scene scene(planeBone(), burr(), variant);
+        Stepper stepper(scene);
+        PortEnergy meter;
+        for (size_t n = 0; n < path.size(); ++n) {
+            const bool is_dropped = n >= 34 && n < 34 + dropped;
+            if (!is_dropped) stepper.step(path[n]);
+            meter.add(path[n], stepper.wrenchOnHand());
+        }
+        const double k = scene.config.coupling.translation_stiffness;
+        const double bound = PortEnergy::holdBound(k, kDt, kSpeed, kDepth, 0) +
+                             k * kDepth * std::min(kDepth, kSpeed * kDt * double(dropped));
+        const double figure = -meter.energy() / bound;
+        if (!(figure <= worst)) worst = figure;
+    }
+    return worst;
+}
+
+const std::vector<StabilityCase> kCases{
+    {"energy_loop_over_plane", "uJ_gained", kEnergySlack_uJ, loopOverPlane, {}},
+    {"energy_round_the_hole", "uJ_gained", kEnergySlack_uJ, roundTheHole, {}},
+    {"energy_dropped_ticks", "uJ_gained", kEnergySlack_uJ, worstDroppedTicks, {}},
+    {"port_energy_dropped_ticks", "of_hold_bound", 1, droppedTicksAtThePort, {}},
+};
+BONEMILL_STABILITY_CASES(Passivity, kCases);
+
+}  // namespace
+}  // namespace bonemill::test

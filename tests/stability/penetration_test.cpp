@@ -1,0 +1,78 @@
+// Maximum push: the tool stays on its side of the bone and the force within its limit.
+#include "tests/stability/case_test.h"
+#include "tests/stability/drive.h"
+#include "tests/stability/hard_scenes.h"
+
+namespace bonemill::test {
+namespace {
+
+constexpr double kPushSpeed = 0.1;    // m/s
+constexpr double kPushDepth = 20e-3;  // m: far beyond what saturates any coupling
+constexpr int kHoldTicks = 300;
+
+// Pushes the device straight down by kPushDepth and holds it there.
+template <class EachTick>
+void pushDown(Stepper& stepper, const Pose& start, EachTick&& each_tick) {
+    const int ticks = int(kPushDepth / kPushSpeed * 1000);
+    for (int n = 0; n < ticks + kHoldTicks; ++n) {
+        Pose device = start;
+        device.position.z() -= kPushDepth * std::min(1.0, double(n) / ticks);
+        stepper.step(device);
+        each_tick();
+    }
+}
+
+// How far the burr's centre got below `height`, mm; negative: it never did.
+double centreBelow(Scene& scene, const Pose& start, double height) {
+    Stepper stepper(scene);
+    double lowest = 1;
+    pushDown(stepper, start, [&] {
+        const double z = stepper.isFinite() ? stepper.spo().position.z() : -1;
+        lowest = std::min(lowest, z);
+    });
+    return (height - lowest) * 1e3;
+}
+
+double oneVoxelWall(const Variant& variant) {
+    Scene scene(
+        bodyVolume(boxOf(Eigen::Vector3d::Constant(5e-3)), wall(kMiddle, Eigen::Vector3d::UnitZ(), kVoxel)),
+        burr(), variant);
+    return centreBelow(scene, abovePlane(0.5e-3), kTop);
+}
+
+double deepPush(const Variant& variant) {
+    Scene scene(planeBone(), burr(), variant);
+    return centreBelow(scene, abovePlane(0.5e-3), kTop);
+}
+
+double deepPushForce(const Variant& variant) {
+    Scene scene(planeBone(), burr(), variant);
+    Stepper stepper(scene);
+    double worst = 0;
+    pushDown(stepper, abovePlane(0.5e-3), [&] {
+        const double force = stepper.isFinite() ? stepper.wrenchOnHand().force.norm() : kNan;
+        if (!(force <= worst)) worst = force;
+    });
+    return worst / scene.config.coupling.max_force;
+}
+
+// Right side: under full push the force points out of the bone.
+double deepPushDirection(const Variant& variant) {
+    Scene scene(planeBone(), burr(), variant);
+    Stepper stepper(scene);
+    pushDown(stepper, abovePlane(0.5e-3), [] {});
+    const Eigen::Vector3d force = stepper.wrenchOnHand().force;
+    if (!(force.norm() > 1e-6)) return 180;  // nothing holds it any more
+    return std::acos(force.z() / force.norm()) * 180 / M_PI;
+}
+
+const std::vector<StabilityCase> kCases{
+    {"one_voxel_wall", "mm_past_wall", 0, oneVoxelWall, {"thesis_2012"}},
+    {"deep_push_side", "mm_past_surface", 0, deepPush, {"thesis_2012"}},
+    {"deep_push_force", "of_max_force", 1 + 1e-9, deepPushForce, {}},
+    {"deep_push_direction", "degrees", 10, deepPushDirection, {"thesis_2012"}},
+};
+BONEMILL_STABILITY_CASES(Penetration, kCases);
+
+}  // namespace
+}  // namespace bonemill::test

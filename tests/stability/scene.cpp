@@ -1,0 +1,71 @@
+#include "tests/stability/scene.h"
+
+namespace bonemill::test {
+namespace {
+
+TickConfig configOf(const Variant& variant, double dt, const std::function<void(TickConfig&)>& edit) {
+    TickConfig config;
+    config.dt = dt;
+    config.burr_radius = kBurrRadius;
+    if (variant.edit) variant.edit(config);
+    if (edit) edit(config);
+    return config;
+}
+
+}  // namespace
+
+Scene::Scene(VoxelVolume volume, SdfGrid tool_sdf, const Variant& variant, double dt,
+             const std::function<void(TickConfig&)>& edit)
+    : config(configOf(variant, dt, edit)),
+      bone(std::move(volume), Eigen::Vector3i::Constant(16), variant.shell_scaling_factor),
+      tool(std::move(tool_sdf)) {}
+
+VolumeGeometry boxOf(const Eigen::Vector3d& size, double spacing) {
+    VolumeGeometry geometry;
+    geometry.dims = (size / spacing).array().ceil().cast<int>() + 1;
+    geometry.spacing.setConstant(spacing);
+    return geometry;
+}
+
+SdfGrid toolOf(const DistanceFunction& distance_T, const Eigen::Vector3d& half_size, double spacing) {
+    const Eigen::Vector3i half = (half_size / spacing).array().ceil().cast<int>() + 3;
+    const Eigen::Vector3i nodes = 2 * half.array() + 1;
+    std::vector<float> values;
+    for (int k = 0; k < nodes.z(); ++k)
+        for (int j = 0; j < nodes.y(); ++j)
+            for (int i = 0; i < nodes.x(); ++i)
+                values.push_back(
+                    float(distance_T(spacing * (Eigen::Vector3i(i, j, k) - half).cast<double>())));
+    return SdfGrid(nodes, spacing, -spacing * half.cast<double>(), std::move(values));
+}
+
+SdfGrid burr() {
+    return sphereTool(kBurrRadius, kVoxel);
+}
+
+SdfGrid pegTool(double radius, double half_length) {
+    const auto capsule = [=](const Eigen::Vector3d& p) {
+        const double y = std::clamp(p.y(), -half_length, half_length);
+        return (p - Eigen::Vector3d(0, y, 0)).norm() - radius;
+    };
+    return toolOf(capsule, {radius, half_length + radius, radius});
+}
+
+DistanceFunction holeAlongY(const Eigen::Vector3d& center, double radius) {
+    return
+        [=](const Eigen::Vector3d& p) { return radius - std::hypot(p.x() - center.x(), p.z() - center.z()); };
+}
+
+DistanceFunction wall(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double thickness) {
+    return [=](const Eigen::Vector3d& p) { return std::abs(normal.dot(p - point)) - thickness / 2; };
+}
+
+DistanceFunction groove(const Eigen::Vector3d& edge, double angle) {
+    const double c = std::cos(angle / 2), s = std::sin(angle / 2);
+    return [=](const Eigen::Vector3d& p) {
+        const Eigen::Vector3d r = p - edge;
+        return std::min(s * r.z() - c * r.x(), s * r.z() + c * r.x());
+    };
+}
+
+}  // namespace bonemill::test

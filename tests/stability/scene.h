@@ -1,0 +1,39 @@
+// Bone, tool and settings of one stability run, and the analytic bodies of the hard cases.
+//
+// Frame V is W here: poses and distances mean the same in both.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "tests/stability/variant.h"
+#include "tests/support/test_bodies.h"
+
+namespace bonemill::test {
+
+inline constexpr double kVoxel = 0.125e-3;  // m, also the tools' SDF spacing unless said otherwise
+inline constexpr double kBurrRadius = 1e-3;
+
+struct Scene {
+    // `edit` has the last word over the variant's settings.
+    Scene(VoxelVolume volume, SdfGrid tool_sdf, const Variant& variant, double dt = 1e-3,
+          const std::function<void(TickConfig&)>& edit = {});
+
+    TickConfig config;
+    BoneModel bone;
+    SdfGrid tool;
+};
+
+VolumeGeometry boxOf(const Eigen::Vector3d& size, double spacing = kVoxel);  // smallest that holds `size`
+SdfGrid toolOf(const DistanceFunction& distance_T, const Eigen::Vector3d& half_size, double spacing = kVoxel);
+SdfGrid burr();                                      // sphere of kBurrRadius
+SdfGrid pegTool(double radius, double half_length);  // round-ended, along y through T's origin
+
+// Block with a round hole along y through `center`.
+DistanceFunction holeAlongY(const Eigen::Vector3d& center, double radius);
+// Wall of this thickness about the plane through `point`.
+DistanceFunction wall(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double thickness);
+// V-groove of full opening angle `angle` (rad) along y, its bottom edge through `edge`, open towards +z.
+DistanceFunction groove(const Eigen::Vector3d& edge, double angle);
+
+}  // namespace bonemill::test

@@ -1,0 +1,59 @@
+// Force over a smooth motion stays smooth: sliding over the surface, milling it away under load.
+#include "tests/stability/case_test.h"
+#include "tests/stability/drive.h"
+#include "tests/stability/hard_scenes.h"
+
+namespace bonemill::test {
+namespace {
+
+// Slides the device over a tilted plane at constant depth; spread of the normal force over its mean, %.
+double grazingSlide(const Variant& variant) {
+    const Eigen::Vector3d normal = Eigen::Vector3d(0.2, 0.1, 1).normalized();
+    const Eigen::Vector3d middle(4e-3, 2.5e-3, 2e-3);
+    Scene scene(bodyVolume(boxOf({8e-3, 5e-3, 4e-3}), halfSpace(middle, normal)), burr(), variant);
+    const Eigen::Vector3d along = normal.cross(Eigen::Vector3d(-0.3, 1, 0)).normalized();
+    const double depth = 0.1e-3, speed = 10e-3, reach = 2.3e-3;
+    Stepper stepper(scene);
+    std::vector<double> force;
+    const int ticks = int(2 * reach / speed * 1000);
+    for (int n = 0; n < ticks; ++n) {
+        const double s = -reach + 2 * reach * n / ticks;
+        stepper.step(upright(middle + s * along + (kBurrRadius - depth) * normal));
+        if (n >= ticks / 4) force.push_back(stepper.wrenchOnHand().force.dot(normal));
+    }
+    double mean = 0, square = 0;
+    for (const double f : force) mean += f / double(force.size());
+    for (const double f : force) square += (f - mean) * (f - mean) / double(force.size());
+    return 100 * std::sqrt(square) / mean;
+}
+
+// Presses, then mills: largest change of force from tick to tick, N.
+double removalUnderLoad(const Variant& variant) {
+    Scene scene(planeBone(), burr(), variant);
+    Stepper stepper(scene);
+    for (int n = 0; n < 600; ++n) stepper.step(abovePlane(0.1e-3 - std::min(n, 400) * 1e-6));
+    double worst = 0;
+    Eigen::Vector3d before = stepper.wrenchOnHand().force;
+    if (!(before.z() > 0.1)) return kNan;  // it was never under load
+    for (int n = 0; n < 300; ++n) {
+        stepper.step(abovePlane(-0.3e-3), kButtonRemove);
+        const double change = (stepper.wrenchOnHand().force - before).norm();
+        if (!(change <= worst)) worst = change;
+        before = stepper.wrenchOnHand().force;
+    }
+    return worst;
+}
+
+// Density falls from full to nothing in 20 ms and the test's bodies ramp over 4 voxels: the surface recedes
+// by this per tick, and the tool cannot follow it faster.
+constexpr double kRecession = 4 * kVoxel / 20;
+constexpr double kCouplingStiffness = CouplingConfig{}.translation_stiffness;
+
+const std::vector<StabilityCase> kCases{
+    {"grazing_slide", "percent", 2, grazingSlide, {"thesis_2012"}},
+    {"removal_under_load", "N_per_tick", 2 * kCouplingStiffness* kRecession, removalUnderLoad, {}},
+};
+BONEMILL_STABILITY_CASES(Smoothness, kCases);
+
+}  // namespace
+}  // namespace bonemill::test

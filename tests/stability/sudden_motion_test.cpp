@@ -1,0 +1,103 @@
+// What no hand does but a link, a reset or a dropped sample can: jumps, half turns, starting inside bone.
+#include "tests/stability/case_test.h"
+#include "tests/stability/drive.h"
+#include "tests/stability/hard_scenes.h"
+
+namespace bonemill::test {
+namespace {
+
+// Worst of force, torque and the tool's step over their limits, while the device jumps there and back.
+double deviceJump(const Variant& variant) {
+    Scene scene(planeBone(), burr(), variant);
+    const CouplingConfig& coupling = scene.config.coupling;
+    Stepper stepper(scene);
+    const Pose start = abovePlane(-0.2e-3);
+    const Pose far = {start.position + 50e-3 * Eigen::Vector3d(1, 1, -1).normalized(),
+                      expRotation(M_PI * Eigen::Vector3d(1, 2, 2).normalized())};
+    double worst = 0;
+    Pose last = start;
+    for (int n = 0; n < 600; ++n) {
+        stepper.step(n < 100 || n >= 400 ? start : far);
+        const Wrench& wrench = stepper.wrenchOnHand();
+        const double step = (stepper.spo().position - last.position).norm();
+        const double figure =
+            std::max({wrench.force.norm() / coupling.max_force, wrench.torque.norm() / coupling.max_torque,
+                      step / (coupling.max_speed * scene.config.dt)});
+        if (!stepper.isFinite()) return kNan;
+        worst = std::max(worst, figure);
+        last = stepper.spo();
+    }
+    return worst;
+}
+
+// Device 0.1° before and 0.1° beyond half a turn from the tool, in turn: change of torque, % of the limit.
+double nearAntipodal(const Variant& variant) {
+    Scene scene(VoxelVolume(boxOf(Eigen::Vector3d::Constant(1e-3)), kTestIso), burr(), variant);
+    const Eigen::Vector3d axis = Eigen::Vector3d(1, -2, 2).normalized();
+    Stepper stepper(scene);
+    stepper.step({});
+    double worst = 0;
+    Eigen::Vector3d before = Eigen::Vector3d::Zero();
+    for (int n = 0; n < 40; ++n) {
+        const double angle = degrees(180 + (n % 2 ? 0.1 : -0.1));
+        stepper.step({stepper.spo().position, expRotation(angle * axis) * stepper.spo().rotation});
+        if (!stepper.isFinite()) return kNan;
+        const Eigen::Vector3d torque = stepper.wrenchOnHand().torque;
+        if (n > 0) worst = std::max(worst, (torque - before).norm());
+        before = torque;
+    }
+    return 100 * worst / scene.config.coupling.max_torque;
+}
+
+double startInside(const Variant& variant, double depth, double (*figure_of)(ClosedLoop&, const Scene&)) {
+    Scene scene(planeBone(), burr(), variant);
+    ClosedLoop loop({}, scene, abovePlane(-depth));
+    return figure_of(loop, scene);
+}
+
+// The tool leaves the bone no faster than it may move: the force fades in.
+double fadeIn(ClosedLoop& loop, const Scene& scene) {
+    const CouplingConfig& coupling = scene.config.coupling;
+    double worst = 0;
+    Eigen::Vector3d before = Eigen::Vector3d::Zero();
+    for (int n = 0; n < 300; ++n) {
+        loop.step();
+        const Eigen::Vector3d force = loop.stepper.wrenchOnHand().force;
+        if (!loop.stepper.isFinite()) return kNan;
+        worst = std::max(worst, (force - before).norm());
+        before = force;
+    }
+    return worst / (coupling.translation_stiffness * coupling.max_speed * scene.config.dt);
+}
+
+double settled(ClosedLoop& loop, const Scene&) {
+    loop.run(0.5);
+    const Residual r = residual(loop, 0.5);
+    return r.is_finite ? r.rms : kNan;
+}
+
+double halfInsideFadeIn(const Variant& v) {
+    return startInside(v, kBurrRadius / 2, fadeIn);
+}
+double halfInsideSettles(const Variant& v) {
+    return startInside(v, kBurrRadius / 2, settled);
+}
+double buriedFadeIn(const Variant& v) {
+    return startInside(v, 2.2 * kBurrRadius, fadeIn);
+}
+double buriedSettles(const Variant& v) {
+    return startInside(v, 2.2 * kBurrRadius, settled);
+}
+
+const std::vector<StabilityCase> kCases{
+    {"device_jump_50mm_180deg", "of_limit", 1 + 1e-9, deviceJump, {}},
+    {"near_antipodal", "percent_of_max", 1, nearAntipodal, {"thesis_2012"}},
+    {"start_half_inside_fades_in", "of_speed_limit", 1.1, halfInsideFadeIn, {}},
+    {"start_half_inside_settles", "N_rms", 0.05, halfInsideSettles, {}},
+    {"start_buried_fades_in", "of_speed_limit", 1.1, buriedFadeIn, {}},
+    {"start_buried_settles", "N_rms", 0.05, buriedSettles, {}},
+};
+BONEMILL_STABILITY_CASES(SuddenMotion, kCases);
+
+}  // namespace
+}  // namespace bonemill::test
