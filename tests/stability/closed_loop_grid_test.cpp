@@ -1,4 +1,4 @@
-// Closed loop against a plane over devices, hands, delays and encoders.
+// Closed loop against a plane and in a hole over devices, hands, delays and encoders.
 #include <cstdio>
 
 #include "tests/stability/case_test.h"
@@ -37,8 +37,9 @@ constexpr Encoders kEncoders[] = {{5e-6, 0.01}, {20e-6, 0.05}};
 struct GridPoint {
     LoopConfig config;
     std::string name;
-    // Colgate: viscous damping over K (T/2 + delay), with the amplifier's lag as delay. Below 1 no virtual
-    // spring of the coupling's stiffness can be promised to be stable.
+    // Colgate: viscous damping over K (T/2 + delay), with the amplifier's lag as delay; the worse of
+    // translation and rotation. Below 1 no virtual spring of the coupling's stiffness can be promised to be
+    // stable.
     double damping_ratio = 0;
 };
 
@@ -53,7 +54,10 @@ std::vector<GridPoint> gridPoints(const CouplingConfig& coupling, double dt) {
                     point.config.device.encoder_angle = degrees(encoders.angle_deg);
                     const double lag = dt / 2 + delay * dt + 1 / (2 * M_PI * device.value.amplifier_hz);
                     point.damping_ratio =
-                        (device.value.damping + hand.value.damping) / (coupling.translation_stiffness * lag);
+                        std::min((device.value.damping + hand.value.damping) / coupling.translation_stiffness,
+                                 (device.value.angular_damping + hand.value.angular_damping) /
+                                     coupling.rotation_stiffness) /
+                        lag;
                     point.name = std::string(device.name) + "/" + hand.name + "/" + std::to_string(delay) +
                                  "/" + std::to_string(int(encoders.step * 1e6)) + "um";
                     points.push_back(point);
@@ -61,35 +65,47 @@ std::vector<GridPoint> gridPoints(const CouplingConfig& coupling, double dt) {
     return points;
 }
 
-double buzz(Scene& scene, const LoopConfig& config) {
-    ClosedLoop loop(config, scene, abovePlane(0.2e-3));
-    if (config.hand.stiffness > 0)
-        loop.plant.setTarget(abovePlane(-kPush / config.hand.stiffness));
+// `push`: what the hand's springs, stretched from the start pose, or with no hand a weight pull with.
+double buzz(Scene& scene, const LoopConfig& config, const Pose& start, const Wrench& push) {
+    ClosedLoop loop(config, scene, start);
+    const HandPlant& hand = config.hand;
+    if (hand.stiffness > 0)
+        loop.plant.setTarget(
+            start.incremented(push.force / hand.stiffness, push.torque / hand.angular_stiffness));
     else
-        loop.plant.setBias({{0, 0, -kPush}, {0, 0, 0}});
+        loop.plant.setBias(push);
     loop.run(0.5);
     const Residual r = residual(loop, 0.3);
     return r.is_finite ? r.rms : kNan;
 }
 
+struct GridScene {
+    VoxelVolume (*bone)();
+    SdfGrid (*tool)();
+    Pose start;
+    Wrench push;
+};
+const GridScene kOnPlane{planeBone, burr, abovePlane(0.2e-3), {{0, 0, -kPush}, {0, 0, 0}}};
+const GridScene kInHole{holeBone, peg, upright(kHoleMiddle), {{kPush, 0, kPush / 2}, {0.02, 0, 0.04}}};
+
 // Worst buzz over the points that are passive by Colgate's bound.
-double passivePoints(const Variant& variant) {
-    Scene scene(planeBone(), burr(), variant);
+double passivePoints(const Variant& variant, const GridScene& grid) {
+    Scene scene(grid.bone(), grid.tool(), variant);
     double worst = 0;
     for (const GridPoint& point : gridPoints(scene.config.coupling, scene.config.dt)) {
         if (point.damping_ratio < 1) continue;
-        const double figure = buzz(scene, point.config);
+        const double figure = buzz(scene, point.config, grid.start, grid.push);
         if (!(figure <= worst)) worst = figure;
     }
     return worst;
 }
 
 // All points: how many buzz, in %. Printed one by one.
-double buzzingPoints(const Variant& variant) {
-    Scene scene(planeBone(), burr(), variant);
+double buzzingPoints(const Variant& variant, const GridScene& grid) {
+    Scene scene(grid.bone(), grid.tool(), variant);
     int buzzing = 0, count = 0;
     for (const GridPoint& point : gridPoints(scene.config.coupling, scene.config.dt)) {
-        const double figure = buzz(scene, point.config);
+        const double figure = buzz(scene, point.config, grid.start, grid.push);
         buzzing += !(figure <= kLargestBuzz);
         ++count;
         std::printf("  %-28s damping ratio %5.2f  %8.4f N rms%s\n", point.name.c_str(), point.damping_ratio,
@@ -98,9 +114,24 @@ double buzzingPoints(const Variant& variant) {
     return 100.0 * buzzing / count;
 }
 
+double planePassive(const Variant& variant) {
+    return passivePoints(variant, kOnPlane);
+}
+double planeAll(const Variant& variant) {
+    return buzzingPoints(variant, kOnPlane);
+}
+double holePassive(const Variant& variant) {
+    return passivePoints(variant, kInHole);
+}
+double holeAll(const Variant& variant) {
+    return buzzingPoints(variant, kInHole);
+}
+
 const std::vector<StabilityCase> kCases{
-    {"closed_loop_grid_passive", "N_rms_worst", kLargestBuzz, passivePoints, {}},
-    {"closed_loop_grid_all", "percent_buzzing", 0, buzzingPoints, {"thesis_2012"}},
+    {"loop_grid_plane_passive", "N_rms_worst", kLargestBuzz, planePassive, {}},
+    {"loop_grid_plane_all", "percent_buzzing", 0, planeAll, {"thesis_2012"}},
+    {"loop_grid_hole_passive", "N_rms_worst", kLargestBuzz, holePassive, {}},
+    {"loop_grid_hole_all", "percent_buzzing", 0, holeAll, {"thesis_2012"}},
 };
 BONEMILL_STABILITY_CASES(ClosedLoopGrid, kCases);
 

@@ -61,9 +61,50 @@ double loopOverPlane(const Variant& variant) {
     return worst;
 }
 
+// The same at rest: each pose is held until the tool has settled, so that only the law of force is judged,
+// not the damping of the solve. In a conservative law both ways round give 0; otherwise one way gains.
+double gainedAtRest(Scene& scene, std::vector<Pose> path) {
+    constexpr int kSettleTicks = 30;
+    double worst = 0;
+    for (int way = 0; way < 2; ++way) {
+        Stepper stepper(scene);
+        AlgorithmEnergy meter;
+        for (const Pose& pose : path) {
+            for (int n = 0; n < kSettleTicks; ++n) stepper.step(pose);
+            if (!stepper.isFinite()) return kNan;
+            meter.add(pose, stepper.wrenchOnHand());
+        }
+        worst = std::max(worst, -meter.energy() * kMicro);
+        std::reverse(path.begin(), path.end());
+    }
+    return worst;
+}
+
+constexpr double kFineStep = 5e-6 * 1e3;  // m/s that make 5 µm per pose
+
+// Over a right-angled edge, from one face to the other and back through the air.
+double overTheEdge(const Variant& variant) {
+    const Eigen::Quaterniond askew = expRotation({0.15, 0.35, 0.1});
+    const Eigen::Vector3d edge(3e-3, 2.5e-3, 3e-3);
+    const auto corner = [=](const Eigen::Vector3d& p) {
+        const Eigen::Vector3d q = askew.conjugate() * (p - edge);
+        return std::max(q.x(), q.z());
+    };
+    Scene scene(bodyVolume(boxOf(Eigen::Vector3d::Constant(5e-3)), corner), burr(), variant);
+    const auto at = [&](double x, double z) { return Pose{edge + askew * Eigen::Vector3d(x, 0, z), askew}; };
+    const double deep = kBurrRadius - 0.3e-3, clear = kBurrRadius + 0.2e-3, away = 0.8e-3;
+    std::vector<Pose> corners{at(-away, clear), at(-away, deep)};
+    for (int n = 0; n <= 8; ++n) {
+        const double a = M_PI / 2 * n / 8;
+        corners.push_back(at(deep * std::sin(a), deep * std::cos(a)));
+    }
+    for (const Pose& pose : {at(deep, -away), at(clear, -away), at(clear, clear), at(-away, clear)})
+        corners.push_back(pose);
+    return gainedAtRest(scene, polyline(corners, kFineStep, 1));
+}
+
 // Round the hole, leaning on its wall, and tilting.
-double roundTheHole(const Variant& variant) {
-    Scene scene(holeBone(), peg(), variant);
+std::vector<Pose> roundTheHole(double speed, int rest_ticks) {
     std::vector<Pose> corners{upright(kHoleMiddle)};
     for (int n = 0; n <= 24; ++n) {
         const double a = 2 * M_PI * n / 24;
@@ -71,7 +112,17 @@ double roundTheHole(const Variant& variant) {
                            expRotation(0.03 * Eigen::Vector3d(std::sin(a), 0, std::cos(2 * a)))});
     }
     corners.push_back(upright(kHoleMiddle));
-    return gained(scene, polyline(corners, 2e-3, 300));
+    return polyline(corners, speed, rest_ticks);
+}
+
+double pegMoving(const Variant& variant) {
+    Scene scene(holeBone(), peg(), variant);
+    return gained(scene, roundTheHole(2e-3, 300));
+}
+
+double pegAtRest(const Variant& variant) {
+    Scene scene(holeBone(), peg(), variant);
+    return gainedAtRest(scene, roundTheHole(kFineStep, 1));
 }
 
 // Straight press and release at a brisk 20 mm/s.
@@ -116,7 +167,9 @@ double droppedTicksAtThePort(const Variant& variant) {
 
 const std::vector<StabilityCase> kCases{
     {"energy_loop_over_plane", "uJ_gained", kEnergySlack_uJ, loopOverPlane, {}},
-    {"energy_round_the_hole", "uJ_gained", kEnergySlack_uJ, roundTheHole, {}},
+    {"energy_round_the_hole", "uJ_gained", kEnergySlack_uJ, pegMoving, {}},
+    {"energy_over_edge_at_rest", "uJ_gained", kEnergySlack_uJ, overTheEdge, {"thesis_2012"}},
+    {"energy_round_hole_at_rest", "uJ_gained", kEnergySlack_uJ, pegAtRest, {}},
     {"energy_dropped_ticks", "uJ_gained", kEnergySlack_uJ, worstDroppedTicks, {}},
     {"port_energy_dropped_ticks", "of_hold_bound", 1, droppedTicksAtThePort, {}},
 };
