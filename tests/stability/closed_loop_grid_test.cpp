@@ -76,7 +76,7 @@ double buzz(Scene& scene, const LoopConfig& config, const Pose& start, const Wre
         loop.plant.setBias(push);
     loop.run(0.5);
     const Residual r = residual(loop, 0.3);
-    return r.is_finite ? r.rms : kNan;
+    return r.is_finite && r.is_touching ? r.rms : kNan;
 }
 
 struct GridScene {
@@ -86,7 +86,7 @@ struct GridScene {
     Wrench push;
 };
 const GridScene kOnPlane{planeBone, burr, abovePlane(0.2e-3), {{0, 0, -kPush}, {0, 0, 0}}};
-const GridScene kInHole{holeBone, peg, upright(kHoleMiddle), {{kPush, 0, kPush / 2}, {0.02, 0, 0.04}}};
+const GridScene kInHole{holeBone, peg, upright(kHoleMiddle), {{kPush, 0, kPush / 2}, {0.0003, 0, 0.0005}}};
 
 // Worst buzz over the points that are passive by Colgate's bound.
 double passivePoints(const Variant& variant, const GridScene& grid) {

@@ -73,6 +73,7 @@ Residual residual(ClosedLoop& loop, double seconds) {
         position.push_back(loop.plant.pose().position);
     }
     const size_t half = force.size() / 2;
+    result.is_touching = loop.stepper.record().contacts > 0;
     result.rms = spread(force);
     result.torque_rms = spread(torque);
     result.position_rms = spread(position);

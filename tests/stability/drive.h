@@ -63,6 +63,7 @@ struct Residual {
     double position_rms = 0;  // of the true handle position about its mean, m
     double growth = 0;        // RMS of the second half over that of the first
     bool is_finite = true;
+    bool is_touching = false;  // in contact at the end
 };
 Residual residual(ClosedLoop& loop, double seconds);
 

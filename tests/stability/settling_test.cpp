@@ -11,7 +11,7 @@ constexpr double kSettle = 0.5, kWatch = 0.5;  // s
 double forceResidual(ClosedLoop& loop) {
     loop.run(kSettle);
     const Residual r = residual(loop, kWatch);
-    return r.is_finite ? r.rms : kNan;
+    return r.is_finite && r.is_touching ? r.rms : kNan;
 }
 
 double pegHeld(const Variant& variant) {
@@ -26,19 +26,21 @@ double pegFree(const Variant& variant) {
     LoopConfig config;
     config.hand = kNoHand;
     ClosedLoop loop(config, scene, upright(kHoleMiddle));
-    loop.plant.setBias({{1, 0, 0.5}, {0, 0, 0.01}});
+    loop.plant.setBias({{1, 0, 0.5}, {0.0003, 0, 0.0005}});
     return forceResidual(loop);
 }
 
+// Tall enough for the burr to wedge between the walls, however steep.
 double grooveWorst(const Variant& variant) {
     double worst = 0;
     for (const double angle : {10, 20, 30, 45, 60}) {
         const Eigen::Vector3d edge(2.02e-3, 2e-3, 0.6e-3);
-        Scene scene(bodyVolume(boxOf({4e-3, 4e-3, 4e-3}), groove(edge, degrees(angle))), burr(), variant);
-        // Where the burr fits without touching; steep grooves hold it at the rim of the volume.
-        const double clear = std::min(3.8e-3, 1.02 * kBurrRadius / std::sin(degrees(angle) / 2));
-        ClosedLoop loop({}, scene, upright(edge + Eigen::Vector3d(0, 0, clear)));
-        loop.plant.setTarget(upright(edge + Eigen::Vector3d(0.5e-3, 0, clear - 5e-3)));
+        const double wedged = kBurrRadius / std::sin(degrees(angle) / 2);  // centre above the edge
+        const VolumeGeometry geometry = boxOf({4e-3, 4e-3, edge.z() + wedged + 1.5e-3});
+        Scene scene(bodyVolume(geometry, groove(edge, degrees(angle))), burr(), variant);
+        const Eigen::Vector3d start = edge + Eigen::Vector3d(0, 0, wedged + 0.3e-3);
+        ClosedLoop loop({}, scene, upright(start));
+        loop.plant.setTarget(upright(start + Eigen::Vector3d(0.5e-3, 0, -5e-3)));
         const double figure = forceResidual(loop);
         if (!(figure <= worst)) worst = figure;
     }
