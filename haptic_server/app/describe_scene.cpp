@@ -61,7 +61,7 @@ std::string percentilesUs(std::vector<int64_t> durations_ns) {
 
 void describeCost(const LoadedScene& loaded, Simulation& simulation, std::ostream& out) {
     ScenarioIo io(loaded.scene.simulated_operator());
-    HapticTick tick(simulation.tick, *simulation.bone, simulation.tool.sdf, nullptr);
+    HapticTick tick(simulation.tick, *simulation.bone, simulation.tool.model, nullptr);
     while (tick.tick(io)) {
     }
     if (io.records.empty()) {
@@ -86,7 +86,7 @@ std::string describeScene(const std::string& scene_file) {
     Simulation simulation = makeSimulation(loaded);
     const BoneModel& bone = *simulation.bone;
     std::ostringstream out;
-    out << "scene '" << loaded.scene.name() << "', preset " << kPresetName << '\n';
+    out << "scene '" << loaded.scene.name() << "', preset " << settingsName(simulation.tick.accuracy) << '\n';
     for (const std::string& remark : simulation.remarks) out << "  " << remark << '\n';
     for (const std::string& warning : simulation.warnings) out << "  warning: " << warning << '\n';
     const Eigen::Vector3d mm = bone.volume.spacing() * 1e3;
@@ -97,8 +97,8 @@ std::string describeScene(const std::string& scene_file) {
         << bone.lattice.leafCells().transpose() << " cells, " << bone.lattice.levelCount() << " levels\n"
         << "point-shell: " << bone.shell.pointCount() << " points, scaling factor "
         << bone.shell.scalingFactor() << '\n'
-        << "tool: distance grid " << simulation.tool.sdf.nodes().transpose() << " nodes of "
-        << simulation.tool.sdf.spacing() * 1e3 << " mm, burr radius " << simulation.tick.burr_radius * 1e3
+        << "tool: distance grid " << simulation.tool.model.grid().nodes().transpose() << " nodes of "
+        << simulation.tool.model.grid().spacing() * 1e3 << " mm, burr radius " << simulation.tick.burr_radius * 1e3
         << " mm\n";
     describeCost(loaded, simulation, out);
     out << "\nwhat the scene file sets (all else has its default):\n"
