@@ -145,8 +145,8 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     VoxelVolume volume = densify(raw, simulation.mapping);
     removeSmallPieces(volume, scene.volume().smallest_piece_voxels());
     const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), raw.geometry);
-    simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells,
-                                                  int(scene.volume().shell_scaling_factor()));
+    const ShellConfig shell{.factors = {int(scene.volume().shell_scaling_factor())}};
+    simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells, shell);
     simulation.warnings = simulation.tool.warnings;
     warnOfLargeLeaves(simulation);
     warnOfCoarseShell(simulation, scene);

@@ -41,7 +41,7 @@ void fillTool(const TriangleSurface& surface, topics::TriangleMesh* out) {
 Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
     Eigen::AlignedBox3d box;
     for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
-        bone.shell.forEachBlock(leaf, [&box](const ShellBlock& block, uint32_t count) {
+        bone.shell.forEachBlock(0, leaf, [&box](const ShellBlock& block, uint32_t count) {
             for (uint32_t i = 0; i < count; ++i)
                 box.extend(Eigen::Vector3d(block.x[i], block.y[i], block.z[i]));
         });

@@ -43,7 +43,8 @@ void measure(const Setting& setting, const RawVolume& scan, const SdfGrid& tool,
     const Eigen::Vector3i leaf_cells = setting.has_thesis_octree
                                            ? LeafLattice::leafCellsOfDepth(scan.geometry, 3)
                                            : Eigen::Vector3i::Constant(16);
-    BoneModel bone(densify(scan, DensityWindow{-1000, 3000, 600, 0}), leaf_cells, setting.scaling_factor);
+    BoneModel bone(densify(scan, DensityWindow{-1000, 3000, 600, 0}), leaf_cells,
+                   {.factors = {setting.scaling_factor}});
     HapticTick tick({}, bone, tool, nullptr);
     test::ScriptedIo io(test::straightPath(kStart, kEnd, kTicks, kButtonRemove));
     while (tick.tick(io)) {

@@ -19,7 +19,8 @@ constexpr double kTop = 6e-3;  // bone fills z < kTop (V)
 // A slab in a volume whose frame V is turned and shifted against W.
 struct Bench {
     explicit Bench(const Pose& X_WV = {{0.1, -0.2, 0.3}, expRotation({0.4, -0.9, 0.2})})
-        : bone(slab(X_WV), Eigen::Vector3i::Constant(16), 1), tool(test::sphereTool(kBurr, kVoxel)) {
+        : bone(slab(X_WV), Eigen::Vector3i::Constant(16), ShellConfig{}),
+          tool(test::sphereTool(kBurr, kVoxel)) {
         config.burr_radius = kBurr;
     }
     static VoxelVolume slab(const Pose& X_WV) {

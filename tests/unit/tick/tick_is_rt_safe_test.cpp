@@ -17,7 +17,7 @@ class TickIsRtSafe : public testing::Test {
     TickIsRtSafe()
         : bone_(test::bodyVolume(test::cubeGeometry(64, 0.125e-3),
                                  test::halfSpace({0, 0, 5e-3}, Eigen::Vector3d::UnitZ())),
-                Eigen::Vector3i::Constant(16), 1),
+                Eigen::Vector3i::Constant(16), ShellConfig{}),
           tool_(test::sphereTool(1e-3, 0.125e-3)),
           reset_(bone_),
           tick_({}, bone_, tool_, &reset_) {}
