@@ -59,6 +59,14 @@ std::string percentilesUs(std::vector<int64_t> durations_ns) {
     return text.str();
 }
 
+std::string describeLevels(const PointShell& shell) {
+    std::string text;
+    for (int level = 0; level < shell.levelCount(); ++level)
+        text += (level > 0 ? "; " : "") + std::to_string(shell.pointCount(level)) +
+                " points, scaling factor " + std::to_string(shell.scalingFactor(level));
+    return text;
+}
+
 void describeCost(const LoadedScene& loaded, Simulation& simulation, std::ostream& out) {
     ScenarioIo io(loaded.scene.simulated_operator());
     HapticTick tick(simulation.tick, *simulation.bone, simulation.tool.model, nullptr);
@@ -95,8 +103,7 @@ std::string describeScene(const std::string& scene_file) {
         << " .. " << simulation.mapping.high << '\n'
         << "octree: " << bone.lattice.leavesPerAxis().transpose() << " leaves of "
         << bone.lattice.leafCells().transpose() << " cells, " << bone.lattice.levelCount() << " levels\n"
-        << "point-shell: " << bone.shell.pointCount() << " points, scaling factor "
-        << bone.shell.scalingFactor() << '\n'
+        << "point-shell: " << describeLevels(bone.shell) << '\n'
         << "tool: distance grid " << simulation.tool.model.grid().nodes().transpose() << " nodes of "
         << simulation.tool.model.grid().spacing() * 1e3 << " mm, burr radius " << simulation.tick.burr_radius * 1e3
         << " mm\n";

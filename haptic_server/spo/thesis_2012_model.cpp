@@ -11,11 +11,11 @@ Thesis2012Model::Thesis2012Model(const PenaltyContactConfig& contact, const Coup
       X_VW_(world.volume.geometry().X_WV.inverse()) {}
 
 void Thesis2012Model::setAccuracy(const AccuracySettings& settings) noexcept {
-    level_ = levelOf(world_.shell, settings);
+    contact_.shell_level = levelOf(world_.shell, settings);
 }
 
 ContactResult Thesis2012Model::contactInWorld(const Pose& spo_W) const noexcept {
-    ContactResult contact = penaltyContact(contact_, world_.volume, world_.lattice, world_.shell, level_,
+    ContactResult contact = penaltyContact(contact_, world_.volume, world_.lattice, world_.shell,
                                            world_.tool.grid(), X_VW_ * spo_W);
     const Eigen::Quaterniond R_WV = X_VW_.rotation.conjugate();
     contact.wrench = contact.wrench.rotatedBy(R_WV);

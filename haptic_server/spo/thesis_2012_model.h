@@ -24,7 +24,6 @@ class Thesis2012Model final : public SpoModel {
     SpoWorld world_;
     double dt_;
     Pose X_VW_;
-    int level_ = 0;
 };
 
 }  // namespace bonemill
