@@ -33,6 +33,7 @@ FAULT_MEANING = {
     "motion_clamped": "the speed limit of the virtual coupling acted",
     "force_clamped": "the limit of force or torque on the hand acted",
     "shell_overflow": "some milled surface had no contact points",
+    "contact_overflow": "more points near the tool than there is room for: some had no effect",
 }
 
 

@@ -59,9 +59,17 @@ std::string percentilesUs(std::vector<int64_t> durations_ns) {
     return text.str();
 }
 
+std::string describeLevels(const PointShell& shell) {
+    std::string text;
+    for (int level = 0; level < shell.levelCount(); ++level)
+        text += (level > 0 ? "; " : "") + std::to_string(shell.pointCount(level)) +
+                " points, scaling factor " + std::to_string(shell.scalingFactor(level));
+    return text;
+}
+
 void describeCost(const LoadedScene& loaded, Simulation& simulation, std::ostream& out) {
     ScenarioIo io(loaded.scene.simulated_operator());
-    HapticTick tick(simulation.tick, *simulation.bone, simulation.tool.sdf, nullptr);
+    HapticTick tick(simulation.tick, *simulation.bone, simulation.tool.model, nullptr);
     while (tick.tick(io)) {
     }
     if (io.records.empty()) {
@@ -86,7 +94,7 @@ std::string describeScene(const std::string& scene_file) {
     Simulation simulation = makeSimulation(loaded);
     const BoneModel& bone = *simulation.bone;
     std::ostringstream out;
-    out << "scene '" << loaded.scene.name() << "', preset " << kPresetName << '\n';
+    out << "scene '" << loaded.scene.name() << "', preset " << settingsName(simulation.tick.accuracy) << '\n';
     for (const std::string& remark : simulation.remarks) out << "  " << remark << '\n';
     for (const std::string& warning : simulation.warnings) out << "  warning: " << warning << '\n';
     const Eigen::Vector3d mm = bone.volume.spacing() * 1e3;
@@ -95,10 +103,9 @@ std::string describeScene(const std::string& scene_file) {
         << " .. " << simulation.mapping.high << '\n'
         << "octree: " << bone.lattice.leavesPerAxis().transpose() << " leaves of "
         << bone.lattice.leafCells().transpose() << " cells, " << bone.lattice.levelCount() << " levels\n"
-        << "point-shell: " << bone.shell.pointCount() << " points, scaling factor "
-        << bone.shell.scalingFactor() << '\n'
-        << "tool: distance grid " << simulation.tool.sdf.nodes().transpose() << " nodes of "
-        << simulation.tool.sdf.spacing() * 1e3 << " mm, burr radius " << simulation.tick.burr_radius * 1e3
+        << "point-shell: " << describeLevels(bone.shell) << '\n'
+        << "tool: distance grid " << simulation.tool.model.grid().nodes().transpose() << " nodes of "
+        << simulation.tool.model.grid().spacing() * 1e3 << " mm, burr radius " << simulation.tick.burr_radius * 1e3
         << " mm\n";
     describeCost(loaded, simulation, out);
     out << "\nwhat the scene file sets (all else has its default):\n"

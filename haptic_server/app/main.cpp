@@ -21,6 +21,8 @@ void addServerOptions(CLI::App& app, bonemill::ServerOptions& server) {
     app.add_option("--domain", server.domain, "DDS domain, 0 to 230");
     app.add_option("--seconds", server.seconds,
                    "stop this long after the first tick; 0: run until SIGINT or SIGTERM");
+    app.add_option("--accuracy", server.accuracy,
+                   "accuracy.json of accuracy-report, to show errors; default: SCENE.accuracy.json if it exists");
     app.add_option("--trace", server.trace, "write one CSV line per tick");
     app.add_option("--report", server.report, "write the run's statistics as JSON");
     app.add_option("--save-volume", server.save_volume, "write the milled volume (NRRD) at the end");

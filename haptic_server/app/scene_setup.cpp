@@ -75,20 +75,23 @@ void warnOfLargeLeaves(Simulation& simulation) {
 }
 
 void warnOfCoarseShell(Simulation& simulation, const scene::Scene& scene) {
-    const double shell_spacing =
-        scene.volume().shell_scaling_factor() * simulation.bone->volume.spacing().maxCoeff();
-    const double sdf_spacing = simulation.tool.sdf.spacing();
+    const AccuracySettings settings = accuracyOf(scene);
+    if (settings.tool_distance == ToolDistance::kAnalytic && simulation.tool.model.hasShapes()) return;
+    const double shell_spacing = settings.shell_factor * simulation.bone->volume.spacing().maxCoeff();
+    const double sdf_spacing = simulation.tool.model.grid().spacing();
     if (shell_spacing <= sdf_spacing * (1 + 1e-9)) return;
     simulation.warnings.push_back("point-shell spacing " + textOf(shell_spacing / kMillimetre) +
                                   " mm is coarser than the tool's distance grid (" +
                                   textOf(sdf_spacing / kMillimetre) +
-                                  " mm): contact can miss thin features; lower volume.shell_scaling_factor");
+                                  " mm): contact can miss thin features; lower accuracy.shell_factor");
 }
 
 }  // namespace
 
-TickConfig tickConfigOf(const scene::Scene& scene) {
+TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing) {
     TickConfig config;
+    config.accuracy = accuracyOf(scene);
+    config.gradient = gradientConfigOf(scene, finest_spacing);
     config.dt = 1 / scene.loop().rate_hz();
     config.burr_radius = scene.tool().burr_radius_mm() * kMillimetre;
     config.contact = {.point_stiffness = scene.contact().point_stiffness_n_per_mm() / kMillimetre,
@@ -127,10 +130,10 @@ Pose devicePoseOf(const scene::Device& device) {
 Simulation makeSimulation(const LoadedScene& loaded) {
     const scene::Scene& scene = loaded.scene;
     const ToolConfig tool_config = toolConfigOf(loaded);
-    Simulation simulation{.tick = tickConfigOf(scene),
+    Simulation simulation{.tick = {},
                           .bone = nullptr,
                           .mapping = {},
-                          .tool = buildTool(tool_config),
+                          .tool = buildTool(tool_config, sdfRefinementsOf(scene)),
                           .tool_surface = toolSurface(tool_config),
                           .X_WD = devicePoseOf(scene.device()),
                           .remarks = {},
@@ -145,8 +148,8 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     VoxelVolume volume = densify(raw, simulation.mapping);
     removeSmallPieces(volume, scene.volume().smallest_piece_voxels());
     const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), raw.geometry);
-    simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells,
-                                                  int(scene.volume().shell_scaling_factor()));
+    simulation.tick = tickConfigOf(scene, volume.spacing().minCoeff());
+    simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells, shellConfigOf(scene));
     simulation.warnings = simulation.tool.warnings;
     warnOfLargeLeaves(simulation);
     warnOfCoarseShell(simulation, scene);

@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "common/config/scene_file.h"
+#include "haptic_server/app/scene_accuracy.h"
 #include "haptic_server/tick/haptic_tick.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
 
 namespace bonemill {
-
-inline constexpr const char* kPresetName = "thesis_2012";
 
 struct Simulation {
     TickConfig tick;
@@ -29,7 +28,8 @@ struct Simulation {
 // Imports the volume, builds tree, shell and tool. Throws UserError.
 Simulation makeSimulation(const LoadedScene& loaded);
 
-TickConfig tickConfigOf(const scene::Scene& scene);
+// `finest_spacing` as in gradientConfigOf().
+TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing);
 ToolConfig toolConfigOf(const LoadedScene& loaded);
 Pose devicePoseOf(const scene::Device& device);
 

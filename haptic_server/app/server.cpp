@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <future>
 #include <thread>
 
@@ -41,6 +42,12 @@ DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& l
     return config;
 }
 
+AccuracyFigures figuresOf(const ServerOptions& options) {
+    if (!options.accuracy.empty()) return readAccuracyFigures(options.accuracy);
+    const std::string beside = accuracyFiguresOf(options.scene);
+    return std::filesystem::exists(beside) ? readAccuracyFigures(beside) : AccuracyFigures{};
+}
+
 int coreOf(int option) {
     return option == kLastCore ? int(std::thread::hardware_concurrency()) - 1 : option;
 }
@@ -64,12 +71,14 @@ class Server {
           stop_signals_(blockStopSignals()),
           link_(DeviceLink::create(DeviceLink::nameOfSession(options.session), LinkSide::kServer)),
           reset_(*simulation_.bone),
+          accuracy_(simulation_.tick.accuracy),
           ring_(kRingRecords),
           io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), link_, ring_),
-          tick_(simulation_.tick, *simulation_.bone, simulation_.tool.sdf, &reset_),
+          tick_(simulation_.tick, *simulation_.bone, simulation_.tool.model, &reset_, &accuracy_),
           recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace),
           publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
-          show_(publisher_, loaded_.scene, simulation_, outbox_, recorder_, reset_, stop_requested_) {
+          show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, reset_, accuracy_,
+                stop_requested_) {
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
         for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     }
@@ -197,6 +206,7 @@ class Server {
     sigset_t stop_signals_;
     DeviceLink link_;
     VolumeReset reset_;
+    AccuracySwitch accuracy_;
     SpscRing<TickRecord> ring_;
     DeviceLinkIo io_;
     HapticTick tick_;

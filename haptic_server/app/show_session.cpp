@@ -41,7 +41,7 @@ void fillTool(const TriangleSurface& surface, topics::TriangleMesh* out) {
 Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
     Eigen::AlignedBox3d box;
     for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
-        bone.shell.forEachBlock(leaf, [&box](const ShellBlock& block, uint32_t count) {
+        bone.shell.forEachBlock(0, leaf, [&box](const ShellBlock& block, uint32_t count) {
             for (uint32_t i = 0; i < count; ++i)
                 box.extend(Eigen::Vector3d(block.x[i], block.y[i], block.z[i]));
         });
@@ -69,13 +69,16 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
 }  // namespace
 
 ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
-                         MeshOutbox& outbox, const Recorder& recorder, VolumeReset& reset,
-                         std::atomic<bool>& stop_requested)
+                         const AccuracyFigures& figures, MeshOutbox& outbox, const Recorder& recorder,
+                         VolumeReset& reset, AccuracySwitch& accuracy, std::atomic<bool>& stop_requested)
     : publisher_(publisher),
       scene_name_(scene.name()),
       outbox_(outbox),
       recorder_(recorder),
       reset_(reset),
+      accuracy_(accuracy),
+      figures_(figures),
+      is_switchable_(scene.accuracy().switchable()),
       stop_requested_(stop_requested) {
     publisher_.publishSceneInfo(sceneInfo(scene, simulation));
 }
@@ -100,7 +103,12 @@ void ShowSession::publishStatus() {
     const LoopHealth health = recorder_.health();
     topics::Status status;
     status.set_scene(scene_name_);
-    status.set_preset(kPresetName);
+    status.set_preset(settingsName(accuracy_.chosen()));
+    if (const auto figure = figures_.find(status.preset()); figure != figures_.end()) {
+        status.set_has_accuracy_error(true);
+        status.set_force_error_percent(figure->second.force_error_percent);
+        status.set_force_direction_error_deg(figure->second.direction_error_deg);
+    }
     status.set_ticks(health.ticks);
     status.set_rate_hz(health.rate_hz);
     status.set_tick_p50_us(health.tick_p50_us);
@@ -123,12 +131,23 @@ std::string ShowSession::carryOut(const topics::Command& command) {
         case topics::Command::kPauseMilling:
             reset_.pauseMilling(command.pause_milling());
             return "done";
+        case topics::Command::kSetAccuracy:
+            return setAccuracy(command.set_accuracy());
         case topics::Command::kShutDown:
             stop_requested_ = true;
             return "done";
         default:
             return "refused: this server does not know the action";
     }
+}
+
+std::string ShowSession::setAccuracy(const std::string& name) {
+    const auto preset = presetOfName(name);
+    if (name != "scene" && !preset)
+        return "refused: no preset is called '" + name + "'; thesis_2012, fast, balanced, exact or scene";
+    if (!is_switchable_ && preset) return "refused: the scene says accuracy.switchable: false";
+    accuracy_.choose(preset ? AccuracySwitch::choiceOf(*preset) : AccuracySwitch::kSceneChoice);
+    return "done";
 }
 
 }  // namespace bonemill

@@ -103,7 +103,7 @@ std::string simulate(const SimulateOptions& options) {
     BoneModel& bone = *simulation.bone;
     const double volume_before = checkMesh(meshWholeBone(bone), MeshGrid(bone.volume, bone.lattice)).volume;
 
-    HapticTick tick(simulation.tick, bone, simulation.tool.sdf, nullptr);
+    HapticTick tick(simulation.tick, bone, simulation.tool.model, nullptr);
     RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * 1e9)));
     StateHash hash;
     FileIo io(rows);
@@ -122,9 +122,9 @@ std::string simulate(const SimulateOptions& options) {
     saveMesh(options.save_mesh, bone, meshes);
     nlohmann::json json = totals(statistics, hash);
     json["scene"] = loaded.scene.name();
-    json["preset"] = kPresetName;
+    json["preset"] = settingsName(simulation.tick.accuracy);
     json["iso_value"] = simulation.mapping.iso_value;
-    json["shell_points"] = bone.shell.pointCount();
+    json["shell_points"] = bone.shell.pointCount(0);
     json["bone_mm3"] = mesh.volume / kCubicMillimetre;
     json["bone_before_mm3"] = volume_before / kCubicMillimetre;
     json["mesh"] = {

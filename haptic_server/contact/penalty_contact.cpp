@@ -83,9 +83,11 @@ ContactResult penaltyContact(const PenaltyContactConfig& config, const VoxelVolu
     const Eigen::AlignedBox3d box_T = tool_sdf.box();
     UnitSums sums;
     lattice.forEachSurfaceLeaf(boxInV(box_T, X_VT), volume.spacing(), volume.iso(), [&](LeafId leaf) {
-        if (shell.pointCount(leaf) == 0 || !mayTouch(lattice.cellsOf(leaf), volume.spacing(), box_T, X_TV))
+        if (shell.pointCount(config.shell_level, leaf) == 0 ||
+            !mayTouch(lattice.cellsOf(leaf), volume.spacing(), box_T, X_TV))
             return;
-        shell.forEachBlock(leaf, [&](const ShellBlock& block, uint32_t count) { test(block, count, sums); });
+        shell.forEachBlock(config.shell_level, leaf,
+                           [&](const ShellBlock& block, uint32_t count) { test(block, count, sums); });
     });
     return scaled(config, sums);
 }

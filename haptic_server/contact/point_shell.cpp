@@ -1,196 +1,225 @@
 #include "haptic_server/contact/point_shell.h"
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 #include <stdexcept>
-
-#include "haptic_server/contact/shell_point.h"
 
 namespace bonemill {
 namespace {
 
-constexpr int kKeyBits = 10;  // blocks per axis of a leaf: at most 1024
+constexpr uint32_t kNoPatch = ~0u;
 
-uint32_t packKey(int x, int y, int z) noexcept {
-    return uint32_t(x | y << kKeyBits | z << 2 * kKeyBits);
+size_t blocksPerLeaf(const LeafLattice& lattice, int factor) {
+    const Eigen::Vector3i blocks = (lattice.leafCells().array() + (factor - 1)) / factor;
+    if (blocks.maxCoeff() > 1 << kShellKeyBits)
+        throw std::invalid_argument("PointShell: leaves of more than 1024 blocks per axis");
+    return size_t(blocks.x()) * size_t(blocks.y()) * size_t(blocks.z());
 }
 
-bool isInside(uint32_t key, const IndexBox& blocks) noexcept {
-    constexpr int kMask = (1 << kKeyBits) - 1;
-    const Eigen::Vector3i at(int(key) & kMask, int(key) >> kKeyBits & kMask,
-                             int(key) >> 2 * kKeyBits & kMask);
-    return (at.array() >= blocks.min.array()).all() && (at.array() <= blocks.max.array()).all();
+size_t mostBlocksPerLeaf(const LeafLattice& lattice, const ShellConfig& config) {
+    size_t most = 0;
+    for (const int factor : config.factors) most = std::max(most, blocksPerLeaf(lattice, factor));
+    return most;
 }
 
-// What a column of voxels (one x, the block's y and z range) holds; combined over the block's columns: a
-// block with voxels on both sides of the iso-surface has a crossed edge.
-enum ColumnState : uint8_t { kNoneInside = 0, kSomeInside = 1, kAllInside = 2 };
-
-// States of the columns x = box.min.x .. box.max.x; `states` holds that many.
-void classifyColumns(const VoxelVolume& volume, const IndexBox& box, uint8_t* states) noexcept {
-    const Density iso = volume.iso();
-    const int columns = box.max.x() - box.min.x() + 1;
-    std::fill_n(states, columns, uint8_t(kAllInside));
-    for (int k = box.min.z(); k <= box.max.z(); ++k)
-        for (int j = box.min.y(); j <= box.max.y(); ++j) {
-            const size_t row = volume.offset(box.min.x(), j, k);
-            for (int i = 0; i < columns; ++i) {
-                const bool inside = volume.at(row + size_t(i)) >= iso;
-                states[i] = inside ? states[i] | kSomeInside : states[i] & ~kAllInside;
-            }
-        }
+const ShellConfig& checked(const ShellConfig& config) {
+    std::vector<int> factors = config.factors;
+    std::sort(factors.begin(), factors.end());
+    const bool is_distinct = std::adjacent_find(factors.begin(), factors.end()) == factors.end();
+    if (factors.empty() || factors.front() < 1 || !is_distinct)
+        throw std::invalid_argument("PointShell: scaling factors must be distinct and at least 1");
+    return config;
 }
 
-bool isCrossed(const uint8_t* states, int columns) noexcept {
-    uint8_t any = 0;
-    uint8_t all = kAllInside;
-    for (int i = 0; i < columns; ++i) {
-        any |= states[i];
-        all &= states[i];
-    }
-    return (any & kSomeInside) && !(all & kAllInside);
+// Blocks that hold these cells of a leaf, and the other way round; both count from the leaf's first.
+IndexBox blocksOf(const IndexBox& cells, int factor) noexcept {
+    return {cells.min / factor, cells.max / factor};
+}
+IndexBox cellsOf(const IndexBox& blocks, int factor, const Eigen::Vector3i& last_cell) noexcept {
+    return {blocks.min * factor, ((blocks.max.array() + 1) * factor - 1).matrix().cwiseMin(last_cell)};
 }
 
-Eigen::Vector3i blocksOf(const IndexBox& cells, int s) noexcept {
-    return ((cells.max - cells.min).array() / s + 1).matrix();
+IndexBox shifted(const IndexBox& box, const Eigen::Vector3i& by) noexcept {
+    return {box.min + by, box.max + by};
+}
+
+Eigen::Vector3i cellOf(const SurfacePatch& patch) noexcept {
+    return {patch.cell[0], patch.cell[1], patch.cell[2]};
+}
+
+bool holds(const IndexBox& box, const Eigen::Vector3i& index) noexcept {
+    return (index.array() >= box.min.array()).all() && (index.array() <= box.max.array()).all();
 }
 
 }  // namespace
 
-PointShell::PointShell(const VoxelVolume& volume, const LeafLattice& lattice, int scaling_factor,
-                       size_t spare_points)
-    : scaling_factor_(scaling_factor), leaves_(lattice.leafCount()) {
-    const Eigen::Vector3i most =
-        ((lattice.leafCells().array() + scaling_factor - 1) / scaling_factor).matrix();
-    if (most.maxCoeff() > 1 << kKeyBits)
-        throw std::invalid_argument("PointShell: leaves of more than 1024 blocks per axis");
-    fresh_.resize(size_t(most.prod()));
-    merged_.resize(fresh_.size());
-    row_.resize(size_t(lattice.leafCells().x()) + 1);
+PointShell::PointShell(const VoxelVolume& volume, const LeafLattice& lattice, const ShellConfig& config)
+    : projection_(volume, checked(config).normals),
+      reach_(config.normals == ShellNormals::kCentralDifference ? 1 : 0),
+      pool_(mostBlocksPerLeaf(lattice, config)),
+      cells_(volume, lattice.leafCells()) {
+    for (const int factor : config.factors)
+        levels_.push_back({factor, std::vector<ShellPool::List>(lattice.leafCount())});
+    fresh_.resize(mostBlocksPerLeaf(lattice, config));
+    size_t most_sums = 0;
+    for (const int factor : config.factors)
+        if (factor > 1) most_sums = std::max(most_sums, blocksPerLeaf(lattice, factor));
+    sums_.resize(most_sums);
+    if (most_sums > 0) previous_patch_.resize(size_t(lattice.leafCells().prod()));
 
-    const auto add_blocks = [this](size_t count) {
-        const size_t old = blocks_.size();
-        blocks_.resize(old + count);
-        for (size_t b = old; b < blocks_.size(); ++b) {
-            blocks_[b].next = free_blocks_;
-            free_blocks_ = uint32_t(b);
-        }
-        free_count_ += uint32_t(count);
-    };
-    const size_t blocks_per_leaf = fresh_.size() / ShellBlock::kCapacity + 1;
+    size_t blocks_per_leaf = 0;
+    for (const int factor : config.factors)
+        blocks_per_leaf += blocksPerLeaf(lattice, factor) / ShellBlock::kCapacity + 1;
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
         if (!lattice.mayHoldSurface(leaf, volume.iso())) continue;
-        if (free_count_ < blocks_per_leaf) add_blocks(std::max(blocks_per_leaf, blocks_.size() / 2));
-        const IndexBox cells = lattice.cellsOf(leaf);
-        const IndexBox all{Eigen::Vector3i::Zero(), blocksOf(cells, scaling_factor_).array() - 1};
-        collectNew(volume, cells, all);
-        mergeWithOld(leaf, all);
-        store(leaf);
+        if (pool_.freeCount() < blocks_per_leaf)
+            pool_.addBlocks(std::max(blocks_per_leaf, pool_.blockCount() / 2));
+        rebuild(volume, lattice, leaf, lattice.cellsOf(leaf));
     }
-    // Milled surface also fragments: each leaf it enters wastes up to one block.
-    const size_t spare_blocks =
-        spare_points / ShellBlock::kCapacity + std::min<size_t>(lattice.leafCount(), 4096);
-    if (free_count_ < spare_blocks) add_blocks(spare_blocks - free_count_);
+    reservePool(lattice, config.spare_points);
+}
+
+// Milled surface also fragments: each leaf it enters wastes up to one block per level.
+void PointShell::reservePool(const LeafLattice& lattice, size_t spare_points) {
+    size_t spare_blocks = 0;
+    for (const Level& level : levels_) {
+        const size_t points = spare_points / (size_t(level.factor) * size_t(level.factor));
+        spare_blocks += points / ShellBlock::kCapacity + std::min<size_t>(lattice.leafCount(), 4096);
+    }
+    if (pool_.freeCount() < spare_blocks) pool_.addBlocks(spare_blocks - pool_.freeCount());
+}
+
+int PointShell::levelOf(int factor) const noexcept {
+    for (int level = 0; level < levelCount(); ++level)
+        if (scalingFactor(level) == factor) return level;
+    return -1;
 }
 
 bool PointShell::refresh(const VoxelVolume& volume, const LeafLattice& lattice,
                          const IndexBox& changed_voxels) noexcept {
     if (changed_voxels.isEmpty()) return true;
-    const IndexBox cells{changed_voxels.min.array() - LeafLattice::kInfluence,
-                         changed_voxels.max.array() + (LeafLattice::kInfluence - 1)};
+    const IndexBox cells{changed_voxels.min.array() - (1 + reach_), changed_voxels.max.array() + reach_};
     const IndexBox leaves = lattice.leavesOfCells(cells);
-    bool all_stored = true;
+    bool is_complete = true;
     for (int k = leaves.min.z(); k <= leaves.max.z(); ++k)
         for (int j = leaves.min.y(); j <= leaves.max.y(); ++j)
             for (int i = leaves.min.x(); i <= leaves.max.x(); ++i) {
                 const LeafId leaf = lattice.leafId({i, j, k});
                 const IndexBox leaf_cells = lattice.cellsOf(leaf);
-                const IndexBox touched = cells.clamped(leaf_cells.min, leaf_cells.max);
-                const IndexBox blocks{(touched.min - leaf_cells.min) / scaling_factor_,
-                                      (touched.max - leaf_cells.min) / scaling_factor_};
-                fresh_size_ = 0;
-                if (lattice.mayHoldSurface(leaf, volume.iso())) collectNew(volume, leaf_cells, blocks);
-                mergeWithOld(leaf, blocks);
-                all_stored = store(leaf) && all_stored;
+                is_complete &= rebuild(volume, lattice, leaf, cells.clamped(leaf_cells.min, leaf_cells.max));
             }
-    return all_stored;
+    return is_complete;
 }
 
-void PointShell::collectNew(const VoxelVolume& volume, const IndexBox& leaf_cells,
-                            const IndexBox& blocks) noexcept {
-    const auto cells_of = [&](int x, int y, int z) {
-        const Eigen::Vector3i first = leaf_cells.min + scaling_factor_ * Eigen::Vector3i(x, y, z);
-        return IndexBox{first, (first.array() + (scaling_factor_ - 1)).matrix().cwiseMin(leaf_cells.max)};
-    };
+// `touched_cells` lie in the leaf; their blocks of every level are rebuilt.
+bool PointShell::rebuild(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf,
+                         const IndexBox& touched_cells) noexcept {
+    const IndexBox leaf_cells = lattice.cellsOf(leaf);
+    const IndexBox touched = shifted(touched_cells, -leaf_cells.min);
+    const Eigen::Vector3i last_cell = leaf_cells.max - leaf_cells.min;
+    IndexBox wanted = touched;
+    for (const Level& level : levels_) {
+        const IndexBox cells = cellsOf(blocksOf(touched, level.factor), level.factor, last_cell);
+        wanted = {wanted.min.cwiseMin(cells.min), wanted.max.cwiseMax(cells.max)};
+    }
+    if (lattice.mayHoldSurface(leaf, volume.iso()))
+        cells_.collect(volume, leaf_cells.min, shifted(wanted, leaf_cells.min));
+    else
+        cells_.clear();
+    bool is_complete = true;
+    for (Level& level : levels_)
+        is_complete &= rebuildLevel(volume, leaf_cells, blocksOf(touched, level.factor), level, leaf);
+    return is_complete;
+}
+
+bool PointShell::rebuildLevel(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& blocks,
+                              Level& level, LeafId leaf) noexcept {
     fresh_size_ = 0;
+    if (level.factor == 1)
+        pointsOfCells(volume, leaf_cells, blocks);
+    else if (!cells_.patches().empty())
+        pointsOfBlocks(volume, leaf_cells, blocks, level.factor);
+    ShellPool::List& list = level.leaves[leaf];
+    level.point_count -= list.count;
+    const bool is_stored = pool_.replace(list, blocks, {fresh_.data(), fresh_size_});
+    level.point_count += list.count;
+    return is_stored;
+}
+
+void PointShell::pointsOfCells(const VoxelVolume& volume, const IndexBox& leaf_cells,
+                               const IndexBox& cells) noexcept {
+    for (const SurfacePatch& patch : cells_.patches()) {
+        const Eigen::Vector3i local = cellOf(patch);
+        if (!holds(cells, local)) continue;
+        const Eigen::Vector3i cell = leaf_cells.min + local;
+        SurfacePlace place;
+        if (!projection_.walk(volume, {cell, cell}, patch.centroid, place))
+            place = projection_.bracket(volume, {cell, patch.centroid});
+        addPoint(volume, place, patch.area, local);
+    }
+}
+
+void PointShell::pointsOfBlocks(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& blocks,
+                                int factor) noexcept {
+    sumBlocks(blocks, factor);
+    const Eigen::Vector3i last_cell = leaf_cells.max - leaf_cells.min;
+    const BlockSum* sum = sums_.data();
     for (int z = blocks.min.z(); z <= blocks.max.z(); ++z)
-        for (int y = blocks.min.y(); y <= blocks.max.y(); ++y) {
-            IndexBox row = cells_of(blocks.min.x(), y, z);
-            row.max = cells_of(blocks.max.x(), y, z).max.array() + 1;  // cells to voxels
-            classifyColumns(volume, row, row_.data());
-            for (int x = blocks.min.x(); x <= blocks.max.x(); ++x) {
-                const IndexBox cells = cells_of(x, y, z);
-                const int columns = cells.max.x() - cells.min.x() + 2;
-                if (!isCrossed(row_.data() + (cells.min.x() - row.min.x()), columns)) continue;
-                ShellPoint& point = fresh_[fresh_size_++];
-                point = makeShellPoint(volume, cells);
-                point.key = packKey(x, y, z);
+        for (int y = blocks.min.y(); y <= blocks.max.y(); ++y)
+            for (int x = blocks.min.x(); x <= blocks.max.x(); ++x, ++sum) {
+                if (!(sum->area > 0)) continue;
+                const Eigen::Vector3i block(x, y, z);
+                const IndexBox cells = cellsOf({block, block}, factor, last_cell);
+                const Eigen::Vector3f center = sum->moment / sum->area;
+                SurfacePlace place;
+                if (!projection_.walk(volume, shifted(cells, leaf_cells.min), center, place))
+                    place = nearestPatchPlace(volume, leaf_cells, cells.min, *sum, center);
+                addPoint(volume, place, sum->area, block);
             }
-        }
 }
 
-void PointShell::mergeWithOld(LeafId leaf, const IndexBox& blocks) noexcept {
-    merged_size_ = 0;
-    size_t next_fresh = 0;
-    forEachBlock(leaf, [&](const ShellBlock& block, uint32_t count) {
-        for (uint32_t i = 0; i < count; ++i) {
-            if (isInside(block.key[i], blocks)) continue;
-            while (next_fresh < fresh_size_ && fresh_[next_fresh].key < block.key[i])
-                merged_[merged_size_++] = fresh_[next_fresh++];
-            merged_[merged_size_++] = {
-                {block.x[i], block.y[i], block.z[i]}, {block.nx[i], block.ny[i], block.nz[i]}, block.key[i]};
-        }
-    });
-    while (next_fresh < fresh_size_) merged_[merged_size_++] = fresh_[next_fresh++];
+// Fills sums_ for `blocks`, x fastest. Each block sums its patches in the order of their cells, whatever else
+// is rebuilt with it.
+void PointShell::sumBlocks(const IndexBox& blocks, int factor) noexcept {
+    const Eigen::Vector3i size = blocks.max - blocks.min + Eigen::Vector3i::Ones();
+    std::fill_n(sums_.begin(), size.prod(), BlockSum{.last_patch = kNoPatch});
+    const std::span<const SurfacePatch> patches = cells_.patches();
+    for (size_t n = 0; n < patches.size(); ++n) {
+        const Eigen::Vector3i cell = cellOf(patches[n]);
+        const Eigen::Vector3i block = cell / factor;
+        if (!holds(blocks, block)) continue;
+        const Eigen::Vector3i at = block - blocks.min;
+        BlockSum& sum = sums_[size_t(at.x() + size.x() * (at.y() + size.y() * at.z()))];
+        const Eigen::Vector3f from_first = (cell - block * factor).cast<float>() + patches[n].centroid;
+        sum.area += patches[n].area;
+        sum.moment += patches[n].area * from_first;
+        previous_patch_[n] = sum.last_patch;
+        sum.last_patch = uint32_t(n);
+    }
 }
 
-bool PointShell::store(LeafId id) noexcept {
-    Leaf& leaf = leaves_[id];
-    const uint32_t have = (leaf.count + ShellBlock::kCapacity - 1) / ShellBlock::kCapacity;
-    const uint32_t want = (uint32_t(merged_size_) + ShellBlock::kCapacity - 1) / ShellBlock::kCapacity;
-    if (want > have && want - have > free_count_) return false;
-    for (uint32_t n = have; n < want; ++n) {
-        const uint32_t block = takeBlock();
-        blocks_[block].next = leaf.first;
-        leaf.first = block;
+// On the surface in the cell of the block whose patch is nearest to `center`.
+SurfacePlace PointShell::nearestPatchPlace(const VoxelVolume& volume, const IndexBox& leaf_cells,
+                                           const Eigen::Vector3i& block_first, const BlockSum& sum,
+                                           const Eigen::Vector3f& center) const noexcept {
+    const SurfacePatch* nearest = nullptr;
+    float least = INFINITY;
+    for (uint32_t n = sum.last_patch; n != kNoPatch; n = previous_patch_[n]) {
+        const SurfacePatch& patch = cells_.patches()[n];
+        const Eigen::Vector3f from_first = (cellOf(patch) - block_first).cast<float>() + patch.centroid;
+        const float squared = (from_first - center).cwiseProduct(projection_.spacing()).squaredNorm();
+        if (nearest && squared >= least) continue;
+        nearest = &patch;
+        least = squared;
     }
-    for (uint32_t n = want; n < have; ++n) {
-        const uint32_t block = leaf.first;
-        leaf.first = blocks_[block].next;
-        blocks_[block].next = free_blocks_;
-        free_blocks_ = block;
-        ++free_count_;
-    }
-    uint32_t block = leaf.first;
-    for (size_t n = 0; n < merged_size_; ++n) {
-        const uint32_t i = uint32_t(n) % ShellBlock::kCapacity;
-        if (n > 0 && i == 0) block = blocks_[block].next;
-        ShellBlock& b = blocks_[block];
-        const ShellPoint& point = merged_[n];
-        b.x[i] = point.position.x(), b.y[i] = point.position.y(), b.z[i] = point.position.z();
-        b.nx[i] = point.normal.x(), b.ny[i] = point.normal.y(), b.nz[i] = point.normal.z();
-        b.key[i] = point.key;
-    }
-    point_count_ += merged_size_;
-    point_count_ -= leaf.count;
-    leaf.count = uint32_t(merged_size_);
-    return true;
+    return projection_.bracket(volume, {leaf_cells.min + cellOf(*nearest), nearest->centroid});
 }
 
-uint32_t PointShell::takeBlock() noexcept {
-    const uint32_t block = free_blocks_;
-    free_blocks_ = blocks_[block].next;
-    --free_count_;
-    return block;
+void PointShell::addPoint(const VoxelVolume& volume, const SurfacePlace& place, float area,
+                          const Eigen::Vector3i& block) noexcept {
+    fresh_[fresh_size_++] = {projection_.position(place), projection_.normal(volume, place), area,
+                             packShellKey(block)};
 }
 
 }  // namespace bonemill

@@ -1,10 +1,14 @@
-// The bone's contact points: one per s×s×s cells crossed by the iso-surface (thesis §4.2.3, scaling factor
-// s).
+// The bone's contact points, at one or several levels of detail: one per s×s×s cells crossed by the
+// iso-surface (thesis §4.2.3, scaling factor s), for each level's s.
 //
-// The thesis leaves two choices open; ours: the point is the mean of the iso-crossings on all grid edges of
-// the s×s×s block (linear interpolation along each edge), its normal the gradient interpolated trilinearly
-// from the block's eight corners, pointing out of the bone. Blocks start at each leaf's first cell and are
-// cut at its border.
+// The thesis leaves open where a point lies and what it stands for; ours: the surface in a block of cells is
+// its marching-cubes triangles; their area is the point's area, their area centroid, moved onto the trilinear
+// iso-surface, the point (shell_point.h). So at every level the areas add up to that of the drawn surface.
+// Blocks without area (surface that only touches a voxel) give no point. Blocks start at each leaf's first
+// cell and are cut at its border.
+//
+// How far a point is from the true surface of curvature radius R: the tolerance of shell_point.h, and the
+// trilinear field's own error, below h²/(4 R) for voxels h that sample a smooth density.
 //
 // Points live in fixed blocks of a pool sized at construction, in ascending order of their cells inside each
 // leaf, so that an incremental refresh gives the very bits of a full rebuild. Only the tick thread touches a
@@ -14,77 +18,87 @@
 #include <cstdint>
 #include <vector>
 
+#include "haptic_server/contact/shell_pool.h"
 #include "haptic_server/volume/leaf_lattice.h"
 
 namespace bonemill {
 
-struct ShellPoint {
-    Eigen::Vector3f position;  // V, m
-    Eigen::Vector3f normal;    // V, unit, out of the bone; zero where the density has no gradient
-    uint32_t key;              // block coordinates inside the leaf, 10 bits each, z most significant
-};
+struct ShellConfig {
+    static constexpr size_t kDefaultSparePoints = 400'000;  // about 50 cm² of new surface at 0.125 mm
 
-// Structure of arrays for the contact loop.
-struct ShellBlock {
-    static constexpr uint32_t kCapacity = 64;
-    float x[kCapacity], y[kCapacity], z[kCapacity];
-    float nx[kCapacity], ny[kCapacity], nz[kCapacity];
-    uint32_t key[kCapacity];
-    uint32_t next;
+    std::vector<int> factors{1};  // cells per block edge of each level: distinct, >= 1
+    ShellNormals normals = ShellNormals::kCentralDifference;
+    // Room for surface that milling will open, in points of one cell each; coarser levels get as much
+    // surface.
+    size_t spare_points = kDefaultSparePoints;
 };
 
 class PointShell {
   public:
-    // Builds every leaf. `spare_points` is room for surface that milling will open. Allocates.
-    // Throws std::invalid_argument for leaves of more than 1024 blocks per axis.
-    PointShell(const VoxelVolume& volume, const LeafLattice& lattice, int scaling_factor,
-               size_t spare_points = kDefaultSparePoints);
+    // Builds every leaf at every level. Allocates. Throws std::invalid_argument for factors that are not
+    // distinct and >= 1 and for leaves of more than 1024 blocks per axis.
+    PointShell(const VoxelVolume& volume, const LeafLattice& lattice, const ShellConfig& config);
 
-    // Rebuilds the points that the voxels in `changed_voxels` can influence. RT-safe. False: the pool is full
-    // and some leaves kept their old points.
+    // Rebuilds the points of all levels that the voxels in `changed_voxels` can influence. RT-safe. False:
+    // the pool is full and some leaves kept their old points at some level.
     bool refresh(const VoxelVolume& volume, const LeafLattice& lattice,
                  const IndexBox& changed_voxels) noexcept;
 
+    int levelCount() const noexcept { return int(levels_.size()); }
+    int scalingFactor(int level) const noexcept { return levels_[size_t(level)].factor; }
+    // The level of this factor, -1 if there is none.
+    int levelOf(int factor) const noexcept;
+
     // Calls visit(const ShellBlock&, uint32_t count) for the leaf's points in order. RT-safe.
     template <class Visit>
-    void forEachBlock(LeafId leaf, Visit&& visit) const noexcept {
-        uint32_t left = leaves_[leaf].count;
-        for (uint32_t block = leaves_[leaf].first; left > 0; block = blocks_[block].next) {
-            const uint32_t count = left < ShellBlock::kCapacity ? left : ShellBlock::kCapacity;
-            visit(blocks_[block], count);
-            left -= count;
-        }
+    void forEachBlock(int level, LeafId leaf, Visit&& visit) const noexcept {
+        pool_.forEachBlock(levels_[size_t(level)].leaves[leaf], visit);
     }
 
-    uint32_t pointCount(LeafId leaf) const noexcept { return leaves_[leaf].count; }
-    size_t pointCount() const noexcept { return point_count_; }
-    int scalingFactor() const noexcept { return scaling_factor_; }
-
-    static constexpr size_t kDefaultSparePoints = 400'000;  // about 50 cm² of new surface at 0.125 mm
+    uint32_t pointCount(int level, LeafId leaf) const noexcept {
+        return levels_[size_t(level)].leaves[leaf].count;
+    }
+    size_t pointCount(int level) const noexcept { return levels_[size_t(level)].point_count; }
 
   private:
-    struct Leaf {
-        uint32_t first = kNoBlock;
-        uint32_t count = 0;
+    struct Level {
+        int factor;
+        std::vector<ShellPool::List> leaves;
+        size_t point_count = 0;
     };
-    static constexpr uint32_t kNoBlock = ~0u;
+    // Sums over the patches of one block.
+    struct BlockSum {
+        float area = 0;                                    // m²
+        Eigen::Vector3f moment = Eigen::Vector3f::Zero();  // m² × cell steps from the block's first corner
+        uint32_t last_patch = 0;
+    };
 
-    void collectNew(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& blocks) noexcept;
-    void mergeWithOld(LeafId leaf, const IndexBox& blocks) noexcept;
-    bool store(LeafId leaf) noexcept;
-    uint32_t takeBlock() noexcept;
+    bool rebuild(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf,
+                 const IndexBox& touched_cells) noexcept;
+    bool rebuildLevel(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& blocks,
+                      Level& level, LeafId leaf) noexcept;
+    void pointsOfCells(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& cells) noexcept;
+    void pointsOfBlocks(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& blocks,
+                        int factor) noexcept;
+    void sumBlocks(const IndexBox& blocks, int factor) noexcept;
+    SurfacePlace nearestPatchPlace(const VoxelVolume& volume, const IndexBox& leaf_cells,
+                                   const Eigen::Vector3i& block_first, const BlockSum& sum,
+                                   const Eigen::Vector3f& center) const noexcept;
+    void addPoint(const VoxelVolume& volume, const SurfacePlace& place, float area,
+                  const Eigen::Vector3i& block) noexcept;
+    void reservePool(const LeafLattice& lattice, size_t spare_points);
 
-    int scaling_factor_;
-    std::vector<Leaf> leaves_;
-    std::vector<ShellBlock> blocks_;
-    uint32_t free_blocks_ = kNoBlock;
-    uint32_t free_count_ = 0;
-    size_t point_count_ = 0;
-    std::vector<ShellPoint> fresh_;   // scratch: the rebuilt points of one leaf
-    std::vector<ShellPoint> merged_;  // scratch: all points of one leaf
+    std::vector<Level> levels_;
+    ShellProjection projection_;
+    int reach_;  // voxels beyond a cell's corners that its point depends on
+    ShellPool pool_;
+
+    // Scratch for one leaf.
+    SurfaceCells cells_;
+    std::vector<BlockSum> sums_;            // of the blocks being rebuilt, x fastest
+    std::vector<uint32_t> previous_patch_;  // per patch: the one before it in the same block
+    std::vector<ShellPoint> fresh_;
     size_t fresh_size_ = 0;
-    size_t merged_size_ = 0;
-    std::vector<uint8_t> row_;  // scratch: states of one row of voxel columns
 };
 
 }  // namespace bonemill

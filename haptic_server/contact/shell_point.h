@@ -1,12 +1,61 @@
-// One contact point from the densities of one block of cells. RT-safe.
+// Where one contact point lies and how the bone faces there. RT-safe; plain reads: tick thread only.
+//
+// The surface is the trilinear iso-surface: in each cell the density interpolated from the eight corners. The
+// point is the area centroid of its block's patches, moved onto that surface by Newton steps along the metric
+// gradient. Steps that leave the block or find no way are given up for the nearest patch of the block, whose
+// cell surely holds surface: there the point is bracketed on the way from the patch's centroid to a corner on
+// the other side.
 #pragma once
 
-#include "haptic_server/contact/point_shell.h"
+#include <cstdint>
+
+#include "haptic_server/contact/surface_cells.h"
 
 namespace bonemill {
 
-// `cells` is a non-empty block crossed by the iso-surface. Position and normal in V; key is left to the
-// caller.
-ShellPoint makeShellPoint(const VoxelVolume& volume, const IndexBox& cells) noexcept;
+enum class ShellNormals : uint8_t {
+    kTrilinear,          // gradient of the trilinear density at the point
+    kCentralDifference,  // central differences at the cell's corners, interpolated trilinearly: smoother
+};
+
+struct ShellPoint {
+    Eigen::Vector3f position;  // V, m
+    Eigen::Vector3f normal;    // V, unit, out of the bone; zero where the density has no gradient
+    float area;                // m² of iso-surface that the point stands for, > 0
+    uint32_t key;              // block coordinates inside the leaf, 10 bits each, z most significant
+};
+
+// Accuracy of the projection: density within this part of the largest |density - iso| at the cell's corners.
+inline constexpr float kProjectionTolerance = 1.0f / 4096;
+
+struct SurfacePlace {
+    Eigen::Vector3i cell;
+    Eigen::Vector3f at;  // cell steps from the cell's first corner, each 0 .. 1
+};
+
+class ShellProjection {
+  public:
+    ShellProjection(const VoxelVolume& volume, ShellNormals normals) noexcept;
+
+    // From `start` (cell steps from the first corner of `block`, inside it) onto the surface without leaving
+    // the block. False: no success.
+    bool walk(const VoxelVolume& volume, const IndexBox& block, const Eigen::Vector3f& start,
+              SurfacePlace& place) const noexcept;
+
+    // From a point inside a cell that has corners on both sides; always ends on the surface in that cell.
+    SurfacePlace bracket(const VoxelVolume& volume, const SurfacePlace& start) const noexcept;
+
+    Eigen::Vector3f position(const SurfacePlace& place) const noexcept {
+        return (place.cell.cast<float>() + place.at).cwiseProduct(spacing_);
+    }
+    Eigen::Vector3f normal(const VoxelVolume& volume, const SurfacePlace& place) const noexcept;
+    const Eigen::Vector3f& spacing() const noexcept { return spacing_; }
+
+  private:
+    Eigen::Vector3f spacing_;          // m
+    Eigen::Vector3f inverse_spacing_;  // 1/m
+    Eigen::Vector3f steepness_;        // (unit / spacing)², unit = the largest spacing
+    ShellNormals normals_;
+};
 
 }  // namespace bonemill

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "haptic_server/mesh/marching_cubes_table.h"
+#include "haptic_server/volume/marching_cubes_table.h"
 
 namespace bonemill {
 namespace {

@@ -23,6 +23,8 @@ const char* nameOf(uint32_t fault) {
             return "force_clamped";
         case kFaultShellOverflow:
             return "shell_overflow";
+        case kFaultContactOverflow:
+            return "contact_overflow";
     }
     return nullptr;
 }

@@ -7,9 +7,9 @@
 namespace bonemill {
 
 struct BoneModel {
-    // leaf_cells per axis as LeafLattice; scaling_factor as PointShell. Allocates.
-    BoneModel(VoxelVolume bone, const Eigen::Vector3i& leaf_cells, int scaling_factor)
-        : volume(std::move(bone)), lattice(volume, leaf_cells), shell(volume, lattice, scaling_factor) {}
+    // leaf_cells per axis as LeafLattice. Allocates.
+    BoneModel(VoxelVolume bone, const Eigen::Vector3i& leaf_cells, const ShellConfig& shell_config)
+        : volume(std::move(bone)), lattice(volume, leaf_cells), shell(volume, lattice, shell_config) {}
 
     VoxelVolume volume;
     LeafLattice lattice;

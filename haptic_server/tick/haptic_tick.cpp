@@ -22,13 +22,28 @@ constexpr double kFarthest = 1e3;  // m from W's origin: beyond any scan, and sq
 
 }  // namespace
 
-HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const SdfGrid& tool_sdf, VolumeReset* reset)
+HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const ToolModel& tool, VolumeReset* reset,
+                       const AccuracySwitch* accuracy)
     : config_(config),
       bone_(bone),
-      tool_sdf_(tool_sdf),
       reset_(reset),
+      accuracy_(accuracy),
+      thesis_(config.contact, config.coupling, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
+      gradient_(config.gradient, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
+      model_(&gradient_),
       milling_(config.milling, bone.volume, config.burr_radius),
-      X_VW_(bone.volume.geometry().X_WV.inverse()) {}
+      X_VW_(bone.volume.geometry().X_WV.inverse()) {
+    takeUp(accuracy ? accuracy->chosen() : config.accuracy);
+}
+
+void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
+    settings_ = settings;
+    const bool is_thesis = settings.law == ContactLaw::kThesis2012;
+    SpoModel* model = is_thesis ? static_cast<SpoModel*>(&thesis_) : &gradient_;
+    model->setAccuracy(settings);
+    if (model != model_) model->restart();
+    model_ = model;
+}
 
 bool HapticTick::tick(TickIo& io) noexcept {
     DeviceInput input;
@@ -36,12 +51,12 @@ bool HapticTick::tick(TickIo& io) noexcept {
     const RtScope scope;
     uint32_t faults = input.is_stale ? kFaultStaleDevice : kFaultNone;
     device_ = acceptPose(input, faults);
-    const ContactResult contact = contactInWorld();
-    const Wrench wrench_hand = moveAndFeel(contact, input.force_factor, faults);
-    const int64_t force_at_ns = io.write(wrench_hand);
+    if (accuracy_ && accuracy_->chosen() != settings_) takeUp(accuracy_->chosen());
+    const SpoStep step = moveAndFeel(input.force_factor, faults);
+    const int64_t force_at_ns = io.write(step.wrench_hand);
 
     const MillingResult milled = mill(input, faults);
-    TickRecord record = makeRecord(input, contact, wrench_hand);
+    TickRecord record = makeRecord(input, step);
     record.removed_voxels = milled.removed_voxels;
     record.added_voxels = milled.added_voxels;
     record.removed = milled.removed_voxels * bone_.volume.voxelVolume();
@@ -71,34 +86,16 @@ Pose HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept
     return pose;
 }
 
-ContactResult HapticTick::contactInWorld() const noexcept {
-    ContactResult contact =
-        penaltyContact(config_.contact, bone_.volume, bone_.lattice, bone_.shell, tool_sdf_, X_VW_ * spo_);
-    const Eigen::Quaterniond R_WV = X_VW_.rotation.conjugate();
-    contact.wrench = contact.wrench.rotatedBy(R_WV);
-    const Eigen::Matrix3d R = R_WV.toRotationMatrix();
-    Matrix6d R6 = Matrix6d::Zero();
-    R6.topLeftCorner<3, 3>() = R;
-    R6.bottomRightCorner<3, 3>() = R;
-    contact.derivative = R6 * contact.derivative * R6.transpose();
-    return contact;
-}
-
-Wrench HapticTick::moveAndFeel(const ContactResult& contact, double force_factor, uint32_t& faults) noexcept {
-    const CouplingConfig& coupling = config_.coupling;
-    const Wrench net = contact.wrench + couplingWrench(coupling, spo_, device_);
-    const Matrix6d derivative = contact.derivative + couplingDerivative(coupling, spo_, device_);
-    const EquilibriumStep solved = solveEquilibrium(coupling, net, derivative, config_.dt);
-    if (!solved.is_regular) faults |= kFaultSolve;
-    if (solved.is_clamped) faults |= kFaultMotionClamped;
-    const Vector6d moved = (1 - coupling.static_damping) * solved.step;
-    spo_ = spo_.incremented(moved.head<3>(), moved.tail<3>());
-
-    Wrench wrench_hand = -couplingWrench(coupling, spo_, device_);
-    if (limitWrench(coupling, wrench_hand)) faults |= kFaultForceClamped;
-    wrench_hand.force *= force_factor;
-    wrench_hand.torque *= force_factor;
-    return wrench_hand;
+SpoStep HapticTick::moveAndFeel(double force_factor, uint32_t& faults) noexcept {
+    SpoStep step = model_->advance(spo_, device_);
+    spo_ = step.spo;
+    if (!step.is_solved) faults |= kFaultSolve;
+    if (step.is_motion_clamped) faults |= kFaultMotionClamped;
+    if (step.has_contact_overflow) faults |= kFaultContactOverflow;
+    if (limitWrench(config_.coupling, step.wrench_hand)) faults |= kFaultForceClamped;
+    step.wrench_hand.force *= force_factor;
+    step.wrench_hand.torque *= force_factor;
+    return step;
 }
 
 MillingResult HapticTick::mill(const DeviceInput& input, uint32_t& faults) noexcept {
@@ -116,8 +113,7 @@ MillingResult HapticTick::mill(const DeviceInput& input, uint32_t& faults) noexc
     return milled;
 }
 
-TickRecord HapticTick::makeRecord(const DeviceInput& input, const ContactResult& contact,
-                                  const Wrench& wrench_hand) const noexcept {
+TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept {
     TickRecord record{};
     record.tick = tick_;
     record.start_ns = input.start_ns;
@@ -127,10 +123,12 @@ TickRecord HapticTick::makeRecord(const DeviceInput& input, const ContactResult&
     copyTo(record.q_WT, wxyz(spo_.rotation));
     copyTo(record.p_WT_device, device_.position);
     copyTo(record.q_WT_device, wxyz(device_.rotation));
-    copyTo(record.f_hand_W, wrench_hand.force);
-    copyTo(record.t_hand_W, wrench_hand.torque);
-    record.contacts = contact.contacts;
-    record.max_penetration = contact.max_penetration;
+    copyTo(record.f_hand_W, step.wrench_hand.force);
+    copyTo(record.t_hand_W, step.wrench_hand.torque);
+    record.contacts = step.contacts;
+    record.candidates = step.candidates;
+    record.iterations = step.iterations;
+    record.max_penetration = step.max_penetration;
     record.buttons = input.buttons;
     return record;
 }

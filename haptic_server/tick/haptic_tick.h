@@ -2,9 +2,10 @@
 // telemetry. The same tick runs behind the device link in real time and in `simulate` without it.
 #pragma once
 
-#include "haptic_server/contact/penalty_contact.h"
-#include "haptic_server/coupling/virtual_coupling.h"
 #include "haptic_server/milling/timed_milling.h"
+#include "haptic_server/spo/gradient_model.h"
+#include "haptic_server/spo/thesis_2012_model.h"
+#include "haptic_server/tick/accuracy_switch.h"
 #include "haptic_server/tick/bone_model.h"
 #include "haptic_server/tick/tick_record.h"
 #include "haptic_server/tick/volume_reset.h"
@@ -39,16 +40,22 @@ class TickIo {
 
 struct TickConfig {
     double dt = 1e-3;  // s
-    PenaltyContactConfig contact;
-    CouplingConfig coupling;
+    AccuracySettings accuracy;
+    PenaltyContactConfig contact;  // thesis_2012
+    CouplingConfig coupling;       // thesis_2012, and the limits of what the hand may feel
+    GradientConfig gradient;
     MillingConfig milling;
     double burr_radius = 1e-3;  // m
 };
 
 class HapticTick {
   public:
-    // Keeps references; allocates the scratch memory of milling. `reset` may be null (no reset then).
-    HapticTick(const TickConfig& config, BoneModel& bone, const SdfGrid& tool_sdf, VolumeReset* reset);
+    HapticTick(const HapticTick&) = delete;
+    HapticTick& operator=(const HapticTick&) = delete;
+    // Keeps references; allocates the scratch memory of contact and milling. `reset` may be null (no reset then), and
+    // `accuracy` too (the settings are those of config then).
+    HapticTick(const TickConfig& config, BoneModel& bone, const ToolModel& tool, VolumeReset* reset,
+               const AccuracySwitch* accuracy = nullptr);
 
     // One tick; RT-safe. False when io.read() said stop. Sets the RtScope guard around its work.
     bool tick(TickIo& io) noexcept;
@@ -59,16 +66,19 @@ class HapticTick {
 
   private:
     Pose acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
-    ContactResult contactInWorld() const noexcept;
-    Wrench moveAndFeel(const ContactResult& contact, double force_factor, uint32_t& faults) noexcept;
+    void takeUp(const AccuracySettings& settings) noexcept;
+    SpoStep moveAndFeel(double force_factor, uint32_t& faults) noexcept;
     MillingResult mill(const DeviceInput& input, uint32_t& faults) noexcept;
-    TickRecord makeRecord(const DeviceInput& input, const ContactResult& contact,
-                          const Wrench& wrench_hand) const noexcept;
+    TickRecord makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept;
 
     TickConfig config_;
     BoneModel& bone_;
-    const SdfGrid& tool_sdf_;
     VolumeReset* reset_;
+    const AccuracySwitch* accuracy_;
+    Thesis2012Model thesis_;
+    GradientModel gradient_;
+    SpoModel* model_;  // thesis_ or gradient_
+    AccuracySettings settings_;
     TimedMilling milling_;
     Pose X_VW_;
     Pose device_;

@@ -12,10 +12,11 @@ enum TickFault : uint32_t {
     kFaultOverrun = 1u << 0,        // the tick's own work took longer than its period
     kFaultStaleDevice = 1u << 1,    // no fresh device sample: force ramps to zero
     kFaultBadDevicePose = 1u << 2,  // non-finite or unnormalisable pose: the last good one is kept
-    kFaultSolve = 1u << 3,          // singular or non-finite equilibrium: the tool keeps its pose
+    kFaultSolve = 1u << 3,          // singular or non-finite equilibrium: the tool keeps its pose, the hand the last force
     kFaultMotionClamped = 1u << 4,  // the speed limit of the coupling acted
     kFaultForceClamped = 1u << 5,   // the wrench limit acted
     kFaultShellOverflow = 1u << 6,  // the point-shell pool is full: some milled surface has no contact points
+    kFaultContactOverflow = 1u << 7,  // more points near the tool than there is room for: some had no effect
 };
 
 struct TickRecord {
@@ -35,6 +36,8 @@ struct TickRecord {
     double removed;          // m³ in this tick
     double added;            // m³ in this tick
     uint32_t contacts;
+    uint32_t candidates;      // points near the tool that each iteration tested
+    uint32_t iterations;      // of the equilibrium solve
     uint32_t removed_voxels;  // voxels that fell below the iso-value in this tick
     uint32_t added_voxels;    // voxels that rose to the iso-value or above in this tick
     uint32_t buttons;         // kButtonRemove | kButtonAdd

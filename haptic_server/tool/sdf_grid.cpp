@@ -55,7 +55,10 @@ SdfGrid::Cell SdfGrid::cellOf(const Eigen::Vector3d& p_T) const noexcept {
 }
 
 float SdfGrid::distance(const Eigen::Vector3d& p_T) const noexcept {
-    if (!contains(p_T)) return kOutsideDistance;
+    return contains(p_T) ? float(distanceExactly(p_T)) : kOutsideDistance;
+}
+
+double SdfGrid::distanceExactly(const Eigen::Vector3d& p_T) const noexcept {
     const auto [v, f] = cellOf(p_T);
     double sum = 0;
     for (int corner = 0; corner < 8; ++corner) {
@@ -63,7 +66,7 @@ float SdfGrid::distance(const Eigen::Vector3d& p_T) const noexcept {
         sum += (x ? f.x() : 1 - f.x()) * (y ? f.y() : 1 - f.y()) * (z ? f.z() : 1 - f.z()) *
                double(v[size_t(x) + stride_y_ * size_t(y) + stride_z_ * size_t(z)]);
     }
-    return float(sum);
+    return sum;
 }
 
 Eigen::Vector3d SdfGrid::gradient(const Eigen::Vector3d& p_T) const noexcept {

@@ -46,6 +46,9 @@ class SdfGrid {
     // Trilinear distance; kOutsideDistance outside of the grid.
     float distance(const Eigen::Vector3d& p_T) const noexcept;
 
+    // The same without rounding; p_T inside of the grid.
+    double distanceExactly(const Eigen::Vector3d& p_T) const noexcept;
+
     // Exact gradient of distance(), one-sided (from the higher cell) on a cell's face; zero outside of the
     // grid.
     Eigen::Vector3d gradient(const Eigen::Vector3d& p_T) const noexcept;

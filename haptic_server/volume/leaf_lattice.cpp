@@ -1,6 +1,7 @@
 #include "haptic_server/volume/leaf_lattice.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace bonemill {
 namespace {
@@ -15,6 +16,49 @@ void forEachIndex(const IndexBox& box, Visit&& visit) noexcept {
 void widen(DensityRange& range, const DensityRange& other) noexcept {
     range.min = std::min(range.min, other.min);
     range.max = std::max(range.max, other.max);
+}
+
+bool isSame(const DensityRange& a, const DensityRange& b) noexcept {
+    return a.min == b.min && a.max == b.max;
+}
+
+// Unsigned 16-bit order is signed order with the top bit turned over; baseline x86-64 has vector minima and
+// maxima of signed 16-bit numbers only.
+DensityRange rangeOfRow(const Density* row, int count) noexcept {
+    constexpr int kTopBit = 0x8000;
+    int16_t low = INT16_MAX;
+    int16_t high = INT16_MIN;
+    for (int i = 0; i < count; ++i) {
+        const int16_t d = int16_t(row[i] ^ kTopBit);
+        low = std::min(low, d);
+        high = std::max(high, d);
+    }
+    return {Density(low ^ kTopBit), Density(high ^ kTopBit)};
+}
+
+// Range of the voxels in `box` joined with `known`. Stops as soon as it is `bounds`, which it cannot exceed.
+DensityRange scan(const VoxelVolume& volume, const IndexBox& box, DensityRange known,
+                  const DensityRange& bounds) noexcept {
+    const int count = box.max.x() - box.min.x() + 1;
+    for (int k = box.min.z(); k <= box.max.z(); ++k)
+        for (int j = box.min.y(); j <= box.max.y(); ++j) {
+            if (isSame(known, bounds)) return known;
+            widen(known, rangeOfRow(volume.ownerData() + volume.offset(box.min.x(), j, k), count));
+        }
+    return known;
+}
+
+constexpr DensityRange kAnyDensity{0, kMaxDensity};
+
+// The range of a leaf's voxels after a change in `changed`, from its range before. What did not change lies
+// in the old range, so no more can come out than that joined with the changed voxels' range; mostly a few
+// rows show that no less comes out either.
+DensityRange rangeAfterChange(const VoxelVolume& volume, const IndexBox& voxels, const IndexBox& changed,
+                              const DensityRange& before) noexcept {
+    const DensityRange now = scan(volume, changed.clamped(voxels.min, voxels.max), {}, kAnyDensity);
+    DensityRange bounds = before;
+    widen(bounds, now);
+    return scan(volume, voxels, now, bounds);
 }
 
 }  // namespace
@@ -35,7 +79,8 @@ LeafLattice::LeafLattice(const VoxelVolume& volume, const Eigen::Vector3i& leaf_
         nodes = ((nodes.array() + 1) / 2).matrix();
     }
     versions_ = std::vector<std::atomic<uint32_t>>(leafCount());
-    for (LeafId id = 0; id < leafCount(); ++id) levels_[0].range[id] = scanLeaf(volume, id);
+    for (LeafId id = 0; id < leafCount(); ++id)
+        levels_[0].range[id] = scan(volume, voxelsOf(id), {}, kAnyDensity);
     refreshParents({Eigen::Vector3i::Zero(), leavesPerAxis().array() - 1});
 }
 
@@ -49,22 +94,6 @@ IndexBox LeafLattice::leavesOfCells(const IndexBox& cells) const noexcept {
     const IndexBox inside = cells.clamped(Eigen::Vector3i::Constant(-1), dims_.array() - 1);
     if (inside.isEmpty()) return {};
     return {(inside.min.array() + 1) / leaf_cells_.array(), (inside.max.array() + 1) / leaf_cells_.array()};
-}
-
-DensityRange LeafLattice::scanLeaf(const VoxelVolume& volume, LeafId id) const noexcept {
-    const IndexBox cells = cellsOf(id);
-    DensityRange range;
-    for (int k = cells.min.z(); k <= cells.max.z() + 1; ++k)
-        for (int j = cells.min.y(); j <= cells.max.y() + 1; ++j) {
-            const size_t row = volume.offset(cells.min.x(), j, k);
-            const int count = cells.max.x() + 2 - cells.min.x();
-            for (int i = 0; i < count; ++i) {
-                const Density d = volume.at(row + size_t(i));
-                range.min = std::min(range.min, d);
-                range.max = std::max(range.max, d);
-            }
-        }
-    return range;
 }
 
 void LeafLattice::refreshParents(const IndexBox& leaves) noexcept {
@@ -93,7 +122,8 @@ void LeafLattice::refreshRanges(const VoxelVolume& volume, const IndexBox& chang
     if (leaves.isEmpty()) return;
     forEachIndex(leaves, [&](const Eigen::Vector3i& leaf) {
         const LeafId id = leafId(leaf);
-        levels_[0].range[id] = scanLeaf(volume, id);
+        DensityRange& range = levels_[0].range[id];
+        range = rangeAfterChange(volume, voxelsOf(id), changed_voxels, range);
     });
     refreshParents(leaves);
 }

@@ -47,8 +47,8 @@ class LeafLattice {
     // Leaves that own any of these cells (clamped to the lattice), both ends included.
     IndexBox leavesOfCells(const IndexBox& cells) const noexcept;
 
-    // RT-safe, tick thread only: the voxels in `box` changed. Rescans the leaves they belong to, renews up to
-    // the root.
+    // RT-safe, tick thread only: the voxels in `box`, and no others, may have changed since the ranges were
+    // last right. Makes the ranges of the leaves they belong to those of a full scan, renews up to the root.
     void refreshRanges(const VoxelVolume& volume, const IndexBox& changed_voxels) noexcept;
 
     // RT-safe, tick thread only: around a write to voxels in `box`. Leaves whose mesh or point-shell can
@@ -81,7 +81,10 @@ class LeafLattice {
         Eigen::Vector3i nodes;
         std::vector<DensityRange> range;
     };
-    DensityRange scanLeaf(const VoxelVolume& volume, LeafId id) const noexcept;
+    IndexBox voxelsOf(LeafId id) const noexcept {
+        const IndexBox cells = cellsOf(id);
+        return {cells.min, cells.max.array() + 1};
+    }
     void refreshParents(const IndexBox& leaves) noexcept;
     template <class Visit>
     void descend(int level, const Eigen::Vector3i& node, const IndexBox& leaves, Density iso,

@@ -64,6 +64,9 @@ class VoxelVolume {
             .load(std::memory_order_acquire);
     }
     Density at(int i, int j, int k) const noexcept { return at(offset(i, j, k)); }
+    // Plain densities by offset, which the compiler can read many at a time. For the owner of the volume only
+    // (tick thread): nobody else writes, so its reads race with nothing. Other threads use at().
+    const Density* ownerData() const noexcept { return density_.data(); }
     void set(size_t offset, Density value) noexcept {
         std::atomic_ref<Density>(density_[offset]).store(value, std::memory_order_release);
     }

@@ -39,11 +39,12 @@ struct Cost {
     LatencyHistogram whole;
 };
 
-void measure(const Setting& setting, const RawVolume& scan, const SdfGrid& tool, Cost& cost) {
+void measure(const Setting& setting, const RawVolume& scan, const ToolModel& tool, Cost& cost) {
     const Eigen::Vector3i leaf_cells = setting.has_thesis_octree
                                            ? LeafLattice::leafCellsOfDepth(scan.geometry, 3)
                                            : Eigen::Vector3i::Constant(16);
-    BoneModel bone(densify(scan, DensityWindow{-1000, 3000, 600, 0}), leaf_cells, setting.scaling_factor);
+    BoneModel bone(densify(scan, DensityWindow{-1000, 3000, 600, 0}), leaf_cells,
+                   {.factors = {setting.scaling_factor}});
     HapticTick tick({}, bone, tool, nullptr);
     test::ScriptedIo io(test::straightPath(kStart, kEnd, kTicks, kButtonRemove));
     while (tick.tick(io)) {
@@ -66,7 +67,7 @@ void print(const char* what, const LatencyHistogram& h, const LatencyHistogram& 
 
 int main() {
     const RawVolume scan = scanTooth(toothGrid(), {});
-    const SdfGrid tool = buildTool({}).sdf;
+    const ToolModel tool = buildTool({}).model;
     for (int round = 1; round <= kRounds; ++round) {
         std::printf("round %d, %d ticks each\n", round, kTicks);
         std::vector<Cost> costs(std::size(kSettings));

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "haptic_server/tick/bone_model.h"
-#include "haptic_server/tool/sdf_grid.h"
+#include "haptic_server/tool/tool_model.h"
 
 namespace bonemill::test {
 
@@ -55,6 +55,11 @@ inline SdfGrid sphereTool(double radius, double spacing) {
             for (int i = 0; i < nodes; ++i)
                 values.push_back(float((origin + spacing * Eigen::Vector3d(i, j, k)).norm() - radius));
     return SdfGrid(Eigen::Vector3i::Constant(nodes), spacing, origin, std::move(values));
+}
+
+// The same tool with its grid and its exact shape.
+inline ToolModel sphereToolModel(double radius, double spacing) {
+    return {sphereTool(radius, spacing), {SphereShape{Eigen::Vector3d::Zero(), radius}}, radius};
 }
 
 }  // namespace bonemill::test

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/config/user_error.h"
+#include "haptic_server/tool/build/check_shape.h"
 #include "haptic_server/tool/build/mesh_distance.h"
 #include "haptic_server/tool/build/mesh_file.h"
 
@@ -138,6 +139,20 @@ Sampled sampleMesh(const ToolConfig& config) {
     return {std::move(sdf), box};
 }
 
+Sampled sampleTool(const ToolConfig& config) {
+    return config.mesh_path.empty() ? sampleShapes(config) : sampleMesh(config);
+}
+
+// The same tool and the same space, with more nodes.
+ToolConfig refined(const ToolConfig& config, const SdfGrid& coarse, int refinement) {
+    ToolConfig fine = config;
+    if (fine.mesh_path.empty()) fine.shapes = toolShapes(config);
+    fine.sdf_nodes = ((coarse.nodes().array() - 1) * refinement + 1).matrix();
+    fine.sdf_spacing = coarse.spacing() / refinement;
+    fine.sdf_origin_T = coarse.origin();
+    return fine;
+}
+
 // The far (+y) end is where the shaft goes on to the hand.
 std::vector<std::string> cutWarnings(const SdfGrid& sdf, const Eigen::AlignedBox3d& tool_box) {
     std::vector<std::string> warnings;
@@ -172,12 +187,17 @@ std::vector<std::string> warningsFor(const ToolConfig& config, const Sampled& sa
 
 }  // namespace
 
-BuiltTool buildTool(const ToolConfig& config) {
+BuiltTool buildTool(const ToolConfig& config, const std::vector<int>& refinements) {
     checkConfig(config);
-    Sampled sampled = config.mesh_path.empty() ? sampleShapes(config) : sampleMesh(config);
+    Sampled sampled = sampleTool(config);
     checkNotEmpty(sampled.sdf);
-    std::vector<std::string> warnings = warningsFor(config, sampled);
-    return {std::move(sampled.sdf), std::move(warnings)};
+    BuiltTool tool{{std::move(sampled.sdf), config.mesh_path.empty() ? toolShapes(config) : std::vector<ToolShape>{},
+                    config.burr_radius},
+                   {}};
+    tool.warnings = warningsFor(config, {tool.model.grid(), sampled.tool_box});
+    for (const int refinement : refinements)
+        tool.model.addRefinedGrid(refinement, sampleTool(refined(config, tool.model.grid(), refinement)).sdf);
+    return tool;
 }
 
 std::vector<ToolShape> toolShapes(const ToolConfig& config) {

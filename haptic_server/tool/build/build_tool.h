@@ -7,12 +7,12 @@
 
 #include "haptic_server/tool/build/surface.h"
 #include "haptic_server/tool/build/tool_config.h"
-#include "haptic_server/tool/sdf_grid.h"
+#include "haptic_server/tool/tool_model.h"
 
 namespace bonemill {
 
 struct BuiltTool {
-    SdfGrid sdf;
+    ToolModel model;
     std::vector<std::string> warnings;  // for people: what the user would better change in the scene
 };
 
@@ -20,7 +20,9 @@ struct BuiltTool {
 // deeper than true inside. Where config gives no origin, the grid is centred on the tool's box in x and z,
 // and its first node lies kBurrMarginSpacings below the burr end in y; the shaft may leave it at the far end.
 // Throws UserError for a bad config or mesh, and for a tool that no node lies inside.
-BuiltTool buildTool(const ToolConfig& config);
+//
+// `refinements`: further grids, with nodes that many times as dense; each > 1, ascending.
+BuiltTool buildTool(const ToolConfig& config, const std::vector<int>& refinements = {});
 inline constexpr double kBurrMarginSpacings = 3;
 
 // config.shapes, or if there are none (and no mesh) the thesis' tool: the burr, and a shaft of 0.8 times its

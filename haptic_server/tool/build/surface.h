@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "haptic_server/tool/build/shapes.h"
+#include "haptic_server/tool/tool_shape.h"
 #include "haptic_server/tool/build/triangle_mesh.h"
 
 namespace bonemill {

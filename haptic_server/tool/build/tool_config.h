@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "haptic_server/tool/build/shapes.h"
+#include "haptic_server/tool/tool_shape.h"
 
 namespace bonemill {
 

@@ -124,7 +124,7 @@ class MeshFileFuzz : public testing::Test {
             const TriangleSurface surface = toolSurface(config);
             EXPECT_FALSE(surface.indices.empty());
             const BuiltTool tool = buildTool(config);
-            EXPECT_FALSE(tool.sdf.box().isEmpty());
+            EXPECT_FALSE(tool.model.grid().box().isEmpty());
             return false;
         } catch (const UserError& e) {
             EXPECT_NE(std::string(e.what()), "");

@@ -18,7 +18,7 @@ class SphereOnPlane : public testing::Test {
     SphereOnPlane()
         : bone_(test::bodyVolume(test::cubeGeometry(41, kVoxel),
                                  test::halfSpace({0, 0, kBoneTop}, Eigen::Vector3d::UnitZ())),
-                Eigen::Vector3i::Constant(16), 1),
+                Eigen::Vector3i::Constant(16), ShellConfig{}),
           tool_(test::sphereTool(kToolRadius, kVoxel / 2)) {}
 
     ContactResult contactAt(const Pose& X_VT) const {
@@ -94,7 +94,7 @@ TEST_F(SphereOnPlane, SumsArePointByPointTheThesisFormulas) {
     Wrench wrench;
     uint32_t contacts = 0;
     for (LeafId leaf = 0; leaf < bone_.lattice.leafCount(); ++leaf)
-        bone_.shell.forEachBlock(leaf, [&](const ShellBlock& b, uint32_t count) {
+        bone_.shell.forEachBlock(0, leaf, [&](const ShellBlock& b, uint32_t count) {
             for (uint32_t i = 0; i < count; ++i) {
                 const Eigen::Vector3d r = Eigen::Vector3d(b.x[i], b.y[i], b.z[i]) - off_center.position;
                 const double d = -tool_.distance(off_center.rotation.conjugate() * r);

@@ -15,7 +15,7 @@ constexpr double kDt = 1e-3;
 BoneModel solidBlock() {
     return BoneModel(
         test::bodyVolume(test::cubeGeometry(33, kVoxel), [](const Eigen::Vector3d&) { return -1.0; }),
-        Eigen::Vector3i::Constant(8), 1);
+        Eigen::Vector3i::Constant(8), ShellConfig{});
 }
 
 TEST(TimedMilling, TakesExactlyTheVoxelsInsideTheBurr) {
@@ -97,10 +97,10 @@ TEST(TimedMilling, ShellAndRangesFollow) {
     for (int n = 0; n < 40; ++n)
         milling.apply(bone.volume, bone.lattice, bone.shell, {8e-3 + n * 0.1e-3, 8e-3, 8e-3}, -1, kDt);
     const LeafLattice fresh_lattice(bone.volume, Eigen::Vector3i::Constant(8));
-    const PointShell fresh_shell(bone.volume, fresh_lattice, 1);
-    EXPECT_EQ(bone.shell.pointCount(), fresh_shell.pointCount());
+    const PointShell fresh_shell(bone.volume, fresh_lattice, ShellConfig{});
+    EXPECT_EQ(bone.shell.pointCount(0), fresh_shell.pointCount(0));
     for (LeafId leaf = 0; leaf < fresh_lattice.leafCount(); ++leaf) {
-        EXPECT_EQ(bone.shell.pointCount(leaf), fresh_shell.pointCount(leaf));
+        EXPECT_EQ(bone.shell.pointCount(0, leaf), fresh_shell.pointCount(0, leaf));
         EXPECT_EQ(bone.lattice.range(0, leaf).min, fresh_lattice.range(0, leaf).min);
         EXPECT_EQ(bone.lattice.range(0, leaf).max, fresh_lattice.range(0, leaf).max);
     }

@@ -19,7 +19,8 @@ constexpr double kTop = 6e-3;  // bone fills z < kTop (V)
 // A slab in a volume whose frame V is turned and shifted against W.
 struct Bench {
     explicit Bench(const Pose& X_WV = {{0.1, -0.2, 0.3}, expRotation({0.4, -0.9, 0.2})})
-        : bone(slab(X_WV), Eigen::Vector3i::Constant(16), 1), tool(test::sphereTool(kBurr, kVoxel)) {
+        : bone(slab(X_WV), Eigen::Vector3i::Constant(16), ShellConfig{}),
+          tool(test::sphereToolModel(kBurr, kVoxel)) {
         config.burr_radius = kBurr;
     }
     static VoxelVolume slab(const Pose& X_WV) {
@@ -49,7 +50,7 @@ struct Bench {
 
     TickConfig config;
     BoneModel bone;
-    SdfGrid tool;
+    ToolModel tool;
 };
 
 const Eigen::Vector3d kStart(3.95e-3, 4.05e-3, kTop + kBurr + 0.3e-3);

@@ -35,8 +35,8 @@ class RingIo final : public TickIo {
 TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
     BoneModel bone(test::bodyVolume(test::cubeGeometry(44, 0.125e-3),
                                     test::halfSpace({0, 0, 4e-3}, Eigen::Vector3d::UnitZ())),
-                   Eigen::Vector3i::Constant(8), 1);
-    const SdfGrid tool = test::sphereTool(1e-3, 0.125e-3);
+                   Eigen::Vector3i::Constant(8), ShellConfig{});
+    const ToolModel tool = test::sphereToolModel(1e-3, 0.125e-3);
     TickConfig config;
     config.milling.removal_rate = 1e9;  // few ticks move much: ThreadSanitizer slows each a hundred times
     HapticTick tick(config, bone, tool, nullptr);

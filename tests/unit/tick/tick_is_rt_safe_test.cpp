@@ -17,8 +17,8 @@ class TickIsRtSafe : public testing::Test {
     TickIsRtSafe()
         : bone_(test::bodyVolume(test::cubeGeometry(64, 0.125e-3),
                                  test::halfSpace({0, 0, 5e-3}, Eigen::Vector3d::UnitZ())),
-                Eigen::Vector3i::Constant(16), 1),
-          tool_(test::sphereTool(1e-3, 0.125e-3)),
+                Eigen::Vector3i::Constant(16), ShellConfig{}),
+          tool_(test::sphereToolModel(1e-3, 0.125e-3)),
           reset_(bone_),
           tick_({}, bone_, tool_, &reset_) {}
 
@@ -36,7 +36,7 @@ class TickIsRtSafe : public testing::Test {
     static Pose at(double z) { return {{4e-3, 4e-3, z}, Eigen::Quaterniond::Identity()}; }
 
     BoneModel bone_;
-    SdfGrid tool_;
+    ToolModel tool_;
     VolumeReset reset_;
     HapticTick tick_;
     std::vector<TickRecord> records_;

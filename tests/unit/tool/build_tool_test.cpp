@@ -45,21 +45,21 @@ double demoTool(const Vector3d& p) {
 TEST(BuildTool, DemoToolFitsItsGrid) {
     const BuiltTool tool = buildTool({});
     EXPECT_EQ(joined(tool.warnings), "");
-    EXPECT_EQ(tool.sdf.nodes(), Eigen::Vector3i(22, 128, 22));
-    EXPECT_EQ(tool.sdf.spacing(), 0.125e-3);
-    EXPECT_NEAR(tool.sdf.origin().y(), -1e-3 - 3 * 0.125e-3, 1e-15);
-    EXPECT_NEAR(tool.sdf.gridBox().center().x(), 0, 1e-15);
-    EXPECT_NEAR(tool.sdf.gridBox().center().z(), 0, 1e-15);
-    EXPECT_EQ(tool.sdf.box().max().y(), tool.sdf.gridBox().max().y());  // the shaft leaves at the far end
+    EXPECT_EQ(tool.model.grid().nodes(), Eigen::Vector3i(22, 128, 22));
+    EXPECT_EQ(tool.model.grid().spacing(), 0.125e-3);
+    EXPECT_NEAR(tool.model.grid().origin().y(), -1e-3 - 3 * 0.125e-3, 1e-15);
+    EXPECT_NEAR(tool.model.grid().gridBox().center().x(), 0, 1e-15);
+    EXPECT_NEAR(tool.model.grid().gridBox().center().z(), 0, 1e-15);
+    EXPECT_EQ(tool.model.grid().box().max().y(), tool.model.grid().gridBox().max().y());  // the shaft leaves at the far end
 }
 
 TEST(BuildTool, DemoToolIsExactAtNodes) {
-    forEachNode(buildTool({}).sdf,
+    forEachNode(buildTool({}).model.grid(),
                 [](const Vector3d& p, float value) { ASSERT_FLOAT_EQ(value, float(demoTool(p))); });
 }
 
 TEST(BuildTool, DemoToolIsOfSecondOrderBetweenNodes) {
-    const SdfGrid sdf = buildTool({}).sdf;
+    const SdfGrid sdf = buildTool({}).model.grid();
     std::mt19937 random(1);
     std::uniform_real_distribution<double> unit(0, 1);
     int checked = 0;
@@ -86,14 +86,14 @@ TEST(BuildTool, RotatedCylinderIsExactAtNodes) {
     const BuiltTool tool = buildTool(config);
     const Pose X_ST = X_TS.inverse();
     int inside = 0;
-    forEachNode(tool.sdf, [&](const Vector3d& p, float value) {
+    forEachNode(tool.model.grid(), [&](const Vector3d& p, float value) {
         const Vector3d p_S = X_ST * p;
         const Eigen::Vector2d beyond(std::hypot(p_S.x(), p_S.z()) - 0.9e-3, std::abs(p_S.y() - 2e-3) - 2e-3);
         const double expected = beyond.cwiseMax(0).norm() + std::min(beyond.maxCoeff(), 0.0);
         inside += value < 0;
         ASSERT_NEAR(value, expected, 1e-9);
     });
-    const double volume = inside * std::pow(tool.sdf.spacing(), 3);
+    const double volume = inside * std::pow(tool.model.grid().spacing(), 3);
     EXPECT_NEAR(volume, std::numbers::pi * 0.9e-3 * 0.9e-3 * 4e-3, 0.03 * volume);
 }
 
@@ -102,7 +102,7 @@ TEST(BuildTool, UnionIsTheNearestShape) {
     const SphereShape burr{Vector3d::Zero(), 1e-3};
     const ConeShape neck{{0, 0, 0}, {0, 5e-3, 0}, 0.4e-3, 0.9e-3};
     config.shapes = {burr, neck};
-    forEachNode(buildTool(config).sdf, [&](const Vector3d& p, float value) {
+    forEachNode(buildTool(config).model.grid(), [&](const Vector3d& p, float value) {
         ASSERT_EQ(value, float(std::min(signedDistance(burr, p), signedDistance(neck, p))));
     });
 }
@@ -116,7 +116,7 @@ TEST(BuildTool, MeshAndShapeAgree) {
     std::filesystem::remove(path);
     EXPECT_EQ(joined(tool.warnings), "");
     const Vector3d center(0, 5.5e-3, 0), half(0.75e-3, 6.5e-3, 0.5e-3);
-    forEachNode(tool.sdf, [&](const Vector3d& p, float value) {
+    forEachNode(tool.model.grid(), [&](const Vector3d& p, float value) {
         const Vector3d beyond = (p - center).cwiseAbs() - half;
         ASSERT_NEAR(value, beyond.cwiseMax(0).norm() + std::min(beyond.maxCoeff(), 0.0), 1e-9);
     });
@@ -126,8 +126,8 @@ TEST(BuildTool, GridStandsWhereAsked) {
     ToolConfig config;
     config.sdf_origin_T = Vector3d(-1.4e-3, -1.2e-3, -1.3e-3);
     const BuiltTool tool = buildTool(config);
-    EXPECT_EQ(tool.sdf.origin(), *config.sdf_origin_T);
-    EXPECT_EQ(tool.sdf.box().max().y(), tool.sdf.gridBox().max().y());
+    EXPECT_EQ(tool.model.grid().origin(), *config.sdf_origin_T);
+    EXPECT_EQ(tool.model.grid().box().max().y(), tool.model.grid().gridBox().max().y());
     EXPECT_EQ(joined(tool.warnings), "");
 }
 

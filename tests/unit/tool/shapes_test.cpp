@@ -1,4 +1,4 @@
-#include "haptic_server/tool/build/shapes.h"
+#include "haptic_server/tool/build/check_shape.h"
 
 #include <gtest/gtest.h>
 

@@ -70,7 +70,7 @@ TEST(Surface, OfTheDefaultTool) {
     for (const Eigen::Vector3f& p : surface.positions) box.extend(p);
     EXPECT_NEAR(box.min().y(), -1e-3f, 1e-8f);
     EXPECT_NEAR(box.max().x(), 1e-3f, 1e-8f);
-    EXPECT_GT(box.max().y(), float(buildTool({}).sdf.gridBox().max().y()));
+    EXPECT_GT(box.max().y(), float(buildTool({}).model.grid().gridBox().max().y()));
 }
 
 TEST(Surface, OfABoxKeepsSharpEdges) {

@@ -111,6 +111,23 @@ TEST(LeafLattice, RefreshedRangesEqualAFullScan) {
     }
 }
 
+// Few distinct densities: extremes inside and outside the change, the two beside the sign bit among them.
+TEST(LeafLattice, RefreshedRangesEqualAFullScanWithTies) {
+    constexpr Density kValues[] = {0, 1, 32767, 32768, 65534, kMaxDensity};
+    for (const Eigen::Vector3i& leaf_cells : kLeafSizes) {
+        std::mt19937 random(6);
+        std::uniform_int_distribution<int> lowest(0, 5);
+        VoxelVolume volume(boxGeometry({17, 12, 13}), kIso);
+        LeafLattice lattice(volume, leaf_cells);
+        for (int edit = 0; edit < 150; ++edit) {
+            std::uniform_int_distribution<int> value(lowest(random), 5);
+            test::writeLikeTick(volume, lattice, test::randomBox(volume, 9, random),
+                                [&](int, int, int) { return kValues[value(random)]; });
+            expectSameRanges(lattice, LeafLattice(volume, leaf_cells));
+        }
+    }
+}
+
 TEST(LeafLattice, RefreshNarrowsRangesAgain) {
     VoxelVolume volume(boxGeometry({20, 20, 20}), kIso);
     LeafLattice lattice(volume, {4, 4, 4});

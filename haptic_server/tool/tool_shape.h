@@ -1,11 +1,10 @@
 // Solid shapes a tool is made of, and their exact signed distances.
 //
-// Frame T, m; negative inside. Checked shapes (checkShape) only, for the other functions. Not for the tick.
+// Frame T, m; negative inside. Checked shapes (build/check_shape.h) only, for the other functions. Not for the tick.
 // Formulas: a solid of revolution's distance is that of its profile in the half-plane (along the axis, off
 // the axis).
 #pragma once
 
-#include <string>
 #include <variant>
 
 #include "common/geometry/pose.h"
@@ -34,10 +33,6 @@ struct ConeShape {  // truncated, flat ends; one of the radii may be zero
     double to_radius = 0.4e-3;
 };
 using ToolShape = std::variant<SphereShape, CapsuleShape, CylinderShape, ConeShape>;
-
-// Throws UserError unless every number is finite, radii are positive (a cone: one of them) and flat ends lie
-// apart. `name`: what the message calls the shape, such as "tool.shape[2]".
-void checkShape(const ToolShape& shape, const std::string& name);
 
 double signedDistance(const ToolShape& shape, const Eigen::Vector3d& p_T);
 

@@ -1,4 +1,4 @@
-#include "haptic_server/mesh/marching_cubes_table.h"
+#include "haptic_server/volume/marching_cubes_table.h"
 
 #include <stdexcept>
 #include <vector>

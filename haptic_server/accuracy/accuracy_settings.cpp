@@ -1,0 +1,47 @@
+#include "haptic_server/accuracy/accuracy_settings.h"
+
+#include <iterator>
+
+namespace bonemill {
+namespace {
+constexpr std::string_view kNames[] = {"thesis_2012", "fast", "balanced", "exact"};
+}  // namespace
+
+AccuracySettings presetSettings(Preset preset) noexcept {
+    switch (preset) {
+        case Preset::kThesis2012:  // scaling factor 3 as in its demonstrations
+            return {ContactLaw::kThesis2012, 3, ToolDistance::kGrid, 1, Precision::kFloat, 1, false};
+        case Preset::kFast:
+            return {ContactLaw::kGradient, 2, ToolDistance::kGrid, 1, Precision::kFloat, 1, true};
+        case Preset::kBalanced:
+            return {ContactLaw::kGradient, 1, ToolDistance::kAnalytic, 1, Precision::kFloat, 2, true};
+        case Preset::kExact:
+            return {ContactLaw::kGradient, 1, ToolDistance::kAnalytic, 4, Precision::kDouble, 4, true};
+    }
+    return {};
+}
+
+std::string_view presetName(Preset preset) noexcept {
+    return kNames[size_t(preset)];
+}
+
+std::optional<Preset> presetOfName(std::string_view name) noexcept {
+    for (const Preset preset : kPresets)
+        if (presetName(preset) == name) return preset;
+    return std::nullopt;
+}
+
+std::string settingsName(const AccuracySettings& settings) {
+    for (const Preset preset : kPresets)
+        if (presetSettings(preset) == settings) return std::string(presetName(preset));
+    std::string name = settings.law == ContactLaw::kThesis2012 ? "thesis" : "gradient";
+    name += " s=" + std::to_string(settings.shell_factor);
+    if (settings.law == ContactLaw::kThesis2012) return name;
+    name += settings.tool_distance == ToolDistance::kGrid ? " grid x" + std::to_string(settings.sdf_refinement)
+                                                          : " analytic";
+    name += settings.precision == Precision::kFloat ? " float" : " double";
+    name += " iterations=" + std::to_string(settings.iterations);
+    return name + (settings.continuous_collision ? " ccd" : " no ccd");
+}
+
+}  // namespace bonemill

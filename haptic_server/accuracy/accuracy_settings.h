@@ -1,0 +1,44 @@
+// The accuracy dial: what the haptic loop computes, and how finely. docs/accuracy.md says what each knob buys and
+// costs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace bonemill {
+
+enum class ContactLaw : uint8_t { kThesis2012, kGradient };
+// Where the tool's distances come from: trilinear in its grid, or exact from its shapes (a mesh has only the grid).
+enum class ToolDistance : uint8_t { kGrid, kAnalytic };
+enum class Precision : uint8_t { kFloat, kDouble };
+
+enum class Preset : uint8_t { kThesis2012, kFast, kBalanced, kExact };
+inline constexpr Preset kPresets[] = {Preset::kThesis2012, Preset::kFast, Preset::kBalanced, Preset::kExact};
+
+// Trivially copyable; may be changed between two ticks.
+struct AccuracySettings {
+    ContactLaw law = ContactLaw::kGradient;
+    int shell_factor = 1;  // s: one contact point per s×s×s cells
+    ToolDistance tool_distance = ToolDistance::kAnalytic;
+    int sdf_refinement = 1;  // the scene's distance grid with nodes this many times as dense
+    Precision precision = Precision::kFloat;
+    int iterations = 2;                // of the equilibrium solve, 1 .. kMostIterations; thesis_2012 has one
+    bool continuous_collision = true;  // long steps are swept; without, they are cut to the trust radius
+
+    static constexpr int kMostIterations = 16;
+    bool operator==(const AccuracySettings&) const = default;
+};
+
+AccuracySettings presetSettings(Preset preset) noexcept;
+
+// "thesis_2012", "fast", "balanced", "exact".
+std::string_view presetName(Preset preset) noexcept;
+std::optional<Preset> presetOfName(std::string_view name) noexcept;
+
+// The preset's name, or for settings that no preset has, every knob: "gradient s=2 grid×1 float 2 iterations ccd".
+// Allocates.
+std::string settingsName(const AccuracySettings& settings);
+
+}  // namespace bonemill

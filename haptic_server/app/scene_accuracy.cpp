@@ -1,0 +1,103 @@
+#include "haptic_server/app/scene_accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace bonemill {
+namespace {
+
+constexpr double kMillimetre = 1e-3;
+constexpr double kDegree = M_PI / 180;
+
+Preset presetOf(scene::Accuracy::Preset preset) {
+    switch (preset) {
+        case scene::Accuracy::THESIS_2012:
+            return Preset::kThesis2012;
+        case scene::Accuracy::FAST:
+            return Preset::kFast;
+        case scene::Accuracy::EXACT:
+            return Preset::kExact;
+        default:
+            return Preset::kBalanced;
+    }
+}
+
+// What a burr on a flat wall carries before it has passed through half of it: π κ (R - d) d², at most its maximum
+// over d. The coupling saturates there, so that no push goes through a wall of that thickness.
+double wallForce(double kappa, double burr_radius, double wall) {
+    const double depth = std::min(wall / 2, 2 * burr_radius / 3);
+    return M_PI * kappa * (burr_radius - depth) * depth * depth;
+}
+
+}  // namespace
+
+AccuracySettings accuracyOf(const scene::Scene& scene) {
+    const scene::Accuracy& knobs = scene.accuracy();
+    AccuracySettings settings = presetSettings(presetOf(knobs.preset()));
+    if (knobs.has_contact_law())
+        settings.law = knobs.contact_law() == scene::Accuracy::GRADIENT ? ContactLaw::kGradient : ContactLaw::kThesis2012;
+    if (knobs.has_shell_factor()) settings.shell_factor = int(knobs.shell_factor());
+    if (knobs.has_tool_distance())
+        settings.tool_distance =
+            knobs.tool_distance() == scene::Accuracy::GRID ? ToolDistance::kGrid : ToolDistance::kAnalytic;
+    if (knobs.has_sdf_refinement()) settings.sdf_refinement = int(knobs.sdf_refinement());
+    if (knobs.has_precision())
+        settings.precision = knobs.precision() == scene::Accuracy::DOUBLE ? Precision::kDouble : Precision::kFloat;
+    if (knobs.has_iterations()) settings.iterations = int(knobs.iterations());
+    if (knobs.has_continuous_collision()) settings.continuous_collision = knobs.continuous_collision();
+    return settings;
+}
+
+std::vector<AccuracySettings> accuracyChoices(const scene::Scene& scene) {
+    std::vector<AccuracySettings> choices{accuracyOf(scene)};
+    if (scene.accuracy().switchable())
+        for (const Preset preset : kPresets) choices.push_back(presetSettings(preset));
+    return choices;
+}
+
+ShellConfig shellConfigOf(const scene::Scene& scene) {
+    std::set<int> factors;
+    for (const AccuracySettings& choice : accuracyChoices(scene)) factors.insert(choice.shell_factor);
+    ShellConfig config;
+    config.factors.assign(factors.begin(), factors.end());
+    config.normals = scene.accuracy().normals() == scene::Accuracy::TRILINEAR ? ShellNormals::kTrilinear
+                                                                             : ShellNormals::kCentralDifference;
+    return config;
+}
+
+std::vector<int> sdfRefinementsOf(const scene::Scene& scene) {
+    const bool has_shapes = !scene.tool().has_mesh_path();
+    std::set<int> refinements;
+    for (const AccuracySettings& choice : accuracyChoices(scene)) {
+        const bool needs_grid = choice.law == ContactLaw::kGradient &&
+                                !(has_shapes && choice.tool_distance == ToolDistance::kAnalytic);
+        if (needs_grid && choice.sdf_refinement > 1) refinements.insert(choice.sdf_refinement);
+    }
+    return {refinements.begin(), refinements.end()};
+}
+
+GradientConfig gradientConfigOf(const scene::Scene& scene, double finest_spacing) {
+    const scene::Coupling& coupling = scene.coupling();
+    const scene::Contact& contact = scene.contact();
+    GradientConfig config;
+    config.burr_radius = scene.tool().burr_radius_mm() * kMillimetre;
+    config.max_speed = coupling.max_speed_mm_per_s() * kMillimetre;
+    config.max_angular_speed = coupling.max_angular_speed_deg_per_s() * kDegree;
+    config.contact = {.stiffness_per_area = contact.stiffness_n_per_mm3() * 1e9,
+                      .stiffness_cap = contact.stiffness_cap_n_per_mm() / kMillimetre};
+    const double wall = contact.has_thinnest_wall_mm() ? contact.thinnest_wall_mm() * kMillimetre : finest_spacing;
+    const double stiffness = coupling.rotation_stiffness_nmm_per_rad() * kMillimetre / 2;
+    config.coupling = {
+        .translation_stiffness = coupling.translation_stiffness_n_per_mm() / kMillimetre,
+        .rotation_stiffness = stiffness,
+        .saturation_force =
+            std::min(coupling.max_force_n(), wallForce(config.contact.stiffness_per_area, config.burr_radius, wall)),
+        .saturation_torque =
+            std::min(coupling.max_torque_nmm() * kMillimetre, stiffness * coupling.saturation_angle_deg() * kDegree),
+        .damping_time = coupling.damping_time_ms() * 1e-3,
+        .p_TG = kMillimetre * Eigen::Vector3d(coupling.grip_mm().x(), coupling.grip_mm().y(), coupling.grip_mm().z())};
+    return config;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,122 @@
+#include "haptic_server/contact/shell_pool.h"
+
+namespace bonemill {
+namespace {
+
+constexpr uint32_t kCapacity = ShellBlock::kCapacity;
+
+uint32_t blocksFor(uint32_t points) noexcept {
+    return (points + kCapacity - 1) / kCapacity;
+}
+
+bool isInside(uint32_t key, const IndexBox& keys) noexcept {
+    constexpr uint32_t kMask = (1u << kShellKeyBits) - 1;
+    const Eigen::Vector3i at(int(key & kMask), int(key >> kShellKeyBits & kMask),
+                             int(key >> 2 * kShellKeyBits & kMask));
+    return (at.array() >= keys.min.array()).all() && (at.array() <= keys.max.array()).all();
+}
+
+ShellPoint pointIn(const ShellBlock& b, uint32_t i) noexcept {
+    return {{b.x[i], b.y[i], b.z[i]}, {b.nx[i], b.ny[i], b.nz[i]}, b.area[i], b.key[i]};
+}
+
+void put(const ShellPoint& point, ShellBlock& b, uint32_t i) noexcept {
+    b.x[i] = point.position.x(), b.y[i] = point.position.y(), b.z[i] = point.position.z();
+    b.nx[i] = point.normal.x(), b.ny[i] = point.normal.y(), b.nz[i] = point.normal.z();
+    b.area[i] = point.area;
+    b.key[i] = point.key;
+}
+
+}  // namespace
+
+void ShellPool::addBlocks(size_t count) {
+    const size_t old = blocks_.size();
+    blocks_.resize(old + count);
+    for (size_t b = old; b < blocks_.size(); ++b) {
+        blocks_[b].next = free_blocks_;
+        free_blocks_ = uint32_t(b);
+    }
+    free_count_ += count;
+}
+
+bool ShellPool::replace(List& list, const IndexBox& keys, std::span<const ShellPoint> fresh) noexcept {
+    if (list.count == 0 && fresh.empty()) return true;
+    const Place place = firstAtOrAbove(list, packShellKey(keys.min));
+    const uint32_t replaced = merge(list, place, keys, fresh);
+    // As many as before: what follows stays where it is.
+    const uint32_t count = list.count - replaced + merged_size_;
+    const uint32_t have = blocksFor(list.count);
+    const uint32_t want = blocksFor(count);
+    if (want > have && want - have > free_count_) return false;
+    list.count = count;
+    write(list, place);
+    return true;
+}
+
+ShellPool::Place ShellPool::firstAtOrAbove(const List& list, uint32_t key) const noexcept {
+    Place place{list.first, kNoBlock, 0};
+    while (list.count - place.before > kCapacity && blocks_[place.block].key[kCapacity - 1] < key)
+        place = {blocks_[place.block].next, place.block, place.before + kCapacity};
+    return place;
+}
+
+// Fills merged_ with what replaces the list's points from `from` on; returns how many those are. Ends early
+// when all later points stay and would keep their places.
+uint32_t ShellPool::merge(const List& list, const Place& from, const IndexBox& keys,
+                          std::span<const ShellPoint> fresh) noexcept {
+    const uint32_t last_key = packShellKey(keys.max);
+    merged_size_ = 0;
+    size_t next_fresh = 0;
+    uint32_t block = from.block;
+    uint32_t read = 0;
+    for (; from.before + read < list.count; ++read) {
+        const uint32_t i = read % kCapacity;
+        if (read > 0 && i == 0) block = blocks_[block].next;
+        const uint32_t key = blocks_[block].key[i];
+        while (next_fresh < fresh.size() && fresh[next_fresh].key < key)
+            merged_[merged_size_++] = fresh[next_fresh++];
+        if (key > last_key && merged_size_ == read) return read;
+        if (!isInside(key, keys)) merged_[merged_size_++] = pointIn(blocks_[block], i);
+    }
+    while (next_fresh < fresh.size()) merged_[merged_size_++] = fresh[next_fresh++];
+    return read;
+}
+
+// Writes merged_ from `to` on and gives the list as many blocks as its count wants.
+void ShellPool::write(List& list, Place to) noexcept {
+    const uint32_t end = to.before + merged_size_;
+    uint32_t left = blocksFor(list.count) * kCapacity - to.before;  // room wanted from here on
+    for (uint32_t n = 0; left > 0; left -= kCapacity) {
+        const bool is_new = to.block == kNoBlock;
+        if (is_new) {
+            to.block = takeBlock();
+            (to.previous == kNoBlock ? list.first : blocks_[to.previous].next) = to.block;
+        }
+        for (uint32_t i = 0; i < kCapacity && n < merged_size_; ++i) put(merged_[n++], blocks_[to.block], i);
+        to.previous = to.block;
+        to.block = blocks_[to.block].next;
+        if (to.before + n == end && end < list.count) return;  // the rest stays
+    }
+    freeFrom(to.block);
+    (to.previous == kNoBlock ? list.first : blocks_[to.previous].next) = kNoBlock;
+}
+
+void ShellPool::freeFrom(uint32_t block) noexcept {
+    while (block != kNoBlock) {
+        const uint32_t next = blocks_[block].next;
+        blocks_[block].next = free_blocks_;
+        free_blocks_ = block;
+        ++free_count_;
+        block = next;
+    }
+}
+
+uint32_t ShellPool::takeBlock() noexcept {
+    const uint32_t block = free_blocks_;
+    free_blocks_ = blocks_[block].next;
+    blocks_[block].next = kNoBlock;
+    --free_count_;
+    return block;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,127 @@
+#include "haptic_server/coupling/energy_coupling.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bonemill {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kSmallest = 1e-12;       // m or rad: below it the spring is linear in any direction
+constexpr double kStiffnessFloor = 0.02;  // of k, in the matrix only: a saturated spring keeps the solve regular
+
+// tanh spring over the length s of a vector.
+struct Spring {
+    double energy, pull, slope, secant;  // slope: d pull / ds; secant: pull / s
+};
+
+Spring springAt(double k, double most, double s) noexcept {
+    const double t = k * s / most;
+    const double pull = most * std::tanh(t);
+    const double log_cosh = t + std::log1p(std::exp(-2 * t)) - M_LN2;
+    const double sech = 1 / std::cosh(std::min(t, 300.0));
+    return {most * most / k * log_cosh, pull, k * sech * sech, s > kSmallest ? pull / s : k};
+}
+
+// along uuᵀ + across (I - uuᵀ), neither below the floor.
+Matrix3d directional(const Vector3d& vector, double along, double across, double k) noexcept {
+    const double floor = kStiffnessFloor * k;
+    const double norm = vector.norm();
+    const double a = std::max(along, floor), b = std::max(across, floor);
+    if (norm <= kSmallest) return a * Matrix3d::Identity();
+    const Vector3d u = vector / norm;
+    return b * Matrix3d::Identity() + (a - b) * u * u.transpose();
+}
+
+// (θ/2) cot(θ/2): how a turn across the rotation vector changes it.
+double halfCotangent(double theta) noexcept {
+    const double half = theta / 2;
+    if (half < 1e-4) return 1 - half * half / 3;
+    return half / std::tan(half);
+}
+
+Eigen::Quaterniond rotationBetween(const Pose& spo, const Pose& device) noexcept {
+    return device.rotation * spo.rotation.conjugate();
+}
+
+Vector3d springVector(const Vector3d& stretch, const Spring& spring) noexcept {
+    return spring.secant * stretch;
+}
+
+}  // namespace
+
+Vector3d ContinuousRotation::log(const Eigen::Quaterniond& rotation) const noexcept {
+    Eigen::Vector4d q = rotation.coeffs();
+    if (q.dot(last_.coeffs()) < 0) q = -q;
+    const double sine = q.head<3>().norm();
+    if (sine < 1e-9 && q.w() > 0) return 2 * q.head<3>();
+    double angle = 2 * std::atan2(sine, q.w());
+    if (angle > kLongestWay) {
+        q = -q;
+        angle = 2 * M_PI - angle;
+    }
+    return sine < 1e-300 ? Vector3d(angle, 0, 0) : Vector3d(angle / sine * q.head<3>());
+}
+
+void ContinuousRotation::remember(const Eigen::Quaterniond& rotation) noexcept {
+    Eigen::Vector4d q = rotation.coeffs();
+    if (q.dot(last_.coeffs()) < 0) q = -q;
+    if (2 * std::atan2(q.head<3>().norm(), q.w()) > kLongestWay) q = -q;
+    last_ = Eigen::Quaterniond(q);
+}
+
+EnergyTerm couplingEnergy(const EnergyCouplingConfig& config, const Pose& spo, const Pose& device,
+                          const ContinuousRotation& way) noexcept {
+    const Vector3d r = spo.rotation * config.p_TG;
+    const Vector3d stretch = device * config.p_TG - spo.position - r;
+    const Spring force = springAt(config.translation_stiffness, config.saturation_force, stretch.norm());
+    const Matrix3d K = directional(stretch, force.slope, force.secant, config.translation_stiffness);
+    const Matrix3d r_skew = skew(r);
+
+    const Vector3d theta = way.log(rotationBetween(spo, device));
+    const double angle = theta.norm();
+    const Spring torque = springAt(config.rotation_stiffness, config.saturation_torque, angle);
+
+    EnergyTerm term;
+    term.energy = force.energy + torque.energy;
+    term.wrench.force = springVector(stretch, force);
+    term.wrench.torque = r.cross(term.wrench.force) + springVector(theta, torque);
+    term.stiffness.topLeftCorner<3, 3>() = K;
+    term.stiffness.topRightCorner<3, 3>() = -K * r_skew;
+    term.stiffness.bottomLeftCorner<3, 3>() = r_skew * K;
+    term.stiffness.bottomRightCorner<3, 3>() =
+        -r_skew * K * r_skew +
+        directional(theta, torque.slope, torque.secant * halfCotangent(angle), config.rotation_stiffness);
+    return term;
+}
+
+Wrench couplingWrenchOnDevice(const EnergyCouplingConfig& config, const Pose& spo, const Pose& device,
+                              const ContinuousRotation& way) noexcept {
+    const Vector3d r = device.rotation * config.p_TG;
+    const Vector3d stretch = device.position + r - spo * config.p_TG;
+    const Spring force = springAt(config.translation_stiffness, config.saturation_force, stretch.norm());
+    const Vector3d theta = way.log(rotationBetween(spo, device));
+    const Spring torque = springAt(config.rotation_stiffness, config.saturation_torque, theta.norm());
+    Wrench wrench;
+    wrench.force = -springVector(stretch, force);
+    wrench.torque = r.cross(wrench.force) - springVector(theta, torque);
+    return wrench;
+}
+
+EnergyTerm dampingEnergy(const EnergyCouplingConfig& config, const Pose& spo, const Pose& spo_before,
+                         double dt) noexcept {
+    const double share = config.damping_time / dt;
+    const double k = share * config.translation_stiffness, k_rotation = share * config.rotation_stiffness;
+    const Vector3d x = spo.position - spo_before.position;
+    const Vector3d theta = logRotation(spo.rotation * spo_before.rotation.conjugate());
+    EnergyTerm term;
+    term.energy = 0.5 * (k * x.squaredNorm() + k_rotation * theta.squaredNorm());
+    term.wrench = {-k * x, -k_rotation * theta};
+    term.stiffness.topLeftCorner<3, 3>().diagonal().setConstant(k);
+    term.stiffness.bottomRightCorner<3, 3>().diagonal().setConstant(k_rotation);
+    return term;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,65 @@
+// The virtual coupling of the gradient model: springs between the simulated tool (SPO) and the device that follow from
+// an energy, saturate smoothly, and damping against the SPO's pose one tick ago. All functions RT-safe.
+//
+// With d from the SPO's grip point to the device's and θ = Log(q_dev q_spo⁻¹):
+//   force  F_m tanh(k_t |d| / F_m) along d,   torque  T_m tanh(k_θ |θ| / T_m) along θ      (Barbič and James 2008 for the
+// saturation). docs/stability.md says why.
+#pragma once
+
+#include "common/geometry/pose.h"
+
+namespace bonemill {
+
+struct EnergyCouplingConfig {
+    double translation_stiffness = 3000;  // k_t, N/m
+    double rotation_stiffness = 0.5;      // k_θ, N·m/rad; the thesis' k_vcr is twice that at small angles
+    double saturation_force = 50;         // F_m, N
+    double saturation_torque = 0.6;       // T_m, N·m
+    double damping_time = 1e-3;           // τ, s: how long the free tool takes to follow the hand
+    Eigen::Vector3d p_TG = Eigen::Vector3d::Zero();  // grip point G, where the force acts, in T
+};
+
+// An energy with its derivatives by the tool's world increment (x, ω); torques about the tool point.
+struct EnergyTerm {
+    double energy = 0;                             // J
+    Wrench wrench;                                 // on the tool: minus the gradient of the energy
+    Matrix6d stiffness = Matrix6d::Zero();         // positive semi-definite stand-in for its second derivative
+
+    EnergyTerm& operator+=(const EnergyTerm& other) noexcept {
+        energy += other.energy;
+        wrench = wrench + other.wrench;
+        stiffness += other.stiffness;
+        return *this;
+    }
+};
+
+// A rotation vector that does not jump where the shorter way round changes: of the two ways it takes the one that
+// continues the last call's, up to kLongestWay; beyond, the shorter one.
+class ContinuousRotation {
+  public:
+    static constexpr double kLongestWay = 4.5;  // rad, 258°
+
+    // Log of the unit quaternion, norm up to kLongestWay, without changing the memory.
+    Eigen::Vector3d log(const Eigen::Quaterniond& rotation) const noexcept;
+    // Remembers which way this one was taken.
+    void remember(const Eigen::Quaterniond& rotation) noexcept;
+    void forget() noexcept { last_ = Eigen::Quaterniond::Identity(); }
+
+  private:
+    Eigen::Quaterniond last_ = Eigen::Quaterniond::Identity();
+};
+
+// From the SPO to the device. Frame: that of the poses.
+EnergyTerm couplingEnergy(const EnergyCouplingConfig& config, const Pose& spo, const Pose& device,
+                          const ContinuousRotation& way) noexcept;
+
+// On the device, about the device's own tool point: minus the same energy's gradient by the device's pose, so that a
+// closed path of the device costs no energy that the tool does not get.
+Wrench couplingWrenchOnDevice(const EnergyCouplingConfig& config, const Pose& spo, const Pose& device,
+                              const ContinuousRotation& way) noexcept;
+
+// Against motion from the pose at the tick's start: D/dt with D = τ diag(k_t, k_θ).
+EnergyTerm dampingEnergy(const EnergyCouplingConfig& config, const Pose& spo, const Pose& spo_before,
+                         double dt) noexcept;
+
+}  // namespace bonemill

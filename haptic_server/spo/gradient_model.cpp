@@ -1,0 +1,180 @@
+#include "haptic_server/spo/gradient_model.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace bonemill {
+namespace {
+
+// Rotations are measured in this length so that the matrix's rows have one unit; the handle's and the tool's size.
+constexpr double kRotationLength = 0.03;  // m
+constexpr double kSmallestReach = 1e-10;  // m: a shorter step is no step
+constexpr int kMostHalvings = 4;
+constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;
+constexpr double kEnergyNoise = 1e-9;  // of the energy: rounding of single precision must not refuse a step
+
+Vector6d rotationScale() noexcept {
+    Vector6d scale;
+    scale << 1, 1, 1, 1 / kRotationLength, 1 / kRotationLength, 1 / kRotationLength;
+    return scale;
+}
+
+Pose moved(const Pose& pose, const Vector6d& step) noexcept {
+    return pose.incremented(step.head<3>(), step.tail<3>());
+}
+
+Vector6d stacked(const Wrench& wrench) noexcept {
+    Vector6d w;
+    w << wrench.force, wrench.torque;
+    return w;
+}
+
+// Share of `step` that keeps so_far + step within `most`.
+double shareOf(double most, const Eigen::Vector3d& so_far, const Eigen::Vector3d& step) noexcept {
+    if ((so_far + step).norm() <= most) return 1;
+    return std::max(0.0, most - so_far.norm()) / step.norm();
+}
+
+Vector6d between(const Pose& from, const Pose& to) noexcept {
+    Vector6d step;
+    step << to.position - from.position, logRotation(to.rotation * from.rotation.conjugate());
+    return step;
+}
+
+}  // namespace
+
+bool GradientModel::State::isFinite() const noexcept {
+    return std::isfinite(total.energy) && total.wrench.isFinite() && total.stiffness.allFinite() && X_VT.isFinite();
+}
+
+GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world, double dt)
+    : config_(config),
+      world_(world),
+      dt_(dt),
+      X_VW_(world.volume.geometry().X_WV.inverse()),
+      field_(&world.tool.field(settings_)),
+      contact_(config.contact) {}
+
+void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
+    settings_ = settings;
+    level_ = levelOf(world_.shell, settings);
+    field_ = &world_.tool.field(settings);
+}
+
+void GradientModel::restart() noexcept {
+    way_.forget();
+    lambda_ = 0;
+    last_wrench_hand_ = {};
+}
+
+double GradientModel::trustRadius() const noexcept {
+    return 0.5 * std::min(config_.burr_radius, field_->thinnestRadius());
+}
+
+double GradientModel::reachOf(const Vector6d& step) const noexcept {
+    return step.head<3>().norm() + step.tail<3>().norm() * field_->reach();
+}
+
+void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexcept {
+    ++gatherings_;
+    gathered_at_ = X_VT;
+    out.has_contact_overflow |=
+        !contact_.gather(world_.volume, world_.lattice, world_.shell, level_, *field_, X_VT, margin);
+    out.candidates = uint32_t(contact_.candidateCount());
+}
+
+GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick) noexcept {
+    const GradientContactResult contact = settings_.precision == Precision::kDouble
+                                              ? contact_.evaluate<double>(*field_, X_VT)
+                                              : contact_.evaluate<float>(*field_, X_VT);
+    State state{X_VT, contact.term, contact.contacts, contact.max_depth};
+    state.total += couplingEnergy(config_.coupling, X_VT, tick.device, way_);
+    state.total += dampingEnergy(config_.coupling, X_VT, tick.start, dt_);
+    return state;
+}
+
+// Gauss-Newton: (K + λ D) step = wrench in scaled rotations; zero if the matrix cannot be factored.
+Vector6d GradientModel::newtonStep(const State& state) const noexcept {
+    const Vector6d scale = rotationScale();
+    Matrix6d K = scale.asDiagonal() * state.total.stiffness * scale.asDiagonal();
+    K.diagonal().head<3>().array() += lambda_ * config_.coupling.translation_stiffness;
+    K.diagonal().tail<3>().array() +=
+        lambda_ * config_.coupling.rotation_stiffness / (kRotationLength * kRotationLength);
+    const Eigen::LDLT<Matrix6d> ldlt(K);
+    if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0)) return Vector6d::Zero();
+    const Vector6d scaled_wrench = scale.cwiseProduct(stacked(state.total.wrench));
+    const Vector6d step = scale.cwiseProduct(ldlt.solve(scaled_wrench));
+    return step.allFinite() ? step : Vector6d::Zero();
+}
+
+// Speed limits over the whole tick, then either the sweep (continuous collision) or the trust radius around the place
+// where the candidates were gathered. The whole twist is scaled by one factor.
+Vector6d GradientModel::limited(const State& state, Vector6d step, const Tick& tick) noexcept {
+    const Vector6d so_far = between(tick.start, state.X_VT);
+    const double share = std::min(shareOf(config_.max_speed * dt_, so_far.head<3>(), step.head<3>()),
+                                  shareOf(config_.max_angular_speed * dt_, so_far.tail<3>(), step.tail<3>()));
+    if (share < 1) {
+        step *= share;
+        tick.out->is_motion_clamped = true;
+    }
+    const auto room = [&] { return contact_.margin() - reachOf(between(gathered_at_, state.X_VT)); };
+    if (reachOf(step) <= room()) return step;
+    if (settings_.continuous_collision) {
+        gather(state.X_VT, reachOf(step) * (1 + 1e-9), *tick.out);
+        return contact_.advance(*field_, state.X_VT, step, trustRadius() / 2) * step;
+    }
+    if (room() < trustRadius() / 2) gather(state.X_VT, trustRadius(), *tick.out);
+    if (reachOf(step) <= room()) return step;
+    tick.out->is_motion_clamped = true;
+    return step * (room() / reachOf(step));
+}
+
+// Takes the step, or half of it, … as long as the energy falls. False: no such share; the state stays.
+bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept {
+    Vector6d share = step;
+    for (int n = 0; n <= kMostHalvings; ++n, share /= 2) {
+        const State next = evaluate(moved(state.X_VT, share), tick);
+        if (!next.isFinite() || next.total.energy > state.total.energy * (1 + kEnergyNoise)) continue;
+        state = next;
+        return true;
+    }
+    return false;
+}
+
+SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept {
+    SpoStep out;
+    const Tick tick{X_VW_ * spo_W, X_VW_ * device_W, &out};
+    gather(tick.start, trustRadius(), out);
+    State state = evaluate(tick.start, tick);
+    out.is_solved = state.isFinite();
+    for (int n = 0; n < settings_.iterations && out.is_solved; ++n) {
+        const Vector6d newton = newtonStep(state);
+        if (newton.isZero(0)) {
+            out.is_solved = state.total.wrench.force.isZero(0) && state.total.wrench.torque.isZero(0);
+            break;
+        }
+        const uint32_t gatherings = gatherings_;
+        const Vector6d step = limited(state, newton, tick);
+        if (reachOf(step) < kSmallestReach) break;
+        if (gatherings_ != gatherings) state = evaluate(state.X_VT, tick);  // the energy is that of other points now
+        ++out.iterations;
+        const bool has_moved = moveDown(state, step, tick);
+        lambda_ = has_moved ? lambda_ / 10 : std::min(std::max(kFirstLambda, lambda_ * 10), kMostLambda);
+        if (lambda_ < kFirstLambda / 100) lambda_ = 0;
+        if (!has_moved) break;
+    }
+    const Pose X_WV = X_VW_.inverse();
+    out.spo = out.is_solved ? X_WV * state.X_VT : spo_W;
+    out.contacts = state.contacts;
+    out.max_penetration = state.max_depth;
+    const Wrench wrench_hand =
+        couplingWrenchOnDevice(config_.coupling, X_VW_ * out.spo, tick.device, way_).rotatedBy(X_WV.rotation);
+    if (wrench_hand.isFinite() && out.is_solved) last_wrench_hand_ = wrench_hand;
+    out.wrench_hand = last_wrench_hand_;
+    way_.remember(tick.device.rotation * state.X_VT.rotation.conjugate());
+    energy_ = state.total.energy;
+    return out;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,69 @@
+// The default: the tool's pose minimises contact energy + coupling energy + damping against the last pose, by a few
+// Gauss-Newton steps with a 6×6 LDLT, Levenberg damping, a trust radius and step halving. The energy never rises inside a
+// tick, so no contact situation can make the tool diverge; docs/stability.md.
+#pragma once
+
+#include "haptic_server/contact/gradient_contact.h"
+#include "haptic_server/spo/spo_model.h"
+
+namespace bonemill {
+
+struct GradientConfig {
+    GradientContactConfig contact;
+    EnergyCouplingConfig coupling;
+    double max_speed = 0.5;            // m/s of the tool point
+    double max_angular_speed = 4.189;  // rad/s
+    double burr_radius = 1e-3;         // m; bounds the trust radius
+};
+
+class GradientModel final : public SpoModel {
+  public:
+    // Allocates the room for contact points.
+    GradientModel(const GradientConfig& config, const SpoWorld& world, double dt);
+
+    SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept override;
+    void restart() noexcept override;
+    void setAccuracy(const AccuracySettings& settings) noexcept override;
+
+    // J of the last advance(): contact and coupling energy at its final pose. For tests and reports.
+    double energy() const noexcept { return energy_; }
+
+  private:
+    // Everything at one pose. V.
+    struct State {
+        Pose X_VT;
+        EnergyTerm total;
+        uint32_t contacts = 0;
+        double max_depth = 0;
+        bool isFinite() const noexcept;
+    };
+    // The tick's fixed part. V.
+    struct Tick {
+        Pose start, device;
+        SpoStep* out;
+    };
+    void gather(const Pose& X_VT, double margin, SpoStep& out) noexcept;
+    State evaluate(const Pose& X_VT, const Tick& tick) noexcept;
+    Vector6d newtonStep(const State& state) const noexcept;
+    Vector6d limited(const State& state, Vector6d step, const Tick& tick) noexcept;
+    bool moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept;
+    double reachOf(const Vector6d& step) const noexcept;
+    double trustRadius() const noexcept;
+
+    GradientConfig config_;
+    SpoWorld world_;
+    double dt_;
+    Pose X_VW_;
+    AccuracySettings settings_;
+    int level_ = 0;
+    const ToolField* field_;
+    GradientContact contact_;
+    Pose gathered_at_;
+    uint32_t gatherings_ = 0;
+    ContinuousRotation way_;
+    double lambda_ = 0;  // Levenberg, share of the damping matrix
+    double energy_ = 0;
+    Wrench last_wrench_hand_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,49 @@
+// How the simulated tool (SPO) follows the hand and meets the bone: one interface, two models. The scene chooses.
+#pragma once
+
+#include <cstdint>
+
+#include "haptic_server/accuracy/accuracy_settings.h"
+#include "haptic_server/contact/point_shell.h"
+#include "haptic_server/tool/tool_model.h"
+
+namespace bonemill {
+
+// What the tool meets; references to what lives at least as long as the model.
+struct SpoWorld {
+    const VoxelVolume& volume;
+    const LeafLattice& lattice;
+    const PointShell& shell;
+    const ToolModel& tool;
+};
+
+struct SpoStep {
+    Pose spo;            // after the tick, W
+    Wrench wrench_hand;  // on the hand, axes W, about the tool point; not yet limited
+    uint32_t contacts = 0;
+    uint32_t candidates = 0;  // points that were tested in each iteration
+    uint32_t iterations = 0;
+    double max_penetration = 0;       // m
+    bool is_solved = true;            // false: singular or not finite; the tool kept its pose
+    bool is_motion_clamped = false;   // a speed limit or the trust radius acted
+    bool has_contact_overflow = false;  // more candidate points than there is room for: some had no effect
+};
+
+class SpoModel {
+  public:
+    virtual ~SpoModel() = default;
+    // One tick of length dt from `spo`. RT-safe; tick thread only.
+    virtual SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept = 0;
+    // Forgets what it remembers of earlier ticks; called when the tool is placed anew or the model becomes active.
+    virtual void restart() noexcept = 0;
+    // Takes effect with the next advance(). RT-safe; tick thread only.
+    virtual void setAccuracy(const AccuracySettings& settings) noexcept = 0;
+};
+
+// The shell level of these settings: their factor's, or the finest one if that was not built.
+inline int levelOf(const PointShell& shell, const AccuracySettings& settings) noexcept {
+    const int level = shell.levelOf(settings.shell_factor);
+    return level < 0 ? 0 : level;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,29 @@
+// The baseline: penalty contact along the bone's normals, quaternion coupling, one LU solve, static damping (thesis
+// §4.3). Kept as printed; docs/simulate.md lists its warts.
+#pragma once
+
+#include "haptic_server/contact/penalty_contact.h"
+#include "haptic_server/coupling/virtual_coupling.h"
+#include "haptic_server/spo/spo_model.h"
+
+namespace bonemill {
+
+class Thesis2012Model final : public SpoModel {
+  public:
+    Thesis2012Model(const PenaltyContactConfig& contact, const CouplingConfig& coupling, const SpoWorld& world, double dt);
+
+    SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept override;
+    void restart() noexcept override {}
+    void setAccuracy(const AccuracySettings& settings) noexcept override;
+
+  private:
+    ContactResult contactInWorld(const Pose& spo_W) const noexcept;
+
+    PenaltyContactConfig contact_;
+    CouplingConfig coupling_;
+    SpoWorld world_;
+    double dt_;
+    Pose X_VW_;
+};
+
+}  // namespace bonemill

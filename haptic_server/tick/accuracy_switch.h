@@ -1,0 +1,32 @@
+// From other threads to the tick: compute with these accuracy settings from now on.
+#pragma once
+
+#include <array>
+#include <atomic>
+
+#include "haptic_server/accuracy/accuracy_settings.h"
+
+namespace bonemill {
+
+// A fixed choice: what the scene says, and the presets.
+class AccuracySwitch {
+  public:
+    static constexpr size_t kSceneChoice = 0;
+
+    explicit AccuracySwitch(const AccuracySettings& of_scene) noexcept {
+        choices_[kSceneChoice] = of_scene;
+        for (const Preset preset : kPresets) choices_[choiceOf(preset)] = presetSettings(preset);
+    }
+
+    static constexpr size_t choiceOf(Preset preset) noexcept { return 1 + size_t(preset); }
+
+    // Any thread. Relaxed is enough: the choices themselves never change.
+    void choose(size_t choice) noexcept { choice_.store(choice, std::memory_order_relaxed); }
+    const AccuracySettings& chosen() const noexcept { return choices_[choice_.load(std::memory_order_relaxed)]; }
+
+  private:
+    std::array<AccuracySettings, 1 + std::size(kPresets)> choices_;
+    std::atomic<size_t> choice_{kSceneChoice};
+};
+
+}  // namespace bonemill

@@ -1,0 +1,28 @@
+// Tool distances interpolated trilinearly in a grid.
+#pragma once
+
+#include "haptic_server/tool/sdf_grid.h"
+#include "haptic_server/tool/tool_field.h"
+
+namespace bonemill {
+
+// The gradient is that of the interpolated distance, so forces made with it conserve energy; its length differs from 1
+// by the grid's error. The Hessian is zero: inside a cell it has no diagonal, and on the cells' faces none at all.
+class GridField final : public ToolField {
+  public:
+    // `thinnest_radius`: m, of the tool's thinnest part.
+    GridField(SdfGrid grid, double thinnest_radius)
+        : ToolField(grid.box(), thinnest_radius), grid_(std::move(grid)) {}
+
+    void distances(const PointBatch<float>& points_T, float* out) const noexcept override;
+    void distances(const PointBatch<double>& points_T, double* out) const noexcept override;
+    ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
+    double distanceBound(const Eigen::Vector3d& p_T) const noexcept override;
+
+    const SdfGrid& grid() const noexcept { return grid_; }
+
+  private:
+    SdfGrid grid_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,192 @@
+#include "haptic_server/tool/shape_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace bonemill {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kTiny = 1e-12;  // m: below it a direction is taken by convention
+
+Eigen::AlignedBox3d boxOf(const std::vector<ToolShape>& shapes) {
+    Eigen::AlignedBox3d box;
+    for (const ToolShape& shape : shapes) box.extend(boundingBox(shape));
+    return box;
+}
+
+double radiusOf(const ToolShape& shape) {
+    if (const auto* cone = std::get_if<ConeShape>(&shape)) return std::max(cone->from_radius, cone->to_radius);
+    if (const auto* sphere = std::get_if<SphereShape>(&shape)) return sphere->radius;
+    if (const auto* capsule = std::get_if<CapsuleShape>(&shape)) return capsule->radius;
+    return std::get<CylinderShape>(shape).radius;
+}
+
+double thinnestOf(const std::vector<ToolShape>& shapes) {
+    if (shapes.empty()) throw std::invalid_argument("ShapeField: no shape");
+    double thinnest = std::numeric_limits<double>::infinity();
+    for (const ToolShape& shape : shapes) thinnest = std::min(thinnest, radiusOf(shape));
+    return thinnest;
+}
+
+template <class Scalar>
+struct Axis {
+    Scalar fx, fy, fz, ax, ay, az, length;
+    Axis(const Vector3d& from, const Vector3d& axis, double l) noexcept
+        : fx(Scalar(from.x())), fy(Scalar(from.y())), fz(Scalar(from.z())), ax(Scalar(axis.x())),
+          ay(Scalar(axis.y())), az(Scalar(axis.z())), length(Scalar(l)) {}
+};
+
+template <class Scalar>
+void nearerRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radius, Scalar* out) noexcept {
+    for (int i = 0; i < p.count; ++i) {
+        const Scalar x = p.x[i] - s.fx, y = p.y[i] - s.fy, z = p.z[i] - s.fz;
+        const Scalar along = std::min(std::max(x * s.ax + y * s.ay + z * s.az, Scalar(0)), s.length);
+        const Scalar dx = x - along * s.ax, dy = y - along * s.ay, dz = z - along * s.az;
+        out[i] = std::min(out[i], std::sqrt(dx * dx + dy * dy + dz * dz) - radius);
+    }
+}
+
+// The profile's three segments: both ends and the side.
+template <class Scalar>
+void nearerCone(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar r0, Scalar r1, Scalar* out) noexcept {
+    const Scalar widening = r1 - r0;
+    const Scalar side2 = s.length * s.length + widening * widening;
+    for (int i = 0; i < p.count; ++i) {
+        const Scalar x = p.x[i] - s.fx, y = p.y[i] - s.fy, z = p.z[i] - s.fz;
+        const Scalar along = x * s.ax + y * s.ay + z * s.az;
+        const Scalar dx = x - along * s.ax, dy = y - along * s.ay, dz = z - along * s.az;
+        const Scalar off = std::sqrt(dx * dx + dy * dy + dz * dz);
+        const Scalar over0 = std::max(off - r0, Scalar(0)), over1 = std::max(off - r1, Scalar(0));
+        const Scalar beyond = along - s.length;
+        const Scalar on_side = (along * s.length + (off - r0) * widening) / side2;
+        const Scalar u = std::min(std::max(on_side, Scalar(0)), Scalar(1));
+        const Scalar ex = along - u * s.length, ey = off - r0 - u * widening;
+        const Scalar squared = std::min(std::min(along * along + over0 * over0, beyond * beyond + over1 * over1),
+                                        ex * ex + ey * ey);
+        const bool is_inside = along > 0 && beyond < 0 && off - r0 < widening * along / s.length;
+        const Scalar distance = std::sqrt(squared);
+        out[i] = std::min(out[i], is_inside ? -distance : distance);
+    }
+}
+
+Vector3d anyNormalTo(const Vector3d& axis) noexcept {
+    return axis.unitOrthogonal();
+}
+
+// Nearest point of one profile segment: how far, the outward direction in the half-plane, and whether the
+// nearest point is one of its ends (there the profile is curved like a circle around it).
+struct ProfileHit {
+    double distance;
+    Vector2d gradient;
+    bool is_end;
+};
+
+ProfileHit hitSegment(const Vector2d& q, const Vector2d& a, const Vector2d& b, const Vector2d& normal) noexcept {
+    const Vector2d ab = b - a;
+    const double length2 = ab.squaredNorm();
+    const double u = length2 > 0 ? (q - a).dot(ab) / length2 : 0;
+    const Vector2d off = q - a - std::clamp(u, 0.0, 1.0) * ab;
+    const double distance = off.norm();
+    const bool is_end = (u <= 0 || u >= 1) && distance > kTiny;
+    return {distance, is_end ? Vector2d(off / distance) : normal, is_end};
+}
+
+}  // namespace
+
+ShapeField::ShapeField(const std::vector<ToolShape>& shapes) : ToolField(boxOf(shapes), thinnestOf(shapes)) {
+    for (const ToolShape& shape : shapes) solids_.push_back(solidOf(shape));
+}
+
+ShapeField::Solid ShapeField::solidOf(const ToolShape& shape) {
+    const auto between = [](bool is_round, const Vector3d& from, const Vector3d& to, double r0, double r1) {
+        const double length = (to - from).norm();
+        return Solid{is_round, from, length > 0 ? Vector3d((to - from) / length) : Vector3d::UnitY(), length, {r0, r1}};
+    };
+    if (const auto* s = std::get_if<SphereShape>(&shape)) return between(true, s->center, s->center, s->radius, s->radius);
+    if (const auto* s = std::get_if<CapsuleShape>(&shape)) return between(true, s->from, s->to, s->radius, s->radius);
+    if (const auto* s = std::get_if<ConeShape>(&shape))
+        return between(false, s->from, s->to, s->from_radius, s->to_radius);
+    const auto& s = std::get<CylinderShape>(shape);
+    return between(false, s.from, s.to, s.radius, s.radius);
+}
+
+template <class Scalar>
+void ShapeField::nearest(const PointBatch<Scalar>& points_T, Scalar* out) const noexcept {
+    std::fill_n(out, points_T.count, std::numeric_limits<Scalar>::max());
+    for (const Solid& solid : solids_) {
+        const Axis<Scalar> axis(solid.from, solid.axis, solid.length);
+        if (solid.is_round)
+            nearerRound(points_T, axis, Scalar(solid.radius[0]), out);
+        else
+            nearerCone(points_T, axis, Scalar(solid.radius[0]), Scalar(solid.radius[1]), out);
+    }
+}
+
+void ShapeField::distances(const PointBatch<float>& points_T, float* out) const noexcept {
+    nearest(points_T, out);
+}
+
+void ShapeField::distances(const PointBatch<double>& points_T, double* out) const noexcept {
+    nearest(points_T, out);
+}
+
+ToolSample ShapeField::sampleRound(const Solid& s, const Vector3d& p_T) noexcept {
+    const double along = (p_T - s.from).dot(s.axis);
+    const Vector3d off = p_T - s.from - std::clamp(along, 0.0, s.length) * s.axis;
+    const double to_axis = std::max(off.norm(), kTiny);
+    ToolSample sample;
+    sample.distance = to_axis - s.radius[0];
+    sample.gradient = off.norm() > kTiny ? Vector3d(off / to_axis) : anyNormalTo(s.axis);
+    const bool is_at_end = along <= 0 || along >= s.length;
+    const Vector3d around = s.axis.cross(sample.gradient);
+    sample.hessian = is_at_end ? Matrix3d((Matrix3d::Identity() - sample.gradient * sample.gradient.transpose()) / to_axis)
+                               : Matrix3d(around * around.transpose() / to_axis);
+    return sample;
+}
+
+ToolSample ShapeField::sampleCone(const Solid& s, const Vector3d& p_T) noexcept {
+    const double along = (p_T - s.from).dot(s.axis);
+    const Vector3d off = p_T - s.from - along * s.axis;
+    const double rho = off.norm();
+    const Vector3d radial = rho > kTiny ? Vector3d(off / rho) : anyNormalTo(s.axis);
+    const Vector2d q(along, rho);
+    const double widening = s.radius[1] - s.radius[0];
+    const ProfileHit hits[] = {
+        hitSegment(q, {0, 0}, {0, s.radius[0]}, {-1, 0}),
+        hitSegment(q, {s.length, 0}, {s.length, s.radius[1]}, {1, 0}),
+        hitSegment(q, {0, s.radius[0]}, {s.length, s.radius[1]}, Vector2d(-widening, s.length).normalized())};
+    const ProfileHit& hit = *std::min_element(std::begin(hits), std::end(hits), [](const auto& a, const auto& b) {
+        return a.distance < b.distance;
+    });
+    const bool is_inside = along > 0 && along < s.length && rho - s.radius[0] < widening * along / s.length;
+    ToolSample sample;
+    sample.distance = is_inside ? -hit.distance : hit.distance;
+    sample.gradient = hit.gradient.x() * s.axis + hit.gradient.y() * radial;
+    const Vector3d along_profile = hit.gradient.x() * radial - hit.gradient.y() * s.axis;
+    const Vector3d around = s.axis.cross(radial);
+    sample.hessian = hit.gradient.y() / std::max(rho, kTiny) * around * around.transpose();
+    if (hit.is_end) sample.hessian += along_profile * along_profile.transpose() / hit.distance;
+    return sample;
+}
+
+ToolSample ShapeField::sample(const Vector3d& p_T) const noexcept {
+    ToolSample nearest_sample;
+    nearest_sample.distance = std::numeric_limits<double>::infinity();
+    for (const Solid& solid : solids_) {
+        const ToolSample sample = solid.is_round ? sampleRound(solid, p_T) : sampleCone(solid, p_T);
+        if (sample.distance < nearest_sample.distance) nearest_sample = sample;
+    }
+    return nearest_sample;
+}
+
+double ShapeField::distanceBound(const Vector3d& p_T) const noexcept {
+    return sample(p_T).distance;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,39 @@
+// Exact tool distances from its shapes: solids of revolution about a segment, and their union.
+#pragma once
+
+#include <vector>
+
+#include "haptic_server/tool/tool_field.h"
+#include "haptic_server/tool/tool_shape.h"
+
+namespace bonemill {
+
+// Outside of the tool the distance is exact; inside a union it is the depth below the nearest shape's own surface.
+class ShapeField final : public ToolField {
+  public:
+    // At least one checked shape; throws std::invalid_argument otherwise. Allocates.
+    explicit ShapeField(const std::vector<ToolShape>& shapes);
+
+    void distances(const PointBatch<float>& points_T, float* out) const noexcept override;
+    void distances(const PointBatch<double>& points_T, double* out) const noexcept override;
+    ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
+    double distanceBound(const Eigen::Vector3d& p_T) const noexcept override;
+
+  private:
+    // Round: all points within `radius[0]` of the segment. Else a truncated cone with flat ends.
+    struct Solid {
+        bool is_round;
+        Eigen::Vector3d from, axis;  // axis: unit
+        double length;
+        double radius[2];
+    };
+    static Solid solidOf(const ToolShape& shape);
+    static ToolSample sampleRound(const Solid& solid, const Eigen::Vector3d& p_T) noexcept;
+    static ToolSample sampleCone(const Solid& solid, const Eigen::Vector3d& p_T) noexcept;
+    template <class Scalar>
+    void nearest(const PointBatch<Scalar>& points_T, Scalar* out) const noexcept;
+
+    std::vector<Solid> solids_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,56 @@
+// The tool as the contact models see it: signed distances φ in frame T (m, negative inside), with gradient and Hessian
+// where a point touches. All queries are const, noexcept and RT-safe; any thread.
+#pragma once
+
+#include "common/geometry/pose.h"
+
+namespace bonemill {
+
+// Points of one evaluation, in T. Structure of arrays, so that the compiler can use vector instructions.
+template <class Scalar>
+struct PointBatch {
+    static constexpr int kCapacity = 64;
+    alignas(64) Scalar x[kCapacity];
+    alignas(64) Scalar y[kCapacity];
+    alignas(64) Scalar z[kCapacity];
+    int count = 0;
+};
+
+struct ToolSample {
+    double distance = 0;                                   // m
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();    // of the distance, out of the tool
+    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();     // 1/m
+};
+
+class ToolField {
+  public:
+    virtual ~ToolField() = default;
+
+    // out[0 .. count-1]: the distance, or where it is not known (far from the tool) a lower bound of it, positive.
+    virtual void distances(const PointBatch<float>& points_T, float* out) const noexcept = 0;
+    virtual void distances(const PointBatch<double>& points_T, double* out) const noexcept = 0;
+    // The distance at one point and its derivatives, double precision.
+    virtual ToolSample sample(const Eigen::Vector3d& p_T) const noexcept = 0;
+    // Never above the distance; anywhere.
+    virtual double distanceBound(const Eigen::Vector3d& p_T) const noexcept = 0;
+
+    // The distance is nowhere negative outside.
+    const Eigen::AlignedBox3d& box() const noexcept { return box_; }
+    // Radius of the thinnest part as far as known, m: deeper than that a point may lie nearer to the far side.
+    double thinnestRadius() const noexcept { return thinnest_radius_; }
+    // Largest distance of box() from T's origin.
+    double reach() const noexcept { return reach_; }
+
+  protected:
+    ToolField(const Eigen::AlignedBox3d& box, double thinnest_radius) noexcept
+        : box_(box),
+          thinnest_radius_(thinnest_radius),
+          reach_(box.isEmpty() ? 0 : box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm()) {}
+
+  private:
+    Eigen::AlignedBox3d box_;
+    double thinnest_radius_;
+    double reach_;
+};
+
+}  // namespace bonemill

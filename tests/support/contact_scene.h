@@ -1,0 +1,89 @@
+// Analytic bone, analytic tool, and what their contact must be: sums over a fine sampling of the exact surface.
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "haptic_server/spo/gradient_model.h"
+#include "haptic_server/tick/bone_model.h"
+#include "tests/support/test_bodies.h"
+
+namespace bonemill::test {
+
+struct SurfaceElement {
+    Eigen::Vector3d position;  // V
+    Eigen::Vector3d normal;    // V, out of the bone
+    double area;               // m²
+};
+
+// Square of a plane around `center`, `half` to each side, in pieces of `step`.
+inline std::vector<SurfaceElement> planeElements(const Eigen::Vector3d& center, const Eigen::Matrix3d& R,
+                                                 double half, double step) {
+    std::vector<SurfaceElement> elements;
+    const int n = int(std::ceil(half / step));
+    for (int i = -n; i < n; ++i)
+        for (int j = -n; j < n; ++j)
+            elements.push_back(
+                {center + R * (step * Eigen::Vector3d(i + 0.5, j + 0.5, 0)), R.col(2), step * step});
+    return elements;
+}
+
+// Wall of a round hole along R's z axis; the bone is outside.
+inline std::vector<SurfaceElement> holeElements(const Eigen::Vector3d& center, const Eigen::Matrix3d& R,
+                                                double radius, double half, double step) {
+    std::vector<SurfaceElement> elements;
+    const int around = int(std::ceil(2 * M_PI * radius / step)), along = int(std::ceil(half / step));
+    const double angle = 2 * M_PI / around, length = half / along;
+    for (int i = 0; i < around; ++i)
+        for (int j = -along; j < along; ++j) {
+            const double phi = (i + 0.5) * angle;
+            const Eigen::Vector3d out(std::cos(phi), std::sin(phi), 0);
+            elements.push_back({center + R * (radius * out + length * (j + 0.5) * Eigen::Vector3d::UnitZ()), -(R * out),
+                                radius * angle * length});
+        }
+    return elements;
+}
+
+// Gradient law without guard and caps, by quadrature.
+inline Wrench quadrature(const std::vector<SurfaceElement>& surface, const ToolField& tool, double kappa,
+                         const Pose& X_VT) {
+    Wrench sum;
+    const Pose X_TV = X_VT.inverse();
+    for (const SurfaceElement& e : surface) {
+        const ToolSample sample = tool.sample(X_TV * e.position);
+        if (sample.distance >= 0) continue;
+        const Eigen::Vector3d force = kappa * e.area * sample.distance * (X_VT.rotation * sample.gradient);
+        sum.force += force;
+        sum.torque += (e.position - X_VT.position).cross(force);
+    }
+    return sum;
+}
+
+inline Eigen::Quaterniond randomRotation(std::mt19937& random) {
+    std::normal_distribution<double> normal;
+    return Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
+}
+
+// Everything a GradientModel needs, around a body given by its distance.
+struct ContactScene {
+    ContactScene(const VolumeGeometry& geometry, const DistanceFunction& body, const std::vector<ToolShape>& shapes,
+                 ShellConfig shell = {})
+        : bone(bodyVolume(geometry, body), Eigen::Vector3i::Constant(16), shell),
+          tool(sphereTool(1e-3, 0.25e-3), shapes, 1e-3) {}
+
+    SpoWorld world() const { return {bone.volume, bone.lattice, bone.shell, tool}; }
+
+    GradientContactResult contactAt(const GradientContactConfig& config, const AccuracySettings& settings,
+                                    const Pose& X_VT) const {
+        GradientContact contact(config);
+        const ToolField& field = tool.field(settings);
+        contact.gather(bone.volume, bone.lattice, bone.shell, levelOf(bone.shell, settings), field, X_VT, 0.2e-3);
+        return settings.precision == Precision::kDouble ? contact.evaluate<double>(field, X_VT)
+                                                        : contact.evaluate<float>(field, X_VT);
+    }
+
+    BoneModel bone;
+    ToolModel tool;
+};
+
+}  // namespace bonemill::test
