@@ -33,7 +33,7 @@ constexpr double kScanFrom = 1.0 / 64, kScanTo = 256;  // of the default stiffne
 struct Place {
     const char* name;
     VoxelVolume (*bone)();
-    SdfGrid (*tool)();
+    TestTool (*tool)();
     Pose start;
     Wrench push;
 };
@@ -92,16 +92,13 @@ double dragInAir(Scene& scene) {
 ZwidthRow measure(const Variant& variant, const Place& place, const Hand& hand, Quantity quantity,
                   double rate_hz) {
     const bool is_coupling = quantity == Quantity::kCoupling;
-    double default_stiffness = variant.contact_stiffness;
+    double default_stiffness = 0;
     const auto sceneAt = [&](double f) {
         return std::make_unique<Scene>(
             place.bone(), place.tool(), variant, 1 / rate_hz, [&](TickConfig& config) {
-                if (is_coupling) {
-                    default_stiffness = config.coupling.translation_stiffness;
-                    config.coupling.translation_stiffness *= f;
-                } else {
-                    variant.set_contact_stiffness(config, f * variant.contact_stiffness);
-                }
+                double& stiffness = is_coupling ? couplingStiffness(config) : contactStiffness(config);
+                default_stiffness = stiffness;
+                stiffness *= f;
             });
     };
     const double factor = largestStable([&](double f) { return isStable(*sceneAt(f), place, hand.plant); });

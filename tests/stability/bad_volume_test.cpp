@@ -33,7 +33,7 @@ double drag(VoxelVolume volume, const Variant& variant) {
         const double s = n / 1000.0;
         const Eigen::Vector3d p =
             kCentre + Eigen::Vector3d(2e-3 * std::cos(20 * s), 2e-3 * std::sin(20 * s), 6e-3 * (0.5 - s));
-        stepper.step({p, expRotation({3 * s, -5 * s, 2 * s})});
+        stepper.step({p, expRotation({1.5 * s, -2.5 * s, 1 * s})});
         if (!stepper.isFinite()) return kNan;
         const Wrench& wrench = stepper.wrenchOnHand();
         worst = std::max(
@@ -92,7 +92,7 @@ double manyContacts(const Variant& variant) {
     };
     const Eigen::Vector3d middle(8e-3, 8e-3, kPlaneTop);
     Scene scene(bodyVolume(boxOf({16e-3, 16e-3, 2e-3}), halfSpace(middle, Eigen::Vector3d::UnitZ())),
-                toolOf(plate, {kHalf, kHalf, kThick}, 0.5e-3), variant);
+                {gridOf(plate, {kHalf, kHalf, kThick}, 0.5e-3), {}, kThick}, variant);
     Stepper stepper(scene);
     uint32_t contacts = 0;
     double worst = 0;
@@ -102,7 +102,7 @@ double manyContacts(const Variant& variant) {
         contacts = std::max(contacts, stepper.record().contacts);
         worst = std::max(worst, stepper.wrenchOnHand().force.norm() / scene.config.coupling.max_force);
     }
-    const uint32_t s = uint32_t(variant.shell_scaling_factor);
+    const uint32_t s = uint32_t(scene.config.accuracy.shell_factor);
     const double wanted = 1e4 / (s * s);
     return contacts >= wanted ? worst : kNan;
 }

@@ -43,7 +43,7 @@ struct GridPoint {
     double damping_ratio = 0;
 };
 
-std::vector<GridPoint> gridPoints(const CouplingConfig& coupling, double dt) {
+std::vector<GridPoint> gridPoints(const CouplingFigures& coupling, double dt) {
     std::vector<GridPoint> points;
     for (const auto& device : kDevices)
         for (const auto& hand : kHands)
@@ -74,14 +74,12 @@ double buzz(Scene& scene, const LoopConfig& config, const Pose& start, const Wre
             start.incremented(push.force / hand.stiffness, push.torque / hand.angular_stiffness));
     else
         loop.plant.setBias(push);
-    loop.run(0.5);
-    const Residual r = residual(loop, 0.3);
-    return r.is_finite && r.is_touching ? r.rms : kNan;
+    return forceBuzz(loop, 0.5, 0.3);
 }
 
 struct GridScene {
     VoxelVolume (*bone)();
-    SdfGrid (*tool)();
+    TestTool (*tool)();
     Pose start;
     Wrench push;
 };
@@ -92,7 +90,7 @@ const GridScene kInHole{holeBone, peg, upright(kHoleMiddle), {{kPush, 0, kPush /
 double passivePoints(const Variant& variant, const GridScene& grid) {
     Scene scene(grid.bone(), grid.tool(), variant);
     double worst = 0;
-    for (const GridPoint& point : gridPoints(scene.config.coupling, scene.config.dt)) {
+    for (const GridPoint& point : gridPoints(couplingFigures(scene.config), scene.config.dt)) {
         if (point.damping_ratio < 1) continue;
         const double figure = buzz(scene, point.config, grid.start, grid.push);
         if (!(figure <= worst)) worst = figure;
@@ -104,7 +102,7 @@ double passivePoints(const Variant& variant, const GridScene& grid) {
 double buzzingPoints(const Variant& variant, const GridScene& grid) {
     Scene scene(grid.bone(), grid.tool(), variant);
     int buzzing = 0, count = 0;
-    for (const GridPoint& point : gridPoints(scene.config.coupling, scene.config.dt)) {
+    for (const GridPoint& point : gridPoints(couplingFigures(scene.config), scene.config.dt)) {
         const double figure = buzz(scene, point.config, grid.start, grid.push);
         buzzing += !(figure <= kLargestBuzz);
         ++count;
@@ -127,11 +125,14 @@ double holeAll(const Variant& variant) {
     return buzzingPoints(variant, kInHole);
 }
 
+// No virtual spring of 3 N/mm is stable on a device too lightly damped for it: shown, not promised.
+const std::vector<std::string> kEveryVariant{"thesis_2012", "fast", "balanced", "exact"};
+
 const std::vector<StabilityCase> kCases{
     {"loop_grid_plane_passive", "N_rms_worst", kLargestBuzz, planePassive, {}},
-    {"loop_grid_plane_all", "percent_buzzing", 0, planeAll, {"thesis_2012"}},
+    {"loop_grid_plane_all", "percent_buzzing", 0, planeAll, kEveryVariant},
     {"loop_grid_hole_passive", "N_rms_worst", kLargestBuzz, holePassive, {}},
-    {"loop_grid_hole_all", "percent_buzzing", 0, holeAll, {"thesis_2012"}},
+    {"loop_grid_hole_all", "percent_buzzing", 0, holeAll, kEveryVariant},
 };
 BONEMILL_STABILITY_CASES(ClosedLoopGrid, kCases);
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "tests/stability/hard_scenes.h"
+
 namespace bonemill::test {
 namespace {
 
@@ -79,6 +81,13 @@ Residual residual(ClosedLoop& loop, double seconds) {
     result.position_rms = spread(position);
     result.growth = spread(position, half, position.size()) / std::max(spread(position, 0, half), 1e-12);
     return result;
+}
+
+double forceBuzz(ClosedLoop& loop, double settle, double watch) {
+    loop.run(settle);
+    const Residual r = residual(loop, watch);
+    if (!r.is_finite) return kNan;
+    return r.is_touching ? r.rms : kLost;
 }
 
 }  // namespace bonemill::test

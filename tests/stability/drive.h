@@ -67,4 +67,7 @@ struct Residual {
 };
 Residual residual(ClosedLoop& loop, double seconds);
 
+// RMS of the force over `watch` s after `settle` s; kNan or kLost if that says nothing.
+double forceBuzz(ClosedLoop& loop, double settle, double watch);
+
 }  // namespace bonemill::test

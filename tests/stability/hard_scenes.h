@@ -5,7 +5,10 @@
 
 namespace bonemill::test {
 
-inline const double kNan = std::numeric_limits<double>::quiet_NaN();
+// Figures of a run that gave something not finite, and of one in which the tool lost the bone it was pushed
+// against.
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kLost = std::numeric_limits<double>::infinity();
 
 inline Pose upright(const Eigen::Vector3d& position) {
     return {position, Eigen::Quaterniond::Identity()};
@@ -28,7 +31,7 @@ inline VoxelVolume holeBone() {
     return bodyVolume(boxOf(Eigen::Vector3d::Constant(4e-3)),
                       holeAlongY(kHoleMiddle, kBurrRadius + kVoxel / 2));
 }
-inline SdfGrid peg() {
+inline TestTool peg() {
     return pegTool(kBurrRadius, 3e-3);
 }
 

@@ -26,19 +26,22 @@ std::vector<Pose> polyline(const std::vector<Pose>& corners, double speed, int r
     return path;
 }
 
-// Energy gained over the path, µJ; 0 if none was.
+// Energy gained over the path, µJ; 0 if none was. `dropped` ticks from `drop_from` on are missing; what
+// happens meanwhile is charged with the forces of an undisturbed run, so that the gap itself costs and brings
+// nothing: what remains is what the tool does when it comes back.
 double gained(Scene& scene, const std::vector<Pose>& path, size_t drop_from = 0, size_t dropped = 0) {
-    Stepper stepper(scene);
+    Stepper stepper(scene), undisturbed(scene);
     AlgorithmEnergy meter;
     double pressed = 0;
     for (size_t n = 0; n < path.size(); ++n) {
-        if (n >= drop_from && n < drop_from + dropped) continue;
-        stepper.step(path[n]);
+        const bool is_dropped = n >= drop_from && n < drop_from + dropped;
+        if (dropped > 0) undisturbed.step(path[n]);
+        if (!is_dropped) stepper.step(path[n]);
         if (!stepper.isFinite()) return kNan;
-        meter.add(path[n], stepper.wrenchOnHand());
+        meter.add(path[n], is_dropped ? undisturbed.wrenchOnHand() : stepper.wrenchOnHand());
         pressed = std::max(pressed, stepper.wrenchOnHand().force.norm());
     }
-    return pressed > 0.1 ? std::max(0.0, -meter.energy() * kMicro) : kNan;
+    return pressed > 0.1 ? std::max(0.0, -meter.energy() * kMicro) : kLost;
 }
 
 // Down, sideways, up, back, over a plane that lies askew in the grid; both ways round.
@@ -156,7 +159,7 @@ double droppedTicksAtThePort(const Variant& variant) {
             if (!is_dropped) stepper.step(path[n]);
             meter.add(path[n], stepper.wrenchOnHand());
         }
-        const double k = scene.config.coupling.translation_stiffness;
+        const double k = couplingFigures(scene.config).translation_stiffness;
         const double bound = PortEnergy::holdBound(k, kDt, kSpeed, kDepth, 0) +
                              k * kDepth * std::min(kDepth, kSpeed * kDt * double(dropped));
         const double figure = -meter.energy() / bound;

@@ -7,18 +7,20 @@ TickConfig configOf(const Variant& variant, double dt, const std::function<void(
     TickConfig config;
     config.dt = dt;
     config.burr_radius = kBurrRadius;
-    if (variant.edit) variant.edit(config);
+    config.gradient.burr_radius = kBurrRadius;
+    applyVariant(variant, config);
     if (edit) edit(config);
     return config;
 }
 
 }  // namespace
 
-Scene::Scene(VoxelVolume volume, SdfGrid tool_sdf, const Variant& variant, double dt,
+Scene::Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, double dt,
              const std::function<void(TickConfig&)>& edit)
     : config(configOf(variant, dt, edit)),
-      bone(std::move(volume), Eigen::Vector3i::Constant(16), variant.shell_scaling_factor),
-      tool(std::move(tool_sdf)) {}
+      bone(std::move(volume), Eigen::Vector3i::Constant(16),
+           ShellConfig{.factors = {config.accuracy.shell_factor}}),
+      tool(std::move(test_tool.grid), test_tool.shapes, test_tool.thinnest_radius) {}
 
 VolumeGeometry boxOf(const Eigen::Vector3d& size, double spacing) {
     VolumeGeometry geometry;
@@ -27,7 +29,7 @@ VolumeGeometry boxOf(const Eigen::Vector3d& size, double spacing) {
     return geometry;
 }
 
-SdfGrid toolOf(const DistanceFunction& distance_T, const Eigen::Vector3d& half_size, double spacing) {
+SdfGrid gridOf(const DistanceFunction& distance_T, const Eigen::Vector3d& half_size, double spacing) {
     const Eigen::Vector3i half = (half_size / spacing).array().ceil().cast<int>() + 3;
     const Eigen::Vector3i nodes = 2 * half.array() + 1;
     std::vector<float> values;
@@ -39,16 +41,17 @@ SdfGrid toolOf(const DistanceFunction& distance_T, const Eigen::Vector3d& half_s
     return SdfGrid(nodes, spacing, -spacing * half.cast<double>(), std::move(values));
 }
 
-SdfGrid burr() {
-    return sphereTool(kBurrRadius, kVoxel);
+TestTool burr() {
+    return {sphereTool(kBurrRadius, kVoxel), {SphereShape{{0, 0, 0}, kBurrRadius}}, kBurrRadius};
 }
 
-SdfGrid pegTool(double radius, double half_length) {
+TestTool pegTool(double radius, double half_length) {
     const auto capsule = [=](const Eigen::Vector3d& p) {
         const double y = std::clamp(p.y(), -half_length, half_length);
         return (p - Eigen::Vector3d(0, y, 0)).norm() - radius;
     };
-    return toolOf(capsule, {radius, half_length + radius, radius});
+    const CapsuleShape shape{{0, -half_length, 0}, {0, half_length, 0}, radius};
+    return {gridOf(capsule, {radius, half_length + radius, radius}), {shape}, radius};
 }
 
 DistanceFunction holeAlongY(const Eigen::Vector3d& center, double radius) {

@@ -14,20 +14,27 @@ namespace bonemill::test {
 inline constexpr double kVoxel = 0.125e-3;  // m, also the tools' SDF spacing unless said otherwise
 inline constexpr double kBurrRadius = 1e-3;
 
+// A tool in the ways that the accuracy settings can ask for.
+struct TestTool {
+    SdfGrid grid;
+    std::vector<ToolShape> shapes;  // none: only the grid
+    double thinnest_radius;         // m
+};
+
 struct Scene {
     // `edit` has the last word over the variant's settings.
-    Scene(VoxelVolume volume, SdfGrid tool_sdf, const Variant& variant, double dt = 1e-3,
+    Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, double dt = 1e-3,
           const std::function<void(TickConfig&)>& edit = {});
 
     TickConfig config;
     BoneModel bone;
-    SdfGrid tool;
+    ToolModel tool;
 };
 
 VolumeGeometry boxOf(const Eigen::Vector3d& size, double spacing = kVoxel);  // smallest that holds `size`
-SdfGrid toolOf(const DistanceFunction& distance_T, const Eigen::Vector3d& half_size, double spacing = kVoxel);
-SdfGrid burr();                                      // sphere of kBurrRadius
-SdfGrid pegTool(double radius, double half_length);  // round-ended, along y through T's origin
+SdfGrid gridOf(const DistanceFunction& distance_T, const Eigen::Vector3d& half_size, double spacing = kVoxel);
+TestTool burr();                                      // sphere of kBurrRadius
+TestTool pegTool(double radius, double half_length);  // round-ended, along y through T's origin
 
 // Block with a round hole along y through `center`.
 DistanceFunction holeAlongY(const Eigen::Vector3d& center, double radius);

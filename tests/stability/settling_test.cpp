@@ -9,9 +9,7 @@ namespace {
 constexpr double kSettle = 0.5, kWatch = 0.5;  // s
 
 double forceResidual(ClosedLoop& loop) {
-    loop.run(kSettle);
-    const Residual r = residual(loop, kWatch);
-    return r.is_finite && r.is_touching ? r.rms : kNan;
+    return forceBuzz(loop, kSettle, kWatch);
 }
 
 double pegHeld(const Variant& variant) {
@@ -70,13 +68,13 @@ double flickeringEncoder(const Variant& variant) {
         low = std::min(low, stepper.wrenchOnHand().force.z());
         high = std::max(high, stepper.wrenchOnHand().force.z());
     }
-    return (high - low) / (scene.config.coupling.translation_stiffness * step);
+    return (high - low) / (couplingFigures(scene.config).translation_stiffness * step);
 }
 
 const std::vector<StabilityCase> kCases{
     {"peg_in_hole_held", "N_rms", 0.05, pegHeld, {}},
     {"peg_in_hole_no_hand", "N_rms", 0.05, pegFree, {}},
-    {"wedge_10_to_60_degrees", "N_rms", 0.05, grooveWorst, {}},
+    {"wedge_10_to_60_degrees", "N_rms", 0.05, grooveWorst, {"thesis_2012"}},
     {"coarse_encoders_at_rest", "N_rms", 0.05, coarseEncodersAtRest, {}},
     // A flicker of one step may be felt as the coupling's stiffness times the step, and no more.
     {"encoder_flicker", "of_kt_step", 1, flickeringEncoder, {}},

@@ -10,6 +10,7 @@ namespace {
 double deviceJump(const Variant& variant) {
     Scene scene(planeBone(), burr(), variant);
     const CouplingConfig& coupling = scene.config.coupling;
+    const CouplingFigures figures = couplingFigures(scene.config);
     Stepper stepper(scene);
     const Pose start = abovePlane(-0.2e-3);
     const Pose far = {start.position + 50e-3 * Eigen::Vector3d(1, 1, -1).normalized(),
@@ -22,7 +23,7 @@ double deviceJump(const Variant& variant) {
         const double step = (stepper.spo().position - last.position).norm();
         const double figure =
             std::max({wrench.force.norm() / coupling.max_force, wrench.torque.norm() / coupling.max_torque,
-                      step / (coupling.max_speed * scene.config.dt)});
+                      step / (figures.max_speed * scene.config.dt)});
         if (!stepper.isFinite()) return kNan;
         worst = std::max(worst, figure);
         last = stepper.spo();
@@ -57,7 +58,7 @@ double startInside(const Variant& variant, double depth, double (*figure_of)(Clo
 
 // The tool leaves the bone no faster than it may move: the force fades in.
 double fadeIn(ClosedLoop& loop, const Scene& scene) {
-    const CouplingConfig& coupling = scene.config.coupling;
+    const CouplingFigures coupling = couplingFigures(scene.config);
     double worst = 0;
     Eigen::Vector3d before = Eigen::Vector3d::Zero();
     for (int n = 0; n < 300; ++n) {

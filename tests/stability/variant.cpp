@@ -1,17 +1,50 @@
 #include "tests/stability/variant.h"
 
 namespace bonemill::test {
+namespace {
+
+bool isThesis(const TickConfig& config) {
+    return config.accuracy.law == ContactLaw::kThesis2012;
+}
+
+}  // namespace
 
 const std::vector<Variant>& allVariants() {
-    static const std::vector<Variant> variants{
-        {"thesis_2012", 1, nullptr, [](TickConfig& config, double k) { config.contact.point_stiffness = k; },
-         PenaltyContactConfig{}.point_stiffness},
-    };
+    static const std::vector<Variant> variants = [] {
+        std::vector<Variant> list;
+        for (const Preset preset : kPresets) list.push_back({std::string(presetName(preset)), preset});
+        return list;
+    }();
     return variants;
 }
 
 const Variant& baselineVariant() {
+    for (const Variant& variant : allVariants())
+        if (variant.isBaseline()) return variant;
     return allVariants().front();
+}
+
+void applyVariant(const Variant& variant, TickConfig& config) {
+    config.accuracy = presetSettings(variant.preset);
+}
+
+CouplingFigures couplingFigures(const TickConfig& config) {
+    if (isThesis(config)) {
+        const CouplingConfig& c = config.coupling;
+        return {c.translation_stiffness, c.rotation_stiffness / 2, c.max_speed, c.max_angular_speed};
+    }
+    const GradientConfig& g = config.gradient;
+    return {g.coupling.translation_stiffness, g.coupling.rotation_stiffness, g.max_speed,
+            g.max_angular_speed};
+}
+
+double& couplingStiffness(TickConfig& config) {
+    return isThesis(config) ? config.coupling.translation_stiffness
+                            : config.gradient.coupling.translation_stiffness;
+}
+
+double& contactStiffness(TickConfig& config) {
+    return isThesis(config) ? config.contact.point_stiffness : config.gradient.contact.stiffness_per_area;
 }
 
 }  // namespace bonemill::test

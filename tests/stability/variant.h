@@ -1,4 +1,4 @@
-// The settings under test. The only place that knows how a variant is built.
+// The settings under test. The only place that knows how a variant is built and where its figures stand.
 #pragma once
 
 #include <string>
@@ -10,14 +10,25 @@ namespace bonemill::test {
 
 struct Variant {
     std::string name;
-    int shell_scaling_factor = 1;         // PointShell
-    void (*edit)(TickConfig&) = nullptr;  // null: TickConfig's defaults
-    // What "contact stiffness" means: N/m per point in the thesis' model, N/m³ in the gradient model.
-    void (*set_contact_stiffness)(TickConfig&, double) = nullptr;
-    double contact_stiffness = 0;  // its default
+    Preset preset;
+
+    bool isBaseline() const { return preset == Preset::kThesis2012; }
 };
 
 const std::vector<Variant>& allVariants();
 const Variant& baselineVariant();
+
+void applyVariant(const Variant& variant, TickConfig& config);
+
+// What the coupling in force is like, whichever model the settings choose. N/m, N·m/rad (small angles), m/s,
+// rad/s.
+struct CouplingFigures {
+    double translation_stiffness, rotation_stiffness, max_speed, max_angular_speed;
+};
+CouplingFigures couplingFigures(const TickConfig& config);
+
+// Of the model in force: k_t; N/m per point (thesis) or N/m³ (gradient).
+double& couplingStiffness(TickConfig& config);
+double& contactStiffness(TickConfig& config);
 
 }  // namespace bonemill::test
