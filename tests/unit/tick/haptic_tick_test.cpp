@@ -22,6 +22,7 @@ struct Bench {
         : bone(slab(X_WV), Eigen::Vector3i::Constant(16), ShellConfig{}),
           tool(test::sphereToolModel(kBurr, kVoxel)) {
         config.burr_radius = kBurr;
+        config.accuracy = presetSettings(Preset::kThesis2012);
     }
     static VoxelVolume slab(const Pose& X_WV) {
         VolumeGeometry geometry = test::cubeGeometry(64, kVoxel);
