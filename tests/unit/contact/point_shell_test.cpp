@@ -208,7 +208,7 @@ TEST(ShellPoints, LieOnTheTrilinearSurfaceAndNearTheSphere) {
                               1.1 * double(kProjectionTolerance) * diagonal);
                     ASSERT_LT(std::abs(r.norm() - radius), h * h / (4 * radius) + 1e-3 * h);
                     const double cosine = std::min(1.0, p.normal.cast<double>().dot(r.normalized()));
-                    const double limit_deg = normals == ShellNormals::kTrilinear ? 5 : 2;
+                    const double limit_deg = normals == ShellNormals::kTrilinear ? 3.5 : 0.3;
                     ASSERT_LT(std::acos(cosine) * 180 / M_PI, limit_deg) << spacing.transpose();
                 }
         }
