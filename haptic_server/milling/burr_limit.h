@@ -48,8 +48,10 @@ class BurrLimit {
         core_squared_ = core * core;
     }
 
+    // Of burrs under two voxels in radius no more than of one of two.
     static double meanSag(const VoxelVolume& volume, double burr_radius) noexcept {
-        return volume.spacing().squaredNorm() / (18 * burr_radius);
+        const double radius = std::max(burr_radius, 2 * volume.spacing().maxCoeff());
+        return volume.spacing().squaredNorm() / (18 * radius);
     }
 
     // Voxels at this distance from the burr's centre or farther have no limit; m.
@@ -60,7 +62,8 @@ class BurrLimit {
     int at(double distance_squared) const noexcept {
         if (distance_squared < core_squared_) return direction_ < 0 ? 0 : kMaxDensity;
         const double ramp = iso_ - direction_ * slope_ * (std::sqrt(distance_squared) - radius_);
-        return int(std::clamp(ramp, 0.0, double(kMaxDensity)) + 0.5);
+        const double half_up = std::clamp(ramp, 0.0, double(kMaxDensity)) + 0.5;
+        return int(half_up);  // rounds: never negative
     }
 
   private:
