@@ -41,19 +41,17 @@ struct Coordinates {
     float x, y, z;
 };
 
-// A new contact counts for the stiffness cap in proportion to its depth, so that it comes in smoothly.
-constexpr double kFullShareDepth = 20e-6;  // m
-double shareInContact(double distance) noexcept {
-    return std::clamp(-distance / kFullShareDepth, 0.0, 1.0);
-}
-
-struct Guard {
-    double w, slope;  // w(s), dw/ds
+// Steps between neighbouring places of a square patch, at right angles to n; along the grid's axes where the surface is.
+struct PatchFrame {
+    Vector3f step_u, step_v;
 };
 
-Guard guardAt(double s) noexcept {
-    const double t = std::clamp(s / GradientContact::kGuardWidth, 0.0, 1.0);
-    return {t * t * (3 - 2 * t), 6 * t * (1 - t) / GradientContact::kGuardWidth};
+PatchFrame patchFrame(const Vector3f& n, float step) noexcept {
+    if (n.isZero(0)) return {Vector3f::Zero(), Vector3f::Zero()};
+    int least = 0;
+    n.cwiseAbs().minCoeff(&least);
+    const Vector3f u = n.cross(Vector3f::Unit(least)).normalized();
+    return {step * u, step * n.cross(u)};
 }
 
 // Sums over the points in contact; the matrix's upper triangle only.
@@ -65,34 +63,20 @@ struct Sums {
     uint32_t contacts = 0;
     double max_depth = 0;
 
-    void add(double weight, double depth, double depth_cap, const Vector3d& r, const Vector3d& n,
-             const ToolSample& sample, const Matrix3d& R_VT) noexcept {
+    // r: from the tool point, V.
+    void add(double weight, double depth, double depth_cap, const Vector3d& r, const Vector3d& g) noexcept {
         ++contacts;
         max_depth = std::max(max_depth, depth);
-        const Vector3d g = R_VT * sample.gradient;
         const double capped = std::min(depth, depth_cap);
-        const double potential = capped * (depth - capped / 2);  // Ψ
-        const bool has_normal = n.squaredNorm() > 0.5;
-        const Guard guard = has_normal ? guardAt(-n.dot(g)) : Guard{1, 0};
-        energy += weight * guard.w * potential;
-        const double pull = weight * guard.w * capped;
+        energy += weight * capped * (depth - capped / 2);
         Vector6d J;
         J << g, r.cross(g);
-        force -= pull * J.head<3>();
-        torque -= pull * J.tail<3>();
-        // Beyond the cap the energy grows linearly: its secant keeps the matrix's direction.
-        const double k = pull / depth;
+        force -= weight * capped * J.head<3>();
+        torque -= weight * capped * J.tail<3>();
+        // Beyond the cap the secant keeps the matrix's direction.
+        const double k = weight * capped / depth;
         for (int row = 0; row < 6; ++row)
             for (int column = row; column < 6; ++column) stiffness(row, column) += k * J[row] * J[column];
-        if (guard.slope > 0) addGuardForce(weight * guard.slope * potential, r, n, g, sample, R_VT);
-    }
-
-    // -∂E/∂(x, ω) through w: ds/dx = H n, ds/dω = r × H n - g × n.
-    void addGuardForce(double energy_slope, const Vector3d& r, const Vector3d& n, const Vector3d& g,
-                       const ToolSample& sample, const Matrix3d& R_VT) noexcept {
-        const Vector3d Hn = R_VT * (sample.hessian * (R_VT.transpose() * n));
-        force -= energy_slope * Hn;
-        torque -= energy_slope * (r.cross(Hn) - g.cross(n));
     }
 
     GradientContactResult result() const noexcept {
@@ -109,64 +93,67 @@ struct Sums {
 GradientContact::GradientContact(const GradientContactConfig& config, size_t most_candidates)
     : config_(config), candidates_(most_candidates) {}
 
-bool GradientContact::gather(const VoxelVolume& volume, const LeafLattice& lattice, const PointShell& shell, int level,
-                             const ToolField& tool, const Pose& X_VT, double margin) noexcept {
-    count_ = 0;
-    touching_stiffness_ = 0;
+bool GradientContact::addCandidates(const ShellBlock& block, uint32_t i, int patch_points) noexcept {
+    if (count_ + size_t(patch_points * patch_points) > candidates_.size()) return false;
+    const Vector3f p = (Vector3d(block.x[i], block.y[i], block.z[i]) - origin_).cast<float>();
+    const Vector3f n(block.nx[i], block.ny[i], block.nz[i]);
+    const float weight = float(config_.stiffness_per_area) * block.area[i] / float(patch_points * patch_points);
+    const PatchFrame frame = patchFrame(n, std::sqrt(block.area[i]) / float(patch_points));
+    for (int row = 0; row < patch_points; ++row)
+        for (int column = 0; column < patch_points; ++column) {
+            const float u = float(column) - 0.5f * float(patch_points - 1);
+            const float v = float(row) - 0.5f * float(patch_points - 1);
+            const Vector3f at = p + u * frame.step_u + v * frame.step_v;
+            candidates_[count_++] = {at.x(), at.y(), at.z(), n.x(), n.y(), n.z(), weight};
+        }
+    return true;
+}
+
+bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin) noexcept {
     margin_ = margin;
     origin_ = X_VT.position;
-    bool has_room = true;
-    const Pose X_TV = X_VT.inverse();
-    const IntoTool<float> into_tool(X_VT, Vector3d::Zero());
-    const float kappa = float(config_.stiffness_per_area);
-    Eigen::AlignedBox3d box = boxInV(tool.box(), X_VT);
-    box.min().array() -= margin;
-    box.max().array() += margin;
-    PointBatch<float> batch;
-    alignas(64) float distance[PointBatch<float>::kCapacity];
-    lattice.forEachSurfaceLeaf(box, volume.spacing(), volume.iso(), [&](LeafId leaf) {
-        if (shell.pointCount(level, leaf) == 0) return;
-        const Sphere around = sphereAround(lattice.cellsOf(leaf), volume.spacing());
-        if (tool.distanceBound(X_TV * around.center) > around.radius + margin) return;
-        shell.forEachBlock(level, leaf, [&](const ShellBlock& block, uint32_t count) {
-            into_tool.fill(batch, int(count), [&](int i) { return Coordinates{block.x[i], block.y[i], block.z[i]}; });
-            tool.distances(batch, distance);
-            for (uint32_t i = 0; i < count; ++i) {
-                if (!(distance[i] < float(margin))) continue;
-                if (count_ == candidates_.size()) {
-                    has_room = false;
-                    return;
-                }
-                const Vector3f p = (Vector3d(block.x[i], block.y[i], block.z[i]) - origin_).cast<float>();
-                candidates_[count_++] = {p.x(),       p.y(),       p.z(),                block.nx[i],
-                                         block.ny[i], block.nz[i], kappa * block.area[i]};
-                touching_stiffness_ += shareInContact(double(distance[i])) * double(kappa * block.area[i]);
-            }
-        });
-    });
+    bool has_room = collect(bone, tool, X_VT);
+    if (!has_room && bone.patch_points > 1)
+        has_room = collect({bone.volume, bone.lattice, bone.shell, bone.level, 1}, tool, X_VT);
+    guardFarSide(bone.volume, tool, X_VT);
     capStiffness(tool, X_VT);
     return has_room;
 }
 
-void GradientContact::capStiffness(const ToolField& tool, const Pose& X_VT) noexcept {
+bool GradientContact::collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept {
+    count_ = 0;
+    touching_stiffness_ = 0;
+    deepest_ = 0;
+    bool has_room = true;
     const Pose X_TV = X_VT.inverse();
-    const auto sampleOf = [&](const Candidate& c) {
-        return tool.sample(X_TV * Vector3d(origin_ + Vector3d(double(c.x), double(c.y), double(c.z))));
-    };
-    if (touching_stiffness_ <= config_.stiffness_cap) return;
-    Matrix3d stiffness = Matrix3d::Zero();  // T axes
-    for (size_t i = 0; i < count_; ++i) {
-        const ToolSample sample = sampleOf(candidates_[i]);
-        const double share = shareInContact(sample.distance);
-        if (share > 0)
-            stiffness += share * double(candidates_[i].weight) * sample.gradient * sample.gradient.transpose();
-    }
-    for (size_t i = 0; i < count_; ++i) {
-        const Vector3d g = sampleOf(candidates_[i]).gradient;
-        const double in_direction = g.dot(stiffness * g);
-        if (in_direction > config_.stiffness_cap)
-            candidates_[i].weight *= float(config_.stiffness_cap / in_direction);
-    }
+    const IntoTool<float> into_tool(X_VT, Vector3d::Zero());
+    const float kappa = float(config_.stiffness_per_area), margin = float(margin_);
+    const float refine_within = float(kRefineWithin * tool.thinnestRadius());
+    Eigen::AlignedBox3d box = boxInV(tool.box(), X_VT);
+    box.min().array() -= margin_;
+    box.max().array() += margin_;
+    PointBatch<float> batch;
+    alignas(64) float distance[PointBatch<float>::kCapacity];
+    const Vector3d& spacing = bone.volume.spacing();
+    bone.lattice.forEachSurfaceLeaf(box, spacing, bone.volume.iso(), [&](LeafId leaf) {
+        if (bone.shell.pointCount(bone.level, leaf) == 0) return;
+        const Sphere around = sphereAround(bone.lattice.cellsOf(leaf), spacing);
+        if (tool.distanceBound(X_TV * around.center) > around.radius + margin_) return;
+        bone.shell.forEachBlock(bone.level, leaf, [&](const ShellBlock& block, uint32_t count) {
+            into_tool.fill(batch, int(count), [&](int i) { return Coordinates{block.x[i], block.y[i], block.z[i]}; });
+            tool.distances(batch, distance);
+            for (uint32_t i = 0; i < count; ++i) {
+                // The patch around the point reaches this much nearer to the tool.
+                const float patch = bone.patch_points > 1 ? std::sqrt(0.5f * block.area[i]) : 0;
+                if (!(distance[i] < margin + patch)) continue;
+                const bool is_near = distance[i] < refine_within + patch;
+                has_room = addCandidates(block, i, is_near ? bone.patch_points : 1) && has_room;
+                deepest_ = std::max(deepest_, -double(distance[i]));
+                touching_stiffness_ += shareInContact(double(distance[i])) * double(kappa * block.area[i]);
+            }
+        });
+    });
+    return has_room;
 }
 
 template <class Scalar>
@@ -189,8 +176,7 @@ GradientContactResult GradientContact::evaluate(const ToolField& tool, const Pos
             const Candidate& c = points[i];
             const Vector3d r = Vector3d(double(c.x), double(c.y), double(c.z)) - p_OT;
             const ToolSample sample = tool.sample(Vector3d(batch.x[i], batch.y[i], batch.z[i]));
-            sums.add(double(c.weight), -double(distance[i]), depth_cap, r,
-                     {double(c.nx), double(c.ny), double(c.nz)}, sample, R_VT);
+            sums.add(double(c.weight), -double(distance[i]), depth_cap, r, R_VT * sample.gradient);
         }
     }
     return sums.result();

@@ -79,8 +79,8 @@ double GradientModel::reachOf(const Vector6d& step) const noexcept {
 void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexcept {
     ++gatherings_;
     gathered_at_ = X_VT;
-    out.has_contact_overflow |=
-        !contact_.gather(world_.volume, world_.lattice, world_.shell, level_, *field_, X_VT, margin);
+    const ShellView bone{world_.volume, world_.lattice, world_.shell, level_, settings_.patch_points};
+    out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin);
     out.candidates = uint32_t(contact_.candidateCount());
 }
 

@@ -26,10 +26,8 @@ void GridField::distances(const PointBatch<double>& points_T, double* out) const
 }
 
 ToolSample GridField::sample(const Eigen::Vector3d& p_T) const noexcept {
-    ToolSample sample;
-    sample.distance = grid_.contains(p_T) ? grid_.distanceExactly(p_T) : boundOutside(box(), p_T);
-    sample.gradient = grid_.gradient(p_T);
-    return sample;
+    if (!grid_.contains(p_T)) return {boundOutside(box(), p_T), Eigen::Vector3d::Zero()};
+    return {grid_.distanceExactly(p_T), grid_.gradient(p_T)};
 }
 
 double GridField::distanceBound(const Eigen::Vector3d& p_T) const noexcept {

@@ -7,7 +7,7 @@
 namespace bonemill {
 
 // The gradient is that of the interpolated distance, so forces made with it conserve energy; its length differs from 1
-// by the grid's error. The Hessian is zero: inside a cell it has no diagonal, and on the cells' faces none at all.
+// by the grid's error.
 class GridField final : public ToolField {
   public:
     // `thinnest_radius`: m, of the tool's thinnest part.

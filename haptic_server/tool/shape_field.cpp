@@ -8,7 +8,6 @@
 namespace bonemill {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -79,12 +78,10 @@ Vector3d anyNormalTo(const Vector3d& axis) noexcept {
     return axis.unitOrthogonal();
 }
 
-// Nearest point of one profile segment: how far, the outward direction in the half-plane, and whether the
-// nearest point is one of its ends (there the profile is curved like a circle around it).
+// Nearest point of one profile segment: how far, and the outward direction in the half-plane.
 struct ProfileHit {
     double distance;
     Vector2d gradient;
-    bool is_end;
 };
 
 ProfileHit hitSegment(const Vector2d& q, const Vector2d& a, const Vector2d& b, const Vector2d& normal) noexcept {
@@ -94,7 +91,7 @@ ProfileHit hitSegment(const Vector2d& q, const Vector2d& a, const Vector2d& b, c
     const Vector2d off = q - a - std::clamp(u, 0.0, 1.0) * ab;
     const double distance = off.norm();
     const bool is_end = (u <= 0 || u >= 1) && distance > kTiny;
-    return {distance, is_end ? Vector2d(off / distance) : normal, is_end};
+    return {distance, is_end ? Vector2d(off / distance) : normal};
 }
 
 }  // namespace
@@ -143,10 +140,6 @@ ToolSample ShapeField::sampleRound(const Solid& s, const Vector3d& p_T) noexcept
     ToolSample sample;
     sample.distance = to_axis - s.radius[0];
     sample.gradient = off.norm() > kTiny ? Vector3d(off / to_axis) : anyNormalTo(s.axis);
-    const bool is_at_end = along <= 0 || along >= s.length;
-    const Vector3d around = s.axis.cross(sample.gradient);
-    sample.hessian = is_at_end ? Matrix3d((Matrix3d::Identity() - sample.gradient * sample.gradient.transpose()) / to_axis)
-                               : Matrix3d(around * around.transpose() / to_axis);
     return sample;
 }
 
@@ -168,10 +161,6 @@ ToolSample ShapeField::sampleCone(const Solid& s, const Vector3d& p_T) noexcept 
     ToolSample sample;
     sample.distance = is_inside ? -hit.distance : hit.distance;
     sample.gradient = hit.gradient.x() * s.axis + hit.gradient.y() * radial;
-    const Vector3d along_profile = hit.gradient.x() * radial - hit.gradient.y() * s.axis;
-    const Vector3d around = s.axis.cross(radial);
-    sample.hessian = hit.gradient.y() / std::max(rho, kTiny) * around * around.transpose();
-    if (hit.is_end) sample.hessian += along_profile * along_profile.transpose() / hit.distance;
     return sample;
 }
 
