@@ -98,11 +98,12 @@ double passivePoints(const Variant& variant, const GridScene& grid) {
     return worst;
 }
 
-// All points: how many buzz, in %. Printed one by one.
+// All points with the coarser encoders: how many buzz or throw the tool off, in %. Printed one by one.
 double buzzingPoints(const Variant& variant, const GridScene& grid) {
     Scene scene(grid.bone(), grid.tool(), variant);
     int buzzing = 0, count = 0;
     for (const GridPoint& point : gridPoints(couplingFigures(scene.config), scene.config.dt)) {
+        if (point.config.device.encoder_step < kEncoders[1].step) continue;
         const double figure = buzz(scene, point.config, grid.start, grid.push);
         buzzing += !(figure <= kLargestBuzz);
         ++count;

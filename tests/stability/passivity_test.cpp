@@ -67,7 +67,7 @@ double loopOverPlane(const Variant& variant) {
 // The same at rest: each pose is held until the tool has settled, so that only the law of force is judged,
 // not the damping of the solve. In a conservative law both ways round give 0; otherwise one way gains.
 double gainedAtRest(Scene& scene, std::vector<Pose> path) {
-    constexpr int kSettleTicks = 30;
+    constexpr int kSettleTicks = 16;
     double worst = 0;
     for (int way = 0; way < 2; ++way) {
         Stepper stepper(scene);
