@@ -29,6 +29,10 @@ bool isWithin(double figure, double bound) {
 
 }  // namespace
 
+void PrintTo(const Trial& trial, std::ostream* out) {
+    *out << trial.stability_case.name << " " << trial.variant.name;
+}
+
 double StabilityTrial::measureAndReport() const {
     const auto& [c, variant] = GetParam();
     const double figure = c.measure(variant);

@@ -28,6 +28,7 @@ struct Trial {
     StabilityCase stability_case;
     Variant variant;
 };
+void PrintTo(const Trial& trial, std::ostream* out);  // GoogleTest's name for it
 
 class StabilityTrial : public testing::TestWithParam<Trial> {
   protected:
