@@ -47,6 +47,15 @@ double oneVoxelWallFast(const Variant& variant) {
     return throughWall(variant, kFastSpeed);
 }
 
+// A pin thinner than what the tool may move in one tick: only the sweep can see the wall.
+double pinThroughWall(const Variant& variant) {
+    constexpr double kPin = 0.2e-3;
+    const DistanceFunction one_voxel = wall(kMiddle, Eigen::Vector3d::UnitZ(), kVoxel);
+    Scene scene(bodyVolume(boxOf(Eigen::Vector3d::Constant(5e-3)), one_voxel), pegTool(kPin, 1.5e-3), variant,
+                1e-3, [](TickConfig& config) { config.burr_radius = config.gradient.burr_radius = kPin; });
+    return centreBelow(scene, upright(kMiddle + Eigen::Vector3d(0, 0, kPin + 1.37e-3)), kTop, kFastSpeed);
+}
+
 double deepPush(const Variant& variant) {
     Scene scene(planeBone(), burr(), variant);
     return centreBelow(scene, abovePlane(0.5e-3), kTop);
@@ -76,6 +85,7 @@ double deepPushDirection(const Variant& variant) {
 const std::vector<StabilityCase> kCases{
     {"one_voxel_wall", "mm_past_wall", 0, oneVoxelWall, {"thesis_2012"}},
     {"one_voxel_wall_fast_hand", "mm_past_wall", 0, oneVoxelWallFast, {"thesis_2012"}},
+    {"pin_through_wall_fast_hand", "mm_past_wall", 0, pinThroughWall, {"thesis_2012"}},
     {"deep_push_side", "mm_past_surface", 0, deepPush, {"thesis_2012"}},
     {"deep_push_force", "of_max_force", 1 + 1e-9, deepPushForce, {}},
     {"deep_push_direction", "degrees", 10, deepPushDirection, {"thesis_2012"}},
