@@ -1,0 +1,156 @@
+// No closed path of the device over bone that nobody mills gives the hand energy: 10⁴ random paths. rapidcheck prints
+// the seed of a run; RC_PARAMS="seed=..." repeats it.
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include "tests/support/contact_scene.h"
+
+namespace bonemill {
+namespace {
+
+using namespace test;
+using Eigen::Vector3d;
+
+constexpr double kVoxel = 0.25e-3;
+constexpr double kAllowed = 1e-6;  // J that a path may give back
+const Vector3d kMiddle(4e-3, 4e-3, 4e-3);
+const Eigen::Quaterniond kUpright = expRotation({M_PI / 2, 0, 0});
+const std::vector<ToolShape> kBurrAndShaft = {SphereShape{{0, 0, 0}, 1e-3},
+                                              CapsuleShape{{0, 0, 0}, {0, 8e-3, 0}, 0.8e-3}};
+
+double bumps(const Vector3d& p) {
+    const Vector3d q = 1e3 * p;
+    return 1e-3 * (q.z() - 4 - 0.5 * std::sin(1.9 * q.x()) * std::sin(1.6 * q.y() + 0.4 * q.z()));
+}
+double wedge(const Vector3d& p) {  // 60° between its faces, pointing up
+    const Vector3d q = p - kMiddle;
+    return std::max({0.866 * q.x() + 0.5 * q.z(), -0.866 * q.x() + 0.5 * q.z(), -q.z() - 3e-3});
+}
+double slot(const Vector3d& p) {  // barely wider than the burr
+    const Vector3d q = p - kMiddle;
+    return std::max(q.z(), 1.05e-3 - std::abs(q.x()));
+}
+// Rough: a different density in every voxel of a layer around the bumps.
+double rough(const Vector3d& p) {
+    const Eigen::Vector3i voxel = (p / kVoxel).array().round().cast<int>();
+    const uint32_t hash = uint32_t(voxel.x() * 73856093 ^ voxel.y() * 19349663 ^ voxel.z() * 83492791) * 2654435761u;
+    return bumps(p) + 0.3e-3 * (double(hash >> 8) / double(1 << 24) - 0.5);
+}
+
+const ContactScene& sceneOf(int body) {
+    static const ContactScene scenes[] = {{cubeGeometry(33, kVoxel), bumps, kBurrAndShaft, {.factors = {1, 2}}},
+                                          {cubeGeometry(33, kVoxel), wedge, kBurrAndShaft, {.factors = {1, 2}}},
+                                          {cubeGeometry(33, kVoxel), slot, kBurrAndShaft, {.factors = {1, 2}}},
+                                          {cubeGeometry(33, kVoxel), rough, kBurrAndShaft, {.factors = {1, 2}}}};
+    return scenes[body];
+}
+
+double fraction() {
+    constexpr int kSteps = 1'000'000;
+    return *rc::gen::inRange(-kSteps, kSteps + 1) / double(kSteps);
+}
+
+// Out of the air into the bone, through a few random places and back, smoothly.
+struct Path {
+    static constexpr int kPlaces = 2, kTicksPerLeg = 120, kRest = 5;  // legs of some mm: steps of 20 µm keep the quadrature's error below
+    Vector3d place[kPlaces + 2];
+    Vector3d turn[kPlaces + 2];
+
+    Path() {
+        for (int n = 0; n < kPlaces + 2; ++n) {
+            const bool is_end = n == 0 || n == kPlaces + 1;
+            place[n] = kMiddle + (is_end ? Vector3d(0, 0, 2.5e-3)
+                                         : Vector3d(1.2e-3 * fraction(), 1.2e-3 * fraction(), 0.3e-3 + 0.9e-3 * fraction()));
+            turn[n] = is_end ? Vector3d::Zero() : Vector3d(0.3 * Vector3d(fraction(), fraction(), fraction()));
+        }
+    }
+    static constexpr int ticks() { return (kPlaces + 1) * kTicksPerLeg + kRest; }
+    Pose at(int tick) const {
+        const int leg = std::min(tick / kTicksPerLeg, kPlaces);
+        const double t = std::min(1.0, double(tick - leg * kTicksPerLeg) / kTicksPerLeg);
+        const double s = t * t * (3 - 2 * t);
+        return {place[leg] + s * (place[leg + 1] - place[leg]),
+                expRotation(turn[leg] + s * (turn[leg + 1] - turn[leg])) * kUpright};
+    }
+};
+
+// Without damping and with the solve converged, so that only what the contact itself gives or takes is left.
+AccuracySettings converged(Preset preset) {
+    AccuracySettings settings = presetSettings(preset);
+    settings.iterations = AccuracySettings::kMostIterations;
+    return settings;
+}
+
+// What the hand puts in: -Σ ½ (w_k + w_{k+1}) · (pose_{k+1} - pose_k), w the wrench on the hand.
+double energyPutIn(const ContactScene& scene, Preset preset, const Path& path) {
+    GradientConfig config;
+    config.coupling.saturation_force = 12;
+    config.coupling.damping_time = 0;
+    config.max_angular_speed = 50;
+    GradientModel model(config, scene.world(), 1e-3);
+    model.setAccuracy(converged(preset));
+    Pose spo = path.at(0), device_before = path.at(0);
+    Wrench before;
+    double energy = 0;
+    for (int tick = 0; tick < Path::ticks(); ++tick) {
+        const Pose device = path.at(tick);
+        const SpoStep step = model.advance(spo, device);
+        spo = step.spo;
+        const Vector3d moved = device.position - device_before.position;
+        const Vector3d turned = logRotation(device.rotation * device_before.rotation.conjugate());
+        energy -= 0.5 * (before.force + step.wrench_hand.force).dot(moved) +
+                  0.5 * (before.torque + step.wrench_hand.torque).dot(turned);
+        before = step.wrench_hand;
+        device_before = device;
+    }
+    return energy;
+}
+
+void expectPassive(Preset preset, int body, double& least) {
+    const double energy = energyPutIn(sceneOf(body), preset, Path());
+    least = std::min(least, energy);
+    RC_ASSERT(energy >= -kAllowed);
+}
+
+struct Run {
+    Preset preset;
+    int body, paths;
+};
+
+class ClosedPaths : public testing::TestWithParam<Run> {};
+
+TEST_P(ClosedPaths, GiveTheHandNoEnergy) {
+    const auto& [preset, body, paths] = GetParam();
+    double least = 1;
+    rc::detail::TestParams params = rc::detail::configuration().testParams;
+    params.maxSuccess = paths;
+    params.disableShrinking = true;  // a shrunk path says no more, and takes minutes
+    rc::detail::TestMetadata metadata;
+    metadata.id = testing::UnitTest::GetInstance()->current_test_info()->name();
+    const auto result = rc::detail::checkTestable([&] { expectPassive(preset, body, least); }, metadata, params);
+    std::printf("%d paths, seed %llu, least energy put in %.2e J\n", paths,
+                static_cast<unsigned long long>(params.seed), least);
+    std::ostringstream message;
+    rc::detail::printResultMessage(result, message);
+    EXPECT_TRUE(result.is<rc::detail::SuccessResult>()) << message.str();
+}
+
+constexpr const char* kBodyNames[] = {"bumps", "wedge", "slot", "rough"};
+
+std::vector<Run> runs() {
+    std::vector<Run> all;
+    for (int body = 0; body < 4; ++body) {
+        all.push_back({Preset::kFast, body, 250});
+        all.push_back({Preset::kBalanced, body, 2500});
+        all.push_back({Preset::kExact, body, 250});
+    }
+    return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Bodies, ClosedPaths, testing::ValuesIn(runs()), [](const auto& run) {
+    return std::string(presetName(run.param.preset)) + "_" + kBodyNames[run.param.body];
+});
+
+}  // namespace
+}  // namespace bonemill
