@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <sstream>
+#include <utility>
 
 #include "render_client/scene/accuracy_keys.h"
 
@@ -10,6 +12,7 @@ namespace bonemill {
 namespace {
 
 constexpr double kMetresToMm = 1e3;
+constexpr size_t kLongestValue = 26;  // characters
 
 std::string number(double value, int decimals, const char* unit) {
     if (!std::isfinite(value)) return "\u2013";
@@ -28,6 +31,17 @@ std::string readable(double value, const char* unit) {
     return number(value, magnitude < 10 ? 2 : magnitude < 1000 ? 1 : 0, unit);
 }
 
+// Lines of at most `most` bytes, cut at spaces; a longer word stays whole.
+std::vector<std::string> wrapped(const std::string& text, size_t most) {
+    std::vector<std::string> lines(1);
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        if (!lines.back().empty() && lines.back().size() + 1 + word.size() > most) lines.emplace_back();
+        lines.back() += (lines.back().empty() ? "" : " ") + word;
+    }
+    return lines;
+}
+
 void addLoopRows(const topics::Status& status, std::vector<HudRow>& rows) {
     if (status.ticks() == 0) return rows.push_back({"Loop", "waits for a device", HudTone::kWarning});
     rows.push_back({"Loop", number(status.rate_hz(), 1, " Hz")});
@@ -36,7 +50,10 @@ void addLoopRows(const topics::Status& status, std::vector<HudRow>& rows) {
 }
 
 void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
-    rows.push_back({"Accuracy", status.preset()});
+    // A preset is one word; all knobs take more than one line.
+    std::string label = "Accuracy";
+    for (const std::string& line : wrapped(status.preset(), kLongestValue))
+        rows.push_back({std::exchange(label, ""), line});
     rows.push_back({"Force error", status.has_accuracy_error()
                                        ? readable(status.force_error_percent(), " %") + ", " +
                                              readable(status.force_direction_error_deg(), "\u00b0")

@@ -43,7 +43,7 @@ class AccuracySwitching : public testing::Test {
                   "device { p_WD_mm { x: 0 y: 0.1 z: 2 } q_WD { w: 0.70710678 x: 0.70710678 } }\n"
                   "accuracy { " +
                       accuracy + " }\nsimulated_operator {\n" + waypoint(0, 3.6, false) +
-                      waypoint(1, 2.9, removes) + waypoint(removes ? 120 : 2, end_mm, removes) +
+                      waypoint(1, 2.3, removes) + waypoint(removes ? 60 : 2, end_mm, removes) +
                       waypoint(300, end_mm, false) + "}\n");
     }
     std::vector<std::string> server() const {

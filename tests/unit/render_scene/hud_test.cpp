@@ -109,6 +109,18 @@ TEST(Hud, TheForceErrorIsTheServersOrNotMeasured) {
     EXPECT_EQ(find(makeHud(input), "Force error")->value, "123.4 %, 12.3\u00b0");
 }
 
+TEST(Hud, LongSettingsTakeMoreThanOneLine) {
+    HudInput input = liveInput();
+    input.status->set_preset("gradient s=2 q=2 grid x1 float iterations=3 ccd");
+    const Hud hud = makeHud(input);
+    const HudRow* first = find(hud, "Accuracy");
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->value, "gradient s=2 q=2 grid x1");
+    EXPECT_EQ(first[1].label, "");
+    EXPECT_EQ(first[1].value, "float iterations=3 ccd");
+    EXPECT_EQ(first[2].label, "Force error");
+}
+
 TEST(Hud, ANoticeIsPassedOn) {
     HudInput input = liveInput();
     EXPECT_FALSE(makeHud(input).notice);
