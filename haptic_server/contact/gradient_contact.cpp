@@ -57,31 +57,45 @@ PatchFrame patchFrame(const Vector3f& n, float step) noexcept {
 // Sums over the points in contact; the matrix's upper triangle only.
 struct Sums {
     double energy = 0;
-    Vector3d force = Vector3d::Zero();
-    Vector3d torque = Vector3d::Zero();
-    Matrix6d stiffness = Matrix6d::Zero();
+    double force[3] = {}, torque[3] = {};
+    double stiffness[21] = {};  // rows of the upper triangle
     uint32_t contacts = 0;
     double max_depth = 0;
 
-    // r: from the tool point, V.
+    // r: from the tool point, V; g: V.
     void add(double weight, double depth, double depth_cap, const Vector3d& r, const Vector3d& g) noexcept {
         ++contacts;
         max_depth = std::max(max_depth, depth);
         const double capped = std::min(depth, depth_cap);
         energy += weight * capped * (depth - capped / 2);
-        Vector6d J;
-        J << g, r.cross(g);
-        force -= weight * capped * J.head<3>();
-        torque -= weight * capped * J.tail<3>();
+        const double J[6] = {g.x(),
+                             g.y(),
+                             g.z(),
+                             r.y() * g.z() - r.z() * g.y(),
+                             r.z() * g.x() - r.x() * g.z(),
+                             r.x() * g.y() - r.y() * g.x()};
+        const double pull = weight * capped;
+        for (int axis = 0; axis < 3; ++axis) {
+            force[axis] -= pull * J[axis];
+            torque[axis] -= pull * J[3 + axis];
+        }
         // Beyond the cap the secant keeps the matrix's direction.
-        const double k = weight * capped / depth;
-        for (int row = 0; row < 6; ++row)
-            for (int column = row; column < 6; ++column) stiffness(row, column) += k * J[row] * J[column];
+        const double k = depth > depth_cap ? pull / depth : weight;
+        double* sum = stiffness;
+        for (int row = 0; row < 6; ++row) {
+            const double kJ = k * J[row];
+            for (int column = row; column < 6; ++column) *sum++ += kJ * J[column];
+        }
     }
 
     GradientContactResult result() const noexcept {
         GradientContactResult result;
-        result.term = {energy, {force, torque}, stiffness.selfadjointView<Eigen::Upper>()};
+        result.term.energy = energy;
+        result.term.wrench = {Vector3d(force), Vector3d(torque)};
+        const double* sum = stiffness;
+        for (int row = 0; row < 6; ++row)
+            for (int column = row; column < 6; ++column)
+                result.term.stiffness(row, column) = result.term.stiffness(column, row) = *sum++;
         result.contacts = contacts;
         result.max_depth = max_depth;
         return result;
@@ -93,31 +107,43 @@ struct Sums {
 GradientContact::GradientContact(const GradientContactConfig& config, size_t most_candidates)
     : config_(config), candidates_(most_candidates) {}
 
-bool GradientContact::addCandidates(const ShellBlock& block, uint32_t i, int patch_points) noexcept {
-    if (count_ + size_t(patch_points * patch_points) > candidates_.size()) return false;
-    const Vector3f p = (Vector3d(block.x[i], block.y[i], block.z[i]) - origin_).cast<float>();
-    const Vector3f n(block.nx[i], block.ny[i], block.nz[i]);
-    const float weight = float(config_.stiffness_per_area) * block.area[i] / float(patch_points * patch_points);
-    const PatchFrame frame = patchFrame(n, std::sqrt(block.area[i]) / float(patch_points));
-    for (int row = 0; row < patch_points; ++row)
-        for (int column = 0; column < patch_points; ++column) {
-            const float u = float(column) - 0.5f * float(patch_points - 1);
-            const float v = float(row) - 0.5f * float(patch_points - 1);
-            const Vector3f at = p + u * frame.step_u + v * frame.step_v;
-            candidates_[count_++] = {at.x(), at.y(), at.z(), n.x(), n.y(), n.z(), weight};
-        }
-    return true;
-}
-
 bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin) noexcept {
     margin_ = margin;
     origin_ = X_VT.position;
-    bool has_room = collect(bone, tool, X_VT);
-    if (!has_room && bone.patch_points > 1)
-        has_room = collect({bone.volume, bone.lattice, bone.shell, bone.level, 1}, tool, X_VT);
+    const bool has_room = collect(bone, tool, X_VT);
+    refine(bone.patch_points, bone.refined_points, tool.thinnestRadius());
     guardFarSide(bone.volume, tool, X_VT);
     capStiffness(tool, X_VT);
     return has_room;
+}
+
+// Splits the patches near the tool as finely as asked for and as the number of them allows.
+void GradientContact::refine(int patch_points, int refined_points, double thinnest_radius) noexcept {
+    const auto isNear = [within = float(kRefineWithin * thinnest_radius)](const Candidate& c) {
+        return c.distance < within + std::sqrt(0.5f * c.area);
+    };
+    const size_t coarse = count_;
+    const size_t near = size_t(std::count_if(candidates_.begin(), candidates_.begin() + std::ptrdiff_t(coarse), isNear));
+    const size_t room = std::min(size_t(refined_points), candidates_.size() - (coarse - near));
+    int q = patch_points;
+    while (q > 1 && near * size_t(q * q) > room) --q;
+    if (q == 1) return;
+    for (size_t i = 0; i < coarse; ++i)
+        if (isNear(candidates_[i])) splitPatch(i, q);
+}
+
+// The candidate becomes the first of its q × q places, the others follow at the end.
+void GradientContact::splitPatch(size_t index, int q) noexcept {
+    Candidate patch = candidates_[index];
+    const Vector3f p(patch.x, patch.y, patch.z), n(patch.nx, patch.ny, patch.nz);
+    const PatchFrame frame = patchFrame(n, std::sqrt(patch.area) / float(q));
+    patch.weight /= float(q * q);
+    for (int place = 0; place < q * q; ++place) {
+        const float u = float(place % q) - 0.5f * float(q - 1), v = float(place / q) - 0.5f * float(q - 1);
+        const Vector3f at = p + u * frame.step_u + v * frame.step_v;
+        patch.x = at.x(), patch.y = at.y(), patch.z = at.z();
+        candidates_[place == 0 ? index : count_++] = patch;
+    }
 }
 
 bool GradientContact::collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept {
@@ -128,7 +154,6 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     const Pose X_TV = X_VT.inverse();
     const IntoTool<float> into_tool(X_VT, Vector3d::Zero());
     const float kappa = float(config_.stiffness_per_area), margin = float(margin_);
-    const float refine_within = float(kRefineWithin * tool.thinnestRadius());
     Eigen::AlignedBox3d box = boxInV(tool.box(), X_VT);
     box.min().array() -= margin_;
     box.max().array() += margin_;
@@ -146,8 +171,14 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
                 // The patch around the point reaches this much nearer to the tool.
                 const float patch = bone.patch_points > 1 ? std::sqrt(0.5f * block.area[i]) : 0;
                 if (!(distance[i] < margin + patch)) continue;
-                const bool is_near = distance[i] < refine_within + patch;
-                has_room = addCandidates(block, i, is_near ? bone.patch_points : 1) && has_room;
+                if (count_ == candidates_.size()) {
+                    has_room = false;
+                    return;
+                }
+                const Vector3f p = (Vector3d(block.x[i], block.y[i], block.z[i]) - origin_).cast<float>();
+                candidates_[count_++] = {p.x(),        p.y(),        p.z(),
+                                         block.nx[i],  block.ny[i],  block.nz[i],
+                                         kappa * block.area[i], block.area[i], distance[i]};
                 deepest_ = std::max(deepest_, -double(distance[i]));
                 touching_stiffness_ += shareInContact(double(distance[i])) * double(kappa * block.area[i]);
             }
@@ -164,19 +195,19 @@ GradientContactResult GradientContact::evaluate(const ToolField& tool, const Pos
     const Matrix3d R_VT = X_VT.rotation.toRotationMatrix();
     const double depth_cap = kDepthCap * tool.thinnestRadius();
     PointBatch<Scalar> batch;
-    alignas(64) Scalar distance[kBatch];
+    SampleBatch<Scalar> at;
     Sums sums;
     for (size_t first = 0; first < count_; first += kBatch) {
         const int count = int(std::min<size_t>(kBatch, count_ - first));
         const Candidate* points = candidates_.data() + first;
         into_tool.fill(batch, count, [&](int i) { return Coordinates{points[i].x, points[i].y, points[i].z}; });
-        tool.distances(batch, distance);
+        tool.sample(batch, at);
         for (int i = 0; i < count; ++i) {
-            if (!(distance[i] < 0)) continue;
+            if (!(at.distance[i] < 0)) continue;
             const Candidate& c = points[i];
             const Vector3d r = Vector3d(double(c.x), double(c.y), double(c.z)) - p_OT;
-            const ToolSample sample = tool.sample(Vector3d(batch.x[i], batch.y[i], batch.z[i]));
-            sums.add(double(c.weight), -double(distance[i]), depth_cap, r, R_VT * sample.gradient);
+            sums.add(double(c.weight), -double(at.distance[i]), depth_cap, r,
+                     R_VT * Vector3d(double(at.gx[i]), double(at.gy[i]), double(at.gz[i])));
         }
     }
     return sums.result();

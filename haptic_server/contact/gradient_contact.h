@@ -6,7 +6,7 @@
 //   E = Σ κ a λ Ψ(δ),   Ψ = ½δ² for δ > 0, going on linearly beyond the depth cap.
 // A point stands for a patch of the surface; with patch_points = q > 1 the patches near the tool are sampled at q × q
 // places of a square of the same area around the point, at right angles to n: stiff contact is often narrower than the
-// points are apart. If there is no room for that, at one place each.
+// points are apart. Wide contact has points enough, and is not refined.
 //
 // λ <= 1 is frozen when the candidates are gathered, so that each solve has one energy. It is 1 unless
 // - the stiffness in the direction of g is above the cap (then the same total for a plane, a slot and a full surround);
@@ -37,7 +37,8 @@ struct ShellView {
     const LeafLattice& lattice;
     const PointShell& shell;
     int level;
-    int patch_points;  // per side, 1 .. 4
+    int patch_points;    // per side, 1 .. 4
+    int refined_points;  // at most this many places on refined patches; patch_points gives way
 };
 
 struct GradientContactResult {
@@ -76,7 +77,9 @@ class GradientContact {
     struct Candidate {
         float x, y, z;     // V axes, from origin_: small numbers keep their digits
         float nx, ny, nz;  // V, unit or zero
-        float weight;      // κ a λ
+        float weight;      // κ a λ, of one place
+        float area;        // m², of the whole patch
+        float distance;    // m, of the patch's point at the gathering
     };
     // A contact counts for the stiffness cap in proportion to its depth, so that a new one comes in smoothly.
     static constexpr double kFullShareDepth = 20e-6;  // m
@@ -87,7 +90,8 @@ class GradientContact {
         return origin_ + Eigen::Vector3d(double(c.x), double(c.y), double(c.z));
     }
     bool collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
-    bool addCandidates(const ShellBlock& block, uint32_t i, int patch_points) noexcept;
+    void refine(int patch_points, int refined_points, double thinnest_radius) noexcept;
+    void splitPatch(size_t index, int q) noexcept;
     void guardFarSide(const VoxelVolume& volume, const ToolField& tool, const Pose& X_VT) noexcept;
     void capStiffness(const ToolField& tool, const Pose& X_VT) noexcept;
 

@@ -47,6 +47,7 @@ class GradientModel final : public SpoModel {
     Vector6d newtonStep(const State& state) const noexcept;
     Vector6d limited(const State& state, Vector6d step, const Tick& tick) noexcept;
     bool moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept;
+    static void dropTraces(SpoStep& step) noexcept;
     double reachOf(const Vector6d& step) const noexcept;
     double trustRadius() const noexcept;
 
@@ -62,6 +63,7 @@ class GradientModel final : public SpoModel {
     uint32_t gatherings_ = 0;
     ContinuousRotation way_;
     double lambda_ = 0;  // Levenberg, share of the damping matrix
+    double last_reach_ = 0;  // m, of the last tick's motion
     double energy_ = 0;
     Wrench last_wrench_hand_;
 };

@@ -16,6 +16,8 @@ class GridField final : public ToolField {
 
     void distances(const PointBatch<float>& points_T, float* out) const noexcept override;
     void distances(const PointBatch<double>& points_T, double* out) const noexcept override;
+    void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept override;
+    void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept override;
     ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
     double distanceBound(const Eigen::Vector3d& p_T) const noexcept override;
 

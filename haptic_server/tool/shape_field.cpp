@@ -51,6 +51,25 @@ void nearerRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radi
     }
 }
 
+// On the axis the gradient is zero, as the mean of all directions.
+template <class Scalar>
+void sampleNearerRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radius,
+                       SampleBatch<Scalar>& out) noexcept {
+    constexpr Scalar kOnAxis = Scalar(1e-15);  // m
+    for (int i = 0; i < p.count; ++i) {
+        const Scalar x = p.x[i] - s.fx, y = p.y[i] - s.fy, z = p.z[i] - s.fz;
+        const Scalar along = std::min(std::max(x * s.ax + y * s.ay + z * s.az, Scalar(0)), s.length);
+        const Scalar dx = x - along * s.ax, dy = y - along * s.ay, dz = z - along * s.az;
+        const Scalar to_axis = std::sqrt(dx * dx + dy * dy + dz * dz);
+        const Scalar scale = 1 / std::max(to_axis, kOnAxis);
+        const bool is_nearer = to_axis - radius < out.distance[i];
+        out.distance[i] = is_nearer ? to_axis - radius : out.distance[i];
+        out.gx[i] = is_nearer ? dx * scale : out.gx[i];
+        out.gy[i] = is_nearer ? dy * scale : out.gy[i];
+        out.gz[i] = is_nearer ? dz * scale : out.gz[i];
+    }
+}
+
 // The profile's three segments: both ends and the side.
 template <class Scalar>
 void nearerCone(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar r0, Scalar r1, Scalar* out) noexcept {
@@ -131,6 +150,32 @@ void ShapeField::distances(const PointBatch<float>& points_T, float* out) const 
 
 void ShapeField::distances(const PointBatch<double>& points_T, double* out) const noexcept {
     nearest(points_T, out);
+}
+
+// Where the solid is nearer than what `out` holds, it replaces it.
+template <class Scalar>
+void ShapeField::sampleNearest(const PointBatch<Scalar>& points_T, SampleBatch<Scalar>& out) const noexcept {
+    std::fill_n(out.distance, points_T.count, std::numeric_limits<Scalar>::max());
+    for (const Solid& solid : solids_) {
+        if (solid.is_round) {
+            sampleNearerRound(points_T, Axis<Scalar>(solid.from, solid.axis, solid.length), Scalar(solid.radius[0]), out);
+            continue;
+        }
+        for (int i = 0; i < points_T.count; ++i) {
+            const ToolSample at = sampleCone(solid, {points_T.x[i], points_T.y[i], points_T.z[i]});
+            if (!(at.distance < out.distance[i])) continue;
+            out.distance[i] = Scalar(at.distance);
+            out.gx[i] = Scalar(at.gradient.x()), out.gy[i] = Scalar(at.gradient.y()), out.gz[i] = Scalar(at.gradient.z());
+        }
+    }
+}
+
+void ShapeField::sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept {
+    sampleNearest(points_T, out);
+}
+
+void ShapeField::sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept {
+    sampleNearest(points_T, out);
 }
 
 ToolSample ShapeField::sampleRound(const Solid& s, const Vector3d& p_T) noexcept {

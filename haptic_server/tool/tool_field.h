@@ -16,6 +16,15 @@ struct PointBatch {
     int count = 0;
 };
 
+// Distances and gradients of one batch.
+template <class Scalar>
+struct SampleBatch {
+    alignas(64) Scalar distance[PointBatch<Scalar>::kCapacity];
+    alignas(64) Scalar gx[PointBatch<Scalar>::kCapacity];
+    alignas(64) Scalar gy[PointBatch<Scalar>::kCapacity];
+    alignas(64) Scalar gz[PointBatch<Scalar>::kCapacity];
+};
+
 struct ToolSample {
     double distance = 0;                                 // m
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // of `distance` exactly; of length 1 where that is exact
@@ -28,6 +37,9 @@ class ToolField {
     // out[0 .. count-1]: the distance, or where it is not known (far from the tool) a lower bound of it, positive.
     virtual void distances(const PointBatch<float>& points_T, float* out) const noexcept = 0;
     virtual void distances(const PointBatch<double>& points_T, double* out) const noexcept = 0;
+    // The same distances with their gradients.
+    virtual void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept = 0;
+    virtual void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept = 0;
     // Distance and gradient at one point, double precision.
     virtual ToolSample sample(const Eigen::Vector3d& p_T) const noexcept = 0;
     // Never above the distance; anywhere.

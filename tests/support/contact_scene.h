@@ -88,7 +88,8 @@ struct ContactScene {
     SpoWorld world() const { return {bone.volume, bone.lattice, bone.shell, tool}; }
 
     ShellView view(const AccuracySettings& settings = {}) const {
-        return {bone.volume, bone.lattice, bone.shell, levelOf(bone.shell, settings), settings.patch_points};
+        return {bone.volume, bone.lattice, bone.shell, levelOf(bone.shell, settings), settings.patch_points,
+                settings.refined_points};
     }
 
     GradientContactResult contactAt(const GradientContactConfig& config, const AccuracySettings& settings,

@@ -101,10 +101,11 @@ TEST(GradientContact, GatheringFindsAllThatAMotionCanTouch) {
     const ContactScene scene(cubeGeometry(33, 0.25e-3), bumpyBody(), kBurrAndShaft);
     const ToolField& tool = scene.tool.field({});
     const GradientContactConfig config;
+    const ShellView view = scene.view({.patch_points = 1});
     const Pose start{{4e-3, 4e-3, 5.5e-3}, expRotation({1.2, 0.1, 0})};
     GradientContact near(config), all(config);
-    near.gather(scene.view(), tool, start, 0.5e-3);
-    all.gather(scene.view(), tool, start, 1);
+    near.gather(view, tool, start, 0.5e-3);
+    all.gather(view, tool, start, 1);
     EXPECT_LT(near.candidateCount(), all.candidateCount());
     EXPECT_EQ(all.candidateCount(), scene.bone.shell.pointCount(0));
     const Pose moved{start.position - Vector3d(0, 0, 0.499e-3), start.rotation};
@@ -151,7 +152,7 @@ TEST(GradientContact, StiffnessCapIsTheSameForPlaneSlotAndSurround) {
         const auto uncapped = scene->contactAt({kKappa, kInfinity}, settings, Pose{center});
         const auto capped = scene->contactAt({kKappa, kCap}, settings, Pose{center});
         EXPECT_GT(uncapped.term.stiffness(2, 2), 10 * kCap);
-        EXPECT_NEAR(capped.term.stiffness(2, 2), kCap, 0.1 * kCap);
+        EXPECT_NEAR(capped.term.stiffness(2, 2), kCap, 0.2 * kCap);  // shallow points count in part
     }
 }
 

@@ -67,7 +67,8 @@ TEST(ShapeField, GradientIsTheDistancesDerivative) {
                 const ToolSample ahead = field.sample(p + kStep * Vector3d::Unit(axis));
                 const ToolSample behind = field.sample(p - kStep * Vector3d::Unit(axis));
                 gradient[axis] = (ahead.distance - behind.distance) / (2 * kStep);
-                is_smooth = is_smooth && (ahead.gradient - behind.gradient).norm() < 0.01;
+                is_smooth = is_smooth && (ahead.gradient - behind.gradient).norm() < 2e-3 &&
+                            (ahead.gradient - 2 * here.gradient + behind.gradient).norm() < 1e-6;
             }
             if (!is_smooth) return;
             ++smooth;
