@@ -136,8 +136,8 @@ TEST(AccuracySwitch, WhileMillingTheForceFollowsTheToolAndHasNoPeaks) {
     double largest = 0;
     for (const Preset preset : kPresets)
         largest = std::max(largest, largestForce(withOnePreset(inputs, preset)));
-    // The two milling shapes leave surfaces up to half a voxel apart: in the other one's hole a preset may press harder
-    // than in its own, but not as if the hole were not there.
+    // The two milling shapes leave surfaces up to half a voxel apart: in the other one's hole a preset may
+    // press harder than in its own, but not as if the hole were not there.
     EXPECT_LE(largestForce(records), 2 * largest);
 }
 
