@@ -9,10 +9,11 @@ namespace bonemill {
 
 std::string_view unitOfField(std::string_view field_name) noexcept {
     // A suffix stands before every shorter suffix that it ends with.
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 21> kUnits{{
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kUnits{{
         {"_density_per_s", "density/s"},
         {"_mm_per_s", "mm/s"},
         {"_deg_per_s", "deg/s"},
+        {"_n_per_mm3", "N/mm³"},
         {"_n_per_mm", "N/mm"},
         {"_n_per_m", "N/m"},
         {"_nmm_per_rad", "N·mm/rad"},

@@ -7,6 +7,7 @@ namespace bonemill {
 namespace {
 
 using google::protobuf::Descriptor;
+using google::protobuf::EnumDescriptor;
 using google::protobuf::FieldDescriptor;
 
 std::string defaultText(const FieldDescriptor& field) {
@@ -36,9 +37,16 @@ std::string defaultText(const FieldDescriptor& field) {
     return "not set";
 }
 
+std::string valuesText(const EnumDescriptor& type) {
+    std::string text;
+    for (int i = 0; i < type.value_count(); ++i) text += (i ? ", " : "") + type.value(i)->name();
+    return text;
+}
+
 std::string rangeText(const FieldDescriptor& field) {
     if (field.cpp_type() == FieldDescriptor::CPPTYPE_STRING) return "text";
     if (field.cpp_type() == FieldDescriptor::CPPTYPE_BOOL) return "true, false";
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM) return valuesText(*field.enum_type());
     if (!field.options().HasExtension(scene::range)) return "";
     const scene::Range& range = field.options().GetExtension(scene::range);
     return numberText(range.min()) + " .. " + numberText(range.max());

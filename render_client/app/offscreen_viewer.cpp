@@ -29,10 +29,9 @@ void waitUntilComplete(SceneFeed& feed, const ClientOptions& options) {
     const Clock::time_point end = Clock::now() + options.offscreen->timeout;
     feed.updateUntil(end, [&] { return feed.isComplete() || stopRequested(); });
     if (feed.isComplete() || stopRequested()) return;
-    throw std::runtime_error(
-        "the model was not complete after " + std::to_string(options.offscreen->timeout.count()) +
-        " s: is a haptic_server running in domain " + std::to_string(options.subscriber.domain) +
-        ", session " + std::to_string(options.subscriber.session) + "?");
+    throw std::runtime_error("the model was not complete after " +
+                             std::to_string(options.offscreen->timeout.count()) +
+                             " s: " + serverQuestion(options.subscriber));
 }
 
 // What the picture shows; to be taken before the drawing, which may take longer than the server's time-out.

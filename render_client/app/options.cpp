@@ -1,6 +1,8 @@
 #include "render_client/app/options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iostream>
 
@@ -12,6 +14,7 @@ namespace {
 constexpr double kMmToMetres = 1e-3;
 constexpr double kDegreesToRadians = M_PI / 180;
 constexpr int kMinSize = 64;
+constexpr uint32_t kDefaultTimeoutS = 60;
 constexpr int kMaxSize = 8192;  // pixels; every OpenGL 3.3 driver in use can do it
 
 // What the command line holds before units are converted.
@@ -19,8 +22,9 @@ struct RawOptions {
     bool offscreen = false;
     OffscreenOptions offscreen_options;
     uint32_t interval_ms = 500;
-    uint32_t timeout_s = 60;
+    std::optional<uint32_t> timeout_s;
     std::string size;
+    std::string set_accuracy;
     std::optional<double> azimuth_deg, elevation_deg, distance_mm;
     std::vector<double> target_mm;
 };
@@ -35,6 +39,13 @@ void parseSize(const std::string& text, ClientOptions& options) {
     }
     options.width = width;
     options.height = height;
+}
+
+// The server knows which names there are; here only what cannot be one is refused.
+std::string accuracyNameProblem(const std::string& name) {
+    const auto is_sign = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+    if (!name.empty() && std::all_of(name.begin(), name.end(), is_sign)) return "";
+    return "'" + name + "' is no name of a preset, such as balanced, nor scene";
 }
 
 void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
@@ -74,10 +85,16 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     app.add_flag("--wait-complete", raw.offscreen_options.wait_complete,
                  "Take the first picture when the whole model has arrived")
         ->needs(offscreen);
-    app.add_option("--timeout-s", raw.timeout_s, "Give up --wait-complete after this")
-        ->check(CLI::Range(1u, 86400u))
-        ->capture_default_str()
-        ->needs(offscreen);
+    app.add_option(
+           "--set-accuracy", raw.set_accuracy,
+           "No viewer: ask the server for thesis_2012, fast, balanced, exact or scene (what the scene file "
+           "says), print what it answers and stop")
+        ->check(accuracyNameProblem)
+        ->type_name("NAME")
+        ->excludes(offscreen);
+    app.add_option("--timeout-s", raw.timeout_s,
+                   "Give up --wait-complete, or --set-accuracy without a server, after this (default 60)")
+        ->check(CLI::Range(1u, 86400u));
 }
 
 ClientOptions convert(const RawOptions& raw, ClientOptions options) {
@@ -89,15 +106,24 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
         options.view.target =
             kMmToMetres * Eigen::Vector3d(raw.target_mm[0], raw.target_mm[1], raw.target_mm[2]);
     }
+    if (raw.timeout_s && !raw.offscreen && raw.set_accuracy.empty())
+        throw UserError("--timeout-s needs --offscreen or --set-accuracy");
+    const std::chrono::seconds timeout(raw.timeout_s.value_or(kDefaultTimeoutS));
     if (raw.offscreen) {
         options.offscreen = raw.offscreen_options;
         options.offscreen->interval = std::chrono::milliseconds(raw.interval_ms);
-        options.offscreen->timeout = std::chrono::seconds(raw.timeout_s);
+        options.offscreen->timeout = timeout;
     }
+    if (!raw.set_accuracy.empty()) options.set_accuracy = SetAccuracyOptions{raw.set_accuracy, timeout};
     return options;
 }
 
 }  // namespace
+
+std::string serverQuestion(const SubscriberOptions& subscriber) {
+    return "is a haptic_server running in domain " + std::to_string(subscriber.domain) + ", session " +
+           std::to_string(subscriber.session) + "?";
+}
 
 std::optional<ClientOptions> parseOptions(int argc, const char* const* argv) {
     ClientOptions options;

@@ -19,14 +19,24 @@ struct OffscreenOptions {
     std::chrono::seconds timeout{60};  // of wait_complete
 };
 
+// Instead of a viewer: this accuracy is asked for, once there is a server.
+struct SetAccuracyOptions {
+    std::string name;
+    std::chrono::seconds timeout{60};  // of waiting for the server
+};
+
 struct ClientOptions {
     SubscriberOptions subscriber;
     ViewOverrides view;
     int width = 1280;  // pixels
     int height = 800;
-    std::optional<OffscreenOptions> offscreen;  // not given: a window
+    std::optional<OffscreenOptions> offscreen;  // neither given: a window
+    std::optional<SetAccuracyOptions> set_accuracy;
     std::string log_level = "info";
 };
+
+// What to ask a user to whom no server answers.
+std::string serverQuestion(const SubscriberOptions& subscriber);
 
 // Empty after --help (already printed). Throws UserError.
 std::optional<ClientOptions> parseOptions(int argc, const char* const* argv);

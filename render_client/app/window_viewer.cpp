@@ -4,33 +4,55 @@
 
 #include "render_client/app/scene_feed.h"
 #include "render_client/app/stop_signal.h"
+#include "render_client/scene/accuracy_keys.h"
+#include "render_client/subscribe/command_text.h"
 #include "render_client/window/glfw_window.h"
 
 namespace bonemill {
 namespace {
 
-constexpr std::chrono::milliseconds kMinimisedPause{50};
+using Clock = std::chrono::steady_clock;
 
-void apply(const WindowInput& input, RenderScene& scene, SceneFeed& feed) {
+constexpr std::chrono::milliseconds kMinimisedPause{50};
+constexpr std::chrono::seconds kNoticeTime{4};
+
+void send(const WindowInput& input, SceneSubscriber& subscriber) {
+    topics::Command command;
+    if (input.reset_volume) {
+        command.set_reset_volume(true);
+        subscriber.sendCommand(command);
+    }
+    if (input.accuracy_key) {
+        command.set_set_accuracy(std::string(kAccuracyOfKey[*input.accuracy_key]));
+        subscriber.sendCommand(command);
+    }
+}
+
+void apply(const WindowInput& input, RenderScene& scene) {
     OrbitCamera& camera = scene.camera();
     camera.orbit(input.orbit_azimuth, input.orbit_elevation);
     camera.pan(input.pan_right, input.pan_up);
     camera.zoom(input.zoom_factor);
     if (input.reset_view) scene.resetView();
     if (input.toggle_help) scene.toggleHelp();
-    if (input.reset_volume) {
-        topics::Command command;
-        command.set_reset_volume(true);
-        feed.subscriber().sendCommand(command);
-    }
 }
 
-void logOutcomes(SceneFeed& feed) {
-    for (const CommandOutcome& outcome : feed.subscriber().takeOutcomes()) {
-        spdlog::log(outcome.is_acknowledged ? spdlog::level::info : spdlog::level::warn, "command {}: {}",
-                    outcome.sequence, outcome.result);
+// Says how commands ended: in the log, and over the picture for a while.
+class OutcomeNotice {
+  public:
+    void update(SceneSubscriber& subscriber, RenderScene& scene) {
+        for (const CommandOutcome& outcome : subscriber.takeOutcomes()) {
+            const std::string text = outcomeText(outcome);
+            spdlog::log(outcome.isDone() ? spdlog::level::info : spdlog::level::warn, "{}", text);
+            scene.setNotice(HudNotice{text, outcome.isDone() ? HudTone::kGood : HudTone::kWarning});
+            end_ = Clock::now() + kNoticeTime;
+        }
+        if (Clock::now() >= end_) scene.setNotice(std::nullopt);
     }
-}
+
+  private:
+    Clock::time_point end_;
+};
 
 }  // namespace
 
@@ -40,13 +62,16 @@ void runWindow(const ClientOptions& options) {
     RenderScene scene(window.gl());
     scene.setViewOverrides(options.view);
     SceneFeed feed(options.subscriber, scene);
+    OutcomeNotice notice;
     while (!window.shouldClose() && !stopRequested()) {
-        apply(window.takeInput(), scene, feed);
+        const WindowInput input = window.takeInput();
+        apply(input, scene);
+        send(input, feed.subscriber());
         feed.update();
-        logOutcomes(feed);
+        notice.update(feed.subscriber(), scene);
         const int width = window.pixelWidth(), height = window.pixelHeight();
         if (width == 0 || height == 0) {
-            feed.updateUntil(std::chrono::steady_clock::now() + kMinimisedPause, stopRequested);
+            feed.updateUntil(Clock::now() + kMinimisedPause, stopRequested);
             continue;
         }
         scene.draw(width, height, window.contentScale());

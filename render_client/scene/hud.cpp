@@ -2,11 +2,17 @@
 
 #include <cmath>
 #include <cstdio>
+#include <iterator>
+#include <sstream>
+#include <utility>
+
+#include "render_client/scene/accuracy_keys.h"
 
 namespace bonemill {
 namespace {
 
 constexpr double kMetresToMm = 1e3;
+constexpr size_t kLongestValue = 26;  // characters
 
 std::string number(double value, int decimals, const char* unit) {
     if (!std::isfinite(value)) return "\u2013";
@@ -25,10 +31,33 @@ std::string readable(double value, const char* unit) {
     return number(value, magnitude < 10 ? 2 : magnitude < 1000 ? 1 : 0, unit);
 }
 
-void addStatusRows(const topics::Status& status, std::vector<HudRow>& rows) {
+// Lines of at most `most` bytes, cut at spaces; a longer word stays whole.
+std::vector<std::string> wrapped(const std::string& text, size_t most) {
+    std::vector<std::string> lines(1);
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        if (!lines.back().empty() && lines.back().size() + 1 + word.size() > most) lines.emplace_back();
+        lines.back() += (lines.back().empty() ? "" : " ") + word;
+    }
+    return lines;
+}
+
+void addLoopRows(const topics::Status& status, std::vector<HudRow>& rows) {
     if (status.ticks() == 0) return rows.push_back({"Loop", "waits for a device", HudTone::kWarning});
     rows.push_back({"Loop", number(status.rate_hz(), 1, " Hz")});
-    rows.push_back({"Tick p99", readable(status.tick_p99_us(), " \u00b5s")});
+    rows.push_back({"Tick p50 / p99",
+                    readable(status.tick_p50_us(), "") + " / " + readable(status.tick_p99_us(), " \u00b5s")});
+}
+
+void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
+    // A preset is one word; all knobs take more than one line.
+    std::string label = "Accuracy";
+    for (const std::string& line : wrapped(status.preset(), kLongestValue))
+        rows.push_back({std::exchange(label, ""), line});
+    rows.push_back({"Force error", status.has_accuracy_error()
+                                       ? readable(status.force_error_percent(), " %") + ", " +
+                                             readable(status.force_direction_error_deg(), "\u00b0")
+                                       : "not measured"});
 }
 
 void addToolRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
@@ -93,20 +122,31 @@ Hud makeHud(const HudInput& input) {
                                                           : "bonemill";
     hud.state = stateText(input);
     hud.state_tone = stateTone(input.connection);
-    if (input.status) addStatusRows(*input.status, hud.rows);
+    hud.notice = input.notice;
+    if (input.status) {
+        addLoopRows(*input.status, hud.rows);
+        addAccuracyRows(*input.status, hud.rows);
+    }
     if (input.tool) addToolRows(*input.tool, hud.rows);
     if (input.status) {
         hud.rows.push_back({"Removed", readable(input.status->removed_mm3(), " mm\u00b3")});
-        hud.rows.push_back({"Preset", input.status->preset()});
         addFaultRow(*input.status, hud.rows);
     }
     return hud;
 }
 
 std::vector<HudRow> helpRows() {
-    return {{"Left drag", "orbit"},  {"Right or middle drag", "pan"}, {"Wheel", "zoom"},
-            {"R", "reset the view"}, {"C", "put the bone back"},      {"H", "show or hide this"},
-            {"Esc", "quit"}};
+    std::vector<HudRow> rows{{"Left drag", "orbit"},
+                             {"Right or middle drag", "pan"},
+                             {"Wheel", "zoom"},
+                             {"R", "reset the view"},
+                             {"C", "put the bone back"}};
+    for (size_t key = 1; key < std::size(kAccuracyOfKey); ++key)
+        rows.push_back({std::to_string(key), "accuracy " + std::string(kAccuracyOfKey[key])});
+    rows.push_back({"0", "accuracy of the scene file"});
+    rows.push_back({"H", "show or hide this"});
+    rows.push_back({"Esc", "quit"});
+    return rows;
 }
 
 ScaleBar makeScaleBar(double metres_per_pixel, double max_pixels) {

@@ -25,11 +25,18 @@ struct HudRow {
     HudTone tone = HudTone::kPlain;
 };
 
+// What the user should notice now, such as how a command ended.
+struct HudNotice {
+    std::string text;
+    HudTone tone = HudTone::kPlain;
+};
+
 struct Hud {
     std::string title;
     std::string state;
     HudTone state_tone = HudTone::kPlain;
     std::vector<HudRow> rows;
+    std::optional<HudNotice> notice;
 };
 
 struct HudInput {
@@ -38,6 +45,7 @@ struct HudInput {
     std::optional<topics::ToolState> tool;
     Connection connection = Connection::kNoServer;
     size_t node_count = 0;  // nodes the viewer holds
+    std::optional<HudNotice> notice;
 };
 
 Hud makeHud(const HudInput& input);

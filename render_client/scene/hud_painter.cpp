@@ -45,6 +45,7 @@ void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_
     layOutPanel(hud);
     layOutScaleBar(scale_bar, metres_per_pixel, width, height);
     if (show_help) layOutHelp(width, height);
+    if (hud.notice) layOutNotice(*hud.notice, width, height);
     flush(width, height);
 }
 
@@ -115,6 +116,15 @@ void HudPainter::layOutHelp(int width, int height) {
         text(left + padding + keys + gap, base, row.value, FontStyle::kPlain, kLabelColour);
         base += line;
     }
+}
+
+void HudPainter::layOutNotice(const HudNotice& notice, int width, int height) {
+    const float padding = em_ * 0.9f, panel_height = em_ * 2.2f;
+    const float text_width = font_->width(notice.text, FontStyle::kBold);
+    const float left = std::round((float(width) - text_width) / 2),
+                top = float(height) - em_ * 1.1f - panel_height;
+    box(left - padding, top, text_width + 2 * padding, panel_height, em_ * 0.6f, kPanelColour);
+    text(left, top + em_ * 1.45f, notice.text, FontStyle::kBold, colourOf(notice.tone));
 }
 
 void HudPainter::box(float x, float y, float width, float height, float radius, const Colour& colour) {

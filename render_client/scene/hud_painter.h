@@ -37,6 +37,7 @@ class HudPainter {
     void layOutPanel(const Hud& hud);
     void layOutScaleBar(const ScaleBar& bar, double metres_per_pixel, int width, int height);
     void layOutHelp(int width, int height);
+    void layOutNotice(const HudNotice& notice, int width, int height);
     void flush(int width, int height);
     static Colour colourOf(HudTone tone);
 

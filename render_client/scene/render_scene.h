@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "render_client/scene/hud_painter.h"
 #include "render_client/scene/scene_renderer.h"
@@ -36,6 +37,8 @@ class RenderScene {
     void setToolState(const topics::ToolState& tool) { hud_input_.tool = tool; }
     void setStatus(const topics::Status& status) { hud_input_.status = status; }
     void setConnection(Connection connection) { hud_input_.connection = connection; }
+    // Shown until it is replaced; nullopt: nothing is shown.
+    void setNotice(std::optional<HudNotice> notice) { hud_input_.notice = std::move(notice); }
 
     OrbitCamera& camera() { return camera_; }
     void setViewOverrides(const ViewOverrides& overrides);

@@ -42,7 +42,8 @@ void CommandOutbox::step(Clock::time_point now, bool is_connected,
 }
 
 void CommandOutbox::finish(bool is_acknowledged, std::string result) {
-    outcomes_.push_back({waiting_.front().sequence(), is_acknowledged, std::move(result)});
+    const uint32_t sequence = waiting_.front().sequence();
+    outcomes_.push_back({sequence, std::move(waiting_.front()), is_acknowledged, std::move(result)});
     waiting_.pop_front();
     started_.reset();
     written_.reset();

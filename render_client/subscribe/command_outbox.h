@@ -16,8 +16,12 @@ namespace bonemill {
 
 struct CommandOutcome {
     uint32_t sequence = 0;
+    topics::Command command;
     bool is_acknowledged = false;  // false: no answer in time
     std::string result;            // what the server said, or why there is no answer
+
+    // The server did what it was asked for.
+    bool isDone() const { return is_acknowledged && result == "done"; }
 };
 
 class CommandOutbox {

@@ -14,6 +14,13 @@ namespace {
 
 constexpr double kOrbitPerHeight = 3.5;  // rad for a drag over the window's height
 constexpr double kZoomPerStep = 0.9;     // distance factor of one notch of the wheel
+constexpr int kAccuracyKeys = 5;         // 0 .. 4, in the digit row or on the number pad
+
+std::optional<int> digitOf(int key) {
+    for (int digit = 0; digit < kAccuracyKeys; ++digit)
+        if (key == GLFW_KEY_0 + digit || key == GLFW_KEY_KP_0 + digit) return digit;
+    return std::nullopt;
+}
 
 [[noreturn]] void failWith(const std::string& what) {
     const char* reason = nullptr;
@@ -91,6 +98,7 @@ void GlfwWindow::show() {
 
 void GlfwWindow::onKey(int key, int action) {
     if (action != GLFW_PRESS) return;
+    if (const auto digit = digitOf(key)) input_.accuracy_key = digit;
     switch (key) {
         case GLFW_KEY_R:
             input_.reset_view = true;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "render_client/gl/gl_api.h"
@@ -22,6 +23,7 @@ struct WindowInput {
     bool reset_view = false;
     bool reset_volume = false;
     bool toggle_help = false;
+    std::optional<int> accuracy_key;  // 0 .. 4: the digit that was pressed last
 };
 
 class GlfwWindow {

@@ -256,6 +256,22 @@ TEST_F(ScenePicture, HudTextChangesPixelsAndOnlyInItsPanel) {
     EXPECT_GT(countDifferent(other_rate, draw()), 5000u);
 }
 
+TEST_F(ScenePicture, ANoticeIsAtTheBottomUntilItIsTakenAway) {
+    showSphere();
+    scene_->showHud(true);
+    const Picture without = draw();
+    scene_->setNotice(HudNotice{"accuracy fast: done", HudTone::kGood});
+    const Picture with_notice = draw();
+    size_t at_the_bottom = 0, elsewhere = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            if (with_notice.at(x, y) != without.at(x, y)) ++(y > kHeight - 60 ? at_the_bottom : elsewhere);
+    EXPECT_GT(at_the_bottom, 500u);
+    EXPECT_EQ(elsewhere, 0u);
+    scene_->setNotice(std::nullopt);
+    EXPECT_EQ(draw(), without);
+}
+
 TEST_F(ScenePicture, ViewOverridesWinOverTheScene) {
     topics::SceneInfo info = sphereInfo();
     info.mutable_camera()->set_azimuth_rad(0.3);

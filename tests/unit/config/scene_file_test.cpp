@@ -177,6 +177,7 @@ TEST(FieldUnit, isTheSuffixOfTheName) {
     EXPECT_EQ(unitOfField("max_speed_mm_per_s"), "mm/s");
     EXPECT_EQ(unitOfField("hand_stiffness_n_per_m"), "N/m");
     EXPECT_EQ(unitOfField("angular_friction_nm_s_per_rad"), "N·m·s/rad");
+    EXPECT_EQ(unitOfField("stiffness_n_per_mm3"), "N/mm³");
     EXPECT_EQ(unitOfField("static_damping"), "");
 }
 
@@ -186,6 +187,8 @@ TEST(SceneTable, schemaRowsHaveUnitDefaultAndRange) {
     EXPECT_NE(table.find("| `tool.shape[].sphere.radius_mm` | mm | 1 | 0.01 .. 100 |"), std::string::npos);
     EXPECT_NE(table.find("| `volume.leaf_voxels` | voxels | not set | 4 .. 31 |"), std::string::npos);
     EXPECT_NE(table.find("| `device.p_WD_mm` | mm | not set | x, y, z |"), std::string::npos);
+    EXPECT_NE(table.find("| `accuracy.preset` |  | BALANCED | THESIS_2012, FAST, BALANCED, EXACT |"),
+              std::string::npos);
 }
 
 // BONEMILL_WRITE_DOCS=1 writes the table instead of comparing it.

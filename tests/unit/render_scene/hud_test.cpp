@@ -3,7 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
+
+#include "haptic_server/accuracy/accuracy_settings.h"
+#include "render_client/scene/accuracy_keys.h"
 
 namespace bonemill {
 namespace {
@@ -23,6 +27,7 @@ HudInput liveInput() {
     status.set_preset("thesis_2012");
     status.set_ticks(1000);
     status.set_rate_hz(999.84);
+    status.set_tick_p50_us(92.04);
     status.set_tick_p99_us(187.42);
     status.set_removed_mm3(12.345);
     status.set_node_count(40);
@@ -45,13 +50,13 @@ TEST(Hud, ShowsWhatTheServerMeasuresWithUnits) {
     EXPECT_EQ(hud.state_tone, HudTone::kGood);
     ASSERT_TRUE(find(hud, "Loop"));
     EXPECT_EQ(find(hud, "Loop")->value, "999.8 Hz");
-    EXPECT_EQ(find(hud, "Tick p99")->value, "187.4 \u00b5s");
+    EXPECT_EQ(find(hud, "Tick p50 / p99")->value, "92.0 / 187.4 \u00b5s");
     EXPECT_EQ(find(hud, "Force")->value, "5.00 N");
     EXPECT_EQ(find(hud, "Torque")->value, "12.0 mN\u00b7m");
     EXPECT_EQ(find(hud, "Contacts")->value, "17");
     EXPECT_EQ(find(hud, "Burr")->value, "removing");
     EXPECT_EQ(find(hud, "Removed")->value, "12.3 mm\u00b3");
-    EXPECT_EQ(find(hud, "Preset")->value, "thesis_2012");
+    EXPECT_EQ(find(hud, "Accuracy")->value, "thesis_2012");
     EXPECT_EQ(find(hud, "Faults")->value, "none");
 }
 
@@ -85,7 +90,61 @@ TEST(Hud, ALoopThatNeverTickedHasNoNumbers) {
     HudInput input = liveInput();
     input.status->set_ticks(0);
     EXPECT_EQ(find(makeHud(input), "Loop")->value, "waits for a device");
-    EXPECT_FALSE(find(makeHud(input), "Tick p99"));
+    EXPECT_FALSE(find(makeHud(input), "Tick p50 / p99"));
+    EXPECT_EQ(find(makeHud(input), "Accuracy")->value, "thesis_2012");
+}
+
+TEST(Hud, TheForceErrorIsTheServersOrNotMeasured) {
+    HudInput input = liveInput();
+    input.status->set_preset("balanced");
+    input.status->set_force_error_percent(0.8);
+    input.status->set_force_direction_error_deg(0.4);
+    EXPECT_EQ(find(makeHud(input), "Force error")->value, "not measured")
+        << "figures that the server disowns";
+    input.status->set_has_accuracy_error(true);
+    EXPECT_EQ(find(makeHud(input), "Accuracy")->value, "balanced");
+    EXPECT_EQ(find(makeHud(input), "Force error")->value, "0.80 %, 0.40\u00b0");
+    input.status->set_force_error_percent(123.4);
+    input.status->set_force_direction_error_deg(12.34);
+    EXPECT_EQ(find(makeHud(input), "Force error")->value, "123.4 %, 12.3\u00b0");
+}
+
+TEST(Hud, LongSettingsTakeMoreThanOneLine) {
+    HudInput input = liveInput();
+    input.status->set_preset("gradient s=2 q=2 grid x1 float iterations=3 ccd");
+    const Hud hud = makeHud(input);
+    const HudRow* first = find(hud, "Accuracy");
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->value, "gradient s=2 q=2 grid x1");
+    EXPECT_EQ(first[1].label, "");
+    EXPECT_EQ(first[1].value, "float iterations=3 ccd");
+    EXPECT_EQ(first[2].label, "Force error");
+}
+
+TEST(Hud, ANoticeIsPassedOn) {
+    HudInput input = liveInput();
+    EXPECT_FALSE(makeHud(input).notice);
+    input.notice = HudNotice{"accuracy fast: done", HudTone::kGood};
+    ASSERT_TRUE(makeHud(input).notice);
+    EXPECT_EQ(makeHud(input).notice->text, "accuracy fast: done");
+    EXPECT_EQ(makeHud(input).notice->tone, HudTone::kGood);
+}
+
+TEST(AccuracyKeys, AskForTheSceneAndForEveryPresetOfTheServer) {
+    ASSERT_EQ(std::size(kAccuracyOfKey), 1 + std::size(kPresets));
+    EXPECT_EQ(kAccuracyOfKey[0], "scene");
+    for (size_t n = 0; n < std::size(kPresets); ++n)
+        EXPECT_EQ(kAccuracyOfKey[1 + n], presetName(kPresets[n]));
+}
+
+TEST(AccuracyKeys, AreInTheHelp) {
+    const std::vector<HudRow> rows = helpRows();
+    for (size_t key = 1; key < std::size(kAccuracyOfKey); ++key) {
+        const auto row = std::find_if(rows.begin(), rows.end(),
+                                      [&](const HudRow& r) { return r.label == std::to_string(key); });
+        ASSERT_NE(row, rows.end()) << key;
+        EXPECT_EQ(row->value, "accuracy " + std::string(kAccuracyOfKey[key]));
+    }
 }
 
 TEST(Hud, NumbersThatAreNoneBecomeADash) {

@@ -64,7 +64,25 @@ TEST(Options, OffscreenWithUnitsConverted) {
     EXPECT_TRUE(options->view.target.value().isApprox(Eigen::Vector3d(-0.001, 0.0025, -0.03)));
 }
 
+TEST(Options, SetAccuracyIsAModeOfItsOwn) {
+    const auto options = parse({"--set-accuracy", "balanced", "--session", "9"});
+    ASSERT_TRUE(options && options->set_accuracy);
+    EXPECT_EQ(options->set_accuracy->name, "balanced");
+    EXPECT_EQ(options->set_accuracy->timeout, std::chrono::seconds(60));
+    EXPECT_EQ(options->subscriber.session, 9u);
+    EXPECT_FALSE(options->offscreen);
+    EXPECT_EQ(parse({"--set-accuracy", "fast", "--timeout-s", "3"})->set_accuracy->timeout,
+              std::chrono::seconds(3));
+    EXPECT_FALSE(parse({})->set_accuracy);
+}
+
 TEST(Options, RefusesWhatMakesNoSense) {
+    EXPECT_THROW(parse({"--set-accuracy"}), UserError);
+    EXPECT_THROW(parse({"--set-accuracy", ""}), UserError);
+    EXPECT_THROW(parse({"--set-accuracy", "no name"}), UserError);
+    EXPECT_THROW(parse({"--set-accuracy", "\xff"}), UserError);
+    EXPECT_THROW(parse({"--set-accuracy", "fast", "--offscreen", "--out", "p"}), UserError);
+    EXPECT_THROW(parse({"--timeout-s", "3"}), UserError);
     EXPECT_THROW(parse({"--bogus"}), UserError);
     EXPECT_THROW(parse({"--offscreen"}), UserError);
     EXPECT_THROW(parse({"--frames", "2"}), UserError);

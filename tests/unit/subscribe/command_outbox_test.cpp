@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "render_client/subscribe/command_text.h"
+
 namespace bonemill {
 namespace {
 
@@ -55,7 +57,28 @@ TEST_F(CommandOutboxTest, OneCommandAfterTheOther) {
     const auto outcomes = outbox_.takeOutcomes();
     ASSERT_EQ(outcomes.size(), 1u);
     EXPECT_TRUE(outcomes[0].is_acknowledged);
+    EXPECT_TRUE(outcomes[0].isDone());
     EXPECT_EQ(outcomes[0].result, "done");
+}
+
+TEST_F(CommandOutboxTest, AnOutcomeNamesItsCommand) {
+    topics::Command accuracy, reset;
+    accuracy.set_set_accuracy("best");
+    reset.set_reset_volume(true);
+    outbox_.enqueue(accuracy);
+    outbox_.enqueue(reset);
+    stepAt(0ms);
+    topics::Status refusal = acknowledgement(kSender, 1);
+    refusal.set_last_command_result("refused: no such preset");
+    outbox_.acknowledge(refusal);
+    stepAt(1ms);
+    stepAt(5001ms);
+    const auto outcomes = outbox_.takeOutcomes();
+    ASSERT_EQ(outcomes.size(), 2u);
+    EXPECT_FALSE(outcomes[0].isDone());
+    EXPECT_EQ(outcomeText(outcomes[0]), "accuracy best: refused: no such preset");
+    EXPECT_FALSE(outcomes[1].isDone());
+    EXPECT_EQ(outcomeText(outcomes[1]), "put the bone back: the server did not answer");
 }
 
 TEST_F(CommandOutboxTest, OtherAcknowledgementsDoNotCount) {

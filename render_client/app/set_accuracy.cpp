@@ -1,0 +1,50 @@
+#include "render_client/app/set_accuracy.h"
+
+#include <iostream>
+#include <stdexcept>
+
+#include "render_client/app/stop_signal.h"
+#include "render_client/subscribe/command_text.h"
+
+namespace bonemill {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// True when `condition` held in time; false after `end` or a stop signal.
+template <class Condition>
+bool pollUntil(SceneSubscriber& subscriber, Clock::time_point end, Condition&& condition) {
+    constexpr std::chrono::milliseconds kSlice{20};  // also how often a command that waits is looked after
+    while (!stopRequested() && Clock::now() < end) {
+        subscriber.poll();
+        if (condition()) return true;
+        subscriber.waitForData(kSlice);
+    }
+    return false;
+}
+
+}  // namespace
+
+int runSetAccuracy(const ClientOptions& options) {
+    const SetAccuracyOptions& wish = *options.set_accuracy;
+    SceneSubscriber subscriber(options.subscriber);
+    // A server takes commands as soon as it shows a status.
+    const auto is_ready = [&] { return subscriber.hasServer() && subscriber.status(); };
+    if (!pollUntil(subscriber, Clock::now() + wish.timeout, is_ready)) {
+        if (stopRequested()) return 1;
+        throw std::runtime_error("no server within " + std::to_string(wish.timeout.count()) +
+                                 " s: " + serverQuestion(options.subscriber));
+    }
+    topics::Command command;
+    command.set_set_accuracy(wish.name);
+    subscriber.sendCommand(command);
+    std::vector<CommandOutcome> outcomes;
+    // The outbox itself gives up in time.
+    pollUntil(subscriber, Clock::time_point::max(),
+              [&] { return !(outcomes = subscriber.takeOutcomes()).empty(); });
+    if (outcomes.empty()) return 1;
+    std::cout << outcomeText(outcomes.front()) << std::endl;
+    return outcomes.front().isDone() ? 0 : 1;
+}
+
+}  // namespace bonemill

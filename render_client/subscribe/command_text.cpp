@@ -1,0 +1,25 @@
+#include "render_client/subscribe/command_text.h"
+
+namespace bonemill {
+
+std::string commandText(const topics::Command& command) {
+    switch (command.action_case()) {
+        case topics::Command::kResetVolume:
+            return "put the bone back";
+        case topics::Command::kShutDown:
+            return "shut down";
+        case topics::Command::kPauseMilling:
+            return command.pause_milling() ? "pause milling" : "go on milling";
+        case topics::Command::kSetAccuracy:
+            return "accuracy " + command.set_accuracy();
+        case topics::Command::ACTION_NOT_SET:
+            break;
+    }
+    return "no action";
+}
+
+std::string outcomeText(const CommandOutcome& outcome) {
+    return commandText(outcome.command) + ": " + outcome.result;
+}
+
+}  // namespace bonemill
