@@ -37,7 +37,7 @@ std::string settingsName(const AccuracySettings& settings) {
     std::string name = settings.law == ContactLaw::kThesis2012 ? "thesis" : "gradient";
     name += " s=" + std::to_string(settings.shell_factor);
     if (settings.law == ContactLaw::kThesis2012) return name;
-    if (settings.patch_points > 1) name += " q=" + std::to_string(settings.patch_points);
+    if (settings.patch_points > 1) name += " q=" + std::to_string(settings.patch_points) + "/" + std::to_string(settings.refined_points);
     name += settings.tool_distance == ToolDistance::kGrid ? " grid x" + std::to_string(settings.sdf_refinement)
                                                           : " analytic";
     name += settings.precision == Precision::kFloat ? " float" : " double";

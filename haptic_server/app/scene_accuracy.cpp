@@ -98,6 +98,8 @@ GradientConfig gradientConfigOf(const scene::Scene& scene, double finest_spacing
         .saturation_torque =
             std::min(coupling.max_torque_nmm() * kMillimetre, stiffness * coupling.saturation_angle_deg() * kDegree),
         .damping_time = coupling.damping_time_ms() * 1e-3,
+        .relaxing_share = coupling.relaxing_share(),
+        .relaxing_time = coupling.relaxing_time_ms() * 1e-3,
         .p_TG = kMillimetre * Eigen::Vector3d(coupling.grip_mm().x(), coupling.grip_mm().y(), coupling.grip_mm().z())};
     return config;
 }

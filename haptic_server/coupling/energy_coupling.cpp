@@ -42,12 +42,24 @@ double halfCotangent(double theta) noexcept {
     return half / std::tan(half);
 }
 
-Eigen::Quaterniond rotationBetween(const Pose& spo, const Pose& device) noexcept {
-    return device.rotation * spo.rotation.conjugate();
-}
-
 Vector3d springVector(const Vector3d& stretch, const Spring& spring) noexcept {
     return spring.secant * stretch;
+}
+
+// A spring force on the tool at r from its tool point, with stiffness K there.
+void addSpring(EnergyTerm& term, const Vector3d& r, const Vector3d& force, double energy, const Matrix3d& K) noexcept {
+    const Matrix3d r_skew = skew(r);
+    term.energy += energy;
+    term.wrench.force += force;
+    term.wrench.torque += r.cross(force);
+    term.stiffness.topLeftCorner<3, 3>() += K;
+    term.stiffness.topRightCorner<3, 3>() -= K * r_skew;
+    term.stiffness.bottomLeftCorner<3, 3>() += r_skew * K;
+    term.stiffness.bottomRightCorner<3, 3>() -= r_skew * K * r_skew;
+}
+
+Eigen::Quaterniond rotationBetween(const Pose& spo, const Pose& device) noexcept {
+    return device.rotation * spo.rotation.conjugate();
 }
 
 }  // namespace
@@ -77,22 +89,17 @@ EnergyTerm couplingEnergy(const EnergyCouplingConfig& config, const Pose& spo, c
     const Vector3d r = spo.rotation * config.p_TG;
     const Vector3d stretch = device * config.p_TG - spo.position - r;
     const Spring force = springAt(config.translation_stiffness, config.saturation_force, stretch.norm());
-    const Matrix3d K = directional(stretch, force.slope, force.secant, config.translation_stiffness);
-    const Matrix3d r_skew = skew(r);
 
     const Vector3d theta = way.log(rotationBetween(spo, device));
     const double angle = theta.norm();
     const Spring torque = springAt(config.rotation_stiffness, config.saturation_torque, angle);
 
     EnergyTerm term;
-    term.energy = force.energy + torque.energy;
-    term.wrench.force = springVector(stretch, force);
-    term.wrench.torque = r.cross(term.wrench.force) + springVector(theta, torque);
-    term.stiffness.topLeftCorner<3, 3>() = K;
-    term.stiffness.topRightCorner<3, 3>() = -K * r_skew;
-    term.stiffness.bottomLeftCorner<3, 3>() = r_skew * K;
-    term.stiffness.bottomRightCorner<3, 3>() =
-        -r_skew * K * r_skew +
+    addSpring(term, r, springVector(stretch, force), force.energy,
+              directional(stretch, force.slope, force.secant, config.translation_stiffness));
+    term.energy += torque.energy;
+    term.wrench.torque += springVector(theta, torque);
+    term.stiffness.bottomRightCorner<3, 3>() +=
         directional(theta, torque.slope, torque.secant * halfCotangent(angle), config.rotation_stiffness);
     return term;
 }
@@ -108,6 +115,38 @@ Wrench couplingWrenchOnDevice(const EnergyCouplingConfig& config, const Pose& sp
     wrench.force = -springVector(stretch, force);
     wrench.torque = r.cross(wrench.force) - springVector(theta, torque);
     return wrench;
+}
+
+RelaxingSpring::RelaxingSpring(const EnergyCouplingConfig& config, double dt) noexcept
+    : config_(config),
+      share_(dt / (config.relaxing_time + dt)),
+      stiffness_(config.relaxing_share * config.translation_stiffness * (1 - share_)) {}
+
+Vector3d RelaxingSpring::stretchOf(const Pose& spo, const Pose& device) const noexcept {
+    return device * config_.p_TG - spo * config_.p_TG;
+}
+
+EnergyTerm RelaxingSpring::energy(const Pose& spo, const Pose& device) const noexcept {
+    EnergyTerm term;
+    if (!has_memory_ || stiffness_ == 0) return term;
+    const Vector3d r = spo.rotation * config_.p_TG;
+    const Vector3d stretch = stretchOf(spo, device) - followed_;
+    const Spring spring = springAt(stiffness_, config_.saturation_force, stretch.norm());
+    addSpring(term, r, springVector(stretch, spring), spring.energy, directional(stretch, spring.slope, spring.secant, stiffness_));
+    return term;
+}
+
+Wrench RelaxingSpring::wrenchOnDevice(const Pose& spo, const Pose& device) const noexcept {
+    if (!has_memory_ || stiffness_ == 0) return {};
+    const Vector3d stretch = stretchOf(spo, device) - followed_;
+    const Vector3d force = -springVector(stretch, springAt(stiffness_, config_.saturation_force, stretch.norm()));
+    return {force, (device.rotation * config_.p_TG).cross(force)};
+}
+
+void RelaxingSpring::follow(const Pose& spo, const Pose& device) noexcept {
+    const Vector3d stretch = stretchOf(spo, device);
+    followed_ = has_memory_ ? Vector3d(followed_ + share_ * (stretch - followed_)) : stretch;
+    has_memory_ = true;
 }
 
 EnergyTerm dampingEnergy(const EnergyCouplingConfig& config, const Pose& spo, const Pose& spo_before,

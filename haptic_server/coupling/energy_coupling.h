@@ -3,7 +3,10 @@
 //
 // With d from the SPO's grip point to the device's and θ = Log(q_dev q_spo⁻¹):
 //   force  F_m tanh(k_t |d| / F_m) along d,   torque  T_m tanh(k_θ |θ| / T_m) along θ      (Barbič and James 2008 for the
-// saturation). docs/stability.md says why.
+// saturation).
+// Beside it a spring of k_2 about d_f, which follows d with the time constant τ_2 (a standard linear solid): it damps what
+// is quicker than τ_2 and so makes up for the energy that sampling and delay give a stiff spring; a free tool, whose d does
+// not change, is not held back by it. docs/stability.md says how much that is worth.
 #pragma once
 
 #include "common/geometry/pose.h"
@@ -16,6 +19,8 @@ struct EnergyCouplingConfig {
     double saturation_force = 50;         // F_m, N
     double saturation_torque = 0.6;       // T_m, N·m
     double damping_time = 1e-3;           // τ, s: how long the free tool takes to follow the hand
+    double relaxing_share = 1;            // k_2 / k_t
+    double relaxing_time = 4e-3;          // τ_2, s
     Eigen::Vector3d p_TG = Eigen::Vector3d::Zero();  // grip point G, where the force acts, in T
 };
 
@@ -57,6 +62,28 @@ EnergyTerm couplingEnergy(const EnergyCouplingConfig& config, const Pose& spo, c
 // closed path of the device costs no energy that the tool does not get.
 Wrench couplingWrenchOnDevice(const EnergyCouplingConfig& config, const Pose& spo, const Pose& device,
                               const ContinuousRotation& way) noexcept;
+
+// The spring of k_2. One object per tool.
+class RelaxingSpring {
+  public:
+    RelaxingSpring(const EnergyCouplingConfig& config, double dt) noexcept;
+
+    // As couplingEnergy() and couplingWrenchOnDevice(), for this spring alone. Before the first follow() it is slack.
+    EnergyTerm energy(const Pose& spo, const Pose& device) const noexcept;
+    Wrench wrenchOnDevice(const Pose& spo, const Pose& device) const noexcept;
+    // End of a tick: d_f goes its way towards d.
+    void follow(const Pose& spo, const Pose& device) noexcept;
+    void forget() noexcept { has_memory_ = false; }
+
+  private:
+    Eigen::Vector3d stretchOf(const Pose& spo, const Pose& device) const noexcept;
+
+    EnergyCouplingConfig config_;
+    double share_;      // of the way that d_f goes in a tick
+    double stiffness_;  // N/m against d_f before it follows
+    Eigen::Vector3d followed_ = Eigen::Vector3d::Zero();  // d_f
+    bool has_memory_ = false;
+};
 
 // Against motion from the pose at the tick's start: D/dt with D = τ diag(k_t, k_θ).
 EnergyTerm dampingEnergy(const EnergyCouplingConfig& config, const Pose& spo, const Pose& spo_before,

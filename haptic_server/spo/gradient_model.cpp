@@ -56,7 +56,8 @@ GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world
       dt_(dt),
       X_VW_(world.volume.geometry().X_WV.inverse()),
       field_(&world.tool.field(settings_)),
-      contact_(config.contact) {}
+      contact_(config.contact),
+      relaxing_(config.coupling, dt) {}
 
 void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
     settings_ = settings;
@@ -66,6 +67,7 @@ void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
 
 void GradientModel::restart() noexcept {
     way_.forget();
+    relaxing_.forget();
     lambda_ = 0;
     last_reach_ = 0;
     last_wrench_hand_ = {};
@@ -105,6 +107,7 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
                                               : contact_.evaluate<float>(*field_, X_VT);
     State state{X_VT, contact.term, contact.contacts, contact.max_depth};
     state.total += couplingEnergy(config_.coupling, X_VT, tick.device, way_);
+    state.total += relaxing_.energy(X_VT, tick.device);
     state.total += dampingEnergy(config_.coupling, X_VT, tick.start, dt_);
     return state;
 }
@@ -185,11 +188,14 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
     out.spo = out.is_solved ? X_WV * state.X_VT : spo_W;
     out.contacts = state.contacts;
     out.max_penetration = state.max_depth;
-    const Wrench wrench_hand =
-        couplingWrenchOnDevice(config_.coupling, X_VW_ * out.spo, tick.device, way_).rotatedBy(X_WV.rotation);
+    const Pose X_VT = X_VW_ * out.spo;
+    const Wrench wrench_hand = (couplingWrenchOnDevice(config_.coupling, X_VT, tick.device, way_) +
+                                relaxing_.wrenchOnDevice(X_VT, tick.device))
+                                   .rotatedBy(X_WV.rotation);
     if (wrench_hand.isFinite() && out.is_solved) last_wrench_hand_ = wrench_hand;
     out.wrench_hand = last_wrench_hand_;
     dropTraces(out);
+    relaxing_.follow(X_VT, tick.device);
     way_.remember(tick.device.rotation * state.X_VT.rotation.conjugate());
     energy_ = state.total.energy;
     return out;

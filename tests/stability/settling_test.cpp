@@ -68,7 +68,7 @@ double flickeringEncoder(const Variant& variant) {
         low = std::min(low, stepper.wrenchOnHand().force.z());
         high = std::max(high, stepper.wrenchOnHand().force.z());
     }
-    return (high - low) / (couplingFigures(scene.config).translation_stiffness * step);
+    return (high - low) / (couplingFigures(scene.config).quick_stiffness * step);
 }
 
 const std::vector<StabilityCase> kCases{
@@ -76,8 +76,8 @@ const std::vector<StabilityCase> kCases{
     {"peg_in_hole_no_hand", "N_rms", 0.05, pegFree, {}},
     {"wedge_10_to_60_degrees", "N_rms", 0.05, grooveWorst, {"thesis_2012"}},
     {"coarse_encoders_at_rest", "N_rms", 0.05, coarseEncodersAtRest, {}},
-    // A flicker of one step may be felt as the coupling's stiffness times the step, and no more.
-    {"encoder_flicker", "of_kt_step", 1, flickeringEncoder, {}},
+    // A flicker of one step may be felt as the coupling's quick stiffness times the step, and no more.
+    {"encoder_flicker", "of_quick_step", 1, flickeringEncoder, {}},
 };
 BONEMILL_STABILITY_CASES(Settling, kCases);
 

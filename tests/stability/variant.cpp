@@ -31,10 +31,12 @@ void applyVariant(const Variant& variant, TickConfig& config) {
 CouplingFigures couplingFigures(const TickConfig& config) {
     if (isThesis(config)) {
         const CouplingConfig& c = config.coupling;
-        return {c.translation_stiffness, c.rotation_stiffness / 2, c.max_speed, c.max_angular_speed};
+        return {c.translation_stiffness, c.translation_stiffness, c.rotation_stiffness / 2, c.max_speed,
+                c.max_angular_speed};
     }
     const GradientConfig& g = config.gradient;
-    return {g.coupling.translation_stiffness, g.coupling.rotation_stiffness, g.max_speed,
+    return {g.coupling.translation_stiffness, g.coupling.translation_stiffness * (1 + g.coupling.relaxing_share),
+            g.coupling.rotation_stiffness, g.max_speed,
             g.max_angular_speed};
 }
 

@@ -23,7 +23,8 @@ void applyVariant(const Variant& variant, TickConfig& config);
 // What the coupling in force is like, whichever model the settings choose. N/m, N·m/rad (small angles), m/s,
 // rad/s.
 struct CouplingFigures {
-    double translation_stiffness, rotation_stiffness, max_speed, max_angular_speed;
+    double translation_stiffness, quick_stiffness;  // N/m: held, and for what changes from tick to tick
+    double rotation_stiffness, max_speed, max_angular_speed;
 };
 CouplingFigures couplingFigures(const TickConfig& config);
 

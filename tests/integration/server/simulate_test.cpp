@@ -167,7 +167,7 @@ TEST_P(SimulatePresets, CorridorInTheToothIsTheSweptBurr) {
     // And the burr was where the device was, but for the springs' give.
     const auto& last = trace.back();
     EXPECT_NEAR(last[3], 12.2e-3, 0.1e-3);
-    for (const auto& row : trace) EXPECT_LT(std::hypot(row[1] - 2.7e-3, row[2] + 2.45e-3), 0.3e-3);
+    for (const auto& row : trace) EXPECT_LT(std::hypot(row[1] - 2.7e-3, row[2] + 2.45e-3), 0.5e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Presets, SimulatePresets, testing::Values("THESIS_2012", "FAST", "BALANCED", "EXACT"),

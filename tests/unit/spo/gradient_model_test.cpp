@@ -64,7 +64,8 @@ TEST(GradientModel, SettlesWhereCouplingAndContactBalance) {
 
 TEST(GradientModel, FreeToolFollowsAtThePaceOfTheDampingTimeWhateverTheRate) {
     const ContactScene scene = flatScene();
-    const GradientConfig config = stiff();
+    GradientConfig config = stiff();
+    config.coupling.relaxing_share = 0;
     const Pose start{kAbove + Vector3d(0, 0, 1e-3), kUpright};
     const Pose device = start.incremented({0.1e-3, 0, 0.05e-3}, {0.001, 0.002, 0});
     double left_of_first = 0;
@@ -77,6 +78,39 @@ TEST(GradientModel, FreeToolFollowsAtThePaceOfTheDampingTimeWhateverTheRate) {
         EXPECT_EQ(step.contacts, 0u);
     }
     EXPECT_NEAR(left_of_first, std::pow(0.5, 5), 0.02);  // implicit Euler with dt = τ halves it every tick
+}
+
+TEST(GradientModel, RelaxingSpringStiffensAHeldToolForAShortTimeAndDoesNotHoldBackAFreeOne) {
+    const ContactScene scene = flatScene();
+    const GradientConfig config = stiff();
+    const EnergyCouplingConfig& coupling = config.coupling;
+    GradientModel model(config, scene.world(), 1e-3);
+    // Pressed into the bone, then a sudden small step further.
+    const Pose device{kAbove - Vector3d(0, 0, 0.5e-3), kUpright}, further = device.incremented({0, 0, -0.02e-3}, {0, 0, 0});
+    const SpoStep rest = settle(model, {kAbove, kUpright}, device);
+    const SpoStep at_once = model.advance(rest.spo, further);
+    const double first = at_once.wrench_hand.force.z() - rest.wrench_hand.force.z();
+    const double later = settle(model, at_once.spo, further).wrench_hand.force.z() - rest.wrench_hand.force.z();
+    const double quick = coupling.relaxing_share * coupling.translation_stiffness * coupling.relaxing_time / (coupling.relaxing_time + 1e-3);
+    EXPECT_NEAR((first - later) / (quick * 0.02e-3), 1, 0.1);
+    // Free and at constant speed it is as if there were none.
+    GradientConfig without = config;
+    without.coupling.relaxing_share = 0;
+    double drag[2];
+    for (int with = 0; with < 2; ++with) {
+        GradientModel free_model(with ? config : without, scene.world(), 1e-3);
+        Pose spo{kAbove + Vector3d(0, 0, 1e-3), kUpright};
+        for (int n = 0; n < 100; ++n) {
+            const SpoStep step = free_model.advance(spo, spo.incremented({0, 0, 0}, {0, 0, 0}));
+            spo = step.spo;
+        }
+        for (int n = 1; n <= 100; ++n) {
+            const SpoStep step = free_model.advance(spo, {kAbove + Vector3d(n * 10e-6, 0, 1e-3), kUpright});
+            spo = step.spo;
+            drag[with] = step.wrench_hand.force.norm();
+        }
+    }
+    EXPECT_NEAR(drag[1], drag[0], 0.02 * drag[0]);
 }
 
 TEST(GradientModel, EveryPresetSettlesAndTellsItsIterations) {
@@ -135,7 +169,7 @@ TEST(GradientModel, NeverGivesANonFiniteResult) {
         const SpoStep step = model.advance(spo, device);
         ASSERT_TRUE(step.spo.isFinite());
         ASSERT_TRUE(step.wrench_hand.isFinite());
-        ASSERT_LE(step.wrench_hand.force.norm(), 12 * (1 + 1e-9));
+        ASSERT_LE(step.wrench_hand.force.norm(), 24 * (1 + 1e-9));  // F_m of either spring
         spo = step.spo;
     }
 }
