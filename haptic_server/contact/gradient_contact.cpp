@@ -152,39 +152,67 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     deepest_ = 0;
     bool has_room = true;
     const Pose X_TV = X_VT.inverse();
-    const IntoTool<float> into_tool(X_VT, Vector3d::Zero());
-    const float kappa = float(config_.stiffness_per_area), margin = float(margin_);
     Eigen::AlignedBox3d box = boxInV(tool.box(), X_VT);
     box.min().array() -= margin_;
     box.max().array() += margin_;
-    PointBatch<float> batch;
-    alignas(64) float distance[PointBatch<float>::kCapacity];
+    BlockBatch blocks;
+    const auto test = [&] {
+        has_room &= collectFrom(blocks, bone.patch_points > 1, tool, X_VT);
+        blocks.count = 0;
+    };
     const Vector3d& spacing = bone.volume.spacing();
     bone.lattice.forEachSurfaceLeaf(box, spacing, bone.volume.iso(), [&](LeafId leaf) {
         if (bone.shell.pointCount(bone.level, leaf) == 0) return;
         const Sphere around = sphereAround(bone.lattice.cellsOf(leaf), spacing);
         if (tool.distanceBound(X_TV * around.center) > around.radius + margin_) return;
         bone.shell.forEachBlock(bone.level, leaf, [&](const ShellBlock& block, uint32_t count) {
-            into_tool.fill(batch, int(count), [&](int i) { return Coordinates{block.x[i], block.y[i], block.z[i]}; });
-            tool.distances(batch, distance);
-            for (uint32_t i = 0; i < count; ++i) {
-                // The patch around the point reaches this much nearer to the tool.
-                const float patch = bone.patch_points > 1 ? std::sqrt(0.5f * block.area[i]) : 0;
-                if (!(distance[i] < margin + patch)) continue;
-                if (count_ == candidates_.size()) {
-                    has_room = false;
-                    return;
-                }
-                const Vector3f p = (Vector3d(block.x[i], block.y[i], block.z[i]) - origin_).cast<float>();
-                candidates_[count_++] = {p.x(),        p.y(),        p.z(),
-                                         block.nx[i],  block.ny[i],  block.nz[i],
-                                         kappa * block.area[i], block.area[i], distance[i]};
-                deepest_ = std::max(deepest_, -double(distance[i]));
-                touching_stiffness_ += shareInContact(double(distance[i])) * double(kappa * block.area[i]);
-            }
+            blocks.add(block, count);
+            if (blocks.count == BlockBatch::kCapacity) test();
         });
     });
+    test();
     return has_room;
+}
+
+// Points of the blocks that the tool may touch after a motion of at most the margin.
+bool GradientContact::collectFrom(const BlockBatch& blocks, bool has_patches, const ToolField& tool,
+                                  const Pose& X_VT) noexcept {
+    const IntoTool<float> into_tool(X_VT, Vector3d::Zero());
+    PointBatch<float> batch;
+    alignas(64) float to_block[PointBatch<float>::kCapacity], distance[PointBatch<float>::kCapacity];
+    into_tool.fill(batch, blocks.count, [&](int n) {
+        const float* center = blocks.block[n]->center;
+        return Coordinates{center[0], center[1], center[2]};
+    });
+    tool.distances(batch, to_block);
+    // Of the centre's distance and the points'.
+    const float margin = float(margin_), error = float(2 * tool.distanceError());
+    bool has_room = true;
+    for (int n = 0; n < blocks.count; ++n) {
+        const ShellBlock& block = *blocks.block[n];
+        // A patch around a point reaches this much nearer to the tool.
+        const float largest_patch = has_patches ? std::sqrt(0.5f * block.largest_area) : 0;
+        if (to_block[n] > block.radius + margin + largest_patch + error) continue;
+        into_tool.fill(batch, blocks.points[n], [&](int i) { return Coordinates{block.x[i], block.y[i], block.z[i]}; });
+        tool.distances(batch, distance);
+        for (int i = 0; i < batch.count; ++i) {
+            if (!(distance[i] < margin + largest_patch)) continue;
+            const float patch = has_patches ? std::sqrt(0.5f * block.area[i]) : 0;
+            if (distance[i] < margin + patch) has_room &= addCandidate(block, i, distance[i]);
+        }
+    }
+    return has_room;
+}
+
+bool GradientContact::addCandidate(const ShellBlock& block, int i, float distance) noexcept {
+    if (count_ == candidates_.size()) return false;
+    const float weight = float(config_.stiffness_per_area) * block.area[i];
+    const Vector3f p = (Vector3d(block.x[i], block.y[i], block.z[i]) - origin_).cast<float>();
+    candidates_[count_++] = {p.x(),       p.y(),  p.z(),         block.nx[i], block.ny[i],
+                             block.nz[i], weight, block.area[i], distance};
+    deepest_ = std::max(deepest_, -double(distance));
+    touching_stiffness_ += shareInContact(double(distance)) * double(weight);
+    return true;
 }
 
 template <class Scalar>

@@ -89,7 +89,20 @@ class GradientContact {
     Eigen::Vector3d positionOf(const Candidate& c) const noexcept {  // V
         return origin_ + Eigen::Vector3d(double(c.x), double(c.y), double(c.z));
     }
+    // Blocks of points whose spheres are tested together.
+    struct BlockBatch {
+        static constexpr int kCapacity = PointBatch<float>::kCapacity;
+        const ShellBlock* block[kCapacity];
+        int points[kCapacity];
+        int count = 0;
+        void add(const ShellBlock& b, uint32_t point_count) noexcept {
+            block[count] = &b;
+            points[count++] = int(point_count);
+        }
+    };
     bool collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
+    bool collectFrom(const BlockBatch& blocks, bool has_patches, const ToolField& tool, const Pose& X_VT) noexcept;
+    bool addCandidate(const ShellBlock& block, int i, float distance) noexcept;
     void refine(int patch_points, int refined_points, double thinnest_radius) noexcept;
     void splitPatch(size_t index, int q) noexcept;
     void guardFarSide(const VoxelVolume& volume, const ToolField& tool, const Pose& X_VT) noexcept;

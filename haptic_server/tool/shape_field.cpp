@@ -53,8 +53,7 @@ void nearerRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radi
 
 // On the axis the gradient is zero, as the mean of all directions.
 template <class Scalar>
-void sampleNearerRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radius,
-                       SampleBatch<Scalar>& out) noexcept {
+void sampleRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radius, SampleBatch<Scalar>& out) noexcept {
     constexpr Scalar kOnAxis = Scalar(1e-15);  // m
     for (int i = 0; i < p.count; ++i) {
         const Scalar x = p.x[i] - s.fx, y = p.y[i] - s.fy, z = p.z[i] - s.fz;
@@ -62,12 +61,21 @@ void sampleNearerRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scala
         const Scalar dx = x - along * s.ax, dy = y - along * s.ay, dz = z - along * s.az;
         const Scalar to_axis = std::sqrt(dx * dx + dy * dy + dz * dz);
         const Scalar scale = 1 / std::max(to_axis, kOnAxis);
-        const bool is_nearer = to_axis - radius < out.distance[i];
-        out.distance[i] = is_nearer ? to_axis - radius : out.distance[i];
-        out.gx[i] = is_nearer ? dx * scale : out.gx[i];
-        out.gy[i] = is_nearer ? dy * scale : out.gy[i];
-        out.gz[i] = is_nearer ? dz * scale : out.gz[i];
+        out.distance[i] = to_axis - radius;
+        out.gx[i] = dx * scale, out.gy[i] = dy * scale, out.gz[i] = dz * scale;
     }
+}
+
+// One select per loop: GCC makes branches of several with one condition, and then no vector instructions.
+template <class Scalar>
+void takeNearer(const SampleBatch<Scalar>& other, int count, SampleBatch<Scalar>& out) noexcept {
+    const auto choose = [&](const Scalar* theirs, Scalar* ours) {
+        for (int i = 0; i < count; ++i) ours[i] = other.distance[i] < out.distance[i] ? theirs[i] : ours[i];
+    };
+    choose(other.gx, out.gx);
+    choose(other.gy, out.gy);
+    choose(other.gz, out.gz);
+    choose(other.distance, out.distance);
 }
 
 // The profile's three segments: both ends and the side.
@@ -156,9 +164,11 @@ void ShapeField::distances(const PointBatch<double>& points_T, double* out) cons
 template <class Scalar>
 void ShapeField::sampleNearest(const PointBatch<Scalar>& points_T, SampleBatch<Scalar>& out) const noexcept {
     std::fill_n(out.distance, points_T.count, std::numeric_limits<Scalar>::max());
+    SampleBatch<Scalar> here;
     for (const Solid& solid : solids_) {
         if (solid.is_round) {
-            sampleNearerRound(points_T, Axis<Scalar>(solid.from, solid.axis, solid.length), Scalar(solid.radius[0]), out);
+            bonemill::sampleRound(points_T, Axis<Scalar>(solid.from, solid.axis, solid.length), Scalar(solid.radius[0]), here);
+            takeNearer(here, points_T.count, out);
             continue;
         }
         for (int i = 0; i < points_T.count; ++i) {

@@ -19,6 +19,7 @@ class ShapeField final : public ToolField {
     void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept override;
     void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept override;
     ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
+    double distanceError() const noexcept override { return kRounding; }
     double distanceBound(const Eigen::Vector3d& p_T) const noexcept override;
 
   private:

@@ -42,6 +42,8 @@ class ToolField {
     virtual void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept = 0;
     // Distance and gradient at one point, double precision.
     virtual ToolSample sample(const Eigen::Vector3d& p_T) const noexcept = 0;
+    // m: distances() and sample() of a batch are nowhere farther from the distance than this, but for lower bounds.
+    virtual double distanceError() const noexcept = 0;
     // Never above the distance; anywhere.
     virtual double distanceBound(const Eigen::Vector3d& p_T) const noexcept = 0;
 
@@ -53,6 +55,8 @@ class ToolField {
     double reach() const noexcept { return reach_; }
 
   protected:
+    static constexpr double kRounding = 1e-7;  // m, of single precision some 0.1 m from T's origin
+
     ToolField(const Eigen::AlignedBox3d& box, double thinnest_radius) noexcept
         : box_(box),
           thinnest_radius_(thinnest_radius),
