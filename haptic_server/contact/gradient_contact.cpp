@@ -41,7 +41,8 @@ struct Coordinates {
     float x, y, z;
 };
 
-// Steps between neighbouring places of a square patch, at right angles to n; along the grid's axes where the surface is.
+// Steps between neighbouring places of a square patch, at right angles to n; along the grid's axes where the
+// surface is.
 struct PatchFrame {
     Vector3f step_u, step_v;
 };
@@ -54,6 +55,20 @@ PatchFrame patchFrame(const Vector3f& n, float step) noexcept {
     return {step * u, step * n.cross(u)};
 }
 
+// Of the points in contact of one batch, by component: sums over them are then vector instructions.
+struct ContactBatch {
+    static constexpr int kCapacity = PointBatch<double>::kCapacity;
+    alignas(64) double J[6][kCapacity];  // of the depth by the tool's pose, negative: g, r x g
+    alignas(64) double pull[kCapacity];  // weight times capped depth
+    alignas(64) double k[kCapacity];     // stiffness in J's direction
+    int count = 0;
+};
+
+double dot(const double* a, const double* b, int count) noexcept {
+    using Values = Eigen::Map<const Eigen::ArrayXd, Eigen::Aligned64>;
+    return (Values(a, count) * Values(b, count)).sum();
+}
+
 // Sums over the points in contact; the matrix's upper triangle only.
 struct Sums {
     double energy = 0;
@@ -61,31 +76,38 @@ struct Sums {
     double stiffness[21] = {};  // rows of the upper triangle
     uint32_t contacts = 0;
     double max_depth = 0;
+    ContactBatch batch;
 
     // r: from the tool point, V; g: V.
     void add(double weight, double depth, double depth_cap, const Vector3d& r, const Vector3d& g) noexcept {
-        ++contacts;
         max_depth = std::max(max_depth, depth);
         const double capped = std::min(depth, depth_cap);
         energy += weight * capped * (depth - capped / 2);
-        const double J[6] = {g.x(),
-                             g.y(),
-                             g.z(),
-                             r.y() * g.z() - r.z() * g.y(),
-                             r.z() * g.x() - r.x() * g.z(),
-                             r.x() * g.y() - r.y() * g.x()};
-        const double pull = weight * capped;
-        for (int axis = 0; axis < 3; ++axis) {
-            force[axis] -= pull * J[axis];
-            torque[axis] -= pull * J[3 + axis];
-        }
+        const int i = batch.count++;
+        for (int axis = 0; axis < 3; ++axis) batch.J[axis][i] = g[axis];
+        batch.J[3][i] = r.y() * g.z() - r.z() * g.y();
+        batch.J[4][i] = r.z() * g.x() - r.x() * g.z();
+        batch.J[5][i] = r.x() * g.y() - r.y() * g.x();
+        batch.pull[i] = weight * capped;
         // Beyond the cap the secant keeps the matrix's direction.
-        const double k = depth > depth_cap ? pull / depth : weight;
+        batch.k[i] = depth > depth_cap ? batch.pull[i] / depth : weight;
+    }
+
+    // After at most a batch of points.
+    void finishBatch() noexcept {
+        const int n = batch.count;
+        for (int axis = 0; axis < 3; ++axis) {
+            force[axis] -= dot(batch.pull, batch.J[axis], n);
+            torque[axis] -= dot(batch.pull, batch.J[3 + axis], n);
+        }
+        alignas(64) double kJ[ContactBatch::kCapacity];
         double* sum = stiffness;
         for (int row = 0; row < 6; ++row) {
-            const double kJ = k * J[row];
-            for (int column = row; column < 6; ++column) *sum++ += kJ * J[column];
+            for (int i = 0; i < n; ++i) kJ[i] = batch.k[i] * batch.J[row][i];
+            for (int column = row; column < 6; ++column) *sum++ += dot(kJ, batch.J[column], n);
         }
+        contacts += uint32_t(n);
+        batch.count = 0;
     }
 
     GradientContactResult result() const noexcept {
@@ -107,7 +129,8 @@ struct Sums {
 GradientContact::GradientContact(const GradientContactConfig& config, size_t most_candidates)
     : config_(config), candidates_(most_candidates) {}
 
-bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin) noexcept {
+bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
+                             double margin) noexcept {
     margin_ = margin;
     origin_ = X_VT.position;
     const bool has_room = collect(bone, tool, X_VT);
@@ -123,7 +146,8 @@ void GradientContact::refine(int patch_points, int refined_points, double thinne
         return c.distance < within + std::sqrt(0.5f * c.area);
     };
     const size_t coarse = count_;
-    const size_t near = size_t(std::count_if(candidates_.begin(), candidates_.begin() + std::ptrdiff_t(coarse), isNear));
+    const size_t near =
+        size_t(std::count_if(candidates_.begin(), candidates_.begin() + std::ptrdiff_t(coarse), isNear));
     const size_t room = std::min(size_t(refined_points), candidates_.size() - (coarse - near));
     int q = patch_points;
     while (q > 1 && near * size_t(q * q) > room) --q;
@@ -193,7 +217,9 @@ bool GradientContact::collectFrom(const BlockBatch& blocks, bool has_patches, co
         // A patch around a point reaches this much nearer to the tool.
         const float largest_patch = has_patches ? std::sqrt(0.5f * block.largest_area) : 0;
         if (to_block[n] > block.radius + margin + largest_patch + error) continue;
-        into_tool.fill(batch, blocks.points[n], [&](int i) { return Coordinates{block.x[i], block.y[i], block.z[i]}; });
+        into_tool.fill(batch, blocks.points[n], [&](int i) {
+            return Coordinates{block.x[i], block.y[i], block.z[i]};
+        });
         tool.distances(batch, distance);
         for (int i = 0; i < batch.count; ++i) {
             if (!(distance[i] < margin + largest_patch)) continue;
@@ -228,7 +254,9 @@ GradientContactResult GradientContact::evaluate(const ToolField& tool, const Pos
     for (size_t first = 0; first < count_; first += kBatch) {
         const int count = int(std::min<size_t>(kBatch, count_ - first));
         const Candidate* points = candidates_.data() + first;
-        into_tool.fill(batch, count, [&](int i) { return Coordinates{points[i].x, points[i].y, points[i].z}; });
+        into_tool.fill(batch, count, [&](int i) {
+            return Coordinates{points[i].x, points[i].y, points[i].z};
+        });
         tool.sample(batch, at);
         for (int i = 0; i < count; ++i) {
             if (!(at.distance[i] < 0)) continue;
@@ -237,11 +265,13 @@ GradientContactResult GradientContact::evaluate(const ToolField& tool, const Pos
             sums.add(double(c.weight), -double(at.distance[i]), depth_cap, r,
                      R_VT * Vector3d(double(at.gx[i]), double(at.gy[i]), double(at.gz[i])));
         }
+        sums.finishBatch();
     }
     return sums.result();
 }
 
 template GradientContactResult GradientContact::evaluate<float>(const ToolField&, const Pose&) const noexcept;
-template GradientContactResult GradientContact::evaluate<double>(const ToolField&, const Pose&) const noexcept;
+template GradientContactResult GradientContact::evaluate<double>(const ToolField&,
+                                                                 const Pose&) const noexcept;
 
 }  // namespace bonemill

@@ -31,7 +31,9 @@ void put(const ShellPoint& point, ShellBlock& b, uint32_t i) noexcept {
 }
 
 void setBounds(ShellBlock& b, uint32_t count) noexcept {
-    const auto first = [count](const float* values) { return Eigen::Map<const Eigen::ArrayXf>(values, count); };
+    const auto first = [count](const float* values) {
+        return Eigen::Map<const Eigen::ArrayXf>(values, count);
+    };
     float squared = 0;
     const float* const axes[3] = {b.x, b.y, b.z};
     for (int axis = 0; axis < 3; ++axis) {

@@ -6,8 +6,8 @@
 
 namespace bonemill {
 
-// The gradient is that of the interpolated distance, so forces made with it conserve energy; its length differs from 1
-// by the grid's error.
+// The gradient is that of the interpolated distance, so forces made with it conserve energy; its length
+// differs from 1 by the grid's error.
 class GridField final : public ToolField {
   public:
     // `thinnest_radius`: m, of the tool's thinnest part.

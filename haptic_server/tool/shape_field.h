@@ -8,7 +8,8 @@
 
 namespace bonemill {
 
-// Outside of the tool the distance is exact; inside a union it is the depth below the nearest shape's own surface.
+// Outside of the tool the distance is exact; inside a union it is the depth below the nearest shape's own
+// surface.
 class ShapeField final : public ToolField {
   public:
     // At least one checked shape; throws std::invalid_argument otherwise. Allocates.
