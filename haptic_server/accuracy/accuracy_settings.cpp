@@ -16,7 +16,7 @@ AccuracySettings presetSettings(Preset preset) noexcept {
         case Preset::kBalanced:
             return {ContactLaw::kGradient, 1, 2, 512, ToolDistance::kAnalytic, 1, Precision::kFloat, 2, true};
         case Preset::kExact:
-            return {ContactLaw::kGradient, 1, 4, 32768, ToolDistance::kAnalytic, 4, Precision::kDouble, 4, true};
+            return {ContactLaw::kGradient, 1, 3, 12288, ToolDistance::kAnalytic, 4, Precision::kDouble, 4, true};
     }
     return {};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace bonemill {
@@ -21,6 +22,10 @@ Preset presetOf(scene::Accuracy::Preset preset) {
         default:
             return Preset::kBalanced;
     }
+}
+
+ShellNormals givenNormals(scene::Accuracy::Normals normals) {
+    return normals == scene::Accuracy::TRILINEAR ? ShellNormals::kTrilinear : ShellNormals::kCentralDifference;
 }
 
 // What a burr on a flat wall carries before it has passed through half of it: π κ (R - d) d², at most its maximum
@@ -59,12 +64,15 @@ std::vector<AccuracySettings> accuracyChoices(const scene::Scene& scene) {
 }
 
 ShellConfig shellConfigOf(const scene::Scene& scene) {
-    std::set<int> factors;
-    for (const AccuracySettings& choice : accuracyChoices(scene)) factors.insert(choice.shell_factor);
-    ShellConfig config;
-    config.factors.assign(factors.begin(), factors.end());
-    config.normals = scene.accuracy().normals() == scene::Accuracy::TRILINEAR ? ShellNormals::kTrilinear
-                                                                             : ShellNormals::kCentralDifference;
+    std::map<int, ShellNormals> normals_of_factor;
+    for (const AccuracySettings& choice : accuracyChoices(scene)) {
+        ShellNormals& normals = normals_of_factor.try_emplace(choice.shell_factor, ShellNormals::kTrilinear).first->second;
+        if (choice.law == ContactLaw::kThesis2012) normals = ShellNormals::kCentralDifference;
+    }
+    ShellConfig config{.levels = {}};
+    for (const auto& [factor, normals] : normals_of_factor)
+        config.levels.push_back(
+            {factor, scene.accuracy().has_normals() ? givenNormals(scene.accuracy().normals()) : normals});
     return config;
 }
 

@@ -124,7 +124,7 @@ std::string simulate(const SimulateOptions& options) {
     json["scene"] = loaded.scene.name();
     json["preset"] = settingsName(simulation.tick.accuracy);
     json["iso_value"] = simulation.mapping.iso_value;
-    json["shell_points"] = bone.shell.pointCount(0);
+    json["shell_points"] = bone.shell.pointCount(bone.shell.followed());
     json["bone_mm3"] = mesh.volume / kCubicMillimetre;
     json["bone_before_mm3"] = volume_before / kCubicMillimetre;
     json["mesh"] = {

@@ -41,17 +41,18 @@ struct Coordinates {
     float x, y, z;
 };
 
-// Steps between neighbouring places of a square patch, at right angles to n; along the grid's axes where the surface is.
-struct PatchFrame {
-    Vector3f step_u, step_v;
+// Of the points in contact of one batch, by component: sums over them are then vector instructions.
+struct ContactBatch {
+    static constexpr int kCapacity = PointBatch<double>::kCapacity;
+    alignas(64) double J[6][kCapacity];  // of the depth by the tool's pose, negative: g, r x g
+    alignas(64) double pull[kCapacity];  // weight times capped depth
+    alignas(64) double k[kCapacity];     // stiffness in J's direction
+    int count = 0;
 };
 
-PatchFrame patchFrame(const Vector3f& n, float step) noexcept {
-    if (n.isZero(0)) return {Vector3f::Zero(), Vector3f::Zero()};
-    int least = 0;
-    n.cwiseAbs().minCoeff(&least);
-    const Vector3f u = n.cross(Vector3f::Unit(least)).normalized();
-    return {step * u, step * n.cross(u)};
+double dot(const double* a, const double* b, int count) noexcept {
+    using Values = Eigen::Map<const Eigen::ArrayXd, Eigen::Aligned64>;
+    return (Values(a, count) * Values(b, count)).sum();
 }
 
 // Sums over the points in contact; the matrix's upper triangle only.
@@ -61,31 +62,38 @@ struct Sums {
     double stiffness[21] = {};  // rows of the upper triangle
     uint32_t contacts = 0;
     double max_depth = 0;
+    ContactBatch batch;
 
     // r: from the tool point, V; g: V.
     void add(double weight, double depth, double depth_cap, const Vector3d& r, const Vector3d& g) noexcept {
-        ++contacts;
         max_depth = std::max(max_depth, depth);
         const double capped = std::min(depth, depth_cap);
         energy += weight * capped * (depth - capped / 2);
-        const double J[6] = {g.x(),
-                             g.y(),
-                             g.z(),
-                             r.y() * g.z() - r.z() * g.y(),
-                             r.z() * g.x() - r.x() * g.z(),
-                             r.x() * g.y() - r.y() * g.x()};
-        const double pull = weight * capped;
-        for (int axis = 0; axis < 3; ++axis) {
-            force[axis] -= pull * J[axis];
-            torque[axis] -= pull * J[3 + axis];
-        }
+        const int i = batch.count++;
+        for (int axis = 0; axis < 3; ++axis) batch.J[axis][i] = g[axis];
+        batch.J[3][i] = r.y() * g.z() - r.z() * g.y();
+        batch.J[4][i] = r.z() * g.x() - r.x() * g.z();
+        batch.J[5][i] = r.x() * g.y() - r.y() * g.x();
+        batch.pull[i] = weight * capped;
         // Beyond the cap the secant keeps the matrix's direction.
-        const double k = depth > depth_cap ? pull / depth : weight;
+        batch.k[i] = depth > depth_cap ? batch.pull[i] / depth : weight;
+    }
+
+    // After at most a batch of points.
+    void finishBatch() noexcept {
+        const int n = batch.count;
+        for (int axis = 0; axis < 3; ++axis) {
+            force[axis] -= dot(batch.pull, batch.J[axis], n);
+            torque[axis] -= dot(batch.pull, batch.J[3 + axis], n);
+        }
+        alignas(64) double kJ[ContactBatch::kCapacity];
         double* sum = stiffness;
         for (int row = 0; row < 6; ++row) {
-            const double kJ = k * J[row];
-            for (int column = row; column < 6; ++column) *sum++ += kJ * J[column];
+            for (int i = 0; i < n; ++i) kJ[i] = batch.k[i] * batch.J[row][i];
+            for (int column = row; column < 6; ++column) *sum++ += dot(kJ, batch.J[column], n);
         }
+        contacts += uint32_t(n);
+        batch.count = 0;
     }
 
     GradientContactResult result() const noexcept {
@@ -107,43 +115,15 @@ struct Sums {
 GradientContact::GradientContact(const GradientContactConfig& config, size_t most_candidates)
     : config_(config), candidates_(most_candidates) {}
 
-bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin) noexcept {
+bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
+                             double margin) noexcept {
     margin_ = margin;
     origin_ = X_VT.position;
     const bool has_room = collect(bone, tool, X_VT);
-    refine(bone.patch_points, bone.refined_points, tool.thinnestRadius());
+    refine(bone, tool.thinnestRadius());
     guardFarSide(bone.volume, tool, X_VT);
     capStiffness(tool, X_VT);
     return has_room;
-}
-
-// Splits the patches near the tool as finely as asked for and as the number of them allows.
-void GradientContact::refine(int patch_points, int refined_points, double thinnest_radius) noexcept {
-    const auto isNear = [within = float(kRefineWithin * thinnest_radius)](const Candidate& c) {
-        return c.distance < within + std::sqrt(0.5f * c.area);
-    };
-    const size_t coarse = count_;
-    const size_t near = size_t(std::count_if(candidates_.begin(), candidates_.begin() + std::ptrdiff_t(coarse), isNear));
-    const size_t room = std::min(size_t(refined_points), candidates_.size() - (coarse - near));
-    int q = patch_points;
-    while (q > 1 && near * size_t(q * q) > room) --q;
-    if (q == 1) return;
-    for (size_t i = 0; i < coarse; ++i)
-        if (isNear(candidates_[i])) splitPatch(i, q);
-}
-
-// The candidate becomes the first of its q × q places, the others follow at the end.
-void GradientContact::splitPatch(size_t index, int q) noexcept {
-    Candidate patch = candidates_[index];
-    const Vector3f p(patch.x, patch.y, patch.z), n(patch.nx, patch.ny, patch.nz);
-    const PatchFrame frame = patchFrame(n, std::sqrt(patch.area) / float(q));
-    patch.weight /= float(q * q);
-    for (int place = 0; place < q * q; ++place) {
-        const float u = float(place % q) - 0.5f * float(q - 1), v = float(place / q) - 0.5f * float(q - 1);
-        const Vector3f at = p + u * frame.step_u + v * frame.step_v;
-        patch.x = at.x(), patch.y = at.y(), patch.z = at.z();
-        candidates_[place == 0 ? index : count_++] = patch;
-    }
 }
 
 bool GradientContact::collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept {
@@ -152,39 +132,69 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     deepest_ = 0;
     bool has_room = true;
     const Pose X_TV = X_VT.inverse();
-    const IntoTool<float> into_tool(X_VT, Vector3d::Zero());
-    const float kappa = float(config_.stiffness_per_area), margin = float(margin_);
     Eigen::AlignedBox3d box = boxInV(tool.box(), X_VT);
     box.min().array() -= margin_;
     box.max().array() += margin_;
-    PointBatch<float> batch;
-    alignas(64) float distance[PointBatch<float>::kCapacity];
+    BlockBatch blocks;
+    const auto test = [&] {
+        has_room &= collectFrom(blocks, bone.patch_points > 1, tool, X_VT);
+        blocks.count = 0;
+    };
     const Vector3d& spacing = bone.volume.spacing();
     bone.lattice.forEachSurfaceLeaf(box, spacing, bone.volume.iso(), [&](LeafId leaf) {
         if (bone.shell.pointCount(bone.level, leaf) == 0) return;
         const Sphere around = sphereAround(bone.lattice.cellsOf(leaf), spacing);
         if (tool.distanceBound(X_TV * around.center) > around.radius + margin_) return;
         bone.shell.forEachBlock(bone.level, leaf, [&](const ShellBlock& block, uint32_t count) {
-            into_tool.fill(batch, int(count), [&](int i) { return Coordinates{block.x[i], block.y[i], block.z[i]}; });
-            tool.distances(batch, distance);
-            for (uint32_t i = 0; i < count; ++i) {
-                // The patch around the point reaches this much nearer to the tool.
-                const float patch = bone.patch_points > 1 ? std::sqrt(0.5f * block.area[i]) : 0;
-                if (!(distance[i] < margin + patch)) continue;
-                if (count_ == candidates_.size()) {
-                    has_room = false;
-                    return;
-                }
-                const Vector3f p = (Vector3d(block.x[i], block.y[i], block.z[i]) - origin_).cast<float>();
-                candidates_[count_++] = {p.x(),        p.y(),        p.z(),
-                                         block.nx[i],  block.ny[i],  block.nz[i],
-                                         kappa * block.area[i], block.area[i], distance[i]};
-                deepest_ = std::max(deepest_, -double(distance[i]));
-                touching_stiffness_ += shareInContact(double(distance[i])) * double(kappa * block.area[i]);
-            }
+            blocks.add(block, count);
+            if (blocks.count == BlockBatch::kCapacity) test();
         });
     });
+    test();
     return has_room;
+}
+
+// Points of the blocks that the tool may touch after a motion of at most the margin.
+bool GradientContact::collectFrom(const BlockBatch& blocks, bool has_patches, const ToolField& tool,
+                                  const Pose& X_VT) noexcept {
+    const IntoTool<float> into_tool(X_VT, Vector3d::Zero());
+    PointBatch<float> batch;
+    alignas(64) float to_block[PointBatch<float>::kCapacity], distance[PointBatch<float>::kCapacity];
+    into_tool.fill(batch, blocks.count, [&](int n) {
+        const float* center = blocks.block[n]->center;
+        return Coordinates{center[0], center[1], center[2]};
+    });
+    tool.distances(batch, to_block);
+    // Of the centre's distance and the points'.
+    const float margin = float(margin_), error = float(2 * tool.distanceError());
+    bool has_room = true;
+    for (int n = 0; n < blocks.count; ++n) {
+        const ShellBlock& block = *blocks.block[n];
+        // A patch around a point reaches this much nearer to the tool.
+        const float largest_patch = has_patches ? std::sqrt(0.5f * block.largest_area) : 0;
+        if (to_block[n] > block.radius + margin + largest_patch + error) continue;
+        into_tool.fill(batch, blocks.points[n], [&](int i) {
+            return Coordinates{block.x[i], block.y[i], block.z[i]};
+        });
+        tool.distances(batch, distance);
+        for (int i = 0; i < batch.count; ++i) {
+            if (!(distance[i] < margin + largest_patch)) continue;
+            const float patch = has_patches ? std::sqrt(0.5f * block.area[i]) : 0;
+            if (distance[i] < margin + patch) has_room &= addCandidate(block, i, distance[i]);
+        }
+    }
+    return has_room;
+}
+
+bool GradientContact::addCandidate(const ShellBlock& block, int i, float distance) noexcept {
+    if (count_ == candidates_.size()) return false;
+    const float weight = float(config_.stiffness_per_area) * block.area[i];
+    const Vector3f p = (Vector3d(block.x[i], block.y[i], block.z[i]) - origin_).cast<float>();
+    candidates_[count_++] = {p.x(),       p.y(),  p.z(),         block.nx[i], block.ny[i],
+                             block.nz[i], weight, block.area[i], distance};
+    deepest_ = std::max(deepest_, -double(distance));
+    touching_stiffness_ += shareInContact(double(distance)) * double(weight);
+    return true;
 }
 
 template <class Scalar>
@@ -200,7 +210,9 @@ GradientContactResult GradientContact::evaluate(const ToolField& tool, const Pos
     for (size_t first = 0; first < count_; first += kBatch) {
         const int count = int(std::min<size_t>(kBatch, count_ - first));
         const Candidate* points = candidates_.data() + first;
-        into_tool.fill(batch, count, [&](int i) { return Coordinates{points[i].x, points[i].y, points[i].z}; });
+        into_tool.fill(batch, count, [&](int i) {
+            return Coordinates{points[i].x, points[i].y, points[i].z};
+        });
         tool.sample(batch, at);
         for (int i = 0; i < count; ++i) {
             if (!(at.distance[i] < 0)) continue;
@@ -209,11 +221,13 @@ GradientContactResult GradientContact::evaluate(const ToolField& tool, const Pos
             sums.add(double(c.weight), -double(at.distance[i]), depth_cap, r,
                      R_VT * Vector3d(double(at.gx[i]), double(at.gy[i]), double(at.gz[i])));
         }
+        sums.finishBatch();
     }
     return sums.result();
 }
 
 template GradientContactResult GradientContact::evaluate<float>(const ToolField&, const Pose&) const noexcept;
-template GradientContactResult GradientContact::evaluate<double>(const ToolField&, const Pose&) const noexcept;
+template GradientContactResult GradientContact::evaluate<double>(const ToolField&,
+                                                                 const Pose&) const noexcept;
 
 }  // namespace bonemill

@@ -1,17 +1,21 @@
-// The default contact model: every shell point near the tool stores energy, and force and torque are exactly minus the
-// gradient of the sum. No closed path gains energy, noisy bone normals do no harm, and the points' areas make the
-// result independent of how densely the surface is sampled.
+// The default contact model: every shell point near the tool stores energy, and force and torque are exactly
+// minus the gradient of the sum. No closed path gains energy, noisy bone normals do no harm, and the points'
+// areas make the result independent of how densely the surface is sampled.
 //
-// With φ the tool's distance at bone point b, δ = -φ, g = R∇φ, n the bone's outward normal, a the point's area:
+// With φ the tool's distance at bone point b, δ = -φ, g = R∇φ, n the bone's outward normal, a the point's
+// area:
 //   E = Σ κ a λ Ψ(δ),   Ψ = ½δ² for δ > 0, going on linearly beyond the depth cap.
 // A point stands for a patch of the surface; with patch_points = q > 1 the patches near the tool are sampled at q × q
-// places of a square of the same area around the point, at right angles to n: stiff contact is often narrower than the
-// points are apart. Wide contact has points enough, and is not refined.
+// places: those of a square of the same area around the point, at right angles to n, moved onto the surface. Stiff
+// contact is often narrower than the points are apart. Wide contact has points enough, and is not refined.
 //
 // λ <= 1 is frozen when the candidates are gathered, so that each solve has one energy. It is 1 unless
-// - the stiffness in the direction of g is above the cap (then the same total for a plane, a slot and a full surround);
-// - the tool is deep in the bone (kGuardFrom, or its point inside): then points that it reaches from their far side
-//   (s = -n·g <= 0) are left out, so that no wall that the tool's medial axis has passed pulls it on or locks it in.
+// - the stiffness in the direction of g is above the cap (then the same total for a plane, a slot and a full
+// surround);
+// - the tool is deep in the bone (kGuardFrom, or its point inside): then points that it reaches from their
+// far side
+//   (s = -n·g <= 0) are left out, so that no wall that the tool's medial axis has passed pulls it on or locks
+//   it in.
 // A λ that changes from tick to tick is not conservative; in ordinary contact none does.
 //
 // Frame V, m, N, torque about the tool point. Everything but construction is RT-safe; tick thread only.
@@ -49,26 +53,27 @@ struct GradientContactResult {
 
 class GradientContact {
   public:
-    // Of the tool's thinnest radius: patches nearer than that are refined; depth from which on the force of a point no longer grows, and between which the
-    // far-side guard sets in.
+    // Of the tool's thinnest radius: patches nearer than that are refined; depth from which on the force of a
+    // point no longer grows, and between which the far-side guard sets in.
     static constexpr double kRefineWithin = 0.125, kDepthCap = 0.75, kGuardFrom = 0.25, kGuardFull = 0.5;
     static constexpr double kGuardWidth = 0.25;  // of s, over which the guard fades a point out
 
     // Room for this many candidate points; allocates.
     explicit GradientContact(const GradientContactConfig& config, size_t most_candidates = 65536);
 
-    // Collects the points of a shell level that can touch the tool after a motion of at most `margin` (m, of any of its
-    // points) from X_VT. False: more than there is room for; the rest is left out.
+    // Collects the points of a shell level that can touch the tool after a motion of at most `margin` (m, of
+    // any of its points) from X_VT. False: more than there is room for; the rest is left out.
     bool gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin) noexcept;
 
     // Energy, wrench on the tool and stiffness at this pose, over the gathered points.
     template <class Scalar>
     GradientContactResult evaluate(const ToolField& tool, const Pose& X_VT) const noexcept;
 
-    // Largest share t of the motion `step` (world increment x, ω) for which no gathered point that is free at X_VT comes
-    // deeper than `allowed_depth`, and none in contact gets deeper by more than that: conservative advancement. The
-    // share may be smaller than the largest, never larger. In 0 .. 1.
-    double advance(const ToolField& tool, const Pose& X_VT, const Vector6d& step, double allowed_depth) const noexcept;
+    // Largest share t of the motion `step` (world increment x, ω) for which no gathered point that is free at
+    // X_VT comes deeper than `allowed_depth`, and none in contact gets deeper by more than that: conservative
+    // advancement. The share may be smaller than the largest, never larger. In 0 .. 1.
+    double advance(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
+                   double allowed_depth) const noexcept;
 
     size_t candidateCount() const noexcept { return count_; }
     double margin() const noexcept { return margin_; }
@@ -89,9 +94,23 @@ class GradientContact {
     Eigen::Vector3d positionOf(const Candidate& c) const noexcept {  // V
         return origin_ + Eigen::Vector3d(double(c.x), double(c.y), double(c.z));
     }
+    // Blocks of points whose spheres are tested together.
+    struct BlockBatch {
+        static constexpr int kCapacity = PointBatch<float>::kCapacity;
+        const ShellBlock* block[kCapacity];
+        int points[kCapacity];
+        int count = 0;
+        void add(const ShellBlock& b, uint32_t point_count) noexcept {
+            block[count] = &b;
+            points[count++] = int(point_count);
+        }
+    };
     bool collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
-    void refine(int patch_points, int refined_points, double thinnest_radius) noexcept;
-    void splitPatch(size_t index, int q) noexcept;
+    bool collectFrom(const BlockBatch& blocks, bool has_patches, const ToolField& tool,
+                     const Pose& X_VT) noexcept;
+    bool addCandidate(const ShellBlock& block, int i, float distance) noexcept;
+    void refine(const ShellView& bone, double thinnest_radius) noexcept;
+    void splitPatch(const VoxelVolume& volume, size_t index, int q) noexcept;
     void guardFarSide(const VoxelVolume& volume, const ToolField& tool, const Pose& X_VT) noexcept;
     void capStiffness(const ToolField& tool, const Pose& X_VT) noexcept;
 

@@ -19,12 +19,13 @@ size_t blocksPerLeaf(const LeafLattice& lattice, int factor) {
 
 size_t mostBlocksPerLeaf(const LeafLattice& lattice, const ShellConfig& config) {
     size_t most = 0;
-    for (const int factor : config.factors) most = std::max(most, blocksPerLeaf(lattice, factor));
+    for (const ShellLevel& level : config.levels) most = std::max(most, blocksPerLeaf(lattice, level.factor));
     return most;
 }
 
 const ShellConfig& checked(const ShellConfig& config) {
-    std::vector<int> factors = config.factors;
+    std::vector<int> factors;
+    for (const ShellLevel& level : config.levels) factors.push_back(level.factor);
     std::sort(factors.begin(), factors.end());
     const bool is_distinct = std::adjacent_find(factors.begin(), factors.end()) == factors.end();
     if (factors.empty() || factors.front() < 1 || !is_distinct)
@@ -48,34 +49,28 @@ Eigen::Vector3i cellOf(const SurfacePatch& patch) noexcept {
     return {patch.cell[0], patch.cell[1], patch.cell[2]};
 }
 
-bool holds(const IndexBox& box, const Eigen::Vector3i& index) noexcept {
-    return (index.array() >= box.min.array()).all() && (index.array() <= box.max.array()).all();
-}
-
 }  // namespace
 
 PointShell::PointShell(const VoxelVolume& volume, const LeafLattice& lattice, const ShellConfig& config)
-    : projection_(volume, checked(config).normals),
-      reach_(config.normals == ShellNormals::kCentralDifference ? 1 : 0),
-      pool_(mostBlocksPerLeaf(lattice, config)),
+    : projection_(volume),
+      pool_(mostBlocksPerLeaf(lattice, checked(config))),
       cells_(volume, lattice.leafCells()) {
-    for (const int factor : config.factors)
-        levels_.push_back({factor, std::vector<ShellPool::List>(lattice.leafCount())});
+    size_t most_sums = 0, blocks_per_leaf = 0;
+    for (const ShellLevel& level : config.levels) {
+        levels_.emplace_back(level, lattice.leafCount());
+        const size_t most_points = blocksPerLeaf(lattice, level.factor);
+        blocks_per_leaf += most_points / ShellBlock::kCapacity + 1;
+        if (level.factor > 1) most_sums = std::max(most_sums, most_points);
+    }
     fresh_.resize(mostBlocksPerLeaf(lattice, config));
-    size_t most_sums = 0;
-    for (const int factor : config.factors)
-        if (factor > 1) most_sums = std::max(most_sums, blocksPerLeaf(lattice, factor));
     sums_.resize(most_sums);
     if (most_sums > 0) previous_patch_.resize(size_t(lattice.leafCells().prod()));
 
-    size_t blocks_per_leaf = 0;
-    for (const int factor : config.factors)
-        blocks_per_leaf += blocksPerLeaf(lattice, factor) / ShellBlock::kCapacity + 1;
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
         if (!lattice.mayHoldSurface(leaf, volume.iso())) continue;
         if (pool_.freeCount() < blocks_per_leaf)
             pool_.addBlocks(std::max(blocks_per_leaf, pool_.blockCount() / 2));
-        rebuild(volume, lattice, leaf, lattice.cellsOf(leaf));
+        for (Level& level : levels_) rebuild(volume, lattice, level, leaf, lattice.cellsOf(leaf));
     }
     reservePool(lattice, config.spare_points);
 }
@@ -84,7 +79,7 @@ PointShell::PointShell(const VoxelVolume& volume, const LeafLattice& lattice, co
 void PointShell::reservePool(const LeafLattice& lattice, size_t spare_points) {
     size_t spare_blocks = 0;
     for (const Level& level : levels_) {
-        const size_t points = spare_points / (size_t(level.factor) * size_t(level.factor));
+        const size_t points = spare_points / (size_t(level.config.factor) * size_t(level.config.factor));
         spare_blocks += points / ShellBlock::kCapacity + std::min<size_t>(lattice.leafCount(), 4096);
     }
     if (pool_.freeCount() < spare_blocks) pool_.addBlocks(spare_blocks - pool_.freeCount());
@@ -99,47 +94,60 @@ int PointShell::levelOf(int factor) const noexcept {
 bool PointShell::refresh(const VoxelVolume& volume, const LeafLattice& lattice,
                          const IndexBox& changed_voxels) noexcept {
     if (changed_voxels.isEmpty()) return true;
-    const IndexBox cells{changed_voxels.min.array() - (1 + reach_), changed_voxels.max.array() + reach_};
+    bool is_complete = true;
+    for (int n = 0; n < levelCount(); ++n)
+        is_complete &= refreshLevel(volume, lattice, changed_voxels, levels_[size_t(n)],
+                                    n == followed_ || n == prepared_);
+    return is_complete;
+}
+
+bool PointShell::refreshLevel(const VoxelVolume& volume, const LeafLattice& lattice,
+                              const IndexBox& changed_voxels, Level& level, bool is_kept) noexcept {
+    const IndexBox cells{changed_voxels.min.array() - (1 + level.reach()),
+                         changed_voxels.max.array() + level.reach()};
     const IndexBox leaves = lattice.leavesOfCells(cells);
     bool is_complete = true;
     for (int k = leaves.min.z(); k <= leaves.max.z(); ++k)
         for (int j = leaves.min.y(); j <= leaves.max.y(); ++j)
             for (int i = leaves.min.x(); i <= leaves.max.x(); ++i) {
                 const LeafId leaf = lattice.leafId({i, j, k});
+                if (!is_kept) level.markStale(leaf);
+                if (level.is_stale[leaf]) continue;
                 const IndexBox leaf_cells = lattice.cellsOf(leaf);
-                is_complete &= rebuild(volume, lattice, leaf, cells.clamped(leaf_cells.min, leaf_cells.max));
+                is_complete &=
+                    rebuild(volume, lattice, level, leaf, cells.clamped(leaf_cells.min, leaf_cells.max));
             }
     return is_complete;
 }
 
-// `touched_cells` lie in the leaf; their blocks of every level are rebuilt.
-bool PointShell::rebuild(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf,
-                         const IndexBox& touched_cells) noexcept {
-    const IndexBox leaf_cells = lattice.cellsOf(leaf);
-    const IndexBox touched = shifted(touched_cells, -leaf_cells.min);
-    const Eigen::Vector3i last_cell = leaf_cells.max - leaf_cells.min;
-    IndexBox wanted = touched;
-    for (const Level& level : levels_) {
-        const IndexBox cells = cellsOf(blocksOf(touched, level.factor), level.factor, last_cell);
-        wanted = {wanted.min.cwiseMin(cells.min), wanted.max.cwiseMax(cells.max)};
-    }
-    if (lattice.mayHoldSurface(leaf, volume.iso()))
-        cells_.collect(volume, leaf_cells.min, shifted(wanted, leaf_cells.min));
-    else
-        cells_.clear();
+PointShell::Preparation PointShell::prepare(const VoxelVolume& volume, const LeafLattice& lattice,
+                                            int level_index, int most_leaves) noexcept {
+    if (level_index != followed_) prepared_ = level_index;
+    Level& level = levels_[size_t(level_index)];
     bool is_complete = true;
-    for (Level& level : levels_)
-        is_complete &= rebuildLevel(volume, leaf_cells, blocksOf(touched, level.factor), level, leaf);
-    return is_complete;
+    for (int n = 0; n < most_leaves && level.stale_count > 0; ++n) {
+        const LeafId leaf = level.stale[--level.stale_count];
+        level.is_stale[leaf] = false;
+        is_complete &= rebuild(volume, lattice, level, leaf, lattice.cellsOf(leaf));
+    }
+    return {level.stale_count == 0, is_complete};
 }
 
-bool PointShell::rebuildLevel(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& blocks,
-                              Level& level, LeafId leaf) noexcept {
+// `touched_cells` lie in the leaf; their blocks are rebuilt.
+bool PointShell::rebuild(const VoxelVolume& volume, const LeafLattice& lattice, Level& level, LeafId leaf,
+                         const IndexBox& touched_cells) noexcept {
+    const int factor = level.config.factor;
+    const IndexBox leaf_cells = lattice.cellsOf(leaf);
+    const IndexBox blocks = blocksOf(shifted(touched_cells, -leaf_cells.min), factor);
     fresh_size_ = 0;
-    if (level.factor == 1)
-        pointsOfCells(volume, leaf_cells, blocks);
-    else if (!cells_.patches().empty())
-        pointsOfBlocks(volume, leaf_cells, blocks, level.factor);
+    if (lattice.mayHoldSurface(leaf, volume.iso())) {
+        const IndexBox cells = cellsOf(blocks, factor, leaf_cells.max - leaf_cells.min);
+        cells_.collect(volume, leaf_cells.min, shifted(cells, leaf_cells.min));
+        if (factor == 1)
+            pointsOfCells(volume, leaf_cells, level.config.normals);
+        else if (!cells_.patches().empty())
+            pointsOfBlocks(volume, leaf_cells, blocks, level.config);
+    }
     ShellPool::List& list = level.leaves[leaf];
     level.point_count -= list.count;
     const bool is_stored = pool_.replace(list, blocks, {fresh_.data(), fresh_size_});
@@ -148,20 +156,20 @@ bool PointShell::rebuildLevel(const VoxelVolume& volume, const IndexBox& leaf_ce
 }
 
 void PointShell::pointsOfCells(const VoxelVolume& volume, const IndexBox& leaf_cells,
-                               const IndexBox& cells) noexcept {
+                               ShellNormals normals) noexcept {
     for (const SurfacePatch& patch : cells_.patches()) {
         const Eigen::Vector3i local = cellOf(patch);
-        if (!holds(cells, local)) continue;
         const Eigen::Vector3i cell = leaf_cells.min + local;
         SurfacePlace place;
         if (!projection_.walk(volume, {cell, cell}, patch.centroid, place))
             place = projection_.bracket(volume, {cell, patch.centroid});
-        addPoint(volume, place, patch.area, local);
+        addPoint(volume, place, normals, patch.area, local);
     }
 }
 
 void PointShell::pointsOfBlocks(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& blocks,
-                                int factor) noexcept {
+                                const ShellLevel& level) noexcept {
+    const int factor = level.factor;
     sumBlocks(blocks, factor);
     const Eigen::Vector3i last_cell = leaf_cells.max - leaf_cells.min;
     const BlockSum* sum = sums_.data();
@@ -175,7 +183,7 @@ void PointShell::pointsOfBlocks(const VoxelVolume& volume, const IndexBox& leaf_
                 SurfacePlace place;
                 if (!projection_.walk(volume, shifted(cells, leaf_cells.min), center, place))
                     place = nearestPatchPlace(volume, leaf_cells, cells.min, *sum, center);
-                addPoint(volume, place, sum->area, block);
+                addPoint(volume, place, level.normals, sum->area, block);
             }
 }
 
@@ -188,7 +196,6 @@ void PointShell::sumBlocks(const IndexBox& blocks, int factor) noexcept {
     for (size_t n = 0; n < patches.size(); ++n) {
         const Eigen::Vector3i cell = cellOf(patches[n]);
         const Eigen::Vector3i block = cell / factor;
-        if (!holds(blocks, block)) continue;
         const Eigen::Vector3i at = block - blocks.min;
         BlockSum& sum =
             sums_[size_t(at.x()) + size_t(size.x()) * (size_t(at.y()) + size_t(size.y()) * size_t(at.z()))];
@@ -217,9 +224,9 @@ SurfacePlace PointShell::nearestPatchPlace(const VoxelVolume& volume, const Inde
     return projection_.bracket(volume, {leaf_cells.min + cellOf(*nearest), nearest->centroid});
 }
 
-void PointShell::addPoint(const VoxelVolume& volume, const SurfacePlace& place, float area,
-                          const Eigen::Vector3i& block) noexcept {
-    fresh_[fresh_size_++] = {projection_.position(place), projection_.normal(volume, place), area,
+void PointShell::addPoint(const VoxelVolume& volume, const SurfacePlace& place, ShellNormals normals,
+                          float area, const Eigen::Vector3i& block) noexcept {
+    fresh_[fresh_size_++] = {projection_.position(place), projection_.normal(volume, place, normals), area,
                              packShellKey(block)};
 }
 

@@ -13,6 +13,9 @@
 // Points live in fixed blocks of a pool sized at construction, in ascending order of their cells inside each
 // leaf, so that an incremental refresh gives the very bits of a full rebuild. Only the tick thread touches a
 // PointShell.
+//
+// Only the level that is followed, and one that is being prepared to be followed next, are kept up to date;
+// in the others the leaves that changed are stale: they hold old points until prepare() rebuilds them.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +26,15 @@
 
 namespace bonemill {
 
+struct ShellLevel {
+    int factor = 1;  // s, cells per block edge
+    ShellNormals normals = ShellNormals::kCentralDifference;
+};
+
 struct ShellConfig {
     static constexpr size_t kDefaultSparePoints = 400'000;  // about 50 cm² of new surface at 0.125 mm
 
-    std::vector<int> factors{1};  // cells per block edge of each level: distinct, >= 1
-    ShellNormals normals = ShellNormals::kCentralDifference;
+    std::vector<ShellLevel> levels{ShellLevel{}};  // of distinct factors >= 1
     // Room for surface that milling will open, in points of one cell each; coarser levels get as much
     // surface.
     size_t spare_points = kDefaultSparePoints;
@@ -35,17 +42,36 @@ struct ShellConfig {
 
 class PointShell {
   public:
-    // Builds every leaf at every level. Allocates. Throws std::invalid_argument for factors that are not
-    // distinct and >= 1 and for leaves of more than 1024 blocks per axis.
+    // Builds every leaf at every level and follows level 0. Allocates. Throws std::invalid_argument for
+    // factors that are not distinct and >= 1 and for leaves of more than 1024 blocks per axis.
     PointShell(const VoxelVolume& volume, const LeafLattice& lattice, const ShellConfig& config);
 
-    // Rebuilds the points of all levels that the voxels in `changed_voxels` can influence. RT-safe. False:
-    // the pool is full and some leaves kept their old points at some level.
+    // Rebuilds the points that the voxels in `changed_voxels` can influence, but for stale leaves. RT-safe.
+    // False: the pool is full and some leaves kept their old points.
     bool refresh(const VoxelVolume& volume, const LeafLattice& lattice,
                  const IndexBox& changed_voxels) noexcept;
 
+    // From now on this level is kept up to date, and no other one. Its stale leaves stay stale: prepare() it
+    // first. RT-safe.
+    void follow(int level) noexcept {
+        followed_ = level;
+        prepared_ = kNone;
+    }
+    int followed() const noexcept { return followed_; }
+
+    struct Preparation {
+        bool is_ready;     // no leaf of the level is stale any more
+        bool is_complete;  // false: the pool is full and some leaves kept their old points
+    };
+    // Rebuilds at most `most_leaves` stale leaves of this level, beside the one that is followed. The level's
+    // other leaves are kept up to date as long as no other level is prepared or followed, so that preparing
+    // comes to an end. RT-safe.
+    Preparation prepare(const VoxelVolume& volume, const LeafLattice& lattice, int level,
+                        int most_leaves) noexcept;
+    size_t staleLeaves(int level) const noexcept { return levels_[size_t(level)].stale_count; }
+
     int levelCount() const noexcept { return int(levels_.size()); }
-    int scalingFactor(int level) const noexcept { return levels_[size_t(level)].factor; }
+    int scalingFactor(int level) const noexcept { return levels_[size_t(level)].config.factor; }
     // The level of this factor, -1 if there is none.
     int levelOf(int factor) const noexcept;
 
@@ -61,10 +87,23 @@ class PointShell {
     size_t pointCount(int level) const noexcept { return levels_[size_t(level)].point_count; }
 
   private:
+    static constexpr int kNone = -1;
     struct Level {
-        int factor;
+        ShellLevel config;
         std::vector<ShellPool::List> leaves;
         size_t point_count = 0;
+        std::vector<uint8_t> is_stale;  // per leaf
+        std::vector<LeafId> stale;      // the first stale_count: those leaves
+        size_t stale_count = 0;
+
+        Level(const ShellLevel& level_config, size_t leaf_count)
+            : config(level_config), leaves(leaf_count), is_stale(leaf_count), stale(leaf_count) {}
+        void markStale(LeafId leaf) noexcept {
+            if (!is_stale[leaf]) stale[stale_count++] = leaf;
+            is_stale[leaf] = true;
+        }
+        // Voxels beyond a cell's corners that its point depends on.
+        int reach() const noexcept { return config.normals == ShellNormals::kCentralDifference ? 1 : 0; }
     };
     // Sums over the patches of one block.
     struct BlockSum {
@@ -73,24 +112,25 @@ class PointShell {
         uint32_t last_patch = 0;
     };
 
-    bool rebuild(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf,
+    bool refreshLevel(const VoxelVolume& volume, const LeafLattice& lattice, const IndexBox& changed_voxels,
+                      Level& level, bool is_kept) noexcept;
+    bool rebuild(const VoxelVolume& volume, const LeafLattice& lattice, Level& level, LeafId leaf,
                  const IndexBox& touched_cells) noexcept;
-    bool rebuildLevel(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& blocks,
-                      Level& level, LeafId leaf) noexcept;
-    void pointsOfCells(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& cells) noexcept;
+    void pointsOfCells(const VoxelVolume& volume, const IndexBox& leaf_cells, ShellNormals normals) noexcept;
     void pointsOfBlocks(const VoxelVolume& volume, const IndexBox& leaf_cells, const IndexBox& blocks,
-                        int factor) noexcept;
+                        const ShellLevel& level) noexcept;
     void sumBlocks(const IndexBox& blocks, int factor) noexcept;
     SurfacePlace nearestPatchPlace(const VoxelVolume& volume, const IndexBox& leaf_cells,
                                    const Eigen::Vector3i& block_first, const BlockSum& sum,
                                    const Eigen::Vector3f& center) const noexcept;
-    void addPoint(const VoxelVolume& volume, const SurfacePlace& place, float area,
+    void addPoint(const VoxelVolume& volume, const SurfacePlace& place, ShellNormals normals, float area,
                   const Eigen::Vector3i& block) noexcept;
     void reservePool(const LeafLattice& lattice, size_t spare_points);
 
     std::vector<Level> levels_;
+    int followed_ = 0;
+    int prepared_ = kNone;
     ShellProjection projection_;
-    int reach_;  // voxels beyond a cell's corners that its point depends on
     ShellPool pool_;
 
     // Scratch for one leaf.

@@ -113,11 +113,10 @@ Eigen::Vector3f rootBetween(const CellCorners& corners, Eigen::Vector3f a, float
 
 }  // namespace
 
-ShellProjection::ShellProjection(const VoxelVolume& volume, ShellNormals normals) noexcept
+ShellProjection::ShellProjection(const VoxelVolume& volume) noexcept
     : spacing_(volume.spacing().cast<float>()),
       inverse_spacing_(volume.spacing().cwiseInverse().cast<float>()),
-      steepness_((volume.spacing().maxCoeff() * volume.spacing().cwiseInverse()).cwiseAbs2().cast<float>()),
-      normals_(normals) {}
+      steepness_((volume.spacing().maxCoeff() * volume.spacing().cwiseInverse()).cwiseAbs2().cast<float>()) {}
 
 bool ShellProjection::walk(const VoxelVolume& volume, const IndexBox& block, const Eigen::Vector3f& start,
                            SurfacePlace& place) const noexcept {
@@ -158,9 +157,10 @@ SurfacePlace ShellProjection::bracket(const VoxelVolume& volume, const SurfacePl
             rootBetween(corners, start.at, excess, cornerAt(opposite), corners.excess[size_t(opposite)])};
 }
 
-Eigen::Vector3f ShellProjection::normal(const VoxelVolume& volume, const SurfacePlace& place) const noexcept {
+Eigen::Vector3f ShellProjection::normal(const VoxelVolume& volume, const SurfacePlace& place,
+                                        ShellNormals kind) const noexcept {
     const Eigen::Vector3f gradient =
-        normals_ == ShellNormals::kCentralDifference
+        kind == ShellNormals::kCentralDifference
             ? centralGradient(volume, inverse_spacing_, place)
             : Eigen::Vector3f(sampleField(readCorners(volume, place.cell), place.at)
                                   .slope.cwiseProduct(inverse_spacing_));

@@ -35,7 +35,7 @@ struct SurfacePlace {
 
 class ShellProjection {
   public:
-    ShellProjection(const VoxelVolume& volume, ShellNormals normals) noexcept;
+    explicit ShellProjection(const VoxelVolume& volume) noexcept;
 
     // From `start` (cell steps from the first corner of `block`, inside it) onto the surface without leaving
     // the block. False: no success.
@@ -48,14 +48,14 @@ class ShellProjection {
     Eigen::Vector3f position(const SurfacePlace& place) const noexcept {
         return (place.cell.cast<float>() + place.at).cwiseProduct(spacing_);
     }
-    Eigen::Vector3f normal(const VoxelVolume& volume, const SurfacePlace& place) const noexcept;
+    Eigen::Vector3f normal(const VoxelVolume& volume, const SurfacePlace& place,
+                           ShellNormals kind) const noexcept;
     const Eigen::Vector3f& spacing() const noexcept { return spacing_; }
 
   private:
     Eigen::Vector3f spacing_;          // m
     Eigen::Vector3f inverse_spacing_;  // 1/m
     Eigen::Vector3f steepness_;        // (unit / spacing)², unit = the largest spacing
-    ShellNormals normals_;
 };
 
 }  // namespace bonemill

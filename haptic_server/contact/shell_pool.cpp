@@ -1,5 +1,8 @@
 #include "haptic_server/contact/shell_pool.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace bonemill {
 namespace {
 
@@ -25,6 +28,21 @@ void put(const ShellPoint& point, ShellBlock& b, uint32_t i) noexcept {
     b.nx[i] = point.normal.x(), b.ny[i] = point.normal.y(), b.nz[i] = point.normal.z();
     b.area[i] = point.area;
     b.key[i] = point.key;
+}
+
+void setBounds(ShellBlock& b, uint32_t count) noexcept {
+    const auto first = [count](const float* values) {
+        return Eigen::Map<const Eigen::ArrayXf>(values, count);
+    };
+    float squared = 0;
+    const float* const axes[3] = {b.x, b.y, b.z};
+    for (int axis = 0; axis < 3; ++axis) {
+        const float low = first(axes[axis]).minCoeff(), high = first(axes[axis]).maxCoeff();
+        b.center[axis] = (low + high) / 2;
+        squared += (high - low) * (high - low);
+    }
+    b.radius = std::sqrt(squared) / 2;
+    b.largest_area = first(b.area).maxCoeff();
 }
 
 }  // namespace
@@ -85,14 +103,15 @@ uint32_t ShellPool::merge(const List& list, const Place& from, const IndexBox& k
 // Writes merged_ from `to` on and gives the list as many blocks as its count wants.
 void ShellPool::write(List& list, Place to) noexcept {
     const uint32_t end = to.before + merged_size_;
-    uint32_t left = blocksFor(list.count) * kCapacity - to.before;  // room wanted from here on
-    for (uint32_t n = 0; left > 0; left -= kCapacity) {
+    uint32_t n = 0;
+    for (uint32_t before = to.before; before < list.count; before += kCapacity) {
         const bool is_new = to.block == kNoBlock;
         if (is_new) {
             to.block = takeBlock();
             (to.previous == kNoBlock ? list.first : blocks_[to.previous].next) = to.block;
         }
         for (uint32_t i = 0; i < kCapacity && n < merged_size_; ++i) put(merged_[n++], blocks_[to.block], i);
+        setBounds(blocks_[to.block], std::min(kCapacity, list.count - before));
         to.previous = to.block;
         to.block = blocks_[to.block].next;
         if (to.before + n == end && end < list.count) return;  // the rest stays

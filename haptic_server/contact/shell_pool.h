@@ -18,6 +18,8 @@ struct ShellBlock {
     float area[kCapacity];  // m²
     uint32_t key[kCapacity];
     uint32_t next;
+    // Around the block's points: a sphere (V, m), and the largest of their areas (m²).
+    float center[3], radius, largest_area;
 };
 
 inline constexpr int kShellKeyBits = 10;  // blocks per axis of a leaf: at most 1024

@@ -52,8 +52,9 @@ class HapticTick {
   public:
     HapticTick(const HapticTick&) = delete;
     HapticTick& operator=(const HapticTick&) = delete;
-    // Keeps references; allocates the scratch memory of contact and milling. `reset` may be null (no reset then), and
-    // `accuracy` too (the settings are those of config then).
+    // Keeps references; allocates the scratch memory of contact and milling; from now on the bone's shell
+    // follows the level of the settings in force. `reset` may be null (no reset then), and `accuracy` too
+    // (the settings are those of config then).
     HapticTick(const TickConfig& config, BoneModel& bone, const ToolModel& tool, VolumeReset* reset,
                const AccuracySwitch* accuracy = nullptr);
 
@@ -66,6 +67,7 @@ class HapticTick {
 
   private:
     Pose acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
+    void followChoice(uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
     SpoStep moveAndFeel(double force_factor, uint32_t& faults) noexcept;
     MillingResult mill(const DeviceInput& input, uint32_t& faults) noexcept;

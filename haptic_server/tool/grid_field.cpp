@@ -30,7 +30,8 @@ void GridField::sample(const PointBatch<float>& points_T, SampleBatch<float>& ou
         Eigen::Vector3f gradient = Eigen::Vector3f::Zero();
         const Eigen::Vector3f p(points_T.x[i], points_T.y[i], points_T.z[i]);
         out.distance[i] = grid_.sampleAt(p, gradient);
-        if (out.distance[i] == SdfGrid::kOutsideDistance) out.distance[i] = float(boundOutside(box(), p.cast<double>()));
+        if (out.distance[i] == SdfGrid::kOutsideDistance)
+            out.distance[i] = float(boundOutside(box(), p.cast<double>()));
         out.gx[i] = gradient.x(), out.gy[i] = gradient.y(), out.gz[i] = gradient.z();
     }
 }

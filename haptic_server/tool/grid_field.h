@@ -6,8 +6,8 @@
 
 namespace bonemill {
 
-// The gradient is that of the interpolated distance, so forces made with it conserve energy; its length differs from 1
-// by the grid's error.
+// The gradient is that of the interpolated distance, so forces made with it conserve energy; its length
+// differs from 1 by the grid's error.
 class GridField final : public ToolField {
   public:
     // `thinnest_radius`: m, of the tool's thinnest part.
@@ -19,6 +19,7 @@ class GridField final : public ToolField {
     void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept override;
     void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept override;
     ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
+    double distanceError() const noexcept override { return grid_.spacing() + kRounding; }
     double distanceBound(const Eigen::Vector3d& p_T) const noexcept override;
 
     const SdfGrid& grid() const noexcept { return grid_; }

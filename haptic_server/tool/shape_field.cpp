@@ -20,7 +20,8 @@ Eigen::AlignedBox3d boxOf(const std::vector<ToolShape>& shapes) {
 }
 
 double radiusOf(const ToolShape& shape) {
-    if (const auto* cone = std::get_if<ConeShape>(&shape)) return std::max(cone->from_radius, cone->to_radius);
+    if (const auto* cone = std::get_if<ConeShape>(&shape))
+        return std::max(cone->from_radius, cone->to_radius);
     if (const auto* sphere = std::get_if<SphereShape>(&shape)) return sphere->radius;
     if (const auto* capsule = std::get_if<CapsuleShape>(&shape)) return capsule->radius;
     return std::get<CylinderShape>(shape).radius;
@@ -37,8 +38,13 @@ template <class Scalar>
 struct Axis {
     Scalar fx, fy, fz, ax, ay, az, length;
     Axis(const Vector3d& from, const Vector3d& axis, double l) noexcept
-        : fx(Scalar(from.x())), fy(Scalar(from.y())), fz(Scalar(from.z())), ax(Scalar(axis.x())),
-          ay(Scalar(axis.y())), az(Scalar(axis.z())), length(Scalar(l)) {}
+        : fx(Scalar(from.x())),
+          fy(Scalar(from.y())),
+          fz(Scalar(from.z())),
+          ax(Scalar(axis.x())),
+          ay(Scalar(axis.y())),
+          az(Scalar(axis.z())),
+          length(Scalar(l)) {}
 };
 
 template <class Scalar>
@@ -53,8 +59,8 @@ void nearerRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radi
 
 // On the axis the gradient is zero, as the mean of all directions.
 template <class Scalar>
-void sampleNearerRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radius,
-                       SampleBatch<Scalar>& out) noexcept {
+void sampleRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radius,
+                 SampleBatch<Scalar>& out) noexcept {
     constexpr Scalar kOnAxis = Scalar(1e-15);  // m
     for (int i = 0; i < p.count; ++i) {
         const Scalar x = p.x[i] - s.fx, y = p.y[i] - s.fy, z = p.z[i] - s.fz;
@@ -62,17 +68,33 @@ void sampleNearerRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scala
         const Scalar dx = x - along * s.ax, dy = y - along * s.ay, dz = z - along * s.az;
         const Scalar to_axis = std::sqrt(dx * dx + dy * dy + dz * dz);
         const Scalar scale = 1 / std::max(to_axis, kOnAxis);
-        const bool is_nearer = to_axis - radius < out.distance[i];
-        out.distance[i] = is_nearer ? to_axis - radius : out.distance[i];
-        out.gx[i] = is_nearer ? dx * scale : out.gx[i];
-        out.gy[i] = is_nearer ? dy * scale : out.gy[i];
-        out.gz[i] = is_nearer ? dz * scale : out.gz[i];
+        out.distance[i] = to_axis - radius;
+        out.gx[i] = dx * scale, out.gy[i] = dy * scale, out.gz[i] = dz * scale;
     }
+}
+
+// Chosen into a place of its own: GCC makes branches of a select that may leave its target alone, and then no
+// vector instructions.
+template <class Scalar>
+void chooseNearer(const SampleBatch<Scalar>& other, const SampleBatch<Scalar>& out, const Scalar* theirs,
+                  Scalar* ours, int count) noexcept {
+    alignas(64) Scalar chosen[PointBatch<Scalar>::kCapacity];
+    for (int i = 0; i < count; ++i) chosen[i] = other.distance[i] < out.distance[i] ? theirs[i] : ours[i];
+    std::copy_n(chosen, count, ours);
+}
+
+template <class Scalar>
+void takeNearer(const SampleBatch<Scalar>& other, int count, SampleBatch<Scalar>& out) noexcept {
+    chooseNearer(other, out, other.gx, out.gx, count);
+    chooseNearer(other, out, other.gy, out.gy, count);
+    chooseNearer(other, out, other.gz, out.gz, count);
+    for (int i = 0; i < count; ++i) out.distance[i] = std::min(out.distance[i], other.distance[i]);
 }
 
 // The profile's three segments: both ends and the side.
 template <class Scalar>
-void nearerCone(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar r0, Scalar r1, Scalar* out) noexcept {
+void nearerCone(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar r0, Scalar r1,
+                Scalar* out) noexcept {
     const Scalar widening = r1 - r0;
     const Scalar side2 = s.length * s.length + widening * widening;
     for (int i = 0; i < p.count; ++i) {
@@ -85,8 +107,8 @@ void nearerCone(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar r0, S
         const Scalar on_side = (along * s.length + (off - r0) * widening) / side2;
         const Scalar u = std::min(std::max(on_side, Scalar(0)), Scalar(1));
         const Scalar ex = along - u * s.length, ey = off - r0 - u * widening;
-        const Scalar squared = std::min(std::min(along * along + over0 * over0, beyond * beyond + over1 * over1),
-                                        ex * ex + ey * ey);
+        const Scalar squared = std::min(
+            std::min(along * along + over0 * over0, beyond * beyond + over1 * over1), ex * ex + ey * ey);
         const bool is_inside = along > 0 && beyond < 0 && off - r0 < widening * along / s.length;
         const Scalar distance = std::sqrt(squared);
         out[i] = std::min(out[i], is_inside ? -distance : distance);
@@ -103,7 +125,8 @@ struct ProfileHit {
     Vector2d gradient;
 };
 
-ProfileHit hitSegment(const Vector2d& q, const Vector2d& a, const Vector2d& b, const Vector2d& normal) noexcept {
+ProfileHit hitSegment(const Vector2d& q, const Vector2d& a, const Vector2d& b,
+                      const Vector2d& normal) noexcept {
     const Vector2d ab = b - a;
     const double length2 = ab.squaredNorm();
     const double u = length2 > 0 ? (q - a).dot(ab) / length2 : 0;
@@ -122,10 +145,16 @@ ShapeField::ShapeField(const std::vector<ToolShape>& shapes) : ToolField(boxOf(s
 ShapeField::Solid ShapeField::solidOf(const ToolShape& shape) {
     const auto between = [](bool is_round, const Vector3d& from, const Vector3d& to, double r0, double r1) {
         const double length = (to - from).norm();
-        return Solid{is_round, from, length > 0 ? Vector3d((to - from) / length) : Vector3d::UnitY(), length, {r0, r1}};
+        return Solid{is_round,
+                     from,
+                     length > 0 ? Vector3d((to - from) / length) : Vector3d::UnitY(),
+                     length,
+                     {r0, r1}};
     };
-    if (const auto* s = std::get_if<SphereShape>(&shape)) return between(true, s->center, s->center, s->radius, s->radius);
-    if (const auto* s = std::get_if<CapsuleShape>(&shape)) return between(true, s->from, s->to, s->radius, s->radius);
+    if (const auto* s = std::get_if<SphereShape>(&shape))
+        return between(true, s->center, s->center, s->radius, s->radius);
+    if (const auto* s = std::get_if<CapsuleShape>(&shape))
+        return between(true, s->from, s->to, s->radius, s->radius);
     if (const auto* s = std::get_if<ConeShape>(&shape))
         return between(false, s->from, s->to, s->from_radius, s->to_radius);
     const auto& s = std::get<CylinderShape>(shape);
@@ -156,16 +185,20 @@ void ShapeField::distances(const PointBatch<double>& points_T, double* out) cons
 template <class Scalar>
 void ShapeField::sampleNearest(const PointBatch<Scalar>& points_T, SampleBatch<Scalar>& out) const noexcept {
     std::fill_n(out.distance, points_T.count, std::numeric_limits<Scalar>::max());
+    SampleBatch<Scalar> here;
     for (const Solid& solid : solids_) {
         if (solid.is_round) {
-            sampleNearerRound(points_T, Axis<Scalar>(solid.from, solid.axis, solid.length), Scalar(solid.radius[0]), out);
+            bonemill::sampleRound(points_T, Axis<Scalar>(solid.from, solid.axis, solid.length),
+                                  Scalar(solid.radius[0]), here);
+            takeNearer(here, points_T.count, out);
             continue;
         }
         for (int i = 0; i < points_T.count; ++i) {
             const ToolSample at = sampleCone(solid, {points_T.x[i], points_T.y[i], points_T.z[i]});
             if (!(at.distance < out.distance[i])) continue;
             out.distance[i] = Scalar(at.distance);
-            out.gx[i] = Scalar(at.gradient.x()), out.gy[i] = Scalar(at.gradient.y()), out.gz[i] = Scalar(at.gradient.z());
+            out.gx[i] = Scalar(at.gradient.x()), out.gy[i] = Scalar(at.gradient.y()),
+            out.gz[i] = Scalar(at.gradient.z());
         }
     }
 }
@@ -199,9 +232,9 @@ ToolSample ShapeField::sampleCone(const Solid& s, const Vector3d& p_T) noexcept 
         hitSegment(q, {0, 0}, {0, s.radius[0]}, {-1, 0}),
         hitSegment(q, {s.length, 0}, {s.length, s.radius[1]}, {1, 0}),
         hitSegment(q, {0, s.radius[0]}, {s.length, s.radius[1]}, Vector2d(-widening, s.length).normalized())};
-    const ProfileHit& hit = *std::min_element(std::begin(hits), std::end(hits), [](const auto& a, const auto& b) {
-        return a.distance < b.distance;
-    });
+    const ProfileHit& hit =
+        *std::min_element(std::begin(hits), std::end(hits),
+                          [](const auto& a, const auto& b) { return a.distance < b.distance; });
     const bool is_inside = along > 0 && along < s.length && rho - s.radius[0] < widening * along / s.length;
     ToolSample sample;
     sample.distance = is_inside ? -hit.distance : hit.distance;

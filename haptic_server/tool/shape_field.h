@@ -8,7 +8,8 @@
 
 namespace bonemill {
 
-// Outside of the tool the distance is exact; inside a union it is the depth below the nearest shape's own surface.
+// Outside of the tool the distance is exact; inside a union it is the depth below the nearest shape's own
+// surface.
 class ShapeField final : public ToolField {
   public:
     // At least one checked shape; throws std::invalid_argument otherwise. Allocates.
@@ -19,6 +20,7 @@ class ShapeField final : public ToolField {
     void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept override;
     void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept override;
     ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
+    double distanceError() const noexcept override { return kRounding; }
     double distanceBound(const Eigen::Vector3d& p_T) const noexcept override;
 
   private:

@@ -26,15 +26,17 @@ struct SampleBatch {
 };
 
 struct ToolSample {
-    double distance = 0;                                 // m
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // of `distance` exactly; of length 1 where that is exact
+    double distance = 0;  // m
+    Eigen::Vector3d gradient =
+        Eigen::Vector3d::Zero();  // of `distance` exactly; of length 1 where that is exact
 };
 
 class ToolField {
   public:
     virtual ~ToolField() = default;
 
-    // out[0 .. count-1]: the distance, or where it is not known (far from the tool) a lower bound of it, positive.
+    // out[0 .. count-1]: the distance, or where it is not known (far from the tool) a lower bound of it,
+    // positive.
     virtual void distances(const PointBatch<float>& points_T, float* out) const noexcept = 0;
     virtual void distances(const PointBatch<double>& points_T, double* out) const noexcept = 0;
     // The same distances with their gradients.
@@ -42,17 +44,23 @@ class ToolField {
     virtual void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept = 0;
     // Distance and gradient at one point, double precision.
     virtual ToolSample sample(const Eigen::Vector3d& p_T) const noexcept = 0;
+    // m: distances() and sample() of a batch are nowhere farther from the distance than this, but for lower
+    // bounds.
+    virtual double distanceError() const noexcept = 0;
     // Never above the distance; anywhere.
     virtual double distanceBound(const Eigen::Vector3d& p_T) const noexcept = 0;
 
     // The distance is nowhere negative outside.
     const Eigen::AlignedBox3d& box() const noexcept { return box_; }
-    // Radius of the thinnest part as far as known, m: deeper than that a point may lie nearer to the far side.
+    // Radius of the thinnest part as far as known, m: deeper than that a point may lie nearer to the far
+    // side.
     double thinnestRadius() const noexcept { return thinnest_radius_; }
     // Largest distance of box() from T's origin.
     double reach() const noexcept { return reach_; }
 
   protected:
+    static constexpr double kRounding = 1e-7;  // m, of single precision some 0.1 m from T's origin
+
     ToolField(const Eigen::AlignedBox3d& box, double thinnest_radius) noexcept
         : box_(box),
           thinnest_radius_(thinnest_radius),

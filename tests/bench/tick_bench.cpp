@@ -44,7 +44,7 @@ void measure(const Setting& setting, const RawVolume& scan, const ToolModel& too
                                            ? LeafLattice::leafCellsOfDepth(scan.geometry, 3)
                                            : Eigen::Vector3i::Constant(16);
     BoneModel bone(densify(scan, DensityWindow{-1000, 3000, 600, 0}), leaf_cells,
-                   {.factors = {setting.scaling_factor}});
+                   {.levels = {{setting.scaling_factor}}});
     HapticTick tick({}, bone, tool, nullptr);
     test::ScriptedIo io(test::straightPath(kStart, kEnd, kTicks, kButtonRemove));
     while (tick.tick(io)) {

@@ -19,7 +19,7 @@ Scene::Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, dou
              const std::function<void(TickConfig&)>& edit)
     : config(configOf(variant, dt, edit)),
       bone(std::move(volume), Eigen::Vector3i::Constant(16),
-           ShellConfig{.factors = {config.accuracy.shell_factor}}),
+           ShellConfig{.levels = {{config.accuracy.shell_factor}}}),
       tool(std::move(test_tool.grid), test_tool.shapes, test_tool.thinnest_radius) {}
 
 VolumeGeometry boxOf(const Eigen::Vector3d& size, double spacing) {

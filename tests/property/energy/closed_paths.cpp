@@ -39,10 +39,10 @@ double rough(const Vector3d& p) {
 }
 
 const ContactScene& sceneOf(int body) {
-    static const ContactScene scenes[] = {{cubeGeometry(33, kVoxel), bumps, kBurrAndShaft, {.factors = {1, 2}}},
-                                          {cubeGeometry(33, kVoxel), wedge, kBurrAndShaft, {.factors = {1, 2}}},
-                                          {cubeGeometry(33, kVoxel), slot, kBurrAndShaft, {.factors = {1, 2}}},
-                                          {cubeGeometry(33, kVoxel), rough, kBurrAndShaft, {.factors = {1, 2}}}};
+    static const ContactScene scenes[] = {{cubeGeometry(33, kVoxel), bumps, kBurrAndShaft, {.levels = {{1}, {2}}}},
+                                          {cubeGeometry(33, kVoxel), wedge, kBurrAndShaft, {.levels = {{1}, {2}}}},
+                                          {cubeGeometry(33, kVoxel), slot, kBurrAndShaft, {.levels = {{1}, {2}}}},
+                                          {cubeGeometry(33, kVoxel), rough, kBurrAndShaft, {.levels = {{1}, {2}}}}};
     return scenes[body];
 }
 

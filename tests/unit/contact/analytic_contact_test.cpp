@@ -141,7 +141,7 @@ TEST(AnalyticContact, CoarserLevelsKeepTheForce) {
     const double h = 0.1e-3, radius = 40 * h, depth = 2.6 * h;  // patch 28 voxels wide: 9 points at s = 3
     const Vector3d center = Vector3d::Constant(32.3 * h), normal = Vector3d(1, 2, 3).normalized();
     const ContactScene scene(cubeGeometry(kVoxels, h), halfSpace(center, normal), {SphereShape{{0, 0, 0}, radius}},
-                             {.factors = {1, 2, 3}});
+                             {.levels = {{1}, {2}, {3}}});
     const double truth = M_PI * kKappa * (radius - depth) * depth * depth;
     for (const int factor : {1, 2, 3}) {
         AccuracySettings settings;

@@ -113,6 +113,39 @@ TEST(GradientContact, GatheringFindsAllThatAMotionCanTouch) {
     EXPECT_GT(near.evaluate<double>(tool, moved).contacts, 0u);
 }
 
+// Whatever is skipped leaf by leaf and block by block: as many candidates as a test of every point finds.
+TEST(GradientContact, CandidatesAreThePointsNearTheTool) {
+    const ContactScene scene(cubeGeometry(65, 0.125e-3), bumpyBody(), kBurrAndShaft);
+    std::mt19937 random(21);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    constexpr double kSlack = 1e-8;  // m, of single precision
+    size_t most = 0;
+    for (int n = 0; n < 200; ++n) {
+        const AccuracySettings settings{.patch_points = 1 + n % 2, .refined_points = 0};
+        const ToolField& tool = scene.tool.field(settings);
+        const Pose X_VT{Vector3d(4e-3, 4e-3, 4.8e-3) + 1.5e-3 * Vector3d(uniform(random), uniform(random), uniform(random)),
+                        randomRotation(random)};
+        const double margin = n % 3 * 0.2e-3;
+        const Pose X_TV = X_VT.inverse();
+        size_t surely = 0, perhaps = 0;
+        for (LeafId leaf = 0; leaf < scene.bone.lattice.leafCount(); ++leaf)
+            scene.bone.shell.forEachBlock(0, leaf, [&](const ShellBlock& b, uint32_t count) {
+                for (uint32_t i = 0; i < count; ++i) {
+                    const double patch = settings.patch_points > 1 ? std::sqrt(double(b.area[i]) / 2) : 0;
+                    const double gap = tool.sample(X_TV * Vector3d(b.x[i], b.y[i], b.z[i])).distance - margin - patch;
+                    surely += gap < -kSlack;
+                    perhaps += gap < kSlack;
+                }
+            });
+        GradientContact contact({.stiffness_per_area = 1e11});
+        contact.gather(scene.view(settings), tool, X_VT, margin);
+        ASSERT_GE(contact.candidateCount(), surely);
+        ASSERT_LE(contact.candidateCount(), perhaps);
+        most = std::max(most, contact.candidateCount());
+    }
+    EXPECT_GT(most, 300u);
+}
+
 TEST(GradientContact, SaysWhenThereIsNoRoom) {
     const ContactScene scene(cubeGeometry(33, 0.25e-3), bumpyBody(), kBurrAndShaft);
     GradientContact contact({}, 50);

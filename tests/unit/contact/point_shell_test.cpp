@@ -15,13 +15,25 @@ using test::bodyVolume;
 using test::cubeGeometry;
 using test::sphereAt;
 
-const std::vector<int> kFactors = {1, 2, 3};
+const std::vector<ShellLevel> kLevels = {{1}, {2}, {3}};
+
+std::vector<ShellLevel> levelsOf(const std::vector<int>& factors,
+                                 ShellNormals normals = ShellNormals::kCentralDifference) {
+    std::vector<ShellLevel> levels;
+    for (const int factor : factors) levels.push_back({factor, normals});
+    return levels;
+}
 
 std::vector<ShellPoint> pointsOf(const PointShell& shell, int level, LeafId leaf) {
     std::vector<ShellPoint> points;
     shell.forEachBlock(level, leaf, [&](const ShellBlock& b, uint32_t count) {
-        for (uint32_t i = 0; i < count; ++i)
+        float largest_area = 0;
+        for (uint32_t i = 0; i < count; ++i) {
             points.push_back({{b.x[i], b.y[i], b.z[i]}, {b.nx[i], b.ny[i], b.nz[i]}, b.area[i], b.key[i]});
+            EXPECT_LE((points.back().position - Eigen::Vector3f(b.center)).norm(), b.radius + 1e-8f);
+            largest_area = std::max(largest_area, b.area[i]);
+        }
+        EXPECT_EQ(largest_area, b.largest_area);
     });
     return points;
 }
@@ -43,21 +55,21 @@ double totalArea(const std::vector<ShellPoint>& points) {
     return sum;
 }
 
-void expectSameBits(const PointShell& a, const PointShell& b, uint32_t leaves) {
-    ASSERT_EQ(a.levelCount(), b.levelCount());
-    for (int level = 0; level < a.levelCount(); ++level) {
-        ASSERT_EQ(a.pointCount(level), b.pointCount(level));
-        for (LeafId leaf = 0; leaf < leaves; ++leaf) {
-            const auto pa = pointsOf(a, level, leaf), pb = pointsOf(b, level, leaf);
-            ASSERT_EQ(pa.size(), pb.size()) << "level " << level << " leaf " << leaf;
-            for (size_t i = 0; i < pa.size(); ++i) {
-                ASSERT_EQ(pa[i].key, pb[i].key);
-                ASSERT_EQ(pa[i].position, pb[i].position);
-                ASSERT_EQ(pa[i].normal, pb[i].normal);
-                ASSERT_EQ(pa[i].area, pb[i].area);
-            }
-        }
+void expectSameLeaf(const PointShell& a, const PointShell& b, int level, LeafId leaf) {
+    const auto pa = pointsOf(a, level, leaf), pb = pointsOf(b, level, leaf);
+    ASSERT_EQ(pa.size(), pb.size()) << "level " << level << " leaf " << leaf;
+    for (size_t i = 0; i < pa.size(); ++i) {
+        ASSERT_EQ(pa[i].key, pb[i].key);
+        ASSERT_EQ(pa[i].position, pb[i].position);
+        ASSERT_EQ(pa[i].normal, pb[i].normal);
+        ASSERT_EQ(pa[i].area, pb[i].area);
     }
+}
+
+void expectSameBits(const PointShell& a, const PointShell& b, int level, uint32_t leaves) {
+    EXPECT_EQ(a.staleLeaves(level), 0u);
+    ASSERT_EQ(a.pointCount(level), b.pointCount(level));
+    for (LeafId leaf = 0; leaf < leaves; ++leaf) expectSameLeaf(a, b, level, leaf);
 }
 
 // Slow oracles: the trilinear field and the drawn surface.
@@ -131,7 +143,7 @@ TEST(ShellAreas, AddUpToTheSphere) {
         const double radius = 12.3 * grid.largest;
         const VoxelVolume volume = bodyVolume(grid.geometry, sphereAt(grid.center, radius));
         const LeafLattice lattice(volume, Eigen::Vector3i::Constant(16));
-        const PointShell shell(volume, lattice, {.factors = kFactors});
+        const PointShell shell(volume, lattice, {.levels = kLevels});
         for (int level = 0; level < 3; ++level)
             EXPECT_NEAR(totalArea(allPoints(shell, level, lattice)) / (4 * M_PI * radius * radius), 1, 0.02)
                 << spacing.transpose() << " level " << level;
@@ -151,7 +163,7 @@ TEST(ShellAreas, AddUpToTheCylinder) {
             return (p - grid.center).cross(axis).norm() - radius;
         });
         const LeafLattice lattice(volume, Eigen::Vector3i::Constant(16));
-        const PointShell shell(volume, lattice, {.factors = kFactors});
+        const PointShell shell(volume, lattice, {.levels = kLevels});
         const double truth = 2 * M_PI * radius * length * 16 / 15;  // ∫ bump = 16/15
         for (int level = 0; level < 3; ++level) {
             const double area = weightedArea(allPoints(shell, level, lattice), [&](const Eigen::Vector3d& p) {
@@ -176,7 +188,7 @@ TEST(ShellAreas, AddUpToAPlaneOfAnyOrientation) {
         const double radius = 17 * grid.largest;
         const VoxelVolume volume = bodyVolume(grid.geometry, test::halfSpace(point, normal));
         const LeafLattice lattice(volume, Eigen::Vector3i::Constant(16));
-        const PointShell shell(volume, lattice, {.factors = kFactors});
+        const PointShell shell(volume, lattice, {.levels = kLevels});
         for (int level = 0; level < 3; ++level) {
             const double area = weightedArea(allPoints(shell, level, lattice), [&](const Eigen::Vector3d& p) {
                 return bump((p - point).norm() / radius);
@@ -197,7 +209,7 @@ TEST(ShellPoints, LieOnTheTrilinearSurfaceAndNearTheSphere) {
             const double radius = 12.3 * h;
             const VoxelVolume volume = bodyVolume(grid.geometry, sphereAt(grid.center, radius));
             const LeafLattice lattice(volume, Eigen::Vector3i(16, 11, 16));
-            const PointShell shell(volume, lattice, {.factors = kFactors, .normals = normals});
+            const PointShell shell(volume, lattice, {.levels = levelsOf({1, 2, 3}, normals)});
             const double counts_per_voxel = kMaxDensity / 4.0;
             const double diagonal = std::sqrt(3.0) * counts_per_voxel;  // largest |density - iso| in a cell
             for (int level = 0; level < 3; ++level)
@@ -220,7 +232,7 @@ TEST(ShellPoints, NoiseGivesPointsOnTheSurfaceWithTheMeshsArea) {
         std::mt19937 random(seed);
         seed % 2 ? test::fillWaves(volume, random) : test::fillNoise(volume, random);
         const LeafLattice lattice(volume, {3, 4, 3});  // small leaves: the mesh's vertices are rounded less
-        const PointShell shell(volume, lattice, {.factors = kFactors, .normals = ShellNormals(seed / 2 % 2)});
+        const PointShell shell(volume, lattice, {.levels = levelsOf({1, 2, 3}, ShellNormals(seed / 2 % 2))});
         const double expected = meshArea(volume, lattice);
         const Eigen::AlignedBox3d inside(  // away from the border's cells, their faces included
             0.01 * volume.spacing(),
@@ -250,7 +262,7 @@ TEST(ShellPoints, KeepToTheirBlocks) {
     std::mt19937 random(3);
     test::fillNoise(volume, random);
     const LeafLattice lattice(volume, {7, 5, 8});
-    const PointShell shell(volume, lattice, {.factors = kFactors});
+    const PointShell shell(volume, lattice, {.levels = kLevels});
     for (int level = 0; level < 3; ++level)
         for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
             const IndexBox cells = lattice.cellsOf(leaf);
@@ -270,24 +282,84 @@ TEST(ShellPoints, KeepToTheirBlocks) {
 // leaf cells, normals
 class ShellRefresh : public testing::TestWithParam<std::tuple<int, ShellNormals>> {};
 
-TEST_P(ShellRefresh, GivesTheBitsOfAFullRebuildAtAllLevels) {
-    const auto [leaf_cells, normals] = GetParam();
-    const VolumeGeometry geometry = test::boxGeometry({37, 31, 34});
-    VoxelVolume volume = bodyVolume(geometry, sphereAt(Eigen::Vector3d(7e-3, 8e-3, 12e-3), 6.3e-3));
-    LeafLattice lattice(volume, Eigen::Vector3i::Constant(leaf_cells));
-    const ShellConfig config{.factors = {3, 1, 2}, .normals = normals, .spare_points = 60'000};
-    PointShell shell(volume, lattice, config);
-    std::mt19937 random(7);
-    std::uniform_int_distribution<int> density(0, kMaxDensity), way(0, 2);
-    for (int edit = 0; edit < 60; ++edit) {
+// A bone that is edited at random, and what its shell must then be.
+struct EditedBone {
+    EditedBone(int leaf_cells, std::vector<ShellLevel> levels)
+        : volume(bodyVolume(test::boxGeometry({37, 31, 34}),
+                            sphereAt(Eigen::Vector3d(7e-3, 8e-3, 12e-3), 6.3e-3))),
+          lattice(volume, Eigen::Vector3i::Constant(leaf_cells)),
+          config{.levels = std::move(levels), .spare_points = 60'000},
+          shell(volume, lattice, config) {}
+
+    void edit() {
+        std::uniform_int_distribution<int> density(0, kMaxDensity), way(0, 2);
         const IndexBox box = test::randomBox(volume, 6, random);
         const int what = way(random);  // noise, all bone, all air
         test::writeLikeTick(volume, lattice, box, [&](int, int, int) {
             return what == 0 ? Density(density(random)) : what == 1 ? kMaxDensity : Density(0);
         });
         ASSERT_TRUE(shell.refresh(volume, lattice, box));
-        expectSameBits(shell, PointShell(volume, lattice, config), lattice.leafCount());
     }
+    PointShell rebuilt() const { return PointShell(volume, lattice, config); }
+
+    VoxelVolume volume;
+    LeafLattice lattice;
+    ShellConfig config;
+    PointShell shell;
+    std::mt19937 random{7};
+};
+
+TEST_P(ShellRefresh, GivesTheBitsOfAFullRebuildAtTheFollowedLevel) {
+    const auto [leaf_cells, normals] = GetParam();
+    for (int level = 0; level < 3; ++level) {
+        EditedBone bone(leaf_cells, levelsOf({3, 1, 2}, normals));
+        bone.shell.follow(level);
+        for (int n = 0; n < 30; ++n) {
+            bone.edit();
+            expectSameBits(bone.shell, bone.rebuilt(), level, bone.lattice.leafCount());
+        }
+    }
+}
+
+TEST_P(ShellRefresh, FollowsOneLevelWhileAnotherIsPrepared) {
+    const auto [leaf_cells, normals] = GetParam();
+    EditedBone bone(leaf_cells,
+                    {{1, normals}, {2, ShellNormals::kTrilinear}, {3, ShellNormals::kCentralDifference}});
+    std::uniform_int_distribution<int> any_level(0, 2), some(0, int(bone.lattice.leafCount()) / 4 + 1),
+        die(0, 9);
+    int switches = 0;
+    for (int n = 0, wanted = 0; n < 200; ++n) {
+        bone.edit();
+        if (die(bone.random) == 0) wanted = any_level(bone.random);
+        const size_t stale = bone.shell.staleLeaves(wanted);
+        const int most = some(bone.random);
+        const auto [is_ready, is_complete] = bone.shell.prepare(bone.volume, bone.lattice, wanted, most);
+        EXPECT_TRUE(is_complete);
+        EXPECT_EQ(bone.shell.staleLeaves(wanted), stale - std::min(stale, size_t(most)));
+        EXPECT_EQ(is_ready, bone.shell.staleLeaves(wanted) == 0);
+        if (is_ready && wanted != bone.shell.followed()) {
+            bone.shell.follow(wanted);
+            ++switches;
+        }
+        const PointShell rebuilt = bone.rebuilt();
+        expectSameBits(bone.shell, rebuilt, bone.shell.followed(), bone.lattice.leafCount());
+        if (is_ready) expectSameBits(bone.shell, rebuilt, wanted, bone.lattice.leafCount());
+    }
+    EXPECT_GT(switches, 4);
+}
+
+TEST(PointShell, KeepsNoLevelUpToDateThatNobodyWants) {
+    EditedBone bone(8, levelsOf({1, 2, 3}));
+    bone.edit();
+    EXPECT_EQ(bone.shell.staleLeaves(0), 0u);
+    EXPECT_GT(bone.shell.staleLeaves(1), 0u);
+    EXPECT_GT(bone.shell.staleLeaves(2), 0u);
+    EXPECT_TRUE(bone.shell.prepare(bone.volume, bone.lattice, 1, 1000).is_ready);
+    bone.edit();
+    EXPECT_EQ(bone.shell.staleLeaves(1), 0u);  // kept while it is being prepared
+    bone.shell.follow(0);
+    bone.edit();
+    EXPECT_GT(bone.shell.staleLeaves(1), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(LeavesAndNormals, ShellRefresh,
@@ -300,7 +372,7 @@ TEST(PointShell, CrossesAsManyBlocksAsTheSurfaceDoes) {
     const double radius = 3.7e-3;
     const VoxelVolume volume = bodyVolume(cubeGeometry(41, h), sphereAt({5.1e-3, 4.9e-3, 5.03e-3}, radius));
     const LeafLattice lattice(volume, Eigen::Vector3i::Constant(12));
-    const PointShell shell(volume, lattice, {.factors = kFactors});
+    const PointShell shell(volume, lattice, {.levels = kLevels});
     for (int level = 0; level < 3; ++level) {
         // A surface of area A crosses about 1.5 A / (s h)² blocks of edge s h.
         const int s = shell.scalingFactor(level);
@@ -312,7 +384,7 @@ TEST(PointShell, CrossesAsManyBlocksAsTheSurfaceDoes) {
 TEST(PointShell, LevelsAreFoundByTheirFactor) {
     const VoxelVolume volume(cubeGeometry(8, 1e-3), test::kTestIso);
     const LeafLattice lattice(volume, Eigen::Vector3i::Constant(4));
-    const PointShell shell(volume, lattice, {.factors = {3, 1}});
+    const PointShell shell(volume, lattice, {.levels = {{3}, {1}}});
     EXPECT_EQ(shell.levelCount(), 2);
     EXPECT_EQ(shell.levelOf(3), 0);
     EXPECT_EQ(shell.levelOf(1), 1);
@@ -325,7 +397,7 @@ TEST(PointShell, RefusesFactorsThatAreNoneOrNotDistinct) {
     const LeafLattice lattice(volume, Eigen::Vector3i::Constant(4));
     for (const std::vector<int>& factors :
          {std::vector<int>{}, std::vector<int>{0}, std::vector<int>{1, -2}, std::vector<int>{2, 1, 2}})
-        EXPECT_THROW(PointShell(volume, lattice, {.factors = factors}), std::invalid_argument);
+        EXPECT_THROW(PointShell(volume, lattice, {.levels = levelsOf(factors)}), std::invalid_argument);
 }
 
 // All crossings lie in the one voxel: triangles without area.
@@ -333,7 +405,7 @@ TEST(PointShell, SurfaceThatOnlyTouchesAVoxelGivesNoPoint) {
     VoxelVolume volume(cubeGeometry(8, 1e-3), test::kTestIso);
     volume.set(3, 3, 3, test::kTestIso);
     const LeafLattice lattice(volume, Eigen::Vector3i::Constant(4));
-    const PointShell shell(volume, lattice, {.factors = kFactors});
+    const PointShell shell(volume, lattice, {.levels = kLevels});
     for (int level = 0; level < 3; ++level) EXPECT_EQ(shell.pointCount(level), 0u);
 }
 

@@ -19,7 +19,7 @@ constexpr Density kIsos[] = {32768, 26214, 45000, 9000};
 BoneModel filled(const Eigen::Vector3i& dims, const Eigen::Vector3d& spacing, Density iso, Density density) {
     VoxelVolume volume(test::boxGeometry(dims, spacing), iso);
     test::forEachVoxel(test::wholeBox(volume), [&](int i, int j, int k) { volume.set(i, j, k, density); });
-    return BoneModel(std::move(volume), Eigen::Vector3i(16, 12, 16), {.factors = {1, 2, 3}});
+    return BoneModel(std::move(volume), Eigen::Vector3i(16, 12, 16), {.levels = {{1}, {2}, {3}}});
 }
 
 // Half a side of this length around the burr, whatever the spacing.
@@ -259,11 +259,12 @@ TEST(SubVoxelMilling, ShellAndRangesFollowWhateverTheShape) {
                                    center + n * 13e-6 * Eigen::Vector3d::UnitX(), stroke % 4 ? -1 : +1, kDt)
                             .shell_is_complete);
         const LeafLattice lattice(bone.volume, bone.lattice.leafCells());
-        const PointShell shell(bone.volume, lattice, {.factors = {1, 2, 3}, .spare_points = 0});
+        const PointShell shell(bone.volume, lattice, {.levels = {{1}, {2}, {3}}, .spare_points = 0});
         for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
             ASSERT_EQ(bone.lattice.range(0, leaf).min, lattice.range(0, leaf).min);
             ASSERT_EQ(bone.lattice.range(0, leaf).max, lattice.range(0, leaf).max);
             for (int level = 0; level < 3; ++level) {
+                bone.shell.prepare(bone.volume, bone.lattice, level, int(lattice.leafCount()));
                 std::vector<float> a, b;
                 const auto gather = [](std::vector<float>& out) {
                     return [&out](const ShellBlock& block, uint32_t count) {

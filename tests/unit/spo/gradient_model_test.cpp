@@ -16,7 +16,7 @@ const Eigen::Quaterniond kUpright = expRotation({M_PI / 2, 0, 0});
 
 ContactScene flatScene(const Vector3d& normal = Vector3d::UnitZ()) {
     return {cubeGeometry(33, kVoxel), halfSpace({4.8e-3, 4.8e-3, kTop}, normal), {SphereShape{{0, 0, 0}, kRadius}},
-            {.factors = {1, 2}}};
+            {.levels = {{1}, {2}}}};
 }
 
 GradientConfig stiff() {

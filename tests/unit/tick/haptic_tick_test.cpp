@@ -179,6 +179,36 @@ TEST(HapticTick, CorridorHasTheVolumeOfTheSweptBurr) {
     EXPECT_NEAR((volume_before - bench.boneVolume()) / swept, 1, slack);
 }
 
+// Ticks go on with the old settings until the new ones' contact points are up to date, whatever is milled
+// meanwhile.
+TEST(HapticTick, ChangedSettingsAreTakenUpWhenTheirPointsAreReady) {
+    Bench bench;
+    BoneModel bone(Bench::slab({}), Eigen::Vector3i::Constant(8), {.levels = {{1}, {2}, {3}}});
+    AccuracySwitch accuracy(presetSettings(Preset::kThesis2012));  // factor 3
+    HapticTick tick(bench.config, bone, bench.tool, nullptr, &accuracy);
+    const auto factor = [&] { return bone.shell.scalingFactor(bone.shell.followed()); };
+    const Pose start{kStart, Eigen::Quaterniond::Identity()};
+    const auto mill = [&](int ticks) {
+        test::ScriptedIo io(
+            test::straightPath(start, kStart - Eigen::Vector3d(0, 0, 2e-3), ticks, kButtonRemove));
+        while (tick.tick(io)) {
+        }
+    };
+    mill(400);
+    EXPECT_EQ(factor(), 3);
+    EXPECT_GT(bone.shell.staleLeaves(0), 2u);
+    accuracy.choose(AccuracySwitch::choiceOf(Preset::kBalanced));
+    mill(1);
+    EXPECT_EQ(factor(), 3);
+    accuracy.choose(AccuracySwitch::choiceOf(Preset::kFast));  // the newest choice counts
+    mill(200);
+    EXPECT_EQ(factor(), 2);
+    EXPECT_EQ(bone.shell.staleLeaves(1), 0u);
+    EXPECT_GT(bone.shell.staleLeaves(0), 0u);
+    const PointShell fresh(bone.volume, bone.lattice, {.levels = {{2}}});
+    EXPECT_EQ(bone.shell.pointCount(1), fresh.pointCount(0));
+}
+
 TEST(HapticTick, TwoRunsAreBitIdentical) {
     const auto run_once = [] {
         Bench bench;

@@ -25,7 +25,7 @@ struct SwitchingBench {
 
     static ShellConfig shellLevels() {
         ShellConfig config;
-        config.factors = {1, 2, 3};
+        config.levels = {{1}, {2}, {3}};
         return config;
     }
     static Pose at(double z) { return {{4.05e-3, 3.95e-3, z}, Eigen::Quaterniond::Identity()}; }

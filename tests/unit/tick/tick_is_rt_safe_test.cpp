@@ -66,6 +66,19 @@ TEST_F(TickIsRtSafe, AsThesis2012) {
     expectQuiet(tick, test::straightPath(at(3e-3), {4e-3, 4e-3, 6e-3}, 300, kButtonAdd));
 }
 
+TEST_F(TickIsRtSafe, WhileLevelsArePreparedAndTakenUp) {
+    BoneModel bone(test::bodyVolume(test::cubeGeometry(64, 0.125e-3),
+                                    test::halfSpace({0, 0, 5e-3}, Eigen::Vector3d::UnitZ())),
+                   Eigen::Vector3i::Constant(16), {.levels = {{1}, {2}, {3}}});
+    AccuracySwitch accuracy(presetSettings(Preset::kBalanced));
+    HapticTick tick({}, bone, tool_, nullptr, &accuracy);
+    for (const Preset preset : {Preset::kFast, Preset::kThesis2012, Preset::kExact}) {
+        accuracy.choose(AccuracySwitch::choiceOf(preset));
+        expectQuiet(tick, test::straightPath(at(6.2e-3), {4e-3, 4e-3, 3e-3}, 300, kButtonRemove));
+        EXPECT_EQ(bone.shell.scalingFactor(bone.shell.followed()), presetSettings(preset).shell_factor);
+    }
+}
+
 TEST_F(TickIsRtSafe, WhileFaultsHappen) {
     auto inputs = test::straightPath(at(6e-3), {4e-3, 4e-3, 5.5e-3}, 100, kButtonRemove);
     inputs[20].X_WT_device.position.setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -12,7 +12,7 @@ TEST(VolumeReset, GivesBackTheScannedBoneAndItsShell) {
     const auto make = [] {
         return BoneModel(test::bodyVolume(test::cubeGeometry(40, 0.5e-3),
                                           test::sphereAt(Eigen::Vector3d::Constant(10e-3), 7e-3)),
-                         Eigen::Vector3i::Constant(8), ShellConfig{});
+                         Eigen::Vector3i::Constant(8), {.levels = {{1}, {2}}});
     };
     BoneModel bone = make();
     const BoneModel original = make();
@@ -35,7 +35,10 @@ TEST(VolumeReset, GivesBackTheScannedBoneAndItsShell) {
     for (int k = 0; k < 40; ++k)
         for (int j = 0; j < 40; ++j)
             for (int i = 0; i < 40; ++i) ASSERT_EQ(bone.volume.at(i, j, k), original.volume.at(i, j, k));
-    EXPECT_EQ(bone.shell.pointCount(0), original.shell.pointCount(0));
+    EXPECT_GT(bone.shell.staleLeaves(1), 0u);
+    EXPECT_TRUE(bone.shell.prepare(bone.volume, bone.lattice, 1, int(bone.lattice.leafCount())).is_ready);
+    for (int level = 0; level < 2; ++level)
+        EXPECT_EQ(bone.shell.pointCount(level), original.shell.pointCount(level));
     for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
         EXPECT_EQ(bone.lattice.version(leaf) % 2, 0u);
 }
