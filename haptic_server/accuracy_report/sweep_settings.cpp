@@ -1,0 +1,78 @@
+#include "haptic_server/accuracy_report/sweep_settings.h"
+
+#include <algorithm>
+
+namespace bonemill {
+namespace {
+
+class Choices {
+  public:
+    void add(const AccuracySettings& settings) {
+        if (std::find(list.begin(), list.end(), settings) == list.end()) list.push_back(settings);
+    }
+    // `base` with one member changed.
+    template <class Value>
+    void vary(AccuracySettings base, Value AccuracySettings::*knob, std::initializer_list<Value> values) {
+        for (const Value value : values) {
+            base.*knob = value;
+            add(base);
+        }
+    }
+
+    std::vector<AccuracySettings> list;
+};
+
+void addAroundBalanced(Choices& choices, bool has_shapes) {
+    using S = AccuracySettings;
+    S base = presetSettings(Preset::kBalanced);
+    S grid = base;
+    grid.tool_distance = ToolDistance::kGrid;
+    if (!has_shapes) base = grid;
+    choices.vary(base, &S::shell_factor, {2, 3});
+    choices.vary(grid, &S::sdf_refinement, {1, 2, 4});
+    choices.vary(base, &S::precision, {Precision::kDouble});
+    choices.vary(base, &S::iterations, {1, 4, 8});
+    choices.vary(base, &S::continuous_collision, {false});
+}
+
+void addCombinations(Choices& choices, bool has_shapes) {
+    const ToolDistance best = has_shapes ? ToolDistance::kAnalytic : ToolDistance::kGrid;
+    for (const int factor : {2, 3})
+        choices.add({ContactLaw::kGradient, factor, best, 1, Precision::kFloat, 1, true});
+    choices.add({ContactLaw::kGradient, 3, ToolDistance::kGrid, 1, Precision::kFloat, 1, true});
+    choices.add({ContactLaw::kGradient, 1, ToolDistance::kGrid, 1, Precision::kFloat, 1, true});
+    choices.add({ContactLaw::kGradient, 2, best, 1, Precision::kFloat, 4, true});
+}
+
+void setTo(scene::Accuracy& knobs, const AccuracySettings& settings) {
+    using scene::Accuracy;
+    knobs.set_contact_law(settings.law == ContactLaw::kGradient ? Accuracy::GRADIENT
+                                                                : Accuracy::PENALTY_THESIS_2012);
+    knobs.set_shell_factor(uint32_t(settings.shell_factor));
+    knobs.set_tool_distance(settings.tool_distance == ToolDistance::kGrid ? Accuracy::GRID
+                                                                          : Accuracy::ANALYTIC);
+    knobs.set_sdf_refinement(uint32_t(settings.sdf_refinement));
+    knobs.set_precision(settings.precision == Precision::kDouble ? Accuracy::DOUBLE : Accuracy::FLOAT);
+    knobs.set_iterations(uint32_t(settings.iterations));
+    knobs.set_continuous_collision(settings.continuous_collision);
+}
+
+}  // namespace
+
+std::vector<AccuracySettings> sweepSettings(const AccuracySettings& of_scene, bool has_shapes) {
+    Choices choices;
+    for (const Preset preset : kPresets) choices.add(presetSettings(preset));
+    addAroundBalanced(choices, has_shapes);
+    addCombinations(choices, has_shapes);
+    choices.vary(presetSettings(Preset::kThesis2012), &AccuracySettings::shell_factor, {1, 2});
+    choices.add(of_scene);
+    return choices.list;
+}
+
+scene::Scene sceneWith(const scene::Scene& scene, const AccuracySettings& settings) {
+    scene::Scene changed = scene;
+    setTo(*changed.mutable_accuracy(), settings);
+    return changed;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,91 @@
+#include "haptic_server/accuracy_report/truth.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
+
+#include "haptic_server/accuracy_report/fine_bone.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kMostVoxels = 100'000'000;  // 200 MB of densities per thread
+constexpr int kLeafCells = 16;
+constexpr double kReach = 0.5e-3;  // m: bone this near to the tool's way may be touched
+// Beyond it: the part's cut faces, which are no bone surface, are farther from the tool than any touchable
+// surface.
+constexpr double kMargin = 1.5 * kReach;
+constexpr size_t kEveryPose = 8;
+
+// All bone that the tool can come near, which lags behind the device by as much as the hand presses.
+IndexBox partFor(const ProbingStroke& stroke, const BoneModel& bone, const TouchProbe& probe) {
+    std::vector<Pose> poses;
+    for (size_t n = 0; n < stroke.device.size(); n += kEveryPose) poses.push_back(stroke.device[n]);
+    const Eigen::AlignedBox3d near = probe.surfaceNear(poses, kReach + stroke.deepest);
+    if (near.isEmpty()) return {};
+    return voxelsAround(bone.volume, near, kMargin);
+}
+
+Truth truthAt(const ProbingStroke& stroke, const TickConfig& tick, BoneModel& fine, const ToolModel& tool) {
+    TickConfig config = tick;
+    config.accuracy = truthSettings();
+    Truth truth;
+    const RunRecords records = runPath(config, fine, tool, stroke.device);
+    truth.answers = answersOf(records);
+    for (const TickRecord& record : records)
+        truth.max_penetration = std::max(truth.max_penetration, record.max_penetration);
+    const auto overflows = [](const TickRecord& record) { return record.faults & kFaultContactOverflow; };
+    if (std::any_of(records.begin(), records.end(), overflows)) truth.answers.clear();
+    return truth;
+}
+
+Truth computeOne(const ProbingStroke& stroke, const TickConfig& tick, const BoneModel& bone,
+                 const ToolModel& tool, const TouchProbe& probe) {
+    const IndexBox part = partFor(stroke, bone, probe);
+    if (part.isEmpty()) return {};
+    for (int times = affordableRefinement(part, kTruthRefinement, kMostVoxels); times >= 1; --times) {
+        BoneModel fine(refinedPart(bone.volume, part, times), Eigen::Vector3i::Constant(kLeafCells),
+                       {.factors = {1}, .normals = ShellNormals::kCentralDifference, .spare_points = 1});
+        Truth truth = truthAt(stroke, tick, fine, tool);
+        truth.refinement = times;
+        if (!truth.answers.empty()) return truth;
+    }
+    return {};
+}
+
+}  // namespace
+
+AccuracySettings truthSettings() noexcept {
+    return {ContactLaw::kGradient,
+            1,
+            ToolDistance::kAnalytic,
+            kTruthRefinement,
+            Precision::kDouble,
+            AccuracySettings::kMostIterations,
+            true};
+}
+
+std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const TickConfig& tick,
+                                const BoneModel& bone, const ToolModel& tool, const TouchProbe& probe,
+                                int threads) {
+    std::vector<Truth> truth(strokes.size());
+    std::vector<std::exception_ptr> failures(strokes.size());
+    std::atomic<size_t> next{0};
+    {
+        std::vector<std::jthread> workers;
+        for (int n = 0; n < threads; ++n)
+            workers.emplace_back([&] {
+                for (size_t i = next++; i < strokes.size(); i = next++) try {
+                        truth[i] = computeOne(strokes[i], tick, bone, tool, probe);
+                    } catch (...) {
+                        failures[i] = std::current_exception();
+                    }
+            });
+    }
+    for (const std::exception_ptr& failure : failures)
+        if (failure) std::rethrow_exception(failure);
+    return truth;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,26 @@
+// What a stroke should feel like: the same contact law and coupling on the same trilinear surface, computed
+// as finely as can be waited for.
+#pragma once
+
+#include "haptic_server/accuracy_report/measures.h"
+#include "haptic_server/accuracy_report/probing_path.h"
+
+namespace bonemill {
+
+struct Truth {
+    std::vector<Answer> answers;
+    double max_penetration = 0;  // m
+    int refinement = 0;          // of the voxels; kTruthRefinement unless memory forbade it
+};
+inline constexpr int kTruthRefinement = 4;
+
+// The settings of the truth: a contact point in each (refined) cell, analytic tool or its grid refined 4
+// times, double precision, the most iterations.
+AccuracySettings truthSettings() noexcept;
+
+// For each stroke. `tick` gives the rest of the configuration. Uses `threads` at a time.
+std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const TickConfig& tick,
+                                const BoneModel& bone, const ToolModel& tool, const TouchProbe& probe,
+                                int threads);
+
+}  // namespace bonemill
