@@ -167,13 +167,14 @@ PlaneErrors AnalyticProbe::measure(const AccuracySettings& settings) {
     return errors;
 }
 
-PatchErrors AnalyticProbe::patchAt(int shell_factor, ToolDistance tool_distance, double width_voxels) const {
+PatchErrors AnalyticProbe::patchAt(const AccuracySettings& settings, double width_voxels) const {
     const double radius = config_.tick.burr_radius;
     const double kappa = config_.tick.gradient.contact.stiffness_per_area;
-    AccuracySettings settings;
-    settings.tool_distance = tool_distance;
-    PatchErrors errors{shell_factor, tool_distance, width_voxels,
-                       depthOfWidth(radius, width_voxels * config_.spacing)};
+    PatchErrors errors{.shell_factor = settings.shell_factor,
+                       .tool_distance = settings.tool_distance,
+                       .sdf_refinement = settings.sdf_refinement,
+                       .width_voxels = width_voxels,
+                       .depth = depthOfWidth(radius, width_voxels * config_.spacing)};
     const double true_force = forceOnSphere(kappa, radius, errors.depth);
     GradientContact contact({.stiffness_per_area = kappa, .stiffness_cap = INFINITY});
     const ToolField& field = burr_.field(settings);
@@ -181,7 +182,7 @@ PatchErrors AnalyticProbe::patchAt(int shell_factor, ToolDistance tool_distance,
         const BoneModel& bone = plane->bone;
         const Pose X_WV = bone.volume.geometry().X_WV;
         const Pose X_VT = X_WV.inverse() * Pose{{0, 0, radius - errors.depth}, plane->R_WT};
-        contact.gather(bone.volume, bone.lattice, bone.shell, bone.shell.levelOf(shell_factor), field, X_VT,
+        contact.gather(bone.volume, bone.lattice, bone.shell, levelOf(bone.shell, settings), field, X_VT,
                        1e-6);
         const Vector3d force = X_WV.rotation * contact.evaluate<double>(field, X_VT).term.wrench.force;
         const double error = std::abs(force.norm() / true_force - 1);
@@ -195,12 +196,17 @@ PatchErrors AnalyticProbe::patchAt(int shell_factor, ToolDistance tool_distance,
 }
 
 std::vector<PatchErrors> AnalyticProbe::patchErrors() const {
+    std::vector<std::pair<ToolDistance, int>> tools{{ToolDistance::kAnalytic, 1}, {ToolDistance::kGrid, 1}};
+    for (const int refinement : config_.refinements) tools.emplace_back(ToolDistance::kGrid, refinement);
     std::vector<PatchErrors> all;
-    for (const ToolDistance tool_distance : {ToolDistance::kAnalytic, ToolDistance::kGrid})
-        for (const int factor : config_.shell_factors)
-            for (const double width : kWidths)
-                if (width * config_.spacing <= kWidestOfRadius * config_.tick.burr_radius)
-                    all.push_back(patchAt(factor, tool_distance, width));
+    for (const int factor : config_.shell_factors)
+        for (const double width : kWidths) {
+            if (width * config_.spacing > kWidestOfRadius * config_.tick.burr_radius) continue;
+            for (const auto& [tool_distance, refinement] : tools)
+                all.push_back(
+                    patchAt({ContactLaw::kGradient, factor, tool_distance, refinement, Precision::kDouble, 1},
+                            width));
+        }
     return all;
 }
 

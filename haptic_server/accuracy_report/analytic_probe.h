@@ -28,6 +28,7 @@ struct PlaneErrors {
 struct PatchErrors {
     int shell_factor = 1;
     ToolDistance tool_distance = ToolDistance::kAnalytic;
+    int sdf_refinement = 1;
     double width_voxels = 0;   // diameter of the contact circle
     double depth = 0;          // m
     double force_rms = 0;      // of 1, over the grids
@@ -51,12 +52,12 @@ class AnalyticProbe {
     ~AnalyticProbe();
 
     PlaneErrors measure(const AccuracySettings& settings);
-    // For all shell factors, with the analytic burr and with its grid.
+    // For all shell factors, with the analytic burr and with all its grids.
     std::vector<PatchErrors> patchErrors() const;
 
   private:
     struct Plane;  // the half-space z_W < 0 in voxels of its own direction
-    PatchErrors patchAt(int shell_factor, ToolDistance tool_distance, double width_voxels) const;
+    PatchErrors patchAt(const AccuracySettings& settings, double width_voxels) const;
 
     AnalyticProbeConfig config_;
     ToolModel burr_;

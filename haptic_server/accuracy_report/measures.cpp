@@ -32,6 +32,7 @@ void ErrorSum::add(const std::vector<Answer>& answers, const std::vector<Answer>
         const double force = t.hand.force.norm();
         if (force < Errors::kFeltForce) continue;
         ++ticks_;
+        force_vector_ += (a.hand.force - t.hand.force).squaredNorm();
         force_ += square(a.hand.force.norm() - force);
         true_force_ += square(force);
         torque_ += square(a.hand.torque.norm() - t.hand.torque.norm());
@@ -45,7 +46,8 @@ void ErrorSum::add(const std::vector<Answer>& answers, const std::vector<Answer>
 Errors ErrorSum::errors() const {
     if (ticks_ == 0) return {};
     const double n = double(ticks_);
-    return {.force = std::sqrt(force_ / true_force_),
+    return {.force_vector = std::sqrt(force_vector_ / true_force_),
+            .force = std::sqrt(force_ / true_force_),
             .torque = true_torque_ > 0 ? std::sqrt(torque_ / true_torque_) : 0,
             .direction = std::sqrt(direction_ / n),
             .position = std::sqrt(position_ / n),

@@ -22,11 +22,12 @@ std::vector<Answer> answersOf(const RunRecords& records);
 struct Errors {
     static constexpr double kFeltForce = 0.2;  // N
 
-    double force = 0;      // of 1
-    double torque = 0;     // of 1; 0 where the truth has no torque
-    double direction = 0;  // rad between the forces
-    double position = 0;   // m
-    double rotation = 0;   // rad
+    double force_vector = 0;  // of 1: |difference of the forces|; what the settings are ranked by
+    double force = 0;         // of 1
+    double torque = 0;        // of 1; 0 where the truth has no torque
+    double direction = 0;     // rad between the forces
+    double position = 0;      // m
+    double rotation = 0;      // rad
     size_t ticks = 0;
 };
 
@@ -38,8 +39,8 @@ class ErrorSum {
     Errors errors() const;
 
   private:
-    double force_ = 0, true_force_ = 0, torque_ = 0, true_torque_ = 0, direction_ = 0, position_ = 0,
-           rotation_ = 0;
+    double force_vector_ = 0, force_ = 0, true_force_ = 0, torque_ = 0, true_torque_ = 0, direction_ = 0,
+           position_ = 0, rotation_ = 0;
     size_t ticks_ = 0;
 };
 

@@ -24,13 +24,14 @@ double vanishingTime(const MillingConfig& milling) {
     return kMaxDensity / milling.removal_rate;
 }
 
-std::vector<Vector3d> thinnedPath(const RunRecords& records, const Pose& X_VW, double step) {
+// Positions in V, at least `step` apart, and the last one.
+std::vector<Vector3d> thinned(const std::vector<Vector3d>& path_W, const Pose& X_VW, double step) {
     std::vector<Vector3d> kept;
-    for (const TickRecord& record : records) {
-        const Vector3d p_V = X_VW * Vector3d(record.p_WT);
+    for (const Vector3d& p_W : path_W) {
+        const Vector3d p_V = X_VW * p_W;
         if (kept.empty() || (p_V - kept.back()).norm() >= step) kept.push_back(p_V);
     }
-    if (!records.empty()) kept.push_back(X_VW * Vector3d(records.back().p_WT));
+    if (!path_W.empty()) kept.push_back(X_VW * path_W.back());
     return kept;
 }
 
@@ -98,8 +99,15 @@ MillingRun millAndRestore(const TickConfig& tick, BoneModel& bone, const ToolMod
     run.records = runPath(tick, bone, tool, path, kButtonRemove);
     const VoxelVolume after = refinedPart(bone.volume, part, times);
     run.removed = double(removedCount(before, after)) * before.voxelVolume();
-    const auto centers = thinnedPath(run.records, before.geometry().X_WV.inverse(), kPathStep * radius);
-    run.swept = double(sweptCount(before, centers, radius)) * before.voxelVolume();
+    const auto sweptBy = [&](const std::vector<Vector3d>& path_W) {
+        const auto centers = thinned(path_W, before.geometry().X_WV.inverse(), kPathStep * radius);
+        return double(sweptCount(before, centers, radius)) * before.voxelVolume();
+    };
+    std::vector<Vector3d> tool_path, device_path;
+    for (const TickRecord& record : run.records) tool_path.emplace_back(record.p_WT);
+    for (const Pose& pose : path) device_path.push_back(pose.position);
+    run.swept = sweptBy(tool_path);
+    run.wanted = sweptBy(device_path);
     reset.request();
     reset.startIfRequested();
     while (reset.isRunning()) reset.restoreSome(bone);

@@ -17,6 +17,7 @@ struct MillingRun {
     RunRecords records;
     double removed = 0;  // m³ between the trilinear surfaces before and after
     double swept = 0;    // m³ of bone inside the burr at any pose of the simulated tool
+    double wanted = 0;   // m³ of bone inside the burr at any pose of the device
 };
 
 // Mills and puts the bone back with `reset`, which must have been made from it.

@@ -1,5 +1,7 @@
 #include "haptic_server/accuracy_report/pareto.h"
 
+#include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace bonemill {
@@ -7,6 +9,17 @@ namespace {
 
 bool isBetter(const ParetoPoint& a, const ParetoPoint& b) {
     return a.error <= b.error && a.time <= b.time && (a.error < b.error || a.time < b.time);
+}
+
+// Of candidates with error <= most_error and time <= most_time.
+std::optional<size_t> fastestBelow(std::span<const ParetoPoint> points, double most_error, double most_time) {
+    std::optional<size_t> best;
+    for (size_t n = 0; n < points.size(); ++n) {
+        const ParetoPoint& p = points[n];
+        if (!p.is_candidate || p.error > most_error || p.time > most_time) continue;
+        if (!best || std::tie(p.time, p.error) < std::tie(points[*best].time, points[*best].error)) best = n;
+    }
+    return best;
 }
 
 }  // namespace
@@ -22,25 +35,14 @@ std::vector<bool> paretoFront(std::span<const ParetoPoint> points) {
 }
 
 std::optional<size_t> bestWithin(std::span<const ParetoPoint> points, double budget) {
-    std::optional<size_t> best;
-    for (size_t n = 0; n < points.size(); ++n) {
-        if (!points[n].is_candidate || points[n].time > budget) continue;
-        if (!best ||
-            std::tie(points[n].error, points[n].time) < std::tie(points[*best].error, points[*best].time))
-            best = n;
-    }
-    return best;
+    double least = INFINITY;
+    for (const ParetoPoint& point : points)
+        if (point.is_candidate && point.time <= budget) least = std::min(least, point.error);
+    return fastestBelow(points, least * (1 + kSameError), budget);
 }
 
 std::optional<size_t> nextBetter(std::span<const ParetoPoint> points, size_t from) {
-    std::optional<size_t> next;
-    for (size_t n = 0; n < points.size(); ++n) {
-        if (!points[n].is_candidate || points[n].error >= points[from].error) continue;
-        if (!next ||
-            std::tie(points[n].time, points[n].error) < std::tie(points[*next].time, points[*next].error))
-            next = n;
-    }
-    return next;
+    return fastestBelow(points, points[from].error * (1 - kSameError), INFINITY);
 }
 
 }  // namespace bonemill

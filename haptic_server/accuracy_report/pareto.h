@@ -18,10 +18,13 @@ struct ParetoPoint {
 // the front.
 std::vector<bool> paretoFront(std::span<const ParetoPoint> points);
 
-// The most accurate candidate with time <= budget; of equals the faster one.
+// Errors that differ by less than this part are the same for a choice: nobody pays for the difference.
+inline constexpr double kSameError = 0.02;
+
+// The most accurate candidate with time <= budget; of the same error the fastest one.
 std::optional<size_t> bestWithin(std::span<const ParetoPoint> points, double budget);
 
-// The fastest candidate on the front with a smaller error than `from`.
+// The fastest candidate whose error is smaller than that of `from`, and not the same.
 std::optional<size_t> nextBetter(std::span<const ParetoPoint> points, size_t from);
 
 }  // namespace bonemill

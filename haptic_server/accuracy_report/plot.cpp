@@ -27,7 +27,7 @@ std::string quoted(const std::string& text) {
 }
 
 double errorPercent(const SettingFigures& f) {
-    return std::max(kSmallestError, 100 * f.errors.force);
+    return std::max(kSmallestError, 100 * f.errors.force_vector);
 }
 
 bool isPreset(const SettingFigures& f) {

@@ -18,7 +18,7 @@ struct ProbingStroke {
 struct StrokeConfig {
     double lightest = 0.5;      // N that the coupling pulls with, about
     double heaviest = 4;        // N; less if the coupling saturates earlier
-    double duration = 0.8;      // s
+    double duration = 1.5;      // s
     double loop_radius = 1e-3;  // m, at most
     double turning = 0.05;      // rad
 };

@@ -12,7 +12,9 @@ using Eigen::Vector3d;
 constexpr double kPush = 20e-6;  // m: how deep the tool is pushed to learn where the bone pushes back
 constexpr size_t kMostScenarioPlaces = 2;
 constexpr int kAzimuths = 8;
-constexpr double kShaftArm = 2;  // burr radii from the tool point to the force: the shaft touches
+constexpr double kLyingHeight = 6;  // burr radii over the place: where the laid tool starts
+constexpr double kBeyond = 4;       // burr radii from the place to the laid tool's burr
+constexpr double kShaftArm = 2;     // burr radii from the tool point to the force: the shaft touches
 
 // Travels until it touches; there the place is.
 struct Approach {
@@ -87,21 +89,22 @@ void addPlacesBeside(const ProbingPlace& first, double burr_radius, Approach& ap
     }
 }
 
-// Tool's +y, along the shaft, turned across the normal.
+// The tool laid down across the normal, its shaft over the place and the burr beyond it: of several
+// directions the one where the shaft touches farthest from the tool point.
 void addLyingPlace(const ProbingPlace& first, double burr_radius, Approach& approach) {
     const Vector3d t = tangentOf(first.normal_W), u = first.normal_W.cross(t);
-    const double from_height = 8 * burr_radius;
+    const Vector3d shaft = first.X_WT.rotation * Vector3d::UnitY();
+    const double height = kLyingHeight * burr_radius;
     std::optional<ProbingPlace> best;
     double longest_arm = kShaftArm * burr_radius;
     for (int n = 0; n < kAzimuths; ++n) {
         const double azimuth = 2 * M_PI * n / kAzimuths;
         const Vector3d along = std::cos(azimuth) * t + std::sin(azimuth) * u;
-        const Vector3d shaft = first.X_WT.rotation * Vector3d::UnitY();
-        const Pose from{first.X_WT.position + from_height * first.normal_W,
+        const Pose from{first.X_WT.position + height * first.normal_W - kBeyond * burr_radius * along,
                         Eigen::Quaterniond::FromTwoVectors(shaft, along) * first.X_WT.rotation};
         std::vector<ProbingPlace> found;
         Approach lying{approach.probe, found};
-        if (!lying.straight("lying on the shaft", from, -first.normal_W, from_height + 4 * burr_radius))
+        if (!lying.straight("lying on its shaft there", from, -first.normal_W, height + 4 * burr_radius))
             continue;
         const Pose pushed{found[0].X_WT.position - kPush * found[0].normal_W, found[0].X_WT.rotation};
         const double arm = approach.probe.armOf(pushed);

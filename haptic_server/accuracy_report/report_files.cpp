@@ -41,6 +41,7 @@ Columns figuresOf(const SettingFigures& f, bool is_on_front) {
     row["in_force"] = f.is_in_force;
     row["on_pareto_front"] = is_on_front;
     row["force_error_percent"] = 100 * f.errors.force;
+    row["force_vector_error_percent"] = 100 * f.errors.force_vector;
     row["torque_error_percent"] = 100 * f.errors.torque;
     row["direction_error_deg"] = f.errors.direction / kDegree;
     row["position_error_um"] = 1e6 * f.errors.position;
@@ -52,7 +53,10 @@ Columns figuresOf(const SettingFigures& f, bool is_on_front) {
     row["anisotropy_percent"] = 100 * f.plane.anisotropy;
     row["closed_path_energy_uj"] = 1e6 * f.closed_energy;
     row["lowest_energy_uj"] = 1e6 * f.lowest_energy;
-    row["removed_volume_error_percent"] = f.removal_error ? Columns(100 * *f.removal_error) : Columns();
+    row["removed_volume_error_percent"] = f.removal ? Columns(100 * f.removal->error()) : Columns();
+    row["removed_mm3"] = f.removal ? Columns(1e9 * f.removal->removed) : Columns();
+    row["wanted_mm3"] = f.removal ? Columns(1e9 * f.removal->wanted) : Columns();
+    row["swept_mm3"] = f.removal ? Columns(1e9 * f.removal->swept) : Columns();
     addTimes(row, "tick_", f.times);
     addTimes(row, "probing_", f.probing_times);
     addTimes(row, "milling_", f.milling_times);
@@ -92,6 +96,7 @@ TruthSummary summaryOf(const std::vector<ProbingStroke>& strokes, const std::vec
     summary.refinement = kTruthRefinement;
     summary.closed_energy = INFINITY;
     NoiseSum noise;
+    ErrorSum coarser;
     double force = 0, torque = 0;
     size_t count = 0;
     for (size_t n = 0; n < truth.size(); ++n) {
@@ -101,6 +106,7 @@ TruthSummary summaryOf(const std::vector<ProbingStroke>& strokes, const std::vec
         summary.closed_energy =
             std::min(summary.closed_energy, energyOf(truth[n].answers, strokes[n].device).at_end);
         noise.add(truth[n].answers);
+        coarser.add(truth[n].coarser, truth[n].answers);
         for (const Answer& answer : truth[n].answers) {
             const double f = answer.hand.force.norm(), t = answer.hand.torque.norm();
             if (f < Errors::kFeltForce) continue;
@@ -110,6 +116,7 @@ TruthSummary summaryOf(const std::vector<ProbingStroke>& strokes, const std::vec
         }
     }
     summary.noise = noise.noise();
+    summary.coarser = coarser.errors();
     if (count)
         summary.force_rms = std::sqrt(force / double(count)),
         summary.torque_rms = std::sqrt(torque / double(count));
@@ -122,7 +129,8 @@ bool isThesis(const SettingFigures& figures) noexcept {
 
 std::vector<ParetoPoint> paretoPoints(const std::vector<SettingFigures>& settings) {
     std::vector<ParetoPoint> points;
-    for (const SettingFigures& f : settings) points.push_back({f.errors.force, f.times.p99_9, !isThesis(f)});
+    for (const SettingFigures& f : settings)
+        points.push_back({f.errors.force_vector, f.times.p99_9, !isThesis(f)});
     return points;
 }
 
@@ -147,6 +155,7 @@ std::string patchCsv(const ReportData& data) {
     for (const PatchErrors& p : data.patches)
         rows.push_back({{"shell_factor", p.shell_factor},
                         {"tool_distance", p.tool_distance == ToolDistance::kGrid ? "grid" : "analytic"},
+                        {"sdf_refinement", p.sdf_refinement},
                         {"patch_width_voxels", p.width_voxels},
                         {"depth_um", 1e6 * p.depth},
                         {"force_error_rms_percent", 100 * p.force_rms},
@@ -159,14 +168,16 @@ std::string accuracyJson(const ReportData& data) {
     Columns settings = Columns::object();
     for (size_t n = 0; n < data.settings.size(); ++n)
         settings[data.settings[n].name] = figuresOf(data.settings[n], data.front[n]);
-    const Columns truth = {{"voxel_refinement", data.truth.refinement},
-                           {"force_rms_n", data.truth.force_rms},
-                           {"force_max_n", data.truth.force_max},
-                           {"torque_rms_nmm", 1e3 * data.truth.torque_rms},
-                           {"torque_max_nmm", 1e3 * data.truth.torque_max},
-                           {"max_penetration_um", 1e6 * data.truth.max_penetration},
-                           {"noise_mn", 1e3 * data.truth.noise},
-                           {"closed_path_energy_uj", 1e6 * data.truth.closed_energy}};
+    const Columns truth = {
+        {"voxel_refinement", data.truth.refinement},
+        {"force_rms_n", data.truth.force_rms},
+        {"force_max_n", data.truth.force_max},
+        {"torque_rms_nmm", 1e3 * data.truth.torque_rms},
+        {"torque_max_nmm", 1e3 * data.truth.torque_max},
+        {"max_penetration_um", 1e6 * data.truth.max_penetration},
+        {"noise_mn", 1e3 * data.truth.noise},
+        {"half_refinement_force_vector_error_percent", 100 * data.truth.coarser.force_vector},
+        {"closed_path_energy_uj", 1e6 * data.truth.closed_energy}};
     const size_t in_force = indexInForce(data);
     Columns report = {{"scene", data.scene},
                       {"scene_file", data.scene_file},

@@ -17,6 +17,7 @@ struct TruthSummary {
     double max_penetration = 0;             // m
     double noise = 0;                       // N
     double closed_energy = 0;               // J, least of all strokes
+    Errors coarser;                         // of the same with half the refinement
 };
 TruthSummary summaryOf(const std::vector<ProbingStroke>& strokes, const std::vector<Truth>& truth);
 

@@ -51,7 +51,7 @@ void mill(const SweepInput& input, const TickConfig& tick, SharedBone& shared, S
     MillingRun run = millAndRestore(tick, shared.bone, input.tool, shared.reset, input.milling);
     keepShorterTimes(run.records,
                      millAndRestore(tick, shared.bone, input.tool, shared.reset, input.milling).records);
-    if (run.swept > 0) figures.removal_error = run.removed / run.swept - 1;
+    figures.removal = {run.removed, run.swept, run.wanted};
     for (const TickRecord& record : run.records) figures.faults |= record.faults;
     addTimes(run.records, durations);
 }

@@ -14,16 +14,23 @@ namespace bonemill {
 
 struct SettingFigures {
     AccuracySettings settings;
-    std::string name;                     // settingsName()
-    bool is_in_force = false;             // the scene's own
-    Errors errors;                        // along the probing path; for thesis_2012 differences, not errors
-    double max_penetration = 0;           // m
-    double noise = 0;                     // N
-    double closed_energy = 0;             // J: least that any closed stroke took from the hand
-    double lowest_energy = 0;             // J: anywhere on the strokes
-    PlaneErrors plane;                    // burr on a plane, closed form
-    std::optional<double> removal_error;  // of 1: removed / swept - 1; none where the scene does not mill
-    TickTimes times;                      // of all ticks
+    std::string name;            // settingsName()
+    bool is_in_force = false;    // the scene's own
+    Errors errors;               // along the probing path; for thesis_2012 differences, not errors
+    double max_penetration = 0;  // m
+    double noise = 0;            // N
+    double closed_energy = 0;    // J: least that any closed stroke took from the hand
+    double lowest_energy = 0;    // J: anywhere on the strokes
+    PlaneErrors plane;           // burr on a plane, closed form
+    struct Removal {
+        double removed = 0, swept = 0, wanted = 0;  // m³, as in MillingRun
+        double error() const { return swept > 0 ? removed / swept - 1 : 0; }
+        double progress() const {
+            return wanted > 0 ? removed / wanted : 0;
+        }  // small: the burr does not get in
+    };
+    std::optional<Removal> removal;  // none where the scene does not mill
+    TickTimes times;                 // of all ticks
     TickTimes probing_times, milling_times;
     size_t ticks = 0;
     uint32_t faults = 0;  // TickFault bits

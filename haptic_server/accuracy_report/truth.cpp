@@ -27,31 +27,35 @@ IndexBox partFor(const ProbingStroke& stroke, const BoneModel& bone, const Touch
     return voxelsAround(bone.volume, near, kMargin);
 }
 
-Truth truthAt(const ProbingStroke& stroke, const TickConfig& tick, BoneModel& fine, const ToolModel& tool) {
+RunRecords runRefined(const ProbingStroke& stroke, const TickConfig& tick, const BoneModel& bone,
+                      const IndexBox& part, int times, const ToolModel& tool) {
     TickConfig config = tick;
     config.accuracy = truthSettings();
-    Truth truth;
-    const RunRecords records = runPath(config, fine, tool, stroke.device);
-    truth.answers = answersOf(records);
-    for (const TickRecord& record : records)
-        truth.max_penetration = std::max(truth.max_penetration, record.max_penetration);
-    const auto overflows = [](const TickRecord& record) { return record.faults & kFaultContactOverflow; };
-    if (std::any_of(records.begin(), records.end(), overflows)) truth.answers.clear();
-    return truth;
+    BoneModel fine(refinedPart(bone.volume, part, times), Eigen::Vector3i::Constant(kLeafCells),
+                   {.factors = {1}, .normals = ShellNormals::kCentralDifference, .spare_points = 1});
+    return runPath(config, fine, tool, stroke.device);
+}
+
+bool hasOverflow(const RunRecords& records) {
+    return std::any_of(records.begin(), records.end(),
+                       [](const auto& r) { return r.faults & kFaultContactOverflow; });
 }
 
 Truth computeOne(const ProbingStroke& stroke, const TickConfig& tick, const BoneModel& bone,
                  const ToolModel& tool, const TouchProbe& probe) {
     const IndexBox part = partFor(stroke, bone, probe);
-    if (part.isEmpty()) return {};
-    for (int times = affordableRefinement(part, kTruthRefinement, kMostVoxels); times >= 1; --times) {
-        BoneModel fine(refinedPart(bone.volume, part, times), Eigen::Vector3i::Constant(kLeafCells),
-                       {.factors = {1}, .normals = ShellNormals::kCentralDifference, .spare_points = 1});
-        Truth truth = truthAt(stroke, tick, fine, tool);
-        truth.refinement = times;
-        if (!truth.answers.empty()) return truth;
-    }
-    return {};
+    Truth truth;
+    if (part.isEmpty()) return truth;
+    truth.refinement = affordableRefinement(part, kTruthRefinement, kMostVoxels);
+    RunRecords records = runRefined(stroke, tick, bone, part, truth.refinement, tool);
+    while (hasOverflow(records) && truth.refinement > 1)
+        records = runRefined(stroke, tick, bone, part, --truth.refinement, tool);
+    truth.answers = answersOf(records);
+    for (const TickRecord& r : records)
+        truth.max_penetration = std::max(truth.max_penetration, r.max_penetration);
+    if (truth.refinement > 1)
+        truth.coarser = answersOf(runRefined(stroke, tick, bone, part, truth.refinement / 2, tool));
+    return truth;
 }
 
 }  // namespace

@@ -9,8 +9,9 @@ namespace bonemill {
 
 struct Truth {
     std::vector<Answer> answers;
-    double max_penetration = 0;  // m
-    int refinement = 0;          // of the voxels; kTruthRefinement unless memory forbade it
+    double max_penetration = 0;   // m
+    int refinement = 0;           // of the voxels; kTruthRefinement unless memory forbade it
+    std::vector<Answer> coarser;  // the same with half that refinement: how far the truth can be off
 };
 inline constexpr int kTruthRefinement = 4;
 
