@@ -155,7 +155,8 @@ std::string figuresText(const ReportData& data) {
 
 std::string timesText(const ReportData& data) {
     return "**Times** are of whole ticks, probing and milling together, on this machine (" + data.machine +
-           "), one thread, not in real time. The same work runs twice and the shorter time of each tick "
+           "), one thread, not in real time. The same work runs three times and the shortest time of each "
+           "tick "
            "counts, so that "
            "what other programs take does not; a live session has that on top (docs/realtime.md)." +
            format(" The scene's tick has %.4g µs.\n\n", 1e6 * data.tick_period);

@@ -46,10 +46,10 @@ RunRecords runPath(const TickConfig& config, BoneModel& bone, const ToolModel& t
     return std::move(io.records);
 }
 
-RunRecords runPathTwice(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
+RunRecords runPathTimed(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
                         std::span<const Pose> path) {
     RunRecords records = runPath(config, bone, tool, path);
-    keepShorterTimes(records, runPath(config, bone, tool, path));
+    for (int pass = 1; pass < kPasses; ++pass) keepShorterTimes(records, runPath(config, bone, tool, path));
     return records;
 }
 

@@ -16,10 +16,11 @@ using RunRecords = std::vector<TickRecord>;
 RunRecords runPath(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
                    std::span<const Pose> path, uint32_t buttons = 0);
 
-// The same work twice: keeps the first run's records with the shorter of both times of each tick, so that
-// what other programs took of the processor does not count. `bone` must be the same for both: no buttons.
-RunRecords runPathTwice(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
+// The same work kPasses times: the first run's records with the shortest time of each tick, so that what
+// other programs took of the processor does not count. Nothing is milled.
+RunRecords runPathTimed(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
                         std::span<const Pose> path);
+inline constexpr int kPasses = 3;
 
 // compute_ns of each tick becomes the smaller one of both runs of the same work.
 void keepShorterTimes(RunRecords& records, const RunRecords& again) noexcept;

@@ -29,7 +29,7 @@ void probe(const SweepInput& input, const TickConfig& tick, BoneModel& bone, Set
     NoiseSum noise;
     figures.closed_energy = INFINITY;
     for (size_t n = 0; n < input.strokes.size(); ++n) {
-        const RunRecords records = runPathTwice(tick, bone, input.tool, input.strokes[n].device);
+        const RunRecords records = runPathTimed(tick, bone, input.tool, input.strokes[n].device);
         const std::vector<Answer> answers = answersOf(records);
         errors.add(answers, input.truth[n].answers);
         noise.add(answers);
@@ -49,8 +49,9 @@ void probe(const SweepInput& input, const TickConfig& tick, BoneModel& bone, Set
 void mill(const SweepInput& input, const TickConfig& tick, SharedBone& shared, SettingFigures& figures,
           std::vector<int64_t>& durations) {
     MillingRun run = millAndRestore(tick, shared.bone, input.tool, shared.reset, input.milling);
-    keepShorterTimes(run.records,
-                     millAndRestore(tick, shared.bone, input.tool, shared.reset, input.milling).records);
+    for (int pass = 1; pass < kPasses; ++pass)
+        keepShorterTimes(run.records,
+                         millAndRestore(tick, shared.bone, input.tool, shared.reset, input.milling).records);
     figures.removal = {run.removed, run.swept, run.wanted};
     for (const TickRecord& record : run.records) figures.faults |= record.faults;
     addTimes(run.records, durations);
