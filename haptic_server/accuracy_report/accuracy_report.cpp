@@ -121,6 +121,8 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
     data.spacing = bone.volume.spacing().minCoeff();
     data.burr_radius = tick.burr_radius;
     data.tick_period = tick.dt;
+    data.contact_width =
+        contactWidth(tick.gradient.contact.stiffness_per_area, tick.burr_radius, data.truth.force_rms);
     return data;
 }
 

@@ -109,6 +109,15 @@ double forceOnSphere(double kappa, double radius, double depth) noexcept {
     return depth <= 0 ? 0 : M_PI * kappa * (radius - depth) * depth * depth;
 }
 
+double contactWidth(double kappa, double radius, double force) noexcept {
+    double low = 0, high = 2 * radius / 3;  // the force rises up to there
+    for (int n = 0; n < 100; ++n) {
+        const double middle = (low + high) / 2;
+        (forceOnSphere(kappa, radius, middle) > force ? high : low) = middle;
+    }
+    return 2 * std::sqrt(low * (2 * radius - low));
+}
+
 double depthUnderSpring(const GradientConfig& config, double radius, double device_depth) noexcept {
     double low = 0, high = std::min(device_depth, 2 * radius / 3);  // the force rises up to there
     for (int n = 0; n < 100; ++n) {

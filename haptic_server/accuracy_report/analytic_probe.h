@@ -13,6 +13,9 @@ namespace bonemill {
 // N on a sphere at depth d < R in a half-space.
 double forceOnSphere(double kappa, double radius, double depth) noexcept;
 
+// Diameter, m, of the circle in which a sphere at the depth of this force touches a half-space; bisection.
+double contactWidth(double kappa, double radius, double force) noexcept;
+
 // Depth d at which that force balances the saturating spring to a device at depth `device_depth`; bisection.
 double depthUnderSpring(const GradientConfig& config, double radius, double device_depth) noexcept;
 

@@ -83,7 +83,7 @@ TickTimes timesOf(std::vector<int64_t> durations_ns) {
     if (durations_ns.empty()) return {};
     std::sort(durations_ns.begin(), durations_ns.end());
     const auto us = [&](double percent) {
-        const auto rank = size_t(std::ceil(percent / 100 * double(durations_ns.size())));
+        const auto rank = size_t(std::ceil(percent / 100 * double(durations_ns.size()) - 1e-9));
         return double(durations_ns[std::max<size_t>(rank, 1) - 1]) * 1e-3;
     };
     return {us(50), us(99), us(99.9), us(100)};

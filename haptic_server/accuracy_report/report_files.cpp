@@ -183,6 +183,7 @@ std::string accuracyJson(const ReportData& data) {
                       {"scene_file", data.scene_file},
                       {"machine", data.machine},
                       {"voxel_mm", 1e3 * data.spacing},
+                      {"contact_width_voxels", data.contact_width / data.spacing},
                       {"tick_period_us", 1e6 * data.tick_period}};
     report["in_force"] = data.settings[in_force].name;
     if (data.budget_us) {

@@ -25,9 +25,10 @@ struct ReportData {
     std::string scene;
     std::string scene_file;
     std::string machine;
-    double spacing = 0;      // m, finest voxel spacing
-    double burr_radius = 0;  // m
-    double tick_period = 0;  // s
+    double spacing = 0;        // m, finest voxel spacing
+    double burr_radius = 0;    // m
+    double tick_period = 0;    // s
+    double contact_width = 0;  // m: circle in which the burr touches a plane with the truth's force
     TruthSummary truth;
     std::vector<SettingFigures> settings;
     std::vector<bool> front;  // of settings

@@ -213,8 +213,11 @@ std::vector<std::string> reportConclusions(const ReportData& data) {
 std::string reportText(const ReportData& data) {
     std::string text = "# Accuracy and time: " + data.scene + "\n\n";
     for (const std::string& line : reportConclusions(data)) text += "- " + line + '\n';
-    text +=
-        format("- Voxels of %.3g mm, burr radius %.3g mm.\n\n", 1e3 * data.spacing, 1e3 * data.burr_radius);
+    text += format(
+        "- Voxels of %.3g mm, burr radius %.3g mm: with %.2g N the burr touches a plane over a circle of "
+        "%.2g "
+        "voxels; the table at the end says what so few voxels cost.\n\n",
+        1e3 * data.spacing, 1e3 * data.burr_radius, data.truth.force_rms, data.contact_width / data.spacing);
     text += "![force error against tick time](pareto.png)\n\n";
     text += settingsTable(data) + '\n';
     return text + truthText(data) + pathText(data) + figuresText(data) + timesText(data) + thesisText() +
