@@ -10,13 +10,13 @@ constexpr std::string_view kNames[] = {"thesis_2012", "fast", "balanced", "exact
 AccuracySettings presetSettings(Preset preset) noexcept {
     switch (preset) {
         case Preset::kThesis2012:  // scaling factor 3 as in its demonstrations
-            return {ContactLaw::kThesis2012, 3, ToolDistance::kGrid, 1, Precision::kFloat, 1, false};
+            return {ContactLaw::kThesis2012, 3, 1, 0, ToolDistance::kGrid, 1, Precision::kFloat, 1, false};
         case Preset::kFast:
-            return {ContactLaw::kGradient, 2, ToolDistance::kGrid, 1, Precision::kFloat, 1, true};
+            return {ContactLaw::kGradient, 2, 2, 256, ToolDistance::kGrid, 1, Precision::kFloat, 1, true};
         case Preset::kBalanced:
-            return {ContactLaw::kGradient, 1, ToolDistance::kAnalytic, 1, Precision::kFloat, 2, true};
+            return {ContactLaw::kGradient, 1, 2, 512, ToolDistance::kAnalytic, 1, Precision::kFloat, 2, true};
         case Preset::kExact:
-            return {ContactLaw::kGradient, 1, ToolDistance::kAnalytic, 4, Precision::kDouble, 4, true};
+            return {ContactLaw::kGradient, 1, 4, 32768, ToolDistance::kAnalytic, 4, Precision::kDouble, 4, true};
     }
     return {};
 }
@@ -37,6 +37,7 @@ std::string settingsName(const AccuracySettings& settings) {
     std::string name = settings.law == ContactLaw::kThesis2012 ? "thesis" : "gradient";
     name += " s=" + std::to_string(settings.shell_factor);
     if (settings.law == ContactLaw::kThesis2012) return name;
+    if (settings.patch_points > 1) name += " q=" + std::to_string(settings.patch_points);
     name += settings.tool_distance == ToolDistance::kGrid ? " grid x" + std::to_string(settings.sdf_refinement)
                                                           : " analytic";
     name += settings.precision == Precision::kFloat ? " float" : " double";

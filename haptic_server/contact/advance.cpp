@@ -30,8 +30,7 @@ double GradientContact::advance(const ToolField& tool, const Pose& X_VT, const V
             const auto fill = [&](const Pose& X) {
                 batch.count = count;
                 for (int i = 0; i < count; ++i) {
-                    const Candidate& c = candidates_[first + size_t(i)];
-                    const Vector3d p = X * Vector3d(origin_ + Vector3d(double(c.x), double(c.y), double(c.z)));
+                    const Vector3d p = X * positionOf(candidates_[first + size_t(i)]);
                     batch.x[i] = p.x(), batch.y[i] = p.y(), batch.z[i] = p.z();
                 }
             };

@@ -1,16 +1,23 @@
-// The default contact model: every shell point inside the tool stores energy, and force and torque are exactly minus
-// the gradient of the sum. No closed path gains energy, noisy bone normals do no harm, and the points' areas make the
+// The default contact model: every shell point near the tool stores energy, and force and torque are exactly minus the
+// gradient of the sum. No closed path gains energy, noisy bone normals do no harm, and the points' areas make the
 // result independent of how densely the surface is sampled.
 //
 // With φ the tool's distance at bone point b, δ = -φ, g = R∇φ, n the bone's outward normal, a the point's area:
-//   E = Σ κ a λ w(s) Ψ(δ),  s = -n·g,   Ψ = ½δ², linear beyond the depth cap.
-// w is 0 where the tool reaches the bone from its far side (s <= 0), 1 from kGuardWidth on: a point that the tool's
-// medial axis has passed cannot pull the tool on. λ <= 1 caps the stiffness in the direction of g; it is frozen when the
-// candidates are gathered, so that each solve has one energy (across ticks a λ that acts is not conservative).
+//   E = Σ κ a λ Ψ(δ),   Ψ = ½δ² for δ > 0, going on linearly beyond the depth cap.
+// A point stands for a patch of the surface; with patch_points = q > 1 the patches near the tool are sampled at q × q
+// places of a square of the same area around the point, at right angles to n: stiff contact is often narrower than the
+// points are apart. Wide contact has points enough, and is not refined.
+//
+// λ <= 1 is frozen when the candidates are gathered, so that each solve has one energy. It is 1 unless
+// - the stiffness in the direction of g is above the cap (then the same total for a plane, a slot and a full surround);
+// - the tool is deep in the bone (kGuardFrom, or its point inside): then points that it reaches from their far side
+//   (s = -n·g <= 0) are left out, so that no wall that the tool's medial axis has passed pulls it on or locks it in.
+// A λ that changes from tick to tick is not conservative; in ordinary contact none does.
 //
 // Frame V, m, N, torque about the tool point. Everything but construction is RT-safe; tick thread only.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "haptic_server/contact/point_shell.h"
@@ -24,6 +31,16 @@ struct GradientContactConfig {
     double stiffness_cap = 1e7;        // N/m in any direction; infinity: none
 };
 
+// Whose points are gathered.
+struct ShellView {
+    const VoxelVolume& volume;
+    const LeafLattice& lattice;
+    const PointShell& shell;
+    int level;
+    int patch_points;    // per side, 1 .. 4
+    int refined_points;  // at most this many places on refined patches; patch_points gives way
+};
+
 struct GradientContactResult {
     EnergyTerm term;
     uint32_t contacts = 0;
@@ -32,16 +49,17 @@ struct GradientContactResult {
 
 class GradientContact {
   public:
-    static constexpr double kGuardWidth = 0.25;
-    static constexpr double kDepthCap = 0.75;  // of the tool's thinnest radius
+    // Of the tool's thinnest radius: patches nearer than that are refined; depth from which on the force of a point no longer grows, and between which the
+    // far-side guard sets in.
+    static constexpr double kRefineWithin = 0.125, kDepthCap = 0.75, kGuardFrom = 0.25, kGuardFull = 0.5;
+    static constexpr double kGuardWidth = 0.25;  // of s, over which the guard fades a point out
 
     // Room for this many candidate points; allocates.
     explicit GradientContact(const GradientContactConfig& config, size_t most_candidates = 65536);
 
     // Collects the points of a shell level that can touch the tool after a motion of at most `margin` (m, of any of its
     // points) from X_VT. False: more than there is room for; the rest is left out.
-    bool gather(const VoxelVolume& volume, const LeafLattice& lattice, const PointShell& shell, int level,
-                const ToolField& tool, const Pose& X_VT, double margin) noexcept;
+    bool gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin) noexcept;
 
     // Energy, wrench on the tool and stiffness at this pose, over the gathered points.
     template <class Scalar>
@@ -59,14 +77,29 @@ class GradientContact {
     struct Candidate {
         float x, y, z;     // V axes, from origin_: small numbers keep their digits
         float nx, ny, nz;  // V, unit or zero
-        float weight;      // κ a λ
+        float weight;      // κ a λ, of one place
+        float area;        // m², of the whole patch
+        float distance;    // m, of the patch's point at the gathering
     };
+    // A contact counts for the stiffness cap in proportion to its depth, so that a new one comes in smoothly.
+    static constexpr double kFullShareDepth = 20e-6;  // m
+    static double shareInContact(double distance) noexcept {
+        return std::clamp(-distance / kFullShareDepth, 0.0, 1.0);
+    }
+    Eigen::Vector3d positionOf(const Candidate& c) const noexcept {  // V
+        return origin_ + Eigen::Vector3d(double(c.x), double(c.y), double(c.z));
+    }
+    bool collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
+    void refine(int patch_points, int refined_points, double thinnest_radius) noexcept;
+    void splitPatch(size_t index, int q) noexcept;
+    void guardFarSide(const VoxelVolume& volume, const ToolField& tool, const Pose& X_VT) noexcept;
     void capStiffness(const ToolField& tool, const Pose& X_VT) noexcept;
 
     GradientContactConfig config_;
     std::vector<Candidate> candidates_;
     size_t count_ = 0;
     double touching_stiffness_ = 0;  // N/m: of the candidates in contact, all directions together
+    double deepest_ = 0;             // m
     double margin_ = 0;
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // V: the tool point at the gathering
 };

@@ -190,7 +190,8 @@ void PointShell::sumBlocks(const IndexBox& blocks, int factor) noexcept {
         const Eigen::Vector3i block = cell / factor;
         if (!holds(blocks, block)) continue;
         const Eigen::Vector3i at = block - blocks.min;
-        BlockSum& sum = sums_[size_t(at.x() + size.x() * (at.y() + size.y() * at.z()))];
+        BlockSum& sum =
+            sums_[size_t(at.x()) + size_t(size.x()) * (size_t(at.y()) + size_t(size.y()) * size_t(at.z()))];
         const Eigen::Vector3f from_first = (cell - block * factor).cast<float>() + patches[n].centroid;
         sum.area += patches[n].area;
         sum.moment += patches[n].area * from_first;

@@ -6,8 +6,8 @@
 namespace bonemill {
 namespace {
 
-// Voxels of the box around the burr, writable ones only; empty if the burr is elsewhere.
-IndexBox burrBox(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, double radius) noexcept {
+// Voxels of the box around a sphere, writable ones only; empty if the sphere is elsewhere.
+IndexBox boxAround(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, double radius) noexcept {
     const Eigen::Array3d spacing = volume.spacing().array();
     const Eigen::Array3d dims = volume.dims().cast<double>().array();
     const Eigen::Array3d low = ((p_VB.array() - radius) / spacing).max(0.0).min(dims);
@@ -15,11 +15,21 @@ IndexBox burrBox(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, double 
     return {low.ceil().cast<int>().matrix(), high.floor().cast<int>().matrix()};
 }
 
+// By `amount` towards the limit if beyond it, never past it.
+Density moved(Density old, int limit, int direction, int amount) noexcept {
+    if (direction < 0) return old > limit ? Density(std::max(limit, old - amount)) : old;
+    return old < limit ? Density(std::min(limit, old + amount)) : old;
+}
+
 }  // namespace
 
 TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volume, double burr_radius)
     : config_(config), burr_radius_(burr_radius) {
-    const Eigen::Array3d voxels = (2 * burr_radius / volume.spacing().array()).floor() + 2;
+    const auto reach = [&](int direction) {
+        return BurrLimit(volume, burr_radius, MillingShape::kSubVoxel, direction, config.clearance).reach();
+    };
+    const double farthest = std::max(reach(-1), reach(+1));
+    const Eigen::Array3d voxels = (2 * farthest / volume.spacing().array()).floor() + 2;
     const Eigen::Array3d most = voxels.min(volume.dims().cast<double>().array());
     changes_.resize(size_t(most.prod()));
 }
@@ -35,7 +45,7 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
     carry_ -= std::floor(carry_);
     if (amount == 0) return result;
 
-    collectChanges(volume, p_VB, direction * amount, result);
+    collectChanges(volume, p_VB, direction, amount, result);
     if (change_count_ == 0) return result;
     lattice.beginWrite(result.changed);
     for (size_t i = 0; i < change_count_; ++i) volume.set(changes_[i].offset, changes_[i].density);
@@ -45,25 +55,29 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
     return result;
 }
 
-void TimedMilling::collectChanges(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, int amount,
-                                  MillingResult& result) noexcept {
+void TimedMilling::collectChanges(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, int direction,
+                                  int amount, MillingResult& result) noexcept {
     change_count_ = 0;
-    const IndexBox box = burrBox(volume, p_VB, burr_radius_);
+    const BurrLimit limit(volume, burr_radius_, config_.shape, direction, config_.clearance);
+    const IndexBox box = boxAround(volume, p_VB, limit.reach());
     if (box.isEmpty()) return;
-    const double radius_squared = burr_radius_ * burr_radius_;
+    const double reach_squared = limit.reach() * limit.reach();
+    const int finished = direction < 0 ? 0 : kMaxDensity;
     const Density iso = volume.iso();
     for (int k = box.min.z(); k <= box.max.z(); ++k)
         for (int j = box.min.y(); j <= box.max.y(); ++j) {
             const double dy = j * volume.spacing().y() - p_VB.y();
             const double dz = k * volume.spacing().z() - p_VB.z();
             const double dyz_squared = dy * dy + dz * dz;
-            if (dyz_squared >= radius_squared) continue;
+            if (dyz_squared >= reach_squared) continue;
             for (int i = box.min.x(); i <= box.max.x(); ++i) {
-                const double dx = i * volume.spacing().x() - p_VB.x();
-                if (dx * dx + dyz_squared >= radius_squared) continue;
                 const size_t offset = volume.offset(i, j, k);
-                const Density old = volume.at(offset);
-                const Density now = Density(std::clamp(int(old) + amount, 0, int(kMaxDensity)));
+                const Density old = volume.ownerData()[offset];
+                if (old == finished) continue;  // mostly: air when removing, solid when adding
+                const double dx = i * volume.spacing().x() - p_VB.x();
+                const double squared = dx * dx + dyz_squared;
+                if (squared >= reach_squared) continue;
+                const Density now = moved(old, limit.at(squared), direction, amount);
                 if (now == old) continue;
                 changes_[change_count_++] = {offset, now};
                 result.changed.include({i, j, k});

@@ -1,11 +1,12 @@
-// The thesis' removal and addition of material (§4.2.2): voxels inside the burr sphere lose or gain density
-// per time.
+// Removal and addition of material at a rate of density per time (thesis §4.2.2): voxels in the burr's reach
+// lose or gain density until they are at the burr's limit (burr_limit.h).
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "haptic_server/contact/point_shell.h"
+#include "haptic_server/milling/burr_limit.h"
 
 namespace bonemill {
 
@@ -14,6 +15,8 @@ struct MillingConfig {
     double removal_rate =
         12750 * kDensityCountsPerUnit;  // density counts/s; default: from full to nothing in 20 ms
     double addition_rate = 12750 * kDensityCountsPerUnit;  // density counts/s
+    MillingShape shape = MillingShape::kVoxelCentres;
+    double clearance = 0;  // m that kSubVoxel removes beyond the burr's sphere; a spacing at most
 };
 
 struct MillingResult {
@@ -28,17 +31,21 @@ class TimedMilling {
   public:
     TimedMilling(const MillingConfig& config, const VoxelVolume& volume, double burr_radius);
 
-    // Changes the voxels with |voxel - p_VB| < burr radius by rate·dt, then the leaf versions, density ranges
-    // and point-shell with them. direction -1 removes, +1 adds.
+    // Changes the voxels beyond their limit by rate·dt, but not past it, then the leaf versions, density
+    // ranges and point-shell with them. direction -1 removes, +1 adds. p_VB: centre of the burr.
     MillingResult apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
                         const Eigen::Vector3d& p_VB, int direction, double dt) noexcept;
+
+    // From the next apply() on.
+    void setShape(MillingShape shape) noexcept { config_.shape = shape; }
+    MillingShape shape() const noexcept { return config_.shape; }
 
   private:
     struct Change {
         size_t offset;
         Density density;
     };
-    void collectChanges(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, int amount,
+    void collectChanges(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, int direction, int amount,
                         MillingResult& result) noexcept;
 
     MillingConfig config_;

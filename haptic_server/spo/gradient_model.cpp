@@ -10,6 +10,8 @@ namespace {
 // Rotations are measured in this length so that the matrix's rows have one unit; the handle's and the tool's size.
 constexpr double kRotationLength = 0.03;  // m
 constexpr double kSmallestReach = 1e-10;  // m: a shorter step is no step
+constexpr double kLeastMargin = 50e-6;    // m: what a hand moves in a millisecond when it works
+constexpr double kMotionGrowth = 2;       // of the reach from tick to tick
 constexpr int kMostHalvings = 4;
 constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;
 constexpr double kEnergyNoise = 1e-9;  // of the energy: rounding of single precision must not refuse a step
@@ -65,6 +67,7 @@ void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
 void GradientModel::restart() noexcept {
     way_.forget();
     lambda_ = 0;
+    last_reach_ = 0;
     last_wrench_hand_ = {};
 }
 
@@ -79,8 +82,9 @@ double GradientModel::reachOf(const Vector6d& step) const noexcept {
 void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexcept {
     ++gatherings_;
     gathered_at_ = X_VT;
-    out.has_contact_overflow |=
-        !contact_.gather(world_.volume, world_.lattice, world_.shell, level_, *field_, X_VT, margin);
+    const ShellView bone{world_.volume, world_.lattice, world_.shell, level_, settings_.patch_points,
+                         settings_.refined_points};
+    out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin);
     out.candidates = uint32_t(contact_.candidateCount());
 }
 
@@ -145,7 +149,8 @@ bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tic
 SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept {
     SpoStep out;
     const Tick tick{X_VW_ * spo_W, X_VW_ * device_W, &out};
-    gather(tick.start, trustRadius(), out);
+    // What the last tick moved is a good guess of what this one will; a longer step gathers anew.
+    gather(tick.start, std::min(trustRadius(), std::max(kLeastMargin, kMotionGrowth * last_reach_)), out);
     State state = evaluate(tick.start, tick);
     out.is_solved = state.isFinite();
     for (int n = 0; n < settings_.iterations && out.is_solved; ++n) {
@@ -164,6 +169,7 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
         if (lambda_ < kFirstLambda / 100) lambda_ = 0;
         if (!has_moved) break;
     }
+    last_reach_ = reachOf(between(tick.start, state.X_VT));
     const Pose X_WV = X_VW_.inverse();
     out.spo = out.is_solved ? X_WV * state.X_VT : spo_W;
     out.contacts = state.contacts;

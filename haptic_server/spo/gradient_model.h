@@ -62,6 +62,7 @@ class GradientModel final : public SpoModel {
     uint32_t gatherings_ = 0;
     ContinuousRotation way_;
     double lambda_ = 0;  // Levenberg, share of the damping matrix
+    double last_reach_ = 0;  // m, of the last tick's motion
     double energy_ = 0;
     Wrench last_wrench_hand_;
 };

@@ -43,6 +43,7 @@ void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     model->setAccuracy(settings);
     if (model != model_) model->restart();
     model_ = model;
+    milling_.setShape(is_thesis ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel);
 }
 
 bool HapticTick::tick(TickIo& io) noexcept {

@@ -25,11 +25,27 @@ void GridField::distances(const PointBatch<double>& points_T, double* out) const
     }
 }
 
+void GridField::sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept {
+    for (int i = 0; i < points_T.count; ++i) {
+        Eigen::Vector3f gradient = Eigen::Vector3f::Zero();
+        const Eigen::Vector3f p(points_T.x[i], points_T.y[i], points_T.z[i]);
+        out.distance[i] = grid_.sampleAt(p, gradient);
+        if (out.distance[i] == SdfGrid::kOutsideDistance) out.distance[i] = float(boundOutside(box(), p.cast<double>()));
+        out.gx[i] = gradient.x(), out.gy[i] = gradient.y(), out.gz[i] = gradient.z();
+    }
+}
+
+void GridField::sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept {
+    for (int i = 0; i < points_T.count; ++i) {
+        const ToolSample at = sample(Eigen::Vector3d(points_T.x[i], points_T.y[i], points_T.z[i]));
+        out.distance[i] = at.distance;
+        out.gx[i] = at.gradient.x(), out.gy[i] = at.gradient.y(), out.gz[i] = at.gradient.z();
+    }
+}
+
 ToolSample GridField::sample(const Eigen::Vector3d& p_T) const noexcept {
-    ToolSample sample;
-    sample.distance = grid_.contains(p_T) ? grid_.distanceExactly(p_T) : boundOutside(box(), p_T);
-    sample.gradient = grid_.gradient(p_T);
-    return sample;
+    if (!grid_.contains(p_T)) return {boundOutside(box(), p_T), Eigen::Vector3d::Zero()};
+    return {grid_.distanceExactly(p_T), grid_.gradient(p_T)};
 }
 
 double GridField::distanceBound(const Eigen::Vector3d& p_T) const noexcept {

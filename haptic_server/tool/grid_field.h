@@ -7,7 +7,7 @@
 namespace bonemill {
 
 // The gradient is that of the interpolated distance, so forces made with it conserve energy; its length differs from 1
-// by the grid's error. The Hessian is zero: inside a cell it has no diagonal, and on the cells' faces none at all.
+// by the grid's error.
 class GridField final : public ToolField {
   public:
     // `thinnest_radius`: m, of the tool's thinnest part.
@@ -16,6 +16,8 @@ class GridField final : public ToolField {
 
     void distances(const PointBatch<float>& points_T, float* out) const noexcept override;
     void distances(const PointBatch<double>& points_T, double* out) const noexcept override;
+    void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept override;
+    void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept override;
     ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
     double distanceBound(const Eigen::Vector3d& p_T) const noexcept override;
 

@@ -55,6 +55,12 @@ class SdfGrid {
 
     // The contact loop's distance(): single precision throughout.
     float distanceAt(const Eigen::Vector3f& p_T) const noexcept {
+        Eigen::Vector3f unused;
+        return sampleAt(p_T, unused);
+    }
+
+    // The same with its gradient, which is left alone outside of the grid.
+    float sampleAt(const Eigen::Vector3f& p_T, Eigen::Vector3f& gradient) const noexcept {
         const Eigen::Array3f u = (p_T - origin_f_).array() * inverse_spacing_f_;
         if (!((u >= 0.0f).all() && (u <= last_f_).all())) return kOutsideDistance;  // this way round for NaN
         const int i = std::min(int(u.x()), last_cell_.x());
@@ -62,11 +68,14 @@ class SdfGrid {
         const int k = std::min(int(u.z()), last_cell_.z());
         const float fx = u.x() - float(i), fy = u.y() - float(j), fz = u.z() - float(k);
         const float* v = values_.data() + offset(i, j, k);
-        const auto alongX = [fx](const float* a) noexcept { return a[0] + fx * (a[1] - a[0]); };
-        const float v00 = alongX(v), v10 = alongX(v + stride_y_);
-        const float v01 = alongX(v + stride_z_), v11 = alongX(v + stride_z_ + stride_y_);
-        const float v0 = v00 + fy * (v10 - v00), v1 = v01 + fy * (v11 - v01);
-        return v0 + fz * (v1 - v0);
+        const float *v10 = v + stride_y_, *v01 = v + stride_z_, *v11 = v + stride_z_ + stride_y_;
+        const float d00 = v[1] - v[0], d10 = v10[1] - v10[0], d01 = v01[1] - v01[0], d11 = v11[1] - v11[0];
+        const float a00 = v[0] + fx * d00, a10 = v10[0] + fx * d10, a01 = v01[0] + fx * d01, a11 = v11[0] + fx * d11;
+        const float b0 = a00 + fy * (a10 - a00), b1 = a01 + fy * (a11 - a01);
+        const float dx0 = d00 + fy * (d10 - d00), dx1 = d01 + fy * (d11 - d01);
+        gradient = inverse_spacing_f_ * Eigen::Vector3f(dx0 + fz * (dx1 - dx0),
+                                                        (a10 - a00) + fz * ((a11 - a01) - (a10 - a00)), b1 - b0);
+        return b0 + fz * (b1 - b0);
     }
 
   private:

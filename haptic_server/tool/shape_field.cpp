@@ -8,7 +8,6 @@
 namespace bonemill {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -52,6 +51,25 @@ void nearerRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radi
     }
 }
 
+// On the axis the gradient is zero, as the mean of all directions.
+template <class Scalar>
+void sampleNearerRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radius,
+                       SampleBatch<Scalar>& out) noexcept {
+    constexpr Scalar kOnAxis = Scalar(1e-15);  // m
+    for (int i = 0; i < p.count; ++i) {
+        const Scalar x = p.x[i] - s.fx, y = p.y[i] - s.fy, z = p.z[i] - s.fz;
+        const Scalar along = std::min(std::max(x * s.ax + y * s.ay + z * s.az, Scalar(0)), s.length);
+        const Scalar dx = x - along * s.ax, dy = y - along * s.ay, dz = z - along * s.az;
+        const Scalar to_axis = std::sqrt(dx * dx + dy * dy + dz * dz);
+        const Scalar scale = 1 / std::max(to_axis, kOnAxis);
+        const bool is_nearer = to_axis - radius < out.distance[i];
+        out.distance[i] = is_nearer ? to_axis - radius : out.distance[i];
+        out.gx[i] = is_nearer ? dx * scale : out.gx[i];
+        out.gy[i] = is_nearer ? dy * scale : out.gy[i];
+        out.gz[i] = is_nearer ? dz * scale : out.gz[i];
+    }
+}
+
 // The profile's three segments: both ends and the side.
 template <class Scalar>
 void nearerCone(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar r0, Scalar r1, Scalar* out) noexcept {
@@ -79,12 +97,10 @@ Vector3d anyNormalTo(const Vector3d& axis) noexcept {
     return axis.unitOrthogonal();
 }
 
-// Nearest point of one profile segment: how far, the outward direction in the half-plane, and whether the
-// nearest point is one of its ends (there the profile is curved like a circle around it).
+// Nearest point of one profile segment: how far, and the outward direction in the half-plane.
 struct ProfileHit {
     double distance;
     Vector2d gradient;
-    bool is_end;
 };
 
 ProfileHit hitSegment(const Vector2d& q, const Vector2d& a, const Vector2d& b, const Vector2d& normal) noexcept {
@@ -94,7 +110,7 @@ ProfileHit hitSegment(const Vector2d& q, const Vector2d& a, const Vector2d& b, c
     const Vector2d off = q - a - std::clamp(u, 0.0, 1.0) * ab;
     const double distance = off.norm();
     const bool is_end = (u <= 0 || u >= 1) && distance > kTiny;
-    return {distance, is_end ? Vector2d(off / distance) : normal, is_end};
+    return {distance, is_end ? Vector2d(off / distance) : normal};
 }
 
 }  // namespace
@@ -136,6 +152,32 @@ void ShapeField::distances(const PointBatch<double>& points_T, double* out) cons
     nearest(points_T, out);
 }
 
+// Where the solid is nearer than what `out` holds, it replaces it.
+template <class Scalar>
+void ShapeField::sampleNearest(const PointBatch<Scalar>& points_T, SampleBatch<Scalar>& out) const noexcept {
+    std::fill_n(out.distance, points_T.count, std::numeric_limits<Scalar>::max());
+    for (const Solid& solid : solids_) {
+        if (solid.is_round) {
+            sampleNearerRound(points_T, Axis<Scalar>(solid.from, solid.axis, solid.length), Scalar(solid.radius[0]), out);
+            continue;
+        }
+        for (int i = 0; i < points_T.count; ++i) {
+            const ToolSample at = sampleCone(solid, {points_T.x[i], points_T.y[i], points_T.z[i]});
+            if (!(at.distance < out.distance[i])) continue;
+            out.distance[i] = Scalar(at.distance);
+            out.gx[i] = Scalar(at.gradient.x()), out.gy[i] = Scalar(at.gradient.y()), out.gz[i] = Scalar(at.gradient.z());
+        }
+    }
+}
+
+void ShapeField::sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept {
+    sampleNearest(points_T, out);
+}
+
+void ShapeField::sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept {
+    sampleNearest(points_T, out);
+}
+
 ToolSample ShapeField::sampleRound(const Solid& s, const Vector3d& p_T) noexcept {
     const double along = (p_T - s.from).dot(s.axis);
     const Vector3d off = p_T - s.from - std::clamp(along, 0.0, s.length) * s.axis;
@@ -143,10 +185,6 @@ ToolSample ShapeField::sampleRound(const Solid& s, const Vector3d& p_T) noexcept
     ToolSample sample;
     sample.distance = to_axis - s.radius[0];
     sample.gradient = off.norm() > kTiny ? Vector3d(off / to_axis) : anyNormalTo(s.axis);
-    const bool is_at_end = along <= 0 || along >= s.length;
-    const Vector3d around = s.axis.cross(sample.gradient);
-    sample.hessian = is_at_end ? Matrix3d((Matrix3d::Identity() - sample.gradient * sample.gradient.transpose()) / to_axis)
-                               : Matrix3d(around * around.transpose() / to_axis);
     return sample;
 }
 
@@ -168,10 +206,6 @@ ToolSample ShapeField::sampleCone(const Solid& s, const Vector3d& p_T) noexcept 
     ToolSample sample;
     sample.distance = is_inside ? -hit.distance : hit.distance;
     sample.gradient = hit.gradient.x() * s.axis + hit.gradient.y() * radial;
-    const Vector3d along_profile = hit.gradient.x() * radial - hit.gradient.y() * s.axis;
-    const Vector3d around = s.axis.cross(radial);
-    sample.hessian = hit.gradient.y() / std::max(rho, kTiny) * around * around.transpose();
-    if (hit.is_end) sample.hessian += along_profile * along_profile.transpose() / hit.distance;
     return sample;
 }
 

@@ -16,6 +16,8 @@ class ShapeField final : public ToolField {
 
     void distances(const PointBatch<float>& points_T, float* out) const noexcept override;
     void distances(const PointBatch<double>& points_T, double* out) const noexcept override;
+    void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept override;
+    void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept override;
     ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
     double distanceBound(const Eigen::Vector3d& p_T) const noexcept override;
 
@@ -32,6 +34,8 @@ class ShapeField final : public ToolField {
     static ToolSample sampleCone(const Solid& solid, const Eigen::Vector3d& p_T) noexcept;
     template <class Scalar>
     void nearest(const PointBatch<Scalar>& points_T, Scalar* out) const noexcept;
+    template <class Scalar>
+    void sampleNearest(const PointBatch<Scalar>& points_T, SampleBatch<Scalar>& out) const noexcept;
 
     std::vector<Solid> solids_;
 };

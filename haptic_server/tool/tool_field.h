@@ -1,5 +1,5 @@
-// The tool as the contact models see it: signed distances φ in frame T (m, negative inside), with gradient and Hessian
-// where a point touches. All queries are const, noexcept and RT-safe; any thread.
+// The tool as the contact models see it: signed distances φ in frame T (m, negative inside), with their
+// gradient where a point touches. All queries are const, noexcept and RT-safe; any thread.
 #pragma once
 
 #include "common/geometry/pose.h"
@@ -16,10 +16,18 @@ struct PointBatch {
     int count = 0;
 };
 
+// Distances and gradients of one batch.
+template <class Scalar>
+struct SampleBatch {
+    alignas(64) Scalar distance[PointBatch<Scalar>::kCapacity];
+    alignas(64) Scalar gx[PointBatch<Scalar>::kCapacity];
+    alignas(64) Scalar gy[PointBatch<Scalar>::kCapacity];
+    alignas(64) Scalar gz[PointBatch<Scalar>::kCapacity];
+};
+
 struct ToolSample {
-    double distance = 0;                                   // m
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();    // of the distance, out of the tool
-    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();     // 1/m
+    double distance = 0;                                 // m
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // of `distance` exactly; of length 1 where that is exact
 };
 
 class ToolField {
@@ -29,7 +37,10 @@ class ToolField {
     // out[0 .. count-1]: the distance, or where it is not known (far from the tool) a lower bound of it, positive.
     virtual void distances(const PointBatch<float>& points_T, float* out) const noexcept = 0;
     virtual void distances(const PointBatch<double>& points_T, double* out) const noexcept = 0;
-    // The distance at one point and its derivatives, double precision.
+    // The same distances with their gradients.
+    virtual void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept = 0;
+    virtual void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept = 0;
+    // Distance and gradient at one point, double precision.
     virtual ToolSample sample(const Eigen::Vector3d& p_T) const noexcept = 0;
     // Never above the distance; anywhere.
     virtual double distanceBound(const Eigen::Vector3d& p_T) const noexcept = 0;

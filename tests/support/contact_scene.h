@@ -64,20 +64,39 @@ inline Eigen::Quaterniond randomRotation(std::mt19937& random) {
     return Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
 }
 
+// Distances of the shapes' union, eight nodes on the thinnest radius.
+inline SdfGrid gridOf(const std::vector<ToolShape>& shapes) {
+    const ShapeField field(shapes);
+    const double spacing = field.thinnestRadius() / 8;
+    const Eigen::Vector3d origin = field.box().min().array() - 3 * spacing;
+    const Eigen::Vector3i nodes = ((field.box().sizes() / spacing).array().ceil() + 7).cast<int>();
+    std::vector<float> values;
+    for (int k = 0; k < nodes.z(); ++k)
+        for (int j = 0; j < nodes.y(); ++j)
+            for (int i = 0; i < nodes.x(); ++i)
+                values.push_back(float(field.distanceBound(origin + spacing * Eigen::Vector3d(i, j, k))));
+    return {nodes, spacing, origin, std::move(values)};
+}
+
 // Everything a GradientModel needs, around a body given by its distance.
 struct ContactScene {
     ContactScene(const VolumeGeometry& geometry, const DistanceFunction& body, const std::vector<ToolShape>& shapes,
                  ShellConfig shell = {})
         : bone(bodyVolume(geometry, body), Eigen::Vector3i::Constant(16), shell),
-          tool(sphereTool(1e-3, 0.25e-3), shapes, 1e-3) {}
+          tool(gridOf(shapes), shapes, 1e-3) {}
 
     SpoWorld world() const { return {bone.volume, bone.lattice, bone.shell, tool}; }
+
+    ShellView view(const AccuracySettings& settings = {}) const {
+        return {bone.volume, bone.lattice, bone.shell, levelOf(bone.shell, settings), settings.patch_points,
+                settings.refined_points};
+    }
 
     GradientContactResult contactAt(const GradientContactConfig& config, const AccuracySettings& settings,
                                     const Pose& X_VT) const {
         GradientContact contact(config);
         const ToolField& field = tool.field(settings);
-        contact.gather(bone.volume, bone.lattice, bone.shell, levelOf(bone.shell, settings), field, X_VT, 0.2e-3);
+        contact.gather(view(settings), field, X_VT, 0.2e-3);
         return settings.precision == Precision::kDouble ? contact.evaluate<double>(field, X_VT)
                                                         : contact.evaluate<float>(field, X_VT);
     }

@@ -96,7 +96,7 @@ TEST_F(SceneFile, badSyntaxNamesTheLine) {
 
 TEST_F(SceneFile, valueOutsideItsRangeNamesFieldValueRangeAndUnit) {
     EXPECT_EQ(refusal("volume { path: 'v' }\ncoupling {\n  max_speed_mm_per_s: -3\n}"),
-              "s.textproto:3: field `coupling.max_speed_mm_per_s` = -3 is outside 1 .. 100000 (mm/s)");
+              "s.textproto:3: field `coupling.max_speed_mm_per_s` = -3 is outside 1 .. 1000000 (mm/s)");
     EXPECT_EQ(refusal("volume { path: 'v' }\ntool { burr_radius_mm: -1 }"),
               "s.textproto:2: field `tool.burr_radius_mm` = -1 is outside 0.01 .. 50 (mm)");
     EXPECT_EQ(refusal("volume { path: 'v' }\ntool { shape { sphere { radius_mm: 1 } }\nshape { sphere "
@@ -182,7 +182,7 @@ TEST(FieldUnit, isTheSuffixOfTheName) {
 
 TEST(SceneTable, schemaRowsHaveUnitDefaultAndRange) {
     const std::string table = describeDefaults();
-    EXPECT_NE(table.find("| `coupling.max_speed_mm_per_s` | mm/s | 500 | 1 .. 100000 |"), std::string::npos);
+    EXPECT_NE(table.find("| `coupling.max_speed_mm_per_s` | mm/s | 500 | 1 .. 1000000 |"), std::string::npos);
     EXPECT_NE(table.find("| `tool.shape[].sphere.radius_mm` | mm | 1 | 0.01 .. 100 |"), std::string::npos);
     EXPECT_NE(table.find("| `volume.leaf_voxels` | voxels | not set | 4 .. 31 |"), std::string::npos);
     EXPECT_NE(table.find("| `device.p_WD_mm` | mm | not set | x, y, z |"), std::string::npos);

@@ -22,6 +22,7 @@ struct Bench {
         : bone(slab(X_WV), Eigen::Vector3i::Constant(16), ShellConfig{}),
           tool(test::sphereToolModel(kBurr, kVoxel)) {
         config.burr_radius = kBurr;
+        config.accuracy = presetSettings(Preset::kThesis2012);
     }
     static VoxelVolume slab(const Pose& X_WV) {
         VolumeGeometry geometry = test::cubeGeometry(64, kVoxel);
@@ -168,10 +169,14 @@ TEST(HapticTick, CorridorHasTheVolumeOfTheSweptBurr) {
     EXPECT_LT((bench.inV(last.p_WT) - (kStart - Eigen::Vector3d(0, 0, 4.3e-3))).norm(), 0.05e-3);
     const double depth = kTop - bench.inV(last.p_WT).z();  // of the burr centre below the surface
     const double swept = M_PI * kBurr * kBurr * depth + 2.0 / 3 * M_PI * std::pow(kBurr, 3);
-    EXPECT_NEAR(removed / swept, 1, 0.03);
-    EXPECT_NEAR((volume_before - bench.boneVolume()) / swept, 1, 0.03);
-    // Straight: the tool kept to the axis.
-    for (const TickRecord& r : records) EXPECT_LT((bench.inV(r.p_WT) - kStart).head<2>().norm(), 0.1e-3);
+    // Straight: the tool kept to the axis. What it wandered widens the corridor.
+    double wander = 0;
+    for (const TickRecord& r : records)
+        wander = std::max(wander, (bench.inV(r.p_WT) - kStart).head<2>().norm());
+    EXPECT_LT(wander, 0.02e-3);
+    const double slack = 0.02 + 2 * wander / kBurr;
+    EXPECT_NEAR(removed / swept, 1, slack);
+    EXPECT_NEAR((volume_before - bench.boneVolume()) / swept, 1, slack);
 }
 
 TEST(HapticTick, TwoRunsAreBitIdentical) {

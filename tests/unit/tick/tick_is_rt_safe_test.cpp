@@ -23,10 +23,11 @@ class TickIsRtSafe : public testing::Test {
           tick_({}, bone_, tool_, &reset_) {}
 
     // Runs the inputs under the probe; what the test itself keeps is allocated before.
-    void expectQuiet(const std::vector<DeviceInput>& inputs) {
+    void expectQuiet(const std::vector<DeviceInput>& inputs) { expectQuiet(tick_, inputs); }
+    void expectQuiet(HapticTick& tick, const std::vector<DeviceInput>& inputs) {
         test::ScriptedIo io(inputs);
         RtProbe probe;
-        while (tick_.tick(io)) {
+        while (tick.tick(io)) {
         }
         probe.stop();
         EXPECT_EQ(probe.heapCalls(), 0u) << probe.firstCall();
@@ -49,6 +50,15 @@ TEST_F(TickIsRtSafe, WhileMillingAndAddingAndResetting) {
     reset_.request();
     expectQuiet(test::straightPath(at(6.2e-3), {4e-3, 4e-3, 6.2e-3}, 500, 0));
     EXPECT_FALSE(reset_.isRunning());
+}
+
+TEST_F(TickIsRtSafe, WhileMillingBelowTheVoxelSize) {
+    TickConfig config;
+    config.milling.shape = MillingShape::kSubVoxel;
+    HapticTick tick(config, bone_, tool_, &reset_);
+    expectQuiet(tick, test::straightPath(at(6.2e-3), {4e-3, 4e-3, 3e-3}, 1000, kButtonRemove));
+    EXPECT_GT(records_[500].removed_voxels, 0u);
+    expectQuiet(tick, test::straightPath(at(3e-3), {4e-3, 4e-3, 6e-3}, 300, kButtonAdd));
 }
 
 TEST_F(TickIsRtSafe, WhileFaultsHappen) {

@@ -54,7 +54,7 @@ TEST(ShapeField, DistancesAreThoseOfTheShapesAloneAndTogether) {
 }
 
 // Away from where the nearest part of the surface changes.
-TEST(ShapeField, GradientAndHessianAreTheDistancesDerivatives) {
+TEST(ShapeField, GradientIsTheDistancesDerivative) {
     constexpr double kStep = 1e-7;
     for (const ToolShape& shape : kShapes) {
         const ShapeField field({shape});
@@ -62,20 +62,18 @@ TEST(ShapeField, GradientAndHessianAreTheDistancesDerivatives) {
         forRandomPoints(3000, [&](const Vector3d& p) {
             const ToolSample here = field.sample(p);
             Vector3d gradient;
-            Eigen::Matrix3d hessian;
             bool is_smooth = std::abs(here.distance) > 1e-5;
             for (int axis = 0; axis < 3; ++axis) {
                 const ToolSample ahead = field.sample(p + kStep * Vector3d::Unit(axis));
                 const ToolSample behind = field.sample(p - kStep * Vector3d::Unit(axis));
                 gradient[axis] = (ahead.distance - behind.distance) / (2 * kStep);
-                hessian.col(axis) = (ahead.gradient - behind.gradient) / (2 * kStep);
-                is_smooth = is_smooth && (ahead.hessian - behind.hessian).norm() < 1;  // of some 1000 / m
+                is_smooth = is_smooth && (ahead.gradient - behind.gradient).norm() < 2e-3 &&
+                            (ahead.gradient - 2 * here.gradient + behind.gradient).norm() < 1e-6;
             }
             if (!is_smooth) return;
             ++smooth;
             EXPECT_LT((gradient - here.gradient).norm(), 1e-6);
             EXPECT_NEAR(here.gradient.norm(), 1, 1e-12);
-            EXPECT_LT((hessian - here.hessian).norm(), 1e-3 * (1 + here.hessian.norm()));
         });
         EXPECT_GT(smooth, 1000);
     }
@@ -88,7 +86,6 @@ TEST(ShapeField, SpecialPlacesStayFinite) {
             const ToolSample sample = field.sample(p);
             EXPECT_TRUE(std::isfinite(sample.distance));
             EXPECT_NEAR(sample.gradient.norm(), 1, 1e-9);
-            EXPECT_TRUE(sample.hessian.allFinite());
         }
     }
 }

@@ -1,0 +1,78 @@
+// How much density a burr leaves: the limit of a voxel by its distance from the burr's centre. RT-safe.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "haptic_server/volume/voxel_volume.h"
+
+namespace bonemill {
+
+enum class MillingShape : uint8_t {
+    kVoxelCentres,  // thesis §4.2.2: voxels whose centre is inside the burr go (or come) altogether
+    // A ramp of density across the burr's surface puts the iso-surface onto it. With d the distance of the
+    // voxel's centre from the burr's surface (m, positive outside) a voxel keeps at most iso + slope d when
+    // removing and gets at least iso - slope d when adding, slope = min(iso, full - iso) / largest spacing:
+    // both ends of a grid edge that crosses the surface lie on the ramp.
+    kSubVoxel,
+};
+
+// Limit for one burr, one direction (-1 removes, +1 adds) and one shape.
+//
+// Between voxels the distance from a sphere of radius R is less than its linear interpolation, by
+// Σ h_i² t_i (1 - t_i) (1 - n_i²) / (2 R) along normal n at place t in a cell with edges h_i: at most h²/(8
+// R) on an edge, h²/(4 R) inside a cell. Uncorrected, the bone would reach into the burr everywhere, and a
+// burr that sinks in by less than that would cut no more. The ramp is therefore that of a sphere larger by
+// the mean over all places and normals, Σ h_i² / (18 R).
+class BurrLimit {
+  public:
+    // The ramp ends here (in largest spacings outside the burr) also where a low or high iso-value would let
+    // it go on: the work of a tick stays bounded.
+    static constexpr double kLargestReach = 3;
+
+    // `clearance` (m): the burr removes as if its radius were this much larger; kSubVoxel only.
+    BurrLimit(const VoxelVolume& volume, double burr_radius, MillingShape shape, int direction,
+              double clearance = 0) noexcept
+        : radius_(burr_radius), iso_(volume.iso()), direction_(direction) {
+        const bool is_ramp = shape == MillingShape::kSubVoxel;
+        if (is_ramp) radius_ += meanSag(volume, burr_radius) + (direction < 0 ? clearance : 0);
+        const double unit = volume.spacing().maxCoeff();
+        const double below = iso_;
+        const double above = kMaxDensity - iso_;
+        slope_ = std::max(1.0, std::min(below, above)) / unit;
+        const double inside = is_ramp ? (direction < 0 ? below : above) / slope_ : 0;
+        const double outside = is_ramp ? (direction < 0 ? above : below) / slope_ : 0;
+        reach_ = radius_ + std::min(outside, kLargestReach * unit);
+        const double core = std::max(0.0, radius_ - inside);
+        core_squared_ = core * core;
+    }
+
+    // Of burrs under two voxels in radius no more than of one of two.
+    static double meanSag(const VoxelVolume& volume, double burr_radius) noexcept {
+        const double radius = std::max(burr_radius, 2 * volume.spacing().maxCoeff());
+        return volume.spacing().squaredNorm() / (18 * radius);
+    }
+
+    // Voxels at this distance from the burr's centre or farther have no limit; m.
+    double reach() const noexcept { return reach_; }
+
+    // Most (removing) or least (adding) density of a voxel, by the square of its distance from the burr's
+    // centre (m²) below reach()².
+    int at(double distance_squared) const noexcept {
+        if (distance_squared < core_squared_) return direction_ < 0 ? 0 : kMaxDensity;
+        const double ramp = iso_ - direction_ * slope_ * (std::sqrt(distance_squared) - radius_);
+        const double half_up = std::clamp(ramp, 0.0, double(kMaxDensity)) + 0.5;
+        return int(half_up);  // rounds: never negative
+    }
+
+  private:
+    double radius_;  // m; of the sphere on which the ramp has the iso-value
+    double iso_;
+    int direction_;
+    double slope_;  // counts per m
+    double reach_;
+    double core_squared_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,300 @@
+// Milling below the voxel size: the surface that stays is the burr's own.
+#include <gtest/gtest.h>
+
+#include "haptic_server/mesh/mesh_check.h"
+#include "haptic_server/milling/timed_milling.h"
+#include "tests/support/test_bodies.h"
+#include "tests/support/voxel_fields.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kVoxel = 0.125e-3;
+constexpr double kDt = 1e-3;
+constexpr double kAtOnce = 1e9;  // counts/s: all that may go goes in one tick
+const std::vector<Eigen::Vector3d> kSpacings = {{kVoxel, kVoxel, kVoxel},
+                                                {0.6 * kVoxel, kVoxel, 0.8 * kVoxel}};
+constexpr Density kIsos[] = {32768, 26214, 45000, 9000};
+
+BoneModel filled(const Eigen::Vector3i& dims, const Eigen::Vector3d& spacing, Density iso, Density density) {
+    VoxelVolume volume(test::boxGeometry(dims, spacing), iso);
+    test::forEachVoxel(test::wholeBox(volume), [&](int i, int j, int k) { volume.set(i, j, k, density); });
+    return BoneModel(std::move(volume), Eigen::Vector3i(16, 12, 16), {.factors = {1, 2, 3}});
+}
+
+// Half a side of this length around the burr, whatever the spacing.
+BoneModel cube(double side, const Eigen::Vector3d& spacing, Density iso, Density density) {
+    return filled((side * spacing.cwiseInverse()).array().ceil().cast<int>() + 1, spacing, iso, density);
+}
+
+MillingConfig atOnce() {
+    return {.removal_rate = kAtOnce, .addition_rate = kAtOnce, .shape = MillingShape::kSubVoxel};
+}
+
+Eigen::Vector3d positionOf(const VoxelVolume& volume, int i, int j, int k) {
+    return volume.spacing().cwiseProduct(Eigen::Vector3d(i, j, k));
+}
+
+// Slow oracle, as the header words it.
+double signedDistance(const VoxelVolume& volume, int i, int j, int k, const Eigen::Vector3d& center,
+                      double radius) {
+    const double mean_sag = volume.spacing().squaredNorm() / (18 * radius);
+    return (positionOf(volume, i, j, k) - center).norm() - (radius + mean_sag);
+}
+double slopeOf(const VoxelVolume& volume) {
+    const double iso = volume.iso();
+    return std::min(iso, kMaxDensity - iso) / volume.spacing().maxCoeff();
+}
+double limitAt(const VoxelVolume& volume, double d, int direction) {
+    const bool is_far = d >= BurrLimit::kLargestReach * volume.spacing().maxCoeff();
+    if (is_far) return direction < 0 ? kMaxDensity : 0;
+    return std::clamp(volume.iso() - direction * slopeOf(volume) * d, 0.0, double(kMaxDensity));
+}
+
+double boneVolume(const BoneModel& bone) {
+    const auto meshes = test::meshAll(bone.volume, bone.lattice);
+    return meshVolume(meshes, MeshGrid(bone.volume, bone.lattice));
+}
+
+// Largest distance of the drawn surface's vertices from the sphere, among those nearer to it than a voxel or
+// two; and of the shell's points.
+struct Offset {
+    double mesh = 0, shell = 0;
+    size_t vertices = 0, points = 0;
+};
+Offset offsetFromSphere(const BoneModel& bone, const Eigen::Vector3d& center, double radius) {
+    Offset offset;
+    const double near = 3 * bone.volume.spacing().maxCoeff();
+    const auto see = [&](const Eigen::Vector3d& p, double& largest, size_t& count) {
+        const double off = std::abs((p - center).norm() - radius);
+        if (off > near) return;
+        largest = std::max(largest, off);
+        ++count;
+    };
+    const MeshGrid grid(bone.volume, bone.lattice);
+    for (const NodeMesh& mesh : test::meshAll(bone.volume, bone.lattice))
+        for (const PackedVertex& v : mesh.vertices)
+            see(grid.position(grid.stepsOf(mesh.leaf, v)), offset.mesh, offset.vertices);
+    for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
+        bone.shell.forEachBlock(0, leaf, [&](const ShellBlock& b, uint32_t count) {
+            for (uint32_t i = 0; i < count; ++i)
+                see(Eigen::Vector3d(b.x[i], b.y[i], b.z[i]), offset.shell, offset.points);
+        });
+    return offset;
+}
+
+class SubVoxelSphere : public testing::TestWithParam<int> {};  // radius in voxels
+
+// The sag of the interpolated distance is 0 .. h²/(4 R) in a cell (0 .. h²/(8 R) on an edge), h²/(6 R) of it
+// corrected; where the ramp ends inside a cell half a percent of a voxel comes on top. For the usual burr, 8
+// voxels in radius: 2 % of a voxel.
+TEST_P(SubVoxelSphere, DwellingLeavesTheSphere) {
+    const double radius = GetParam() * kVoxel;
+    for (const Eigen::Vector3d& spacing : kSpacings)
+        for (const Density iso : kIsos)
+            for (const int direction : {-1, +1}) {
+                const double side = 2 * radius + 9 * kVoxel;
+                BoneModel bone = cube(side, spacing, iso, direction < 0 ? kMaxDensity : 0);
+                TimedMilling milling(atOnce(), bone.volume, radius);
+                const Eigen::Vector3d center =
+                    Eigen::Vector3d::Constant(side / 2) + Eigen::Vector3d(0.31, -0.17, 0.44) * kVoxel;
+                for (int n = 0; n < 2; ++n)
+                    milling.apply(bone.volume, bone.lattice, bone.shell, center, direction, kDt);
+                const Offset offset = offsetFromSphere(bone, center, radius);
+                EXPECT_GT(offset.vertices, 500u);
+                EXPECT_GT(offset.points, 500u);
+                const double bound = 1 / (6.0 * GetParam());
+                EXPECT_LT(offset.mesh / kVoxel, bound + 1e-3) << "iso " << iso;
+                EXPECT_LT(offset.shell / kVoxel, bound + 5e-3) << "iso " << iso;
+            }
+}
+
+INSTANTIATE_TEST_SUITE_P(Radii, SubVoxelSphere, testing::Values(8, 13));
+
+TEST(SubVoxelMilling, ClearanceWidensWhatIsRemovedOnly) {
+    const double radius = 1e-3;
+    const double clearance = 7e-6;
+    for (const int direction : {-1, +1}) {
+        BoneModel bone = cube(4e-3, kSpacings[0], 32768, direction < 0 ? kMaxDensity : 0);
+        MillingConfig config = atOnce();
+        config.clearance = clearance;
+        TimedMilling milling(config, bone.volume, radius);
+        const Eigen::Vector3d center(2.01e-3, 1.96e-3, 2.03e-3);
+        milling.apply(bone.volume, bone.lattice, bone.shell, center, direction, kDt);
+        const double left = radius + (direction < 0 ? clearance : 0);
+        EXPECT_LT(offsetFromSphere(bone, center, left).mesh, 0.025 * kVoxel);
+    }
+}
+
+TEST(SubVoxelMilling, EveryVoxelEndsAtItsLimitAndNoneElsewhereChanges) {
+    std::mt19937 random(2);
+    std::uniform_int_distribution<int> density(0, kMaxDensity);
+    for (const Eigen::Vector3d& spacing : kSpacings)
+        for (const Density iso : kIsos)
+            for (const int direction : {-1, +1}) {
+                BoneModel bone = filled({31, 33, 29}, spacing, iso, 0);
+                const IndexBox all = test::wholeBox(bone.volume);
+                test::writeLikeTick(bone.volume, bone.lattice, all,
+                                    [&](int, int, int) { return Density(density(random)); });
+                bone.shell.refresh(bone.volume, bone.lattice, all);
+                const VoxelVolume before = bone.volume;
+                const double radius = 6.3 * kVoxel;
+                const Eigen::Vector3d center(12.2173 * kVoxel, 14.7391 * kVoxel, 11.4257 * kVoxel);
+                TimedMilling milling(atOnce(), bone.volume, radius);
+                const MillingResult result =
+                    milling.apply(bone.volume, bone.lattice, bone.shell, center, direction, kDt);
+                uint32_t crossed = 0;
+                test::forEachVoxel(all, [&](int i, int j, int k) {
+                    const double old = before.at(i, j, k);
+                    const double limit =
+                        limitAt(before, signedDistance(before, i, j, k, center, radius), direction);
+                    const double expected = direction < 0 ? std::min(old, limit) : std::max(old, limit);
+                    const double now = bone.volume.at(i, j, k);
+                    ASSERT_NEAR(now, expected, 0.51) << i << ' ' << j << ' ' << k;
+                    crossed += (old >= iso) != (now >= iso);
+                });
+                EXPECT_EQ(direction < 0 ? result.removed_voxels : result.added_voxels, crossed);
+                EXPECT_EQ(direction < 0 ? result.added_voxels : result.removed_voxels, 0u);
+            }
+}
+
+TEST(SubVoxelMilling, NoVoxelLosesMoreThanTheRate) {
+    BoneModel bone = cube(4e-3, kSpacings[0], 32768, kMaxDensity);
+    MillingConfig config = atOnce();
+    config.removal_rate = 1'000'003.7;
+    const double radius = 1e-3;
+    const Eigen::Vector3d center(2e-3, 2.01e-3, 1.97e-3);
+    TimedMilling milling(config, bone.volume, radius);
+    for (int n = 1; n <= 100; ++n) {
+        milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
+        const double lost = config.removal_rate * n * kDt;
+        test::forEachVoxel(test::wholeBox(bone.volume), [&](int i, int j, int k) {
+            const double limit =
+                limitAt(bone.volume, signedDistance(bone.volume, i, j, k, center, radius), -1);
+            ASSERT_NEAR(bone.volume.at(i, j, k), std::max(limit, kMaxDensity - lost), 1.51);
+        });
+    }
+}
+
+// Where the burr's centre stands on the bone when the contact lets it sink in by `sunk`.
+double heightOnBone(const BoneModel& bone, const Eigen::Vector2d& xy, double radius, double sunk) {
+    double height = -INFINITY;
+    for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
+        bone.shell.forEachBlock(0, leaf, [&](const ShellBlock& b, uint32_t count) {
+            for (uint32_t i = 0; i < count; ++i) {
+                const double aside = (Eigen::Vector2d(b.x[i], b.y[i]) - xy).norm();
+                if (aside >= radius - sunk) continue;
+                height =
+                    std::max(height, double(b.z[i]) + std::sqrt(std::pow(radius - sunk, 2) - aside * aside));
+            }
+        });
+    return height;
+}
+
+// A stiff contact lets the burr sink in by micrometres only: below the next layer of voxel centres it never
+// comes unless milling goes below the voxel size.
+TEST(SubVoxelMilling, ABurrSunkByMicrometresGoesOnCutting) {
+    const double radius = 1e-3;
+    const double sunk = 3e-6;
+    constexpr int kTicks = 150;
+    const auto feed_with = [&](MillingShape shape) {
+        VoxelVolume volume = test::bodyVolume(test::cubeGeometry(33, kVoxel),
+                                              test::halfSpace({0, 0, 2.03e-3}, Eigen::Vector3d::UnitZ()));
+        BoneModel bone(std::move(volume), Eigen::Vector3i::Constant(16), ShellConfig{});
+        TimedMilling milling({.shape = shape}, bone.volume, radius);
+        const Eigen::Vector2d xy(2.02e-3, 2.05e-3);
+        const double start = heightOnBone(bone, xy, radius, sunk);
+        double height = start;
+        for (int n = 0; n < kTicks; ++n) {
+            milling.apply(bone.volume, bone.lattice, bone.shell, {xy.x(), xy.y(), height}, -1, kDt);
+            height = heightOnBone(bone, xy, radius, sunk);
+        }
+        return start - height;
+    };
+    EXPECT_LT(feed_with(MillingShape::kVoxelCentres), kVoxel);
+    const double feed = feed_with(MillingShape::kSubVoxel);
+    EXPECT_GT(feed, 0.5 * kTicks * sunk);
+    EXPECT_LT(feed, 1.5 * kTicks * sunk);
+}
+
+TEST(SubVoxelMilling, APassLeavesTheSweptCapsule) {
+    for (const Eigen::Vector3d& spacing : kSpacings) {
+        BoneModel bone = cube(5e-3, spacing, 26214, kMaxDensity);
+        const double before = boneVolume(bone);
+        const double radius = 1e-3;
+        const Eigen::Vector3d start(1.52e-3, 1.61e-3, 1.57e-3);
+        const Eigen::Vector3d end(3.41e-3, 3.12e-3, 3.44e-3);
+        TimedMilling milling({.shape = MillingShape::kSubVoxel}, bone.volume, radius);
+        constexpr int kSteps = 600;
+        constexpr int kDwell = 30;  // at both ends, longer than a full voxel takes to go
+        for (int n = 0; n < kSteps + 2 * kDwell; ++n) {
+            const double way = std::clamp((n - kDwell) / double(kSteps), 0.0, 1.0);
+            milling.apply(bone.volume, bone.lattice, bone.shell, start + way * (end - start), -1, kDt);
+        }
+        const double swept =
+            M_PI * radius * radius * (end - start).norm() + 4.0 / 3 * M_PI * std::pow(radius, 3);
+        EXPECT_NEAR((before - boneVolume(bone)) / swept, 1, 0.01) << spacing.transpose();
+    }
+}
+
+TEST(SubVoxelMilling, ABurrAwayFromTheBoneTouchesNothing) {
+    BoneModel bone = cube(4e-3, kSpacings[1], 26214, kMaxDensity);
+    const double radius = 1e-3;
+    TimedMilling milling(atOnce(), bone.volume, radius);
+    const double away = radius + (1 + (65535 - 26214) / 26214.0) * kVoxel;
+    for (const Eigen::Vector3d& center :
+         {Eigen::Vector3d(-away, 2e-3, 2e-3), Eigen::Vector3d(2e-3, 4.2e-3 + away, 2e-3),
+          Eigen::Vector3d(1e6, -1e6, 0), Eigen::Vector3d(-5e8, 5e8, 5e8)}) {
+        const MillingResult result = milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
+        EXPECT_TRUE(result.changed.isEmpty());
+    }
+    for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf) EXPECT_EQ(bone.lattice.version(leaf), 0u);
+}
+
+TEST(SubVoxelMilling, WhatIsAtItsLimitMarksNoLeaf) {
+    BoneModel bone = cube(4e-3, kSpacings[1], 26214, kMaxDensity);
+    TimedMilling milling(atOnce(), bone.volume, 1e-3);
+    const Eigen::Vector3d center(2e-3, 2e-3, 2e-3);
+    EXPECT_FALSE(milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt).changed.isEmpty());
+    EXPECT_TRUE(milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt).changed.isEmpty());
+}
+
+// Switched between ticks, in both directions, also at the volume's border.
+TEST(SubVoxelMilling, ShellAndRangesFollowWhateverTheShape) {
+    BoneModel bone = cube(4e-3, kSpacings[1], 26214, kMaxDensity);
+    TimedMilling milling({.removal_rate = 9e6, .addition_rate = 9e6}, bone.volume, 0.7e-3);
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> where(-0.3e-3, 4.3e-3);
+    for (int stroke = 0; stroke < 30; ++stroke) {
+        milling.setShape(stroke % 3 ? MillingShape::kSubVoxel : MillingShape::kVoxelCentres);
+        const Eigen::Vector3d center(where(random), where(random), where(random));
+        for (int n = 0; n < 8; ++n)
+            EXPECT_TRUE(milling
+                            .apply(bone.volume, bone.lattice, bone.shell,
+                                   center + n * 13e-6 * Eigen::Vector3d::UnitX(), stroke % 4 ? -1 : +1, kDt)
+                            .shell_is_complete);
+        const LeafLattice lattice(bone.volume, bone.lattice.leafCells());
+        const PointShell shell(bone.volume, lattice, {.factors = {1, 2, 3}, .spare_points = 0});
+        for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
+            ASSERT_EQ(bone.lattice.range(0, leaf).min, lattice.range(0, leaf).min);
+            ASSERT_EQ(bone.lattice.range(0, leaf).max, lattice.range(0, leaf).max);
+            for (int level = 0; level < 3; ++level) {
+                std::vector<float> a, b;
+                const auto gather = [](std::vector<float>& out) {
+                    return [&out](const ShellBlock& block, uint32_t count) {
+                        for (uint32_t i = 0; i < count; ++i)
+                            for (const float value : {block.x[i], block.y[i], block.z[i], block.nx[i],
+                                                      block.ny[i], block.nz[i], block.area[i]})
+                                out.push_back(value);
+                    };
+                };
+                bone.shell.forEachBlock(level, leaf, gather(a));
+                shell.forEachBlock(level, leaf, gather(b));
+                ASSERT_EQ(a, b) << "leaf " << leaf << " level " << level;
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace bonemill

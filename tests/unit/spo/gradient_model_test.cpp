@@ -1,0 +1,202 @@
+#include "haptic_server/spo/gradient_model.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/contact_scene.h"
+
+namespace bonemill {
+namespace {
+
+using namespace test;
+using Eigen::Vector3d;
+
+constexpr double kVoxel = 0.3e-3, kTop = 5.05e-3, kRadius = 1.5e-3;
+const Vector3d kAbove(4.83e-3, 4.71e-3, kTop + kRadius);
+const Eigen::Quaterniond kUpright = expRotation({M_PI / 2, 0, 0});
+
+ContactScene flatScene(const Vector3d& normal = Vector3d::UnitZ()) {
+    return {cubeGeometry(33, kVoxel), halfSpace({4.8e-3, 4.8e-3, kTop}, normal), {SphereShape{{0, 0, 0}, kRadius}},
+            {.factors = {1, 2}}};
+}
+
+GradientConfig stiff() {
+    GradientConfig config;
+    config.burr_radius = kRadius;
+    config.coupling.saturation_force = 12;
+    return config;
+}
+
+// Runs until the tool rests.
+SpoStep settle(GradientModel& model, Pose spo, const Pose& device, int ticks = 60) {
+    SpoStep step;
+    for (int n = 0; n < ticks; ++n) {
+        step = model.advance(spo, device);
+        spo = step.spo;
+    }
+    return step;
+}
+
+TEST(GradientModel, SettlesWhereCouplingAndContactBalance) {
+    const ContactScene scene = flatScene();
+    const GradientConfig config = stiff();
+    const double kappa = config.contact.stiffness_per_area, k = config.coupling.translation_stiffness;
+    const double most = config.coupling.saturation_force;
+    for (const Preset preset : {Preset::kBalanced, Preset::kExact})
+        for (const double depth : {0.2e-3, 1e-3, 3e-3}) {
+            GradientModel model(config, scene.world(), 1e-3);
+            model.setAccuracy(presetSettings(preset));
+            const SpoStep step =
+                settle(model, {kAbove, kUpright}, {kAbove - depth * Vector3d::UnitZ(), kUpright});
+            double low = 0, high = std::min(depth, kRadius / 2);  // truth by bisection
+            for (int n = 0; n < 100; ++n) {
+                const double delta = (low + high) / 2;
+                const double contact = M_PI * kappa * (kRadius - delta) * delta * delta;
+                (contact < most * std::tanh(k * (depth - delta) / most) ? low : high) = delta;
+            }
+            const double force = most * std::tanh(k * (depth - low) / most);
+            const double bound = preset == Preset::kExact ? 0.01 : 0.03;
+            EXPECT_NEAR(step.wrench_hand.force.z() / force, 1, bound) << presetName(preset) << " " << depth;
+            EXPECT_LT(step.wrench_hand.force.head<2>().norm(), std::tan(bound == 0.01 ? 0.0175 : 0.035) * force);
+            EXPECT_NEAR(step.spo.position.z() - kAbove.z(), -low, 2e-6);
+            EXPECT_TRUE(step.is_solved);
+        }
+}
+
+TEST(GradientModel, FreeToolFollowsAtThePaceOfTheDampingTimeWhateverTheRate) {
+    const ContactScene scene = flatScene();
+    const GradientConfig config = stiff();
+    const Pose start{kAbove + Vector3d(0, 0, 1e-3), kUpright};
+    const Pose device = start.incremented({0.1e-3, 0, 0.05e-3}, {0.001, 0.002, 0});
+    double left_of_first = 0;
+    for (const double rate : {1000.0, 4000.0}) {
+        GradientModel model(config, scene.world(), 1 / rate);
+        const SpoStep step = settle(model, start, device, int(5e-3 * rate));
+        const double left = (step.spo.position - device.position).norm() / 0.1118e-3;
+        EXPECT_LT(left, 0.05);
+        if (left_of_first == 0) left_of_first = left;
+        EXPECT_EQ(step.contacts, 0u);
+    }
+    EXPECT_NEAR(left_of_first, std::pow(0.5, 5), 0.02);  // implicit Euler with dt = τ halves it every tick
+}
+
+TEST(GradientModel, EveryPresetSettlesAndTellsItsIterations) {
+    const ContactScene scene = flatScene(Vector3d(0.2, 0.1, 1).normalized());
+    for (const Preset preset : {Preset::kFast, Preset::kBalanced, Preset::kExact}) {
+        GradientModel model(stiff(), scene.world(), 1e-3);
+        model.setAccuracy(presetSettings(preset));
+        Pose spo{kAbove, kUpright};
+        const Pose device{kAbove - Vector3d(0, 0, 1e-3), kUpright};
+        const SpoStep first = model.advance(spo, device);
+        EXPECT_GE(first.iterations, 1u);
+        EXPECT_LE(first.iterations, uint32_t(presetSettings(preset).iterations));
+        const SpoStep step = settle(model, first.spo, device);
+        EXPECT_NEAR(step.wrench_hand.force.norm(), 2.8, 0.4);
+        EXPECT_GT(step.candidates, 0u);
+    }
+}
+
+TEST(GradientModel, NoSpeedTunnelsThroughAWallOfOneVoxel) {
+    const double h = 0.125e-3, top = 4.3e-3;
+    const auto wall = [=](const Vector3d& p) { return std::abs(p.z() - top + h / 2) - h / 2; };
+    const ContactScene scene(cubeGeometry(65, h), wall,
+                             {SphereShape{{0, 0, 0}, 1e-3}, CapsuleShape{{0, 0, 0}, {0, 9e-3, 0}, 0.8e-3}});
+    for (const bool has_ccd : {true, false})
+        for (const double speed : {0.5, 10.0, 500.0}) {
+            GradientConfig config = stiff();
+            config.burr_radius = 1e-3;
+            config.max_speed = speed;
+            config.max_angular_speed = 1e3;
+            GradientModel model(config, scene.world(), 1e-3);
+            AccuracySettings settings;
+            settings.continuous_collision = has_ccd;
+            model.setAccuracy(settings);
+            Pose spo{{4e-3, 4e-3, 7e-3}, kUpright};
+            const Pose device{{4e-3, 4e-3, -50e-3}, kUpright};
+            for (int n = 0; n < 300; ++n) {
+                const SpoStep step = model.advance(spo, device);
+                spo = step.spo;
+                ASSERT_GT(spo.position.z(), top) << speed;
+                ASSERT_TRUE(step.wrench_hand.isFinite());
+            }
+            EXPECT_LT(spo.position.z(), top + 1e-3);  // it did arrive
+        }
+}
+
+TEST(GradientModel, NeverGivesANonFiniteResult) {
+    const ContactScene scene = flatScene();
+    GradientModel model(stiff(), scene.world(), 1e-3);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    Pose spo{kAbove, kUpright};
+    for (int n = 0; n < 3000; ++n) {
+        const double far = n % 50 == 0 ? 1 : 3e-3;
+        const Pose device{kAbove + far * Vector3d(uniform(random), uniform(random), uniform(random)),
+                          randomRotation(random)};
+        const SpoStep step = model.advance(spo, device);
+        ASSERT_TRUE(step.spo.isFinite());
+        ASSERT_TRUE(step.wrench_hand.isFinite());
+        ASSERT_LE(step.wrench_hand.force.norm(), 12 * (1 + 1e-9));
+        spo = step.spo;
+    }
+}
+
+TEST(GradientModel, EnergyNeverRisesUnderAHandAtRest) {
+    const ContactScene scene = flatScene(Vector3d(0.4, -0.2, 1).normalized());
+    GradientModel model(stiff(), scene.world(), 1e-3);
+    Pose spo{kAbove + Vector3d(0, 0, 2e-3), kUpright};
+    const Pose device = Pose{kAbove - Vector3d(0, 0, 2e-3), kUpright}.incremented({0, 0, 0}, {0.3, 0.1, 0.2});
+    double before = 1e9;
+    for (int n = 0; n < 100; ++n) {
+        spo = model.advance(spo, device).spo;
+        EXPECT_LE(model.energy(), before * (1 + 1e-5));
+        before = model.energy();
+    }
+}
+
+// Force steps of a slow slide over a flat face: 0.3 mm voxels, k_t 1000 N/m, 5 mm/s, burr 1 to 3 mm.
+TEST(GradientModel, SlidingOverAFlatFaceIsSmooth) {
+    for (const double radius : {1e-3, 2e-3, 3e-3})
+        for (const Vector3d& normal : {Vector3d(0, 0, 1), Vector3d(0.3, 0.1, 1), Vector3d(1, 1, 1)}) {
+            const Vector3d n = normal.normalized(), along = n.unitOrthogonal();
+            const Vector3d middle(4.83e-3, 4.79e-3, 4.81e-3);
+            const ContactScene scene(cubeGeometry(33, kVoxel), halfSpace(middle, n), {SphereShape{{0, 0, 0}, radius}});
+            GradientConfig config = stiff();
+            config.burr_radius = radius;
+            config.coupling.translation_stiffness = 1000;
+            GradientModel model(config, scene.world(), 1e-3);
+            Pose spo{middle + radius * n - 1.2e-3 * along, kUpright};
+            const auto device = [&](int tick) {
+                return Pose{middle + (radius - 1e-3) * n + (-1.2e-3 + 5e-6 * std::max(0, tick - 50)) * along, kUpright};
+            };
+            Vector3d force_before = Vector3d::Zero();
+            double largest = 0;
+            for (int tick = 0; tick < 530; ++tick) {
+                const SpoStep step = model.advance(spo, device(tick));
+                spo = step.spo;
+                if (tick > 60) largest = std::max(largest, (step.wrench_hand.force - force_before).norm());
+                force_before = step.wrench_hand.force;
+            }
+            EXPECT_LE(largest, 0.02) << radius << " " << normal.transpose();
+            EXPECT_GT(force_before.norm(), 0.5);
+        }
+}
+
+TEST(GradientModel, TorqueGoesOnSmoothlyBeyondHalfATurn) {
+    const ContactScene scene = flatScene();
+    GradientConfig config = stiff();
+    config.max_angular_speed = 1e-9;  // a tool that cannot turn: the hand turns alone
+    GradientModel model(config, scene.world(), 1e-3);
+    const Pose spo{kAbove + Vector3d(0, 0, 3e-3), kUpright};
+    Vector3d before = Vector3d::Zero();
+    for (double degrees = 0; degrees < 200; degrees += 0.1) {
+        const Pose device{spo.position, expRotation({0, 0, degrees * M_PI / 180}) * kUpright};
+        const Vector3d torque = model.advance(spo, device).wrench_hand.torque;
+        if (degrees > 179) {
+            EXPECT_LT((torque - before).norm(), 0.01 * before.norm()) << degrees;
+        }
+        before = torque;
+    }
+}
+
+}  // namespace
+}  // namespace bonemill
