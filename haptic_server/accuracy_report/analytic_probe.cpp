@@ -22,6 +22,7 @@ constexpr double kBorderVoxels = 8;      // of the plane's volume around the con
 constexpr int kLeafCells = 16;
 constexpr double kStartHeight = 0.1e-3;  // m
 constexpr int kPressTicks = 100, kRestTicks = 60, kMeanTicks = 20;
+constexpr int kUnlimitedPoints = 32768;  // what is near the burr is always fewer
 constexpr Density kIso = 32768;
 constexpr double kRampVoxels = 8;  // over which the density falls from full to none
 
@@ -182,6 +183,7 @@ PatchErrors AnalyticProbe::patchAt(const AccuracySettings& settings, double widt
     PatchErrors errors{.shell_factor = settings.shell_factor,
                        .tool_distance = settings.tool_distance,
                        .sdf_refinement = settings.sdf_refinement,
+                       .patch_points = settings.patch_points,
                        .width_voxels = width_voxels,
                        .depth = depthOfWidth(radius, width_voxels * config_.spacing)};
     const double true_force = forceOnSphere(kappa, radius, errors.depth);
@@ -191,8 +193,9 @@ PatchErrors AnalyticProbe::patchAt(const AccuracySettings& settings, double widt
         const BoneModel& bone = plane->bone;
         const Pose X_WV = bone.volume.geometry().X_WV;
         const Pose X_VT = X_WV.inverse() * Pose{{0, 0, radius - errors.depth}, plane->R_WT};
-        contact.gather(bone.volume, bone.lattice, bone.shell, levelOf(bone.shell, settings), field, X_VT,
-                       1e-6);
+        contact.gather({bone.volume, bone.lattice, bone.shell, levelOf(bone.shell, settings),
+                        settings.patch_points, settings.refined_points},
+                       field, X_VT, 1e-6);
         const Vector3d force = X_WV.rotation * contact.evaluate<double>(field, X_VT).term.wrench.force;
         const double error = std::abs(force.norm() / true_force - 1);
         errors.force_rms += error * error / kGrids;
@@ -205,16 +208,28 @@ PatchErrors AnalyticProbe::patchAt(const AccuracySettings& settings, double widt
 }
 
 std::vector<PatchErrors> AnalyticProbe::patchErrors() const {
-    std::vector<std::pair<ToolDistance, int>> tools{{ToolDistance::kAnalytic, 1}, {ToolDistance::kGrid, 1}};
-    for (const int refinement : config_.refinements) tools.emplace_back(ToolDistance::kGrid, refinement);
+    constexpr int kMost = AccuracySettings::kMostPatchPoints;
+    AccuracySettings settings;
+    settings.refined_points = kUnlimitedPoints;
+    std::vector<AccuracySettings> kinds;
+    for (const int patch_points : {1, 2, kMost}) {
+        settings.patch_points = patch_points;
+        kinds.push_back(settings);
+    }
+    settings.tool_distance = ToolDistance::kGrid;
+    kinds.push_back(settings);
+    for (const int refinement : config_.refinements) {
+        settings.sdf_refinement = refinement;
+        kinds.push_back(settings);
+    }
     std::vector<PatchErrors> all;
     for (const int factor : config_.shell_factors)
         for (const double width : kWidths) {
             if (width * config_.spacing > kWidestOfRadius * config_.tick.burr_radius) continue;
-            for (const auto& [tool_distance, refinement] : tools)
-                all.push_back(
-                    patchAt({ContactLaw::kGradient, factor, tool_distance, refinement, Precision::kDouble, 1},
-                            width));
+            for (AccuracySettings kind : kinds) {
+                kind.shell_factor = factor;
+                all.push_back(patchAt(kind, width));
+            }
         }
     return all;
 }

@@ -32,6 +32,7 @@ struct PatchErrors {
     int shell_factor = 1;
     ToolDistance tool_distance = ToolDistance::kAnalytic;
     int sdf_refinement = 1;
+    int patch_points = 1;
     double width_voxels = 0;   // diameter of the contact circle
     double depth = 0;          // m
     double force_rms = 0;      // of 1, over the grids
@@ -55,7 +56,8 @@ class AnalyticProbe {
     ~AnalyticProbe();
 
     PlaneErrors measure(const AccuracySettings& settings);
-    // For all shell factors, with the analytic burr and with all its grids.
+    // For all shell factors: with the analytic burr and 1 to 4 patch points per side, and with its grids and
+    // the most.
     std::vector<PatchErrors> patchErrors() const;
 
   private:

@@ -29,6 +29,8 @@ void addTimes(Columns& row, const std::string& prefix, const TickTimes& times) {
 Columns knobsOf(const AccuracySettings& settings) {
     return {{"contact_law", settings.law == ContactLaw::kGradient ? "gradient" : "thesis_2012"},
             {"shell_factor", settings.shell_factor},
+            {"patch_points", settings.patch_points},
+            {"refined_points", settings.refined_points},
             {"tool_distance", settings.tool_distance == ToolDistance::kGrid ? "grid" : "analytic"},
             {"sdf_refinement", settings.sdf_refinement},
             {"precision", settings.precision == Precision::kFloat ? "float" : "double"},
@@ -156,6 +158,7 @@ std::string patchCsv(const ReportData& data) {
         rows.push_back({{"shell_factor", p.shell_factor},
                         {"tool_distance", p.tool_distance == ToolDistance::kGrid ? "grid" : "analytic"},
                         {"sdf_refinement", p.sdf_refinement},
+                        {"patch_points", p.patch_points},
                         {"patch_width_voxels", p.width_voxels},
                         {"depth_um", 1e6 * p.depth},
                         {"force_error_rms_percent", 100 * p.force_rms},

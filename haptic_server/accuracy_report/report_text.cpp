@@ -172,9 +172,10 @@ std::string thesisText() {
            "proposed.\n\n";
 }
 
-std::string toolText(const PatchErrors& p) {
-    return p.tool_distance == ToolDistance::kAnalytic ? "analytic"
-                                                      : "grid x" + std::to_string(p.sdf_refinement);
+std::string kindText(const PatchErrors& p) {
+    const std::string tool =
+        p.tool_distance == ToolDistance::kAnalytic ? "analytic" : "grid x" + std::to_string(p.sdf_refinement);
+    return tool + ", q = " + std::to_string(p.patch_points);
 }
 
 std::string patchTable(const ReportData& data) {
@@ -183,7 +184,8 @@ std::string patchTable(const ReportData& data) {
         "prescribed "
         "depth in a plane, over the same grids, against π κ (R − d) d². Force errors in %, root mean square "
         "over the "
-        "grids; the largest, and those of the direction: patch.csv.\n\n| shell factor | contact circle, "
+        "grids; the largest, and those of the direction: patch.csv. q × q places per contact point "
+        "(accuracy.patch_points).\n\n| shell factor | contact circle, "
         "voxels | depth µm |";
     std::string rule = "|--:|--:|--:|", rows;
     const PatchErrors* row = nullptr;  // first of the current row
@@ -192,7 +194,7 @@ std::string patchTable(const ReportData& data) {
             row = &p;
             rows += format("\n| %d |", p.shell_factor) + cell(p.width_voxels) + cell(1e6 * p.depth);
         }
-        if (row == data.patches.data()) table += " " + toolText(p) + " |", rule += "--:|";
+        if (row == data.patches.data()) table += " " + kindText(p) + " |", rule += "--:|";
         rows += cell(100 * p.force_rms);
     }
     return table + '\n' + rule + rows + '\n';

@@ -61,7 +61,7 @@ SettingFigures measure(const SweepInput& input, const AccuracySettings& settings
     const TickConfig tick = tickConfigOf(sceneWith(input.scene, settings), input.volume.spacing().minCoeff());
     SettingFigures figures;
     figures.settings = settings;
-    figures.name = settingsName(settings);
+
     figures.is_in_force = settings == accuracyOf(input.scene);
     std::vector<int64_t> probing, milling;
     probe(input, tick, shared.bone, figures, probing);
@@ -83,6 +83,7 @@ std::vector<SettingFigures> sweep(const SweepInput& input, const std::vector<Acc
     for (size_t n = 0; n < settings.size(); ++n)
         groups[shellConfigOf(sceneWith(input.scene, settings[n])).factors].push_back(n);
     std::vector<SettingFigures> all(settings.size());
+    const std::vector<std::string> names = distinctNames(settings);
     size_t done = 0;
     for (const auto& [factors, members] : groups) {
         ShellConfig shell = shellConfigOf(input.scene);
@@ -90,6 +91,7 @@ std::vector<SettingFigures> sweep(const SweepInput& input, const std::vector<Acc
         SharedBone shared(input, shell);
         for (const size_t n : members) {
             all[n] = measure(input, settings[n], shared);
+            all[n].name = names[n];
             progress(all[n], ++done);
         }
     }

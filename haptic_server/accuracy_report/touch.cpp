@@ -23,7 +23,7 @@ TouchProbe::TouchProbe(const BoneModel& bone, const ToolModel& tool)
 
 GradientContactResult TouchProbe::contactAt(const Pose& X_WT) {
     const Pose X_VT = X_VW_ * X_WT;
-    contact_.gather(bone_.volume, bone_.lattice, bone_.shell, level_, field_, X_VT, kTolerance);
+    contact_.gather({bone_.volume, bone_.lattice, bone_.shell, level_, 1, 0}, field_, X_VT, kTolerance);
     return contact_.evaluate<double>(field_, X_VT);
 }
 

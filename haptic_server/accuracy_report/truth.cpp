@@ -61,13 +61,15 @@ Truth computeOne(const ProbingStroke& stroke, const TickConfig& tick, const Bone
 }  // namespace
 
 AccuracySettings truthSettings() noexcept {
-    return {ContactLaw::kGradient,
-            1,
-            ToolDistance::kAnalytic,
-            kTruthRefinement,
-            Precision::kDouble,
-            AccuracySettings::kMostIterations,
-            true};
+    return {.law = ContactLaw::kGradient,
+            .shell_factor = 1,
+            .patch_points = 1,
+            .refined_points = 0,
+            .tool_distance = ToolDistance::kAnalytic,
+            .sdf_refinement = kTruthRefinement,
+            .precision = Precision::kDouble,
+            .iterations = AccuracySettings::kMostIterations,
+            .continuous_collision = true};
 }
 
 std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const TickConfig& tick,

@@ -10,7 +10,8 @@
 namespace bonemill {
 namespace {
 
-const AccuracySettings kOdd{ContactLaw::kGradient, 5, ToolDistance::kGrid, 3, Precision::kDouble, 7, false};
+const AccuracySettings kOdd{ContactLaw::kGradient, 5, 3,    100, ToolDistance::kGrid, 3,
+                            Precision::kDouble,    7, false};
 
 bool contains(const std::vector<AccuracySettings>& all, const AccuracySettings& settings) {
     return std::find(all.begin(), all.end(), settings) != all.end();
@@ -22,7 +23,7 @@ TEST(SweepSettings, HoldThePresetsTheScenesOwnAndNoTwoEqual) {
         EXPECT_TRUE(contains(all, kOdd));
         for (const Preset preset : kPresets) EXPECT_TRUE(contains(all, presetSettings(preset)));
         std::set<std::string> names;
-        for (const AccuracySettings& settings : all) names.insert(settingsName(settings));
+        for (const std::string& name : distinctNames(all)) names.insert(name);
         EXPECT_EQ(names.size(), all.size());
         EXPECT_GE(all.size(), 18u);
         EXPECT_LE(all.size(), 25u);
@@ -42,6 +43,8 @@ TEST(SweepSettings, EveryKnobVariesAroundBalanced) {
     AccuracySettings s = base;
     s.shell_factor = 3;
     EXPECT_TRUE(contains(all, s));
+    s = base, s.patch_points = 4, s.refined_points = presetSettings(Preset::kExact).refined_points;
+    EXPECT_TRUE(contains(all, s));
     s = base, s.tool_distance = ToolDistance::kGrid, s.sdf_refinement = 4;
     EXPECT_TRUE(contains(all, s));
     s = base, s.precision = Precision::kDouble;
@@ -50,6 +53,14 @@ TEST(SweepSettings, EveryKnobVariesAroundBalanced) {
     EXPECT_TRUE(contains(all, s));
     s = base, s.continuous_collision = false;
     EXPECT_TRUE(contains(all, s));
+}
+
+TEST(DistinctNames, TellApartWhatTheNameLeavesOut) {
+    AccuracySettings more = kOdd;
+    more.refined_points = 200;
+    const auto names = distinctNames({kOdd, more});
+    EXPECT_EQ(names[0], settingsName(kOdd));
+    EXPECT_EQ(names[1], settingsName(kOdd) + " refined_points=200");
 }
 
 TEST(SceneWith, AsksForExactlyTheseSettings) {
