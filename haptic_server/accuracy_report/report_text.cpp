@@ -110,11 +110,10 @@ std::string truthText(const ReportData& data) {
         "Along the probing path its force is %.3g N (root mean square; most %.3g N), its torque %.3g N·mm "
         "(most %.3g). ",
         truth.force_rms, truth.force_max, 1e3 * truth.torque_rms, 1e3 * truth.torque_max);
-    return text +
-           format(
-               "Sampled half as densely it would be off by %.2g %% (force) and %.2g µm: it is itself good to "
-               "that at least.\n\n",
-               100 * truth.coarser.force_vector, 1e6 * truth.coarser.position);
+    return text + format(
+                      "Sampled half as densely it would be off by %.2g %% (force) and %.2g µm: that bounds "
+                      "its own error.\n\n",
+                      100 * truth.coarser.force_vector, 1e6 * truth.coarser.position);
 }
 
 std::string pathText(const ReportData& data) {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <exception>
 #include <thread>
 
+#include "haptic_server/accuracy_report/analytic_probe.h"
 #include "haptic_server/accuracy_report/fine_bone.h"
 
 namespace bonemill {
@@ -12,6 +14,10 @@ namespace {
 
 constexpr size_t kMostVoxels = 100'000'000;  // 200 MB of densities per thread
 constexpr int kLeafCells = 16;
+constexpr int kToolRefinement = 4;
+constexpr int kUnlimitedPoints = 32768;  // contact is never that wide
+constexpr double kVoxelsAcross = 8;
+constexpr double kLightForce = 1;  // N
 constexpr double kReach = 0.5e-3;  // m: bone this near to the tool's way may be touched
 // Beyond it: the part's cut faces, which are no bone surface, are farther from the tool than any touchable
 // surface.
@@ -46,7 +52,8 @@ Truth computeOne(const ProbingStroke& stroke, const TickConfig& tick, const Bone
     const IndexBox part = partFor(stroke, bone, probe);
     Truth truth;
     if (part.isEmpty()) return truth;
-    truth.refinement = affordableRefinement(part, kTruthRefinement, kMostVoxels);
+    truth.refinement =
+        affordableRefinement(part, wantedRefinement(bone.volume.spacing().maxCoeff(), tick), kMostVoxels);
     RunRecords records = runRefined(stroke, tick, bone, part, truth.refinement, tool);
     while (hasOverflow(records) && truth.refinement > 1)
         records = runRefined(stroke, tick, bone, part, --truth.refinement, tool);
@@ -60,13 +67,20 @@ Truth computeOne(const ProbingStroke& stroke, const TickConfig& tick, const Bone
 
 }  // namespace
 
+int wantedRefinement(double spacing, const TickConfig& tick) noexcept {
+    const double width =
+        contactWidth(tick.gradient.contact.stiffness_per_area, tick.burr_radius, kLightForce);
+    return int(std::clamp(std::ceil(kVoxelsAcross * spacing / width), double(kLeastRefinement),
+                          double(kMostRefinement)));
+}
+
 AccuracySettings truthSettings() noexcept {
     return {.law = ContactLaw::kGradient,
             .shell_factor = 1,
-            .patch_points = 1,
-            .refined_points = 0,
+            .patch_points = 2,
+            .refined_points = kUnlimitedPoints,
             .tool_distance = ToolDistance::kAnalytic,
-            .sdf_refinement = kTruthRefinement,
+            .sdf_refinement = kToolRefinement,
             .precision = Precision::kDouble,
             .iterations = AccuracySettings::kMostIterations,
             .continuous_collision = true};

@@ -10,12 +10,16 @@ namespace bonemill {
 struct Truth {
     std::vector<Answer> answers;
     double max_penetration = 0;   // m
-    int refinement = 0;           // of the voxels; kTruthRefinement unless memory forbade it
+    int refinement = 0;           // of the voxels; wantedRefinement() unless memory forbade it
     std::vector<Answer> coarser;  // the same with half that refinement: how far the truth can be off
 };
-inline constexpr int kTruthRefinement = 4;
+inline constexpr int kLeastRefinement = 4, kMostRefinement = 16;
 
-// The settings of the truth: a contact point in each (refined) cell, analytic tool or its grid refined 4
+// So many times denser voxels that the burr on a plane touches some 8 of them across already with 1 N: then
+// the sums over the contact points are good to 0.1 % (patch.csv).
+int wantedRefinement(double spacing, const TickConfig& tick) noexcept;
+
+// The settings of the truth: 2 × 2 contact points in each (refined) cell, analytic tool or its grid refined 4
 // times, double precision, the most iterations.
 AccuracySettings truthSettings() noexcept;
 

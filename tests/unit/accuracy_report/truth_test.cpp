@@ -30,7 +30,7 @@ TEST(Truth, RestingBurrOnAPlaneHasTheForceAndDepthOfTheClosedForm) {
     const auto truth = computeTruth(strokes, tick, bone, tool, probe, 2);
     ASSERT_EQ(truth.size(), 2u);
     for (size_t n = 0; n < truth.size(); ++n) {
-        EXPECT_EQ(truth[n].refinement, kTruthRefinement);
+        EXPECT_EQ(truth[n].refinement, kLeastRefinement);
         ASSERT_EQ(truth[n].answers.size(), strokes[n].device.size());
         const double depth = depthUnderSpring(tick.gradient, test::kBurr, strokes[n].deepest);
         const double force = forceOnSphere(tick.gradient.contact.stiffness_per_area, test::kBurr, depth);
@@ -40,6 +40,17 @@ TEST(Truth, RestingBurrOnAPlaneHasTheForceAndDepthOfTheClosedForm) {
         EXPECT_LT(rest.hand.force.head<2>().norm(), 2e-3 * force);
         EXPECT_EQ(truth[n].coarser.size(), truth[n].answers.size());
     }
+}
+
+TEST(Truth, CoarserVoxelsAreRefinedMore) {
+    TickConfig tick;
+    EXPECT_EQ(wantedRefinement(0.1e-3, tick), kLeastRefinement);
+    EXPECT_EQ(wantedRefinement(5e-3, tick), kMostRefinement);
+    const int refinement = wantedRefinement(0.5e-3, tick);
+    EXPECT_GT(refinement, kLeastRefinement);
+    const double width = contactWidth(tick.gradient.contact.stiffness_per_area, test::kBurr, 1);
+    EXPECT_GE(width / (0.5e-3 / refinement), 8);
+    EXPECT_LT(width / (0.5e-3 / (refinement - 1)), 8);
 }
 
 TEST(Truth, DoesNotFeelWhereItsPartOfTheBoneWasCut) {
