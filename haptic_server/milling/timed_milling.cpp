@@ -26,7 +26,7 @@ Density moved(Density old, int limit, int direction, int amount) noexcept {
 TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volume, double burr_radius)
     : config_(config), burr_radius_(burr_radius) {
     const auto reach = [&](int direction) {
-        return BurrLimit(volume, burr_radius, MillingShape::kSubVoxel, direction, config.clearance).reach();
+        return BurrLimit(volume, burr_radius, MillingShape::kSubVoxel, direction).reach();
     };
     const double farthest = std::max(reach(-1), reach(+1));
     const Eigen::Array3d voxels = (2 * farthest / volume.spacing().array()).floor() + 2;
@@ -58,7 +58,7 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
 void TimedMilling::collectChanges(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, int direction,
                                   int amount, MillingResult& result) noexcept {
     change_count_ = 0;
-    const BurrLimit limit(volume, burr_radius_, config_.shape, direction, config_.clearance);
+    const BurrLimit limit(volume, burr_radius_, config_.shape, direction);
     const IndexBox box = boxAround(volume, p_VB, limit.reach());
     if (box.isEmpty()) return;
     const double reach_squared = limit.reach() * limit.reach();

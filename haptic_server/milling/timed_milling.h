@@ -16,7 +16,6 @@ struct MillingConfig {
         12750 * kDensityCountsPerUnit;  // density counts/s; default: from full to nothing in 20 ms
     double addition_rate = 12750 * kDensityCountsPerUnit;  // density counts/s
     MillingShape shape = MillingShape::kVoxelCentres;
-    double clearance = 0;  // m that kSubVoxel removes beyond the burr's sphere; a spacing at most
 };
 
 struct MillingResult {

