@@ -103,9 +103,9 @@ std::string truthText(const ReportData& data) {
         "**Truth.** The same contact law, stiffness per area, coupling and tick on the same trilinear "
         "surface, sampled " +
         std::to_string(truth.refinement) +
-        " times as densely per axis, with the tool's exact distances (a mesh: its grid refined 4 times), in "
-        "double "
-        "precision, with as many solver iterations as it takes. ";
+        " times as densely per axis at 2 × 2 places per contact point, with the tool's exact distances (a "
+        "mesh: "
+        "its grid refined 4 times), in double precision, with as many solver iterations as it takes. ";
     text += format(
         "Along the probing path its force is %.3g N (root mean square; most %.3g N), its torque %.3g N·mm "
         "(most %.3g). ",
