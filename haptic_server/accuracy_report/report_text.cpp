@@ -8,6 +8,7 @@ namespace bonemill {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
+constexpr double kStalledBelow = 0.5;  // of the wanted volume
 
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
@@ -47,6 +48,17 @@ std::string budgetText(const ReportData& data) {
     for (const ParetoPoint& point : points)
         if (point.is_candidate) fastest = std::min(fastest, point.time);
     return "No setting fits " + budget + format(": the fastest one's p99.9 is %.3g µs here.", fastest);
+}
+
+// Settings that look faster than they are.
+std::string stalledText(const ReportData& data) {
+    std::string names;
+    for (const SettingFigures& f : data.settings)
+        if (f.removal && f.removal->progress() < kStalledBelow)
+            names += (names.empty() ? "" : ", ") + f.name + format(" (%.0f %%)", 100 * f.removal->progress());
+    if (names.empty()) return {};
+    return "In the milling run the burr stayed on the bone instead of cutting its way with: " + names +
+           " of the wanted volume. Their times leave out much of the work of milling.";
 }
 
 std::string cell(double value) {
@@ -208,6 +220,7 @@ std::vector<std::string> reportConclusions(const ReportData& data) {
     if (isThesis(now)) lines.back() += " (Its error is the difference to another law's truth, see †.)";
     lines.push_back(nextBetterText(data));
     if (data.budget_us) lines.push_back(budgetText(data));
+    if (const std::string stalled = stalledText(data); !stalled.empty()) lines.push_back(stalled);
     return lines;
 }
 

@@ -31,7 +31,7 @@ inline ReportData smallReport() {
                      figuresOf(presetSettings(Preset::kBalanced), 0.02, 50),
                      figuresOf(presetSettings(Preset::kExact), 0.01, 80)};
     data.settings[2].is_in_force = true;
-    data.settings[2].removal = SettingFigures::Removal{0.9e-9, 1e-9, 2e-9};
+    data.settings[2].removal = SettingFigures::Removal{0.9e-9, 1e-9, 1.2e-9};
     data.front = paretoFront(paretoPoints(data.settings));
     data.patches = {{.shell_factor = 1, .width_voxels = 4, .depth = 1e-4, .force_rms = 0.03}};
     return data;

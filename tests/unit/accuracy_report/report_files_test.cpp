@@ -97,6 +97,14 @@ TEST(Conclusions, NothingIsBetterThanTheBest) {
     EXPECT_TRUE(contains(reportConclusions(data)[1], "No setting"));
 }
 
+TEST(Conclusions, WarnOfTimesWithoutMilling) {
+    ReportData data = smallReport();
+    data.settings[1].removal = SettingFigures::Removal{0.2e-9, 0.2e-9, 2e-9};
+    const auto lines = reportConclusions(data);
+    ASSERT_EQ(lines.size(), 3u);
+    EXPECT_TRUE(contains(lines[2], "with: fast (10 %) of the wanted volume"));
+}
+
 TEST(ReportText, HasTheTableAndSaysWhatThesisErrorsAreNot) {
     const std::string text = reportText(smallReport());
     EXPECT_TRUE(contains(text, "**balanced** (in force) | ✓ |"));
