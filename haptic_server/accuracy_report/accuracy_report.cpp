@@ -107,7 +107,8 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
                          .spacing = bone.volume.spacing().minCoeff(),
                          .sdf_spacing = tool.model.grid().spacing(),
                          .refinements = refinementsOf(settings),
-                         .shell_factors = shellFactorsOf(settings)});
+                         .shell_factors = shellFactorsOf(settings),
+                         .has_analytic_tool = tool.model.hasShapes()});
     const SweepInput input{loaded.scene, bone.volume, bone.lattice.leafCells(), tool.model, strokes, truth,
                            milling,      plane};
     ReportData data;

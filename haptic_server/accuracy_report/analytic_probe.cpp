@@ -151,6 +151,7 @@ AnalyticProbe::~AnalyticProbe() = default;
 PlaneErrors AnalyticProbe::measure(const AccuracySettings& settings) {
     TickConfig tick = config_.tick;
     tick.accuracy = settings;
+    if (!config_.has_analytic_tool) tick.accuracy.tool_distance = ToolDistance::kGrid;
     const double radius = tick.burr_radius;
     PlaneErrors errors;
     int count = 0;

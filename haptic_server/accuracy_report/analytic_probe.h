@@ -45,7 +45,8 @@ struct AnalyticProbeConfig {
     double spacing = 0;                 // m, of the voxels
     double sdf_spacing = 0;             // m, of the burr's distance grid
     std::vector<int> refinements;       // of that grid, > 1, ascending: those that will be asked for
-    std::vector<int> shell_factors{1};  // likewise
+    std::vector<int> shell_factors{1};  // those that will be asked for
+    bool has_analytic_tool = true;      // false: the scene's tool has only grids, so the burr here too
 };
 
 class AnalyticProbe {

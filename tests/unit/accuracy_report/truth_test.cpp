@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "haptic_server/accuracy_report/analytic_probe.h"
+#include "haptic_server/accuracy_report/fine_bone.h"
 #include "tests/unit/accuracy_report/probe_scene.h"
 
 namespace bonemill {
@@ -53,22 +54,34 @@ TEST(Truth, CoarserVoxelsAreRefinedMore) {
     EXPECT_LT(width / (0.5e-3 / (refinement - 1)), 8);
 }
 
-TEST(Truth, DoesNotFeelWhereItsPartOfTheBoneWasCut) {
-    const BoneModel bone = test::floorBone();
+// Oracle: the same run on the whole bone at that refinement.
+TEST(Truth, IsThatOfTheWholeBone) {
+    const Vector3d middle(3e-3, 3e-3, 2e-3);
+    const BoneModel bone =
+        test::boneOf(test::bodyVolume(test::cubeGeometry(49, 0.125e-3), test::sphereAt(middle, 1.8e-3)));
     const ToolModel tool = test::burrTool();
     TouchProbe probe(bone, tool);
-    const TickConfig tick;
-    const ProbingPlace place{"floor", {{3e-3, 3e-3, 4e-3}, upright()}, Vector3d::UnitZ(), 0.5e-3};
-    const std::vector<ProbingStroke> strokes{makeStroke(place, {}, tick, probe)};
-    const auto truth = computeTruth(strokes, tick, bone, tool, probe, 1);
-    // The part's cut faces would hold the tool back or push it aside: on a plane every force is straight up
-    // but for the lag of the moving tool, and no deeper than 4 N press.
-    double deepest = 0;
-    for (const Answer& answer : truth[0].answers) deepest = std::max(deepest, 4e-3 - answer.spo.position.z());
-    const double depth = depthUnderSpring(tick.gradient, test::kBurr, strokes[0].deepest);
-    EXPECT_LT(deepest, depth);
-    EXPECT_GT(deepest, 0.8 * depth);
-    EXPECT_GT(truth[0].max_penetration, 20e-6);
+    TickConfig tick;
+    const auto places = findProbingPlaces({}, bone, test::kBurr, probe);
+    std::vector<ProbingStroke> strokes;
+    for (const ProbingPlace& place : places)
+        strokes.push_back(makeStroke(place, {.duration = 0.3}, tick, probe));
+    const auto truth = computeTruth(strokes, tick, bone, tool, probe, 2);
+
+    BoneModel whole =
+        test::boneOf(refinedPart(bone.volume, {{-1, -1, -1}, bone.volume.dims()}, kLeastRefinement));
+    tick.accuracy = truthSettings();
+    for (size_t n = 0; n < strokes.size(); ++n) {
+        const auto oracle = answersOf(runPath(tick, whole, tool, strokes[n].device));
+        ASSERT_EQ(truth[n].answers.size(), oracle.size());
+        double most_apart = 0, most_force = 0;
+        for (size_t i = 0; i < oracle.size(); ++i) {
+            most_apart = std::max(most_apart, (truth[n].answers[i].hand.force - oracle[i].hand.force).norm());
+            most_force = std::max(most_force, oracle[i].hand.force.norm());
+        }
+        EXPECT_LT(most_apart, 2e-3) << strokes[n].name;
+        EXPECT_GT(most_force, 1) << strokes[n].name;
+    }
 }
 
 TEST(Truth, AStrokeThatTouchesNothingHasNone) {
