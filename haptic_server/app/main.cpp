@@ -4,6 +4,7 @@
 
 #include "common/config/user_error.h"
 #include "common/log/log.h"
+#include "haptic_server/accuracy_report/accuracy_report.h"
 #include "haptic_server/app/describe_scene.h"
 #include "haptic_server/app/server.h"
 #include "haptic_server/app/simulate.h"
@@ -21,8 +22,9 @@ void addServerOptions(CLI::App& app, bonemill::ServerOptions& server) {
     app.add_option("--domain", server.domain, "DDS domain, 0 to 230");
     app.add_option("--seconds", server.seconds,
                    "stop this long after the first tick; 0: run until SIGINT or SIGTERM");
-    app.add_option("--accuracy", server.accuracy,
-                   "accuracy.json of accuracy-report, to show errors; default: SCENE.accuracy.json if it exists");
+    app.add_option(
+        "--accuracy", server.accuracy,
+        "accuracy.json of accuracy-report, to show errors; default: SCENE.accuracy.json if it exists");
     app.add_option("--trace", server.trace, "write one CSV line per tick");
     app.add_option("--report", server.report, "write the run's statistics as JSON");
     app.add_option("--save-volume", server.save_volume, "write the milled volume (NRRD) at the end");
@@ -43,6 +45,16 @@ void addSimulateOptions(CLI::App& app, bonemill::SimulateOptions& simulate) {
     app.add_option("--save-mesh", simulate.save_mesh, "write the milled surface (STL, mm)");
 }
 
+void addReportOptions(CLI::App& app, bonemill::AccuracyReportOptions& report) {
+    app.add_option("--scene", report.scene, "scene file (.textproto)")->required();
+    app.add_option("--out", report.out,
+                   "folder for report.md, accuracy.csv, accuracy.json, patch.csv, pareto.png")
+        ->required();
+    app.add_option("--budget-us", report.budget_us,
+                   "propose the most accurate setting whose ticks (p99.9) fit this many microseconds")
+        ->check(CLI::PositiveNumber);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -51,17 +63,26 @@ int main(int argc, char** argv) {
     bool describe = false;
     bonemill::ServerOptions server;
     bonemill::SimulateOptions simulate;
+    bonemill::AccuracyReportOptions report;
     addServerOptions(app, server);
     app.add_flag("--describe-scene", describe, "print what the scene says and what runs, then stop");
     app.add_option("--log-level", log_level, "trace, debug, info, warn, error, off");
     CLI::App* simulate_command =
         app.add_subcommand("simulate", "run a recorded trajectory as fast as possible, deterministic");
     addSimulateOptions(*simulate_command, simulate);
+    CLI::App* report_command = app.add_subcommand(
+        "accuracy-report",
+        "measure errors and tick times of the accuracy settings in a scene, on this machine");
+    addReportOptions(*report_command, report);
     try {
         app.parse(argc, argv);
         bonemill::setUpLog("haptic_server", log_level);
         if (simulate_command->parsed()) {
             std::cout << bonemill::simulate(simulate) << std::endl;
+            return 0;
+        }
+        if (report_command->parsed()) {
+            std::cout << bonemill::accuracyReport(report, std::cerr) << std::flush;
             return 0;
         }
         if (server.scene.empty())

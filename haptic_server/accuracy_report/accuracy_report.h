@@ -1,0 +1,22 @@
+// `haptic_server accuracy-report`: how exact each accuracy setting is in a scene, and how long its ticks take
+// here. docs/accuracy.md says what the figures mean.
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+
+namespace bonemill {
+
+struct AccuracyReportOptions {
+    std::string scene;
+    std::string out;                  // folder; made if it is not there
+    std::optional<double> budget_us;  // propose the most accurate setting with p99.9 within it
+};
+
+// Writes accuracy.csv, patch.csv, accuracy.json, report.md, pareto.gnuplot and pareto.png; says on `progress`
+// how far it is. Returns a summary for people. Throws UserError; where only the picture could not be made,
+// the rest is written.
+std::string accuracyReport(const AccuracyReportOptions& options, std::ostream& progress);
+
+}  // namespace bonemill

@@ -1,0 +1,92 @@
+#include "haptic_server/accuracy_report/measures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bonemill {
+namespace {
+
+double square(double x) {
+    return x * x;
+}
+
+double angleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+}  // namespace
+
+std::vector<Answer> answersOf(const RunRecords& records) {
+    std::vector<Answer> answers;
+    answers.reserve(records.size());
+    for (const TickRecord& r : records)
+        answers.push_back(
+            {{Eigen::Vector3d(r.p_WT), Eigen::Quaterniond(r.q_WT[0], r.q_WT[1], r.q_WT[2], r.q_WT[3])},
+             {Eigen::Vector3d(r.f_hand_W), Eigen::Vector3d(r.t_hand_W)}});
+    return answers;
+}
+
+void ErrorSum::add(const std::vector<Answer>& answers, const std::vector<Answer>& truth) {
+    for (size_t n = 0; n < std::min(answers.size(), truth.size()); ++n) {
+        const Answer &a = answers[n], &t = truth[n];
+        const double force = t.hand.force.norm();
+        if (force < Errors::kFeltForce) continue;
+        ++ticks_;
+        force_vector_ += (a.hand.force - t.hand.force).squaredNorm();
+        force_ += square(a.hand.force.norm() - force);
+        true_force_ += square(force);
+        torque_ += square(a.hand.torque.norm() - t.hand.torque.norm());
+        true_torque_ += t.hand.torque.squaredNorm();
+        direction_ += square(angleBetween(a.hand.force, t.hand.force));
+        position_ += (a.spo.position - t.spo.position).squaredNorm();
+        rotation_ += logRotation(a.spo.rotation * t.spo.rotation.conjugate()).squaredNorm();
+    }
+}
+
+Errors ErrorSum::errors() const {
+    if (ticks_ == 0) return {};
+    const double n = double(ticks_);
+    return {.force_vector = std::sqrt(force_vector_ / true_force_),
+            .force = std::sqrt(force_ / true_force_),
+            .torque = true_torque_ > 0 ? std::sqrt(torque_ / true_torque_) : 0,
+            .direction = std::sqrt(direction_ / n),
+            .position = std::sqrt(position_ / n),
+            .rotation = std::sqrt(rotation_ / n),
+            .ticks = ticks_};
+}
+
+void NoiseSum::add(const std::vector<Answer>& answers) {
+    for (size_t n = 1; n + 1 < answers.size(); ++n) {
+        const auto force = [&](size_t tick) { return answers[tick].hand.force; };
+        sum_ += (force(n + 1) - 2 * force(n) + force(n - 1)).squaredNorm();
+        ++count_;
+    }
+}
+
+double NoiseSum::noise() const {
+    return count_ ? std::sqrt(sum_ / double(count_)) : 0;
+}
+
+PathEnergy energyOf(const std::vector<Answer>& answers, std::span<const Pose> device) {
+    PathEnergy energy;
+    for (size_t n = 1; n < std::min(answers.size(), device.size()); ++n) {
+        const Eigen::Vector3d moved = device[n].position - device[n - 1].position;
+        const Eigen::Vector3d turned = logRotation(device[n].rotation * device[n - 1].rotation.conjugate());
+        energy.at_end -= 0.5 * (answers[n].hand.force + answers[n - 1].hand.force).dot(moved);
+        energy.at_end -= 0.5 * (answers[n].hand.torque + answers[n - 1].hand.torque).dot(turned);
+        energy.lowest = std::min(energy.lowest, energy.at_end);
+    }
+    return energy;
+}
+
+TickTimes timesOf(std::vector<int64_t> durations_ns) {
+    if (durations_ns.empty()) return {};
+    std::sort(durations_ns.begin(), durations_ns.end());
+    const auto us = [&](double percent) {
+        const auto rank = size_t(std::ceil(percent / 100 * double(durations_ns.size()) - 1e-9));
+        return double(durations_ns[std::max<size_t>(rank, 1) - 1]) * 1e-3;
+    };
+    return {us(50), us(99), us(99.9), us(100)};
+}
+
+}  // namespace bonemill

@@ -1,0 +1,27 @@
+// How much bone the burr takes away, against the volume that it swept.
+#pragma once
+
+#include <optional>
+
+#include "haptic_server/accuracy_report/probing_places.h"
+#include "haptic_server/accuracy_report/run_path.h"
+#include "haptic_server/tick/volume_reset.h"
+
+namespace bonemill {
+
+// Into the bone at a place and sideways, slowly enough for the scene's removal rate, then a rest until all is
+// gone that the burr can reach.
+PosePath millingPath(const ProbingPlace& place, const TickConfig& tick);
+
+struct MillingRun {
+    RunRecords records;
+    double removed = 0;  // m³ between the trilinear surfaces before and after
+    double swept = 0;    // m³ of bone inside the burr at any pose of the simulated tool
+    double wanted = 0;   // m³ of bone inside the burr at any pose of the device
+};
+
+// Mills and puts the bone back with `reset`, which must have been made from it.
+MillingRun millAndRestore(const TickConfig& tick, BoneModel& bone, const ToolModel& tool, VolumeReset& reset,
+                          const PosePath& path);
+
+}  // namespace bonemill

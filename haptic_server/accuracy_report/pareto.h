@@ -1,0 +1,30 @@
+// Which settings are worth having: error against time.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace bonemill {
+
+struct ParetoPoint {
+    double error = 0;
+    double time = 0;
+    bool is_candidate =
+        true;  // false: its error is not one (thesis_2012); never on the front, never proposed
+};
+
+// For each point: no other candidate is at least as good in both and better in one. Equal points are both on
+// the front.
+std::vector<bool> paretoFront(std::span<const ParetoPoint> points);
+
+// Errors that differ by less than this part are the same for a choice: nobody pays for the difference.
+inline constexpr double kSameError = 0.02;
+
+// The most accurate candidate with time <= budget; of the same error the fastest one.
+std::optional<size_t> bestWithin(std::span<const ParetoPoint> points, double budget);
+
+// The fastest candidate whose error is smaller than that of `from`, and not the same.
+std::optional<size_t> nextBetter(std::span<const ParetoPoint> points, size_t from);
+
+}  // namespace bonemill

@@ -1,0 +1,28 @@
+// Leads the haptic tick along device poses as fast as it goes and keeps what it says.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "haptic_server/tick/haptic_tick.h"
+
+namespace bonemill {
+
+using PosePath = std::vector<Pose>;  // device poses X_WT, one per tick
+using RunRecords = std::vector<TickRecord>;
+
+// A tick of its own, so that the simulated tool starts where the path starts. With kButtonRemove it changes
+// `bone`. Not RT-safe.
+RunRecords runPath(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
+                   std::span<const Pose> path, uint32_t buttons = 0);
+
+// The same work kPasses times: the first run's records with the shortest time of each tick, so that what
+// other programs took of the processor does not count. Nothing is milled.
+RunRecords runPathTimed(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
+                        std::span<const Pose> path);
+inline constexpr int kPasses = 3;
+
+// compute_ns of each tick becomes the smaller one of both runs of the same work.
+void keepShorterTimes(RunRecords& records, const RunRecords& again) noexcept;
+
+}  // namespace bonemill

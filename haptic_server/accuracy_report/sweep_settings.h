@@ -1,0 +1,23 @@
+// Which accuracy settings the report compares.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "haptic_server/accuracy/accuracy_settings.h"
+#include "proto/scene.pb.h"
+
+namespace bonemill {
+
+// The presets; one knob at a time around balanced and thesis_2012; the cheapest there is; the scene's own.
+// Without `has_shapes` only grids. No two are equal.
+std::vector<AccuracySettings> sweepSettings(const AccuracySettings& of_scene, bool has_shapes);
+
+// settingsName() of each; where that leaves out what two of them differ in, with the number of refined
+// points.
+std::vector<std::string> distinctNames(const std::vector<AccuracySettings>& settings);
+
+// The scene with every knob of its accuracy message at these settings; normals and switchable stay.
+scene::Scene sceneWith(const scene::Scene& scene, const AccuracySettings& settings);
+
+}  // namespace bonemill
