@@ -16,7 +16,8 @@ AccuracySettings presetSettings(Preset preset) noexcept {
         case Preset::kBalanced:
             return {ContactLaw::kGradient, 1, 2, 512, ToolDistance::kAnalytic, 1, Precision::kFloat, 2, true};
         case Preset::kExact:
-            return {ContactLaw::kGradient, 1, 3, 12288, ToolDistance::kAnalytic, 4, Precision::kDouble, 4, true};
+            return {ContactLaw::kGradient, 1, 3,   12288, ToolDistance::kAnalytic, 4,
+                    Precision::kDouble,    4, true};
     }
     return {};
 }
@@ -37,9 +38,11 @@ std::string settingsName(const AccuracySettings& settings) {
     std::string name = settings.law == ContactLaw::kThesis2012 ? "thesis" : "gradient";
     name += " s=" + std::to_string(settings.shell_factor);
     if (settings.law == ContactLaw::kThesis2012) return name;
-    if (settings.patch_points > 1) name += " q=" + std::to_string(settings.patch_points) + "/" + std::to_string(settings.refined_points);
-    name += settings.tool_distance == ToolDistance::kGrid ? " grid x" + std::to_string(settings.sdf_refinement)
-                                                          : " analytic";
+    if (settings.patch_points > 1)
+        name += " q=" + std::to_string(settings.patch_points) + "/" + std::to_string(settings.refined_points);
+    name += settings.tool_distance == ToolDistance::kGrid
+                ? " grid x" + std::to_string(settings.sdf_refinement)
+                : " analytic";
     name += settings.precision == Precision::kFloat ? " float" : " double";
     name += " iterations=" + std::to_string(settings.iterations);
     return name + (settings.continuous_collision ? " ccd" : " no ccd");

@@ -1,5 +1,5 @@
-// The accuracy dial: what the haptic loop computes, and how finely. docs/accuracy.md says what each knob buys and
-// costs.
+// The accuracy dial: what the haptic loop computes, and how finely. docs/accuracy.md says what each knob buys
+// and costs.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,8 @@
 namespace bonemill {
 
 enum class ContactLaw : uint8_t { kThesis2012, kGradient };
-// Where the tool's distances come from: trilinear in its grid, or exact from its shapes (a mesh has only the grid).
+// Where the tool's distances come from: trilinear in its grid, or exact from its shapes (a mesh has only the
+// grid).
 enum class ToolDistance : uint8_t { kGrid, kAnalytic };
 enum class Precision : uint8_t { kFloat, kDouble };
 
@@ -39,8 +40,8 @@ AccuracySettings presetSettings(Preset preset) noexcept;
 std::string_view presetName(Preset preset) noexcept;
 std::optional<Preset> presetOfName(std::string_view name) noexcept;
 
-// The preset's name, or for settings that no preset has, every knob: "gradient s=2 grid×1 float 2 iterations ccd".
-// Allocates.
+// The preset's name, or for settings that no preset has, every knob: "gradient s=2 grid×1 float 2 iterations
+// ccd". Allocates.
 std::string settingsName(const AccuracySettings& settings);
 
 }  // namespace bonemill

@@ -57,9 +57,8 @@ std::vector<int> shellFactorsOf(const std::vector<AccuracySettings>& settings) {
 
 // Finest level only: what paths and truth are laid out with.
 BoneModel layoutBone(const Simulation& simulation) {
-    return BoneModel(
-        VoxelVolume(simulation.bone->volume), simulation.bone->lattice.leafCells(),
-        ShellConfig{.spare_points = 1});
+    return BoneModel(VoxelVolume(simulation.bone->volume), simulation.bone->lattice.leafCells(),
+                     ShellConfig{.spare_points = 1});
 }
 
 class Progress {

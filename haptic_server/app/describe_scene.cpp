@@ -105,8 +105,8 @@ std::string describeScene(const std::string& scene_file) {
         << bone.lattice.leafCells().transpose() << " cells, " << bone.lattice.levelCount() << " levels\n"
         << "point-shell: " << describeLevels(bone.shell) << '\n'
         << "tool: distance grid " << simulation.tool.model.grid().nodes().transpose() << " nodes of "
-        << simulation.tool.model.grid().spacing() * 1e3 << " mm, burr radius " << simulation.tick.burr_radius * 1e3
-        << " mm\n";
+        << simulation.tool.model.grid().spacing() * 1e3 << " mm, burr radius "
+        << simulation.tick.burr_radius * 1e3 << " mm\n";
     describeCost(loaded, simulation, out);
     out << "\nwhat the scene file sets (all else has its default):\n"
         << loaded.scene.DebugString() << "\nevery field, its unit, default and range:\n"

@@ -25,11 +25,12 @@ Preset presetOf(scene::Accuracy::Preset preset) {
 }
 
 ShellNormals givenNormals(scene::Accuracy::Normals normals) {
-    return normals == scene::Accuracy::TRILINEAR ? ShellNormals::kTrilinear : ShellNormals::kCentralDifference;
+    return normals == scene::Accuracy::TRILINEAR ? ShellNormals::kTrilinear
+                                                 : ShellNormals::kCentralDifference;
 }
 
-// What a burr on a flat wall carries before it has passed through half of it: π κ (R - d) d², at most its maximum
-// over d. The coupling saturates there, so that no push goes through a wall of that thickness.
+// What a burr on a flat wall carries before it has passed through half of it: π κ (R - d) d², at most its
+// maximum over d. The coupling saturates there, so that no push goes through a wall of that thickness.
 double wallForce(double kappa, double burr_radius, double wall) {
     const double depth = std::min(wall / 2, 2 * burr_radius / 3);
     return M_PI * kappa * (burr_radius - depth) * depth * depth;
@@ -41,7 +42,8 @@ AccuracySettings accuracyOf(const scene::Scene& scene) {
     const scene::Accuracy& knobs = scene.accuracy();
     AccuracySettings settings = presetSettings(presetOf(knobs.preset()));
     if (knobs.has_contact_law())
-        settings.law = knobs.contact_law() == scene::Accuracy::GRADIENT ? ContactLaw::kGradient : ContactLaw::kThesis2012;
+        settings.law = knobs.contact_law() == scene::Accuracy::GRADIENT ? ContactLaw::kGradient
+                                                                        : ContactLaw::kThesis2012;
     if (knobs.has_shell_factor()) settings.shell_factor = int(knobs.shell_factor());
     if (knobs.has_patch_points()) settings.patch_points = int(knobs.patch_points());
     if (knobs.has_refined_points()) settings.refined_points = int(knobs.refined_points());
@@ -50,7 +52,8 @@ AccuracySettings accuracyOf(const scene::Scene& scene) {
             knobs.tool_distance() == scene::Accuracy::GRID ? ToolDistance::kGrid : ToolDistance::kAnalytic;
     if (knobs.has_sdf_refinement()) settings.sdf_refinement = int(knobs.sdf_refinement());
     if (knobs.has_precision())
-        settings.precision = knobs.precision() == scene::Accuracy::DOUBLE ? Precision::kDouble : Precision::kFloat;
+        settings.precision =
+            knobs.precision() == scene::Accuracy::DOUBLE ? Precision::kDouble : Precision::kFloat;
     if (knobs.has_iterations()) settings.iterations = int(knobs.iterations());
     if (knobs.has_continuous_collision()) settings.continuous_collision = knobs.continuous_collision();
     return settings;
@@ -66,7 +69,8 @@ std::vector<AccuracySettings> accuracyChoices(const scene::Scene& scene) {
 ShellConfig shellConfigOf(const scene::Scene& scene) {
     std::map<int, ShellNormals> normals_of_factor;
     for (const AccuracySettings& choice : accuracyChoices(scene)) {
-        ShellNormals& normals = normals_of_factor.try_emplace(choice.shell_factor, ShellNormals::kTrilinear).first->second;
+        ShellNormals& normals =
+            normals_of_factor.try_emplace(choice.shell_factor, ShellNormals::kTrilinear).first->second;
         if (choice.law == ContactLaw::kThesis2012) normals = ShellNormals::kCentralDifference;
     }
     ShellConfig config{.levels = {}};
@@ -96,19 +100,21 @@ GradientConfig gradientConfigOf(const scene::Scene& scene, double finest_spacing
     config.max_angular_speed = coupling.max_angular_speed_deg_per_s() * kDegree;
     config.contact = {.stiffness_per_area = contact.stiffness_n_per_mm3() * 1e9,
                       .stiffness_cap = contact.stiffness_cap_n_per_mm() / kMillimetre};
-    const double wall = contact.has_thinnest_wall_mm() ? contact.thinnest_wall_mm() * kMillimetre : finest_spacing;
+    const double wall =
+        contact.has_thinnest_wall_mm() ? contact.thinnest_wall_mm() * kMillimetre : finest_spacing;
     const double stiffness = coupling.rotation_stiffness_nmm_per_rad() * kMillimetre / 2;
     config.coupling = {
         .translation_stiffness = coupling.translation_stiffness_n_per_mm() / kMillimetre,
         .rotation_stiffness = stiffness,
-        .saturation_force =
-            std::min(coupling.max_force_n(), wallForce(config.contact.stiffness_per_area, config.burr_radius, wall)),
-        .saturation_torque =
-            std::min(coupling.max_torque_nmm() * kMillimetre, stiffness * coupling.saturation_angle_deg() * kDegree),
+        .saturation_force = std::min(coupling.max_force_n(),
+                                     wallForce(config.contact.stiffness_per_area, config.burr_radius, wall)),
+        .saturation_torque = std::min(coupling.max_torque_nmm() * kMillimetre,
+                                      stiffness * coupling.saturation_angle_deg() * kDegree),
         .damping_time = coupling.damping_time_ms() * 1e-3,
         .relaxing_share = coupling.relaxing_share(),
         .relaxing_time = coupling.relaxing_time_ms() * 1e-3,
-        .p_TG = kMillimetre * Eigen::Vector3d(coupling.grip_mm().x(), coupling.grip_mm().y(), coupling.grip_mm().z())};
+        .p_TG = kMillimetre *
+                Eigen::Vector3d(coupling.grip_mm().x(), coupling.grip_mm().y(), coupling.grip_mm().z())};
     return config;
 }
 

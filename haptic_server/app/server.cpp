@@ -77,8 +77,8 @@ class Server {
           tick_(simulation_.tick, *simulation_.bone, simulation_.tool.model, &reset_, &accuracy_),
           recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace),
           publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
-          show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, reset_, accuracy_,
-                stop_requested_) {
+          show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, reset_,
+                accuracy_, stop_requested_) {
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
         for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     }

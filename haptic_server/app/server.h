@@ -12,9 +12,9 @@ struct ServerOptions {
     std::string scene;
     uint32_t session = 1;
     uint32_t domain = 0;
-    double seconds = 0;  // after the first tick; 0: until a signal or a shut_down command
+    double seconds = 0;    // after the first tick; 0: until a signal or a shut_down command
     std::string accuracy;  // accuracy.json of accuracy-report; empty: beside the scene, if there is one
-    std::string trace;   // files to write; empty: none
+    std::string trace;     // files to write; empty: none
     std::string report;
     std::string save_volume;
     std::string save_mesh;

@@ -16,8 +16,8 @@ class ShowSession {
   public:
     // Publishes the scene at once; bone_box is the bone's box in V. References must outlive this object.
     ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
-                const AccuracyFigures& figures, MeshOutbox& outbox, const Recorder& recorder, VolumeReset& reset,
-                AccuracySwitch& accuracy, std::atomic<bool>& stop_requested);
+                const AccuracyFigures& figures, MeshOutbox& outbox, const Recorder& recorder,
+                VolumeReset& reset, AccuracySwitch& accuracy, std::atomic<bool>& stop_requested);
 
     // One round, about 60 times per second; publisher thread only.
     void round();

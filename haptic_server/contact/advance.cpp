@@ -40,7 +40,8 @@ double GradientContact::advance(const ToolField& tool, const Pose& X_VT, const V
             tool.distances(batch, distance);
             for (int i = 0; i < count; ++i) {
                 const double lowest = std::min(at_start[i], 0.0) - allowed_depth;
-                const double r = std::sqrt(batch.x[i] * batch.x[i] + batch.y[i] * batch.y[i] + batch.z[i] * batch.z[i]);
+                const double r =
+                    std::sqrt(batch.x[i] * batch.x[i] + batch.y[i] * batch.y[i] + batch.z[i] * batch.z[i]);
                 const double rate = speed + turn * (r + speed);
                 if (rate > 0) least = std::min(least, std::max(0.0, distance[i] - lowest) / rate);
             }

@@ -24,7 +24,8 @@ double smoothstep(double t) noexcept {
 
 }  // namespace
 
-void GradientContact::guardFarSide(const VoxelVolume& volume, const ToolField& tool, const Pose& X_VT) noexcept {
+void GradientContact::guardFarSide(const VoxelVolume& volume, const ToolField& tool,
+                                   const Pose& X_VT) noexcept {
     const double from = kGuardFrom * tool.thinnestRadius(), full = kGuardFull * tool.thinnestRadius();
     const double guard = isInside(volume, X_VT.position) ? 1 : smoothstep((deepest_ - from) / (full - from));
     if (guard == 0) return;
@@ -50,7 +51,8 @@ void GradientContact::capStiffness(const ToolField& tool, const Pose& X_VT) noex
     for (size_t i = 0; i < count_; ++i) {
         const Vector3d g = tool.sample(X_TV * positionOf(candidates_[i])).gradient;
         const double in_direction = g.dot(stiffness * g);
-        if (in_direction > config_.stiffness_cap) candidates_[i].weight *= float(config_.stiffness_cap / in_direction);
+        if (in_direction > config_.stiffness_cap)
+            candidates_[i].weight *= float(config_.stiffness_cap / in_direction);
     }
 }
 

@@ -5,9 +5,10 @@
 // With φ the tool's distance at bone point b, δ = -φ, g = R∇φ, n the bone's outward normal, a the point's
 // area:
 //   E = Σ κ a λ Ψ(δ),   Ψ = ½δ² for δ > 0, going on linearly beyond the depth cap.
-// A point stands for a patch of the surface; with patch_points = q > 1 the patches near the tool are sampled at q × q
-// places: those of a square of the same area around the point, at right angles to n, moved onto the surface. Stiff
-// contact is often narrower than the points are apart. Wide contact has points enough, and is not refined.
+// A point stands for a patch of the surface; with patch_points = q > 1 the patches near the tool are sampled
+// at q × q places: those of a square of the same area around the point, at right angles to n, moved onto the
+// surface. Stiff contact is often narrower than the points are apart. Wide contact has points enough, and is
+// not refined.
 //
 // λ <= 1 is frozen when the candidates are gathered, so that each solve has one energy. It is 1 unless
 // - the stiffness in the direction of g is above the cap (then the same total for a plane, a slot and a full

@@ -26,9 +26,10 @@ PatchFrame patchFrame(const Vector3f& n, float step) noexcept {
     return {step * u, step * n.cross(u)};
 }
 
-// The nearest place of the trilinear iso-surface up or down the density's gradient, V; if it is not within `reach`, the
-// patch's own point.
-Vector3f ontoSurface(const VoxelVolume& volume, const Vector3f& start, const Vector3f& own_point, float reach) noexcept {
+// The nearest place of the trilinear iso-surface up or down the density's gradient, V; if it is not within
+// `reach`, the patch's own point.
+Vector3f ontoSurface(const VoxelVolume& volume, const Vector3f& start, const Vector3f& own_point,
+                     float reach) noexcept {
     const Vector3f spacing = volume.spacing().cast<float>();
     Vector3f p = start;
     for (int n = 0; n < kNewtonSteps; ++n) {

@@ -9,8 +9,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kSmallest = 1e-12;       // m or rad: below it the spring is linear in any direction
-constexpr double kStiffnessFloor = 0.02;  // of k, in the matrix only: a saturated spring keeps the solve regular
+constexpr double kSmallest = 1e-12;  // m or rad: below it the spring is linear in any direction
+constexpr double kStiffnessFloor =
+    0.02;  // of k, in the matrix only: a saturated spring keeps the solve regular
 
 // tanh spring over the length s of a vector.
 struct Spring {
@@ -47,7 +48,8 @@ Vector3d springVector(const Vector3d& stretch, const Spring& spring) noexcept {
 }
 
 // A spring force on the tool at r from its tool point, with stiffness K there.
-void addSpring(EnergyTerm& term, const Vector3d& r, const Vector3d& force, double energy, const Matrix3d& K) noexcept {
+void addSpring(EnergyTerm& term, const Vector3d& r, const Vector3d& force, double energy,
+               const Matrix3d& K) noexcept {
     const Matrix3d r_skew = skew(r);
     term.energy += energy;
     term.wrench.force += force;
@@ -132,14 +134,16 @@ EnergyTerm RelaxingSpring::energy(const Pose& spo, const Pose& device) const noe
     const Vector3d r = spo.rotation * config_.p_TG;
     const Vector3d stretch = stretchOf(spo, device) - followed_;
     const Spring spring = springAt(stiffness_, config_.saturation_force, stretch.norm());
-    addSpring(term, r, springVector(stretch, spring), spring.energy, directional(stretch, spring.slope, spring.secant, stiffness_));
+    addSpring(term, r, springVector(stretch, spring), spring.energy,
+              directional(stretch, spring.slope, spring.secant, stiffness_));
     return term;
 }
 
 Wrench RelaxingSpring::wrenchOnDevice(const Pose& spo, const Pose& device) const noexcept {
     if (!has_memory_ || stiffness_ == 0) return {};
     const Vector3d stretch = stretchOf(spo, device) - followed_;
-    const Vector3d force = -springVector(stretch, springAt(stiffness_, config_.saturation_force, stretch.norm()));
+    const Vector3d force =
+        -springVector(stretch, springAt(stiffness_, config_.saturation_force, stretch.norm()));
     return {force, (device.rotation * config_.p_TG).cross(force)};
 }
 

@@ -1,12 +1,15 @@
-// The virtual coupling of the gradient model: springs between the simulated tool (SPO) and the device that follow from
-// an energy, saturate smoothly, and damping against the SPO's pose one tick ago. All functions RT-safe.
+// The virtual coupling of the gradient model: springs between the simulated tool (SPO) and the device that
+// follow from an energy, saturate smoothly, and damping against the SPO's pose one tick ago. All functions
+// RT-safe.
 //
 // With d from the SPO's grip point to the device's and θ = Log(q_dev q_spo⁻¹):
-//   force  F_m tanh(k_t |d| / F_m) along d,   torque  T_m tanh(k_θ |θ| / T_m) along θ      (Barbič and James 2008 for the
+//   force  F_m tanh(k_t |d| / F_m) along d,   torque  T_m tanh(k_θ |θ| / T_m) along θ      (Barbič and James
+//   2008 for the
 // saturation).
-// Beside it a spring of k_2 about d_f, which follows d with the time constant τ_2 (a standard linear solid): it damps what
-// is quicker than τ_2 and so makes up for the energy that sampling and delay give a stiff spring; a free tool, whose d does
-// not change, is not held back by it. docs/stability.md says how much that is worth.
+// Beside it a spring of k_2 about d_f, which follows d with the time constant τ_2 (a standard linear solid):
+// it damps what is quicker than τ_2 and so makes up for the energy that sampling and delay give a stiff
+// spring; a free tool, whose d does not change, is not held back by it. docs/stability.md says how much that
+// is worth.
 #pragma once
 
 #include "common/geometry/pose.h"
@@ -26,9 +29,9 @@ struct EnergyCouplingConfig {
 
 // An energy with its derivatives by the tool's world increment (x, ω); torques about the tool point.
 struct EnergyTerm {
-    double energy = 0;                             // J
-    Wrench wrench;                                 // on the tool: minus the gradient of the energy
-    Matrix6d stiffness = Matrix6d::Zero();         // positive semi-definite stand-in for its second derivative
+    double energy = 0;                      // J
+    Wrench wrench;                          // on the tool: minus the gradient of the energy
+    Matrix6d stiffness = Matrix6d::Zero();  // positive semi-definite stand-in for its second derivative
 
     EnergyTerm& operator+=(const EnergyTerm& other) noexcept {
         energy += other.energy;
@@ -38,8 +41,8 @@ struct EnergyTerm {
     }
 };
 
-// A rotation vector that does not jump where the shorter way round changes: of the two ways it takes the one that
-// continues the last call's, up to kLongestWay; beyond, the shorter one.
+// A rotation vector that does not jump where the shorter way round changes: of the two ways it takes the one
+// that continues the last call's, up to kLongestWay; beyond, the shorter one.
 class ContinuousRotation {
   public:
     static constexpr double kLongestWay = 4.5;  // rad, 258°
@@ -58,8 +61,8 @@ class ContinuousRotation {
 EnergyTerm couplingEnergy(const EnergyCouplingConfig& config, const Pose& spo, const Pose& device,
                           const ContinuousRotation& way) noexcept;
 
-// On the device, about the device's own tool point: minus the same energy's gradient by the device's pose, so that a
-// closed path of the device costs no energy that the tool does not get.
+// On the device, about the device's own tool point: minus the same energy's gradient by the device's pose, so
+// that a closed path of the device costs no energy that the tool does not get.
 Wrench couplingWrenchOnDevice(const EnergyCouplingConfig& config, const Pose& spo, const Pose& device,
                               const ContinuousRotation& way) noexcept;
 
@@ -68,7 +71,8 @@ class RelaxingSpring {
   public:
     RelaxingSpring(const EnergyCouplingConfig& config, double dt) noexcept;
 
-    // As couplingEnergy() and couplingWrenchOnDevice(), for this spring alone. Before the first follow() it is slack.
+    // As couplingEnergy() and couplingWrenchOnDevice(), for this spring alone. Before the first follow() it
+    // is slack.
     EnergyTerm energy(const Pose& spo, const Pose& device) const noexcept;
     Wrench wrenchOnDevice(const Pose& spo, const Pose& device) const noexcept;
     // End of a tick: d_f goes its way towards d.
@@ -79,8 +83,8 @@ class RelaxingSpring {
     Eigen::Vector3d stretchOf(const Pose& spo, const Pose& device) const noexcept;
 
     EnergyCouplingConfig config_;
-    double share_;      // of the way that d_f goes in a tick
-    double stiffness_;  // N/m against d_f before it follows
+    double share_;                                        // of the way that d_f goes in a tick
+    double stiffness_;                                    // N/m against d_f before it follows
     Eigen::Vector3d followed_ = Eigen::Vector3d::Zero();  // d_f
     bool has_memory_ = false;
 };

@@ -24,9 +24,9 @@ enum class MillingShape : uint8_t {
 // Σ h_i² t_i (1 - t_i) (1 - n_i²) / (2 R) along normal n at place t in a cell with edges h_i: at most h²/(8
 // R) on an edge, h²/(4 R) inside a cell. Uncorrected, the bone would reach into the burr everywhere, and a
 // burr that sinks in by less than that would cut no more. The ramp is therefore that of a sphere larger by
-// Σ h_i² / (8 R), half as much again as the most that it can be in a cubic cell: no bone is left inside the burr, which
-// therefore moves on as soon as the rate lets it. The surface lies Σ h_i² / (14 R) outside of the burr on the mean: 3 µm
-// for a burr of 1 mm and voxels of 0.125 mm.
+// Σ h_i² / (8 R), half as much again as the most that it can be in a cubic cell: no bone is left inside the
+// burr, which therefore moves on as soon as the rate lets it. The surface lies Σ h_i² / (14 R) outside of the
+// burr on the mean: 3 µm for a burr of 1 mm and voxels of 0.125 mm.
 class BurrLimit {
   public:
     // The ramp ends here (in largest spacings outside the burr) also where a low or high iso-value would let

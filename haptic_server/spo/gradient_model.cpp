@@ -7,7 +7,8 @@
 namespace bonemill {
 namespace {
 
-// Rotations are measured in this length so that the matrix's rows have one unit; the handle's and the tool's size.
+// Rotations are measured in this length so that the matrix's rows have one unit; the handle's and the tool's
+// size.
 constexpr double kRotationLength = 0.03;  // m
 constexpr double kSmallestReach = 1e-10;  // m: a shorter step is no step
 constexpr double kLeastMargin = 50e-6;    // m: what a hand moves in a millisecond when it works
@@ -47,7 +48,8 @@ Vector6d between(const Pose& from, const Pose& to) noexcept {
 }  // namespace
 
 bool GradientModel::State::isFinite() const noexcept {
-    return std::isfinite(total.energy) && total.wrench.isFinite() && total.stiffness.allFinite() && X_VT.isFinite();
+    return std::isfinite(total.energy) && total.wrench.isFinite() && total.stiffness.allFinite() &&
+           X_VT.isFinite();
 }
 
 GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world, double dt)
@@ -95,8 +97,8 @@ double GradientModel::reachOf(const Vector6d& step) const noexcept {
 void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexcept {
     ++gatherings_;
     gathered_at_ = X_VT;
-    const ShellView bone{world_.volume, world_.lattice, world_.shell, level_, settings_.patch_points,
-                         settings_.refined_points};
+    const ShellView bone{world_.volume, world_.lattice,         world_.shell,
+                         level_,        settings_.patch_points, settings_.refined_points};
     out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin);
     out.candidates = uint32_t(contact_.candidateCount());
 }
@@ -126,8 +128,8 @@ Vector6d GradientModel::newtonStep(const State& state) const noexcept {
     return step.allFinite() ? step : Vector6d::Zero();
 }
 
-// Speed limits over the whole tick, then either the sweep (continuous collision) or the trust radius around the place
-// where the candidates were gathered. The whole twist is scaled by one factor.
+// Speed limits over the whole tick, then either the sweep (continuous collision) or the trust radius around
+// the place where the candidates were gathered. The whole twist is scaled by one factor.
 Vector6d GradientModel::limited(const State& state, Vector6d step, const Tick& tick) noexcept {
     const Vector6d so_far = between(tick.start, state.X_VT);
     const double share = std::min(shareOf(config_.max_speed * dt_, so_far.head<3>(), step.head<3>()),
@@ -176,7 +178,8 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
         const uint32_t gatherings = gatherings_;
         const Vector6d step = limited(state, newton, tick);
         if (reachOf(step) < kSmallestReach) break;
-        if (gatherings_ != gatherings) state = evaluate(state.X_VT, tick);  // the energy is that of other points now
+        if (gatherings_ != gatherings)
+            state = evaluate(state.X_VT, tick);  // the energy is that of other points now
         ++out.iterations;
         const bool has_moved = moveDown(state, step, tick);
         lambda_ = has_moved ? lambda_ / 10 : std::min(std::max(kFirstLambda, lambda_ * 10), kMostLambda);

@@ -1,6 +1,6 @@
-// The default: the tool's pose minimises contact energy + coupling energy + damping against the last pose, by a few
-// Gauss-Newton steps with a 6×6 LDLT, Levenberg damping, a trust radius and step halving. The energy never rises inside a
-// tick, so no contact situation can make the tool diverge; docs/stability.md.
+// The default: the tool's pose minimises contact energy + coupling energy + damping against the last pose, by
+// a few Gauss-Newton steps with a 6×6 LDLT, Levenberg damping, a trust radius and step halving. The energy
+// never rises inside a tick, so no contact situation can make the tool diverge; docs/stability.md.
 #pragma once
 
 #include "haptic_server/contact/gradient_contact.h"
@@ -63,7 +63,7 @@ class GradientModel final : public SpoModel {
     uint32_t gatherings_ = 0;
     ContinuousRotation way_;
     RelaxingSpring relaxing_;
-    double lambda_ = 0;  // Levenberg, share of the damping matrix
+    double lambda_ = 0;      // Levenberg, share of the damping matrix
     double last_reach_ = 0;  // m, of the last tick's motion
     double energy_ = 0;
     Wrench last_wrench_hand_;

@@ -1,4 +1,5 @@
-// How the simulated tool (SPO) follows the hand and meets the bone: one interface, two models. The scene chooses.
+// How the simulated tool (SPO) follows the hand and meets the bone: one interface, two models. The scene
+// chooses.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +24,9 @@ struct SpoStep {
     uint32_t contacts = 0;
     uint32_t candidates = 0;  // points that were tested in each iteration
     uint32_t iterations = 0;
-    double max_penetration = 0;       // m
-    bool is_solved = true;            // false: singular or not finite; the tool kept its pose
-    bool is_motion_clamped = false;   // a speed limit or the trust radius acted
+    double max_penetration = 0;         // m
+    bool is_solved = true;              // false: singular or not finite; the tool kept its pose
+    bool is_motion_clamped = false;     // a speed limit or the trust radius acted
     bool has_contact_overflow = false;  // more candidate points than there is room for: some had no effect
 };
 
@@ -34,7 +35,8 @@ class SpoModel {
     virtual ~SpoModel() = default;
     // One tick of length dt from `spo`. RT-safe; tick thread only.
     virtual SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept = 0;
-    // Forgets what it remembers of earlier ticks; called when the tool is placed anew or the model becomes active.
+    // Forgets what it remembers of earlier ticks; called when the tool is placed anew or the model becomes
+    // active.
     virtual void restart() noexcept = 0;
     // Takes effect with the next advance(). RT-safe; tick thread only.
     virtual void setAccuracy(const AccuracySettings& settings) noexcept = 0;

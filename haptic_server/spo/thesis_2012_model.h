@@ -1,5 +1,5 @@
-// The baseline: penalty contact along the bone's normals, quaternion coupling, one LU solve, static damping (thesis
-// §4.3). Kept as printed; docs/simulate.md lists its warts.
+// The baseline: penalty contact along the bone's normals, quaternion coupling, one LU solve, static damping
+// (thesis §4.3). Kept as printed; docs/simulate.md lists its warts.
 #pragma once
 
 #include "haptic_server/contact/penalty_contact.h"
@@ -10,7 +10,8 @@ namespace bonemill {
 
 class Thesis2012Model final : public SpoModel {
   public:
-    Thesis2012Model(const PenaltyContactConfig& contact, const CouplingConfig& coupling, const SpoWorld& world, double dt);
+    Thesis2012Model(const PenaltyContactConfig& contact, const CouplingConfig& coupling,
+                    const SpoWorld& world, double dt);
 
     SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept override;
     void restart() noexcept override {}

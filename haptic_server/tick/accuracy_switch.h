@@ -22,7 +22,9 @@ class AccuracySwitch {
 
     // Any thread. Relaxed is enough: the choices themselves never change.
     void choose(size_t choice) noexcept { choice_.store(choice, std::memory_order_relaxed); }
-    const AccuracySettings& chosen() const noexcept { return choices_[choice_.load(std::memory_order_relaxed)]; }
+    const AccuracySettings& chosen() const noexcept {
+        return choices_[choice_.load(std::memory_order_relaxed)];
+    }
 
   private:
     std::array<AccuracySettings, 1 + std::size(kPresets)> choices_;

@@ -70,11 +70,13 @@ class SdfGrid {
         const float* v = values_.data() + offset(i, j, k);
         const float *v10 = v + stride_y_, *v01 = v + stride_z_, *v11 = v + stride_z_ + stride_y_;
         const float d00 = v[1] - v[0], d10 = v10[1] - v10[0], d01 = v01[1] - v01[0], d11 = v11[1] - v11[0];
-        const float a00 = v[0] + fx * d00, a10 = v10[0] + fx * d10, a01 = v01[0] + fx * d01, a11 = v11[0] + fx * d11;
+        const float a00 = v[0] + fx * d00, a10 = v10[0] + fx * d10, a01 = v01[0] + fx * d01,
+                    a11 = v11[0] + fx * d11;
         const float b0 = a00 + fy * (a10 - a00), b1 = a01 + fy * (a11 - a01);
         const float dx0 = d00 + fy * (d10 - d00), dx1 = d01 + fy * (d11 - d01);
-        gradient = inverse_spacing_f_ * Eigen::Vector3f(dx0 + fz * (dx1 - dx0),
-                                                        (a10 - a00) + fz * ((a11 - a01) - (a10 - a00)), b1 - b0);
+        gradient =
+            inverse_spacing_f_ *
+            Eigen::Vector3f(dx0 + fz * (dx1 - dx0), (a10 - a00) + fz * ((a11 - a01) - (a10 - a00)), b1 - b0);
         return b0 + fz * (b1 - b0);
     }
 

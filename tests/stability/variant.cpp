@@ -35,9 +35,9 @@ CouplingFigures couplingFigures(const TickConfig& config) {
                 c.max_angular_speed};
     }
     const GradientConfig& g = config.gradient;
-    return {g.coupling.translation_stiffness, g.coupling.translation_stiffness * (1 + g.coupling.relaxing_share),
-            g.coupling.rotation_stiffness, g.max_speed,
-            g.max_angular_speed};
+    return {g.coupling.translation_stiffness,
+            g.coupling.translation_stiffness * (1 + g.coupling.relaxing_share), g.coupling.rotation_stiffness,
+            g.max_speed, g.max_angular_speed};
 }
 
 double& couplingStiffness(TickConfig& config) {

@@ -1,4 +1,5 @@
-// Analytic bone, analytic tool, and what their contact must be: sums over a fine sampling of the exact surface.
+// Analytic bone, analytic tool, and what their contact must be: sums over a fine sampling of the exact
+// surface.
 #pragma once
 
 #include <random>
@@ -38,8 +39,8 @@ inline std::vector<SurfaceElement> holeElements(const Eigen::Vector3d& center, c
         for (int j = -along; j < along; ++j) {
             const double phi = (i + 0.5) * angle;
             const Eigen::Vector3d out(std::cos(phi), std::sin(phi), 0);
-            elements.push_back({center + R * (radius * out + length * (j + 0.5) * Eigen::Vector3d::UnitZ()), -(R * out),
-                                radius * angle * length});
+            elements.push_back({center + R * (radius * out + length * (j + 0.5) * Eigen::Vector3d::UnitZ()),
+                                -(R * out), radius * angle * length});
         }
     return elements;
 }
@@ -80,16 +81,16 @@ inline SdfGrid gridOf(const std::vector<ToolShape>& shapes) {
 
 // Everything a GradientModel needs, around a body given by its distance.
 struct ContactScene {
-    ContactScene(const VolumeGeometry& geometry, const DistanceFunction& body, const std::vector<ToolShape>& shapes,
-                 ShellConfig shell = {})
+    ContactScene(const VolumeGeometry& geometry, const DistanceFunction& body,
+                 const std::vector<ToolShape>& shapes, ShellConfig shell = {})
         : bone(bodyVolume(geometry, body), Eigen::Vector3i::Constant(16), shell),
           tool(gridOf(shapes), shapes, 1e-3) {}
 
     SpoWorld world() const { return {bone.volume, bone.lattice, bone.shell, tool}; }
 
     ShellView view(const AccuracySettings& settings = {}) const {
-        return {bone.volume, bone.lattice, bone.shell, levelOf(bone.shell, settings), settings.patch_points,
-                settings.refined_points};
+        return {bone.volume,           bone.lattice,           bone.shell, levelOf(bone.shell, settings),
+                settings.patch_points, settings.refined_points};
     }
 
     GradientContactResult contactAt(const GradientContactConfig& config, const AccuracySettings& settings,

@@ -191,9 +191,10 @@ BuiltTool buildTool(const ToolConfig& config, const std::vector<int>& refinement
     checkConfig(config);
     Sampled sampled = sampleTool(config);
     checkNotEmpty(sampled.sdf);
-    BuiltTool tool{{std::move(sampled.sdf), config.mesh_path.empty() ? toolShapes(config) : std::vector<ToolShape>{},
-                    config.burr_radius},
-                   {}};
+    BuiltTool tool{
+        {std::move(sampled.sdf), config.mesh_path.empty() ? toolShapes(config) : std::vector<ToolShape>{},
+         config.burr_radius},
+        {}};
     tool.warnings = warningsFor(config, {tool.model.grid(), sampled.tool_box});
     for (const int refinement : refinements)
         tool.model.addRefinedGrid(refinement, sampleTool(refined(config, tool.model.grid(), refinement)).sdf);

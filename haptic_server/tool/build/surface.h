@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "haptic_server/tool/tool_shape.h"
 #include "haptic_server/tool/build/triangle_mesh.h"
+#include "haptic_server/tool/tool_shape.h"
 
 namespace bonemill {
 

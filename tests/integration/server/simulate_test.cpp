@@ -131,7 +131,9 @@ TEST_P(SimulatePresets, CorridorInTheToothIsTheSweptBurr) {
     const TemporaryFolder folder;
     ASSERT_EQ(run({"make_phantom", "tooth", "--out", folder / "tooth"}).exit_code, 0);
     constexpr double kIso = 600, kBurr = 1e-3;
-    writeFile(folder / "s.textproto", "volume { path: \"tooth\" iso_value: 600 octree_depth: 3 } accuracy { preset: " + std::string(GetParam()) + " }");
+    writeFile(folder / "s.textproto",
+              "volume { path: \"tooth\" iso_value: 600 octree_depth: 3 } accuracy { preset: " +
+                  std::string(GetParam()) + " }");
     // From above a cusp straight down into the middle of the tooth, at 1 mm/s.
     writeFile(folder / "a.csv", plunge(2.7e-3, -2.45e-3, 21e-3, 12.2e-3, 8800, 400, 1));
     const auto json = simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto",
@@ -170,7 +172,8 @@ TEST_P(SimulatePresets, CorridorInTheToothIsTheSweptBurr) {
     for (const auto& row : trace) EXPECT_LT(std::hypot(row[1] - 2.7e-3, row[2] + 2.45e-3), 0.5e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Presets, SimulatePresets, testing::Values("THESIS_2012", "FAST", "BALANCED", "EXACT"),
+INSTANTIATE_TEST_SUITE_P(Presets, SimulatePresets,
+                         testing::Values("THESIS_2012", "FAST", "BALANCED", "EXACT"),
                          [](const auto& preset) { return std::string(preset.param); });
 
 }  // namespace

@@ -1,5 +1,5 @@
-// No closed path of the device over bone that nobody mills gives the hand energy: 10⁴ random paths. rapidcheck prints
-// the seed of a run; RC_PARAMS="seed=..." repeats it.
+// No closed path of the device over bone that nobody mills gives the hand energy: 10⁴ random paths.
+// rapidcheck prints the seed of a run; RC_PARAMS="seed=..." repeats it.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
@@ -34,15 +34,17 @@ double slot(const Vector3d& p) {  // barely wider than the burr
 // Rough: a different density in every voxel of a layer around the bumps.
 double rough(const Vector3d& p) {
     const Eigen::Vector3i voxel = (p / kVoxel).array().round().cast<int>();
-    const uint32_t hash = uint32_t(voxel.x() * 73856093 ^ voxel.y() * 19349663 ^ voxel.z() * 83492791) * 2654435761u;
+    const uint32_t hash =
+        uint32_t(voxel.x() * 73856093 ^ voxel.y() * 19349663 ^ voxel.z() * 83492791) * 2654435761u;
     return bumps(p) + 0.3e-3 * (double(hash >> 8) / double(1 << 24) - 0.5);
 }
 
 const ContactScene& sceneOf(int body) {
-    static const ContactScene scenes[] = {{cubeGeometry(33, kVoxel), bumps, kBurrAndShaft, {.levels = {{1}, {2}}}},
-                                          {cubeGeometry(33, kVoxel), wedge, kBurrAndShaft, {.levels = {{1}, {2}}}},
-                                          {cubeGeometry(33, kVoxel), slot, kBurrAndShaft, {.levels = {{1}, {2}}}},
-                                          {cubeGeometry(33, kVoxel), rough, kBurrAndShaft, {.levels = {{1}, {2}}}}};
+    static const ContactScene scenes[] = {
+        {cubeGeometry(33, kVoxel), bumps, kBurrAndShaft, {.levels = {{1}, {2}}}},
+        {cubeGeometry(33, kVoxel), wedge, kBurrAndShaft, {.levels = {{1}, {2}}}},
+        {cubeGeometry(33, kVoxel), slot, kBurrAndShaft, {.levels = {{1}, {2}}}},
+        {cubeGeometry(33, kVoxel), rough, kBurrAndShaft, {.levels = {{1}, {2}}}}};
     return scenes[body];
 }
 
@@ -53,7 +55,8 @@ double fraction() {
 
 // Out of the air into the bone, through a few random places and back, smoothly.
 struct Path {
-    static constexpr int kPlaces = 2, kTicksPerLeg = 120, kRest = 5;  // legs of some mm: steps of 20 µm keep the quadrature's error below
+    static constexpr int kPlaces = 2, kTicksPerLeg = 120,
+                         kRest = 5;  // legs of some mm: steps of 20 µm keep the quadrature's error below
     Vector3d place[kPlaces + 2];
     Vector3d turn[kPlaces + 2];
 
@@ -61,8 +64,10 @@ struct Path {
         for (int n = 0; n < kPlaces + 2; ++n) {
             const bool is_end = n == 0 || n == kPlaces + 1;
             place[n] = kMiddle + (is_end ? Vector3d(0, 0, 2.5e-3)
-                                         : Vector3d(1.2e-3 * fraction(), 1.2e-3 * fraction(), 0.3e-3 + 0.9e-3 * fraction()));
-            turn[n] = is_end ? Vector3d::Zero() : Vector3d(0.3 * Vector3d(fraction(), fraction(), fraction()));
+                                         : Vector3d(1.2e-3 * fraction(), 1.2e-3 * fraction(),
+                                                    0.3e-3 + 0.9e-3 * fraction()));
+            turn[n] =
+                is_end ? Vector3d::Zero() : Vector3d(0.3 * Vector3d(fraction(), fraction(), fraction()));
         }
     }
     static constexpr int ticks() { return (kPlaces + 1) * kTicksPerLeg + kRest; }
@@ -129,7 +134,8 @@ TEST_P(ClosedPaths, GiveTheHandNoEnergy) {
     params.disableShrinking = true;  // a shrunk path says no more, and takes minutes
     rc::detail::TestMetadata metadata;
     metadata.id = testing::UnitTest::GetInstance()->current_test_info()->name();
-    const auto result = rc::detail::checkTestable([&] { expectPassive(preset, body, least); }, metadata, params);
+    const auto result =
+        rc::detail::checkTestable([&] { expectPassive(preset, body, least); }, metadata, params);
     std::printf("%d paths, seed %llu, least energy put in %.2e J\n", paths,
                 static_cast<unsigned long long>(params.seed), least);
     std::ostringstream message;

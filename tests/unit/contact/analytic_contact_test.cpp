@@ -1,5 +1,5 @@
-// The gradient law on voxels against closed forms and quadrature over the exact surface, at many rotations and voxel
-// sizes. Bounds are those promised in docs/accuracy.md for contact patches at least 8 voxels wide.
+// The gradient law on voxels against closed forms and quadrature over the exact surface, at many rotations
+// and voxel sizes. Bounds are those promised in docs/accuracy.md for contact patches at least 8 voxels wide.
 #include <gtest/gtest.h>
 
 #include "tests/support/contact_scene.h"
@@ -30,7 +30,8 @@ std::vector<Orientation> orientations() {
     std::uniform_real_distribution<double> uniform(-0.5, 0.5);
     std::vector<Orientation> all{{Matrix3d::Identity(), Vector3d(0.1, 0.2, 0.3)}};
     for (int n = 0; n < 20; ++n)
-        all.push_back({randomRotation(random).toRotationMatrix(), {uniform(random), uniform(random), uniform(random)}});
+        all.push_back(
+            {randomRotation(random).toRotationMatrix(), {uniform(random), uniform(random), uniform(random)}});
     return all;
 }
 
@@ -39,11 +40,13 @@ double degreesBetween(const Vector3d& a, const Vector3d& b) {
 }
 
 // A torque smaller than the force at the tool's radius is measured against that.
-void expectNear(const Wrench& got, const Wrench& truth, double radius, const Bound& bound, const std::string& what) {
+void expectNear(const Wrench& got, const Wrench& truth, double radius, const Bound& bound,
+                const std::string& what) {
     EXPECT_NEAR(got.force.norm() / truth.force.norm(), 1, bound.force) << what;
     EXPECT_LT(degreesBetween(got.force, truth.force), bound.direction_deg) << what;
     EXPECT_LT((got.torque - truth.torque).norm(),
-              bound.torque * std::max(truth.torque.norm(), radius * truth.force.norm())) << what;
+              bound.torque * std::max(truth.torque.norm(), radius * truth.force.norm()))
+        << what;
 }
 
 GradientContactConfig uncapped() {
@@ -51,8 +54,8 @@ GradientContactConfig uncapped() {
 }
 
 std::string nameOf(const Bound& bound, double h, size_t orientation) {
-    return std::string(presetName(bound.preset)) + ", voxel " + std::to_string(h * 1e3) + " mm, orientation " +
-           std::to_string(orientation);
+    return std::string(presetName(bound.preset)) + ", voxel " + std::to_string(h * 1e3) +
+           " mm, orientation " + std::to_string(orientation);
 }
 
 TEST(AnalyticContact, BurrOnPlane) {
@@ -63,13 +66,16 @@ TEST(AnalyticContact, BurrOnPlane) {
         for (size_t n = 0; n < turns.size(); ++n) {
             const Vector3d center = h * (Vector3d::Constant(kVoxels / 2) + turns[n].shift);
             const Vector3d normal = turns[n].R.col(2);
-            const ContactScene scene(cubeGeometry(kVoxels, h), halfSpace(center, normal), {SphereShape{{0, 0, 0}, radius}});
+            const ContactScene scene(cubeGeometry(kVoxels, h), halfSpace(center, normal),
+                                     {SphereShape{{0, 0, 0}, radius}});
             const double truth = M_PI * kKappa * (radius - depth) * depth * depth;
             for (const Bound& bound : kBounds) {
                 const auto result = scene.contactAt(uncapped(), presetSettings(bound.preset),
                                                     Pose{center + (radius - depth) * normal});
-                expectNear(result.term.wrench, {truth * normal, Vector3d::Zero()}, radius, bound, nameOf(bound, h, n));
-                if (bound.preset == Preset::kBalanced) forces.push_back(result.term.wrench.force.norm() / truth);
+                expectNear(result.term.wrench, {truth * normal, Vector3d::Zero()}, radius, bound,
+                           nameOf(bound, h, n));
+                if (bound.preset == Preset::kBalanced)
+                    forces.push_back(result.term.wrench.force.norm() / truth);
             }
         }
         const auto [least, most] = std::minmax_element(forces.begin(), forces.end());
@@ -87,18 +93,20 @@ TEST(AnalyticContact, ShaftLyingOnPlane) {
             // The tool point is off the middle, so that there is a torque.
             const CylinderShape shaft{{0, -length / 4, 0}, {0, 3 * length / 4, 0}, radius};
             const ContactScene scene(cubeGeometry(kVoxels, h), halfSpace(center, R.col(2)), {shaft});
-            const Pose X_VT{center + (radius - depth) * R.col(2) - length / 4 * R.col(1), Eigen::Quaterniond(R)};
+            const Pose X_VT{center + (radius - depth) * R.col(2) - length / 4 * R.col(1),
+                            Eigen::Quaterniond(R)};
             const Wrench truth =
                 quadrature(planeElements(center, R, length, h / 8), scene.tool.field({}), kKappa, X_VT);
             for (const Bound& bound : kBounds)
-                expectNear(scene.contactAt(uncapped(), presetSettings(bound.preset), X_VT).term.wrench, truth, radius, bound,
-                           nameOf(bound, h, n));
+                expectNear(scene.contactAt(uncapped(), presetSettings(bound.preset), X_VT).term.wrench, truth,
+                           radius, bound, nameOf(bound, h, n));
         }
     }
 }
 
-// Per length, for a shaft that goes on for ever, h = R - δ, a = √(R² - h²): ∫ κ (R - ρ) h/ρ dx with ρ² = x² + h², which
-// is 2κh(R asinh(a/h) - a). (The bone-normal law has κ(aR - h² asinh(a/h)) instead.) Checks the quadrature itself.
+// Per length, for a shaft that goes on for ever, h = R - δ, a = √(R² - h²): ∫ κ (R - ρ) h/ρ dx with ρ² = x² +
+// h², which is 2κh(R asinh(a/h) - a). (The bone-normal law has κ(aR - h² asinh(a/h)) instead.) Checks the
+// quadrature itself.
 TEST(AnalyticContact, QuadratureAgreesWithTheClosedForms) {
     const double radius = 1.2e-3, depth = 0.1e-3, high = radius - depth;
     const Matrix3d R = expRotation({0.3, 0.2, -0.7}).toRotationMatrix();
@@ -130,8 +138,8 @@ TEST(AnalyticContact, PegInHole) {
             const Wrench truth =
                 quadrature(holeElements(center, R, hole, 15 * h, h / 6), scene.tool.field({}), kKappa, X_VT);
             for (const Bound& bound : kBounds)
-                expectNear(scene.contactAt(uncapped(), presetSettings(bound.preset), X_VT).term.wrench, truth, radius, bound,
-                           nameOf(bound, h, n));
+                expectNear(scene.contactAt(uncapped(), presetSettings(bound.preset), X_VT).term.wrench, truth,
+                           radius, bound, nameOf(bound, h, n));
         }
     }
 }
@@ -140,8 +148,8 @@ TEST(AnalyticContact, PegInHole) {
 TEST(AnalyticContact, CoarserLevelsKeepTheForce) {
     const double h = 0.1e-3, radius = 40 * h, depth = 2.6 * h;  // patch 28 voxels wide: 9 points at s = 3
     const Vector3d center = Vector3d::Constant(32.3 * h), normal = Vector3d(1, 2, 3).normalized();
-    const ContactScene scene(cubeGeometry(kVoxels, h), halfSpace(center, normal), {SphereShape{{0, 0, 0}, radius}},
-                             {.levels = {{1}, {2}, {3}}});
+    const ContactScene scene(cubeGeometry(kVoxels, h), halfSpace(center, normal),
+                             {SphereShape{{0, 0, 0}, radius}}, {.levels = {{1}, {2}, {3}}});
     const double truth = M_PI * kKappa * (radius - depth) * depth * depth;
     for (const int factor : {1, 2, 3}) {
         AccuracySettings settings;

@@ -33,7 +33,8 @@ Vector6d minusGradient(const GradientContact& contact, const ToolField& tool, co
         Vector6d step = Vector6d::Zero();
         step[i] = h;
         const auto energy = [&](double sign) {
-            return contact.evaluate<double>(tool, at.incremented(sign * step.head<3>(), sign * step.tail<3>()))
+            return contact
+                .evaluate<double>(tool, at.incremented(sign * step.head<3>(), sign * step.tail<3>()))
                 .term.energy;
         };
         w[i] = -(energy(1) - energy(-1)) / (2 * h);
@@ -50,7 +51,8 @@ TEST(GradientContact, WrenchIsTheEnergysGradient) {
         const ToolField& tool = scene.tool.field(settings);
         int in_contact = 0;
         for (int n = 0; n < 60; ++n) {
-            const Pose X_VT{Vector3d(4e-3, 4e-3, 4.6e-3) + 0.7e-3 * Vector3d(uniform(random), uniform(random), uniform(random)),
+            const Pose X_VT{Vector3d(4e-3, 4e-3, 4.6e-3) +
+                                0.7e-3 * Vector3d(uniform(random), uniform(random), uniform(random)),
                             randomRotation(random)};
             GradientContact contact({.stiffness_per_area = 1e11, .stiffness_cap = kInfinity});
             contact.gather(scene.view(), tool, X_VT, 0.1e-3);
@@ -80,7 +82,8 @@ TEST(GradientContact, StiffnessIsPositiveSemiDefiniteAndForAFlatFaceTheDerivativ
     const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(here.term.stiffness);
     EXPECT_GT(solver.eigenvalues().minCoeff(), -1e-9 * solver.eigenvalues().maxCoeff());
     // Along the normal the Gauss-Newton matrix leaves out only the sphere's curvature.
-    const GradientContactResult higher = contact.evaluate<double>(tool, {X_VT.position + Vector3d(0, 0, 1e-7), X_VT.rotation});
+    const GradientContactResult higher =
+        contact.evaluate<double>(tool, {X_VT.position + Vector3d(0, 0, 1e-7), X_VT.rotation});
     const double slope = (here.term.wrench.force.z() - higher.term.wrench.force.z()) / 1e-7;
     EXPECT_NEAR(here.term.stiffness(2, 2), slope, 0.35 * slope);
     EXPECT_GT(here.term.stiffness(2, 2), slope);
@@ -93,7 +96,8 @@ TEST(GradientContact, FloatAndDoubleAgree) {
     const GradientContactResult in_float = scene.contactAt(config, {.precision = Precision::kFloat}, X_VT);
     const GradientContactResult in_double = scene.contactAt(config, {.precision = Precision::kDouble}, X_VT);
     EXPECT_GT(in_double.contacts, 10u);
-    EXPECT_LT((in_float.term.wrench.force - in_double.term.wrench.force).norm(), 1e-4 * in_double.term.wrench.force.norm());
+    EXPECT_LT((in_float.term.wrench.force - in_double.term.wrench.force).norm(),
+              1e-4 * in_double.term.wrench.force.norm());
     EXPECT_NEAR(in_float.term.energy, in_double.term.energy, 2e-4 * in_double.term.energy);
 }
 
@@ -123,7 +127,8 @@ TEST(GradientContact, CandidatesAreThePointsNearTheTool) {
     for (int n = 0; n < 200; ++n) {
         const AccuracySettings settings{.patch_points = 1 + n % 2, .refined_points = 0};
         const ToolField& tool = scene.tool.field(settings);
-        const Pose X_VT{Vector3d(4e-3, 4e-3, 4.8e-3) + 1.5e-3 * Vector3d(uniform(random), uniform(random), uniform(random)),
+        const Pose X_VT{Vector3d(4e-3, 4e-3, 4.8e-3) +
+                            1.5e-3 * Vector3d(uniform(random), uniform(random), uniform(random)),
                         randomRotation(random)};
         const double margin = n % 3 * 0.2e-3;
         const Pose X_TV = X_VT.inverse();
@@ -132,7 +137,8 @@ TEST(GradientContact, CandidatesAreThePointsNearTheTool) {
             scene.bone.shell.forEachBlock(0, leaf, [&](const ShellBlock& b, uint32_t count) {
                 for (uint32_t i = 0; i < count; ++i) {
                     const double patch = settings.patch_points > 1 ? std::sqrt(double(b.area[i]) / 2) : 0;
-                    const double gap = tool.sample(X_TV * Vector3d(b.x[i], b.y[i], b.z[i])).distance - margin - patch;
+                    const double gap =
+                        tool.sample(X_TV * Vector3d(b.x[i], b.y[i], b.z[i])).distance - margin - patch;
                     surely += gap < -kSlack;
                     perhaps += gap < kSlack;
                 }
@@ -149,8 +155,7 @@ TEST(GradientContact, CandidatesAreThePointsNearTheTool) {
 TEST(GradientContact, SaysWhenThereIsNoRoom) {
     const ContactScene scene(cubeGeometry(33, 0.25e-3), bumpyBody(), kBurrAndShaft);
     GradientContact contact({}, 50);
-    EXPECT_FALSE(contact.gather(scene.view(), scene.tool.field({}),
-                                Pose{{4e-3, 4e-3, 5e-3}}, 1e-3));
+    EXPECT_FALSE(contact.gather(scene.view(), scene.tool.field({}), Pose{{4e-3, 4e-3, 5e-3}}, 1e-3));
     EXPECT_EQ(contact.candidateCount(), 50u);
 }
 
@@ -159,7 +164,8 @@ TEST(GradientContact, TheFarSideOfAThinWallDoesNotPull) {
     const double top = 4.3e-3, thickness = 0.3e-3;
     const ContactScene scene(
         cubeGeometry(65, 0.125e-3),
-        [=](const Vector3d& p) { return std::abs(p.z() - top + thickness / 2) - thickness / 2; }, kBurrAndShaft);
+        [=](const Vector3d& p) { return std::abs(p.z() - top + thickness / 2) - thickness / 2; },
+        kBurrAndShaft);
     for (const double depth : {0.1e-3, 0.4e-3, 0.6e-3, 0.9e-3, 1.1e-3, 1.25e-3}) {
         const Pose X_VT{{4e-3, 4e-3, top + 1e-3 - depth}, expRotation({M_PI / 2, 0, 0})};
         const GradientContactResult result = scene.contactAt({.stiffness_per_area = 1e10}, {}, X_VT);
@@ -177,7 +183,8 @@ TEST(GradientContact, StiffnessCapIsTheSameForPlaneSlotAndSurround) {
     const std::vector<ToolShape> ball = {SphereShape{{0, 0, 0}, 2e-3}};
     const auto slot = [&](const Vector3d& p) { return 1.9e-3 - std::abs(p.z() - center.z()); };
     const auto surround = [&](const Vector3d& p) { return 1.9e-3 - (p - center).norm(); };
-    const ContactScene plane_scene(cubeGeometry(33, 0.25e-3), halfSpace({0, 0, 2.1e-3}, Vector3d::UnitZ()), ball);
+    const ContactScene plane_scene(cubeGeometry(33, 0.25e-3), halfSpace({0, 0, 2.1e-3}, Vector3d::UnitZ()),
+                                   ball);
     const ContactScene slot_scene(cubeGeometry(33, 0.25e-3), slot, ball);
     const ContactScene surround_scene(cubeGeometry(33, 0.25e-3), surround, ball);
     const AccuracySettings settings;
@@ -195,7 +202,8 @@ TEST(Advance, StopsBeforeAWallAtAnySpeed) {
     const double top = 4.3e-3, thickness = 0.125e-3;
     const ContactScene scene(
         cubeGeometry(65, 0.125e-3),
-        [=](const Vector3d& p) { return std::abs(p.z() - top + thickness / 2) - thickness / 2; }, kBurrAndShaft);
+        [=](const Vector3d& p) { return std::abs(p.z() - top + thickness / 2) - thickness / 2; },
+        kBurrAndShaft);
     const ToolField& tool = scene.tool.field({});
     const Pose start{{4e-3, 4e-3, 7e-3}, expRotation({M_PI / 2, 0, 0})};
     for (const double length : {0.5e-3, 3e-3, 20e-3, 100e-3}) {

@@ -50,11 +50,17 @@ TEST(EnergyCoupling, WrenchesOnToolAndDeviceAreTheEnergysGradients) {
     std::mt19937 random(5);
     for (int n = 0; n < 200; ++n) {
         const Pose spo = randomPose(random, 0.01, 1), device = randomPose(random, 0.01, 1);
-        const auto by_tool = [&](const Pose& pose) { return couplingEnergy(config, pose, device, way).energy; };
-        const auto by_device = [&](const Pose& pose) { return couplingEnergy(config, spo, pose, way).energy; };
+        const auto by_tool = [&](const Pose& pose) {
+            return couplingEnergy(config, pose, device, way).energy;
+        };
+        const auto by_device = [&](const Pose& pose) {
+            return couplingEnergy(config, spo, pose, way).energy;
+        };
         const Vector6d tool = minusGradient(by_tool, spo), hand = minusGradient(by_device, device);
-        EXPECT_LT((stacked(couplingEnergy(config, spo, device, way).wrench) - tool).norm(), 1e-6 * tool.norm() + 1e-7);
-        EXPECT_LT((stacked(couplingWrenchOnDevice(config, spo, device, way)) - hand).norm(), 1e-6 * hand.norm() + 1e-7);
+        EXPECT_LT((stacked(couplingEnergy(config, spo, device, way).wrench) - tool).norm(),
+                  1e-6 * tool.norm() + 1e-7);
+        EXPECT_LT((stacked(couplingWrenchOnDevice(config, spo, device, way)) - hand).norm(),
+                  1e-6 * hand.norm() + 1e-7);
     }
 }
 
@@ -63,7 +69,9 @@ TEST(EnergyCoupling, DampingIsTheGradientOfItsEnergy) {
     std::mt19937 random(6);
     for (int n = 0; n < 100; ++n) {
         const Pose before = randomPose(random, 0.01, 2), spo = randomPose(random, 0.01, 2);
-        const auto energy = [&](const Pose& pose) { return dampingEnergy(config, pose, before, 1e-3).energy; };
+        const auto energy = [&](const Pose& pose) {
+            return dampingEnergy(config, pose, before, 1e-3).energy;
+        };
         const Vector6d w = minusGradient(energy, spo);
         EXPECT_LT((stacked(dampingEnergy(config, spo, before, 1e-3).wrench) - w).norm(), 1e-6 * w.norm());
     }

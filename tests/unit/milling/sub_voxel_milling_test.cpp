@@ -85,9 +85,10 @@ Offset offsetFromSphere(const BoneModel& bone, const Eigen::Vector3d& center, do
 
 class SubVoxelSphere : public testing::TestWithParam<int> {};  // radius in voxels
 
-// The sag of the interpolated distance is 0 .. h²/(4 R) in a cell (0 .. h²/(8 R) on an edge), and the ramp is that of a
-// sphere larger by 3h²/(8 R): the surface ends up to that much outside, never inside. Where the ramp ends inside a cell
-// half a percent of a voxel comes on top. For the usual burr, 8 voxels in radius: 5 % of a voxel.
+// The sag of the interpolated distance is 0 .. h²/(4 R) in a cell (0 .. h²/(8 R) on an edge), and the ramp is
+// that of a sphere larger by 3h²/(8 R): the surface ends up to that much outside, never inside. Where the
+// ramp ends inside a cell half a percent of a voxel comes on top. For the usual burr, 8 voxels in radius: 5 %
+// of a voxel.
 TEST_P(SubVoxelSphere, DwellingLeavesTheSphere) {
     const double radius = GetParam() * kVoxel;
     for (const Eigen::Vector3d& spacing : kSpacings)

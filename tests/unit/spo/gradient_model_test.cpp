@@ -15,7 +15,9 @@ const Vector3d kAbove(4.83e-3, 4.71e-3, kTop + kRadius);
 const Eigen::Quaterniond kUpright = expRotation({M_PI / 2, 0, 0});
 
 ContactScene flatScene(const Vector3d& normal = Vector3d::UnitZ()) {
-    return {cubeGeometry(33, kVoxel), halfSpace({4.8e-3, 4.8e-3, kTop}, normal), {SphereShape{{0, 0, 0}, kRadius}},
+    return {cubeGeometry(33, kVoxel),
+            halfSpace({4.8e-3, 4.8e-3, kTop}, normal),
+            {SphereShape{{0, 0, 0}, kRadius}},
             {.levels = {{1}, {2}}}};
 }
 
@@ -56,7 +58,8 @@ TEST(GradientModel, SettlesWhereCouplingAndContactBalance) {
             const double force = most * std::tanh(k * (depth - low) / most);
             const double bound = preset == Preset::kExact ? 0.01 : 0.03;
             EXPECT_NEAR(step.wrench_hand.force.z() / force, 1, bound) << presetName(preset) << " " << depth;
-            EXPECT_LT(step.wrench_hand.force.head<2>().norm(), std::tan(bound == 0.01 ? 0.0175 : 0.035) * force);
+            EXPECT_LT(step.wrench_hand.force.head<2>().norm(),
+                      std::tan(bound == 0.01 ? 0.0175 : 0.035) * force);
             EXPECT_NEAR(step.spo.position.z() - kAbove.z(), -low, 2e-6);
             EXPECT_TRUE(step.is_solved);
         }
@@ -86,12 +89,15 @@ TEST(GradientModel, RelaxingSpringStiffensAHeldToolForAShortTimeAndDoesNotHoldBa
     const EnergyCouplingConfig& coupling = config.coupling;
     GradientModel model(config, scene.world(), 1e-3);
     // Pressed into the bone, then a sudden small step further.
-    const Pose device{kAbove - Vector3d(0, 0, 0.5e-3), kUpright}, further = device.incremented({0, 0, -0.02e-3}, {0, 0, 0});
+    const Pose device{kAbove - Vector3d(0, 0, 0.5e-3), kUpright},
+        further = device.incremented({0, 0, -0.02e-3}, {0, 0, 0});
     const SpoStep rest = settle(model, {kAbove, kUpright}, device);
     const SpoStep at_once = model.advance(rest.spo, further);
     const double first = at_once.wrench_hand.force.z() - rest.wrench_hand.force.z();
-    const double later = settle(model, at_once.spo, further).wrench_hand.force.z() - rest.wrench_hand.force.z();
-    const double quick = coupling.relaxing_share * coupling.translation_stiffness * coupling.relaxing_time / (coupling.relaxing_time + 1e-3);
+    const double later =
+        settle(model, at_once.spo, further).wrench_hand.force.z() - rest.wrench_hand.force.z();
+    const double quick = coupling.relaxing_share * coupling.translation_stiffness * coupling.relaxing_time /
+                         (coupling.relaxing_time + 1e-3);
     EXPECT_NEAR((first - later) / (quick * 0.02e-3), 1, 0.1);
     // Free and at constant speed it is as if there were none.
     GradientConfig without = config;
@@ -193,14 +199,16 @@ TEST(GradientModel, SlidingOverAFlatFaceIsSmooth) {
         for (const Vector3d& normal : {Vector3d(0, 0, 1), Vector3d(0.3, 0.1, 1), Vector3d(1, 1, 1)}) {
             const Vector3d n = normal.normalized(), along = n.unitOrthogonal();
             const Vector3d middle(4.83e-3, 4.79e-3, 4.81e-3);
-            const ContactScene scene(cubeGeometry(33, kVoxel), halfSpace(middle, n), {SphereShape{{0, 0, 0}, radius}});
+            const ContactScene scene(cubeGeometry(33, kVoxel), halfSpace(middle, n),
+                                     {SphereShape{{0, 0, 0}, radius}});
             GradientConfig config = stiff();
             config.burr_radius = radius;
             config.coupling.translation_stiffness = 1000;
             GradientModel model(config, scene.world(), 1e-3);
             Pose spo{middle + radius * n - 1.2e-3 * along, kUpright};
             const auto device = [&](int tick) {
-                return Pose{middle + (radius - 1e-3) * n + (-1.2e-3 + 5e-6 * std::max(0, tick - 50)) * along, kUpright};
+                return Pose{middle + (radius - 1e-3) * n + (-1.2e-3 + 5e-6 * std::max(0, tick - 50)) * along,
+                            kUpright};
             };
             Vector3d force_before = Vector3d::Zero();
             double largest = 0;

@@ -50,7 +50,8 @@ TEST(BuildTool, DemoToolFitsItsGrid) {
     EXPECT_NEAR(tool.model.grid().origin().y(), -1e-3 - 3 * 0.125e-3, 1e-15);
     EXPECT_NEAR(tool.model.grid().gridBox().center().x(), 0, 1e-15);
     EXPECT_NEAR(tool.model.grid().gridBox().center().z(), 0, 1e-15);
-    EXPECT_EQ(tool.model.grid().box().max().y(), tool.model.grid().gridBox().max().y());  // the shaft leaves at the far end
+    EXPECT_EQ(tool.model.grid().box().max().y(),
+              tool.model.grid().gridBox().max().y());  // the shaft leaves at the far end
 }
 
 TEST(BuildTool, DemoToolIsExactAtNodes) {

@@ -20,7 +20,8 @@ template <class Visit>
 void forRandomPoints(int count, Visit&& visit) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> coordinate(-3e-3, 3e-3);
-    for (int n = 0; n < count; ++n) visit(Vector3d(coordinate(random), coordinate(random), coordinate(random)));
+    for (int n = 0; n < count; ++n)
+        visit(Vector3d(coordinate(random), coordinate(random), coordinate(random)));
 }
 
 double oracle(const std::vector<ToolShape>& shapes, const Vector3d& p) {
@@ -82,7 +83,8 @@ TEST(ShapeField, GradientIsTheDistancesDerivative) {
 TEST(ShapeField, SpecialPlacesStayFinite) {
     for (const ToolShape& shape : kShapes) {
         const ShapeField field({shape, SphereShape{}});
-        for (const Vector3d& p : {Vector3d(0, 0, 0), Vector3d(0, 1e-3, 0), Vector3d(0.1e-3, 0, 0), Vector3d(0, -1e-3, 0)}) {
+        for (const Vector3d& p :
+             {Vector3d(0, 0, 0), Vector3d(0, 1e-3, 0), Vector3d(0.1e-3, 0, 0), Vector3d(0, -1e-3, 0)}) {
             const ToolSample sample = field.sample(p);
             EXPECT_TRUE(std::isfinite(sample.distance));
             EXPECT_NEAR(sample.gradient.norm(), 1, 1e-9);
@@ -91,7 +93,8 @@ TEST(ShapeField, SpecialPlacesStayFinite) {
 }
 
 TEST(ShapeField, KnowsItsThinnestPartAndItsReach) {
-    const ShapeField field(std::vector<ToolShape>{SphereShape{{0, 0, 0}, 2e-3}, CapsuleShape{{0, 0, 0}, {0, 10e-3, 0}, 1e-3}});
+    const ShapeField field(
+        std::vector<ToolShape>{SphereShape{{0, 0, 0}, 2e-3}, CapsuleShape{{0, 0, 0}, {0, 10e-3, 0}, 1e-3}});
     EXPECT_DOUBLE_EQ(field.thinnestRadius(), 1e-3);
     EXPECT_GE(field.reach(), 11e-3);
     EXPECT_LE(field.reach(), std::hypot(11e-3, 2e-3, 2e-3) + 1e-12);

@@ -1,5 +1,3 @@
-#include "haptic_server/tool/build/check_shape.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <random>
 
 #include "common/config/user_error.h"
+#include "haptic_server/tool/build/check_shape.h"
 
 namespace bonemill {
 namespace {
