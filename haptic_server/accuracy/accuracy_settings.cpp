@@ -12,12 +12,12 @@ AccuracySettings presetSettings(Preset preset) noexcept {
         case Preset::kThesis2012:  // scaling factor 3 as in its demonstrations
             return {ContactLaw::kThesis2012, 3, 1, 0, ToolDistance::kGrid, 1, Precision::kFloat, 1, false};
         case Preset::kFast:
-            return {ContactLaw::kGradient, 2, 2, 256, ToolDistance::kGrid, 1, Precision::kFloat, 1, true};
+            return {ContactLaw::kGradient, 1, 1, 0, ToolDistance::kAnalytic, 1, Precision::kFloat, 1, true};
         case Preset::kBalanced:
-            return {ContactLaw::kGradient, 1, 2, 512, ToolDistance::kAnalytic, 1, Precision::kFloat, 2, true};
+            return {ContactLaw::kGradient, 1, 4, 512, ToolDistance::kAnalytic, 2, Precision::kFloat, 4, true};
         case Preset::kExact:
-            return {ContactLaw::kGradient, 1, 3,   12288, ToolDistance::kAnalytic, 4,
-                    Precision::kDouble,    4, true};
+            return {ContactLaw::kGradient, 1, 4,   6144, ToolDistance::kAnalytic, 4,
+                    Precision::kDouble,    8, true};
     }
     return {};
 }

@@ -87,13 +87,12 @@ std::vector<SettingFigures> sweep(const SweepInput& input, const std::vector<Acc
         groups[levels].push_back(n);
     }
     std::vector<SettingFigures> all(settings.size());
-    const std::vector<std::string> names = distinctNames(settings);
     size_t done = 0;
     for (const auto& [levels, members] : groups) {
         SharedBone shared(input, shellConfigOf(sceneWith(input.scene, settings[members.front()])));
         for (const size_t n : members) {
             all[n] = measure(input, settings[n], shared);
-            all[n].name = names[n];
+            all[n].name = settingsName(settings[n]);
             progress(all[n], ++done);
         }
     }

@@ -14,7 +14,7 @@ namespace bonemill {
 
 struct SettingFigures {
     AccuracySettings settings;
-    std::string name;            // distinctNames()
+    std::string name;            // settingsName()
     bool is_in_force = false;    // the scene's own
     Errors errors;               // along the probing path; for thesis_2012 differences, not errors
     double max_penetration = 0;  // m

@@ -37,9 +37,9 @@ void addAroundBalanced(Choices& choices, bool has_shapes) {
     choices.add(dense);
     choices.vary(grid, &S::sdf_refinement, {1, 2, 4});
     choices.vary(base, &S::precision, {Precision::kDouble});
-    choices.vary(base, &S::iterations, {1, 4, 8});
+    choices.vary(base, &S::iterations, {1, 2, 8});
     choices.vary(base, &S::continuous_collision, {false});
-    dense.iterations = 4;
+    dense.iterations = 8;
     choices.add(dense);
 }
 
@@ -80,17 +80,6 @@ std::vector<AccuracySettings> sweepSettings(const AccuracySettings& of_scene, bo
     choices.vary(presetSettings(Preset::kThesis2012), &AccuracySettings::shell_factor, {1, 2});
     choices.add(of_scene);
     return choices.list;
-}
-
-std::vector<std::string> distinctNames(const std::vector<AccuracySettings>& settings) {
-    std::vector<std::string> names;
-    for (const AccuracySettings& s : settings) {
-        std::string name = settingsName(s);
-        if (std::find(names.begin(), names.end(), name) != names.end())
-            name += " refined_points=" + std::to_string(s.refined_points);
-        names.push_back(name);
-    }
-    return names;
 }
 
 scene::Scene sceneWith(const scene::Scene& scene, const AccuracySettings& settings) {

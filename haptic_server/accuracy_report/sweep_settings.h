@@ -13,10 +13,6 @@ namespace bonemill {
 // Without `has_shapes` only grids. No two are equal.
 std::vector<AccuracySettings> sweepSettings(const AccuracySettings& of_scene, bool has_shapes);
 
-// settingsName() of each; where that leaves out what two of them differ in, with the number of refined
-// points.
-std::vector<std::string> distinctNames(const std::vector<AccuracySettings>& settings);
-
 // The scene with every knob of its accuracy message at these settings; normals and switchable stay.
 scene::Scene sceneWith(const scene::Scene& scene, const AccuracySettings& settings);
 

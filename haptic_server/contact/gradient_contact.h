@@ -54,9 +54,12 @@ struct GradientContactResult {
 
 class GradientContact {
   public:
-    // Of the tool's thinnest radius: patches nearer than that are refined; depth from which on the force of a
+    // Patches whose point is nearer to the tool are refined, m; further off by what a patch reaches out
+    // beside a round tool.
+    static constexpr double kRefineWithin = 25e-6;
+    // Of the tool's thinnest radius: depth from which on the force of a
     // point no longer grows, and between which the far-side guard sets in.
-    static constexpr double kRefineWithin = 0.125, kDepthCap = 0.75, kGuardFrom = 0.25, kGuardFull = 0.5;
+    static constexpr double kDepthCap = 0.75, kGuardFrom = 0.25, kGuardFull = 0.5;
     static constexpr double kGuardWidth = 0.25;  // of s, over which the guard fades a point out
 
     // Room for this many candidate points; allocates.

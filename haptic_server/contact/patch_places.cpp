@@ -49,8 +49,8 @@ Vector3f ontoSurface(const VoxelVolume& volume, const Vector3f& start, const Vec
 
 // As finely as asked for and as the number of near patches allows.
 void GradientContact::refine(const ShellView& bone, double thinnest_radius) noexcept {
-    const auto isNear = [within = float(kRefineWithin * thinnest_radius)](const Candidate& c) {
-        return c.distance < within + std::sqrt(0.5f * c.area);
+    const auto isNear = [beside = float(0.5 / thinnest_radius)](const Candidate& c) {
+        return c.distance < float(kRefineWithin) + beside * c.area;
     };
     const size_t coarse = count_;
     const size_t near =

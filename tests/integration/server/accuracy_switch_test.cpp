@@ -114,7 +114,7 @@ TEST_F(AccuracySwitching, WhilePressing) {
 
 TEST_F(AccuracySwitching, WhileMilling) {
     writeScene("preset: FAST iterations: 3", true);
-    expectEveryPresetInContact("gradient s=2 q=2 grid x1 float iterations=3 ccd");
+    expectEveryPresetInContact("gradient s=1 analytic float iterations=3 ccd");
     EXPECT_GT(nlohmann::json::parse(test::readFile(folder_ / "report.json"))["removed_voxels"], 0);
 }
 

@@ -23,7 +23,7 @@ TEST(SweepSettings, HoldThePresetsTheScenesOwnAndNoTwoEqual) {
         EXPECT_TRUE(contains(all, kOdd));
         for (const Preset preset : kPresets) EXPECT_TRUE(contains(all, presetSettings(preset)));
         std::set<std::string> names;
-        for (const std::string& name : distinctNames(all)) names.insert(name);
+        for (const AccuracySettings& settings : all) names.insert(settingsName(settings));
         EXPECT_EQ(names.size(), all.size());
         EXPECT_GE(all.size(), 18u);
         EXPECT_LE(all.size(), 25u);
@@ -53,14 +53,6 @@ TEST(SweepSettings, EveryKnobVariesAroundBalanced) {
     EXPECT_TRUE(contains(all, s));
     s = base, s.continuous_collision = false;
     EXPECT_TRUE(contains(all, s));
-}
-
-TEST(DistinctNames, TellApartWhatTheNameLeavesOut) {
-    AccuracySettings more = kOdd;
-    more.refined_points = 200;
-    const auto names = distinctNames({kOdd, more});
-    EXPECT_EQ(names[0], settingsName(kOdd));
-    EXPECT_EQ(names[1], settingsName(kOdd) + " refined_points=200");
 }
 
 TEST(SceneWith, AsksForExactlyTheseSettings) {

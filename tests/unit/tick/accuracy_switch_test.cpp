@@ -61,9 +61,12 @@ std::vector<DeviceInput> press(size_t approach, size_t rest) {
     return inputs;
 }
 
+constexpr double kQuickShare = 2;  // of the coupling's stiffness: with the relaxing spring
+constexpr double kRelaxed = 0.5;   // of the force: what the relaxing spring may hold of it
+
 // A switch leaves the tool where it is, and the new law moves it to its own equilibrium: the force goes from
-// what the one preset holds to what the other one holds, never beyond, and in one tick no further than the
-// two differ.
+// what the one preset holds to what the other one holds, beyond it only by what the relaxing spring makes of
+// the way there, and in one tick no further than the two differ, with the quick stiffness.
 TEST(AccuracySwitch, AHeldForceGoesFromOnePresetsToTheOthersAndNotBeyond) {
     const size_t approach = 1000, rest = 1300;
     const auto inputs = press(approach, rest);
@@ -84,9 +87,9 @@ TEST(AccuracySwitch, AHeldForceGoesFromOnePresetsToTheOthersAndNotBeyond) {
         const TickRecord& r = records[n];
         EXPECT_GT(r.contacts, 0u) << n;
         EXPECT_EQ(r.faults & ~kFaultOverrun, 0u) << n;
-        EXPECT_GT(forceOf(r).z(), 0.98 * low) << n;
-        EXPECT_LT(forceOf(r).z(), 1.02 * high) << n;
-        EXPECT_LT((forceOf(r) - forceOf(records[n - 1])).norm(), 1.1 * farthest) << n;
+        EXPECT_GT(forceOf(r).z(), 0.9 * low) << n;
+        EXPECT_LT(forceOf(r).z(), 1.15 * high) << n;
+        EXPECT_LT((forceOf(r) - forceOf(records[n - 1])).norm(), 1.1 * kQuickShare * farthest) << n;
     }
 }
 
@@ -108,9 +111,10 @@ TEST(AccuracySwitch, EveryPresetSettlesWhereItDoesAlone) {
     }
 }
 
-// The hand feels the coupling between tool and device, whose slope is at most its stiffness; so the force can
-// change only as far as the two move in the tick, and the tool's speed is limited. A force that the model
-// remembers from when it was last in force, or a start from another pose, would break this.
+// The hand feels the coupling between tool and device, whose slope is at most its quick stiffness; so the
+// force can change only as far as the two move in the tick, and the tool's speed is limited; the relaxing
+// spring's part may give way, all of it when the thesis' law takes over. A force that the model remembers
+// from when it was last in force, or a start from another pose, would break this.
 TEST(AccuracySwitch, WhileMillingTheForceFollowsTheToolAndHasNoPeaks) {
     const auto inputs = test::straightPath(SwitchingBench::at(6.2e-3), SwitchingBench::at(3e-3).position,
                                            1500, kButtonRemove);
@@ -127,7 +131,8 @@ TEST(AccuracySwitch, WhileMillingTheForceFollowsTheToolAndHasNoPeaks) {
         const double between_laws =
             std::pow(forceOf(before).norm(), 3) / (3 * kSaturationForce * kSaturationForce);
         EXPECT_LE((forceOf(now) - forceOf(before)).norm(),
-                  kTranslationStiffness * (tool + device) + between_laws + 1e-6)
+                  kQuickShare * kTranslationStiffness * (tool + device) + between_laws +
+                      kRelaxed * forceOf(before).norm() + 1e-6)
             << n;
         EXPECT_EQ(now.faults & ~uint32_t(kFaultOverrun | kFaultMotionClamped), 0u) << n;
         removed += now.removed_voxels;

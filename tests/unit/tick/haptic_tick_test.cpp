@@ -184,7 +184,9 @@ TEST(HapticTick, CorridorHasTheVolumeOfTheSweptBurr) {
 TEST(HapticTick, ChangedSettingsAreTakenUpWhenTheirPointsAreReady) {
     Bench bench;
     BoneModel bone(Bench::slab({}), Eigen::Vector3i::Constant(8), {.levels = {{1}, {2}, {3}}});
-    AccuracySwitch accuracy(presetSettings(Preset::kThesis2012));  // factor 3
+    AccuracySettings coarse = presetSettings(Preset::kBalanced);
+    coarse.shell_factor = 2;
+    AccuracySwitch accuracy(coarse);
     HapticTick tick(bench.config, bone, bench.tool, nullptr, &accuracy);
     const auto factor = [&] { return bone.shell.scalingFactor(bone.shell.followed()); };
     const Pose start{kStart, Eigen::Quaterniond::Identity()};
@@ -195,18 +197,18 @@ TEST(HapticTick, ChangedSettingsAreTakenUpWhenTheirPointsAreReady) {
         }
     };
     mill(400);
-    EXPECT_EQ(factor(), 3);
+    EXPECT_EQ(factor(), 2);
     EXPECT_GT(bone.shell.staleLeaves(0), 2u);
     accuracy.choose(AccuracySwitch::choiceOf(Preset::kBalanced));
     mill(1);
-    EXPECT_EQ(factor(), 3);
-    accuracy.choose(AccuracySwitch::choiceOf(Preset::kFast));  // the newest choice counts
-    mill(200);
     EXPECT_EQ(factor(), 2);
-    EXPECT_EQ(bone.shell.staleLeaves(1), 0u);
+    accuracy.choose(AccuracySwitch::choiceOf(Preset::kThesis2012));  // the newest choice counts
+    mill(200);
+    EXPECT_EQ(factor(), 3);
+    EXPECT_EQ(bone.shell.staleLeaves(2), 0u);
     EXPECT_GT(bone.shell.staleLeaves(0), 0u);
-    const PointShell fresh(bone.volume, bone.lattice, {.levels = {{2}}});
-    EXPECT_EQ(bone.shell.pointCount(1), fresh.pointCount(0));
+    const PointShell fresh(bone.volume, bone.lattice, {.levels = {{3}}});
+    EXPECT_EQ(bone.shell.pointCount(2), fresh.pointCount(0));
 }
 
 TEST(HapticTick, TwoRunsAreBitIdentical) {
