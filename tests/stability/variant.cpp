@@ -35,9 +35,9 @@ CouplingFigures couplingFigures(const TickConfig& config) {
                 c.max_angular_speed};
     }
     const GradientConfig& g = config.gradient;
-    return {g.coupling.translation_stiffness, g.coupling.translation_stiffness * (1 + g.coupling.relaxing_share),
-            g.coupling.rotation_stiffness, g.max_speed,
-            g.max_angular_speed};
+    return {g.coupling.translation_stiffness,
+            g.coupling.translation_stiffness * (1 + g.coupling.relaxing_share), g.coupling.rotation_stiffness,
+            g.max_speed, g.max_angular_speed};
 }
 
 double& couplingStiffness(TickConfig& config) {
@@ -47,6 +47,12 @@ double& couplingStiffness(TickConfig& config) {
 
 double& contactStiffness(TickConfig& config) {
     return isThesis(config) ? config.contact.point_stiffness : config.gradient.contact.stiffness_per_area;
+}
+
+void setDragInAir(TickConfig& config, double drag) {
+    const double stiffness = couplingStiffness(config);
+    config.gradient.coupling.damping_time = drag / stiffness;
+    config.coupling.static_damping = drag / (drag + stiffness * config.dt);
 }
 
 }  // namespace bonemill::test
