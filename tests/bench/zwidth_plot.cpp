@@ -64,6 +64,7 @@ void writePanels(std::ostream& out, const std::vector<ZwidthRow>& all, const std
 
 void writeScript(std::ostream& out, const std::vector<ZwidthRow>& rows) {
     out << "set terminal pngcairo size 1700,900 font 'sans,10'\nset output 'zwidth.png'\n"
+           "set linetype 4 lc rgb 'black'\nset linetype 5 lc rgb 'red'\n"  // in the order of the names
            "set multiplot layout 2,4\nset logscale xy\nset xlabel 'loop rate, Hz'\n"
            "set xtics (500, 1000, 2000, 4000)\nset ylabel 'rendered wall, N/m'\n"
            "set grid\nset key bottom right\nset xrange [400:5000]\nset yrange [300:300000]\n";
