@@ -98,43 +98,58 @@ double passivePoints(const Variant& variant, const GridScene& grid) {
     return worst;
 }
 
-// The coarser encoders with one and three ticks of delay: how many buzz or throw the tool off, in %. Printed
-// one by one.
-double buzzingPoints(const Variant& variant, const GridScene& grid) {
+// With this delay, every device, hand and encoder. Each point that buzzes or throws the tool off is printed.
+struct DelayFigures {
+    double worst = 0;            // N RMS
+    double percent_buzzing = 0;  // of the points
+};
+DelayFigures withDelay(const Variant& variant, const GridScene& grid, int delay_ticks) {
     Scene scene(grid.bone(), grid.tool(), variant);
+    DelayFigures figures;
     int buzzing = 0, count = 0;
     for (const GridPoint& point : gridPoints(couplingFigures(scene.config), scene.config.dt)) {
-        if (point.config.device.encoder_step < kEncoders[1].step || point.config.delay_ticks == 2) continue;
+        if (point.config.delay_ticks != delay_ticks) continue;
         const double figure = buzz(scene, point.config, grid.start, grid.push);
-        buzzing += !(figure <= kLargestBuzz);
+        if (!(figure <= figures.worst)) figures.worst = figure;
         ++count;
-        std::printf("  %-28s damping ratio %5.2f  %8.4f N rms%s\n", point.name.c_str(), point.damping_ratio,
-                    figure, figure <= kLargestBuzz ? "" : "  BUZZES");
+        if (figure <= kLargestBuzz) continue;
+        ++buzzing;
+        std::printf("  %-28s damping ratio %5.2f  %8.4f N rms\n", point.name.c_str(), point.damping_ratio,
+                    figure);
     }
-    return 100.0 * buzzing / count;
+    figures.percent_buzzing = 100.0 * buzzing / count;
+    return figures;
 }
 
 double planePassive(const Variant& variant) {
     return passivePoints(variant, kOnPlane);
 }
-double planeAll(const Variant& variant) {
-    return buzzingPoints(variant, kOnPlane);
+double planeOneTick(const Variant& variant) {
+    return withDelay(variant, kOnPlane, 1).worst;
+}
+double planeThreeTicks(const Variant& variant) {
+    return withDelay(variant, kOnPlane, 3).percent_buzzing;
 }
 double holePassive(const Variant& variant) {
     return passivePoints(variant, kInHole);
 }
-double holeAll(const Variant& variant) {
-    return buzzingPoints(variant, kInHole);
+double holeOneTick(const Variant& variant) {
+    return withDelay(variant, kInHole, 1).worst;
+}
+double holeThreeTicks(const Variant& variant) {
+    return withDelay(variant, kInHole, 3).percent_buzzing;
 }
 
-// No virtual spring of 3 N/mm is stable on a device too lightly damped for it: shown, not promised.
+// Three ticks of delay on a device too lightly damped for them: shown, not promised.
 const std::vector<std::string> kEveryVariant{"thesis_2012", "fast", "balanced", "exact"};
 
 const std::vector<StabilityCase> kCases{
     {"loop_grid_plane_passive", "N_rms_worst", kLargestBuzz, planePassive, {}},
-    {"loop_grid_plane_all", "percent_buzzing", 0, planeAll, kEveryVariant},
+    {"loop_grid_plane_one_tick", "N_rms_worst", kLargestBuzz, planeOneTick, {}},
+    {"loop_grid_plane_three_ticks", "percent_buzzing", 0, planeThreeTicks, kEveryVariant},
     {"loop_grid_hole_passive", "N_rms_worst", kLargestBuzz, holePassive, {}},
-    {"loop_grid_hole_all", "percent_buzzing", 0, holeAll, kEveryVariant},
+    {"loop_grid_hole_one_tick", "N_rms_worst", kLargestBuzz, holeOneTick, {"thesis_2012"}},
+    {"loop_grid_hole_three_ticks", "percent_buzzing", 0, holeThreeTicks, kEveryVariant},
 };
 BONEMILL_STABILITY_CASES(ClosedLoopGrid, kCases);
 

@@ -49,4 +49,10 @@ double& contactStiffness(TickConfig& config) {
     return isThesis(config) ? config.contact.point_stiffness : config.gradient.contact.stiffness_per_area;
 }
 
+void setDragInAir(TickConfig& config, double drag) {
+    const double stiffness = couplingStiffness(config);
+    config.gradient.coupling.damping_time = drag / stiffness;
+    config.coupling.static_damping = drag / (drag + stiffness * config.dt);
+}
+
 }  // namespace bonemill::test

@@ -32,4 +32,8 @@ CouplingFigures couplingFigures(const TickConfig& config);
 double& couplingStiffness(TickConfig& config);
 double& contactStiffness(TickConfig& config);
 
+// Makes free air feel like this (N·s/m) at the coupling's stiffness: gradient by its damping time,
+// thesis_2012 by its static damping, which as printed is 0.5 whatever the stiffness.
+void setDragInAir(TickConfig& config, double drag);
+
 }  // namespace bonemill::test
