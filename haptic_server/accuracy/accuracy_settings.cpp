@@ -16,7 +16,7 @@ AccuracySettings presetSettings(Preset preset) noexcept {
         case Preset::kBalanced:
             return {ContactLaw::kGradient, 1, 4, 512, ToolDistance::kAnalytic, 2, Precision::kFloat, 4, true};
         case Preset::kExact:
-            return {ContactLaw::kGradient, 1, 3,   12288, ToolDistance::kAnalytic, 4,
+            return {ContactLaw::kGradient, 1, 4,   4608, ToolDistance::kAnalytic, 4,
                     Precision::kDouble,    8, true};
     }
     return {};

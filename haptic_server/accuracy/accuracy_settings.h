@@ -18,14 +18,14 @@ enum class Precision : uint8_t { kFloat, kDouble };
 enum class Preset : uint8_t { kThesis2012, kFast, kBalanced, kExact };
 inline constexpr Preset kPresets[] = {Preset::kThesis2012, Preset::kFast, Preset::kBalanced, Preset::kExact};
 
-// Trivially copyable; may be changed between two ticks.
+// Trivially copyable; may be changed between two ticks. The defaults are preset balanced.
 struct AccuracySettings {
     ContactLaw law = ContactLaw::kGradient;
     int shell_factor = 1;  // s: one contact point per s×s×s cells
     int patch_points = 4;  // q: patches near the tool are sampled at q × q places, 1 .. kMostPatchPoints,
     int refined_points = 512;  // as long as there are no more than this many of them; else q gives way
     ToolDistance tool_distance = ToolDistance::kAnalytic;
-    int sdf_refinement = 1;  // the scene's distance grid with nodes this many times as dense
+    int sdf_refinement = 2;  // the scene's distance grid with nodes this many times as dense
     Precision precision = Precision::kFloat;
     int iterations = 4;                // of the equilibrium solve, 1 .. kMostIterations; thesis_2012 has one
     bool continuous_collision = true;  // long steps are swept; without, they are cut to the trust radius

@@ -30,7 +30,8 @@ ShellNormals givenNormals(scene::Accuracy::Normals normals) {
 }
 
 // What a burr on a flat wall carries before it has passed through half of it: π κ (R - d) d², at most its
-// maximum over d. The coupling saturates there, so that no push goes through a wall of that thickness.
+// maximum over d. The coupling's lasting pull saturates there, so that no push goes through a wall of that
+// thickness.
 double wallForce(double kappa, double burr_radius, double wall) {
     const double depth = std::min(wall / 2, 2 * burr_radius / 3);
     return M_PI * kappa * (burr_radius - depth) * depth * depth;

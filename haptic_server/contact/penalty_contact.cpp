@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "haptic_server/contact/tool_box.h"
+
 namespace bonemill {
 namespace {
 
@@ -39,13 +41,6 @@ struct PointTest {
         }
     }
 };
-
-Eigen::AlignedBox3d boxInV(const Eigen::AlignedBox3d& box_T, const Pose& X_VT) noexcept {
-    const Eigen::Matrix3d spread = X_VT.rotation.toRotationMatrix().cwiseAbs();
-    const Eigen::Vector3d center = X_VT * box_T.center();
-    const Eigen::Vector3d half = spread * (box_T.sizes() / 2);
-    return {center - half, center + half};
-}
 
 // Conservative: does the leaf's bounding sphere reach the tool's box in T? Skips leaves that only its box in
 // V meets.

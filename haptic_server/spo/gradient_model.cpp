@@ -15,7 +15,11 @@ constexpr double kLeastMargin = 50e-6;    // m: what a hand moves in a milliseco
 constexpr double kMotionGrowth = 2;       // of the reach from tick to tick
 constexpr int kMostHalvings = 4;
 constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;
-constexpr double kEnergyNoise = 1e-9;  // of the energy: rounding of single precision must not refuse a step
+// Rounding of the depths must not refuse a step: their share of the energy, some 10 roundings each.
+constexpr double kFloatNoise = 1e-6, kDoubleNoise = 1e-13;
+// More than that is not done in a tick: about 2 ms at 10 ns each. Four times what exact needs in the tooth's
+// corridor.
+constexpr size_t kMostPointTests = 200'000;
 
 Vector6d rotationScale() noexcept {
     Vector6d scale;
@@ -107,6 +111,7 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
     const GradientContactResult contact = settings_.precision == Precision::kDouble
                                               ? contact_.evaluate<double>(*field_, X_VT)
                                               : contact_.evaluate<float>(*field_, X_VT);
+    point_tests_ += contact_.candidateCount();
     State state{X_VT, contact.term, contact.contacts, contact.max_depth};
     state.total += couplingEnergy(config_.coupling, X_VT, tick.device, way_);
     state.total += relaxing_.energy(X_VT, tick.device);
@@ -152,56 +157,70 @@ Vector6d GradientModel::limited(const State& state, Vector6d step, const Tick& t
 
 // Takes the step, or half of it, … as long as the energy falls. False: no such share; the state stays.
 bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept {
+    const double noise = settings_.precision == Precision::kDouble ? kDoubleNoise : kFloatNoise;
     Vector6d share = step;
     for (int n = 0; n <= kMostHalvings; ++n, share /= 2) {
         const State next = evaluate(moved(state.X_VT, share), tick);
-        if (!next.isFinite() || next.total.energy > state.total.energy * (1 + kEnergyNoise)) continue;
+        if (!next.isFinite() || next.total.energy > state.total.energy * (1 + noise)) continue;
         state = next;
         return true;
     }
     return false;
 }
 
-SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept {
-    SpoStep out;
-    const Tick tick{X_VW_ * spo_W, X_VW_ * device_W, &out};
-    // What the last tick moved is a good guess of what this one will; a longer step gathers anew.
-    gather(tick.start, std::min(trustRadius(), std::max(kLeastMargin, kMotionGrowth * last_reach_)), out);
-    State state = evaluate(tick.start, tick);
-    out.is_solved = state.isFinite();
-    for (int n = 0; n < settings_.iterations && out.is_solved; ++n) {
+// Gauss-Newton steps as long as they help and there is time. False: not finite, or a matrix without factors;
+// the state is the last good one.
+bool GradientModel::descend(State& state, const Tick& tick) noexcept {
+    if (!state.isFinite()) return false;
+    for (int n = 0; n < settings_.iterations; ++n) {
         const Vector6d newton = newtonStep(state);
-        if (newton.isZero(0)) {
-            out.is_solved = state.total.wrench.force.isZero(0) && state.total.wrench.torque.isZero(0);
-            break;
-        }
+        if (newton.isZero(0)) return stacked(state.total.wrench).isZero(0);
         const uint32_t gatherings = gatherings_;
         const Vector6d step = limited(state, newton, tick);
         if (reachOf(step) < kSmallestReach) break;
         if (gatherings_ != gatherings)
             state = evaluate(state.X_VT, tick);  // the energy is that of other points now
-        ++out.iterations;
+        ++tick.out->iterations;
         const bool has_moved = moveDown(state, step, tick);
         lambda_ = has_moved ? lambda_ / 10 : std::min(std::max(kFirstLambda, lambda_ * 10), kMostLambda);
         if (lambda_ < kFirstLambda / 100) lambda_ = 0;
         if (!has_moved) break;
+        if (point_tests_ > kMostPointTests) {
+            tick.out->has_contact_overflow = true;
+            break;
+        }
     }
+    return true;
+}
+
+SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept {
+    SpoStep out;
+    const Tick tick{X_VW_ * spo_W, X_VW_ * device_W, &out};
+    point_tests_ = 0;
+    // What the last tick moved is a good guess of what this one will; a longer step gathers anew.
+    gather(tick.start, std::min(trustRadius(), std::max(kLeastMargin, kMotionGrowth * last_reach_)), out);
+    State state = evaluate(tick.start, tick);
+    out.is_solved = descend(state, tick);
     last_reach_ = reachOf(between(tick.start, state.X_VT));
-    const Pose X_WV = X_VW_.inverse();
-    out.spo = out.is_solved ? X_WV * state.X_VT : spo_W;
+    energy_ = state.total.energy;
     out.contacts = state.contacts;
     out.max_penetration = state.max_depth;
-    const Pose X_VT = X_VW_ * out.spo;
+    feel(state.X_VT, tick);
+    return out;
+}
+
+// The pose and what the hand gets of it; an unsolved tick repeats the last wrench.
+void GradientModel::feel(const Pose& X_VT, const Tick& tick) noexcept {
+    const Pose X_WV = X_VW_.inverse();
+    tick.out->spo = X_WV * X_VT;
     const Wrench wrench_hand = (couplingWrenchOnDevice(config_.coupling, X_VT, tick.device, way_) +
                                 relaxing_.wrenchOnDevice(X_VT, tick.device))
                                    .rotatedBy(X_WV.rotation);
-    if (wrench_hand.isFinite() && out.is_solved) last_wrench_hand_ = wrench_hand;
-    out.wrench_hand = last_wrench_hand_;
-    dropTraces(out);
+    if (wrench_hand.isFinite() && tick.out->is_solved) last_wrench_hand_ = wrench_hand;
+    tick.out->wrench_hand = last_wrench_hand_;
+    dropTraces(*tick.out);
     relaxing_.follow(X_VT, tick.device);
-    way_.remember(tick.device.rotation * state.X_VT.rotation.conjugate());
-    energy_ = state.total.energy;
-    return out;
+    way_.remember(tick.device.rotation * X_VT.rotation.conjugate());
 }
 
 }  // namespace bonemill

@@ -25,7 +25,8 @@ class GradientModel final : public SpoModel {
     void restart() noexcept override;
     void setAccuracy(const AccuracySettings& settings) noexcept override;
 
-    // J of the last advance(): contact and coupling energy at its final pose. For tests and reports.
+    // J of the last advance(): all energy of the solve, damping included, at its final pose. For tests and
+    // reports.
     double energy() const noexcept { return energy_; }
 
   private:
@@ -44,6 +45,8 @@ class GradientModel final : public SpoModel {
     };
     void gather(const Pose& X_VT, double margin, SpoStep& out) noexcept;
     State evaluate(const Pose& X_VT, const Tick& tick) noexcept;
+    bool descend(State& state, const Tick& tick) noexcept;
+    void feel(const Pose& X_VT, const Tick& tick) noexcept;
     Vector6d newtonStep(const State& state) const noexcept;
     Vector6d limited(const State& state, Vector6d step, const Tick& tick) noexcept;
     bool moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept;
@@ -61,6 +64,7 @@ class GradientModel final : public SpoModel {
     GradientContact contact_;
     Pose gathered_at_;
     uint32_t gatherings_ = 0;
+    size_t point_tests_ = 0;  // in this tick
     ContinuousRotation way_;
     RelaxingSpring relaxing_;
     double lambda_ = 0;      // Levenberg, share of the damping matrix

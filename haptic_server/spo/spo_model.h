@@ -24,10 +24,11 @@ struct SpoStep {
     uint32_t contacts = 0;
     uint32_t candidates = 0;  // points that were tested in each iteration
     uint32_t iterations = 0;
-    double max_penetration = 0;         // m
-    bool is_solved = true;              // false: singular or not finite; the tool kept its pose
-    bool is_motion_clamped = false;     // a speed limit or the trust radius acted
-    bool has_contact_overflow = false;  // more candidate points than there is room for: some had no effect
+    double max_penetration = 0;      // m
+    bool is_solved = true;           // false: singular or not finite; the tool kept its pose
+    bool is_motion_clamped = false;  // a speed limit or the trust radius acted
+    bool has_contact_overflow =
+        false;  // more points near the tool than there is room or time for: the solve was cut short
 };
 
 class SpoModel {
@@ -42,7 +43,7 @@ class SpoModel {
     virtual void setAccuracy(const AccuracySettings& settings) noexcept = 0;
 };
 
-// The shell level of these settings: their factor's, or the finest one if that was not built.
+// The shell level of these settings: their factor's, or the first level if that was not built.
 inline int levelOf(const PointShell& shell, const AccuracySettings& settings) noexcept {
     const int level = shell.levelOf(settings.shell_factor);
     return level < 0 ? 0 : level;

@@ -37,7 +37,6 @@ SpoStep Thesis2012Model::advance(const Pose& spo_W, const Pose& device_W) noexce
     step.spo = spo_W.incremented(moved.head<3>(), moved.tail<3>());
     step.wrench_hand = -couplingWrench(coupling_, step.spo, device_W);
     step.contacts = contact.contacts;
-    step.candidates = contact.contacts;
     step.iterations = 1;
     step.max_penetration = contact.max_penetration;
     step.is_solved = solved.is_regular;

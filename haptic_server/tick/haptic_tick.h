@@ -30,7 +30,8 @@ class TickIo {
     virtual ~TickIo() = default;
     // Waits for the next tick. False: stop.
     virtual bool read(DeviceInput& input) noexcept = 0;
-    // Sends the wrench on the hand (axes W, about the SPO's tool point) and returns the time then, ns.
+    // Sends the wrench on the hand (axes W, about the tool point that the hand holds) and returns the time
+    // then, ns.
     virtual int64_t write(const Wrench& wrench_hand_W) noexcept = 0;
     // End of the tick's work: now in ns.
     virtual int64_t now() noexcept = 0;

@@ -14,10 +14,10 @@ enum TickFault : uint32_t {
     kFaultBadDevicePose = 1u << 2,  // non-finite or unnormalisable pose: the last good one is kept
     kFaultSolve =
         1u << 3,  // singular or non-finite equilibrium: the tool keeps its pose, the hand the last force
-    kFaultMotionClamped = 1u << 4,  // the speed limit of the coupling acted
+    kFaultMotionClamped = 1u << 4,  // a speed limit or the trust radius acted
     kFaultForceClamped = 1u << 5,   // the wrench limit acted
     kFaultShellOverflow = 1u << 6,  // the point-shell pool is full: some milled surface has no contact points
-    kFaultContactOverflow = 1u << 7,  // more points near the tool than there is room for: some had no effect
+    kFaultContactOverflow = 1u << 7,  // more points near the tool than there is room or time for
 };
 
 struct TickRecord {
@@ -32,7 +32,7 @@ struct TickRecord {
     double p_WT_device[3];
     double q_WT_device[4];
     double f_hand_W[3];      // N, on the hand
-    double t_hand_W[3];      // N·m, on the hand about the SPO's tool point
+    double t_hand_W[3];      // N·m, on the hand about the tool point that it holds
     double max_penetration;  // m
     double removed;          // m³ in this tick
     double added;            // m³ in this tick

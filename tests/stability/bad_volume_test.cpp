@@ -100,7 +100,7 @@ double manyContacts(const Variant& variant) {
         stepper.step(upright(middle + Eigen::Vector3d(0, 0, kThick + 0.05e-3 - n * 5e-6)));
         if (!stepper.isFinite()) return kNan;
         contacts = std::max(contacts, stepper.record().contacts);
-        worst = std::max(worst, stepper.wrenchOnHand().force.norm() / scene.config.coupling.max_force);
+        worst = worseOf(worst, stepper.wrenchOnHand().force.norm() / scene.config.coupling.max_force);
     }
     const uint32_t s = uint32_t(scene.config.accuracy.shell_factor);
     const double wanted = 1e4 / (s * s);

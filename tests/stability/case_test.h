@@ -9,12 +9,20 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "tests/stability/variant.h"
 
 namespace bonemill::test {
+
+// The larger of two figures; a figure that is no number stays.
+inline double worseOf(double a, double b) {
+    return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN() : std::max(a, b);
+}
 
 struct StabilityCase {
     std::string name;  // snake_case

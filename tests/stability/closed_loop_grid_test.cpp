@@ -17,7 +17,7 @@ struct Named {
     Kind value;
 };
 
-// Ends and middle of the ranges in ALGORITHMS §5.
+// Ends and middle of the ranges in docs/stability.md.
 const Named<DevicePlant> kDevices[] = {
     {"light", {.mass = 0.1, .damping = 0.5, .coulomb = 0.1, .inertia = 2e-5, .amplifier_hz = 1000}},
     {"typical", {}},
@@ -93,7 +93,7 @@ double passivePoints(const Variant& variant, const GridScene& grid) {
     for (const GridPoint& point : gridPoints(couplingFigures(scene.config), scene.config.dt)) {
         if (point.damping_ratio < 1) continue;
         const double figure = buzz(scene, point.config, grid.start, grid.push);
-        if (!(figure <= worst)) worst = figure;
+        worst = worseOf(worst, figure);
     }
     return worst;
 }

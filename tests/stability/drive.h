@@ -18,14 +18,21 @@ class Stepper : private TickIo {
     const Wrench& wrenchOnHand() const noexcept { return wrench_; }
     const Pose& spo() const noexcept { return tick_.spo(); }
     const TickRecord& record() const noexcept { return record_; }
-    bool isFinite() const noexcept { return wrench_.isFinite() && spo().isFinite(); }
+    // Also false where the tick hid what was not: it kept its pose, or left contact points out.
+    bool isFinite() const noexcept {
+        return wrench_.isFinite() && spo().isFinite() && !(faults_ & (kFaultSolve | kFaultShellOverflow));
+    }
 
   private:
     bool read(DeviceInput& input) noexcept override;
     int64_t write(const Wrench& wrench_hand_W) noexcept override;
     int64_t now() noexcept override { return 0; }
-    void push(const TickRecord& record) noexcept override { record_ = record; }
+    void push(const TickRecord& record) noexcept override {
+        record_ = record;
+        faults_ |= record.faults;
+    }
 
+    uint32_t faults_ = 0;
     HapticTick tick_;
     DeviceInput input_;
     Wrench wrench_;

@@ -1,4 +1,4 @@
-// Energy that a hand puts into the simulation, from poses and wrenches at the ticks (ALGORITHMS §5).
+// Energy that a hand puts into the simulation, from poses and wrenches at the ticks (docs/stability.md).
 //
 // Both meters take the wrench on the hand and the pose it acts at, and count work done against it as
 // positive: on a path that ends where it began, a passive simulation returns at least zero. Torque works on

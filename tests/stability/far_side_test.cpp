@@ -72,7 +72,7 @@ double worstOf(const Variant& variant, Course (*course)(Scene&, const Start&), F
         for (const double share : kStarts)
             for (const double side : {1.0, -1.0}) {
                 const double figure = figure_of(course(scene, {thickness, share, side}));
-                if (!(figure <= worst)) worst = figure;
+                worst = worseOf(worst, figure);
             }
     }
     return worst;

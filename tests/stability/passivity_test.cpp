@@ -56,10 +56,10 @@ double loopOverPlane(const Variant& variant) {
         Scene scene(bodyVolume(boxOf(Eigen::Vector3d::Constant(5e-3)), halfSpace(kMiddle, normal)), burr(),
                     variant);
         const double x = way * 0.8e-3;
-        worst = std::max(worst,
-                         gained(scene, polyline({at(-x, 0.1e-3, 0), at(-x, -0.3e-3, 0), at(x, -0.3e-3, 0.1),
-                                                 at(x, 0.1e-3, 0.1), at(-x, 0.1e-3, 0)},
-                                                2e-3, 300)));
+        worst =
+            worseOf(worst, gained(scene, polyline({at(-x, 0.1e-3, 0), at(-x, -0.3e-3, 0), at(x, -0.3e-3, 0.1),
+                                                   at(x, 0.1e-3, 0.1), at(-x, 0.1e-3, 0)},
+                                                  2e-3, 300)));
     }
     return worst;
 }
@@ -77,7 +77,7 @@ double gainedAtRest(Scene& scene, std::vector<Pose> path) {
             if (!stepper.isFinite()) return kNan;
             meter.add(pose, stepper.wrenchOnHand());
         }
-        worst = std::max(worst, -meter.energy() * kMicro);
+        worst = worseOf(worst, -meter.energy() * kMicro);
         std::reverse(path.begin(), path.end());
     }
     return worst;
@@ -140,7 +140,7 @@ double worstDroppedTicks(const Variant& variant) {
         for (const size_t from : {10u, 20u, 34u, 45u}) {  // going in, at the bottom, coming out
             Scene scene(planeBone(), burr(), variant);
             const double figure = gained(scene, path, from, dropped);
-            if (!(figure <= worst)) worst = figure;
+            worst = worseOf(worst, figure);
         }
     return worst;
 }
@@ -163,7 +163,7 @@ double droppedTicksAtThePort(const Variant& variant) {
         const double bound = PortEnergy::holdBound(k, kDt, kSpeed, kDepth, 0) +
                              k * kDepth * std::min(kDepth, kSpeed * kDt * double(dropped));
         const double figure = -meter.energy() / bound;
-        if (!(figure <= worst)) worst = figure;
+        worst = worseOf(worst, figure);
     }
     return worst;
 }

@@ -67,7 +67,7 @@ double deepPushForce(const Variant& variant) {
     double worst = 0;
     pushDown(stepper, abovePlane(0.5e-3), [&] {
         const double force = stepper.isFinite() ? stepper.wrenchOnHand().force.norm() : kNan;
-        if (!(force <= worst)) worst = force;
+        worst = worseOf(worst, force);
     });
     return worst / scene.config.coupling.max_force;
 }

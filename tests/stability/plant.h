@@ -4,8 +4,8 @@
 // One rigid body carries the device's and the hand's mass and inertia (isotropic, about the tool point). On
 // it act: the commanded wrench after the amplifiers' first-order pole, viscous and Coulomb friction of the
 // device, the hand's spring and damper towards its target, and a constant bias (a weight when nobody holds
-// the handle). Ranges of the defaults: ALGORITHMS §5. Integrated by leapfrog at kRate_hz or finer; friction
-// implicit, so that the body truly sticks and Coulomb friction cannot chatter. Units SI; axes W.
+// the handle). Ranges of the defaults: docs/stability.md. Integrated by leapfrog at kRate_hz or finer;
+// friction implicit, so that the body truly sticks and Coulomb friction cannot chatter. Units SI; axes W.
 // Deterministic.
 #pragma once
 

@@ -54,7 +54,7 @@ double grooveWorst(const Variant& variant) {
         ClosedLoop loop({}, scene, upright(groove.start));
         loop.plant.setTarget(groove.target);
         const double figure = forceResidual(loop);
-        if (!(figure <= worst)) worst = figure;
+        worst = worseOf(worst, figure);
     }
     return worst;
 }
@@ -79,7 +79,7 @@ double apartByIterations(const Variant& variant, int from) {
             if (stepper.step(device).iterations > kFour) return kNan;
             reference.step(device);
             const double apart = (stepper.spo().position - reference.spo().position).norm() * 1e6;
-            if (n >= from && !(apart <= worst)) worst = apart;
+            if (n >= from) worst = worseOf(worst, apart);
         }
         if (reference.record().contacts == 0) return kLost;
     }

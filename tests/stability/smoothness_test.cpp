@@ -38,7 +38,7 @@ double removalUnderLoad(const Variant& variant) {
     for (int n = 0; n < 300; ++n) {
         stepper.step(abovePlane(-0.3e-3), kButtonRemove);
         const double change = (stepper.wrenchOnHand().force - before).norm();
-        if (!(change <= worst)) worst = change;
+        worst = worseOf(worst, change);
         before = stepper.wrenchOnHand().force;
     }
     return worst;

@@ -25,7 +25,7 @@ double deviceJump(const Variant& variant) {
             std::max({wrench.force.norm() / coupling.max_force, wrench.torque.norm() / coupling.max_torque,
                       step / (figures.max_speed * scene.config.dt)});
         if (!stepper.isFinite()) return kNan;
-        worst = std::max(worst, figure);
+        worst = worseOf(worst, figure);
         last = stepper.spo();
     }
     return worst;
@@ -44,7 +44,7 @@ double nearAntipodal(const Variant& variant) {
         stepper.step({stepper.spo().position, expRotation(angle * axis) * stepper.spo().rotation});
         if (!stepper.isFinite()) return kNan;
         const Eigen::Vector3d torque = stepper.wrenchOnHand().torque;
-        if (n > 0) worst = std::max(worst, (torque - before).norm());
+        if (n > 0) worst = worseOf(worst, (torque - before).norm());
         before = torque;
     }
     return 100 * worst / scene.config.coupling.max_torque;
@@ -65,7 +65,7 @@ double fadeIn(ClosedLoop& loop, const Scene& scene) {
         loop.step();
         const Eigen::Vector3d force = loop.stepper.wrenchOnHand().force;
         if (!loop.stepper.isFinite()) return kNan;
-        worst = std::max(worst, (force - before).norm());
+        worst = worseOf(worst, (force - before).norm());
         before = force;
     }
     return worst / (coupling.translation_stiffness * coupling.max_speed * scene.config.dt);

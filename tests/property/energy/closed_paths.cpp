@@ -88,7 +88,7 @@ AccuracySettings converged(Preset preset) {
 }
 
 // What the hand puts in: -Σ ½ (w_k + w_{k+1}) · (pose_{k+1} - pose_k), w the wrench on the hand.
-double energyPutIn(const ContactScene& scene, Preset preset, const Path& path) {
+double energyPutIn(const ContactScene& scene, Preset preset, const Path& path, bool& has_touched) {
     GradientConfig config;
     config.coupling.saturation_force = 12;
     config.coupling.damping_time = 0;
@@ -103,6 +103,7 @@ double energyPutIn(const ContactScene& scene, Preset preset, const Path& path) {
         const Pose device = path.at(tick);
         const SpoStep step = model.advance(spo, device);
         spo = step.spo;
+        has_touched = has_touched || step.contacts > 0;
         const Vector3d moved = device.position - device_before.position;
         const Vector3d turned = logRotation(device.rotation * device_before.rotation.conjugate());
         energy -= 0.5 * (before.force + step.wrench_hand.force).dot(moved) +
@@ -113,8 +114,10 @@ double energyPutIn(const ContactScene& scene, Preset preset, const Path& path) {
     return energy;
 }
 
-void expectPassive(Preset preset, int body, double& least) {
-    const double energy = energyPutIn(sceneOf(body), preset, Path());
+void expectPassive(Preset preset, int body, double& least, int& touching) {
+    bool has_touched = false;
+    const double energy = energyPutIn(sceneOf(body), preset, Path(), has_touched);
+    touching += has_touched;
     least = std::min(least, energy);
     RC_ASSERT(energy >= -kAllowed);
 }
@@ -129,15 +132,17 @@ class ClosedPaths : public testing::TestWithParam<Run> {};
 TEST_P(ClosedPaths, GiveTheHandNoEnergy) {
     const auto& [preset, body, paths] = GetParam();
     double least = 1;
+    int touching = 0;
     rc::detail::TestParams params = rc::detail::configuration().testParams;
     params.maxSuccess = paths;
     params.disableShrinking = true;  // a shrunk path says no more, and takes minutes
     rc::detail::TestMetadata metadata;
     metadata.id = testing::UnitTest::GetInstance()->current_test_info()->name();
     const auto result =
-        rc::detail::checkTestable([&] { expectPassive(preset, body, least); }, metadata, params);
+        rc::detail::checkTestable([&] { expectPassive(preset, body, least, touching); }, metadata, params);
     std::printf("%d paths, seed %llu, least energy put in %.2e J\n", paths,
                 static_cast<unsigned long long>(params.seed), least);
+    EXPECT_GT(touching, paths * 9 / 10);
     std::ostringstream message;
     rc::detail::printResultMessage(result, message);
     EXPECT_TRUE(result.is<rc::detail::SuccessResult>()) << message.str();

@@ -38,6 +38,10 @@ SpoStep settle(GradientModel& model, Pose spo, const Pose& device, int ticks = 6
     return step;
 }
 
+TEST(AccuracySettings, DefaultsAreBalanced) {
+    EXPECT_EQ(AccuracySettings{}, presetSettings(Preset::kBalanced));
+}
+
 TEST(GradientModel, SettlesWhereCouplingAndContactBalance) {
     const ContactScene scene = flatScene();
     const GradientConfig config = stiff();
