@@ -218,6 +218,7 @@ std::vector<PatchErrors> AnalyticProbe::patchErrors() const {
         kinds.push_back(settings);
     }
     settings.tool_distance = ToolDistance::kGrid;
+    settings.sdf_refinement = 1;
     kinds.push_back(settings);
     for (const int refinement : config_.refinements) {
         settings.sdf_refinement = refinement;

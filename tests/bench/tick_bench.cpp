@@ -1,4 +1,4 @@
-// Cost of a tick on the thesis' tooth while milling a corridor, by the thesis' scaling factor and octree leaf
+// Cost of a tick on the thesis' tooth while milling a corridor, by preset, scaling factor and octree leaf
 // size.
 //
 // Prints p50/p99/p99.9/max in µs and the ratio of the medians to the thesis' own setting (s = 3, octree depth
@@ -18,14 +18,17 @@ using namespace bonemill;
 
 struct Setting {
     const char* name;
+    Preset preset;
     int scaling_factor;
     bool has_thesis_octree;  // depth 3; else leaves of 16³ cells
 };
 constexpr Setting kSettings[] = {
-    {"thesis: s=3, octree depth 3", 3, true},
-    {"s=1, octree depth 3", 1, true},
-    {"s=3, leaves of 16 cells", 3, false},
-    {"s=1, leaves of 16 cells", 1, false},
+    {"thesis_2012: s=3, octree depth 3", Preset::kThesis2012, 3, true},
+    {"thesis_2012, s=1, octree depth 3", Preset::kThesis2012, 1, true},
+    {"fast, octree depth 3", Preset::kFast, 1, true},
+    {"balanced, octree depth 3", Preset::kBalanced, 1, true},
+    {"balanced, leaves of 16 cells", Preset::kBalanced, 1, false},
+    {"exact, octree depth 3", Preset::kExact, 1, true},
 };
 constexpr int kRounds = 3;
 constexpr int kTicks = 6000;
@@ -45,7 +48,10 @@ void measure(const Setting& setting, const RawVolume& scan, const ToolModel& too
                                            : Eigen::Vector3i::Constant(16);
     BoneModel bone(densify(scan, DensityWindow{-1000, 3000, 600, 0}), leaf_cells,
                    {.levels = {{setting.scaling_factor}}});
-    HapticTick tick({}, bone, tool, nullptr);
+    TickConfig config;
+    config.accuracy = presetSettings(setting.preset);
+    config.accuracy.shell_factor = setting.scaling_factor;
+    HapticTick tick(config, bone, tool, nullptr);
     test::ScriptedIo io(test::straightPath(kStart, kEnd, kTicks, kButtonRemove));
     while (tick.tick(io)) {
     }
