@@ -127,6 +127,10 @@ bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const
 }
 
 bool GradientContact::collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept {
+    // Half a patch's diagonal, squared, per area: of a square, or of one with the proportions of the longest
+    // cell face; none without patches.
+    const double ratio = bone.volume.spacing().maxCoeff() / bone.volume.spacing().minCoeff();
+    const float patch_reach = bone.patch_points > 1 ? float((ratio + 1 / ratio) / 4) : 0;
     count_ = 0;
     touching_stiffness_ = 0;
     deepest_ = 0;
@@ -137,7 +141,7 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     box.max().array() += margin_;
     BlockBatch blocks;
     const auto test = [&] {
-        has_room &= collectFrom(blocks, bone.patch_points > 1, tool, X_VT);
+        has_room &= collectFrom(blocks, patch_reach, tool, X_VT);
         blocks.count = 0;
     };
     const Vector3d& spacing = bone.volume.spacing();
@@ -155,7 +159,7 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
 }
 
 // Points of the blocks that the tool may touch after a motion of at most the margin.
-bool GradientContact::collectFrom(const BlockBatch& blocks, bool has_patches, const ToolField& tool,
+bool GradientContact::collectFrom(const BlockBatch& blocks, float patch_reach, const ToolField& tool,
                                   const Pose& X_VT) noexcept {
     const IntoTool<float> into_tool(X_VT, Vector3d::Zero());
     PointBatch<float> batch;
@@ -171,7 +175,7 @@ bool GradientContact::collectFrom(const BlockBatch& blocks, bool has_patches, co
     for (int n = 0; n < blocks.count; ++n) {
         const ShellBlock& block = *blocks.block[n];
         // A patch around a point reaches this much nearer to the tool.
-        const float largest_patch = has_patches ? std::sqrt(0.5f * block.largest_area) : 0;
+        const float largest_patch = std::sqrt(patch_reach * block.largest_area);
         if (to_block[n] > block.radius + margin + largest_patch + error) continue;
         into_tool.fill(batch, blocks.points[n], [&](int i) {
             return Coordinates{block.x[i], block.y[i], block.z[i]};
@@ -179,7 +183,7 @@ bool GradientContact::collectFrom(const BlockBatch& blocks, bool has_patches, co
         tool.distances(batch, distance);
         for (int i = 0; i < batch.count; ++i) {
             if (!(distance[i] < margin + largest_patch)) continue;
-            const float patch = has_patches ? std::sqrt(0.5f * block.area[i]) : 0;
+            const float patch = std::sqrt(patch_reach * block.area[i]);
             if (distance[i] < margin + patch) has_room &= addCandidate(block, i, distance[i]);
         }
     }

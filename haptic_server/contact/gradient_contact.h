@@ -110,7 +110,7 @@ class GradientContact {
         }
     };
     bool collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
-    bool collectFrom(const BlockBatch& blocks, bool has_patches, const ToolField& tool,
+    bool collectFrom(const BlockBatch& blocks, float patch_reach, const ToolField& tool,
                      const Pose& X_VT) noexcept;
     bool addCandidate(const ShellBlock& block, int i, float distance) noexcept;
     void refine(const ShellView& bone, double thinnest_radius) noexcept;

@@ -18,12 +18,16 @@ struct PatchFrame {
     Vector3f step_u, step_v;
 };
 
-PatchFrame patchFrame(const Vector3f& n, float step) noexcept {
+PatchFrame patchFrame(const Vector3f& n, const Vector3f& spacing, float step) noexcept {
     if (n.isZero(0)) return {Vector3f::Zero(), Vector3f::Zero()};
-    int least = 0;
+    int least = 0, most = 0;
     n.cwiseAbs().minCoeff(&least);
+    n.cwiseAbs().maxCoeff(&most);
+    if (least == most) least = (most + 1) % 3;
+    // u lies along the third axis, v along `least`: the patch has the proportions of the cells there.
+    const float stretch = std::sqrt(spacing[3 - least - most] / spacing[least]);
     const Vector3f u = n.cross(Vector3f::Unit(least)).normalized();
-    return {step * u, step * n.cross(u)};
+    return {step * stretch * u, step / stretch * n.cross(u)};
 }
 
 // The nearest place of the trilinear iso-surface up or down the density's gradient, V; if it is not within
@@ -68,13 +72,15 @@ void GradientContact::splitPatch(const VoxelVolume& volume, size_t index, int q)
     Candidate patch = candidates_[index];
     const Vector3f own_point = positionOf(patch).cast<float>(), n(patch.nx, patch.ny, patch.nz);
     const float side = std::sqrt(patch.area);
-    const PatchFrame frame = patchFrame(n, side / float(q));
+    const PatchFrame frame = patchFrame(n, volume.spacing().cast<float>(), side / float(q));
+    const float reach =
+        side / 2 * std::sqrt(float(volume.spacing().maxCoeff() / volume.spacing().minCoeff()));
     patch.weight /= float(q * q);
     for (int place = 0; place < q * q; ++place) {
         const float u = float(place % q) - 0.5f * float(q - 1), v = float(place / q) - 0.5f * float(q - 1);
         const Vector3f start = own_point + u * frame.step_u + v * frame.step_v;
         const Vector3f at =
-            (ontoSurface(volume, start, own_point, side / 2).cast<double>() - origin_).cast<float>();
+            (ontoSurface(volume, start, own_point, reach).cast<double>() - origin_).cast<float>();
         patch.x = at.x(), patch.y = at.y(), patch.z = at.z();
         candidates_[place == 0 ? index : count_++] = patch;
     }
