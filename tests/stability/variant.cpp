@@ -10,12 +10,12 @@ bool isThesis(const TickConfig& config) {
 }  // namespace
 
 const std::vector<Variant>& allVariants() {
-    static const std::vector<Variant> variants = [] {
+    static const std::vector<Variant> kVariants = [] {
         std::vector<Variant> list;
         for (const Preset preset : kPresets) list.push_back({std::string(presetName(preset)), preset});
         return list;
     }();
-    return variants;
+    return kVariants;
 }
 
 const Variant& baselineVariant() {

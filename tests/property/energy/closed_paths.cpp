@@ -40,12 +40,12 @@ double rough(const Vector3d& p) {
 }
 
 const ContactScene& sceneOf(int body) {
-    static const ContactScene scenes[] = {
+    static const ContactScene kScenes[] = {
         {cubeGeometry(33, kVoxel), bumps, kBurrAndShaft, {.levels = {{1}, {2}}}},
         {cubeGeometry(33, kVoxel), wedge, kBurrAndShaft, {.levels = {{1}, {2}}}},
         {cubeGeometry(33, kVoxel), slot, kBurrAndShaft, {.levels = {{1}, {2}}}},
         {cubeGeometry(33, kVoxel), rough, kBurrAndShaft, {.levels = {{1}, {2}}}}};
-    return scenes[body];
+    return kScenes[body];
 }
 
 double fraction() {
