@@ -29,14 +29,6 @@ ShellNormals givenNormals(scene::Accuracy::Normals normals) {
                                                  : ShellNormals::kCentralDifference;
 }
 
-// What a burr on a flat wall carries before it has passed through half of it: π κ (R - d) d², at most its
-// maximum over d. The coupling's lasting pull saturates there, so that no push goes through a wall of that
-// thickness.
-double wallForce(double kappa, double burr_radius, double wall) {
-    const double depth = std::min(wall / 2, 2 * burr_radius / 3);
-    return M_PI * kappa * (burr_radius - depth) * depth * depth;
-}
-
 }  // namespace
 
 AccuracySettings accuracyOf(const scene::Scene& scene) {
@@ -92,6 +84,17 @@ std::vector<int> sdfRefinementsOf(const scene::Scene& scene) {
     return {refinements.begin(), refinements.end()};
 }
 
+double thinnestWall(const scene::Scene& scene, double finest_spacing) {
+    const scene::Contact& contact = scene.contact();
+    return contact.has_thinnest_wall_mm() ? contact.thinnest_wall_mm() * kMillimetre : finest_spacing;
+}
+
+double wallForce(const GradientContactConfig& contact, double radius, double wall) {
+    const double depth = std::min(wall / 2, 2 * radius / 3);
+    return std::min(M_PI * contact.stiffness_per_area * (radius - depth) * depth * depth,
+                    contact.stiffness_cap * depth);
+}
+
 GradientConfig gradientConfigOf(const scene::Scene& scene, double finest_spacing) {
     const scene::Coupling& coupling = scene.coupling();
     const scene::Contact& contact = scene.contact();
@@ -101,14 +104,12 @@ GradientConfig gradientConfigOf(const scene::Scene& scene, double finest_spacing
     config.max_angular_speed = coupling.max_angular_speed_deg_per_s() * kDegree;
     config.contact = {.stiffness_per_area = contact.stiffness_n_per_mm3() * 1e9,
                       .stiffness_cap = contact.stiffness_cap_n_per_mm() / kMillimetre};
-    const double wall =
-        contact.has_thinnest_wall_mm() ? contact.thinnest_wall_mm() * kMillimetre : finest_spacing;
     const double stiffness = coupling.rotation_stiffness_nmm_per_rad() * kMillimetre / 2;
     config.coupling = {
         .translation_stiffness = coupling.translation_stiffness_n_per_mm() / kMillimetre,
         .rotation_stiffness = stiffness,
-        .saturation_force = std::min(coupling.max_force_n(),
-                                     wallForce(config.contact.stiffness_per_area, config.burr_radius, wall)),
+        .saturation_force = std::min(coupling.max_force_n(), wallForce(config.contact, config.burr_radius,
+                                                                       thinnestWall(scene, finest_spacing))),
         .saturation_torque = std::min(coupling.max_torque_nmm() * kMillimetre,
                                       stiffness * coupling.saturation_angle_deg() * kDegree),
         .damping_time = coupling.damping_time_ms() * 1e-3,

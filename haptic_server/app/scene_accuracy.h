@@ -20,6 +20,14 @@ ShellConfig shellConfigOf(const scene::Scene& scene);
 // Grids beside the scene's own that any of the choices needs; ascending.
 std::vector<int> sdfRefinementsOf(const scene::Scene& scene);
 
+// What the tool must not be pushed through, m: the scene's, or one voxel.
+double thinnestWall(const scene::Scene& scene, double finest_spacing);
+
+// What a ball of this radius on a flat wall carries before it has passed through half of it, N: π κ (R - d)
+// d², at most its maximum over d, and what the stiffness cap leaves of it. The coupling's lasting pull
+// saturates there for the burr, so that no push goes through a wall of that thickness.
+double wallForce(const GradientContactConfig& contact, double radius, double wall);
+
 // Contact and coupling of the gradient law. `finest_spacing`: the volume's smallest voxel spacing, m.
 GradientConfig gradientConfigOf(const scene::Scene& scene, double finest_spacing);
 

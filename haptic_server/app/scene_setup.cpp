@@ -11,6 +11,8 @@ namespace {
 constexpr double kMillimetre = 1e-3;
 constexpr double kDegree = M_PI / 180;
 constexpr int kDefaultLeafCells = 16;
+constexpr double kMostOverload =
+    3;  // a shaft of half the burr's radius is common, and leans more than it pokes
 
 Eigen::Vector3d metres(const scene::Vec3& mm) {
     return kMillimetre * Eigen::Vector3d(mm.x(), mm.y(), mm.z());
@@ -86,6 +88,21 @@ void warnOfCoarseShell(Simulation& simulation, const scene::Scene& scene) {
                                   " mm): contact can miss thin features; lower accuracy.shell_factor");
 }
 
+// The coupling's pull is limited by what the burr carries.
+void warnOfThinTool(Simulation& simulation, const scene::Scene& scene) {
+    const GradientConfig& config = simulation.tick.gradient;
+    const double radius = simulation.tool.model.field(simulation.tick.accuracy).thinnestRadius();
+    if (simulation.tick.accuracy.law != ContactLaw::kGradient || radius >= config.burr_radius) return;
+    const double wall = thinnestWall(scene, simulation.bone->volume.spacing().minCoeff());
+    const double carried = wallForce(config.contact, radius, wall);
+    if (config.coupling.saturation_force <= kMostOverload * carried) return;
+    simulation.warnings.push_back("the tool's thinnest part has a radius of " + textOf(radius / kMillimetre) +
+                                  " mm: its tip goes through a wall of " + textOf(wall / kMillimetre) +
+                                  " mm at " + textOf(carried) + " N, and the coupling pulls with up to " +
+                                  textOf(config.coupling.saturation_force) +
+                                  " N; lower coupling.max_force_n or contact.thinnest_wall_mm");
+}
+
 }  // namespace
 
 TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing) {
@@ -153,6 +170,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     simulation.warnings = simulation.tool.warnings;
     warnOfLargeLeaves(simulation);
     warnOfCoarseShell(simulation, scene);
+    warnOfThinTool(simulation, scene);
     return simulation;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptic_server/contact/into_tool.h"
 #include "haptic_server/contact/tool_box.h"
 
 namespace bonemill {
@@ -11,35 +12,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-
-// Points with V's axes, measured from `origin`, to T.
-template <class Scalar>
-struct IntoTool {
-    Scalar R[9];
-    Scalar p[3];
-
-    IntoTool(const Pose& X_VT, const Vector3d& origin) noexcept {
-        const Matrix3d R_TV = X_VT.rotation.conjugate().toRotationMatrix();
-        for (int i = 0; i < 9; ++i) R[i] = Scalar(R_TV(i / 3, i % 3));
-        for (int axis = 0; axis < 3; ++axis) p[axis] = Scalar(X_VT.position[axis] - origin[axis]);
-    }
-
-    template <class PointAt>
-    void fill(PointBatch<Scalar>& batch, int count, PointAt&& point_at) const noexcept {
-        batch.count = count;
-        for (int i = 0; i < count; ++i) {
-            const auto [bx, by, bz] = point_at(i);
-            const Scalar x = Scalar(bx) - p[0], y = Scalar(by) - p[1], z = Scalar(bz) - p[2];
-            batch.x[i] = R[0] * x + R[1] * y + R[2] * z;
-            batch.y[i] = R[3] * x + R[4] * y + R[5] * z;
-            batch.z[i] = R[6] * x + R[7] * y + R[8] * z;
-        }
-    }
-};
-
-struct Coordinates {
-    float x, y, z;
-};
 
 // Of the points in contact of one batch, by component: sums over them are then vector instructions.
 struct ContactBatch {
@@ -113,44 +85,43 @@ struct Sums {
 }  // namespace
 
 GradientContact::GradientContact(const GradientContactConfig& config, size_t most_candidates)
-    : config_(config), candidates_(most_candidates) {}
+    : config_(config), candidates_(most_candidates), lowest_(most_candidates) {}
 
 bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
                              double margin) noexcept {
     margin_ = margin;
     origin_ = X_VT.position;
     const bool has_room = collect(bone, tool, X_VT);
-    refine(bone, tool.thinnestRadius());
+    refine(bone, tool, X_VT);
     guardFarSide(bone.volume, tool, X_VT);
     capStiffness(tool, X_VT);
     return has_room;
 }
 
 bool GradientContact::collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept {
-    // Half a patch's diagonal, squared, per area: of a square, or of one with the proportions of the longest
-    // cell face; none without patches.
-    const double ratio = bone.volume.spacing().maxCoeff() / bone.volume.spacing().minCoeff();
-    const float patch_reach = bone.patch_points > 1 ? float((ratio + 1 / ratio) / 4) : 0;
+    const Vector3d& spacing = bone.volume.spacing();
+    const double ratio = spacing.maxCoeff() / spacing.minCoeff();
+    reach_per_area_ = bone.patch_points > 1 ? float((ratio + 1 / ratio) / 4) : 0;
     count_ = 0;
     touching_stiffness_ = 0;
     deepest_ = 0;
     bool has_room = true;
     const Pose X_TV = X_VT.inverse();
+    const double reach = margin_ + spacing.norm();  // a patch is about a cell's face
     Eigen::AlignedBox3d box = boxInV(tool.box(), X_VT);
-    box.min().array() -= margin_;
-    box.max().array() += margin_;
+    box.min().array() -= reach;
+    box.max().array() += reach;
     BlockBatch blocks;
     const auto test = [&] {
-        has_room &= collectFrom(blocks, patch_reach, tool, X_VT);
+        has_room &= collectFrom(blocks, tool, X_VT);
         blocks.count = 0;
     };
-    const Vector3d& spacing = bone.volume.spacing();
     bone.lattice.forEachSurfaceLeaf(box, spacing, bone.volume.iso(), [&](LeafId leaf) {
         if (bone.shell.pointCount(bone.level, leaf) == 0) return;
         const Sphere around = sphereAround(bone.lattice.cellsOf(leaf), spacing);
-        if (tool.distanceBound(X_TV * around.center) > around.radius + margin_) return;
+        if (tool.distanceBound(X_TV * around.center) > around.radius + reach) return;
         bone.shell.forEachBlock(bone.level, leaf, [&](const ShellBlock& block, uint32_t count) {
-            blocks.add(block, count);
+            blocks.add(block, count, leaf);
             if (blocks.count == BlockBatch::kCapacity) test();
         });
     });
@@ -159,7 +130,7 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
 }
 
 // Points of the blocks that the tool may touch after a motion of at most the margin.
-bool GradientContact::collectFrom(const BlockBatch& blocks, float patch_reach, const ToolField& tool,
+bool GradientContact::collectFrom(const BlockBatch& blocks, const ToolField& tool,
                                   const Pose& X_VT) noexcept {
     const IntoTool<float> into_tool(X_VT, Vector3d::Zero());
     PointBatch<float> batch;
@@ -175,7 +146,7 @@ bool GradientContact::collectFrom(const BlockBatch& blocks, float patch_reach, c
     for (int n = 0; n < blocks.count; ++n) {
         const ShellBlock& block = *blocks.block[n];
         // A patch around a point reaches this much nearer to the tool.
-        const float largest_patch = std::sqrt(patch_reach * block.largest_area);
+        const float largest_patch = std::sqrt(reach_per_area_ * block.largest_area);
         if (to_block[n] > block.radius + margin + largest_patch + error) continue;
         into_tool.fill(batch, blocks.points[n], [&](int i) {
             return Coordinates{block.x[i], block.y[i], block.z[i]};
@@ -183,19 +154,20 @@ bool GradientContact::collectFrom(const BlockBatch& blocks, float patch_reach, c
         tool.distances(batch, distance);
         for (int i = 0; i < batch.count; ++i) {
             if (!(distance[i] < margin + largest_patch)) continue;
-            const float patch = std::sqrt(patch_reach * block.area[i]);
-            if (distance[i] < margin + patch) has_room &= addCandidate(block, i, distance[i]);
+            const float patch = std::sqrt(reach_per_area_ * block.area[i]);
+            if (distance[i] < margin + patch) has_room &= addCandidate(block, i, blocks.leaf[n], distance[i]);
         }
     }
     return has_room;
 }
 
-bool GradientContact::addCandidate(const ShellBlock& block, int i, float distance) noexcept {
+bool GradientContact::addCandidate(const ShellBlock& block, int i, LeafId leaf, float distance) noexcept {
     if (count_ == candidates_.size()) return false;
     const float weight = float(config_.stiffness_per_area) * block.area[i];
     const Vector3f p = (Vector3d(block.x[i], block.y[i], block.z[i]) - origin_).cast<float>();
-    candidates_[count_++] = {p.x(),       p.y(),  p.z(),         block.nx[i], block.ny[i],
-                             block.nz[i], weight, block.area[i], distance};
+    candidates_[count_++] = {
+        p.x(),       p.y(),  p.z(),         block.nx[i], block.ny[i],
+        block.nz[i], weight, block.area[i], distance,    uint64_t(leaf) << 32 | block.key[i]};
     deepest_ = std::max(deepest_, -double(distance));
     touching_stiffness_ += shareInContact(double(distance)) * double(weight);
     return true;

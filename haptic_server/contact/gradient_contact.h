@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "haptic_server/contact/patch_memory.h"
 #include "haptic_server/contact/point_shell.h"
 #include "haptic_server/coupling/energy_coupling.h"
 #include "haptic_server/tool/tool_field.h"
@@ -43,7 +44,7 @@ struct ShellView {
     const PointShell& shell;
     int level;
     int patch_points;    // per side, 1 .. 4
-    int refined_points;  // at most this many places on refined patches; patch_points gives way
+    int refined_points;  // about as many places on refined patches; patch_points gives way for new ones
 };
 
 struct GradientContactResult {
@@ -54,9 +55,9 @@ struct GradientContactResult {
 
 class GradientContact {
   public:
-    // Patches whose point is nearer to the tool are refined, m; further off by what a patch reaches out
-    // beside a round tool.
-    static constexpr double kRefineWithin = 25e-6;
+    // Patches with a place nearer to the tool are refined, m. A patch that changes sides while it is in
+    // contact changes the energy.
+    static constexpr double kRefineWithin = 50e-6;
     // Of the tool's thinnest radius: depth from which on the force of a
     // point no longer grows, and between which the far-side guard sets in.
     static constexpr double kDepthCap = 0.75, kGuardFrom = 0.25, kGuardFull = 0.5;
@@ -69,6 +70,10 @@ class GradientContact {
     // any of its points) from X_VT. False: more than there is room for; the rest is left out.
     bool gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin) noexcept;
 
+    // Of the last gatherings: how finely which patch was sampled. Called when the shell level or the sampling
+    // changes, or the tool is placed anew.
+    void forget() noexcept { patch_memory_.forget(); }
+
     // Energy, wrench on the tool and stiffness at this pose, over the gathered points.
     template <class Scalar>
     GradientContactResult evaluate(const ToolField& tool, const Pose& X_VT) const noexcept;
@@ -77,7 +82,7 @@ class GradientContact {
     // X_VT comes deeper than `allowed_depth`, and none in contact gets deeper by more than that: conservative
     // advancement. The share may be smaller than the largest, never larger. In 0 .. 1.
     double advance(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
-                   double allowed_depth) const noexcept;
+                   double allowed_depth) noexcept;
 
     size_t candidateCount() const noexcept { return count_; }
     double margin() const noexcept { return margin_; }
@@ -88,7 +93,8 @@ class GradientContact {
         float nx, ny, nz;  // V, unit or zero
         float weight;      // κ a λ, of one place
         float area;        // m², of the whole patch
-        float distance;    // m, of the patch's point at the gathering
+        float nearest;     // m: no place of the patch was nearer to the tool at the gathering
+        uint64_t patch;    // leaf and key in the shell
     };
     // A contact counts for the stiffness cap in proportion to its depth, so that a new one comes in smoothly.
     static constexpr double kFullShareDepth = 20e-6;  // m
@@ -103,27 +109,38 @@ class GradientContact {
         static constexpr int kCapacity = PointBatch<float>::kCapacity;
         const ShellBlock* block[kCapacity];
         int points[kCapacity];
+        LeafId leaf[kCapacity];
         int count = 0;
-        void add(const ShellBlock& b, uint32_t point_count) noexcept {
+        void add(const ShellBlock& b, uint32_t point_count, LeafId of_leaf) noexcept {
             block[count] = &b;
-            points[count++] = int(point_count);
+            points[count] = int(point_count);
+            leaf[count++] = of_leaf;
         }
     };
     bool collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
-    bool collectFrom(const BlockBatch& blocks, float patch_reach, const ToolField& tool,
-                     const Pose& X_VT) noexcept;
-    bool addCandidate(const ShellBlock& block, int i, float distance) noexcept;
-    void refine(const ShellView& bone, double thinnest_radius) noexcept;
+    bool collectFrom(const BlockBatch& blocks, const ToolField& tool, const Pose& X_VT) noexcept;
+    bool addCandidate(const ShellBlock& block, int i, LeafId leaf, float distance) noexcept;
+    void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
+    bool isNear(const Candidate& c) const noexcept;
+    void findNearestPlaces(const ToolField& tool, const Pose& X_VT) noexcept;
+    int placesOfNewPatches(const ShellView& bone, size_t coarse) noexcept;
     void splitPatch(const VoxelVolume& volume, size_t index, int q) noexcept;
+    template <class Visit>
+    void forEachDistance(const ToolField& tool, const Pose& X_VT, Visit&& visit) const noexcept;
     void guardFarSide(const VoxelVolume& volume, const ToolField& tool, const Pose& X_VT) noexcept;
     void capStiffness(const ToolField& tool, const Pose& X_VT) noexcept;
 
     GradientContactConfig config_;
     std::vector<Candidate> candidates_;
+    std::vector<double> lowest_;  // m, scratch of advance(): how near each candidate may come
+    PatchMemory patch_memory_{4096};
     size_t count_ = 0;
     double touching_stiffness_ = 0;  // N/m: of the candidates in contact, all directions together
     double deepest_ = 0;             // m
     double margin_ = 0;
+    // Half a patch's diagonal, squared, per area: of a square, or of one with the proportions of the longest
+    // cell face; 0 without patches.
+    float reach_per_area_ = 0;
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // V: the tool point at the gathering
 };
 

@@ -4,6 +4,7 @@
 
 #include "haptic_server/contact/cell_patch.h"
 #include "haptic_server/contact/gradient_contact.h"
+#include "haptic_server/contact/into_tool.h"
 
 namespace bonemill {
 namespace {
@@ -52,19 +53,62 @@ Vector3f ontoSurface(const VoxelVolume& volume, const Vector3f& start, const Vec
 }  // namespace
 
 // As finely as asked for and as the number of near patches allows.
-void GradientContact::refine(const ShellView& bone, double thinnest_radius) noexcept {
-    const auto isNear = [beside = float(0.5 / thinnest_radius)](const Candidate& c) {
-        return c.distance < float(kRefineWithin) + beside * c.area;
-    };
+void GradientContact::refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept {
+    patch_memory_.nextGathering();
+    if (bone.patch_points == 1) return;
+    findNearestPlaces(tool, X_VT);
     const size_t coarse = count_;
-    const size_t near =
-        size_t(std::count_if(candidates_.begin(), candidates_.begin() + std::ptrdiff_t(coarse), isNear));
-    const size_t room = std::min(size_t(bone.refined_points), candidates_.size() - (coarse - near));
+    const int q_new = placesOfNewPatches(bone, coarse);
+    for (size_t i = 0; i < coarse; ++i) {
+        if (!isNear(candidates_[i])) continue;
+        uint8_t& q = patch_memory_.placesOf(candidates_[i].patch);
+        if (q == 0) q = uint8_t(q_new);
+        if (q > 1 && count_ + size_t(q * q) <= candidates_.size()) splitPatch(bone.volume, i, q);
+    }
+}
+
+bool GradientContact::isNear(const Candidate& c) const noexcept {
+    return c.nearest < float(std::min(margin_, kRefineWithin));
+}
+
+// Per side. Known patches keep theirs, so there may be twice as many places as asked for.
+int GradientContact::placesOfNewPatches(const ShellView& bone, size_t coarse) noexcept {
+    size_t near = 0, fresh = 0, known_places = 0;
+    for (size_t i = 0; i < coarse; ++i) {
+        if (!isNear(candidates_[i])) continue;
+        const size_t q = patch_memory_.placesOf(candidates_[i].patch);
+        ++near;
+        known_places += q * q;
+        fresh += q == 0;
+    }
+    const size_t room = size_t(bone.refined_points);
     int q = bone.patch_points;
-    while (q > 1 && near * size_t(q * q) > room) --q;
-    if (q == 1) return;
-    for (size_t i = 0; i < coarse; ++i)
-        if (isNear(candidates_[i])) splitPatch(bone.volume, i, q);
+    while (q > 1 && (near * size_t(q * q) > room || known_places + fresh * size_t(q * q) > 2 * room)) --q;
+    return q;
+}
+
+// A place of the patch is nearer than its point by what lies in the patch's plane of the way to the tool,
+// and by what the bone bends towards it: as much as the thinnest tool does.
+void GradientContact::findNearestPlaces(const ToolField& tool, const Pose& X_VT) noexcept {
+    constexpr int kBatch = PointBatch<float>::kCapacity;
+    const IntoTool<float> into_tool(X_VT, origin_);
+    const Eigen::Matrix3f R_VT = X_VT.rotation.toRotationMatrix().cast<float>();
+    const float beside = float(0.5 / tool.thinnestRadius());
+    PointBatch<float> batch;
+    SampleBatch<float> at;
+    for (size_t first = 0; first < count_; first += kBatch) {
+        Candidate* points = candidates_.data() + first;
+        into_tool.fill(batch, int(std::min<size_t>(kBatch, count_ - first)), [&](int i) {
+            return Coordinates{points[i].x, points[i].y, points[i].z};
+        });
+        tool.sample(batch, at);
+        for (int i = 0; i < batch.count; ++i) {
+            Candidate& c = points[i];
+            const Vector3f g = R_VT * Vector3f(at.gx[i], at.gy[i], at.gz[i]);
+            const float in_plane = g.cross(Vector3f(c.nx, c.ny, c.nz)).norm();
+            c.nearest = at.distance[i] - in_plane * std::sqrt(reach_per_area_ * c.area) - beside * c.area;
+        }
+    }
 }
 
 // The candidate becomes the first of its q × q places, the others follow at the end.

@@ -46,10 +46,8 @@ struct PointTest {
 // V meets.
 bool mayTouch(const IndexBox& cells, const Eigen::Vector3d& spacing, const Eigen::AlignedBox3d& box_T,
               const Pose& X_TV) noexcept {
-    const Eigen::Vector3d low = cells.min.cast<double>().cwiseProduct(spacing);
-    const Eigen::Vector3d high = (cells.max.array() + 1).matrix().cast<double>().cwiseProduct(spacing);
-    const double radius = (high - low).norm() / 2;
-    return box_T.squaredExteriorDistance(X_TV * Eigen::Vector3d((low + high) / 2)) <= radius * radius;
+    const Sphere around = sphereAround(cells, spacing);
+    return box_T.squaredExteriorDistance(X_TV * around.center) <= around.radius * around.radius;
 }
 
 ContactResult scaled(const PenaltyContactConfig& config, const UnitSums& sums) noexcept {

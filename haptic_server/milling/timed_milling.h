@@ -37,7 +37,6 @@ class TimedMilling {
 
     // From the next apply() on.
     void setShape(MillingShape shape) noexcept { config_.shape = shape; }
-    MillingShape shape() const noexcept { return config_.shape; }
 
   private:
     struct Change {

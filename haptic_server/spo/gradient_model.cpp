@@ -69,11 +69,13 @@ void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
     settings_ = settings;
     level_ = levelOf(world_.shell, settings);
     field_ = &world_.tool.field(settings);
+    contact_.forget();
 }
 
 void GradientModel::restart() noexcept {
     way_.forget();
     relaxing_.forget();
+    contact_.forget();
     lambda_ = 0;
     last_reach_ = 0;
     last_wrench_hand_ = {};

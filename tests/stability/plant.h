@@ -10,6 +10,7 @@
 #pragma once
 
 #include "common/geometry/pose.h"
+#include "device_daemon/driver/ares_emulator.h"
 
 namespace bonemill::test {
 
@@ -25,15 +26,7 @@ struct DevicePlant {
     double encoder_angle = 1.745329252e-04;  // rad (0.01°); 0 is an ideal encoder
 };
 
-// All zero: nobody holds the handle.
-struct HandPlant {
-    double mass = 0.1;               // kg
-    double damping = 8;              // N·s/m
-    double stiffness = 600;          // N/m
-    double inertia = 5e-5;           // kg·m²
-    double angular_damping = 0.02;   // N·m·s/rad
-    double angular_stiffness = 1.0;  // N·m/rad
-};
+using HandPlant = HandImpedance;
 inline constexpr HandPlant kNoHand{0, 0, 0, 0, 0, 0};
 
 class Plant {

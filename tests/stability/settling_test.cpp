@@ -67,7 +67,11 @@ double apartByIterations(const Variant& variant, int from) {
     for (const double angle : kGrooveAngles_deg) {
         const Groove groove(angle);
         const auto limitTo = [](int iterations) {
-            return [=](TickConfig& config) { config.accuracy.iterations = iterations; };
+            return [=](TickConfig& config) {
+                config.accuracy.iterations = iterations;
+                // Room for all: else the way into the groove decides which patch is sampled how finely.
+                config.accuracy.refined_points = presetSettings(Preset::kExact).refined_points;
+            };
         };
         Scene scene(groove.volume, burr(), variant, 1e-3, limitTo(kFour));
         Scene reference_scene(groove.volume, burr(), variant, 1e-3,

@@ -74,6 +74,24 @@ TEST(Simulate, TwoRunsGiveTheSameHashAndAnotherPathAnotherOne) {
     EXPECT_EQ(first["ticks"], 900);
 }
 
+TEST(Simulate, WarnsOfATipThatTheCouplingPushesThroughAWall) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
+    writeFile(folder / "a.csv", plunge(0, 0, 3.3e-3, 3.2e-3, 10, 0, 0));
+    const auto warnings = [&](const std::string& pin_radius_mm) {
+        writeFile(folder / "s.textproto",
+                  "volume { path: \"slab.nrrd\" } tool { shape { capsule { from_mm { y: 0 } "
+                  "to_mm { y: 8 } radius_mm: " +
+                      pin_radius_mm + " } } }");
+        const auto finished = run({"haptic_server", "simulate", "--scene", folder / "s.textproto",
+                                   "--trajectory", folder / "a.csv"});
+        EXPECT_EQ(finished.exit_code, 0) << finished.err;
+        return finished.err;
+    };
+    EXPECT_NE(warnings("0.1").find("the tool's thinnest part has a radius of 0.1 mm"), std::string::npos);
+    EXPECT_EQ(warnings("0.6").find("thinnest part"), std::string::npos);
+}
+
 TEST(Simulate, TraceHasTheDocumentedColumnsAndAddsUp) {
     const TemporaryFolder folder;
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);

@@ -26,7 +26,7 @@ DistanceFunction bumpyBody() {
 }
 
 Vector6d minusGradient(const GradientContact& contact, const ToolField& tool, const Pose& at) {
-    constexpr double kStep = 2e-9;
+    constexpr double kStep = 5e-10;  // m: short, so that hardly a point crosses a seam of the tool
     Vector6d w;
     for (int i = 0; i < 6; ++i) {
         const double h = i < 3 ? kStep : kStep / 2e-3;

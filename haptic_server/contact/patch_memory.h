@@ -1,0 +1,54 @@
+// How finely each patch near the tool is sampled. A patch that changed it while in contact would change the
+// energy, so it keeps it until it is no longer near.
+//
+// A table of fixed size, searched in a few slots per patch; a patch that finds no slot is new every time.
+// RT-safe but for construction.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace bonemill {
+
+class PatchMemory {
+  public:
+    // Good for about half of most_patches, a power of two. Allocates.
+    explicit PatchMemory(size_t most_patches) : slots_(most_patches) {}
+
+    // From now on only patches that were asked for since the last call are known.
+    void nextGathering() noexcept { ++gathering_; }
+    void forget() noexcept { gathering_ += 2; }
+
+    // Places per side of this patch: what is written stays for the next gathering. 0: not known.
+    uint8_t& placesOf(uint64_t patch) noexcept {
+        Slot* free = nullptr;
+        for (size_t n = 0; n < kProbes; ++n) {
+            Slot& slot = slots_[(home(patch) + n) & (slots_.size() - 1)];
+            const bool is_known = slot.gathering + 1 >= gathering_;
+            if (is_known && slot.patch == patch) {
+                slot.gathering = gathering_;
+                return slot.places;
+            }
+            if (!is_known && free == nullptr) free = &slot;
+        }
+        if (free == nullptr) return nowhere_ = 0;
+        *free = {patch, gathering_, 0};
+        return free->places;
+    }
+
+  private:
+    struct Slot {
+        uint64_t patch = 0;
+        uint64_t gathering = 0;  // the last that asked for it
+        uint8_t places = 0;
+    };
+    static constexpr size_t kProbes = 8;
+    static size_t home(uint64_t patch) noexcept { return size_t(patch * 0x9E3779B97F4A7C15u >> 32); }
+
+    std::vector<Slot> slots_;
+    uint64_t gathering_ = 2;
+    uint8_t nowhere_ = 0;
+};
+
+}  // namespace bonemill
