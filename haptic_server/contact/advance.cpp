@@ -1,62 +1,71 @@
-// Continuous collision: how far the tool may go along a step.
+// Conservative advancement along one step: no point tunnels through the tool.
 #include <algorithm>
 #include <cmath>
 
 #include "haptic_server/contact/gradient_contact.h"
+#include "haptic_server/contact/into_tool.h"
 
 namespace bonemill {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostAdvances = 24;
+constexpr int kMostAdvances = 64;
 constexpr double kSmallestAdvance = 1e-3;  // of the step
 
 }  // namespace
 
-// visit(candidate, its distance, its distance from the tool point)
-template <class Visit>
-void GradientContact::forEachDistance(const ToolField& tool, const Pose& X_VT, Visit&& visit) const noexcept {
-    constexpr int kBatch = PointBatch<double>::kCapacity;
-    const Pose X_TV = X_VT.inverse();
-    PointBatch<double> batch;
-    alignas(64) double distance[kBatch];
-    for (size_t first = 0; first < count_; first += kBatch) {
-        batch.count = int(std::min<size_t>(kBatch, count_ - first));
+// What is the same for the whole sweep. A point at r from the tool point comes nearer by at most
+// |x| + |ω| (r + |x|), r at the start.
+void GradientContact::startSweep(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
+                                 double allowed_depth) noexcept {
+    constexpr int kBatch = PointBatch<float>::kCapacity;
+    const float speed = float(step.head<3>().norm()), turn = float(step.tail<3>().norm());
+    const float deepest = float(allowed_depth - 2 * tool.distanceError());
+    const IntoTool<float> into_tool(X_VT, origin_);
+    PointBatch<float> batch;
+    const Candidates& c = candidates_;
+    for (size_t first = 0; first < c.count; first += kBatch) {
+        into_tool.fill(batch, &c.x[first], &c.y[first], &c.z[first],
+                       int(std::min<size_t>(kBatch, c.count - first)));
+        tool.distances(batch, &lowest_[first]);
         for (int i = 0; i < batch.count; ++i) {
-            const Vector3d p = X_TV * positionOf(candidates_[first + size_t(i)]);
-            batch.x[i] = p.x(), batch.y[i] = p.y(), batch.z[i] = p.z();
+            const size_t n = first + size_t(i);
+            const float r =
+                std::sqrt(batch.x[i] * batch.x[i] + batch.y[i] * batch.y[i] + batch.z[i] * batch.z[i]);
+            lowest_[n] = std::min(lowest_[n], 0.0f) - deepest;
+            inverse_rate_[n] = 1 / (speed + turn * (r + speed));
         }
-        tool.distances(batch, distance);
-        for (int i = 0; i < batch.count; ++i)
-            visit(first + size_t(i), distance[i],
-                  std::sqrt(batch.x[i] * batch.x[i] + batch.y[i] * batch.y[i] + batch.z[i] * batch.z[i]));
     }
+}
+
+// Of the step, that can be gone from here without a look at the distances.
+double GradientContact::sweptShare(const ToolField& tool, const Pose& X_VT) const noexcept {
+    constexpr int kBatch = PointBatch<float>::kCapacity;
+    const IntoTool<float> into_tool(X_VT, origin_);
+    PointBatch<float> batch;
+    alignas(64) float distance[kBatch];
+    const Candidates& c = candidates_;
+    float least = 1;
+    for (size_t first = 0; first < c.count; first += kBatch) {
+        into_tool.fill(batch, &c.x[first], &c.y[first], &c.z[first],
+                       int(std::min<size_t>(kBatch, c.count - first)));
+        tool.distances(batch, distance);
+        least = kernels().leastScaled(distance, &lowest_[first], &inverse_rate_[first], batch.count, least);
+    }
+    return std::max(0.0, double(least));
 }
 
 double GradientContact::advance(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
                                 double allowed_depth) noexcept {
-    const double speed = step.head<3>().norm(), turn = step.tail<3>().norm();
-    forEachDistance(tool, X_VT, [&](size_t i, double distance, double) {
-        lowest_[i] = std::min(distance, 0.0) - allowed_depth;
-    });
-    // Each point's gap closes by at most `rate` per share of the step.
-    const auto shareLeft = [&](double t) {
-        double least = 1;
-        const Pose X_VT_now = X_VT.incremented(t * step.head<3>(), t * step.tail<3>());
-        forEachDistance(tool, X_VT_now, [&](size_t i, double distance, double r) {
-            const double rate = speed + turn * (r + speed);
-            if (rate > 0) least = std::min(least, std::max(0.0, distance - lowest_[i]) / rate);
-        });
-        return least;
-    };
+    startSweep(tool, X_VT, step, allowed_depth);
     double t = 0;
-    for (int n = 0; n < kMostAdvances; ++n) {
-        const double share = shareLeft(t);
-        t = std::min(1.0, t + share);
-        if (t == 1 || share < kSmallestAdvance) break;
+    for (int n = 0; n < kMostAdvances && t < 1; ++n) {
+        const double share = sweptShare(tool, X_VT.incremented(t * step.head<3>(), t * step.tail<3>()));
+        t += share;
+        if (share < kSmallestAdvance) break;
     }
-    return t;
+    return std::min(t, 1.0);
 }
 
 }  // namespace bonemill

@@ -30,12 +30,11 @@ void GradientContact::guardFarSide(const VoxelVolume& volume, const ToolField& t
     const double guard = isInside(volume, X_VT.position) ? 1 : smoothstep((deepest_ - from) / (full - from));
     if (guard == 0) return;
     const Pose X_TV = X_VT.inverse();
-    for (size_t i = 0; i < count_; ++i) {
-        Candidate& c = candidates_[i];
-        const Vector3d n(double(c.nx), double(c.ny), double(c.nz));
+    for (size_t i = 0; i < candidates_.count; ++i) {
+        const Vector3d n = candidates_.normal(i).cast<double>();
         if (n.isZero(0)) continue;
-        const Vector3d g = X_VT.rotation * tool.sample(X_TV * positionOf(c)).gradient;
-        c.weight *= float(1 - guard * (1 - smoothstep(-n.dot(g) / kGuardWidth)));
+        const Vector3d g = X_VT.rotation * tool.sample(X_TV * positionOf(i)).gradient;
+        candidates_.weight[i] *= float(1 - guard * (1 - smoothstep(-n.dot(g) / kGuardWidth)));
     }
 }
 
@@ -43,16 +42,16 @@ void GradientContact::capStiffness(const ToolField& tool, const Pose& X_VT) noex
     if (touching_stiffness_ <= config_.stiffness_cap) return;
     const Pose X_TV = X_VT.inverse();
     Matrix3d stiffness = Matrix3d::Zero();  // T axes
-    for (size_t i = 0; i < count_; ++i) {
-        const ToolSample sample = tool.sample(X_TV * positionOf(candidates_[i]));
-        const double weight = shareInContact(sample.distance) * double(candidates_[i].weight);
+    for (size_t i = 0; i < candidates_.count; ++i) {
+        const ToolSample sample = tool.sample(X_TV * positionOf(i));
+        const double weight = shareInContact(sample.distance) * double(candidates_.weight[i]);
         if (weight > 0) stiffness += weight * sample.gradient * sample.gradient.transpose();
     }
-    for (size_t i = 0; i < count_; ++i) {
-        const Vector3d g = tool.sample(X_TV * positionOf(candidates_[i])).gradient;
+    for (size_t i = 0; i < candidates_.count; ++i) {
+        const Vector3d g = tool.sample(X_TV * positionOf(i)).gradient;
         const double in_direction = g.dot(stiffness * g);
         if (in_direction > config_.stiffness_cap)
-            candidates_[i].weight *= float(config_.stiffness_cap / in_direction);
+            candidates_.weight[i] *= float(config_.stiffness_cap / in_direction);
     }
 }
 

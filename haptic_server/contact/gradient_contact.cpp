@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "haptic_server/contact/into_tool.h"
+#include "haptic_server/contact/patch_reach.h"
 #include "haptic_server/contact/tool_box.h"
 
 namespace bonemill {
@@ -13,86 +14,47 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// Of the points in contact of one batch, by component: sums over them are then vector instructions.
-struct ContactBatch {
-    static constexpr int kCapacity = PointBatch<double>::kCapacity;
-    alignas(64) double J[6][kCapacity];  // of the depth by the tool's pose, negative: g, r x g
-    alignas(64) double pull[kCapacity];  // weight times capped depth
-    alignas(64) double k[kCapacity];     // stiffness in J's direction
-    int count = 0;
-};
-
-double dot(const double* a, const double* b, int count) noexcept {
-    using Values = Eigen::Map<const Eigen::ArrayXd, Eigen::Aligned64>;
-    return (Values(a, count) * Values(b, count)).sum();
+ContactFrame contactFrame(const Pose& X_VT, const Vector3d& origin, double depth_cap) noexcept {
+    ContactFrame frame;
+    const Matrix3d R_VT = X_VT.rotation.toRotationMatrix();
+    for (int i = 0; i < 9; ++i) frame.R_VT[i] = R_VT(i / 3, i % 3);
+    for (int axis = 0; axis < 3; ++axis) frame.p_OT[axis] = X_VT.position[axis] - origin[axis];
+    frame.depth_cap = depth_cap;
+    return frame;
 }
 
-// Sums over the points in contact; the matrix's upper triangle only.
-struct Sums {
-    double energy = 0;
-    double force[3] = {}, torque[3] = {};
-    double stiffness[21] = {};  // rows of the upper triangle
-    uint32_t contacts = 0;
-    double max_depth = 0;
-    ContactBatch batch;
-
-    // r: from the tool point, V; g: V.
-    void add(double weight, double depth, double depth_cap, const Vector3d& r, const Vector3d& g) noexcept {
-        max_depth = std::max(max_depth, depth);
-        const double capped = std::min(depth, depth_cap);
-        energy += weight * capped * (depth - capped / 2);
-        const int i = batch.count++;
-        for (int axis = 0; axis < 3; ++axis) batch.J[axis][i] = g[axis];
-        batch.J[3][i] = r.y() * g.z() - r.z() * g.y();
-        batch.J[4][i] = r.z() * g.x() - r.x() * g.z();
-        batch.J[5][i] = r.x() * g.y() - r.y() * g.x();
-        batch.pull[i] = weight * capped;
-        // Beyond the cap the secant keeps the matrix's direction.
-        batch.k[i] = depth > depth_cap ? batch.pull[i] / depth : weight;
-    }
-
-    // After at most a batch of points.
-    void finishBatch() noexcept {
-        const int n = batch.count;
-        for (int axis = 0; axis < 3; ++axis) {
-            force[axis] -= dot(batch.pull, batch.J[axis], n);
-            torque[axis] -= dot(batch.pull, batch.J[3 + axis], n);
-        }
-        alignas(64) double kJ[ContactBatch::kCapacity];
-        double* sum = stiffness;
-        for (int row = 0; row < 6; ++row) {
-            for (int i = 0; i < n; ++i) kJ[i] = batch.k[i] * batch.J[row][i];
-            for (int column = row; column < 6; ++column) *sum++ += dot(kJ, batch.J[column], n);
-        }
-        contacts += uint32_t(n);
-        batch.count = 0;
-    }
-
-    GradientContactResult result() const noexcept {
-        GradientContactResult result;
-        result.term.energy = energy;
-        result.term.wrench = {Vector3d(force), Vector3d(torque)};
-        const double* sum = stiffness;
-        for (int row = 0; row < 6; ++row)
-            for (int column = row; column < 6; ++column)
-                result.term.stiffness(row, column) = result.term.stiffness(column, row) = *sum++;
-        result.contacts = contacts;
-        result.max_depth = max_depth;
-        return result;
-    }
-};
+GradientContactResult resultOf(const ContactSums& sums, uint32_t contacts) noexcept {
+    GradientContactResult result;
+    result.term.energy = sums.energy;
+    result.term.wrench = {Vector3d(sums.force), Vector3d(sums.torque)};
+    const double* sum = sums.stiffness;
+    for (int row = 0; row < 6; ++row)
+        for (int column = row; column < 6; ++column)
+            result.term.stiffness(row, column) = result.term.stiffness(column, row) = *sum++;
+    result.contacts = contacts;
+    result.max_depth = sums.max_depth;
+    return result;
+}
 
 }  // namespace
 
 GradientContact::GradientContact(const GradientContactConfig& config, size_t most_candidates)
-    : config_(config), candidates_(most_candidates), lowest_(most_candidates) {}
+    : config_(config),
+      candidates_(most_candidates),
+      own_x_(most_candidates + kCellLanes),
+      own_y_(most_candidates + kCellLanes),
+      own_z_(most_candidates + kCellLanes),
+      reach_squared_(most_candidates + kCellLanes),
+      split_(most_candidates),
+      lowest_(most_candidates),
+      inverse_rate_(most_candidates) {}
 
 bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
                              double margin) noexcept {
     margin_ = margin;
     origin_ = X_VT.position;
     const bool has_room = collect(bone, tool, X_VT);
-    refine(bone, tool, X_VT);
+    refine(bone);
     guardFarSide(bone.volume, tool, X_VT);
     capStiffness(tool, X_VT);
     return has_room;
@@ -102,7 +64,7 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     const Vector3d& spacing = bone.volume.spacing();
     const double ratio = spacing.maxCoeff() / spacing.minCoeff();
     reach_per_area_ = bone.patch_points > 1 ? float((ratio + 1 / ratio) / 4) : 0;
-    count_ = 0;
+    candidates_.count = 0;
     touching_stiffness_ = 0;
     deepest_ = 0;
     bool has_room = true;
@@ -129,77 +91,120 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     return has_room;
 }
 
-// Points of the blocks that the tool may touch after a motion of at most the margin.
+// Points of the blocks that the tool may touch after a motion of at most the margin, or near it with their
+// patches.
 bool GradientContact::collectFrom(const BlockBatch& blocks, const ToolField& tool,
                                   const Pose& X_VT) noexcept {
     const IntoTool<float> into_tool(X_VT, Vector3d::Zero());
     PointBatch<float> batch;
-    alignas(64) float to_block[PointBatch<float>::kCapacity], distance[PointBatch<float>::kCapacity];
-    into_tool.fill(batch, blocks.count, [&](int n) {
-        const float* center = blocks.block[n]->center;
-        return Coordinates{center[0], center[1], center[2]};
-    });
+    alignas(64) float to_block[PointBatch<float>::kCapacity];
+    alignas(64) float center[3][BlockBatch::kCapacity];
+    for (int n = 0; n < blocks.count; ++n)
+        for (int axis = 0; axis < 3; ++axis) center[axis][n] = blocks.block[n]->center[axis];
+    into_tool.fill(batch, center[0], center[1], center[2], blocks.count);
     tool.distances(batch, to_block);
+    const PatchReach reach{X_VT, tool, reach_per_area_};
     // Of the centre's distance and the points'.
     const float margin = float(margin_), error = float(2 * tool.distanceError());
+    const float refine_within = refineWithin();
+    SampleBatch<float> at;
+    alignas(64) float nearest[PointBatch<float>::kCapacity];
     bool has_room = true;
     for (int n = 0; n < blocks.count; ++n) {
         const ShellBlock& block = *blocks.block[n];
         // A patch around a point reaches this much nearer to the tool.
         const float largest_patch = std::sqrt(reach_per_area_ * block.largest_area);
         if (to_block[n] > block.radius + margin + largest_patch + error) continue;
-        into_tool.fill(batch, blocks.points[n], [&](int i) {
-            return Coordinates{block.x[i], block.y[i], block.z[i]};
-        });
-        tool.distances(batch, distance);
-        for (int i = 0; i < batch.count; ++i) {
-            if (!(distance[i] < margin + largest_patch)) continue;
-            const float patch = std::sqrt(reach_per_area_ * block.area[i]);
-            if (distance[i] < margin + patch) has_room &= addCandidate(block, i, blocks.leaf[n], distance[i]);
-        }
+        into_tool.fill(batch, block.x, block.y, block.z, blocks.points[n]);
+        tool.sample(batch, at);
+        reach.nearestPlaces(block, batch.count, at, nearest);
+        for (int i = 0; i < batch.count; ++i)
+            if (at.distance[i] < margin || nearest[i] < refine_within)
+                has_room &= addCandidate(block, i, blocks.leaf[n], at.distance[i], nearest[i]);
     }
     return has_room;
 }
 
-bool GradientContact::addCandidate(const ShellBlock& block, int i, LeafId leaf, float distance) noexcept {
-    if (count_ == candidates_.size()) return false;
+bool GradientContact::addCandidate(const ShellBlock& block, int i, LeafId leaf, float distance,
+                                   float nearest) noexcept {
+    if (candidates_.isFull()) return false;
     const float weight = float(config_.stiffness_per_area) * block.area[i];
     const Vector3f p = (Vector3d(block.x[i], block.y[i], block.z[i]) - origin_).cast<float>();
-    candidates_[count_++] = {
-        p.x(),       p.y(),  p.z(),         block.nx[i], block.ny[i],
-        block.nz[i], weight, block.area[i], distance,    uint64_t(leaf) << 32 | block.key[i]};
+    candidates_.add(block, i, leaf, p, weight, nearest);
     deepest_ = std::max(deepest_, -double(distance));
     touching_stiffness_ += shareInContact(double(distance)) * double(weight);
     return true;
 }
 
+namespace {
+
+// Of the candidates few touch: those are collected first, then summed.
+template <class Scalar>
+class TouchingPoints {
+  public:
+    TouchingPoints(const Candidates& candidates, const ToolField& tool, const Pose& X_VT,
+                   const Vector3d& origin) noexcept
+        : c_(candidates),
+          tool_(tool),
+          into_tool_(X_VT, origin),
+          frame_(contactFrame(X_VT, origin, GradientContact::kDepthCap * tool.thinnestRadius())) {}
+
+    void find(size_t first, int count) noexcept {
+        into_tool_.fill(batch_, &c_.x[first], &c_.y[first], &c_.z[first], count);
+        tool_.distances(batch_, distance_);
+        for (int i = 0; i < count; ++i) {
+            touching_[touching_count_] = uint32_t(first) + uint32_t(i);
+            touching_count_ += distance_[i] < 0;
+        }
+        if (touching_count_ >= kBatch) sum(kBatch);
+    }
+    GradientContactResult result() noexcept {
+        sum(touching_count_);
+        return resultOf(sums_, contacts_);
+    }
+
+  private:
+    static constexpr int kBatch = PointBatch<Scalar>::kCapacity;
+    static_assert(kBatch == kContactBatch);
+
+    // The first `count` of the points found.
+    void sum(int count) noexcept {
+        for (int i = 0; i < count; ++i) {
+            const size_t n = touching_[i];
+            x_[i] = c_.x[n], y_[i] = c_.y[n], z_[i] = c_.z[n], weight_[i] = c_.weight[n];
+        }
+        into_tool_.fill(batch_, x_, y_, z_, count);
+        tool_.sample(batch_, at_);
+        kernels().points<Scalar>().addContacts(frame_, x_, y_, z_, weight_, at_.distance, at_.gx, at_.gy,
+                                               at_.gz, count, sums_);
+        contacts_ += uint32_t(count);
+        std::copy(touching_ + count, touching_ + touching_count_, touching_);
+        touching_count_ -= count;
+    }
+
+    const Candidates& c_;
+    const ToolField& tool_;
+    IntoTool<Scalar> into_tool_;
+    ContactFrame frame_;
+    PointBatch<Scalar> batch_;
+    SampleBatch<Scalar> at_;
+    alignas(64) Scalar distance_[kBatch];
+    alignas(64) float x_[kBatch], y_[kBatch], z_[kBatch], weight_[kBatch];
+    uint32_t touching_[2 * kBatch];
+    int touching_count_ = 0;
+    ContactSums sums_;
+    uint32_t contacts_ = 0;
+};
+
+}  // namespace
+
 template <class Scalar>
 GradientContactResult GradientContact::evaluate(const ToolField& tool, const Pose& X_VT) const noexcept {
-    constexpr int kBatch = PointBatch<Scalar>::kCapacity;
-    const IntoTool<Scalar> into_tool(X_VT, origin_);
-    const Vector3d p_OT = X_VT.position - origin_;
-    const Matrix3d R_VT = X_VT.rotation.toRotationMatrix();
-    const double depth_cap = kDepthCap * tool.thinnestRadius();
-    PointBatch<Scalar> batch;
-    SampleBatch<Scalar> at;
-    Sums sums;
-    for (size_t first = 0; first < count_; first += kBatch) {
-        const int count = int(std::min<size_t>(kBatch, count_ - first));
-        const Candidate* points = candidates_.data() + first;
-        into_tool.fill(batch, count, [&](int i) {
-            return Coordinates{points[i].x, points[i].y, points[i].z};
-        });
-        tool.sample(batch, at);
-        for (int i = 0; i < count; ++i) {
-            if (!(at.distance[i] < 0)) continue;
-            const Candidate& c = points[i];
-            const Vector3d r = Vector3d(double(c.x), double(c.y), double(c.z)) - p_OT;
-            sums.add(double(c.weight), -double(at.distance[i]), depth_cap, r,
-                     R_VT * Vector3d(double(at.gx[i]), double(at.gy[i]), double(at.gz[i])));
-        }
-        sums.finishBatch();
-    }
-    return sums.result();
+    constexpr size_t kBatch = PointBatch<Scalar>::kCapacity;
+    TouchingPoints<Scalar> touching(candidates_, tool, X_VT, origin_);
+    for (size_t first = 0; first < candidates_.count; first += kBatch)
+        touching.find(first, int(std::min(kBatch, candidates_.count - first)));
+    return touching.result();
 }
 
 template GradientContactResult GradientContact::evaluate<float>(const ToolField&, const Pose&) const noexcept;

@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "haptic_server/contact/candidates.h"
 #include "haptic_server/contact/patch_memory.h"
 #include "haptic_server/contact/point_shell.h"
 #include "haptic_server/coupling/energy_coupling.h"
@@ -84,25 +85,17 @@ class GradientContact {
     double advance(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
                    double allowed_depth) noexcept;
 
-    size_t candidateCount() const noexcept { return count_; }
+    size_t candidateCount() const noexcept { return candidates_.count; }
     double margin() const noexcept { return margin_; }
 
   private:
-    struct Candidate {
-        float x, y, z;     // V axes, from origin_: small numbers keep their digits
-        float nx, ny, nz;  // V, unit or zero
-        float weight;      // κ a λ, of one place
-        float area;        // m², of the whole patch
-        float nearest;     // m: no place of the patch was nearer to the tool at the gathering
-        uint64_t patch;    // leaf and key in the shell
-    };
     // A contact counts for the stiffness cap in proportion to its depth, so that a new one comes in smoothly.
     static constexpr double kFullShareDepth = 20e-6;  // m
     static double shareInContact(double distance) noexcept {
         return std::clamp(-distance / kFullShareDepth, 0.0, 1.0);
     }
-    Eigen::Vector3d positionOf(const Candidate& c) const noexcept {  // V
-        return origin_ + Eigen::Vector3d(double(c.x), double(c.y), double(c.z));
+    Eigen::Vector3d positionOf(size_t candidate) const noexcept {  // V
+        return origin_ + candidates_.position(candidate).cast<double>();
     }
     // Blocks of points whose spheres are tested together.
     struct BlockBatch {
@@ -119,22 +112,31 @@ class GradientContact {
     };
     bool collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
     bool collectFrom(const BlockBatch& blocks, const ToolField& tool, const Pose& X_VT) noexcept;
-    bool addCandidate(const ShellBlock& block, int i, LeafId leaf, float distance) noexcept;
-    void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
-    bool isNear(const Candidate& c) const noexcept;
-    void findNearestPlaces(const ToolField& tool, const Pose& X_VT) noexcept;
+    bool addCandidate(const ShellBlock& block, int i, LeafId leaf, float distance, float nearest) noexcept;
+    float refineWithin() const noexcept { return float(std::min(margin_, kRefineWithin)); }
+    void refine(const ShellView& bone) noexcept;
+    bool isNear(size_t candidate) const noexcept { return candidates_.nearest[candidate] < refineWithin(); }
     int placesOfNewPatches(const ShellView& bone, size_t coarse) noexcept;
-    void splitPatch(const VoxelVolume& volume, size_t index, int q) noexcept;
-    template <class Visit>
-    void forEachDistance(const ToolField& tool, const Pose& X_VT, Visit&& visit) const noexcept;
+    void splitPatch(const Eigen::Vector3f& spacing, size_t index, int q) noexcept;
+    void movePlacesOntoSurface(const VoxelVolume& volume, size_t coarse) noexcept;
+    void fillHoles() noexcept;
+    void startSweep(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
+                    double allowed_depth) noexcept;
+    double sweptShare(const ToolField& tool, const Pose& X_VT) const noexcept;
     void guardFarSide(const VoxelVolume& volume, const ToolField& tool, const Pose& X_VT) noexcept;
     void capStiffness(const ToolField& tool, const Pose& X_VT) noexcept;
 
     GradientContactConfig config_;
-    std::vector<Candidate> candidates_;
-    std::vector<double> lowest_;  // m, scratch of advance(): how near each candidate may come
+    Candidates candidates_;
+    // Of the refined places, from the first one on: the patch's own point (V, from origin_), how far a place
+    // may be from its start, m², and the patches that they stand for.
+    std::vector<float> own_x_, own_y_, own_z_, reach_squared_;
+    std::vector<uint32_t> split_;
+    size_t split_count_ = 0;
+    // Of a sweep: how near each candidate may come, m, and 1/(the most that the whole step can bring it
+    // nearer).
+    std::vector<float> lowest_, inverse_rate_;
     PatchMemory patch_memory_{4096};
-    size_t count_ = 0;
     double touching_stiffness_ = 0;  // N/m: of the candidates in contact, all directions together
     double deepest_ = 0;             // m
     double margin_ = 0;

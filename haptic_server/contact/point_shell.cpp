@@ -45,10 +45,6 @@ IndexBox shifted(const IndexBox& box, const Eigen::Vector3i& by) noexcept {
     return {box.min + by, box.max + by};
 }
 
-Eigen::Vector3i cellOf(const SurfacePatch& patch) noexcept {
-    return {patch.cell[0], patch.cell[1], patch.cell[2]};
-}
-
 }  // namespace
 
 PointShell::PointShell(const VoxelVolume& volume, const LeafLattice& lattice, const ShellConfig& config)
@@ -145,7 +141,7 @@ bool PointShell::rebuild(const VoxelVolume& volume, const LeafLattice& lattice, 
         cells_.collect(volume, leaf_cells.min, shifted(cells, leaf_cells.min));
         if (factor == 1)
             pointsOfCells(volume, leaf_cells, level.config.normals);
-        else if (!cells_.patches().empty())
+        else if (cells_.count() > 0)
             pointsOfBlocks(volume, leaf_cells, blocks, level.config);
     }
     ShellPool::List& list = level.leaves[leaf];
@@ -157,13 +153,17 @@ bool PointShell::rebuild(const VoxelVolume& volume, const LeafLattice& lattice, 
 
 void PointShell::pointsOfCells(const VoxelVolume& volume, const IndexBox& leaf_cells,
                                ShellNormals normals) noexcept {
-    for (const SurfacePatch& patch : cells_.patches()) {
-        const Eigen::Vector3i local = cellOf(patch);
-        const Eigen::Vector3i cell = leaf_cells.min + local;
-        SurfacePlace place;
-        if (!projection_.walk(volume, {cell, cell}, patch.centroid, place))
-            place = projection_.bracket(volume, {cell, patch.centroid});
-        addPoint(volume, place, normals, patch.area, local);
+    cells_.project(projection_.steepness());
+    for (size_t n = 0; n < cells_.count(); ++n) {
+        if (!(cells_.area(n) > 0)) continue;
+        const Eigen::Vector3i local = cells_.cell(n);
+        const SurfaceCells::Projected onto = cells_.projected(n);
+        SurfacePlace place{leaf_cells.min + local, onto.at};
+        if (!onto.is_found) place = projection_.bracket(volume, {place.cell, cells_.centroid(n)});
+        const bool is_known = onto.is_found && normals == ShellNormals::kTrilinear;
+        addPoint(place,
+                 is_known ? projection_.normalOf(onto.slope) : projection_.normal(volume, place, normals),
+                 cells_.area(n), local);
     }
 }
 
@@ -183,7 +183,7 @@ void PointShell::pointsOfBlocks(const VoxelVolume& volume, const IndexBox& leaf_
                 SurfacePlace place;
                 if (!projection_.walk(volume, shifted(cells, leaf_cells.min), center, place))
                     place = nearestPatchPlace(volume, leaf_cells, cells.min, *sum, center);
-                addPoint(volume, place, level.normals, sum->area, block);
+                addPoint(place, projection_.normal(volume, place, level.normals), sum->area, block);
             }
 }
 
@@ -192,16 +192,16 @@ void PointShell::pointsOfBlocks(const VoxelVolume& volume, const IndexBox& leaf_
 void PointShell::sumBlocks(const IndexBox& blocks, int factor) noexcept {
     const Eigen::Vector3i size = blocks.max - blocks.min + Eigen::Vector3i::Ones();
     std::fill_n(sums_.begin(), size.prod(), BlockSum{.last_patch = kNoPatch});
-    const std::span<const SurfacePatch> patches = cells_.patches();
-    for (size_t n = 0; n < patches.size(); ++n) {
-        const Eigen::Vector3i cell = cellOf(patches[n]);
+    for (size_t n = 0; n < cells_.count(); ++n) {
+        if (!(cells_.area(n) > 0)) continue;
+        const Eigen::Vector3i cell = cells_.cell(n);
         const Eigen::Vector3i block = cell / factor;
         const Eigen::Vector3i at = block - blocks.min;
         BlockSum& sum =
             sums_[size_t(at.x()) + size_t(size.x()) * (size_t(at.y()) + size_t(size.y()) * size_t(at.z()))];
-        const Eigen::Vector3f from_first = (cell - block * factor).cast<float>() + patches[n].centroid;
-        sum.area += patches[n].area;
-        sum.moment += patches[n].area * from_first;
+        const Eigen::Vector3f from_first = (cell - block * factor).cast<float>() + cells_.centroid(n);
+        sum.area += cells_.area(n);
+        sum.moment += cells_.area(n) * from_first;
         previous_patch_[n] = sum.last_patch;
         sum.last_patch = uint32_t(n);
     }
@@ -211,23 +211,21 @@ void PointShell::sumBlocks(const IndexBox& blocks, int factor) noexcept {
 SurfacePlace PointShell::nearestPatchPlace(const VoxelVolume& volume, const IndexBox& leaf_cells,
                                            const Eigen::Vector3i& block_first, const BlockSum& sum,
                                            const Eigen::Vector3f& center) const noexcept {
-    const SurfacePatch* nearest = nullptr;
+    uint32_t nearest = sum.last_patch;
     float least = INFINITY;
     for (uint32_t n = sum.last_patch; n != kNoPatch; n = previous_patch_[n]) {
-        const SurfacePatch& patch = cells_.patches()[n];
-        const Eigen::Vector3f from_first = (cellOf(patch) - block_first).cast<float>() + patch.centroid;
+        const Eigen::Vector3f from_first = (cells_.cell(n) - block_first).cast<float>() + cells_.centroid(n);
         const float squared = (from_first - center).cwiseProduct(projection_.spacing()).squaredNorm();
-        if (nearest && squared >= least) continue;
-        nearest = &patch;
+        if (squared >= least) continue;
+        nearest = n;
         least = squared;
     }
-    return projection_.bracket(volume, {leaf_cells.min + cellOf(*nearest), nearest->centroid});
+    return projection_.bracket(volume, {leaf_cells.min + cells_.cell(nearest), cells_.centroid(nearest)});
 }
 
-void PointShell::addPoint(const VoxelVolume& volume, const SurfacePlace& place, ShellNormals normals,
-                          float area, const Eigen::Vector3i& block) noexcept {
-    fresh_[fresh_size_++] = {projection_.position(place), projection_.normal(volume, place, normals), area,
-                             packShellKey(block)};
+void PointShell::addPoint(const SurfacePlace& place, const Eigen::Vector3f& normal, float area,
+                          const Eigen::Vector3i& block) noexcept {
+    fresh_[fresh_size_++] = {projection_.position(place), normal, area, packShellKey(block)};
 }
 
 }  // namespace bonemill

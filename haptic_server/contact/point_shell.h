@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "haptic_server/contact/shell_pool.h"
+#include "haptic_server/contact/surface_cells.h"
 #include "haptic_server/volume/leaf_lattice.h"
 
 namespace bonemill {
@@ -123,7 +124,7 @@ class PointShell {
     SurfacePlace nearestPatchPlace(const VoxelVolume& volume, const IndexBox& leaf_cells,
                                    const Eigen::Vector3i& block_first, const BlockSum& sum,
                                    const Eigen::Vector3f& center) const noexcept;
-    void addPoint(const VoxelVolume& volume, const SurfacePlace& place, ShellNormals normals, float area,
+    void addPoint(const SurfacePlace& place, const Eigen::Vector3f& normal, float area,
                   const Eigen::Vector3i& block) noexcept;
     void reservePool(const LeafLattice& lattice, size_t spare_points);
 

@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-#include "haptic_server/contact/surface_cells.h"
+#include "haptic_server/contact/cell_corners.h"
 
 namespace bonemill {
 
@@ -27,6 +27,7 @@ struct ShellPoint {
 
 // Accuracy of the projection: density within this part of the largest |density - iso| at the cell's corners.
 inline constexpr float kProjectionTolerance = 1.0f / 4096;
+inline constexpr int kNewtonSteps = 6;  // smooth bone needs one to three
 
 struct SurfacePlace {
     Eigen::Vector3i cell;
@@ -50,12 +51,16 @@ class ShellProjection {
     }
     Eigen::Vector3f normal(const VoxelVolume& volume, const SurfacePlace& place,
                            ShellNormals kind) const noexcept;
+    // Of a slope of the trilinear density, counts per cell step.
+    Eigen::Vector3f normalOf(const Eigen::Vector3f& slope) const noexcept;
     const Eigen::Vector3f& spacing() const noexcept { return spacing_; }
+    // Per axis, (unit / spacing)², unit = the largest spacing: makes a slope a way in equal units.
+    const Eigen::Vector3f& steepness() const noexcept { return steepness_; }
 
   private:
     Eigen::Vector3f spacing_;          // m
     Eigen::Vector3f inverse_spacing_;  // 1/m
-    Eigen::Vector3f steepness_;        // (unit / spacing)², unit = the largest spacing
+    Eigen::Vector3f steepness_;
 };
 
 }  // namespace bonemill

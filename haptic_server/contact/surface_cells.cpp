@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cstring>
 
+#include "haptic_server/contact/cell_corners.h"
+#include "haptic_server/contact/shell_point.h"
+#include "haptic_server/volume/marching_cubes_table.h"
+
 namespace bonemill {
 namespace {
 
@@ -15,21 +19,63 @@ uint64_t wordAt(const uint8_t* bytes) noexcept {
     return word;
 }
 
+std::vector<int> triangleEdges() {
+    std::vector<int> edges(256 * kTriangleStride, 0);
+    for (size_t inside = 0; inside < 256; ++inside) {
+        const CubeTriangles& triangles = cubeTriangles()[inside];
+        for (size_t n = 0; n < triangles.count; ++n)
+            for (size_t v = 0; v < 3; ++v)
+                edges[inside * kTriangleStride + 3 * n + v] = triangles.edges[n][v];
+    }
+    return edges;
+}
+
 }  // namespace
 
 SurfaceCells::SurfaceCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_cells)
-    : triangles_(cubeTriangles()) {
+    : triangle_edges_(triangleEdges()) {
     const double unit = volume.spacing().maxCoeff();
     steps_ = (volume.spacing() / unit).cast<float>();
     unit_area_ = float(unit * unit);
     row_size_ = size_t(leaf_cells.x()) + 1;
     for (auto& plane : planes_) plane.resize(row_size_ * (size_t(leaf_cells.y()) + 1));
     sides_.resize(row_size_ + kWord);
-    patches_.resize(size_t(leaf_cells.x()) * size_t(leaf_cells.y()) * size_t(leaf_cells.z()));
+    const size_t most = size_t(leaf_cells.prod()) + kCellLanes;
+    cell_.resize(most);
+    inside_.resize(most);
+    is_found_.resize(most);
+    for (auto& values : excess_) values.resize(most);
+    for (auto* values : {&area_, &x_, &y_, &z_, &to_x_, &to_y_, &to_z_, &slope_x_, &slope_y_, &slope_z_})
+        values->resize(most);
+}
+
+CellArrays SurfaceCells::arrays() const noexcept {
+    CellArrays arrays;
+    for (int corner = 0; corner < 8; ++corner) arrays.excess[corner] = excess_[corner].data();
+    arrays.inside = inside_.data();
+    arrays.count = int(count_);
+    return arrays;
 }
 
 void SurfaceCells::collect(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
                            const IndexBox& cells) noexcept {
+    findCells(volume, leaf_first, cells);
+    kernels().cellPatches(arrays(), triangle_edges_.data(), steps_.data(),
+                          {area_.data(), x_.data(), y_.data(), z_.data()});
+}
+
+void SurfaceCells::project(const Eigen::Vector3f& steepness) noexcept {
+    const size_t padded = (count_ + kCellLanes - 1) / kCellLanes * kCellLanes;
+    std::copy_n(x_.begin(), padded, to_x_.begin());
+    std::copy_n(y_.begin(), padded, to_y_.begin());
+    std::copy_n(z_.begin(), padded, to_z_.begin());
+    kernels().projectIntoCells(arrays(), steepness.data(), kProjectionTolerance, kNewtonSteps,
+                               {to_x_.data(), to_y_.data(), to_z_.data(), slope_x_.data(), slope_y_.data(),
+                                slope_z_.data(), is_found_.data()});
+}
+
+void SurfaceCells::findCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
+                             const IndexBox& cells) noexcept {
     count_ = 0;
     const int columns = cells.max.x() - cells.min.x() + 2;
     classifyPlane(volume, cells, cells.min.z());
@@ -49,7 +95,7 @@ void SurfaceCells::collect(const VoxelVolume& volume, const Eigen::Vector3i& lea
                 for (; i < end; ++i) {
                     const int inside = sides_[size_t(i)] | sides_[size_t(i) + 1] << 1;
                     if (inside != 0 && inside != 255)
-                        addPatch(volume, leaf_first, {cells.min.x() + i, j, k}, inside);
+                        addCell(volume, leaf_first, {cells.min.x() + i, j, k}, inside);
                 }
             }
         }
@@ -77,14 +123,13 @@ void SurfaceCells::joinRows(int row, int columns, int k) noexcept {
     std::memset(sides + columns, sides[columns - 1], kWord);
 }
 
-void SurfaceCells::addPatch(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
-                            const Eigen::Vector3i& cell, int corners_inside) noexcept {
-    const CellPatch patch = makePatch(readCorners(volume, cell), triangles_[size_t(corners_inside)], steps_);
-    const float area = patch.area * unit_area_;
-    if (!(area > 0)) return;
+void SurfaceCells::addCell(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
+                           const Eigen::Vector3i& cell, int corners_inside) noexcept {
+    const CellCorners corners = readCorners(volume, cell);
+    for (size_t c = 0; c < 8; ++c) excess_[c][count_] = corners.excess[c];
     const Eigen::Vector3i local = cell - leaf_first;
-    patches_[count_++] = {
-        {uint16_t(local.x()), uint16_t(local.y()), uint16_t(local.z())}, area, patch.centroid};
+    cell_[count_] = {uint16_t(local.x()), uint16_t(local.y()), uint16_t(local.z())};
+    inside_[count_++] = corners_inside;
 }
 
 }  // namespace bonemill

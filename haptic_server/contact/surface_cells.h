@@ -2,50 +2,69 @@
 // construction; tick thread only.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "haptic_server/contact/cell_patch.h"
+#include "haptic_server/kernels/kernels.h"
+#include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill {
-
-struct SurfacePatch {
-    std::array<uint16_t, 3> cell;  // from the leaf's first cell
-    float area;                    // m², > 0
-    Eigen::Vector3f centroid;      // cell steps from the cell's first corner
-};
 
 class SurfaceCells {
   public:
     // Memory for leaves of up to `leaf_cells` per axis.
     SurfaceCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_cells);
 
-    // Patches of the cells in `cells`, in ascending order of cells (x fastest). `leaf_first` is the first
-    // cell of the leaf that holds them all.
+    // The cells of `cells` that the surface crosses, in ascending order (x fastest), with their patches.
+    // `leaf_first` is the first cell of the leaf that holds them all.
     void collect(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
                  const IndexBox& cells) noexcept;
+    size_t count() const noexcept { return count_; }
 
-    void clear() noexcept { count_ = 0; }
+    // Counted from the leaf's first cell.
+    Eigen::Vector3i cell(size_t n) const noexcept { return {cell_[n][0], cell_[n][1], cell_[n][2]}; }
+    // m²; zero where the surface only touches a voxel.
+    float area(size_t n) const noexcept { return area_[n] * unit_area_; }
+    // Cell steps from the cell's first corner; of patches with an area.
+    Eigen::Vector3f centroid(size_t n) const noexcept { return {x_[n], y_[n], z_[n]}; }
 
-    std::span<const SurfacePatch> patches() const noexcept { return {patches_.data(), count_}; }
+    // A place of each cell's trilinear iso-surface, from the patch's centroid; see ShellProjection::walk().
+    struct Projected {
+        Eigen::Vector3f at;     // cell steps
+        Eigen::Vector3f slope;  // of the density, counts per cell step
+        bool is_found;
+    };
+    void project(const Eigen::Vector3f& steepness) noexcept;
+    Projected projected(size_t n) const noexcept {
+        return {{to_x_[n], to_y_[n], to_z_[n]}, {slope_x_[n], slope_y_[n], slope_z_[n]}, is_found_[n] != 0};
+    }
 
   private:
     void classifyPlane(const VoxelVolume& volume, const IndexBox& cells, int k) noexcept;
     void joinRows(int row, int columns, int k) noexcept;
-    void addPatch(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first, const Eigen::Vector3i& cell,
-                  int corners_inside) noexcept;
+    void findCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
+                   const IndexBox& cells) noexcept;
+    void addCell(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first, const Eigen::Vector3i& cell,
+                 int corners_inside) noexcept;
+    CellArrays arrays() const noexcept;
     uint8_t* planeRow(int k, int row) noexcept { return planes_[k & 1].data() + size_t(row) * row_size_; }
 
-    const std::array<CubeTriangles, 256>& triangles_;
-    Eigen::Vector3f steps_;  // spacing in units of unit_
-    float unit_area_;        // m²
+    std::vector<int> triangle_edges_;  // as the kernel wants them
+    Eigen::Vector3f steps_;            // spacing in units of unit_
+    float unit_area_;                  // m²
     size_t row_size_;
     std::vector<uint8_t>
         planes_[2];               // is the voxel inside (0 or 1), for the two voxel planes of a cell layer
     std::vector<uint8_t> sides_;  // inside corners of the column's four voxels: bits 0, 2, 4, 6
-    std::vector<SurfacePatch> patches_;
+
     size_t count_ = 0;
+    std::vector<std::array<uint16_t, 3>> cell_;
+    std::vector<int> inside_;       // which corners are inside the bone
+    std::vector<float> excess_[8];  // density minus iso at the corners, counts
+    std::vector<float> area_, x_, y_, z_;
+    std::vector<float> to_x_, to_y_, to_z_, slope_x_, slope_y_, slope_z_;
+    std::vector<int> is_found_;
 };
 
 }  // namespace bonemill

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "haptic_server/kernels/kernels.h"
 #include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill {
@@ -34,7 +35,7 @@ class BurrLimit {
     static constexpr double kLargestReach = 3;
 
     BurrLimit(const VoxelVolume& volume, double burr_radius, MillingShape shape, int direction) noexcept
-        : radius_(burr_radius), iso_(volume.iso()), direction_(direction) {
+        : radius_(burr_radius), iso_(volume.iso()) {
         const bool is_ramp = shape == MillingShape::kSubVoxel;
         if (is_ramp) radius_ += ampleSag(volume, burr_radius);
         const double unit = volume.spacing().maxCoeff();
@@ -57,19 +58,22 @@ class BurrLimit {
     // Voxels at this distance from the burr's centre or farther have no limit; m.
     double reach() const noexcept { return reach_; }
 
-    // Most (removing) or least (adding) density of a voxel, by the square of its distance from the burr's
-    // centre (m²) below reach()².
-    int at(double distance_squared) const noexcept {
-        if (distance_squared < core_squared_) return direction_ < 0 ? 0 : kMaxDensity;
-        const double ramp = iso_ - direction_ * slope_ * (std::sqrt(distance_squared) - radius_);
-        const double half_up = std::clamp(ramp, 0.0, double(kMaxDensity)) + 0.5;
-        return int(half_up);  // rounds: never negative
+    // For the kernels: the limit across a row of voxels. From the burr's centre to the row's first voxel: m.
+    BurrRow row(const Eigen::Vector3d& to_first, double spacing_x, int amount) const noexcept {
+        return {.first_x = float(to_first.x()),
+                .step_x = float(spacing_x),
+                .off_row_squared = float(to_first.tail<2>().squaredNorm()),
+                .radius = float(radius_),
+                .slope = float(slope_),
+                .reach_squared = float(reach_ * reach_),
+                .core_squared = float(core_squared_),
+                .iso = int(iso_),
+                .amount = amount};
     }
 
   private:
     double radius_;  // m; of the sphere on which the ramp has the iso-value
     double iso_;
-    int direction_;
     double slope_;  // counts per m
     double reach_;
     double core_squared_;

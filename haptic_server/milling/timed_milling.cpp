@@ -15,10 +15,24 @@ IndexBox boxAround(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, doubl
     return {low.ceil().cast<int>().matrix(), high.floor().cast<int>().matrix()};
 }
 
-// By `amount` towards the limit if beyond it, never past it.
-Density moved(Density old, int limit, int direction, int amount) noexcept {
-    if (direction < 0) return old > limit ? Density(std::max(limit, old - amount)) : old;
-    return old < limit ? Density(std::min(limit, old + amount)) : old;
+// Voxels of the row at this y and z that have a limit at all; empty if none. m, from the burr's centre.
+bool clipToReach(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, double reach_squared, int j, int k,
+                 int& low, int& high) noexcept {
+    const Eigen::Vector3d& spacing = volume.spacing();
+    const double dy = j * spacing.y() - p_VB.y(), dz = k * spacing.z() - p_VB.z();
+    const double chord_squared = reach_squared - dy * dy - dz * dz;
+    if (chord_squared <= 0) return false;
+    // A voxel more at both ends does no harm.
+    const double half = std::sqrt(chord_squared);
+    low = std::max(low, int(std::max(0.0, (p_VB.x() - half) / spacing.x())));
+    high = int(std::min<double>(high, (p_VB.x() + half) / spacing.x() + 1));
+    return low <= high;
+}
+
+// Nothing is left to do in this leaf.
+bool isFinished(const LeafLattice& lattice, LeafId leaf, int direction) noexcept {
+    const DensityRange& range = lattice.range(0, leaf);
+    return direction < 0 ? range.max == 0 : range.min == kMaxDensity;
 }
 
 }  // namespace
@@ -31,7 +45,8 @@ TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volum
     const double farthest = std::max(reach(-1), reach(+1));
     const Eigen::Array3d voxels = (2 * farthest / volume.spacing().array()).floor() + 2;
     const Eigen::Array3d most = voxels.min(volume.dims().cast<double>().array());
-    changes_.resize(size_t(most.prod()));
+    new_density_.resize(size_t(most.prod()) + kRowSlack);
+    runs_.resize(size_t(most.y() * most.z()));
 }
 
 MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
@@ -45,46 +60,70 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
     carry_ -= std::floor(carry_);
     if (amount == 0) return result;
 
-    collectChanges(volume, p_VB, direction, amount, result);
-    if (change_count_ == 0) return result;
+    collectChanges(volume, lattice, p_VB, direction, amount, result);
+    if (run_count_ == 0) return result;
     lattice.beginWrite(result.changed);
-    for (size_t i = 0; i < change_count_; ++i) volume.set(changes_[i].offset, changes_[i].density);
+    for (size_t n = 0; n < run_count_; ++n) {
+        const ChangedRun& run = runs_[n];
+        for (int i = 0; i < run.count; ++i)
+            volume.set(run.offset + size_t(i), new_density_[run.first_new + size_t(i)]);
+    }
     lattice.endWrite(result.changed);
     lattice.refreshRanges(volume, result.changed);
     result.shell_is_complete = shell.refresh(volume, lattice, result.changed);
     return result;
 }
 
-void TimedMilling::collectChanges(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, int direction,
-                                  int amount, MillingResult& result) noexcept {
-    change_count_ = 0;
+void TimedMilling::collectChanges(const VoxelVolume& volume, const LeafLattice& lattice,
+                                  const Eigen::Vector3d& p_VB, int direction, int amount,
+                                  MillingResult& result) noexcept {
+    run_count_ = new_count_ = 0;
     const BurrLimit limit(volume, burr_radius_, config_.shape, direction);
+    const double reach_squared = limit.reach() * limit.reach();
     const IndexBox box = boxAround(volume, p_VB, limit.reach());
     if (box.isEmpty()) return;
-    const double reach_squared = limit.reach() * limit.reach();
-    const int finished = direction < 0 ? 0 : kMaxDensity;
-    const Density iso = volume.iso();
-    for (int k = box.min.z(); k <= box.max.z(); ++k)
-        for (int j = box.min.y(); j <= box.max.y(); ++j) {
-            const double dy = j * volume.spacing().y() - p_VB.y();
-            const double dz = k * volume.spacing().z() - p_VB.z();
-            const double dyz_squared = dy * dy + dz * dz;
-            if (dyz_squared >= reach_squared) continue;
-            for (int i = box.min.x(); i <= box.max.x(); ++i) {
-                const size_t offset = volume.offset(i, j, k);
-                const Density old = volume.ownerData()[offset];
-                if (old == finished) continue;  // mostly: air when removing, solid when adding
-                const double dx = i * volume.spacing().x() - p_VB.x();
-                const double squared = dx * dx + dyz_squared;
-                if (squared >= reach_squared) continue;
-                const Density now = moved(old, limit.at(squared), direction, amount);
-                if (now == old) continue;
-                changes_[change_count_++] = {offset, now};
-                result.changed.include({i, j, k});
-                result.removed_voxels += old >= iso && now < iso;
-                result.added_voxels += old < iso && now >= iso;
-            }
+    const IndexBox leaves = lattice.leavesOfCells(box);  // the voxel is the first corner of its cell
+    for (int leaf_z = leaves.min.z(); leaf_z <= leaves.max.z(); ++leaf_z)
+        for (int leaf_y = leaves.min.y(); leaf_y <= leaves.max.y(); ++leaf_y) {
+            int first = leaves.min.x(), last = leaves.max.x();
+            while (first <= last && isFinished(lattice, lattice.leafId({first, leaf_y, leaf_z}), direction))
+                ++first;
+            while (first <= last && isFinished(lattice, lattice.leafId({last, leaf_y, leaf_z}), direction))
+                --last;
+            if (first > last) continue;
+            const IndexBox voxels = IndexBox{lattice.cellsOf(lattice.leafId({first, leaf_y, leaf_z})).min,
+                                             lattice.cellsOf(lattice.leafId({last, leaf_y, leaf_z})).max}
+                                        .clamped(box.min, box.max);
+            for (int k = voxels.min.z(); k <= voxels.max.z(); ++k)
+                for (int j = voxels.min.y(); j <= voxels.max.y(); ++j) {
+                    int low = voxels.min.x(), high = voxels.max.x();
+                    if (!clipToReach(volume, p_VB, reach_squared, j, k, low, high)) continue;
+                    const Eigen::Vector3i start(low, j, k);
+                    const Eigen::Vector3d to_start =
+                        volume.spacing().cwiseProduct(start.cast<double>()) - p_VB;
+                    collectRow(volume, start, high - low + 1,
+                               limit.row(to_start, volume.spacing().x(), amount), direction, result);
+                }
         }
+}
+
+void TimedMilling::collectRow(const VoxelVolume& volume, const Eigen::Vector3i& first, int count,
+                              const BurrRow& burr, int direction, MillingResult& result) noexcept {
+    const size_t offset = volume.offset(first.x(), first.y(), first.z());
+    const Density* old = volume.ownerData() + offset;
+    Density* fresh = new_density_.data() + new_count_;
+    const auto mill = direction < 0 ? kernels().removeRow : kernels().addRow;
+    const MilledRow milled = mill(burr, old, count, fresh);
+    if (milled.changed == 0) return;
+    int low = 0, high = count - 1;
+    while (old[low] == fresh[low]) ++low;
+    while (old[high] == fresh[high]) --high;
+    runs_[run_count_++] = {offset + size_t(low), new_count_ + size_t(low), high - low + 1};
+    new_count_ += size_t(high) + 1;
+    result.changed.include(first + Eigen::Vector3i(low, 0, 0));
+    result.changed.include(first + Eigen::Vector3i(high, 0, 0));
+    result.removed_voxels += uint32_t(milled.removed);
+    result.added_voxels += uint32_t(milled.added);
 }
 
 }  // namespace bonemill

@@ -39,19 +39,25 @@ class TimedMilling {
     void setShape(MillingShape shape) noexcept { config_.shape = shape; }
 
   private:
-    struct Change {
-        size_t offset;
-        Density density;
+    // A run of voxels along x with their new densities, new_density_[first_new ..].
+    struct ChangedRun {
+        size_t offset;  // of its first voxel
+        size_t first_new;
+        int count;
     };
-    void collectChanges(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, int direction, int amount,
-                        MillingResult& result) noexcept;
+    void collectChanges(const VoxelVolume& volume, const LeafLattice& lattice, const Eigen::Vector3d& p_VB,
+                        int direction, int amount, MillingResult& result) noexcept;
+    void collectRow(const VoxelVolume& volume, const Eigen::Vector3i& first, int count, const BurrRow& burr,
+                    int direction, MillingResult& result) noexcept;
 
     MillingConfig config_;
     double burr_radius_;
     double carry_ = 0;  // fraction of a density count left over from earlier ticks, same direction
     int carry_direction_ = 0;
-    std::vector<Change> changes_;
-    size_t change_count_ = 0;
+    std::vector<ChangedRun> runs_;  // the first run_count_
+    size_t run_count_ = 0;
+    std::vector<Density> new_density_;  // the first new_count_
+    size_t new_count_ = 0;
 };
 
 }  // namespace bonemill

@@ -11,7 +11,7 @@ namespace {
 // size.
 constexpr double kRotationLength = 0.03;  // m
 constexpr double kSmallestReach = 1e-10;  // m: a shorter step is no step
-constexpr double kLeastMargin = 50e-6;    // m: what a hand moves in a millisecond when it works
+constexpr double kLeastMargin = 20e-6;    // m: what a hand moves in a millisecond when it works
 constexpr double kMotionGrowth = 2;       // of the reach from tick to tick
 constexpr int kMostHalvings = 4;
 constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;

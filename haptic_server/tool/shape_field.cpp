@@ -47,50 +47,6 @@ struct Axis {
           length(Scalar(l)) {}
 };
 
-template <class Scalar>
-void nearerRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radius, Scalar* out) noexcept {
-    for (int i = 0; i < p.count; ++i) {
-        const Scalar x = p.x[i] - s.fx, y = p.y[i] - s.fy, z = p.z[i] - s.fz;
-        const Scalar along = std::min(std::max(x * s.ax + y * s.ay + z * s.az, Scalar(0)), s.length);
-        const Scalar dx = x - along * s.ax, dy = y - along * s.ay, dz = z - along * s.az;
-        out[i] = std::min(out[i], std::sqrt(dx * dx + dy * dy + dz * dz) - radius);
-    }
-}
-
-// On the axis the gradient is zero, as the mean of all directions.
-template <class Scalar>
-void sampleRound(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar radius,
-                 SampleBatch<Scalar>& out) noexcept {
-    constexpr Scalar kOnAxis = Scalar(1e-15);  // m
-    for (int i = 0; i < p.count; ++i) {
-        const Scalar x = p.x[i] - s.fx, y = p.y[i] - s.fy, z = p.z[i] - s.fz;
-        const Scalar along = std::min(std::max(x * s.ax + y * s.ay + z * s.az, Scalar(0)), s.length);
-        const Scalar dx = x - along * s.ax, dy = y - along * s.ay, dz = z - along * s.az;
-        const Scalar to_axis = std::sqrt(dx * dx + dy * dy + dz * dz);
-        const Scalar scale = 1 / std::max(to_axis, kOnAxis);
-        out.distance[i] = to_axis - radius;
-        out.gx[i] = dx * scale, out.gy[i] = dy * scale, out.gz[i] = dz * scale;
-    }
-}
-
-// Chosen into a place of its own: GCC makes branches of a select that may leave its target alone, and then no
-// vector instructions.
-template <class Scalar>
-void chooseNearer(const SampleBatch<Scalar>& other, const SampleBatch<Scalar>& out, const Scalar* theirs,
-                  Scalar* ours, int count) noexcept {
-    alignas(64) Scalar chosen[PointBatch<Scalar>::kCapacity];
-    for (int i = 0; i < count; ++i) chosen[i] = other.distance[i] < out.distance[i] ? theirs[i] : ours[i];
-    std::copy_n(chosen, count, ours);
-}
-
-template <class Scalar>
-void takeNearer(const SampleBatch<Scalar>& other, int count, SampleBatch<Scalar>& out) noexcept {
-    chooseNearer(other, out, other.gx, out.gx, count);
-    chooseNearer(other, out, other.gy, out.gy, count);
-    chooseNearer(other, out, other.gz, out.gz, count);
-    for (int i = 0; i < count; ++i) out.distance[i] = std::min(out.distance[i], other.distance[i]);
-}
-
 // The profile's three segments: both ends and the side.
 template <class Scalar>
 void nearerCone(const PointBatch<Scalar>& p, const Axis<Scalar>& s, Scalar r0, Scalar r1,
@@ -165,11 +121,12 @@ template <class Scalar>
 void ShapeField::nearest(const PointBatch<Scalar>& points_T, Scalar* out) const noexcept {
     std::fill_n(out, points_T.count, std::numeric_limits<Scalar>::max());
     for (const Solid& solid : solids_) {
-        const Axis<Scalar> axis(solid.from, solid.axis, solid.length);
         if (solid.is_round)
-            nearerRound(points_T, axis, Scalar(solid.radius[0]), out);
+            kernels().points<Scalar>().nearerRound(solid.round<Scalar>(), points_T.x, points_T.y, points_T.z,
+                                                   points_T.count, out);
         else
-            nearerCone(points_T, axis, Scalar(solid.radius[0]), Scalar(solid.radius[1]), out);
+            nearerCone(points_T, Axis<Scalar>(solid.from, solid.axis, solid.length), Scalar(solid.radius[0]),
+                       Scalar(solid.radius[1]), out);
     }
 }
 
@@ -185,12 +142,11 @@ void ShapeField::distances(const PointBatch<double>& points_T, double* out) cons
 template <class Scalar>
 void ShapeField::sampleNearest(const PointBatch<Scalar>& points_T, SampleBatch<Scalar>& out) const noexcept {
     std::fill_n(out.distance, points_T.count, std::numeric_limits<Scalar>::max());
-    SampleBatch<Scalar> here;
     for (const Solid& solid : solids_) {
         if (solid.is_round) {
-            bonemill::sampleRound(points_T, Axis<Scalar>(solid.from, solid.axis, solid.length),
-                                  Scalar(solid.radius[0]), here);
-            takeNearer(here, points_T.count, out);
+            kernels().points<Scalar>().sampleNearerRound(solid.round<Scalar>(), points_T.x, points_T.y,
+                                                         points_T.z, points_T.count, out.distance, out.gx,
+                                                         out.gy, out.gz);
             continue;
         }
         for (int i = 0; i < points_T.count; ++i) {

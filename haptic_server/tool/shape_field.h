@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "haptic_server/kernels/kernels.h"
 #include "haptic_server/tool/tool_field.h"
 #include "haptic_server/tool/tool_shape.h"
 
@@ -30,6 +31,14 @@ class ShapeField final : public ToolField {
         Eigen::Vector3d from, axis;  // axis: unit
         double length;
         double radius[2];
+
+        template <class Scalar>
+        RoundSolid<Scalar> round() const noexcept {
+            return {{Scalar(from.x()), Scalar(from.y()), Scalar(from.z())},
+                    {Scalar(axis.x()), Scalar(axis.y()), Scalar(axis.z())},
+                    Scalar(length),
+                    Scalar(radius[0])};
+        }
     };
     static Solid solidOf(const ToolShape& shape);
     static ToolSample sampleRound(const Solid& solid, const Eigen::Vector3d& p_T) noexcept;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "haptic_server/kernels/kernels.h"
+
 namespace bonemill {
 namespace {
 
@@ -22,29 +24,13 @@ bool isSame(const DensityRange& a, const DensityRange& b) noexcept {
     return a.min == b.min && a.max == b.max;
 }
 
-// Unsigned 16-bit order is signed order with the top bit turned over; baseline x86-64 has vector minima and
-// maxima of signed 16-bit numbers only.
-DensityRange rangeOfRow(const Density* row, int count) noexcept {
-    constexpr int kTopBit = 0x8000;
-    int16_t low = INT16_MAX;
-    int16_t high = INT16_MIN;
-    for (int i = 0; i < count; ++i) {
-        const int16_t d = int16_t(row[i] ^ kTopBit);
-        low = std::min(low, d);
-        high = std::max(high, d);
-    }
-    return {Density(low ^ kTopBit), Density(high ^ kTopBit)};
-}
-
 // Range of the voxels in `box` joined with `known`. Stops as soon as it is `bounds`, which it cannot exceed.
 DensityRange scan(const VoxelVolume& volume, const IndexBox& box, DensityRange known,
                   const DensityRange& bounds) noexcept {
-    const int count = box.max.x() - box.min.x() + 1;
-    for (int k = box.min.z(); k <= box.max.z(); ++k)
-        for (int j = box.min.y(); j <= box.max.y(); ++j) {
-            if (isSame(known, bounds)) return known;
-            widen(known, rangeOfRow(volume.ownerData() + volume.offset(box.min.x(), j, k), count));
-        }
+    const Eigen::Vector3i size = box.max - box.min + Eigen::Vector3i::Ones();
+    for (int k = box.min.z(); k <= box.max.z() && !isSame(known, bounds); ++k)
+        kernels().rangeOfRows(volume.ownerData() + volume.offset(box.min.x(), box.min.y(), k), size.x(),
+                              volume.strideY(), size.y(), known.min, known.max);
     return known;
 }
 

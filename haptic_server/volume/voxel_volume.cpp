@@ -10,7 +10,7 @@ VoxelVolume::VoxelVolume(const VolumeGeometry& geometry, Density iso)
       stride_y_(size_t(geometry.dims.x()) + 2),
       stride_z_(stride_y_ * (size_t(geometry.dims.y()) + 2)),
       inverse_spacing_(geometry.spacing.cwiseInverse().cast<float>()),
-      density_(stride_z_ * (size_t(geometry.dims.z()) + 2), 0) {}
+      density_(stride_z_ * (size_t(geometry.dims.z()) + 2) + kRowSlack, 0) {}
 
 Eigen::Vector3f VoxelVolume::gradient(int i, int j, int k) const noexcept {
     const size_t here = offset(i, j, k);

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "haptic_server/kernels/kernels.h"
 #include "haptic_server/volume/raw_volume.h"
 
 namespace bonemill {
@@ -82,7 +83,7 @@ class VoxelVolume {
     size_t stride_y_;
     size_t stride_z_;
     Eigen::Vector3f inverse_spacing_;
-    std::vector<Density> density_;
+    std::vector<Density> density_;  // and kRowSlack more that the kernels may read
 };
 
 }  // namespace bonemill

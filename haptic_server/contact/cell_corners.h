@@ -1,4 +1,4 @@
-// The piece of iso-surface in one cell: densities at its corners, and its marching-cubes triangles. RT-safe.
+// Densities at the corners of one cell, and between them. RT-safe.
 //
 // Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1) in cell steps; see marching_cubes_table.h.
 #pragma once
@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "haptic_server/volume/marching_cubes_table.h"
 #include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill {
@@ -53,14 +52,5 @@ inline FieldSample sampleField(const CellCorners& corners, const Eigen::Vector3f
     return {on_xy[0] + t.z() * dz,
             {dx_low + t.z() * (dx_high - dx_low), dy[0] + t.z() * (dy[1] - dy[0]), dz}};
 }
-
-struct CellPatch {
-    float area;                // in squares of the unit that `steps` is given in
-    Eigen::Vector3f centroid;  // cell steps from corner 0; set if area > 0
-};
-
-// `steps`: edge lengths of the cell in any one unit; near 1 keeps single precision far from underflow.
-CellPatch makePatch(const CellCorners& corners, const CubeTriangles& triangles,
-                    const Eigen::Vector3f& steps) noexcept;
 
 }  // namespace bonemill

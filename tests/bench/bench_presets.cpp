@@ -1,8 +1,12 @@
 // Cost of a tick on the thesis' tooth while milling a corridor, by preset, scaling factor and octree leaf
 // size.
 //
+// `haptic_bench presets`.
+//
 // Prints p50/p99/p99.9/max in µs and the ratio of the medians to the thesis' own setting (s = 3, octree depth
 // 3), all settings in turn in the same process, several rounds: quote a figure only if the rounds agree.
+#include "tests/bench/bench_presets.h"
+
 #include <cstdio>
 #include <vector>
 
@@ -12,9 +16,8 @@
 #include "haptic_server/volume/import/phantom/tooth_phantom.h"
 #include "tests/support/scripted_io.h"
 
+namespace bonemill::bench {
 namespace {
-
-using namespace bonemill;
 
 struct Setting {
     const char* name;
@@ -69,9 +72,7 @@ void print(const char* what, const LatencyHistogram& h, const LatencyHistogram& 
                 double(h.percentileNs(50)) / double(reference.percentileNs(50)));
 }
 
-}  // namespace
-
-int main() {
+void comparePresets() {
     const RawVolume scan = scanTooth(toothGrid(), {});
     const ToolModel tool = buildTool({}).model;
     for (int round = 1; round <= kRounds; ++round) {
@@ -85,5 +86,13 @@ int main() {
             print("whole tick", costs[n].whole, costs[0].whole);
         }
     }
-    return 0;
 }
+
+}  // namespace
+
+void addPresetsCommand(CLI::App& app) {
+    app.add_subcommand("presets", "whole ticks in the tooth's corridor, preset by preset")
+        ->callback(comparePresets);
+}
+
+}  // namespace bonemill::bench

@@ -1,0 +1,166 @@
+// The inner loops of the tick and the mesher, compiled for several instruction sets; the best that this CPU
+// has is chosen at the start.
+//
+// All levels compute the same IEEE operations in the same order on every element, and sums in the same lanes,
+// so their results agree bit for bit: a replay's hash does not depend on the CPU. The baseline is the oracle
+// of the tests. RT-safe, any thread; no kernel keeps a pointer.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace bonemill {
+
+enum class CpuLevel : uint8_t { kBaseline, kAvx2, kAvx512 };
+inline constexpr CpuLevel kCpuLevels[] = {CpuLevel::kBaseline, CpuLevel::kAvx2, CpuLevel::kAvx512};
+
+// "x86-64", "avx2", "avx512".
+const char* cpuLevelName(CpuLevel level) noexcept;
+bool isSupported(CpuLevel level) noexcept;
+
+// Rows of a rotation and a translation: out = R (p - origin).
+template <class Scalar>
+struct FrameChange {
+    Scalar R[9];
+    Scalar origin[3];
+};
+
+// All points within `radius` of the segment that starts at `from` and goes `length` along the unit vector
+// `axis`.
+template <class Scalar>
+struct RoundSolid {
+    Scalar from[3], axis[3];
+    Scalar length, radius;
+};
+
+// From the tool's axes to the bone's, and where the tool point lies among the contact points.
+struct ContactFrame {
+    double R_VT[9];    // rows
+    double p_OT[3];    // m
+    double depth_cap;  // m: deeper contact pulls no stronger
+};
+
+// Sums over contact points: energy, wrench on the tool and Gauss-Newton stiffness, about the tool point, V.
+struct ContactSums {
+    double energy = 0;          // J
+    double force[3] = {};       // N
+    double torque[3] = {};      // N·m
+    double stiffness[21] = {};  // rows of the upper triangle
+    double max_depth = 0;       // m
+};
+inline constexpr int kContactBatch = 64;
+
+template <class Scalar>
+struct PointKernels {
+    void (*intoFrame)(const FrameChange<Scalar>& frame, const float* x, const float* y, const float* z,
+                      int count, Scalar* out_x, Scalar* out_y, Scalar* out_z);
+    // out = min(out, distance).
+    void (*nearerRound)(const RoundSolid<Scalar>& solid, const Scalar* x, const Scalar* y, const Scalar* z,
+                        int count, Scalar* out);
+    // Where the solid is nearer than `distance`: its distance and gradient; on the axis the gradient is zero.
+    void (*sampleNearerRound)(const RoundSolid<Scalar>& solid, const Scalar* x, const Scalar* y,
+                              const Scalar* z, int count, Scalar* distance, Scalar* gx, Scalar* gy,
+                              Scalar* gz);
+    // At most kContactBatch points inside the tool (distance < 0), from the frame's origin, with their
+    // stiffness `weight` (N/m); gradients in the tool's axes.
+    void (*addContacts)(const ContactFrame& frame, const float* x, const float* y, const float* z,
+                        const float* weight, const Scalar* distance, const Scalar* gx, const Scalar* gy,
+                        const Scalar* gz, int count, ContactSums& sums);
+};
+
+inline constexpr int kRowSlack = 15;
+
+// The burr's limit across one row of voxels (milling/burr_limit.h), counts and m.
+struct BurrRow {
+    float first_x, step_x;  // from the burr's centre to the row's first voxel, along x
+    float off_row_squared;  // m²: of the row from the centre
+    float radius, slope;    // counts per m
+    float reach_squared;    // m²: no limit from there on
+    float core_squared;     // m²: inside, the limit is the last density there is
+    int iso;
+    int amount;  // at most so many counts towards the limit
+};
+
+struct MilledRow {
+    int changed;  // voxels
+    int removed;  // fell below iso
+    int added;    // rose to iso or above
+};
+
+// Cells that the iso-surface crosses, as structure of arrays; the arrays go on to the next multiple of
+// kCellLanes, with anything in them.
+inline constexpr int kCellLanes = 16;
+inline constexpr int kTriangleStride = 16;  // edges of up to five triangles, edge 0 beyond
+
+struct CellArrays {
+    const float* excess[8];  // density minus iso at the corners
+    const int* inside;       // which corners are inside, bit by corner
+    int count;
+};
+// Of the triangles in each cell; the centroid, in cell steps, is not set where there is no area.
+struct CellPatches {
+    float* area;  // in squares of the unit of `steps`
+    float *x, *y, *z;
+};
+// Projection of a point of each cell onto its trilinear iso-surface.
+struct CellProjections {
+    float *x, *y, *z;                    // in: where it starts; out: where it ended
+    float *slope_x, *slope_y, *slope_z;  // of the density there, counts per cell step
+    int* is_found;                       // 0: it left the cell or found no way
+};
+
+// The voxels, for kernels that look at any of them. Readable: -1 .. dims on each axis.
+struct DensityView {
+    const uint16_t* first;  // voxel (0, 0, 0)
+    size_t stride_y, stride_z;
+    int dims[3];
+    int iso;
+    float inverse_spacing[3];  // 1/m
+    float origin[3];           // m: of the points' coordinates
+};
+// Points that move onto the surface, m; structure of arrays that go on to the next multiple of kCellLanes.
+struct SurfacePoints {
+    float *x, *y, *z;                    // in: where they start; out: where they ended
+    const float *own_x, *own_y, *own_z;  // where they end instead if that is too far off, or there is no way
+    const float* reach_squared;          // m²
+    int count;
+};
+
+struct Kernels {
+    PointKernels<float> single;
+    PointKernels<double> twice;
+    // out[0 .. count-1]: the row after milling with limits from above (remove) or from below (add); nothing
+    // if it did not change. Reads up to kRowSlack voxels beyond the row, writes as many to out.
+    MilledRow (*removeRow)(const BurrRow& burr, const uint16_t* row, int count, uint16_t* out);
+    MilledRow (*addRow)(const BurrRow& burr, const uint16_t* row, int count, uint16_t* out);
+    // triangle_edges[kTriangleStride * inside + 3 * triangle + vertex]: a crossed edge of the cell.
+    void (*cellPatches)(const CellArrays& cells, const int* triangle_edges, const float steps[3],
+                        const CellPatches& out);
+    // At most `most_steps` Newton steps along the slope times `steepness`, until the density is within
+    // `tolerance` times the largest excess at the corners.
+    void (*projectIntoCells)(const CellArrays& cells, const float steepness[3], float tolerance,
+                             int most_steps, const CellProjections& out);
+    // Newton steps up or down the density's gradient, from cell to cell.
+    void (*moveOntoSurface)(const DensityView& density, int steps, const SurfacePoints& points);
+    // The least of (value - lowest) * scale over the elements; never above `most`.
+    float (*leastScaled)(const float* value, const float* lowest, const float* scale, int count, float most);
+    // Least and largest of `rows` rows that lie `stride` voxels apart, joined with what is there.
+    void (*rangeOfRows)(const uint16_t* row, int count, size_t stride, int rows, uint16_t& least,
+                        uint16_t& largest);
+
+    template <class Scalar>
+    const PointKernels<Scalar>& points() const noexcept {
+        if constexpr (sizeof(Scalar) == sizeof(float))
+            return single;
+        else
+            return twice;
+    }
+};
+
+// Those of the best level. The environment variable BONEMILL_CPU_LEVEL (x86-64, avx2, avx512), read once at
+// the start, chooses a lower one.
+const Kernels& kernels() noexcept;
+// Of a level that this CPU supports; for tests.
+const Kernels& kernelsOf(CpuLevel level) noexcept;
+
+}  // namespace bonemill

@@ -1,0 +1,136 @@
+#include "tests/bench/bench_tick.h"
+
+#include <cstdio>
+
+#include "common/config/user_error.h"
+#include "common/rt/clock.h"
+#include "haptic_server/record/fault_names.h"
+#include "haptic_server/tool/build/build_tool.h"
+#include "tests/bench/bench_output.h"
+#include "tests/bench/half_block.h"
+#include "tests/support/scripted_io.h"
+
+namespace bonemill::bench {
+namespace {
+
+constexpr double kMillimetre = 1e-3;
+constexpr double kCouplingStiffness = 1000;  // N/m
+constexpr int kLeafCells = 16;
+
+TickConfig configOf(const TickCase& c) {
+    TickConfig config;
+    config.accuracy = presetSettings(c.preset);
+    config.burr_radius = c.burr_radius;
+    config.gradient.burr_radius = c.burr_radius;
+    config.gradient.coupling.translation_stiffness = kCouplingStiffness;
+    config.coupling.translation_stiffness = kCouplingStiffness;
+    return config;
+}
+
+double forceStep(const TickRecord& a, const TickRecord& b) {
+    return (Eigen::Map<const Eigen::Vector3d>(a.f_hand_W) - Eigen::Map<const Eigen::Vector3d>(b.f_hand_W))
+        .norm();
+}
+
+TickFigures figuresOf(const std::vector<TickRecord>& records, int approach_ticks) {
+    TickFigures figures;
+    double contacts = 0, candidates = 0, iterations = 0, removed = 0;
+    int in_contact = 0;
+    for (size_t n = 0; n < records.size(); ++n) {
+        const TickRecord& r = records[n];
+        figures.faults |= r.faults;
+        removed += r.removed_voxels;
+        if (int(n) < approach_ticks) continue;
+        figures.whole.record(r.compute_ns);
+        figures.force.record(r.force_ns);
+        figures.milling.record(r.compute_ns - r.force_ns);
+        in_contact += r.contacts > 0;
+        contacts += r.contacts;
+        candidates += r.candidates;
+        iterations += r.iterations;
+        figures.force_step_max = std::max(figures.force_step_max, forceStep(r, records[n - 1]));
+    }
+    figures.contacts_mean = contacts / std::max(1, in_contact);
+    figures.candidates_mean = candidates / std::max(1, in_contact);
+    figures.iterations_mean = iterations / double(figures.whole.count());
+    figures.removed_voxels_per_tick = removed / double(records.size());
+    return figures;
+}
+
+}  // namespace
+
+TickFigures measureTicks(const TickCase& c) {
+    BoneModel bone(halfBlock(c.edge, c.spacing), Eigen::Vector3i::Constant(kLeafCells),
+                   {.levels = {{presetSettings(c.preset).shell_factor, ShellNormals::kTrilinear}}});
+    ToolConfig tool_config;
+    tool_config.burr_radius = c.burr_radius;
+    const ToolModel tool = buildTool(tool_config).model;
+    const WeaveConfig way{.burr_radius = c.burr_radius, .ticks = c.ticks, .mills = c.mills};
+    HapticTick tick(configOf(c), bone, tool, nullptr);
+    test::ScriptedIo io(weave(bone.volume, way));
+    while (tick.tick(io)) {
+    }
+    return figuresOf(io.records, way.approach_ticks);
+}
+
+nlohmann::json toJson(const TickFigures& f) {
+    return {{"tick_us", microseconds(f.whole)},
+            {"force_us", microseconds(f.force)},
+            {"milling_us", microseconds(f.milling)},
+            {"contacts_mean", f.contacts_mean},
+            {"candidates_mean", f.candidates_mean},
+            {"iterations_mean", f.iterations_mean},
+            {"removed_voxels_per_tick", f.removed_voxels_per_tick},
+            {"force_step_max_n", f.force_step_max},
+            {"faults", f.faults}};
+}
+
+void addTickCommand(CLI::App& app) {
+    struct Options {
+        TickCase tick_case;
+        double voxel_mm = 0.096, burr_radius_mm = 3;
+        std::string preset = "balanced", json;
+        bool is_still = false;
+        int runs = 1;
+    };
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("tick", "whole ticks of a burr that mills a flat block");
+    command->add_option("--volume", o->tick_case.edge, "voxels per edge")->check(CLI::Range(32, 1024));
+    command->add_option("--voxel-mm", o->voxel_mm)->check(CLI::Range(0.01, 10.0));
+    command->add_option("--burr-radius-mm", o->burr_radius_mm)->check(CLI::Range(0.1, 20.0));
+    command->add_option("--preset", o->preset, "thesis_2012, fast, balanced or exact");
+    command->add_option("--ticks", o->tick_case.ticks)->check(CLI::Range(1000, 1'000'000));
+    command->add_option("--runs", o->runs, "repeat, and take each figure's median")->check(CLI::Range(1, 99));
+    command->add_flag("--no-mill", o->is_still, "press and slide only");
+    command->add_option("--json", o->json, "write the figures to FILE, or - for stdout");
+    command->callback([o] {
+        const auto preset = presetOfName(o->preset);
+        if (!preset) throw UserError("--preset " + o->preset + ": thesis_2012, fast, balanced or exact");
+        o->tick_case.preset = *preset;
+        o->tick_case.spacing = o->voxel_mm * kMillimetre;
+        o->tick_case.burr_radius = o->burr_radius_mm * kMillimetre;
+        o->tick_case.mills = !o->is_still;
+        std::vector<nlohmann::json> runs;
+        Table table({"tick, us", "mean", "p50", "p99", "p99.9", "max"});
+        for (int n = 1; n <= o->runs; ++n) {
+            const TickFigures figures = measureTicks(o->tick_case);
+            const std::string run = "run " + std::to_string(n) + ": ";
+            table.add({run + "whole"}, figures.whole);
+            table.add({run + "force"}, figures.force);
+            table.add({run + "milling"}, figures.milling);
+            runs.push_back(toJson(figures));
+        }
+        const nlohmann::json json = medianOf(runs);
+        table.print();
+        std::printf(
+            "contacts %.0f, candidates %.0f, iterations %.2f, removed voxels per tick %.2f, largest force "
+            "step %.4f N, faults "
+            "%s\n",
+            json["contacts_mean"].get<double>(), json["candidates_mean"].get<double>(),
+            json["iterations_mean"].get<double>(), json["removed_voxels_per_tick"].get<double>(),
+            json["force_step_max_n"].get<double>(), faultNames(json["faults"].get<uint32_t>()).c_str());
+        writeJson(o->json, json);
+    });
+}
+
+}  // namespace bonemill::bench

@@ -1,0 +1,214 @@
+// Every instruction set gives the bits of the baseline, and the baseline is right.
+#include "haptic_server/kernels/kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <vector>
+
+namespace bonemill {
+namespace {
+
+class EveryLevel : public testing::TestWithParam<CpuLevel> {
+  protected:
+    void SetUp() override {
+        if (!isSupported(GetParam())) GTEST_SKIP() << "this CPU has no " << cpuLevelName(GetParam());
+    }
+    const Kernels& ours() const { return kernelsOf(GetParam()); }
+    const Kernels& oracle() const { return kernelsOf(CpuLevel::kBaseline); }
+
+    template <class Scalar>
+    std::vector<Scalar> randoms(int count, double low, double high) {
+        std::uniform_real_distribution<double> uniform(low, high);
+        std::vector<Scalar> values(size_t(count) + kRowSlack);
+        for (Scalar& v : values) v = Scalar(uniform(random_));
+        return values;
+    }
+    int below(int end) { return std::uniform_int_distribution<int>(0, end - 1)(random_); }
+
+    std::mt19937 random_{17};
+};
+
+template <class T>
+void expectSameBits(const std::vector<T>& a, const std::vector<T>& b, int count) {
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), size_t(count) * sizeof(T)), 0);
+}
+
+template <class Scalar>
+RoundSolid<Scalar> capsule() {
+    return {{Scalar(0.1e-3), Scalar(-0.2e-3), Scalar(0.3e-3)},
+            {0, Scalar(0.6), Scalar(0.8)},
+            Scalar(4e-3),
+            Scalar(1e-3)};
+}
+
+template <class Scalar>
+double distanceTo(const RoundSolid<Scalar>& s, double x, double y, double z) {
+    const double p[3] = {x - s.from[0], y - s.from[1], z - s.from[2]};
+    const double along =
+        std::clamp(p[0] * s.axis[0] + p[1] * s.axis[1] + p[2] * s.axis[2], 0.0, double(s.length));
+    return std::hypot(p[0] - along * s.axis[0], p[1] - along * s.axis[1], p[2] - along * s.axis[2]) -
+           s.radius;
+}
+
+TEST_P(EveryLevel, SingleAndDoublePrecisionPoints) {
+    const auto check = [&]<class Scalar>(Scalar, double tolerance) {
+        for (int round = 0; round < 50; ++round) {
+            const int n = 1 + below(kContactBatch);
+            const auto x = randoms<float>(n, -3e-3, 3e-3), y = randoms<float>(n, -3e-3, 3e-3),
+                       z = randoms<float>(n, -3e-3, 5e-3);
+            const FrameChange<Scalar> turn{
+                {0, 0, 1, Scalar(0.8), Scalar(0.6), 0, Scalar(-0.6), Scalar(0.8), 0},
+                {Scalar(1e-3), 0, Scalar(-1e-3)}};
+            std::vector<Scalar> p[2][3], sample[2][4], nearer[2];
+            for (const int which : {0, 1}) {
+                const PointKernels<Scalar>& k = (which ? ours() : oracle()).template points<Scalar>();
+                for (auto& v : p[which]) v.resize(size_t(n));
+                k.intoFrame(turn, x.data(), y.data(), z.data(), n, p[which][0].data(), p[which][1].data(),
+                            p[which][2].data());
+                nearer[which].assign(size_t(n), Scalar(1e-3));
+                k.nearerRound(capsule<Scalar>(), p[which][0].data(), p[which][1].data(), p[which][2].data(),
+                              n, nearer[which].data());
+                for (auto& v : sample[which]) v.assign(size_t(n), Scalar(1e-3));
+                k.sampleNearerRound(capsule<Scalar>(), p[which][0].data(), p[which][1].data(),
+                                    p[which][2].data(), n, sample[which][0].data(), sample[which][1].data(),
+                                    sample[which][2].data(), sample[which][3].data());
+            }
+            for (int axis = 0; axis < 3; ++axis) expectSameBits(p[0][axis], p[1][axis], n);
+            expectSameBits(nearer[0], nearer[1], n);
+            for (int part = 0; part < 4; ++part) expectSameBits(sample[0][part], sample[1][part], n);
+            for (int i = 0; i < n; ++i) {
+                const size_t at = size_t(i);
+                EXPECT_NEAR(p[0][0][at], z[at] + 1e-3, tolerance);
+                EXPECT_NEAR(p[0][1][at], 0.8 * (x[at] - 1e-3) + 0.6 * y[at], tolerance);
+                const double distance = distanceTo(capsule<Scalar>(), p[0][0][at], p[0][1][at], p[0][2][at]);
+                EXPECT_NEAR(nearer[0][at], std::min(distance, 1e-3), tolerance);
+                EXPECT_NEAR(sample[0][0][at], std::min(distance, 1e-3), tolerance);
+                if (distance >= 0.99e-3) continue;
+                const double g = std::hypot(sample[0][1][at], sample[0][2][at], sample[0][3][at]);
+                EXPECT_NEAR(g, 1, 1e-5);
+            }
+        }
+    };
+    check(float(), 1e-8);
+    check(double(), 1e-15);
+}
+
+TEST_P(EveryLevel, ContactSumsAreThoseOfPlainLoops) {
+    const ContactFrame frame{{0, 0, 1, 0.8, 0.6, 0, -0.6, 0.8, 0}, {1e-4, 2e-4, -3e-4}, 0.2e-3};
+    for (int round = 0; round < 100; ++round) {
+        const int n = 1 + below(kContactBatch);
+        const auto x = randoms<float>(n, -1e-3, 1e-3), y = randoms<float>(n, -1e-3, 1e-3),
+                   z = randoms<float>(n, -1e-3, 1e-3), weight = randoms<float>(n, 10, 1e4),
+                   depth = randoms<float>(n, -0.3e-3, -1e-9), gx = randoms<float>(n, -1, 1),
+                   gy = randoms<float>(n, -1, 1), gz = randoms<float>(n, -1, 1);
+        ContactSums sums[2];
+        for (const int which : {0, 1})
+            (which ? ours() : oracle())
+                .single.addContacts(frame, x.data(), y.data(), z.data(), weight.data(), depth.data(),
+                                    gx.data(), gy.data(), gz.data(), n, sums[which]);
+        EXPECT_EQ(std::memcmp(&sums[0], &sums[1], sizeof sums[0]), 0);
+        double energy = 0, force_x = 0, torque_z = 0, k_xx = 0, k_zz = 0, deepest = 0;
+        for (size_t i = 0; i < size_t(n); ++i) {
+            const double d = -depth[i], capped = std::min(d, 0.2e-3), w = weight[i];
+            const double g[3] = {gz[i], 0.8 * gx[i] + 0.6 * gy[i], -0.6 * gx[i] + 0.8 * gy[i]};
+            const double r[2] = {x[i] - 1e-4, y[i] - 2e-4};
+            const double k = d > 0.2e-3 ? w * 0.2e-3 / d : w, turning = r[0] * g[1] - r[1] * g[0];
+            energy += w * capped * (d - capped / 2);
+            force_x -= w * capped * g[0];
+            torque_z -= w * capped * turning;
+            k_xx += k * g[0] * g[0];
+            k_zz += k * turning * turning;
+            deepest = std::max(deepest, d);
+        }
+        EXPECT_NEAR(sums[0].energy, energy, 1e-9 * energy);
+        EXPECT_NEAR(sums[0].force[0], force_x, 1e-6);
+        EXPECT_NEAR(sums[0].torque[2], torque_z, 1e-9);
+        EXPECT_NEAR(sums[0].stiffness[0], k_xx, 1e-6 * k_xx);
+        EXPECT_NEAR(sums[0].stiffness[20], k_zz, 1e-6 * k_zz);
+        EXPECT_EQ(sums[0].max_depth, deepest);
+    }
+}
+
+TEST_P(EveryLevel, MilledRows) {
+    const float spacing = 0.0973e-3f;  // no voxel exactly on a boundary
+    for (int round = 0; round < 300; ++round) {
+        const int n = 1 + below(90);
+        std::vector<uint16_t> row(size_t(n) + kRowSlack), out[2];
+        for (uint16_t& d : row) d = uint16_t(below(3) == 0 ? below(65536) : below(2) * 65535);
+        const bool removes = round % 2;
+        BurrRow burr{.first_x = -float(n) / 2 * spacing,
+                     .step_x = spacing,
+                     .off_row_squared = float(below(1000)) * 1e-9f,
+                     .radius = 1e-3f,
+                     .slope = 30000 / spacing,
+                     .reach_squared = 1.1e-3f * 1.1e-3f,
+                     .core_squared = 0.9e-3f * 0.9e-3f,
+                     .iso = 30000,
+                     .amount = 1 + below(65535)};
+        MilledRow milled[2];
+        for (const int which : {0, 1}) {
+            out[which].assign(row.size(), 7);
+            const Kernels& k = which ? ours() : oracle();
+            milled[which] = (removes ? k.removeRow : k.addRow)(burr, row.data(), n, out[which].data());
+        }
+        EXPECT_EQ(std::memcmp(&milled[0], &milled[1], sizeof milled[0]), 0);
+        if (milled[0].changed == 0) continue;
+        expectSameBits(out[0], out[1], n);
+        int changed = 0, removed = 0, added = 0;
+        for (int i = 0; i < n; ++i) {
+            const double x = burr.first_x + i * double(spacing), squared = x * x + burr.off_row_squared;
+            const double ramp =
+                burr.iso - (removes ? -1 : 1) * burr.slope * (std::sqrt(squared) - burr.radius);
+            double limit = std::clamp(ramp, 0.0, 65535.0);
+            if (squared < burr.core_squared) limit = removes ? 0 : 65535;
+            const double old = row[size_t(i)];
+            double now = removes ? std::min(old, std::max(limit, old - burr.amount))
+                                 : std::max(old, std::min(limit, old + burr.amount));
+            if (squared >= burr.reach_squared) now = old;
+            EXPECT_NEAR(out[0][size_t(i)], now, 0.6) << i;
+            changed += out[0][size_t(i)] != row[size_t(i)];
+            removed += row[size_t(i)] >= burr.iso && out[0][size_t(i)] < burr.iso;
+            added += row[size_t(i)] < burr.iso && out[0][size_t(i)] >= burr.iso;
+        }
+        EXPECT_EQ(milled[0].changed, changed);
+        EXPECT_EQ(milled[0].removed, removed);
+        EXPECT_EQ(milled[0].added, added);
+    }
+}
+
+TEST_P(EveryLevel, LeastScaledAndRanges) {
+    for (int round = 0; round < 200; ++round) {
+        const int n = 1 + below(100);
+        const auto value = randoms<float>(n, -1, 1), lowest = randoms<float>(n, -1, 1),
+                   scale = randoms<float>(n, 0, 9);
+        float least = 0.25f;
+        for (size_t i = 0; i < size_t(n); ++i) least = std::min(least, (value[i] - lowest[i]) * scale[i]);
+        EXPECT_EQ(ours().leastScaled(value.data(), lowest.data(), scale.data(), n, 0.25f), least);
+
+        const int width = 1 + below(40), rows = 1 + below(5);
+        const size_t stride = size_t(width) + size_t(below(4));
+        std::vector<uint16_t> box(stride * size_t(rows) + kRowSlack);
+        for (uint16_t& d : box) d = uint16_t(20000 + below(10000));
+        uint16_t low = 25000, high = 25000, expected_low = low, expected_high = high;
+        for (int r = 0; r < rows; ++r)
+            for (int i = 0; i < width; ++i) {
+                const uint16_t d = box[size_t(r) * stride + size_t(i)];
+                expected_low = std::min(expected_low, d), expected_high = std::max(expected_high, d);
+            }
+        ours().rangeOfRows(box.data(), width, stride, rows, low, high);
+        EXPECT_EQ(low, expected_low);
+        EXPECT_EQ(high, expected_high);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cpu, EveryLevel, testing::ValuesIn(kCpuLevels), [](const auto& info) {
+    return info.param == CpuLevel::kBaseline ? std::string("baseline")
+                                             : std::string(cpuLevelName(info.param));
+});
+
+}  // namespace
+}  // namespace bonemill
