@@ -1,6 +1,7 @@
 #include "haptic_server/accuracy_report/plot.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -17,7 +18,8 @@ class Plot : public testing::Test {
     Plot() { std::filesystem::create_directories(folder_); }
     ~Plot() override { std::filesystem::remove_all(folder_); }
 
-    std::filesystem::path folder_ = testing::TempDir() + "/accuracy_plot \"quoted\" test";
+    std::filesystem::path folder_ =
+        testing::TempDir() + "/accuracy_plot \"quoted\" test " + std::to_string(getpid());
 };
 
 TEST_F(Plot, ScriptGivesAPng) {
