@@ -21,12 +21,14 @@ void fold(float& u, float& v) noexcept {
 
 }  // namespace
 
-OctahedralNormal encodeNormal(const Eigen::Vector3f& unit_normal) noexcept {
-    const float sum = unit_normal.cwiseAbs().sum();
-    float u = unit_normal.x() / sum;
-    float v = unit_normal.y() / sum;
-    if (unit_normal.z() < 0) fold(u, v);
-    return {int8_t(std::floor(u * kOctahedralScale + 0.5f)), int8_t(std::floor(v * kOctahedralScale + 0.5f))};
+OctahedralNormal encodeNormal(const Eigen::Vector3f& normal) noexcept {
+    const float sum = normal.cwiseAbs().sum();
+    float u = normal.x() / sum;
+    float v = normal.y() / sum;
+    if (normal.z() < 0) fold(u, v);
+    // To nearest: the truncation of what is never negative.
+    const auto rounded = [](float value) { return int8_t(int(value * kOctahedralScale + 128.5f) - 128); };
+    return {rounded(u), rounded(v)};
 }
 
 Eigen::Vector3f decodeNormal(int8_t octahedral_u, int8_t octahedral_v) noexcept {

@@ -34,7 +34,7 @@ struct NodeMesh {
 struct OctahedralNormal {
     int8_t u, v;
 };
-OctahedralNormal encodeNormal(const Eigen::Vector3f& unit_normal) noexcept;
+OctahedralNormal encodeNormal(const Eigen::Vector3f& normal) noexcept;  // of any length but 0
 Eigen::Vector3f decodeNormal(int8_t octahedral_u, int8_t octahedral_v) noexcept;
 
 }  // namespace bonemill

@@ -11,16 +11,17 @@ constexpr uint32_t kNoVertex = UINT32_MAX;
 
 // Steps from the low voxel to the iso-value, rounded to nearest; low and high lie on different sides of iso.
 int stepsToIso(Density low, Density high, Density iso, int steps_per_cell) noexcept {
-    const int64_t rise = std::abs(int64_t(high) - low);
-    const int64_t to_iso = std::abs(int64_t(iso) - low);
-    const int64_t steps = (2 * to_iso * steps_per_cell + rise) / (2 * rise);
-    return int(std::clamp<int64_t>(steps, 1, steps_per_cell - 1));
+    static_assert(2 * uint64_t(kMaxDensity) * MeshGrid::kMostStepsPerCell + kMaxDensity <= UINT32_MAX);
+    const uint32_t rise = uint32_t(std::abs(int(high) - int(low)));
+    const uint32_t to_iso = uint32_t(std::abs(int(iso) - int(low)));
+    const uint32_t steps = (2 * to_iso * uint32_t(steps_per_cell) + rise) / (2 * rise);
+    return std::clamp(int(steps), 1, steps_per_cell - 1);
 }
 
 }  // namespace
 
 LeafMesher::LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice)
-    : volume_(volume), lattice_(lattice), grid_(volume, lattice) {}
+    : volume_(volume), lattice_(lattice), grid_(volume, lattice), triangles_(cubeTriangles()) {}
 
 NodeMesh LeafMesher::mesh(LeafId leaf) {
     NodeMesh mesh;
@@ -28,7 +29,11 @@ NodeMesh LeafMesher::mesh(LeafId leaf) {
     mesh.revision = lattice_.version(leaf);
     mesh.origin = grid_.leafOrigin(leaf);
     mesh.step = grid_.step();
-    if (readVoxels(lattice_.cellsOf(leaf))) meshCells(mesh);
+    vertices_.clear();
+    indices_.clear();
+    if (readVoxels(lattice_.cellsOf(leaf))) meshCells();
+    mesh.vertices = vertices_;  // exactly as much memory as they need
+    mesh.indices = indices_;
     return mesh;
 }
 
@@ -57,7 +62,7 @@ bool LeafMesher::readVoxels(const IndexBox& cells) {
     return any_inside && any_outside;
 }
 
-void LeafMesher::meshCells(NodeMesh& mesh) {
+void LeafMesher::meshCells() {
     edge_vertex_.assign(3 * density_.size(), kNoVertex);
     const Density iso = volume_.iso();
     for (int k = 0; k < cells_.z(); ++k)
@@ -74,27 +79,27 @@ void LeafMesher::meshCells(NodeMesh& mesh) {
             for (int i = 0; i < cells_.x(); ++i) {
                 const int high = side(i + 1);
                 const int config = low | high << 1;
-                if (config != 0 && config != 255) emitCell(config, {i, j, k}, mesh);
+                if (config != 0 && config != 255) emitCell(config, {i, j, k});
                 low = high;
             }
         }
 }
 
-void LeafMesher::emitCell(int config, const Eigen::Vector3i& cell, NodeMesh& mesh) {
-    const CubeTriangles& triangles = cubeTriangles()[size_t(config)];
+void LeafMesher::emitCell(int config, const Eigen::Vector3i& cell) {
+    const CubeTriangles& triangles = triangles_[size_t(config)];
     for (int t = 0; t < triangles.count; ++t)
         for (const uint8_t edge : triangles.edges[size_t(t)]) {
             const CubeEdge e = kCubeEdges[edge];
             const Eigen::Vector3i low(e.low_corner & 1, e.low_corner >> 1 & 1, e.low_corner >> 2 & 1);
-            mesh.indices.push_back(vertexOnEdge(cell + low, e.axis, mesh));
+            indices_.push_back(vertexOnEdge(cell + low, e.axis));
         }
 }
 
-uint32_t LeafMesher::vertexOnEdge(const Eigen::Vector3i& local, int axis, NodeMesh& mesh) {
+uint32_t LeafMesher::vertexOnEdge(const Eigen::Vector3i& local, int axis) {
     uint32_t& vertex = edge_vertex_[3 * cornerIndex(local) + size_t(axis)];
     if (vertex == kNoVertex) {
-        vertex = uint32_t(mesh.vertices.size());
-        mesh.vertices.push_back(makeVertex(local, axis));
+        vertex = uint32_t(vertices_.size());
+        vertices_.push_back(makeVertex(local, axis));
     }
     return vertex;
 }
@@ -111,12 +116,11 @@ PackedVertex LeafMesher::makeVertex(const Eigen::Vector3i& local, int axis) cons
     const float fraction = float(steps) / float(grid_.stepsPerCell());
     const Eigen::Vector3f gradient = volume_.gradient(voxel.x(), voxel.y(), voxel.z()) * (1 - fraction) +
                                      volume_.gradient(next.x(), next.y(), next.z()) * fraction;
-    const float norm = gradient.norm();
     // A one-voxel plate or grain has no gradient: the way out of the bone along the edge is a normal too.
     const float way_out = density_[low] > density_[high] ? 1.0f : -1.0f;
-    const Eigen::Vector3f normal =
-        norm > 0 ? Eigen::Vector3f(-gradient / norm) : Eigen::Vector3f(way_out * Eigen::Vector3f::Unit(axis));
-    const OctahedralNormal packed = encodeNormal(normal);
+    const Eigen::Vector3f normal = gradient.isZero(0) ? Eigen::Vector3f(way_out * Eigen::Vector3f::Unit(axis))
+                                                      : Eigen::Vector3f(-gradient);
+    const OctahedralNormal packed = encodeNormal(normal);  // of any length
     return {uint16_t(position.x()), uint16_t(position.y()), uint16_t(position.z()), packed.u, packed.v};
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "haptic_server/mesh/mesh_grid.h"
+#include "haptic_server/volume/marching_cubes_table.h"
 
 namespace bonemill {
 
@@ -27,9 +28,9 @@ class LeafMesher {
 
   private:
     bool readVoxels(const IndexBox& cells);
-    void meshCells(NodeMesh& mesh);
-    void emitCell(int config, const Eigen::Vector3i& cell, NodeMesh& mesh);
-    uint32_t vertexOnEdge(const Eigen::Vector3i& local, int axis, NodeMesh& mesh);
+    void meshCells();
+    void emitCell(int config, const Eigen::Vector3i& cell);
+    uint32_t vertexOnEdge(const Eigen::Vector3i& local, int axis);
     PackedVertex makeVertex(const Eigen::Vector3i& local, int axis) const;
 
     size_t cornerIndex(const Eigen::Vector3i& local) const noexcept {
@@ -39,10 +40,13 @@ class LeafMesher {
     const VoxelVolume& volume_;
     const LeafLattice& lattice_;
     MeshGrid grid_;
+    const std::array<CubeTriangles, 256>& triangles_;
     Eigen::Vector3i first_voxel_;  // of the leaf in hand; locals count from here
     Eigen::Vector3i cells_;        // of the leaf in hand, per axis
     size_t stride_[3] = {1, 0, 0};
-    std::vector<Density> density_;       // cells_ + 1 corners per axis, x fastest
+    std::vector<Density> density_;  // cells_ + 1 corners per axis, x fastest
+    std::vector<PackedVertex> vertices_;
+    std::vector<uint32_t> indices_;
     std::vector<uint32_t> edge_vertex_;  // per corner and axis: vertex on the edge that starts there
 };
 

@@ -1,5 +1,6 @@
 #include "haptic_server/mesh/mesh_grid.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace bonemill {
@@ -13,7 +14,7 @@ constexpr int kMinStepsPerCell =
 
 MeshGrid::MeshGrid(const VoxelVolume& volume, const LeafLattice& lattice)
     : lattice_(lattice),
-      steps_per_cell_(kMaxLocalSteps / lattice.leafCells().maxCoeff()),
+      steps_per_cell_(std::min(kMostStepsPerCell, kMaxLocalSteps / lattice.leafCells().maxCoeff())),
       spacing_(volume.spacing()),
       step_(spacing_ / steps_per_cell_) {
     if (steps_per_cell_ < kMinStepsPerCell) throw std::invalid_argument("octree leaf too large to mesh");

@@ -16,6 +16,7 @@ class MeshGrid {
     // vertices.
     MeshGrid(const VoxelVolume& volume, const LeafLattice& lattice);
 
+    static constexpr int kMostStepsPerCell = 16383;  // 32 bits hold a density times that
     int stepsPerCell() const noexcept { return steps_per_cell_; }
 
     // First cell's low corner: V, m, and the same in steps.

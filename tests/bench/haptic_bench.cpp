@@ -4,7 +4,10 @@
 #include <cstdio>
 
 #include "common/config/user_error.h"
+#include "tests/bench/bench_load.h"
+#include "tests/bench/bench_mesh.h"
 #include "tests/bench/bench_presets.h"
+#include "tests/bench/bench_scale.h"
 #include "tests/bench/bench_tick.h"
 
 int main(int argc, char** argv) {
@@ -12,6 +15,9 @@ int main(int argc, char** argv) {
     CLI::App app("benchmarks of the haptic server");
     app.require_subcommand(1);
     bench::addTickCommand(app);
+    bench::addMeshCommand(app);
+    bench::addLoadCommand(app);
+    bench::addScaleCommand(app);
     bench::addPresetsCommand(app);
     try {
         app.parse(argc, argv);

@@ -1,0 +1,78 @@
+#include "tests/bench/bench_load.h"
+
+#include <cstdio>
+#include <memory>
+
+#include "common/rt/clock.h"
+#include "haptic_server/mesh/mesher.h"
+#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tool/build/build_tool.h"
+#include "haptic_server/volume/import/densify.h"
+#include "haptic_server/volume/import/import_volume.h"
+#include "tests/bench/bench_output.h"
+#include "tests/support/scripted_io.h"
+
+namespace bonemill::bench {
+namespace {
+
+constexpr int kLeafCells = 16;
+
+double msSince(int64_t start_ns) {
+    return double(monotonicNowNs() - start_ns) * 1e-6;
+}
+
+std::unique_ptr<BoneModel> makeBone(const std::string& path, std::optional<double> iso,
+                                    nlohmann::json& json) {
+    int64_t start = monotonicNowNs();
+    std::optional<RawVolume> raw = importVolume(path);
+    json["import_ms"] = msSince(start);
+    start = monotonicNowNs();
+    VoxelVolume volume = densify(*raw, DensityWindow{.low = {}, .high = {}, .iso = iso});
+    raw.reset();
+    json["densify_ms"] = msSince(start);
+    start = monotonicNowNs();
+    auto bone = std::make_unique<BoneModel>(std::move(volume), Eigen::Vector3i::Constant(kLeafCells),
+                                            ShellConfig{.levels = {{1, ShellNormals::kTrilinear}}});
+    json["octree_and_shell_ms"] = msSince(start);
+    return bone;
+}
+
+void run(const std::string& path, std::optional<double> iso, const std::string& json_path) {
+    const int64_t start = monotonicNowNs();
+    nlohmann::json json;
+    const auto bone = makeBone(path, iso, json);
+    const ToolModel tool = buildTool({}).model;
+    HapticTick tick({}, *bone, tool, nullptr);
+    test::ScriptedIo io(test::straightPath(Pose{}, Eigen::Vector3d::Zero(), 1, 0));
+    tick.tick(io);
+    json["to_first_tick_ms"] = msSince(start);
+    const double voxels = double(bone->volume.geometry().voxelCount());
+    json["voxels"] = voxels;
+    json["resident_bytes_per_voxel"] = double(residentBytes()) / voxels;
+    json["peak_bytes_per_voxel"] = double(peakResidentBytes()) / voxels;
+    json["peak_mib"] = double(peakResidentBytes()) / (1 << 20);
+    json["shell_points"] = bone->shell.pointCount(0);
+    Table table({"", ""});
+    for (const auto& [key, value] : json.items()) table.add({key, number(value.get<double>(), 6)});
+    table.print();
+    writeJson(json_path, json);
+}
+
+}  // namespace
+
+void addLoadCommand(CLI::App& app) {
+    struct Options {
+        std::string file, json;
+        double iso = 0;
+    };
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("load", "from a scan to the first tick: time and memory");
+    command->add_option("file", o->file, "any volume that a scene can name")->required();
+    CLI::Option* iso =
+        command->add_option("--iso", o->iso, "bone surface; proposed from the data if not given");
+    command->add_option("--json", o->json, "write the figures to FILE, or - for stdout");
+    command->callback(
+        [o, iso] { run(o->file, iso->count() > 0 ? std::optional<double>(o->iso) : std::nullopt, o->json); });
+}
+
+}  // namespace bonemill::bench

@@ -1,0 +1,10 @@
+// `haptic_bench load`: from a file to the first tick, and the memory that takes.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace bonemill::bench {
+
+void addLoadCommand(CLI::App& app);
+
+}  // namespace bonemill::bench

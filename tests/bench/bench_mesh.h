@@ -1,0 +1,10 @@
+// `haptic_bench mesh`: the whole surface beside VTK's flying edges, and single leaves after a cut.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace bonemill::bench {
+
+void addMeshCommand(CLI::App& app);
+
+}  // namespace bonemill::bench
