@@ -153,7 +153,7 @@ bool PointShell::rebuild(const VoxelVolume& volume, const LeafLattice& lattice, 
 
 void PointShell::pointsOfCells(const VoxelVolume& volume, const IndexBox& leaf_cells,
                                ShellNormals normals) noexcept {
-    cells_.project(projection_.steepness());
+    cells_.project(projection_);
     for (size_t n = 0; n < cells_.count(); ++n) {
         if (!(cells_.area(n) > 0)) continue;
         const Eigen::Vector3i local = cells_.cell(n);
@@ -161,9 +161,8 @@ void PointShell::pointsOfCells(const VoxelVolume& volume, const IndexBox& leaf_c
         SurfacePlace place{leaf_cells.min + local, onto.at};
         if (!onto.is_found) place = projection_.bracket(volume, {place.cell, cells_.centroid(n)});
         const bool is_known = onto.is_found && normals == ShellNormals::kTrilinear;
-        addPoint(place,
-                 is_known ? projection_.normalOf(onto.slope) : projection_.normal(volume, place, normals),
-                 cells_.area(n), local);
+        addPoint(place, is_known ? onto.normal : projection_.normal(volume, place, normals), cells_.area(n),
+                 local);
     }
 }
 

@@ -158,15 +158,11 @@ SurfacePlace ShellProjection::bracket(const VoxelVolume& volume, const SurfacePl
 
 Eigen::Vector3f ShellProjection::normal(const VoxelVolume& volume, const SurfacePlace& place,
                                         ShellNormals kind) const noexcept {
-    if (kind == ShellNormals::kTrilinear)
-        return normalOf(sampleField(readCorners(volume, place.cell), place.at).slope);
-    const Eigen::Vector3f gradient = centralGradient(volume, inverse_spacing_, place);
-    const float length = gradient.norm();
-    return length > 0 ? Eigen::Vector3f(-gradient / length) : Eigen::Vector3f::Zero();
-}
-
-Eigen::Vector3f ShellProjection::normalOf(const Eigen::Vector3f& slope) const noexcept {
-    const Eigen::Vector3f gradient = slope.cwiseProduct(inverse_spacing_);
+    const Eigen::Vector3f gradient =
+        kind == ShellNormals::kCentralDifference
+            ? centralGradient(volume, inverse_spacing_, place)
+            : Eigen::Vector3f(sampleField(readCorners(volume, place.cell), place.at)
+                                  .slope.cwiseProduct(inverse_spacing_));
     const float length = gradient.norm();
     return length > 0 ? Eigen::Vector3f(-gradient / length) : Eigen::Vector3f::Zero();
 }

@@ -51,9 +51,8 @@ class ShellProjection {
     }
     Eigen::Vector3f normal(const VoxelVolume& volume, const SurfacePlace& place,
                            ShellNormals kind) const noexcept;
-    // Of a slope of the trilinear density, counts per cell step.
-    Eigen::Vector3f normalOf(const Eigen::Vector3f& slope) const noexcept;
     const Eigen::Vector3f& spacing() const noexcept { return spacing_; }
+    const Eigen::Vector3f& inverseSpacing() const noexcept { return inverse_spacing_; }
     // Per axis, (unit / spacing)², unit = the largest spacing: makes a slope a way in equal units.
     const Eigen::Vector3f& steepness() const noexcept { return steepness_; }
 

@@ -45,7 +45,7 @@ SurfaceCells::SurfaceCells(const VoxelVolume& volume, const Eigen::Vector3i& lea
     inside_.resize(most);
     is_found_.resize(most);
     for (auto& values : excess_) values.resize(most);
-    for (auto* values : {&area_, &x_, &y_, &z_, &to_x_, &to_y_, &to_z_, &slope_x_, &slope_y_, &slope_z_})
+    for (auto* values : {&area_, &x_, &y_, &z_, &to_x_, &to_y_, &to_z_, &normal_x_, &normal_y_, &normal_z_})
         values->resize(most);
 }
 
@@ -64,14 +64,15 @@ void SurfaceCells::collect(const VoxelVolume& volume, const Eigen::Vector3i& lea
                           {area_.data(), x_.data(), y_.data(), z_.data()});
 }
 
-void SurfaceCells::project(const Eigen::Vector3f& steepness) noexcept {
+void SurfaceCells::project(const ShellProjection& projection) noexcept {
     const size_t padded = (count_ + kCellLanes - 1) / kCellLanes * kCellLanes;
     std::copy_n(x_.begin(), padded, to_x_.begin());
     std::copy_n(y_.begin(), padded, to_y_.begin());
     std::copy_n(z_.begin(), padded, to_z_.begin());
-    kernels().projectIntoCells(arrays(), steepness.data(), kProjectionTolerance, kNewtonSteps,
-                               {to_x_.data(), to_y_.data(), to_z_.data(), slope_x_.data(), slope_y_.data(),
-                                slope_z_.data(), is_found_.data()});
+    kernels().projectIntoCells(arrays(), projection.steepness().data(), projection.inverseSpacing().data(),
+                               kProjectionTolerance, kNewtonSteps,
+                               {to_x_.data(), to_y_.data(), to_z_.data(), normal_x_.data(), normal_y_.data(),
+                                normal_z_.data(), is_found_.data()});
 }
 
 void SurfaceCells::findCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "haptic_server/contact/shell_point.h"
 #include "haptic_server/kernels/kernels.h"
 #include "haptic_server/volume/voxel_volume.h"
 
@@ -31,13 +32,14 @@ class SurfaceCells {
 
     // A place of each cell's trilinear iso-surface, from the patch's centroid; see ShellProjection::walk().
     struct Projected {
-        Eigen::Vector3f at;     // cell steps
-        Eigen::Vector3f slope;  // of the density, counts per cell step
+        Eigen::Vector3f at;      // cell steps
+        Eigen::Vector3f normal;  // of the trilinear density; V, unit or zero
         bool is_found;
     };
-    void project(const Eigen::Vector3f& steepness) noexcept;
+    void project(const ShellProjection& projection) noexcept;
     Projected projected(size_t n) const noexcept {
-        return {{to_x_[n], to_y_[n], to_z_[n]}, {slope_x_[n], slope_y_[n], slope_z_[n]}, is_found_[n] != 0};
+        return {
+            {to_x_[n], to_y_[n], to_z_[n]}, {normal_x_[n], normal_y_[n], normal_z_[n]}, is_found_[n] != 0};
     }
 
   private:
@@ -63,7 +65,7 @@ class SurfaceCells {
     std::vector<int> inside_;       // which corners are inside the bone
     std::vector<float> excess_[8];  // density minus iso at the corners, counts
     std::vector<float> area_, x_, y_, z_;
-    std::vector<float> to_x_, to_y_, to_z_, slope_x_, slope_y_, slope_z_;
+    std::vector<float> to_x_, to_y_, to_z_, normal_x_, normal_y_, normal_z_;
     std::vector<int> is_found_;
 };
 

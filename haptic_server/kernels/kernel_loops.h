@@ -142,6 +142,27 @@ void addContacts(const ContactFrame& frame, const float* __restrict x, const flo
     }
 }
 
+using Floats = float __attribute__((vector_size(4 * kCellLanes)));
+using Ints = int __attribute__((vector_size(4 * kCellLanes)));
+
+inline void load(const float* p, Floats& v) {
+    __builtin_memcpy(&v, p, sizeof v);
+}
+inline void load(const int* p, Ints& v) {
+    __builtin_memcpy(&v, p, sizeof v);
+}
+inline void store(const Floats& v, float* p) {
+    __builtin_memcpy(p, &v, sizeof v);
+}
+inline void store(const Ints& v, int* p) {
+    __builtin_memcpy(p, &v, sizeof v);
+}
+inline void rootOf(const Floats& v, Floats& out) {
+    alignas(64) float in[kCellLanes], result[kCellLanes];
+    store(v, in);
+    for (int l = 0; l < kCellLanes; ++l) result[l] = root(in[l]);
+    load(result, out);
+}
 constexpr int kWordLanes = 16;
 using Words = uint16_t __attribute__((vector_size(2 * kWordLanes)));
 
@@ -169,33 +190,39 @@ bool isFinished(const uint16_t* row, int count) {
 template <int kDirection>
 MilledRow millRow(const BurrRow& burr, const uint16_t* __restrict row, int count, uint16_t* __restrict out) {
     if (isFinished<kDirection>(row, count)) return {0, 0, 0};
-    constexpr int kLanes = kRowSlack + 1;
-    static_assert(kLanes == kWordLanes);
-    constexpr float kMost = 65535;
+    static_assert(kWordLanes == kRowSlack + 1 && kWordLanes == kCellLanes);
+    constexpr float kMost = 65535, kCore = kDirection < 0 ? 0 : kMost;
     const BurrRow b = burr;
-    int changed[kLanes] = {}, removed[kLanes] = {}, added[kLanes] = {};
-    for (int i = 0; i < count; i += kLanes)
-        for (int l = 0; l < kLanes; ++l) {
-            const float x = b.first_x + float(i + l) * b.step_x;
-            const float squared = x * x + b.off_row_squared;
-            const float ramp = float(b.iso) - kDirection * b.slope * (root(squared) - b.radius);
-            const float clamped = least(largest(ramp, 0.0f), kMost) + 0.5f;
-            const float cored = squared < b.core_squared ? (kDirection < 0 ? 0.0f : kMost) : clamped;
-            const int limit = int(cored);
-            const int old = row[i + l];
-            const int moved = kDirection < 0 ? largest(limit, old - b.amount) : least(limit, old + b.amount);
-            const int towards = kDirection < 0 ? least(old, moved) : largest(old, moved);
-            const int now = ((squared < b.reach_squared) & (i + l < count)) ? towards : old;
-            out[i + l] = uint16_t(now);
-            changed[l] += now != old;
-            removed[l] += (old >= b.iso) & (now < b.iso);
-            added[l] += (old < b.iso) & (now >= b.iso);
-        }
+    Ints lane, changed{}, removed{}, added{};  // counts below zero: a true comparison is -1
+    for (int l = 0; l < kWordLanes; ++l) lane[l] = l;
+    for (int i = 0; i < count; i += kWordLanes) {
+        Words words;
+        load(row + i, words);
+        const Ints old = __builtin_convertvector(words, Ints);
+        const Floats x = b.first_x + __builtin_convertvector(lane + i, Floats) * b.step_x;
+        const Floats squared = x * x + b.off_row_squared;
+        Floats distance;
+        rootOf(squared, distance);
+        const Floats ramp = float(b.iso) - float(kDirection) * b.slope * (distance - b.radius);
+        const Floats low = ramp < 0 ? Floats{} : ramp;
+        const Floats clamped = (low > kMost ? Floats{} + kMost : low) + 0.5f;
+        const Ints limit =
+            __builtin_convertvector(squared < b.core_squared ? Floats{} + kCore : clamped, Ints);
+        const Ints step = old + kDirection * b.amount;
+        const Ints moved = kDirection < 0 ? (limit > step ? limit : step) : (limit < step ? limit : step);
+        const Ints towards = kDirection < 0 ? (moved < old ? moved : old) : (moved > old ? moved : old);
+        const Ints now = (squared < b.reach_squared) & (lane + i < count) ? towards : old;
+        const Words fresh = __builtin_convertvector(now, Words);
+        __builtin_memcpy(out + i, &fresh, sizeof fresh);
+        changed += now != old;
+        removed += (old >= b.iso) & (now < b.iso);
+        added += (old < b.iso) & (now >= b.iso);
+    }
     MilledRow sum{0, 0, 0};
-    for (int l = 0; l < kLanes; ++l) {
-        sum.changed += changed[l];
-        sum.removed += removed[l];
-        sum.added += added[l];
+    for (int l = 0; l < kWordLanes; ++l) {
+        sum.changed -= changed[l];
+        sum.removed -= removed[l];
+        sum.added -= added[l];
     }
     return sum;
 }
@@ -203,27 +230,6 @@ MilledRow millRow(const BurrRow& burr, const uint16_t* __restrict row, int count
 // Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1); edges 4 a .. 4 a + 3 run along axis a.
 constexpr int kEdgeLow[12] = {0, 2, 4, 6, 0, 1, 4, 5, 0, 1, 2, 3};
 
-using Floats = float __attribute__((vector_size(4 * kCellLanes)));
-using Ints = int __attribute__((vector_size(4 * kCellLanes)));
-
-inline void load(const float* p, Floats& v) {
-    __builtin_memcpy(&v, p, sizeof v);
-}
-inline void load(const int* p, Ints& v) {
-    __builtin_memcpy(&v, p, sizeof v);
-}
-inline void store(const Floats& v, float* p) {
-    __builtin_memcpy(p, &v, sizeof v);
-}
-inline void store(const Ints& v, int* p) {
-    __builtin_memcpy(p, &v, sizeof v);
-}
-inline void rootOf(const Floats& v, Floats& out) {
-    alignas(64) float in[kCellLanes], result[kCellLanes];
-    store(v, in);
-    for (int l = 0; l < kCellLanes; ++l) result[l] = root(in[l]);
-    load(result, out);
-}
 template <class T, class Vector>
 inline void gather(const T* table, const Ints& index, Vector& out) {
     alignas(64) int at[kCellLanes];
@@ -321,8 +327,8 @@ inline void isWithin(const Floats& v, float low, float high, Ints& mask) {
     mask &= (v >= low) & (v <= high);
 }
 
-void projectIntoCells(const CellArrays& cells, const float steepness[3], float tolerance, int most_steps,
-                      const CellProjections& out) {
+void projectIntoCells(const CellArrays& cells, const float steepness[3], const float inverse_spacing[3],
+                      float tolerance, int most_steps, const CellProjections& out) {
     for (int first = 0; first < cells.count; first += kCellLanes) {
         Floats e[8], limit{};
         for (int corner = 0; corner < 8; ++corner) {
@@ -358,8 +364,14 @@ void projectIntoCells(const CellArrays& cells, const float steepness[3], float t
             p.z = walks ? next.z : p.z;
         }
         store(p.x, out.x + first), store(p.y, out.y + first), store(p.z, out.z + first);
-        store(slope.x, out.slope_x + first), store(slope.y, out.slope_y + first),
-            store(slope.z, out.slope_z + first);
+        const Floats gx = slope.x * inverse_spacing[0], gy = slope.y * inverse_spacing[1],
+                     gz = slope.z * inverse_spacing[2];
+        Floats length;
+        rootOf(gx * gx + gy * gy + gz * gz, length);
+        const Floats scale = length > 0 ? -1 / length : Floats{};
+        store(gx * scale, out.normal_x + first);
+        store(gy * scale, out.normal_y + first);
+        store(gz * scale, out.normal_z + first);
         store(is_found & 1, out.is_found + first);
     }
 }

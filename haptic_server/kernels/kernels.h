@@ -104,9 +104,10 @@ struct CellPatches {
 };
 // Projection of a point of each cell onto its trilinear iso-surface.
 struct CellProjections {
-    float *x, *y, *z;                    // in: where it starts; out: where it ended
-    float *slope_x, *slope_y, *slope_z;  // of the density there, counts per cell step
-    int* is_found;                       // 0: it left the cell or found no way
+    float *x, *y, *z;  // in: where it starts; out: where it ended
+    float *normal_x, *normal_y,
+        *normal_z;  // unit, against the density's gradient there; zero where that is zero
+    int* is_found;  // 0: it left the cell or found no way
 };
 
 // The voxels, for kernels that look at any of them. Readable: -1 .. dims on each axis.
@@ -138,8 +139,9 @@ struct Kernels {
                         const CellPatches& out);
     // At most `most_steps` Newton steps along the slope times `steepness`, until the density is within
     // `tolerance` times the largest excess at the corners.
-    void (*projectIntoCells)(const CellArrays& cells, const float steepness[3], float tolerance,
-                             int most_steps, const CellProjections& out);
+    void (*projectIntoCells)(const CellArrays& cells, const float steepness[3],
+                             const float inverse_spacing[3], float tolerance, int most_steps,
+                             const CellProjections& out);
     // Newton steps up or down the density's gradient, from cell to cell.
     void (*moveOntoSurface)(const DensityView& density, int steps, const SurfacePoints& points);
     // The least of (value - lowest) * scale over the elements; never above `most`.
