@@ -6,6 +6,17 @@
 namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
 namespace {
 
+// Of single precision, in one register: GCC 12 takes wider vectors apart into scalars where it must choose
+// lanes.
+#if defined(__AVX512F__)
+constexpr int kWidth = 16;
+#elif defined(__AVX2__)
+constexpr int kWidth = 8;
+#else
+constexpr int kWidth = 4;
+#endif
+static_assert(kCellLanes % kWidth == 0 && (kRowSlack + 1) % kWidth == 0);
+
 template <class Scalar>
 inline Scalar least(Scalar a, Scalar b) {
     return b < a ? b : a;
@@ -72,21 +83,34 @@ void sampleNearerRound(const RoundSolid<Scalar>& solid, const Scalar* __restrict
     }
 }
 
-constexpr int kSumLanes = 8;
-using Lanes = double __attribute__((vector_size(8 * kSumLanes)));
+constexpr int kSumLanes = 8;  // of every sum, whatever the width of the registers
+using Doubles = double __attribute__((vector_size(4 * kWidth)));
+constexpr int kDoubles = kWidth / 2, kParts = kSumLanes / kDoubles;
 
-inline void load(const double* p, Lanes& lanes) {
-    __builtin_memcpy(&lanes, p, sizeof lanes);
+inline void load(const double* p, Doubles& v) {
+    __builtin_memcpy(&v, p, sizeof v);
 }
-inline double total(const Lanes& v) {
+double total(const Doubles (&parts)[kParts]) {
+    double v[kSumLanes];
+    __builtin_memcpy(v, parts, sizeof v);
     return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
 }
 double dot(const double* a, const double* b, int padded) {
-    Lanes sum{}, x, y;
-    for (int i = 0; i < padded; i += kSumLanes) {
-        load(a + i, x), load(b + i, y);
-        sum += x * y;
-    }
+    Doubles sum[kParts] = {}, x, y;
+    for (int i = 0; i < padded; i += kSumLanes)
+        for (int part = 0; part < kParts; ++part) {
+            load(a + i + part * kDoubles, x), load(b + i + part * kDoubles, y);
+            sum[part] += x * y;
+        }
+    return total(sum);
+}
+double sumOf(const double* a, int padded) {
+    Doubles sum[kParts] = {}, x;
+    for (int i = 0; i < padded; i += kSumLanes)
+        for (int part = 0; part < kParts; ++part) {
+            load(a + i + part * kDoubles, x);
+            sum[part] += x;
+        }
     return total(sum);
 }
 
@@ -121,15 +145,8 @@ void addContacts(const ContactFrame& frame, const float* __restrict x, const flo
         for (int axis = 0; axis < 6; ++axis) J[axis][i] = 0;
         pull[i] = k[i] = energy[i] = depths[i] = 0;
     }
-    Lanes energies{}, deepest{}, part;
-    for (int i = 0; i < padded; i += kSumLanes) {
-        load(energy + i, part);
-        energies += part;
-        load(depths + i, part);
-        deepest = deepest < part ? part : deepest;
-    }
-    sums.energy += total(energies);
-    for (int n = 0; n < kSumLanes; ++n) sums.max_depth = largest(sums.max_depth, deepest[n]);
+    sums.energy += sumOf(energy, padded);
+    for (int i = 0; i < count; ++i) sums.max_depth = largest(sums.max_depth, depths[i]);
     for (int axis = 0; axis < 3; ++axis) {
         sums.force[axis] -= dot(pull, J[axis], padded);
         sums.torque[axis] -= dot(pull, J[3 + axis], padded);
@@ -142,8 +159,8 @@ void addContacts(const ContactFrame& frame, const float* __restrict x, const flo
     }
 }
 
-using Floats = float __attribute__((vector_size(4 * kCellLanes)));
-using Ints = int __attribute__((vector_size(4 * kCellLanes)));
+using Floats = float __attribute__((vector_size(4 * kWidth)));
+using Ints = int __attribute__((vector_size(4 * kWidth)));
 
 inline void load(const float* p, Floats& v) {
     __builtin_memcpy(&v, p, sizeof v);
@@ -158,16 +175,20 @@ inline void store(const Ints& v, int* p) {
     __builtin_memcpy(p, &v, sizeof v);
 }
 inline void rootOf(const Floats& v, Floats& out) {
-    alignas(64) float in[kCellLanes], result[kCellLanes];
+    alignas(64) float in[kWidth], result[kWidth];
     store(v, in);
-    for (int l = 0; l < kCellLanes; ++l) result[l] = root(in[l]);
+    for (int l = 0; l < kWidth; ++l) result[l] = root(in[l]);
     load(result, out);
 }
-constexpr int kWordLanes = 16;
-using Words = uint16_t __attribute__((vector_size(2 * kWordLanes)));
 
-// By reference: the way a vector is returned depends on the instruction set.
-inline void load(const uint16_t* p, Words& words) {
+// As many densities as there are single precision lanes.
+using Words = uint16_t __attribute__((vector_size(2 * kWidth)));
+// For rows that are only looked at.
+constexpr int kWideWords = kWidth == 4 ? 8 : 16;
+using WideWords = uint16_t __attribute__((vector_size(2 * kWideWords)));
+
+template <class W>
+inline void loadWords(const uint16_t* p, W& words) {
     __builtin_memcpy(&words, p, sizeof words);
 }
 
@@ -175,14 +196,15 @@ inline void load(const uint16_t* p, Words& words) {
 template <int kDirection>
 bool isFinished(const uint16_t* row, int count) {
     constexpr uint16_t kFinished = kDirection < 0 ? 0 : 65535;
-    Words any{}, part;
-    for (int i = 0; i < count; i += kWordLanes) {
-        load(row + i, part);
+    WideWords any{}, part;
+    for (int i = 0; i < count; i += kWideWords) {
+        loadWords(row + i, part);
         any |= part ^ kFinished;
     }
-    uint64_t parts[sizeof any / sizeof(uint64_t)];
+    uint64_t parts[sizeof any / sizeof(uint64_t)], left = 0;
     __builtin_memcpy(parts, &any, sizeof any);
-    return (parts[0] | parts[1] | parts[2] | parts[3]) == 0;
+    for (const uint64_t p : parts) left |= p;
+    return left == 0;
 }
 
 // kDirection: -1 removes, +1 adds. Without branches; lanes beyond the burr's reach or the row keep their
@@ -190,14 +212,13 @@ bool isFinished(const uint16_t* row, int count) {
 template <int kDirection>
 MilledRow millRow(const BurrRow& burr, const uint16_t* __restrict row, int count, uint16_t* __restrict out) {
     if (isFinished<kDirection>(row, count)) return {0, 0, 0};
-    static_assert(kWordLanes == kRowSlack + 1 && kWordLanes == kCellLanes);
     constexpr float kMost = 65535, kCore = kDirection < 0 ? 0 : kMost;
     const BurrRow b = burr;
     Ints lane, changed{}, removed{}, added{};  // counts below zero: a true comparison is -1
-    for (int l = 0; l < kWordLanes; ++l) lane[l] = l;
-    for (int i = 0; i < count; i += kWordLanes) {
+    for (int l = 0; l < kWidth; ++l) lane[l] = l;
+    for (int i = 0; i < count; i += kWidth) {
         Words words;
-        load(row + i, words);
+        loadWords(row + i, words);
         const Ints old = __builtin_convertvector(words, Ints);
         const Floats x = b.first_x + __builtin_convertvector(lane + i, Floats) * b.step_x;
         const Floats squared = x * x + b.off_row_squared;
@@ -219,7 +240,7 @@ MilledRow millRow(const BurrRow& burr, const uint16_t* __restrict row, int count
         added += (old < b.iso) & (now >= b.iso);
     }
     MilledRow sum{0, 0, 0};
-    for (int l = 0; l < kWordLanes; ++l) {
+    for (int l = 0; l < kWidth; ++l) {
         sum.changed -= changed[l];
         sum.removed -= removed[l];
         sum.added -= added[l];
@@ -232,21 +253,21 @@ constexpr int kEdgeLow[12] = {0, 2, 4, 6, 0, 1, 4, 5, 0, 1, 2, 3};
 
 template <class T, class Vector>
 inline void gather(const T* table, const Ints& index, Vector& out) {
-    alignas(64) int at[kCellLanes];
-    alignas(64) T result[kCellLanes];
+    alignas(64) int at[kWidth];
+    alignas(64) T result[kWidth];
     store(index, at);
-    for (int l = 0; l < kCellLanes; ++l) result[l] = table[at[l]];
+    for (int l = 0; l < kWidth; ++l) result[l] = table[at[l]];
     load(result, out);
 }
 inline bool isAny(const Ints& mask) {
     int any = 0;
-    for (int l = 0; l < kCellLanes; ++l) any |= mask[l];
+    for (int l = 0; l < kWidth; ++l) any |= mask[l];
     return any != 0;
 }
 
 // Where the density, linear along each edge, equals iso, for kCellLanes cells: [axis][edge][lane], cell
 // steps. Edges that are not crossed hold anything.
-void crossings(const CellArrays& cells, int first, float (&at)[3][12 * kCellLanes]) {
+void crossings(const CellArrays& cells, int first, float (&at)[3][12 * kWidth]) {
     for (int edge = 0; edge < 12; ++edge) {
         const int axis = edge / 4, low_corner = kEdgeLow[edge];
         Floats low, high;
@@ -254,7 +275,7 @@ void crossings(const CellArrays& cells, int first, float (&at)[3][12 * kCellLane
         load(cells.excess[low_corner | 1 << axis] + first, high);
         for (int d = 0; d < 3; ++d)
             store(d == axis ? low / (low - high) : Floats{} + float(low_corner >> d & 1),
-                  at[d] + edge * kCellLanes);
+                  at[d] + edge * kWidth);
     }
 }
 
@@ -262,8 +283,8 @@ struct Points {
     Floats x, y, z;
 };
 
-inline void crossingOn(const float (&at)[3][12 * kCellLanes], const Ints& edge, const Ints& lane, Points& p) {
-    const Ints index = edge * kCellLanes + lane;
+inline void crossingOn(const float (&at)[3][12 * kWidth], const Ints& edge, const Ints& lane, Points& p) {
+    const Ints index = edge * kWidth + lane;
     gather(at[0], index, p.x);
     gather(at[1], index, p.y);
     gather(at[2], index, p.z);
@@ -272,9 +293,9 @@ inline void crossingOn(const float (&at)[3][12 * kCellLanes], const Ints& edge, 
 void cellPatches(const CellArrays& cells, const int* triangle_edges, const float steps[3],
                  const CellPatches& out) {
     Ints lane;
-    for (int l = 0; l < kCellLanes; ++l) lane[l] = l;
-    for (int first = 0; first < cells.count; first += kCellLanes) {
-        alignas(64) float at[3][12 * kCellLanes];
+    for (int l = 0; l < kWidth; ++l) lane[l] = l;
+    for (int first = 0; first < cells.count; first += kWidth) {
+        alignas(64) float at[3][12 * kWidth];
         crossings(cells, first, at);
         Ints inside;
         load(cells.inside + first, inside);
@@ -329,7 +350,7 @@ inline void isWithin(const Floats& v, float low, float high, Ints& mask) {
 
 void projectIntoCells(const CellArrays& cells, const float steepness[3], const float inverse_spacing[3],
                       float tolerance, int most_steps, const CellProjections& out) {
-    for (int first = 0; first < cells.count; first += kCellLanes) {
+    for (int first = 0; first < cells.count; first += kWidth) {
         Floats e[8], limit{};
         for (int corner = 0; corner < 8; ++corner) {
             load(cells.excess[corner] + first, e[corner]);
@@ -387,9 +408,9 @@ inline void cellUnder(const Floats& u, int dim, Ints& cell, Floats& in_cell) {
 
 // Densities minus iso at the corners of each lane's cell.
 void readCells(const DensityView& d, const Ints& i, const Ints& j, const Ints& k, Floats (&e)[8]) {
-    alignas(64) float corner[8][kCellLanes];
+    alignas(64) float corner[8][kWidth];
     const float iso = float(d.iso);
-    for (int l = 0; l < kCellLanes; ++l) {
+    for (int l = 0; l < kWidth; ++l) {
         const uint16_t* p = d.first + i[l] + int64_t(d.stride_y) * j[l] + int64_t(d.stride_z) * k[l];
         corner[0][l] = float(p[0]), corner[1][l] = float(p[1]);
         corner[2][l] = float(p[d.stride_y]), corner[3][l] = float(p[d.stride_y + 1]);
@@ -406,7 +427,7 @@ void readCells(const DensityView& d, const Ints& i, const Ints& j, const Ints& k
 void moveOntoSurface(const DensityView& density, int steps, const SurfacePoints& points) {
     const DensityView d = density;
     const float ix = d.inverse_spacing[0], iy = d.inverse_spacing[1], iz = d.inverse_spacing[2];
-    for (int first = 0; first < points.count; first += kCellLanes) {
+    for (int first = 0; first < points.count; first += kWidth) {
         Points start, p, own, in_cell, slope;
         Floats reach_squared, excess, e[8];
         load(points.x + first, start.x), load(points.y + first, start.y), load(points.z + first, start.z);
@@ -414,7 +435,7 @@ void moveOntoSurface(const DensityView& density, int steps, const SurfacePoints&
             load(points.own_z + first, own.z);
         load(points.reach_squared + first, reach_squared);
         Ints is_found = ~Ints{};
-        for (int l = 0; l < kCellLanes; ++l) is_found[l] = first + l < points.count ? -1 : 0;
+        for (int l = 0; l < kWidth; ++l) is_found[l] = first + l < points.count ? -1 : 0;
         const Floats zero{};
         start.x = is_found ? start.x : zero, start.y = is_found ? start.y : zero,
         start.z = is_found ? start.z : zero;
@@ -458,18 +479,18 @@ float leastScaled(const float* __restrict value, const float* __restrict lowest,
 
 void rangeOfRows(const uint16_t* row, int count, size_t stride, int rows, uint16_t& low, uint16_t& high) {
     uint16_t l = low, h = high;
-    if (count < kWordLanes) {
+    if (count < kWideWords) {
         for (int r = 0; r < rows; ++r, row += stride)
             for (int i = 0; i < count; ++i) l = least(l, row[i]), h = largest(h, row[i]);
     } else {
-        Words lows = Words{} + l, highs = Words{} + h, part;
+        WideWords lows = WideWords{} + l, highs = WideWords{} + h, part;
         for (int r = 0; r < rows; ++r, row += stride)
-            for (int i = 0; i < count; i += kWordLanes) {
-                load(row + least(i, count - kWordLanes), part);  // the last one may overlap
+            for (int i = 0; i < count; i += kWideWords) {
+                loadWords(row + least(i, count - kWideWords), part);  // the last one may overlap
                 lows = part < lows ? part : lows;
                 highs = highs < part ? part : highs;
             }
-        for (int n = 0; n < kWordLanes; ++n) l = least(l, lows[n]), h = largest(h, highs[n]);
+        for (int n = 0; n < kWideWords; ++n) l = least(l, lows[n]), h = largest(h, highs[n]);
     }
     low = l, high = h;
 }
