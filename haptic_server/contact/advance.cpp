@@ -51,7 +51,7 @@ double GradientContact::sweptShare(const ToolField& tool, const Pose& X_VT) cons
         into_tool.fill(batch, &c.x[first], &c.y[first], &c.z[first],
                        int(std::min<size_t>(kBatch, c.count - first)));
         tool.distances(batch, distance);
-        least = kernels().leastScaled(distance, &lowest_[first], &inverse_rate_[first], batch.count, least);
+        least = kernels().least_scaled(distance, &lowest_[first], &inverse_rate_[first], batch.count, least);
     }
     return std::max(0.0, double(least));
 }

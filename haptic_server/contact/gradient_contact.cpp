@@ -175,8 +175,8 @@ class TouchingPoints {
         }
         into_tool_.fill(batch_, x_, y_, z_, count);
         tool_.sample(batch_, at_);
-        kernels().points<Scalar>().addContacts(frame_, x_, y_, z_, weight_, at_.distance, at_.gx, at_.gy,
-                                               at_.gz, count, sums_);
+        kernels().points<Scalar>().add_contacts(frame_, x_, y_, z_, weight_, at_.distance, at_.gx, at_.gy,
+                                                at_.gz, count, sums_);
         contacts_ += uint32_t(count);
         std::copy(touching_ + count, touching_ + touching_count_, touching_);
         touching_count_ -= count;

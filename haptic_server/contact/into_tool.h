@@ -20,7 +20,7 @@ class IntoTool {
     void fill(PointBatch<Scalar>& batch, const float* x, const float* y, const float* z,
               int count) const noexcept {
         batch.count = count;
-        kernels().points<Scalar>().intoFrame(frame_, x, y, z, count, batch.x, batch.y, batch.z);
+        kernels().points<Scalar>().into_frame(frame_, x, y, z, count, batch.x, batch.y, batch.z);
     }
 
   private:

@@ -98,9 +98,9 @@ void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t co
         view.origin[axis] = float(origin_[axis]);
     }
     Candidates& c = candidates_;
-    kernels().moveOntoSurface(view, kPlaceSteps,
-                              {&c.x[coarse], &c.y[coarse], &c.z[coarse], &own_x_[coarse], &own_y_[coarse],
-                               &own_z_[coarse], &reach_squared_[coarse], int(c.count - coarse)});
+    kernels().move_onto_surface(view, kPlaceSteps,
+                                {&c.x[coarse], &c.y[coarse], &c.z[coarse], &own_x_[coarse], &own_y_[coarse],
+                                 &own_z_[coarse], &reach_squared_[coarse], int(c.count - coarse)});
 }
 
 // The last places take those of the patches that were split.

@@ -60,8 +60,8 @@ CellArrays SurfaceCells::arrays() const noexcept {
 void SurfaceCells::collect(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
                            const IndexBox& cells) noexcept {
     findCells(volume, leaf_first, cells);
-    kernels().cellPatches(arrays(), triangle_edges_.data(), steps_.data(),
-                          {area_.data(), x_.data(), y_.data(), z_.data()});
+    kernels().cell_patches(arrays(), triangle_edges_.data(), steps_.data(),
+                           {area_.data(), x_.data(), y_.data(), z_.data()});
 }
 
 void SurfaceCells::project(const ShellProjection& projection) noexcept {
@@ -69,10 +69,10 @@ void SurfaceCells::project(const ShellProjection& projection) noexcept {
     std::copy_n(x_.begin(), padded, to_x_.begin());
     std::copy_n(y_.begin(), padded, to_y_.begin());
     std::copy_n(z_.begin(), padded, to_z_.begin());
-    kernels().projectIntoCells(arrays(), projection.steepness().data(), projection.inverseSpacing().data(),
-                               kProjectionTolerance, kNewtonSteps,
-                               {to_x_.data(), to_y_.data(), to_z_.data(), normal_x_.data(), normal_y_.data(),
-                                normal_z_.data(), is_found_.data()});
+    kernels().project_into_cells(arrays(), projection.steepness().data(), projection.inverseSpacing().data(),
+                                 kProjectionTolerance, kNewtonSteps,
+                                 {to_x_.data(), to_y_.data(), to_z_.data(), normal_x_.data(),
+                                  normal_y_.data(), normal_z_.data(), is_found_.data()});
 }
 
 void SurfaceCells::findCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,

@@ -501,12 +501,12 @@ extern const Kernels kTable;
 const Kernels kTable = {
     .single = {intoFrame<float>, nearerRound<float>, sampleNearerRound<float>, addContacts<float>},
     .twice = {intoFrame<double>, nearerRound<double>, sampleNearerRound<double>, addContacts<double>},
-    .removeRow = millRow<-1>,
-    .addRow = millRow<+1>,
-    .cellPatches = cellPatches,
-    .projectIntoCells = projectIntoCells,
-    .moveOntoSurface = moveOntoSurface,
-    .leastScaled = leastScaled,
-    .rangeOfRows = rangeOfRows};
+    .remove_row = millRow<-1>,
+    .add_row = millRow<+1>,
+    .cell_patches = cellPatches,
+    .project_into_cells = projectIntoCells,
+    .move_onto_surface = moveOntoSurface,
+    .least_scaled = leastScaled,
+    .range_of_rows = rangeOfRows};
 
 }  // namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE

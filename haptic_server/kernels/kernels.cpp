@@ -29,7 +29,7 @@ CpuLevel bestLevel() noexcept {
 }
 
 // Not inside a function: the lock of its first call has no place in a tick.
-const Kernels& kBest = kernelsOf(bestLevel());
+const Kernels& best_kernels = kernelsOf(bestLevel());
 
 }  // namespace
 
@@ -63,7 +63,7 @@ const Kernels& kernelsOf(CpuLevel level) noexcept {
 }
 
 const Kernels& kernels() noexcept {
-    return kBest;
+    return best_kernels;
 }
 
 }  // namespace bonemill

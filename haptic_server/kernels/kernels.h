@@ -52,20 +52,20 @@ inline constexpr int kContactBatch = 64;
 
 template <class Scalar>
 struct PointKernels {
-    void (*intoFrame)(const FrameChange<Scalar>& frame, const float* x, const float* y, const float* z,
-                      int count, Scalar* out_x, Scalar* out_y, Scalar* out_z);
+    void (*into_frame)(const FrameChange<Scalar>& frame, const float* x, const float* y, const float* z,
+                       int count, Scalar* out_x, Scalar* out_y, Scalar* out_z);
     // out = min(out, distance).
-    void (*nearerRound)(const RoundSolid<Scalar>& solid, const Scalar* x, const Scalar* y, const Scalar* z,
-                        int count, Scalar* out);
+    void (*nearer_round)(const RoundSolid<Scalar>& solid, const Scalar* x, const Scalar* y, const Scalar* z,
+                         int count, Scalar* out);
     // Where the solid is nearer than `distance`: its distance and gradient; on the axis the gradient is zero.
-    void (*sampleNearerRound)(const RoundSolid<Scalar>& solid, const Scalar* x, const Scalar* y,
-                              const Scalar* z, int count, Scalar* distance, Scalar* gx, Scalar* gy,
-                              Scalar* gz);
+    void (*sample_nearer_round)(const RoundSolid<Scalar>& solid, const Scalar* x, const Scalar* y,
+                                const Scalar* z, int count, Scalar* distance, Scalar* gx, Scalar* gy,
+                                Scalar* gz);
     // At most kContactBatch points inside the tool (distance < 0), from the frame's origin, with their
     // stiffness `weight` (N/m); gradients in the tool's axes.
-    void (*addContacts)(const ContactFrame& frame, const float* x, const float* y, const float* z,
-                        const float* weight, const Scalar* distance, const Scalar* gx, const Scalar* gy,
-                        const Scalar* gz, int count, ContactSums& sums);
+    void (*add_contacts)(const ContactFrame& frame, const float* x, const float* y, const float* z,
+                         const float* weight, const Scalar* distance, const Scalar* gx, const Scalar* gy,
+                         const Scalar* gz, int count, ContactSums& sums);
 };
 
 inline constexpr int kRowSlack = 15;
@@ -132,23 +132,23 @@ struct Kernels {
     PointKernels<double> twice;
     // out[0 .. count-1]: the row after milling with limits from above (remove) or from below (add); nothing
     // if it did not change. Reads up to kRowSlack voxels beyond the row, writes as many to out.
-    MilledRow (*removeRow)(const BurrRow& burr, const uint16_t* row, int count, uint16_t* out);
-    MilledRow (*addRow)(const BurrRow& burr, const uint16_t* row, int count, uint16_t* out);
+    MilledRow (*remove_row)(const BurrRow& burr, const uint16_t* row, int count, uint16_t* out);
+    MilledRow (*add_row)(const BurrRow& burr, const uint16_t* row, int count, uint16_t* out);
     // triangle_edges[kTriangleStride * inside + 3 * triangle + vertex]: a crossed edge of the cell.
-    void (*cellPatches)(const CellArrays& cells, const int* triangle_edges, const float steps[3],
-                        const CellPatches& out);
+    void (*cell_patches)(const CellArrays& cells, const int* triangle_edges, const float steps[3],
+                         const CellPatches& out);
     // At most `most_steps` Newton steps along the slope times `steepness`, until the density is within
     // `tolerance` times the largest excess at the corners.
-    void (*projectIntoCells)(const CellArrays& cells, const float steepness[3],
-                             const float inverse_spacing[3], float tolerance, int most_steps,
-                             const CellProjections& out);
+    void (*project_into_cells)(const CellArrays& cells, const float steepness[3],
+                               const float inverse_spacing[3], float tolerance, int most_steps,
+                               const CellProjections& out);
     // Newton steps up or down the density's gradient, from cell to cell.
-    void (*moveOntoSurface)(const DensityView& density, int steps, const SurfacePoints& points);
+    void (*move_onto_surface)(const DensityView& density, int steps, const SurfacePoints& points);
     // The least of (value - lowest) * scale over the elements; never above `most`.
-    float (*leastScaled)(const float* value, const float* lowest, const float* scale, int count, float most);
+    float (*least_scaled)(const float* value, const float* lowest, const float* scale, int count, float most);
     // Least and largest of `rows` rows that lie `stride` voxels apart, joined with what is there.
-    void (*rangeOfRows)(const uint16_t* row, int count, size_t stride, int rows, uint16_t& least,
-                        uint16_t& largest);
+    void (*range_of_rows)(const uint16_t* row, int count, size_t stride, int rows, uint16_t& least,
+                          uint16_t& largest);
 
     template <class Scalar>
     const PointKernels<Scalar>& points() const noexcept {

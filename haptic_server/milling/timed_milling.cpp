@@ -112,7 +112,7 @@ void TimedMilling::collectRow(const VoxelVolume& volume, const Eigen::Vector3i& 
     const size_t offset = volume.offset(first.x(), first.y(), first.z());
     const Density* old = volume.ownerData() + offset;
     Density* fresh = new_density_.data() + new_count_;
-    const auto mill = direction < 0 ? kernels().removeRow : kernels().addRow;
+    const auto mill = direction < 0 ? kernels().remove_row : kernels().add_row;
     const MilledRow milled = mill(burr, old, count, fresh);
     if (milled.changed == 0) return;
     int low = 0, high = count - 1;

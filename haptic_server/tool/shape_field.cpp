@@ -122,8 +122,8 @@ void ShapeField::nearest(const PointBatch<Scalar>& points_T, Scalar* out) const 
     std::fill_n(out, points_T.count, std::numeric_limits<Scalar>::max());
     for (const Solid& solid : solids_) {
         if (solid.is_round)
-            kernels().points<Scalar>().nearerRound(solid.round<Scalar>(), points_T.x, points_T.y, points_T.z,
-                                                   points_T.count, out);
+            kernels().points<Scalar>().nearer_round(solid.round<Scalar>(), points_T.x, points_T.y, points_T.z,
+                                                    points_T.count, out);
         else
             nearerCone(points_T, Axis<Scalar>(solid.from, solid.axis, solid.length), Scalar(solid.radius[0]),
                        Scalar(solid.radius[1]), out);
@@ -144,9 +144,9 @@ void ShapeField::sampleNearest(const PointBatch<Scalar>& points_T, SampleBatch<S
     std::fill_n(out.distance, points_T.count, std::numeric_limits<Scalar>::max());
     for (const Solid& solid : solids_) {
         if (solid.is_round) {
-            kernels().points<Scalar>().sampleNearerRound(solid.round<Scalar>(), points_T.x, points_T.y,
-                                                         points_T.z, points_T.count, out.distance, out.gx,
-                                                         out.gy, out.gz);
+            kernels().points<Scalar>().sample_nearer_round(solid.round<Scalar>(), points_T.x, points_T.y,
+                                                           points_T.z, points_T.count, out.distance, out.gx,
+                                                           out.gy, out.gz);
             continue;
         }
         for (int i = 0; i < points_T.count; ++i) {

@@ -29,8 +29,8 @@ DensityRange scan(const VoxelVolume& volume, const IndexBox& box, DensityRange k
                   const DensityRange& bounds) noexcept {
     const Eigen::Vector3i size = box.max - box.min + Eigen::Vector3i::Ones();
     for (int k = box.min.z(); k <= box.max.z() && !isSame(known, bounds); ++k)
-        kernels().rangeOfRows(volume.ownerData() + volume.offset(box.min.x(), box.min.y(), k), size.x(),
-                              volume.strideY(), size.y(), known.min, known.max);
+        kernels().range_of_rows(volume.ownerData() + volume.offset(box.min.x(), box.min.y(), k), size.x(),
+                                volume.strideY(), size.y(), known.min, known.max);
     return known;
 }
 

@@ -67,15 +67,15 @@ TEST_P(EveryLevel, SingleAndDoublePrecisionPoints) {
             for (const int which : {0, 1}) {
                 const PointKernels<Scalar>& k = (which ? ours() : oracle()).template points<Scalar>();
                 for (auto& v : p[which]) v.resize(size_t(n));
-                k.intoFrame(turn, x.data(), y.data(), z.data(), n, p[which][0].data(), p[which][1].data(),
-                            p[which][2].data());
+                k.into_frame(turn, x.data(), y.data(), z.data(), n, p[which][0].data(), p[which][1].data(),
+                             p[which][2].data());
                 nearer[which].assign(size_t(n), Scalar(1e-3));
-                k.nearerRound(capsule<Scalar>(), p[which][0].data(), p[which][1].data(), p[which][2].data(),
-                              n, nearer[which].data());
+                k.nearer_round(capsule<Scalar>(), p[which][0].data(), p[which][1].data(), p[which][2].data(),
+                               n, nearer[which].data());
                 for (auto& v : sample[which]) v.assign(size_t(n), Scalar(1e-3));
-                k.sampleNearerRound(capsule<Scalar>(), p[which][0].data(), p[which][1].data(),
-                                    p[which][2].data(), n, sample[which][0].data(), sample[which][1].data(),
-                                    sample[which][2].data(), sample[which][3].data());
+                k.sample_nearer_round(capsule<Scalar>(), p[which][0].data(), p[which][1].data(),
+                                      p[which][2].data(), n, sample[which][0].data(), sample[which][1].data(),
+                                      sample[which][2].data(), sample[which][3].data());
             }
             for (int axis = 0; axis < 3; ++axis) expectSameBits(p[0][axis], p[1][axis], n);
             expectSameBits(nearer[0], nearer[1], n);
@@ -108,8 +108,8 @@ TEST_P(EveryLevel, ContactSumsAreThoseOfPlainLoops) {
         ContactSums sums[2];
         for (const int which : {0, 1})
             (which ? ours() : oracle())
-                .single.addContacts(frame, x.data(), y.data(), z.data(), weight.data(), depth.data(),
-                                    gx.data(), gy.data(), gz.data(), n, sums[which]);
+                .single.add_contacts(frame, x.data(), y.data(), z.data(), weight.data(), depth.data(),
+                                     gx.data(), gy.data(), gz.data(), n, sums[which]);
         EXPECT_EQ(std::memcmp(&sums[0], &sums[1], sizeof sums[0]), 0);
         double energy = 0, force_x = 0, torque_z = 0, k_xx = 0, k_zz = 0, deepest = 0;
         for (size_t i = 0; i < size_t(n); ++i) {
@@ -153,7 +153,7 @@ TEST_P(EveryLevel, MilledRows) {
         for (const int which : {0, 1}) {
             out[which].assign(row.size(), 7);
             const Kernels& k = which ? ours() : oracle();
-            milled[which] = (removes ? k.removeRow : k.addRow)(burr, row.data(), n, out[which].data());
+            milled[which] = (removes ? k.remove_row : k.add_row)(burr, row.data(), n, out[which].data());
         }
         EXPECT_EQ(std::memcmp(&milled[0], &milled[1], sizeof milled[0]), 0);
         if (milled[0].changed == 0) continue;
@@ -187,7 +187,7 @@ TEST_P(EveryLevel, LeastScaledAndRanges) {
                    scale = randoms<float>(n, 0, 9);
         float least = 0.25f;
         for (size_t i = 0; i < size_t(n); ++i) least = std::min(least, (value[i] - lowest[i]) * scale[i]);
-        EXPECT_EQ(ours().leastScaled(value.data(), lowest.data(), scale.data(), n, 0.25f), least);
+        EXPECT_EQ(ours().least_scaled(value.data(), lowest.data(), scale.data(), n, 0.25f), least);
 
         const int width = 1 + below(40), rows = 1 + below(5);
         const size_t stride = size_t(width) + size_t(below(4));
@@ -199,7 +199,7 @@ TEST_P(EveryLevel, LeastScaledAndRanges) {
                 const uint16_t d = box[size_t(r) * stride + size_t(i)];
                 expected_low = std::min(expected_low, d), expected_high = std::max(expected_high, d);
             }
-        ours().rangeOfRows(box.data(), width, stride, rows, low, high);
+        ours().range_of_rows(box.data(), width, stride, rows, low, high);
         EXPECT_EQ(low, expected_low);
         EXPECT_EQ(high, expected_high);
     }
