@@ -12,6 +12,7 @@ using Eigen::Vector3d;
 
 constexpr int kMostAdvances = 64;
 constexpr double kSmallestAdvance = 1e-3;  // of the step
+constexpr double kRounding = 2e-7;  // m, of two distances in single precision some cm from the tool point
 
 }  // namespace
 
@@ -21,7 +22,7 @@ void GradientContact::startSweep(const ToolField& tool, const Pose& X_VT, const 
                                  double allowed_depth) noexcept {
     constexpr int kBatch = PointBatch<float>::kCapacity;
     const float speed = float(step.head<3>().norm()), turn = float(step.tail<3>().norm());
-    const float deepest = float(allowed_depth - 2 * tool.distanceError());
+    const float deepest = float(allowed_depth - kRounding);
     const IntoTool<float> into_tool(X_VT, origin_);
     PointBatch<float> batch;
     const Candidates& c = candidates_;

@@ -139,6 +139,31 @@ TEST(GradientModel, EveryPresetSettlesAndTellsItsIterations) {
     }
 }
 
+// Sweeps bound how deep a step may go, not whether the tool may move: also with a coarse grid of distances.
+TEST(GradientModel, AToolOfAGridPressesAndLeavesLikeOneOfShapes) {
+    const ContactScene scene = flatScene();
+    GradientConfig config = stiff();
+    config.burr_radius = kRadius / 2;  // halves the trust radius
+    constexpr int kTicks = 200;
+    double force[2] = {};
+    for (const ToolDistance distance : {ToolDistance::kAnalytic, ToolDistance::kGrid}) {
+        GradientModel model(config, scene.world(), 1e-3);
+        model.setAccuracy({.tool_distance = distance, .sdf_refinement = 1, .iterations = 8});
+        Pose spo{kAbove + Vector3d(0, 0, 0.5e-3), kUpright};
+        SpoStep step;
+        for (int n = 0; n < 2 * kTicks; ++n) {  // 0.1 m/s, which is swept, down and up again
+            const double way = std::min(2e-3, 1e-4 * (n < kTicks ? n : 2 * kTicks - n));
+            step = model.advance(spo, {kAbove + Vector3d(0, 0, 0.5e-3 - way), kUpright});
+            spo = step.spo;
+            if (n == kTicks - 1) force[int(distance)] = step.wrench_hand.force.z();
+        }
+        EXPECT_NEAR(spo.position.z(), kAbove.z() + 0.5e-3, 0.3e-3);
+        EXPECT_EQ(step.contacts, 0u);
+    }
+    EXPECT_NEAR(force[0], force[1], 0.05 * force[0]);
+    EXPECT_GT(force[0], 3);
+}
+
 TEST(GradientModel, NoSpeedTunnelsThroughAWallOfOneVoxel) {
     const double h = 0.125e-3, top = 4.3e-3;
     const auto wall = [=](const Vector3d& p) { return std::abs(p.z() - top + h / 2) - h / 2; };
