@@ -411,8 +411,8 @@ LIMITS = """- Hand and device are simulated: a hand impedance that follows waypo
   six-legged device whose dimensions are placeholders. No person felt this.
 - The thesis' runs were made by hand on other bone with a scaling factor of 3; the rates compare, the curves only in kind.
 - All three programs shared this machine, and the viewer drew on the processor. On two cores that costs latency.
-- The force model is the thesis' own, with its known errors (docs/architecture.md names them): the more points touch, the
-  softer each becomes, so a long shaft sinks deep into a wall.
+- The force is that of the scene's accuracy preset (`balanced` unless it says otherwise); its error against a converged
+  solution: docs/accuracy.md. Removal is by time, as in the thesis, and so depends on more than force.
 - cyclictest ran right before each run, while the server idled, not during it: it would disturb what it measures."""
 
 

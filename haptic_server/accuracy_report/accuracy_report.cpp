@@ -69,7 +69,7 @@ class Progress {
         char text[256];
         std::snprintf(text, sizeof text,
                       "[%2zu/%zu] %s: force error %.3g %%, p99.9 %.3g us; about %.0f s left", done, count_,
-                      f.name.c_str(), 100 * f.errors.force, f.times.p99_9, left);
+                      f.name.c_str(), 100 * f.errors.force_vector, f.times.p99_9, left);
         out_ << text << std::endl;
     }
 

@@ -42,8 +42,8 @@ Columns figuresOf(const SettingFigures& f, bool is_on_front) {
     Columns row = knobsOf(f.settings);
     row["in_force"] = f.is_in_force;
     row["on_pareto_front"] = is_on_front;
-    row["force_error_percent"] = 100 * f.errors.force;
-    row["force_vector_error_percent"] = 100 * f.errors.force_vector;
+    row["force_magnitude_error_percent"] = 100 * f.errors.force;
+    row["force_error_percent"] = 100 * f.errors.force_vector;
     row["torque_error_percent"] = 100 * f.errors.torque;
     row["direction_error_deg"] = f.errors.direction / kDegree;
     row["position_error_um"] = 1e6 * f.errors.position;
@@ -179,7 +179,7 @@ std::string accuracyJson(const ReportData& data) {
         {"torque_max_nmm", 1e3 * data.truth.torque_max},
         {"max_penetration_um", 1e6 * data.truth.max_penetration},
         {"noise_mn", 1e3 * data.truth.noise},
-        {"half_refinement_force_vector_error_percent", 100 * data.truth.coarser.force_vector},
+        {"half_refinement_force_error_percent", 100 * data.truth.coarser.force_vector},
         {"closed_path_energy_uj", 1e6 * data.truth.closed_energy}};
     const size_t in_force = indexInForce(data);
     Columns report = {{"scene", data.scene},

@@ -52,8 +52,8 @@ TEST(AccuracyCsv, HasOneRowPerSettingWithItsFigures) {
     EXPECT_EQ(cellAt(rows, 3, "in_force"), "true");
     EXPECT_EQ(cellAt(rows, 3, "on_pareto_front"), "true");
     EXPECT_EQ(cellAt(rows, 1, "on_pareto_front"), "false");  // thesis_2012 is the fastest, but no candidate
-    EXPECT_EQ(cellAt(rows, 3, "force_vector_error_percent"), "2");
-    EXPECT_EQ(cellAt(rows, 3, "force_error_percent"), "1");
+    EXPECT_EQ(cellAt(rows, 3, "force_error_percent"), "2");
+    EXPECT_EQ(cellAt(rows, 3, "force_magnitude_error_percent"), "1");
     EXPECT_EQ(cellAt(rows, 3, "tick_p99_9_us"), "50");
     EXPECT_EQ(cellAt(rows, 3, "removed_volume_error_percent").substr(0, 3), "-10");
     EXPECT_EQ(cellAt(rows, 2, "removed_volume_error_percent"), "");  // nothing was milled
@@ -66,7 +66,7 @@ TEST(AccuracyJson, IsReadByTheServer) {
     const AccuracyFigures figures = readAccuracyFigures(file);
     std::filesystem::remove(file);
     ASSERT_EQ(figures.size(), 4u);
-    EXPECT_NEAR(figures.at("exact").force_error_percent, 0.5, 1e-9);
+    EXPECT_NEAR(figures.at("exact").force_error_percent, 1, 1e-9);
     EXPECT_NEAR(figures.at("exact").direction_error_deg, 0.573, 1e-3);
 }
 
