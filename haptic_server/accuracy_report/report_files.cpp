@@ -171,16 +171,15 @@ std::string accuracyJson(const ReportData& data) {
     Columns settings = Columns::object();
     for (size_t n = 0; n < data.settings.size(); ++n)
         settings[data.settings[n].name] = figuresOf(data.settings[n], data.front[n]);
-    const Columns truth = {
-        {"voxel_refinement", data.truth.refinement},
-        {"force_rms_n", data.truth.force_rms},
-        {"force_max_n", data.truth.force_max},
-        {"torque_rms_nmm", 1e3 * data.truth.torque_rms},
-        {"torque_max_nmm", 1e3 * data.truth.torque_max},
-        {"max_penetration_um", 1e6 * data.truth.max_penetration},
-        {"noise_mn", 1e3 * data.truth.noise},
-        {"half_refinement_force_error_percent", 100 * data.truth.coarser.force_vector},
-        {"closed_path_energy_uj", 1e6 * data.truth.closed_energy}};
+    const Columns truth = {{"voxel_refinement", data.truth.refinement},
+                           {"force_rms_n", data.truth.force_rms},
+                           {"force_max_n", data.truth.force_max},
+                           {"torque_rms_nmm", 1e3 * data.truth.torque_rms},
+                           {"torque_max_nmm", 1e3 * data.truth.torque_max},
+                           {"max_penetration_um", 1e6 * data.truth.max_penetration},
+                           {"noise_mn", 1e3 * data.truth.noise},
+                           {"half_refinement_force_error_percent", 100 * data.truth.coarser.force_vector},
+                           {"closed_path_energy_uj", 1e6 * data.truth.closed_energy}};
     const size_t in_force = indexInForce(data);
     Columns report = {{"scene", data.scene},
                       {"scene_file", data.scene_file},

@@ -37,6 +37,8 @@ class Recorder {
     // Any normal thread.
     std::optional<TickRecord> latest() const;
     LoopHealth health() const;
+    // Before finish(): what the tick thread's page faults were after its first second.
+    void setPageFaults(const PageFaults& faults) { statistics_.setPageFaults(faults); }
     // After finish() only.
     const RunStatistics& statistics() const { return statistics_; }
 

@@ -30,6 +30,7 @@ constexpr int kTickPriority = 80;
 constexpr auto kPublishPeriod = 16ms;
 constexpr auto kMeshPeriod = 8ms;
 constexpr auto kRecordPeriod = 4ms;
+constexpr int64_t kWarmUpNs = kNsPerSecond;
 
 DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& loop,
                               const Simulation& simulation) {
@@ -109,6 +110,7 @@ class Server {
         std::promise<bool> permission;
         std::future<RealtimeReport> granted = thread_report.get_future();
         tick_thread_ = std::jthread([this, &thread_report, may_run = permission.get_future()]() mutable {
+            tick_thread_id_ = gettid();
             thread_report.set_value(makeThreadRealtime({kTickPriority, coreOf(options_.rt_core)}));
             if (!may_run.get()) return;
             while (tick_.tick(io_)) {
@@ -151,6 +153,14 @@ class Server {
         });
     }
 
+    // Again and again: the tick thread, and its numbers with it, may be gone at the end.
+    void countPageFaults(int64_t first_tick_ns) {
+        const std::optional<PageFaults> now = pageFaultsOf(tick_thread_id_);
+        if (!now || monotonicNowNs() - first_tick_ns < kWarmUpNs) return;
+        if (!warm_) warm_ = now;
+        recorder_.setPageFaults({now->minor - warm_->minor, now->major - warm_->major});
+    }
+
     void waitForTheEnd() {
         spdlog::info("session {} of scene '{}' waits for a device", options_.session, loaded_.scene.name());
         int64_t first_tick_ns = 0;
@@ -168,6 +178,7 @@ class Server {
                 first_tick_ns = monotonicNowNs();
                 spdlog::info("the device is there: the loop runs");
             }
+            if (first_tick_ns) countPageFaults(first_tick_ns);
             if (first_tick_ns && options_.seconds > 0 &&
                 secondsOfNs(monotonicNowNs() - first_tick_ns) > options_.seconds)
                 return;
@@ -216,6 +227,8 @@ class Server {
     std::atomic<bool> has_failed_{false};
     Publisher publisher_;
     ShowSession show_;
+    pid_t tick_thread_id_ = -1;
+    std::optional<PageFaults> warm_;  // of the tick thread, when it had run for kWarmUpNs
     std::jthread tick_thread_;
 };
 

@@ -95,7 +95,7 @@ std::string RunStatistics::toJson() const {
         if (fault_ticks_[bit] > 0) faults[faultNames(1u << bit)] = fault_ticks_[bit];
     }
     const auto slowest = std::min_element(rates_hz_.begin(), rates_hz_.end());
-    const nlohmann::ordered_json report = {
+    nlohmann::ordered_json report = {
         {"ticks", ticks()},
         {"duration_s", durationS()},
         {"nominal_rate_hz", double(kNsPerSecond) / double(period_ns_)},
@@ -118,6 +118,9 @@ std::string RunStatistics::toJson() const {
         {"added_voxels", added_voxels_},
         {"fault_ticks", faults},
     };
+    if (page_faults_)
+        report["page_faults_after_warm_up"] = {{"minor", page_faults_->minor},
+                                               {"major", page_faults_->major}};
     return report.dump(2);
 }
 

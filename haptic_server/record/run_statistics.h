@@ -5,10 +5,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/rt/latency_histogram.h"
+#include "common/rt/page_faults.h"
 #include "haptic_server/tick/tick_record.h"
 
 namespace bonemill {
@@ -23,6 +25,9 @@ class RunStatistics {
     // SpscRing::dropped(): ticks that ran but are not in these statistics (their number still counts in the
     // rates).
     void setLostRecords(uint64_t lost_records) { lost_records_ = lost_records; }
+
+    // Of the tick thread after its first second; not known if never set.
+    void setPageFaults(const PageFaults& faults) { page_faults_ = faults; }
 
     uint64_t ticks() const { return has_records_ ? last_tick_ - first_tick_ + 1 : 0; }
     double durationS() const;   // from the first to the last tick's start
@@ -70,6 +75,7 @@ class RunStatistics {
     std::vector<double> rates_hz_;
     uint64_t dropped_ticks_ = 0;
     uint64_t lost_records_ = 0;
+    std::optional<PageFaults> page_faults_;
     LatencyHistogram wakeup_latency_;
     LatencyHistogram force_ready_;
     LatencyHistogram tick_compute_;

@@ -5,6 +5,7 @@
 
 #include "common/config/user_error.h"
 #include "tests/bench/bench_load.h"
+#include "tests/bench/bench_loop.h"
 #include "tests/bench/bench_mesh.h"
 #include "tests/bench/bench_presets.h"
 #include "tests/bench/bench_scale.h"
@@ -17,6 +18,7 @@ int main(int argc, char** argv) {
     bench::addTickCommand(app);
     bench::addMeshCommand(app);
     bench::addLoadCommand(app);
+    bench::addLoopCommand(app);
     bench::addScaleCommand(app);
     bench::addPresetsCommand(app);
     try {

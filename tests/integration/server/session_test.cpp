@@ -94,6 +94,7 @@ TEST_F(Session, AKilledClientChangesNothingForTheServer) {
     const auto json = report();
     EXPECT_GT(json["ticks"], 3000);
     EXPECT_EQ(json["lost_records"], 0);
+    EXPECT_TRUE(json["page_faults_after_warm_up"].contains("minor"));
     EXPECT_GT(json["removed_voxels"], 200);
     // Only what a busy machine causes may be missing: the session itself ran to its end without a fault.
     EXPECT_FALSE(json["fault_ticks"].contains("solve"));
