@@ -1,0 +1,220 @@
+// Cells that the surface crosses, and points that move onto it. Part of kernel_loops.h.
+namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
+namespace {
+
+// Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1); edges 4 a .. 4 a + 3 run along axis a.
+constexpr int kEdgeLow[12] = {0, 2, 4, 6, 0, 1, 4, 5, 0, 1, 2, 3};
+
+template <class T, class Vector>
+inline void gather(const T* table, const Ints& index, Vector& out) {
+    alignas(64) int at[kWidth];
+    alignas(64) T result[kWidth];
+    store(index, at);
+    for (int l = 0; l < kWidth; ++l) result[l] = table[at[l]];
+    load(result, out);
+}
+inline bool isAny(const Ints& mask) {
+    int any = 0;
+    for (int l = 0; l < kWidth; ++l) any |= mask[l];
+    return any != 0;
+}
+
+// Where the density, linear along each edge, equals iso, for kCellLanes cells: [axis][edge][lane], cell
+// steps. Edges that are not crossed hold anything.
+void crossings(const CellArrays& cells, int first, float (&at)[3][12 * kWidth]) {
+    for (int edge = 0; edge < 12; ++edge) {
+        const int axis = edge / 4, low_corner = kEdgeLow[edge];
+        Floats low, high;
+        load(cells.excess[low_corner] + first, low);
+        load(cells.excess[low_corner | 1 << axis] + first, high);
+        for (int d = 0; d < 3; ++d)
+            store(d == axis ? low / (low - high) : Floats{} + float(low_corner >> d & 1),
+                  at[d] + edge * kWidth);
+    }
+}
+
+struct Points {
+    Floats x, y, z;
+};
+
+inline void crossingOn(const float (&at)[3][12 * kWidth], const Ints& edge, const Ints& lane, Points& p) {
+    const Ints index = edge * kWidth + lane;
+    gather(at[0], index, p.x);
+    gather(at[1], index, p.y);
+    gather(at[2], index, p.z);
+}
+
+void cellPatches(const CellArrays& cells, const int* triangle_edges, const float steps[3],
+                 const CellPatches& out) {
+    Ints lane;
+    for (int l = 0; l < kWidth; ++l) lane[l] = l;
+    for (int first = 0; first < cells.count; first += kWidth) {
+        alignas(64) float at[3][12 * kWidth];
+        crossings(cells, first, at);
+        Ints inside;
+        load(cells.inside + first, inside);
+        inside = first + lane < cells.count ? inside : Ints{};
+        Floats twice{}, mx{}, my{}, mz{};
+        for (int triangle = 0; triangle < 5; ++triangle) {
+            const Ints row = inside * kTriangleStride + 3 * triangle;
+            Ints edge[3];
+            for (int v = 0; v < 3; ++v) gather(triangle_edges + v, row, edge[v]);
+            const Ints is_one = (edge[0] | edge[1]) != 0;
+            if (!isAny(is_one)) break;
+            Points a, b, c;
+            crossingOn(at, edge[0], lane, a);
+            crossingOn(at, edge[1], lane, b);
+            crossingOn(at, edge[2], lane, c);
+            const Floats ux = (b.x - a.x) * steps[0], uy = (b.y - a.y) * steps[1],
+                         uz = (b.z - a.z) * steps[2];
+            const Floats vx = (c.x - a.x) * steps[0], vy = (c.y - a.y) * steps[1],
+                         vz = (c.z - a.z) * steps[2];
+            const Floats nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+            Floats area;
+            rootOf(nx * nx + ny * ny + nz * nz, area);
+            twice += is_one ? area : Floats{};
+            mx += is_one ? area * (a.x + b.x + c.x) : Floats{};
+            my += is_one ? area * (a.y + b.y + c.y) : Floats{};
+            mz += is_one ? area * (a.z + b.z + c.z) : Floats{};
+        }
+        const Floats scale = 1 / (3 * twice);
+        store(twice / 2, out.area + first);
+        store(mx * scale, out.x + first);
+        store(my * scale, out.y + first);
+        store(mz * scale, out.z + first);
+    }
+}
+
+// Excess and slope of the trilinear density at `p`.
+inline void sampleCells(const Floats (&e)[8], const Points& p, Floats& excess, Points& slope) {
+    const Floats dx0 = e[1] - e[0], dx1 = e[3] - e[2], dx2 = e[5] - e[4], dx3 = e[7] - e[6];
+    const Floats a0 = e[0] + p.x * dx0, a1 = e[2] + p.x * dx1, a2 = e[4] + p.x * dx2, a3 = e[6] + p.x * dx3;
+    const Floats dy0 = a1 - a0, dy1 = a3 - a2;
+    const Floats b0 = a0 + p.y * dy0, b1 = a2 + p.y * dy1;
+    const Floats low = dx0 + p.y * (dx1 - dx0), high = dx2 + p.y * (dx3 - dx2);
+    slope.z = b1 - b0;
+    slope.y = dy0 + p.z * (dy1 - dy0);
+    slope.x = low + p.z * (high - low);
+    excess = b0 + p.z * slope.z;
+}
+
+inline void isWithin(const Floats& v, float low, float high, Ints& mask) {
+    mask &= (v >= low) & (v <= high);
+}
+
+void projectIntoCells(const CellArrays& cells, const float steepness[3], const float inverse_spacing[3],
+                      float tolerance, int most_steps, const CellProjections& out) {
+    for (int first = 0; first < cells.count; first += kWidth) {
+        Floats e[8], limit{};
+        for (int corner = 0; corner < 8; ++corner) {
+            load(cells.excess[corner] + first, e[corner]);
+            const Floats size = e[corner] < 0 ? -e[corner] : e[corner];
+            limit = limit < size ? size : limit;
+        }
+        limit *= tolerance;
+        Points p, slope{}, here;
+        load(out.x + first, p.x);
+        load(out.y + first, p.y);
+        load(out.z + first, p.z);
+        Ints walks = ~Ints{}, is_found{};
+        for (int n = 0; n <= most_steps && isAny(walks); ++n) {
+            Floats excess;
+            sampleCells(e, p, excess, here);
+            slope.x = walks ? here.x : slope.x;
+            slope.y = walks ? here.y : slope.y;
+            slope.z = walks ? here.z : slope.z;
+            const Ints arrives = walks & (excess <= limit) & (-excess <= limit);
+            is_found |= arrives;
+            walks &= ~arrives;
+            const Floats ux = here.x * steepness[0], uy = here.y * steepness[1], uz = here.z * steepness[2];
+            const Floats rise = here.x * ux + here.y * uy + here.z * uz;
+            const Floats scale = -excess / rise;
+            const Points step{scale * ux, scale * uy, scale * uz};
+            const Points next{p.x + step.x, p.y + step.y, p.z + step.z};
+            walks &= rise > 0;
+            isWithin(step.x, -1, 1, walks), isWithin(step.y, -1, 1, walks), isWithin(step.z, -1, 1, walks);
+            isWithin(next.x, 0, 1, walks), isWithin(next.y, 0, 1, walks), isWithin(next.z, 0, 1, walks);
+            p.x = walks ? next.x : p.x;
+            p.y = walks ? next.y : p.y;
+            p.z = walks ? next.z : p.z;
+        }
+        store(p.x, out.x + first), store(p.y, out.y + first), store(p.z, out.z + first);
+        const Floats gx = slope.x * inverse_spacing[0], gy = slope.y * inverse_spacing[1],
+                     gz = slope.z * inverse_spacing[2];
+        Floats length;
+        rootOf(gx * gx + gy * gy + gz * gz, length);
+        const Floats scale = length > 0 ? -1 / length : Floats{};
+        store(gx * scale, out.normal_x + first);
+        store(gy * scale, out.normal_y + first);
+        store(gz * scale, out.normal_z + first);
+        store(is_found & 1, out.is_found + first);
+    }
+}
+
+inline void cellUnder(const Floats& u, int dim, Ints& cell, Floats& in_cell) {
+    const Ints truncated = __builtin_convertvector(u, Ints);
+    const Ints below =
+        truncated + (u < __builtin_convertvector(truncated, Floats));  // a true comparison is -1
+    const Ints high = below > dim - 1 ? Ints{} + (dim - 1) : below;
+    cell = high < -1 ? Ints{} - 1 : high;
+    in_cell = u - __builtin_convertvector(cell, Floats);
+}
+
+// Densities minus iso at the corners of each lane's cell.
+void readCells(const DensityView& d, const Ints& i, const Ints& j, const Ints& k, Floats (&e)[8]) {
+    alignas(64) float corner[8][kWidth];
+    const float iso = float(d.iso);
+    for (int l = 0; l < kWidth; ++l) {
+        const uint16_t* p = d.first + i[l] + int64_t(d.stride_y) * j[l] + int64_t(d.stride_z) * k[l];
+        corner[0][l] = float(p[0]), corner[1][l] = float(p[1]);
+        corner[2][l] = float(p[d.stride_y]), corner[3][l] = float(p[d.stride_y + 1]);
+        p += d.stride_z;
+        corner[4][l] = float(p[0]), corner[5][l] = float(p[1]);
+        corner[6][l] = float(p[d.stride_y]), corner[7][l] = float(p[d.stride_y + 1]);
+    }
+    for (int c = 0; c < 8; ++c) {
+        load(corner[c], e[c]);
+        e[c] -= iso;
+    }
+}
+
+void moveOntoSurface(const DensityView& density, int steps, const SurfacePoints& points) {
+    const DensityView d = density;
+    const float ix = d.inverse_spacing[0], iy = d.inverse_spacing[1], iz = d.inverse_spacing[2];
+    for (int first = 0; first < points.count; first += kWidth) {
+        Points start, p, own, in_cell, slope;
+        Floats reach_squared, excess, e[8];
+        load(points.x + first, start.x), load(points.y + first, start.y), load(points.z + first, start.z);
+        load(points.own_x + first, own.x), load(points.own_y + first, own.y),
+            load(points.own_z + first, own.z);
+        load(points.reach_squared + first, reach_squared);
+        Ints is_found = ~Ints{};
+        for (int l = 0; l < kWidth; ++l) is_found[l] = first + l < points.count ? -1 : 0;
+        const Floats zero{};
+        start.x = is_found ? start.x : zero, start.y = is_found ? start.y : zero,
+        start.z = is_found ? start.z : zero;
+        p = start;
+        for (int n = 0; n < steps; ++n) {
+            Ints i, j, k;
+            cellUnder((p.x + d.origin[0]) * ix, d.dims[0], i, in_cell.x);
+            cellUnder((p.y + d.origin[1]) * iy, d.dims[1], j, in_cell.y);
+            cellUnder((p.z + d.origin[2]) * iz, d.dims[2], k, in_cell.z);
+            readCells(d, i, j, k, e);
+            sampleCells(e, in_cell, excess, slope);
+            slope.x *= ix, slope.y *= iy, slope.z *= iz;
+            const Floats rise = slope.x * slope.x + slope.y * slope.y + slope.z * slope.z;
+            is_found &= rise > 0;
+            const Floats scale = excess / (is_found ? rise : 1 + zero);
+            p.x -= scale * slope.x, p.y -= scale * slope.y, p.z -= scale * slope.z;
+            const Floats dx = p.x - start.x, dy = p.y - start.y, dz = p.z - start.z;
+            is_found &= dx * dx + dy * dy + dz * dz <= reach_squared;
+            p.x = is_found ? p.x : start.x, p.y = is_found ? p.y : start.y, p.z = is_found ? p.z : start.z;
+        }
+        store(is_found ? p.x : own.x, points.x + first);
+        store(is_found ? p.y : own.y, points.y + first);
+        store(is_found ? p.z : own.z, points.z + first);
+    }
+}
+
+}  // namespace
+}  // namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE

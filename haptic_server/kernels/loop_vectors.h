@@ -1,0 +1,65 @@
+// Vector types in the width of the registers. Part of kernel_loops.h.
+namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
+namespace {
+
+// Of single precision, in one register: GCC 12 takes wider vectors apart into scalars where it must choose
+// lanes.
+#if defined(__AVX512F__)
+constexpr int kWidth = 16;
+#elif defined(__AVX2__)
+constexpr int kWidth = 8;
+#else
+constexpr int kWidth = 4;
+#endif
+static_assert(kCellLanes % kWidth == 0 && (kRowSlack + 1) % kWidth == 0);
+
+template <class Scalar>
+inline Scalar least(Scalar a, Scalar b) {
+    return b < a ? b : a;
+}
+template <class Scalar>
+inline Scalar largest(Scalar a, Scalar b) {
+    return a < b ? b : a;
+}
+inline float root(float x) {
+    return __builtin_sqrtf(x);
+}
+inline double root(double x) {
+    return __builtin_sqrt(x);
+}
+
+using Floats = float __attribute__((vector_size(4 * kWidth)));
+using Ints = int __attribute__((vector_size(4 * kWidth)));
+
+inline void load(const float* p, Floats& v) {
+    __builtin_memcpy(&v, p, sizeof v);
+}
+inline void load(const int* p, Ints& v) {
+    __builtin_memcpy(&v, p, sizeof v);
+}
+inline void store(const Floats& v, float* p) {
+    __builtin_memcpy(p, &v, sizeof v);
+}
+inline void store(const Ints& v, int* p) {
+    __builtin_memcpy(p, &v, sizeof v);
+}
+inline void rootOf(const Floats& v, Floats& out) {
+    alignas(64) float in[kWidth], result[kWidth];
+    store(v, in);
+    for (int l = 0; l < kWidth; ++l) result[l] = root(in[l]);
+    load(result, out);
+}
+
+// As many densities as there are single precision lanes.
+using Words = uint16_t __attribute__((vector_size(2 * kWidth)));
+// For rows that are only looked at.
+constexpr int kWideWords = kWidth == 4 ? 8 : 16;
+using WideWords = uint16_t __attribute__((vector_size(2 * kWideWords)));
+
+template <class W>
+inline void loadWords(const uint16_t* p, W& words) {
+    __builtin_memcpy(&words, p, sizeof words);
+}
+
+}  // namespace
+}  // namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE

@@ -1,0 +1,152 @@
+// Points, the tool's distances and the contact's sums. Part of kernel_loops.h.
+namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
+namespace {
+
+template <class Scalar>
+void intoFrame(const FrameChange<Scalar>& f, const float* __restrict x, const float* __restrict y,
+               const float* __restrict z, int count, Scalar* __restrict out_x, Scalar* __restrict out_y,
+               Scalar* __restrict out_z) {
+    const FrameChange<Scalar> frame = f;
+    for (int i = 0; i < count; ++i) {
+        const Scalar dx = Scalar(x[i]) - frame.origin[0], dy = Scalar(y[i]) - frame.origin[1],
+                     dz = Scalar(z[i]) - frame.origin[2];
+        out_x[i] = frame.R[0] * dx + frame.R[1] * dy + frame.R[2] * dz;
+        out_y[i] = frame.R[3] * dx + frame.R[4] * dy + frame.R[5] * dz;
+        out_z[i] = frame.R[6] * dx + frame.R[7] * dy + frame.R[8] * dz;
+    }
+}
+
+// From the nearest place of the solid's axis to the point; its length.
+template <class Scalar>
+inline Scalar fromAxis(const RoundSolid<Scalar>& s, Scalar px, Scalar py, Scalar pz, Scalar& dx, Scalar& dy,
+                       Scalar& dz) {
+    const Scalar x = px - s.from[0], y = py - s.from[1], z = pz - s.from[2];
+    const Scalar along = least(largest(x * s.axis[0] + y * s.axis[1] + z * s.axis[2], Scalar(0)), s.length);
+    dx = x - along * s.axis[0], dy = y - along * s.axis[1], dz = z - along * s.axis[2];
+    return root(dx * dx + dy * dy + dz * dz);
+}
+
+template <class Scalar>
+void nearerRound(const RoundSolid<Scalar>& solid, const Scalar* __restrict px, const Scalar* __restrict py,
+                 const Scalar* __restrict pz, int count, Scalar* __restrict out) {
+    const RoundSolid<Scalar> s = solid;
+    for (int i = 0; i < count; ++i) {
+        Scalar dx, dy, dz;
+        out[i] = least(out[i], fromAxis(s, px[i], py[i], pz[i], dx, dy, dz) - s.radius);
+    }
+}
+
+template <class Scalar>
+void sampleNearerRound(const RoundSolid<Scalar>& solid, const Scalar* __restrict px,
+                       const Scalar* __restrict py, const Scalar* __restrict pz, int count,
+                       Scalar* __restrict distance, Scalar* __restrict gx, Scalar* __restrict gy,
+                       Scalar* __restrict gz) {
+    constexpr Scalar kOnAxis = Scalar(1e-15);  // m
+    const RoundSolid<Scalar> s = solid;
+    for (int i = 0; i < count; ++i) {
+        Scalar dx, dy, dz;
+        const Scalar to_axis = fromAxis(s, px[i], py[i], pz[i], dx, dy, dz);
+        const Scalar scale = 1 / largest(to_axis, kOnAxis);
+        const Scalar here = to_axis - s.radius;
+        const Scalar there = distance[i], tx = gx[i], ty = gy[i], tz = gz[i];
+        const bool is_nearer = here < there;
+        distance[i] = is_nearer ? here : there;
+        gx[i] = is_nearer ? dx * scale : tx;
+        gy[i] = is_nearer ? dy * scale : ty;
+        gz[i] = is_nearer ? dz * scale : tz;
+    }
+}
+
+constexpr int kSumLanes = 8;  // of every sum, whatever the width of the registers
+using Doubles = double __attribute__((vector_size(4 * kWidth)));
+constexpr int kDoubles = kWidth / 2, kParts = kSumLanes / kDoubles;
+
+inline void load(const double* p, Doubles& v) {
+    __builtin_memcpy(&v, p, sizeof v);
+}
+double total(const Doubles (&parts)[kParts]) {
+    double v[kSumLanes];
+    __builtin_memcpy(v, parts, sizeof v);
+    return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+}
+double dot(const double* a, const double* b, int padded) {
+    Doubles sum[kParts] = {}, x, y;
+    for (int i = 0; i < padded; i += kSumLanes)
+        for (int part = 0; part < kParts; ++part) {
+            load(a + i + part * kDoubles, x), load(b + i + part * kDoubles, y);
+            sum[part] += x * y;
+        }
+    return total(sum);
+}
+double sumOf(const double* a, int padded) {
+    Doubles sum[kParts] = {}, x;
+    for (int i = 0; i < padded; i += kSumLanes)
+        for (int part = 0; part < kParts; ++part) {
+            load(a + i + part * kDoubles, x);
+            sum[part] += x;
+        }
+    return total(sum);
+}
+
+template <class Scalar>
+void addContacts(const ContactFrame& frame, const float* __restrict x, const float* __restrict y,
+                 const float* __restrict z, const float* __restrict weight, const Scalar* __restrict distance,
+                 const Scalar* __restrict gx, const Scalar* __restrict gy, const Scalar* __restrict gz,
+                 int count, ContactSums& sums) {
+    const ContactFrame f = frame;
+    // J: of the depth by the tool's pose, negative: g, r x g.
+    alignas(64) double J[6][kContactBatch], pull[kContactBatch], k[kContactBatch], energy[kContactBatch],
+        depths[kContactBatch];
+    for (int i = 0; i < count; ++i) {
+        const double rx = double(x[i]) - f.p_OT[0], ry = double(y[i]) - f.p_OT[1],
+                     rz = double(z[i]) - f.p_OT[2];
+        const double tx = double(gx[i]), ty = double(gy[i]), tz = double(gz[i]);
+        const double vx = f.R_VT[0] * tx + f.R_VT[1] * ty + f.R_VT[2] * tz;
+        const double vy = f.R_VT[3] * tx + f.R_VT[4] * ty + f.R_VT[5] * tz;
+        const double vz = f.R_VT[6] * tx + f.R_VT[7] * ty + f.R_VT[8] * tz;
+        const double depth = -double(distance[i]), w = double(weight[i]);
+        const double capped = least(depth, f.depth_cap);
+        J[0][i] = vx, J[1][i] = vy, J[2][i] = vz;
+        J[3][i] = ry * vz - rz * vy, J[4][i] = rz * vx - rx * vz, J[5][i] = rx * vy - ry * vx;
+        pull[i] = w * capped;
+        // Beyond the cap the secant keeps the matrix's direction.
+        k[i] = depth > f.depth_cap ? pull[i] / depth : w;
+        energy[i] = pull[i] * (depth - capped / 2);
+        depths[i] = depth;
+    }
+    const int padded = (count + kSumLanes - 1) / kSumLanes * kSumLanes;
+    for (int i = count; i < padded; ++i) {
+        for (int axis = 0; axis < 6; ++axis) J[axis][i] = 0;
+        pull[i] = k[i] = energy[i] = depths[i] = 0;
+    }
+    sums.energy += sumOf(energy, padded);
+    for (int i = 0; i < count; ++i) sums.max_depth = largest(sums.max_depth, depths[i]);
+    for (int axis = 0; axis < 3; ++axis) {
+        sums.force[axis] -= dot(pull, J[axis], padded);
+        sums.torque[axis] -= dot(pull, J[3 + axis], padded);
+    }
+    alignas(64) double kJ[kContactBatch];
+    double* sum = sums.stiffness;
+    for (int row = 0; row < 6; ++row) {
+        for (int i = 0; i < padded; ++i) kJ[i] = k[i] * J[row][i];
+        for (int column = row; column < 6; ++column) *sum++ += dot(kJ, J[column], padded);
+    }
+}
+
+float leastScaled(const float* __restrict value, const float* __restrict lowest,
+                  const float* __restrict scale, int count, float most) {
+    constexpr int kLanes = 16;
+    float lane[kLanes];
+    for (int l = 0; l < kLanes; ++l) lane[l] = most;
+    int i = 0;
+    for (; i + kLanes <= count; i += kLanes)
+        for (int l = 0; l < kLanes; ++l)
+            lane[l] = least(lane[l], (value[i + l] - lowest[i + l]) * scale[i + l]);
+    float result = most;
+    for (int l = 0; l < kLanes; ++l) result = least(result, lane[l]);
+    for (; i < count; ++i) result = least(result, (value[i] - lowest[i]) * scale[i]);
+    return result;
+}
+
+}  // namespace
+}  // namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE
