@@ -8,8 +8,6 @@
 namespace bonemill {
 namespace {
 
-using Eigen::Vector3d;
-
 constexpr int kMostAdvances = 64;
 constexpr double kSmallestAdvance = 1e-3;  // of the step
 constexpr double kRounding = 2e-7;  // m, of two distances in single precision some cm from the tool point

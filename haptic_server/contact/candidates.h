@@ -31,11 +31,11 @@ struct Candidates {
 
     // Not when full.
     void add(const ShellBlock& block, int i, LeafId leaf, const Eigen::Vector3f& position, float point_weight,
-             float distance) noexcept {
+             float nearest_place) noexcept {
         const size_t n = count++;
         x[n] = position.x(), y[n] = position.y(), z[n] = position.z();
         nx[n] = block.nx[i], ny[n] = block.ny[i], nz[n] = block.nz[i];
-        weight[n] = point_weight, area[n] = block.area[i], nearest[n] = distance;
+        weight[n] = point_weight, area[n] = block.area[i], nearest[n] = nearest_place;
         patch[n] = uint64_t(leaf) << 32 | block.key[i];
     }
     void copy(size_t from, size_t to) noexcept {

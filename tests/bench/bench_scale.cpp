@@ -1,10 +1,9 @@
 #include "tests/bench/bench_scale.h"
 
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 
-#include "common/config/user_error.h"
+#include "haptic_server/accuracy_report/plot.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/bench_tick.h"
 
@@ -40,21 +39,20 @@ void plot(const nlohmann::json& json, const std::string& picture) {
         file << row["burr_radius_mm"] << ' ' << row["force_us"]["p50"] << ' ' << row["milling_us"]["p50"]
              << ' ' << row["tick_us"]["p99"] << '\n';
     file.close();
-    const std::string script =
-        "set terminal pngcairo size 1200,500 font 'sans,11'; set output '" + picture +
-        "'; set multiplot layout 1,2; set logscale xy; set grid; set key top left; set ylabel 'us'; set "
-        "yrange [1:*];"
-        "set xlabel 'voxels per edge, at equal voxels and burr'; set xtics (128,256,512,1024);"
-        "plot '" +
-        data +
-        "' i 0 u 1:2 w lp t 'tick p50', '' i 0 u 1:3 w lp t 'tick p99';"
-        "set xlabel 'burr radius, mm'; set xtics (0.5,1,1.5,2,3,4);"
-        "plot '" +
-        data +
-        "' i 1 u 1:2 w lp t 'force p50', '' i 1 u 1:3 w lp t 'milling p50', "
-        "'' i 1 u 1:4 w lp t 'tick p99', 10*x**2 w l dt 2 t 'quadratic', 2*x**3 w l dt 3 t 'cubic'";
-    if (std::system(("gnuplot -e \"" + script + "\"").c_str()) != 0)
-        throw UserError("gnuplot failed on " + picture);
+    const std::string script = picture + ".gnuplot";
+    std::ofstream(script)
+        << "set terminal pngcairo size 1200,500 font 'sans,11'; set output '" << picture
+        << "'; set multiplot layout 1,2; set logscale xy; set grid; set key top left; set ylabel 'us'; set "
+           "yrange [1:*];"
+           "set xlabel 'voxels per edge, at equal voxels and burr'; set xtics (128,256,512,1024);"
+           "plot '"
+        << data << "' i 0 u 1:2 w lp t 'tick p50', '' i 0 u 1:3 w lp t 'tick p99';"
+        << "set xlabel 'burr radius, mm'; set xtics (0.5,1,1.5,2,3,4);"
+           "plot '"
+        << data << "' i 1 u 1:2 w lp t 'force p50', '' i 1 u 1:3 w lp t 'milling p50', "
+        << "'' i 1 u 1:4 w lp t 'tick p99', 10*x**2 w l dt 2 t 'quadratic', 2*x**3 w l dt 3 t 'cubic'\n";
+    runGnuplot(script);
+    std::remove(script.c_str());
     std::remove(data.c_str());
 }
 

@@ -205,6 +205,116 @@ TEST_P(EveryLevel, LeastScaledAndRanges) {
     }
 }
 
+// Cells of random densities; their patches, and the patches' centroids moved onto the surface.
+struct CellCase {
+    int count;
+    std::vector<float> excess[8];
+    std::vector<int> inside;
+    CellArrays arrays() const {
+        CellArrays a{{}, inside.data(), count};
+        for (int c = 0; c < 8; ++c) a.excess[c] = excess[c].data();
+        return a;
+    }
+};
+
+double densityAt(const CellCase& cells, size_t n, double x, double y, double z) {
+    double sum = 0;
+    for (int c = 0; c < 8; ++c)
+        sum += double(cells.excess[c][n]) * (c & 1 ? x : 1 - x) * (c & 2 ? y : 1 - y) * (c & 4 ? z : 1 - z);
+    return sum;
+}
+
+TEST_P(EveryLevel, CellPatchesAndProjections) {
+    // One triangle only is known here, cut off one corner: what marching cubes draws is tested elsewhere.
+    std::vector<int> triangles(256 * kTriangleStride, 0);
+    for (int inside = 0; inside < 256; ++inside) triangles[size_t(inside) * kTriangleStride + 1] = 4;
+    for (int inside = 0; inside < 256; ++inside) triangles[size_t(inside) * kTriangleStride + 2] = 8;
+    const float steps[3] = {1, 0.8f, 0.5f}, steepness[3] = {1, 1.5625f, 4}, inverse[3] = {1e3f, 1250, 2e3f};
+    for (int round = 0; round < 50; ++round) {
+        CellCase cells{1 + below(70), {}, {}};
+        const size_t room = size_t(cells.count) + kCellLanes;
+        cells.inside.assign(room, 1);
+        for (int c = 0; c < 8; ++c)
+            cells.excess[c] = randoms<float>(int(room), c == 0 ? 1 : -30000, c == 0 ? 30000 : -1);
+        std::vector<float> patch[2][4], to[2][6];
+        std::vector<int> found[2];
+        for (const int which : {0, 1}) {
+            const Kernels& k = which ? ours() : oracle();
+            for (auto& v : patch[which]) v.resize(room);
+            for (auto& v : to[which]) v.resize(room);
+            found[which].resize(room);
+            auto& p = patch[which];
+            k.cell_patches(cells.arrays(), triangles.data(), steps,
+                           {p[0].data(), p[1].data(), p[2].data(), p[3].data()});
+            auto& t = to[which];
+            for (size_t axis = 0; axis < 3; ++axis) t[axis] = p[axis + 1];
+            k.project_into_cells(cells.arrays(), steepness, inverse, 1e-3f, 6,
+                                 {t[0].data(), t[1].data(), t[2].data(), t[3].data(), t[4].data(),
+                                  t[5].data(), found[which].data()});
+        }
+        for (int part = 0; part < 4; ++part) expectSameBits(patch[0][part], patch[1][part], cells.count);
+        for (int part = 0; part < 6; ++part) expectSameBits(to[0][part], to[1][part], cells.count);
+        expectSameBits(found[0], found[1], cells.count);
+        for (size_t n = 0; n < size_t(cells.count); ++n) {
+            double cut[3], largest = 0;  // how far along x, y and z the surface cuts the corner off
+            for (int axis = 0; axis < 3; ++axis)
+                cut[axis] = cells.excess[0][n] / double(cells.excess[0][n] - cells.excess[1 << axis][n]);
+            for (int c = 0; c < 8; ++c) largest = std::max(largest, std::abs(double(cells.excess[c][n])));
+            const double ax = cut[0] * 1, ay = cut[1] * 0.8, az = cut[2] * 0.5;
+            EXPECT_NEAR(patch[0][0][n], std::hypot(ay * az, az * ax, ax * ay) / 2, 1e-5);
+            for (size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(patch[0][axis + 1][n], cut[axis] / 3, 1e-4);
+            if (!found[0][n]) continue;
+            EXPECT_LE(std::abs(densityAt(cells, n, to[0][0][n], to[0][1][n], to[0][2][n])),
+                      1.01e-3 * largest);
+            EXPECT_NEAR(std::hypot(to[0][3][n], to[0][4][n], to[0][5][n]), 1, 1e-5);
+        }
+    }
+}
+
+// Onto a flat face between the voxels; where it is too far off, to the point's own place.
+TEST_P(EveryLevel, PointsMoveOntoTheSurface) {
+    constexpr int kEdge = 20, kStride = kEdge + 2;
+    std::vector<uint16_t> voxels(size_t(kStride) * kStride * kStride + kRowSlack);
+    const auto faceOf = [](int i, int j) { return 9.3 + 0.2 * i - 0.1 * j; };
+    for (int k = -1; k <= kEdge; ++k)
+        for (int j = -1; j <= kEdge; ++j)
+            for (int i = -1; i <= kEdge; ++i)
+                voxels[size_t(i + 1 + kStride * (j + 1 + kStride * (k + 1)))] =
+                    uint16_t(std::clamp(30000 + 2000 * (faceOf(i, j) - k), 0.0, 65535.0));
+    const DensityView view{voxels.data() + 1 + kStride + kStride * kStride,
+                           kStride,
+                           kStride * kStride,
+                           {kEdge, kEdge, kEdge},
+                           30000,
+                           {1e3f, 1e3f, 1e3f},
+                           {2e-3f, 1e-3f, 0}};
+    for (int round = 0; round < 50; ++round) {
+        const int n = 1 + below(60);
+        const auto x = randoms<float>(n, 0, 15e-3), y = randoms<float>(n, 0, 15e-3),
+                   off = randoms<float>(n, -1e-3, 1e-3), own = randoms<float>(n, 5e-3, 6e-3);
+        std::vector<float> p[2][3], reach(x.size(), 0.5e-3f * 0.5e-3f);
+        for (const int which : {0, 1}) {
+            p[which][0] = x, p[which][1] = y, p[which][2] = off;
+            for (size_t i = 0; i < x.size(); ++i)
+                p[which][2][i] += float(1e-3 * (9.3 + 0.2 * (x[i] + 2e-3) * 1e3 - 0.1 * (y[i] + 1e-3) * 1e3));
+            (which ? ours() : oracle())
+                .move_onto_surface(view, 2,
+                                   {p[which][0].data(), p[which][1].data(), p[which][2].data(), own.data(),
+                                    own.data(), own.data(), reach.data(), n});
+        }
+        for (int axis = 0; axis < 3; ++axis) expectSameBits(p[0][axis], p[1][axis], n);
+        for (size_t i = 0; i < size_t(n); ++i) {
+            const double distance = std::abs(off[i]) / std::sqrt(1 + 0.04 + 0.01);
+            if (distance > 0.51e-3) {
+                EXPECT_EQ(p[0][2][i], own[i]);
+            }
+            if (distance > 0.49e-3) continue;
+            const double on_face = 9.3 + 0.2 * (p[0][0][i] + 2e-3) * 1e3 - 0.1 * (p[0][1][i] + 1e-3) * 1e3;
+            EXPECT_NEAR(p[0][2][i] * 1e3, on_face, 2e-3);
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Cpu, EveryLevel, testing::ValuesIn(kCpuLevels), [](const auto& info) {
     return info.param == CpuLevel::kBaseline ? std::string("baseline")
                                              : std::string(cpuLevelName(info.param));
