@@ -7,20 +7,30 @@
 namespace bonemill {
 namespace {
 
+constexpr size_t kPages = 200;
+
+// What touching each page of `memory` costs this thread.
+std::optional<uint64_t> faultsOfTouching(volatile char* memory, size_t page) {
+    const auto before = pageFaultsOf(gettid());
+    for (size_t n = 0; n < kPages; ++n) memory[n * page] = 1;
+    const auto after = pageFaultsOf(gettid());
+    if (!before || !after) return std::nullopt;
+    return after->minor - before->minor;
+}
+
+// No bound from above on the first touch: a sanitizer's shadow pages are counted with it.
 TEST(PageFaults, CountsThePagesThatAThreadTouchesFirst) {
-    constexpr size_t kPages = 200;
-    const size_t size = kPages * size_t(sysconf(_SC_PAGESIZE));
+    const auto page = size_t(sysconf(_SC_PAGESIZE));
+    const size_t size = kPages * page;
     void* memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     ASSERT_NE(memory, MAP_FAILED);
     madvise(memory, size, MADV_NOHUGEPAGE);
-    const auto before = pageFaultsOf(gettid());
-    for (size_t n = 0; n < kPages; ++n) static_cast<volatile char*>(memory)[n * size / kPages] = 1;
-    const auto after = pageFaultsOf(gettid());
+    const auto first = faultsOfTouching(static_cast<volatile char*>(memory), page);
+    const auto again = faultsOfTouching(static_cast<volatile char*>(memory), page);
     munmap(memory, size);
-    ASSERT_TRUE(before && after);
-    EXPECT_GE(after->minor - before->minor, kPages);
-    EXPECT_LT(after->minor - before->minor, 2 * kPages);
-    EXPECT_GE(after->major, before->major);
+    ASSERT_TRUE(first && again);
+    EXPECT_GE(*first, kPages);
+    EXPECT_LT(*again, kPages / 4);
 }
 
 TEST(PageFaults, ThereIsNoSuchThread) {
