@@ -107,9 +107,14 @@ void SurfaceCells::classifyPlane(const VoxelVolume& volume, const IndexBox& cell
     const Density iso = volume.iso();
     const int columns = cells.max.x() - cells.min.x() + 2;
     for (int j = cells.min.y(); j <= cells.max.y() + 1; ++j) {
-        const Density* voxels = volume.ownerData() + volume.offset(cells.min.x(), j, k);
         uint8_t* inside = planeRow(k, j - cells.min.y());
-        for (int i = 0; i < columns; ++i) inside[i] = voxels[i] >= iso;
+        const int last = cells.min.x() + columns - 1;
+        volume.forEachPart({{cells.min.x(), j, k}, {last, j, k}}, [&](const IndexBox& part, size_t offset) {
+            const Density* voxels = volume.ownerData() + offset;
+            const int count = part.max.x() - part.min.x() + 1;
+            for (int i = 0; i < count; ++i) inside[i] = voxels[i] >= iso;
+            inside += count;
+        });
     }
 }
 

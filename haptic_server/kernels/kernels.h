@@ -110,10 +110,12 @@ struct CellProjections {
     int* is_found;  // 0: it left the cell or found no way
 };
 
-// The voxels, for kernels that look at any of them. Readable: -1 .. dims on each axis.
+// The voxels in their bricks (brick_layout.h), for kernels that look at any of them. Readable: -1 .. dims on
+// each axis.
 struct DensityView {
-    const uint16_t* first;  // voxel (0, 0, 0)
-    size_t stride_y, stride_z;
+    const uint16_t* bricks;
+    const uint32_t* slots;  // per brick, x fastest: which of `bricks`
+    int bricks_x, bricks_y;
     int dims[3];
     int iso;
     float inverse_spacing[3];  // 1/m

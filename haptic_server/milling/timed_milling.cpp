@@ -45,6 +45,7 @@ TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volum
     const double farthest = std::max(reach(-1), reach(+1));
     const Eigen::Array3d voxels = (2 * farthest / volume.spacing().array()).floor() + 2;
     const Eigen::Array3d most = voxels.min(volume.dims().cast<double>().array());
+    old_row_.resize(size_t(most.x()) + kRowSlack);
     new_density_.resize(size_t(most.prod()) + kRowSlack);
     runs_.resize(size_t(most.y() * most.z()));
 }
@@ -62,11 +63,15 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
 
     collectChanges(volume, lattice, p_VB, direction, amount, result);
     if (run_count_ == 0) return result;
+    if (!volume.hasRoomFor(result.changed)) {
+        result = {};
+        result.has_room = false;
+        return result;
+    }
     lattice.beginWrite(result.changed);
     for (size_t n = 0; n < run_count_; ++n) {
         const ChangedRun& run = runs_[n];
-        for (int i = 0; i < run.count; ++i)
-            volume.set(run.offset + size_t(i), new_density_[run.first_new + size_t(i)]);
+        volume.writeRow(run.first, run.count, &new_density_[run.first_new]);
     }
     lattice.endWrite(result.changed);
     lattice.refreshRanges(volume, result.changed);
@@ -109,8 +114,8 @@ void TimedMilling::collectChanges(const VoxelVolume& volume, const LeafLattice& 
 
 void TimedMilling::collectRow(const VoxelVolume& volume, const Eigen::Vector3i& first, int count,
                               const BurrRow& burr, int direction, MillingResult& result) noexcept {
-    const size_t offset = volume.offset(first.x(), first.y(), first.z());
-    const Density* old = volume.ownerData() + offset;
+    const Density* old = old_row_.data();
+    volume.readRow(first, count, old_row_.data());
     Density* fresh = new_density_.data() + new_count_;
     const auto mill = direction < 0 ? kernels().remove_row : kernels().add_row;
     const MilledRow milled = mill(burr, old, count, fresh);
@@ -118,7 +123,7 @@ void TimedMilling::collectRow(const VoxelVolume& volume, const Eigen::Vector3i& 
     int low = 0, high = count - 1;
     while (old[low] == fresh[low]) ++low;
     while (old[high] == fresh[high]) --high;
-    runs_[run_count_++] = {offset + size_t(low), new_count_ + size_t(low), high - low + 1};
+    runs_[run_count_++] = {first + Eigen::Vector3i(low, 0, 0), new_count_ + size_t(low), high - low + 1};
     new_count_ += size_t(high) + 1;
     result.changed.include(first + Eigen::Vector3i(low, 0, 0));
     result.changed.include(first + Eigen::Vector3i(high, 0, 0));

@@ -23,6 +23,7 @@ struct MillingResult {
     uint32_t removed_voxels = 0;  // fell below the iso-value
     uint32_t added_voxels = 0;    // rose to the iso-value or above
     bool shell_is_complete = true;
+    bool has_room = true;  // false: there is no memory for the bricks to be changed, and nothing was
 };
 
 // Owns the scratch memory of one burr. Construction allocates; apply() is RT-safe (tick thread only).
@@ -41,7 +42,7 @@ class TimedMilling {
   private:
     // A run of voxels along x with their new densities, new_density_[first_new ..].
     struct ChangedRun {
-        size_t offset;  // of its first voxel
+        Eigen::Vector3i first;
         size_t first_new;
         int count;
     };
@@ -56,6 +57,7 @@ class TimedMilling {
     int carry_direction_ = 0;
     std::vector<ChangedRun> runs_;  // the first run_count_
     size_t run_count_ = 0;
+    std::vector<Density> old_row_;
     std::vector<Density> new_density_;  // the first new_count_
     size_t new_count_ = 0;
 };

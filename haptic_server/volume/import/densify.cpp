@@ -57,11 +57,10 @@ DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window) 
 
 VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping) {
     VoxelVolume volume(raw.geometry, mapping.iso);
-    const Eigen::Vector3i n = volume.dims();
-    size_t next = 0;
-    for (int k = 0; k < n.z(); ++k)
-        for (int j = 0; j < n.y(); ++j)
-            for (int i = 0; i < n.x(); ++i) volume.set(i, j, k, mapping.density(raw.values[next++]));
+    const size_t row = size_t(volume.dims().x()), slice = row * size_t(volume.dims().y());
+    volume.fill([&](int i, int j, int k) {
+        return mapping.density(raw.values[size_t(i) + row * size_t(j) + slice * size_t(k)]);
+    });
     return volume;
 }
 
@@ -76,26 +75,31 @@ PieceCount removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels
     if (smallest_piece_voxels <= 1) return count;
     const Eigen::Vector3i n = volume.dims();
     const Density iso = volume.iso();
-    const ptrdiff_t steps[6] = {1,
-                                -1,
-                                ptrdiff_t(volume.strideY()),
-                                -ptrdiff_t(volume.strideY()),
-                                ptrdiff_t(volume.strideZ()),
-                                -ptrdiff_t(volume.strideZ())};
+    const ptrdiff_t stride_y = n.x() + 2, stride_z = stride_y * (n.y() + 2);
+    const ptrdiff_t steps[6] = {1, -1, stride_y, -stride_y, stride_z, -stride_z};
+    const auto index = [&](size_t at) {
+        return Eigen::Vector3i(int(at % size_t(stride_y)) - 1,
+                               int(at % size_t(stride_z) / size_t(stride_y)) - 1,
+                               int(at / size_t(stride_z)) - 1);
+    };
+    const auto density = [&](size_t at) {
+        const Eigen::Vector3i v = index(at);
+        return volume.at(v.x(), v.y(), v.z());
+    };
     // The border of air stops the flood, so no index has to be checked.
-    std::vector<bool> seen(volume.offset(n.x(), n.y(), n.z()) + 1);
+    std::vector<bool> seen(size_t(stride_z) * size_t(n.z() + 2));
     std::vector<size_t> piece;
     for (int k = 0; k < n.z(); ++k)
         for (int j = 0; j < n.y(); ++j)
             for (int i = 0; i < n.x(); ++i) {
-                const size_t seed = volume.offset(i, j, k);
-                if (seen[seed] || volume.at(seed) < iso) continue;
+                const size_t seed = size_t(i + 1 + stride_y * (j + 1) + stride_z * (k + 1));
+                if (seen[seed] || density(seed) < iso) continue;
                 piece.assign(1, seed);
                 seen[seed] = true;
                 for (size_t next = 0; next < piece.size(); ++next)
                     for (const ptrdiff_t step : steps) {
                         const size_t neighbour = size_t(ptrdiff_t(piece[next]) + step);
-                        if (seen[neighbour] || volume.at(neighbour) < iso) continue;
+                        if (seen[neighbour] || density(neighbour) < iso) continue;
                         seen[neighbour] = true;
                         piece.push_back(neighbour);
                     }
@@ -105,7 +109,10 @@ PieceCount removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels
                 }
                 ++count.pieces_removed;
                 count.voxels_removed += piece.size();
-                for (const size_t voxel : piece) volume.set(voxel, Density(iso - 1));
+                for (const size_t voxel : piece) {
+                    const Eigen::Vector3i v = index(voxel);
+                    volume.set(v.x(), v.y(), v.z(), Density(iso - 1));
+                }
             }
     return count;
 }

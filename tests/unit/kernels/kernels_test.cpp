@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "haptic_server/volume/voxel_volume.h"
+
 namespace bonemill {
 namespace {
 
@@ -273,21 +275,17 @@ TEST_P(EveryLevel, CellPatchesAndProjections) {
 
 // Onto a flat face between the voxels; where it is too far off, to the point's own place.
 TEST_P(EveryLevel, PointsMoveOntoTheSurface) {
-    constexpr int kEdge = 20, kStride = kEdge + 2;
-    std::vector<uint16_t> voxels(size_t(kStride) * kStride * kStride + kRowSlack);
-    const auto faceOf = [](int i, int j) { return 9.3 + 0.2 * i - 0.1 * j; };
-    for (int k = -1; k <= kEdge; ++k)
-        for (int j = -1; j <= kEdge; ++j)
-            for (int i = -1; i <= kEdge; ++i)
-                voxels[size_t(i + 1 + kStride * (j + 1 + kStride * (k + 1)))] =
-                    uint16_t(std::clamp(30000 + 2000 * (faceOf(i, j) - k), 0.0, 65535.0));
-    const DensityView view{voxels.data() + 1 + kStride + kStride * kStride,
-                           kStride,
-                           kStride * kStride,
-                           {kEdge, kEdge, kEdge},
-                           30000,
-                           {1e3f, 1e3f, 1e3f},
-                           {2e-3f, 1e-3f, 0}};
+    constexpr int kEdge = 20;
+    VolumeGeometry geometry;
+    geometry.dims = Eigen::Vector3i::Constant(kEdge);
+    VoxelVolume volume(geometry, 30000);
+    volume.fill([](int i, int j, int k) {
+        return Density(std::clamp(30000 + 2000 * (9.3 + 0.2 * i - 0.1 * j - k), 0.0, 65535.0));
+    });
+    const BrickStore& bricks = volume.bricks();
+    const DensityView view{
+        bricks.data(),         bricks.slots(), bricks.bricksPerAxis().x(), bricks.bricksPerAxis().y(),
+        {kEdge, kEdge, kEdge}, 30000,          {1e3f, 1e3f, 1e3f},         {2e-3f, 1e-3f, 0}};
     for (int round = 0; round < 50; ++round) {
         const int n = 1 + below(60);
         const auto x = randoms<float>(n, 0, 15e-3), y = randoms<float>(n, 0, 15e-3),
