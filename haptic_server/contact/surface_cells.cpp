@@ -108,10 +108,8 @@ void SurfaceCells::classifyPlane(const VoxelVolume& volume, const IndexBox& cell
     const int columns = cells.max.x() - cells.min.x() + 2;
     for (int j = cells.min.y(); j <= cells.max.y() + 1; ++j) {
         uint8_t* inside = planeRow(k, j - cells.min.y());
-        const int last = cells.min.x() + columns - 1;
-        volume.forEachPart({{cells.min.x(), j, k}, {last, j, k}}, [&](const IndexBox& part, size_t offset) {
+        volume.forEachRun({cells.min.x(), j, k}, columns, [&](size_t offset, int count) {
             const Density* voxels = volume.ownerData() + offset;
-            const int count = part.max.x() - part.min.x() + 1;
             for (int i = 0; i < count; ++i) inside[i] = voxels[i] >= iso;
             inside += count;
         });

@@ -13,11 +13,6 @@ inline void gather(const T* table, const Ints& index, Vector& out) {
     for (int l = 0; l < kWidth; ++l) result[l] = table[at[l]];
     load(result, out);
 }
-inline bool isAny(const Ints& mask) {
-    int any = 0;
-    for (int l = 0; l < kWidth; ++l) any |= mask[l];
-    return any != 0;
-}
 
 // Where the density, linear along each edge, equals iso, for kCellLanes cells: [axis][edge][lane], cell
 // steps. Edges that are not crossed hold anything.

@@ -15,8 +15,8 @@ extern const Kernels kTable;
 const Kernels kTable = {
     .single = {intoFrame<float>, nearerRound<float>, sampleNearerRound<float>, addContacts<float>},
     .twice = {intoFrame<double>, nearerRound<double>, sampleNearerRound<double>, addContacts<double>},
-    .remove_row = millRow<-1>,
-    .add_row = millRow<+1>,
+    .remove_plane = millPlane<-1>,
+    .add_plane = millPlane<+1>,
     .cell_patches = cellPatches,
     .project_into_cells = projectIntoCells,
     .move_onto_surface = moveOntoSurface,

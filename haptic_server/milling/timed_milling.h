@@ -48,8 +48,10 @@ class TimedMilling {
     };
     void collectChanges(const VoxelVolume& volume, const LeafLattice& lattice, const Eigen::Vector3d& p_VB,
                         int direction, int amount, MillingResult& result) noexcept;
-    void collectRow(const VoxelVolume& volume, const Eigen::Vector3i& first, int count, const BurrRow& burr,
-                    int direction, MillingResult& result) noexcept;
+    void collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset, const BurrPlane& burr,
+                      int direction, MillingResult& result) noexcept;
+    void keepChanges(const Eigen::Vector3i& first, int count, const Density* old, const Density* fresh,
+                     MillingResult& result) noexcept;
 
     MillingConfig config_;
     double burr_radius_;
@@ -57,7 +59,6 @@ class TimedMilling {
     int carry_direction_ = 0;
     std::vector<ChangedRun> runs_;  // the first run_count_
     size_t run_count_ = 0;
-    std::vector<Density> old_row_;
     std::vector<Density> new_density_;  // the first new_count_
     size_t new_count_ = 0;
 };

@@ -9,7 +9,7 @@ constexpr int kVoxelsLookedAtPerTick =
 }  // namespace
 
 VolumeReset::VolumeReset(const BoneModel& bone)
-    : original_(bone.volume), now_(size_t(bone.lattice.leafCells().x()) + 1), then_(now_.size()) {
+    : original_(bone.volume), now_(size_t(bone.lattice.leafCells().x()) + 1 + kRowSlack), then_(now_.size()) {
     original_.dropSpareBricks();
 }
 

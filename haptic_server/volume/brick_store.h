@@ -27,8 +27,10 @@ class BrickStore {
     const Eigen::Vector3i& bricksPerAxis() const noexcept { return bricks_; }
     size_t brickCount() const noexcept { return slots_.size(); }
     BrickId brickOf(int u, int v, int w) const noexcept {
-        return BrickId((u >> kBrickShift) +
-                       bricks_.x() * ((v >> kBrickShift) + bricks_.y() * (w >> kBrickShift)));
+        return brickAt(u >> kBrickShift, v >> kBrickShift, w >> kBrickShift);
+    }
+    BrickId brickAt(int x, int y, int z) const noexcept {
+        return BrickId(x + bricks_.x() * (y + bricks_.y() * z));
     }
 
     // In data(); the voxels from -kBrickLow to +kBrickHigh of the brick's first and last one lie around it.

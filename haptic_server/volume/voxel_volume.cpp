@@ -11,12 +11,11 @@ VoxelVolume::VoxelVolume(const VolumeGeometry& geometry, Density iso)
       bricks_(geometry.dims.array() + 2) {}
 
 void VoxelVolume::readRow(const Eigen::Vector3i& first, int count, Density* out) const noexcept {
-    for (int done = 0; done < count;) {
-        const int i = first.x() + done;
-        const int n = stretch(i, first.x() + count - 1);
-        std::memcpy(out + done, ownerData() + offset(i, first.y(), first.z()), size_t(n) * sizeof(Density));
-        done += n;
-    }
+    forEachRun(first, count, [&](size_t offset, int n) {
+        // Always as many as a brick can have: a copy of known size is a few moves.
+        std::memcpy(out, ownerData() + offset, kMostInBrick * sizeof(Density));
+        out += n;
+    });
 }
 
 bool VoxelVolume::isUniform(const Eigen::Vector3i& cell, Density& density) const noexcept {
@@ -40,37 +39,37 @@ bool VoxelVolume::hasRoomFor(const IndexBox& voxels) const noexcept {
     const IndexBox box = bricksHolding(voxels);
     size_t shared = 0;
     forEachIndex(box, [&](const Eigen::Vector3i& b) {
-        const Eigen::Vector3i u = b * kBrickCells;
-        shared += bricks_.isShared(bricks_.brickOf(u.x(), u.y(), u.z()));
+        shared += bricks_.isShared(bricks_.brickAt(b.x(), b.y(), b.z()));
     });
     return shared <= bricks_.spareCount();
 }
 
 void VoxelVolume::writeRow(const Eigen::Vector3i& first, int count, const Density* densities) noexcept {
-    const IndexBox row{first, {first.x() + count - 1, first.y(), first.z()}};
-    forEachIndex(bricksHolding(row), [&](const Eigen::Vector3i& brick) {
-        const IndexBox held = voxelsIn(brick);
-        const int low = std::max(first.x(), held.min.x());
-        const int high = std::min(row.max.x(), held.max.x());
-        writeInto(brick, {low, first.y(), first.z()}, high - low + 1, densities + (low - first.x()));
-    });
+    const IndexBox bricks = bricksHolding({first, {first.x() + count - 1, first.y(), first.z()}});
+    const auto place = [](int index, int brick) { return index + 1 - brick * kBrickCells + kBrickLow; };
+    for (int z = bricks.min.z(); z <= bricks.max.z(); ++z)
+        for (int y = bricks.min.y(); y <= bricks.max.y(); ++y) {
+            const size_t row =
+                kStrideY * size_t(place(first.y(), y)) + kStrideZ * size_t(place(first.z(), z));
+            BrickId brick = bricks_.brickAt(bricks.min.x(), y, z);
+            for (int x = bricks.min.x(); x <= bricks.max.x(); ++x, ++brick) {
+                const int at = place(first.x(), x);  // of the first one, in this brick or before it
+                const int low = std::max(0, -at), high = std::min(count, kBrickEdge - at);
+                if (!hasOwn(brick, densities + low, high - low)) continue;
+                Density* to = bricks_.contents(brick) + row + size_t(at + low);
+                for (int i = 0; i < high - low; ++i)
+                    std::atomic_ref<Density>(to[i]).store(densities[low + i], std::memory_order_release);
+            }
+        }
 }
 
-// The part of a row that this brick holds.
-void VoxelVolume::writeInto(const Eigen::Vector3i& brick, const Eigen::Vector3i& first, int count,
-                            const Density* densities) noexcept {
-    const Eigen::Vector3i u = brick * kBrickCells;
-    const BrickId id = bricks_.brickOf(u.x(), u.y(), u.z());
-    if (bricks_.isShared(id)) {
-        const Density shared = bricks_.sharedDensity(id);
-        if (std::all_of(densities, densities + count, [=](Density d) { return d == shared; })) return;
-        bricks_.open(id);
-    }
-    const Eigen::Vector3i at = first - voxelsIn(brick).min;
-    Density* to =
-        bricks_.contents(id) + size_t(at.x()) + kStrideY * size_t(at.y()) + kStrideZ * size_t(at.z());
-    for (int i = 0; i < count; ++i)
-        std::atomic_ref<Density>(to[i]).store(densities[i], std::memory_order_release);
+// Opens the brick unless it holds these densities as it is; false then.
+bool VoxelVolume::hasOwn(BrickId brick, const Density* densities, int count) noexcept {
+    if (!bricks_.isShared(brick)) return true;
+    const Density shared = bricks_.sharedDensity(brick);
+    if (std::all_of(densities, densities + count, [=](Density d) { return d == shared; })) return false;
+    bricks_.open(brick);
+    return true;
 }
 
 void VoxelVolume::set(int i, int j, int k, Density density) {

@@ -49,13 +49,20 @@ class VoxelVolume {
     // Plain densities by offset, which the compiler can read many at a time. For the owner of the volume only
     // (tick thread): nobody else writes, so its reads race with nothing. Other threads use at().
     const Density* ownerData() const noexcept { return bricks_.data(); }
-    // `count` voxels along x, at `out`. Owner only, RT-safe.
+    // `count` voxels along x, to `out`, and up to kRowSlack more behind them. Owner only, RT-safe.
     void readRow(const Eigen::Vector3i& first, int count, Density* out) const noexcept;
 
+    // Calls visit(offset, n) for runs that make up this row of voxels, each in one brick: n voxels from
+    // `offset` on. RT-safe, any thread.
+    template <class Visit>
+    void forEachRun(const Eigen::Vector3i& first, int count, Visit&& visit) const noexcept;
     // Calls visit(part, offset) for parts that make up the box of voxels (in -1 .. dims), each in one brick:
     // its voxels lie at `offset` and the strides from there. RT-safe, any thread.
     template <class Visit>
     void forEachPart(const IndexBox& voxels, Visit&& visit) const noexcept;
+    // The same without copies: each part is what the brick itself owns of the box.
+    template <class Visit>
+    void forEachOwnedPart(const IndexBox& voxels, Visit&& visit) const noexcept;
     // The density of all that is stored around this cell, if all of it is air or of the highest density.
     bool isUniform(const Eigen::Vector3i& cell, Density& density) const noexcept;
 
@@ -79,11 +86,14 @@ class VoxelVolume {
     Eigen::Vector3f gradient(int i, int j, int k) const noexcept;
 
   private:
-    // How many voxels from here on lie in the brick of the first.
-    static int stretch(int index, int last) noexcept {
-        const int in_brick = kBrickCells + kBrickHigh - ((index + 1) & (kBrickCells - 1));
-        return std::min(in_brick, last - index + 1);
+    static constexpr int kMostInBrick = kBrickCells + kBrickHigh;  // of a row, from its own first cell on
+    static_assert(kMostInBrick <= kRowSlack + 1);
+    // How many voxels from here on are among the first `most` of a brick, from its first cell on.
+    static int stretch(int index, int last, int most) noexcept {
+        return std::min(most - ((index + 1) & (kBrickCells - 1)), last - index + 1);
     }
+    template <int kMost, class Visit>
+    void forEachPiece(const IndexBox& voxels, Visit&& visit) const noexcept;
     // Bricks that hold any of these voxels, copies included.
     IndexBox bricksHolding(const IndexBox& voxels) const noexcept;
     // Voxels that a brick holds: indices, border and beyond included.
@@ -91,8 +101,7 @@ class VoxelVolume {
         const Eigen::Vector3i low = brick.array() * kBrickCells - 1 - kBrickLow;
         return {low, low.array() + (kBrickEdge - 1)};
     }
-    void writeInto(const Eigen::Vector3i& brick, const Eigen::Vector3i& first, int count,
-                   const Density* densities) noexcept;
+    bool hasOwn(BrickId brick, const Density* densities, int count) noexcept;
 
     VolumeGeometry geometry_;
     Density iso_;
@@ -101,14 +110,34 @@ class VoxelVolume {
 };
 
 template <class Visit>
+void VoxelVolume::forEachRun(const Eigen::Vector3i& first, int count, Visit&& visit) const noexcept {
+    for (int i = first.x(); count > 0;) {
+        const int n = stretch(i, i + count - 1, kMostInBrick);
+        visit(offset(i, first.y(), first.z()), n);
+        i += n;
+        count -= n;
+    }
+}
+
+template <class Visit>
 void VoxelVolume::forEachPart(const IndexBox& voxels, Visit&& visit) const noexcept {
+    forEachPiece<kMostInBrick>(voxels, visit);
+}
+
+template <class Visit>
+void VoxelVolume::forEachOwnedPart(const IndexBox& voxels, Visit&& visit) const noexcept {
+    forEachPiece<kBrickCells>(voxels, visit);
+}
+
+template <int kMost, class Visit>
+void VoxelVolume::forEachPiece(const IndexBox& voxels, Visit&& visit) const noexcept {
     Eigen::Vector3i low, n;
     for (low.z() = voxels.min.z(); low.z() <= voxels.max.z(); low.z() += n.z()) {
-        n.z() = stretch(low.z(), voxels.max.z());
+        n.z() = stretch(low.z(), voxels.max.z(), kMost);
         for (low.y() = voxels.min.y(); low.y() <= voxels.max.y(); low.y() += n.y()) {
-            n.y() = stretch(low.y(), voxels.max.y());
+            n.y() = stretch(low.y(), voxels.max.y(), kMost);
             for (low.x() = voxels.min.x(); low.x() <= voxels.max.x(); low.x() += n.x()) {
-                n.x() = stretch(low.x(), voxels.max.x());
+                n.x() = stretch(low.x(), voxels.max.x(), kMost);
                 visit(IndexBox{low, low + n - Eigen::Vector3i::Ones()}, offset(low.x(), low.y(), low.z()));
             }
         }

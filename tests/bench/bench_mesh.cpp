@@ -79,12 +79,12 @@ LatencyHistogram meshCuts(BoneModel& bone, size_t& leaves) {
 
 void writeRaw(const VoxelVolume& volume, const std::string& path) {
     std::ofstream file(path, std::ios::binary);
-    std::vector<Density> row(size_t(volume.dims().x()));
+    std::vector<Density> row(size_t(volume.dims().x()) + kRowSlack);
     for (int k = 0; k < volume.dims().z(); ++k)
         for (int j = 0; j < volume.dims().y(); ++j) {
             volume.readRow({0, j, k}, volume.dims().x(), row.data());
             file.write(reinterpret_cast<const char*>(row.data()),
-                       std::streamsize(row.size() * sizeof(Density)));
+                       std::streamsize(sizeof(Density)) * volume.dims().x());
         }
 }
 
