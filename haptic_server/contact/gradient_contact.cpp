@@ -79,7 +79,7 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
         blocks.count = 0;
     };
     bone.lattice.forEachSurfaceLeaf(box, spacing, bone.volume.iso(), [&](LeafId leaf) {
-        if (bone.shell.pointCount(bone.level, leaf) == 0) return;
+        if (bone.shell.pointCount(bone.level, leaf) == 0 || !has_room) return;
         const Sphere around = sphereAround(bone.lattice.cellsOf(leaf), spacing);
         if (tool.distanceBound(X_TV * around.center) > around.radius + reach) return;
         bone.shell.forEachBlock(bone.level, leaf, [&](const ShellBlock& block, uint32_t count) {

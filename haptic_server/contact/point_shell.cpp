@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <stdexcept>
 
 namespace bonemill {
@@ -88,8 +87,7 @@ int PointShell::levelOf(int factor) const noexcept {
 }
 
 bool PointShell::refresh(const VoxelVolume& volume, const LeafLattice& lattice,
-                         const IndexBox& changed_voxels) noexcept {
-    if (changed_voxels.isEmpty()) return true;
+                         std::span<const IndexBox> changed_voxels) noexcept {
     bool is_complete = true;
     for (int n = 0; n < levelCount(); ++n)
         is_complete &= refreshLevel(volume, lattice, changed_voxels, levels_[size_t(n)],
@@ -98,21 +96,23 @@ bool PointShell::refresh(const VoxelVolume& volume, const LeafLattice& lattice,
 }
 
 bool PointShell::refreshLevel(const VoxelVolume& volume, const LeafLattice& lattice,
-                              const IndexBox& changed_voxels, Level& level, bool is_kept) noexcept {
-    const IndexBox cells{changed_voxels.min.array() - (1 + level.reach()),
-                         changed_voxels.max.array() + level.reach()};
-    const IndexBox leaves = lattice.leavesOfCells(cells);
+                              std::span<const IndexBox> changed_voxels, Level& level, bool is_kept) noexcept {
+    const auto touched_by = [&](const IndexBox& changed) -> IndexBox {
+        return {changed.min.array() - (1 + level.reach()), changed.max.array() + level.reach()};
+    };
+    IndexBox all;
+    for (const IndexBox& changed : changed_voxels) all.include(touched_by(changed));
     bool is_complete = true;
-    for (int k = leaves.min.z(); k <= leaves.max.z(); ++k)
-        for (int j = leaves.min.y(); j <= leaves.max.y(); ++j)
-            for (int i = leaves.min.x(); i <= leaves.max.x(); ++i) {
-                const LeafId leaf = lattice.leafId({i, j, k});
-                if (!is_kept) level.markStale(leaf);
-                if (level.is_stale[leaf]) continue;
-                const IndexBox leaf_cells = lattice.cellsOf(leaf);
-                is_complete &=
-                    rebuild(volume, lattice, level, leaf, cells.clamped(leaf_cells.min, leaf_cells.max));
-            }
+    forEachIndex(lattice.leavesOfCells(all), [&](const Eigen::Vector3i& index) {
+        const LeafId leaf = lattice.leafId(index);
+        const IndexBox leaf_cells = lattice.cellsOf(leaf);
+        IndexBox touched;
+        for (const IndexBox& changed : changed_voxels)
+            touched.include(touched_by(changed).clamped(leaf_cells.min, leaf_cells.max));
+        if (touched.isEmpty()) return;
+        if (!is_kept) level.markStale(leaf);
+        if (!level.is_stale[leaf]) is_complete &= rebuild(volume, lattice, level, leaf, touched);
+    });
     return is_complete;
 }
 

@@ -19,6 +19,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "haptic_server/contact/shell_pool.h"
@@ -47,10 +48,10 @@ class PointShell {
     // factors that are not distinct and >= 1 and for leaves of more than 1024 blocks per axis.
     PointShell(const VoxelVolume& volume, const LeafLattice& lattice, const ShellConfig& config);
 
-    // Rebuilds the points that the voxels in `changed_voxels` can influence, but for stale leaves. RT-safe.
+    // Rebuilds the points that the voxels in these boxes can influence, but for stale leaves. RT-safe.
     // False: the pool is full and some leaves kept their old points.
     bool refresh(const VoxelVolume& volume, const LeafLattice& lattice,
-                 const IndexBox& changed_voxels) noexcept;
+                 std::span<const IndexBox> changed_voxels) noexcept;
 
     // From now on this level is kept up to date, and no other one. Its stale leaves stay stale: prepare() it
     // first. RT-safe.
@@ -113,8 +114,8 @@ class PointShell {
         uint32_t last_patch = 0;
     };
 
-    bool refreshLevel(const VoxelVolume& volume, const LeafLattice& lattice, const IndexBox& changed_voxels,
-                      Level& level, bool is_kept) noexcept;
+    bool refreshLevel(const VoxelVolume& volume, const LeafLattice& lattice,
+                      std::span<const IndexBox> changed_voxels, Level& level, bool is_kept) noexcept;
     bool rebuild(const VoxelVolume& volume, const LeafLattice& lattice, Level& level, LeafId leaf,
                  const IndexBox& touched_cells) noexcept;
     void pointsOfCells(const VoxelVolume& volume, const IndexBox& leaf_cells, ShellNormals normals) noexcept;

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace bonemill {
 namespace {
+
+constexpr int64_t kCellsLookedAtPerWorkedOn = 8;  // so much quicker
 
 // Voxels of the box around a sphere, writable ones only; empty if the sphere is elsewhere.
 IndexBox boxAround(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, double radius) noexcept {
@@ -44,8 +47,9 @@ TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volum
     const Eigen::Array3d voxels = (2 * farthest / volume.spacing().array()).floor() + 2;
     const Eigen::Array3d most = voxels.min(volume.dims().cast<double>().array());
     new_density_.resize(size_t(most.prod()) + kRowSlack);
-    const double pieces = std::floor(most.x() / kBrickCells) + 2;  // of a row, by bricks
-    runs_.resize(size_t(pieces * most.y() * most.z()));
+    const Eigen::Array3d bricks = (most / kBrickCells).floor() + 2;
+    runs_.resize(size_t(bricks.x() * most.y() * most.z()));
+    changed_parts_.resize(size_t(bricks.prod()));
 }
 
 MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
@@ -73,29 +77,59 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
     }
     lattice.endWrite(result.changed);
     lattice.refreshRanges(volume, result.changed);
-    result.shell_is_complete = shell.refresh(volume, lattice, result.changed);
+    result.shell_is_complete = shell.refresh(volume, lattice, {changed_parts_.data(), part_count_});
     return result;
 }
 
+// Brick by brick, from the one on for which there was no time in the last tick.
 void TimedMilling::collectChanges(const VoxelVolume& volume, const LeafLattice& lattice,
                                   const Eigen::Vector3d& p_VB, int direction, int amount,
                                   MillingResult& result) noexcept {
-    run_count_ = new_count_ = 0;
+    run_count_ = new_count_ = part_count_ = cells_ = 0;
     const BurrLimit limit(volume, burr_radius_, config_.shape, direction);
     const double reach_squared = limit.reach() * limit.reach();
     const IndexBox box = boxAround(volume, p_VB, limit.reach());
     if (box.isEmpty()) return;
-    volume.forEachOwnedPart(box, [&](const IndexBox& part, size_t offset) {
-        if (isFinished(lattice, part, direction) || squaredDistance(volume, part, p_VB) >= reach_squared)
-            return;
-        IndexBox plane = part;
-        for (int k = part.min.z(); k <= part.max.z(); ++k, offset += VoxelVolume::kStrideZ) {
-            plane.min.z() = plane.max.z() = k;
-            const Eigen::Vector3d to_first = volume.spacing().cwiseProduct(plane.min.cast<double>()) - p_VB;
-            collectPlane(volume, plane, offset, limit.plane(to_first, volume.spacing(), amount), direction,
-                         result);
-        }
-    });
+    const size_t first = std::exchange(first_part_, 0);
+    for (const bool is_second_round : {false, true}) {
+        size_t n = 0;
+        volume.forEachOwnedPart(box, [&](const IndexBox& part, size_t offset) {
+            const size_t index = n++;
+            if ((index < first) != is_second_round || result.is_cut_short ||
+                isFinished(lattice, part, direction) ||
+                squaredDistance(volume, part, p_VB) >= reach_squared ||
+                collectPart(volume, part, offset, limit, p_VB, direction, amount, result))
+                return;
+            first_part_ = index;
+            result.is_cut_short = true;
+        });
+    }
+}
+
+// False: it would take more than a tick's cells, and nothing of it is kept.
+bool TimedMilling::collectPart(const VoxelVolume& volume, const IndexBox& part, size_t offset,
+                               const BurrLimit& limit, const Eigen::Vector3d& p_VB, int direction, int amount,
+                               MillingResult& result) noexcept {
+    const size_t runs_before = run_count_, new_before = new_count_;
+    MillingResult of_part;
+    IndexBox plane = part;
+    for (int k = part.min.z(); k <= part.max.z(); ++k, offset += VoxelVolume::kStrideZ) {
+        plane.min.z() = plane.max.z() = k;
+        const Eigen::Vector3d to_first = volume.spacing().cwiseProduct(plane.min.cast<double>()) - p_VB;
+        collectPlane(volume, plane, offset, limit.plane(to_first, volume.spacing(), amount), direction,
+                     of_part);
+    }
+    cells_ += size_t(part.count() / kCellsLookedAtPerWorkedOn + of_part.changed.count());
+    if (cells_ > config_.most_cells && part_count_ > 0) {
+        run_count_ = runs_before, new_count_ = new_before;
+        return false;
+    }
+    if (of_part.changed.isEmpty()) return true;
+    changed_parts_[part_count_++] = of_part.changed;
+    result.changed.include(of_part.changed);
+    result.removed_voxels += of_part.removed_voxels;
+    result.added_voxels += of_part.added_voxels;
+    return true;
 }
 
 void TimedMilling::collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset,

@@ -16,6 +16,8 @@ struct MillingConfig {
         12750 * kDensityCountsPerUnit;  // density counts/s; default: from full to nothing in 20 ms
     double addition_rate = 12750 * kDensityCountsPerUnit;  // density counts/s
     MillingShape shape = MillingShape::kVoxelCentres;
+    // In a tick; bricks that would need more wait for the next one, whole and in turn.
+    size_t most_cells = 50'000'000;  // whose surface is made anew; eight that are only looked at count as one
 };
 
 struct MillingResult {
@@ -23,7 +25,8 @@ struct MillingResult {
     uint32_t removed_voxels = 0;  // fell below the iso-value
     uint32_t added_voxels = 0;    // rose to the iso-value or above
     bool shell_is_complete = true;
-    bool has_room = true;  // false: there is no memory for the bricks to be changed, and nothing was
+    bool is_cut_short = false;  // most_cells were not enough
+    bool has_room = true;       // false: there is no memory for the bricks to be changed, and nothing was
 };
 
 // Owns the scratch memory of one burr. Construction allocates; apply() is RT-safe (tick thread only).
@@ -48,6 +51,8 @@ class TimedMilling {
     };
     void collectChanges(const VoxelVolume& volume, const LeafLattice& lattice, const Eigen::Vector3d& p_VB,
                         int direction, int amount, MillingResult& result) noexcept;
+    bool collectPart(const VoxelVolume& volume, const IndexBox& part, size_t offset, const BurrLimit& limit,
+                     const Eigen::Vector3d& p_VB, int direction, int amount, MillingResult& result) noexcept;
     void collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset, const BurrPlane& burr,
                       int direction, MillingResult& result) noexcept;
     void keepChanges(const Eigen::Vector3i& first, int count, const Density* old, const Density* fresh,
@@ -59,6 +64,10 @@ class TimedMilling {
     int carry_direction_ = 0;
     std::vector<ChangedRun> runs_;  // the first run_count_
     size_t run_count_ = 0;
+    std::vector<IndexBox> changed_parts_;  // per brick; the first part_count_
+    size_t part_count_ = 0;
+    size_t first_part_ = 0;             // of the box around the burr: where the last tick was cut short
+    size_t cells_ = 0;                  // of this tick
     std::vector<Density> new_density_;  // the first new_count_
     size_t new_count_ = 0;
 };

@@ -25,6 +25,10 @@ const char* nameOf(uint32_t fault) {
             return "shell_overflow";
         case kFaultContactOverflow:
             return "contact_overflow";
+        case kFaultMillingCutShort:
+            return "milling_cut_short";
+        case kFaultCoarserShell:
+            return "coarser_shell";
         case kFaultVolumeFull:
             return "volume_full";
     }

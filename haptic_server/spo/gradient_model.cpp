@@ -17,9 +17,7 @@ constexpr int kMostHalvings = 4;
 constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;
 // Rounding of the depths must not refuse a step: their share of the energy, some 10 roundings each.
 constexpr double kFloatNoise = 1e-6, kDoubleNoise = 1e-13;
-// More than that is not done in a tick: about 2 ms at 10 ns each. Four times what exact needs in the tooth's
-// corridor.
-constexpr size_t kMostPointTests = 200'000;
+constexpr size_t kMostCandidates = 65'536;
 
 Vector6d rotationScale() noexcept {
     Vector6d scale;
@@ -62,7 +60,7 @@ GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world
       dt_(dt),
       X_VW_(world.volume.geometry().X_WV.inverse()),
       field_(&world.tool.field(settings_)),
-      contact_(config.contact),
+      contact_(config.contact, std::min(kMostCandidates, config.most_point_tests / 2)),
       relaxing_(config.coupling, dt) {}
 
 void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
@@ -107,6 +105,7 @@ void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexce
                          level_,        settings_.patch_points, settings_.refined_points};
     out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin);
     out.candidates = uint32_t(contact_.candidateCount());
+    point_tests_ += contact_.candidateCount();
 }
 
 GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick) noexcept {
@@ -149,6 +148,7 @@ Vector6d GradientModel::limited(const State& state, Vector6d step, const Tick& t
     if (reachOf(step) <= room()) return step;
     if (settings_.continuous_collision) {
         gather(state.X_VT, reachOf(step) * (1 + 1e-9), *tick.out);
+        point_tests_ += contact_.candidateCount();  // the sweep's
         return contact_.advance(*field_, state.X_VT, step, trustRadius() / 2) * step;
     }
     if (room() < trustRadius() / 2) gather(state.X_VT, trustRadius(), *tick.out);
@@ -162,6 +162,7 @@ bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tic
     const double noise = settings_.precision == Precision::kDouble ? kDoubleNoise : kFloatNoise;
     Vector6d share = step;
     for (int n = 0; n <= kMostHalvings; ++n, share /= 2) {
+        if (isOverBudget()) break;
         const State next = evaluate(moved(state.X_VT, share), tick);
         if (!next.isFinite() || next.total.energy > state.total.energy * (1 + noise)) continue;
         state = next;
@@ -184,13 +185,13 @@ bool GradientModel::descend(State& state, const Tick& tick) noexcept {
             state = evaluate(state.X_VT, tick);  // the energy is that of other points now
         ++tick.out->iterations;
         const bool has_moved = moveDown(state, step, tick);
-        lambda_ = has_moved ? lambda_ / 10 : std::min(std::max(kFirstLambda, lambda_ * 10), kMostLambda);
-        if (lambda_ < kFirstLambda / 100) lambda_ = 0;
-        if (!has_moved) break;
-        if (point_tests_ > kMostPointTests) {
+        if (isOverBudget()) {
             tick.out->has_contact_overflow = true;
             break;
         }
+        lambda_ = has_moved ? lambda_ / 10 : std::min(std::max(kFirstLambda, lambda_ * 10), kMostLambda);
+        if (lambda_ < kFirstLambda / 100) lambda_ = 0;
+        if (!has_moved) break;
     }
     return true;
 }
@@ -206,6 +207,7 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
     last_reach_ = reachOf(between(tick.start, state.X_VT));
     energy_ = state.total.energy;
     out.contacts = state.contacts;
+    out.point_tests = point_tests_;
     out.max_penetration = state.max_depth;
     feel(state.X_VT, tick);
     return out;

@@ -14,6 +14,9 @@ struct GradientConfig {
     double max_speed = 0.5;            // m/s of the tool point
     double max_angular_speed = 4.189;  // rad/s
     double burr_radius = 1e-3;         // m; bounds the trust radius
+    // In a tick, about: one point's distance, energy and wrench at one pose. Half as many candidates have
+    // room.
+    size_t most_point_tests = 200'000;
 };
 
 class GradientModel final : public SpoModel {
@@ -53,6 +56,7 @@ class GradientModel final : public SpoModel {
     static void dropTraces(SpoStep& step) noexcept;
     double reachOf(const Vector6d& step) const noexcept;
     double trustRadius() const noexcept;
+    bool isOverBudget() const noexcept { return point_tests_ > config_.most_point_tests; }
 
     GradientConfig config_;
     SpoWorld world_;

@@ -34,6 +34,7 @@ HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const ToolMode
       thesis_(config.contact, config.coupling, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
       gradient_(config.gradient, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
       model_(&gradient_),
+      affordable_(config.gradient.most_point_tests, config.dt),
       milling_(config.milling, bone.volume, config.burr_radius),
       X_VW_(bone.volume.geometry().X_WV.inverse()) {
     const AccuracySettings& settings = accuracy ? accuracy->chosen() : config.accuracy;
@@ -43,9 +44,12 @@ HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const ToolMode
 }
 
 // A choice is taken up when its contact points are up to date; until then the old one stays in force.
-void HapticTick::followChoice(uint32_t& faults) noexcept {
-    const AccuracySettings& chosen = accuracy_->chosen();
+void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept {
     PointShell& shell = bone_.shell;
+    AccuracySettings chosen = accuracy_ ? accuracy_->chosen() : config_.accuracy;
+    const int asked_for = chosen.shell_factor;
+    chosen.shell_factor = affordable_.factor(shell, asked_for, settings_.shell_factor, step);
+    if (chosen.shell_factor > asked_for) faults |= kFaultCoarserShell;
     if (chosen == settings_) return shell.follow(shell.followed());  // not even the one being prepared
     const auto [is_ready, is_complete] =
         shell.prepare(bone_.volume, bone_.lattice, levelOf(shell, chosen), kLeavesPreparedPerTick);
@@ -74,7 +78,7 @@ bool HapticTick::tick(TickIo& io) noexcept {
     const int64_t force_at_ns = io.write(step.wrench_hand);
 
     const MillingResult milled = mill(input, faults);
-    if (accuracy_) followChoice(faults);
+    chooseSettings(step, faults);
     TickRecord record = makeRecord(input, step);
     record.removed_voxels = milled.removed_voxels;
     record.added_voxels = milled.added_voxels;
@@ -130,6 +134,7 @@ MillingResult HapticTick::mill(const DeviceInput& input, uint32_t& faults) noexc
                                                 X_VW_ * spo_.position, remove ? -1 : 1, config_.dt);
     if (!milled.shell_is_complete) faults |= kFaultShellOverflow;
     if (!milled.has_room) faults |= kFaultVolumeFull;
+    if (milled.is_cut_short) faults |= kFaultMillingCutShort;
     return milled;
 }
 

@@ -6,6 +6,7 @@
 #include "haptic_server/spo/gradient_model.h"
 #include "haptic_server/spo/thesis_2012_model.h"
 #include "haptic_server/tick/accuracy_switch.h"
+#include "haptic_server/tick/affordable_shell.h"
 #include "haptic_server/tick/bone_model.h"
 #include "haptic_server/tick/tick_record.h"
 #include "haptic_server/tick/volume_reset.h"
@@ -68,7 +69,7 @@ class HapticTick {
 
   private:
     Pose acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
-    void followChoice(uint32_t& faults) noexcept;
+    void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
     SpoStep moveAndFeel(double force_factor, uint32_t& faults) noexcept;
     MillingResult mill(const DeviceInput& input, uint32_t& faults) noexcept;
@@ -82,6 +83,7 @@ class HapticTick {
     GradientModel gradient_;
     SpoModel* model_;  // thesis_ or gradient_
     AccuracySettings settings_;
+    AffordableShell affordable_;
     TimedMilling milling_;
     Pose X_VW_;
     Pose device_;

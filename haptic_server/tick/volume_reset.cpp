@@ -52,7 +52,7 @@ bool VolumeReset::restoreLeaf(BoneModel& bone, LeafId leaf, bool& shell_is_compl
                  });
     bone.lattice.endWrite(changed);
     bone.lattice.refreshRanges(volume, changed);
-    shell_is_complete = bone.shell.refresh(volume, bone.lattice, changed);
+    shell_is_complete = bone.shell.refresh(volume, bone.lattice, {&changed, 1});
     return true;
 }
 

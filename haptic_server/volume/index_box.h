@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 
 namespace bonemill {
 
@@ -17,6 +18,14 @@ struct IndexBox {
         }
         min = min.cwiseMin(index);
         max = max.cwiseMax(index);
+    }
+    void include(const IndexBox& other) noexcept {
+        if (other.isEmpty()) return;
+        include(other.min);
+        include(other.max);
+    }
+    int64_t count() const noexcept {
+        return isEmpty() ? 0 : (max - min + Eigen::Vector3i::Ones()).cast<int64_t>().prod();
     }
     IndexBox grown(int steps) const noexcept { return {min.array() - steps, max.array() + steps}; }
     IndexBox clamped(const Eigen::Vector3i& low, const Eigen::Vector3i& high) const noexcept {

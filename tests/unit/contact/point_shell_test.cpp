@@ -298,7 +298,7 @@ struct EditedBone {
         test::writeLikeTick(volume, lattice, box, [&](int, int, int) {
             return what == 0 ? Density(density(random)) : what == 1 ? kMaxDensity : Density(0);
         });
-        ASSERT_TRUE(shell.refresh(volume, lattice, box));
+        ASSERT_TRUE(shell.refresh(volume, lattice, {&box, 1}));
     }
     PointShell rebuilt() const { return PointShell(volume, lattice, config); }
 
@@ -424,7 +424,7 @@ TEST(PointShell, FullPoolKeepsTheOldPointsAndSaysSo) {
             for (int i = 0; i < 64; ++i) volume.set(i, j, k, Density(random()));
     const IndexBox box{Eigen::Vector3i::Zero(), Eigen::Vector3i::Constant(63)};
     lattice.refreshRanges(volume, box);
-    all = shell.refresh(volume, lattice, box);
+    all = shell.refresh(volume, lattice, {&box, 1});
     EXPECT_FALSE(all);
     EXPECT_GE(shell.pointCount(0), before);
 }

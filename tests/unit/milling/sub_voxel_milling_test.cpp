@@ -122,7 +122,7 @@ TEST(SubVoxelMilling, EveryVoxelEndsAtItsLimitAndNoneElsewhereChanges) {
                 const IndexBox all = test::wholeBox(bone.volume);
                 test::writeLikeTick(bone.volume, bone.lattice, all,
                                     [&](int, int, int) { return Density(density(random)); });
-                bone.shell.refresh(bone.volume, bone.lattice, all);
+                bone.shell.refresh(bone.volume, bone.lattice, {&all, 1});
                 const VoxelVolume before = bone.volume;
                 const double radius = 6.3 * kVoxel;
                 const Eigen::Vector3d center(12.2173 * kVoxel, 14.7391 * kVoxel, 11.4257 * kVoxel);
