@@ -4,6 +4,7 @@
 
 #include "common/config/user_error.h"
 #include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/volume/import/small_pieces.h"
 
 namespace bonemill {
 namespace {

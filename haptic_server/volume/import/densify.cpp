@@ -7,6 +7,7 @@
 
 #include "common/config/user_error.h"
 #include "haptic_server/volume/import/propose_iso.h"
+#include "haptic_server/volume/import/small_pieces.h"
 
 namespace bonemill {
 namespace {
@@ -69,45 +70,6 @@ VoxelVolume densify(const RawVolume& raw, const DensityWindow& window) {
     VoxelVolume volume = densify(raw, chooseMapping(raw, window));
     removeSmallPieces(volume, window.smallest_piece_voxels);
     return volume;
-}
-
-PieceCount removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels) {
-    PieceCount count;
-    if (smallest_piece_voxels <= 1) return count;
-    const Eigen::Vector3i n = volume.dims();
-    const Density iso = volume.iso();
-    const ptrdiff_t steps[6] = {1,
-                                -1,
-                                ptrdiff_t(volume.strideY()),
-                                -ptrdiff_t(volume.strideY()),
-                                ptrdiff_t(volume.strideZ()),
-                                -ptrdiff_t(volume.strideZ())};
-    // The border of air stops the flood, so no index has to be checked.
-    std::vector<bool> seen(volume.offset(n.x(), n.y(), n.z()) + 1);
-    std::vector<size_t> piece;
-    for (int k = 0; k < n.z(); ++k)
-        for (int j = 0; j < n.y(); ++j)
-            for (int i = 0; i < n.x(); ++i) {
-                const size_t seed = volume.offset(i, j, k);
-                if (seen[seed] || volume.at(seed) < iso) continue;
-                piece.assign(1, seed);
-                seen[seed] = true;
-                for (size_t next = 0; next < piece.size(); ++next)
-                    for (const ptrdiff_t step : steps) {
-                        const size_t neighbour = size_t(ptrdiff_t(piece[next]) + step);
-                        if (seen[neighbour] || volume.at(neighbour) < iso) continue;
-                        seen[neighbour] = true;
-                        piece.push_back(neighbour);
-                    }
-                if (piece.size() >= smallest_piece_voxels) {
-                    ++count.pieces_kept;
-                    continue;
-                }
-                ++count.pieces_removed;
-                count.voxels_removed += piece.size();
-                for (const size_t voxel : piece) volume.set(voxel, Density(iso - 1));
-            }
-    return count;
 }
 
 }  // namespace bonemill

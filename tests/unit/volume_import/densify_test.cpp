@@ -52,26 +52,5 @@ TEST(Densify, isoMustLieInsideTheWindow) {
     expectUserError([&] { densify(rawOf({4, 4, 4}, NAN), DensityWindow{}); }, {"no finite value"});
 }
 
-// Pieces of 1, 2 and 3 voxels; the last touches another only across an edge, which does not connect.
-TEST(Densify, smallPiecesGoBelowTheSurface) {
-    RawVolume raw = rawOf({6, 5, 4}, 0);
-    const auto set = [&](int i, int j, int k) { raw.values[size_t(i + 6 * (j + 5 * k))] = 100; };
-    set(0, 0, 0);
-    set(2, 2, 1), set(2, 2, 2);
-    set(4, 0, 3), set(5, 0, 3), set(5, 1, 3);
-    set(4, 2, 3);  // edge neighbour of (5, 1, 3)
-    VoxelVolume volume = densify(raw, DensityWindow{0.0, 200.0, 100.0, 0});
-    const Density iso = volume.iso();
-    const PieceCount count = removeSmallPieces(volume, 3);
-    EXPECT_EQ(count.pieces_kept, 1u);
-    EXPECT_EQ(count.pieces_removed, 3u);
-    EXPECT_EQ(count.voxels_removed, 4u);
-    EXPECT_EQ(volume.at(0, 0, 0), iso - 1);
-    EXPECT_EQ(volume.at(2, 2, 2), iso - 1);
-    EXPECT_EQ(volume.at(4, 2, 3), iso - 1);
-    EXPECT_EQ(volume.at(5, 0, 3), iso);
-    EXPECT_EQ(volume.at(1, 1, 1), 0);
-}
-
 }  // namespace
 }  // namespace bonemill
