@@ -1,9 +1,7 @@
 #include "haptic_server/volume/import/densify.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 #include "common/config/user_error.h"
 #include "haptic_server/volume/import/propose_iso.h"
@@ -18,15 +16,13 @@ std::string number(double value) {
     return text;
 }
 
-std::pair<double, double> finiteRange(const RawVolume& raw) {
-    float low = std::numeric_limits<float>::infinity(), high = -low;
-    for (const float v : raw.values) {
-        if (!std::isfinite(v)) continue;
-        low = std::min(low, v);
-        high = std::max(high, v);
-    }
-    if (low > high) throw UserError("the volume holds no finite value (" + raw.description + ")");
-    return {low, high};
+void densifySlice(const RawValues& values, const DensityMapping& mapping, int k, VoxelVolume& volume) {
+    const Eigen::Vector3i n = volume.dims();
+    values.visit([&](auto samples) {
+        size_t next = size_t(n.x()) * size_t(n.y()) * size_t(k);
+        for (int j = 0; j < n.y(); ++j)
+            for (int i = 0; i < n.x(); ++i) volume.set(i, j, k, mapping.density(samples[next++]));
+    });
 }
 
 }  // namespace
@@ -39,9 +35,10 @@ Density DensityMapping::density(double raw) const noexcept {
 
 DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window) {
     DensityMapping mapping;
-    const auto [lowest, highest] = finiteRange(raw);
-    mapping.low = window.low.value_or(lowest);
-    mapping.high = window.high.value_or(highest);
+    const ValueRange& range = raw.values.range();
+    if (range.low > range.high) throw UserError("the volume holds no finite value (" + raw.description + ")");
+    mapping.low = window.low.value_or(range.low);
+    mapping.high = window.high.value_or(range.high);
     const std::string window_text = number(mapping.low) + " .. " + number(mapping.high);
     if (!(mapping.low < mapping.high))
         throw UserError("the density window " + window_text +
@@ -58,11 +55,17 @@ DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window) 
 
 VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping) {
     VoxelVolume volume(raw.geometry, mapping.iso);
-    const Eigen::Vector3i n = volume.dims();
-    size_t next = 0;
-    for (int k = 0; k < n.z(); ++k)
-        for (int j = 0; j < n.y(); ++j)
-            for (int i = 0; i < n.x(); ++i) volume.set(i, j, k, mapping.density(raw.values[next++]));
+    for (int k = 0; k < volume.dims().z(); ++k) densifySlice(raw.values, mapping, k, volume);
+    return volume;
+}
+
+VoxelVolume densify(RawVolume&& raw, const DensityMapping& mapping) {
+    VoxelVolume volume(raw.geometry, mapping.iso);
+    const size_t slice = size_t(volume.dims().x()) * size_t(volume.dims().y());
+    for (int k = 0; k < volume.dims().z(); ++k) {
+        densifySlice(raw.values, mapping, k, volume);
+        raw.values.forget(slice * size_t(k), slice * size_t(k + 1));
+    }
     return volume;
 }
 

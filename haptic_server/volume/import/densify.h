@@ -38,6 +38,8 @@ struct DensityMapping {
 DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window);
 
 VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping);
+// Gives the raw values' memory back as their densities come: both are never there as a whole.
+VoxelVolume densify(RawVolume&& raw, const DensityMapping& mapping);
 // chooseMapping, densify and removeSmallPieces in one.
 VoxelVolume densify(const RawVolume& raw, const DensityWindow& window);
 
