@@ -40,7 +40,7 @@ void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel
             throw UserError(file + ": claims " + sizeText(dims) +
                             " voxels, more than 2^31; crop or resample it");
     }
-    // The samples go from reader to volume and are never there twice; beside them, the densities.
+    // Samples move from the reader's process to this one and on into densities; what was moved is given back.
     constexpr uint64_t kDensityBytes = 2;
     const uint64_t needed = voxels * (bytes_per_voxel + kDensityBytes);
     const uint64_t available = availableMemory();
