@@ -1,6 +1,7 @@
 #include "haptic_server/app/state_hash.h"
 
 #include <bit>
+#include <vector>
 
 namespace bonemill {
 
@@ -21,15 +22,13 @@ void StateHash::addRecord(const TickRecord& record) noexcept {
     add(record.removed_voxels), add(record.added_voxels), add(record.buttons), add(record.faults);
 }
 
-void StateHash::addVolume(const VoxelVolume& volume) noexcept {
+void StateHash::addVolume(const VoxelVolume& volume) {
     const Eigen::Vector3i& dims = volume.dims();
+    std::vector<Density> row(size_t(dims.x()) + kRowSlack);
     for (int k = 0; k < dims.z(); ++k)
         for (int j = 0; j < dims.y(); ++j) {
-            const size_t row = volume.offset(0, j, k);
-            for (int i = 0; i < dims.x(); ++i) {
-                const Density density = volume.at(row + size_t(i));
-                addBytes(&density, sizeof density);
-            }
+            volume.readRow({0, j, k}, dims.x(), row.data());
+            addBytes(row.data(), size_t(dims.x()) * sizeof(Density));
         }
 }
 

@@ -16,7 +16,7 @@ class StateHash {
     // Poses, wrench, contacts, removal and faults of a tick; not its measured times.
     void addRecord(const TickRecord& record) noexcept;
     // All densities without the border of air.
-    void addVolume(const VoxelVolume& volume) noexcept;
+    void addVolume(const VoxelVolume& volume);
     uint64_t value() const noexcept { return value_; }
 
   private:

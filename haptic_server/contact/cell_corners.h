@@ -31,8 +31,7 @@ struct FieldSample {
 // `cell` is in -1 .. dims-1. Plain reads: for the owner of the volume (tick thread).
 inline CellCorners readCorners(const VoxelVolume& volume, const Eigen::Vector3i& cell) noexcept {
     const Density* d = volume.ownerData() + volume.offset(cell.x(), cell.y(), cell.z());
-    const size_t y = volume.strideY();
-    const size_t z = volume.strideZ();
+    constexpr size_t y = VoxelVolume::kStrideY, z = VoxelVolume::kStrideZ;
     const int iso = volume.iso();
     return {{float(d[0] - iso), float(d[1] - iso), float(d[y] - iso), float(d[y + 1] - iso),
              float(d[z] - iso), float(d[z + 1] - iso), float(d[z + y] - iso), float(d[z + y + 1] - iso)}};

@@ -86,9 +86,11 @@ void GradientContact::splitPatch(const Vector3f& spacing, size_t index, int q) n
 }
 
 void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t coarse) noexcept {
-    DensityView view{.first = volume.ownerData() + volume.offset(0, 0, 0),
-                     .stride_y = volume.strideY(),
-                     .stride_z = volume.strideZ(),
+    const BrickStore& bricks = volume.bricks();
+    DensityView view{.bricks = bricks.data(),
+                     .slots = bricks.slots(),
+                     .bricks_x = bricks.bricksPerAxis().x(),
+                     .bricks_y = bricks.bricksPerAxis().y(),
                      .dims = {volume.dims().x(), volume.dims().y(), volume.dims().z()},
                      .iso = volume.iso(),
                      .inverse_spacing = {},

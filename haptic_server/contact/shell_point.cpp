@@ -67,10 +67,10 @@ Eigen::Vector3f cornerGradients(const VoxelVolume& volume, const SurfacePlace& p
 Eigen::Vector3f centralGradient(const VoxelVolume& volume, const Eigen::Vector3f& inverse_spacing,
                                 const SurfacePlace& place) noexcept {
     if (isAtBorder(volume, place.cell)) return cornerGradients(volume, place);
-    const size_t strides[3] = {1, volume.strideY(), volume.strideZ()};
+    constexpr size_t kStrides[3] = {1, VoxelVolume::kStrideY, VoxelVolume::kStrideZ};
     const Density* d = volume.ownerData() + volume.offset(place.cell.x(), place.cell.y(), place.cell.z());
-    return Eigen::Vector3f(centralSlope<0>(d, strides, place.at), centralSlope<1>(d, strides, place.at),
-                           centralSlope<2>(d, strides, place.at))
+    return Eigen::Vector3f(centralSlope<0>(d, kStrides, place.at), centralSlope<1>(d, kStrides, place.at),
+                           centralSlope<2>(d, kStrides, place.at))
         .cwiseProduct(inverse_spacing);
 }
 

@@ -107,9 +107,12 @@ void SurfaceCells::classifyPlane(const VoxelVolume& volume, const IndexBox& cell
     const Density iso = volume.iso();
     const int columns = cells.max.x() - cells.min.x() + 2;
     for (int j = cells.min.y(); j <= cells.max.y() + 1; ++j) {
-        const Density* voxels = volume.ownerData() + volume.offset(cells.min.x(), j, k);
         uint8_t* inside = planeRow(k, j - cells.min.y());
-        for (int i = 0; i < columns; ++i) inside[i] = voxels[i] >= iso;
+        volume.forEachRun({cells.min.x(), j, k}, columns, [&](size_t offset, int count) {
+            const Density* voxels = volume.ownerData() + offset;
+            for (int i = 0; i < count; ++i) inside[i] = voxels[i] >= iso;
+            inside += count;
+        });
     }
 }
 

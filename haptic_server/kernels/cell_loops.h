@@ -13,11 +13,6 @@ inline void gather(const T* table, const Ints& index, Vector& out) {
     for (int l = 0; l < kWidth; ++l) result[l] = table[at[l]];
     load(result, out);
 }
-inline bool isAny(const Ints& mask) {
-    int any = 0;
-    for (int l = 0; l < kWidth; ++l) any |= mask[l];
-    return any != 0;
-}
 
 // Where the density, linear along each edge, equals iso, for kCellLanes cells: [axis][edge][lane], cell
 // steps. Edges that are not crossed hold anything.
@@ -163,14 +158,20 @@ inline void cellUnder(const Floats& u, int dim, Ints& cell, Floats& in_cell) {
 // Densities minus iso at the corners of each lane's cell.
 void readCells(const DensityView& d, const Ints& i, const Ints& j, const Ints& k, Floats (&e)[8]) {
     alignas(64) float corner[8][kWidth];
+    constexpr int kInBrick = kBrickCells - 1;
     const float iso = float(d.iso);
     for (int l = 0; l < kWidth; ++l) {
-        const uint16_t* p = d.first + i[l] + int64_t(d.stride_y) * j[l] + int64_t(d.stride_z) * k[l];
+        const int u = i[l] + 1, v = j[l] + 1, w = k[l] + 1;
+        const int brick =
+            (u >> kBrickShift) + d.bricks_x * ((v >> kBrickShift) + d.bricks_y * (w >> kBrickShift));
+        const uint16_t* p = d.bricks + d.slots[brick] * kBrickSize + size_t((u & kInBrick) + kBrickLow) +
+                            kBrickStrideY * size_t((v & kInBrick) + kBrickLow) +
+                            kBrickStrideZ * size_t((w & kInBrick) + kBrickLow);
         corner[0][l] = float(p[0]), corner[1][l] = float(p[1]);
-        corner[2][l] = float(p[d.stride_y]), corner[3][l] = float(p[d.stride_y + 1]);
-        p += d.stride_z;
+        corner[2][l] = float(p[kBrickStrideY]), corner[3][l] = float(p[kBrickStrideY + 1]);
+        p += kBrickStrideZ;
         corner[4][l] = float(p[0]), corner[5][l] = float(p[1]);
-        corner[6][l] = float(p[d.stride_y]), corner[7][l] = float(p[d.stride_y + 1]);
+        corner[6][l] = float(p[kBrickStrideY]), corner[7][l] = float(p[kBrickStrideY + 1]);
     }
     for (int c = 0; c < 8; ++c) {
         load(corner[c], e[c]);

@@ -1,6 +1,7 @@
 // The loops of kernels.h, for the compiler to make vector instructions of. Included once per instruction set,
 // with BONEMILL_CPU_LEVEL_NAMESPACE set; includes nothing with inline functions, whose copies the linker
 // would mix up between instruction sets.
+#include "haptic_server/kernels/brick_layout.h"
 #include "haptic_server/kernels/kernels.h"
 #include "haptic_server/kernels/loop_vectors.h"
 // The others need the vectors.
@@ -14,8 +15,8 @@ extern const Kernels kTable;
 const Kernels kTable = {
     .single = {intoFrame<float>, nearerRound<float>, sampleNearerRound<float>, addContacts<float>},
     .twice = {intoFrame<double>, nearerRound<double>, sampleNearerRound<double>, addContacts<double>},
-    .remove_row = millRow<-1>,
-    .add_row = millRow<+1>,
+    .remove_plane = millPlane<-1>,
+    .add_plane = millPlane<+1>,
     .cell_patches = cellPatches,
     .project_into_cells = projectIntoCells,
     .move_onto_surface = moveOntoSurface,

@@ -68,23 +68,24 @@ struct PointKernels {
                          const Scalar* gz, int count, ContactSums& sums);
 };
 
-inline constexpr int kRowSlack = 15;
+inline constexpr int kRowSlack = 31;
 
-// The burr's limit across one row of voxels (milling/burr_limit.h), counts and m.
-struct BurrRow {
-    float first_x, step_x;  // from the burr's centre to the row's first voxel, along x
-    float off_row_squared;  // m²: of the row from the centre
-    float radius, slope;    // counts per m
-    float reach_squared;    // m²: no limit from there on
-    float core_squared;     // m²: inside, the limit is the last density there is
+// The burr's limit in a plane of voxels (milling/burr_limit.h), counts and m.
+struct BurrPlane {
+    float first_x, step_x;    // from the burr's centre to the plane's first voxel, along x
+    float first_y, step_y;    // along y
+    float off_plane_squared;  // m²: of the plane from the centre
+    float radius, slope;      // counts per m
+    float reach_squared;      // m²: no limit from there on
+    float core_squared;       // m²: inside, the limit is the last density there is
     int iso;
     int amount;  // at most so many counts towards the limit
 };
 
-struct MilledRow {
-    int changed;  // voxels
-    int removed;  // fell below iso
-    int added;    // rose to iso or above
+struct MilledPlane {
+    int removed;          // voxels that fell below iso
+    int added;            // that rose to iso or above
+    uint32_t is_changed;  // rows, bit by row
 };
 
 // Cells that the iso-surface crosses, as structure of arrays; the arrays go on to the next multiple of
@@ -110,10 +111,12 @@ struct CellProjections {
     int* is_found;  // 0: it left the cell or found no way
 };
 
-// The voxels, for kernels that look at any of them. Readable: -1 .. dims on each axis.
+// The voxels in their bricks (brick_layout.h), for kernels that look at any of them. Readable: -1 .. dims on
+// each axis.
 struct DensityView {
-    const uint16_t* first;  // voxel (0, 0, 0)
-    size_t stride_y, stride_z;
+    const uint16_t* bricks;
+    const uint32_t* slots;  // per brick, x fastest: which of `bricks`
+    int bricks_x, bricks_y;
     int dims[3];
     int iso;
     float inverse_spacing[3];  // 1/m
@@ -130,10 +133,13 @@ struct SurfacePoints {
 struct Kernels {
     PointKernels<float> single;
     PointKernels<double> twice;
-    // out[0 .. count-1]: the row after milling with limits from above (remove) or from below (add); nothing
-    // if it did not change. Reads up to kRowSlack voxels beyond the row, writes as many to out.
-    MilledRow (*remove_row)(const BurrRow& burr, const uint16_t* row, int count, uint16_t* out);
-    MilledRow (*add_row)(const BurrRow& burr, const uint16_t* row, int count, uint16_t* out);
+    // A brick's plane of `rows` rows of `count` voxels, kBrickStrideY apart and both at most kBrickCells,
+    // after milling with limits from above (remove) or from below (add): the rows that changed are written to
+    // out, kBrickCells apart.
+    MilledPlane (*remove_plane)(const BurrPlane& burr, const uint16_t* first, int count, int rows,
+                                uint16_t* out);
+    MilledPlane (*add_plane)(const BurrPlane& burr, const uint16_t* first, int count, int rows,
+                             uint16_t* out);
     // triangle_edges[kTriangleStride * inside + 3 * triangle + vertex]: a crossed edge of the cell.
     void (*cell_patches)(const CellArrays& cells, const int* triangle_edges, const float steps[3],
                          const CellPatches& out);

@@ -43,6 +43,11 @@ inline void store(const Floats& v, float* p) {
 inline void store(const Ints& v, int* p) {
     __builtin_memcpy(p, &v, sizeof v);
 }
+inline bool isAny(const Ints& mask) {
+    int any = 0;
+    for (int l = 0; l < kWidth; ++l) any |= mask[l];
+    return any != 0;
+}
 inline void rootOf(const Floats& v, Floats& out) {
     alignas(64) float in[kWidth], result[kWidth];
     store(v, in);

@@ -4,10 +4,10 @@ namespace {
 
 // Anything to mill: a row of air has nothing to remove, a solid one no room to add.
 template <int kDirection>
-bool isFinished(const uint16_t* row, int count) {
+bool isFinished(const uint16_t* row) {
     constexpr uint16_t kFinished = kDirection < 0 ? 0 : 65535;
     WideWords any{}, part;
-    for (int i = 0; i < count; i += kWideWords) {
+    for (int i = 0; i < kBrickCells; i += kWideWords) {
         loadWords(row + i, part);
         any |= part ^ kFinished;
     }
@@ -17,21 +17,25 @@ bool isFinished(const uint16_t* row, int count) {
     return left == 0;
 }
 
+// Voxels below zero: a true comparison is -1.
+struct MilledLanes {
+    Ints changed{}, removed{}, added{};
+};
+
 // kDirection: -1 removes, +1 adds. Without branches; lanes beyond the burr's reach or the row keep their
-// density.
+// density. off_row_squared: m², of the row from the burr's centre.
 template <int kDirection>
-MilledRow millRow(const BurrRow& burr, const uint16_t* __restrict row, int count, uint16_t* __restrict out) {
-    if (isFinished<kDirection>(row, count)) return {0, 0, 0};
+void millRow(const BurrPlane& b, float off_row_squared, const uint16_t* row, int count, uint16_t* out,
+             MilledLanes& milled) {
     constexpr float kMost = 65535, kCore = kDirection < 0 ? 0 : kMost;
-    const BurrRow b = burr;
-    Ints lane, changed{}, removed{}, added{};  // counts below zero: a true comparison is -1
+    Ints lane;
     for (int l = 0; l < kWidth; ++l) lane[l] = l;
-    for (int i = 0; i < count; i += kWidth) {
+    for (int i = 0; i < kBrickCells; i += kWidth) {
         Words words;
         loadWords(row + i, words);
         const Ints old = __builtin_convertvector(words, Ints);
         const Floats x = b.first_x + __builtin_convertvector(lane + i, Floats) * b.step_x;
-        const Floats squared = x * x + b.off_row_squared;
+        const Floats squared = x * x + off_row_squared;
         Floats distance;
         rootOf(squared, distance);
         const Floats ramp = float(b.iso) - float(kDirection) * b.slope * (distance - b.radius);
@@ -45,17 +49,32 @@ MilledRow millRow(const BurrRow& burr, const uint16_t* __restrict row, int count
         const Ints now = (squared < b.reach_squared) & (lane + i < count) ? towards : old;
         const Words fresh = __builtin_convertvector(now, Words);
         __builtin_memcpy(out + i, &fresh, sizeof fresh);
-        changed += now != old;
-        removed += (old >= b.iso) & (now < b.iso);
-        added += (old < b.iso) & (now >= b.iso);
+        milled.changed += now != old;
+        milled.removed += (old >= b.iso) & (now < b.iso);
+        milled.added += (old < b.iso) & (now >= b.iso);
     }
-    MilledRow sum{0, 0, 0};
+}
+
+template <int kDirection>
+MilledPlane millPlane(const BurrPlane& burr, const uint16_t* first, int count, int rows, uint16_t* out) {
+    const BurrPlane b = burr;
+    MilledLanes sum;
+    uint32_t is_changed = 0;
+    for (int r = 0; r < rows; ++r, first += kBrickStrideY, out += kBrickCells) {
+        const float y = b.first_y + float(r) * b.step_y, off_row_squared = y * y + b.off_plane_squared;
+        if (off_row_squared >= b.reach_squared || isFinished<kDirection>(first)) continue;
+        MilledLanes milled;
+        millRow<kDirection>(b, off_row_squared, first, count, out, milled);
+        is_changed |= uint32_t(isAny(milled.changed)) << r;
+        sum.removed += milled.removed;
+        sum.added += milled.added;
+    }
+    MilledPlane plane{0, 0, is_changed};
     for (int l = 0; l < kWidth; ++l) {
-        sum.changed -= changed[l];
-        sum.removed -= removed[l];
-        sum.added -= added[l];
+        plane.removed -= sum.removed[l];
+        plane.added -= sum.added[l];
     }
-    return sum;
+    return plane;
 }
 
 void rangeOfRows(const uint16_t* row, int count, size_t stride, int rows, uint16_t& low, uint16_t& high) {

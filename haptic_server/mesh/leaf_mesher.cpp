@@ -49,16 +49,20 @@ bool LeafMesher::readVoxels(const IndexBox& cells) {
     const Density iso = volume_.iso();
     bool any_inside = false;
     bool any_outside = false;
-    Density* out = density_.data();
-    for (int k = 0; k <= cells_.z(); ++k)
-        for (int j = 0; j <= cells_.y(); ++j) {
-            const size_t row = volume_.offset(cells.min.x(), cells.min.y() + j, cells.min.z() + k);
-            for (int i = 0; i <= cells_.x(); ++i) {
-                const Density d = volume_.at(row + size_t(i));
-                (d >= iso ? any_inside : any_outside) = true;
-                *out++ = d;
+    volume_.forEachPart({cells.min, cells.max.array() + 1}, [&](const IndexBox& part, size_t from) {
+        const Eigen::Vector3i size = part.max - part.min + Eigen::Vector3i::Ones();
+        Density* to = density_.data() + cornerIndex(part.min - first_voxel_);
+        for (int k = 0; k < size.z(); ++k)
+            for (int j = 0; j < size.y(); ++j) {
+                const size_t row =
+                    from + VoxelVolume::kStrideY * size_t(j) + VoxelVolume::kStrideZ * size_t(k);
+                Density* out = to + stride_[1] * size_t(j) + stride_[2] * size_t(k);
+                for (int i = 0; i < size.x(); ++i) {
+                    out[i] = volume_.at(row + size_t(i));
+                    (out[i] >= iso ? any_inside : any_outside) = true;
+                }
             }
-        }
+    });
     return any_inside && any_outside;
 }
 

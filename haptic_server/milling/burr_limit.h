@@ -58,11 +58,14 @@ class BurrLimit {
     // Voxels at this distance from the burr's centre or farther have no limit; m.
     double reach() const noexcept { return reach_; }
 
-    // For the kernels: the limit across a row of voxels. From the burr's centre to the row's first voxel: m.
-    BurrRow row(const Eigen::Vector3d& to_first, double spacing_x, int amount) const noexcept {
+    // For the kernels: the limit in a plane of voxels. From the burr's centre to the plane's first voxel: m.
+    BurrPlane plane(const Eigen::Vector3d& to_first, const Eigen::Vector3d& spacing,
+                    int amount) const noexcept {
         return {.first_x = float(to_first.x()),
-                .step_x = float(spacing_x),
-                .off_row_squared = float(to_first.tail<2>().squaredNorm()),
+                .step_x = float(spacing.x()),
+                .first_y = float(to_first.y()),
+                .step_y = float(spacing.y()),
+                .off_plane_squared = float(to_first.z() * to_first.z()),
                 .radius = float(radius_),
                 .slope = float(slope_),
                 .reach_squared = float(reach_ * reach_),

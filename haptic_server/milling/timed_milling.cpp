@@ -15,24 +15,22 @@ IndexBox boxAround(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, doubl
     return {low.ceil().cast<int>().matrix(), high.floor().cast<int>().matrix()};
 }
 
-// Voxels of the row at this y and z that have a limit at all; empty if none. m, from the burr's centre.
-bool clipToReach(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, double reach_squared, int j, int k,
-                 int& low, int& high) noexcept {
-    const Eigen::Vector3d& spacing = volume.spacing();
-    const double dy = j * spacing.y() - p_VB.y(), dz = k * spacing.z() - p_VB.z();
-    const double chord_squared = reach_squared - dy * dy - dz * dz;
-    if (chord_squared <= 0) return false;
-    // A voxel more at both ends does no harm.
-    const double half = std::sqrt(chord_squared);
-    low = std::max(low, int(std::max(0.0, (p_VB.x() - half) / spacing.x())));
-    high = int(std::min<double>(high, (p_VB.x() + half) / spacing.x() + 1));
-    return low <= high;
+// Of the nearest point of a box of voxels.
+double squaredDistance(const VoxelVolume& volume, const IndexBox& voxels,
+                       const Eigen::Vector3d& p_VB) noexcept {
+    const Eigen::Array3d low = volume.spacing().array() * voxels.min.cast<double>().array() - p_VB.array();
+    const Eigen::Array3d high = p_VB.array() - volume.spacing().array() * voxels.max.cast<double>().array();
+    return low.max(high).max(0.0).matrix().squaredNorm();
 }
 
-// Nothing is left to do in this leaf.
-bool isFinished(const LeafLattice& lattice, LeafId leaf, int direction) noexcept {
-    const DensityRange& range = lattice.range(0, leaf);
-    return direction < 0 ? range.max == 0 : range.min == kMaxDensity;
+// Nothing is left to do in the leaves of these voxels. A voxel is the first corner of its cell.
+bool isFinished(const LeafLattice& lattice, const IndexBox& voxels, int direction) noexcept {
+    bool is_finished = true;
+    forEachIndex(lattice.leavesOfCells(voxels), [&](const Eigen::Vector3i& leaf) {
+        const DensityRange& range = lattice.range(0, lattice.leafId(leaf));
+        is_finished &= direction < 0 ? range.max == 0 : range.min == kMaxDensity;
+    });
+    return is_finished;
 }
 
 }  // namespace
@@ -46,7 +44,8 @@ TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volum
     const Eigen::Array3d voxels = (2 * farthest / volume.spacing().array()).floor() + 2;
     const Eigen::Array3d most = voxels.min(volume.dims().cast<double>().array());
     new_density_.resize(size_t(most.prod()) + kRowSlack);
-    runs_.resize(size_t(most.y() * most.z()));
+    const double pieces = std::floor(most.x() / kBrickCells) + 2;  // of a row, by bricks
+    runs_.resize(size_t(pieces * most.y() * most.z()));
 }
 
 MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
@@ -62,11 +61,15 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
 
     collectChanges(volume, lattice, p_VB, direction, amount, result);
     if (run_count_ == 0) return result;
+    if (!volume.hasRoomFor(result.changed)) {
+        result = {};
+        result.has_room = false;
+        return result;
+    }
     lattice.beginWrite(result.changed);
     for (size_t n = 0; n < run_count_; ++n) {
         const ChangedRun& run = runs_[n];
-        for (int i = 0; i < run.count; ++i)
-            volume.set(run.offset + size_t(i), new_density_[run.first_new + size_t(i)]);
+        volume.writeRow(run.first, run.count, &new_density_[run.first_new]);
     }
     lattice.endWrite(result.changed);
     lattice.refreshRanges(volume, result.changed);
@@ -82,48 +85,45 @@ void TimedMilling::collectChanges(const VoxelVolume& volume, const LeafLattice& 
     const double reach_squared = limit.reach() * limit.reach();
     const IndexBox box = boxAround(volume, p_VB, limit.reach());
     if (box.isEmpty()) return;
-    const IndexBox leaves = lattice.leavesOfCells(box);  // the voxel is the first corner of its cell
-    for (int leaf_z = leaves.min.z(); leaf_z <= leaves.max.z(); ++leaf_z)
-        for (int leaf_y = leaves.min.y(); leaf_y <= leaves.max.y(); ++leaf_y) {
-            int first = leaves.min.x(), last = leaves.max.x();
-            while (first <= last && isFinished(lattice, lattice.leafId({first, leaf_y, leaf_z}), direction))
-                ++first;
-            while (first <= last && isFinished(lattice, lattice.leafId({last, leaf_y, leaf_z}), direction))
-                --last;
-            if (first > last) continue;
-            const IndexBox voxels = IndexBox{lattice.cellsOf(lattice.leafId({first, leaf_y, leaf_z})).min,
-                                             lattice.cellsOf(lattice.leafId({last, leaf_y, leaf_z})).max}
-                                        .clamped(box.min, box.max);
-            for (int k = voxels.min.z(); k <= voxels.max.z(); ++k)
-                for (int j = voxels.min.y(); j <= voxels.max.y(); ++j) {
-                    int low = voxels.min.x(), high = voxels.max.x();
-                    if (!clipToReach(volume, p_VB, reach_squared, j, k, low, high)) continue;
-                    const Eigen::Vector3i start(low, j, k);
-                    const Eigen::Vector3d to_start =
-                        volume.spacing().cwiseProduct(start.cast<double>()) - p_VB;
-                    collectRow(volume, start, high - low + 1,
-                               limit.row(to_start, volume.spacing().x(), amount), direction, result);
-                }
+    volume.forEachOwnedPart(box, [&](const IndexBox& part, size_t offset) {
+        if (isFinished(lattice, part, direction) || squaredDistance(volume, part, p_VB) >= reach_squared)
+            return;
+        IndexBox plane = part;
+        for (int k = part.min.z(); k <= part.max.z(); ++k, offset += VoxelVolume::kStrideZ) {
+            plane.min.z() = plane.max.z() = k;
+            const Eigen::Vector3d to_first = volume.spacing().cwiseProduct(plane.min.cast<double>()) - p_VB;
+            collectPlane(volume, plane, offset, limit.plane(to_first, volume.spacing(), amount), direction,
+                         result);
         }
+    });
 }
 
-void TimedMilling::collectRow(const VoxelVolume& volume, const Eigen::Vector3i& first, int count,
-                              const BurrRow& burr, int direction, MillingResult& result) noexcept {
-    const size_t offset = volume.offset(first.x(), first.y(), first.z());
+void TimedMilling::collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset,
+                                const BurrPlane& burr, int direction, MillingResult& result) noexcept {
     const Density* old = volume.ownerData() + offset;
-    Density* fresh = new_density_.data() + new_count_;
-    const auto mill = direction < 0 ? kernels().remove_row : kernels().add_row;
-    const MilledRow milled = mill(burr, old, count, fresh);
-    if (milled.changed == 0) return;
+    Density fresh[kBrickCells * kBrickCells];
+    const int count = plane.max.x() - plane.min.x() + 1, rows = plane.max.y() - plane.min.y() + 1;
+    const auto mill = direction < 0 ? kernels().remove_plane : kernels().add_plane;
+    const MilledPlane milled = mill(burr, old, count, rows, fresh);
+    for (int r = 0; r < rows; ++r)
+        if (milled.is_changed >> r & 1)
+            keepChanges(plane.min + Eigen::Vector3i(0, r, 0), count, old + VoxelVolume::kStrideY * size_t(r),
+                        fresh + kBrickCells * r, result);
+    result.removed_voxels += uint32_t(milled.removed);
+    result.added_voxels += uint32_t(milled.added);
+}
+
+// From the first to the last voxel of the row that changed.
+void TimedMilling::keepChanges(const Eigen::Vector3i& first, int count, const Density* old,
+                               const Density* fresh, MillingResult& result) noexcept {
     int low = 0, high = count - 1;
     while (old[low] == fresh[low]) ++low;
     while (old[high] == fresh[high]) --high;
-    runs_[run_count_++] = {offset + size_t(low), new_count_ + size_t(low), high - low + 1};
-    new_count_ += size_t(high) + 1;
+    std::copy(fresh + low, fresh + high + 1, new_density_.begin() + ptrdiff_t(new_count_));
+    runs_[run_count_++] = {first + Eigen::Vector3i(low, 0, 0), new_count_, high - low + 1};
+    new_count_ += size_t(high - low) + 1;
     result.changed.include(first + Eigen::Vector3i(low, 0, 0));
     result.changed.include(first + Eigen::Vector3i(high, 0, 0));
-    result.removed_voxels += uint32_t(milled.removed);
-    result.added_voxels += uint32_t(milled.added);
 }
 
 }  // namespace bonemill

@@ -23,6 +23,7 @@ struct MillingResult {
     uint32_t removed_voxels = 0;  // fell below the iso-value
     uint32_t added_voxels = 0;    // rose to the iso-value or above
     bool shell_is_complete = true;
+    bool has_room = true;  // false: there is no memory for the bricks to be changed, and nothing was
 };
 
 // Owns the scratch memory of one burr. Construction allocates; apply() is RT-safe (tick thread only).
@@ -41,14 +42,16 @@ class TimedMilling {
   private:
     // A run of voxels along x with their new densities, new_density_[first_new ..].
     struct ChangedRun {
-        size_t offset;  // of its first voxel
+        Eigen::Vector3i first;
         size_t first_new;
         int count;
     };
     void collectChanges(const VoxelVolume& volume, const LeafLattice& lattice, const Eigen::Vector3d& p_VB,
                         int direction, int amount, MillingResult& result) noexcept;
-    void collectRow(const VoxelVolume& volume, const Eigen::Vector3i& first, int count, const BurrRow& burr,
-                    int direction, MillingResult& result) noexcept;
+    void collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset, const BurrPlane& burr,
+                      int direction, MillingResult& result) noexcept;
+    void keepChanges(const Eigen::Vector3i& first, int count, const Density* old, const Density* fresh,
+                     MillingResult& result) noexcept;
 
     MillingConfig config_;
     double burr_radius_;

@@ -25,6 +25,8 @@ const char* nameOf(uint32_t fault) {
             return "shell_overflow";
         case kFaultContactOverflow:
             return "contact_overflow";
+        case kFaultVolumeFull:
+            return "volume_full";
     }
     return nullptr;
 }

@@ -129,6 +129,7 @@ MillingResult HapticTick::mill(const DeviceInput& input, uint32_t& faults) noexc
     const MillingResult milled = milling_.apply(bone_.volume, bone_.lattice, bone_.shell,
                                                 X_VW_ * spo_.position, remove ? -1 : 1, config_.dt);
     if (!milled.shell_is_complete) faults |= kFaultShellOverflow;
+    if (!milled.has_room) faults |= kFaultVolumeFull;
     return milled;
 }
 

@@ -18,6 +18,7 @@ enum TickFault : uint32_t {
     kFaultForceClamped = 1u << 5,   // the wrench limit acted
     kFaultShellOverflow = 1u << 6,  // the point-shell pool is full: some milled surface has no contact points
     kFaultContactOverflow = 1u << 7,  // more points near the tool than there is room or time for
+    kFaultVolumeFull = 1u << 8,       // no memory for more changed bricks: what would need one was not milled
 };
 
 struct TickRecord {

@@ -1,15 +1,16 @@
 #include "haptic_server/tick/volume_reset.h"
 
+#include <cstring>
+
 namespace bonemill {
 namespace {
 constexpr int kVoxelsLookedAtPerTick =
     32'768;  // eight leaves of 16³, some 30 µs; at least one leaf, however large
 }  // namespace
 
-VolumeReset::VolumeReset(const BoneModel& bone) {
-    const Eigen::Vector3i& dims = bone.volume.dims();
-    original_.resize(bone.volume.offset(dims.x(), dims.y(), dims.z()) + 1);
-    for (size_t i = 0; i < original_.size(); ++i) original_[i] = bone.volume.at(i);
+VolumeReset::VolumeReset(const BoneModel& bone)
+    : original_(bone.volume), now_(size_t(bone.lattice.leafCells().x()) + 1 + kRowSlack), then_(now_.size()) {
+    original_.dropSpareBricks();
 }
 
 void VolumeReset::startIfRequested() noexcept {
@@ -34,24 +35,32 @@ bool VolumeReset::restoreSome(BoneModel& bone) noexcept {
 bool VolumeReset::restoreLeaf(BoneModel& bone, LeafId leaf, bool& shell_is_complete) noexcept {
     VoxelVolume& volume = bone.volume;
     const IndexBox cells = bone.lattice.cellsOf(leaf);
+    const int count = cells.max.x() - cells.min.x() + 2;
+    const IndexBox rows{cells.min, {cells.min.x(), cells.max.y() + 1, cells.max.z() + 1}};
     IndexBox changed;
-    const auto for_each_difference = [&](auto&& act) {
-        for (int k = cells.min.z(); k <= cells.max.z() + 1; ++k)
-            for (int j = cells.min.y(); j <= cells.max.y() + 1; ++j)
-                for (int i = cells.min.x(); i <= cells.max.x() + 1; ++i) {
-                    const size_t offset = volume.offset(i, j, k);
-                    if (volume.at(offset) != original_[offset]) act(Eigen::Vector3i(i, j, k), offset);
-                }
-    };
-    for_each_difference([&](const Eigen::Vector3i& voxel, size_t) { changed.include(voxel); });
+    forEachIndex(rows, [&](const Eigen::Vector3i& first) {
+        if (!readRows(bone, first, count)) return;
+        for (int i = 0; i < count; ++i)
+            if (now_[size_t(i)] != then_[size_t(i)]) changed.include(first + Eigen::Vector3i(i, 0, 0));
+    });
     if (changed.isEmpty()) return false;
     bone.lattice.beginWrite(changed);
-    for_each_difference(
-        [&](const Eigen::Vector3i&, size_t offset) { volume.set(offset, original_[offset]); });
+    forEachIndex({changed.min, {changed.min.x(), changed.max.y(), changed.max.z()}},
+                 [&](const Eigen::Vector3i& first) {
+                     const int width = changed.max.x() - changed.min.x() + 1;
+                     if (readRows(bone, first, width)) volume.writeRow(first, width, then_.data());
+                 });
     bone.lattice.endWrite(changed);
     bone.lattice.refreshRanges(volume, changed);
     shell_is_complete = bone.shell.refresh(volume, bone.lattice, changed);
     return true;
+}
+
+// The row now and as it was; false if they are the same.
+bool VolumeReset::readRows(const BoneModel& bone, const Eigen::Vector3i& first, int count) noexcept {
+    bone.volume.readRow(first, count, now_.data());
+    original_.readRow(first, count, then_.data());
+    return std::memcmp(now_.data(), then_.data(), size_t(count) * sizeof(Density)) != 0;
 }
 
 }  // namespace bonemill

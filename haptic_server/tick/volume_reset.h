@@ -30,7 +30,10 @@ class VolumeReset {
   private:
     bool restoreLeaf(BoneModel& bone, LeafId leaf, bool& shell_is_complete) noexcept;
 
-    std::vector<Density> original_;  // as VoxelVolume's storage, border included
+    bool readRows(const BoneModel& bone, const Eigen::Vector3i& first, int count) noexcept;
+
+    VoxelVolume original_;
+    std::vector<Density> now_, then_;  // rows of a leaf
     std::atomic<bool> is_requested_{false};
     std::atomic<bool> is_paused_{false};
     LeafId next_leaf_ = 0;

@@ -8,13 +8,6 @@
 namespace bonemill {
 namespace {
 
-template <class Visit>
-void forEachIndex(const IndexBox& box, Visit&& visit) noexcept {
-    for (int k = box.min.z(); k <= box.max.z(); ++k)
-        for (int j = box.min.y(); j <= box.max.y(); ++j)
-            for (int i = box.min.x(); i <= box.max.x(); ++i) visit(Eigen::Vector3i(i, j, k));
-}
-
 void widen(DensityRange& range, const DensityRange& other) noexcept {
     range.min = std::min(range.min, other.min);
     range.max = std::max(range.max, other.max);
@@ -27,10 +20,14 @@ bool isSame(const DensityRange& a, const DensityRange& b) noexcept {
 // Range of the voxels in `box` joined with `known`. Stops as soon as it is `bounds`, which it cannot exceed.
 DensityRange scan(const VoxelVolume& volume, const IndexBox& box, DensityRange known,
                   const DensityRange& bounds) noexcept {
-    const Eigen::Vector3i size = box.max - box.min + Eigen::Vector3i::Ones();
-    for (int k = box.min.z(); k <= box.max.z() && !isSame(known, bounds); ++k)
-        kernels().range_of_rows(volume.ownerData() + volume.offset(box.min.x(), box.min.y(), k), size.x(),
-                                volume.strideY(), size.y(), known.min, known.max);
+    volume.forEachPart(box, [&](const IndexBox& part, size_t offset) {
+        Density uniform;
+        if (volume.isUniform(part.min, uniform)) return widen(known, {uniform, uniform});
+        const Eigen::Vector3i size = part.max - part.min + Eigen::Vector3i::Ones();
+        for (int k = 0; k < size.z() && !isSame(known, bounds); ++k, offset += VoxelVolume::kStrideZ)
+            kernels().range_of_rows(volume.ownerData() + offset, size.x(), VoxelVolume::kStrideY, size.y(),
+                                    known.min, known.max);
+    });
     return known;
 }
 

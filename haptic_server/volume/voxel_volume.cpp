@@ -1,20 +1,86 @@
 #include "haptic_server/volume/voxel_volume.h"
 
-#include <algorithm>
+#include <cstring>
 
 namespace bonemill {
 
 VoxelVolume::VoxelVolume(const VolumeGeometry& geometry, Density iso)
     : geometry_(geometry),
       iso_(iso),
-      stride_y_(size_t(geometry.dims.x()) + 2),
-      stride_z_(stride_y_ * (size_t(geometry.dims.y()) + 2)),
       inverse_spacing_(geometry.spacing.cwiseInverse().cast<float>()),
-      density_(stride_z_ * (size_t(geometry.dims.z()) + 2) + kRowSlack, 0) {}
+      bricks_(geometry.dims.array() + 2) {}
+
+void VoxelVolume::readRow(const Eigen::Vector3i& first, int count, Density* out) const noexcept {
+    forEachRun(first, count, [&](size_t offset, int n) {
+        // Always as many as a brick can have: a copy of known size is a few moves.
+        std::memcpy(out, ownerData() + offset, kMostInBrick * sizeof(Density));
+        out += n;
+    });
+}
+
+bool VoxelVolume::isUniform(const Eigen::Vector3i& cell, Density& density) const noexcept {
+    const BrickId brick = bricks_.brickOf(cell.x() + 1, cell.y() + 1, cell.z() + 1);
+    if (!bricks_.isShared(brick)) return false;
+    density = bricks_.sharedDensity(brick);
+    return true;
+}
+
+IndexBox VoxelVolume::bricksHolding(const IndexBox& voxels) const noexcept {
+    const auto brick = [](int index, int beside) { return (index + 1 + beside) >> kBrickShift; };
+    IndexBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+        box.min[axis] = std::max(0, brick(voxels.min[axis], -kBrickHigh));
+        box.max[axis] = std::min(bricks_.bricksPerAxis()[axis] - 1, brick(voxels.max[axis], kBrickLow));
+    }
+    return box;
+}
+
+bool VoxelVolume::hasRoomFor(const IndexBox& voxels) const noexcept {
+    const IndexBox box = bricksHolding(voxels);
+    size_t shared = 0;
+    forEachIndex(box, [&](const Eigen::Vector3i& b) {
+        shared += bricks_.isShared(bricks_.brickAt(b.x(), b.y(), b.z()));
+    });
+    return shared <= bricks_.spareCount();
+}
+
+void VoxelVolume::writeRow(const Eigen::Vector3i& first, int count, const Density* densities) noexcept {
+    const IndexBox bricks = bricksHolding({first, {first.x() + count - 1, first.y(), first.z()}});
+    const auto place = [](int index, int brick) { return index + 1 - brick * kBrickCells + kBrickLow; };
+    for (int z = bricks.min.z(); z <= bricks.max.z(); ++z)
+        for (int y = bricks.min.y(); y <= bricks.max.y(); ++y) {
+            const size_t row =
+                kStrideY * size_t(place(first.y(), y)) + kStrideZ * size_t(place(first.z(), z));
+            BrickId brick = bricks_.brickAt(bricks.min.x(), y, z);
+            for (int x = bricks.min.x(); x <= bricks.max.x(); ++x, ++brick) {
+                const int at = place(first.x(), x);  // of the first one, in this brick or before it
+                const int low = std::max(0, -at), high = std::min(count, kBrickEdge - at);
+                if (!hasOwn(brick, densities + low, high - low)) continue;
+                Density* to = bricks_.contents(brick) + row + size_t(at + low);
+                for (int i = 0; i < high - low; ++i)
+                    std::atomic_ref<Density>(to[i]).store(densities[low + i], std::memory_order_release);
+            }
+        }
+}
+
+// Opens the brick unless it holds these densities as it is; false then.
+bool VoxelVolume::hasOwn(BrickId brick, const Density* densities, int count) noexcept {
+    if (!bricks_.isShared(brick)) return true;
+    const Density shared = bricks_.sharedDensity(brick);
+    if (std::all_of(densities, densities + count, [=](Density d) { return d == shared; })) return false;
+    bricks_.open(brick);
+    return true;
+}
+
+void VoxelVolume::set(int i, int j, int k, Density density) {
+    constexpr size_t kMostHolding = 8;
+    if (bricks_.spareCount() < kMostHolding) bricks_.makeSpare(bricks_.ownCount() / 4 + kMostHolding);
+    writeRow({i, j, k}, 1, &density);
+}
 
 Eigen::Vector3f VoxelVolume::gradient(int i, int j, int k) const noexcept {
     const size_t here = offset(i, j, k);
-    const size_t strides[3] = {1, stride_y_, stride_z_};
+    constexpr size_t kStrides[3] = {1, kStrideY, kStrideZ};
     const int index[3] = {i, j, k};
     Eigen::Vector3f g;
     const Eigen::Vector3i& last = geometry_.dims;
@@ -22,14 +88,14 @@ Eigen::Vector3f VoxelVolume::gradient(int i, int j, int k) const noexcept {
                            (unsigned(k) < unsigned(last.z()));
     if (is_within) {
         for (int axis = 0; axis < 3; ++axis)
-            g[axis] = float(int(at(here + strides[axis])) - int(at(here - strides[axis]))) *
+            g[axis] = float(int(at(here + kStrides[axis])) - int(at(here - kStrides[axis]))) *
                       (inverse_spacing_[axis] / 2);
         return g;
     }
     for (int axis = 0; axis < 3; ++axis) {
-        const size_t low = index[axis] > -1 ? here - strides[axis] : here;
-        const size_t high = index[axis] < geometry_.dims[axis] ? here + strides[axis] : here;
-        const float steps = high - low == strides[axis] ? 1.0f : 2.0f;
+        const size_t low = index[axis] > -1 ? here - kStrides[axis] : here;
+        const size_t high = index[axis] < geometry_.dims[axis] ? here + kStrides[axis] : here;
+        const float steps = high - low == kStrides[axis] ? 1.0f : 2.0f;
         g[axis] = (float(at(high)) - float(at(low))) * inverse_spacing_[axis] / steps;
     }
     return g;

@@ -4,40 +4,21 @@
 // (docs/frames.md). A border of one voxel of air surrounds the data: indices -1 .. dims are readable, 0 ..
 // dims-1 writable, so every surface is closed. Density 0..255 of the thesis is stored as 16 bit, 257 counts
 // per unit.
+//
+// Cell (i, j, k) is the cube between voxels (i, j, k) and (i+1, j+1, k+1). The voxels are stored in bricks of
+// 16³ cells (brick_store.h): memory goes to what is neither all air nor all of the highest density. Each
+// brick has copies of its neighbours' nearest voxels, so that whatever is computed for a cell reads one brick
+// only.
 #pragma once
 
-#include <atomic>
-#include <cstdint>
-#include <vector>
+#include <algorithm>
 
-#include "haptic_server/kernels/kernels.h"
+#include "haptic_server/volume/brick_store.h"
 #include "haptic_server/volume/raw_volume.h"
 
 namespace bonemill {
 
-using Density = uint16_t;
 inline constexpr int kDensityCountsPerUnit = 257;  // 255 units = 65535 counts
-inline constexpr Density kMaxDensity = 65535;
-
-// Box of integer indices, both ends included; empty when any min > max.
-struct IndexBox {
-    Eigen::Vector3i min = Eigen::Vector3i::Constant(1);
-    Eigen::Vector3i max = Eigen::Vector3i::Zero();
-
-    bool isEmpty() const noexcept { return (min.array() > max.array()).any(); }
-    void include(const Eigen::Vector3i& index) noexcept {
-        if (isEmpty()) {
-            min = max = index;
-            return;
-        }
-        min = min.cwiseMin(index);
-        max = max.cwiseMax(index);
-    }
-    IndexBox grown(int steps) const noexcept { return {min.array() - steps, max.array() + steps}; }
-    IndexBox clamped(const Eigen::Vector3i& low, const Eigen::Vector3i& high) const noexcept {
-        return {min.cwiseMax(low), max.cwiseMin(high)};
-    }
-};
 
 class VoxelVolume {
   public:
@@ -49,41 +30,139 @@ class VoxelVolume {
     const Eigen::Vector3d& spacing() const noexcept { return geometry_.spacing; }
     Density iso() const noexcept { return iso_; }
     double voxelVolume() const noexcept { return geometry_.spacing.prod(); }  // m³
+    const BrickStore& bricks() const noexcept { return bricks_; }
 
-    // Offset of a voxel in data(); any index in -1 .. dims.
-    size_t offset(int i, int j, int k) const noexcept {
-        return size_t(i + 1) + stride_y_ * size_t(j + 1) + stride_z_ * size_t(k + 1);
-    }
-    size_t strideY() const noexcept { return stride_y_; }
-    size_t strideZ() const noexcept { return stride_z_; }
+    // Where a voxel lies in the memory; any index in -1 .. dims. From there, -kBrickLow .. kBrickHigh steps
+    // of 1, kStrideY and kStrideZ lead to the neighbours of the cell that starts at the voxel.
+    size_t offset(int i, int j, int k) const noexcept { return bricks_.offset(i + 1, j + 1, k + 1); }
+    static constexpr size_t kStrideY = kBrickStrideY;
+    static constexpr size_t kStrideZ = kBrickStrideZ;
 
     // RT-safe; any thread may read, only the owner of the volume (the tick) writes. Acquire/release (plain
     // moves on x86) keep each voxel between the odd and the even leaf version around its write: a reader that
     // finds the same even LeafLattice::version before and after its reads saw one consistent node.
     Density at(size_t offset) const noexcept {
-        return std::atomic_ref<Density>(const_cast<Density&>(density_[offset]))
+        return std::atomic_ref<Density>(const_cast<Density&>(bricks_.data()[offset]))
             .load(std::memory_order_acquire);
     }
     Density at(int i, int j, int k) const noexcept { return at(offset(i, j, k)); }
     // Plain densities by offset, which the compiler can read many at a time. For the owner of the volume only
     // (tick thread): nobody else writes, so its reads race with nothing. Other threads use at().
-    const Density* ownerData() const noexcept { return density_.data(); }
-    void set(size_t offset, Density value) noexcept {
-        std::atomic_ref<Density>(density_[offset]).store(value, std::memory_order_release);
-    }
-    void set(int i, int j, int k, Density value) noexcept { set(offset(i, j, k), value); }
+    const Density* ownerData() const noexcept { return bricks_.data(); }
+    // `count` voxels along x, to `out`, and up to kRowSlack more behind them. Owner only, RT-safe.
+    void readRow(const Eigen::Vector3i& first, int count, Density* out) const noexcept;
+
+    // Calls visit(offset, n) for runs that make up this row of voxels, each in one brick: n voxels from
+    // `offset` on. RT-safe, any thread.
+    template <class Visit>
+    void forEachRun(const Eigen::Vector3i& first, int count, Visit&& visit) const noexcept;
+    // Calls visit(part, offset) for parts that make up the box of voxels (in -1 .. dims), each in one brick:
+    // its voxels lie at `offset` and the strides from there. RT-safe, any thread.
+    template <class Visit>
+    void forEachPart(const IndexBox& voxels, Visit&& visit) const noexcept;
+    // The same without copies: each part is what the brick itself owns of the box.
+    template <class Visit>
+    void forEachOwnedPart(const IndexBox& voxels, Visit&& visit) const noexcept;
+    // The density of all that is stored around this cell, if all of it is air or of the highest density.
+    bool isUniform(const Eigen::Vector3i& cell, Density& density) const noexcept;
+
+    // `count` voxels along x. Owner only, RT-safe. There must be room for what it changes.
+    void writeRow(const Eigen::Vector3i& first, int count, const Density* densities) noexcept;
+    // Is there memory for any change in this box of voxels? RT-safe.
+    bool hasRoomFor(const IndexBox& voxels) const noexcept;
+    // Memory for bricks to be changed that now share theirs. Allocates.
+    void makeSpareBricks(size_t count) { bricks_.makeSpare(count); }
+    void dropSpareBricks() { bricks_.dropSpare(); }
+
+    // Makes room as it needs: allocates, not RT-safe, no other thread may look.
+    void set(int i, int j, int k, Density density);
+    // All voxels at once: density(i, j, k), which is asked for some voxels more than once.
+    template <class DensityAt>
+    void fill(DensityAt&& density);
+    void shareUniformBricks() { bricks_.shareUniformBricks(); }
 
     // Density gradient (counts per m, V axes) at a voxel by central differences (thesis eq 1-3 over twice the
     // distance); one-sided at the air border. Any index in -1 .. dims. RT-safe.
     Eigen::Vector3f gradient(int i, int j, int k) const noexcept;
 
   private:
+    static constexpr int kMostInBrick = kBrickCells + kBrickHigh;  // of a row, from its own first cell on
+    static_assert(kMostInBrick <= kRowSlack + 1);
+    // How many voxels from here on are among the first `most` of a brick, from its first cell on.
+    static int stretch(int index, int last, int most) noexcept {
+        return std::min(most - ((index + 1) & (kBrickCells - 1)), last - index + 1);
+    }
+    template <int kMost, class Visit>
+    void forEachPiece(const IndexBox& voxels, Visit&& visit) const noexcept;
+    // Bricks that hold any of these voxels, copies included.
+    IndexBox bricksHolding(const IndexBox& voxels) const noexcept;
+    // Voxels that a brick holds: indices, border and beyond included.
+    static IndexBox voxelsIn(const Eigen::Vector3i& brick) noexcept {
+        const Eigen::Vector3i low = brick.array() * kBrickCells - 1 - kBrickLow;
+        return {low, low.array() + (kBrickEdge - 1)};
+    }
+    bool hasOwn(BrickId brick, const Density* densities, int count) noexcept;
+
     VolumeGeometry geometry_;
     Density iso_;
-    size_t stride_y_;
-    size_t stride_z_;
     Eigen::Vector3f inverse_spacing_;
-    std::vector<Density> density_;  // and kRowSlack more that the kernels may read
+    BrickStore bricks_;
 };
+
+template <class Visit>
+void VoxelVolume::forEachRun(const Eigen::Vector3i& first, int count, Visit&& visit) const noexcept {
+    for (int i = first.x(); count > 0;) {
+        const int n = stretch(i, i + count - 1, kMostInBrick);
+        visit(offset(i, first.y(), first.z()), n);
+        i += n;
+        count -= n;
+    }
+}
+
+template <class Visit>
+void VoxelVolume::forEachPart(const IndexBox& voxels, Visit&& visit) const noexcept {
+    forEachPiece<kMostInBrick>(voxels, visit);
+}
+
+template <class Visit>
+void VoxelVolume::forEachOwnedPart(const IndexBox& voxels, Visit&& visit) const noexcept {
+    forEachPiece<kBrickCells>(voxels, visit);
+}
+
+template <int kMost, class Visit>
+void VoxelVolume::forEachPiece(const IndexBox& voxels, Visit&& visit) const noexcept {
+    Eigen::Vector3i low, n;
+    for (low.z() = voxels.min.z(); low.z() <= voxels.max.z(); low.z() += n.z()) {
+        n.z() = stretch(low.z(), voxels.max.z(), kMost);
+        for (low.y() = voxels.min.y(); low.y() <= voxels.max.y(); low.y() += n.y()) {
+            n.y() = stretch(low.y(), voxels.max.y(), kMost);
+            for (low.x() = voxels.min.x(); low.x() <= voxels.max.x(); low.x() += n.x()) {
+                n.x() = stretch(low.x(), voxels.max.x(), kMost);
+                visit(IndexBox{low, low + n - Eigen::Vector3i::Ones()}, offset(low.x(), low.y(), low.z()));
+            }
+        }
+    }
+}
+
+template <class DensityAt>
+void VoxelVolume::fill(DensityAt&& density) {
+    bricks_ = BrickStore(geometry_.dims.array() + 2);
+    const IndexBox data{Eigen::Vector3i::Zero(), geometry_.dims.array() - 1};
+    BrickId id = 0;
+    forEachIndex({Eigen::Vector3i::Zero(), bricks_.bricksPerAxis().array() - 1},
+                 [&](const Eigen::Vector3i& brick) {
+                     const IndexBox held = voxelsIn(brick);
+                     if (bricks_.spareCount() == 0) bricks_.makeSpare(bricks_.ownCount() / 4 + 16);
+                     Density* contents = bricks_.nextSpare();
+                     std::fill_n(contents, kBrickSize, Density(0));
+                     forEachIndex(held.clamped(data.min, data.max), [&](const Eigen::Vector3i& v) {
+                         const Eigen::Vector3i at = v - held.min;
+                         contents[size_t(at.x()) + kStrideY * size_t(at.y()) + kStrideZ * size_t(at.z())] =
+                             density(v.x(), v.y(), v.z());
+                     });
+                     bricks_.adoptNextSpare(id++);
+                 });
+    bricks_.dropSpare();
+}
 
 }  // namespace bonemill

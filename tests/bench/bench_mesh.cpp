@@ -79,10 +79,13 @@ LatencyHistogram meshCuts(BoneModel& bone, size_t& leaves) {
 
 void writeRaw(const VoxelVolume& volume, const std::string& path) {
     std::ofstream file(path, std::ios::binary);
+    std::vector<Density> row(size_t(volume.dims().x()) + kRowSlack);
     for (int k = 0; k < volume.dims().z(); ++k)
-        for (int j = 0; j < volume.dims().y(); ++j)
-            file.write(reinterpret_cast<const char*>(volume.ownerData() + volume.offset(0, j, k)),
+        for (int j = 0; j < volume.dims().y(); ++j) {
+            volume.readRow({0, j, k}, volume.dims().x(), row.data());
+            file.write(reinterpret_cast<const char*>(row.data()),
                        std::streamsize(sizeof(Density)) * volume.dims().x());
+        }
 }
 
 nlohmann::json runVtk(const BoneModel& bone, int runs) {

@@ -1,5 +1,6 @@
 #include "tests/bench/half_block.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bonemill::bench {
@@ -20,13 +21,10 @@ VoxelVolume halfBlock(int edge, double spacing) {
     geometry.dims = Eigen::Vector3i::Constant(edge);
     geometry.spacing = Eigen::Vector3d::Constant(spacing);
     VoxelVolume volume(geometry, kMaxDensity / 2);
-    for (int k = 0; k < edge; ++k) {
+    volume.fill([&](int, int, int k) {
         const double density = (0.5 + faceHeight(edge) - k) * kMaxDensity;
-        if (density <= 0) break;
-        const Density d = Density(std::min<double>(density, kMaxDensity));
-        for (int j = 0; j < edge; ++j)
-            for (int i = 0; i < edge; ++i) volume.set(i, j, k, d);
-    }
+        return Density(std::clamp<double>(density, 0, kMaxDensity));
+    });
     return volume;
 }
 

@@ -16,12 +16,16 @@ std::string number(double value) {
     return text;
 }
 
-void densifySlice(const RawValues& values, const DensityMapping& mapping, int k, VoxelVolume& volume) {
-    const Eigen::Vector3i n = volume.dims();
+// Calls beforeReading(k) before it reads a value of slice k.
+template <class BeforeReading>
+void fill(VoxelVolume& volume, const RawValues& values, const DensityMapping& mapping,
+          BeforeReading&& beforeReading) {
+    const size_t row = size_t(volume.dims().x()), slice = row * size_t(volume.dims().y());
     values.visit([&](auto samples) {
-        size_t next = size_t(n.x()) * size_t(n.y()) * size_t(k);
-        for (int j = 0; j < n.y(); ++j)
-            for (int i = 0; i < n.x(); ++i) volume.set(i, j, k, mapping.density(samples[next++]));
+        volume.fill([&](int i, int j, int k) {
+            beforeReading(k);
+            return mapping.density(samples[size_t(i) + row * size_t(j) + slice * size_t(k)]);
+        });
     });
 }
 
@@ -55,17 +59,18 @@ DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window) 
 
 VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping) {
     VoxelVolume volume(raw.geometry, mapping.iso);
-    for (int k = 0; k < volume.dims().z(); ++k) densifySlice(raw.values, mapping, k, volume);
+    fill(volume, raw.values, mapping, [](int) {});
     return volume;
 }
 
 VoxelVolume densify(RawVolume&& raw, const DensityMapping& mapping) {
     VoxelVolume volume(raw.geometry, mapping.iso);
     const size_t slice = size_t(volume.dims().x()) * size_t(volume.dims().y());
-    for (int k = 0; k < volume.dims().z(); ++k) {
-        densifySlice(raw.values, mapping, k, volume);
-        raw.values.forget(slice * size_t(k), slice * size_t(k + 1));
-    }
+    size_t kept = 0;  // first slice that has not been given back
+    fill(volume, raw.values, mapping, [&](int k) {
+        // Bricks are filled layer by layer, so nobody asks again for what lies a brick below.
+        for (; kept + kBrickEdge <= size_t(k); ++kept) raw.values.forget(slice * kept, slice * (kept + 1));
+    });
     return volume;
 }
 

@@ -9,6 +9,9 @@
 #include <random>
 #include <vector>
 
+#include "haptic_server/kernels/brick_layout.h"
+#include "haptic_server/volume/voxel_volume.h"
+
 namespace bonemill {
 namespace {
 
@@ -133,50 +136,63 @@ TEST_P(EveryLevel, ContactSumsAreThoseOfPlainLoops) {
     }
 }
 
-TEST_P(EveryLevel, MilledRows) {
+// A plane of a brick against plain arithmetic in double.
+TEST_P(EveryLevel, MilledPlanes) {
     const float spacing = 0.0973e-3f;  // no voxel exactly on a boundary
     for (int round = 0; round < 300; ++round) {
-        const int n = 1 + below(90);
-        std::vector<uint16_t> row(size_t(n) + kRowSlack), out[2];
-        for (uint16_t& d : row) d = uint16_t(below(3) == 0 ? below(65536) : below(2) * 65535);
+        const int n = 1 + below(kBrickCells), rows = 1 + below(kBrickCells);
+        std::vector<uint16_t> plane(kBrickStrideZ + kRowSlack), out[2];
+        for (uint16_t& d : plane) d = uint16_t(below(3) == 0 ? below(65536) : below(2) * 65535);
         const bool removes = round % 2;
-        BurrRow burr{.first_x = -float(n) / 2 * spacing,
-                     .step_x = spacing,
-                     .off_row_squared = float(below(1000)) * 1e-9f,
-                     .radius = 1e-3f,
-                     .slope = 30000 / spacing,
-                     .reach_squared = 1.1e-3f * 1.1e-3f,
-                     .core_squared = 0.9e-3f * 0.9e-3f,
-                     .iso = 30000,
-                     .amount = 1 + below(65535)};
-        MilledRow milled[2];
+        const BurrPlane burr{.first_x = -float(below(20)) * spacing,
+                             .step_x = spacing,
+                             .first_y = -float(below(20)) * spacing,
+                             .step_y = spacing,
+                             .off_plane_squared = float(below(1000)) * 1e-9f,
+                             .radius = 1e-3f,
+                             .slope = 30000 / spacing,
+                             .reach_squared = 1.1e-3f * 1.1e-3f,
+                             .core_squared = 0.9e-3f * 0.9e-3f,
+                             .iso = 30000,
+                             .amount = 1 + below(65535)};
+        MilledPlane milled[2];
         for (const int which : {0, 1}) {
-            out[which].assign(row.size(), 7);
+            out[which].assign(kBrickCells * kBrickCells, 7);
             const Kernels& k = which ? ours() : oracle();
-            milled[which] = (removes ? k.remove_row : k.add_row)(burr, row.data(), n, out[which].data());
+            milled[which] =
+                (removes ? k.remove_plane : k.add_plane)(burr, plane.data(), n, rows, out[which].data());
         }
         EXPECT_EQ(std::memcmp(&milled[0], &milled[1], sizeof milled[0]), 0);
-        if (milled[0].changed == 0) continue;
-        expectSameBits(out[0], out[1], n);
-        int changed = 0, removed = 0, added = 0;
-        for (int i = 0; i < n; ++i) {
-            const double x = burr.first_x + i * double(spacing), squared = x * x + burr.off_row_squared;
-            const double ramp =
-                burr.iso - (removes ? -1 : 1) * burr.slope * (std::sqrt(squared) - burr.radius);
-            double limit = std::clamp(ramp, 0.0, 65535.0);
-            if (squared < burr.core_squared) limit = removes ? 0 : 65535;
-            const double old = row[size_t(i)];
-            double now = removes ? std::min(old, std::max(limit, old - burr.amount))
-                                 : std::max(old, std::min(limit, old + burr.amount));
-            if (squared >= burr.reach_squared) now = old;
-            EXPECT_NEAR(out[0][size_t(i)], now, 0.6) << i;
-            changed += out[0][size_t(i)] != row[size_t(i)];
-            removed += row[size_t(i)] >= burr.iso && out[0][size_t(i)] < burr.iso;
-            added += row[size_t(i)] < burr.iso && out[0][size_t(i)] >= burr.iso;
+        int removed = 0, added = 0;
+        for (int r = 0; r < rows; ++r) {
+            const bool is_changed = milled[0].is_changed >> r & 1;
+            bool is_any = false;
+            for (int i = 0; i < n; ++i) {
+                const double x = burr.first_x + i * double(spacing), y = burr.first_y + r * double(spacing),
+                             squared = x * x + y * y + burr.off_plane_squared;
+                const double ramp =
+                    burr.iso - (removes ? -1 : 1) * burr.slope * (std::sqrt(squared) - burr.radius);
+                double limit = std::clamp(ramp, 0.0, 65535.0);
+                if (squared < burr.core_squared) limit = removes ? 0 : 65535;
+                const uint16_t old = plane[size_t(r) * kBrickStrideY + size_t(i)];
+                double now = removes ? std::min<double>(old, std::max(limit, double(old) - burr.amount))
+                                     : std::max<double>(old, std::min(limit, double(old) + burr.amount));
+                if (squared >= burr.reach_squared) now = old;
+                const size_t at = size_t(r * kBrickCells + i);
+                const uint16_t fresh = is_changed ? out[0][at] : old;
+                if (is_changed) {
+                    EXPECT_EQ(out[0][at], out[1][at]);
+                }
+                EXPECT_NEAR(fresh, now, 0.6) << i << ' ' << r;
+                is_any |= fresh != old;
+                removed += old >= burr.iso && fresh < burr.iso;
+                added += old < burr.iso && fresh >= burr.iso;
+            }
+            EXPECT_EQ(is_changed, is_any);
         }
-        EXPECT_EQ(milled[0].changed, changed);
         EXPECT_EQ(milled[0].removed, removed);
         EXPECT_EQ(milled[0].added, added);
+        EXPECT_EQ(milled[0].is_changed >> rows, 0u);
     }
 }
 
@@ -273,21 +289,17 @@ TEST_P(EveryLevel, CellPatchesAndProjections) {
 
 // Onto a flat face between the voxels; where it is too far off, to the point's own place.
 TEST_P(EveryLevel, PointsMoveOntoTheSurface) {
-    constexpr int kEdge = 20, kStride = kEdge + 2;
-    std::vector<uint16_t> voxels(size_t(kStride) * kStride * kStride + kRowSlack);
-    const auto faceOf = [](int i, int j) { return 9.3 + 0.2 * i - 0.1 * j; };
-    for (int k = -1; k <= kEdge; ++k)
-        for (int j = -1; j <= kEdge; ++j)
-            for (int i = -1; i <= kEdge; ++i)
-                voxels[size_t(i + 1 + kStride * (j + 1 + kStride * (k + 1)))] =
-                    uint16_t(std::clamp(30000 + 2000 * (faceOf(i, j) - k), 0.0, 65535.0));
-    const DensityView view{voxels.data() + 1 + kStride + kStride * kStride,
-                           kStride,
-                           kStride * kStride,
-                           {kEdge, kEdge, kEdge},
-                           30000,
-                           {1e3f, 1e3f, 1e3f},
-                           {2e-3f, 1e-3f, 0}};
+    constexpr int kEdge = 20;
+    VolumeGeometry geometry;
+    geometry.dims = Eigen::Vector3i::Constant(kEdge);
+    VoxelVolume volume(geometry, 30000);
+    volume.fill([](int i, int j, int k) {
+        return Density(std::clamp(30000 + 2000 * (9.3 + 0.2 * i - 0.1 * j - k), 0.0, 65535.0));
+    });
+    const BrickStore& bricks = volume.bricks();
+    const DensityView view{
+        bricks.data(),         bricks.slots(), bricks.bricksPerAxis().x(), bricks.bricksPerAxis().y(),
+        {kEdge, kEdge, kEdge}, 30000,          {1e3f, 1e3f, 1e3f},         {2e-3f, 1e-3f, 0}};
     for (int round = 0; round < 50; ++round) {
         const int n = 1 + below(60);
         const auto x = randoms<float>(n, 0, 15e-3), y = randoms<float>(n, 0, 15e-3),

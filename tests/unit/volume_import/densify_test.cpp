@@ -53,14 +53,14 @@ TEST(Densify, isoMustLieInsideTheWindow) {
     expectUserError([&] { densify(rawOf({4, 4, 4}, NAN), DensityWindow{}); }, {"no finite value"});
 }
 
-// The values are given back slice by slice: slices here are larger than a page.
+// The values are given back slice by slice; slices here are larger than a page, and layers of bricks several.
 TEST(Densify, valuesThatAreGivenBackAreTheSame) {
     std::vector<float> values;
-    for (int n = 0; n < 70 * 60 * 5; ++n) values.push_back(float(n % 1009));
-    RawVolume raw = rawOf({70, 60, 5}, values, 0);
+    for (int n = 0; n < 70 * 60 * 50; ++n) values.push_back(float(n % 1009));
+    RawVolume raw = rawOf({70, 60, 50}, values, 0);
     const DensityMapping mapping = chooseMapping(raw, DensityWindow{{}, {}, 500.0, 0});
     const VoxelVolume kept = densify(raw, mapping), given = densify(std::move(raw), mapping);
-    for (int k = 0; k < 5; ++k)
+    for (int k = 0; k < 50; ++k)
         for (int j = 0; j < 60; ++j)
             for (int i = 0; i < 70; ++i) ASSERT_EQ(given.at(i, j, k), kept.at(i, j, k));
 }

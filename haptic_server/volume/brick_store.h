@@ -1,0 +1,92 @@
+// Memory for the densities of a volume, brick by brick (kernels/brick_layout.h): all bricks of nothing but
+// air share one, all of nothing but the densest bone another; only the rest has memory of its own.
+//
+// Voxels are named by u = index + 1 >= 0 on each axis here: the border of air has u = 0.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "haptic_server/kernels/brick_layout.h"
+#include "haptic_server/kernels/kernels.h"
+#include "haptic_server/volume/index_box.h"
+
+namespace bonemill {
+
+using Density = uint16_t;
+inline constexpr Density kMaxDensity = 65535;
+
+using BrickId = uint32_t;  // x fastest
+
+class BrickStore {
+  public:
+    // Air everywhere, for voxels u < `voxels` on each axis. Allocates.
+    explicit BrickStore(const Eigen::Vector3i& voxels);
+
+    const Eigen::Vector3i& bricksPerAxis() const noexcept { return bricks_; }
+    size_t brickCount() const noexcept { return slots_.size(); }
+    BrickId brickOf(int u, int v, int w) const noexcept {
+        return brickAt(u >> kBrickShift, v >> kBrickShift, w >> kBrickShift);
+    }
+    BrickId brickAt(int x, int y, int z) const noexcept {
+        return BrickId(x + bricks_.x() * (y + bricks_.y() * z));
+    }
+
+    // In data(); the voxels from -kBrickLow to +kBrickHigh of the brick's first and last one lie around it.
+    // RT-safe, any thread; the brick that it leads to stays where it is until it is opened.
+    size_t offset(int u, int v, int w) const noexcept {
+        constexpr int kInBrick = kBrickCells - 1;
+        return slot(brickOf(u, v, w)) * kBrickSize + size_t((u & kInBrick) + kBrickLow) +
+               kBrickStrideY * size_t((v & kInBrick) + kBrickLow) +
+               kBrickStrideZ * size_t((w & kInBrick) + kBrickLow);
+    }
+    const Density* data() const noexcept { return pool_.data(); }
+    Density* data() noexcept { return pool_.data(); }
+    const uint32_t* slots() const noexcept { return slots_.data(); }
+
+    // Of the first voxel that the brick holds, not of its first cell.
+    Density* contents(BrickId brick) noexcept { return pool_.data() + size_t(slot(brick)) * kBrickSize; }
+    const Density* contents(BrickId brick) const noexcept {
+        return pool_.data() + size_t(slot(brick)) * kBrickSize;
+    }
+    bool isShared(BrickId brick) const noexcept { return slot(brick) < kSharedSlots; }
+    // Every density in a shared brick.
+    Density sharedDensity(BrickId brick) const noexcept { return slot(brick) == kAirSlot ? 0 : kMaxDensity; }
+
+    // Bricks that open() can still give memory to.
+    size_t spareCount() const noexcept { return pool_.size() / kBrickSize - used_; }
+    size_t ownCount() const noexcept { return used_ - kSharedSlots; }
+    size_t sharedCount() const noexcept { return brickCount() - ownCount(); }
+    // At least so many spare ones, all their pages touched. Allocates; moves the data.
+    void makeSpare(size_t count);
+    void dropSpare();
+
+    // Gives a shared brick its own memory, with the same densities; needs a spare one. RT-safe; readers may
+    // look meanwhile.
+    void open(BrickId brick) noexcept;
+
+    // To fill brick after brick: what was written to nextSpare(), which needs a spare one, becomes the
+    // brick's; it is shared if it can be.
+    Density* nextSpare() noexcept { return pool_.data() + used_ * kBrickSize; }
+    void adoptNextSpare(BrickId brick) noexcept;
+
+    // Lets every brick share that can. Allocates; moves the data.
+    void shareUniformBricks();
+
+  private:
+    static constexpr uint32_t kAirSlot = 0, kSolidSlot = 1, kSharedSlots = 2;
+
+    uint32_t slot(BrickId brick) const noexcept {
+        return std::atomic_ref<uint32_t>(const_cast<uint32_t&>(slots_[brick]))
+            .load(std::memory_order_acquire);
+    }
+    void setPoolSize(size_t bricks) { pool_.resize(bricks * kBrickSize + kRowSlack); }
+
+    Eigen::Vector3i bricks_;
+    std::vector<uint32_t> slots_;  // per brick: where in the pool
+    std::vector<Density> pool_;    // and kRowSlack more that the kernels may read
+    size_t used_ = kSharedSlots;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,34 @@
+// Box of integer indices, both ends included; empty when any min > max.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace bonemill {
+
+struct IndexBox {
+    Eigen::Vector3i min = Eigen::Vector3i::Constant(1);
+    Eigen::Vector3i max = Eigen::Vector3i::Zero();
+
+    bool isEmpty() const noexcept { return (min.array() > max.array()).any(); }
+    void include(const Eigen::Vector3i& index) noexcept {
+        if (isEmpty()) {
+            min = max = index;
+            return;
+        }
+        min = min.cwiseMin(index);
+        max = max.cwiseMax(index);
+    }
+    IndexBox grown(int steps) const noexcept { return {min.array() - steps, max.array() + steps}; }
+    IndexBox clamped(const Eigen::Vector3i& low, const Eigen::Vector3i& high) const noexcept {
+        return {min.cwiseMax(low), max.cwiseMin(high)};
+    }
+};
+
+template <class Visit>
+void forEachIndex(const IndexBox& box, Visit&& visit) {
+    for (int k = box.min.z(); k <= box.max.z(); ++k)
+        for (int j = box.min.y(); j <= box.max.y(); ++j)
+            for (int i = box.min.x(); i <= box.max.x(); ++i) visit(Eigen::Vector3i(i, j, k));
+}
+
+}  // namespace bonemill
