@@ -4,6 +4,7 @@
 
 #include "common/config/user_error.h"
 #include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/volume/import/small_pieces.h"
 
 namespace bonemill {
 namespace {
@@ -155,16 +156,15 @@ Simulation makeSimulation(const LoadedScene& loaded) {
                           .X_WD = devicePoseOf(scene.device()),
                           .remarks = {},
                           .warnings = {}};
-    const RawVolume raw =
-        importVolume(resolvePath(loaded, scene.volume().path()), {scene.volume().series_uid()});
+    RawVolume raw = importVolume(resolvePath(loaded, scene.volume().path()), {scene.volume().series_uid()});
     simulation.remarks.push_back(raw.description);
     simulation.mapping = chooseMapping(raw, windowOf(scene.volume()));
     if (simulation.mapping.is_iso_proposed)
         simulation.remarks.push_back("no volume.iso_value in the scene: " +
                                      textOf(simulation.mapping.iso_value) + " proposed from the histogram");
-    VoxelVolume volume = densify(raw, simulation.mapping);
+    VoxelVolume volume = densify(std::move(raw), simulation.mapping);
     removeSmallPieces(volume, scene.volume().smallest_piece_voxels());
-    const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), raw.geometry);
+    const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), volume.geometry());
     simulation.tick = tickConfigOf(scene, volume.spacing().minCoeff());
     simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells, shellConfigOf(scene));
     simulation.warnings = simulation.tool.warnings;

@@ -3,9 +3,9 @@
 
 #include <cstddef>
 #include <string>
-#include <vector>
 
 #include "common/geometry/pose.h"
+#include "haptic_server/volume/raw_values.h"
 
 namespace bonemill {
 
@@ -21,7 +21,7 @@ struct VolumeGeometry {
 
 struct RawVolume {
     VolumeGeometry geometry;
-    std::vector<float> values;   // x fastest; HU for calibrated CT; may hold NaN
+    RawValues values;            // x fastest; HU for calibrated CT; may hold NaN
     std::string description;     // for people: format, series, what was repaired
     bool is_hounsfield = false;  // values are calibrated HU (CT with rescale, air near -1000)
 };

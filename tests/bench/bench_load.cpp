@@ -21,13 +21,20 @@ double msSince(int64_t start_ns) {
     return double(monotonicNowNs() - start_ns) * 1e-6;
 }
 
+double mib(size_t bytes) {
+    return double(bytes) / (1 << 20);
+}
+
 std::unique_ptr<BoneModel> makeBone(const std::string& path, std::optional<double> iso,
                                     nlohmann::json& json) {
     int64_t start = monotonicNowNs();
     std::optional<RawVolume> raw = importVolume(path);
     json["import_ms"] = msSince(start);
+    json["import_peak_mib"] = mib(peakResidentBytes());
+    json["import_child_peak_mib"] = mib(peakResidentBytesOfChildren());
     start = monotonicNowNs();
-    VoxelVolume volume = densify(*raw, DensityWindow{.low = {}, .high = {}, .iso = iso});
+    const DensityMapping mapping = chooseMapping(*raw, DensityWindow{.low = {}, .high = {}, .iso = iso});
+    VoxelVolume volume = densify(std::move(*raw), mapping);
     raw.reset();
     json["densify_ms"] = msSince(start);
     start = monotonicNowNs();
@@ -50,7 +57,7 @@ void run(const std::string& path, std::optional<double> iso, const std::string& 
     json["voxels"] = voxels;
     json["resident_bytes_per_voxel"] = double(residentBytes()) / voxels;
     json["peak_bytes_per_voxel"] = double(peakResidentBytes()) / voxels;
-    json["peak_mib"] = double(peakResidentBytes()) / (1 << 20);
+    json["peak_mib"] = mib(peakResidentBytes());
     json["shell_points"] = bone->shell.pointCount(0);
     Table table({"", ""});
     for (const auto& [key, value] : json.items()) table.add({key, number(value.get<double>(), 6)});

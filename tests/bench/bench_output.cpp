@@ -74,6 +74,11 @@ size_t residentBytes() {
 size_t peakResidentBytes() {
     return statusBytes("VmHWM");
 }
+size_t peakResidentBytesOfChildren() {
+    rusage usage{};
+    getrusage(RUSAGE_CHILDREN, &usage);
+    return size_t(usage.ru_maxrss) * 1024;
+}
 
 void writeJson(const std::string& path, const nlohmann::json& json) {
     if (path.empty()) return;

@@ -32,6 +32,7 @@ nlohmann::json medianOf(const std::vector<nlohmann::json>& runs);
 // Resident memory of this process, bytes: now, and the most there ever was.
 size_t residentBytes();
 size_t peakResidentBytes();
+size_t peakResidentBytesOfChildren();  // of the largest that has ended
 
 // "" writes nothing, "-" goes to stdout. Throws UserError when the file cannot be written.
 void writeJson(const std::string& path, const nlohmann::json& json);

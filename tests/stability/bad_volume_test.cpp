@@ -69,17 +69,19 @@ double notANumber(const Variant& variant) {
     std::mt19937 random(3);
     RawVolume raw;
     raw.geometry = kCube;
+    std::vector<float> values;
     for (int k = 0; k < kCube.dims.z(); ++k)
         for (int j = 0; j < kCube.dims.y(); ++j)
             for (int i = 0; i < kCube.dims.x(); ++i) {
                 const double r = (kVoxel * Eigen::Vector3d(i, j, k) - kCentre).norm();
                 const float hu = float(std::clamp(1000 + 2e6 * (1.5e-3 - r), -1000.0, 3000.0));
                 const uint32_t kind = random() % 15;
-                raw.values.push_back(kind == 0   ? std::numeric_limits<float>::quiet_NaN()
-                                     : kind == 1 ? std::numeric_limits<float>::infinity()
-                                     : kind == 2 ? -std::numeric_limits<float>::infinity()
-                                                 : hu);
+                values.push_back(kind == 0   ? std::numeric_limits<float>::quiet_NaN()
+                                 : kind == 1 ? std::numeric_limits<float>::infinity()
+                                 : kind == 2 ? -std::numeric_limits<float>::infinity()
+                                             : hu);
             }
+    raw.values.append(std::move(values));
     return drag(densify(raw, DensityWindow{-1000, 3000, 600, 0}), variant);
 }
 

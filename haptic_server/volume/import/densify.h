@@ -38,18 +38,9 @@ struct DensityMapping {
 DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window);
 
 VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping);
+// Gives the raw values' memory back as their densities come: both are never there as a whole.
+VoxelVolume densify(RawVolume&& raw, const DensityMapping& mapping);
 // chooseMapping, densify and removeSmallPieces in one.
 VoxelVolume densify(const RawVolume& raw, const DensityWindow& window);
-
-struct PieceCount {
-    uint64_t pieces_kept = 0;
-    uint64_t pieces_removed = 0;
-    uint64_t voxels_removed = 0;
-};
-
-// Connected pieces (6 neighbours: voxels that share a face) of density >= iso with fewer than
-// `smallest_piece_voxels` voxels go to iso - 1, just below the surface, so that nothing of them is felt or
-// drawn.
-PieceCount removeSmallPieces(VoxelVolume& volume, uint32_t smallest_piece_voxels);
 
 }  // namespace bonemill

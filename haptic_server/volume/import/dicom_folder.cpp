@@ -108,12 +108,12 @@ std::vector<DicomSlice> inspect(const std::filesystem::path& path, LeftOut& left
     return readHeader(path, left_out);
 }
 
-void readSlices(const std::vector<DicomSlice>& slices, std::vector<float>& values) {
+void readSlices(const std::vector<DicomSlice>& slices, RawValues& values) {
     std::filesystem::path read_path;
-    std::vector<float> pixels;
+    RawValues pixels;
     for (const DicomSlice& slice : slices) {
         if (slice.path != read_path) {
-            pixels.clear();
+            pixels = {};
             ItkImageFile(ItkFormat::kDicom, slice.path).appendValues(pixels);
             read_path = slice.path;
         }
@@ -121,14 +121,14 @@ void readSlices(const std::vector<DicomSlice>& slices, std::vector<float>& value
         if (pixels.size() % size != 0 || pixels.size() < begin + size)
             throw UserError(slice.path.string() +
                             ": holds fewer pixels than its header says; the file is damaged");
-        values.insert(values.end(), pixels.begin() + ptrdiff_t(begin),
-                      pixels.begin() + ptrdiff_t(begin + size));
+        pixels.visit([&](auto samples) { values.append(samples.subspan(begin, size)); });
+        pixels.forget(begin, begin + size);
     }
 }
 
 // Air is negative on no other scale.
-bool reachesAir(const std::vector<float>& values) {
-    return std::any_of(values.begin(), values.end(), [](float v) { return v <= -500; });
+bool reachesAir(const RawValues& values) {
+    return values.range().low <= -500;
 }
 
 RawVolume readStack(const DicomStack& stack, const std::string& name) {

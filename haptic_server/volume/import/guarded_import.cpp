@@ -92,10 +92,52 @@ struct Head {
     double rotation[4];  // Eigen's order
     uint64_t text_bytes;
     uint64_t values;
+    uint64_t type;  // RawValues::type()
 };
 static_assert(std::is_trivially_copyable_v<Head>);
 
-void sendVolume(int file, const RawVolume& raw) {
+constexpr size_t kChunk = size_t(1) << 20;  // values
+
+// Each chunk leaves this process once it is in the pipe, or both would hold the whole scan.
+bool sendValues(int file, RawValues& values) {
+    for (size_t begin = 0; begin < values.size(); begin += kChunk) {
+        const size_t end = std::min(begin + kChunk, values.size());
+        const bool is_sent = values.visit([&](auto samples) {
+            const auto chunk = samples.subspan(begin, end - begin);
+            return writeAll(file, chunk.data(), chunk.size_bytes());
+        });
+        if (!is_sent) return false;
+        values.forget(begin, end);
+    }
+    return true;
+}
+
+template <class T>
+bool receiveValues(int file, size_t count, RawValues& values) {
+    std::vector<T> chunk;
+    values.reserve(count);
+    while (values.size() < count) {
+        chunk.resize(std::min(kChunk, count - values.size()));
+        if (!readAll(file, chunk.data(), chunk.size() * sizeof(T))) return false;
+        values.append(std::span<const T>(chunk));
+    }
+    return true;
+}
+
+bool receiveValues(int file, const Head& head, RawValues& values) {
+    switch (head.type) {  // order of RawValues::Samples
+        case 0:
+            return receiveValues<uint8_t>(file, head.values, values);
+        case 1:
+            return receiveValues<int16_t>(file, head.values, values);
+        case 2:
+            return receiveValues<uint16_t>(file, head.values, values);
+        default:
+            return receiveValues<float>(file, head.values, values);
+    }
+}
+
+void sendVolume(int file, RawVolume raw) {
     Head head{};
     head.is_volume = true;
     head.is_hounsfield = raw.is_hounsfield;
@@ -105,8 +147,9 @@ void sendVolume(int file, const RawVolume& raw) {
     std::copy_n(raw.geometry.X_WV.rotation.coeffs().data(), 4, head.rotation);
     head.text_bytes = raw.description.size();
     head.values = raw.values.size();
+    head.type = raw.values.type();
     writeAll(file, &head, sizeof head) && writeAll(file, raw.description.data(), raw.description.size()) &&
-        writeAll(file, raw.values.data(), raw.values.size() * sizeof(float));
+        sendValues(file, raw.values);
 }
 
 void sendError(int file, const std::string& message) {
@@ -131,8 +174,7 @@ bool receive(int file, RawVolume& raw, std::string& error) {
     raw.geometry.spacing = Eigen::Map<const Eigen::Vector3d>(head.spacing);
     raw.geometry.X_WV.position = Eigen::Map<const Eigen::Vector3d>(head.position);
     raw.geometry.X_WV.rotation = Eigen::Quaterniond(head.rotation);
-    raw.values.resize(head.values);
-    return readAll(file, raw.values.data(), raw.values.size() * sizeof(float));
+    return receiveValues(file, head, raw.values);
 }
 
 [[noreturn]] void runChild(int file, const std::filesystem::path& path,

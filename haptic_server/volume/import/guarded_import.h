@@ -1,9 +1,9 @@
 // Runs a reader in a child process of its own, so that no file can bring this process down.
 //
 // Debian builds GDCM with its assertions on, and ITK's linear algebra aborts on numbers that are not finite:
-// a damaged file can end the process that reads it. The child hands the volume over through a pipe, writes
-// nothing to stderr, and is ended when it hangs or takes all memory. Start-up only: forks, so best before
-// other threads run.
+// a damaged file can end the process that reads it. The child hands the volume over through a pipe, giving
+// back the memory of what is through, writes nothing to stderr, and is ended when it hangs or takes all
+// memory. Start-up only: forks, so best before other threads run.
 #pragma once
 
 #include <filesystem>

@@ -40,9 +40,9 @@ void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel
             throw UserError(file + ": claims " + sizeText(dims) +
                             " voxels, more than 2^31; crop or resample it");
     }
-    // The file's own samples, our float copy and the copy that the child process hands over exist at the same
-    // time.
-    const uint64_t needed = voxels * (bytes_per_voxel + 2 * sizeof(float));
+    // Samples move from the reader's process to this one and on into densities; what was moved is given back.
+    constexpr uint64_t kDensityBytes = 2;
+    const uint64_t needed = voxels * (bytes_per_voxel + kDensityBytes);
     const uint64_t available = availableMemory();
     if (available != 0 && needed > available)
         throw UserError(file + ": " + sizeText(dims) + " voxels need " + std::to_string(needed >> 20) +

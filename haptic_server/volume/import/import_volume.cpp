@@ -1,7 +1,6 @@
 #include "haptic_server/volume/import/import_volume.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/config/user_error.h"
 #include "haptic_server/volume/import/dicom_folder.h"
@@ -41,8 +40,7 @@ RawVolume importByType(const std::filesystem::path& path, const ImportOptions& o
 }
 
 void describeNonFinite(RawVolume& raw) {
-    const auto count =
-        std::count_if(raw.values.begin(), raw.values.end(), [](float v) { return !std::isfinite(v); });
+    const size_t count = raw.values.range().non_finite;
     if (count > 0) raw.description += "; " + std::to_string(count) + " values are not finite";
 }
 

@@ -23,10 +23,11 @@ static_assert(std::endian::native == std::endian::little, "the matrix is stored 
 constexpr uint64_t kMaxPlistBytes = 1 << 20;
 constexpr int kMaxEntries = 10000;
 
-// Bytes of the entry with this file name, in whatever folder of the archive; `accepts` is asked with the
-// stated size before anything is read.
-std::vector<char> readEntry(const std::filesystem::path& path, const std::string& name,
-                            const std::function<void(uint64_t)>& accepts) {
+// The entry with this file name, in whatever folder of the archive; `accepts` is asked with the stated size
+// in bytes before anything is read.
+template <class T>
+std::vector<T> readEntry(const std::filesystem::path& path, const std::string& name,
+                         const std::function<void(uint64_t)>& accepts) {
     const std::unique_ptr<archive, int (*)(archive*)> reader(archive_read_new(), archive_read_free);
     archive_read_support_filter_all(reader.get());
     archive_read_support_format_tar(reader.get());
@@ -46,10 +47,10 @@ std::vector<char> readEntry(const std::filesystem::path& path, const std::string
         if (!entry_name || std::filesystem::path(entry_name).filename() != name) continue;
         const uint64_t size = uint64_t(std::max<int64_t>(archive_entry_size(entry), 0));
         accepts(size);
-        std::vector<char> bytes(size);
-        if (archive_read_data(reader.get(), bytes.data(), bytes.size()) != la_ssize_t(size))
+        std::vector<T> items(size / sizeof(T));
+        if (archive_read_data(reader.get(), items.data(), size) != la_ssize_t(size))
             throw fail(name + " is cut short");
-        return bytes;
+        return items;
     }
     throw UserError(path.string() + ": the archive holds too many files");
 }
@@ -75,7 +76,7 @@ struct Project {
 };
 
 Project readProject(const std::filesystem::path& path) {
-    const std::vector<char> text = readEntry(path, "main.plist", [&](uint64_t size) {
+    const std::vector<char> text = readEntry<char>(path, "main.plist", [&](uint64_t size) {
         if (size > kMaxPlistBytes) throw UserError(path.string() + ": its main.plist is absurdly large");
     });
     pugi::xml_document document;
@@ -125,18 +126,16 @@ RawVolume importInv3(const std::filesystem::path& path) {
     frame.directions.setIdentity();
     frame.origin_mm.setZero();
     const size_t voxels = size_t(frame.dims.cast<int64_t>().prod());
-    const std::vector<char> bytes = readEntry(path, project.matrix_file, [&](uint64_t size) {
+    auto samples = readEntry<int16_t>(path, project.matrix_file, [&](uint64_t size) {
         if (size != voxels * sizeof(int16_t))
             throw UserError(file + ": " + project.matrix_file + " has " + std::to_string(size) +
                             " bytes, its shape needs " + std::to_string(voxels * sizeof(int16_t)));
     });
     RawVolume raw;
-    const auto* samples = reinterpret_cast<const int16_t*>(bytes.data());
-    raw.values.assign(samples, samples + voxels);
+    raw.values.append(std::move(samples));
     reverseAxis(raw.values, frame.dims, 1);
     makeRightHanded(frame, file, raw.geometry, raw.values);
-    raw.is_hounsfield =
-        project.modality == "CT" && *std::min_element(raw.values.begin(), raw.values.end()) <= -500;
+    raw.is_hounsfield = project.modality == "CT" && raw.values.range().low <= -500;
     raw.description = describe(project);
     return raw;
 }

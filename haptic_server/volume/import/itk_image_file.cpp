@@ -6,9 +6,13 @@
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 
+#include <algorithm>
+#include <span>
 #include <sstream>
+#include <type_traits>
 
 #include "common/config/user_error.h"
+#include "haptic_server/volume/forget_memory.h"
 #include "haptic_server/volume/import/file_being_read.h"
 #include "haptic_server/volume/import/memory_cap.h"
 
@@ -66,50 +70,71 @@ ItkImageHeader headerOf(const itk::ImageIOBase& io) {
 }
 
 template <class T>
-void append(const std::vector<char>& buffer, std::vector<float>& values) {
-    const T* samples = reinterpret_cast<const T*>(buffer.data());
-    values.insert(values.end(), samples, samples + buffer.size() / sizeof(T));
+inline constexpr bool kIsHeldAsItIs =
+    std::is_same_v<T, uint8_t> || std::is_same_v<T, int16_t> || std::is_same_v<T, uint16_t>;
+
+// Block by block, so that the samples and their copy are never there together.
+template <class T>
+void appendConverted(std::span<T> samples, RawValues& values) {
+    constexpr size_t kBlock = size_t(1) << 20;
+    std::vector<float> block;
+    for (size_t begin = 0; begin < samples.size(); begin += kBlock) {
+        const auto part = samples.subspan(begin, std::min(kBlock, samples.size() - begin));
+        block.assign(part.begin(), part.end());
+        values.append(std::span<const float>(block));
+        forget(part);
+    }
+}
+
+template <class T>
+void readSamples(itk::ImageIOBase& io, RawValues& values) {
+    std::vector<T> samples(size_t(io.GetImageSizeInBytes()) / sizeof(T));
+    io.Read(samples.data());
+    if constexpr (kIsHeldAsItIs<T>)
+        values.append(std::move(samples));
+    else
+        appendConverted(std::span(samples), values);
 }
 
 // False for a sample type that is no plain number.
-bool appendAs(itk::IOComponentEnum type, const std::vector<char>& buffer, std::vector<float>& values) {
+bool readAs(itk::IOComponentEnum type, itk::ImageIOBase& io, RawValues& values) {
     using Type = itk::IOComponentEnum;
     switch (type) {
         case Type::UCHAR:
-            append<unsigned char>(buffer, values);
+            readSamples<unsigned char>(io, values);
             break;
         case Type::CHAR:
-            append<signed char>(buffer, values);
+            readSamples<signed char>(io, values);
             break;
         case Type::USHORT:
-            append<unsigned short>(buffer, values);
+            readSamples<unsigned short>(io, values);
             break;
         case Type::SHORT:
-            append<short>(buffer, values);
+            readSamples<short>(io, values);
             break;
         case Type::UINT:
-            append<unsigned int>(buffer, values);
+            readSamples<unsigned int>(io, values);
             break;
         case Type::INT:
-            append<int>(buffer, values);
+            readSamples<int>(io, values);
             break;
         case Type::ULONG:
-            append<unsigned long>(buffer, values);
+            readSamples<unsigned long>(io, values);
             break;
         case Type::LONG:
-            append<long>(buffer, values);
+            readSamples<long>(io, values);
             break;
         case Type::ULONGLONG:
-            append<unsigned long long>(buffer, values);
+            readSamples<unsigned long long>(io, values);
             break;
         case Type::LONGLONG:
-            append<long long>(buffer, values);
+            readSamples<long long>(io, values);
             break;
         case Type::FLOAT:
-            append<float>(buffer, values);
+            readSamples<float>(io, values);
             break;
         case Type::DOUBLE:
-            append<double>(buffer, values);
+            readSamples<double>(io, values);
             break;
         default:
             return false;
@@ -149,7 +174,7 @@ std::string ItkImageFile::dicomTag(const char* tag) const {
     return value;
 }
 
-void ItkImageFile::appendValues(std::vector<float>& values) {
+void ItkImageFile::appendValues(RawValues& values) {
     itk::ImageIOBase& io = *reader_->io;
     const uint64_t bytes = uint64_t(io.GetImageSizeInBytes());
     const MemoryCap cap(memoryFor(file_, bytes) + bytes / header_.bytes_per_voxel * sizeof(float));
@@ -157,9 +182,7 @@ void ItkImageFile::appendValues(std::vector<float>& values) {
         itk::ImageIORegion region(io.GetNumberOfDimensions());
         for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) region.SetSize(a, io.GetDimensions(a));
         io.SetIORegion(region);
-        std::vector<char> buffer(bytes);
-        io.Read(buffer.data());
-        if (!appendAs(io.GetComponentType(), buffer, values))
+        if (!readAs(io.GetComponentType(), io, values))
             throw UserError(file_ + ": its sample type is not a plain number");
     } catch (const itk::ExceptionObject& error) {
         throw UserError(file_ + ": its voxels cannot be read: " + plainMessage(error));

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "haptic_server/volume/raw_values.h"
+
 namespace bonemill {
 
 enum class ItkFormat { kNrrd, kNifti, kMetaImage, kDicom };
@@ -40,7 +42,7 @@ class ItkImageFile {
     std::string dicomTag(const char* tag) const;
 
     // Appends all samples, rescaled as the file says (HU for CT), first axis fastest.
-    void appendValues(std::vector<float>& values);
+    void appendValues(RawValues& values);
 
   private:
     struct Reader;

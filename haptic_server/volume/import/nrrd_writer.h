@@ -10,11 +10,10 @@
 #include <filesystem>
 #include <span>
 
+#include "haptic_server/volume/import/nrrd_stream.h"
 #include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill {
-
-enum class NrrdEncoding { kRaw, kGzip };
 
 // `values`: x fastest, exactly geometry.voxelCount() of them.
 void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,

@@ -1,7 +1,6 @@
 #include "haptic_server/volume/import/physical_frame.h"
 
 #include <Eigen/SVD>
-#include <algorithm>
 #include <cmath>
 
 #include "common/config/user_error.h"
@@ -45,21 +44,14 @@ Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& axes) {
 
 }  // namespace
 
-void reverseAxis(std::vector<float>& values, const Eigen::Vector3i& dims, int axis) {
+void reverseAxis(RawValues& values, const Eigen::Vector3i& dims, int axis) {
     size_t stride = 1;
     for (int a = 0; a < axis; ++a) stride *= size_t(dims[a]);
-    const size_t block = stride * size_t(dims[axis]);
-    for (size_t base = 0; base < values.size(); base += block) {
-        for (size_t low = 0, high = block - stride; low < high; low += stride, high -= stride) {
-            const auto first = values.begin() + ptrdiff_t(base);
-            std::swap_ranges(first + ptrdiff_t(low), first + ptrdiff_t(low + stride),
-                             first + ptrdiff_t(high));
-        }
-    }
+    values.reverseBlocks(stride, size_t(dims[axis]));
 }
 
 bool makeRightHanded(const FileFrame& frame, const std::string& file, VolumeGeometry& geometry,
-                     std::vector<float>& values) {
+                     RawValues& values) {
     checkNumbers(frame, file);
     Eigen::Matrix3d axes = frame.directions.colwise().normalized();
     checkPerpendicular(axes, file);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "haptic_server/volume/raw_volume.h"
 
@@ -22,9 +21,9 @@ inline constexpr double kMaxAxisCosine = 1e-3;
 // The right-handed geometry of the same voxels. A left-handed file gets its last axis reversed, in `values`
 // too (returns true then). Throws UserError naming `file` for sheared, degenerate or non-finite axes.
 bool makeRightHanded(const FileFrame& frame, const std::string& file, VolumeGeometry& geometry,
-                     std::vector<float>& values);
+                     RawValues& values);
 
 // Reverses the order of the samples along one index axis.
-void reverseAxis(std::vector<float>& values, const Eigen::Vector3i& dims, int axis);
+void reverseAxis(RawValues& values, const Eigen::Vector3i& dims, int axis);
 
 }  // namespace bonemill

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -20,36 +19,20 @@ struct Histogram {
     double centre(size_t bin) const { return low + (double(bin) + 0.5) * width; }
 };
 
-struct Range {
-    double low, high;
-    bool are_integers;
-};
-
-Range finiteRange(const std::vector<float>& values) {
-    Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), true};
-    for (const float v : values) {
-        if (!std::isfinite(v)) continue;
-        range.low = std::min(range.low, double(v));
-        range.high = std::max(range.high, double(v));
-        range.are_integers = range.are_integers && v == std::nearbyint(v);
-    }
-    return range;
-}
-
-Histogram countInto(const std::vector<float>& values, double low, double width, size_t bins) {
+Histogram countInto(const RawValues& values, double low, double width, size_t bins) {
     Histogram h{low, width, std::vector<double>(bins, 0.0), 0.0};
-    for (const float v : values) {
-        if (!std::isfinite(v)) continue;
-        h.total += 1;
-        const double bin = (double(v) - low) / width;
-        if (bin >= 0 && bin < double(bins)) h.count[size_t(bin)] += 1;
-    }
+    h.total = double(values.size() - values.range().non_finite);
+    values.visit([&](auto samples) {
+        for (const double v : samples) {
+            const double bin = (v - low) / width;
+            if (bin >= 0 && bin < double(bins)) h.count[size_t(bin)] += 1;
+        }
+    });
     return h;
 }
 
 // Bins of integer data hold a whole number of values, or some would be empty and look like valleys.
-Histogram binnedOver(const std::vector<float>& values, double low, double high, bool are_integers,
-                     size_t bins) {
+Histogram binnedOver(const RawValues& values, double low, double high, bool are_integers, size_t bins) {
     double width = (high - low) / double(bins);
     if (are_integers) {
         width = std::max(1.0, std::ceil((high - low + 1) / double(bins)));
@@ -65,7 +48,7 @@ constexpr size_t kBins = 256;
 constexpr double kTail = 2e-4;  // share of values at each end that may be artefacts (metal, padding)
 
 // Zooms in until the tails that are cut off hold no more than kTail of the values each.
-Histogram histogramOf(const std::vector<float>& values, Range range) {
+Histogram histogramOf(const RawValues& values, ValueRange range) {
     for (int zoom = 0; zoom < 16; ++zoom) {
         const Histogram h = binnedOver(values, range.low, range.high, range.are_integers, kBins);
         size_t first = 0, last = h.count.size() - 1;
@@ -179,7 +162,7 @@ constexpr double kSurelyAirHu = -500;
 constexpr double kExportShift = 1024;  // exports that store HU + 1024 and forget the intercept
 
 // Raw value of 0 HU when the values are Hounsfield units, shifted or not.
-std::optional<double> waterValue(const RawVolume& raw, const Range& range, const Histogram& h,
+std::optional<double> waterValue(const RawVolume& raw, const ValueRange& range, const Histogram& h,
                                  const std::vector<Mode>& modes) {
     if (raw.is_hounsfield || range.low <= kSurelyAirHu) return 0.0;
     bool has_air = false, has_soft_tissue = false;
@@ -219,7 +202,7 @@ double medianAbove(const Histogram& h, double value) {
 }
 
 // Half-way from soft tissue to bone, in HU; nothing when the scan holds no soft tissue.
-std::optional<double> halfWayFromSoftTissue(const std::vector<float>& values, double water) {
+std::optional<double> halfWayFromSoftTissue(const RawValues& values, double water) {
     const auto bins = size_t((kHighestHu - kSoftTissueLowHu) / kSoftTissueBinHu);
     Histogram h = countInto(values, water + kSoftTissueLowHu, kSoftTissueBinHu, bins);
     h.low -= water;
@@ -251,7 +234,7 @@ std::optional<double> halfWayAboveBackground(const Histogram& h, const std::vect
 }  // namespace
 
 double proposeIsoValue(const RawVolume& raw) {
-    const Range range = finiteRange(raw.values);
+    const ValueRange& range = raw.values.range();
     if (!(range.low < range.high))
         throw UserError("no iso-value can be proposed: all values of the volume are alike (" +
                         raw.description + ")");

@@ -45,7 +45,8 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
         throw UserError(file + ": has " + std::to_string(header.components) +
                         " values per voxel (colour or vectors); one number per voxel is needed");
     const std::vector<uint64_t> dims = volumeDims(header.dims);
-    checkVolumeSize(dims, header.bytes_per_voxel, file);
+    const uint64_t copies = format == ItkFormat::kNifti ? 2 : 1;  // its library fills a buffer of its own
+    checkVolumeSize(dims, copies * header.bytes_per_voxel, file);
     const uint64_t voxels = dims[0] * dims[1] * dims[2];
     const uint64_t needed = voxels * header.bytes_per_voxel;
     if (facts.data) checkStoredBytes(needed, countStoredBytes(*facts.data, needed), file);

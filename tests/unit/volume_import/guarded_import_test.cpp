@@ -19,7 +19,7 @@ TEST(GuardedImport, volumeComesThroughUnchanged) {
     sent.geometry.X_WV.rotation = Eigen::Quaterniond(1, 2, 3, 4).normalized();
     sent.description = "a volume";
     sent.is_hounsfield = true;
-    for (size_t n = 0; n < sent.geometry.voxelCount(); ++n) sent.values.push_back(float(n) / 7);
+    sent.values.append(std::vector<int16_t>(sent.geometry.voxelCount(), -7));
     const RawVolume got = importGuarded("file", [&] { return sent; });
     EXPECT_EQ(got.geometry.dims, sent.geometry.dims);
     EXPECT_EQ(got.geometry.spacing, sent.geometry.spacing);
@@ -28,6 +28,25 @@ TEST(GuardedImport, volumeComesThroughUnchanged) {
     EXPECT_EQ(got.description, sent.description);
     EXPECT_TRUE(got.is_hounsfield);
     EXPECT_EQ(got.values, sent.values);
+}
+
+// More than go through the pipe at a time; every type of sample.
+template <class T>
+void expectSamplesComeThrough(float first) {
+    std::vector<T> samples;
+    for (int n = 0; n < 1500000; ++n) samples.push_back(T(first + float(n % 251)));
+    RawVolume sent;
+    sent.values.append(samples);
+    const RawVolume got = importGuarded("file", [&] { return sent; });
+    EXPECT_EQ(got.values.type(), sent.values.type());
+    EXPECT_EQ(got.values, sent.values);
+}
+
+TEST(GuardedImport, samplesOfEveryTypeComeThrough) {
+    expectSamplesComeThrough<uint8_t>(0);
+    expectSamplesComeThrough<int16_t>(-1000);
+    expectSamplesComeThrough<uint16_t>(60000);
+    expectSamplesComeThrough<float>(0.25);
 }
 
 TEST(GuardedImport, errorsComeThrough) {

@@ -79,8 +79,35 @@ TEST(NrrdWriter, densitiesAreWrittenWithoutTheBorder) {
     volume.set(2, 1, 0, 40000);
     writeNrrd(folder / "a.nrrd", volume);
     const RawVolume raw = importVolume(folder / "a.nrrd");
-    EXPECT_EQ(raw.values[2 + 3], 40000);
-    EXPECT_EQ(std::count(raw.values.begin(), raw.values.end(), 0.0f), 26);
+    for (size_t n = 0; n < raw.values.size(); ++n) EXPECT_EQ(raw.values[n], n == 2 + 3 ? 40000 : 0);
+}
+
+TEST(NrrdWriter, valuesThatComeInPartsAreOneVolume) {
+    const TemporaryFolder folder;
+    VolumeGeometry geometry;
+    geometry.dims = {300, 200, 3};
+    std::vector<uint16_t> values;
+    for (size_t n = 0; n < geometry.voxelCount(); ++n) values.push_back(uint16_t(n * n));
+    for (const auto encoding : {NrrdEncoding::kRaw, NrrdEncoding::kGzip}) {
+        NrrdStream<uint16_t> file(folder / "a.nrrd", geometry, encoding);
+        const std::span<const uint16_t> all(values);
+        for (size_t begin = 0; begin < all.size(); begin += 7001)
+            file.append(all.subspan(begin, std::min<size_t>(7001, all.size() - begin)));
+        file.close();
+        const RawVolume raw = importVolume(folder / "a.nrrd");
+        for (size_t n = 0; n < values.size(); ++n) ASSERT_EQ(raw.values[n], values[n]) << n;
+    }
+}
+
+TEST(NrrdWriter, wrongNumberOfValuesIsRefused) {
+    const TemporaryFolder folder;
+    VolumeGeometry geometry;
+    geometry.dims = {2, 2, 2};
+    for (const size_t count : {7, 9}) {
+        const std::vector<uint8_t> values(count, 1);
+        expectUserError([&] { writeNrrd(folder / "a.nrrd", geometry, std::span<const uint8_t>(values)); },
+                        {"a.nrrd", "too few or too many"});
+    }
 }
 
 TEST(NrrdWriter, unwritablePathIsNamed) {

@@ -16,16 +16,20 @@ struct Material {
     double mean, sigma, share;
 };
 
-RawVolume mixtureOf(const std::vector<Material>& materials, double offset = 0) {
+RawVolume mixtureOf(const std::vector<Material>& materials, double offset = 0,
+                    const std::vector<float>& odd = {}) {
     std::mt19937 random(11);
     RawVolume raw;
     raw.geometry.dims = {100, 100, 40};
+    std::vector<float> values;
     for (const Material& m : materials) {
         std::normal_distribution<double> value(m.mean + offset, m.sigma);
         const auto count = size_t(m.share * 400000);
-        for (size_t n = 0; n < count; ++n) raw.values.push_back(float(std::round(value(random))));
+        for (size_t n = 0; n < count; ++n) values.push_back(float(std::round(value(random))));
     }
-    raw.values.resize(400000, raw.values.front());
+    values.resize(400000, values.front());
+    std::copy(odd.begin(), odd.end(), values.begin());
+    raw.values.append(std::move(values));
     return raw;
 }
 
@@ -83,21 +87,19 @@ TEST(ProposeIso, analyticBodyIsCutInTheMiddle) {
 }
 
 TEST(ProposeIso, oddValuesDoNotMoveIt) {
-    RawVolume raw = mixtureOf({{390, 15, 0.75}, {825, 20, 0.25}});
-    const double iso = proposeIsoValue(raw);
-    raw.values[0] = std::numeric_limits<float>::quiet_NaN();
-    raw.values[1] = std::numeric_limits<float>::infinity();
-    raw.values[2] = 1e30f;
-    EXPECT_NEAR(proposeIsoValue(raw), iso, 5);
+    const std::vector<Material> materials = {{390, 15, 0.75}, {825, 20, 0.25}};
+    const std::vector<float> odd = {std::numeric_limits<float>::quiet_NaN(),
+                                    std::numeric_limits<float>::infinity(), 1e30f};
+    EXPECT_NEAR(proposeIsoValue(mixtureOf(materials, 0, odd)), proposeIsoValue(mixtureOf(materials)), 5);
 }
 
 TEST(ProposeIso, constantVolumeIsRefused) {
-    RawVolume raw;
-    raw.geometry.dims = {4, 4, 4};
-    raw.values.assign(64, 7);
-    expectUserError([&] { proposeIsoValue(raw); }, {"alike"});
-    raw.values.assign(64, std::numeric_limits<float>::quiet_NaN());
-    expectUserError([&] { proposeIsoValue(raw); }, {"alike"});
+    for (const float value : {7.0f, std::numeric_limits<float>::quiet_NaN()}) {
+        RawVolume raw;
+        raw.geometry.dims = {4, 4, 4};
+        raw.values.append(std::vector<float>(64, value));
+        expectUserError([&] { proposeIsoValue(raw); }, {"alike"});
+    }
 }
 
 }  // namespace

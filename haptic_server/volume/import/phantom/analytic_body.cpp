@@ -44,18 +44,25 @@ double bodyDensity(const AnalyticBody& body, const VolumeGeometry& geometry, con
     return full * std::clamp(0.5 - signedDistance(body, p_W) / (2 * ramp), 0.0, 1.0);
 }
 
+std::vector<float> sampleBodySlice(const AnalyticBody& body, const VolumeGeometry& geometry, double full,
+                                   int k) {
+    std::vector<float> values;
+    values.reserve(size_t(geometry.dims.x()) * size_t(geometry.dims.y()));
+    for (int j = 0; j < geometry.dims.y(); ++j)
+        for (int i = 0; i < geometry.dims.x(); ++i) {
+            const Eigen::Vector3d p_W =
+                geometry.X_WV * geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k));
+            values.push_back(float(std::round(bodyDensity(body, geometry, p_W, full))));
+        }
+    return values;
+}
+
 RawVolume sampleBody(const AnalyticBody& body, const VolumeGeometry& geometry, double full) {
     RawVolume raw;
     raw.geometry = geometry;
     raw.description = "analytic body";
     raw.values.reserve(geometry.voxelCount());
-    for (int k = 0; k < geometry.dims.z(); ++k)
-        for (int j = 0; j < geometry.dims.y(); ++j)
-            for (int i = 0; i < geometry.dims.x(); ++i) {
-                const Eigen::Vector3d p_W =
-                    geometry.X_WV * geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k));
-                raw.values.push_back(float(std::round(bodyDensity(body, geometry, p_W, full))));
-            }
+    for (int k = 0; k < geometry.dims.z(); ++k) raw.values.append(sampleBodySlice(body, geometry, full, k));
     return raw;
 }
 

@@ -10,6 +10,8 @@
 // Thread-safe; signedDistance does not allocate.
 #pragma once
 
+#include <vector>
+
 #include "haptic_server/volume/raw_volume.h"
 
 namespace bonemill {
@@ -35,7 +37,10 @@ inline constexpr double kRampVoxels = 2.0;
 double bodyDensity(const AnalyticBody& body, const VolumeGeometry& geometry, const Eigen::Vector3d& p_W,
                    double full) noexcept;
 
-// Values 0 .. full, iso-surface at full / 2, rounded to whole numbers as an integer file stores them.
+// Values 0 .. full, iso-surface at full / 2, rounded to whole numbers as an integer file stores them: the
+// voxels of slice k, and all slices.
+std::vector<float> sampleBodySlice(const AnalyticBody& body, const VolumeGeometry& geometry, double full,
+                                   int k);
 RawVolume sampleBody(const AnalyticBody& body, const VolumeGeometry& geometry, double full);
 
 // A grid along the axes of W whose middle is the origin of W.

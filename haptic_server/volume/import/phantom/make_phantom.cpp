@@ -1,10 +1,11 @@
 // Writes phantoms: a tooth as a DICOM CT series, analytic bodies as NRRD. See docs/volumes.md.
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <limits>
 #include <numbers>
 
 #include "common/config/user_error.h"
-#include "haptic_server/volume/import/nrrd_writer.h"
+#include "haptic_server/volume/import/nrrd_stream.h"
 #include "haptic_server/volume/import/phantom/analytic_body.h"
 #include "haptic_server/volume/import/phantom/dicom_series_writer.h"
 #include "haptic_server/volume/import/phantom/tooth_phantom.h"
@@ -62,19 +63,24 @@ AnalyticBody bodyOf(const BodyArguments& arguments) {
     return body;
 }
 
-void makeBody(const BodyArguments& arguments) {
+// T as wide as the file's samples.
+template <class T>
+void writeBody(const BodyArguments& arguments) {
     const VolumeGeometry grid =
         centredGrid(Eigen::Vector3i(arguments.dims.data()), arguments.voxel_mm * kMillimetre);
-    const double full = arguments.bits == 8 ? 255 : 65535;
-    const RawVolume raw = sampleBody(bodyOf(arguments), grid, full);
-    if (arguments.bits == 8) {
-        const std::vector<uint8_t> values(raw.values.begin(), raw.values.end());
-        writeNrrd(arguments.file, grid, std::span<const uint8_t>(values));
-    } else {
-        const std::vector<uint16_t> values(raw.values.begin(), raw.values.end());
-        writeNrrd(arguments.file, grid, std::span<const uint16_t>(values));
+    const AnalyticBody body = bodyOf(arguments);
+    constexpr double kFull = std::numeric_limits<T>::max();
+    NrrdStream<T> file(arguments.file, grid, NrrdEncoding::kGzip);
+    for (int k = 0; k < grid.dims.z(); ++k) {
+        const std::vector<float> slice = sampleBodySlice(body, grid, kFull, k);
+        file.append(std::vector<T>(slice.begin(), slice.end()));
     }
-    std::cout << "wrote " << arguments.file << ", surface at " << full / 2 << "\n";
+    file.close();
+    std::cout << "wrote " << arguments.file << ", surface at " << kFull / 2 << "\n";
+}
+
+void makeBody(const BodyArguments& arguments) {
+    arguments.bits == 8 ? writeBody<uint8_t>(arguments) : writeBody<uint16_t>(arguments);
 }
 
 // CLI::Range lets NaN pass.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 namespace bonemill {
@@ -210,15 +211,19 @@ RawVolume scanTooth(const VolumeGeometry& geometry, const ToothScan& scan) {
     raw.description = "tooth phantom";
     raw.values.reserve(geometry.voxelCount());
     const TissueMap tissues(geometry);
+    std::vector<float> row;
     for (int k = 0; k < geometry.dims.z(); ++k)
-        for (int j = 0; j < geometry.dims.y(); ++j)
+        for (int j = 0; j < geometry.dims.y(); ++j) {
             for (int i = 0; i < geometry.dims.x(); ++i) {
                 const double hu = tissues.isUniformAround(i, j, k)
                                       ? kToothHu[int(tissues.at(i, j, k))]
                                       : meanHu(geometry, Eigen::Vector3d(i, j, k));
-                raw.values.push_back(
-                    float(std::round(hu + scan.noise_hu * noise(scan.seed, raw.values.size()))));
+                const size_t n = raw.values.size() + size_t(i);
+                row.push_back(float(std::round(hu + scan.noise_hu * noise(scan.seed, n))));
             }
+            raw.values.append(std::span<const float>(row));
+            row.clear();
+        }
     return raw;
 }
 
