@@ -37,6 +37,7 @@ RunRecords runRefined(const ProbingStroke& stroke, const TickConfig& tick, const
                       const IndexBox& part, int times, const ToolModel& tool) {
     TickConfig config = tick;
     config.accuracy = truthSettings();
+    config.gradient.most_point_tests = GradientConfig{}.most_point_tests;  // there is no hurry
     BoneModel fine(refinedPart(bone.volume, part, times), Eigen::Vector3i::Constant(kLeafCells),
                    {.spare_points = 1});
     return runPath(config, fine, tool, stroke.device);

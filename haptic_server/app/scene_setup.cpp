@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/config/user_error.h"
+#include "haptic_server/tick/tick_budget.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/small_pieces.h"
 
@@ -125,6 +126,7 @@ TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing) {
     config.milling = {.enabled = scene.milling().enabled(),
                       .removal_rate = scene.milling().removal_rate_density_per_s() * kDensityCountsPerUnit,
                       .addition_rate = scene.milling().addition_rate_density_per_s() * kDensityCountsPerUnit};
+    TickBudget::apply(config.dt, config.gradient, config.milling);
     return config;
 }
 

@@ -5,6 +5,7 @@
 #include "common/config/user_error.h"
 #include "common/rt/clock.h"
 #include "haptic_server/record/fault_names.h"
+#include "haptic_server/tick/tick_budget.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/half_block.h"
@@ -24,6 +25,7 @@ TickConfig configOf(const TickCase& c) {
     config.gradient.burr_radius = c.burr_radius;
     config.gradient.coupling.translation_stiffness = kCouplingStiffness;
     config.coupling.translation_stiffness = kCouplingStiffness;
+    TickBudget::apply(config.dt, config.gradient, config.milling);
     return config;
 }
 

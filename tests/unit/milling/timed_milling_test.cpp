@@ -90,6 +90,48 @@ TEST(TimedMilling, WorksAtAndBeyondTheBorder) {
     EXPECT_EQ(bone.volume.at(-1, 0, 0), 0);
 }
 
+// Bricks that a tick has no time for come in the next ones, and in the end nothing is different.
+TEST(TimedMilling, ATickWithTooMuchToDoLeavesTheRestForTheNext) {
+    constexpr size_t kMostCells = 1500;
+    BoneModel bone = solidBlock(), at_once = solidBlock();
+    TimedMilling milling({.removal_rate = 1e9, .most_cells = kMostCells}, bone.volume, 5 * kVoxel * 2);
+    TimedMilling whole({.removal_rate = 1e9}, at_once.volume, 5 * kVoxel * 2);
+    const Eigen::Vector3d center(8.1e-3, 7.9e-3, 8.3e-3);
+    EXPECT_FALSE(whole.apply(at_once.volume, at_once.lattice, at_once.shell, center, -1, kDt).is_cut_short);
+    int ticks_cut_short = 0;
+    for (int n = 0; n < 20; ++n) {
+        const MillingResult result = milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
+        ticks_cut_short += result.is_cut_short;
+        EXPECT_LE(result.removed_voxels, kMostCells);
+        if (n == 0) {
+            EXPECT_GT(result.removed_voxels, 0u);
+        }
+    }
+    EXPECT_GE(ticks_cut_short, 2);
+    EXPECT_LT(ticks_cut_short, 19);
+    for (int k = 0; k < 33; ++k)
+        for (int j = 0; j < 33; ++j)
+            for (int i = 0; i < 33; ++i) ASSERT_EQ(bone.volume.at(i, j, k), at_once.volume.at(i, j, k));
+    EXPECT_EQ(bone.shell.pointCount(0), at_once.shell.pointCount(0));
+}
+
+TEST(TimedMilling, WithoutMemoryForTheChangeNothingIsMilled) {
+    BoneModel bone(
+        test::bodyVolume(test::cubeGeometry(60, kVoxel), [](const Eigen::Vector3d&) { return -1.0; }),
+        Eigen::Vector3i::Constant(16), ShellConfig{});
+    TimedMilling milling({.removal_rate = 1e9}, bone.volume, kVoxel);
+    const Eigen::Vector3d inside(12e-3, 12e-3, 12e-3);
+    bone.volume.shareUniformBricks();  // and no spare ones
+    MillingResult result = milling.apply(bone.volume, bone.lattice, bone.shell, inside, -1, kDt);
+    EXPECT_FALSE(result.has_room);
+    EXPECT_EQ(result.removed_voxels, 0u);
+    EXPECT_EQ(bone.volume.at(24, 24, 24), kMaxDensity);
+    bone.volume.makeSpareBricks(8);
+    result = milling.apply(bone.volume, bone.lattice, bone.shell, inside, -1, kDt);
+    EXPECT_TRUE(result.has_room);
+    EXPECT_EQ(bone.volume.at(24, 24, 24), 0);
+}
+
 TEST(TimedMilling, ShellAndRangesFollow) {
     BoneModel bone = solidBlock();
     TimedMilling milling({.removal_rate = 4e6}, bone.volume, kRadius);

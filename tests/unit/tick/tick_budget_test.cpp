@@ -1,0 +1,106 @@
+// A tick that has no time for all contact points near the tool, or for all that the burr could mill.
+#include "haptic_server/tick/tick_budget.h"
+
+#include <gtest/gtest.h>
+
+#include "haptic_server/tick/haptic_tick.h"
+#include "tests/support/scripted_io.h"
+#include "tests/support/test_bodies.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kTop = 5e-3, kBurr = 3e-3;
+
+struct Bench {
+    explicit Bench(const TickConfig& config)
+        : bone(test::bodyVolume(test::cubeGeometry(64, 0.125e-3),
+                                test::halfSpace({0, 0, kTop}, Eigen::Vector3d::UnitZ())),
+               Eigen::Vector3i::Constant(16), {.levels = {{1}, {2}, {3}}}),
+          tool(test::sphereToolModel(kBurr, 0.125e-3)),
+          tick(config, bone, tool, nullptr) {}
+
+    std::vector<TickRecord> run(const std::vector<DeviceInput>& inputs) {
+        test::ScriptedIo io(inputs);
+        while (tick.tick(io)) {
+        }
+        return io.records;
+    }
+
+    BoneModel bone;
+    ToolModel tool;
+    HapticTick tick;
+};
+
+Pose at(double z) {
+    return {{4.05e-3, 3.95e-3, z}, Eigen::Quaterniond::Identity()};
+}
+
+// Down into the slab, a rest there, and up again.
+std::vector<DeviceInput> dip(int rest, int away, uint32_t buttons = 0) {
+    auto inputs = test::straightPath(at(8.2e-3), at(7.5e-3).position, 700, buttons);
+    inputs.insert(inputs.end(), size_t(rest), inputs.back());
+    const auto up = test::straightPath(at(7.5e-3), at(8.5e-3).position, 500, 0);
+    inputs.insert(inputs.end(), up.begin(), up.end());
+    inputs.insert(inputs.end(), size_t(away), inputs.back());
+    return inputs;
+}
+
+TEST(TickBudget, TooManyPointsForATickMeanACoarserShellAndSaySo) {
+    TickConfig config;
+    config.accuracy.patch_points = 1;
+    config.gradient.contact.stiffness_per_area = 1e10;  // a wide contact
+    const auto unlimited = Bench(config).run(dip(1000, 0));
+    uint32_t most = 0;
+    for (const TickRecord& r : unlimited) most = std::max(most, r.candidates);
+    ASSERT_GT(most, 60u);
+
+    config.gradient.most_point_tests = 2 * most;  // less than one evaluation per iteration
+    Bench bench(config);
+    const auto records = bench.run(dip(1000, 2500));
+    const TickRecord& pressed = records[1699];
+    EXPECT_TRUE(pressed.faults & kFaultCoarserShell);
+    EXPECT_LT(pressed.candidates, most / 2);
+    // The areas add up to the same at every level.
+    EXPECT_NEAR(pressed.f_hand_W[2], unlimited[1699].f_hand_W[2], 0.15 * unlimited[1699].f_hand_W[2]);
+    for (const TickRecord& r : records) {
+        EXPECT_LT(r.candidates, most + 1);
+        EXPECT_TRUE(std::isfinite(r.f_hand_W[2]));
+    }
+    // After the contact the points asked for come back, a level a second.
+    EXPECT_FALSE(records.back().faults & kFaultCoarserShell);
+    EXPECT_EQ(bench.bone.shell.scalingFactor(bench.bone.shell.followed()), 1);
+}
+
+TEST(TickBudget, PlentyOfTimeChangesNothing) {
+    TickConfig config;
+    const auto free = Bench(config).run(dip(300, 0, kButtonRemove));
+    TickBudget::apply(config.dt, config.gradient, config.milling);
+    const auto budgeted = Bench(config).run(dip(300, 0, kButtonRemove));
+    for (size_t n = 0; n < free.size(); ++n) {
+        ASSERT_EQ(budgeted[n].f_hand_W[2], free[n].f_hand_W[2]) << n;
+        ASSERT_EQ(budgeted[n].removed_voxels, free[n].removed_voxels) << n;
+        ASSERT_EQ(budgeted[n].faults & ~uint32_t(kFaultOverrun), 0u) << n;
+    }
+}
+
+TEST(TickBudget, MillingThatIsCutShortIsAFault) {
+    TickConfig config;
+    config.burr_radius = kBurr;
+    config.milling.most_cells = 200;
+    Bench bench(config);
+    uint32_t faults = 0;
+    for (const TickRecord& r : bench.run(dip(300, 0, kButtonRemove))) faults |= r.faults;
+    EXPECT_TRUE(faults & kFaultMillingCutShort);
+}
+
+TEST(TickBudget, AFasterLoopMayDoLessInATick) {
+    TickConfig slow, fast;
+    TickBudget::apply(1e-3, slow.gradient, slow.milling);
+    TickBudget::apply(0.25e-3, fast.gradient, fast.milling);
+    EXPECT_NEAR(double(slow.gradient.most_point_tests) / double(fast.gradient.most_point_tests), 4, 0.01);
+    EXPECT_NEAR(double(slow.milling.most_cells) / double(fast.milling.most_cells), 4, 0.01);
+}
+
+}  // namespace
+}  // namespace bonemill
