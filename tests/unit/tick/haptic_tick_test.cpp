@@ -154,6 +154,37 @@ TEST(HapticTick, PausedMillingTakesNothingButIsFelt) {
     EXPECT_GT(io.records.back().contacts, 0u);
 }
 
+// What the mesher is told is where the bone really changed, no more and no less.
+TEST(HapticTick, TheRecordHoldsTheBoxOfTheMilledVoxels) {
+    Bench bench;
+    const Pose start = bench.atV(kStart - Eigen::Vector3d(0, 0, 1e-3));
+    auto inputs = test::straightPath(start, start.position, 60, 0);
+    for (size_t n = 30; n < 60; ++n) inputs[n].buttons = kButtonRemove;
+    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    test::ScriptedIo io(inputs);
+    const VoxelVolume& volume = bench.bone.volume;
+    const auto densities = [&] {
+        return std::vector<Density>(volume.ownerData(), volume.ownerData() + volume.offset(64, 64, 64));
+    };
+    size_t cuts = 0;
+    for (std::vector<Density> before = densities(); tick.tick(io); before = densities()) {
+        IndexBox changed;
+        for (int k = 0; k < 64; ++k)
+            for (int j = 0; j < 64; ++j)
+                for (int i = 0; i < 64; ++i)
+                    if (volume.at(i, j, k) != before[volume.offset(i, j, k)]) changed.include({i, j, k});
+        const Cut& cut = io.records.back().cut;
+        ASSERT_EQ(cut.isEmpty(), changed.isEmpty());
+        if (changed.isEmpty()) continue;
+        ++cuts;
+        EXPECT_EQ(Eigen::Map<const Eigen::Vector3i>(cut.voxels_min), changed.min);
+        EXPECT_EQ(Eigen::Map<const Eigen::Vector3i>(cut.voxels_max), changed.max);
+        EXPECT_EQ(cut.start_ns, io.records.back().start_ns);
+    }
+    EXPECT_GT(cuts, 5u);
+    EXPECT_LE(cuts, 30u);
+}
+
 // The corridor is where the trajectory says: a straight feed into a slab leaves a round-bottomed hole.
 TEST(HapticTick, CorridorHasTheVolumeOfTheSweptBurr) {
     Bench bench;
