@@ -127,7 +127,7 @@ class Server {
 
     // A thread's work until it is told to stop; a failure ends the session in order, with its files.
     template <class Work>
-    void loop(const std::stop_token& stop, std::chrono::milliseconds period, Work work) {
+    void loop(const std::stop_token& stop, std::chrono::microseconds period, Work work) {
         try {
             while (!stop.stop_requested()) {
                 work();

@@ -22,7 +22,7 @@ class MeshRounds {
 
     // One round; the sink as for Mesher::pass. True: more is waiting, call again at once; else after kPeriod.
     bool round(const Mesher::Sink& sink);
-    static constexpr std::chrono::milliseconds kPeriod{1};
+    static constexpr std::chrono::microseconds kPeriod{500};
 
     bool hasMeshedAll() const noexcept { return mesher_.hasMeshedAll(); }
 

@@ -31,19 +31,27 @@ struct Options {
 struct Remeshing {
     Waits tick;
     LatencyHistogram cut_to_publisher;
+    double mesher_share = 0;  // of one core's time
     uint64_t dropped_cuts = 0;
     uint64_t meshed = 0;     // meshes that the mesher handed over
     uint64_t published = 0;  // of these, those that a newer one did not replace
     RealtimeReport report;
 };
 
-// The mesher thread of the server.
-void meshWhile(const std::atomic<bool>& is_running, MeshRounds& rounds, const Mesher::Sink& put) {
+double threadCpuSeconds() {
+    timespec used;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+    return double(used.tv_sec) + double(used.tv_nsec) * 1e-9;
+}
+
+// The mesher thread of the server. Returns the processor time that it took, s.
+double meshWhile(const std::atomic<bool>& is_running, MeshRounds& rounds, const Mesher::Sink& put) {
     while (is_running) {
         while (rounds.round(put)) {
         }
         std::this_thread::sleep_for(MeshRounds::kPeriod);
     }
+    return threadCpuSeconds();
 }
 
 // The publisher thread of the server without the network.
@@ -72,7 +80,7 @@ Remeshing millBesideMesher(const Options& o) {
     };
     result.report = lockMemory();
     std::atomic<bool> is_running{true};
-    std::jthread mesher([&] { meshWhile(is_running, rounds, put); });
+    std::jthread mesher([&] { result.mesher_share = meshWhile(is_running, rounds, put) / o.seconds; });
     std::jthread publisher([&] { publishWhile(is_running, outbox, result.published); });
     result.report.append(inRealTime([&] {
         CorridorIo io(std::llround(1e9 / o.rate_hz), o.seconds, result.tick, &cuts);
@@ -96,12 +104,14 @@ void run(const Options& o) {
     table.add({"tick, wake-up"}, result.tick.wake_up);
     table.add({"tick, compute"}, result.tick.compute);
     table.print();
+    std::printf("mesher: %.0f %% of a core\n", 100 * result.mesher_share);
     std::printf("%llu cuts measured, %llu dropped; %llu meshes, %llu of them published\n",
                 (unsigned long long)result.cut_to_publisher.count(), (unsigned long long)result.dropped_cuts,
                 (unsigned long long)result.meshed, (unsigned long long)result.published);
     writeJson(o.json, {{"cut_to_publisher_us", microseconds(result.cut_to_publisher)},
                        {"cuts_measured", result.cut_to_publisher.count()},
                        {"cuts_dropped", result.dropped_cuts},
+                       {"mesher_share", result.mesher_share},
                        {"meshes", result.meshed},
                        {"meshes_published", result.published},
                        {"tick", toJson(result.tick)}});
