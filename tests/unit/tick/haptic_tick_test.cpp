@@ -8,6 +8,7 @@
 #include "haptic_server/mesh/mesher.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
+#include "tests/support/voxel_fields.h"
 
 namespace bonemill {
 namespace {
@@ -164,15 +165,18 @@ TEST(HapticTick, TheRecordHoldsTheBoxOfTheMilledVoxels) {
     test::ScriptedIo io(inputs);
     const VoxelVolume& volume = bench.bone.volume;
     const auto densities = [&] {
-        return std::vector<Density>(volume.ownerData(), volume.ownerData() + volume.offset(64, 64, 64));
+        std::vector<Density> all;
+        test::forEachVoxel(test::wholeBox(volume),
+                           [&](int i, int j, int k) { all.push_back(volume.at(i, j, k)); });
+        return all;
     };
     size_t cuts = 0;
     for (std::vector<Density> before = densities(); tick.tick(io); before = densities()) {
         IndexBox changed;
-        for (int k = 0; k < 64; ++k)
-            for (int j = 0; j < 64; ++j)
-                for (int i = 0; i < 64; ++i)
-                    if (volume.at(i, j, k) != before[volume.offset(i, j, k)]) changed.include({i, j, k});
+        auto old = before.begin();
+        test::forEachVoxel(test::wholeBox(volume), [&](int i, int j, int k) {
+            if (volume.at(i, j, k) != *old++) changed.include({i, j, k});
+        });
         const Cut& cut = io.records.back().cut;
         ASSERT_EQ(cut.isEmpty(), changed.isEmpty());
         if (changed.isEmpty()) continue;
