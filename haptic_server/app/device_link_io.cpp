@@ -13,10 +13,11 @@ constexpr int64_t kPatiencePeriods = 2;
 }  // namespace
 
 DeviceLinkIo::DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link,
-                           SpscRing<TickRecord>& telemetry)
+                           SpscRing<TickRecord>& telemetry, SpscRing<Cut>& cuts)
     : config_(config),
       link_(link),
       telemetry_(telemetry),
+      cuts_(cuts),
       ramp_(config.ramp),
       R_DW_(config.X_WD.rotation.conjugate()) {}
 
@@ -93,6 +94,7 @@ int64_t DeviceLinkIo::now() noexcept {
 
 void DeviceLinkIo::push(const TickRecord& record) noexcept {
     telemetry_.tryPush(record);
+    if (!record.cut.isEmpty()) cuts_.tryPush(record.cut);
 }
 
 }  // namespace bonemill

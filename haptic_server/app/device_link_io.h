@@ -1,5 +1,5 @@
-// The tick's view of the device in a live session: shared memory in, shared memory out, telemetry into a
-// ring.
+// The tick's view of the device in a live session: shared memory in, shared memory out, telemetry and cuts
+// into rings.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,8 @@ struct DeviceLinkIoConfig {
 // All members but the constructor and stop() belong to the tick thread and are RT-safe; read() waits.
 class DeviceLinkIo final : public TickIo {
   public:
-    DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link, SpscRing<TickRecord>& telemetry);
+    DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link, SpscRing<TickRecord>& telemetry,
+                 SpscRing<Cut>& cuts);
 
     // Wakes on a new device sample. When the device is silent it wakes by itself: two periods after the last
     // tick, and every period once the device counts as stale. Before the very first sample there is nothing
@@ -53,6 +54,7 @@ class DeviceLinkIo final : public TickIo {
     DeviceLinkIoConfig config_;
     DeviceLink& link_;
     SpscRing<TickRecord>& telemetry_;
+    SpscRing<Cut>& cuts_;
     StaleRamp ramp_;
     Eigen::Quaterniond R_DW_;
     Pose X_WT_device_;

@@ -15,7 +15,7 @@
 #include "haptic_server/app/device_link_io.h"
 #include "haptic_server/app/show_session.h"
 #include "haptic_server/app/surface_export.h"
-#include "haptic_server/mesh/mesher.h"
+#include "haptic_server/mesh/mesh_rounds.h"
 #include "haptic_server/record/fault_names.h"
 
 namespace bonemill {
@@ -24,11 +24,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr size_t kRingRecords = 8192;  // 8 s at 1 kHz: a stalled disk loses nothing
-constexpr uint32_t kLeavesPerPass =
-    256;  // keeps the mesher's answer to milling quick while it meshes the whole bone
+constexpr size_t kRingCuts = 8192;
 constexpr int kTickPriority = 80;
 constexpr auto kPublishPeriod = 16ms;
-constexpr auto kMeshPeriod = 8ms;
 constexpr auto kRecordPeriod = 4ms;
 constexpr int64_t kWarmUpNs = kNsPerSecond;
 
@@ -74,7 +72,8 @@ class Server {
           reset_(*simulation_.bone),
           accuracy_(simulation_.tick.accuracy),
           ring_(kRingRecords),
-          io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), link_, ring_),
+          cuts_(kRingCuts),
+          io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), link_, ring_, cuts_),
           tick_(simulation_.tick, *simulation_.bone, simulation_.tool.model, &reset_, &accuracy_),
           recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace),
           publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
@@ -128,7 +127,7 @@ class Server {
 
     // A thread's work until it is told to stop; a failure ends the session in order, with its files.
     template <class Work>
-    void loop(const std::stop_token& stop, std::chrono::milliseconds period, Work work) {
+    void loop(const std::stop_token& stop, std::chrono::microseconds period, Work work) {
         try {
             while (!stop.stop_requested()) {
                 work();
@@ -142,15 +141,15 @@ class Server {
     }
 
     void meshUntil(const std::stop_token& stop) {
-        Mesher mesher(simulation_.bone->volume, simulation_.bone->lattice);
-        loop(stop, kMeshPeriod, [&] {
-            Mesher::PassResult result;
-            do {
-                result =
-                    mesher.pass([this](NodeMesh&& mesh) { outbox_.put(std::move(mesh)); }, kLeavesPerPass);
-                if (mesher.hasMeshedAll()) outbox_.markWhole();
-            } while (result.read == kLeavesPerPass && !stop.stop_requested());
+        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_);
+        const auto put = [this](NodeMesh&& mesh) { outbox_.put(std::move(mesh)); };
+        loop(stop, MeshRounds::kPeriod, [&] {
+            for (bool is_more = true; is_more && !stop.stop_requested();) {
+                is_more = rounds.round(put);
+                if (rounds.hasMeshedAll()) outbox_.markWhole();
+            }
         });
+        recorder_.setCutToPublisher(rounds.cutToSink());
     }
 
     // Again and again: the tick thread, and its numbers with it, may be gone at the end.
@@ -219,6 +218,7 @@ class Server {
     VolumeReset reset_;
     AccuracySwitch accuracy_;
     SpscRing<TickRecord> ring_;
+    SpscRing<Cut> cuts_;
     DeviceLinkIo io_;
     HapticTick tick_;
     Recorder recorder_;

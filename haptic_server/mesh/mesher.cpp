@@ -7,6 +7,10 @@ namespace {
 
 constexpr uint32_t kNeverMeshed = 1;  // odd: no version at rest equals it
 
+// Once the tick has written, there is its whole period before it writes again: mostly the second try
+// succeeds.
+constexpr int kTries = 4;
+
 bool isBeingWritten(uint32_t version) noexcept {
     return (version & 1) != 0;
 }
@@ -37,6 +41,24 @@ Mesher::PassResult Mesher::pass(const Sink& sink, uint32_t max_leaves) {
         if (!tryMesh(leaf, sink)) ++result.pending;
     }
     return result;
+}
+
+bool Mesher::catchUp(const IndexBox& leaves, const Sink& sink) {
+    bool is_done = true;
+    for (int k = leaves.min.z(); k <= leaves.max.z(); ++k)
+        for (int j = leaves.min.y(); j <= leaves.max.y(); ++j)
+            for (int i = leaves.min.x(); i <= leaves.max.x(); ++i)
+                is_done &= catchUp(lattice_.leafId({i, j, k}), sink);
+    return is_done;
+}
+
+bool Mesher::catchUp(LeafId leaf, const Sink& sink) {
+    for (int tries = 0; tries < kTries; ++tries) {
+        const uint32_t version = lattice_.version(leaf);
+        if (isBeingWritten(version)) continue;
+        if (version == meshed_version_[leaf] || tryMesh(leaf, sink)) return true;
+    }
+    return false;
 }
 
 // False when a write got in between: the leaf stays due.

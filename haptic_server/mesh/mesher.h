@@ -33,10 +33,15 @@ class Mesher {
     // pass through; that leaf counts as meshed.
     PassResult pass(const Sink& sink, uint32_t max_leaves = kAllLeaves);
 
+    // Meshes those of these leaves (lattice indices) that changed since they were last meshed. False: the
+    // tick wrote them meanwhile and some are still due.
+    bool catchUp(const IndexBox& leaves, const Sink& sink);
+
     // Every leaf has been meshed at least once: the sink has seen the whole bone.
     bool hasMeshedAll() const noexcept { return meshed_leaves_ == meshed_version_.size(); }
 
   private:
+    bool catchUp(LeafId leaf, const Sink& sink);
     bool tryMesh(LeafId leaf, const Sink& sink);
 
     const LeafLattice& lattice_;

@@ -23,13 +23,16 @@ double norm(const double (&v)[3]) {
     return std::hypot(v[0], v[1], v[2]);
 }
 
+nlohmann::ordered_json summary(const LatencyHistogram& histogram, double ns_per_unit) {
+    return {{"p50", double(histogram.percentileNs(50)) / ns_per_unit},
+            {"p99", double(histogram.percentileNs(99)) / ns_per_unit},
+            {"p99_9", double(histogram.percentileNs(99.9)) / ns_per_unit},
+            {"max", double(histogram.maxNs()) / ns_per_unit},
+            {"mean", histogram.meanNs() / ns_per_unit}};
+}
+
 nlohmann::ordered_json summaryUs(const LatencyHistogram& histogram) {
-    constexpr double kNsPerUs = 1e3;
-    return {{"p50", double(histogram.percentileNs(50)) / kNsPerUs},
-            {"p99", double(histogram.percentileNs(99)) / kNsPerUs},
-            {"p99_9", double(histogram.percentileNs(99.9)) / kNsPerUs},
-            {"max", double(histogram.maxNs()) / kNsPerUs},
-            {"mean", histogram.meanNs() / kNsPerUs}};
+    return summary(histogram, 1e3);
 }
 
 }  // namespace
@@ -49,6 +52,7 @@ void RunStatistics::add(const TickRecord& record) {
     added_ += record.added;
     removed_voxels_ += record.removed_voxels;
     added_voxels_ += record.added_voxels;
+    cuts_ += !record.cut.isEmpty();
     addFaults(record.faults);
 }
 
@@ -116,11 +120,16 @@ std::string RunStatistics::toJson() const {
         {"removed_voxels", removed_voxels_},
         {"added_mm3", added_ * kMm3PerM3},
         {"added_voxels", added_voxels_},
+        {"cuts", cuts_},
         {"fault_ticks", faults},
     };
     if (page_faults_)
         report["page_faults_after_warm_up"] = {{"minor", page_faults_->minor},
                                                {"major", page_faults_->major}};
+    if (cut_to_publisher_) {
+        report["cut_to_publisher_ms"] = summary(*cut_to_publisher_, double(kNsPerMillisecond));
+        report["cuts_at_publisher"] = cut_to_publisher_->count();
+    }
     return report.dump(2);
 }
 

@@ -29,6 +29,10 @@ class RunStatistics {
     // Of the tick thread after its first second; not known if never set.
     void setPageFaults(const PageFaults& faults) { page_faults_ = faults; }
 
+    // From the start of each tick that cut until its node meshes were with the publisher; not known if never
+    // set.
+    void setCutToPublisher(const LatencyHistogram& cut_to_publisher) { cut_to_publisher_ = cut_to_publisher; }
+
     uint64_t ticks() const { return has_records_ ? last_tick_ - first_tick_ + 1 : 0; }
     double durationS() const;   // from the first to the last tick's start
     double meanRateHz() const;  // ticks per elapsed time; 0 with fewer than two ticks
@@ -76,6 +80,8 @@ class RunStatistics {
     uint64_t dropped_ticks_ = 0;
     uint64_t lost_records_ = 0;
     std::optional<PageFaults> page_faults_;
+    std::optional<LatencyHistogram> cut_to_publisher_;
+    uint64_t cuts_ = 0;  // ticks that changed voxels
     LatencyHistogram wakeup_latency_;
     LatencyHistogram force_ready_;
     LatencyHistogram tick_compute_;

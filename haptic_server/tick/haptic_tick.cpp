@@ -8,13 +8,21 @@
 namespace bonemill {
 namespace {
 
-template <size_t N, class Vector>
-void copyTo(double (&out)[N], const Vector& v) noexcept {
+template <class Number, size_t N, class Vector>
+void copyTo(Number (&out)[N], const Vector& v) noexcept {
     for (size_t i = 0; i < N; ++i) out[i] = v[Eigen::Index(i)];
 }
 
 Eigen::Vector4d wxyz(const Eigen::Quaterniond& q) noexcept {
     return {q.w(), q.x(), q.y(), q.z()};
+}
+
+Cut cutOf(const DeviceInput& input, const MillingResult& milled) noexcept {
+    Cut cut;
+    cut.start_ns = input.start_ns;
+    copyTo(cut.voxels_min, milled.changed.min);
+    copyTo(cut.voxels_max, milled.changed.max);
+    return cut;
 }
 
 constexpr double kQuaternionNormSlack = 1e-2;
@@ -84,6 +92,7 @@ bool HapticTick::tick(TickIo& io) noexcept {
     record.added_voxels = milled.added_voxels;
     record.removed = milled.removed_voxels * bone_.volume.voxelVolume();
     record.added = milled.added_voxels * bone_.volume.voxelVolume();
+    record.cut = cutOf(input, milled);
     record.force_ns = force_at_ns - input.start_ns;
     const int64_t end_ns = io.now();
     record.compute_ns = end_ns - input.start_ns;

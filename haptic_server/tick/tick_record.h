@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "haptic_server/volume/cut.h"
+
 namespace bonemill {
 
 // Latched reasons why a tick was not what it should be (bit mask).
@@ -46,6 +48,7 @@ struct TickRecord {
     uint32_t added_voxels;    // voxels that rose to the iso-value or above in this tick
     uint32_t buttons;         // kButtonRemove | kButtonAdd
     uint32_t faults;          // TickFault bits of this tick
+    Cut cut;                  // the voxels milled in this tick
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 

@@ -112,8 +112,7 @@ void LeafLattice::refreshRanges(const VoxelVolume& volume, const IndexBox& chang
 }
 
 void LeafLattice::beginWrite(const IndexBox& changed_voxels) noexcept {
-    const IndexBox leaves = leavesOfCells(
-        {changed_voxels.min.array() - kInfluence, changed_voxels.max.array() + (kInfluence - 1)});
+    const IndexBox leaves = leavesOfWrite(changed_voxels);
     if (leaves.isEmpty()) return;
     forEachIndex(leaves, [&](const Eigen::Vector3i& leaf) {
         auto& version = versions_[leafId(leaf)];
@@ -123,8 +122,7 @@ void LeafLattice::beginWrite(const IndexBox& changed_voxels) noexcept {
 }
 
 void LeafLattice::endWrite(const IndexBox& changed_voxels) noexcept {
-    const IndexBox leaves = leavesOfCells(
-        {changed_voxels.min.array() - kInfluence, changed_voxels.max.array() + (kInfluence - 1)});
+    const IndexBox leaves = leavesOfWrite(changed_voxels);
     if (leaves.isEmpty()) return;
     forEachIndex(leaves, [&](const Eigen::Vector3i& leaf) {
         auto& version = versions_[leafId(leaf)];

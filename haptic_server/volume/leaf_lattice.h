@@ -51,12 +51,18 @@ class LeafLattice {
     // last right. Makes the ranges of the leaves they belong to those of a full scan, renews up to the root.
     void refreshRanges(const VoxelVolume& volume, const IndexBox& changed_voxels) noexcept;
 
-    // RT-safe, tick thread only: around a write to voxels in `box`. Leaves whose mesh or point-shell can
-    // change (voxels within kInfluence of their cells) get an odd version while being written, an even one
-    // after.
+    // Leaves whose mesh or point-shell can change when these voxels do: those within kInfluence of their
+    // cells.
+    IndexBox leavesOfWrite(const IndexBox& changed_voxels) const noexcept {
+        return leavesOfCells(
+            {changed_voxels.min.array() - kInfluence, changed_voxels.max.array() + (kInfluence - 1)});
+    }
+    static constexpr int kInfluence = 2;  // a cell's corners reach 1 voxel, their gradients one more
+
+    // RT-safe, tick thread only: around a write to these voxels. The versions of leavesOfWrite() are odd
+    // while being written, even after.
     void beginWrite(const IndexBox& changed_voxels) noexcept;
     void endWrite(const IndexBox& changed_voxels) noexcept;
-    static constexpr int kInfluence = 2;  // a cell's corners reach 1 voxel, their gradients one more
 
     // Any thread. acquire: pairs with endWrite's release, so voxels read after it are at least that new.
     uint32_t version(LeafId id) const noexcept { return versions_[id].load(std::memory_order_acquire); }

@@ -8,6 +8,7 @@
 #include "tests/bench/bench_loop.h"
 #include "tests/bench/bench_mesh.h"
 #include "tests/bench/bench_presets.h"
+#include "tests/bench/bench_remesh.h"
 #include "tests/bench/bench_scale.h"
 #include "tests/bench/bench_tick.h"
 
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
     bench::addMeshCommand(app);
     bench::addLoadCommand(app);
     bench::addLoopCommand(app);
+    bench::addRemeshCommand(app);
     bench::addScaleCommand(app);
     bench::addPresetsCommand(app);
     try {

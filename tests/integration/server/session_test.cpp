@@ -96,6 +96,10 @@ TEST_F(Session, AKilledClientChangesNothingForTheServer) {
     EXPECT_EQ(json["lost_records"], 0);
     EXPECT_TRUE(json["page_faults_after_warm_up"].contains("minor"));
     EXPECT_GT(json["removed_voxels"], 200);
+    EXPECT_GT(json["cut_to_publisher_ms"]["p99"], 0);
+    EXPECT_LE(json["cut_to_publisher_ms"]["p99"], json["cut_to_publisher_ms"]["max"]);
+    EXPECT_GT(json["cuts"], 500);
+    EXPECT_EQ(json["cuts_at_publisher"], json["cuts"]);  // it milled nothing in its last second
     // Only what a busy machine causes may be missing: the session itself ran to its end without a fault.
     EXPECT_FALSE(json["fault_ticks"].contains("solve"));
     EXPECT_FALSE(json["fault_ticks"].contains("bad_device_pose"));

@@ -90,6 +90,37 @@ TEST(Mesher, ReadsOnlyLeavesNearTheChange) {
     expectEqualsFullRemesh(model, bone.volume, *bone.lattice);
 }
 
+TEST(Mesher, CatchUpReadsOnlyTheNamedLeavesThatChanged) {
+    Bone bone({64, 64, 64}, {8, 8, 8});
+    Mesher mesher(bone.volume, *bone.lattice);
+    Model model;
+    mesher.pass(model.sink());
+    const IndexBox here{{20, 20, 20}, {21, 21, 21}}, elsewhere{{44, 44, 44}, {45, 45, 45}};
+    for (const IndexBox& box : {here, elsewhere})
+        writeLikeTick(bone.volume, *bone.lattice, box,
+                      [](int i, int, int) { return Density(i % 2 * 40000); });
+    const size_t before = model.received;
+    const IndexBox around_here{{1, 1, 1}, {3, 3, 3}};
+    EXPECT_TRUE(mesher.catchUp(around_here, model.sink()));
+    EXPECT_EQ(model.received, before + 1);
+    EXPECT_TRUE(mesher.catchUp(around_here, model.sink()));
+    EXPECT_EQ(model.received, before + 1);
+    EXPECT_EQ(mesher.pass(model.sink()).read, 1u);  // elsewhere
+    expectEqualsFullRemesh(model, bone.volume, *bone.lattice);
+}
+
+TEST(Mesher, CatchUpSaysWhenALeafIsBeingWritten) {
+    Bone bone({32, 32, 32}, {8, 8, 8});
+    Mesher mesher(bone.volume, *bone.lattice);
+    Model model;
+    const IndexBox box{{20, 20, 20}, {21, 21, 21}}, leaf{{2, 2, 2}, {2, 2, 2}};
+    bone.lattice->beginWrite(box);
+    EXPECT_FALSE(mesher.catchUp(leaf, model.sink()));
+    EXPECT_EQ(model.received, 0u);
+    bone.lattice->endWrite(box);
+    EXPECT_TRUE(mesher.catchUp(leaf, model.sink()));
+}
+
 TEST(Mesher, LeafWithoutSurfaceIsNeverSentAndAnEmptiedOneOnce) {
     VoxelVolume volume(boxGeometry({30, 30, 30}), kIso);
     volume.set(5, 5, 5, kMaxDensity);

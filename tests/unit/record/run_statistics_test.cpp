@@ -132,6 +132,26 @@ TEST(RunStatistics, jsonHoldsTheSameNumbersInPublicUnits) {
     EXPECT_EQ(json["fault_ticks"], (nlohmann::json{{"overrun", 2}, {"force_clamped", 3}}));
 }
 
+TEST(RunStatistics, jsonSaysHowLongCutsWaitedForThePublisher) {
+    RunStatistics statistics(kPeriodNs);
+    for (uint64_t tick = 0; tick < 5; ++tick) {
+        TickRecord record = recordOf(tick, int64_t(tick));
+        if (tick >= 2) record.cut.voxels_max[0] = record.cut.voxels_min[0];
+        statistics.add(record);
+    }
+    EXPECT_FALSE(nlohmann::json::parse(statistics.toJson()).contains("cut_to_publisher_ms"));
+    LatencyHistogram waits;
+    waits.record(2'000'000);
+    waits.record(4'500'000);
+    statistics.setCutToPublisher(waits);
+    const auto json = nlohmann::json::parse(statistics.toJson());
+    EXPECT_EQ(json["cuts"], 3);
+    EXPECT_EQ(json["cuts_at_publisher"], 2);
+    EXPECT_NEAR(json["cut_to_publisher_ms"]["p50"], 2.0, 0.02);
+    EXPECT_DOUBLE_EQ(json["cut_to_publisher_ms"]["p99"], 4.5);
+    EXPECT_DOUBLE_EQ(json["cut_to_publisher_ms"]["max"], 4.5);
+}
+
 TEST(RunStatistics, unwritableReportIsAUserError) {
     EXPECT_THROW(RunStatistics(kPeriodNs).writeJson("/no/such/folder/report.json"), UserError);
 }

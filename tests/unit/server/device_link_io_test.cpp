@@ -17,7 +17,8 @@ class DeviceLinkIoTest : public testing::Test {
         : name_("/bonemill_test_io_" + std::to_string(getpid())),
           server_(DeviceLink::create(name_, LinkSide::kServer)),
           daemon_(DeviceLink::create(name_, LinkSide::kDaemon)),
-          ring_(64) {
+          ring_(64),
+          cuts_(64) {
         config_.X_WD = {{0.1, 0.2, 0.3}, Eigen::Quaterniond(M_SQRT1_2, M_SQRT1_2, 0, 0)};
         config_.ramp = {.stale_after_ns = 5'000'000, .ramp_down_ns = 10'000'000, .ramp_up_ns = 10'000'000};
     }
@@ -33,11 +34,12 @@ class DeviceLinkIoTest : public testing::Test {
     std::string name_;
     DeviceLink server_, daemon_;
     SpscRing<TickRecord> ring_;
+    SpscRing<Cut> cuts_;
     DeviceLinkIoConfig config_;
 };
 
 TEST_F(DeviceLinkIoTest, PoseAndWrenchChangeFrames) {
-    DeviceLinkIo io(config_, server_, ring_);
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
     daemon_.writeSample(sampleAt(0.01));
     DeviceInput input;
     ASSERT_TRUE(io.read(input));
@@ -54,7 +56,7 @@ TEST_F(DeviceLinkIoTest, PoseAndWrenchChangeFrames) {
 }
 
 TEST_F(DeviceLinkIoTest, SilenceTicksOnAndBecomesStale) {
-    DeviceLinkIo io(config_, server_, ring_);
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
     daemon_.writeSample(sampleAt(0));
     DeviceInput input;
     ASSERT_TRUE(io.read(input));
@@ -76,7 +78,7 @@ TEST_F(DeviceLinkIoTest, SilenceTicksOnAndBecomesStale) {
 }
 
 TEST_F(DeviceLinkIoTest, ImplausibleSamplesAndStampsAreNotBelieved) {
-    DeviceLinkIo io(config_, server_, ring_);
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
     daemon_.writeSample(sampleAt(0.002));
     DeviceInput input;
     ASSERT_TRUE(io.read(input));
@@ -97,14 +99,29 @@ TEST_F(DeviceLinkIoTest, ImplausibleSamplesAndStampsAreNotBelieved) {
     }
 }
 
+TEST_F(DeviceLinkIoTest, TheMesherIsToldOfCutsAndOfNothingElse) {
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    TickRecord idle{}, milling{};
+    milling.cut = {.start_ns = 5, .voxels_min = {1, 2, 3}, .voxels_max = {4, 5, 6}};
+    io.push(idle);
+    io.push(milling);
+    Cut cut;
+    ASSERT_TRUE(cuts_.tryPop(cut));
+    EXPECT_EQ(cut.start_ns, 5);
+    EXPECT_EQ(cut.voxels_max[2], 6);
+    EXPECT_FALSE(cuts_.tryPop(cut));
+    TickRecord record;
+    EXPECT_TRUE(ring_.tryPop(record) && ring_.tryPop(record));
+}
+
 TEST_F(DeviceLinkIoTest, EndsOnStopAndWithItsDevice) {
     DeviceInput input;
-    DeviceLinkIo stopped(config_, server_, ring_);
+    DeviceLinkIo stopped(config_, server_, ring_, cuts_);
     stopped.stop();
     EXPECT_FALSE(stopped.read(input));
 
     config_.ends_with_device = true;
-    DeviceLinkIo io(config_, server_, ring_);
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
     daemon_.writeSample(sampleAt(0));
     ASSERT_TRUE(io.read(input));
     DeviceSample goodbye = sampleAt(0);

@@ -8,6 +8,7 @@
 #include "haptic_server/mesh/mesher.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
+#include "tests/support/voxel_fields.h"
 
 namespace bonemill {
 namespace {
@@ -152,6 +153,40 @@ TEST(HapticTick, PausedMillingTakesNothingButIsFelt) {
     }
     for (const TickRecord& r : io.records) EXPECT_EQ(r.removed_voxels, 0u);
     EXPECT_GT(io.records.back().contacts, 0u);
+}
+
+// What the mesher is told is where the bone really changed, no more and no less.
+TEST(HapticTick, TheRecordHoldsTheBoxOfTheMilledVoxels) {
+    Bench bench;
+    const Pose start = bench.atV(kStart - Eigen::Vector3d(0, 0, 1e-3));
+    auto inputs = test::straightPath(start, start.position, 60, 0);
+    for (size_t n = 30; n < 60; ++n) inputs[n].buttons = kButtonRemove;
+    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    test::ScriptedIo io(inputs);
+    const VoxelVolume& volume = bench.bone.volume;
+    const auto densities = [&] {
+        std::vector<Density> all;
+        test::forEachVoxel(test::wholeBox(volume),
+                           [&](int i, int j, int k) { all.push_back(volume.at(i, j, k)); });
+        return all;
+    };
+    size_t cuts = 0;
+    for (std::vector<Density> before = densities(); tick.tick(io); before = densities()) {
+        IndexBox changed;
+        auto old = before.begin();
+        test::forEachVoxel(test::wholeBox(volume), [&](int i, int j, int k) {
+            if (volume.at(i, j, k) != *old++) changed.include({i, j, k});
+        });
+        const Cut& cut = io.records.back().cut;
+        ASSERT_EQ(cut.isEmpty(), changed.isEmpty());
+        if (changed.isEmpty()) continue;
+        ++cuts;
+        EXPECT_EQ(Eigen::Map<const Eigen::Vector3i>(cut.voxels_min), changed.min);
+        EXPECT_EQ(Eigen::Map<const Eigen::Vector3i>(cut.voxels_max), changed.max);
+        EXPECT_EQ(cut.start_ns, io.records.back().start_ns);
+    }
+    EXPECT_GT(cuts, 5u);
+    EXPECT_LE(cuts, 30u);
 }
 
 // The corridor is where the trajectory says: a straight feed into a slab leaves a round-bottomed hole.

@@ -8,7 +8,7 @@
 
 #include "common/rt/spsc_ring.h"
 #include "haptic_server/app/mesh_outbox.h"
-#include "haptic_server/mesh/mesher.h"
+#include "haptic_server/mesh/mesh_rounds.h"
 #include "haptic_server/publish/publisher.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/scripted_io.h"
@@ -17,19 +17,23 @@
 namespace bonemill {
 namespace {
 
-// ScriptedIo whose records leave through the ring, as in a session.
+// ScriptedIo whose records and cuts leave through rings, as in a session.
 class RingIo final : public TickIo {
   public:
-    RingIo(std::vector<DeviceInput> inputs, SpscRing<TickRecord>& ring)
-        : script_(std::move(inputs)), ring_(ring) {}
+    RingIo(std::vector<DeviceInput> inputs, SpscRing<TickRecord>& ring, SpscRing<Cut>& cuts)
+        : script_(std::move(inputs)), ring_(ring), cuts_(cuts) {}
     bool read(DeviceInput& input) noexcept override { return script_.read(input); }
     int64_t write(const Wrench& wrench) noexcept override { return script_.write(wrench); }
     int64_t now() noexcept override { return script_.now(); }
-    void push(const TickRecord& record) noexcept override { ring_.tryPush(record); }
+    void push(const TickRecord& record) noexcept override {
+        ring_.tryPush(record);
+        if (!record.cut.isEmpty()) cuts_.tryPush(record.cut);
+    }
 
   private:
     test::ScriptedIo script_;
     SpscRing<TickRecord>& ring_;
+    SpscRing<Cut>& cuts_;
 };
 
 TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
@@ -41,12 +45,14 @@ TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
     config.milling.removal_rate = 1e9;  // few ticks move much: ThreadSanitizer slows each a hundred times
     HapticTick tick(config, bone, tool, nullptr);
     SpscRing<TickRecord> ring(1024);
+    SpscRing<Cut> cuts(1024);
     RingIo io(test::straightPath({{2e-3, 3e-3, 4.8e-3}, Eigen::Quaterniond::Identity()}, {4.2e-3, 3e-3, 2e-3},
                                  150, kButtonRemove),
-              ring);
+              ring, cuts);
     Publisher publisher({.domain = testDomain(), .session = testSession(), .epoch = 0});
 
     MeshOutbox outbox;
+    MeshRounds rounds(bone.volume, bone.lattice, cuts);
     std::atomic<bool> is_milling{true};
     std::map<uint32_t, NodeMesh> shown;
     uint32_t removed = 0;
@@ -68,10 +74,9 @@ TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
         is_milling = false;
     });
     std::thread mesher_thread([&] {
-        Mesher mesher(bone.volume, bone.lattice);
         const auto put = [&](NodeMesh&& mesh) { outbox.put(std::move(mesh)); };
-        while (is_milling) mesher.pass(put, 16);
-        while (mesher.pass(put).pending > 0) {
+        while (is_milling) rounds.round(put);
+        while (rounds.round(put) || !rounds.hasMeshedAll()) {
         }
     });
     while (is_milling) publish();
@@ -94,6 +99,8 @@ TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
     EXPECT_GT(surfaces, 10u);
     EXPECT_EQ(publisher.digest().count(), surfaces);
     EXPECT_GT(removed, 400u);
+    EXPECT_GT(rounds.cutToSink().count(), 10u);
+    EXPECT_EQ(cuts.dropped(), 0u);
 }
 
 }  // namespace

@@ -1,0 +1,46 @@
+// The mesher thread's work: after each cut the leaves that it changed, at once; beside that, little by
+// little, all others that changed (at first: the whole bone). Measures how long a cut waits for its meshes.
+//
+// One normal thread, beside the tick; not RT-safe.
+#pragma once
+
+#include <chrono>
+#include <vector>
+
+#include "common/rt/latency_histogram.h"
+#include "common/rt/spsc_ring.h"
+#include "haptic_server/mesh/mesher.h"
+#include "haptic_server/volume/cut.h"
+
+namespace bonemill {
+
+class MeshRounds {
+  public:
+    // Volume, lattice and ring must outlive this object. The ring holds the ticks' cuts, each pushed after
+    // its voxels were written; a cut that finds it full is meshed all the same, only later.
+    MeshRounds(const VoxelVolume& volume, const LeafLattice& lattice, SpscRing<Cut>& cuts);
+
+    // One round; the sink as for Mesher::pass. True: more is waiting, call again at once; else after kPeriod.
+    bool round(const Mesher::Sink& sink);
+    static constexpr std::chrono::microseconds kPeriod{500};
+
+    bool hasMeshedAll() const noexcept { return mesher_.hasMeshedAll(); }
+
+    // Of each cut from the start of its tick until the sink had the last mesh with the cut in it.
+    const LatencyHistogram& cutToSink() const noexcept { return cut_to_sink_; }
+
+  private:
+    void takeCuts();
+    void closeCuts();
+    bool passOverOthers(const Mesher::Sink& sink);
+
+    const LeafLattice& lattice_;
+    SpscRing<Cut>& cuts_;
+    Mesher mesher_;
+    std::vector<int64_t> open_starts_ns_;  // of the cuts that wait for their meshes
+    IndexBox open_leaves_;                 // box of all leaves that these cuts changed
+    int64_t next_pass_ns_ = 0;
+    LatencyHistogram cut_to_sink_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,11 @@
+// `haptic_bench remesh`: from the tick that cuts until the mesher has handed the cut's meshes to the
+// publisher.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace bonemill::bench {
+
+void addRemeshCommand(CLI::App& app);
+
+}  // namespace bonemill::bench
