@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "haptic_server/volume/density_gradient.h"
 #include "haptic_server/volume/marching_cubes_table.h"
 
 namespace bonemill {
@@ -21,9 +22,13 @@ int stepsToIso(Density low, Density high, Density iso, int steps_per_cell) noexc
 }  // namespace
 
 LeafMesher::LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice)
-    : volume_(volume), lattice_(lattice), grid_(volume, lattice), triangles_(cubeTriangles()) {}
+    : volume_(volume),
+      lattice_(lattice),
+      grid_(volume, lattice),
+      triangles_(cubeTriangles()),
+      inverse_spacing_(volume.spacing().cwiseInverse().cast<float>()) {}
 
-NodeMesh LeafMesher::mesh(LeafId leaf) {
+std::optional<NodeMesh> LeafMesher::mesh(LeafId leaf) {
     NodeMesh mesh;
     mesh.leaf = leaf;
     mesh.revision = lattice_.version(leaf);
@@ -31,25 +36,27 @@ NodeMesh LeafMesher::mesh(LeafId leaf) {
     mesh.step = grid_.step();
     vertices_.clear();
     indices_.clear();
-    if (readVoxels(lattice_.cellsOf(leaf))) meshCells();
+    readVoxels(lattice_.cellsOf(leaf));
+    // The voxels were read with acquire, so this read cannot be older than they are.
+    const bool is_being_written = (mesh.revision & 1) != 0;
+    if (is_being_written || lattice_.version(leaf) != mesh.revision) return std::nullopt;
+    meshCells();
     mesh.vertices = vertices_;  // exactly as much memory as they need
     mesh.indices = indices_;
     return mesh;
 }
 
-// Copies the corners of the cells, so that a write meanwhile cannot contradict itself; true when they hold
-// surface.
-bool LeafMesher::readVoxels(const IndexBox& cells) {
+// Copies all voxels that the mesh depends on: those around the cells, and one more on each side for the
+// gradients.
+void LeafMesher::readVoxels(const IndexBox& cells) {
     first_voxel_ = cells.min;
     cells_ = cells.max - cells.min + Eigen::Vector3i::Ones();
-    stride_[1] = size_t(cells_.x()) + 1;
-    stride_[2] = stride_[1] * (size_t(cells_.y()) + 1);
-    density_.resize(stride_[2] * (size_t(cells_.z()) + 1));
-
-    const Density iso = volume_.iso();
-    bool any_inside = false;
-    bool any_outside = false;
-    volume_.forEachPart({cells.min, cells.max.array() + 1}, [&](const IndexBox& part, size_t from) {
+    stride_[1] = size_t(cells_.x()) + 3;
+    stride_[2] = stride_[1] * (size_t(cells_.y()) + 3);
+    density_.resize(stride_[2] * (size_t(cells_.z()) + 3));
+    const IndexBox voxels = IndexBox{cells.min.array() - 1, cells.max.array() + 2}.clamped(
+        Eigen::Vector3i::Constant(-1), volume_.dims());
+    volume_.forEachPart(voxels, [&](const IndexBox& part, size_t from) {
         const Eigen::Vector3i size = part.max - part.min + Eigen::Vector3i::Ones();
         Density* to = density_.data() + cornerIndex(part.min - first_voxel_);
         for (int k = 0; k < size.z(); ++k)
@@ -57,16 +64,22 @@ bool LeafMesher::readVoxels(const IndexBox& cells) {
                 const size_t row =
                     from + VoxelVolume::kStrideY * size_t(j) + VoxelVolume::kStrideZ * size_t(k);
                 Density* out = to + stride_[1] * size_t(j) + stride_[2] * size_t(k);
-                for (int i = 0; i < size.x(); ++i) {
-                    out[i] = volume_.at(row + size_t(i));
-                    (out[i] >= iso ? any_inside : any_outside) = true;
-                }
+                for (int i = 0; i < size.x(); ++i) out[i] = volume_.at(row + size_t(i));
             }
     });
-    return any_inside && any_outside;
+}
+
+// Are there voxels on both sides of iso among the cells' corners?
+bool LeafMesher::hasSurface() const noexcept {
+    Density low = kMaxDensity, high = 0;
+    for (int k = 0; k <= cells_.z(); ++k)
+        kernels().range_of_rows(density_.data() + cornerIndex({0, 0, k}), cells_.x() + 1, stride_[1],
+                                cells_.y() + 1, low, high);
+    return low < volume_.iso() && high >= volume_.iso();
 }
 
 void LeafMesher::meshCells() {
+    if (!hasSurface()) return;
     edge_vertex_.assign(3 * density_.size(), kNoVertex);
     const Density iso = volume_.iso();
     for (int k = 0; k < cells_.z(); ++k)
@@ -118,8 +131,8 @@ PackedVertex LeafMesher::makeVertex(const Eigen::Vector3i& local, int axis) cons
     const Eigen::Vector3i voxel = first_voxel_ + local;
     const Eigen::Vector3i next = voxel + Eigen::Vector3i::Unit(axis);
     const float fraction = float(steps) / float(grid_.stepsPerCell());
-    const Eigen::Vector3f gradient = volume_.gradient(voxel.x(), voxel.y(), voxel.z()) * (1 - fraction) +
-                                     volume_.gradient(next.x(), next.y(), next.z()) * fraction;
+    const Eigen::Vector3f gradient =
+        gradientAt(voxel, low) * (1 - fraction) + gradientAt(next, high) * fraction;
     // A one-voxel plate or grain has no gradient: the way out of the bone along the edge is a normal too.
     const float way_out = density_[low] > density_[high] ? 1.0f : -1.0f;
     const Eigen::Vector3f normal = gradient.isZero(0) ? Eigen::Vector3f(way_out * Eigen::Vector3f::Unit(axis))
@@ -128,8 +141,14 @@ PackedVertex LeafMesher::makeVertex(const Eigen::Vector3i& local, int axis) cons
     return {uint16_t(position.x()), uint16_t(position.y()), uint16_t(position.z()), packed.u, packed.v};
 }
 
+Eigen::Vector3f LeafMesher::gradientAt(const Eigen::Vector3i& voxel, size_t corner) const noexcept {
+    return densityGradient(voxel, volume_.dims(), inverse_spacing_, [&](int axis, int step) {
+        return density_[size_t(ptrdiff_t(corner) + step * ptrdiff_t(stride_[axis]))];
+    });
+}
+
 NodeMesh meshLeaf(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf) {
-    return LeafMesher(volume, lattice).mesh(leaf);
+    return LeafMesher(volume, lattice).mesh(leaf).value();
 }
 
 }  // namespace bonemill

@@ -7,10 +7,10 @@
 // arithmetic: the leaves that share an edge get the same vertex, bit for bit. A voxel is inside the bone when
 // its density >= iso.
 //
-// Not RT-safe (allocates). A volume being written gives a mesh of mixed voxels: compare versions (class
-// Mesher).
+// Not RT-safe (allocates).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "haptic_server/mesh/mesh_grid.h"
@@ -23,33 +23,39 @@ class LeafMesher {
   public:
     LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice);
 
-    // revision = the leaf's version before its voxels were read. Empty without surface.
-    NodeMesh mesh(LeafId leaf);
+    // revision = the leaf's version. Empty without surface. Nothing if the voxels were written while they
+    // were copied, which is the shorter part of the work.
+    std::optional<NodeMesh> mesh(LeafId leaf);
 
   private:
-    bool readVoxels(const IndexBox& cells);
+    void readVoxels(const IndexBox& cells);
+    bool hasSurface() const noexcept;
+    Eigen::Vector3f gradientAt(const Eigen::Vector3i& voxel, size_t corner) const noexcept;
     void meshCells();
     void emitCell(int config, const Eigen::Vector3i& cell);
     uint32_t vertexOnEdge(const Eigen::Vector3i& local, int axis);
     PackedVertex makeVertex(const Eigen::Vector3i& local, int axis) const;
 
     size_t cornerIndex(const Eigen::Vector3i& local) const noexcept {
-        return size_t(local.x()) + stride_[1] * size_t(local.y()) + stride_[2] * size_t(local.z());
+        return size_t(local.x() + 1) + stride_[1] * size_t(local.y() + 1) +
+               stride_[2] * size_t(local.z() + 1);
     }
 
     const VoxelVolume& volume_;
     const LeafLattice& lattice_;
     MeshGrid grid_;
     const std::array<CubeTriangles, 256>& triangles_;
+    Eigen::Vector3f inverse_spacing_;
     Eigen::Vector3i first_voxel_;  // of the leaf in hand; locals count from here
     Eigen::Vector3i cells_;        // of the leaf in hand, per axis
     size_t stride_[3] = {1, 0, 0};
-    std::vector<Density> density_;  // cells_ + 1 corners per axis, x fastest
+    std::vector<Density> density_;  // cells_ + 3 voxels per axis from local (-1, -1, -1) on, x fastest
     std::vector<PackedVertex> vertices_;
     std::vector<uint32_t> indices_;
     std::vector<uint32_t> edge_vertex_;  // per corner and axis: vertex on the edge that starts there
 };
 
+// Of a volume at rest.
 NodeMesh meshLeaf(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf);
 
 }  // namespace bonemill

@@ -63,14 +63,13 @@ bool Mesher::catchUp(LeafId leaf, const Sink& sink) {
 
 // False when a write got in between: the leaf stays due.
 bool Mesher::tryMesh(LeafId leaf, const Sink& sink) {
-    NodeMesh mesh = leaf_mesher_.mesh(leaf);
-    // The voxels were read with acquire, so this read cannot be older than they are.
-    if (isBeingWritten(mesh.revision) || lattice_.version(leaf) != mesh.revision) return false;
+    std::optional<NodeMesh> mesh = leaf_mesher_.mesh(leaf);
+    if (!mesh) return false;
     if (meshed_version_[leaf] == kNeverMeshed) ++meshed_leaves_;
-    meshed_version_[leaf] = mesh.revision;
+    meshed_version_[leaf] = mesh->revision;
     const bool had_mesh = has_mesh_[leaf];
-    has_mesh_[leaf] = !mesh.isEmpty();
-    if (had_mesh || !mesh.isEmpty()) sink(std::move(mesh));
+    has_mesh_[leaf] = !mesh->isEmpty();
+    if (had_mesh || !mesh->isEmpty()) sink(std::move(*mesh));
     return true;
 }
 

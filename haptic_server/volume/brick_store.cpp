@@ -28,7 +28,7 @@ void BrickStore::dropSpare() {
 }
 
 void BrickStore::open(BrickId brick) noexcept {
-    const Density density = sharedDensity(brick);
+    const Density density = *sharedDensity(brick);
     Density* contents = pool_.data() + used_ * kBrickSize;
     std::fill_n(contents, kBrickSize, density);
     std::atomic_ref<uint32_t>(slots_[brick]).store(uint32_t(used_++), std::memory_order_release);
@@ -43,7 +43,7 @@ void BrickStore::adoptNextSpare(BrickId brick) noexcept {
 void BrickStore::shareUniformBricks() {
     std::vector<BrickId> brick_in(used_);
     for (BrickId brick = 0; brick < brickCount(); ++brick)
-        if (!isShared(brick)) brick_in[slots_[brick]] = brick;
+        if (slots_[brick] >= kSharedSlots) brick_in[slots_[brick]] = brick;
     size_t kept = kSharedSlots;
     for (size_t slot = kSharedSlots; slot < used_; ++slot) {
         const Density* contents = pool_.data() + slot * kBrickSize;

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "haptic_server/kernels/brick_layout.h"
@@ -50,9 +51,12 @@ class BrickStore {
     const Density* contents(BrickId brick) const noexcept {
         return pool_.data() + size_t(slot(brick)) * kBrickSize;
     }
-    bool isShared(BrickId brick) const noexcept { return slot(brick) < kSharedSlots; }
-    // Every density in a shared brick.
-    Density sharedDensity(BrickId brick) const noexcept { return slot(brick) == kAirSlot ? 0 : kMaxDensity; }
+    // Every density in the brick, if it is a shared one.
+    std::optional<Density> sharedDensity(BrickId brick) const noexcept {
+        const uint32_t s = slot(brick);
+        if (s >= kSharedSlots) return std::nullopt;
+        return s == kAirSlot ? Density(0) : kMaxDensity;
+    }
 
     // Bricks that open() can still give memory to.
     size_t spareCount() const noexcept { return pool_.size() / kBrickSize - used_; }

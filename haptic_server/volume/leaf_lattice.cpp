@@ -21,8 +21,7 @@ bool isSame(const DensityRange& a, const DensityRange& b) noexcept {
 DensityRange scan(const VoxelVolume& volume, const IndexBox& box, DensityRange known,
                   const DensityRange& bounds) noexcept {
     volume.forEachPart(box, [&](const IndexBox& part, size_t offset) {
-        Density uniform;
-        if (volume.isUniform(part.min, uniform)) return widen(known, {uniform, uniform});
+        if (const auto uniform = volume.uniformDensity(part.min)) return widen(known, {*uniform, *uniform});
         const Eigen::Vector3i size = part.max - part.min + Eigen::Vector3i::Ones();
         for (int k = 0; k < size.z() && !isSame(known, bounds); ++k, offset += VoxelVolume::kStrideZ)
             kernels().range_of_rows(volume.ownerData() + offset, size.x(), VoxelVolume::kStrideY, size.y(),

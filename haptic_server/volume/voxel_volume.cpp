@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "haptic_server/volume/density_gradient.h"
+
 namespace bonemill {
 
 VoxelVolume::VoxelVolume(const VolumeGeometry& geometry, Density iso)
@@ -18,11 +20,8 @@ void VoxelVolume::readRow(const Eigen::Vector3i& first, int count, Density* out)
     });
 }
 
-bool VoxelVolume::isUniform(const Eigen::Vector3i& cell, Density& density) const noexcept {
-    const BrickId brick = bricks_.brickOf(cell.x() + 1, cell.y() + 1, cell.z() + 1);
-    if (!bricks_.isShared(brick)) return false;
-    density = bricks_.sharedDensity(brick);
-    return true;
+std::optional<Density> VoxelVolume::uniformDensity(const Eigen::Vector3i& cell) const noexcept {
+    return bricks_.sharedDensity(bricks_.brickOf(cell.x() + 1, cell.y() + 1, cell.z() + 1));
 }
 
 IndexBox VoxelVolume::bricksHolding(const IndexBox& voxels) const noexcept {
@@ -39,7 +38,7 @@ bool VoxelVolume::hasRoomFor(const IndexBox& voxels) const noexcept {
     const IndexBox box = bricksHolding(voxels);
     size_t shared = 0;
     forEachIndex(box, [&](const Eigen::Vector3i& b) {
-        shared += bricks_.isShared(bricks_.brickAt(b.x(), b.y(), b.z()));
+        shared += bricks_.sharedDensity(bricks_.brickAt(b.x(), b.y(), b.z())).has_value();
     });
     return shared <= bricks_.spareCount();
 }
@@ -65,9 +64,9 @@ void VoxelVolume::writeRow(const Eigen::Vector3i& first, int count, const Densit
 
 // Opens the brick unless it holds these densities as it is; false then.
 bool VoxelVolume::hasOwn(BrickId brick, const Density* densities, int count) noexcept {
-    if (!bricks_.isShared(brick)) return true;
-    const Density shared = bricks_.sharedDensity(brick);
-    if (std::all_of(densities, densities + count, [=](Density d) { return d == shared; })) return false;
+    const auto shared = bricks_.sharedDensity(brick);
+    if (!shared) return true;
+    if (std::all_of(densities, densities + count, [=](Density d) { return d == *shared; })) return false;
     bricks_.open(brick);
     return true;
 }
@@ -79,26 +78,11 @@ void VoxelVolume::set(int i, int j, int k, Density density) {
 }
 
 Eigen::Vector3f VoxelVolume::gradient(int i, int j, int k) const noexcept {
+    constexpr ptrdiff_t kStrides[3] = {1, kStrideY, kStrideZ};
     const size_t here = offset(i, j, k);
-    constexpr size_t kStrides[3] = {1, kStrideY, kStrideZ};
-    const int index[3] = {i, j, k};
-    Eigen::Vector3f g;
-    const Eigen::Vector3i& last = geometry_.dims;
-    const bool is_within = (unsigned(i) < unsigned(last.x())) & (unsigned(j) < unsigned(last.y())) &
-                           (unsigned(k) < unsigned(last.z()));
-    if (is_within) {
-        for (int axis = 0; axis < 3; ++axis)
-            g[axis] = float(int(at(here + kStrides[axis])) - int(at(here - kStrides[axis]))) *
-                      (inverse_spacing_[axis] / 2);
-        return g;
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-        const size_t low = index[axis] > -1 ? here - kStrides[axis] : here;
-        const size_t high = index[axis] < geometry_.dims[axis] ? here + kStrides[axis] : here;
-        const float steps = high - low == kStrides[axis] ? 1.0f : 2.0f;
-        g[axis] = (float(at(high)) - float(at(low))) * inverse_spacing_[axis] / steps;
-    }
-    return g;
+    return densityGradient({i, j, k}, dims(), inverse_spacing_, [&](int axis, int step) {
+        return at(size_t(ptrdiff_t(here) + step * kStrides[axis]));
+    });
 }
 
 }  // namespace bonemill

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 #include "haptic_server/volume/brick_store.h"
 #include "haptic_server/volume/raw_volume.h"
@@ -63,8 +64,8 @@ class VoxelVolume {
     // The same without copies: each part is what the brick itself owns of the box.
     template <class Visit>
     void forEachOwnedPart(const IndexBox& voxels, Visit&& visit) const noexcept;
-    // The density of all that is stored around this cell, if all of it is air or of the highest density.
-    bool isUniform(const Eigen::Vector3i& cell, Density& density) const noexcept;
+    // Of all that is stored around this cell, if its brick has no memory of its own. RT-safe, any thread.
+    std::optional<Density> uniformDensity(const Eigen::Vector3i& cell) const noexcept;
 
     // `count` voxels along x. Owner only, RT-safe. There must be room for what it changes.
     void writeRow(const Eigen::Vector3i& first, int count, const Density* densities) noexcept;
@@ -81,8 +82,7 @@ class VoxelVolume {
     void fill(DensityAt&& density);
     void shareUniformBricks() { bricks_.shareUniformBricks(); }
 
-    // Density gradient (counts per m, V axes) at a voxel by central differences (thesis eq 1-3 over twice the
-    // distance); one-sided at the air border. Any index in -1 .. dims. RT-safe.
+    // densityGradient() at this voxel, counts per m. Any index in -1 .. dims. RT-safe.
     Eigen::Vector3f gradient(int i, int j, int k) const noexcept;
 
   private:

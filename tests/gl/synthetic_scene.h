@@ -29,7 +29,7 @@ inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const Distance
     LeafMesher mesher(volume, lattice);
     std::vector<NodeMesh> nodes;
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
-        NodeMesh mesh = mesher.mesh(leaf);
+        NodeMesh mesh = mesher.mesh(leaf).value();
         if (!mesh.isEmpty()) nodes.push_back(std::move(mesh));
     }
     return nodes;

@@ -60,7 +60,7 @@ inline std::vector<NodeMesh> meshAll(const VoxelVolume& volume, const LeafLattic
     LeafMesher mesher(volume, lattice);
     std::vector<NodeMesh> meshes;
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
-        NodeMesh mesh = mesher.mesh(leaf);
+        NodeMesh mesh = mesher.mesh(leaf).value();
         if (!mesh.isEmpty()) meshes.push_back(std::move(mesh));
     }
     return meshes;
