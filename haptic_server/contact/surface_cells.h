@@ -8,6 +8,7 @@
 
 #include "haptic_server/contact/shell_point.h"
 #include "haptic_server/kernels/kernels.h"
+#include "haptic_server/volume/crossed_cells.h"
 #include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill {
@@ -43,22 +44,16 @@ class SurfaceCells {
     }
 
   private:
-    void classifyPlane(const VoxelVolume& volume, const IndexBox& cells, int k) noexcept;
-    void joinRows(int row, int columns, int k) noexcept;
     void findCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
                    const IndexBox& cells) noexcept;
     void addCell(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first, const Eigen::Vector3i& cell,
                  int corners_inside) noexcept;
     CellArrays arrays() const noexcept;
-    uint8_t* planeRow(int k, int row) noexcept { return planes_[k & 1].data() + size_t(row) * row_size_; }
 
     std::vector<int> triangle_edges_;  // as the kernel wants them
     Eigen::Vector3f steps_;            // spacing in units of unit_
     float unit_area_;                  // m²
-    size_t row_size_;
-    std::vector<uint8_t>
-        planes_[2];               // is the voxel inside (0 or 1), for the two voxel planes of a cell layer
-    std::vector<uint8_t> sides_;  // inside corners of the column's four voxels: bits 0, 2, 4, 6
+    CrossedCells crossed_;
 
     size_t count_ = 0;
     std::vector<std::array<uint16_t, 3>> cell_;

@@ -21,6 +21,8 @@ const Kernels kTable = {
     .project_into_cells = projectIntoCells,
     .move_onto_surface = moveOntoSurface,
     .least_scaled = leastScaled,
-    .range_of_rows = rangeOfRows};
+    .range_of_rows = rangeOfRows,
+    .at_least = atLeast,
+    .join_rows = joinRows};
 
 }  // namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE

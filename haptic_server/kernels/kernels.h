@@ -156,6 +156,12 @@ struct Kernels {
     void (*range_of_rows)(const uint16_t* row, int count, size_t stride, int rows, uint16_t& least,
                           uint16_t& largest);
 
+    // out[i] = row[i] >= iso, 0 or 1.
+    void (*at_least)(const uint16_t* row, int count, uint16_t iso, uint8_t* out);
+    // out = a + 4 b + 16 c + 64 d.
+    void (*join_rows)(const uint8_t* a, const uint8_t* b, const uint8_t* c, const uint8_t* d, int count,
+                      uint8_t* out);
+
     template <class Scalar>
     const PointKernels<Scalar>& points() const noexcept {
         if constexpr (sizeof(Scalar) == sizeof(float))

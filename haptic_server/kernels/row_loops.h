@@ -77,6 +77,15 @@ MilledPlane millPlane(const BurrPlane& burr, const uint16_t* first, int count, i
     return plane;
 }
 
+void atLeast(const uint16_t* __restrict row, int count, uint16_t iso, uint8_t* __restrict out) {
+    for (int i = 0; i < count; ++i) out[i] = row[i] >= iso;
+}
+
+void joinRows(const uint8_t* __restrict a, const uint8_t* __restrict b, const uint8_t* __restrict c,
+              const uint8_t* __restrict d, int count, uint8_t* __restrict out) {
+    for (int i = 0; i < count; ++i) out[i] = uint8_t(a[i] + 4 * b[i] + 16 * c[i] + 64 * d[i]);
+}
+
 void rangeOfRows(const uint16_t* row, int count, size_t stride, int rows, uint16_t& low, uint16_t& high) {
     uint16_t l = low, h = high;
     if (count < kWideWords) {

@@ -26,6 +26,7 @@ LeafMesher::LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice)
       lattice_(lattice),
       grid_(volume, lattice),
       triangles_(cubeTriangles()),
+      crossed_(lattice.leafCells()),
       inverse_spacing_(volume.spacing().cwiseInverse().cast<float>()) {}
 
 std::optional<NodeMesh> LeafMesher::mesh(LeafId leaf) {
@@ -81,25 +82,14 @@ bool LeafMesher::hasSurface() const noexcept {
 void LeafMesher::meshCells() {
     if (!hasSurface()) return;
     edge_vertex_.assign(3 * density_.size(), kNoVertex);
-    const Density iso = volume_.iso();
-    for (int k = 0; k < cells_.z(); ++k)
-        for (int j = 0; j < cells_.y(); ++j) {
-            const Density* row = density_.data() + cornerIndex({0, j, k});
-            // The four corners of a cell on its low x side; those of the high side are the next one's,
-            // shifted.
-            const auto side = [&](int i) noexcept {
-                return int(row[i] >= iso) | int(row[size_t(i) + stride_[1]] >= iso) << 2 |
-                       int(row[size_t(i) + stride_[2]] >= iso) << 4 |
-                       int(row[size_t(i) + stride_[1] + stride_[2]] >= iso) << 6;
-            };
-            int low = side(0);
-            for (int i = 0; i < cells_.x(); ++i) {
-                const int high = side(i + 1);
-                const int config = low | high << 1;
-                if (config != 0 && config != 255) emitCell(config, {i, j, k});
-                low = high;
-            }
-        }
+    crossed_.find(
+        cells_, volume_.iso(),
+        [&](int j, int k, auto&& visit_run) {
+            visit_run(density_.data() + cornerIndex({0, j, k}), cells_.x() + 1);
+        },
+        [&](int i, int j, int k, int inside) {
+            emitCell(inside, {i, j, k});
+        });
 }
 
 void LeafMesher::emitCell(int config, const Eigen::Vector3i& cell) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "haptic_server/mesh/mesh_grid.h"
+#include "haptic_server/volume/crossed_cells.h"
 #include "haptic_server/volume/marching_cubes_table.h"
 
 namespace bonemill {
@@ -45,6 +46,7 @@ class LeafMesher {
     const LeafLattice& lattice_;
     MeshGrid grid_;
     const std::array<CubeTriangles, 256>& triangles_;
+    CrossedCells crossed_;
     Eigen::Vector3f inverse_spacing_;
     Eigen::Vector3i first_voxel_;  // of the leaf in hand; locals count from here
     Eigen::Vector3i cells_;        // of the leaf in hand, per axis

@@ -221,6 +221,24 @@ TEST_P(EveryLevel, LeastScaledAndRanges) {
     }
 }
 
+TEST_P(EveryLevel, RowsAgainstIso) {
+    for (int round = 0; round < 200; ++round) {
+        const int n = 1 + below(70);
+        std::vector<uint16_t> row(static_cast<size_t>(n));
+        std::vector<uint8_t> inside(row.size()), bits[4], joined(row.size());
+        for (uint16_t& d : row) d = uint16_t(29990 + below(20));
+        ours().at_least(row.data(), n, 30000, inside.data());
+        for (auto& b : bits) b.resize(row.size());
+        for (auto& b : bits)
+            for (uint8_t& bit : b) bit = uint8_t(below(2));
+        ours().join_rows(bits[0].data(), bits[1].data(), bits[2].data(), bits[3].data(), n, joined.data());
+        for (size_t i = 0; i < row.size(); ++i) {
+            EXPECT_EQ(inside[i], row[i] >= 30000 ? 1 : 0);
+            EXPECT_EQ(joined[i], bits[0][i] | bits[1][i] << 2 | bits[2][i] << 4 | bits[3][i] << 6);
+        }
+    }
+}
+
 // Cells of random densities; their patches, and the patches' centroids moved onto the surface.
 struct CellCase {
     int count;
