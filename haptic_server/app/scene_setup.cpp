@@ -4,6 +4,7 @@
 
 #include "common/config/user_error.h"
 #include "haptic_server/tick/tick_budget.h"
+#include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/small_pieces.h"
 
@@ -166,6 +167,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
                                      textOf(simulation.mapping.iso_value) + " proposed from the histogram");
     VoxelVolume volume = densify(std::move(raw), simulation.mapping);
     removeSmallPieces(volume, scene.volume().smallest_piece_voxels());
+    clearFarFromBone(volume);
     const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), volume.geometry());
     simulation.tick = tickConfigOf(scene, volume.spacing().minCoeff());
     simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells, shellConfigOf(scene));

@@ -8,6 +8,7 @@
 #include "haptic_server/tick/haptic_tick.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
+#include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "tests/bench/bench_output.h"
 #include "tests/support/scripted_io.h"
@@ -36,12 +37,34 @@ std::unique_ptr<BoneModel> makeBone(const std::string& path, std::optional<doubl
     const DensityMapping mapping = chooseMapping(*raw, DensityWindow{.low = {}, .high = {}, .iso = iso});
     VoxelVolume volume = densify(std::move(*raw), mapping);
     raw.reset();
+    clearFarFromBone(volume);
     json["densify_ms"] = msSince(start);
     start = monotonicNowNs();
     auto bone = std::make_unique<BoneModel>(std::move(volume), Eigen::Vector3i::Constant(kLeafCells),
                                             ShellConfig{.levels = {{1, ShellNormals::kTrilinear}}});
     json["octree_and_shell_ms"] = msSince(start);
     return bone;
+}
+
+// The whole surface, and half a second of a burr somewhere on it.
+void meshAndMill(BoneModel& bone, nlohmann::json& json) {
+    constexpr int kTicks = 500;
+    size_t triangles = 0;
+    const int64_t start = monotonicNowNs();
+    Mesher(bone.volume, bone.lattice).pass([&](NodeMesh&& mesh) { triangles += mesh.indices.size() / 3; });
+    json["mesh_ms"] = msSince(start);
+    json["triangles"] = triangles;
+    Eigen::Vector3d on_surface = Eigen::Vector3d::Zero();
+    for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
+        bone.shell.forEachBlock(0, leaf, [&](const ShellBlock& block, uint32_t) {
+            on_surface = {block.x[0], block.y[0], block.z[0]};
+        });
+    TimedMilling milling({.shape = MillingShape::kSubVoxel}, bone.volume,
+                         8 * bone.volume.spacing().maxCoeff());
+    uint64_t removed = 0;
+    for (int n = 0; n < kTicks; ++n)
+        removed += milling.apply(bone.volume, bone.lattice, bone.shell, on_surface, -1, 1e-3).removed_voxels;
+    json["milled_voxels"] = removed;
 }
 
 void run(const std::string& path, std::optional<double> iso, const std::string& json_path) {
@@ -53,6 +76,9 @@ void run(const std::string& path, std::optional<double> iso, const std::string& 
     test::ScriptedIo io(test::straightPath(Pose{}, Eigen::Vector3d::Zero(), 1, 0));
     tick.tick(io);
     json["to_first_tick_ms"] = msSince(start);
+    meshAndMill(*bone, json);
+    json["bricks_with_memory"] = double(bone->volume.bricks().ownCount());
+    json["bricks"] = double(bone->volume.bricks().brickCount());
     const double voxels = double(bone->volume.geometry().voxelCount());
     json["voxels"] = voxels;
     json["resident_bytes_per_voxel"] = double(residentBytes()) / voxels;

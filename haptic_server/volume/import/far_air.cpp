@@ -1,0 +1,56 @@
+#include "haptic_server/volume/import/far_air.h"
+
+#include <vector>
+
+namespace bonemill {
+namespace {
+
+using Bricks = std::vector<uint8_t>;  // yes or no, by BrickId
+
+IndexBox allBricks(const BrickStore& bricks) {
+    return {Eigen::Vector3i::Zero(), bricks.bricksPerAxis().array() - 1};
+}
+
+Bricks bricksWithBone(const VoxelVolume& volume) {
+    const BrickStore& bricks = volume.bricks();
+    Bricks has_bone(bricks.brickCount());
+    for (BrickId id = 0; id < bricks.brickCount(); ++id) {
+        const Density* held = bricks.contents(id);
+        has_bone[id] =
+            std::any_of(held, held + kBrickSize, [&](Density density) { return density >= volume.iso(); });
+    }
+    return has_bone;
+}
+
+bool isFar(const BrickStore& bricks, const Bricks& has_bone, const Eigen::Vector3i& brick) {
+    bool is_far = true;
+    const IndexBox all = allBricks(bricks);
+    forEachIndex(IndexBox{brick, brick}.grown(1).clamped(all.min, all.max),
+                 [&](const Eigen::Vector3i& b) { is_far &= !has_bone[bricks.brickAt(b.x(), b.y(), b.z())]; });
+    return is_far;
+}
+
+// In every brick that holds them.
+void clearVoxels(VoxelVolume& volume, const Eigen::Vector3i& brick) {
+    const Density air[kBrickCells] = {};
+    const Eigen::Vector3i first = brick.array() * kBrickCells - 1;
+    const IndexBox owned = IndexBox{first, first.array() + (kBrickCells - 1)}.clamped(
+        Eigen::Vector3i::Zero(), volume.dims().array() - 1);
+    if (owned.isEmpty()) return;
+    const IndexBox rows{owned.min, {owned.min.x(), owned.max.y(), owned.max.z()}};
+    forEachIndex(rows, [&](const Eigen::Vector3i& row) {
+        volume.writeRow(row, owned.max.x() - owned.min.x() + 1, air);
+    });
+}
+
+}  // namespace
+
+void clearFarFromBone(VoxelVolume& volume) {
+    const Bricks has_bone = bricksWithBone(volume);
+    forEachIndex(allBricks(volume.bricks()), [&](const Eigen::Vector3i& brick) {
+        if (isFar(volume.bricks(), has_bone, brick)) clearVoxels(volume, brick);
+    });
+    volume.shareUniformBricks();
+}
+
+}  // namespace bonemill

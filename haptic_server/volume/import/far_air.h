@@ -1,0 +1,15 @@
+// What is no bone and not near any need not be kept.
+//
+// Not RT-safe (allocates); no shared state.
+#pragma once
+
+#include "haptic_server/volume/voxel_volume.h"
+
+namespace bonemill {
+
+// Densities in bricks that hold no bone, and whose neighbours hold none, become air: soft tissue and noise at
+// least 16 voxels away from all bone, which no surface, gradient or burr ever sees. Their memory is given
+// back.
+void clearFarFromBone(VoxelVolume& volume);
+
+}  // namespace bonemill
