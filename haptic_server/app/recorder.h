@@ -39,7 +39,7 @@ class Recorder {
     LoopHealth health() const;
     // Before finish(): what the tick thread's page faults were after its first second.
     void setPageFaults(const PageFaults& faults) { statistics_.setPageFaults(faults); }
-    // After the mesher has ended: how long the ticks' cuts waited for the publisher.
+    // By the mesher thread at its end: how long the ticks' cuts waited for the publisher.
     void setCutToPublisher(const LatencyHistogram& cut_to_publisher) {
         statistics_.setCutToPublisher(cut_to_publisher);
     }

@@ -66,6 +66,8 @@ ShellConfig shellConfigOf(const scene::Scene& scene) {
             normals_of_factor.try_emplace(choice.shell_factor, ShellNormals::kTrilinear).first->second;
         if (choice.law == ContactLaw::kThesis2012) normals = ShellNormals::kCentralDifference;
     }
+    for (const int coarser : {2, 3})  // for ticks in which there is no time for the finer ones
+        normals_of_factor.try_emplace(coarser, ShellNormals::kTrilinear);
     ShellConfig config{.levels = {}};
     for (const auto& [factor, normals] : normals_of_factor)
         config.levels.push_back(

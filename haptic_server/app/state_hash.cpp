@@ -24,7 +24,7 @@ void StateHash::addRecord(const TickRecord& record) noexcept {
 
 void StateHash::addVolume(const VoxelVolume& volume) {
     const Eigen::Vector3i& dims = volume.dims();
-    std::vector<Density> row(size_t(dims.x()) + kRowSlack);
+    std::vector<Density> row(size_t(dims.x()) + VoxelVolume::kReadSlack);
     for (int k = 0; k < dims.z(); ++k)
         for (int j = 0; j < dims.y(); ++j) {
             volume.readRow({0, j, k}, dims.x(), row.data());

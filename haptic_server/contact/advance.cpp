@@ -56,14 +56,18 @@ double GradientContact::sweptShare(const ToolField& tool, const Pose& X_VT) cons
 }
 
 double GradientContact::advance(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
-                                double allowed_depth) noexcept {
+                                double allowed_depth, size_t most_tests) noexcept {
     startSweep(tool, X_VT, step, allowed_depth);
+    point_tests_ += candidates_.count;
     double t = 0;
-    for (int n = 0; n < kMostAdvances && t < 1; ++n) {
+    size_t tests = 0;
+    for (int n = 0; n < kMostAdvances && t < 1 && tests <= most_tests; ++n) {
+        tests += candidates_.count;
         const double share = sweptShare(tool, X_VT.incremented(t * step.head<3>(), t * step.tail<3>()));
         t += share;
         if (share < kSmallestAdvance) break;
     }
+    point_tests_ += tests;
     return std::min(t, 1.0);
 }
 

@@ -17,6 +17,8 @@ bool isInside(const VoxelVolume& volume, const Vector3d& p_V) noexcept {
     return volume.at(voxel.x(), voxel.y(), voxel.z()) >= volume.iso();
 }
 
+constexpr size_t kSampleTests = 4;  // an exact sample by itself takes as long as so many distances in a batch
+
 double smoothstep(double t) noexcept {
     t = std::clamp(t, 0.0, 1.0);
     return t * t * (3 - 2 * t);
@@ -29,6 +31,7 @@ void GradientContact::guardFarSide(const VoxelVolume& volume, const ToolField& t
     const double from = kGuardFrom * tool.thinnestRadius(), full = kGuardFull * tool.thinnestRadius();
     const double guard = isInside(volume, X_VT.position) ? 1 : smoothstep((deepest_ - from) / (full - from));
     if (guard == 0) return;
+    point_tests_ += kSampleTests * candidates_.count;
     const Pose X_TV = X_VT.inverse();
     for (size_t i = 0; i < candidates_.count; ++i) {
         const Vector3d n = candidates_.normal(i).cast<double>();
@@ -40,6 +43,7 @@ void GradientContact::guardFarSide(const VoxelVolume& volume, const ToolField& t
 
 void GradientContact::capStiffness(const ToolField& tool, const Pose& X_VT) noexcept {
     if (touching_stiffness_ <= config_.stiffness_cap) return;
+    point_tests_ += 2 * kSampleTests * candidates_.count;
     const Pose X_TV = X_VT.inverse();
     Matrix3d stiffness = Matrix3d::Zero();  // T axes
     for (size_t i = 0; i < candidates_.count; ++i) {

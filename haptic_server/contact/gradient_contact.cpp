@@ -75,7 +75,7 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     box.max().array() += reach;
     BlockBatch blocks;
     const auto test = [&] {
-        has_room &= collectFrom(blocks, tool, X_VT);
+        has_room = has_room && collectFrom(blocks, tool, X_VT);
         blocks.count = 0;
     };
     bone.lattice.forEachSurfaceLeaf(box, spacing, bone.volume.iso(), [&](LeafId leaf) {
@@ -110,13 +110,14 @@ bool GradientContact::collectFrom(const BlockBatch& blocks, const ToolField& too
     SampleBatch<float> at;
     alignas(64) float nearest[PointBatch<float>::kCapacity];
     bool has_room = true;
-    for (int n = 0; n < blocks.count; ++n) {
+    for (int n = 0; n < blocks.count && has_room; ++n) {
         const ShellBlock& block = *blocks.block[n];
         // A patch around a point reaches this much nearer to the tool.
         const float largest_patch = std::sqrt(reach_per_area_ * block.largest_area);
         if (to_block[n] > block.radius + margin + largest_patch + error) continue;
         into_tool.fill(batch, block.x, block.y, block.z, blocks.points[n]);
         tool.sample(batch, at);
+        point_tests_ += size_t(batch.count);
         reach.nearestPlaces(block, batch.count, at, nearest);
         for (int i = 0; i < batch.count; ++i)
             if (at.distance[i] < margin || nearest[i] < refine_within)

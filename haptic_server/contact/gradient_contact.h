@@ -23,6 +23,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "haptic_server/contact/candidates.h"
@@ -81,9 +83,13 @@ class GradientContact {
 
     // Largest share t of the motion `step` (world increment x, ω) for which no gathered point that is free at
     // X_VT comes deeper than `allowed_depth`, and none in contact gets deeper by more than that: conservative
-    // advancement. The share may be smaller than the largest, never larger. In 0 .. 1.
-    double advance(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
-                   double allowed_depth) noexcept;
+    // advancement. The share may be smaller than the largest, never larger. In 0 .. 1. Ends early after about
+    // `most_tests` point tests.
+    double advance(const ToolField& tool, const Pose& X_VT, const Vector6d& step, double allowed_depth,
+                   size_t most_tests = SIZE_MAX) noexcept;
+
+    // Work of gather() and advance() since the last call, in distances of one candidate to the tool.
+    size_t takePointTests() noexcept { return std::exchange(point_tests_, 0); }
 
     size_t candidateCount() const noexcept { return candidates_.count; }
     double margin() const noexcept { return margin_; }
@@ -137,6 +143,7 @@ class GradientContact {
     // nearer).
     std::vector<float> lowest_, inverse_rate_;
     PatchMemory patch_memory_{4096};
+    size_t point_tests_ = 0;
     double touching_stiffness_ = 0;  // N/m: of the candidates in contact, all directions together
     double deepest_ = 0;             // m
     double margin_ = 0;

@@ -14,7 +14,7 @@ inline void gather(const T* table, const Ints& index, Vector& out) {
     load(result, out);
 }
 
-// Where the density, linear along each edge, equals iso, for kCellLanes cells: [axis][edge][lane], cell
+// Where the density, linear along each edge, equals iso, for kWidth cells: [axis][edge][lane], cell
 // steps. Edges that are not crossed hold anything.
 void crossings(const CellArrays& cells, int first, float (&at)[3][12 * kWidth]) {
     for (int edge = 0; edge < 12; ++edge) {

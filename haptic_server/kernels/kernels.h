@@ -68,8 +68,6 @@ struct PointKernels {
                          const Scalar* gz, int count, ContactSums& sums);
 };
 
-inline constexpr int kRowSlack = 31;
-
 // The burr's limit in a plane of voxels (milling/burr_limit.h), counts and m.
 struct BurrPlane {
     float first_x, step_x;    // from the burr's centre to the plane's first voxel, along x

@@ -11,7 +11,7 @@ constexpr int kWidth = 8;
 #else
 constexpr int kWidth = 4;
 #endif
-static_assert(kCellLanes % kWidth == 0 && (kRowSlack + 1) % kWidth == 0);
+static_assert(kCellLanes % kWidth == 0);
 
 template <class Scalar>
 inline Scalar least(Scalar a, Scalar b) {

@@ -37,10 +37,11 @@ std::optional<NodeMesh> LeafMesher::mesh(LeafId leaf) {
     mesh.step = grid_.step();
     vertices_.clear();
     indices_.clear();
+    const bool is_being_written = (mesh.revision & 1) != 0;
+    if (is_being_written) return std::nullopt;
     readVoxels(lattice_.cellsOf(leaf));
     // The voxels were read with acquire, so this read cannot be older than they are.
-    const bool is_being_written = (mesh.revision & 1) != 0;
-    if (is_being_written || lattice_.version(leaf) != mesh.revision) return std::nullopt;
+    if (lattice_.version(leaf) != mesh.revision) return std::nullopt;
     meshCells();
     mesh.vertices = vertices_;  // exactly as much memory as they need
     mesh.indices = indices_;

@@ -29,9 +29,7 @@ void MeshRounds::takeCuts() {
     Cut cut;
     while (cuts_.tryPop(cut)) {
         open_starts_ns_.push_back(cut.start_ns);
-        const IndexBox leaves = lattice_.leavesOfWrite({indexOf(cut.voxels_min), indexOf(cut.voxels_max)});
-        open_leaves_.include(leaves.min);
-        open_leaves_.include(leaves.max);
+        open_leaves_.include(lattice_.leavesOfWrite({indexOf(cut.voxels_min), indexOf(cut.voxels_max)}));
     }
 }
 

@@ -26,7 +26,8 @@ class MeshRounds {
 
     bool hasMeshedAll() const noexcept { return mesher_.hasMeshedAll(); }
 
-    // Of each cut from the start of its tick until the sink had the last mesh with the cut in it.
+    // Of each cut from the start of its tick until the sink had the meshes of all leaves that were due with
+    // it: no less than until the last mesh with the cut in it.
     const LatencyHistogram& cutToSink() const noexcept { return cut_to_sink_; }
 
   private:

@@ -46,7 +46,7 @@ TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volum
     const double farthest = std::max(reach(-1), reach(+1));
     const Eigen::Array3d voxels = (2 * farthest / volume.spacing().array()).floor() + 2;
     const Eigen::Array3d most = voxels.min(volume.dims().cast<double>().array());
-    new_density_.resize(size_t(most.prod()) + kRowSlack);
+    new_density_.resize(size_t(most.prod()));
     const Eigen::Array3d bricks = (most / kBrickCells).floor() + 2;
     runs_.resize(size_t(bricks.x() * most.y() * most.z()));
     changed_parts_.resize(size_t(bricks.prod()));
@@ -65,11 +65,6 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
 
     collectChanges(volume, lattice, p_VB, direction, amount, result);
     if (run_count_ == 0) return result;
-    if (!volume.hasRoomFor(result.changed)) {
-        result = {};
-        result.has_room = false;
-        return result;
-    }
     lattice.beginWrite(result.changed);
     for (size_t n = 0; n < run_count_; ++n) {
         const ChangedRun& run = runs_[n];
@@ -82,7 +77,7 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
 }
 
 // Brick by brick, from the one on for which there was no time in the last tick.
-void TimedMilling::collectChanges(const VoxelVolume& volume, const LeafLattice& lattice,
+void TimedMilling::collectChanges(VoxelVolume& volume, const LeafLattice& lattice,
                                   const Eigen::Vector3d& p_VB, int direction, int amount,
                                   MillingResult& result) noexcept {
     run_count_ = new_count_ = part_count_ = cells_ = 0;
@@ -92,12 +87,13 @@ void TimedMilling::collectChanges(const VoxelVolume& volume, const LeafLattice& 
     if (box.isEmpty()) return;
     const size_t first = std::exchange(first_part_, 0);
     for (const bool is_second_round : {false, true}) {
+        if (is_second_round && first == 0) break;
         size_t n = 0;
         volume.forEachOwnedPart(box, [&](const IndexBox& part, size_t offset) {
             const size_t index = n++;
             if ((index < first) != is_second_round || result.is_cut_short ||
-                isFinished(lattice, part, direction) ||
                 squaredDistance(volume, part, p_VB) >= reach_squared ||
+                isFinished(lattice, part, direction) ||
                 collectPart(volume, part, offset, limit, p_VB, direction, amount, result))
                 return;
             first_part_ = index;
@@ -106,8 +102,9 @@ void TimedMilling::collectChanges(const VoxelVolume& volume, const LeafLattice& 
     }
 }
 
-// False: it would take more than a tick's cells, and nothing of it is kept.
-bool TimedMilling::collectPart(const VoxelVolume& volume, const IndexBox& part, size_t offset,
+// False: it would take more than a tick's cells, and nothing of it is kept; nor without memory for its
+// bricks.
+bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset,
                                const BurrLimit& limit, const Eigen::Vector3d& p_VB, int direction, int amount,
                                MillingResult& result) noexcept {
     const size_t runs_before = run_count_, new_before = new_count_;
@@ -119,12 +116,19 @@ bool TimedMilling::collectPart(const VoxelVolume& volume, const IndexBox& part, 
         collectPlane(volume, plane, offset, limit.plane(to_first, volume.spacing(), amount), direction,
                      of_part);
     }
-    cells_ += size_t(part.count() / kCellsLookedAtPerWorkedOn + of_part.changed.count());
-    if (cells_ > config_.most_cells && part_count_ > 0) {
-        run_count_ = runs_before, new_count_ = new_before;
+    const auto drop = [&] { run_count_ = runs_before, new_count_ = new_before; };
+    const size_t cells_before = std::exchange(
+        cells_, cells_ + size_t(part.count() / kCellsLookedAtPerWorkedOn + of_part.changed.count()));
+    if (cells_ > config_.most_cells && cells_before > 0) {
+        drop();
         return false;
     }
     if (of_part.changed.isEmpty()) return true;
+    if (!volume.openBricksIn(of_part.changed)) {
+        drop();
+        result.has_room = false;
+        return true;
+    }
     changed_parts_[part_count_++] = of_part.changed;
     result.changed.include(of_part.changed);
     result.removed_voxels += of_part.removed_voxels;

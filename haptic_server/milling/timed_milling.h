@@ -26,7 +26,7 @@ struct MillingResult {
     uint32_t added_voxels = 0;    // rose to the iso-value or above
     bool shell_is_complete = true;
     bool is_cut_short = false;  // most_cells were not enough
-    bool has_room = true;       // false: there is no memory for the bricks to be changed, and nothing was
+    bool has_room = true;       // false: no memory for some bricks to be changed, and they were not
 };
 
 // Owns the scratch memory of one burr. Construction allocates; apply() is RT-safe (tick thread only).
@@ -49,9 +49,9 @@ class TimedMilling {
         size_t first_new;
         int count;
     };
-    void collectChanges(const VoxelVolume& volume, const LeafLattice& lattice, const Eigen::Vector3d& p_VB,
+    void collectChanges(VoxelVolume& volume, const LeafLattice& lattice, const Eigen::Vector3d& p_VB,
                         int direction, int amount, MillingResult& result) noexcept;
-    bool collectPart(const VoxelVolume& volume, const IndexBox& part, size_t offset, const BurrLimit& limit,
+    bool collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset, const BurrLimit& limit,
                      const Eigen::Vector3d& p_VB, int direction, int amount, MillingResult& result) noexcept;
     void collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset, const BurrPlane& burr,
                       int direction, MillingResult& result) noexcept;

@@ -13,7 +13,9 @@ constexpr double kRotationLength = 0.03;  // m
 constexpr double kSmallestReach = 1e-10;  // m: a shorter step is no step
 constexpr double kLeastMargin = 20e-6;    // m: what a hand moves in a millisecond when it works
 constexpr double kMotionGrowth = 2;       // of the reach from tick to tick
-constexpr int kMostHalvings = 4;
+constexpr int kMostCuts = 4;              // of a step that goes uphill
+// Of its length what is left by one cut: a step that goes deep into a hard wall needs short ones.
+constexpr double kLongestCut = 0.5, kShortestCut = 0.05;
 constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;
 // Rounding of the depths must not refuse a step: their share of the energy, some 10 roundings each.
 constexpr double kFloatNoise = 1e-6, kDoubleNoise = 1e-13;
@@ -41,6 +43,13 @@ double shareOf(double most, const Eigen::Vector3d& so_far, const Eigen::Vector3d
     return std::max(0.0, most - so_far.norm()) / step.norm();
 }
 
+// Of a step along which the energy first falls by `slope` per share, and after `share` of it has risen by
+// `rise`: where the parabola through all that is lowest.
+double shareAtMinimum(double slope, double share, double rise) noexcept {
+    const double at = slope * share * share / (2 * (rise + slope * share));
+    return std::clamp(at, kShortestCut * share, kLongestCut * share);
+}
+
 Vector6d between(const Pose& from, const Pose& to) noexcept {
     Vector6d step;
     step << to.position - from.position, logRotation(to.rotation * from.rotation.conjugate());
@@ -60,13 +69,16 @@ GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world
       dt_(dt),
       X_VW_(world.volume.geometry().X_WV.inverse()),
       field_(&world.tool.field(settings_)),
-      contact_(config.contact, std::min(kMostCandidates, config.most_point_tests / 2)),
-      relaxing_(config.coupling, dt) {}
+      contact_(config.contact, std::min(kMostCandidates, config.most_point_tests / 4)),
+      relaxing_(config.coupling, dt) {
+    setAccuracy(settings_);
+}
 
 void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
     settings_ = settings;
     level_ = levelOf(world_.shell, settings);
     field_ = &world_.tool.field(settings);
+    most_point_tests_ = size_t(double(config_.most_point_tests) / field_->testCost());
     contact_.forget();
 }
 
@@ -105,7 +117,7 @@ void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexce
                          level_,        settings_.patch_points, settings_.refined_points};
     out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin);
     out.candidates = uint32_t(contact_.candidateCount());
-    point_tests_ += contact_.candidateCount();
+    point_tests_ += contact_.takePointTests();
 }
 
 GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick) noexcept {
@@ -146,27 +158,31 @@ Vector6d GradientModel::limited(const State& state, Vector6d step, const Tick& t
     }
     const auto room = [&] { return contact_.margin() - reachOf(between(gathered_at_, state.X_VT)); };
     if (reachOf(step) <= room()) return step;
-    if (settings_.continuous_collision) {
+    if (settings_.continuous_collision && pointTestsLeft() > 0) {
         gather(state.X_VT, reachOf(step) * (1 + 1e-9), *tick.out);
-        point_tests_ += contact_.candidateCount();  // the sweep's
-        return contact_.advance(*field_, state.X_VT, step, trustRadius() / 2) * step;
+        const double share = contact_.advance(*field_, state.X_VT, step, trustRadius() / 2, pointTestsLeft());
+        point_tests_ += contact_.takePointTests();
+        return share * step;
     }
-    if (room() < trustRadius() / 2) gather(state.X_VT, trustRadius(), *tick.out);
+    if (room() < trustRadius() / 2 && pointTestsLeft() > 0) gather(state.X_VT, trustRadius(), *tick.out);
     if (reachOf(step) <= room()) return step;
     tick.out->is_motion_clamped = true;
-    return step * (room() / reachOf(step));
+    return step * std::max(0.0, room() / reachOf(step));
 }
 
-// Takes the step, or half of it, … as long as the energy falls. False: no such share; the state stays.
+// Takes the step, or a part of it for which the energy falls. False: no such share; the state stays.
 bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept {
     const double noise = settings_.precision == Precision::kDouble ? kDoubleNoise : kFloatNoise;
-    Vector6d share = step;
-    for (int n = 0; n <= kMostHalvings; ++n, share /= 2) {
-        if (isOverBudget()) break;
-        const State next = evaluate(moved(state.X_VT, share), tick);
-        if (!next.isFinite() || next.total.energy > state.total.energy * (1 + noise)) continue;
-        state = next;
-        return true;
+    const double slope = stacked(state.total.wrench).dot(step);
+    double share = 1;
+    for (int n = 0; n <= kMostCuts && (n == 0 || pointTestsLeft() > 0); ++n) {
+        const State next = evaluate(moved(state.X_VT, share * step), tick);
+        if (next.isFinite() && next.total.energy <= state.total.energy * (1 + noise)) {
+            state = next;
+            return true;
+        }
+        const double rise = next.total.energy - state.total.energy;
+        share = std::isfinite(rise) && slope > 0 ? shareAtMinimum(slope, share, rise) : kLongestCut * share;
     }
     return false;
 }
@@ -185,7 +201,7 @@ bool GradientModel::descend(State& state, const Tick& tick) noexcept {
             state = evaluate(state.X_VT, tick);  // the energy is that of other points now
         ++tick.out->iterations;
         const bool has_moved = moveDown(state, step, tick);
-        if (isOverBudget()) {
+        if (pointTestsLeft() == 0) {
             tick.out->has_contact_overflow = true;
             break;
         }
@@ -207,7 +223,7 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
     last_reach_ = reachOf(between(tick.start, state.X_VT));
     energy_ = state.total.energy;
     out.contacts = state.contacts;
-    out.point_tests = point_tests_;
+    out.budget_share = double(point_tests_) / double(most_point_tests_);
     out.max_penetration = state.max_depth;
     feel(state.X_VT, tick);
     return out;

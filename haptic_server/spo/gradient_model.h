@@ -14,9 +14,9 @@ struct GradientConfig {
     double max_speed = 0.5;            // m/s of the tool point
     double max_angular_speed = 4.189;  // rad/s
     double burr_radius = 1e-3;         // m; bounds the trust radius
-    // In a tick, about: one point's distance, energy and wrench at one pose. Half as many candidates have
-    // room.
-    size_t most_point_tests = 200'000;
+    // In a tick, about: one point's distance, energy and wrench at one pose. A quarter as many candidates
+    // have room.
+    size_t most_point_tests = 2'000'000;
 };
 
 class GradientModel final : public SpoModel {
@@ -56,7 +56,9 @@ class GradientModel final : public SpoModel {
     static void dropTraces(SpoStep& step) noexcept;
     double reachOf(const Vector6d& step) const noexcept;
     double trustRadius() const noexcept;
-    bool isOverBudget() const noexcept { return point_tests_ > config_.most_point_tests; }
+    size_t pointTestsLeft() const noexcept {
+        return point_tests_ < most_point_tests_ ? most_point_tests_ - point_tests_ : 0;
+    }
 
     GradientConfig config_;
     SpoWorld world_;
@@ -68,7 +70,8 @@ class GradientModel final : public SpoModel {
     GradientContact contact_;
     Pose gathered_at_;
     uint32_t gatherings_ = 0;
-    size_t point_tests_ = 0;  // in this tick
+    size_t most_point_tests_ = 0;  // with this field
+    size_t point_tests_ = 0;       // in this tick
     ContinuousRotation way_;
     RelaxingSpring relaxing_;
     double lambda_ = 0;      // Levenberg, share of the damping matrix

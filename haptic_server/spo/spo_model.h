@@ -24,7 +24,7 @@ struct SpoStep {
     uint32_t contacts = 0;
     uint32_t candidates = 0;  // points that were tested in each iteration
     uint32_t iterations = 0;
-    size_t point_tests = 0;          // what the tick's budget of them was spent on
+    double budget_share = 0;         // of the point tests that a tick may make
     double max_penetration = 0;      // m
     bool is_solved = true;           // false: singular or not finite; the tool kept its pose
     bool is_motion_clamped = false;  // a speed limit or the trust radius acted

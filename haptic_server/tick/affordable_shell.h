@@ -12,9 +12,8 @@ namespace bonemill {
 
 class AffordableShell {
   public:
-    // most_point_tests of a tick of dt seconds.
-    AffordableShell(size_t most_point_tests, double dt) noexcept
-        : most_point_tests_(double(most_point_tests)), ticks_of_quiet_(int(kQuiet / dt)) {}
+    // Ticks of dt seconds.
+    explicit AffordableShell(double dt) noexcept : ticks_of_quiet_(int(kQuiet / dt)) {}
 
     // After a tick at the factor `in_force`: the one to compute with, or to prepare. From a coarser level
     // than asked for it goes on to the next finer one when that could have been afforded twice over for a
@@ -23,8 +22,8 @@ class AffordableShell {
         if (step.has_contact_overflow) finest_ = nextCoarser(shell, in_force);
         if (finest_ <= asked_for) finest_ = 1;
         const double times = double(in_force) / nextFiner(shell, in_force);
-        const bool is_quiet = !step.has_contact_overflow && in_force == finest_ &&
-                              double(step.point_tests) * times * times < most_point_tests_ / 2;
+        const bool is_quiet =
+            !step.has_contact_overflow && in_force == finest_ && step.budget_share * times * times < 0.5;
         quiet_ = is_quiet ? quiet_ + 1 : 0;
         if (quiet_ > ticks_of_quiet_) {
             finest_ = nextFiner(shell, in_force);
@@ -50,7 +49,6 @@ class AffordableShell {
         return next;
     }
 
-    double most_point_tests_;
     int ticks_of_quiet_;
     int finest_ = 1;  // factor that can be afforded
     int quiet_ = 0;

@@ -42,7 +42,7 @@ HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const ToolMode
       thesis_(config.contact, config.coupling, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
       gradient_(config.gradient, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
       model_(&gradient_),
-      affordable_(config.gradient.most_point_tests, config.dt),
+      affordable_(config.dt),
       milling_(config.milling, bone.volume, config.burr_radius),
       X_VW_(bone.volume.geometry().X_WV.inverse()) {
     const AccuracySettings& settings = accuracy ? accuracy->chosen() : config.accuracy;

@@ -4,14 +4,15 @@
 
 namespace bonemill {
 namespace {
+constexpr int kVoxelsPerVersion = 4;  // a look at a leaf's version takes as long
 constexpr int kVoxelsLookedAtPerTick =
     32'768;  // eight leaves of 16³, some 30 µs; at least one leaf, however large
 }  // namespace
 
 VolumeReset::VolumeReset(const BoneModel& bone)
-    : original_(bone.volume), now_(size_t(bone.lattice.leafCells().x()) + 1 + kRowSlack), then_(now_.size()) {
-    original_.dropSpareBricks();
-}
+    : original_(bone.volume.withoutSpareBricks()),
+      now_(size_t(bone.lattice.leafCells().x()) + 1 + VoxelVolume::kReadSlack),
+      then_(now_.size()) {}
 
 void VolumeReset::startIfRequested() noexcept {
     if (!is_requested_.exchange(false, std::memory_order_relaxed)) return;
@@ -24,9 +25,14 @@ bool VolumeReset::restoreSome(BoneModel& bone) noexcept {
     bool shell_is_complete = true;
     for (int looked_at = 0; looked_at < kVoxelsLookedAtPerTick;) {
         // A version of 0 means that nothing near the leaf was ever written.
-        while (next_leaf_ < bone.lattice.leafCount() && bone.lattice.version(next_leaf_) == 0) ++next_leaf_;
+        for (; next_leaf_ < bone.lattice.leafCount() && bone.lattice.version(next_leaf_) == 0 &&
+               looked_at < kVoxelsLookedAtPerTick;
+             ++next_leaf_)
+            looked_at += kVoxelsPerVersion;
         is_running_ = next_leaf_ < bone.lattice.leafCount();
-        if (!is_running_ || restoreLeaf(bone, next_leaf_++, shell_is_complete)) break;
+        if (!is_running_ || looked_at >= kVoxelsLookedAtPerTick ||
+            restoreLeaf(bone, next_leaf_++, shell_is_complete))
+            break;
         looked_at += voxels_per_leaf;
     }
     return shell_is_complete;

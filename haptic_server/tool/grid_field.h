@@ -21,6 +21,7 @@ class GridField final : public ToolField {
     ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
     double distanceError() const noexcept override { return grid_.spacing() + kRounding; }
     double distanceBound(const Eigen::Vector3d& p_T) const noexcept override;
+    double testCost() const noexcept override { return 2; }
 
     const SdfGrid& grid() const noexcept { return grid_; }
 

@@ -212,4 +212,11 @@ double ShapeField::distanceBound(const Vector3d& p_T) const noexcept {
     return sample(p_T).distance;
 }
 
+double ShapeField::testCost() const noexcept {
+    constexpr double kRound = 0.5, kCone = 18;  // measured: cones are computed point by point
+    double cost = 0;
+    for (const Solid& solid : solids_) cost += solid.is_round ? kRound : kCone;
+    return std::max(1.0, cost);
+}
+
 }  // namespace bonemill

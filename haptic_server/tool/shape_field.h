@@ -23,6 +23,7 @@ class ShapeField final : public ToolField {
     ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
     double distanceError() const noexcept override { return kRounding; }
     double distanceBound(const Eigen::Vector3d& p_T) const noexcept override;
+    double testCost() const noexcept override;
 
   private:
     // Round: all points within `radius[0]` of the segment. Else a truncated cone with flat ends.

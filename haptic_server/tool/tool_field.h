@@ -50,6 +50,9 @@ class ToolField {
     // Never above the distance; anywhere.
     virtual double distanceBound(const Eigen::Vector3d& p_T) const noexcept = 0;
 
+    // How long a point's distance takes, in those of a tool of two round solids.
+    virtual double testCost() const noexcept = 0;
+
     // The distance is nowhere negative outside.
     const Eigen::AlignedBox3d& box() const noexcept { return box_; }
     // Radius of the thinnest part as far as known, m: deeper than that a point may lie nearer to the far

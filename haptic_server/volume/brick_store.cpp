@@ -27,6 +27,15 @@ void BrickStore::dropSpare() {
     pool_.shrink_to_fit();
 }
 
+BrickStore BrickStore::withoutSpare() const {
+    BrickStore copy(Eigen::Vector3i::Zero());
+    copy.bricks_ = bricks_;
+    copy.slots_ = slots_;
+    copy.pool_.assign(pool_.begin(), pool_.begin() + ptrdiff_t(used_ * kBrickSize));
+    copy.used_ = used_;
+    return copy;
+}
+
 void BrickStore::open(BrickId brick) noexcept {
     const Density density = *sharedDensity(brick);
     Density* contents = pool_.data() + used_ * kBrickSize;

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "haptic_server/kernels/brick_layout.h"
-#include "haptic_server/kernels/kernels.h"
 #include "haptic_server/volume/index_box.h"
 
 namespace bonemill {
@@ -65,6 +64,7 @@ class BrickStore {
     // At least so many spare ones, all their pages touched. Allocates; moves the data.
     void makeSpare(size_t count);
     void dropSpare();
+    BrickStore withoutSpare() const;
 
     // Gives a shared brick its own memory, with the same densities; needs a spare one. RT-safe; readers may
     // look meanwhile.
@@ -85,11 +85,14 @@ class BrickStore {
         return std::atomic_ref<uint32_t>(const_cast<uint32_t&>(slots_[brick]))
             .load(std::memory_order_acquire);
     }
-    void setPoolSize(size_t bricks) { pool_.resize(bricks * kBrickSize + kRowSlack); }
+    void setPoolSize(size_t bricks) {
+        pool_.reserve(bricks * kBrickSize);  // resize() alone would double it
+        pool_.resize(bricks * kBrickSize);
+    }
 
     Eigen::Vector3i bricks_;
     std::vector<uint32_t> slots_;  // per brick: where in the pool
-    std::vector<Density> pool_;    // and kRowSlack more that the kernels may read
+    std::vector<Density> pool_;
     size_t used_ = kSharedSlots;
 };
 

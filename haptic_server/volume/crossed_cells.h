@@ -11,7 +11,7 @@
 
 namespace bonemill {
 
-// RT-safe but for the construction; one thread at a time.
+// RT-safe but for the construction, as far as the visitor is; one thread at a time.
 class CrossedCells {
   public:
     // For boxes of up to `most_cells` per axis.
@@ -25,7 +25,7 @@ class CrossedCells {
     // visit_run) calls visit_run(densities, count) for the runs that make up this row of cells.x() + 1
     // voxels.
     template <class Runs, class Visit>
-    void find(const Eigen::Vector3i& cells, Density iso, Runs&& runs, Visit&& visit) noexcept {
+    void find(const Eigen::Vector3i& cells, Density iso, Runs&& runs, Visit&& visit) {
         classifyPlane(cells, 0, iso, runs);
         for (int k = 0; k < cells.z(); ++k) {
             classifyPlane(cells, k + 1, iso, runs);
@@ -61,7 +61,7 @@ class CrossedCells {
     }
 
     template <class Visit>
-    void visitRow(int cells, Visit&& visit) noexcept {
+    void visitRow(int cells, Visit&& visit) {
         for (int i = 0; i < cells;) {
             // Cells i .. i + 6 lie between the columns i .. i + 7; columns beyond the row repeat its last.
             uint64_t word;

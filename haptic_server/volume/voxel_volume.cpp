@@ -7,10 +7,13 @@
 namespace bonemill {
 
 VoxelVolume::VoxelVolume(const VolumeGeometry& geometry, Density iso)
+    : VoxelVolume(geometry, iso, BrickStore(geometry.dims.array() + 2)) {}
+
+VoxelVolume::VoxelVolume(const VolumeGeometry& geometry, Density iso, BrickStore bricks)
     : geometry_(geometry),
       iso_(iso),
       inverse_spacing_(geometry.spacing.cwiseInverse().cast<float>()),
-      bricks_(geometry.dims.array() + 2) {}
+      bricks_(std::move(bricks)) {}
 
 void VoxelVolume::readRow(const Eigen::Vector3i& first, int count, Density* out) const noexcept {
     forEachRun(first, count, [&](size_t offset, int n) {
@@ -34,13 +37,17 @@ IndexBox VoxelVolume::bricksHolding(const IndexBox& voxels) const noexcept {
     return box;
 }
 
-bool VoxelVolume::hasRoomFor(const IndexBox& voxels) const noexcept {
-    const IndexBox box = bricksHolding(voxels);
-    size_t shared = 0;
-    forEachIndex(box, [&](const Eigen::Vector3i& b) {
-        shared += bricks_.sharedDensity(bricks_.brickAt(b.x(), b.y(), b.z())).has_value();
+bool VoxelVolume::openBricksIn(const IndexBox& voxels) noexcept {
+    bool has_room = true;
+    forEachIndex(bricksHolding(voxels), [&](const Eigen::Vector3i& b) {
+        const BrickId brick = bricks_.brickAt(b.x(), b.y(), b.z());
+        if (!bricks_.sharedDensity(brick)) return;
+        if (bricks_.spareCount() > 0)
+            bricks_.open(brick);
+        else
+            has_room = false;
     });
-    return shared <= bricks_.spareCount();
+    return has_room;
 }
 
 void VoxelVolume::writeRow(const Eigen::Vector3i& first, int count, const Density* densities) noexcept {
@@ -62,11 +69,12 @@ void VoxelVolume::writeRow(const Eigen::Vector3i& first, int count, const Densit
         }
 }
 
-// Opens the brick unless it holds these densities as it is; false then.
+// Opens the brick unless it holds these densities as it is; false then, and without a spare one.
 bool VoxelVolume::hasOwn(BrickId brick, const Density* densities, int count) noexcept {
     const auto shared = bricks_.sharedDensity(brick);
     if (!shared) return true;
     if (std::all_of(densities, densities + count, [=](Density d) { return d == *shared; })) return false;
+    if (bricks_.spareCount() == 0) return false;
     bricks_.open(brick);
     return true;
 }

@@ -50,8 +50,10 @@ class VoxelVolume {
     // Plain densities by offset, which the compiler can read many at a time. For the owner of the volume only
     // (tick thread): nobody else writes, so its reads race with nothing. Other threads use at().
     const Density* ownerData() const noexcept { return bricks_.data(); }
-    // `count` voxels along x, to `out`, and up to kRowSlack more behind them. Owner only, RT-safe.
+    // `count` voxels along x, to `out`, and up to kReadSlack more behind them. Owner only, RT-safe.
     void readRow(const Eigen::Vector3i& first, int count, Density* out) const noexcept;
+    static constexpr int kMostInBrick = kBrickCells + kBrickHigh;  // of a row, from its own first cell on
+    static constexpr int kReadSlack = kMostInBrick - 1;
 
     // Calls visit(offset, n) for runs that make up this row of voxels, each in one brick: n voxels from
     // `offset` on. RT-safe, any thread.
@@ -67,13 +69,15 @@ class VoxelVolume {
     // Of all that is stored around this cell, if its brick has no memory of its own. RT-safe, any thread.
     std::optional<Density> uniformDensity(const Eigen::Vector3i& cell) const noexcept;
 
-    // `count` voxels along x. Owner only, RT-safe. There must be room for what it changes.
+    // `count` voxels along x. Owner only, RT-safe. There must be spare bricks for those that it opens: none
+    // for voxels that were written before.
     void writeRow(const Eigen::Vector3i& first, int count, const Density* densities) noexcept;
-    // Is there memory for any change in this box of voxels? RT-safe.
-    bool hasRoomFor(const IndexBox& voxels) const noexcept;
+    // Gives memory to all bricks that a change in this box of voxels may need. Owner only, RT-safe. False:
+    // there are not enough spare ones.
+    bool openBricksIn(const IndexBox& voxels) noexcept;
     // Memory for bricks to be changed that now share theirs. Allocates.
     void makeSpareBricks(size_t count) { bricks_.makeSpare(count); }
-    void dropSpareBricks() { bricks_.dropSpare(); }
+    VoxelVolume withoutSpareBricks() const { return {geometry_, iso_, bricks_.withoutSpare()}; }
 
     // Makes room as it needs: allocates, not RT-safe, no other thread may look.
     void set(int i, int j, int k, Density density);
@@ -86,8 +90,7 @@ class VoxelVolume {
     Eigen::Vector3f gradient(int i, int j, int k) const noexcept;
 
   private:
-    static constexpr int kMostInBrick = kBrickCells + kBrickHigh;  // of a row, from its own first cell on
-    static_assert(kMostInBrick <= kRowSlack + 1);
+    VoxelVolume(const VolumeGeometry& geometry, Density iso, BrickStore bricks);
     // How many voxels from here on are among the first `most` of a brick, from its first cell on.
     static int stretch(int index, int last, int most) noexcept {
         return std::min(most - ((index + 1) & (kBrickCells - 1)), last - index + 1);

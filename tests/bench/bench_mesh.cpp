@@ -79,7 +79,7 @@ LatencyHistogram meshCuts(BoneModel& bone, size_t& leaves) {
 
 void writeRaw(const VoxelVolume& volume, const std::string& path) {
     std::ofstream file(path, std::ios::binary);
-    std::vector<Density> row(size_t(volume.dims().x()) + kRowSlack);
+    std::vector<Density> row(size_t(volume.dims().x()) + VoxelVolume::kReadSlack);
     for (int k = 0; k < volume.dims().z(); ++k)
         for (int j = 0; j < volume.dims().y(); ++j) {
             volume.readRow({0, j, k}, volume.dims().x(), row.data());

@@ -8,8 +8,8 @@
 namespace bonemill {
 
 // Densities in bricks that hold no bone, and whose neighbours hold none, become air: soft tissue and noise at
-// least 16 voxels away from all bone, which no surface, gradient or burr ever sees. Their memory is given
-// back.
+// least 16 voxels away from all bone, which no surface and no gradient ever sees. A burr that adds bone there
+// starts from air. Their memory is given back.
 void clearFarFromBone(VoxelVolume& volume);
 
 }  // namespace bonemill

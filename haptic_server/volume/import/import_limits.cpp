@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "common/config/user_error.h"
+#include "haptic_server/kernels/brick_layout.h"
 
 namespace bonemill {
 namespace {
@@ -41,8 +42,10 @@ void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel
                             " voxels, more than 2^31; crop or resample it");
     }
     // Samples move from the reader's process to this one and on into densities; what was moved is given back.
-    constexpr uint64_t kDensityBytes = 2;
-    const uint64_t needed = voxels * (bytes_per_voxel + kDensityBytes);
+    // At worst every brick takes memory.
+    uint64_t bricks = 1;
+    for (const uint64_t n : dims) bricks *= (n + 2 + kBrickCells - 1) / kBrickCells;
+    const uint64_t needed = voxels * bytes_per_voxel + bricks * kBrickSize * sizeof(uint16_t);
     const uint64_t available = availableMemory();
     if (available != 0 && needed > available)
         throw UserError(file + ": " + sizeText(dims) + " voxels need " + std::to_string(needed >> 20) +

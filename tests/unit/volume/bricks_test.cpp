@@ -59,11 +59,11 @@ TEST(Bricks, CopiesAgreeAfterWritesOfAnyLength) {
         const Eigen::Vector3i first(below(50), below(35), below(33));
         std::vector<Density> row(size_t(1 + below(50 - first.x())));
         for (Density& d : row) d = below(3) ? Density(random()) : below(2) ? 0 : kMaxDensity;
-        ASSERT_TRUE(volume.hasRoomFor({first, first + Eigen::Vector3i(int(row.size()) - 1, 0, 0)}));
+        ASSERT_TRUE(volume.openBricksIn({first, first + Eigen::Vector3i(int(row.size()) - 1, 0, 0)}));
         volume.writeRow(first, int(row.size()), row.data());
         for (int i = 0; i < int(row.size()); ++i)
             twin.set(first.x() + i, first.y(), first.z(), row[size_t(i)]);
-        std::vector<Density> back(row.size() + kRowSlack);
+        std::vector<Density> back(row.size() + VoxelVolume::kReadSlack);
         volume.readRow(first, int(row.size()), back.data());
         back.resize(row.size());
         ASSERT_EQ(back, row);
@@ -109,18 +109,22 @@ TEST(Bricks, AreSharedAgainWhenTheyAreUniform) {
                  [&](int i, int j, int k) { ASSERT_EQ(volume.at(i, j, k), unshared.at(i, j, k)); });
 }
 
-TEST(Bricks, ThereIsRoomForAsManyAsAreSpare) {
+TEST(Bricks, AChangeOpensTheSharedOnesThatHoldIt) {
     VoxelVolume volume(boxGeometry({70, 20, 20}), kIso);
     volume.fill([](int, int, int) { return Density(0); });
-    EXPECT_FALSE(volume.hasRoomFor({{5, 5, 5}, {5, 5, 5}}));
+    EXPECT_FALSE(volume.openBricksIn({{5, 5, 5}, {5, 5, 5}}));
     volume.makeSpareBricks(1);
-    EXPECT_TRUE(volume.hasRoomFor({{5, 5, 5}, {5, 5, 5}}));
-    EXPECT_FALSE(volume.hasRoomFor({{5, 5, 5}, {25, 5, 5}}));
-    EXPECT_FALSE(volume.hasRoomFor({{15, 5, 5}, {15, 5, 5}}));  // the next brick has a copy
     const Density density = 9;
     volume.writeRow({5, 5, 5}, 1, &density);
-    EXPECT_FALSE(volume.hasRoomFor({{25, 5, 5}, {25, 5, 5}}));
-    EXPECT_TRUE(volume.hasRoomFor({{6, 6, 6}, {7, 7, 7}}));  // has its own now
+    EXPECT_EQ(volume.bricks().spareCount(), 0u);
+    EXPECT_TRUE(volume.openBricksIn({{6, 6, 6}, {7, 7, 7}}));     // has its own now
+    EXPECT_FALSE(volume.openBricksIn({{15, 5, 5}, {15, 5, 5}}));  // the next brick has a copy
+    volume.writeRow({25, 5, 5}, 1, &density);                     // no spare one: nothing happens
+    EXPECT_EQ(volume.at(25, 5, 5), 0);
+    expectCopiesAgree(volume);
+    const VoxelVolume copy = volume.withoutSpareBricks();
+    EXPECT_EQ(copy.at(5, 5, 5), 9);
+    expectCopiesAgree(copy);
 }
 
 TEST(Bricks, PartsMakeUpTheBoxAndLieInOneBrick) {
