@@ -31,10 +31,11 @@ struct FieldSample {
 // `cell` is in -1 .. dims-1. Plain reads: for the owner of the volume (tick thread).
 inline CellCorners readCorners(const VoxelVolume& volume, const Eigen::Vector3i& cell) noexcept {
     const Density* d = volume.ownerData() + volume.offset(cell.x(), cell.y(), cell.z());
-    constexpr size_t y = VoxelVolume::kStrideY, z = VoxelVolume::kStrideZ;
+    constexpr size_t kY = VoxelVolume::kStrideY, kZ = VoxelVolume::kStrideZ;
     const int iso = volume.iso();
-    return {{float(d[0] - iso), float(d[1] - iso), float(d[y] - iso), float(d[y + 1] - iso),
-             float(d[z] - iso), float(d[z + 1] - iso), float(d[z + y] - iso), float(d[z + y + 1] - iso)}};
+    return {{float(d[0] - iso), float(d[1] - iso), float(d[kY] - iso), float(d[kY + 1] - iso),
+             float(d[kZ] - iso), float(d[kZ + 1] - iso), float(d[kZ + kY] - iso),
+             float(d[kZ + kY + 1] - iso)}};
 }
 
 // At `t` in cell steps from corner 0.

@@ -16,14 +16,14 @@ std::string number(double value) {
     return text;
 }
 
-// Calls beforeReading(k) before it reads a value of slice k.
+// Calls before_reading(k) before it reads a value of slice k.
 template <class BeforeReading>
 void fill(VoxelVolume& volume, const RawValues& values, const DensityMapping& mapping,
-          BeforeReading&& beforeReading) {
+          BeforeReading&& before_reading) {
     const size_t row = size_t(volume.dims().x()), slice = row * size_t(volume.dims().y());
     values.visit([&](auto samples) {
         volume.fill([&](int i, int j, int k) {
-            beforeReading(k);
+            before_reading(k);
             return mapping.density(samples[size_t(i) + row * size_t(j) + slice * size_t(k)]);
         });
     });
