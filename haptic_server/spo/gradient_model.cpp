@@ -10,7 +10,7 @@ namespace {
 // Rotations are measured in this length so that the matrix's rows have one unit; the handle's and the tool's
 // size.
 constexpr double kRotationLength = 0.03;  // m
-constexpr double kSmallestReach = 1e-10;  // m: a shorter step is no step
+constexpr double kSmallestReach = 1e-9;  // m: a shorter step is no step
 constexpr double kLeastMargin = 20e-6;    // m: what a hand moves in a millisecond when it works
 constexpr double kMotionGrowth = 2;       // of the reach from tick to tick
 constexpr int kMostCuts = 4;              // of a step that goes uphill
@@ -87,6 +87,7 @@ void GradientModel::restart() noexcept {
     relaxing_.forget();
     contact_.forget();
     lambda_ = 0;
+    last_motion_.setZero();
     last_reach_ = 0;
     last_wrench_hand_ = {};
 }
@@ -117,6 +118,7 @@ void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexce
                          level_,        settings_.patch_points, settings_.refined_points};
     out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin);
     out.candidates = uint32_t(contact_.candidateCount());
+
     point_tests_ += contact_.takePointTests();
 }
 
@@ -129,6 +131,7 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
     state.total += couplingEnergy(config_.coupling, X_VT, tick.device, way_);
     state.total += relaxing_.energy(X_VT, tick.device);
     state.total += dampingEnergy(config_.coupling, X_VT, tick.start, dt_);
+
     return state;
 }
 
@@ -187,6 +190,14 @@ bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tic
     return false;
 }
 
+// A tool that has cut itself free does not feel the bone ahead of it, and its Newton step goes deep into it: it
+// does better to begin with the last tick's motion. That is within the margin, and too short to tunnel.
+void GradientModel::goOn(State& state, const Tick& tick) noexcept {
+    if (!(last_reach_ > kSmallestReach && last_reach_ <= trustRadius() / 2)) return;
+    const bool is_downhill = stacked(state.total.wrench).dot(last_motion_) > 0;
+    if (is_downhill && last_reach_ < reachOf(newtonStep(state))) moveDown(state, last_motion_, tick);
+}
+
 // Gauss-Newton steps as long as they help and there is time. False: not finite, or a matrix without factors;
 // the state is the last good one.
 bool GradientModel::descend(State& state, const Tick& tick) noexcept {
@@ -219,8 +230,10 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
     // What the last tick moved is a good guess of what this one will; a longer step gathers anew.
     gather(tick.start, std::min(trustRadius(), std::max(kLeastMargin, kMotionGrowth * last_reach_)), out);
     State state = evaluate(tick.start, tick);
+    goOn(state, tick);
     out.is_solved = descend(state, tick);
-    last_reach_ = reachOf(between(tick.start, state.X_VT));
+    last_motion_ = between(tick.start, state.X_VT);
+    last_reach_ = reachOf(last_motion_);
     energy_ = state.total.energy;
     out.contacts = state.contacts;
     out.budget_share = double(point_tests_) / double(most_point_tests_);

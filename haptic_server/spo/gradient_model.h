@@ -48,6 +48,7 @@ class GradientModel final : public SpoModel {
     };
     void gather(const Pose& X_VT, double margin, SpoStep& out) noexcept;
     State evaluate(const Pose& X_VT, const Tick& tick) noexcept;
+    void goOn(State& state, const Tick& tick) noexcept;
     bool descend(State& state, const Tick& tick) noexcept;
     void feel(const Pose& X_VT, const Tick& tick) noexcept;
     Vector6d newtonStep(const State& state) const noexcept;
@@ -75,7 +76,8 @@ class GradientModel final : public SpoModel {
     ContinuousRotation way_;
     RelaxingSpring relaxing_;
     double lambda_ = 0;      // Levenberg, share of the damping matrix
-    double last_reach_ = 0;  // m, of the last tick's motion
+    Vector6d last_motion_ = Vector6d::Zero();  // of the last tick, V
+    double last_reach_ = 0;                    // m, of that
     double energy_ = 0;
     Wrench last_wrench_hand_;
 };
