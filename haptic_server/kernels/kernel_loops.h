@@ -22,7 +22,6 @@ const Kernels kTable = {
     .move_onto_surface = moveOntoSurface,
     .least_scaled = leastScaled,
     .range_of_rows = rangeOfRows,
-    .at_least = atLeast,
-    .join_rows = joinRows};
+    .cell_sides = cellSides};
 
 }  // namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE

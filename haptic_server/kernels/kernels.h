@@ -109,6 +109,17 @@ struct CellProjections {
     int* is_found;  // 0: it left the cell or found no way
 };
 
+// Voxels in memory, x fastest and side by side.
+struct VoxelBox {
+    const uint16_t* first;
+    size_t stride_y, stride_z;
+};
+// Cells whose sides are looked at together: the bytes of a word.
+inline constexpr int kCellsAtOnce = 8;
+constexpr size_t cellSidesRow(int columns) {
+    return size_t(columns + kCellsAtOnce + kCellLanes - 1) / kCellLanes * kCellLanes;
+}
+
 // The voxels in their bricks (brick_layout.h), for kernels that look at any of them. Readable: -1 .. dims on
 // each axis.
 struct DensityView {
@@ -154,11 +165,10 @@ struct Kernels {
     void (*range_of_rows)(const uint16_t* row, int count, size_t stride, int rows, uint16_t& least,
                           uint16_t& largest);
 
-    // out[i] = row[i] >= iso, 0 or 1.
-    void (*at_least)(const uint16_t* row, int count, uint16_t iso, uint8_t* out);
-    // out = a + 4 b + 16 c + 64 d.
-    void (*join_rows)(const uint8_t* a, const uint8_t* b, const uint8_t* c, const uint8_t* d, int count,
-                      uint8_t* out);
+    // Of each column of a layer of cells: which of its four voxels are iso or more, bits 0, 2, 4 and 6 for
+    // (y, z), (y + 1, z), (y, z + 1) and (y + 1, z + 1). cellSidesRow() bytes for each of `rows` rows; what
+    // follows the last column repeats it. Reads up to kCellLanes - 1 voxels beyond each row.
+    void (*cell_sides)(const VoxelBox& box, int columns, int rows, uint16_t iso, uint8_t* out);
 
     template <class Scalar>
     const PointKernels<Scalar>& points() const noexcept {

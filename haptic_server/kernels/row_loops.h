@@ -77,13 +77,24 @@ MilledPlane millPlane(const BurrPlane& burr, const uint16_t* first, int count, i
     return plane;
 }
 
-void atLeast(const uint16_t* __restrict row, int count, uint16_t iso, uint8_t* __restrict out) {
-    for (int i = 0; i < count; ++i) out[i] = row[i] >= iso;
-}
-
-void joinRows(const uint8_t* __restrict a, const uint8_t* __restrict b, const uint8_t* __restrict c,
-              const uint8_t* __restrict d, int count, uint8_t* __restrict out) {
-    for (int i = 0; i < count; ++i) out[i] = uint8_t(a[i] + 4 * b[i] + 16 * c[i] + 64 * d[i]);
+void cellSides(const VoxelBox& box, int columns, int rows, uint16_t iso, uint8_t* out) {
+    using Bytes = uint8_t __attribute__((vector_size(kWideWords)));
+    const size_t row_size = cellSidesRow(columns);
+    for (int r = 0; r < rows; ++r, out += row_size) {
+        const uint16_t* row = box.first + box.stride_y * size_t(r);
+        for (int i = 0; i < columns; i += kWideWords) {
+            WideWords a, b, c, d;
+            loadWords(row + i, a);
+            loadWords(row + i + box.stride_y, b);
+            loadWords(row + i + box.stride_z, c);
+            loadWords(row + i + box.stride_y + box.stride_z, d);
+            const WideWords low = (WideWords(a >= iso) & 1) | (WideWords(b >= iso) & 4);
+            const WideWords high = (WideWords(c >= iso) & 16) | (WideWords(d >= iso) & 64);
+            const Bytes bytes = __builtin_convertvector(low | high, Bytes);
+            __builtin_memcpy(out + i, &bytes, sizeof bytes);
+        }
+        __builtin_memset(out + columns, out[columns - 1], kCellsAtOnce);
+    }
 }
 
 void rangeOfRows(const uint16_t* row, int count, size_t stride, int rows, uint16_t& low, uint16_t& high) {

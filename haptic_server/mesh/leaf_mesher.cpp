@@ -55,7 +55,7 @@ void LeafMesher::readVoxels(const IndexBox& cells) {
     cells_ = cells.max - cells.min + Eigen::Vector3i::Ones();
     stride_[1] = size_t(cells_.x()) + 3;
     stride_[2] = stride_[1] * (size_t(cells_.y()) + 3);
-    density_.resize(stride_[2] * (size_t(cells_.z()) + 3));
+    density_.resize(stride_[2] * (size_t(cells_.z()) + 3) + kCellLanes);
     const IndexBox voxels = IndexBox{cells.min.array() - 1, cells.max.array() + 2}.clamped(
         Eigen::Vector3i::Constant(-1), volume_.dims());
     volume_.forEachPart(voxels, [&](const IndexBox& part, size_t from) {
@@ -83,14 +83,10 @@ bool LeafMesher::hasSurface() const noexcept {
 void LeafMesher::meshCells() {
     if (!hasSurface()) return;
     edge_vertex_.assign(3 * density_.size(), kNoVertex);
-    crossed_.find(
-        cells_, volume_.iso(),
-        [&](int j, int k, auto&& visit_run) {
-            visit_run(density_.data() + cornerIndex({0, j, k}), cells_.x() + 1);
-        },
-        [&](int i, int j, int k, int inside) {
-            emitCell(inside, {i, j, k});
-        });
+    const VoxelBox corners{density_.data() + cornerIndex({0, 0, 0}), stride_[1], stride_[2]};
+    crossed_.find(corners, cells_, volume_.iso(), [&](int i, int j, int k, int inside) {
+        emitCell(inside, {i, j, k});
+    });
 }
 
 void LeafMesher::emitCell(int config, const Eigen::Vector3i& cell) {

@@ -10,7 +10,7 @@ namespace {
 // Rotations are measured in this length so that the matrix's rows have one unit; the handle's and the tool's
 // size.
 constexpr double kRotationLength = 0.03;  // m
-constexpr double kSmallestReach = 1e-9;  // m: a shorter step is no step
+constexpr double kSmallestReach = 1e-9;   // m: a shorter step is no step
 constexpr double kLeastMargin = 20e-6;    // m: what a hand moves in a millisecond when it works
 constexpr double kMotionGrowth = 2;       // of the reach from tick to tick
 constexpr int kMostCuts = 4;              // of a step that goes uphill
@@ -190,8 +190,8 @@ bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tic
     return false;
 }
 
-// A tool that has cut itself free does not feel the bone ahead of it, and its Newton step goes deep into it: it
-// does better to begin with the last tick's motion. That is within the margin, and too short to tunnel.
+// A tool that has cut itself free does not feel the bone ahead of it, and its Newton step goes deep into it:
+// it does better to begin with the last tick's motion. That is within the margin, and too short to tunnel.
 void GradientModel::goOn(State& state, const Tick& tick) noexcept {
     if (!(last_reach_ > kSmallestReach && last_reach_ <= trustRadius() / 2)) return;
     const bool is_downhill = stacked(state.total.wrench).dot(last_motion_) > 0;

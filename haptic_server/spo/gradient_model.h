@@ -75,7 +75,7 @@ class GradientModel final : public SpoModel {
     size_t point_tests_ = 0;       // in this tick
     ContinuousRotation way_;
     RelaxingSpring relaxing_;
-    double lambda_ = 0;      // Levenberg, share of the damping matrix
+    double lambda_ = 0;                        // Levenberg, share of the damping matrix
     Vector6d last_motion_ = Vector6d::Zero();  // of the last tick, V
     double last_reach_ = 0;                    // m, of that
     double energy_ = 0;

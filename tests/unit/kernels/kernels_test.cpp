@@ -221,20 +221,25 @@ TEST_P(EveryLevel, LeastScaledAndRanges) {
     }
 }
 
-TEST_P(EveryLevel, RowsAgainstIso) {
+TEST_P(EveryLevel, SidesOfALayerOfCells) {
+    constexpr uint16_t iso = 30000;
     for (int round = 0; round < 200; ++round) {
-        const int n = 1 + below(70);
-        std::vector<uint16_t> row(static_cast<size_t>(n));
-        std::vector<uint8_t> inside(row.size()), bits[4], joined(row.size());
-        for (uint16_t& d : row) d = uint16_t(29990 + below(20));
-        ours().at_least(row.data(), n, 30000, inside.data());
-        for (auto& b : bits) b.resize(row.size());
-        for (auto& b : bits)
-            for (uint8_t& bit : b) bit = uint8_t(below(2));
-        ours().join_rows(bits[0].data(), bits[1].data(), bits[2].data(), bits[3].data(), n, joined.data());
-        for (size_t i = 0; i < row.size(); ++i) {
-            EXPECT_EQ(inside[i], row[i] >= 30000 ? 1 : 0);
-            EXPECT_EQ(joined[i], bits[0][i] | bits[1][i] << 2 | bits[2][i] << 4 | bits[3][i] << 6);
+        const int columns = 2 + below(40), rows = 1 + below(6);
+        const size_t stride_y = size_t(columns + below(4)), stride_z = stride_y * size_t(rows + 1);
+        std::vector<uint16_t> voxels(2 * stride_z + kCellLanes);
+        for (uint16_t& d : voxels) d = uint16_t(iso - 10 + below(20));
+        const size_t row_size = cellSidesRow(columns);
+        std::vector<uint8_t> sides(row_size * size_t(rows));
+        ours().cell_sides({voxels.data(), stride_y, stride_z}, columns, rows, iso, sides.data());
+        for (int r = 0; r < rows; ++r) {
+            const uint8_t* row = sides.data() + row_size * size_t(r);
+            for (int i = 0; i < columns; ++i) {
+                const uint16_t* v = voxels.data() + stride_y * size_t(r) + i;
+                const int expected = (v[0] >= iso) | (v[stride_y] >= iso) << 2 | (v[stride_z] >= iso) << 4 |
+                                     (v[stride_y + stride_z] >= iso) << 6;
+                EXPECT_EQ(row[i], expected);
+            }
+            for (int i = 0; i < kCellsAtOnce; ++i) EXPECT_EQ(row[columns + i], row[columns - 1]);
         }
     }
 }
