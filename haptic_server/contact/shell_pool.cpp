@@ -60,6 +60,10 @@ void ShellPool::addBlocks(size_t count) {
 bool ShellPool::replace(List& list, const IndexBox& keys, std::span<const ShellPoint> fresh) noexcept {
     if (list.count == 0 && fresh.empty()) return true;
     const Place place = firstAtOrAbove(list, packShellKey(keys.min));
+    if (hasSameKeys(list, place, keys, fresh)) {
+        overwrite(list, place, fresh);
+        return true;
+    }
     const uint32_t replaced = merge(list, place, keys, fresh);
     // As many as before: what follows stays where it is.
     const uint32_t count = list.count - replaced + merged_size_;
@@ -76,6 +80,42 @@ ShellPool::Place ShellPool::firstAtOrAbove(const List& list, uint32_t key) const
     while (list.count - place.before > kCapacity && blocks_[place.block].key[kCapacity - 1] < key)
         place = {blocks_[place.block].next, place.block, place.before + kCapacity};
     return place;
+}
+
+// Of the list's points from `from` on: are those with keys in the box the fresh ones' keys?
+bool ShellPool::hasSameKeys(const List& list, const Place& from, const IndexBox& keys,
+                            std::span<const ShellPoint> fresh) const noexcept {
+    const uint32_t last_key = packShellKey(keys.max);
+    size_t same = 0;
+    uint32_t block = from.block;
+    for (uint32_t before = from.before; before < list.count; before += kCapacity) {
+        const ShellBlock& b = blocks_[block];
+        const uint32_t count = std::min(kCapacity, list.count - before);
+        for (uint32_t i = 0; i < count; ++i) {
+            if (b.key[i] > last_key) return same == fresh.size();
+            if (same < fresh.size() && b.key[i] == fresh[same].key)
+                ++same;
+            else if (isInside(b.key[i], keys))
+                return false;
+        }
+        block = b.next;
+    }
+    return same == fresh.size();
+}
+
+// The fresh points take the places of those with their keys.
+void ShellPool::overwrite(const List& list, const Place& from, std::span<const ShellPoint> fresh) noexcept {
+    size_t next = 0;
+    uint32_t block = from.block;
+    for (uint32_t before = from.before; next < fresh.size(); before += kCapacity) {
+        ShellBlock& b = blocks_[block];
+        const uint32_t count = std::min(kCapacity, list.count - before);
+        const size_t first = next;
+        for (uint32_t i = 0; i < count && next < fresh.size(); ++i)
+            if (b.key[i] == fresh[next].key) put(fresh[next++], b, i);
+        if (next > first) setBounds(b, count);
+        block = b.next;
+    }
 }
 
 // Fills merged_ with what replaces the list's points from `from` on; returns how many those are. Ends early

@@ -66,6 +66,9 @@ class ShellPool {
         uint32_t before;
     };
     Place firstAtOrAbove(const List& list, uint32_t key) const noexcept;
+    bool hasSameKeys(const List& list, const Place& from, const IndexBox& keys,
+                     std::span<const ShellPoint> fresh) const noexcept;
+    void overwrite(const List& list, const Place& from, std::span<const ShellPoint> fresh) noexcept;
     uint32_t merge(const List& list, const Place& from, const IndexBox& keys,
                    std::span<const ShellPoint> fresh) noexcept;
     void write(List& list, Place to) noexcept;

@@ -20,10 +20,11 @@ struct Spring {
 
 Spring springAt(double k, double most, double s) noexcept {
     const double t = k * s / most;
-    const double pull = most * std::tanh(t);
-    const double log_cosh = t + std::log1p(std::exp(-2 * t)) - M_LN2;
-    const double sech = 1 / std::cosh(std::min(t, 300.0));
-    return {most * most / k * log_cosh, pull, k * sech * sech, s > kSmallest ? pull / s : k};
+    const double below = -std::expm1(-2 * t), e = 1 - below;  // e^(-2t)
+    const double tanh = below / (1 + e), sech_squared = 4 * e / ((1 + e) * (1 + e));
+    const double log_cosh = t + std::log1p(e) - M_LN2;
+    const double pull = most * tanh;
+    return {most * most / k * log_cosh, pull, k * sech_squared, s > kSmallest ? pull / s : k};
 }
 
 // along uuᵀ + across (I - uuᵀ), neither below the floor.

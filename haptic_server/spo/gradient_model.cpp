@@ -142,10 +142,10 @@ Vector6d GradientModel::newtonStep(const State& state) const noexcept {
     K.diagonal().head<3>().array() += lambda_ * config_.coupling.translation_stiffness;
     K.diagonal().tail<3>().array() +=
         lambda_ * config_.coupling.rotation_stiffness / (kRotationLength * kRotationLength);
-    const Eigen::LDLT<Matrix6d> ldlt(K);
-    if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0)) return Vector6d::Zero();
+    const Eigen::LLT<Matrix6d> factors(K);
+    if (factors.info() != Eigen::Success) return Vector6d::Zero();
     const Vector6d scaled_wrench = scale.cwiseProduct(stacked(state.total.wrench));
-    const Vector6d step = scale.cwiseProduct(ldlt.solve(scaled_wrench));
+    const Vector6d step = scale.cwiseProduct(factors.solve(scaled_wrench));
     return step.allFinite() ? step : Vector6d::Zero();
 }
 
