@@ -71,7 +71,7 @@ void addLoopCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("loop", "the tooth's corridor in real time, beside a bare timer");
     command->add_option("--rate-hz", o->rate_hz)->check(CLI::Range(100.0, 20000.0));
     command->add_option("--seconds", o->seconds, "of each of the two")->check(CLI::Range(1.0, 3600.0));
-    command->add_option("--json", o->json, "write the figures to FILE, or - for stdout");
+    addJsonOption(*command, o->json);
     command->callback([o] { run(o->rate_hz, o->seconds, o->json); });
 }
 

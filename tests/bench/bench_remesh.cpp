@@ -126,7 +126,7 @@ void addRemeshCommand(CLI::App& app) {
     command->add_option("--rate-hz", o->rate_hz)->check(CLI::Range(100.0, 20000.0));
     command->add_option("--seconds", o->seconds)->check(CLI::Range(1.0, 3600.0));
     command->add_option("--leaf-cells", o->leaf_cells, "cells per edge of a leaf")->check(CLI::Range(4, 128));
-    command->add_option("--json", o->json, "write the figures to FILE, or - for stdout");
+    addJsonOption(*command, o->json);
     command->callback([o] { run(*o); });
 }
 

@@ -104,7 +104,7 @@ void addTickCommand(CLI::App& app) {
     command->add_option("--ticks", o->tick_case.ticks)->check(CLI::Range(1000, 1'000'000));
     command->add_option("--runs", o->runs, "repeat, and take each figure's median")->check(CLI::Range(1, 99));
     command->add_flag("--no-mill", o->is_still, "press and slide only");
-    command->add_option("--json", o->json, "write the figures to FILE, or - for stdout");
+    addJsonOption(*command, o->json);
     command->callback([o] {
         const auto preset = presetOfName(o->preset);
         if (!preset) throw UserError("--preset " + o->preset + ": thesis_2012, fast, balanced or exact");
