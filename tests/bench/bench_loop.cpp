@@ -8,6 +8,7 @@
 
 #include "common/rt/clock.h"
 #include "common/rt/page_faults.h"
+#include "haptic_server/record/fault_names.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/corridor_run.h"
@@ -51,6 +52,7 @@ void run(double rate_hz, double seconds, const std::string& json_path) {
                 (unsigned long long)bare.missed, (unsigned long long)bare.ticks,
                 (unsigned long long)loop.missed, (unsigned long long)loop.ticks,
                 (unsigned long long)loop.missed_by_compute);
+    std::printf("faults of the loop: %s\n", faultNames(loop.faults).c_str());
     std::printf("page faults of the loop: %llu minor, %llu major\n",
                 (unsigned long long)(after.minor - before.minor),
                 (unsigned long long)(after.major - before.major));

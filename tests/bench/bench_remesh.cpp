@@ -10,6 +10,7 @@
 #include "common/rt/clock.h"
 #include "haptic_server/app/mesh_outbox.h"
 #include "haptic_server/mesh/mesh_rounds.h"
+#include "haptic_server/record/fault_names.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/corridor_run.h"
@@ -104,6 +105,7 @@ void run(const Options& o) {
     table.add({"tick, wake-up"}, result.tick.wake_up);
     table.add({"tick, compute"}, result.tick.compute);
     table.print();
+    std::printf("faults of the tick: %s\n", faultNames(result.tick.faults).c_str());
     std::printf("mesher: %.0f %% of a core\n", 100 * result.mesher_share);
     std::printf("%llu cuts measured, %llu dropped; %llu meshes, %llu of them published\n",
                 (unsigned long long)result.cut_to_publisher.count(), (unsigned long long)result.dropped_cuts,
