@@ -419,6 +419,15 @@ LIMITS = """- Hand and device are simulated: a hand impedance that follows waypo
 - cyclictest ran right before each run, while the server idled, not during it: it would disturb what it measures."""
 
 
+def cut_lines(seconds, runs):
+    if seconds is None:
+        return []
+    sentence = f"The runs were cut to {seconds:g} s: scenarios that last longer were not finished"
+    if any(run["name"] == "wall" for run in runs):
+        sentence += ", and the wall run has no finished hole unless an earlier whole demo left one"
+    return [f"**{sentence}.**", ""]
+
+
 def write_markdown(out, report):
     runs = report["runs"]
     lines = [
@@ -426,6 +435,7 @@ def write_markdown(out, report):
         "",
         f"{report['date']}. Each run went in real time through haptic_server, device_daemon and render_client.",
         "",
+        *cut_lines(report["cut_to_s"], runs),
         *verdict(runs),
         "",
         *rate_table(runs),
@@ -459,6 +469,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", required=True, type=pathlib.Path, help="folder with traces and logs/")
     parser.add_argument("--best-effort-rt", action="store_true", help="the programs ran without real time")
+    parser.add_argument("--seconds", type=float, help="the runs were cut to so many seconds")
     parser.add_argument("names", nargs="+", help="runs, as in trace_NAME.csv")
     arguments = parser.parse_args()
     out = arguments.out
@@ -470,6 +481,7 @@ def main():
         "date": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
         "machine": machine(),
         "best_effort_rt": arguments.best_effort_rt,
+        "cut_to_s": arguments.seconds,
         "runs": runs,
     }
     (out / "report.json").write_text(json.dumps(report, indent=2, ensure_ascii=False) + "\n")

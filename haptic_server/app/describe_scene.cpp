@@ -67,6 +67,12 @@ std::string describeLevels(const PointShell& shell) {
     return text;
 }
 
+void describeBudget(const TickConfig& tick, std::ostream& out) {
+    out << "most point tests in a tick: " << tick.gradient.most_point_tests
+        << (tick.accuracy.law == ContactLaw::kThesis2012 ? ", without effect on the thesis' law\n" : "\n")
+        << "most milled cells in a tick: " << tick.milling.most_cells << '\n';
+}
+
 void describeCost(const LoadedScene& loaded, Simulation& simulation, std::ostream& out) {
     ScenarioIo io(loaded.scene.simulated_operator());
     HapticTick tick(simulation.tick, *simulation.bone, simulation.tool.model, nullptr);
@@ -107,6 +113,7 @@ std::string describeScene(const std::string& scene_file) {
         << "tool: distance grid " << simulation.tool.model.grid().nodes().transpose() << " nodes of "
         << simulation.tool.model.grid().spacing() * 1e3 << " mm, burr radius "
         << simulation.tick.burr_radius * 1e3 << " mm\n";
+    describeBudget(simulation.tick, out);
     describeCost(loaded, simulation, out);
     out << "\nwhat the scene file sets (all else has its default):\n"
         << loaded.scene.DebugString() << "\nevery field, its unit, default and range:\n"

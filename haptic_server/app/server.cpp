@@ -121,7 +121,9 @@ class Server {
         const bool is_accepted = report.missing.empty() || options_.best_effort_rt;
         permission.set_value(is_accepted);
         if (is_accepted) return;
-        throw UserError("this machine does not grant real time: " + report.missing.front() +
+        std::string message = "this machine does not grant real time:";
+        for (const std::string& missing : report.missing) message += " " + missing;
+        throw UserError(message +
                         " Read docs/realtime.md, or go on without guarantees with --best-effort-rt.");
     }
 

@@ -9,8 +9,8 @@
 
 namespace bonemill {
 
-// Before a run: throws UserError if the file could not be written after it; an empty path is fine. May leave
-// an empty file.
+// Before a run: throws UserError if the file could not be written after it; an empty path is fine. Leaves
+// things as they are.
 void requireWritable(const std::string& path);
 
 std::vector<NodeMesh> meshWholeBone(const BoneModel& bone);

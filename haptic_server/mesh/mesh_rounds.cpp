@@ -8,10 +8,6 @@ namespace {
 constexpr uint32_t kOthersPerRound = 128;  // while the whole bone is meshed, no cut waits for more than these
 constexpr int64_t kPassPeriodNs = 8 * kNsPerMillisecond;
 
-Eigen::Vector3i indexOf(const int32_t (&index)[3]) noexcept {
-    return {index[0], index[1], index[2]};
-}
-
 }  // namespace
 
 MeshRounds::MeshRounds(const VoxelVolume& volume, const LeafLattice& lattice, SpscRing<Cut>& cuts)
@@ -29,7 +25,7 @@ void MeshRounds::takeCuts() {
     Cut cut;
     while (cuts_.tryPop(cut)) {
         open_starts_ns_.push_back(cut.start_ns);
-        open_leaves_.include(lattice_.leavesOfWrite({indexOf(cut.voxels_min), indexOf(cut.voxels_max)}));
+        open_leaves_.include(lattice_.leavesOfWrite(cut.voxels()));
     }
 }
 

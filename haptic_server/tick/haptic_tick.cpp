@@ -17,14 +17,6 @@ Eigen::Vector4d wxyz(const Eigen::Quaterniond& q) noexcept {
     return {q.w(), q.x(), q.y(), q.z()};
 }
 
-Cut cutOf(const DeviceInput& input, const MillingResult& milled) noexcept {
-    Cut cut;
-    cut.start_ns = input.start_ns;
-    copyTo(cut.voxels_min, milled.changed.min);
-    copyTo(cut.voxels_max, milled.changed.max);
-    return cut;
-}
-
 constexpr double kQuaternionNormSlack = 1e-2;
 constexpr double kFarthest = 1e3;  // m from W's origin: beyond any scan, and squares stay finite
 // Beside the old settings' own work, after the force: full of surface, a leaf of 16³ cells takes some 0.1 ms,
@@ -92,7 +84,7 @@ bool HapticTick::tick(TickIo& io) noexcept {
     record.added_voxels = milled.added_voxels;
     record.removed = milled.removed_voxels * bone_.volume.voxelVolume();
     record.added = milled.added_voxels * bone_.volume.voxelVolume();
-    record.cut = cutOf(input, milled);
+    record.cut = cutOf(milled.changed, input.start_ns);
     record.force_ns = force_at_ns - input.start_ns;
     const int64_t end_ns = io.now();
     record.compute_ns = end_ns - input.start_ns;

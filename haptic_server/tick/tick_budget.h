@@ -2,6 +2,8 @@
 // same.
 #pragma once
 
+#include <cmath>
+
 #include "haptic_server/milling/timed_milling.h"
 #include "haptic_server/spo/gradient_model.h"
 
@@ -14,8 +16,8 @@ struct TickBudget {
     static constexpr double kForceShare = 0.5, kMillingShare = 0.3;  // the rest is for all else
 
     static void apply(double period, GradientConfig& force, MillingConfig& milling) noexcept {
-        force.most_point_tests = size_t(period * kForceShare / kPointTest);
-        milling.most_cells = size_t(period * kMillingShare / kMilledCell);
+        force.most_point_tests = size_t(std::lround(period * kForceShare / kPointTest));
+        milling.most_cells = size_t(std::lround(period * kMillingShare / kMilledCell));
     }
 };
 

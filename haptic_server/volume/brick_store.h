@@ -32,6 +32,7 @@ class BrickStore {
     BrickId brickAt(int x, int y, int z) const noexcept {
         return BrickId(x + bricks_.x() * (y + bricks_.y() * z));
     }
+    IndexBox allBricks() const noexcept { return {Eigen::Vector3i::Zero(), bricks_.array() - 1}; }
 
     // In data(); the voxels from -kBrickLow to +kBrickHigh of the brick's first and last one lie around it.
     // RT-safe, any thread; the brick that it leads to stays where it is until it is opened.

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "haptic_server/volume/index_box.h"
+
 namespace bonemill {
 
 struct Cut {
@@ -12,8 +14,19 @@ struct Cut {
     int32_t voxels_min[3] = {1, 1, 1};  // box of the voxels that changed, both ends included;
     int32_t voxels_max[3] = {0, 0, 0};  // min > max: none did
 
-    bool isEmpty() const noexcept { return voxels_min[0] > voxels_max[0]; }
+    IndexBox voxels() const noexcept {
+        return {Eigen::Map<const Eigen::Vector3i>(voxels_min), Eigen::Map<const Eigen::Vector3i>(voxels_max)};
+    }
+    bool isEmpty() const noexcept { return voxels().isEmpty(); }
 };
 static_assert(std::is_trivially_copyable_v<Cut>);
+
+inline Cut cutOf(const IndexBox& voxels, int64_t start_ns) noexcept {
+    Cut cut;
+    cut.start_ns = start_ns;
+    Eigen::Map<Eigen::Vector3i>(cut.voxels_min) = voxels.min;
+    Eigen::Map<Eigen::Vector3i>(cut.voxels_max) = voxels.max;
+    return cut;
+}
 
 }  // namespace bonemill

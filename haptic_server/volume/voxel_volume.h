@@ -161,19 +161,18 @@ void VoxelVolume::fill(DensityAt&& density) {
     bricks_ = BrickStore(geometry_.dims.array() + 2);
     const IndexBox data{Eigen::Vector3i::Zero(), geometry_.dims.array() - 1};
     BrickId id = 0;
-    forEachIndex({Eigen::Vector3i::Zero(), bricks_.bricksPerAxis().array() - 1},
-                 [&](const Eigen::Vector3i& brick) {
-                     const IndexBox held = voxelsIn(brick);
-                     if (bricks_.spareCount() == 0) bricks_.makeSpare(bricks_.ownCount() / 4 + 16);
-                     Density* contents = bricks_.nextSpare();
-                     std::fill_n(contents, kBrickSize, Density(0));
-                     forEachIndex(held.clamped(data.min, data.max), [&](const Eigen::Vector3i& v) {
-                         const Eigen::Vector3i at = v - held.min;
-                         contents[size_t(at.x()) + kStrideY * size_t(at.y()) + kStrideZ * size_t(at.z())] =
-                             density(v.x(), v.y(), v.z());
-                     });
-                     bricks_.adoptNextSpare(id++);
-                 });
+    forEachIndex(bricks_.allBricks(), [&](const Eigen::Vector3i& brick) {
+        const IndexBox held = voxelsIn(brick);
+        if (bricks_.spareCount() == 0) bricks_.makeSpare(bricks_.ownCount() / 4 + 16);
+        Density* contents = bricks_.nextSpare();
+        std::fill_n(contents, kBrickSize, Density(0));
+        forEachIndex(held.clamped(data.min, data.max), [&](const Eigen::Vector3i& v) {
+            const Eigen::Vector3i at = v - held.min;
+            contents[size_t(at.x()) + kStrideY * size_t(at.y()) + kStrideZ * size_t(at.z())] =
+                density(v.x(), v.y(), v.z());
+        });
+        bricks_.adoptNextSpare(id++);
+    });
     bricks_.dropSpare();
 }
 

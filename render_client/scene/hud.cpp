@@ -62,7 +62,7 @@ void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
 
 void addToolRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
     rows.push_back({"Force", readable(norm(tool.force_n()), " N")});
-    rows.push_back({"Torque", readable(norm(tool.torque_nm()) * 1e3, " mN\u00b7m")});
+    rows.push_back({"Torque", readable(norm(tool.torque_nm()) * 1e3, " N\u00b7mm")});
     rows.push_back({"Contacts", std::to_string(tool.contacts())});
     const bool removes = tool.buttons() & 1u;
     const bool adds = tool.buttons() & 2u;

@@ -103,7 +103,7 @@ void addLoadCommand(CLI::App& app) {
     command->add_option("file", o->file, "any volume that a scene can name")->required();
     CLI::Option* iso =
         command->add_option("--iso", o->iso, "bone surface; proposed from the data if not given");
-    command->add_option("--json", o->json, "write the figures to FILE, or - for stdout");
+    addJsonOption(*command, o->json);
     command->callback(
         [o, iso] { run(o->file, iso->count() > 0 ? std::optional<double>(o->iso) : std::nullopt, o->json); });
 }

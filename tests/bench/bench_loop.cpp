@@ -8,6 +8,7 @@
 
 #include "common/rt/clock.h"
 #include "common/rt/page_faults.h"
+#include "haptic_server/record/fault_names.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/corridor_run.h"
@@ -51,6 +52,7 @@ void run(double rate_hz, double seconds, const std::string& json_path) {
                 (unsigned long long)bare.missed, (unsigned long long)bare.ticks,
                 (unsigned long long)loop.missed, (unsigned long long)loop.ticks,
                 (unsigned long long)loop.missed_by_compute);
+    std::printf("faults of the loop: %s\n", faultNames(loop.faults).c_str());
     std::printf("page faults of the loop: %llu minor, %llu major\n",
                 (unsigned long long)(after.minor - before.minor),
                 (unsigned long long)(after.major - before.major));
@@ -71,7 +73,7 @@ void addLoopCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("loop", "the tooth's corridor in real time, beside a bare timer");
     command->add_option("--rate-hz", o->rate_hz)->check(CLI::Range(100.0, 20000.0));
     command->add_option("--seconds", o->seconds, "of each of the two")->check(CLI::Range(1.0, 3600.0));
-    command->add_option("--json", o->json, "write the figures to FILE, or - for stdout");
+    addJsonOption(*command, o->json);
     command->callback([o] { run(o->rate_hz, o->seconds, o->json); });
 }
 

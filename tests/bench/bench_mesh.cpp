@@ -146,7 +146,7 @@ void addMeshCommand(CLI::App& app) {
     command->add_option("--iso", o->iso, "bone surface, in the volume's values")->required();
     command->add_option("--runs", o->runs, "medians of so many")->check(CLI::Range(1, 99));
     command->add_flag("!--no-vtk", o->has_vtk, "without VTK (deploy/install-deps --bench)");
-    command->add_option("--json", o->json, "write the figures to FILE, or - for stdout");
+    addJsonOption(*command, o->json);
     command->callback([o] { run(*o); });
 }
 

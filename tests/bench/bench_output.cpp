@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "common/config/user_error.h"
+#include "haptic_server/app/surface_export.h"
 
 namespace bonemill::bench {
 namespace {
@@ -78,6 +79,13 @@ size_t peakResidentBytesOfChildren() {
     rusage usage{};
     getrusage(RUSAGE_CHILDREN, &usage);
     return size_t(usage.ru_maxrss) * 1024;
+}
+
+void addJsonOption(CLI::App& command, std::string& path) {
+    command.add_option("--json", path, "write the figures to FILE, or - for stdout")
+        ->each([](const std::string& file) {
+            if (file != "-") requireWritable(file);
+        });
 }
 
 void writeJson(const std::string& path, const nlohmann::json& json) {

@@ -1,6 +1,7 @@
 // What every sub-command of haptic_bench prints: a table for people, and on request the same as JSON.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -33,6 +34,10 @@ nlohmann::json medianOf(const std::vector<nlohmann::json>& runs);
 size_t residentBytes();
 size_t peakResidentBytes();
 size_t peakResidentBytesOfChildren();  // of the largest that has ended
+
+// --json. A file that cannot be written is a UserError when the command line is read, before anything is
+// measured.
+void addJsonOption(CLI::App& command, std::string& path);
 
 // "" writes nothing, "-" goes to stdout. Throws UserError when the file cannot be written.
 void writeJson(const std::string& path, const nlohmann::json& json);

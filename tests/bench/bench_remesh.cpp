@@ -10,6 +10,7 @@
 #include "common/rt/clock.h"
 #include "haptic_server/app/mesh_outbox.h"
 #include "haptic_server/mesh/mesh_rounds.h"
+#include "haptic_server/record/fault_names.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/corridor_run.h"
@@ -104,6 +105,7 @@ void run(const Options& o) {
     table.add({"tick, wake-up"}, result.tick.wake_up);
     table.add({"tick, compute"}, result.tick.compute);
     table.print();
+    std::printf("faults of the tick: %s\n", faultNames(result.tick.faults).c_str());
     std::printf("mesher: %.0f %% of a core\n", 100 * result.mesher_share);
     std::printf("%llu cuts measured, %llu dropped; %llu meshes, %llu of them published\n",
                 (unsigned long long)result.cut_to_publisher.count(), (unsigned long long)result.dropped_cuts,
@@ -126,7 +128,7 @@ void addRemeshCommand(CLI::App& app) {
     command->add_option("--rate-hz", o->rate_hz)->check(CLI::Range(100.0, 20000.0));
     command->add_option("--seconds", o->seconds)->check(CLI::Range(1.0, 3600.0));
     command->add_option("--leaf-cells", o->leaf_cells, "cells per edge of a leaf")->check(CLI::Range(4, 128));
-    command->add_option("--json", o->json, "write the figures to FILE, or - for stdout");
+    addJsonOption(*command, o->json);
     command->callback([o] { run(*o); });
 }
 

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "haptic_server/accuracy_report/plot.h"
+#include "haptic_server/app/surface_export.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/bench_tick.h"
 
@@ -75,8 +76,8 @@ void run(int runs, int largest_edge, const std::string& picture, const std::stri
         json["radius"].push_back(row);
     }
     table.print();
-    if (!picture.empty()) plot(json, picture);
     writeJson(json_path, json);
+    if (!picture.empty()) plot(json, picture);
 }
 
 }  // namespace
@@ -84,15 +85,16 @@ void run(int runs, int largest_edge, const std::string& picture, const std::stri
 void addScaleCommand(CLI::App& app) {
     struct Options {
         std::string picture, json;
-        int runs = 3, largest_edge = 1024;
+        int runs = 3, largest_edge = *std::rbegin(kEdges);
     };
     auto o = std::make_shared<Options>();
     CLI::App* command =
         app.add_subcommand("scale", "tick time against the volume's edge and the burr's radius");
     command->add_option("--runs", o->runs, "medians of so many")->check(CLI::Range(1, 99));
-    command->add_option("--largest-edge", o->largest_edge, "1024 needs 3 GB");
-    command->add_option("--plot", o->picture, "write a PNG");
-    command->add_option("--json", o->json, "write the figures to FILE, or - for stdout");
+    command->add_option("--largest-edge", o->largest_edge, "of the volume, voxels; 1024 needs 0.9 GB")
+        ->check(CLI::Range(kEdges[0], *std::rbegin(kEdges)));
+    command->add_option("--plot", o->picture, "write a PNG")->each(requireWritable);
+    addJsonOption(*command, o->json);
     command->callback([o] { run(o->runs, o->largest_edge, o->picture, o->json); });
 }
 

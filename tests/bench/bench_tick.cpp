@@ -29,36 +29,6 @@ TickConfig configOf(const TickCase& c) {
     return config;
 }
 
-double forceStep(const TickRecord& a, const TickRecord& b) {
-    return (Eigen::Map<const Eigen::Vector3d>(a.f_hand_W) - Eigen::Map<const Eigen::Vector3d>(b.f_hand_W))
-        .norm();
-}
-
-TickFigures figuresOf(const std::vector<TickRecord>& records, int approach_ticks) {
-    TickFigures figures;
-    double contacts = 0, candidates = 0, iterations = 0, removed = 0;
-    int in_contact = 0;
-    for (size_t n = 0; n < records.size(); ++n) {
-        const TickRecord& r = records[n];
-        figures.faults |= r.faults;
-        removed += r.removed_voxels;
-        if (int(n) < approach_ticks) continue;
-        figures.whole.record(r.compute_ns);
-        figures.force.record(r.force_ns);
-        figures.milling.record(r.compute_ns - r.force_ns);
-        in_contact += r.contacts > 0;
-        contacts += r.contacts;
-        candidates += r.candidates;
-        iterations += r.iterations;
-        figures.force_step_max = std::max(figures.force_step_max, forceStep(r, records[n - 1]));
-    }
-    figures.contacts_mean = contacts / std::max(1, in_contact);
-    figures.candidates_mean = candidates / std::max(1, in_contact);
-    figures.iterations_mean = iterations / double(figures.whole.count());
-    figures.removed_voxels_per_tick = removed / double(records.size());
-    return figures;
-}
-
 }  // namespace
 
 TickFigures measureTicks(const TickCase& c) {
@@ -72,19 +42,7 @@ TickFigures measureTicks(const TickCase& c) {
     test::ScriptedIo io(weave(bone.volume, way));
     while (tick.tick(io)) {
     }
-    return figuresOf(io.records, way.approach_ticks);
-}
-
-nlohmann::json toJson(const TickFigures& f) {
-    return {{"tick_us", microseconds(f.whole)},
-            {"force_us", microseconds(f.force)},
-            {"milling_us", microseconds(f.milling)},
-            {"contacts_mean", f.contacts_mean},
-            {"candidates_mean", f.candidates_mean},
-            {"iterations_mean", f.iterations_mean},
-            {"removed_voxels_per_tick", f.removed_voxels_per_tick},
-            {"force_step_max_n", f.force_step_max},
-            {"faults", f.faults}};
+    return figuresOf(io.records, size_t(way.approach_ticks));
 }
 
 void addTickCommand(CLI::App& app) {
@@ -104,7 +62,7 @@ void addTickCommand(CLI::App& app) {
     command->add_option("--ticks", o->tick_case.ticks)->check(CLI::Range(1000, 1'000'000));
     command->add_option("--runs", o->runs, "repeat, and take each figure's median")->check(CLI::Range(1, 99));
     command->add_flag("--no-mill", o->is_still, "press and slide only");
-    command->add_option("--json", o->json, "write the figures to FILE, or - for stdout");
+    addJsonOption(*command, o->json);
     command->callback([o] {
         const auto preset = presetOfName(o->preset);
         if (!preset) throw UserError("--preset " + o->preset + ": thesis_2012, fast, balanced or exact");

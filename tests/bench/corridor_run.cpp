@@ -4,7 +4,10 @@
 #include <thread>
 
 #include "common/rt/clock.h"
+#include "haptic_server/record/fault_names.h"
+#include "haptic_server/tick/tick_budget.h"
 #include "haptic_server/volume/import/densify.h"
+#include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/phantom/tooth_phantom.h"
 #include "tests/bench/bench_output.h"
 
@@ -29,11 +32,15 @@ nlohmann::json toJson(const Waits& waits) {
             {"missed", waits.missed},
             {"missed_by_compute", waits.missed_by_compute},
             {"wake_up_us", microseconds(waits.wake_up)},
-            {"compute_us", microseconds(waits.compute)}};
+            {"compute_us", microseconds(waits.compute)},
+            {"faults", waits.faults},
+            {"fault_names", faultNames(waits.faults)}};
 }
 
 BoneModel corridorBone(int leaf_cells) {
-    return {densify(scanTooth(toothGrid(), {}), DensityWindow{-1000, 3000, 600, 0}),
+    VoxelVolume volume = densify(scanTooth(toothGrid(), {}), DensityWindow{-1000, 3000, 600, 0});
+    clearFarFromBone(volume);
+    return {std::move(volume),
             Eigen::Vector3i::Constant(leaf_cells),
             {.levels = {{1, ShellNormals::kTrilinear}}}};
 }
@@ -41,6 +48,7 @@ BoneModel corridorBone(int leaf_cells) {
 TickConfig corridorTick(double rate_hz) {
     TickConfig config;
     config.dt = 1 / rate_hz;
+    TickBudget::apply(config.dt, config.gradient, config.milling);
     return config;
 }
 
@@ -59,6 +67,7 @@ bool CorridorIo::read(DeviceInput& input) noexcept {
     input.X_WT_device = deviceAt(input.t_s);
     input.buttons = kButtonRemove;
     input.start_ns = start_ns_;
+    input.deadline_ns = start_ns_ + period_ns_;
     input.wakeup_latency_ns = start_ns_ - due;
     waits_.wake_up.record(start_ns_ - due);
     ++waits_.ticks;
@@ -77,6 +86,7 @@ void CorridorIo::push(const TickRecord& record) noexcept {
     waits_.compute.record(record.compute_ns);
     waits_.missed_by_compute += record.compute_ns > period_ns_;
     waits_.missed = timer_.missedPeriods();
+    waits_.faults |= record.faults;
     if (cuts_ && !record.cut.isEmpty()) cuts_->tryPush(record.cut);
 }
 

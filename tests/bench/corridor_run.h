@@ -17,11 +17,12 @@ struct Waits {
     LatencyHistogram compute;
     uint64_t ticks = 0, missed = 0;
     uint64_t missed_by_compute = 0;  // ticks longer than their period
+    uint32_t faults = 0;             // of all ticks
 };
 nlohmann::json toJson(const Waits& waits);
 
 BoneModel corridorBone(int leaf_cells);
-// With the default tool.
+// With the default tool, and the budget of a tick of haptic_server.
 TickConfig corridorTick(double rate_hz);
 
 // Makes the device go up and down the corridor by the clock, a little farther beside each time.

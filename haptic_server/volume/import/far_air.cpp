@@ -7,10 +7,6 @@ namespace {
 
 using Bricks = std::vector<uint8_t>;  // yes or no, by BrickId
 
-IndexBox allBricks(const BrickStore& bricks) {
-    return {Eigen::Vector3i::Zero(), bricks.bricksPerAxis().array() - 1};
-}
-
 Bricks bricksWithBone(const VoxelVolume& volume) {
     const BrickStore& bricks = volume.bricks();
     Bricks has_bone(bricks.brickCount());
@@ -24,7 +20,7 @@ Bricks bricksWithBone(const VoxelVolume& volume) {
 
 bool isFar(const BrickStore& bricks, const Bricks& has_bone, const Eigen::Vector3i& brick) {
     bool is_far = true;
-    const IndexBox all = allBricks(bricks);
+    const IndexBox all = bricks.allBricks();
     forEachIndex(IndexBox{brick, brick}.grown(1).clamped(all.min, all.max),
                  [&](const Eigen::Vector3i& b) { is_far &= !has_bone[bricks.brickAt(b.x(), b.y(), b.z())]; });
     return is_far;
@@ -47,7 +43,7 @@ void clearVoxels(VoxelVolume& volume, const Eigen::Vector3i& brick) {
 
 void clearFarFromBone(VoxelVolume& volume) {
     const Bricks has_bone = bricksWithBone(volume);
-    forEachIndex(allBricks(volume.bricks()), [&](const Eigen::Vector3i& brick) {
+    forEachIndex(volume.bricks().allBricks(), [&](const Eigen::Vector3i& brick) {
         if (isFar(volume.bricks(), has_bone, brick)) clearVoxels(volume, brick);
     });
     volume.shareUniformBricks();

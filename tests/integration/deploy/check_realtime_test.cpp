@@ -1,6 +1,7 @@
 // deploy/check-realtime against machines that are only files: what it says of each lack, and its exit code.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <regex>
 
 #include "tests/support/process.h"
@@ -18,7 +19,7 @@ class CheckRealtime : public testing::Test {
   protected:
     CheckRealtime() {
         setLimits("90", "unlimited");
-        set("proc/self/status", "Name:\tbash\nUid:\t1000\t1000\t1000\t1000\n");
+        setProcess("1000", "0000000000000000");
         set("proc/sys/kernel/version", "#1 SMP PREEMPT_RT Debian 6.1.0-1 (2026-01-01)\n");
         set("proc/sys/kernel/osrelease", "6.1.0-rt-amd64\n");
         set("proc/sys/kernel/sched_rt_runtime_us", "950000\n");
@@ -46,6 +47,10 @@ class CheckRealtime : public testing::Test {
         set("proc/self/limits", row("Limit", "Soft Limit", "Units") +
                                     row("Max locked memory", memory_bytes, "bytes") +
                                     row("Max realtime priority", priority, ""));
+    }
+    void setProcess(const std::string& user, const std::string& effective_capabilities) {
+        set("proc/self/status", "Name:\tbash\nUid:\t" + user + "\t" + user + "\t" + user + "\t" + user +
+                                    "\nCapPrm:\t000001ffffffffff\nCapEff:\t" + effective_capabilities + "\n");
     }
     Finished check(const std::vector<std::string>& more = {"--core", "3"}) {
         std::vector<std::string> arguments{std::string(BONEMILL_SOURCE_DIR) + "/deploy/check-realtime",
@@ -104,10 +109,34 @@ TEST_F(CheckRealtime, BothLimitsAreCounted) {
     EXPECT_NE(finished.out.find("2 needed, 0 to improve."), std::string::npos) << finished.out;
 }
 
-TEST_F(CheckRealtime, RootNeedsNoLimits) {
+constexpr const char* kSysNice = "0000000000800000";  // linux/capability.h: bit 23
+constexpr const char* kIpcLock = "0000000000004000";  // bit 14
+
+TEST_F(CheckRealtime, CapabilitiesNeedNoLimits) {
     setLimits("0", "65536");
-    set("proc/self/status", "Uid:\t0\t0\t0\t0\n");
-    EXPECT_EQ(lacks(check()), 0);
+    for (const char* user : {"0", "1000"}) {
+        for (const char* capabilities : {"000001ffffffffff", "ffffffffffffffff", "0000000000804000"}) {
+            setProcess(user, capabilities);
+            EXPECT_EQ(lacks(check()), 0) << user << ' ' << capabilities;
+        }
+    }
+}
+
+TEST_F(CheckRealtime, EachCapabilityIsForOneLimitOnly) {
+    setLimits("0", "65536");
+    setProcess("0", kSysNice);
+    expectOnly(check(), "MISSING  locked memory: you may lock 64 KiB; a scan takes hundreds of MiB",
+               "echo '@haptics - memlock unlimited' | sudo tee -a /etc/security/limits.d/haptics.conf");
+    setProcess("0", kIpcLock);
+    expectOnly(check(), "MISSING  real-time priority: you may use 0 of the 80 that the loop asks for",
+               "echo '@haptics - rtprio 90' | sudo tee -a /etc/security/limits.d/haptics.conf");
+}
+
+TEST_F(CheckRealtime, RootOfAContainerWithoutCapabilitiesNeedsLimits) {
+    setLimits("0", "65536");
+    setProcess("0", "00000000a00425fb");
+    EXPECT_EQ(check().exit_code, 1);
+    EXPECT_EQ(lacks(check()), 2) << check().out;
 }
 
 TEST_F(CheckRealtime, AKernelThatKeepsTimeFromRealTimeThreadsIsMissing) {
@@ -173,12 +202,15 @@ TEST_F(CheckRealtime, AVirtualMachineCouldBeBetter) {
 
 TEST_F(CheckRealtime, WrongUseIsRefused) {
     const std::vector<std::vector<std::string>> wrong{
-        {"--core", "9"}, {"--core", "last"}, {"--cores", "3"}, {"--core"}, {"--root", "/no/such"}};
+        {"--core", "9"},        {"--core", "last"}, {"--cores", "3"}, {"--core"},
+        {"--root", "/no/such"}, {"--root"},         {"--root", ""}};
     for (const auto& arguments : wrong) {
         const Finished finished = check(arguments);
         EXPECT_EQ(finished.exit_code, 2) << arguments[0];
         EXPECT_EQ(finished.err.rfind("check-realtime: ", 0), 0u) << finished.err;
+        EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
     }
+    EXPECT_NE(check({"--root"}).err.find("--root needs a folder"), std::string::npos);
     EXPECT_NE(check({"--core", "9"}).err.find("this PC has no core 9"), std::string::npos);
 }
 

@@ -190,13 +190,15 @@ TEST_F(Session, AKilledDaemonRampsTheForceDownAndANewOneGoesOn) {
 TEST_F(Session, WithoutPermissionTheServerSaysWhatIsMissing) {
     const std::string drop =
         geteuid() == 0 ? "setpriv --bounding-set=-sys_nice,-ipc_lock --inh-caps=-sys_nice,-ipc_lock " : "";
-    const auto finished =
-        run({"/bin/sh", "-c",
-             "ulimit -r 0; exec " + drop + std::string(BONEMILL_BIN_DIR) + "/haptic_server --scene " +
-                 (folder_ / "s.textproto") + " --session " + session_ + " --domain " + domain_});
+    const auto finished = run({"/bin/sh", "-c",
+                               "ulimit -r 0; ulimit -l 64; exec " + drop + std::string(BONEMILL_BIN_DIR) +
+                                   "/haptic_server --scene " + (folder_ / "s.textproto") + " --session " +
+                                   session_ + " --domain " + domain_});
     EXPECT_EQ(finished.exit_code, 2) << finished.err;
-    EXPECT_NE(finished.err.find("error: "), std::string::npos) << finished.err;
-    EXPECT_NE(finished.err.find("--best-effort-rt"), std::string::npos) << finished.err;
+    const size_t error = finished.err.find("error: ");
+    ASSERT_NE(error, std::string::npos) << finished.err;
+    for (const char* words : {"Memory is not locked", "No SCHED_FIFO", "--best-effort-rt"})
+        EXPECT_NE(finished.err.find(words, error), std::string::npos) << words << " in: " << finished.err;
 }
 
 }  // namespace

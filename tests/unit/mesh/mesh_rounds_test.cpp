@@ -18,15 +18,6 @@ class MeshRoundsTest : public testing::Test {
         std::mt19937 random(1);
         test::fillWaves(volume_, random);
     }
-    static Cut cutOf(const IndexBox& voxels, int64_t start_ns) {
-        Cut cut;
-        cut.start_ns = start_ns;
-        for (int axis = 0; axis < 3; ++axis) {
-            cut.voxels_min[axis] = voxels.min[axis];
-            cut.voxels_max[axis] = voxels.max[axis];
-        }
-        return cut;
-    }
     void write(const IndexBox& voxels, Density density) {
         test::writeLikeTick(volume_, lattice_, voxels, [density](int, int, int) { return density; });
     }

@@ -136,7 +136,7 @@ TEST(RunStatistics, jsonSaysHowLongCutsWaitedForThePublisher) {
     RunStatistics statistics(kPeriodNs);
     for (uint64_t tick = 0; tick < 5; ++tick) {
         TickRecord record = recordOf(tick, int64_t(tick));
-        if (tick >= 2) record.cut.voxels_max[0] = record.cut.voxels_min[0];
+        if (tick >= 2) record.cut = cutOf({{0, 0, 0}, {0, 0, 0}}, record.start_ns);
         statistics.add(record);
     }
     EXPECT_FALSE(nlohmann::json::parse(statistics.toJson()).contains("cut_to_publisher_ms"));

@@ -52,7 +52,7 @@ TEST(Hud, ShowsWhatTheServerMeasuresWithUnits) {
     EXPECT_EQ(find(hud, "Loop")->value, "999.8 Hz");
     EXPECT_EQ(find(hud, "Tick p50 / p99")->value, "92.0 / 187.4 \u00b5s");
     EXPECT_EQ(find(hud, "Force")->value, "5.00 N");
-    EXPECT_EQ(find(hud, "Torque")->value, "12.0 mN\u00b7m");
+    EXPECT_EQ(find(hud, "Torque")->value, "12.0 N\u00b7mm");
     EXPECT_EQ(find(hud, "Contacts")->value, "17");
     EXPECT_EQ(find(hud, "Burr")->value, "removing");
     EXPECT_EQ(find(hud, "Removed")->value, "12.3 mm\u00b3");

@@ -102,13 +102,13 @@ TEST_F(DeviceLinkIoTest, ImplausibleSamplesAndStampsAreNotBelieved) {
 TEST_F(DeviceLinkIoTest, TheMesherIsToldOfCutsAndOfNothingElse) {
     DeviceLinkIo io(config_, server_, ring_, cuts_);
     TickRecord idle{}, milling{};
-    milling.cut = {.start_ns = 5, .voxels_min = {1, 2, 3}, .voxels_max = {4, 5, 6}};
+    milling.cut = cutOf({{1, 2, 3}, {4, 5, 6}}, 5);
     io.push(idle);
     io.push(milling);
     Cut cut;
     ASSERT_TRUE(cuts_.tryPop(cut));
     EXPECT_EQ(cut.start_ns, 5);
-    EXPECT_EQ(cut.voxels_max[2], 6);
+    EXPECT_EQ(cut.voxels().max, Eigen::Vector3i(4, 5, 6));
     EXPECT_FALSE(cuts_.tryPop(cut));
     TickRecord record;
     EXPECT_TRUE(ring_.tryPop(record) && ring_.tryPop(record));

@@ -181,8 +181,8 @@ TEST(HapticTick, TheRecordHoldsTheBoxOfTheMilledVoxels) {
         ASSERT_EQ(cut.isEmpty(), changed.isEmpty());
         if (changed.isEmpty()) continue;
         ++cuts;
-        EXPECT_EQ(Eigen::Map<const Eigen::Vector3i>(cut.voxels_min), changed.min);
-        EXPECT_EQ(Eigen::Map<const Eigen::Vector3i>(cut.voxels_max), changed.max);
+        EXPECT_EQ(cut.voxels().min, changed.min);
+        EXPECT_EQ(cut.voxels().max, changed.max);
         EXPECT_EQ(cut.start_ns, io.records.back().start_ns);
     }
     EXPECT_GT(cuts, 5u);

@@ -97,8 +97,10 @@ TEST(TickBudget, AFasterLoopMayDoLessInATick) {
     TickConfig slow, fast;
     TickBudget::apply(1e-3, slow.gradient, slow.milling);
     TickBudget::apply(0.25e-3, fast.gradient, fast.milling);
-    EXPECT_NEAR(double(slow.gradient.most_point_tests) / double(fast.gradient.most_point_tests), 4, 0.01);
-    EXPECT_NEAR(double(slow.milling.most_cells) / double(fast.milling.most_cells), 4, 0.01);
+    EXPECT_EQ(slow.gradient.most_point_tests, 100'000u);
+    EXPECT_EQ(slow.milling.most_cells, 75'000u);
+    EXPECT_EQ(fast.gradient.most_point_tests, 25'000u);
+    EXPECT_EQ(fast.milling.most_cells, 18'750u);
 }
 
 }  // namespace

@@ -17,16 +17,15 @@ constexpr Density kIso = 30000;
 void expectCopiesAgree(const VoxelVolume& volume) {
     const BrickStore& bricks = volume.bricks();
     BrickId id = 0;
-    forEachIndex(
-        {Eigen::Vector3i::Zero(), bricks.bricksPerAxis().array() - 1}, [&](const Eigen::Vector3i& brick) {
-            const Density* held = bricks.contents(id++);
-            const Eigen::Vector3i first = brick.array() * kBrickCells - 1 - kBrickLow;
-            forEachVoxel({first, first.array() + kBrickEdge - 1}, [&](int i, int j, int k) {
-                const Eigen::Vector3i v(i, j, k);
-                const bool is_data = (v.array() >= 0).all() && (v.array() < volume.dims().array()).all();
-                ASSERT_EQ(*held++, is_data ? volume.at(i, j, k) : 0) << v.transpose();
-            });
+    forEachIndex(bricks.allBricks(), [&](const Eigen::Vector3i& brick) {
+        const Density* held = bricks.contents(id++);
+        const Eigen::Vector3i first = brick.array() * kBrickCells - 1 - kBrickLow;
+        forEachVoxel({first, first.array() + kBrickEdge - 1}, [&](int i, int j, int k) {
+            const Eigen::Vector3i v(i, j, k);
+            const bool is_data = (v.array() >= 0).all() && (v.array() < volume.dims().array()).all();
+            ASSERT_EQ(*held++, is_data ? volume.at(i, j, k) : 0) << v.transpose();
         });
+    });
 }
 
 VoxelVolume noise(const Eigen::Vector3i& dims, unsigned seed = 1) {

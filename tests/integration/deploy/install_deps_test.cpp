@@ -1,0 +1,43 @@
+// deploy/install-deps: what it says of wrong use. Installs nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/process.h"
+
+namespace bonemill {
+namespace {
+
+test::Finished installDeps(const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{std::string(BONEMILL_SOURCE_DIR) + "/deploy/install-deps"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return test::run(arguments);
+}
+
+TEST(InstallDeps, AnUnknownOptionIsRefused) {
+    const std::vector<std::vector<std::string>> wrong{
+        {"--check", "--chek"}, {"--check", "more"}, {"--bench", "--check", "--all"}, {"--chek", "--check"}};
+    for (const auto& options : wrong) {
+        const test::Finished finished = installDeps(options);
+        EXPECT_EQ(finished.exit_code, 2) << finished.out;
+        EXPECT_EQ(finished.out, "");
+        EXPECT_EQ(finished.err.rfind("install-deps: unknown option ", 0), 0u) << finished.err;
+        EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
+    }
+}
+
+TEST(InstallDeps, OptionsComeInAnyOrder) {
+    const test::Finished finished = installDeps({"--check", "--bench"});
+    EXPECT_TRUE(finished.exit_code == 0 || finished.exit_code == 1) << finished.err;
+    EXPECT_EQ(finished.out, installDeps({"--bench", "--check"}).out);
+    EXPECT_EQ(finished.err, "");
+}
+
+TEST(InstallDeps, HelpSaysHowToUseIt) {
+    const test::Finished finished = installDeps({"--help"});
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    EXPECT_NE(finished.out.find("--check"), std::string::npos) << finished.out;
+}
+
+}  // namespace
+}  // namespace bonemill

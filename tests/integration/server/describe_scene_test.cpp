@@ -1,0 +1,45 @@
+// haptic_server --scene FILE --describe-scene.
+#include <gtest/gtest.h>
+
+#include "tests/support/process.h"
+
+namespace bonemill {
+namespace {
+
+class DescribeScene : public testing::Test {
+  protected:
+    DescribeScene() {
+        const auto made =
+            test::run({"make_phantom", "body", "--kind", "sphere", "--out", folder_ / "ball.nrrd"});
+        EXPECT_EQ(made.exit_code, 0) << made.err;
+    }
+    std::string describe(const std::string& more) {
+        test::writeFile(folder_ / "scene.textproto", "volume { path: \"ball.nrrd\" } " + more);
+        const auto finished =
+            test::run({"haptic_server", "--scene", folder_ / "scene.textproto", "--describe-scene"});
+        EXPECT_EQ(finished.exit_code, 0) << finished.err;
+        return finished.out;
+    }
+    void expectLine(const std::string& text, const std::string& line) {
+        EXPECT_NE(text.find("\n" + line + "\n"), std::string::npos) << line << " in:\n" << text;
+    }
+
+    test::TemporaryFolder folder_;
+};
+
+TEST_F(DescribeScene, SaysHowMuchATickMayDo) {
+    const std::string at_1_khz = describe("");
+    expectLine(at_1_khz, "most point tests in a tick: 100000");
+    expectLine(at_1_khz, "most milled cells in a tick: 75000");
+    const std::string at_4_khz = describe("loop { rate_hz: 4000 }");
+    expectLine(at_4_khz, "most point tests in a tick: 25000");
+    expectLine(at_4_khz, "most milled cells in a tick: 18750");
+}
+
+TEST_F(DescribeScene, TheThesisLawHasNoBudgetOfPointTests) {
+    expectLine(describe("accuracy { preset: THESIS_2012 }"),
+               "most point tests in a tick: 100000, without effect on the thesis' law");
+}
+
+}  // namespace
+}  // namespace bonemill
