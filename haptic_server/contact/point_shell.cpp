@@ -156,13 +156,19 @@ void PointShell::pointsOfCells(const VoxelVolume& volume, const IndexBox& leaf_c
     cells_.project(projection_);
     for (size_t n = 0; n < cells_.count(); ++n) {
         if (!(cells_.area(n) > 0)) continue;
-        const Eigen::Vector3i local = cells_.cell(n);
-        const SurfaceCells::Projected onto = cells_.projected(n);
-        SurfacePlace place{leaf_cells.min + local, onto.at};
-        if (!onto.is_found) place = projection_.bracket(volume, {place.cell, cells_.centroid(n)});
-        const bool is_known = onto.is_found && normals == ShellNormals::kTrilinear;
-        addPoint(place, is_known ? onto.normal : projection_.normal(volume, place, normals), cells_.area(n),
-                 local);
+        const Eigen::Vector3i local = cells_.cell(n), cell = leaf_cells.min + local;
+        if (cells_.isFound(n) && normals == ShellNormals::kTrilinear) {
+            ShellPoint& point = fresh_[fresh_size_++];
+            point.position = projection_.position({cell, cells_.projected(n)});
+            point.normal = cells_.normal(n);
+            point.area = cells_.area(n);
+            point.key = packShellKey(local);
+            continue;
+        }
+        const SurfacePlace place = cells_.isFound(n)
+                                       ? SurfacePlace{cell, cells_.projected(n)}
+                                       : projection_.bracket(volume, {cell, cells_.centroid(n)});
+        addPoint(place, projection_.normal(volume, place, normals), cells_.area(n), local);
     }
 }
 

@@ -8,21 +8,24 @@
 namespace bonemill {
 namespace {
 
-std::vector<int> triangleEdges() {
-    std::vector<int> edges(256 * kTriangleStride, 0);
+// As the kernel wants them.
+std::vector<int> packedTriangles() {
+    static_assert(kMaxCubeTriangles == kTrianglesPerCell);
+    std::vector<int> packed(256 * kTrianglesPerCell, 0);
     for (size_t inside = 0; inside < 256; ++inside) {
         const CubeTriangles& triangles = cubeTriangles()[inside];
-        for (size_t n = 0; n < triangles.count; ++n)
-            for (size_t v = 0; v < 3; ++v)
-                edges[inside * kTriangleStride + 3 * n + v] = triangles.edges[n][v];
+        for (size_t n = 0; n < triangles.count; ++n) {
+            const auto& [a, b, c] = triangles.edges[n];
+            packed[inside * kTrianglesPerCell + n] = a | b << 4 | c << 8;
+        }
     }
-    return edges;
+    return packed;
 }
 
 }  // namespace
 
 SurfaceCells::SurfaceCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_cells)
-    : triangle_edges_(triangleEdges()), crossed_(leaf_cells) {
+    : triangles_(packedTriangles()), crossed_(leaf_cells) {
     const double unit = volume.spacing().maxCoeff();
     steps_ = (volume.spacing() / unit).cast<float>();
     unit_area_ = float(unit * unit);
@@ -47,7 +50,7 @@ CellArrays SurfaceCells::arrays() const noexcept {
 void SurfaceCells::collect(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
                            const IndexBox& cells) noexcept {
     findCells(volume, leaf_first, cells);
-    kernels().cell_patches(arrays(), triangle_edges_.data(), steps_.data(),
+    kernels().cell_patches(arrays(), triangles_.data(), steps_.data(),
                            {area_.data(), x_.data(), y_.data(), z_.data()});
 }
 

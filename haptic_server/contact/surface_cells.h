@@ -31,17 +31,14 @@ class SurfaceCells {
     // Cell steps from the cell's first corner; of patches with an area.
     Eigen::Vector3f centroid(size_t n) const noexcept { return {x_[n], y_[n], z_[n]}; }
 
-    // A place of each cell's trilinear iso-surface, from the patch's centroid; see ShellProjection::walk().
-    struct Projected {
-        Eigen::Vector3f at;      // cell steps
-        Eigen::Vector3f normal;  // of the trilinear density; V, unit or zero
-        bool is_found;
-    };
+    // Finds a place of each cell's trilinear iso-surface, from the patch's centroid; see
+    // ShellProjection::walk().
     void project(const ShellProjection& projection) noexcept;
-    Projected projected(size_t n) const noexcept {
-        return {
-            {to_x_[n], to_y_[n], to_z_[n]}, {normal_x_[n], normal_y_[n], normal_z_[n]}, is_found_[n] != 0};
-    }
+    bool isFound(size_t n) const noexcept { return is_found_[n] != 0; }
+    // That place, in cell steps.
+    Eigen::Vector3f projected(size_t n) const noexcept { return {to_x_[n], to_y_[n], to_z_[n]}; }
+    // Of the trilinear density there; V, unit or zero.
+    Eigen::Vector3f normal(size_t n) const noexcept { return {normal_x_[n], normal_y_[n], normal_z_[n]}; }
 
   private:
     void findCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
@@ -51,9 +48,9 @@ class SurfaceCells {
                  Density iso, int corners_inside) noexcept;
     CellArrays arrays() const noexcept;
 
-    std::vector<int> triangle_edges_;  // as the kernel wants them
-    Eigen::Vector3f steps_;            // spacing in units of unit_
-    float unit_area_;                  // m²
+    std::vector<int> triangles_;  // of each set of inside corners
+    Eigen::Vector3f steps_;       // spacing in units of unit_
+    float unit_area_;             // m²
     CrossedCells crossed_;
     std::vector<Density> copied_;  // voxels that lie in several bricks
 

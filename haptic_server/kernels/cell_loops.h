@@ -5,6 +5,22 @@ namespace {
 // Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1); edges 4 a .. 4 a + 3 run along axis a.
 constexpr int kEdgeLow[12] = {0, 2, 4, 6, 0, 1, 4, 5, 0, 1, 2, 3};
 
+// table[index], where the index is 0 or more.
+#if defined(__AVX512F__)
+inline void gather(const float* table, const Ints& index, Floats& out) {
+    out = Floats(_mm512_mask_i32gather_ps(__m512{}, __mmask16(-1), __m512i(index), table, sizeof(float)));
+}
+inline void gather(const int* table, const Ints& index, Ints& out) {
+    out = Ints(_mm512_mask_i32gather_epi32(__m512i{}, __mmask16(-1), __m512i(index), table, sizeof(int)));
+}
+#elif defined(__AVX2__)
+inline void gather(const float* table, const Ints& index, Floats& out) {
+    out = Floats(_mm256_mask_i32gather_ps(__m256{}, table, __m256i(index), __m256(~Ints{}), sizeof(float)));
+}
+inline void gather(const int* table, const Ints& index, Ints& out) {
+    out = Ints(_mm256_mask_i32gather_epi32(__m256i{}, table, __m256i(index), __m256i(~Ints{}), sizeof(int)));
+}
+#else
 template <class T, class Vector>
 inline void gather(const T* table, const Ints& index, Vector& out) {
     alignas(64) int at[kWidth];
@@ -13,18 +29,17 @@ inline void gather(const T* table, const Ints& index, Vector& out) {
     for (int l = 0; l < kWidth; ++l) result[l] = table[at[l]];
     load(result, out);
 }
+#endif
 
-// Where the density, linear along each edge, equals iso, for kWidth cells: [axis][edge][lane], cell
-// steps. Edges that are not crossed hold anything.
-void crossings(const CellArrays& cells, int first, float (&at)[3][12 * kWidth]) {
+// Where the density, linear along each edge, equals iso, for kWidth cells: [edge][lane], share of the edge.
+// Edges that are not crossed hold anything.
+void crossings(const CellArrays& cells, int first, float (&at)[12 * kWidth]) {
     for (int edge = 0; edge < 12; ++edge) {
-        const int axis = edge / 4, low_corner = kEdgeLow[edge];
+        const int low_corner = kEdgeLow[edge];
         Floats low, high;
         load(cells.excess[low_corner] + first, low);
-        load(cells.excess[low_corner | 1 << axis] + first, high);
-        for (int d = 0; d < 3; ++d)
-            store(d == axis ? low / (low - high) : Floats{} + float(low_corner >> d & 1),
-                  at[d] + edge * kWidth);
+        load(cells.excess[low_corner | 1 << edge / 4] + first, high);
+        store(low / (low - high), at + edge * kWidth);
     }
 }
 
@@ -32,34 +47,48 @@ struct Points {
     Floats x, y, z;
 };
 
-inline void crossingOn(const float (&at)[3][12 * kWidth], const Ints& edge, const Ints& lane, Points& p) {
-    const Ints index = edge * kWidth + lane;
-    gather(at[0], index, p.x);
-    gather(at[1], index, p.y);
-    gather(at[2], index, p.z);
+// Bit by edge: does its low corner lie at 1 on this axis?
+constexpr int edgesFrom1(int axis) {
+    int edges = 0;
+    for (int edge = 0; edge < 12; ++edge) edges |= (kEdgeLow[edge] >> axis & 1) << edge;
+    return edges;
 }
 
-void cellPatches(const CellArrays& cells, const int* triangle_edges, const float steps[3],
+template <int kAxis>
+inline void crossingOnAxis(const Ints& edge, const Floats& share, Floats& out) {
+    const Ints low = (Ints{} + edgesFrom1(kAxis)) >> edge & 1;
+    out = (edge >> 2) == kAxis ? share : __builtin_convertvector(low, Floats);
+}
+
+// In cell steps.
+inline void crossingOn(const float (&at)[12 * kWidth], const Ints& edge, const Ints& lane, Points& p) {
+    Floats share;
+    gather(at, edge * kWidth + lane, share);
+    crossingOnAxis<0>(edge, share, p.x);
+    crossingOnAxis<1>(edge, share, p.y);
+    crossingOnAxis<2>(edge, share, p.z);
+}
+
+void cellPatches(const CellArrays& cells, const int* triangles, const float steps[3],
                  const CellPatches& out) {
     Ints lane;
     for (int l = 0; l < kWidth; ++l) lane[l] = l;
     for (int first = 0; first < cells.count; first += kWidth) {
-        alignas(64) float at[3][12 * kWidth];
+        alignas(64) float at[12 * kWidth];
         crossings(cells, first, at);
         Ints inside;
         load(cells.inside + first, inside);
         inside = first + lane < cells.count ? inside : Ints{};
         Floats twice{}, mx{}, my{}, mz{};
-        for (int triangle = 0; triangle < 5; ++triangle) {
-            const Ints row = inside * kTriangleStride + 3 * triangle;
-            Ints edge[3];
-            for (int v = 0; v < 3; ++v) gather(triangle_edges + v, row, edge[v]);
-            const Ints is_one = (edge[0] | edge[1]) != 0;
+        for (int triangle = 0; triangle < kTrianglesPerCell; ++triangle) {
+            Ints edges;
+            gather(triangles, inside * kTrianglesPerCell + triangle, edges);
+            const Ints is_one = edges != 0;
             if (!isAny(is_one)) break;
             Points a, b, c;
-            crossingOn(at, edge[0], lane, a);
-            crossingOn(at, edge[1], lane, b);
-            crossingOn(at, edge[2], lane, c);
+            crossingOn(at, edges & 15, lane, a);
+            crossingOn(at, edges >> 4 & 15, lane, b);
+            crossingOn(at, edges >> 8, lane, c);
             const Floats ux = (b.x - a.x) * steps[0], uy = (b.y - a.y) * steps[1],
                          uz = (b.z - a.z) * steps[2];
             const Floats vx = (c.x - a.x) * steps[0], vy = (c.y - a.y) * steps[1],

@@ -1,6 +1,10 @@
 // The loops of kernels.h, for the compiler to make vector instructions of. Included once per instruction set,
 // with BONEMILL_CPU_LEVEL_NAMESPACE set; includes nothing with inline functions, whose copies the linker
-// would mix up between instruction sets.
+// would mix up between instruction sets (those of immintrin.h have none).
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
 #include "haptic_server/kernels/brick_layout.h"
 #include "haptic_server/kernels/kernels.h"
 #include "haptic_server/kernels/loop_vectors.h"

@@ -89,7 +89,7 @@ struct MilledPlane {
 // Cells that the iso-surface crosses, as structure of arrays; the arrays go on to the next multiple of
 // kCellLanes, with anything in them.
 inline constexpr int kCellLanes = 16;
-inline constexpr int kTriangleStride = 16;  // edges of up to five triangles, edge 0 beyond
+inline constexpr int kTrianglesPerCell = 5;  // at most
 
 struct CellArrays {
     const float* excess[8];  // density minus iso at the corners
@@ -149,8 +149,9 @@ struct Kernels {
                                 uint16_t* out);
     MilledPlane (*add_plane)(const BurrPlane& burr, const uint16_t* first, int count, int rows,
                              uint16_t* out);
-    // triangle_edges[kTriangleStride * inside + 3 * triangle + vertex]: a crossed edge of the cell.
-    void (*cell_patches)(const CellArrays& cells, const int* triangle_edges, const float steps[3],
+    // triangles[kTrianglesPerCell * inside + triangle]: crossed edges a + 16 b + 256 c of the cell, not all
+    // zero; zero beyond the last triangle.
+    void (*cell_patches)(const CellArrays& cells, const int* triangles, const float steps[3],
                          const CellPatches& out);
     // At most `most_steps` Newton steps along the slope times `steepness`, until the density is within
     // `tolerance` times the largest excess at the corners.

@@ -265,9 +265,9 @@ double densityAt(const CellCase& cells, size_t n, double x, double y, double z) 
 
 TEST_P(EveryLevel, CellPatchesAndProjections) {
     // One triangle only is known here, cut off one corner: what marching cubes draws is tested elsewhere.
-    std::vector<int> triangles(256 * kTriangleStride, 0);
-    for (int inside = 0; inside < 256; ++inside) triangles[size_t(inside) * kTriangleStride + 1] = 4;
-    for (int inside = 0; inside < 256; ++inside) triangles[size_t(inside) * kTriangleStride + 2] = 8;
+    std::vector<int> triangles(256 * kTrianglesPerCell, 0);
+    for (int inside = 0; inside < 256; ++inside)
+        triangles[size_t(inside) * kTrianglesPerCell] = 0 | 4 << 4 | 8 << 8;
     const float steps[3] = {1, 0.8f, 0.5f}, steepness[3] = {1, 1.5625f, 4}, inverse[3] = {1e3f, 1250, 2e3f};
     for (int round = 0; round < 50; ++round) {
         CellCase cells{1 + below(70), {}, {}};
