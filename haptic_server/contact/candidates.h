@@ -2,6 +2,7 @@
 // construction.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -29,14 +30,26 @@ struct Candidates {
     size_t capacity() const noexcept { return patch.size(); }
     bool isFull() const noexcept { return count == capacity(); }
 
-    // Not when full.
-    void add(const ShellBlock& block, int i, LeafId leaf, const Eigen::Vector3f& position, float point_weight,
-             float nearest_place) noexcept {
-        const size_t n = count++;
-        x[n] = position.x(), y[n] = position.y(), z[n] = position.z();
-        nx[n] = block.nx[i], ny[n] = block.ny[i], nz[n] = block.nz[i];
-        weight[n] = point_weight, area[n] = block.area[i], nearest[n] = nearest_place;
-        patch[n] = uint64_t(leaf) << 32 | block.key[i];
+    // These points of a block, as many as there is room for. False: not all. Weight κ a.
+    bool add(const ShellBlock& block, const int* points, int point_count, LeafId leaf,
+             const Eigen::Vector3d& origin, float stiffness_per_area, const float* nearest_place) noexcept {
+        const int n = int(std::min(size_t(point_count), capacity() - count));
+        const auto put = [&](std::vector<float>& to, auto&& value) {
+            float* out = to.data() + count;
+            for (int i = 0; i < n; ++i) out[i] = value(points[i]);
+        };
+        put(x, [&](int i) { return float(double(block.x[i]) - origin.x()); });
+        put(y, [&](int i) { return float(double(block.y[i]) - origin.y()); });
+        put(z, [&](int i) { return float(double(block.z[i]) - origin.z()); });
+        put(nx, [&](int i) { return block.nx[i]; });
+        put(ny, [&](int i) { return block.ny[i]; });
+        put(nz, [&](int i) { return block.nz[i]; });
+        put(area, [&](int i) { return block.area[i]; });
+        put(weight, [&](int i) { return stiffness_per_area * block.area[i]; });
+        put(nearest, [&](int i) { return nearest_place[i]; });
+        for (int i = 0; i < n; ++i) patch[count + size_t(i)] = uint64_t(leaf) << 32 | block.key[points[i]];
+        count += size_t(n);
+        return n == point_count;
     }
     void copy(size_t from, size_t to) noexcept {
         x[to] = x[from], y[to] = y[from], z[to] = z[from];

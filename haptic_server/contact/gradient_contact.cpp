@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "haptic_server/contact/into_tool.h"
-#include "haptic_server/contact/patch_reach.h"
 #include "haptic_server/contact/tool_box.h"
 
 namespace bonemill {
@@ -103,38 +102,51 @@ bool GradientContact::collectFrom(const BlockBatch& blocks, const ToolField& too
         for (int axis = 0; axis < 3; ++axis) center[axis][n] = blocks.block[n]->center[axis];
     into_tool.fill(batch, center[0], center[1], center[2], blocks.count);
     tool.distances(batch, to_block);
-    const PatchReach reach{X_VT, tool, reach_per_area_};
-    // Of the centre's distance and the points'.
-    const float margin = float(margin_), error = float(2 * tool.distanceError());
-    const float refine_within = refineWithin();
+    const NearTest test = nearTest(tool, X_VT);
+    const float error = float(2 * tool.distanceError());  // of the centre's distance and the points'
     SampleBatch<float> at;
-    alignas(64) float nearest[PointBatch<float>::kCapacity];
     bool has_room = true;
     for (int n = 0; n < blocks.count && has_room; ++n) {
         const ShellBlock& block = *blocks.block[n];
         // A patch around a point reaches this much nearer to the tool.
         const float largest_patch = std::sqrt(reach_per_area_ * block.largest_area);
-        if (to_block[n] > block.radius + margin + largest_patch + error) continue;
+        if (to_block[n] > block.radius + test.margin + largest_patch + error) continue;
         into_tool.fill(batch, block.x, block.y, block.z, blocks.points[n]);
         tool.sample(batch, at);
         point_tests_ += size_t(batch.count);
-        reach.nearestPlaces(block, batch.count, at, nearest);
-        for (int i = 0; i < batch.count; ++i)
-            if (at.distance[i] < margin || nearest[i] < refine_within)
-                has_room &= addCandidate(block, i, blocks.leaf[n], at.distance[i], nearest[i]);
+        has_room = addCandidates(block, blocks.leaf[n], batch.count, at, test);
     }
     return has_room;
 }
 
-bool GradientContact::addCandidate(const ShellBlock& block, int i, LeafId leaf, float distance,
-                                   float nearest) noexcept {
-    if (candidates_.isFull()) return false;
-    const float weight = float(config_.stiffness_per_area) * block.area[i];
-    const Vector3f p = (Vector3d(block.x[i], block.y[i], block.z[i]) - origin_).cast<float>();
-    candidates_.add(block, i, leaf, p, weight, nearest);
-    deepest_ = std::max(deepest_, -double(distance));
-    touching_stiffness_ += shareInContact(double(distance)) * double(weight);
-    return true;
+NearTest GradientContact::nearTest(const ToolField& tool, const Pose& X_VT) const noexcept {
+    NearTest test;
+    const Matrix3d R_VT = X_VT.rotation.toRotationMatrix();
+    for (int i = 0; i < 9; ++i) test.R_VT[i] = float(R_VT(i / 3, i % 3));
+    test.reach_per_area = reach_per_area_;
+    // As much as the thinnest tool does.
+    test.bend_per_area = reach_per_area_ > 0 ? float(0.5 / tool.thinnestRadius()) : 0;
+    test.margin = float(margin_);
+    test.refine_within = refineWithin();
+    return test;
+}
+
+// The near ones of the block's first `count` points. False: no room for all.
+bool GradientContact::addCandidates(const ShellBlock& block, LeafId leaf, int count,
+                                    const SampleBatch<float>& at, const NearTest& test) noexcept {
+    alignas(64) float nearest[kContactBatch];
+    int selected[kContactBatch];
+    const int found = kernels().select_near(test, at.distance, at.gx, at.gy, at.gz, block.nx, block.ny,
+                                            block.nz, block.area, count, nearest, selected);
+    const size_t before = candidates_.count;
+    const bool has_room =
+        candidates_.add(block, selected, found, leaf, origin_, float(config_.stiffness_per_area), nearest);
+    for (size_t n = before; n < candidates_.count; ++n) {
+        const double distance = double(at.distance[selected[n - before]]);
+        deepest_ = std::max(deepest_, -distance);
+        touching_stiffness_ += shareInContact(distance) * double(candidates_.weight[n]);
+    }
+    return has_room;
 }
 
 namespace {

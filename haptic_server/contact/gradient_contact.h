@@ -118,7 +118,9 @@ class GradientContact {
     };
     bool collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
     bool collectFrom(const BlockBatch& blocks, const ToolField& tool, const Pose& X_VT) noexcept;
-    bool addCandidate(const ShellBlock& block, int i, LeafId leaf, float distance, float nearest) noexcept;
+    NearTest nearTest(const ToolField& tool, const Pose& X_VT) const noexcept;
+    bool addCandidates(const ShellBlock& block, LeafId leaf, int count, const SampleBatch<float>& at,
+                       const NearTest& test) noexcept;
     float refineWithin() const noexcept { return float(std::min(margin_, kRefineWithin)); }
     void refine(const ShellView& bone) noexcept;
     bool isNear(size_t candidate) const noexcept { return candidates_.nearest[candidate] < refineWithin(); }

@@ -19,15 +19,19 @@ bool isInside(uint32_t key, const IndexBox& keys) noexcept {
     return (at.array() >= keys.min.array()).all() && (at.array() <= keys.max.array()).all();
 }
 
-ShellPoint pointIn(const ShellBlock& b, uint32_t i) noexcept {
-    return {{b.x[i], b.y[i], b.z[i]}, {b.nx[i], b.ny[i], b.nz[i]}, b.area[i], b.key[i]};
-}
-
 void put(const ShellPoint& point, ShellBlock& b, uint32_t i) noexcept {
     b.x[i] = point.position.x(), b.y[i] = point.position.y(), b.z[i] = point.position.z();
     b.nx[i] = point.normal.x(), b.ny[i] = point.normal.y(), b.nz[i] = point.normal.z();
     b.area[i] = point.area;
     b.key[i] = point.key;
+}
+
+void copyPoints(const ShellBlock& from, uint32_t first, uint32_t count, ShellBlock& to,
+                uint32_t at) noexcept {
+    using B = ShellBlock;
+    for (const auto values : {&B::x, &B::y, &B::z, &B::nx, &B::ny, &B::nz, &B::area})
+        std::copy_n(from.*values + first, count, to.*values + at);
+    std::copy_n(from.key + first, count, to.key + at);
 }
 
 void setBounds(ShellBlock& b, uint32_t count) noexcept {
@@ -119,43 +123,73 @@ void ShellPool::overwrite(const List& list, const Place& from, std::span<const S
 }
 
 // Fills merged_ with what replaces the list's points from `from` on; returns how many those are. Ends early
-// when all later points stay and would keep their places.
+// after a block from which on all points stay and would keep their places.
 uint32_t ShellPool::merge(const List& list, const Place& from, const IndexBox& keys,
                           std::span<const ShellPoint> fresh) noexcept {
     const uint32_t last_key = packShellKey(keys.max);
     merged_size_ = 0;
-    size_t next_fresh = 0;
-    uint32_t block = from.block;
-    uint32_t read = 0;
-    for (; from.before + read < list.count; ++read) {
-        const uint32_t i = read % kCapacity;
-        if (read > 0 && i == 0) block = blocks_[block].next;
-        const uint32_t key = blocks_[block].key[i];
-        while (next_fresh < fresh.size() && fresh[next_fresh].key < key)
-            merged_[merged_size_++] = fresh[next_fresh++];
-        if (key > last_key && merged_size_ == read) return read;
-        if (!isInside(key, keys)) merged_[merged_size_++] = pointIn(blocks_[block], i);
+    size_t next = 0;
+    uint32_t block = from.block, read = 0;
+    while (from.before + read < list.count) {
+        const ShellBlock& b = blocks_[block];
+        const uint32_t count = std::min(kCapacity, list.count - from.before - read);
+        const bool is_after_all = next == fresh.size() && b.key[0] > last_key;
+        if (is_after_all && merged_size_ == read) return read;
+        if (is_after_all)
+            append(b, 0, count);
+        else
+            mergeBlock(b, count, keys, fresh, next);
+        read += count;
+        block = b.next;
     }
-    while (next_fresh < fresh.size()) merged_[merged_size_++] = fresh[next_fresh++];
+    while (next < fresh.size()) append(fresh[next++]);
     return read;
+}
+
+// The block's points outside the box `keys`, and between them the fresh ones from fresh[next] on, as far as
+// they belong there.
+void ShellPool::mergeBlock(const ShellBlock& b, uint32_t count, const IndexBox& keys,
+                           std::span<const ShellPoint> fresh, size_t& next) noexcept {
+    uint32_t first = 0;  // of the points that stay and are not yet appended
+    for (uint32_t i = 0; i < count; ++i) {
+        const bool is_replaced = isInside(b.key[i], keys);
+        if (!is_replaced && !(next < fresh.size() && fresh[next].key < b.key[i])) continue;
+        append(b, first, i - first);
+        while (next < fresh.size() && fresh[next].key < b.key[i]) append(fresh[next++]);
+        first = is_replaced ? i + 1 : i;
+    }
+    append(b, first, count - first);
+}
+
+void ShellPool::append(const ShellPoint& point) noexcept {
+    put(point, merged_[merged_size_ / kCapacity], merged_size_ % kCapacity);
+    ++merged_size_;
+}
+
+void ShellPool::append(const ShellBlock& from, uint32_t first, uint32_t count) noexcept {
+    while (count > 0) {
+        const uint32_t at = merged_size_ % kCapacity, n = std::min(count, kCapacity - at);
+        copyPoints(from, first, n, merged_[merged_size_ / kCapacity], at);
+        merged_size_ += n, first += n, count -= n;
+    }
 }
 
 // Writes merged_ from `to` on and gives the list as many blocks as its count wants.
 void ShellPool::write(List& list, Place to) noexcept {
-    const uint32_t end = to.before + merged_size_;
-    uint32_t n = 0;
-    for (uint32_t before = to.before; before < list.count; before += kCapacity) {
+    for (uint32_t n = 0; n < merged_size_; n += kCapacity) {
         const bool is_new = to.block == kNoBlock;
         if (is_new) {
             to.block = takeBlock();
             (to.previous == kNoBlock ? list.first : blocks_[to.previous].next) = to.block;
         }
-        for (uint32_t i = 0; i < kCapacity && n < merged_size_; ++i) put(merged_[n++], blocks_[to.block], i);
-        setBounds(blocks_[to.block], std::min(kCapacity, list.count - before));
+        ShellBlock& b = blocks_[to.block];
+        const uint32_t count = std::min(kCapacity, merged_size_ - n);
+        copyPoints(merged_[n / kCapacity], 0, count, b, 0);
+        setBounds(b, count);
         to.previous = to.block;
-        to.block = blocks_[to.block].next;
-        if (to.before + n == end && end < list.count) return;  // the rest stays
+        to.block = b.next;
     }
+    if (to.before + merged_size_ < list.count) return;  // the rest stays
     freeFrom(to.block);
     (to.previous == kNoBlock ? list.first : blocks_[to.previous].next) = kNoBlock;
 }

@@ -38,7 +38,7 @@ class ShellPool {
     };
 
     // `longest_list`: most points a list can have.
-    explicit ShellPool(size_t longest_list) : merged_(longest_list) {}
+    explicit ShellPool(size_t longest_list) : merged_(longest_list / ShellBlock::kCapacity + 1) {}
 
     void addBlocks(size_t count);
     size_t blockCount() const noexcept { return blocks_.size(); }
@@ -71,6 +71,10 @@ class ShellPool {
     void overwrite(const List& list, const Place& from, std::span<const ShellPoint> fresh) noexcept;
     uint32_t merge(const List& list, const Place& from, const IndexBox& keys,
                    std::span<const ShellPoint> fresh) noexcept;
+    void mergeBlock(const ShellBlock& b, uint32_t count, const IndexBox& keys,
+                    std::span<const ShellPoint> fresh, size_t& next) noexcept;
+    void append(const ShellPoint& point) noexcept;
+    void append(const ShellBlock& from, uint32_t first, uint32_t count) noexcept;
     void write(List& list, Place to) noexcept;
     void freeFrom(uint32_t block) noexcept;
     uint32_t takeBlock() noexcept;
@@ -78,7 +82,7 @@ class ShellPool {
     std::vector<ShellBlock> blocks_;
     uint32_t free_blocks_ = kNoBlock;
     size_t free_count_ = 0;
-    std::vector<ShellPoint> merged_;  // scratch: the new points of a list from some place on
+    std::vector<ShellBlock> merged_;  // scratch: the new points of a list from some place on
     uint32_t merged_size_ = 0;
 };
 

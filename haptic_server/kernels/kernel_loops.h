@@ -19,6 +19,7 @@ extern const Kernels kTable;
 const Kernels kTable = {
     .single = {intoFrame<float>, nearerRound<float>, sampleNearerRound<float>, addContacts<float>},
     .twice = {intoFrame<double>, nearerRound<double>, sampleNearerRound<double>, addContacts<double>},
+    .select_near = selectNear,
     .remove_plane = millPlane<-1>,
     .add_plane = millPlane<+1>,
     .cell_patches = cellPatches,

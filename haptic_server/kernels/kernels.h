@@ -50,6 +50,16 @@ struct ContactSums {
 };
 inline constexpr int kContactBatch = 64;
 
+// What makes a contact point worth a closer look. A place of its patch is nearer to the tool than the point
+// by what lies in the patch's plane of the way to the tool, and by what the bone bends towards the tool.
+struct NearTest {
+    float R_VT[9];         // rows
+    float reach_per_area;  // half a patch's diagonal, squared, per area
+    float bend_per_area;   // 1/m
+    float margin;          // m: points nearer than this
+    float refine_within;   // m: points with a place nearer than this
+};
+
 template <class Scalar>
 struct PointKernels {
     void (*into_frame)(const FrameChange<Scalar>& frame, const float* x, const float* y, const float* z,
@@ -142,6 +152,11 @@ struct SurfacePoints {
 struct Kernels {
     PointKernels<float> single;
     PointKernels<double> twice;
+    // The near ones of at most kContactBatch points: their indices, and of all points how near a place comes.
+    // Distances and gradients (T), normals (V) and areas; the arrays go on to a multiple of kCellLanes.
+    int (*select_near)(const NearTest& test, const float* distance, const float* gx, const float* gy,
+                       const float* gz, const float* nx, const float* ny, const float* nz, const float* area,
+                       int count, float* nearest, int* selected);
     // A brick's plane of `rows` rows of `count` voxels, kBrickStrideY apart and both at most kBrickCells,
     // after milling with limits from above (remove) or from below (add): the rows that changed are written to
     // out, kBrickCells apart.

@@ -133,6 +133,33 @@ void addContacts(const ContactFrame& frame, const float* __restrict x, const flo
     }
 }
 
+int selectNear(const NearTest& test, const float* distance, const float* gx, const float* gy, const float* gz,
+               const float* nx, const float* ny, const float* nz, const float* area, int count,
+               float* nearest, int* selected) {
+    const NearTest t = test;
+    const float* R = t.R_VT;
+    alignas(64) int is_near[kContactBatch];
+    for (int i = 0; i < count; i += kWidth) {
+        Floats d, tx, ty, tz, mx, my, mz, a, tilt;
+        load(distance + i, d), load(gx + i, tx), load(gy + i, ty), load(gz + i, tz);
+        load(nx + i, mx), load(ny + i, my), load(nz + i, mz), load(area + i, a);
+        const Floats vx = R[0] * tx + R[1] * ty + R[2] * tz;
+        const Floats vy = R[3] * tx + R[4] * ty + R[5] * tz;
+        const Floats vz = R[6] * tx + R[7] * ty + R[8] * tz;
+        const Floats cx = vy * mz - vz * my, cy = vz * mx - vx * mz, cz = vx * my - vy * mx;
+        rootOf((cx * cx + cy * cy + cz * cz) * t.reach_per_area * a, tilt);
+        const Floats place = d - tilt - t.bend_per_area * a;
+        store(place, nearest + i);
+        store((d < t.margin) | (place < t.refine_within), is_near + i);
+    }
+    int found = 0;
+    for (int i = 0; i < count; ++i) {
+        selected[found] = i;
+        found -= is_near[i];  // a true comparison is -1
+    }
+    return found;
+}
+
 float leastScaled(const float* __restrict value, const float* __restrict lowest,
                   const float* __restrict scale, int count, float most) {
     constexpr int kLanes = 16;

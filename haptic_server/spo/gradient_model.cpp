@@ -44,10 +44,12 @@ double shareOf(double most, const Eigen::Vector3d& so_far, const Eigen::Vector3d
 }
 
 // Of a step along which the energy first falls by `slope` per share, and after `share` of it has risen by
-// `rise`: where the parabola through all that is lowest.
-double shareAtMinimum(double slope, double share, double rise) noexcept {
+// `rise`: where the parabola through all that is lowest, but not before the deepest contact of then, which is
+// deeper by `deeper` of the way, must have begun.
+double shareAtMinimum(double slope, double share, double rise, double deeper) noexcept {
     const double at = slope * share * share / (2 * (rise + slope * share));
-    return std::clamp(at, kShortestCut * share, kLongestCut * share);
+    const double contact = (1 - deeper) * share;
+    return std::clamp(std::max(at, contact), kShortestCut * share, kLongestCut * share);
 }
 
 Vector6d between(const Pose& from, const Pose& to) noexcept {
@@ -185,7 +187,9 @@ bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tic
             return true;
         }
         const double rise = next.total.energy - state.total.energy;
-        share = std::isfinite(rise) && slope > 0 ? shareAtMinimum(slope, share, rise) : kLongestCut * share;
+        const double deeper = (next.max_depth - state.max_depth) / reachOf(share * step);
+        share = std::isfinite(rise) && slope > 0 ? shareAtMinimum(slope, share, rise, deeper)
+                                                 : kLongestCut * share;
     }
     return false;
 }
