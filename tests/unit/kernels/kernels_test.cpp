@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -194,6 +195,53 @@ TEST_P(EveryLevel, MilledPlanes) {
         EXPECT_EQ(milled[0].added, added);
         EXPECT_EQ(milled[0].is_changed >> rows, 0u);
     }
+}
+
+TEST_P(EveryLevel, NearPointsOfABlock) {
+    int all_near = 0, all_far = 0;
+    for (int round = 0; round < 100; ++round) {
+        const int n = 1 + below(kContactBatch);
+        const auto distance = randoms<float>(n, -1e-3, 1e-3), area = randoms<float>(n, 1e-9, 1e-7);
+        std::vector<std::vector<float>> g, m;  // gradient and normal
+        for (int axis = 0; axis < 3; ++axis) {
+            g.push_back(randoms<float>(n, -1, 1));
+            m.push_back(randoms<float>(n, -1, 1));
+        }
+        const NearTest test{
+            {0.36f, 0.48f, -0.8f, -0.8f, 0.6f, 0, 0.48f, 0.64f, 0.6f}, 0.5f, 500, 20e-6f, 50e-6f};
+        std::vector<float> nearest[2];
+        std::vector<int> selected[2];
+        int found[2];
+        for (const int which : {0, 1}) {
+            nearest[which].resize(kContactBatch);
+            selected[which].resize(kContactBatch);
+            found[which] = (which ? ours() : oracle())
+                               .select_near(test, distance.data(), g[0].data(), g[1].data(), g[2].data(),
+                                            m[0].data(), m[1].data(), m[2].data(), area.data(), n,
+                                            nearest[which].data(), selected[which].data());
+        }
+        ASSERT_EQ(found[0], found[1]);
+        expectSameBits(nearest[0], nearest[1], n);
+        expectSameBits(selected[0], selected[1], found[0]);
+        int next = 0;
+        for (size_t i = 0; i < size_t(n); ++i) {
+            const Eigen::Vector3d g_V =
+                Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(test.R_VT).cast<double>() *
+                Eigen::Vector3d(g[0][i], g[1][i], g[2][i]);
+            const double in_plane = g_V.cross(Eigen::Vector3d(m[0][i], m[1][i], m[2][i])).norm();
+            const double place = distance[i] - in_plane * std::sqrt(0.5 * area[i]) - 500 * double(area[i]);
+            EXPECT_NEAR(nearest[1][i], place, 1e-9);
+            const bool is_near = distance[i] < test.margin || nearest[1][i] < test.refine_within;
+            if (is_near) {
+                ASSERT_LT(next, found[1]);
+                EXPECT_EQ(selected[1][size_t(next++)], int(i));
+            }
+        }
+        EXPECT_EQ(next, found[1]);
+        all_near += next, all_far += n - next;
+    }
+    EXPECT_GT(all_near, 100);
+    EXPECT_GT(all_far, 100);
 }
 
 TEST_P(EveryLevel, LeastScaledAndRanges) {
