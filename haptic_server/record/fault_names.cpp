@@ -31,6 +31,8 @@ const char* nameOf(uint32_t fault) {
             return "coarser_shell";
         case kFaultVolumeFull:
             return "volume_full";
+        case kFaultStalled:
+            return "stalled";
     }
     return nullptr;
 }

@@ -19,6 +19,7 @@ constexpr double kLongestCut = 0.5, kShortestCut = 0.05;
 constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;
 // Rounding of the depths must not refuse a step: their share of the energy, some 10 roundings each.
 constexpr double kFloatNoise = 1e-6, kDoubleNoise = 1e-13;
+constexpr double kFelt = 0.05;  // N, and N·m by kRotationLength: less is not felt
 constexpr size_t kMostCandidates = 65'536;
 
 Vector6d rotationScale() noexcept {
@@ -222,7 +223,10 @@ bool GradientModel::descend(State& state, const Tick& tick) noexcept {
         }
         lambda_ = has_moved ? lambda_ / 10 : std::min(std::max(kFirstLambda, lambda_ * 10), kMostLambda);
         if (lambda_ < kFirstLambda / 100) lambda_ = 0;
-        if (!has_moved) break;
+        if (!has_moved) {
+            tick.out->has_stalled = rotationScale().cwiseProduct(stacked(state.total.wrench)).norm() > kFelt;
+            break;
+        }
     }
     return true;
 }

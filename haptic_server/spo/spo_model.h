@@ -28,6 +28,7 @@ struct SpoStep {
     double max_penetration = 0;      // m
     bool is_solved = true;           // false: singular or not finite; the tool kept its pose
     bool is_motion_clamped = false;  // a speed limit or the trust radius acted
+    bool has_stalled = false;  // forces that can be felt are out of balance, and no step was found that helps
     bool has_contact_overflow =
         false;  // more points near the tool than there is room or time for: the solve was cut short
 };

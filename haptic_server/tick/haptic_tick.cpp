@@ -115,6 +115,7 @@ SpoStep HapticTick::moveAndFeel(double force_factor, uint32_t& faults) noexcept 
     spo_ = step.spo;
     if (!step.is_solved) faults |= kFaultSolve;
     if (step.is_motion_clamped) faults |= kFaultMotionClamped;
+    if (step.has_stalled) faults |= kFaultStalled;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
     if (limitWrench(config_.coupling, step.wrench_hand)) faults |= kFaultForceClamped;
     step.wrench_hand.force *= force_factor;

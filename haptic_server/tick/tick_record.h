@@ -20,9 +20,10 @@ enum TickFault : uint32_t {
     kFaultForceClamped = 1u << 5,   // the wrench limit acted
     kFaultShellOverflow = 1u << 6,  // the point-shell pool is full: some milled surface has no contact points
     kFaultContactOverflow = 1u << 7,  // more points near the tool than there is room or time for
+    kFaultVolumeFull = 1u << 8,       // no memory for more changed bricks: what would need one was not milled
     kFaultMillingCutShort = 1u << 9,  // more to mill than there is time for in a tick: the rest comes later
     kFaultCoarserShell = 1u << 10,    // fewer contact points than asked for: more are too many for a tick
-    kFaultVolumeFull = 1u << 8,       // no memory for more changed bricks: what would need one was not milled
+    kFaultStalled = 1u << 11,  // forces are out of balance, but no step towards it was found in this tick
 };
 
 struct TickRecord {

@@ -69,6 +69,21 @@ TEST(GradientModel, SettlesWhereCouplingAndContactBalance) {
         }
 }
 
+// Bone so hard that even the shortest cut of the step goes too deep.
+TEST(GradientModel, SaysSoWhenItFindsNoWayToBalance) {
+    const ContactScene scene = flatScene();
+    for (const bool is_hard : {false, true}) {
+        GradientConfig config = stiff();
+        config.contact.stiffness_cap = INFINITY;
+        if (is_hard) config.contact.stiffness_per_area = 1e24;
+        GradientModel model(config, scene.world(), 1e-3);
+        const Pose touching{kAbove + Vector3d(0, 0, 1e-9), kUpright};
+        const SpoStep step = model.advance(touching, {kAbove - Vector3d(0, 0, 1e-3), kUpright});
+        EXPECT_EQ(step.has_stalled, is_hard);
+        EXPECT_TRUE(step.is_solved);
+    }
+}
+
 TEST(GradientModel, FreeToolFollowsAtThePaceOfTheDampingTimeWhateverTheRate) {
     const ContactScene scene = flatScene();
     GradientConfig config = stiff();
