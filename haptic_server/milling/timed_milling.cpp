@@ -26,19 +26,14 @@ double squaredDistance(const VoxelVolume& volume, const IndexBox& voxels,
     return low.max(high).max(0.0).matrix().squaredNorm();
 }
 
-// Nothing is left to do in the leaves of these voxels. A voxel is the first corner of its cell.
-bool isFinished(const LeafLattice& lattice, const IndexBox& voxels, int direction) noexcept {
-    bool is_finished = true;
-    forEachIndex(lattice.leavesOfCells(voxels), [&](const Eigen::Vector3i& leaf) {
-        const DensityRange& range = lattice.range(0, lattice.leafId(leaf));
-        is_finished &= direction < 0 ? range.max == 0 : range.min == kMaxDensity;
-    });
-    return is_finished;
+bool isFinished(const DensityRange& range, int direction) noexcept {
+    return direction < 0 ? range.max == 0 : range.min == kMaxDensity;
 }
 
 }  // namespace
 
-TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volume, double burr_radius)
+TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volume, const LeafLattice& lattice,
+                           double burr_radius)
     : config_(config), burr_radius_(burr_radius) {
     const auto reach = [&](int direction) {
         return BurrLimit(volume, burr_radius, MillingShape::kSubVoxel, direction).reach();
@@ -47,9 +42,12 @@ TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volum
     const Eigen::Array3d voxels = (2 * farthest / volume.spacing().array()).floor() + 2;
     const Eigen::Array3d most = voxels.min(volume.dims().cast<double>().array());
     new_density_.resize(size_t(most.prod()));
-    const Eigen::Array3d bricks = (most / kBrickCells).floor() + 2;
-    runs_.resize(size_t(bricks.x() * most.y() * most.z()));
-    changed_parts_.resize(size_t(bricks.prod()));
+    // Cut at the borders of leaves and of bricks.
+    const Eigen::Array3d leaf_cells = lattice.leafCells().cast<double>();
+    const Eigen::Array3d parts = (most / kBrickCells).floor() + (most / leaf_cells).floor() + 3;
+    runs_.resize(size_t(parts.x() * most.y() * most.z()));
+    changed_parts_.resize(size_t(parts.prod()));
+    end_run_.resize(changed_parts_.size());
 }
 
 MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
@@ -63,58 +61,72 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
     carry_ -= std::floor(carry_);
     if (amount == 0) return result;
 
-    collectChanges(volume, lattice, p_VB, direction, amount, result);
+    collectChanges(volume, lattice,
+                   {p_VB, direction, amount, BurrLimit(volume, burr_radius_, config_.shape, direction)},
+                   result);
     if (run_count_ == 0) return result;
-    lattice.beginWrite(result.changed);
-    for (size_t n = 0; n < run_count_; ++n) {
-        const ChangedRun& run = runs_[n];
-        volume.writeRow(run.first, run.count, &new_density_[run.first_new]);
-    }
-    lattice.endWrite(result.changed);
-    lattice.refreshRanges(volume, result.changed);
+    writeParts(volume, lattice, direction);
     result.shell_is_complete = shell.refresh(volume, lattice, {changed_parts_.data(), part_count_});
     return result;
 }
 
-// Brick by brick, from the one on for which there was no time in the last tick.
-void TimedMilling::collectChanges(VoxelVolume& volume, const LeafLattice& lattice,
-                                  const Eigen::Vector3d& p_VB, int direction, int amount,
+void TimedMilling::writeParts(VoxelVolume& volume, LeafLattice& lattice, int direction) noexcept {
+    size_t run = 0;
+    for (size_t n = 0; n < part_count_; ++n) {
+        lattice.beginWrite(changed_parts_[n]);
+        for (; run < end_run_[n]; ++run)
+            volume.writeRow(runs_[run].first, runs_[run].count, &new_density_[runs_[run].first_new]);
+        lattice.endWrite(changed_parts_[n]);
+    }
+    for (size_t n = 0; n < part_count_; ++n) lattice.refreshRanges(volume, changed_parts_[n], direction);
+}
+
+// Leaf by leaf, from the one on for which there was no time in the last tick, then those before it.
+void TimedMilling::collectChanges(VoxelVolume& volume, const LeafLattice& lattice, const Stroke& stroke,
                                   MillingResult& result) noexcept {
     run_count_ = new_count_ = part_count_ = cells_ = 0;
-    const BurrLimit limit(volume, burr_radius_, config_.shape, direction);
-    const double reach_squared = limit.reach() * limit.reach();
-    const IndexBox box = boxAround(volume, p_VB, limit.reach());
-    if (box.isEmpty()) return;
-    const size_t first = std::exchange(first_part_, 0);
+    const double reach_squared = stroke.limit.reach() * stroke.limit.reach();
+    const IndexBox box = boxAround(volume, stroke.p_VB, stroke.limit.reach());
+    const auto is_wanted = [&](const DensityRange& range, const IndexBox& voxels) {
+        return !isFinished(range, stroke.direction) &&
+               squaredDistance(volume, voxels, stroke.p_VB) < reach_squared;
+    };
+    const LeafId first = std::exchange(next_leaf_, kNoLeaf);
     for (const bool is_second_round : {false, true}) {
-        if (is_second_round && first == 0) break;
-        size_t n = 0;
-        volume.forEachOwnedPart(box, [&](const IndexBox& part, size_t offset) {
-            const size_t index = n++;
-            if ((index < first) != is_second_round || result.is_cut_short ||
-                squaredDistance(volume, part, p_VB) >= reach_squared ||
-                isFinished(lattice, part, direction) ||
-                collectPart(volume, part, offset, limit, p_VB, direction, amount, result))
-                return;
-            first_part_ = index;
+        if (is_second_round && first == kNoLeaf) break;
+        bool is_later = first == kNoLeaf;
+        // A voxel is the first corner of its cell.
+        lattice.forEachLeaf(box, is_wanted, [&](LeafId leaf) {
+            is_later |= leaf == first;
+            if (is_later == is_second_round || result.is_cut_short) return;
+            const IndexBox voxels = lattice.cellsOf(leaf).clamped(box.min, box.max);
+            if (collectLeaf(volume, voxels, stroke, result)) return;
+            next_leaf_ = leaf;
             result.is_cut_short = true;
         });
     }
 }
 
+// False: there was no time for all of it.
+bool TimedMilling::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, const Stroke& stroke,
+                               MillingResult& result) noexcept {
+    bool is_whole = true;
+    volume.forEachOwnedPart(voxels, [&](const IndexBox& part, size_t offset) {
+        is_whole = is_whole && collectPart(volume, part, offset, stroke, result);
+    });
+    return is_whole;
+}
+
 // False: it would take more than a tick's cells, and nothing of it is kept; nor without memory for its
 // bricks.
-bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset,
-                               const BurrLimit& limit, const Eigen::Vector3d& p_VB, int direction, int amount,
+bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset, const Stroke& stroke,
                                MillingResult& result) noexcept {
     const size_t runs_before = run_count_, new_before = new_count_;
     MillingResult of_part;
     IndexBox plane = part;
     for (int k = part.min.z(); k <= part.max.z(); ++k, offset += VoxelVolume::kStrideZ) {
         plane.min.z() = plane.max.z() = k;
-        const Eigen::Vector3d to_first = volume.spacing().cwiseProduct(plane.min.cast<double>()) - p_VB;
-        collectPlane(volume, plane, offset, limit.plane(to_first, volume.spacing(), amount), direction,
-                     of_part);
+        collectPlane(volume, plane, offset, stroke, of_part);
     }
     const auto drop = [&] { run_count_ = runs_before, new_count_ = new_before; };
     const size_t cells_before = std::exchange(
@@ -129,7 +141,8 @@ bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t
         result.has_room = false;
         return true;
     }
-    changed_parts_[part_count_++] = of_part.changed;
+    changed_parts_[part_count_] = of_part.changed;
+    end_run_[part_count_++] = run_count_;
     result.changed.include(of_part.changed);
     result.removed_voxels += of_part.removed_voxels;
     result.added_voxels += of_part.added_voxels;
@@ -137,11 +150,13 @@ bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t
 }
 
 void TimedMilling::collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset,
-                                const BurrPlane& burr, int direction, MillingResult& result) noexcept {
+                                const Stroke& stroke, MillingResult& result) noexcept {
+    const Eigen::Vector3d to_first = volume.spacing().cwiseProduct(plane.min.cast<double>()) - stroke.p_VB;
+    const BurrPlane burr = stroke.limit.plane(to_first, volume.spacing(), stroke.amount);
     const Density* old = volume.ownerData() + offset;
     Density fresh[kBrickCells * kBrickCells];
     const int count = plane.max.x() - plane.min.x() + 1, rows = plane.max.y() - plane.min.y() + 1;
-    const auto mill = direction < 0 ? kernels().remove_plane : kernels().add_plane;
+    const auto mill = stroke.direction < 0 ? kernels().remove_plane : kernels().add_plane;
     const MilledPlane milled = mill(burr, old, count, rows, fresh);
     for (int r = 0; r < rows; ++r)
         if (milled.is_changed >> r & 1)

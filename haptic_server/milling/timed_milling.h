@@ -16,7 +16,7 @@ struct MillingConfig {
         12750 * kDensityCountsPerUnit;  // density counts/s; default: from full to nothing in 20 ms
     double addition_rate = 12750 * kDensityCountsPerUnit;  // density counts/s
     MillingShape shape = MillingShape::kVoxelCentres;
-    // In a tick; bricks that would need more wait for the next one, whole and in turn.
+    // In a tick; leaves for which there is no time wait for the next one, in turn.
     size_t most_cells = 50'000'000;  // whose surface is made anew; eight that are only looked at count as one
 };
 
@@ -32,7 +32,8 @@ struct MillingResult {
 // Owns the scratch memory of one burr. Construction allocates; apply() is RT-safe (tick thread only).
 class TimedMilling {
   public:
-    TimedMilling(const MillingConfig& config, const VoxelVolume& volume, double burr_radius);
+    TimedMilling(const MillingConfig& config, const VoxelVolume& volume, const LeafLattice& lattice,
+                 double burr_radius);
 
     // Changes the voxels beyond their limit by rate·dt, but not past it, then the leaf versions, density
     // ranges and point-shell with them. direction -1 removes, +1 adds. p_VB: centre of the burr.
@@ -49,12 +50,21 @@ class TimedMilling {
         size_t first_new;
         int count;
     };
-    void collectChanges(VoxelVolume& volume, const LeafLattice& lattice, const Eigen::Vector3d& p_VB,
-                        int direction, int amount, MillingResult& result) noexcept;
-    bool collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset, const BurrLimit& limit,
-                     const Eigen::Vector3d& p_VB, int direction, int amount, MillingResult& result) noexcept;
-    void collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset, const BurrPlane& burr,
-                      int direction, MillingResult& result) noexcept;
+    // What one tick mills.
+    struct Stroke {
+        Eigen::Vector3d p_VB;
+        int direction, amount;
+        BurrLimit limit;
+    };
+    void collectChanges(VoxelVolume& volume, const LeafLattice& lattice, const Stroke& stroke,
+                        MillingResult& result) noexcept;
+    bool collectLeaf(VoxelVolume& volume, const IndexBox& voxels, const Stroke& stroke,
+                     MillingResult& result) noexcept;
+    bool collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset, const Stroke& stroke,
+                     MillingResult& result) noexcept;
+    void collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset, const Stroke& stroke,
+                      MillingResult& result) noexcept;
+    void writeParts(VoxelVolume& volume, LeafLattice& lattice, int direction) noexcept;
     void keepChanges(const Eigen::Vector3i& first, int count, const Density* old, const Density* fresh,
                      MillingResult& result) noexcept;
 
@@ -64,9 +74,11 @@ class TimedMilling {
     int carry_direction_ = 0;
     std::vector<ChangedRun> runs_;  // the first run_count_
     size_t run_count_ = 0;
-    std::vector<IndexBox> changed_parts_;  // per brick; the first part_count_
+    std::vector<IndexBox> changed_parts_;  // each in one brick; the first part_count_
+    std::vector<size_t> end_run_;          // of each part: its runs go from the last part's to here
     size_t part_count_ = 0;
-    size_t first_part_ = 0;             // of the box around the burr: where the last tick was cut short
+    static constexpr LeafId kNoLeaf = ~LeafId(0);
+    LeafId next_leaf_ = kNoLeaf;        // where the last tick was cut short
     size_t cells_ = 0;                  // of this tick
     std::vector<Density> new_density_;  // the first new_count_
     size_t new_count_ = 0;

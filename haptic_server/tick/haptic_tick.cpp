@@ -35,7 +35,7 @@ HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const ToolMode
       gradient_(config.gradient, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
       model_(&gradient_),
       affordable_(config.dt),
-      milling_(config.milling, bone.volume, config.burr_radius),
+      milling_(config.milling, bone.volume, bone.lattice, config.burr_radius),
       X_VW_(bone.volume.geometry().X_WV.inverse()) {
     const AccuracySettings& settings = accuracy ? accuracy->chosen() : config.accuracy;
     bone.shell.prepare(bone.volume, bone.lattice, levelOf(bone.shell, settings),

@@ -36,11 +36,14 @@ constexpr DensityRange kAnyDensity{0, kMaxDensity};
 // in the old range, so no more can come out than that joined with the changed voxels' range; mostly a few
 // rows show that no less comes out either.
 DensityRange rangeAfterChange(const VoxelVolume& volume, const IndexBox& voxels, const IndexBox& changed,
-                              const DensityRange& before) noexcept {
-    const DensityRange now = scan(volume, changed.clamped(voxels.min, voxels.max), {}, kAnyDensity);
+                              const DensityRange& before, int direction) noexcept {
+    DensityRange known = scan(volume, changed.clamped(voxels.min, voxels.max), {}, kAnyDensity);
     DensityRange bounds = before;
-    widen(bounds, now);
-    return scan(volume, voxels, now, bounds);
+    widen(bounds, known);
+    // A voxel of the least density before is not above it now, and the same the other way round.
+    if (direction < 0) known.min = bounds.min;
+    if (direction > 0) known.max = bounds.max;
+    return scan(volume, voxels, known, bounds);
 }
 
 }  // namespace
@@ -80,7 +83,9 @@ IndexBox LeafLattice::leavesOfCells(const IndexBox& cells) const noexcept {
 
 void LeafLattice::refreshParents(const IndexBox& leaves) noexcept {
     IndexBox nodes = leaves;
-    for (size_t level = 1; level < levels_.size(); ++level) {
+    bool has_changed = true;
+    for (size_t level = 1; level < levels_.size() && has_changed; ++level) {
+        has_changed = false;
         nodes = {nodes.min / 2, nodes.max / 2};
         const Level& below = levels_[level - 1];
         Level& here = levels_[level];
@@ -93,21 +98,28 @@ void LeafLattice::refreshParents(const IndexBox& leaves) noexcept {
                 widen(range, below.range[size_t(child.x() + below.nodes.x() *
                                                                 (child.y() + below.nodes.y() * child.z()))]);
             }
-            here.range[size_t(node.x() + here.nodes.x() * (node.y() + here.nodes.y() * node.z()))] = range;
+            DensityRange& old =
+                here.range[size_t(node.x() + here.nodes.x() * (node.y() + here.nodes.y() * node.z()))];
+            has_changed |= !isSame(old, range);
+            old = range;
         });
     }
 }
 
-void LeafLattice::refreshRanges(const VoxelVolume& volume, const IndexBox& changed_voxels) noexcept {
+void LeafLattice::refreshRanges(const VoxelVolume& volume, const IndexBox& changed_voxels,
+                                int direction) noexcept {
     // A voxel is a corner of the cells on both its sides.
     const IndexBox leaves = leavesOfCells({changed_voxels.min.array() - 1, changed_voxels.max});
     if (leaves.isEmpty()) return;
+    bool has_changed = false;
     forEachIndex(leaves, [&](const Eigen::Vector3i& leaf) {
         const LeafId id = leafId(leaf);
         DensityRange& range = levels_[0].range[id];
-        range = rangeAfterChange(volume, voxelsOf(id), changed_voxels, range);
+        const DensityRange now = rangeAfterChange(volume, voxelsOf(id), changed_voxels, range, direction);
+        has_changed |= !isSame(range, now);
+        range = now;
     });
-    refreshParents(leaves);
+    if (has_changed) refreshParents(leaves);
 }
 
 void LeafLattice::beginWrite(const IndexBox& changed_voxels) noexcept {

@@ -49,7 +49,8 @@ class LeafLattice {
 
     // RT-safe, tick thread only: the voxels in `box`, and no others, may have changed since the ranges were
     // last right. Makes the ranges of the leaves they belong to those of a full scan, renews up to the root.
-    void refreshRanges(const VoxelVolume& volume, const IndexBox& changed_voxels) noexcept;
+    // direction -1: no density rose since then, +1: none fell; that is quicker.
+    void refreshRanges(const VoxelVolume& volume, const IndexBox& changed_voxels, int direction = 0) noexcept;
 
     // Leaves whose mesh or point-shell can change when these voxels do: those within kInfluence of their
     // cells.
@@ -74,8 +75,13 @@ class LeafLattice {
         return r.min < iso && r.max >= iso;
     }
 
-    // Top-down search: calls visit(LeafId) for every leaf whose cells meet `box` (V, m) and whose range holds
-    // iso, in ascending order of the lattice within each node. RT-safe, tick thread only.
+    // Top-down search, RT-safe, tick thread only: calls visit(LeafId) for every leaf that owns any of these
+    // cells, unless is_wanted(const DensityRange&, const IndexBox& cells) is false for it or a node above it.
+    // In ascending order of the lattice within each node.
+    template <class IsWanted, class Visit>
+    void forEachLeaf(const IndexBox& cells, IsWanted&& is_wanted, Visit&& visit) const noexcept;
+
+    // The same for every leaf whose cells meet `box` (V, m) and whose range holds iso.
     template <class Visit>
     void forEachSurfaceLeaf(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& spacing, Density iso,
                             Visit&& visit) const noexcept;
@@ -92,8 +98,8 @@ class LeafLattice {
         return {cells.min, cells.max.array() + 1};
     }
     void refreshParents(const IndexBox& leaves) noexcept;
-    template <class Visit>
-    void descend(int level, const Eigen::Vector3i& node, const IndexBox& leaves, Density iso,
+    template <class IsWanted, class Visit>
+    void descend(int level, const Eigen::Vector3i& node, const IndexBox& leaves, IsWanted& is_wanted,
                  Visit& visit) const noexcept;
 
     Eigen::Vector3i leaf_cells_;
@@ -111,25 +117,37 @@ void LeafLattice::forEachSurfaceLeaf(const Eigen::AlignedBox3d& box, const Eigen
     const Eigen::Array3d high =
         (box.max().array() / spacing.array()).max(-2.0).min(dims_.cast<double>().array() - 1);
     const IndexBox cells{low.floor().cast<int>().matrix(), high.floor().cast<int>().matrix()};
-    if (cells.isEmpty()) return;
-    descend(levelCount() - 1, Eigen::Vector3i::Zero(), leavesOfCells(cells), iso, visit);
+    forEachLeaf(
+        cells,
+        [iso](const DensityRange& range, const IndexBox&) { return range.min < iso && range.max >= iso; },
+        visit);
 }
 
-template <class Visit>
-void LeafLattice::descend(int level, const Eigen::Vector3i& node, const IndexBox& leaves, Density iso,
+template <class IsWanted, class Visit>
+void LeafLattice::forEachLeaf(const IndexBox& cells, IsWanted&& is_wanted, Visit&& visit) const noexcept {
+    const IndexBox leaves = leavesOfCells(cells);
+    if (!cells.isEmpty() && !leaves.isEmpty())
+        descend(levelCount() - 1, Eigen::Vector3i::Zero(), leaves, is_wanted, visit);
+}
+
+template <class IsWanted, class Visit>
+void LeafLattice::descend(int level, const Eigen::Vector3i& node, const IndexBox& leaves, IsWanted& is_wanted,
                           Visit& visit) const noexcept {
     const Eigen::Vector3i first = node * (1 << level);
     const Eigen::Vector3i last = first.array() + ((1 << level) - 1);
     if ((first.array() > leaves.max.array()).any() || (last.array() < leaves.min.array()).any()) return;
     const auto& n = levels_[level].nodes;
-    const DensityRange& r = levels_[level].range[size_t(node.x() + n.x() * (node.y() + n.y() * node.z()))];
-    if (r.min >= iso || r.max < iso) return;
+    const DensityRange& range =
+        levels_[level].range[size_t(node.x() + n.x() * (node.y() + n.y() * node.z()))];
+    const IndexBox cells{first.cwiseProduct(leaf_cells_).array() - 1,
+                         (last.array() + 1).matrix().cwiseProduct(leaf_cells_).array() - 2};
+    if (!is_wanted(range, cells)) return;
     if (level == 0) return visit(leafId(node));
     const auto& below = levels_[level - 1].nodes;
     for (int octant = 0; octant < 8; ++octant) {
         const Eigen::Vector3i child =
             2 * node + Eigen::Vector3i(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
-        if ((child.array() < below.array()).all()) descend(level - 1, child, leaves, iso, visit);
+        if ((child.array() < below.array()).all()) descend(level - 1, child, leaves, is_wanted, visit);
     }
 }
 

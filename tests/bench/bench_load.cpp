@@ -59,7 +59,7 @@ void meshAndMill(BoneModel& bone, nlohmann::json& json) {
         bone.shell.forEachBlock(0, leaf, [&](const ShellBlock& block, uint32_t) {
             on_surface = {block.x[0], block.y[0], block.z[0]};
         });
-    TimedMilling milling({.shape = MillingShape::kSubVoxel}, bone.volume,
+    TimedMilling milling({.shape = MillingShape::kSubVoxel}, bone.volume, bone.lattice,
                          8 * bone.volume.spacing().maxCoeff());
     uint64_t removed = 0;
     for (int n = 0; n < kTicks; ++n)

@@ -96,7 +96,7 @@ TEST_P(SubVoxelSphere, DwellingLeavesTheSphere) {
             for (const int direction : {-1, +1}) {
                 const double side = 2 * radius + 9 * kVoxel;
                 BoneModel bone = cube(side, spacing, iso, direction < 0 ? kMaxDensity : 0);
-                TimedMilling milling(atOnce(), bone.volume, radius);
+                TimedMilling milling(atOnce(), bone.volume, bone.lattice, radius);
                 const Eigen::Vector3d center =
                     Eigen::Vector3d::Constant(side / 2) + Eigen::Vector3d(0.31, -0.17, 0.44) * kVoxel;
                 for (int n = 0; n < 2; ++n)
@@ -126,7 +126,7 @@ TEST(SubVoxelMilling, EveryVoxelEndsAtItsLimitAndNoneElsewhereChanges) {
                 const VoxelVolume before = bone.volume;
                 const double radius = 6.3 * kVoxel;
                 const Eigen::Vector3d center(12.2173 * kVoxel, 14.7391 * kVoxel, 11.4257 * kVoxel);
-                TimedMilling milling(atOnce(), bone.volume, radius);
+                TimedMilling milling(atOnce(), bone.volume, bone.lattice, radius);
                 const MillingResult result =
                     milling.apply(bone.volume, bone.lattice, bone.shell, center, direction, kDt);
                 uint32_t crossed = 0;
@@ -150,7 +150,7 @@ TEST(SubVoxelMilling, NoVoxelLosesMoreThanTheRate) {
     config.removal_rate = 1'000'003.7;
     const double radius = 1e-3;
     const Eigen::Vector3d center(2e-3, 2.01e-3, 1.97e-3);
-    TimedMilling milling(config, bone.volume, radius);
+    TimedMilling milling(config, bone.volume, bone.lattice, radius);
     for (int n = 1; n <= 100; ++n) {
         milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
         const double lost = config.removal_rate * n * kDt;
@@ -187,7 +187,7 @@ TEST(SubVoxelMilling, ABurrSunkByMicrometresGoesOnCutting) {
         VoxelVolume volume = test::bodyVolume(test::cubeGeometry(33, kVoxel),
                                               test::halfSpace({0, 0, 2.03e-3}, Eigen::Vector3d::UnitZ()));
         BoneModel bone(std::move(volume), Eigen::Vector3i::Constant(16), ShellConfig{});
-        TimedMilling milling({.shape = shape}, bone.volume, radius);
+        TimedMilling milling({.shape = shape}, bone.volume, bone.lattice, radius);
         const Eigen::Vector2d xy(2.02e-3, 2.05e-3);
         const double start = heightOnBone(bone, xy, radius, sunk);
         double height = start;
@@ -210,7 +210,7 @@ TEST(SubVoxelMilling, APassLeavesTheSweptCapsule) {
         const double radius = 1e-3;
         const Eigen::Vector3d start(1.52e-3, 1.61e-3, 1.57e-3);
         const Eigen::Vector3d end(3.41e-3, 3.12e-3, 3.44e-3);
-        TimedMilling milling({.shape = MillingShape::kSubVoxel}, bone.volume, radius);
+        TimedMilling milling({.shape = MillingShape::kSubVoxel}, bone.volume, bone.lattice, radius);
         constexpr int kSteps = 600;
         constexpr int kDwell = 30;  // at both ends, longer than a full voxel takes to go
         for (int n = 0; n < kSteps + 2 * kDwell; ++n) {
@@ -226,7 +226,7 @@ TEST(SubVoxelMilling, APassLeavesTheSweptCapsule) {
 TEST(SubVoxelMilling, ABurrAwayFromTheBoneTouchesNothing) {
     BoneModel bone = cube(4e-3, kSpacings[1], 26214, kMaxDensity);
     const double radius = 1e-3;
-    TimedMilling milling(atOnce(), bone.volume, radius);
+    TimedMilling milling(atOnce(), bone.volume, bone.lattice, radius);
     const double away = radius + (1 + (65535 - 26214) / 26214.0) * kVoxel;
     for (const Eigen::Vector3d& center :
          {Eigen::Vector3d(-away, 2e-3, 2e-3), Eigen::Vector3d(2e-3, 4.2e-3 + away, 2e-3),
@@ -239,7 +239,7 @@ TEST(SubVoxelMilling, ABurrAwayFromTheBoneTouchesNothing) {
 
 TEST(SubVoxelMilling, WhatIsAtItsLimitMarksNoLeaf) {
     BoneModel bone = cube(4e-3, kSpacings[1], 26214, kMaxDensity);
-    TimedMilling milling(atOnce(), bone.volume, 1e-3);
+    TimedMilling milling(atOnce(), bone.volume, bone.lattice, 1e-3);
     const Eigen::Vector3d center(2e-3, 2e-3, 2e-3);
     EXPECT_FALSE(milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt).changed.isEmpty());
     EXPECT_TRUE(milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt).changed.isEmpty());
@@ -248,7 +248,7 @@ TEST(SubVoxelMilling, WhatIsAtItsLimitMarksNoLeaf) {
 // Switched between ticks, in both directions, also at the volume's border.
 TEST(SubVoxelMilling, ShellAndRangesFollowWhateverTheShape) {
     BoneModel bone = cube(4e-3, kSpacings[1], 26214, kMaxDensity);
-    TimedMilling milling({.removal_rate = 9e6, .addition_rate = 9e6}, bone.volume, 0.7e-3);
+    TimedMilling milling({.removal_rate = 9e6, .addition_rate = 9e6}, bone.volume, bone.lattice, 0.7e-3);
     std::mt19937 random(9);
     std::uniform_real_distribution<double> where(-0.3e-3, 4.3e-3);
     for (int stroke = 0; stroke < 30; ++stroke) {

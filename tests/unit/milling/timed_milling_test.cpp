@@ -20,7 +20,7 @@ BoneModel solidBlock() {
 
 TEST(TimedMilling, TakesExactlyTheVoxelsInsideTheBurr) {
     BoneModel bone = solidBlock();
-    TimedMilling milling({.removal_rate = 1e9}, bone.volume, kRadius);  // at once
+    TimedMilling milling({.removal_rate = 1e9}, bone.volume, bone.lattice, kRadius);  // at once
     const Eigen::Vector3d center(8.1e-3, 7.9e-3, 8.3e-3);
     const MillingResult result = milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
     uint32_t expected = 0;
@@ -39,7 +39,7 @@ TEST(TimedMilling, RateIsDensityPerTimeWhateverTheTick) {
     for (const double dt : {0.25e-3, 1e-3, 4e-3}) {
         BoneModel bone = solidBlock();
         const double rate = 1'000'003.7;  // counts/s: nothing divides evenly
-        TimedMilling milling({.removal_rate = rate}, bone.volume, kRadius);
+        TimedMilling milling({.removal_rate = rate}, bone.volume, bone.lattice, kRadius);
         const double duration = 0.032;
         for (int n = 0; n < int(duration / dt + 0.5); ++n)
             milling.apply(bone.volume, bone.lattice, bone.shell, {8e-3, 8e-3, 8e-3}, -1, dt);
@@ -49,7 +49,7 @@ TEST(TimedMilling, RateIsDensityPerTimeWhateverTheTick) {
 
 TEST(TimedMilling, AddingUndoesRemovingAndSaturates) {
     BoneModel bone = solidBlock();
-    TimedMilling milling({.removal_rate = 1e9, .addition_rate = 1e9}, bone.volume, kRadius);
+    TimedMilling milling({.removal_rate = 1e9, .addition_rate = 1e9}, bone.volume, bone.lattice, kRadius);
     const Eigen::Vector3d center(8e-3, 8e-3, 8e-3);
     const MillingResult removed = milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
     const MillingResult added = milling.apply(bone.volume, bone.lattice, bone.shell, center, +1, kDt);
@@ -62,7 +62,7 @@ TEST(TimedMilling, AddingUndoesRemovingAndSaturates) {
 
 TEST(TimedMilling, AnUnchangedVoxelMarksNoLeaf) {
     BoneModel bone = solidBlock();
-    TimedMilling milling({.removal_rate = 1e9}, bone.volume, kRadius);
+    TimedMilling milling({.removal_rate = 1e9}, bone.volume, bone.lattice, kRadius);
     const Eigen::Vector3d center(8e-3, 8e-3, 8e-3);
     milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
     std::vector<uint32_t> versions;
@@ -77,14 +77,14 @@ TEST(TimedMilling, AnUnchangedVoxelMarksNoLeaf) {
 
 TEST(TimedMilling, WorksAtAndBeyondTheBorder) {
     BoneModel bone = solidBlock();
-    TimedMilling milling({.removal_rate = 1e9}, bone.volume, kRadius);
+    TimedMilling milling({.removal_rate = 1e9}, bone.volume, bone.lattice, kRadius);
     for (const Eigen::Vector3d& center : {Eigen::Vector3d(-1e-3, 0, 0), Eigen::Vector3d(17e-3, 17e-3, 17e-3),
                                           Eigen::Vector3d(1e3, -1e3, 0), Eigen::Vector3d(-5e8, 5e8, 5e8)})
         milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
     EXPECT_EQ(bone.volume.at(0, 0, 0), 0);
     EXPECT_EQ(bone.volume.at(32, 32, 32), 0);
     EXPECT_EQ(bone.volume.at(-1, 0, 0), 0);  // the border stays air also when adding
-    TimedMilling adding({.addition_rate = 1e9}, bone.volume, kRadius);
+    TimedMilling adding({.addition_rate = 1e9}, bone.volume, bone.lattice, kRadius);
     adding.apply(bone.volume, bone.lattice, bone.shell, {0, 0, 0}, +1, kDt);
     EXPECT_EQ(bone.volume.at(0, 0, 0), kMaxDensity);
     EXPECT_EQ(bone.volume.at(-1, 0, 0), 0);
@@ -94,8 +94,9 @@ TEST(TimedMilling, WorksAtAndBeyondTheBorder) {
 TEST(TimedMilling, ATickWithTooMuchToDoLeavesTheRestForTheNext) {
     constexpr size_t kMostCells = 1500;
     BoneModel bone = solidBlock(), at_once = solidBlock();
-    TimedMilling milling({.removal_rate = 1e9, .most_cells = kMostCells}, bone.volume, 5 * kVoxel * 2);
-    TimedMilling whole({.removal_rate = 1e9}, at_once.volume, 5 * kVoxel * 2);
+    TimedMilling milling({.removal_rate = 1e9, .most_cells = kMostCells}, bone.volume, bone.lattice,
+                         5 * kVoxel * 2);
+    TimedMilling whole({.removal_rate = 1e9}, at_once.volume, at_once.lattice, 5 * kVoxel * 2);
     const Eigen::Vector3d center(8.1e-3, 7.9e-3, 8.3e-3);
     EXPECT_FALSE(whole.apply(at_once.volume, at_once.lattice, at_once.shell, center, -1, kDt).is_cut_short);
     int ticks_cut_short = 0;
@@ -119,7 +120,7 @@ TEST(TimedMilling, WithoutMemoryForTheChangeNothingIsMilled) {
     BoneModel bone(
         test::bodyVolume(test::cubeGeometry(60, kVoxel), [](const Eigen::Vector3d&) { return -1.0; }),
         Eigen::Vector3i::Constant(16), ShellConfig{});
-    TimedMilling milling({.removal_rate = 1e9}, bone.volume, kVoxel);
+    TimedMilling milling({.removal_rate = 1e9}, bone.volume, bone.lattice, kVoxel);
     const Eigen::Vector3d inside(12e-3, 12e-3, 12e-3);
     bone.volume.shareUniformBricks();  // and no spare ones
     MillingResult result = milling.apply(bone.volume, bone.lattice, bone.shell, inside, -1, kDt);
@@ -134,7 +135,7 @@ TEST(TimedMilling, WithoutMemoryForTheChangeNothingIsMilled) {
 
 TEST(TimedMilling, ShellAndRangesFollow) {
     BoneModel bone = solidBlock();
-    TimedMilling milling({.removal_rate = 4e6}, bone.volume, kRadius);
+    TimedMilling milling({.removal_rate = 4e6}, bone.volume, bone.lattice, kRadius);
     for (int n = 0; n < 40; ++n)
         milling.apply(bone.volume, bone.lattice, bone.shell, {8e-3 + n * 0.1e-3, 8e-3, 8e-3}, -1, kDt);
     const LeafLattice fresh_lattice(bone.volume, Eigen::Vector3i::Constant(8));

@@ -17,7 +17,7 @@ TEST(VolumeReset, GivesBackTheScannedBoneAndItsShell) {
     BoneModel bone = make();
     const BoneModel original = make();
     VolumeReset reset(bone);
-    TimedMilling milling({.removal_rate = 1e9}, bone.volume, 2e-3);
+    TimedMilling milling({.removal_rate = 1e9}, bone.volume, bone.lattice, 2e-3);
     for (int n = 0; n < 20; ++n)
         milling.apply(bone.volume, bone.lattice, bone.shell, Eigen::Vector3d(3e-3 + n * 0.5e-3, 9e-3, 11e-3),
                       -1, 1e-3);
