@@ -16,17 +16,18 @@
 namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
 
 extern const Kernels kTable;
-const Kernels kTable = {
-    .single = {intoFrame<float>, nearerRound<float>, sampleNearerRound<float>, addContacts<float>},
-    .twice = {intoFrame<double>, nearerRound<double>, sampleNearerRound<double>, addContacts<double>},
-    .select_near = selectNear,
-    .remove_plane = millPlane<-1>,
-    .add_plane = millPlane<+1>,
-    .cell_patches = cellPatches,
-    .project_into_cells = projectIntoCells,
-    .move_onto_surface = moveOntoSurface,
-    .least_scaled = leastScaled,
-    .range_of_rows = rangeOfRows,
-    .cell_sides = cellSides};
+const Kernels kTable = {.single = {intoFrame<float>, nearerRound<float>, sampleNearerRound<float>,
+                                   nearerCone<float>, sampleNearerCone<float>, addContacts<float>},
+                        .twice = {intoFrame<double>, nearerRound<double>, sampleNearerRound<double>,
+                                  nearerCone<double>, sampleNearerCone<double>, addContacts<double>},
+                        .select_near = selectNear,
+                        .remove_plane = millPlane<-1>,
+                        .add_plane = millPlane<+1>,
+                        .cell_patches = cellPatches,
+                        .project_into_cells = projectIntoCells,
+                        .move_onto_surface = moveOntoSurface,
+                        .least_scaled = leastScaled,
+                        .range_of_rows = rangeOfRows,
+                        .cell_sides = cellSides};
 
 }  // namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE

@@ -33,6 +33,17 @@ struct RoundSolid {
     Scalar length, radius;
 };
 
+// A truncated cone with flat ends about the segment that starts at `from` and goes `length` > 0 along the
+// unit vector `axis`.
+template <class Scalar>
+struct ConeSolid {
+    Scalar from[3], axis[3];
+    Scalar normal[3];  // unit, any to the axis
+    Scalar length;
+    Scalar radius[2];  // where the segment starts and where it ends
+    Scalar side[2];    // unit, from the first rim to the second: along and off the axis
+};
+
 // From the tool's axes to the bone's, and where the tool point lies among the contact points.
 struct ContactFrame {
     double R_VT[9];    // rows
@@ -71,6 +82,12 @@ struct PointKernels {
     void (*sample_nearer_round)(const RoundSolid<Scalar>& solid, const Scalar* x, const Scalar* y,
                                 const Scalar* z, int count, Scalar* distance, Scalar* gx, Scalar* gy,
                                 Scalar* gz);
+    // The same; on the axis the gradient is of length 1 too.
+    void (*nearer_cone)(const ConeSolid<Scalar>& solid, const Scalar* x, const Scalar* y, const Scalar* z,
+                        int count, Scalar* out);
+    void (*sample_nearer_cone)(const ConeSolid<Scalar>& solid, const Scalar* x, const Scalar* y,
+                               const Scalar* z, int count, Scalar* distance, Scalar* gx, Scalar* gy,
+                               Scalar* gz);
     // At most kContactBatch points inside the tool (distance < 0), from the frame's origin, with their
     // stiffness `weight` (N/m); gradients in the tool's axes.
     void (*add_contacts)(const ContactFrame& frame, const float* x, const float* y, const float* z,

@@ -57,6 +57,84 @@ void sampleNearerRound(const RoundSolid<Scalar>& solid, const Scalar* __restrict
     }
 }
 
+// A point as the cone's axis sees it.
+template <class Scalar>
+struct FromConeAxis {
+    Scalar along, off;
+    Scalar dx, dy, dz;  // off the axis, of length `off`
+};
+
+template <class Scalar>
+inline FromConeAxis<Scalar> fromAxis(const ConeSolid<Scalar>& s, Scalar px, Scalar py, Scalar pz) {
+    const Scalar x = px - s.from[0], y = py - s.from[1], z = pz - s.from[2];
+    const Scalar along = x * s.axis[0] + y * s.axis[1] + z * s.axis[2];
+    const Scalar dx = x - along * s.axis[0], dy = y - along * s.axis[1], dz = z - along * s.axis[2];
+    // Near the axis, what rounding left along it would show.
+    const Scalar rest = dx * s.axis[0] + dy * s.axis[1] + dz * s.axis[2];
+    const Scalar ox = dx - rest * s.axis[0], oy = dy - rest * s.axis[1], oz = dz - rest * s.axis[2];
+    return {along, root(ox * ox + oy * oy + oz * oz), ox, oy, oz};
+}
+
+template <class Scalar>
+constexpr Scalar kNoDirection = Scalar(1e-12);  // m: below it a direction is taken by convention
+
+// Distance of the profile, and its gradient along and off the axis. The profile is convex: it is the largest
+// of the distances to its lines, but for points that are nearest to a rim.
+template <class Scalar>
+struct ConeProfile {
+    Scalar distance, along, off;
+};
+
+template <class Scalar>
+inline ConeProfile<Scalar> fromProfile(const ConeSolid<Scalar>& s, Scalar along, Scalar off) {
+    const Scalar beyond = along - s.length, over0 = off - s.radius[0], over1 = off - s.radius[1];
+    const bool is_rim0 = (over0 > 0) & (along * s.side[0] + over0 * s.side[1] < 0);
+    const bool is_rim1 = (over1 > 0) & (beyond * s.side[0] + over1 * s.side[1] > 0);
+    const Scalar rx = is_rim0 ? along : beyond, ry = is_rim0 ? over0 : over1;
+    const Scalar to_rim = root(rx * rx + ry * ry);
+    const bool is_rim = (is_rim0 | is_rim1) & (to_rim > kNoDirection<Scalar>);
+    const Scalar end = largest(-along, beyond), side = over0 * s.side[0] - along * s.side[1];
+    const bool is_end = end > side;
+    const Scalar outwards = beyond > -along ? Scalar(1) : Scalar(-1);
+    const Scalar scale = 1 / largest(to_rim, kNoDirection<Scalar>);
+    const Scalar face_along = is_end ? outwards : -s.side[1], face_off = is_end ? Scalar(0) : s.side[0];
+    return {is_rim ? to_rim : largest(end, side), is_rim ? rx * scale : face_along,
+            is_rim ? ry * scale : face_off};
+}
+
+template <class Scalar>
+void nearerCone(const ConeSolid<Scalar>& solid, const Scalar* __restrict px, const Scalar* __restrict py,
+                const Scalar* __restrict pz, int count, Scalar* __restrict out) {
+    const ConeSolid<Scalar> s = solid;
+    for (int i = 0; i < count; ++i) {
+        const FromConeAxis<Scalar> at = fromAxis(s, px[i], py[i], pz[i]);
+        out[i] = least(out[i], fromProfile(s, at.along, at.off).distance);
+    }
+}
+
+template <class Scalar>
+void sampleNearerCone(const ConeSolid<Scalar>& solid, const Scalar* __restrict px,
+                      const Scalar* __restrict py, const Scalar* __restrict pz, int count,
+                      Scalar* __restrict distance, Scalar* __restrict gx, Scalar* __restrict gy,
+                      Scalar* __restrict gz) {
+    const ConeSolid<Scalar> s = solid;
+    for (int i = 0; i < count; ++i) {
+        const FromConeAxis<Scalar> at = fromAxis(s, px[i], py[i], pz[i]);
+        const ConeProfile<Scalar> here = fromProfile(s, at.along, at.off);
+        const bool is_on_axis = at.off < kNoDirection<Scalar>;
+        const Scalar scale = 1 / largest(at.off, kNoDirection<Scalar>);
+        const Scalar nx = is_on_axis ? s.normal[0] : at.dx * scale;
+        const Scalar ny = is_on_axis ? s.normal[1] : at.dy * scale;
+        const Scalar nz = is_on_axis ? s.normal[2] : at.dz * scale;
+        const Scalar there = distance[i], tx = gx[i], ty = gy[i], tz = gz[i];
+        const bool is_nearer = here.distance < there;
+        distance[i] = is_nearer ? here.distance : there;
+        gx[i] = is_nearer ? here.along * s.axis[0] + here.off * nx : tx;
+        gy[i] = is_nearer ? here.along * s.axis[1] + here.off * ny : ty;
+        gz[i] = is_nearer ? here.along * s.axis[2] + here.off * nz : tz;
+    }
+}
+
 constexpr int kSumLanes = 8;  // of every sum, whatever the width of the registers
 using Doubles = double __attribute__((vector_size(4 * kWidth)));
 constexpr int kDoubles = kWidth / 2, kParts = kSumLanes / kDoubles;

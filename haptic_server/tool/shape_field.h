@@ -29,9 +29,10 @@ class ShapeField final : public ToolField {
     // Round: all points within `radius[0]` of the segment. Else a truncated cone with flat ends.
     struct Solid {
         bool is_round;
-        Eigen::Vector3d from, axis;  // axis: unit
+        Eigen::Vector3d from, axis, normal;  // axis: unit; normal: unit, any to the axis
         double length;
         double radius[2];
+        Eigen::Vector2d side;  // unit, from the first rim to the second: along and off the axis
 
         template <class Scalar>
         RoundSolid<Scalar> round() const noexcept {
@@ -39,6 +40,15 @@ class ShapeField final : public ToolField {
                     {Scalar(axis.x()), Scalar(axis.y()), Scalar(axis.z())},
                     Scalar(length),
                     Scalar(radius[0])};
+        }
+        template <class Scalar>
+        ConeSolid<Scalar> cone() const noexcept {
+            return {{Scalar(from.x()), Scalar(from.y()), Scalar(from.z())},
+                    {Scalar(axis.x()), Scalar(axis.y()), Scalar(axis.z())},
+                    {Scalar(normal.x()), Scalar(normal.y()), Scalar(normal.z())},
+                    Scalar(length),
+                    {Scalar(radius[0]), Scalar(radius[1])},
+                    {Scalar(side.x()), Scalar(side.y())}};
         }
     };
     static Solid solidOf(const ToolShape& shape);

@@ -92,6 +92,41 @@ TEST(ShapeField, SpecialPlacesStayFinite) {
     }
 }
 
+// A batch's gradients are those of the points alone, away from where the nearest part of the surface changes.
+TEST(ShapeField, BatchesAreSampledLikeTheirPoints) {
+    std::vector<std::vector<ToolShape>> tools;
+    for (const ToolShape& shape : kShapes) tools.push_back({shape});
+    tools.push_back(kShapes);
+    const auto check = []<class Scalar>(const ShapeField& field, const Vector3d& p, double tolerance) {
+        PointBatch<Scalar> batch;
+        SampleBatch<Scalar> at;
+        batch.count = 1;
+        batch.x[0] = Scalar(p.x()), batch.y[0] = Scalar(p.y()), batch.z[0] = Scalar(p.z());
+        field.sample(batch, at);
+        const ToolSample alone = field.sample(p);
+        EXPECT_NEAR(double(at.distance[0]), alone.distance, tolerance);
+        const Vector3d gradient(double(at.gx[0]), double(at.gy[0]), double(at.gz[0]));
+        EXPECT_NEAR(gradient.norm(), 1, 1e-6);
+        return (gradient - alone.gradient).norm() < 1e-4;
+    };
+    for (const auto& shapes : tools) {
+        const ShapeField field(shapes);
+        int alike[2] = {};
+        forRandomPoints(2000, [&](const Vector3d& p) {
+            alike[0] += check.operator()<float>(field, p, 2e-9);
+            alike[1] += check.operator()<double>(field, p, 1e-15);
+        });
+        EXPECT_GE(alike[0], 1998);
+        EXPECT_EQ(alike[1], 2000);
+    }
+}
+
+TEST(ShapeField, GradientPointsOutOfTheNearerEndOnTheAxisToo) {
+    const ShapeField field({CylinderShape{{0, 0, 0}, {0, 4e-3, 0}, 1e-3}});
+    for (const double y : {-0.5e-3, 0.5e-3}) EXPECT_EQ(field.sample({0, y, 0}).gradient, Vector3d(0, -1, 0));
+    for (const double y : {3.5e-3, 4.5e-3}) EXPECT_EQ(field.sample({0, y, 0}).gradient, Vector3d(0, 1, 0));
+}
+
 TEST(ShapeField, KnowsItsThinnestPartAndItsReach) {
     const ShapeField field(
         std::vector<ToolShape>{SphereShape{{0, 0, 0}, 2e-3}, CapsuleShape{{0, 0, 0}, {0, 10e-3, 0}, 1e-3}});
