@@ -124,8 +124,10 @@ bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t
     const size_t runs_before = run_count_, new_before = new_count_;
     MillingResult of_part;
     IndexBox plane = part;
+    const double reach_squared = stroke.limit.reach() * stroke.limit.reach();
     for (int k = part.min.z(); k <= part.max.z(); ++k, offset += VoxelVolume::kStrideZ) {
         plane.min.z() = plane.max.z() = k;
+        if (squaredDistance(volume, plane, stroke.p_VB) >= reach_squared) continue;
         collectPlane(volume, plane, offset, stroke, of_part);
     }
     const auto drop = [&] { run_count_ = runs_before, new_count_ = new_before; };
