@@ -48,18 +48,19 @@ GradientContact::GradientContact(const GradientContactConfig& config, size_t mos
       lowest_(most_candidates),
       inverse_rate_(most_candidates) {}
 
-bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
-                             double margin) noexcept {
+bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin,
+                             size_t most_tests) noexcept {
     margin_ = margin;
     origin_ = X_VT.position;
-    const bool has_room = collect(bone, tool, X_VT);
+    const bool has_room = collect(bone, tool, X_VT, most_tests);
     refine(bone);
     guardFarSide(bone.volume, tool, X_VT);
     capStiffness(tool, X_VT);
     return has_room;
 }
 
-bool GradientContact::collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept {
+bool GradientContact::collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
+                              size_t most_tests) noexcept {
     const Vector3d& spacing = bone.volume.spacing();
     const double ratio = spacing.maxCoeff() / spacing.minCoeff();
     reach_per_area_ = bone.patch_points > 1 ? float((ratio + 1 / ratio) / 4) : 0;
@@ -73,8 +74,9 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     box.min().array() -= reach;
     box.max().array() += reach;
     BlockBatch blocks;
+    const size_t tests_before = point_tests_;
     const auto test = [&] {
-        has_room = has_room && collectFrom(blocks, tool, X_VT);
+        has_room = has_room && point_tests_ - tests_before <= most_tests && collectFrom(blocks, tool, X_VT);
         blocks.count = 0;
     };
     bone.lattice.forEachSurfaceLeaf(box, spacing, bone.volume.iso(), [&](LeafId leaf) {

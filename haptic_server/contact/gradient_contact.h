@@ -70,8 +70,10 @@ class GradientContact {
     explicit GradientContact(const GradientContactConfig& config, size_t most_candidates = 65536);
 
     // Collects the points of a shell level that can touch the tool after a motion of at most `margin` (m, of
-    // any of its points) from X_VT. False: more than there is room for; the rest is left out.
-    bool gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin) noexcept;
+    // any of its points) from X_VT. False: more than there is room for, or than `most_tests` points near the
+    // tool; the rest is left out.
+    bool gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin,
+                size_t most_tests = SIZE_MAX) noexcept;
 
     // Of the last gatherings: how finely which patch was sampled. Called when the shell level or the sampling
     // changes, or the tool is placed anew.
@@ -116,7 +118,7 @@ class GradientContact {
             leaf[count++] = of_leaf;
         }
     };
-    bool collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
+    bool collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT, size_t most_tests) noexcept;
     bool collectFrom(const BlockBatch& blocks, const ToolField& tool, const Pose& X_VT) noexcept;
     NearTest nearTest(const ToolField& tool, const Pose& X_VT) const noexcept;
     bool addCandidates(const ShellBlock& block, LeafId leaf, int count, const SampleBatch<float>& at,

@@ -119,7 +119,7 @@ void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexce
     gathered_at_ = X_VT;
     const ShellView bone{world_.volume, world_.lattice,         world_.shell,
                          level_,        settings_.patch_points, settings_.refined_points};
-    out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin);
+    out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin, pointTestsLeft());
     out.candidates = uint32_t(contact_.candidateCount());
 
     point_tests_ += contact_.takePointTests();

@@ -224,6 +224,33 @@ TEST(GradientModel, NeverGivesANonFiniteResult) {
     }
 }
 
+// What is begun is ended: a batch of 64 blocks of 64 points, and the pass over the candidates in hand, of
+// which there are at most a quarter of the budget, once for the sweep and once for the step.
+TEST(GradientModel, ATickEndsSoonAfterItsBudgetWhateverItMeets) {
+    const ContactScene scene = flatScene();
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (const size_t most_point_tests : {2'000u, 20'000u}) {
+        GradientConfig config = stiff();
+        config.most_point_tests = most_point_tests;
+        GradientModel model(config, scene.world(), 1e-3);
+        Pose spo{kAbove, kUpright};
+        double most = 0;
+        int overflows = 0;
+        for (int n = 0; n < 2000; ++n) {
+            const Pose device{kAbove + 2e-3 * Vector3d(uniform(random), uniform(random), uniform(random) - 1),
+                              kUpright};
+            const SpoStep step = model.advance(spo, device);
+            most = std::max(most, step.budget_share);
+            overflows += step.has_contact_overflow;
+            spo = step.spo;
+        }
+        EXPECT_LT(most * double(most_point_tests), 1.5 * double(most_point_tests) + 64 * 64);
+        EXPECT_EQ(overflows > 0, most_point_tests == 2'000);
+        EXPECT_GT(most, 0.1);
+    }
+}
+
 TEST(GradientModel, EnergyNeverRisesUnderAHandAtRest) {
     const ContactScene scene = flatScene(Vector3d(0.4, -0.2, 1).normalized());
     GradientModel model(stiff(), scene.world(), 1e-3);
