@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "haptic_server/contact/cell_corners.h"
 #include "haptic_server/contact/shell_point.h"
 #include "haptic_server/volume/marching_cubes_table.h"
 
@@ -29,7 +30,6 @@ SurfaceCells::SurfaceCells(const VoxelVolume& volume, const Eigen::Vector3i& lea
     const double unit = volume.spacing().maxCoeff();
     steps_ = (volume.spacing() / unit).cast<float>();
     unit_area_ = float(unit * unit);
-    copied_.resize(size_t((leaf_cells.array() + 1).prod()) + VoxelVolume::kReadSlack);
     const size_t most = size_t(leaf_cells.prod()) + kCellLanes;
     cell_.resize(most);
     inside_.resize(most);
@@ -69,33 +69,31 @@ void SurfaceCells::findCells(const VoxelVolume& volume, const Eigen::Vector3i& l
                              const IndexBox& cells) noexcept {
     count_ = 0;
     const Eigen::Vector3i size = cells.max - cells.min + Eigen::Vector3i::Ones();
-    const Eigen::Vector3i from_leaf_first = cells.min - leaf_first;
-    const VoxelBox box = cornersOf(volume, cells);
-    crossed_.find(box, size, volume.iso(), [&](int i, int j, int k, int inside) {
-        const Density* first_corner = box.first + i + box.stride_y * size_t(j) + box.stride_z * size_t(k);
-        addCell(from_leaf_first + Eigen::Vector3i(i, j, k), first_corner, box, volume.iso(), inside);
-    });
+    crossed_.find(
+        size,
+        [&](int k, size_t row_size, uint8_t* sides) {
+            IndexBox layer = cells;
+            layer.min.z() = layer.max.z() = cells.min.z() + k;
+            // All corners of a brick's own cells are in the brick.
+            volume.forEachOwnedPart(layer, [&](const IndexBox& part, size_t offset) {
+                const Eigen::Vector3i at = part.min - cells.min, parts = part.max - part.min;
+                kernels().cell_sides(
+                    {volume.ownerData() + offset, VoxelVolume::kStrideY, VoxelVolume::kStrideZ},
+                    parts.x() + 2, parts.y() + 1, volume.iso(), row_size,
+                    sides + row_size * size_t(at.y()) + at.x());
+            });
+        },
+        [&](int i, int j, int k, int inside) {
+            addCell(volume, leaf_first, cells.min + Eigen::Vector3i(i, j, k), inside);
+        });
 }
 
-VoxelBox SurfaceCells::cornersOf(const VoxelVolume& volume, const IndexBox& cells) noexcept {
-    const IndexBox voxels{cells.min, cells.max.array() + 1};
-    if (const Density* first = volume.inOneBrick(voxels))
-        return {first, VoxelVolume::kStrideY, VoxelVolume::kStrideZ};
-    const Eigen::Vector3i size = voxels.max - voxels.min + Eigen::Vector3i::Ones();
-    Density* row = copied_.data();
-    for (int k = 0; k < size.z(); ++k)
-        for (int j = 0; j < size.y(); ++j, row += size.x())
-            volume.readRow(voxels.min + Eigen::Vector3i(0, j, k), size.x(), row);
-    return {copied_.data(), size_t(size.x()), size_t(size.x()) * size_t(size.y())};
-}
-
-void SurfaceCells::addCell(const Eigen::Vector3i& from_leaf_first, const Density* first_corner,
-                           const VoxelBox& box, Density iso, int corners_inside) noexcept {
-    const size_t y = box.stride_y, z = box.stride_z;
-    const size_t corners[] = {0, 1, y, y + 1, z, z + 1, z + y, z + y + 1};
-    for (size_t c = 0; c < 8; ++c) excess_[c][count_] = float(first_corner[corners[c]] - iso);
-    cell_[count_] = {uint16_t(from_leaf_first.x()), uint16_t(from_leaf_first.y()),
-                     uint16_t(from_leaf_first.z())};
+void SurfaceCells::addCell(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
+                           const Eigen::Vector3i& cell, int corners_inside) noexcept {
+    const CellCorners corners = readCorners(volume, cell);
+    for (size_t c = 0; c < 8; ++c) excess_[c][count_] = corners.excess[c];
+    const Eigen::Vector3i local = cell - leaf_first;
+    cell_[count_] = {uint16_t(local.x()), uint16_t(local.y()), uint16_t(local.z())};
     inside_[count_++] = corners_inside;
 }
 

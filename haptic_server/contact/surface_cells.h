@@ -43,16 +43,14 @@ class SurfaceCells {
   private:
     void findCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
                    const IndexBox& cells) noexcept;
-    VoxelBox cornersOf(const VoxelVolume& volume, const IndexBox& cells) noexcept;
-    void addCell(const Eigen::Vector3i& from_leaf_first, const Density* first_corner, const VoxelBox& box,
-                 Density iso, int corners_inside) noexcept;
+    void addCell(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first, const Eigen::Vector3i& cell,
+                 int corners_inside) noexcept;
     CellArrays arrays() const noexcept;
 
     std::vector<int> triangles_;  // of each set of inside corners
     Eigen::Vector3f steps_;       // spacing in units of unit_
     float unit_area_;             // m²
     CrossedCells crossed_;
-    std::vector<Density> copied_;  // voxels that lie in several bricks
 
     size_t count_ = 0;
     std::vector<std::array<uint16_t, 3>> cell_;

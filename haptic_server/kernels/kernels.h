@@ -143,9 +143,6 @@ struct VoxelBox {
 };
 // Cells whose sides are looked at together: the bytes of a word.
 inline constexpr int kCellsAtOnce = 8;
-constexpr size_t cellSidesRow(int columns) {
-    return size_t(columns + kCellsAtOnce + kCellLanes - 1) / kCellLanes * kCellLanes;
-}
 
 // The voxels in their bricks (brick_layout.h), for kernels that look at any of them. Readable: -1 .. dims on
 // each axis.
@@ -199,9 +196,11 @@ struct Kernels {
                           uint16_t& largest);
 
     // Of each column of a layer of cells: which of its four voxels are iso or more, bits 0, 2, 4 and 6 for
-    // (y, z), (y + 1, z), (y, z + 1) and (y + 1, z + 1). cellSidesRow() bytes for each of `rows` rows; what
-    // follows the last column repeats it. Reads up to kCellLanes - 1 voxels beyond each row.
-    void (*cell_sides)(const VoxelBox& box, int columns, int rows, uint16_t iso, uint8_t* out);
+    // (y, z), (y + 1, z), (y, z + 1) and (y + 1, z + 1). `rows` rows, row_size bytes apart; the kCellsAtOnce
+    // bytes after the last column repeat it, and after kCellLanes more than the columns nothing is written.
+    // Reads up to kCellLanes - 1 voxels beyond each row.
+    void (*cell_sides)(const VoxelBox& box, int columns, int rows, uint16_t iso, size_t row_size,
+                       uint8_t* out);
 
     template <class Scalar>
     const PointKernels<Scalar>& points() const noexcept {

@@ -77,9 +77,8 @@ MilledPlane millPlane(const BurrPlane& burr, const uint16_t* first, int count, i
     return plane;
 }
 
-void cellSides(const VoxelBox& box, int columns, int rows, uint16_t iso, uint8_t* out) {
+void cellSides(const VoxelBox& box, int columns, int rows, uint16_t iso, size_t row_size, uint8_t* out) {
     using Bytes = uint8_t __attribute__((vector_size(kWideWords)));
-    const size_t row_size = cellSidesRow(columns);
     for (int r = 0; r < rows; ++r, out += row_size) {
         const uint16_t* row = box.first + box.stride_y * size_t(r);
         for (int i = 0; i < columns; i += kWideWords) {

@@ -83,10 +83,15 @@ bool LeafMesher::hasSurface() const noexcept {
 void LeafMesher::meshCells() {
     if (!hasSurface()) return;
     edge_vertex_.assign(3 * density_.size(), kNoVertex);
-    const VoxelBox corners{density_.data() + cornerIndex({0, 0, 0}), stride_[1], stride_[2]};
-    crossed_.find(corners, cells_, volume_.iso(), [&](int i, int j, int k, int inside) {
-        emitCell(inside, {i, j, k});
-    });
+    crossed_.find(
+        cells_,
+        [&](int k, size_t row_size, uint8_t* sides) {
+            kernels().cell_sides({density_.data() + cornerIndex({0, 0, k}), stride_[1], stride_[2]},
+                                 cells_.x() + 1, cells_.y(), volume_.iso(), row_size, sides);
+        },
+        [&](int i, int j, int k, int inside) {
+            emitCell(inside, {i, j, k});
+        });
 }
 
 void LeafMesher::emitCell(int config, const Eigen::Vector3i& cell) {

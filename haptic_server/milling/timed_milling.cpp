@@ -30,6 +30,13 @@ bool isFinished(const DensityRange& range, int direction) noexcept {
     return direction < 0 ? range.max == 0 : range.min == kMaxDensity;
 }
 
+void include(MillingResult& sum, const MillingResult& other) noexcept {
+    sum.changed.include(other.changed);
+    sum.removed_voxels += other.removed_voxels;
+    sum.added_voxels += other.added_voxels;
+    sum.has_room &= other.has_room;
+}
+
 }  // namespace
 
 TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volume, const LeafLattice& lattice,
@@ -46,8 +53,8 @@ TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volum
     const Eigen::Array3d leaf_cells = lattice.leafCells().cast<double>();
     const Eigen::Array3d parts = (most / kBrickCells).floor() + (most / leaf_cells).floor() + 3;
     runs_.resize(size_t(parts.x() * most.y() * most.z()));
-    changed_parts_.resize(size_t(parts.prod()));
-    end_run_.resize(changed_parts_.size());
+    changed_.resize(size_t(parts.prod()));
+    end_run_.resize(changed_.size());
 }
 
 MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
@@ -65,26 +72,26 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
                    {p_VB, direction, amount, BurrLimit(volume, burr_radius_, config_.shape, direction)},
                    result);
     if (run_count_ == 0) return result;
-    writeParts(volume, lattice, direction);
-    result.shell_is_complete = shell.refresh(volume, lattice, {changed_parts_.data(), part_count_});
+    writeChanges(volume, lattice, direction);
+    result.shell_is_complete = shell.refresh(volume, lattice, {changed_.data(), changed_count_});
     return result;
 }
 
-void TimedMilling::writeParts(VoxelVolume& volume, LeafLattice& lattice, int direction) noexcept {
+void TimedMilling::writeChanges(VoxelVolume& volume, LeafLattice& lattice, int direction) noexcept {
     size_t run = 0;
-    for (size_t n = 0; n < part_count_; ++n) {
-        lattice.beginWrite(changed_parts_[n]);
+    for (size_t n = 0; n < changed_count_; ++n) {
+        lattice.beginWrite(changed_[n]);
         for (; run < end_run_[n]; ++run)
             volume.writeRow(runs_[run].first, runs_[run].count, &new_density_[runs_[run].first_new]);
-        lattice.endWrite(changed_parts_[n]);
+        lattice.endWrite(changed_[n]);
     }
-    for (size_t n = 0; n < part_count_; ++n) lattice.refreshRanges(volume, changed_parts_[n], direction);
+    for (size_t n = 0; n < changed_count_; ++n) lattice.refreshRanges(volume, changed_[n], direction);
 }
 
 // Leaf by leaf, from the one on for which there was no time in the last tick, then those before it.
 void TimedMilling::collectChanges(VoxelVolume& volume, const LeafLattice& lattice, const Stroke& stroke,
                                   MillingResult& result) noexcept {
-    run_count_ = new_count_ = part_count_ = cells_ = 0;
+    run_count_ = new_count_ = changed_count_ = cells_ = 0;
     const double reach_squared = stroke.limit.reach() * stroke.limit.reach();
     const IndexBox box = boxAround(volume, stroke.p_VB, stroke.limit.reach());
     const auto is_wanted = [&](const DensityRange& range, const IndexBox& voxels) {
@@ -111,16 +118,22 @@ void TimedMilling::collectChanges(VoxelVolume& volume, const LeafLattice& lattic
 bool TimedMilling::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, const Stroke& stroke,
                                MillingResult& result) noexcept {
     bool is_whole = true;
+    MillingResult of_leaf;
     volume.forEachOwnedPart(voxels, [&](const IndexBox& part, size_t offset) {
-        is_whole = is_whole && collectPart(volume, part, offset, stroke, result);
+        is_whole = is_whole && collectPart(volume, part, offset, stroke, of_leaf);
     });
+    if (!of_leaf.changed.isEmpty()) {
+        changed_[changed_count_] = of_leaf.changed;
+        end_run_[changed_count_++] = run_count_;
+    }
+    include(result, of_leaf);
     return is_whole;
 }
 
 // False: it would take more than a tick's cells, and nothing of it is kept; nor without memory for its
 // bricks.
 bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset, const Stroke& stroke,
-                               MillingResult& result) noexcept {
+                               MillingResult& of_leaf) noexcept {
     const size_t runs_before = run_count_, new_before = new_count_;
     MillingResult of_part;
     IndexBox plane = part;
@@ -140,14 +153,10 @@ bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t
     if (of_part.changed.isEmpty()) return true;
     if (!volume.openBricksIn(of_part.changed)) {
         drop();
-        result.has_room = false;
+        of_leaf.has_room = false;
         return true;
     }
-    changed_parts_[part_count_] = of_part.changed;
-    end_run_[part_count_++] = run_count_;
-    result.changed.include(of_part.changed);
-    result.removed_voxels += of_part.removed_voxels;
-    result.added_voxels += of_part.added_voxels;
+    include(of_leaf, of_part);
     return true;
 }
 

@@ -61,10 +61,10 @@ class TimedMilling {
     bool collectLeaf(VoxelVolume& volume, const IndexBox& voxels, const Stroke& stroke,
                      MillingResult& result) noexcept;
     bool collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset, const Stroke& stroke,
-                     MillingResult& result) noexcept;
+                     MillingResult& of_leaf) noexcept;
     void collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset, const Stroke& stroke,
                       MillingResult& result) noexcept;
-    void writeParts(VoxelVolume& volume, LeafLattice& lattice, int direction) noexcept;
+    void writeChanges(VoxelVolume& volume, LeafLattice& lattice, int direction) noexcept;
     void keepChanges(const Eigen::Vector3i& first, int count, const Density* old, const Density* fresh,
                      MillingResult& result) noexcept;
 
@@ -74,9 +74,9 @@ class TimedMilling {
     int carry_direction_ = 0;
     std::vector<ChangedRun> runs_;  // the first run_count_
     size_t run_count_ = 0;
-    std::vector<IndexBox> changed_parts_;  // each in one brick; the first part_count_
-    std::vector<size_t> end_run_;          // of each part: its runs go from the last part's to here
-    size_t part_count_ = 0;
+    std::vector<IndexBox> changed_;  // leaf by leaf; the first changed_count_
+    std::vector<size_t> end_run_;    // of each: its runs go from the last one's to here
+    size_t changed_count_ = 0;
     static constexpr LeafId kNoLeaf = ~LeafId(0);
     LeafId next_leaf_ = kNoLeaf;        // where the last tick was cut short
     size_t cells_ = 0;                  // of this tick

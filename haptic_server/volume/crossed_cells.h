@@ -11,22 +11,22 @@
 
 namespace bonemill {
 
-// RT-safe but for the construction, as far as the visitor is; one thread at a time.
+// RT-safe but for the construction, as far as the callers' functions are; one thread at a time.
 class CrossedCells {
   public:
     // For boxes of up to `most_cells` per axis.
     explicit CrossedCells(const Eigen::Vector3i& most_cells)
-        : sides_(cellSidesRow(most_cells.x() + 1) * size_t(most_cells.y())) {}
+        : sides_(rowSize(most_cells.x()) * size_t(most_cells.y())) {}
 
     // Calls visit(i, j, k, inside) for the crossed ones of a box of `cells` per axis, x fastest; `inside` has
-    // a bit for each corner c, at (c & 1, c >> 1 & 1, c >> 2 & 1), whose density is iso or more. `voxels`
-    // are one more per axis, and kCellLanes - 1 more can be read behind each row.
-    template <class Visit>
-    void find(VoxelBox voxels, const Eigen::Vector3i& cells, uint16_t iso, Visit&& visit) {
-        const int columns = cells.x() + 1;
-        const size_t row_size = cellSidesRow(columns);
-        for (int k = 0; k < cells.z(); ++k, voxels.first += voxels.stride_z) {
-            kernels().cell_sides(voxels, columns, cells.y(), iso, sides_.data());
+    // a bit for each corner c, at (c & 1, c >> 1 & 1, c >> 2 & 1), whose density is iso or more.
+    // look(k, row_size, sides) fills the sides of layer k by kernels().cell_sides, from the first row and
+    // column on; what is looked at piece by piece, in ascending order of x.
+    template <class Look, class Visit>
+    void find(const Eigen::Vector3i& cells, Look&& look, Visit&& visit) {
+        const size_t row_size = rowSize(cells.x());
+        for (int k = 0; k < cells.z(); ++k) {
+            look(k, row_size, sides_.data());
             for (int j = 0; j < cells.y(); ++j)
                 visitRow(sides_.data() + row_size * size_t(j), cells.x(),
                          [&](int i, int inside) { visit(i, j, k, inside); });
@@ -34,6 +34,8 @@ class CrossedCells {
     }
 
   private:
+    // One column more than cells, and what the kernel writes behind them.
+    static size_t rowSize(int cells) noexcept { return size_t(cells) + 1 + kCellLanes; }
     static constexpr uint64_t kAllInside = 0x5555555555555555;  // columns of four inside voxels
 
     // Cells i .. i + 6 lie between the columns i .. i + 7.

@@ -52,15 +52,6 @@ class VoxelVolume {
     const Density* ownerData() const noexcept { return bricks_.data(); }
     // `count` voxels along x, to `out`, and up to kReadSlack more behind them. Owner only, RT-safe.
     void readRow(const Eigen::Vector3i& first, int count, Density* out) const noexcept;
-    // Where these voxels (in -1 .. dims) lie if one brick has them all, x, kStrideY and kStrideZ apart; else
-    // nullptr. Owner only, RT-safe.
-    const Density* inOneBrick(const IndexBox& voxels) const noexcept {
-        for (int axis = 0; axis < 3; ++axis)
-            if (stretch(voxels.min[axis], voxels.max[axis], kMostInBrick) <=
-                voxels.max[axis] - voxels.min[axis])
-                return nullptr;
-        return ownerData() + offset(voxels.min.x(), voxels.min.y(), voxels.min.z());
-    }
     static constexpr int kMostInBrick = kBrickCells + kBrickHigh;  // of a row, from its own first cell on
     static constexpr int kReadSlack = kMostInBrick - 1;
 

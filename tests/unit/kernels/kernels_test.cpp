@@ -437,9 +437,9 @@ TEST_P(EveryLevel, SidesOfALayerOfCells) {
         const size_t stride_y = size_t(columns + below(4)), stride_z = stride_y * size_t(rows + 1);
         std::vector<uint16_t> voxels(2 * stride_z + kCellLanes);
         for (uint16_t& d : voxels) d = uint16_t(iso - 10 + below(20));
-        const size_t row_size = cellSidesRow(columns);
+        const size_t row_size = size_t(columns + kCellLanes);
         std::vector<uint8_t> sides(row_size * size_t(rows));
-        ours().cell_sides({voxels.data(), stride_y, stride_z}, columns, rows, iso, sides.data());
+        ours().cell_sides({voxels.data(), stride_y, stride_z}, columns, rows, iso, row_size, sides.data());
         for (int r = 0; r < rows; ++r) {
             const uint8_t* row = sides.data() + row_size * size_t(r);
             for (int i = 0; i < columns; ++i) {
