@@ -57,7 +57,8 @@ LatencyHistogram meshCuts(BoneModel& bone, size_t& leaves) {
     std::vector<LeafId> surface;
     for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
         if (bone.shell.pointCount(0, leaf) > 0) surface.push_back(leaf);
-    TimedMilling milling({.removal_rate = 1e9, .shape = MillingShape::kSubVoxel}, bone.volume, bone.lattice, kBurrRadius);
+    TimedMilling milling({.removal_rate = 1e9, .shape = MillingShape::kSubVoxel}, bone.volume, bone.lattice,
+                         kBurrRadius);
     std::mt19937 random(1);
     LatencyHistogram per_leaf;
     for (int n = 0; n < kCuts; ++n) {
