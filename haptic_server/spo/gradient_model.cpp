@@ -199,8 +199,8 @@ bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tic
 // it does better to begin with the last tick's motion. That is within the margin, and too short to tunnel.
 void GradientModel::goOn(State& state, const Tick& tick) noexcept {
     if (!(last_reach_ > kSmallestReach && last_reach_ <= trustRadius() / 2)) return;
-    const bool is_downhill = stacked(state.total.wrench).dot(last_motion_) > 0;
-    if (is_downhill && last_reach_ < reachOf(newtonStep(state))) moveDown(state, last_motion_, tick);
+    if (state.contacts > 0 || stacked(state.total.wrench).dot(last_motion_) <= 0) return;
+    if (last_reach_ < reachOf(newtonStep(state))) moveDown(state, last_motion_, tick);
 }
 
 // Gauss-Newton steps as long as they help and there is time. False: not finite, or a matrix without factors;
