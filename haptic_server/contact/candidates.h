@@ -20,14 +20,15 @@ struct Candidates {
     std::vector<float> area;        // m², of the whole patch
     std::vector<float> nearest;     // m: no place of the patch was nearer to the tool at the gathering
     std::vector<uint64_t> patch;    // leaf and key in the shell
+    size_t most;                    // at most so many, though there may be room for more
     size_t count = 0;
 
-    explicit Candidates(size_t most) : patch(most) {
+    explicit Candidates(size_t room) : patch(room), most(room) {
         for (std::vector<float>* values : {&x, &y, &z, &nx, &ny, &nz, &weight, &area, &nearest})
-            values->resize(most + kCellLanes);  // the kernels go on to a multiple of that
+            values->resize(room + kCellLanes);  // the kernels go on to a multiple of that
     }
 
-    size_t capacity() const noexcept { return patch.size(); }
+    size_t capacity() const noexcept { return most; }
     bool isFull() const noexcept { return count == capacity(); }
 
     // These points of a block, as many as there is room for. False: not all. Weight κ a.

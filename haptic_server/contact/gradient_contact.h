@@ -75,6 +75,11 @@ class GradientContact {
     bool gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin,
                 size_t most_tests = SIZE_MAX) noexcept;
 
+    // Not more candidates than this, however much room there is.
+    void limitCandidates(size_t most) noexcept {
+        candidates_.most = std::min(most, candidates_.patch.size());
+    }
+
     // Of the last gatherings: how finely which patch was sampled. Called when the shell level or the sampling
     // changes, or the tool is placed anew.
     void forget() noexcept { patch_memory_.forget(); }

@@ -88,7 +88,8 @@ void TimedMilling::writeChanges(VoxelVolume& volume, LeafLattice& lattice, int d
     for (size_t n = 0; n < changed_count_; ++n) lattice.refreshRanges(volume, changed_[n], direction);
 }
 
-// Leaf by leaf, from the one on for which there was no time in the last tick, then those before it.
+// Leaf by leaf and brick by brick, from where the last tick was cut short to the last leaf, then the leaves
+// before it.
 void TimedMilling::collectChanges(VoxelVolume& volume, const LeafLattice& lattice, const Stroke& stroke,
                                   MillingResult& result) noexcept {
     run_count_ = new_count_ = changed_count_ = cells_ = 0;
@@ -99,6 +100,7 @@ void TimedMilling::collectChanges(VoxelVolume& volume, const LeafLattice& lattic
                squaredDistance(volume, voxels, stroke.p_VB) < reach_squared;
     };
     const LeafId first = std::exchange(next_leaf_, kNoLeaf);
+    const int first_part = next_part_;
     for (const bool is_second_round : {false, true}) {
         if (is_second_round && first == kNoLeaf) break;
         bool is_later = first == kNoLeaf;
@@ -107,27 +109,30 @@ void TimedMilling::collectChanges(VoxelVolume& volume, const LeafLattice& lattic
             is_later |= leaf == first;
             if (is_later == is_second_round || result.is_cut_short) return;
             const IndexBox voxels = lattice.cellsOf(leaf).clamped(box.min, box.max);
-            if (collectLeaf(volume, voxels, stroke, result)) return;
+            next_part_ = collectLeaf(volume, voxels, leaf == first ? first_part : 0, stroke, result);
+            if (next_part_ == kAllParts) return;
             next_leaf_ = leaf;
             result.is_cut_short = true;
         });
     }
 }
 
-// False: there was no time for all of it.
-bool TimedMilling::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, const Stroke& stroke,
-                               MillingResult& result) noexcept {
-    bool is_whole = true;
+// From one of its parts on. The part for which there was no time, or kAllParts.
+int TimedMilling::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part,
+                              const Stroke& stroke, MillingResult& result) noexcept {
+    int n = 0, left = kAllParts;
     MillingResult of_leaf;
     volume.forEachOwnedPart(voxels, [&](const IndexBox& part, size_t offset) {
-        is_whole = is_whole && collectPart(volume, part, offset, stroke, of_leaf);
+        const int index = n++;
+        if (index < first_part || left != kAllParts) return;
+        if (!collectPart(volume, part, offset, stroke, of_leaf)) left = index;
     });
     if (!of_leaf.changed.isEmpty()) {
         changed_[changed_count_] = of_leaf.changed;
         end_run_[changed_count_++] = run_count_;
     }
     include(result, of_leaf);
-    return is_whole;
+    return left;
 }
 
 // False: it would take more than a tick's cells, and nothing of it is kept; nor without memory for its

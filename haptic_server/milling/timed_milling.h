@@ -16,7 +16,7 @@ struct MillingConfig {
         12750 * kDensityCountsPerUnit;  // density counts/s; default: from full to nothing in 20 ms
     double addition_rate = 12750 * kDensityCountsPerUnit;  // density counts/s
     MillingShape shape = MillingShape::kVoxelCentres;
-    // In a tick; leaves for which there is no time wait for the next one, in turn.
+    // In a tick; bricks for which there is no time wait for the next one, in turn.
     size_t most_cells = 50'000'000;  // whose surface is made anew; eight that are only looked at count as one
 };
 
@@ -58,8 +58,8 @@ class TimedMilling {
     };
     void collectChanges(VoxelVolume& volume, const LeafLattice& lattice, const Stroke& stroke,
                         MillingResult& result) noexcept;
-    bool collectLeaf(VoxelVolume& volume, const IndexBox& voxels, const Stroke& stroke,
-                     MillingResult& result) noexcept;
+    int collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part, const Stroke& stroke,
+                    MillingResult& result) noexcept;
     bool collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset, const Stroke& stroke,
                      MillingResult& of_leaf) noexcept;
     void collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset, const Stroke& stroke,
@@ -78,7 +78,9 @@ class TimedMilling {
     std::vector<size_t> end_run_;    // of each: its runs go from the last one's to here
     size_t changed_count_ = 0;
     static constexpr LeafId kNoLeaf = ~LeafId(0);
-    LeafId next_leaf_ = kNoLeaf;        // where the last tick was cut short
+    static constexpr int kAllParts = -1;
+    LeafId next_leaf_ = kNoLeaf;  // where the last tick was cut short
+    int next_part_ = 0;
     size_t cells_ = 0;                  // of this tick
     std::vector<Density> new_density_;  // the first new_count_
     size_t new_count_ = 0;

@@ -82,6 +82,7 @@ void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
     level_ = levelOf(world_.shell, settings);
     field_ = &world_.tool.field(settings);
     most_point_tests_ = size_t(double(config_.most_point_tests) / field_->testCost());
+    contact_.limitCandidates(most_point_tests_ / 4);
     contact_.forget();
 }
 
@@ -212,7 +213,11 @@ bool GradientModel::descend(State& state, const Tick& tick) noexcept {
         if (newton.isZero(0)) return stacked(state.total.wrench).isZero(0);
         const uint32_t gatherings = gatherings_;
         const Vector6d step = limited(state, newton, tick);
-        if (reachOf(step) < kSmallestReach) break;
+        if (reachOf(step) < kSmallestReach) {
+            if (lambda_ == 0) break;
+            lambda_ = 0;  // which may be what made it short
+            continue;
+        }
         if (gatherings_ != gatherings)
             state = evaluate(state.X_VT, tick);  // the energy is that of other points now
         ++tick.out->iterations;

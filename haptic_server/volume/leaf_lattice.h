@@ -47,9 +47,10 @@ class LeafLattice {
     // Leaves that own any of these cells (clamped to the lattice), both ends included.
     IndexBox leavesOfCells(const IndexBox& cells) const noexcept;
 
-    // RT-safe, tick thread only: the voxels in `box`, and no others, may have changed since the ranges were
-    // last right. Makes the ranges of the leaves they belong to those of a full scan, renews up to the root.
-    // direction -1: no density rose since then, +1: none fell; that is quicker.
+    // RT-safe, tick thread only: the voxels in this box may have changed since the ranges were last right,
+    // and no others but in boxes for which this is called as well. Makes the ranges of the leaves they belong
+    // to those of a full scan, renews up to the root. direction -1: no density rose since then, +1: none
+    // fell; that is quicker.
     void refreshRanges(const VoxelVolume& volume, const IndexBox& changed_voxels, int direction = 0) noexcept;
 
     // Leaves whose mesh or point-shell can change when these voxels do: those within kInfluence of their
@@ -86,6 +87,7 @@ class LeafLattice {
     void forEachSurfaceLeaf(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& spacing, Density iso,
                             Visit&& visit) const noexcept;
 
+    uint32_t nodeCount(int level) const noexcept { return uint32_t(levels_[size_t(level)].range.size()); }
     const DensityRange& range(int level, uint32_t node) const noexcept { return levels_[level].range[node]; }
 
   private:

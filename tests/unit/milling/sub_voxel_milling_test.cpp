@@ -261,9 +261,12 @@ TEST(SubVoxelMilling, ShellAndRangesFollowWhateverTheShape) {
                             .shell_is_complete);
         const LeafLattice lattice(bone.volume, bone.lattice.leafCells());
         const PointShell shell(bone.volume, lattice, {.levels = {{1}, {2}, {3}}, .spare_points = 0});
+        for (int level = 0; level < lattice.levelCount(); ++level)
+            for (uint32_t node = 0; node < lattice.nodeCount(level); ++node) {
+                ASSERT_EQ(bone.lattice.range(level, node).min, lattice.range(level, node).min);
+                ASSERT_EQ(bone.lattice.range(level, node).max, lattice.range(level, node).max);
+            }
         for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
-            ASSERT_EQ(bone.lattice.range(0, leaf).min, lattice.range(0, leaf).min);
-            ASSERT_EQ(bone.lattice.range(0, leaf).max, lattice.range(0, leaf).max);
             for (int level = 0; level < 3; ++level) {
                 bone.shell.prepare(bone.volume, bone.lattice, level, int(lattice.leafCount()));
                 std::vector<float> a, b;

@@ -116,6 +116,25 @@ TEST(TimedMilling, ATickWithTooMuchToDoLeavesTheRestForTheNext) {
     EXPECT_EQ(bone.shell.pointCount(0), at_once.shell.pointCount(0));
 }
 
+// A burr that always finds something to do at one end of a large leaf also comes to the other end.
+TEST(TimedMilling, NoBrickOfALargeLeafIsForgottenWhileTheBurrMoves) {
+    const auto is_solid = [](const Eigen::Vector3d&) { return -1.0; };
+    BoneModel bone(test::bodyVolume(test::cubeGeometry(60, kVoxel), is_solid), Eigen::Vector3i::Constant(64),
+                   ShellConfig{});
+    const double radius = 20 * kVoxel;
+    TimedMilling milling({.removal_rate = 2e5, .most_cells = 12'000}, bone.volume, bone.lattice, radius);
+    const Eigen::Vector3d center = Eigen::Vector3d::Constant(30 * kVoxel);
+    for (int n = 0; n < 2000; ++n)
+        milling.apply(bone.volume, bone.lattice, bone.shell,
+                      center + (n % 2 ? 0.5 : -0.5) * kVoxel * Eigen::Vector3d::UnitX(), -1, kDt);
+    for (const int side : {-1, 1})
+        for (int axis = 0; axis < 3; ++axis) {
+            const Eigen::Vector3i at =
+                Eigen::Vector3i::Constant(30) + side * 18 * Eigen::Vector3i(Eigen::Vector3i::Unit(axis));
+            EXPECT_EQ(bone.volume.at(at.x(), at.y(), at.z()), 0) << axis << ' ' << side;
+        }
+}
+
 TEST(TimedMilling, WithoutMemoryForTheChangeNothingIsMilled) {
     BoneModel bone(
         test::bodyVolume(test::cubeGeometry(60, kVoxel), [](const Eigen::Vector3d&) { return -1.0; }),
