@@ -153,16 +153,30 @@ Vector6d GradientModel::newtonStep(const State& state) const noexcept {
     return step.allFinite() ? step : Vector6d::Zero();
 }
 
-// Speed limits over the whole tick, then either the sweep (continuous collision) or the trust radius around
-// the place where the candidates were gathered. The whole twist is scaled by one factor.
-Vector6d GradientModel::limited(const State& state, Vector6d step, const Tick& tick) noexcept {
+// The step within the speed limits over the whole tick. A turn that has to be shorter leaves the translation
+// what is best with that turn: a hand that turns too quickly does not hold the tool's place back.
+Vector6d GradientModel::withinSpeed(const State& state, const Vector6d& newton,
+                                    const Tick& tick) const noexcept {
     const Vector6d so_far = between(tick.start, state.X_VT);
-    const double share = std::min(shareOf(config_.max_speed * dt_, so_far.head<3>(), step.head<3>()),
-                                  shareOf(config_.max_angular_speed * dt_, so_far.tail<3>(), step.tail<3>()));
-    if (share < 1) {
-        step *= share;
-        tick.out->is_motion_clamped = true;
+    const double turn = shareOf(config_.max_angular_speed * dt_, so_far.tail<3>(), newton.tail<3>());
+    Vector6d step = newton;
+    if (turn < 1) {
+        const Matrix6d& K = state.total.stiffness;
+        step.tail<3>() *= turn;
+        step.head<3>() = K.topLeftCorner<3, 3>().llt().solve(
+            Eigen::Vector3d(state.total.wrench.force - K.topRightCorner<3, 3>() * step.tail<3>()));
     }
+    const double move = shareOf(config_.max_speed * dt_, so_far.head<3>(), step.head<3>());
+    step.head<3>() *= move;
+    tick.out->is_motion_clamped |= turn < 1 || move < 1;
+    const bool is_downhill = step.allFinite() && stacked(state.total.wrench).dot(step) > 0;
+    return is_downhill ? step : Vector6d(std::min(turn, move) * newton);
+}
+
+// Within the speed limits, then either the sweep (continuous collision) or the trust radius around the place
+// where the candidates were gathered. There the whole twist is scaled by one factor.
+Vector6d GradientModel::limited(const State& state, const Vector6d& newton, const Tick& tick) noexcept {
+    const Vector6d step = withinSpeed(state, newton, tick);
     const auto room = [&] { return contact_.margin() - reachOf(between(gathered_at_, state.X_VT)); };
     if (reachOf(step) <= room()) return step;
     if (settings_.continuous_collision && pointTestsLeft() > 0) {
@@ -200,8 +214,12 @@ bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tic
 // it does better to begin with the last tick's motion. That is within the margin, and too short to tunnel.
 void GradientModel::goOn(State& state, const Tick& tick) noexcept {
     if (!(last_reach_ > kSmallestReach && last_reach_ <= trustRadius() / 2)) return;
-    if (state.contacts > 0 || stacked(state.total.wrench).dot(last_motion_) <= 0) return;
-    if (last_reach_ < reachOf(newtonStep(state))) moveDown(state, last_motion_, tick);
+    if (state.contacts > 0) return;
+    const Wrench& pull = state.total.wrench;
+    Vector6d motion = last_motion_;
+    if (pull.force.dot(motion.head<3>()) <= 0) motion.head<3>().setZero();
+    if (pull.torque.dot(motion.tail<3>()) <= 0) motion.tail<3>().setZero();
+    if (!motion.isZero(0) && reachOf(motion) < reachOf(newtonStep(state))) moveDown(state, motion, tick);
 }
 
 // Gauss-Newton steps as long as they help and there is time. False: not finite, or a matrix without factors;

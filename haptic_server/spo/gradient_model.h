@@ -52,7 +52,8 @@ class GradientModel final : public SpoModel {
     bool descend(State& state, const Tick& tick) noexcept;
     void feel(const Pose& X_VT, const Tick& tick) noexcept;
     Vector6d newtonStep(const State& state) const noexcept;
-    Vector6d limited(const State& state, Vector6d step, const Tick& tick) noexcept;
+    Vector6d withinSpeed(const State& state, const Vector6d& newton, const Tick& tick) const noexcept;
+    Vector6d limited(const State& state, const Vector6d& newton, const Tick& tick) noexcept;
     bool moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept;
     static void dropTraces(SpoStep& step) noexcept;
     double reachOf(const Vector6d& step) const noexcept;

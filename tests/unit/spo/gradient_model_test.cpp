@@ -107,6 +107,31 @@ TEST(GradientModel, FreeToolFollowsAtThePaceOfTheDampingTimeWhateverTheRate) {
     EXPECT_NEAR(left_of_first, std::pow(0.5, 5), 0.02);  // implicit Euler with dt = τ halves it every tick
 }
 
+// In free air, at 5 and 8 rad/s against a limit of 4.19: the tool's turn lags, and nothing else. The hand
+// moves before the turn, then also during it.
+TEST(GradientModel, AHandThatTurnsTooQuicklyKeepsTheToolsPlace) {
+    const ContactScene scene = flatScene();
+    for (const double speed : {5.0, 8.0})
+        for (const bool moves_on : {false, true})
+            for (const Preset preset : {Preset::kFast, Preset::kBalanced, Preset::kExact}) {
+                GradientModel model(stiff(), scene.world(), 1e-3);
+                model.setAccuracy(presetSettings(preset));
+                Pose device{kAbove + Vector3d(0, 0, 5e-3), kUpright}, spo = device;
+                double farthest = 0, most = 0;
+                for (int n = 0; n < 900; ++n) {
+                    const bool moves = n < 100 || moves_on, turns = n >= 100 && n < 100 + 2000 / speed;
+                    device = device.incremented({moves ? 50e-6 : 0, 0, 0}, {0, turns ? speed * 1e-3 : 0, 0});
+                    const SpoStep step = model.advance(spo, device);
+                    spo = step.spo;
+                    ASSERT_EQ(step.contacts, 0u);
+                    farthest = std::max(farthest, (spo.position - device.position).norm());
+                    most = std::max(most, step.wrench_hand.force.norm());
+                }
+                EXPECT_LT(farthest, 0.06e-3) << presetName(preset) << ' ' << speed << ' ' << moves_on;
+                EXPECT_LT(most, 0.3) << presetName(preset) << ' ' << speed << ' ' << moves_on;
+            }
+}
+
 TEST(GradientModel, RelaxingSpringStiffensAHeldToolForAShortTimeAndDoesNotHoldBackAFreeOne) {
     const ContactScene scene = flatScene();
     const GradientConfig config = stiff();
