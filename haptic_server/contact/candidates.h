@@ -29,7 +29,6 @@ struct Candidates {
     }
 
     size_t capacity() const noexcept { return most; }
-    bool isFull() const noexcept { return count == capacity(); }
 
     // These points of a block, as many as there is room for. False: not all. Weight κ a.
     bool add(const ShellBlock& block, const int* points, int point_count, LeafId leaf,

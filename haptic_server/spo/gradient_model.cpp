@@ -122,7 +122,6 @@ void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexce
                          level_,        settings_.patch_points, settings_.refined_points};
     out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin, pointTestsLeft());
     out.candidates = uint32_t(contact_.candidateCount());
-
     point_tests_ += contact_.takePointTests();
 }
 
@@ -135,7 +134,6 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
     state.total += couplingEnergy(config_.coupling, X_VT, tick.device, way_);
     state.total += relaxing_.energy(X_VT, tick.device);
     state.total += dampingEnergy(config_.coupling, X_VT, tick.start, dt_);
-
     return state;
 }
 

@@ -1,5 +1,5 @@
 // The default: the tool's pose minimises contact energy + coupling energy + damping against the last pose, by
-// a few Gauss-Newton steps with Cholesky factors, Levenberg damping, a trust radius and step halving.
+// a few Gauss-Newton steps with Cholesky factors, Levenberg damping, a trust radius and a line search.
 // The energy never rises inside a tick, so no contact situation can make the tool diverge; docs/stability.md.
 #pragma once
 

@@ -26,7 +26,7 @@ struct SpoStep {
     uint32_t iterations = 0;
     double budget_share = 0;         // of the point tests that a tick may make
     double max_penetration = 0;      // m
-    bool is_solved = true;           // false: singular or not finite; the tool kept its pose
+    bool is_solved = true;           // false: singular or not finite; the tool is at its last good pose
     bool is_motion_clamped = false;  // a speed limit or the trust radius acted
     bool has_stalled = false;  // forces that can be felt are out of balance, and no step was found that helps
     bool has_contact_overflow =
