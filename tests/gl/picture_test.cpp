@@ -3,17 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "common/config/user_error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bonemill {
 namespace {
 
 TEST(WritePng, LeavesOnlyTheFinishedFile) {
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "bonemill_picture_test";
-    std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
+    const test::TemporaryFolder folder;
     writePng(Picture(5, 3), folder / "a.png");
     size_t files = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
         ++files;
         EXPECT_EQ(entry.path().filename(), "a.png");
         EXPECT_GT(entry.file_size(), 50u);

@@ -16,13 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::filesystem::path makeFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "bonemill_test_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-    return name;
-}
-
-void redirect(int descriptor, const std::filesystem::path& file) {
+void redirect(int descriptor, const std::string& file) {
     const int opened = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     dup2(opened, descriptor);
     close(opened);
@@ -30,7 +24,7 @@ void redirect(int descriptor, const std::filesystem::path& file) {
 
 }  // namespace
 
-Process::Process(const std::vector<std::string>& arguments) : folder_(makeFolder()) {
+Process::Process(const std::vector<std::string>& arguments) {
     const std::filesystem::path program = arguments[0].find('/') == std::string::npos
                                               ? std::filesystem::path(BONEMILL_BIN_DIR) / arguments[0]
                                               : std::filesystem::path(arguments[0]);
@@ -52,8 +46,6 @@ Process::~Process() {
         signal(SIGKILL);
         waitpid(pid_, nullptr, 0);
     }
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
 }
 
 void Process::signal(int number) const {
@@ -87,13 +79,6 @@ std::string Process::errSoFar() const {
 
 Finished run(const std::vector<std::string>& arguments) {
     return Process(arguments).wait();
-}
-
-TemporaryFolder::TemporaryFolder() : path_(makeFolder()) {}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
 }
 
 void writeFile(const std::string& path, const std::string& content) {

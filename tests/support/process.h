@@ -2,9 +2,10 @@
 #pragma once
 
 #include <chrono>
-#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "tests/support/temporary_folder.h"
 
 namespace bonemill::test {
 
@@ -30,25 +31,13 @@ class Process {
     std::string errSoFar() const;
 
   private:
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
     int pid_ = -1;
     int status_ = 0;
     bool has_ended_ = false;
 };
 
 Finished run(const std::vector<std::string>& arguments);
-
-// A folder that disappears with the object.
-class TemporaryFolder {
-  public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    std::filesystem::path path() const { return path_; }
-    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
-  private:
-    std::filesystem::path path_;
-};
 
 void writeFile(const std::string& path, const std::string& content);
 std::string readFile(const std::string& path);

@@ -12,6 +12,7 @@
 #include "common/config/user_error.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/support/stl_writer.h"
+#include "tests/support/temporary_folder.h"
 
 // Under AddressSanitizer: assimp 5.2 forgets what it had read of some damaged files. The program ends there
 // anyway.
@@ -100,7 +101,7 @@ class Corruption {
 class MeshFileFuzz : public testing::Test {
   protected:
     void corruptMany(const std::string& extension, const std::string& sound_bytes) {
-        const auto path = std::filesystem::path(testing::TempDir()) / ("bonemill_tool_fuzz_" + extension);
+        const std::string path = folder_ / ("mesh" + extension);
         ToolConfig config;
         config.sdf_nodes = {6, 12, 6};
         config.sdf_spacing = 0.6e-3;
@@ -135,6 +136,7 @@ class MeshFileFuzz : public testing::Test {
         }
     }
 
+    test::TemporaryFolder folder_;
     const test::TriangleSoup ball_ = test::ballSoup(6, {0, 0, 0}, [](const auto&) { return 1.3; });
 };
 
@@ -152,7 +154,7 @@ TEST_F(MeshFileFuzz, Obj) {
 // right.
 TEST_F(MeshFileFuzz, BinaryStlOfTheRightLength) {
     const std::string sound = test::binaryStl(ball_);
-    const auto path = std::filesystem::path(testing::TempDir()) / "bonemill_tool_fuzz_length.stl";
+    const std::string path = folder_ / "length.stl";
     ToolConfig config;
     config.sdf_nodes = {6, 12, 6};
     config.sdf_spacing = 0.6e-3;

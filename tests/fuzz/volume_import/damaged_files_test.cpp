@@ -11,8 +11,8 @@
 #include "common/config/user_error.h"
 #include "haptic_server/volume/import/dicom_scan.h"
 #include "haptic_server/volume/import/import_volume.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/dicom_bytes.h"
-#include "tests/unit/volume_import/temporary_folder.h"
 #include "tests/unit/volume_import/volume_files.h"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -122,19 +122,19 @@ class DamagedFiles : public ::testing::Test {
         std::cout << "seed " << seed << ", " << rounds << " rounds of " << name << "\n";
         const std::string intact = readBytes(folder_ / name);
         ASSERT_FALSE(intact.empty());
-        ASSERT_NO_THROW(importVolume(entry.empty() ? folder_.path() : folder_ / entry));
+        ASSERT_NO_THROW(importVolume(folder_ / entry));
         for (unsigned round = 0; round < rounds; ++round) {
             SCOPED_TRACE("seed " + std::to_string(seed) + " round " + std::to_string(round));
             Random random(seed + round);
             writeBytes(folder_ / name, damaged(random, intact));
             ASSERT_NO_THROW(scanDicomFile(folder_ / name));
-            ASSERT_NO_THROW(importOrRefuse(import, entry.empty() ? folder_.path() : folder_ / entry));
+            ASSERT_NO_THROW(importOrRefuse(import, folder_ / entry));
         }
     }
     // In this very process: a reader that crashes ends the test.
     void fuzz(const std::string& name) { fuzz(importVolumeHere, name, name); }
 
-    TemporaryFolder folder_;
+    test::TemporaryFolder folder_;
     const SampleVolume sample_;
 };
 

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <sstream>
 
 #include "common/config/user_error.h"
 #include "haptic_server/app/accuracy_figures.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/accuracy_report/report_data.h"
 
 namespace bonemill {
@@ -61,10 +61,10 @@ TEST(AccuracyCsv, HasOneRowPerSettingWithItsFigures) {
 }
 
 TEST(AccuracyJson, IsReadByTheServer) {
-    const std::string file = testing::TempDir() + "/accuracy_report_test.accuracy.json";
+    const test::TemporaryFolder folder;
+    const std::string file = folder / "accuracy_report_test.accuracy.json";
     writeTextFile(file, accuracyJson(smallReport()));
     const AccuracyFigures figures = readAccuracyFigures(file);
-    std::filesystem::remove(file);
     ASSERT_EQ(figures.size(), 4u);
     EXPECT_NEAR(figures.at("exact").force_error_percent, 1, 1e-9);
     EXPECT_NEAR(figures.at("exact").direction_error_deg, 0.573, 1e-3);

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "common/config/user_error.h"
 #include "haptic_server/mesh/mesh_check.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/voxel_fields.h"
 
 namespace bonemill {
@@ -44,9 +44,7 @@ std::vector<StlTriangle> readStl(const std::string& path) {
 
 class StlTest : public testing::Test {
   protected:
-    StlTest()
-        : path_(testing::TempDir() + "bonemill_stl_test.stl"),
-          volume_(test::boxGeometry({25, 22, 28}), 32768) {
+    StlTest() : volume_(test::boxGeometry({25, 22, 28}), 32768) {
         std::mt19937 random(9);
         test::fillWaves(volume_, random);
         lattice_.emplace(volume_, Eigen::Vector3i(7, 7, 7));
@@ -55,9 +53,9 @@ class StlTest : public testing::Test {
         X_WV_.position = {0.123, -0.045, 0.2};
         X_WV_.rotation = expRotation({0.3, -0.7, 1.1});
     }
-    ~StlTest() override { std::filesystem::remove(path_); }
 
-    std::string path_;
+    test::TemporaryFolder folder_;
+    const std::string path_ = folder_ / "mesh.stl";
     VoxelVolume volume_;
     std::optional<LeafLattice> lattice_;
     std::optional<MeshGrid> grid_;
@@ -111,7 +109,7 @@ TEST_F(StlTest, NoSurfaceGivesAnEmptyFile) {
 }
 
 TEST_F(StlTest, UnwritablePathIsAUserError) {
-    const std::string path = testing::TempDir() + "no_such_folder/mesh.stl";
+    const std::string path = folder_ / "no_such_folder/mesh.stl";
     try {
         saveStl(path, meshes_, *grid_, X_WV_);
         FAIL() << "no error";

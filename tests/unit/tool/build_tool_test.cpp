@@ -6,6 +6,7 @@
 #include <random>
 
 #include "common/config/user_error.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/tool/mesh_test_support.h"
 
 namespace bonemill {
@@ -109,12 +110,12 @@ TEST(BuildTool, UnionIsTheNearestShape) {
 }
 
 TEST(BuildTool, MeshAndShapeAgree) {
-    const auto path = std::filesystem::path(testing::TempDir()) / "bonemill_build_tool_box.stl";
+    const test::TemporaryFolder folder;
+    const std::string path = folder / "box.stl";
     test::writeBytes(path, test::binaryStl(test::boxSoup({-0.75f, -1, -0.5f}, {0.75f, 12, 0.5f})));
     ToolConfig config;
     config.mesh_path = path;
     const BuiltTool tool = buildTool(config);
-    std::filesystem::remove(path);
     EXPECT_EQ(joined(tool.warnings), "");
     const Vector3d center(0, 5.5e-3, 0), half(0.75e-3, 6.5e-3, 0.5e-3);
     forEachNode(tool.model.grid(), [&](const Vector3d& p, float value) {

@@ -6,6 +6,7 @@
 
 #include "common/config/user_error.h"
 #include "haptic_server/tool/build/build_tool.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/tool/mesh_test_support.h"
 
 namespace bonemill {
@@ -17,14 +18,6 @@ const TriangleSoup kBox = test::boxSoup({-1, -1.25f, -1.5f}, {1, 12.1f, 1.7f});
 
 class MeshFile : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ = std::filesystem::path(testing::TempDir()) /
-                  (std::string("bonemill_mesh_file_") +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     std::filesystem::path write(const std::string& name, const std::string& bytes) {
         test::writeBytes(folder_ / name, bytes);
         return folder_ / name;
@@ -44,7 +37,7 @@ class MeshFile : public testing::Test {
         }
     }
 
-    std::filesystem::path folder_;
+    test::TemporaryFolder folder_;
 };
 
 TEST_F(MeshFile, EveryFormatGivesTheSameCorners) {

@@ -4,9 +4,9 @@
 
 #include "haptic_server/volume/import/dicom_scan.h"
 #include "haptic_server/volume/import/import_volume.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/dicom_bytes.h"
 #include "tests/unit/volume_import/expect_user_error.h"
-#include "tests/unit/volume_import/temporary_folder.h"
 #include "tests/unit/volume_import/volume_files.h"
 
 namespace bonemill {
@@ -52,7 +52,7 @@ SampleVolume nineSlices() {
 }
 
 TEST(Dicom, slicesAreOrderedByPlaceAlongTheNormal) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     SampleVolume sample = nineSlices();
     sample.directions = Eigen::AngleAxisd(0.4, Eigen::Vector3d(3, 1, 2).normalized()).toRotationMatrix();
     writeSeries(folder.path(), sample);
@@ -61,7 +61,7 @@ TEST(Dicom, slicesAreOrderedByPlaceAlongTheNormal) {
 
 // Feet first, sagittal and a stack that was acquired downwards all end as one right-handed grid.
 TEST(Dicom, anyOrientationBecomesRightHanded) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     int number = 0;
     for (const Eigen::Vector3d& normal :
          {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(1, 0, 0)}) {
@@ -80,7 +80,7 @@ TEST(Dicom, anyOrientationBecomesRightHanded) {
 }
 
 TEST(Dicom, storedValuesBecomeHounsfield) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     SampleVolume sample;
     for (int k = 0; k < 3; ++k) {
         DicomImage image = sliceOf(sample, k);
@@ -95,7 +95,7 @@ TEST(Dicom, storedValuesBecomeHounsfield) {
 }
 
 TEST(Dicom, filesThatAreNoImagesAreLeftOutAndNamed) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     writeSeries(folder.path(), nineSlices());
     writeBytes(folder / "readme.txt", "not DICOM");
     DicomImage report;
@@ -108,7 +108,7 @@ TEST(Dicom, filesThatAreNoImagesAreLeftOutAndNamed) {
 }
 
 TEST(Dicom, largestSeriesIsTakenUnlessOneIsNamed) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     writeSeries(folder / "large", nineSlices());
     const SampleVolume small;
     for (int k = 0; k < 3; ++k) {
@@ -124,7 +124,7 @@ TEST(Dicom, largestSeriesIsTakenUnlessOneIsNamed) {
 }
 
 TEST(Dicom, multiFrameFileIsOrderedByTheFramesPlaces) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     SampleVolume sample;
     DicomImage image = sliceOf(sample, 0);
     image.pixels.clear();
@@ -139,14 +139,14 @@ TEST(Dicom, multiFrameFileIsOrderedByTheFramesPlaces) {
 }
 
 TEST(DicomErrors, emptyFolderAndFolderOfText) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     expectUserError([&] { importVolume(folder.path()); }, {folder.path().string(), "empty"});
     writeBytes(folder / "notes.txt", std::string(1000, 'x'));
     expectUserError([&] { importVolume(folder.path()); }, {"notes.txt", "not DICOM"});
 }
 
 TEST(DicomErrors, truncatedSliceIsNamed) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     writeSeries(folder.path(), nineSlices());
     const std::string bytes = readBytes(folder / "I40");
     writeBytes(folder / "I40", bytes.substr(0, bytes.size() - 7));
@@ -156,7 +156,7 @@ TEST(DicomErrors, truncatedSliceIsNamed) {
 }
 
 TEST(DicomErrors, missingSliceNamesItsNeighbours) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const SampleVolume sample = nineSlices();
     for (int k = 0; k < 9; ++k)
         if (k != 4) writeDicomFile(folder / ("slice" + std::to_string(k)), sliceOf(sample, k));
@@ -165,7 +165,7 @@ TEST(DicomErrors, missingSliceNamesItsNeighbours) {
 }
 
 TEST(DicomErrors, duplicateSliceNamesBoth) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const SampleVolume sample = nineSlices();
     for (int k = 0; k < 9; ++k) writeDicomFile(folder / ("slice" + std::to_string(k)), sliceOf(sample, k));
     writeDicomFile(folder / "copy", sliceOf(sample, 2));
@@ -173,7 +173,7 @@ TEST(DicomErrors, duplicateSliceNamesBoth) {
 }
 
 TEST(DicomErrors, gantryTiltIsRefusedWithItsAngle) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     SampleVolume sample = nineSlices();
     sample.directions.col(2) = Eigen::Vector3d(0, std::sin(0.2), std::cos(0.2));  // 11.46 degrees
     writeSeries(folder.path(), sample);
@@ -182,7 +182,7 @@ TEST(DicomErrors, gantryTiltIsRefusedWithItsAngle) {
 
 TEST(DicomErrors, colourIsRefused) {
     for (const char* photometric : {"RGB", "PALETTE COLOR"}) {
-        const TemporaryFolder folder;
+        const test::TemporaryFolder folder;
         for (int k = 0; k < 3; ++k) {
             DicomImage image = sliceOf(SampleVolume(), k);
             image.photometric = photometric;
@@ -196,13 +196,13 @@ TEST(DicomErrors, colourIsRefused) {
 }
 
 TEST(DicomErrors, singleSliceIsNoVolume) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     writeDicomFile(folder / "only", sliceOf(SampleVolume(), 0));
     expectUserError([&] { importVolume(folder.path()); }, {"2 or more slices", "only"});
 }
 
 TEST(DicomErrors, sliceWithoutPositionIsRefused) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     for (int k = 0; k < 3; ++k) {
         DicomImage image = sliceOf(SampleVolume(), k);
         image.position.clear();
@@ -212,7 +212,7 @@ TEST(DicomErrors, sliceWithoutPositionIsRefused) {
 }
 
 TEST(DicomScanTest, tellsKindsApart) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const DicomImage image = sliceOf(SampleVolume(), 0);
     writeDicomFile(folder / "image", image);
     EXPECT_EQ(scanDicomFile(folder / "image").kind, DicomKind::kImage);

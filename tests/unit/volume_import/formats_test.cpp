@@ -6,8 +6,8 @@
 
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/nrrd_writer.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/expect_user_error.h"
-#include "tests/unit/volume_import/temporary_folder.h"
 #include "tests/unit/volume_import/volume_files.h"
 
 namespace bonemill {
@@ -40,7 +40,7 @@ void expectProperRotation(const RawVolume& raw) {
 }
 
 TEST(Nrrd, everyStorageAndEveryHandednessKeepsItsPlaces) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     for (const auto& sample : {SampleVolume(), rotatedSample(), leftHandedSample(), permutedSample()})
         for (const Storage& storage : kStorages) {
             const auto path = folder / (storage.is_detached ? "a.nhdr" : "a.nrrd");
@@ -52,7 +52,7 @@ TEST(Nrrd, everyStorageAndEveryHandednessKeepsItsPlaces) {
 }
 
 TEST(Nrrd, rightAnteriorSuperiorBecomesLps) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const SampleVolume lps = rotatedSample();
     SampleVolume ras = lps;
     const Eigen::Vector3d flip(-1, -1, 1);
@@ -63,13 +63,13 @@ TEST(Nrrd, rightAnteriorSuperiorBecomesLps) {
 }
 
 TEST(Nrrd, leftHandedFileIsSaidToBeFlipped) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     writeNrrdFile(folder / "a.nrrd", leftHandedSample(), {});
     EXPECT_NE(importVolume(folder / "a.nrrd").description.find("reversed"), std::string::npos);
 }
 
 TEST(Nrrd, spaceUnitsAreHonoured) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     SampleVolume sample;
     writeNrrdFile(folder / "a.nrrd", sample, {});
     std::string bytes = readBytes(folder / "a.nrrd");
@@ -84,7 +84,7 @@ TEST(Nrrd, spaceUnitsAreHonoured) {
 }
 
 TEST(Nrrd, oldFileWithSpacingsOnlyIsRead) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     SampleVolume sample;
     sample.origin_mm.setZero();
     writeNrrdFile(folder / "a.nrrd", sample, {});
@@ -98,7 +98,7 @@ TEST(Nrrd, oldFileWithSpacingsOnlyIsRead) {
 }
 
 TEST(Nifti, everyStorageAndEveryHandednessKeepsItsPlaces) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     for (const auto& sample : {SampleVolume(), rotatedSample(), leftHandedSample(), permutedSample()})
         for (const Storage& storage : kStorages) {
             if (storage.is_detached) continue;
@@ -111,7 +111,7 @@ TEST(Nifti, everyStorageAndEveryHandednessKeepsItsPlaces) {
 }
 
 TEST(MetaImage, everyStorageAndEveryHandednessKeepsItsPlaces) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     for (const auto& sample : {SampleVolume(), rotatedSample(), leftHandedSample(), permutedSample()})
         for (const Storage& storage : kStorages) {
             const auto path = folder / (storage.is_detached ? "a.mhd" : "a.mha");
@@ -123,7 +123,7 @@ TEST(MetaImage, everyStorageAndEveryHandednessKeepsItsPlaces) {
 }
 
 TEST(Formats, permutedAxesGiveAnExactRotation) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     writeNrrdFile(folder / "a.nrrd", permutedSample(), {});
     const Eigen::Matrix3d R = importVolume(folder / "a.nrrd").geometry.X_WV.rotation.toRotationMatrix();
     const Eigen::Matrix3d rounded = R.array().round();
@@ -131,7 +131,7 @@ TEST(Formats, permutedAxesGiveAnExactRotation) {
 }
 
 TEST(Formats, nonFiniteValuesPassAndAreCounted) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     VolumeGeometry geometry;
     geometry.dims = {3, 3, 3};
     geometry.spacing.setConstant(1e-3);

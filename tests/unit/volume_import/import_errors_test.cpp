@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "haptic_server/volume/import/import_volume.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/expect_user_error.h"
-#include "tests/unit/volume_import/temporary_folder.h"
 #include "tests/unit/volume_import/volume_files.h"
 
 namespace bonemill {
@@ -29,7 +29,7 @@ class ImportErrors : public ::testing::Test {
         if (at == std::string::npos) throw std::logic_error("no " + from + " to replace");
         return text.replace(at, from.size(), to);
     }
-    TemporaryFolder folder_;
+    test::TemporaryFolder folder_;
 };
 
 TEST_F(ImportErrors, missingFileIsNamed) {

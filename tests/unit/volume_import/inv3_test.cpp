@@ -1,15 +1,15 @@
 #include <gtest/gtest.h>
 
 #include "haptic_server/volume/import/import_volume.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/expect_user_error.h"
-#include "tests/unit/volume_import/temporary_folder.h"
 #include "tests/unit/volume_import/volume_files.h"
 
 namespace bonemill {
 namespace {
 
 TEST(Inv3, matrixIsReadWithItsRowsTurnedRound) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     SampleVolume sample;
     sample.origin_mm.setZero();
     writeInv3File(folder / "a.inv3", sample, {});
@@ -19,19 +19,19 @@ TEST(Inv3, matrixIsReadWithItsRowsTurnedRound) {
 }
 
 TEST(Inv3, otherSampleTypesAreRefused) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     writeInv3File(folder / "a.inv3", SampleVolume(), {.dtype = "float64"});
     expectUserError([&] { importVolume(folder / "a.inv3"); }, {"a.inv3", "float64", "int16"});
 }
 
 TEST(Inv3, matrixOfTheWrongSizeIsRefused) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     writeInv3File(folder / "a.inv3", SampleVolume(), {.missing_bytes = 2});
     expectUserError([&] { importVolume(folder / "a.inv3"); }, {"a.inv3", "matrix.dat"});
 }
 
 TEST(Inv3, cutShortArchiveIsRefused) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     writeInv3File(folder / "a.inv3", SampleVolume(), {});
     const std::string bytes = readBytes(folder / "a.inv3");
     writeBytes(folder / "a.inv3", bytes.substr(0, bytes.size() / 2));

@@ -6,7 +6,7 @@
 
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/phantom/analytic_body.h"
-#include "tests/unit/volume_import/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bonemill {
 namespace {
@@ -28,8 +28,8 @@ Outcome runMakePhantom(const std::string& arguments) {
 }
 
 TEST(MakePhantom, bodyFileHoldsTheStatedSurface) {
-    const TemporaryFolder folder;
-    const std::string file = (folder / "hole.nrrd").string();
+    const test::TemporaryFolder folder;
+    const std::string file = folder / "hole.nrrd";
     const Outcome outcome = runMakePhantom("body --kind hole --out " + file +
                                            " --voxel-mm 0.2 --bits 8 --dims 40 41 42 --rotate-deg 10 20 30"
                                            " --offset-mm 0.5 -0.25 0.125 --radius-mm 1.5 --thickness-mm 3");
@@ -52,8 +52,8 @@ TEST(MakePhantom, bodyFileHoldsTheStatedSurface) {
 }
 
 TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
-    const TemporaryFolder folder;
-    const std::string out = " --out " + (folder / "a.nrrd").string();
+    const test::TemporaryFolder folder;
+    const std::string out = " --out " + (folder / "a.nrrd");
     const std::pair<std::string, std::string> cases[] = {
         {"", "subcommand"},
         {"body --kind sphere", "--out"},

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "haptic_server/volume/import/import_volume.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/expect_user_error.h"
-#include "tests/unit/volume_import/temporary_folder.h"
 #include "tests/unit/volume_import/volume_files.h"
 
 namespace bonemill {
@@ -33,7 +33,7 @@ void expectBitEqual(const VolumeGeometry& a, const VolumeGeometry& b) {
 
 template <class T>
 void expectRoundTrip(const VolumeGeometry& geometry, NrrdEncoding encoding) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     std::vector<T> values;
     for (size_t n = 0; n < geometry.voxelCount(); ++n) values.push_back(T(n * 9 + 1));
     writeNrrd(folder / "a.nrrd", geometry, std::span<const T>(values), encoding);
@@ -56,7 +56,7 @@ TEST(NrrdWriter, geometryAndValuesComeBackBitForBit) {
 
 // Another program may change the standard fields and keep the key it does not know.
 TEST(NrrdWriter, changedStandardFieldsWinOverTheKey) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     VolumeGeometry geometry;
     geometry.dims = {4, 3, 2};
     geometry.spacing.setConstant(0.5e-3);
@@ -71,7 +71,7 @@ TEST(NrrdWriter, changedStandardFieldsWinOverTheKey) {
 }
 
 TEST(NrrdWriter, densitiesAreWrittenWithoutTheBorder) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     VolumeGeometry geometry;
     geometry.dims = {3, 3, 3};
     geometry.spacing.setConstant(1e-3);
@@ -83,7 +83,7 @@ TEST(NrrdWriter, densitiesAreWrittenWithoutTheBorder) {
 }
 
 TEST(NrrdWriter, valuesThatComeInPartsAreOneVolume) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     VolumeGeometry geometry;
     geometry.dims = {300, 200, 3};
     std::vector<uint16_t> values;
@@ -100,7 +100,7 @@ TEST(NrrdWriter, valuesThatComeInPartsAreOneVolume) {
 }
 
 TEST(NrrdWriter, wrongNumberOfValuesIsRefused) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     VolumeGeometry geometry;
     geometry.dims = {2, 2, 2};
     for (const size_t count : {7, 9}) {

@@ -8,7 +8,7 @@
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/phantom/dicom_series_writer.h"
 #include "haptic_server/volume/import/propose_iso.h"
-#include "tests/unit/volume_import/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bonemill {
 namespace {
@@ -79,7 +79,7 @@ VolumeGeometry coarseGrid() {
 }
 
 TEST(ToothPhantom, comesBackFromItsDicomSeriesUnchanged) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     const RawVolume tooth = scanTooth(coarseGrid(), {.noise_hu = 20, .seed = 4});
     writeCtSeries(folder.path(), tooth, {"PHANTOM^TOOTH", "test", "seed"});
     const RawVolume raw = importVolume(folder.path());
@@ -92,7 +92,7 @@ TEST(ToothPhantom, comesBackFromItsDicomSeriesUnchanged) {
 }
 
 TEST(ToothPhantom, turnedSeriesComesBackTurned) {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     VolumeGeometry geometry = coarseGrid();
     geometry.X_WV.rotation =
         Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 1, 0).normalized()));

@@ -1,4 +1,4 @@
-// A folder of its own for each test, gone afterwards.
+// A folder of its own for each object, gone with it: tests run side by side.
 #pragma once
 
 #include <stdlib.h>
@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-namespace bonemill {
+namespace bonemill::test {
 
 class TemporaryFolder {
   public:
@@ -22,11 +22,11 @@ class TemporaryFolder {
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
     const std::filesystem::path& path() const { return path_; }
 
   private:
     std::filesystem::path path_;
 };
 
-}  // namespace bonemill
+}  // namespace bonemill::test
