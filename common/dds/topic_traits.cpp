@@ -52,6 +52,11 @@ TopicDescription describeTopic<StatusSample>() {
 }
 
 template <>
+TopicDescription describeTopic<ViewerSample>() {
+    return {"bonemill_viewer", &bonemill_dds_ViewerSample_desc, streamQos()};
+}
+
+template <>
 TopicDescription describeTopic<CommandSample>() {
     return {"bonemill_command", &bonemill_dds_CommandSample_desc, commandQos()};
 }

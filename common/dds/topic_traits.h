@@ -1,4 +1,4 @@
-// The five topics: name, type descriptor and quality of service of each envelope of proto/topics.idl.
+// The six topics: name, type descriptor and quality of service of each envelope of proto/topics.idl.
 #pragma once
 
 #include <topics.h>
@@ -11,6 +11,7 @@ using NodeMeshSample = bonemill_dds_NodeMeshSample;
 using SceneInfoSample = bonemill_dds_SceneInfoSample;
 using ToolStateSample = bonemill_dds_ToolStateSample;
 using StatusSample = bonemill_dds_StatusSample;
+using ViewerSample = bonemill_dds_ViewerSample;
 using CommandSample = bonemill_dds_CommandSample;
 
 struct TopicDescription {
@@ -29,6 +30,8 @@ template <>
 TopicDescription describeTopic<ToolStateSample>();
 template <>
 TopicDescription describeTopic<StatusSample>();
+template <>
+TopicDescription describeTopic<ViewerSample>();
 template <>
 TopicDescription describeTopic<CommandSample>();
 

@@ -34,7 +34,7 @@ void apply(const WindowInput& input, RenderScene& scene) {
     camera.pan(input.pan_right, input.pan_up);
     camera.zoom(input.zoom_factor);
     if (input.reset_view) scene.resetView();
-    if (input.toggle_help) scene.toggleHelp();
+    if (input.toggle_help) scene.settings().show_help = !scene.settings().show_help;
 }
 
 // Says how commands ended: in the log, and over the picture for a while.

@@ -74,11 +74,12 @@ FrameView RenderScene::makeView() const {
 void RenderScene::draw(int width, int height, float ui_scale, GLuint target) {
     if (view_pending_) applyFirstView(double(width) / height);
     renderer_.draw(makeView(), nodes_, tool_, width, height, target);
-    if (!show_hud_) return;
+    if (!settings_.show_hud) return;
     hud_input_.node_count = nodes_.nodeCount();
     const double metres_per_pixel = camera_.metresPerPixel(height);
     const ScaleBar bar = hasSceneInfo() ? makeScaleBar(metres_per_pixel, 0.2 * width) : ScaleBar{};
-    hud_painter_.paint(makeHud(hud_input_), bar, metres_per_pixel, show_help_, width, height, ui_scale);
+    hud_painter_.paint(makeHud(hud_input_), bar, metres_per_pixel, settings_.show_help, width, height,
+                       ui_scale);
     gl_.check("drawing the head-up display");
 }
 

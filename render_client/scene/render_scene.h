@@ -9,6 +9,7 @@
 
 #include "render_client/scene/hud_painter.h"
 #include "render_client/scene/scene_renderer.h"
+#include "render_client/scene/view_settings.h"
 
 namespace bonemill {
 
@@ -44,8 +45,9 @@ class RenderScene {
     void setViewOverrides(const ViewOverrides& overrides);
     // Back to the first view, at the next draw().
     void resetView() { view_pending_ = true; }
-    void toggleHelp() { show_help_ = !show_help_; }
-    void showHud(bool show) { show_hud_ = show; }
+    ViewSettings& settings() { return settings_; }
+    // Who else is watching, and where instructors point.
+    void setWatchers(std::vector<topics::Viewer> watchers) { watchers_ = std::move(watchers); }
 
     size_t nodeCount() const { return nodes_.nodeCount(); }
     size_t triangleCount() const { return nodes_.triangleCount(); }
@@ -69,8 +71,8 @@ class RenderScene {
     OrbitCamera camera_;
     ViewOverrides overrides_;
     bool view_pending_ = true;
-    bool show_help_ = false;
-    bool show_hud_ = true;
+    ViewSettings settings_;
+    std::vector<topics::Viewer> watchers_;
     const GlApi& gl_;
 };
 

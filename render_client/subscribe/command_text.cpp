@@ -12,6 +12,14 @@ std::string commandText(const topics::Command& command) {
             return command.pause_milling() ? "pause milling" : "go on milling";
         case topics::Command::kSetAccuracy:
             return "accuracy " + command.set_accuracy();
+        case topics::Command::kSelectTool:
+            return "tool " + std::to_string(command.select_tool() + 1);
+        case topics::Command::kSaveCheckpoint:
+            return "save a checkpoint";
+        case topics::Command::kRestoreCheckpoint:
+            return command.restore_checkpoint() == 0
+                       ? "put the bone back"
+                       : "back to checkpoint " + std::to_string(command.restore_checkpoint());
         case topics::Command::ACTION_NOT_SET:
             break;
     }

@@ -3,6 +3,7 @@
 #include <google/protobuf/stubs/logging.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +14,7 @@ namespace {
 
 // A quaternion that went through double arithmetic stays far closer to unit length than this.
 constexpr double kUnitTolerance = 1e-3;
+constexpr size_t kLongestName = 64;  // bytes
 
 template <class Field>
 bool isFinite(const Field& field) {
@@ -65,15 +67,40 @@ bool isUsable(const topics::Status& status) {
     return isFinite(numbers);
 }
 
+bool isUsable(const topics::Viewer& viewer) {
+    return std::isfinite(viewer.frame_rate_hz()) && viewer.frame_rate_hz() >= 0 &&
+           (viewer.pointer_m().empty() || isVector(viewer.pointer_m())) &&
+           topics::Viewer::Role_IsValid(viewer.role());
+}
+
+// What stands on a screen: no control signs, no broken UTF-8 (cut off with all that follows), not too long.
+std::string shownName(const std::string& name) {
+    std::string shown;
+    for (size_t i = 0; i < name.size() && shown.size() < kLongestName;) {
+        const auto lead = static_cast<unsigned char>(name[i]);
+        const size_t length = lead < 0x80 ? 1 : lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+        if (i + length > name.size() || shown.size() + length > kLongestName) break;
+        if (length > 1 || std::isprint(lead)) shown.append(name, i, length);
+        i += length;
+    }
+    return shown;
+}
+
 template <class Message>
 std::optional<Message> parse(std::span<const uint8_t> payload) {
     // Bad bytes are counted by the caller; a hostile peer must not fill the log.
     const google::protobuf::LogSilencer silencer;
     Message message;
     if (payload.size() > static_cast<size_t>(std::numeric_limits<int>::max()) ||
-        !message.ParseFromArray(payload.data(), static_cast<int>(payload.size())) || message.epoch() == 0 ||
-        !isUsable(message))
+        !message.ParseFromArray(payload.data(), static_cast<int>(payload.size())) || !isUsable(message))
         return std::nullopt;
+    return message;
+}
+
+template <class Message>
+std::optional<Message> parseOfEpoch(std::span<const uint8_t> payload) {
+    std::optional<Message> message = parse<Message>(payload);
+    if (message && message->epoch() == 0) message.reset();
     return message;
 }
 
@@ -89,15 +116,23 @@ std::optional<ReceivedNode> parseNode(std::span<const uint8_t> payload, uint32_t
 }
 
 std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload) {
-    return parse<topics::SceneInfo>(payload);
+    return parseOfEpoch<topics::SceneInfo>(payload);
 }
 
 std::optional<topics::ToolState> parseToolState(std::span<const uint8_t> payload) {
-    return parse<topics::ToolState>(payload);
+    return parseOfEpoch<topics::ToolState>(payload);
 }
 
 std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {
-    return parse<topics::Status>(payload);
+    return parseOfEpoch<topics::Status>(payload);
+}
+
+std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint64_t sender) {
+    std::optional<topics::Viewer> viewer = parse<topics::Viewer>(payload);
+    if (!viewer || viewer->sender() != sender || sender == 0) return std::nullopt;
+    viewer->set_name(shownName(viewer->name()));
+    if (viewer->role() != topics::Viewer::INSTRUCTOR) viewer->clear_pointer_m();
+    return viewer;
 }
 
 }  // namespace bonemill

@@ -24,5 +24,8 @@ std::optional<ReceivedNode> parseNode(std::span<const uint8_t> payload, uint32_t
 std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload);
 std::optional<topics::ToolState> parseToolState(std::span<const uint8_t> payload);
 std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload);
+// `sender` is that of the sample's envelope. The name is cut to 64 bytes of printable UTF-8; only an
+// instructor points.
+std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint64_t sender);
 
 }  // namespace bonemill

@@ -11,6 +11,7 @@ namespace {
 
 // One sample per session is kept, so more than this many at once is a flood of foreign sessions.
 constexpr size_t kMaxSmallSamples = 256;
+constexpr size_t kMaxViewers = 256;  // bounds what invented senders can take
 
 uint64_t randomSender() {
     std::random_device device;
@@ -22,13 +23,15 @@ uint64_t randomSender() {
 }  // namespace
 
 SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
-    : session_(options.session),
+    : options_(options),
       outbox_(randomSender()),
       participant_(options.domain),
       node_reader_(participant_),
       scene_info_reader_(participant_),
       tool_state_reader_(participant_),
       status_reader_(participant_),
+      viewer_reader_(participant_),
+      viewer_writer_(participant_),
       command_writer_(participant_),
       wait_set_(participant_) {
     wait_set_.add(node_reader_.handle());
@@ -42,11 +45,12 @@ SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
     takeStatus();
     takeNodes(max_nodes);
     takeToolState();
+    takeViewers();
     outbox_.step(CommandOutbox::Clock::now(), command_writer_.matchedReaders() > 0,
                  [this](const topics::Command& command) {
                      const std::string bytes = command.SerializeAsString();
                      dds::CommandSample sample{};
-                     sample.session = session_;
+                     sample.session = options_.session;
                      sample.sender = command.sender();
                      dds::setPayload(sample, bytes);
                      command_writer_.write(sample);
@@ -57,7 +61,7 @@ SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
 void SceneSubscriber::takeStatus() {
     status_reader_.take(kMaxSmallSamples,
                         [this](const dds::StatusSample& sample, const dds::SampleInfo& info) {
-                            if (!info.has_data || sample.session != session_) return;
+                            if (!info.has_data || sample.session != options_.session) return;
                             std::optional<topics::Status> status = parseStatus(dds::payloadOf(sample));
                             if (!status) return dropMalformed("status");
                             if (!enterEpoch(status->epoch())) return;
@@ -69,7 +73,7 @@ void SceneSubscriber::takeStatus() {
 void SceneSubscriber::takeSceneInfo() {
     scene_info_reader_.take(
         kMaxSmallSamples, [this](const dds::SceneInfoSample& sample, const dds::SampleInfo& info) {
-            if (!info.has_data || sample.session != session_) return;
+            if (!info.has_data || sample.session != options_.session) return;
             std::optional<topics::SceneInfo> scene_info = parseSceneInfo(dds::payloadOf(sample));
             if (!scene_info) return dropMalformed("scene info");
             if (enterEpoch(scene_info->epoch())) scene_info_ = std::move(scene_info);
@@ -79,7 +83,7 @@ void SceneSubscriber::takeSceneInfo() {
 void SceneSubscriber::takeToolState() {
     tool_state_reader_.take(
         kMaxSmallSamples, [this](const dds::ToolStateSample& sample, const dds::SampleInfo& info) {
-            if (!info.has_data || sample.session != session_) return;
+            if (!info.has_data || sample.session != options_.session) return;
             std::optional<topics::ToolState> state = parseToolState(dds::payloadOf(sample));
             if (!state) return dropMalformed("tool state");
             if (!enterEpoch(state->epoch())) return;
@@ -88,9 +92,48 @@ void SceneSubscriber::takeToolState() {
         });
 }
 
+void SceneSubscriber::takeViewers() {
+    const auto now = std::chrono::steady_clock::now();
+    viewer_reader_.take(kMaxSmallSamples, [&](const dds::ViewerSample& sample, const dds::SampleInfo& info) {
+        if (!info.has_data || sample.session != options_.session || sample.sender == outbox_.sender()) return;
+        std::optional<topics::Viewer> viewer = parseViewer(dds::payloadOf(sample), sample.sender);
+        if (!viewer) return dropMalformed("viewer");
+        if (viewers_.size() < kMaxViewers || viewers_.contains(sample.sender))
+            viewers_[sample.sender] = {std::move(*viewer), now};
+    });
+    std::erase_if(viewers_, [now](const auto& v) { return now - v.second.heard > kViewerTimeout; });
+}
+
+void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer) {
+    topics::Viewer viewer;
+    viewer.set_sender(outbox_.sender());
+    viewer.set_name(options_.name);
+    viewer.set_role(options_.role);
+    viewer.set_frame_rate_hz(frame_rate_hz);
+    viewer.set_is_complete(isComplete());
+    if (pointer) viewer.mutable_pointer_m()->Assign(pointer->begin(), pointer->end());
+    const std::string bytes = viewer.SerializeAsString();
+    dds::ViewerSample sample{};
+    sample.session = options_.session;
+    sample.sender = viewer.sender();
+    dds::setPayload(sample, bytes);
+    viewer_writer_.write(sample);
+}
+
+uint32_t SceneSubscriber::sendCommand(topics::Command command) {
+    command.set_role(options_.role);
+    return outbox_.enqueue(std::move(command));
+}
+
+std::vector<topics::Viewer> SceneSubscriber::viewers() const {
+    std::vector<topics::Viewer> viewers;
+    for (const auto& [sender, heard] : viewers_) viewers.push_back(heard.viewer);
+    return viewers;
+}
+
 void SceneSubscriber::takeNodes(size_t max_nodes) {
     node_reader_.take(max_nodes, [this](const dds::NodeMeshSample& sample, const dds::SampleInfo& info) {
-        if (sample.session != session_) return;
+        if (sample.session != options_.session) return;
         // Of a key that was written and then disposed only the older sample may be left, marked as disposed.
         if (info.is_disposed) return model_.removeNode(sample.node, info.writer);
         if (!info.has_data) return;

@@ -7,7 +7,9 @@
 #include <chrono>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
+#include <vector>
 
 #include "common/dds/endpoint.h"
 #include "common/dds/wait_set.h"
@@ -20,6 +22,8 @@ namespace bonemill {
 struct SubscriberOptions {
     uint32_t domain = 0;   // DDS domain, 0 to dds::kMaxDomain
     uint32_t session = 1;  // that of the server
+    std::string name;      // of who watches, for the others' lists
+    topics::Viewer::Role role = topics::Viewer::OPERATOR;
 };
 
 class SceneSubscriber {
@@ -47,11 +51,17 @@ class SceneSubscriber {
     bool hasServer() const;
     static constexpr std::chrono::seconds kServerTimeout{3};
 
-    // Queues a command (sender and sequence are filled in) and returns its sequence; poll() sends it.
-    uint32_t sendCommand(topics::Command command) { return outbox_.enqueue(std::move(command)); }
+    // Queues a command (sender, role and sequence are filled in) and returns its sequence; poll() sends it.
+    uint32_t sendCommand(topics::Command command);
     // How commands ended since the last call, acknowledged by the server or given up 5 s after their turn
     // came.
     std::vector<CommandOutcome> takeOutcomes() { return outbox_.takeOutcomes(); }
+
+    // Tells all others who is watching here and where it points (W, m): once per second at least.
+    void announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer);
+    // The other viewers of the session, heard within kViewerTimeout, by sender.
+    std::vector<topics::Viewer> viewers() const;
+    static constexpr std::chrono::seconds kViewerTimeout{4};
 
     uint64_t epoch() const noexcept { return model_.epoch(); }
     const NodeDigest& digest() const noexcept { return model_.digest(); }
@@ -62,15 +72,21 @@ class SceneSubscriber {
     void takeSceneInfo();
     void takeNodes(size_t max_nodes);
     void takeToolState();
+    void takeViewers();
     bool enterEpoch(uint64_t epoch);
     void dropMalformed(const char* what);
 
-    uint32_t session_;
+    SubscriberOptions options_;
     SceneModel model_;
     std::optional<topics::SceneInfo> scene_info_;
     std::optional<topics::ToolState> tool_state_;
     std::optional<topics::Status> status_;
     std::optional<std::chrono::steady_clock::time_point> last_heard_;
+    struct HeardViewer {
+        topics::Viewer viewer;
+        std::chrono::steady_clock::time_point heard;
+    };
+    std::map<uint64_t, HeardViewer> viewers_;  // by sender
     uint64_t malformed_count_ = 0;
     CommandOutbox outbox_;
 
@@ -79,6 +95,8 @@ class SceneSubscriber {
     dds::Reader<dds::SceneInfoSample> scene_info_reader_;
     dds::Reader<dds::ToolStateSample> tool_state_reader_;
     dds::Reader<dds::StatusSample> status_reader_;
+    dds::Reader<dds::ViewerSample> viewer_reader_;
+    dds::Writer<dds::ViewerSample> viewer_writer_;
     dds::Writer<dds::CommandSample> command_writer_;
     dds::WaitSet wait_set_;
 };

@@ -36,7 +36,7 @@ topics::SceneInfo sphereInfo() {
 class ScenePicture : public testing::Test {
   protected:
     ScenePicture() : context_(kWidth, kHeight), scene_(std::make_unique<RenderScene>(context_.gl())) {
-        scene_->showHud(false);
+        scene_->settings().show_hud = false;
     }
     Picture draw() {
         scene_->draw(kWidth, kHeight, 1);
@@ -49,7 +49,7 @@ class ScenePicture : public testing::Test {
     void freshScene() {
         scene_.reset();
         scene_ = std::make_unique<RenderScene>(context_.gl());
-        scene_->showHud(false);
+        scene_->settings().show_hud = false;
     }
 
     OsmesaContext context_;
@@ -145,11 +145,11 @@ TEST_F(ScenePicture, QuantisationIsUndone) {
 TEST_F(ScenePicture, TheOrderOfArrivalDoesNotMatter) {
     showSphere();
     scene_->setStatus(makeStatus());
-    scene_->showHud(true);
+    scene_->settings().show_hud = true;
     const Picture early = draw();
 
     freshScene();
-    scene_->showHud(true);
+    scene_->settings().show_hud = true;
     scene_->setStatus(makeStatus());
     std::vector<NodeMesh> nodes = sphereNodes();
     scene_->setNode(nodes[3]);  // and comes again later
@@ -241,7 +241,7 @@ TEST_F(ScenePicture, TheGhostShowsOnlyADevicePoseThatDiffersVisibly) {
 TEST_F(ScenePicture, HudTextChangesPixelsAndOnlyInItsPanel) {
     showSphere();
     const Picture bare = draw();
-    scene_->showHud(true);
+    scene_->settings().show_hud = true;
     scene_->setStatus(makeStatus());
     const Picture with_hud = draw();
     EXPECT_GT(countDifferent(bare, with_hud), 5000u);
@@ -252,13 +252,13 @@ TEST_F(ScenePicture, HudTextChangesPixelsAndOnlyInItsPanel) {
     const size_t changed = countDifferent(with_hud, other_rate);
     EXPECT_GT(changed, 20u);
     EXPECT_LT(changed, 1500u);
-    scene_->toggleHelp();
+    scene_->settings().show_help = true;
     EXPECT_GT(countDifferent(other_rate, draw()), 5000u);
 }
 
 TEST_F(ScenePicture, ANoticeIsAtTheBottomUntilItIsTakenAway) {
     showSphere();
-    scene_->showHud(true);
+    scene_->settings().show_hud = true;
     const Picture without = draw();
     scene_->setNotice(HudNotice{"accuracy fast: done", HudTone::kGood});
     const Picture with_notice = draw();
@@ -313,7 +313,7 @@ TEST_F(ScenePicture, MessagesThatContradictThemselvesAreRefused) {
 
 TEST_F(ScenePicture, AnotherSizeIsDrawnWhole) {
     showSphere();
-    scene_->showHud(true);
+    scene_->settings().show_hud = true;
     draw();
     scene_->draw(200, 150, 0.7f);
     scene_->draw(kWidth, kHeight, 1);
