@@ -20,9 +20,9 @@
 namespace bonemill {
 
 struct SubscriberOptions {
-    uint32_t domain = 0;   // DDS domain, 0 to dds::kMaxDomain
-    uint32_t session = 1;  // that of the server
-    std::string name;      // of who watches, for the others' lists
+    uint32_t domain = 0;    // DDS domain, 0 to dds::kMaxDomain
+    uint32_t session = 1;   // that of the server
+    std::string name = {};  // of who watches, for the others' lists
     topics::Viewer::Role role = topics::Viewer::OPERATOR;
 };
 
