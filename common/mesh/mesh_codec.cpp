@@ -45,6 +45,23 @@ std::string codedIndices(const Buffers& b) {
     return out;
 }
 
+// FNV-1a, 64 bits (Fowler, Noll, Vo).
+void hashInto(uint64_t& hash, const void* bytes, size_t size) {
+    const auto* byte = static_cast<const unsigned char*>(bytes);
+    for (size_t i = 0; i < size; ++i) hash = (hash ^ byte[i]) * 0x100000001b3u;
+}
+
+uint64_t contentOf(const topics::NodeMesh& message) {
+    uint64_t hash = 0xcbf29ce484222325u;
+    const uint32_t revision = message.revision();
+    hashInto(hash, &revision, sizeof revision);
+    for (const auto* vector : {&message.origin_m(), &message.step_m()})
+        hashInto(hash, vector->data(), size_t(vector->size()) * sizeof(float));
+    for (const std::string* part : {&message.vertices(), &message.indices()})
+        hashInto(hash, part->data(), part->size());
+    return hash;
+}
+
 std::optional<Eigen::Vector3f> finiteVector(const google::protobuf::RepeatedField<float>& field) {
     if (field.size() != 3) return std::nullopt;
     const Eigen::Vector3f v(field[0], field[1], field[2]);
@@ -78,9 +95,12 @@ bool decodeBuffers(const topics::NodeMesh& message, NodeMesh& mesh) {
 
 }  // namespace
 
-std::string encodeNodeMesh(const NodeMesh& mesh, uint64_t epoch) {
+EncodedNode encodeNodeMesh(const NodeMesh& mesh, const NodeTag& tag) {
     topics::NodeMesh message;
-    message.set_epoch(epoch);
+    message.set_epoch(tag.epoch);
+    message.set_batch(tag.batch);
+    message.set_batch_nodes(tag.batch_nodes);
+    message.set_cut_stamp_ns(tag.cut_stamp_ns);
     message.set_revision(mesh.revision);
     for (int axis = 0; axis < 3; ++axis) {
         message.add_origin_m(mesh.origin[axis]);
@@ -93,10 +113,10 @@ std::string encodeNodeMesh(const NodeMesh& mesh, uint64_t epoch) {
         message.set_vertices(codedVertices(buffers.vertices));
         message.set_indices(codedIndices(buffers));
     }
-    return message.SerializeAsString();
+    return {message.SerializeAsString(), contentOf(message)};
 }
 
-std::optional<NodeMesh> decodeNodeMesh(std::string_view bytes, uint32_t leaf, uint64_t& epoch) {
+std::optional<DecodedNode> decodeNodeMesh(std::string_view bytes, uint32_t leaf) {
     topics::NodeMesh message;
     if (bytes.size() > size_t(std::numeric_limits<int>::max())) return std::nullopt;
     if (!message.ParseFromArray(bytes.data(), int(bytes.size()))) return std::nullopt;
@@ -104,14 +124,16 @@ std::optional<NodeMesh> decodeNodeMesh(std::string_view bytes, uint32_t leaf, ui
     const auto step = finiteVector(message.step_m());
     if (!origin || !step || !(step->minCoeff() > 0) || !hasPlausibleCounts(message)) return std::nullopt;
 
-    NodeMesh mesh;
+    DecodedNode node;
+    NodeMesh& mesh = node.mesh;
     mesh.leaf = leaf;
     mesh.revision = message.revision();
     mesh.origin = *origin;
     mesh.step = *step;
     if (!decodeBuffers(message, mesh)) return std::nullopt;
-    epoch = message.epoch();
-    return mesh;
+    node.tag = {message.epoch(), message.batch(), message.batch_nodes(), message.cut_stamp_ns()};
+    node.content = contentOf(message);
+    return node;
 }
 
 }  // namespace bonemill

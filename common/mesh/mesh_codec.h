@@ -11,14 +11,33 @@
 
 namespace bonemill {
 
+// What goes with a node mesh over the wire (proto/topics.proto, NodeMesh).
+struct NodeTag {
+    uint64_t epoch = 0;
+    uint64_t batch = 0;
+    uint32_t batch_nodes = 0;
+    int64_t cut_stamp_ns = 0;
+};
+
+struct EncodedNode {
+    std::string bytes;
+    uint64_t content = 0;  // hash of the revision and of the coded surface: equal on both sides of the wire
+};
+
 // Serialized NodeMesh message. Vertices and triangles are put in an order that the vertex cache likes and
 // that codes well (the same surface, the same winding), vertices that no triangle names are dropped; equal
 // meshes give equal bytes. `mesh.indices` must be a multiple of 3 long and smaller than vertices.size() each.
-std::string encodeNodeMesh(const NodeMesh& mesh, uint64_t epoch);
+EncodedNode encodeNodeMesh(const NodeMesh& mesh, const NodeTag& tag);
 
-// What encodeNodeMesh made, or nothing (epoch untouched) for any bytes that do not hold a whole and valid
+struct DecodedNode {
+    NodeMesh mesh;
+    NodeTag tag;
+    uint64_t content = 0;
+};
+
+// What encodeNodeMesh made, or nothing for any bytes that do not hold a whole and valid
 // mesh: never throws on them, never allocates more than a small multiple of their size. The leaf is the
 // topic's key.
-std::optional<NodeMesh> decodeNodeMesh(std::string_view bytes, uint32_t leaf, uint64_t& epoch);
+std::optional<DecodedNode> decodeNodeMesh(std::string_view bytes, uint32_t leaf);
 
 }  // namespace bonemill

@@ -25,6 +25,10 @@ void addServerOptions(CLI::App& app, bonemill::ServerOptions& server) {
     app.add_option(
         "--accuracy", server.accuracy,
         "accuracy.json of accuracy-report, to show errors; default: SCENE.accuracy.json if it exists");
+    app.add_option("--stream-mbit-per-s", server.stream_mbit_per_s,
+                   "node meshes take this much of the network at most, those nearest to the burr first")
+        ->check(CLI::Range(0.1, 10000.0))
+        ->capture_default_str();
     app.add_option("--trace", server.trace, "write one CSV line per tick");
     app.add_option("--report", server.report, "write the run's statistics as JSON");
     app.add_option("--save-volume", server.save_volume, "write the milled volume (NRRD) at the end");

@@ -26,7 +26,7 @@ using namespace std::chrono_literals;
 constexpr size_t kRingRecords = 8192;  // 8 s at 1 kHz: a stalled disk loses nothing
 constexpr size_t kRingCuts = 8192;
 constexpr int kTickPriority = 80;
-constexpr auto kPublishPeriod = 16ms;
+constexpr auto kPublishPeriod = 10ms;
 constexpr auto kRecordPeriod = 4ms;
 constexpr int64_t kWarmUpNs = kNsPerSecond;
 
@@ -78,7 +78,7 @@ class Server {
           recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace),
           publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
           show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, reset_,
-                accuracy_, stop_requested_) {
+                accuracy_, options.stream_mbit_per_s * 1e6 / 8, stop_requested_) {
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
         for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     }
@@ -144,7 +144,7 @@ class Server {
 
     void meshUntil(const std::stop_token& stop) {
         MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_);
-        const auto put = [this](NodeMesh&& mesh) { outbox_.put(std::move(mesh)); };
+        const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
         loop(stop, MeshRounds::kPeriod, [&] {
             for (bool is_more = true; is_more && !stop.stop_requested();) {
                 is_more = rounds.round(put);

@@ -12,7 +12,8 @@ struct ServerOptions {
     std::string scene;
     uint32_t session = 1;
     uint32_t domain = 0;
-    double seconds = 0;    // after the first tick; 0: until a signal or a shut_down command
+    double seconds = 0;              // after the first tick; 0: until a signal or a shut_down command
+    double stream_mbit_per_s = 200;  // of node meshes; nearest to the burr first
     std::string accuracy;  // accuracy.json of accuracy-report; empty: beside the scene, if there is one
     std::string trace;     // files to write; empty: none
     std::string report;

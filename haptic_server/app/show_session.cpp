@@ -70,10 +70,13 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
 
 ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                          const AccuracyFigures& figures, MeshOutbox& outbox, const Recorder& recorder,
-                         VolumeReset& reset, AccuracySwitch& accuracy, std::atomic<bool>& stop_requested)
+                         VolumeReset& reset, AccuracySwitch& accuracy, double bytes_per_s,
+                         std::atomic<bool>& stop_requested)
     : publisher_(publisher),
       scene_name_(scene.name()),
       outbox_(outbox),
+      budget_(bytes_per_s),
+      X_VW_(simulation.bone->volume.geometry().X_WV.inverse()),
       recorder_(recorder),
       reset_(reset),
       accuracy_(accuracy),
@@ -84,18 +87,31 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
 }
 
 void ShowSession::round() {
-    const bool is_whole =
-        outbox_.isWhole();  // before taking, so that all of the bone is among what was published
-    std::vector<NodeMesh> meshes = outbox_.takeAll();
-    for (NodeMesh& mesh : meshes)
-        if (!publisher_.publishNode(mesh)) outbox_.put(std::move(mesh));  // next round; a newer revision wins
+    const bool has_changed = publishNodes();
     if (const auto latest = recorder_.latest()) publisher_.publishToolState(*latest);
-    if (!is_whole)
-        return;  // a status, also an acknowledging one, counts the nodes: part of the bone would look
-                 // complete
+    // A status, also an acknowledging one, counts the nodes: part of the bone would look complete.
+    if (!is_whole_) return;
     for (const topics::Command& command : publisher_.takeCommands())
         publisher_.acknowledge(command, carryOut(command));
-    if (!meshes.empty() || monotonicNowNs() - last_status_ns_ > kStatusPeriodNs) publishStatus();
+    if (has_changed || monotonicNowNs() - last_status_ns_ > kStatusPeriodNs) publishStatus();
+}
+
+// Those nearest to the burr first, as many as the budget allows.
+bool ShowSession::publishNodes() {
+    const bool will_be_whole = outbox_.isWhole();  // before taking
+    Eigen::Vector3d burr_V = Eigen::Vector3d::Zero();
+    if (const auto latest = recorder_.latest())
+        burr_V = X_VW_ * Eigen::Map<const Eigen::Vector3d>(latest->p_WT);
+    const int64_t now_ns = monotonicNowNs();
+    std::vector<NodeGroup> groups =
+        outbox_.takeNearest(burr_V.cast<float>(), budget_.available(now_ns), now_ns);
+    for (NodeGroup& group : groups) {
+        const Publisher::Written written = publisher_.publishNodes(group.meshes, group.oldest_cut_ns);
+        budget_.spend(written.bytes);
+        if (!written.is_whole) outbox_.put(std::move(group), now_ns);  // next round; a newer revision wins
+    }
+    is_whole_ = is_whole_ || (will_be_whole && outbox_.isEmpty());
+    return !groups.empty();
 }
 
 void ShowSession::publishStatus() {

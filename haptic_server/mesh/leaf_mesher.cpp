@@ -21,10 +21,10 @@ int stepsToIso(Density low, Density high, Density iso, int steps_per_cell) noexc
 
 }  // namespace
 
-LeafMesher::LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice)
+LeafMesher::LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice, int most_steps_per_cell)
     : volume_(volume),
       lattice_(lattice),
-      grid_(volume, lattice),
+      grid_(volume, lattice, most_steps_per_cell),
       triangles_(cubeTriangles()),
       crossed_(lattice.leafCells()),
       inverse_spacing_(volume.spacing().cwiseInverse().cast<float>()) {}

@@ -22,7 +22,9 @@ namespace bonemill {
 // One leaf after another with reused memory; one thread at a time. Volume and lattice must outlive it.
 class LeafMesher {
   public:
-    LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice);
+    // most_steps_per_cell as for MeshGrid.
+    LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice,
+               int most_steps_per_cell = MeshGrid::kMostStepsPerCell);
 
     // revision = the leaf's version. Empty without surface. Nothing if the voxels were written while they
     // were copied, which is the shorter part of the work.

@@ -12,9 +12,9 @@ constexpr int kMinStepsPerCell =
 
 }  // namespace
 
-MeshGrid::MeshGrid(const VoxelVolume& volume, const LeafLattice& lattice)
+MeshGrid::MeshGrid(const VoxelVolume& volume, const LeafLattice& lattice, int most_steps_per_cell)
     : lattice_(lattice),
-      steps_per_cell_(std::min(kMostStepsPerCell, kMaxLocalSteps / lattice.leafCells().maxCoeff())),
+      steps_per_cell_(std::min(most_steps_per_cell, kMaxLocalSteps / lattice.leafCells().maxCoeff())),
       spacing_(volume.spacing()),
       step_(spacing_ / steps_per_cell_) {
     if (steps_per_cell_ < kMinStepsPerCell) throw std::invalid_argument("octree leaf too large to mesh");

@@ -12,11 +12,15 @@ namespace bonemill {
 
 class MeshGrid {
   public:
+    static constexpr int kMostStepsPerCell = 16383;  // 32 bits hold a density times that
+    // What is streamed. The cell fills a high byte and the place in it a low one, which packs best.
+    static constexpr int kStreamedStepsPerCell = 256;
+
     // Throws std::invalid_argument when a leaf is so large (over 21845 cells) that 16 bits cannot hold its
     // vertices.
-    MeshGrid(const VoxelVolume& volume, const LeafLattice& lattice);
+    MeshGrid(const VoxelVolume& volume, const LeafLattice& lattice,
+             int most_steps_per_cell = kMostStepsPerCell);
 
-    static constexpr int kMostStepsPerCell = 16383;  // 32 bits hold a density times that
     int stepsPerCell() const noexcept { return steps_per_cell_; }
 
     // First cell's low corner: V, m, and the same in steps.

@@ -9,6 +9,7 @@
 
 #include "common/rt/latency_histogram.h"
 #include "common/rt/spsc_ring.h"
+#include "haptic_server/mesh/mesh_outbox.h"
 #include "haptic_server/mesh/mesher.h"
 #include "haptic_server/volume/cut.h"
 
@@ -20,8 +21,11 @@ class MeshRounds {
     // its voxels were written; a cut that finds it full is meshed all the same, only later.
     MeshRounds(const VoxelVolume& volume, const LeafLattice& lattice, SpscRing<Cut>& cuts);
 
-    // One round; the sink as for Mesher::pass. True: more is waiting, call again at once; else after kPeriod.
-    bool round(const Mesher::Sink& sink);
+    using Sink = std::function<void(NodeGroup&&)>;
+
+    // One round; the meshes as those of Mesher::pass, what changed together in one group. True: more is
+    // waiting, call again at once; else after kPeriod.
+    bool round(const Sink& sink);
     static constexpr std::chrono::microseconds kPeriod{500};
 
     bool hasMeshedAll() const noexcept { return mesher_.hasMeshedAll(); }
@@ -32,14 +36,15 @@ class MeshRounds {
 
   private:
     void takeCuts();
-    void closeCuts();
-    bool passOverOthers(const Mesher::Sink& sink);
+    void closeCuts(const Sink& sink);
+    bool passOverOthers(const Sink& sink);
 
     const LeafLattice& lattice_;
     SpscRing<Cut>& cuts_;
     Mesher mesher_;
     std::vector<int64_t> open_starts_ns_;  // of the cuts that wait for their meshes
     IndexBox open_leaves_;                 // box of all leaves that these cuts changed
+    NodeGroup open_group_;                 // their meshes so far
     int64_t next_pass_ns_ = 0;
     LatencyHistogram cut_to_sink_;
 };

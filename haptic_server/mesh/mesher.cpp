@@ -17,9 +17,9 @@ bool isBeingWritten(uint32_t version) noexcept {
 
 }  // namespace
 
-Mesher::Mesher(const VoxelVolume& volume, const LeafLattice& lattice)
+Mesher::Mesher(const VoxelVolume& volume, const LeafLattice& lattice, int most_steps_per_cell)
     : lattice_(lattice),
-      leaf_mesher_(volume, lattice),
+      leaf_mesher_(volume, lattice, most_steps_per_cell),
       meshed_version_(lattice.leafCount(), kNeverMeshed),
       has_mesh_(lattice.leafCount(), false) {}
 

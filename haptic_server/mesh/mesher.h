@@ -16,8 +16,9 @@ namespace bonemill {
 
 class Mesher {
   public:
-    // Volume and lattice must outlive the mesher.
-    Mesher(const VoxelVolume& volume, const LeafLattice& lattice);
+    // Volume and lattice must outlive the mesher. most_steps_per_cell as for MeshGrid.
+    Mesher(const VoxelVolume& volume, const LeafLattice& lattice,
+           int most_steps_per_cell = MeshGrid::kMostStepsPerCell);
 
     using Sink = std::function<void(NodeMesh&&)>;
     static constexpr uint32_t kAllLeaves = std::numeric_limits<uint32_t>::max();

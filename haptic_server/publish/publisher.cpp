@@ -2,9 +2,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 
-#include "common/mesh/mesh_codec.h"
+#include "common/rt/clock.h"
 
 namespace bonemill {
 namespace {
@@ -60,36 +61,60 @@ Publisher::Publisher(const PublisherOptions& options)
       status_writer_(participant_),
       command_reader_(participant_) {}
 
-bool Publisher::publishNode(const NodeMesh& mesh) {
+bool Publisher::isNewer(const NodeMesh& mesh) const {
     const auto known = nodes_.find(mesh.leaf);
-    Node node = known != nodes_.end() ? known->second : Node{0, false, false};
-    if (known != nodes_.end() && mesh.revision <= node.revision) return true;
-
-    // A dispose is kept for every late joiner, so a node that never had a mesh gets none.
-    if (!mesh.isEmpty() && !writeNode(mesh)) return false;
-    if (mesh.isEmpty() && node.was_written && !disposeNode(mesh.leaf)) return false;
-
-    if (node.has_mesh) digest_.remove(mesh.leaf, node.revision);
-    if (!mesh.isEmpty()) digest_.add(mesh.leaf, mesh.revision);
-    nodes_[mesh.leaf] = {mesh.revision, !mesh.isEmpty(), node.was_written || !mesh.isEmpty()};
-    return true;
+    return known == nodes_.end() || mesh.revision > known->second.revision;
 }
 
-bool Publisher::writeNode(const NodeMesh& mesh) {
-    const std::string bytes = encodeNodeMesh(mesh, epoch_);
+// Removals come last: the surface that goes is hidden behind its neighbours' new one, a hole would not be.
+Publisher::Written Publisher::publishNodes(std::span<const NodeMesh> meshes, int64_t oldest_cut_ns) {
+    const auto has_surface = [this](const NodeMesh& mesh) { return !mesh.isEmpty() && isNewer(mesh); };
+    NodeTag tag{epoch_, ++batch_, uint32_t(std::ranges::count_if(meshes, has_surface)), 0};
+    if (oldest_cut_ns != 0) tag.cut_stamp_ns = unixTime_ns() - (monotonicNowNs() - oldest_cut_ns);
+    Written written;
+    for (const NodeMesh& mesh : meshes)
+        if (has_surface(mesh)) written.is_whole &= writeNode(mesh, tag, written.bytes);
+    for (const NodeMesh& mesh : meshes)
+        if (mesh.isEmpty() && isNewer(mesh)) written.is_whole &= removeNode(mesh);
+    node_bytes_ += written.bytes;
+    return written;
+}
+
+template <class Write>
+bool Publisher::timed(Write&& write) {
+    const int64_t start_ns = monotonicNowNs();
+    const bool is_written = write();
+    write_times_.record(monotonicNowNs() - start_ns);
+    return is_written;
+}
+
+bool Publisher::writeNode(const NodeMesh& mesh, const NodeTag& tag, size_t& bytes) {
+    const EncodedNode encoded = encodeNodeMesh(mesh, tag);
     dds::NodeMeshSample sample{};
     sample.session = session_;
     sample.node = mesh.leaf;
     sample.revision = mesh.revision;
-    dds::setPayload(sample, bytes);
-    return node_writer_.write(sample);
+    dds::setPayload(sample, encoded.bytes);
+    if (!timed([&] { return node_writer_.write(sample); })) return false;
+    bytes += encoded.bytes.size();
+    Node& node = nodes_[mesh.leaf];
+    if (node.content != 0) digest_.remove(mesh.leaf, node.content);
+    digest_.add(mesh.leaf, encoded.content);
+    node = {mesh.revision, encoded.content, true};
+    return true;
 }
 
-bool Publisher::disposeNode(uint32_t leaf) {
+// A dispose is kept for every late joiner, so a node that never had a mesh gets none.
+bool Publisher::removeNode(const NodeMesh& mesh) {
+    Node& node = nodes_[mesh.leaf];
     dds::NodeMeshSample key{};
     key.session = session_;
-    key.node = leaf;
-    return node_writer_.dispose(key);
+    key.node = mesh.leaf;
+    if (node.was_written && !timed([&] { return node_writer_.dispose(key); })) return false;
+    if (node.content != 0) digest_.remove(mesh.leaf, node.content);
+    node.revision = mesh.revision;
+    node.content = 0;
+    return true;
 }
 
 bool Publisher::publishSceneInfo(topics::SceneInfo info) {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -14,6 +15,8 @@
 #include "common/dds/endpoint.h"
 #include "common/dds/node_digest.h"
 #include "common/geometry/node_mesh.h"
+#include "common/mesh/mesh_codec.h"
+#include "common/rt/latency_histogram.h"
 #include "haptic_server/publish/command_inbox.h"
 #include "haptic_server/tick/tick_record.h"
 #include "proto/topics.pb.h"
@@ -31,10 +34,15 @@ class Publisher {
     // Throws UserError when the DDS domain cannot be joined.
     explicit Publisher(const PublisherOptions& options);
 
-    // Shows a node's surface; an empty mesh removes the node. A mesh is written once: one that is not newer
-    // (revision) than the last one of its leaf is ignored. False: DDS refused, and the clients keep the older
-    // mesh.
-    bool publishNode(const NodeMesh& mesh);
+    struct Written {
+        size_t bytes = 0;      // payloads of the nodes
+        bool is_whole = true;  // false: DDS refused some, and the clients keep those older meshes
+    };
+    // Shows these nodes' surfaces, together: clients wait for the last one; an empty mesh removes the node. A
+    // mesh is written once: one that is not newer (revision) than the last one of its leaf is ignored.
+    // oldest_cut_ns: start of the oldest tick whose cut is new in them, CLOCK_MONOTONIC; 0: none.
+    Written publishNodes(std::span<const NodeMesh> meshes, int64_t oldest_cut_ns = 0);
+    Written publishNode(const NodeMesh& mesh) { return publishNodes({&mesh, 1}); }
 
     // The epoch is filled in.
     bool publishSceneInfo(topics::SceneInfo info);
@@ -51,6 +59,10 @@ class Publisher {
     // Tells the sender, through Status at once, how the command ended: "done" or "refused: <why>".
     void acknowledge(const topics::Command& command, const std::string& result);
 
+    // How long the writes of nodes took.
+    const LatencyHistogram& writeTimes() const noexcept { return write_times_; }
+    uint64_t nodeBytes() const noexcept { return node_bytes_; }
+
     uint64_t epoch() const noexcept { return epoch_; }
     const NodeDigest& digest() const noexcept { return digest_; }
     uint64_t malformedCommands() const noexcept { return inbox_.malformedCount(); }
@@ -59,12 +71,15 @@ class Publisher {
 
   private:
     struct Node {
-        uint32_t revision;
-        bool has_mesh;
-        bool was_written;
+        uint32_t revision = 0;
+        uint64_t content = 0;  // 0: it has no mesh now
+        bool was_written = false;
     };
-    bool writeNode(const NodeMesh& mesh);
-    bool disposeNode(uint32_t leaf);
+    bool isNewer(const NodeMesh& mesh) const;
+    bool writeNode(const NodeMesh& mesh, const NodeTag& tag, size_t& bytes);
+    bool removeNode(const NodeMesh& mesh);
+    template <class Write>
+    bool timed(Write&& write);
     bool writeStatus();
     void show(const CommandAcknowledgement& acknowledgement);
 
@@ -72,6 +87,9 @@ class Publisher {
     uint64_t epoch_;
     std::unordered_map<uint32_t, Node> nodes_;
     NodeDigest digest_;
+    uint64_t batch_ = 0;
+    LatencyHistogram write_times_;
+    uint64_t node_bytes_ = 0;
     topics::Status status_;  // as last published
     CommandInbox inbox_;
 

@@ -10,7 +10,7 @@ void SceneFeed::update() {
     const SceneModel::Changes changes = subscriber_.poll();
     if (changes.is_cleared) scene_.clearNodes();
     try {
-        for (const NodeMesh& node : changes.nodes) scene_.setNode(node);
+        for (const SceneModel::Change& change : changes.nodes) scene_.setNode(change.mesh);
         const auto& info = subscriber_.sceneInfo();
         if (info && info->epoch() != info_epoch_) {
             info_epoch_ = info->epoch();

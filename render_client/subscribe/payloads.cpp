@@ -7,8 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "common/mesh/mesh_codec.h"
-
 namespace bonemill {
 namespace {
 
@@ -106,12 +104,11 @@ std::optional<Message> parseOfEpoch(std::span<const uint8_t> payload) {
 
 }  // namespace
 
-std::optional<ReceivedNode> parseNode(std::span<const uint8_t> payload, uint32_t leaf, uint32_t revision) {
+std::optional<DecodedNode> parseNode(std::span<const uint8_t> payload, uint32_t leaf, uint32_t revision) {
     const std::string_view bytes(reinterpret_cast<const char*>(payload.data()), payload.size());
-    ReceivedNode node;
-    std::optional<NodeMesh> mesh = decodeNodeMesh(bytes, leaf, node.epoch);
-    if (!mesh || mesh->isEmpty() || mesh->revision != revision || node.epoch == 0) return std::nullopt;
-    node.mesh = std::move(*mesh);
+    std::optional<DecodedNode> node = decodeNodeMesh(bytes, leaf);
+    if (!node || node->mesh.isEmpty() || node->mesh.revision != revision || node->tag.epoch == 0)
+        return std::nullopt;
     return node;
 }
 

@@ -6,18 +6,13 @@
 #include <optional>
 #include <span>
 
-#include "common/geometry/node_mesh.h"
+#include "common/mesh/mesh_codec.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
 
-struct ReceivedNode {
-    NodeMesh mesh;  // at least one triangle
-    uint64_t epoch = 0;
-};
-
-// `leaf` and `revision` are those of the sample's envelope.
-std::optional<ReceivedNode> parseNode(std::span<const uint8_t> payload, uint32_t leaf, uint32_t revision);
+// At least one triangle. `leaf` and `revision` are those of the sample's envelope.
+std::optional<DecodedNode> parseNode(std::span<const uint8_t> payload, uint32_t leaf, uint32_t revision);
 
 // Vectors have their length, numbers are finite, quaternions are of unit length, the tool's triangles name
 // vertices.

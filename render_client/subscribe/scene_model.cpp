@@ -1,5 +1,6 @@
 #include "render_client/subscribe/scene_model.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace bonemill {
@@ -9,39 +10,58 @@ bool SceneModel::enterEpoch(uint64_t epoch) {
     if (epoch_ != 0) {
         changes_.is_cleared = true;
         changes_.nodes.clear();
-        revisions_.clear();
+        nodes_.clear();
+        waiting_.clear();
         digest_ = NodeDigest();
     }
     epoch_ = epoch;
+    batch_ = 0;
     return true;
 }
 
-void SceneModel::applyNode(NodeMesh&& mesh, uint64_t epoch, uint64_t writer) {
-    writer_epochs_[writer] = epoch;
-    if (!enterEpoch(epoch)) return;
-    const auto known = revisions_.find(mesh.leaf);
-    if (known != revisions_.end()) {
-        if (mesh.revision <= known->second) return;
-        digest_.remove(mesh.leaf, known->second);
+void SceneModel::applyNode(DecodedNode&& node, uint64_t writer, Clock::time_point now) {
+    writer_epochs_[writer] = node.tag.epoch;
+    if (!enterEpoch(node.tag.epoch)) return;
+    if (node.tag.batch < batch_) return show(std::move(node));  // sent again after an interruption
+    if (node.tag.batch > batch_) release();
+    batch_ = node.tag.batch;
+    if (waiting_.empty()) waiting_since_ = now;
+    const uint32_t expected = node.tag.batch_nodes;
+    waiting_.push_back(std::move(node));
+    if (waiting_.size() >= expected) release();
+}
+
+void SceneModel::release() {
+    for (DecodedNode& node : std::exchange(waiting_, {})) show(std::move(node));
+}
+
+void SceneModel::show(DecodedNode&& node) {
+    const uint32_t leaf = node.mesh.leaf;
+    const auto known = nodes_.find(leaf);
+    if (known != nodes_.end()) {
+        if (node.mesh.revision <= known->second.revision) return;
+        digest_.remove(leaf, known->second.content);
     }
-    digest_.add(mesh.leaf, mesh.revision);
-    revisions_[mesh.leaf] = mesh.revision;
-    changes_.nodes.push_back(std::move(mesh));
+    digest_.add(leaf, node.content);
+    nodes_[leaf] = {node.mesh.revision, node.content};
+    changes_.nodes.push_back({std::move(node.mesh), node.tag.cut_stamp_ns});
 }
 
 void SceneModel::removeNode(uint32_t leaf, uint64_t writer) {
     const auto writer_epoch = writer_epochs_.find(writer);
     if (writer_epoch != writer_epochs_.end() && writer_epoch->second < epoch_) return;
-    const auto known = revisions_.find(leaf);
-    if (known == revisions_.end()) return;
-    digest_.remove(leaf, known->second);
-    revisions_.erase(known);
-    NodeMesh removal;
-    removal.leaf = leaf;
+    release();  // what waits is older than the removal
+    const auto known = nodes_.find(leaf);
+    if (known == nodes_.end()) return;
+    digest_.remove(leaf, known->second.content);
+    nodes_.erase(known);
+    Change removal;
+    removal.mesh.leaf = leaf;
     changes_.nodes.push_back(std::move(removal));
 }
 
-SceneModel::Changes SceneModel::takeChanges() {
+SceneModel::Changes SceneModel::takeChanges(Clock::time_point now) {
+    if (now - waiting_since_ > kLongestWait) release();
     return std::exchange(changes_, Changes());
 }
 

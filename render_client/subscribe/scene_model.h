@@ -1,44 +1,64 @@
 // Which node meshes the client has, and the changes that the renderer has not seen yet. One thread.
 //
 // Applies what arrives idempotently, whatever its order: the newest epoch counts, and in it the newest
-// revision.
+// revision. Nodes of one batch come out together, so that no crack shows between them: DDS delivers a
+// writer's samples in order, so only the newest batch can still be on its way.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
 
 #include "common/dds/node_digest.h"
-#include "common/geometry/node_mesh.h"
+#include "common/mesh/mesh_codec.h"
 
 namespace bonemill {
 
 class SceneModel {
   public:
+    using Clock = std::chrono::steady_clock;
+    // A batch that is not whole by then comes out all the same.
+    static constexpr std::chrono::milliseconds kLongestWait{50};
+
+    struct Change {
+        NodeMesh mesh;             // empty: removes the leaf
+        int64_t cut_stamp_ns = 0;  // NodeTag
+    };
     struct Changes {
-        bool is_cleared = false;  // first forget every node: another server run began
-        std::vector<NodeMesh>
-            nodes;  // then, in this order: replace the leaf's mesh; an empty mesh removes it
+        bool is_cleared = false;    // first forget every node: another server run began
+        std::vector<Change> nodes;  // then, in this order: replace the leaf's mesh
     };
 
     // To be told the epoch of everything that arrives. False: it comes from an older run and must be ignored.
     bool enterEpoch(uint64_t epoch);
 
     // `writer` identifies who sent it (dds::SampleInfo::writer).
-    void applyNode(NodeMesh&& mesh, uint64_t epoch, uint64_t writer);
+    void applyNode(DecodedNode&& node, uint64_t writer, Clock::time_point now);
     // A removal does not name its epoch: that of its writer's meshes counts, when some are known.
     void removeNode(uint32_t leaf, uint64_t writer);
 
     // What changed since the last call.
-    Changes takeChanges();
+    Changes takeChanges(Clock::time_point now);
 
     uint64_t epoch() const noexcept { return epoch_; }  // 0: nothing arrived yet
+    // Of what takeChanges() has given out or is about to.
     const NodeDigest& digest() const noexcept { return digest_; }
 
   private:
+    struct Node {
+        uint32_t revision;
+        uint64_t content;
+    };
+    void release();
+    void show(DecodedNode&& node);
+
     uint64_t epoch_ = 0;
-    std::unordered_map<uint32_t, uint32_t> revisions_;  // of the leaves with a mesh
+    std::unordered_map<uint32_t, Node> nodes_;  // the leaves with a mesh
     std::unordered_map<uint64_t, uint64_t> writer_epochs_;
+    uint64_t batch_ = 0;                // the newest one
+    std::vector<DecodedNode> waiting_;  // of it
+    Clock::time_point waiting_since_;
     NodeDigest digest_;
     Changes changes_;
 };

@@ -55,7 +55,7 @@ SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
                      dds::setPayload(sample, bytes);
                      command_writer_.write(sample);
                  });
-    return model_.takeChanges();
+    return model_.takeChanges(SceneModel::Clock::now());
 }
 
 void SceneSubscriber::takeStatus() {
@@ -137,11 +137,11 @@ void SceneSubscriber::takeNodes(size_t max_nodes) {
         // Of a key that was written and then disposed only the older sample may be left, marked as disposed.
         if (info.is_disposed) return model_.removeNode(sample.node, info.writer);
         if (!info.has_data) return;
-        std::optional<ReceivedNode> node = parseNode(dds::payloadOf(sample), sample.node, sample.revision);
+        std::optional<DecodedNode> node = parseNode(dds::payloadOf(sample), sample.node, sample.revision);
         if (!node) return dropMalformed("node mesh");
-        enterEpoch(node->epoch);
+        enterEpoch(node->tag.epoch);
         // Also of an older run: the model remembers its writer, whose late removals must not count.
-        model_.applyNode(std::move(node->mesh), node->epoch, info.writer);
+        model_.applyNode(std::move(*node), info.writer, SceneModel::Clock::now());
     });
 }
 

@@ -8,7 +8,6 @@
 
 #include "common/mesh/mesh_codec.h"
 #include "common/rt/clock.h"
-#include "haptic_server/app/mesh_outbox.h"
 #include "haptic_server/mesh/mesh_rounds.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/tool/build/build_tool.h"
@@ -21,7 +20,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr size_t kRingCuts = 8192;
-constexpr auto kPublishPeriod = 16ms;
+constexpr auto kPublishPeriod = 10ms;
+constexpr int64_t kAllBytes = INT64_MAX;
 
 struct Options {
     double rate_hz = 1000, seconds = 30;
@@ -46,7 +46,7 @@ double threadCpuSeconds() {
 }
 
 // The mesher thread of the server. Returns the processor time that it took, s.
-double meshWhile(const std::atomic<bool>& is_running, MeshRounds& rounds, const Mesher::Sink& put) {
+double meshWhile(const std::atomic<bool>& is_running, MeshRounds& rounds, const MeshRounds::Sink& put) {
     while (is_running) {
         while (rounds.round(put)) {
         }
@@ -58,10 +58,12 @@ double meshWhile(const std::atomic<bool>& is_running, MeshRounds& rounds, const 
 // The publisher thread of the server without the network.
 void publishWhile(const std::atomic<bool>& is_running, MeshOutbox& outbox, uint64_t& published) {
     while (is_running) {
-        for (const NodeMesh& mesh : outbox.takeAll()) {
-            encodeNodeMesh(mesh, 0);
-            ++published;
-        }
+        for (const NodeGroup& group :
+             outbox.takeNearest(Eigen::Vector3f::Zero(), kAllBytes, monotonicNowNs()))
+            for (const NodeMesh& mesh : group.meshes) {
+                encodeNodeMesh(mesh, {});
+                ++published;
+            }
         std::this_thread::sleep_for(kPublishPeriod);
     }
 }
@@ -74,10 +76,10 @@ Remeshing millBesideMesher(const Options& o) {
     SpscRing<Cut> cuts(kRingCuts);
     MeshOutbox outbox;
     MeshRounds rounds(bone.volume, bone.lattice, cuts);
-    while (!rounds.hasMeshedAll()) rounds.round([](NodeMesh&&) {});
-    const auto put = [&](NodeMesh&& mesh) {
-        ++result.meshed;
-        outbox.put(std::move(mesh));
+    while (!rounds.hasMeshedAll()) rounds.round([](NodeGroup&&) {});
+    const auto put = [&](NodeGroup&& group) {
+        result.meshed += group.meshes.size();
+        outbox.put(std::move(group), monotonicNowNs());
     };
     result.report = lockMemory();
     std::atomic<bool> is_running{true};

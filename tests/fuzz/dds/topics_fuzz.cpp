@@ -59,7 +59,7 @@ int fuzz(const std::string& valid, const std::function<bool(Bytes)>& accepts) {
 }
 
 TEST(TopicsFuzz, NodeMesh) {
-    fuzz(encodeNodeMesh(syntheticNode(3, 8), 42), [](Bytes bytes) {
+    fuzz(encodeNodeMesh(syntheticNode(3, 8), {.epoch = 42}).bytes, [](Bytes bytes) {
         const auto node = parseNode(bytes, 3, 8);
         if (!node) return false;
         EXPECT_FALSE(node->mesh.indices.empty());

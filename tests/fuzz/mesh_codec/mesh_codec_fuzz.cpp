@@ -48,9 +48,9 @@ class MeshCodecFuzz : public testing::Test {
     }
     // Whatever is accepted must be safe to draw.
     void decodeAndCheck(const std::string& bytes) {
-        uint64_t epoch = 0;
-        const auto mesh = decodeNodeMesh(bytes, 3, epoch);
-        if (!mesh) return;
+        const auto decoded = decodeNodeMesh(bytes, 3);
+        if (!decoded) return;
+        const NodeMesh* mesh = &decoded->mesh;
         ++accepted_;
         EXPECT_TRUE(mesh->origin.allFinite() && mesh->step.allFinite());
         EXPECT_EQ(mesh->indices.size() % 3, 0u);
@@ -69,7 +69,7 @@ TEST_F(MeshCodecFuzz, RandomBytes) {
 
 TEST_F(MeshCodecFuzz, DamagedMessages) {
     for (int n = 0; n < 20000; ++n) {
-        std::string bytes = encodeNodeMesh(test::sheetMesh(1 + below(8), unsigned(n)), 1);
+        std::string bytes = encodeNodeMesh(test::sheetMesh(1 + below(8), unsigned(n)), {}).bytes;
         damage(bytes);
         decodeAndCheck(bytes);
     }
@@ -80,7 +80,8 @@ TEST_F(MeshCodecFuzz, DamagedMessages) {
 TEST_F(MeshCodecFuzz, DamagedBuffersInsideAWellFormedMessage) {
     for (int n = 0; n < 20000; ++n) {
         topics::NodeMesh message;
-        ASSERT_TRUE(message.ParseFromString(encodeNodeMesh(test::sheetMesh(1 + below(8), unsigned(n)), 1)));
+        ASSERT_TRUE(
+            message.ParseFromString(encodeNodeMesh(test::sheetMesh(1 + below(8), unsigned(n)), {}).bytes));
         if (below(2) == 0) damage(*message.mutable_vertices());
         if (below(2) == 0) damage(*message.mutable_indices());
         if (below(4) == 0) message.set_vertex_count(message.vertex_count() + uint32_t(below(9)) - 4);

@@ -22,7 +22,8 @@ struct ClientProbe {
             ++clearings;
         }
         changes += static_cast<uint32_t>(update.nodes.size());
-        for (NodeMesh& node : update.nodes) {
+        for (SceneModel::Change& change : update.nodes) {
+            NodeMesh& node = change.mesh;
             if (node.isEmpty()) {
                 nodes.erase(node.leaf);
             } else {

@@ -10,9 +10,9 @@ namespace bonemill {
 namespace {
 
 void expectSameSurface(const NodeMesh& received, const NodeMesh& published) {
-    uint64_t epoch = 0;
-    const auto expected = decodeNodeMesh(encodeNodeMesh(published, 1), published.leaf, epoch);
-    ASSERT_TRUE(expected);
+    const auto decoded = decodeNodeMesh(encodeNodeMesh(published, {}).bytes, published.leaf);
+    ASSERT_TRUE(decoded);
+    const NodeMesh* expected = &decoded->mesh;
     EXPECT_EQ(received.revision, published.revision);
     EXPECT_EQ(received.vertices, expected->vertices);
     EXPECT_EQ(received.indices, expected->indices);
@@ -82,14 +82,15 @@ TEST(Topics, KilledClientDisturbsNobody) {
     Publisher publisher({.domain = testDomain(), .session = testSession()});
     ChildProcess victim("synthetic_client"), survivor("synthetic_client");
     constexpr uint32_t kNodes = 50;
-    for (uint32_t leaf = 0; leaf < kNodes; ++leaf) ASSERT_TRUE(publisher.publishNode(syntheticNode(leaf, 0)));
+    for (uint32_t leaf = 0; leaf < kNodes; ++leaf)
+        ASSERT_TRUE(publisher.publishNode(syntheticNode(leaf, 0)).is_whole);
     ASSERT_TRUE(publisher.publishStatus({}));
     ASSERT_FALSE(victim.readLine().empty());
 
     for (uint32_t revision = 2; revision <= 200; revision += 2) {
         if (revision == 60) victim.kill();
         for (uint32_t leaf = 0; leaf < kNodes; ++leaf) {
-            ASSERT_TRUE(publisher.publishNode(syntheticNode(leaf, revision)));
+            ASSERT_TRUE(publisher.publishNode(syntheticNode(leaf, revision)).is_whole);
         }
         ASSERT_TRUE(publisher.publishStatus({}));
     }
@@ -126,7 +127,7 @@ TEST(Topics, LostServerLeavesTheModelAndARestartedOneReplacesIt) {
 
 TEST(Topics, OtherSessionsOfTheDomainAreIgnored) {
     Publisher other({.domain = testDomain(), .session = testSession() + 1});
-    ASSERT_TRUE(other.publishNode(syntheticNode(1000, 2)));
+    ASSERT_TRUE(other.publishNode(syntheticNode(1000, 2)).is_whole);
     ASSERT_TRUE(other.publishStatus({}));
     ChildProcess server("synthetic_server");
     ClientProbe client;
@@ -137,13 +138,13 @@ TEST(Topics, OtherSessionsOfTheDomainAreIgnored) {
 TEST(Publisher, IgnoresMeshesThatAreNotNewerAndCountsOnlyNodesWithAMesh) {
     Publisher publisher({.domain = testDomain(), .session = testSession()});
     NodeDigest expected;
-    expected.add(1, 6);
-    EXPECT_TRUE(publisher.publishNode(syntheticNode(1, 6)));
-    EXPECT_TRUE(publisher.publishNode(syntheticNode(1, 4)));
-    EXPECT_TRUE(publisher.publishNode(emptyNode(2, 2)));
+    expected.add(1, encodeNodeMesh(syntheticNode(1, 6), {}).content);
+    EXPECT_TRUE(publisher.publishNode(syntheticNode(1, 6)).is_whole);
+    EXPECT_TRUE(publisher.publishNode(syntheticNode(1, 4)).is_whole);
+    EXPECT_TRUE(publisher.publishNode(emptyNode(2, 2)).is_whole);
     EXPECT_EQ(publisher.digest(), expected);
-    EXPECT_TRUE(publisher.publishNode(emptyNode(1, 8)));
-    EXPECT_TRUE(publisher.publishNode(syntheticNode(1, 6)));
+    EXPECT_TRUE(publisher.publishNode(emptyNode(1, 8)).is_whole);
+    EXPECT_TRUE(publisher.publishNode(syntheticNode(1, 6)).is_whole);
     EXPECT_EQ(publisher.digest(), NodeDigest());
 }
 

@@ -22,12 +22,14 @@ class MeshRoundsTest : public testing::Test {
         test::writeLikeTick(volume_, lattice_, voxels, [density](int, int, int) { return density; });
     }
     void meshAll() {
-        while (!rounds_.hasMeshedAll()) rounds_.round([](NodeMesh&&) {});
+        while (!rounds_.hasMeshedAll()) rounds_.round([](NodeGroup&&) {});
     }
     // Leaves in the order in which the sink got them.
     std::vector<LeafId> roundsLeaves() {
         std::vector<LeafId> leaves;
-        is_more_ = rounds_.round([&](NodeMesh&& mesh) { leaves.push_back(mesh.leaf); });
+        is_more_ = rounds_.round([&](NodeGroup&& group) {
+            for (const NodeMesh& mesh : group.meshes) leaves.push_back(mesh.leaf);
+        });
         return leaves;
     }
 

@@ -31,19 +31,20 @@ bool isAccepted(std::optional<Message> (*parse)(std::span<const uint8_t>), const
 }
 
 TEST(Payloads, NodeComesThrough) {
-    const auto node = parseNode(bytesOf(encodeNodeMesh(syntheticNode(3, 8), 42)), 3, 8);
+    const auto node = parseNode(bytesOf(encodeNodeMesh(syntheticNode(3, 8), {.epoch = 42}).bytes), 3, 8);
     ASSERT_TRUE(node);
-    EXPECT_EQ(node->epoch, 42u);
+    EXPECT_EQ(node->tag.epoch, 42u);
     EXPECT_EQ(node->mesh.leaf, 3u);
     EXPECT_EQ(node->mesh.revision, 8u);
     EXPECT_EQ(node->mesh.indices.size(), syntheticNode(3, 8).indices.size());
 }
 
 TEST(Payloads, NodeThatContradictsItsEnvelopeIsRefused) {
-    const std::string bytes = encodeNodeMesh(syntheticNode(3, 8), 42);
+    const std::string bytes = encodeNodeMesh(syntheticNode(3, 8), {.epoch = 42}).bytes;
     EXPECT_FALSE(parseNode(bytesOf(bytes), 3, 10));
-    EXPECT_FALSE(parseNode(bytesOf(encodeNodeMesh(syntheticNode(3, 8), 0)), 3, 8)) << "no epoch";
-    EXPECT_FALSE(parseNode(bytesOf(encodeNodeMesh(emptyNode(3, 8), 42)), 3, 8)) << "empty nodes are disposed";
+    EXPECT_FALSE(parseNode(bytesOf(encodeNodeMesh(syntheticNode(3, 8), {}).bytes), 3, 8)) << "no epoch";
+    EXPECT_FALSE(parseNode(bytesOf(encodeNodeMesh(emptyNode(3, 8), {.epoch = 42}).bytes), 3, 8))
+        << "empty nodes are disposed";
     EXPECT_FALSE(parseNode({}, 3, 8));
 }
 

@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "common/rt/spsc_ring.h"
-#include "haptic_server/app/mesh_outbox.h"
 #include "haptic_server/mesh/mesh_rounds.h"
 #include "haptic_server/publish/publisher.h"
 #include "tests/support/dds_session.h"
@@ -57,9 +56,9 @@ TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
     std::map<uint32_t, NodeMesh> shown;
     uint32_t removed = 0;
     const auto publish = [&] {
-        for (NodeMesh& mesh : outbox.takeAll()) {
-            EXPECT_TRUE(publisher.publishNode(mesh));
-            shown[mesh.leaf] = std::move(mesh);
+        for (NodeGroup& group : outbox.takeNearest(Eigen::Vector3f::Zero(), INT64_MAX, monotonicNowNs())) {
+            EXPECT_TRUE(publisher.publishNodes(group.meshes, group.oldest_cut_ns).is_whole);
+            for (NodeMesh& mesh : group.meshes) shown[mesh.leaf] = std::move(mesh);
         }
         TickRecord record;
         while (ring.tryPop(record)) {
@@ -74,7 +73,7 @@ TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
         is_milling = false;
     });
     std::thread mesher_thread([&] {
-        const auto put = [&](NodeMesh&& mesh) { outbox.put(std::move(mesh)); };
+        const auto put = [&](NodeGroup&& group) { outbox.put(std::move(group), monotonicNowNs()); };
         while (is_milling) rounds.round(put);
         while (rounds.round(put) || !rounds.hasMeshedAll()) {
         }
@@ -84,9 +83,10 @@ TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
     mesher_thread.join();
     publish();
 
+    LeafMesher streamed(bone.volume, bone.lattice, MeshGrid::kStreamedStepsPerCell);
     size_t surfaces = 0;
     for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf) {
-        const NodeMesh full = meshLeaf(bone.volume, bone.lattice, leaf);
+        const NodeMesh full = streamed.mesh(leaf).value();
         if (full.isEmpty()) {
             EXPECT_TRUE(!shown.count(leaf) || shown[leaf].isEmpty());
             continue;

@@ -1,0 +1,55 @@
+// Node meshes on their way from the mesher thread to the publisher thread: of each leaf the newest, those
+// that changed together in one group. Any normal thread; never the tick.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <vector>
+
+#include "common/geometry/node_mesh.h"
+
+namespace bonemill {
+
+// Leaves that changed together. Shown apart, a crack would be seen between them.
+struct NodeGroup {
+    std::vector<NodeMesh> meshes;
+    std::vector<uint32_t>
+        neighbours;             // other leaves of the same change: what waits of them belongs to it too
+    int64_t oldest_cut_ns = 0;  // start of the oldest tick whose cut is in it, CLOCK_MONOTONIC; 0: none
+};
+
+class MeshOutbox {
+  public:
+    // Joins what waits with it when they share a leaf; a newer mesh of a leaf replaces the older one.
+    void put(NodeGroup&& group, int64_t now_ns);
+
+    // Takes whole groups, those nearest to the point (V, m) first, until their coded size is some `bytes`: at
+    // least one, if any waits and bytes > 0. A group that waits comes nearer by kAgeing, so that none waits
+    // for ever.
+    std::vector<NodeGroup> takeNearest(const Eigen::Vector3f& point, int64_t bytes, int64_t now_ns);
+    static constexpr float kAgeing = 0.1f;  // m/s
+
+    bool isEmpty() const;
+
+    // Every leaf has been put once: from now on a client that has all nodes has the whole bone.
+    void markWhole() { is_whole_.store(true, std::memory_order_release); }
+    bool isWhole() const { return is_whole_.load(std::memory_order_acquire); }
+
+  private:
+    struct Waiting {
+        std::map<uint32_t, NodeMesh> meshes;  // by leaf
+        std::vector<uint32_t> leaves;         // of these meshes and their neighbours
+        int64_t oldest_cut_ns = 0;
+        int64_t since_ns = 0;
+    };
+    void join(Waiting& into, Waiting&& other);
+
+    mutable std::mutex mutex_;
+    std::map<uint64_t, Waiting> groups_;
+    std::map<uint32_t, uint64_t> group_of_;  // by leaf
+    uint64_t next_group_ = 0;
+    std::atomic<bool> is_whole_{false};
+};
+
+}  // namespace bonemill
