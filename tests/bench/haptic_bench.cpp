@@ -10,6 +10,7 @@
 #include "tests/bench/bench_presets.h"
 #include "tests/bench/bench_remesh.h"
 #include "tests/bench/bench_scale.h"
+#include "tests/bench/bench_stream.h"
 #include "tests/bench/bench_tick.h"
 
 int main(int argc, char** argv) {
@@ -23,6 +24,7 @@ int main(int argc, char** argv) {
     bench::addRemeshCommand(app);
     bench::addScaleCommand(app);
     bench::addPresetsCommand(app);
+    bench::addStreamCommand(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

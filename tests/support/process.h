@@ -26,6 +26,7 @@ class Process {
 
     void signal(int number) const;
     bool isRunning();
+    int pid() const { return pid_; }
     Finished wait(std::chrono::seconds limit = std::chrono::seconds(120));
     // What it has printed on stderr so far.
     std::string errSoFar() const;

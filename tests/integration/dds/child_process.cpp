@@ -57,10 +57,13 @@ std::string ChildProcess::readLine() {
     return {};
 }
 
-std::string ChildProcess::ask(const std::string& line) {
+bool ChildProcess::tell(const std::string& line) {
     const std::string text = line + "\n";
-    if (write(to_child_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) return {};
-    return readLine();
+    return write(to_child_, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+}
+
+std::string ChildProcess::ask(const std::string& line) {
+    return tell(line) ? readLine() : std::string();
 }
 
 }  // namespace bonemill

@@ -16,6 +16,7 @@ class ChildProcess {
 
     // The next line that it prints; empty when it ends or stays silent for 30 s.
     std::string readLine();
+    bool tell(const std::string& line);
     std::string ask(const std::string& line);
     void kill();  // SIGKILL
 

@@ -1,0 +1,206 @@
+#include "tests/bench/bench_stream.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <thread>
+
+#include "common/config/user_error.h"
+#include "common/mesh/mesh_codec.h"
+#include "common/rt/clock.h"
+#include "haptic_server/mesh/mesher.h"
+#include "haptic_server/tick/bone_model.h"
+#include "haptic_server/volume/import/densify.h"
+#include "haptic_server/volume/import/import_volume.h"
+#include "render_client/subscribe/scene_subscriber.h"
+#include "tests/bench/bench_output.h"
+#include "tests/integration/dds/child_process.h"
+#include "tests/support/dds_session.h"
+#include "tests/support/process.h"
+
+namespace bonemill::bench {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Process;
+
+constexpr int kLeafCells = 16;
+constexpr auto kSteady = 8s;  // over which the server's processor time is taken
+
+struct Options {
+    std::string volume, json, scene = std::string(BONEMILL_SOURCE_DIR) + "/deploy/scenes/skull.textproto";
+    double iso = 300;
+    std::vector<int> viewers{1, 10, 30};
+};
+
+nlohmann::json wire(const Options& o, Table& table) {
+    const VoxelVolume volume =
+        densify(importVolume(o.volume), DensityWindow{.low = {}, .high = {}, .iso = o.iso});
+    const LeafLattice lattice(volume, Eigen::Vector3i::Constant(kLeafCells));
+    Mesher mesher(volume, lattice, MeshGrid::kStreamedStepsPerCell);
+    size_t nodes = 0, triangles = 0, bytes = 0;
+    LatencyHistogram encode, decode;
+    mesher.pass([&](NodeMesh&& mesh) {
+        const int64_t start_ns = monotonicNowNs();
+        const EncodedNode encoded = encodeNodeMesh(mesh, {.epoch = UINT64_MAX, .batch = nodes});
+        const int64_t encoded_ns = monotonicNowNs();
+        decodeNodeMesh(encoded.bytes, mesh.leaf);
+        decode.record(monotonicNowNs() - encoded_ns);
+        encode.record(encoded_ns - start_ns);
+        ++nodes;
+        triangles += mesh.indices.size() / 3;
+        bytes += encoded.bytes.size();
+    });
+    std::printf("%zu nodes, %zu triangles, %zu bytes: %.3f bytes per triangle\n", nodes, triangles, bytes,
+                double(bytes) / double(triangles));
+    table.add({"encode a node"}, encode);
+    table.add({"decode a node"}, decode);
+    return {{"nodes", nodes},
+            {"triangles", triangles},
+            {"bytes", bytes},
+            {"bytes_per_triangle", double(bytes) / double(triangles)},
+            {"encode_us", microseconds(encode)},
+            {"decode_us", microseconds(decode)}};
+}
+
+// The scene with a hand that mills round and round for as long as wanted.
+std::string millingScene(const std::string& scene, int seconds) {
+    std::ifstream file(scene);
+    std::ostringstream text;
+    text << file.rdbuf();
+    const std::string whole = text.str();
+    const size_t begin = whole.find("simulated_operator"), end = whole.find("\n}\n", begin);
+    if (begin == std::string::npos || end == std::string::npos)
+        throw UserError(scene + ": no simulated_operator to replace");
+    std::ostringstream path;
+    path << "simulated_operator { hand_stiffness_n_per_m: 1500\n";
+    for (int s = 0; s <= 2 * seconds; ++s) {
+        const double angle = 0.9 * s, depth = std::min(16.0, 0.1 * s);
+        path << "  waypoint { time_s: " << 0.5 * s << " p_WT_mm { x: " << 200 - depth
+             << " y: " << 154 + 6 * std::cos(angle) << " z: " << 32 + 6 * std::sin(angle)
+             << " } q_WT { w: 0.70710678 z: -0.70710678 } remove: true }\n";
+    }
+    return whole.substr(0, begin) + path.str() + "}\n" + whole.substr(end + 3);
+}
+
+double processorSeconds(int pid) {
+    std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+    std::string word;
+    for (int field = 1; field < 14; ++field) stat >> word;
+    double user = 0, system = 0;
+    stat >> user >> system;
+    return (user + system) / double(sysconf(_SC_CLK_TCK));
+}
+
+double shareOfACore(int pid, std::chrono::seconds time) {
+    const double before = processorSeconds(pid);
+    std::this_thread::sleep_for(time);
+    return (processorSeconds(pid) - before) / double(time.count());
+}
+
+// A real server whose simulated hand mills all the time.
+class Session {
+  public:
+    explicit Session(const std::string& scene)
+        : server_(arguments("haptic_server", scene, {"--domain", std::to_string(testDomain())})),
+          daemon_(arguments("device_daemon", scene, {"--wait-seconds", "60"})) {
+        SceneSubscriber watcher({.domain = testDomain(), .session = testSession()});
+        while (!watcher.isComplete() || !watcher.toolState()) {
+            if (!server_.isRunning() || !daemon_.isRunning())
+                throw UserError("the session did not start: " + server_.errSoFar() + daemon_.errSoFar());
+            watcher.waitForData(20ms);
+            watcher.poll();
+        }
+    }
+    int serverPid() const { return server_.pid(); }
+    void stopMilling() { daemon_.signal(SIGTERM); }
+
+  private:
+    static std::vector<std::string> arguments(const std::string& program, const std::string& scene,
+                                              const std::vector<std::string>& more) {
+        std::vector<std::string> words{
+            program, "--scene", scene, "--best-effort-rt", "--session", std::to_string(testSession())};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    }
+    Process server_, daemon_;
+};
+
+std::vector<double> numbersOf(const std::string& line) {
+    std::istringstream words(line);
+    std::vector<double> numbers;
+    for (double number = 0; words >> number;) numbers.push_back(number);
+    return numbers;
+}
+
+nlohmann::json live(const std::string& scene, int viewers, Table& table) {
+    Session session(scene);
+    const double alone = shareOfACore(session.serverPid(), kSteady);
+    std::vector<std::unique_ptr<ChildProcess>> readers;
+    for (int n = 0; n < viewers; ++n) readers.push_back(std::make_unique<ChildProcess>("stream_reader"));
+    std::this_thread::sleep_for(1s);  // they have started, and wait
+    for (const auto& reader : readers) reader->tell("join");
+    std::vector<double> joins;
+    for (const auto& reader : readers) joins.push_back(numbersOf(reader->readLine()).at(0));
+    std::sort(joins.begin(), joins.end());
+    const double watched = shareOfACore(session.serverPid(), kSteady);
+
+    session.stopMilling();
+    std::this_thread::sleep_for(1s);
+    std::vector<std::string> states;
+    double reader_s = 0;
+    for (const auto& reader : readers) {
+        const std::string answer = reader->ask("state");
+        states.push_back(answer.substr(0, answer.rfind(' ')));
+        reader_s += numbersOf(answer).at(2);
+    }
+    const bool agree = !states[0].empty() &&
+                       std::all_of(states.begin(), states.end(), [&](auto& s) { return s == states[0]; });
+    table.add({std::to_string(viewers), number(joins[joins.size() / 2]), number(joins.back()),
+               number(100 * alone, 3), number(100 * watched, 3), agree ? "yes" : "NO"});
+    return {{"viewers", viewers},
+            {"join_s", {{"p50", joins[joins.size() / 2]}, {"max", joins.back()}}},
+            {"server_share_alone", alone},
+            {"server_share", watched},
+            {"reader_s_mean", reader_s / viewers},
+            {"states_agree", agree}};
+}
+
+void run(const Options& o) {
+    nlohmann::json json;
+    if (!o.volume.empty()) {
+        Table table({"us", "mean", "p50", "p99", "p99.9", "max"});
+        json["wire"] = wire(o, table);
+        table.print();
+    }
+    const int most = o.viewers.empty() ? 0 : *std::max_element(o.viewers.begin(), o.viewers.end());
+    const test::TemporaryFolder folder;
+    const std::string scene = folder / "scene.textproto";
+    test::writeFile(scene, millingScene(o.scene, 60 + most));
+    Table table({"viewers", "join, s p50", "max", "server alone, % of a core", "watched", "states agree"});
+    for (const int viewers : o.viewers) json["live"].push_back(live(scene, viewers, table));
+    table.print();
+    writeJson(o.json, json);
+}
+
+}  // namespace
+
+void addStreamCommand(CLI::App& app) {
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "stream", "a bone's bytes on the wire, and a session that mills with viewers that join at once");
+    command->add_option("--volume", o->volume, "of the bytes: any volume that a scene can name");
+    command->add_option("--iso", o->iso, "bone surface, in the volume's values");
+    command->add_option("--scene", o->scene, "of the session");
+    command->add_option("--viewers", o->viewers, "one session for each of these numbers")->delimiter(',');
+    addJsonOption(*command, o->json);
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace bonemill::bench
