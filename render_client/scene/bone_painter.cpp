@@ -1,0 +1,159 @@
+#include "render_client/scene/bone_painter.h"
+
+#include <string>
+
+#include "render_client/scene/clip_planes.h"
+#include "render_client/scene/shaders.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kGrain = 0.045;  // size of the mottling over the bone's radius
+constexpr GLuint kAllBits = 0xff;
+constexpr GLint kOpened = 1;  // stencil: the nearest surface is seen from within
+constexpr float kFarWallOpacity = 0.85f;
+constexpr float kWallOpacity = 0.40f;  // of the nearest wall seen from within
+constexpr float kBoxMargin = 0.01f;    // of the bone's radius: the box is that of points on the surface
+constexpr float kOutline = 0.55f;      // what is left of it is added at the outline
+
+const Eigen::Vector3f kInsideSolid(0.42f, 0.16f, 0.12f);
+const Eigen::Vector3f kInsideGlass(0.80f, 0.36f, 0.24f);
+
+}  // namespace
+
+BonePainter::BonePainter(const GlApi& gl)
+    : gl_(gl),
+      surface_(gl, "bone", shaders::kMeshVertex,
+               std::string(shaders::kLighting) + shaders::kNoise + shaders::kBoneFragment),
+      depth_(gl, "bone depth", shaders::kMeshVertex, shaders::kDepthFragment),
+      cap_(gl, "cap", shaders::kFullScreenVertex,
+           std::string(shaders::kLighting) + shaders::kNoise + shaders::kCapFragment),
+      no_attributes_(gl) {}
+
+void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
+    const Look look{{1, 0}, kInsideSolid};
+    if (!frame.cuts_V.any()) return drawSurface(frame, nodes, shadow_texture, look);
+    beginMarking();
+    drawSurface(frame, nodes, shadow_texture, look);
+    drawCap(frame, shadow_texture, 1);
+    gl_.Disable(GL_STENCIL_TEST);
+}
+
+void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
+                                  double opacity, const std::function<void()>& drawTool) {
+    drawFarWall(frame, nodes, shadow_texture, {{kFarWallOpacity, 0}, kInsideGlass});
+    gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+    if (frame.cuts_V.any()) markOpened(frame, nodes);
+    drawTool();
+    gl_.Enable(GL_BLEND);
+    gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    drawNearestLayer(frame, nodes, shadow_texture, GL_FRONT, {{kWallOpacity, 0}, kInsideGlass});
+    drawNearestLayer(frame, nodes, shadow_texture, GL_BACK, {{float(opacity), kOutline}, kInsideGlass});
+    if (frame.cuts_V.any()) {
+        gl_.Enable(GL_STENCIL_TEST);
+        drawCap(frame, shadow_texture, (1 + float(opacity)) / 2);
+        gl_.Disable(GL_STENCIL_TEST);
+    }
+    gl_.Disable(GL_BLEND);
+}
+
+void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
+                              const Look& look) {
+    const ClipPlanes clip(gl_, frame.cuts_V);
+    surface_.use();
+    frame.setLight(gl_, surface_, shadow_texture);
+    setCutPlanes(surface_, frame.cuts_V);
+    surface_.set("camera_from_model", frame.camera_from_V);
+    surface_.set("grain_size", float(kGrain) * frame.bone_radius);
+    surface_.set("opacity", look.opacity);
+    surface_.set("inside_colour", look.inside);
+    triangles_drawn_ = nodes.draw(surface_, frame.clip_from_camera * frame.camera_from_V);
+}
+
+void BonePainter::drawDepth(const Frame& frame, const NodeStore& nodes) const {
+    const ClipPlanes clip(gl_, frame.cuts_V);
+    depth_.use();
+    setCutPlanes(depth_, frame.cuts_V);
+    depth_.set("camera_from_model", frame.camera_from_V);
+    depth_.set("clip_from_camera", frame.clip_from_camera);
+    gl_.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    nodes.draw(depth_, frame.clip_from_camera * frame.camera_from_V);
+    gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+// The farthest front face, where there is another one before it: the far wall of a cavity, of the skull.
+void BonePainter::drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
+                              const Look& look) {
+    gl_.ClearDepth(0);
+    gl_.Clear(GL_DEPTH_BUFFER_BIT);
+    gl_.ClearDepth(1);
+    gl_.Enable(GL_CULL_FACE);
+    gl_.CullFace(GL_BACK);
+    gl_.Enable(GL_STENCIL_TEST);
+    gl_.StencilFunc(GL_ALWAYS, 0, kAllBits);
+    gl_.StencilOp(GL_KEEP, GL_INCR, GL_INCR);
+    gl_.DepthFunc(GL_GREATER);
+    drawDepth(frame, nodes);
+
+    gl_.StencilFunc(GL_LEQUAL, 2, kAllBits);
+    gl_.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    gl_.DepthFunc(GL_EQUAL);
+    gl_.Enable(GL_BLEND);
+    gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    drawSurface(frame, nodes, shadow_texture, look);
+    gl_.Disable(GL_BLEND);
+    gl_.DepthFunc(GL_LESS);
+    gl_.Disable(GL_STENCIL_TEST);
+    gl_.Disable(GL_CULL_FACE);
+}
+
+void BonePainter::drawNearestLayer(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
+                                   GLenum culled, const Look& look) {
+    gl_.Enable(GL_CULL_FACE);
+    gl_.CullFace(culled);
+    drawDepth(frame, nodes);
+    gl_.DepthFunc(GL_EQUAL);
+    drawSurface(frame, nodes, shadow_texture, look);
+    gl_.DepthFunc(GL_LESS);
+    gl_.CullFace(GL_BACK);
+    gl_.Disable(GL_CULL_FACE);
+}
+
+// From here on the stencil says which side of the nearest surface is seen.
+void BonePainter::beginMarking() const {
+    gl_.Enable(GL_STENCIL_TEST);
+    gl_.StencilFunc(GL_ALWAYS, kOpened, kAllBits);
+    gl_.StencilOpSeparate(GL_FRONT, GL_KEEP, GL_KEEP, GL_ZERO);
+    gl_.StencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_REPLACE);
+}
+
+void BonePainter::markOpened(const Frame& frame, const NodeStore& nodes) const {
+    beginMarking();
+    drawDepth(frame, nodes);
+    gl_.Disable(GL_STENCIL_TEST);
+    gl_.Clear(GL_DEPTH_BUFFER_BIT);
+}
+
+void BonePainter::drawCap(const Frame& frame, GLuint shadow_texture, float opacity) const {
+    gl_.StencilFunc(GL_EQUAL, kOpened, kAllBits);
+    gl_.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    gl_.DepthFunc(GL_LEQUAL);
+    cap_.use();
+    frame.setLight(gl_, cap_, shadow_texture);
+    setCutPlanes(cap_, frame.cuts_C);
+    cap_.set("near_far", frame.near_far);
+    cap_.set("tangents", frame.tangents);
+    cap_.set("shift", frame.shift);
+    cap_.set("model_from_camera", Eigen::Matrix4f(frame.camera_from_V.inverse()));
+    const Eigen::Vector3f margin = Eigen::Vector3f::Constant(kBoxMargin * frame.bone_radius);
+    cap_.set("bone_low", Eigen::Vector3f(frame.bone_V.min() - margin));
+    cap_.set("bone_high", Eigen::Vector3f(frame.bone_V.max() + margin));
+    cap_.set("grain_size", float(kGrain) * frame.bone_radius);
+    cap_.set("opacity", opacity);
+    gl_.BindVertexArray(no_attributes_.name());
+    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl_.BindVertexArray(0);
+    gl_.DepthFunc(GL_LESS);
+}
+
+}  // namespace bonemill
