@@ -77,11 +77,11 @@ void addCutOptions(CLI::App& app, RawOptions& raw, std::vector<CLI::Option*>& vi
 std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawOptions& raw) {
     std::vector<CLI::Option*> view_options;
     addCutOptions(app, raw, view_options);
-    auto* transparent = app.add_option_function<std::vector<double>>(
+    auto* transparent = app.add_option_function<std::string>(
                                "--transparent",
-                               [&raw](const std::vector<double>& values) {
+                               [&raw](const std::string& opacity) {  // empty: none was given
                                    raw.is_transparent = true;
-                                   if (!values.empty()) raw.opacity = values.front();
+                                   if (!opacity.empty()) raw.opacity = std::stod(opacity);
                                },
                                "Transparent bone, of this opacity, 0 to 1 (default 0.35)")
                             ->expected(0, 1)

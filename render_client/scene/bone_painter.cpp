@@ -11,13 +11,13 @@ namespace {
 constexpr double kGrain = 0.045;  // size of the mottling over the bone's radius
 constexpr GLuint kAllBits = 0xff;
 constexpr GLint kOpened = 1;  // stencil: the nearest surface is seen from within
-constexpr float kFarWallOpacity = 0.85f;
-constexpr float kWallOpacity = 0.40f;  // of the nearest wall seen from within
+constexpr float kFarWallOpacity = 0.28f;
+constexpr float kWallOpacity = 0.45f;  // of the nearest wall seen from within
 constexpr float kBoxMargin = 0.01f;    // of the bone's radius: the box is that of points on the surface
-constexpr float kOutline = 0.55f;      // what is left of it is added at the outline
+constexpr float kOutline = 0.80f;      // what is left of it is added at the outline
 
 const Eigen::Vector3f kInsideSolid(0.42f, 0.16f, 0.12f);
-const Eigen::Vector3f kInsideGlass(0.80f, 0.36f, 0.24f);
+const Eigen::Vector3f kInsideGlass(0.85f, 0.22f, 0.10f);
 
 }  // namespace
 
@@ -35,7 +35,9 @@ void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint 
     if (!frame.cuts_V.any()) return drawSurface(frame, nodes, shadow_texture, look);
     beginMarking();
     drawSurface(frame, nodes, shadow_texture, look);
+    gl_.DepthFunc(GL_ALWAYS);  // at its rim the cap is as deep as the surface
     drawCap(frame, shadow_texture, 1);
+    gl_.DepthFunc(GL_LESS);
     gl_.Disable(GL_STENCIL_TEST);
 }
 
@@ -51,7 +53,9 @@ void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, GL
     drawNearestLayer(frame, nodes, shadow_texture, GL_BACK, {{float(opacity), kOutline}, kInsideGlass});
     if (frame.cuts_V.any()) {
         gl_.Enable(GL_STENCIL_TEST);
+        gl_.DepthFunc(GL_LEQUAL);
         drawCap(frame, shadow_texture, (1 + float(opacity)) / 2);
+        gl_.DepthFunc(GL_LESS);
         gl_.Disable(GL_STENCIL_TEST);
     }
     gl_.Disable(GL_BLEND);
@@ -137,7 +141,6 @@ void BonePainter::markOpened(const Frame& frame, const NodeStore& nodes) const {
 void BonePainter::drawCap(const Frame& frame, GLuint shadow_texture, float opacity) const {
     gl_.StencilFunc(GL_EQUAL, kOpened, kAllBits);
     gl_.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-    gl_.DepthFunc(GL_LEQUAL);
     cap_.use();
     frame.setLight(gl_, cap_, shadow_texture);
     setCutPlanes(cap_, frame.cuts_C);
@@ -153,7 +156,6 @@ void BonePainter::drawCap(const Frame& frame, GLuint shadow_texture, float opaci
     gl_.BindVertexArray(no_attributes_.name());
     gl_.DrawArrays(GL_TRIANGLES, 0, 3);
     gl_.BindVertexArray(0);
-    gl_.DepthFunc(GL_LESS);
 }
 
 }  // namespace bonemill

@@ -6,8 +6,8 @@ namespace bonemill {
 namespace {
 
 constexpr double kFieldOfView = 75 * M_PI / 180;
-constexpr double kBehind = 3.2;           // burr radii from the burr's centre to the eye, along the shaft
-constexpr double kBeside = 1.7;           // and across it: the shaft leaves most of the picture free
+constexpr double kBehind = 2.8;           // burr radii from the burr's centre to the eye, along the shaft
+constexpr double kBeside = 0.9;           // and across it: still inside the corridor that the burr has milled
 constexpr double kTilt = 8 * M_PI / 180;  // towards the burr
 constexpr double kSmallestBurr = 1e-4;    // m
 

@@ -12,6 +12,7 @@ constexpr double kGhostDistance = 1.5e-4;  // m
 constexpr double kGhostAngle = 0.03;       // rad
 constexpr double kShownBeyondView =
     2.0;  // half picture diagonals at the target that the shadow map covers when one is close
+constexpr double kReach = 1.7;           // of the distance to the focus
 constexpr double kSmallestScene = 1e-3;  // m, radius
 constexpr double kSmallestBone = 1e-4;   // m, radius
 
@@ -48,7 +49,8 @@ KeyLight aimKeyLight(const Camera& camera, bool is_lit_from_eye, const Sphere& l
     shadow_from_camera.topLeftCorner<3, 3>() = R_LC / half_size;
     shadow_from_camera.topRightCorner<3, 1>() = -(R_LC * center_C) / half_size;
     return {key_C.cast<float>(), shadow_from_camera.cast<float>(),
-            float(2 * half_size / RenderTargets::kShadowSize)};
+            float(2 * half_size / RenderTargets::kShadowSize),
+            is_lit_from_eye ? float(kReach * camera.focus) : 0};
 }
 
 }  // namespace
@@ -104,6 +106,7 @@ void Frame::setLight(const GlApi& gl, const Program& program, GLuint shadow_text
     program.set("shadow_map", 0);
     program.set("key_direction", key.direction);
     program.set("shadow_texel", key.shadow_texel);
+    program.set("light_reach", key.reach);
     program.set("shadow_from_camera", key.shadow_from_camera);
     program.set("clip_from_camera", clip_from_camera);
 }

@@ -37,6 +37,7 @@ struct KeyLight {
     Eigen::Vector3f direction;           // C, towards the light
     Eigen::Matrix4f shadow_from_camera;  // to the shadow map's -1 .. 1
     float shadow_texel;                  // m
+    float reach;  // m from the eye to where an endoscope's light is as bright; 0: it is the room's
 };
 
 struct Frame {

@@ -9,6 +9,7 @@ uniform sampler2DShadow shadow_map;
 uniform vec3 key_direction;   // C, towards the light
 uniform float shadow_texel;   // m in the world per texel of the shadow map
 uniform mat4 shadow_from_camera;
+uniform float light_reach;    // m from the eye to where its own light is as bright as the room's; 0: the room's
 
 const vec3 kKeyColour = vec3(1.00, 0.94, 0.85) * 2.35;
 const vec3 kFillColour = vec3(0.60, 0.70, 0.92) * 0.30;
@@ -34,6 +35,11 @@ float keyVisibility(vec3 p_C, vec3 normal) {
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) sum += texture(shadow_map, vec3(uvw.xy + vec2(x, y) * texel, uvw.z));
     return sum / 9.0;
+}
+
+float falloff(vec3 p_C) {
+    if (light_reach <= 0.0) return 1.0;
+    return 1.5 / (0.85 + dot(p_C, p_C) / (light_reach * light_reach));
 }
 
 vec3 hemisphere(vec3 normal) { return mix(kGround, kSky, 0.5 + 0.5 * normal.y); }
@@ -163,6 +169,7 @@ void main() {
     vec3 light = kKeyColour * key + kFillColour * max(dot(normal, kFillDirection), 0.0) + hemisphere(normal);
     // Light inside the bone gives the edge of the shadow a warm tint.
     light += vec3(0.34, 0.13, 0.05) * key * (1.0 - visible);
+    light *= falloff(p_C);
 
     vec3 half_way = normalize(key_direction + to_eye);
     float gloss = pow(max(dot(normal, half_way), 0.0), 42.0) * 0.34 * visible * step(0.0, facing);
@@ -222,7 +229,7 @@ void main() {
                + kFillColour * max(dot(normal, kFillDirection), 0.0) + hemisphere(normal);
     // A section is read by its outline, not by its tilt towards the light.
     light = mix(light, vec3(1.25), 0.35);
-    colour = vec4(toneMap(albedo * light * 0.56), opacity);
+    colour = vec4(toneMap(albedo * light * falloff(p_C) * 0.56), opacity);
     vec4 clip = clip_from_camera * vec4(p_C, 1.0);
     gl_FragDepth = clip.z / clip.w * 0.5 + 0.5;
 }
