@@ -67,6 +67,7 @@
     X(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC, RenderbufferStorageMultisample) \
     X(PFNGLSHADERSOURCEPROC, ShaderSource)                                     \
     X(PFNGLSTENCILFUNCPROC, StencilFunc)                                       \
+    X(PFNGLSTENCILMASKPROC, StencilMask)                                       \
     X(PFNGLSTENCILOPPROC, StencilOp)                                           \
     X(PFNGLSTENCILOPSEPARATEPROC, StencilOpSeparate)                           \
     X(PFNGLTEXIMAGE2DPROC, TexImage2D)                                         \

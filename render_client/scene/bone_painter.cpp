@@ -1,5 +1,6 @@
 #include "render_client/scene/bone_painter.h"
 
+#include <algorithm>
 #include <string>
 
 #include "render_client/scene/clip_planes.h"
@@ -10,11 +11,14 @@ namespace {
 
 constexpr double kGrain = 0.045;  // size of the mottling over the bone's radius
 constexpr GLuint kAllBits = 0xff;
-constexpr GLint kOpened = 1;  // stencil: the nearest surface is seen from within
+constexpr GLint kOpened = 0x80;  // stencil: the nearest surface is seen from within
 constexpr float kFarWallOpacity = 0.28f;
-constexpr float kWallOpacity = 0.45f;  // of the nearest wall seen from within
-constexpr float kBoxMargin = 0.01f;    // of the bone's radius: the box is that of points on the surface
-constexpr float kOutline = 0.80f;      // what is left of it is added at the outline
+constexpr GLuint kLayers = 0x7f;           // stencil: how many front faces there are
+constexpr float kLastWallOpacity = 0.12f;  // of a wall seen from within, when nothing is behind it
+constexpr float kWallOpacity = 0.45f;      // of the nearest wall seen from within
+constexpr float kBoxMargin = 0.01f;        // of the bone's radius: the box is that of points on the surface
+constexpr float kCapOpacity = 0.15f;       // above the surface's
+constexpr float kOutline = 0.80f;          // what is left of it is added at the outline
 
 const Eigen::Vector3f kInsideSolid(0.42f, 0.16f, 0.12f);
 const Eigen::Vector3f kInsideGlass(0.85f, 0.22f, 0.10f);
@@ -43,18 +47,18 @@ void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint 
 
 void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
                                   double opacity, const std::function<void()>& drawTool) {
-    drawFarWall(frame, nodes, shadow_texture, {{kFarWallOpacity, 0}, kInsideGlass});
-    gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+    drawFarWall(frame, nodes, shadow_texture);
     if (frame.cuts_V.any()) markOpened(frame, nodes);
     drawTool();
     gl_.Enable(GL_BLEND);
     gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    drawNearestLayer(frame, nodes, shadow_texture, GL_FRONT, {{kWallOpacity, 0}, kInsideGlass});
-    drawNearestLayer(frame, nodes, shadow_texture, GL_BACK, {{float(opacity), kOutline}, kInsideGlass});
+    drawInnerWall(frame, nodes, shadow_texture);
+    findNearestLayer(frame, nodes, GL_BACK);
+    drawFoundLayer(frame, nodes, shadow_texture, {{float(opacity), kOutline}, kInsideGlass});
     if (frame.cuts_V.any()) {
         gl_.Enable(GL_STENCIL_TEST);
         gl_.DepthFunc(GL_LEQUAL);
-        drawCap(frame, shadow_texture, (1 + float(opacity)) / 2);
+        drawCap(frame, shadow_texture, std::min(float(opacity) + kCapOpacity, 1.0f));
         gl_.DepthFunc(GL_LESS);
         gl_.Disable(GL_STENCIL_TEST);
     }
@@ -86,36 +90,53 @@ void BonePainter::drawDepth(const Frame& frame, const NodeStore& nodes) const {
 }
 
 // The farthest front face, where there is another one before it: the far wall of a cavity, of the skull.
-void BonePainter::drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
-                              const Look& look) {
+// Leaves depth clear, and in the stencil how many layers there are.
+void BonePainter::drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
     gl_.ClearDepth(0);
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
     gl_.ClearDepth(1);
     gl_.Enable(GL_CULL_FACE);
     gl_.CullFace(GL_BACK);
     gl_.Enable(GL_STENCIL_TEST);
+    gl_.StencilMask(kLayers);
     gl_.StencilFunc(GL_ALWAYS, 0, kAllBits);
     gl_.StencilOp(GL_KEEP, GL_INCR, GL_INCR);
     gl_.DepthFunc(GL_GREATER);
     drawDepth(frame, nodes);
 
-    gl_.StencilFunc(GL_LEQUAL, 2, kAllBits);
     gl_.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-    gl_.DepthFunc(GL_EQUAL);
+    gl_.StencilMask(kAllBits);
+    gl_.StencilFunc(GL_LEQUAL, 2, kLayers);
     gl_.Enable(GL_BLEND);
     gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    drawSurface(frame, nodes, shadow_texture, look);
+    drawFoundLayer(frame, nodes, shadow_texture, {{kFarWallOpacity, 0}, kInsideGlass});
     gl_.Disable(GL_BLEND);
-    gl_.DepthFunc(GL_LESS);
     gl_.Disable(GL_STENCIL_TEST);
-    gl_.Disable(GL_CULL_FACE);
+    gl_.Clear(GL_DEPTH_BUFFER_BIT);
 }
 
-void BonePainter::drawNearestLayer(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
-                                   GLenum culled, const Look& look) {
+// Strong where it belongs to a cavity, or something else is behind it: that is what one wants to see.
+void BonePainter::drawInnerWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
+    findNearestLayer(frame, nodes, GL_FRONT);
+    gl_.Enable(GL_STENCIL_TEST);
+    gl_.StencilFunc(GL_LEQUAL, 2, kLayers);
+    drawFoundLayer(frame, nodes, shadow_texture, {{kWallOpacity, kOutline}, kInsideGlass});
+    gl_.Enable(GL_CULL_FACE);
+    gl_.CullFace(GL_FRONT);
+    gl_.StencilFunc(GL_GREATER, 2, kLayers);
+    drawFoundLayer(frame, nodes, shadow_texture, {{kLastWallOpacity, 0}, kInsideGlass});
+    gl_.Disable(GL_STENCIL_TEST);
+}
+
+void BonePainter::findNearestLayer(const Frame& frame, const NodeStore& nodes, GLenum culled) const {
     gl_.Enable(GL_CULL_FACE);
     gl_.CullFace(culled);
     drawDepth(frame, nodes);
+}
+
+// Culls as the layer was found, and then no more.
+void BonePainter::drawFoundLayer(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
+                                 const Look& look) {
     gl_.DepthFunc(GL_EQUAL);
     drawSurface(frame, nodes, shadow_texture, look);
     gl_.DepthFunc(GL_LESS);
@@ -126,6 +147,7 @@ void BonePainter::drawNearestLayer(const Frame& frame, const NodeStore& nodes, G
 // From here on the stencil says which side of the nearest surface is seen.
 void BonePainter::beginMarking() const {
     gl_.Enable(GL_STENCIL_TEST);
+    gl_.StencilMask(kOpened);
     gl_.StencilFunc(GL_ALWAYS, kOpened, kAllBits);
     gl_.StencilOpSeparate(GL_FRONT, GL_KEEP, GL_KEEP, GL_ZERO);
     gl_.StencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_REPLACE);
@@ -134,13 +156,16 @@ void BonePainter::beginMarking() const {
 void BonePainter::markOpened(const Frame& frame, const NodeStore& nodes) const {
     beginMarking();
     drawDepth(frame, nodes);
+    gl_.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    gl_.StencilMask(kAllBits);
     gl_.Disable(GL_STENCIL_TEST);
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
 }
 
 void BonePainter::drawCap(const Frame& frame, GLuint shadow_texture, float opacity) const {
-    gl_.StencilFunc(GL_EQUAL, kOpened, kAllBits);
+    gl_.StencilFunc(GL_EQUAL, kOpened, kOpened);
     gl_.StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    gl_.StencilMask(kAllBits);
     cap_.use();
     frame.setLight(gl_, cap_, shadow_texture);
     setCutPlanes(cap_, frame.cuts_C);

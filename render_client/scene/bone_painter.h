@@ -39,9 +39,10 @@ class BonePainter {
     };
     void drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, const Look& look);
     void drawDepth(const Frame& frame, const NodeStore& nodes) const;
-    void drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, const Look& look);
-    void drawNearestLayer(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, GLenum culled,
-                          const Look& look);
+    void drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
+    void drawInnerWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
+    void findNearestLayer(const Frame& frame, const NodeStore& nodes, GLenum culled) const;
+    void drawFoundLayer(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, const Look& look);
     void markOpened(const Frame& frame, const NodeStore& nodes) const;
     void beginMarking() const;
     void drawCap(const Frame& frame, GLuint shadow_texture, float opacity) const;

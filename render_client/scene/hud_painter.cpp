@@ -42,8 +42,8 @@ HudPainter::HudPainter(const GlApi& gl)
 void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel, bool show_help,
                        int width, int height, float ui_scale) {
     begin(ui_scale);
-    layOutPanel(hud);
-    if (!hud.watchers.empty()) layOutWatchers(hud.watchers, width);
+    const Corner panel = layOutPanel(hud);
+    if (!hud.watchers.empty()) layOutWatchers(hud.watchers, panel, width);
     layOutScaleBar(scale_bar, metres_per_pixel, width, height);
     if (show_help) layOutHelp(width, height);
     if (hud.notice) layOutNotice(*hud.notice, width, height);
@@ -70,7 +70,8 @@ void HudPainter::layOutLabel(const HudLabel& label) {
     text(left, top + em_ * 1.08f, label.text, FontStyle::kBold, kPointerName);
 }
 
-void HudPainter::layOutWatchers(const std::vector<HudRow>& watchers, int width) {
+// At the upper right, or below the panel when there is no room beside it.
+void HudPainter::layOutWatchers(const std::vector<HudRow>& watchers, const Corner& panel, int width) {
     const float margin = em_ * 1.1f, padding = em_ * 0.9f, line = em_ * 1.55f, gap = em_ * 1.4f;
     float names = font_->width(kWatchersTitle, FontStyle::kBold), values = 0;
     for (const HudRow& row : watchers) {
@@ -78,10 +79,12 @@ void HudPainter::layOutWatchers(const std::vector<HudRow>& watchers, int width) 
         values = std::max(values, font_->width(row.value, FontStyle::kPlain));
     }
     const float inner = names + gap + values;
-    const float right = float(width) - margin - padding, left = right - inner;
-    box(left - padding, margin, inner + 2 * padding, line * float(watchers.size() + 1) + padding, em_ * 0.6f,
+    const bool fits_beside = float(width) - 2 * margin - inner - 2 * padding > panel.right;
+    const float left = fits_beside ? float(width) - margin - padding - inner : margin + padding;
+    const float right = left + inner, top = fits_beside ? margin : panel.bottom + em_ * 0.6f;
+    box(left - padding, top, inner + 2 * padding, line * float(watchers.size() + 1) + padding, em_ * 0.6f,
         kPanelColour);
-    float base = margin + padding * 0.7f + em_;
+    float base = top + padding * 0.7f + em_;
     text(left, base, kWatchersTitle, FontStyle::kBold, kTitleColour);
     for (const HudRow& row : watchers) {
         base += line;
@@ -91,7 +94,7 @@ void HudPainter::layOutWatchers(const std::vector<HudRow>& watchers, int width) 
     }
 }
 
-void HudPainter::layOutPanel(const Hud& hud) {
+HudPainter::Corner HudPainter::layOutPanel(const Hud& hud) {
     const float margin = em_ * 1.1f, padding = em_ * 0.9f, line = em_ * 1.55f, gap = em_ * 1.4f;
     float label_width = 0, value_width = 0;
     for (const HudRow& row : hud.rows) {
@@ -104,7 +107,8 @@ void HudPainter::layOutPanel(const Hud& hud) {
     const float inner = std::max({head_width, label_width + gap + value_width, em_ * 13});
     const float head = line * 2 + em_ * 0.35f;
     const float body = hud.rows.empty() ? 0 : line * float(hud.rows.size()) + em_ * 0.5f;
-    box(margin, margin, inner + 2 * padding, head + body + 1.4f * padding, em_ * 0.6f, kPanelColour);
+    const Corner corner{margin + inner + 2 * padding, margin + head + body + 1.4f * padding};
+    box(margin, margin, corner.right - margin, corner.bottom - margin, em_ * 0.6f, kPanelColour);
 
     const float left = margin + padding;
     float base = margin + padding * 0.7f + em_;
@@ -113,7 +117,7 @@ void HudPainter::layOutPanel(const Hud& hud) {
     const float dot = em_ * 0.5f;
     box(left, base - em_ * 0.55f, dot, dot, dot / 2, colourOf(hud.state_tone));
     text(left + em_ * 0.9f, base, hud.state, FontStyle::kPlain, kLabelColour);
-    if (hud.rows.empty()) return;
+    if (hud.rows.empty()) return corner;
     box(left, base + em_ * 0.65f, inner, 1, 0, kLineColour);
     base += em_ * 0.6f;
     for (const HudRow& row : hud.rows) {
@@ -122,6 +126,7 @@ void HudPainter::layOutPanel(const Hud& hud) {
         text(left + inner - font_->width(row.value, FontStyle::kBold), base, row.value, FontStyle::kBold,
              colourOf(row.tone));
     }
+    return corner;
 }
 
 void HudPainter::layOutScaleBar(const ScaleBar& bar, double metres_per_pixel, int width, int height) {

@@ -38,8 +38,11 @@ class HudPainter {
     // Returns the pen's x after the text; y is the base line.
     float text(float x, float y, std::string_view utf8, FontStyle style, const Colour& colour);
     void begin(float ui_scale);
-    void layOutPanel(const Hud& hud);
-    void layOutWatchers(const std::vector<HudRow>& watchers, int width);
+    struct Corner {
+        float right, bottom;
+    };
+    Corner layOutPanel(const Hud& hud);  // its lower right corner
+    void layOutWatchers(const std::vector<HudRow>& watchers, const Corner& panel, int width);
     void layOutLabel(const HudLabel& label);
     void layOutScaleBar(const ScaleBar& bar, double metres_per_pixel, int width, int height);
     void layOutHelp(int width, int height);
