@@ -42,10 +42,10 @@ std::string describe(uint32_t frame, const std::string& file, const RenderScene&
     std::snprintf(line, sizeof line,
                   "{\"frame\":%u,\"file\":\"%s\",\"nodes\":%zu,\"triangles\":%zu,"
                   "\"revision_digest\":\"%016" PRIx64 "\",\"complete\":%s,\"server\":%s,\"epoch\":%" PRIu64
-                  ",\"tick\":%" PRIu64 "}",
+                  ",\"tick\":%" PRIu64 ",\"uploaded_nodes\":%" PRIu64 ",\"uploaded_bytes\":%" PRIu64 "}",
                   frame, file.c_str(), scene.nodeCount(), scene.triangleCount(), subscriber.digest().value(),
                   feed.isComplete() ? "true" : "false", subscriber.hasServer() ? "true" : "false",
-                  subscriber.epoch(), tick);
+                  subscriber.epoch(), tick, scene.uploads().nodes, scene.uploads().bytes);
     return line;
 }
 
@@ -58,6 +58,7 @@ void runOffscreen(const ClientOptions& options) {
     spdlog::info("off screen, {}", context.gl().describe());
     RenderScene scene(context.gl());
     scene.setViewOverrides(options.view);
+    scene.settings() = options.settings;
     SceneFeed feed(options.subscriber, scene);
 
     Clock::time_point due = Clock::now() + wish.interval;

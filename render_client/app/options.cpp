@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <iostream>
@@ -27,6 +28,13 @@ struct RawOptions {
     std::string set_accuracy;
     std::optional<double> azimuth_deg, elevation_deg, distance_mm;
     std::vector<double> target_mm;
+    std::array<std::optional<double>, 3> cuts;
+    std::array<bool, 3> flips{};
+    std::optional<double> opacity;
+    bool is_transparent = false;
+    std::string stereo = "off";
+    std::string camera = "orbit";
+    bool no_hud = false;
 };
 
 void parseSize(const std::string& text, ClientOptions& options) {
@@ -48,7 +56,50 @@ std::string accuracyNameProblem(const std::string& name) {
     return "'" + name + "' is no name of a preset, such as balanced, nor scene";
 }
 
+void addCutOptions(CLI::App& app, RawOptions& raw, std::vector<CLI::Option*>& view_options) {
+    constexpr const char* kAxes[] = {"x", "y", "z"};
+    constexpr const char* kHidden[] = {"the patient's left", "the back", "the upper part"};
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const std::string cut_name = std::string("--cut-") + kAxes[axis];
+        auto* cut = app.add_option(cut_name, raw.cuts[axis],
+                                   std::string("Cut-plane that hides ") + kHidden[axis] +
+                                       ", from the low (0) to the high end (1) of the bone")
+                        ->check(CLI::Range(0.0, 1.0))
+                        ->type_name("POSITION");
+        auto* flip = app.add_flag(std::string("--flip-") + kAxes[axis], raw.flips[axis],
+                                  "Hides the other side of " + cut_name)
+                         ->needs(cut);
+        view_options.insert(view_options.end(), {cut, flip});
+    }
+}
+
+// What the window's keys switch, at the start.
+std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawOptions& raw) {
+    std::vector<CLI::Option*> view_options;
+    addCutOptions(app, raw, view_options);
+    auto* transparent = app.add_option_function<std::string>(
+                               "--transparent",
+                               [&raw](const std::string& opacity) {  // empty: none was given
+                                   raw.is_transparent = true;
+                                   if (!opacity.empty()) raw.opacity = std::stod(opacity);
+                               },
+                               "Transparent bone, of this opacity, 0 to 1 (default 0.35)")
+                            ->expected(0, 1)
+                            ->check(CLI::Range(0.0, 1.0))
+                            ->type_name("[OPACITY]");
+    auto* stereo = app.add_option("--stereo", raw.stereo, "off, side-by-side or anaglyph (red-cyan glasses)")
+                       ->check(CLI::IsMember({"off", "side-by-side", "anaglyph"}))
+                       ->capture_default_str();
+    auto* camera = app.add_option("--camera", raw.camera, "orbit, or endoscope: rides on the tool")
+                       ->check(CLI::IsMember({"orbit", "endoscope"}))
+                       ->capture_default_str();
+    auto* no_hud = app.add_flag("--no-hud", raw.no_hud, "Nothing but the picture: no panel, list or scale");
+    view_options.insert(view_options.end(), {transparent, stereo, camera, no_hud});
+    return view_options;
+}
+
 void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
+    const std::vector<CLI::Option*> view_options = addViewOptions(app, raw);
     app.add_option("--domain", options.subscriber.domain, "DDS domain of the server")
         ->check(CLI::Range(uint32_t{0}, dds::kMaxDomain))
         ->capture_default_str();
@@ -85,19 +136,35 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     app.add_flag("--wait-complete", raw.offscreen_options.wait_complete,
                  "Take the first picture when the whole model has arrived")
         ->needs(offscreen);
-    app.add_option(
-           "--set-accuracy", raw.set_accuracy,
-           "No viewer: ask the server for thesis_2012, fast, balanced, exact or scene (what the scene file "
-           "says), print what it answers and stop")
-        ->check(accuracyNameProblem)
-        ->type_name("NAME")
-        ->excludes(offscreen);
+    auto* set_accuracy = app.add_option("--set-accuracy", raw.set_accuracy,
+                                        "No viewer: ask the server for thesis_2012, fast, balanced, exact or "
+                                        "scene (what the scene file "
+                                        "says), print what it answers and stop")
+                             ->check(accuracyNameProblem)
+                             ->type_name("NAME")
+                             ->excludes(offscreen);
+    for (CLI::Option* option : view_options) set_accuracy->excludes(option);
     app.add_option("--timeout-s", raw.timeout_s,
                    "Give up --wait-complete, or --set-accuracy without a server, after this (default 60)")
         ->check(CLI::Range(1u, 86400u));
 }
 
+ViewSettings viewSettings(const RawOptions& raw) {
+    ViewSettings settings;
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (raw.cuts[axis]) settings.cuts[axis] = {true, *raw.cuts[axis], raw.flips[axis]};
+    settings.is_transparent = raw.is_transparent;
+    settings.opacity = raw.opacity.value_or(ViewSettings::kDefaultOpacity);
+    settings.stereo = raw.stereo == "side-by-side" ? StereoMode::kSideBySide
+                      : raw.stereo == "anaglyph"   ? StereoMode::kAnaglyph
+                                                   : StereoMode::kOff;
+    settings.camera = raw.camera == "endoscope" ? CameraMode::kEndoscope : CameraMode::kOrbit;
+    settings.show_hud = !raw.no_hud;
+    return settings;
+}
+
 ClientOptions convert(const RawOptions& raw, ClientOptions options) {
+    options.settings = viewSettings(raw);
     if (!raw.size.empty()) parseSize(raw.size, options);
     if (raw.azimuth_deg) options.view.azimuth = *raw.azimuth_deg * kDegreesToRadians;
     if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegreesToRadians;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "render_client/scene/render_scene.h"
+#include "render_client/scene/view_settings.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
 namespace bonemill {
@@ -28,7 +29,8 @@ struct SetAccuracyOptions {
 struct ClientOptions {
     SubscriberOptions subscriber;
     ViewOverrides view;
-    int width = 1280;  // pixels
+    ViewSettings settings;  // what is shown at the start
+    int width = 1280;       // pixels
     int height = 800;
     std::optional<OffscreenOptions> offscreen;  // neither given: a window
     std::optional<SetAccuracyOptions> set_accuracy;

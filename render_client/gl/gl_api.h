@@ -23,6 +23,7 @@
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                 \
     X(PFNGLCLEARPROC, Clear)                                                   \
     X(PFNGLCLEARCOLORPROC, ClearColor)                                         \
+    X(PFNGLCLEARDEPTHPROC, ClearDepth)                                         \
     X(PFNGLCOLORMASKPROC, ColorMask)                                           \
     X(PFNGLCOMPILESHADERPROC, CompileShader)                                   \
     X(PFNGLCREATEPROGRAMPROC, CreateProgram)                                   \
@@ -65,12 +66,17 @@
     X(PFNGLREADPIXELSPROC, ReadPixels)                                         \
     X(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC, RenderbufferStorageMultisample) \
     X(PFNGLSHADERSOURCEPROC, ShaderSource)                                     \
+    X(PFNGLSTENCILFUNCPROC, StencilFunc)                                       \
+    X(PFNGLSTENCILMASKPROC, StencilMask)                                       \
+    X(PFNGLSTENCILOPPROC, StencilOp)                                           \
+    X(PFNGLSTENCILOPSEPARATEPROC, StencilOpSeparate)                           \
     X(PFNGLTEXIMAGE2DPROC, TexImage2D)                                         \
     X(PFNGLTEXPARAMETERIPROC, TexParameteri)                                   \
     X(PFNGLUNIFORM1FPROC, Uniform1f)                                           \
     X(PFNGLUNIFORM1IPROC, Uniform1i)                                           \
     X(PFNGLUNIFORM2FPROC, Uniform2f)                                           \
     X(PFNGLUNIFORM3FPROC, Uniform3f)                                           \
+    X(PFNGLUNIFORM4FPROC, Uniform4f)                                           \
     X(PFNGLUNIFORMMATRIX3FVPROC, UniformMatrix3fv)                             \
     X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)                             \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                                         \

@@ -28,6 +28,9 @@ class Program {
     void set(GLint location, float value) const { gl_.Uniform1f(location, value); }
     void set(GLint location, const Eigen::Vector2f& v) const { gl_.Uniform2f(location, v.x(), v.y()); }
     void set(GLint location, const Eigen::Vector3f& v) const { gl_.Uniform3f(location, v.x(), v.y(), v.z()); }
+    void set(GLint location, const Eigen::Vector4f& v) const {
+        gl_.Uniform4f(location, v.x(), v.y(), v.z(), v.w());
+    }
     void set(GLint location, const Eigen::Matrix3f& m) const {
         gl_.UniformMatrix3fv(location, 1, GL_FALSE, m.data());
     }

@@ -1,5 +1,6 @@
 #include "render_client/scene/hud.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iterator>
@@ -13,6 +14,8 @@ namespace {
 
 constexpr double kMetresToMm = 1e3;
 constexpr size_t kLongestValue = 26;  // characters
+constexpr size_t kLongestName = 24;
+constexpr int kMostWatchers = 8;  // rows of the list
 
 std::string number(double value, int decimals, const char* unit) {
     if (!std::isfinite(value)) return "\u2013";
@@ -31,6 +34,16 @@ std::string readable(double value, const char* unit) {
     return number(value, magnitude < 10 ? 2 : magnitude < 1000 ? 1 : 0, unit);
 }
 
+std::vector<std::string> splitSigns(const std::string& utf8) {
+    std::vector<std::string> signs;
+    for (const char byte : utf8) {
+        const bool continues = (uint8_t(byte) & 0xc0) == 0x80;
+        if (signs.empty() || !continues) signs.emplace_back();
+        signs.back() += byte;
+    }
+    return signs;
+}
+
 // Lines of at most `most` bytes, cut at spaces; a longer word stays whole.
 std::vector<std::string> wrapped(const std::string& text, size_t most) {
     std::vector<std::string> lines(1);
@@ -40,6 +53,61 @@ std::vector<std::string> wrapped(const std::string& text, size_t most) {
         lines.back() += (lines.back().empty() ? "" : " ") + word;
     }
     return lines;
+}
+
+std::string clock(double seconds) {
+    if (!(seconds >= 0) || !std::isfinite(seconds)) return "\u2013";
+    const auto whole = static_cast<unsigned long long>(std::min(seconds, 1e9));
+    char text[32];
+    std::snprintf(text, sizeof text, "%llu:%02llu:%02llu", whole / 3600, whole / 60 % 60, whole % 60);
+    return text;
+}
+
+// Cut between code points.
+std::string shortened(const std::string& text, size_t most) {
+    const std::vector<std::string> signs = splitSigns(text);
+    if (signs.size() <= most) return text;
+    std::string result;
+    for (size_t i = 0; i + 1 < most; ++i) result += signs[i];
+    return result + "\u2026";
+}
+
+void addSessionRows(const topics::Status& status, std::vector<HudRow>& rows) {
+    if (status.ticks() > 0) rows.push_back({"Session", clock(status.session_s())});
+    if (status.is_milling_paused()) rows.push_back({"Milling", "paused", HudTone::kWarning});
+}
+
+void addToolNameRow(const topics::SceneInfo& info, std::vector<HudRow>& rows) {
+    if (info.tool_names_size() < 2 || info.tool_index() >= uint32_t(info.tool_names_size())) return;
+    rows.push_back({"Tool", shortened(info.tool_names(int(info.tool_index())), kLongestName)});
+}
+
+const char* roleName(topics::Viewer::Role role) {
+    switch (role) {
+        case topics::Viewer::OPERATOR:
+            return "operator";
+        case topics::Viewer::INSTRUCTOR:
+            return "instructor";
+        default:
+            return "viewer";
+    }
+}
+
+HudRow watcherRow(const topics::Viewer& watcher) {
+    const std::string name = watcher.name().empty() ? "(no name)" : shortened(watcher.name(), kLongestName);
+    std::string value = roleName(watcher.role());
+    value += ", " + number(watcher.frame_rate_hz(), 0, " Hz");
+    if (!watcher.is_complete()) value += ", incomplete";
+    return {name, value, watcher.is_complete() ? HudTone::kPlain : HudTone::kWarning};
+}
+
+std::vector<HudRow> watcherRows(const std::vector<topics::Viewer>& watchers) {
+    const auto count = int(watchers.size());
+    const int shown = count <= kMostWatchers ? count : kMostWatchers - 1;
+    std::vector<HudRow> rows;
+    for (int i = 0; i < shown; ++i) rows.push_back(watcherRow(watchers[size_t(i)]));
+    if (shown < count) rows.push_back({"and " + std::to_string(count - shown) + " more", ""});
+    return rows;
 }
 
 void addLoopRows(const topics::Status& status, std::vector<HudRow>& rows) {
@@ -124,26 +192,45 @@ Hud makeHud(const HudInput& input) {
     hud.state_tone = stateTone(input.connection);
     hud.notice = input.notice;
     if (input.status) {
+        addSessionRows(*input.status, hud.rows);
         addLoopRows(*input.status, hud.rows);
         addAccuracyRows(*input.status, hud.rows);
     }
+    if (input.info) addToolNameRow(*input.info, hud.rows);
     if (input.tool) addToolRows(*input.tool, hud.rows);
     if (input.status) {
         hud.rows.push_back({"Removed", readable(input.status->removed_mm3(), " mm\u00b3")});
         addFaultRow(*input.status, hud.rows);
     }
+    if (input.frame_rate_hz > 0) hud.rows.push_back({"Pictures", number(input.frame_rate_hz, 0, " Hz")});
+    if (input.show_watchers) hud.watchers = watcherRows(input.watchers);
     return hud;
 }
 
 std::vector<HudRow> helpRows() {
     std::vector<HudRow> rows{{"Left drag", "orbit"},
-                             {"Right or middle drag", "pan"},
+                             {"Right or middle drag, Shift + left", "pan"},
                              {"Wheel", "zoom"},
+                             {"Ctrl + left drag, L", "point (instructor)"},
                              {"R", "reset the view"},
+                             {"E", "endoscope"},
+                             {"S", "stereo: off, side by side, anaglyph"},
+                             {"X Y Z", "cut-planes on, off"},
+                             {"Shift + X Y Z", "cut from the other side"},
+                             {"[ ]", "move the last cut-plane"},
+                             {"T", "transparent bone"},
+                             {"F", "force arrow"},
+                             {"P", "pause milling"},
+                             {"N", "next tool"},
+                             {"K", "save a checkpoint"},
+                             {"U", "back to the last checkpoint"},
                              {"C", "put the bone back"}};
     for (size_t key = 1; key < std::size(kAccuracyOfKey); ++key)
         rows.push_back({std::to_string(key), "accuracy " + std::string(kAccuracyOfKey[key])});
     rows.push_back({"0", "accuracy of the scene file"});
+    rows.push_back({"W", "who is watching"});
+    rows.push_back({"M", "control panel"});
+    rows.push_back({"Tab", "show or hide the display"});
     rows.push_back({"H", "show or hide this"});
     rows.push_back({"Esc", "quit"});
     return rows;

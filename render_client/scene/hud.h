@@ -36,7 +36,15 @@ struct Hud {
     std::string state;
     HudTone state_tone = HudTone::kPlain;
     std::vector<HudRow> rows;
+    std::vector<HudRow> watchers;  // empty: no list
     std::optional<HudNotice> notice;
+};
+
+// A name beside a point of the picture, pixels from the upper left.
+struct HudLabel {
+    float x = 0;
+    float y = 0;
+    std::string text;
 };
 
 struct HudInput {
@@ -44,7 +52,10 @@ struct HudInput {
     std::optional<topics::Status> status;
     std::optional<topics::ToolState> tool;
     Connection connection = Connection::kNoServer;
-    size_t node_count = 0;  // nodes the viewer holds
+    size_t node_count = 0;     // nodes the viewer holds
+    double frame_rate_hz = 0;  // of this viewer; 0: not known
+    std::vector<topics::Viewer> watchers;
+    bool show_watchers = true;
     std::optional<HudNotice> notice;
 };
 

@@ -13,6 +13,8 @@ constexpr std::array<float, 4> kPanelColour{0.03f, 0.045f, 0.06f, 0.74f};
 constexpr std::array<float, 4> kLabelColour{0.62f, 0.68f, 0.74f, 1};
 constexpr std::array<float, 4> kTitleColour{1, 1, 1, 1};
 constexpr std::array<float, 4> kLineColour{1, 1, 1, 0.14f};
+constexpr std::array<float, 4> kPointerName{1, 0.62f, 0.88f, 1};
+constexpr std::string_view kWatchersTitle = "Watching";
 constexpr float kGlyph = -1;  // marks a glyph in the shader
 
 }  // namespace
@@ -39,17 +41,60 @@ HudPainter::HudPainter(const GlApi& gl)
 
 void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel, bool show_help,
                        int width, int height, float ui_scale) {
-    em_ = std::round(kFontPixels * ui_scale);
-    if (!font_ || font_->pixelHeight() != em_) font_ = std::make_unique<FontAtlas>(gl_, em_);
-    vertices_.clear();
-    layOutPanel(hud);
+    begin(ui_scale);
+    const Corner panel = layOutPanel(hud);
+    if (!hud.watchers.empty()) layOutWatchers(hud.watchers, panel, width);
     layOutScaleBar(scale_bar, metres_per_pixel, width, height);
     if (show_help) layOutHelp(width, height);
     if (hud.notice) layOutNotice(*hud.notice, width, height);
     flush(width, height);
 }
 
-void HudPainter::layOutPanel(const Hud& hud) {
+void HudPainter::paintLabels(const std::vector<HudLabel>& labels, int width, int height, float ui_scale) {
+    begin(ui_scale);
+    for (const HudLabel& label : labels) layOutLabel(label);
+    flush(width, height);
+}
+
+void HudPainter::begin(float ui_scale) {
+    em_ = std::round(kFontPixels * ui_scale);
+    if (!font_ || font_->pixelHeight() != em_) font_ = std::make_unique<FontAtlas>(gl_, em_);
+    vertices_.clear();
+}
+
+void HudPainter::layOutLabel(const HudLabel& label) {
+    const float text_width = font_->width(label.text, FontStyle::kBold);
+    const float padding = em_ * 0.45f, left = std::round(label.x) + em_ * 1.7f;
+    const float top = std::round(label.y) - em_ * 0.75f;
+    box(left - padding, top, text_width + 2 * padding, em_ * 1.5f, em_ * 0.4f, kPanelColour);
+    text(left, top + em_ * 1.08f, label.text, FontStyle::kBold, kPointerName);
+}
+
+// At the upper right, or below the panel when there is no room beside it.
+void HudPainter::layOutWatchers(const std::vector<HudRow>& watchers, const Corner& panel, int width) {
+    const float margin = em_ * 1.1f, padding = em_ * 0.9f, line = em_ * 1.55f, gap = em_ * 1.4f;
+    float names = font_->width(kWatchersTitle, FontStyle::kBold), values = 0;
+    for (const HudRow& row : watchers) {
+        names = std::max(names, font_->width(row.label, FontStyle::kPlain));
+        values = std::max(values, font_->width(row.value, FontStyle::kPlain));
+    }
+    const float inner = names + gap + values;
+    const bool fits_beside = float(width) - 2 * margin - inner - 2 * padding > panel.right;
+    const float left = fits_beside ? float(width) - margin - padding - inner : margin + padding;
+    const float right = left + inner, top = fits_beside ? margin : panel.bottom + em_ * 0.6f;
+    box(left - padding, top, inner + 2 * padding, line * float(watchers.size() + 1) + padding, em_ * 0.6f,
+        kPanelColour);
+    float base = top + padding * 0.7f + em_;
+    text(left, base, kWatchersTitle, FontStyle::kBold, kTitleColour);
+    for (const HudRow& row : watchers) {
+        base += line;
+        text(left, base, row.label, FontStyle::kPlain, kTitleColour);
+        text(right - font_->width(row.value, FontStyle::kPlain), base, row.value, FontStyle::kPlain,
+             row.tone == HudTone::kPlain ? kLabelColour : colourOf(row.tone));
+    }
+}
+
+HudPainter::Corner HudPainter::layOutPanel(const Hud& hud) {
     const float margin = em_ * 1.1f, padding = em_ * 0.9f, line = em_ * 1.55f, gap = em_ * 1.4f;
     float label_width = 0, value_width = 0;
     for (const HudRow& row : hud.rows) {
@@ -62,7 +107,8 @@ void HudPainter::layOutPanel(const Hud& hud) {
     const float inner = std::max({head_width, label_width + gap + value_width, em_ * 13});
     const float head = line * 2 + em_ * 0.35f;
     const float body = hud.rows.empty() ? 0 : line * float(hud.rows.size()) + em_ * 0.5f;
-    box(margin, margin, inner + 2 * padding, head + body + 1.4f * padding, em_ * 0.6f, kPanelColour);
+    const Corner corner{margin + inner + 2 * padding, margin + head + body + 1.4f * padding};
+    box(margin, margin, corner.right - margin, corner.bottom - margin, em_ * 0.6f, kPanelColour);
 
     const float left = margin + padding;
     float base = margin + padding * 0.7f + em_;
@@ -71,7 +117,7 @@ void HudPainter::layOutPanel(const Hud& hud) {
     const float dot = em_ * 0.5f;
     box(left, base - em_ * 0.55f, dot, dot, dot / 2, colourOf(hud.state_tone));
     text(left + em_ * 0.9f, base, hud.state, FontStyle::kPlain, kLabelColour);
-    if (hud.rows.empty()) return;
+    if (hud.rows.empty()) return corner;
     box(left, base + em_ * 0.65f, inner, 1, 0, kLineColour);
     base += em_ * 0.6f;
     for (const HudRow& row : hud.rows) {
@@ -80,6 +126,7 @@ void HudPainter::layOutPanel(const Hud& hud) {
         text(left + inner - font_->width(row.value, FontStyle::kBold), base, row.value, FontStyle::kBold,
              colourOf(row.tone));
     }
+    return corner;
 }
 
 void HudPainter::layOutScaleBar(const ScaleBar& bar, double metres_per_pixel, int width, int height) {
@@ -95,26 +142,31 @@ void HudPainter::layOutScaleBar(const ScaleBar& bar, double metres_per_pixel, in
     text(right - (pixels + label_width) / 2, base - em_ * 0.6f, bar.label, FontStyle::kPlain, colour);
 }
 
+// In as many columns as the picture's height needs.
 void HudPainter::layOutHelp(int width, int height) {
     const std::vector<HudRow> rows = helpRows();
-    const float padding = em_ * 1.4f, line = em_ * 1.8f, gap = em_ * 2;
+    const float padding = em_ * 1.4f, line = em_ * 1.7f, gap = em_ * 2;
+    const float room = std::max(float(height) - 2 * padding - em_, line);
+    const size_t columns = size_t(std::ceil(line * float(rows.size()) / room));
+    const size_t per_column = (rows.size() + columns - 1) / columns;
     float keys = 0, meanings = 0;
     for (const HudRow& row : rows) {
         keys = std::max(keys, font_->width(row.label, FontStyle::kBold));
         meanings = std::max(meanings, font_->width(row.value, FontStyle::kPlain));
     }
-    const float panel_width = keys + gap + meanings + 2 * padding;
-    const float panel_height = line * float(rows.size()) + 2 * padding - em_ * 0.5f;
-    const float left = std::round((float(width) - panel_width) / 2),
+    const float column = keys + gap + meanings;
+    const float panel_width = float(columns) * column + float(columns - 1) * gap + 2 * padding;
+    const float panel_height = line * float(per_column) + 2 * padding - em_ * 0.5f;
+    const float left = std::round((float(width) - panel_width) / 2) + padding,
                 top = std::round((float(height) - panel_height) / 2);
     Colour backing = kPanelColour;
     backing[3] = 0.86f;
-    box(left, top, panel_width, panel_height, em_ * 0.6f, backing);
-    float base = top + padding + em_ * 0.85f;
-    for (const HudRow& row : rows) {
-        text(left + padding, base, row.label, FontStyle::kBold, kTitleColour);
-        text(left + padding + keys + gap, base, row.value, FontStyle::kPlain, kLabelColour);
-        base += line;
+    box(left - padding, top, panel_width, panel_height, em_ * 0.6f, backing);
+    for (size_t i = 0; i < rows.size(); ++i) {
+        const float x = left + float(i / per_column) * (column + gap);
+        const float base = top + padding + em_ * 0.85f + line * float(i % per_column);
+        text(x, base, rows[i].label, FontStyle::kBold, kTitleColour);
+        text(x + keys + gap, base, rows[i].value, FontStyle::kPlain, kLabelColour);
     }
 }
 

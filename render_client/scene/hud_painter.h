@@ -21,6 +21,9 @@ class HudPainter {
     void paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel, bool show_help, int width,
                int height, float ui_scale);
 
+    // Names beside points of the picture.
+    void paintLabels(const std::vector<HudLabel>& labels, int width, int height, float ui_scale);
+
   private:
     struct Vertex {
         float x, y, u, v;
@@ -34,7 +37,13 @@ class HudPainter {
               const std::array<float, 3>& shape);
     // Returns the pen's x after the text; y is the base line.
     float text(float x, float y, std::string_view utf8, FontStyle style, const Colour& colour);
-    void layOutPanel(const Hud& hud);
+    void begin(float ui_scale);
+    struct Corner {
+        float right, bottom;
+    };
+    Corner layOutPanel(const Hud& hud);  // its lower right corner
+    void layOutWatchers(const std::vector<HudRow>& watchers, const Corner& panel, int width);
+    void layOutLabel(const HudLabel& label);
     void layOutScaleBar(const ScaleBar& bar, double metres_per_pixel, int width, int height);
     void layOutHelp(int width, int height);
     void layOutNotice(const HudNotice& notice, int width, int height);

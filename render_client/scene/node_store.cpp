@@ -40,11 +40,13 @@ void NodeStore::set(const NodeMesh& mesh) {
     }
     gl_.BindVertexArray(node.layout.name());
     gl_.BindBuffer(GL_ARRAY_BUFFER, node.vertices.name());
-    gl_.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(mesh.vertices.size() * sizeof(PackedVertex)),
-                   mesh.vertices.data(), GL_DYNAMIC_DRAW);
+    const size_t vertex_bytes = mesh.vertices.size() * sizeof(PackedVertex);
+    gl_.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(vertex_bytes), mesh.vertices.data(), GL_DYNAMIC_DRAW);
     gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, node.indices.name());
-    gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, GLsizeiptr(mesh.indices.size() * sizeof(uint32_t)),
-                   mesh.indices.data(), GL_DYNAMIC_DRAW);
+    const size_t index_bytes = mesh.indices.size() * sizeof(uint32_t);
+    gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, GLsizeiptr(index_bytes), mesh.indices.data(), GL_DYNAMIC_DRAW);
+    ++uploads_.nodes;
+    uploads_.bytes += vertex_bytes + index_bytes;
     constexpr GLsizei kStride = sizeof(PackedVertex);
     gl_.VertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, kStride, nullptr);
     gl_.VertexAttribPointer(1, 2, GL_BYTE, GL_FALSE, kStride,

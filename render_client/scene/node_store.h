@@ -11,6 +11,12 @@
 
 namespace bonemill {
 
+// What went to the GPU since the start.
+struct UploadCount {
+    uint64_t nodes = 0;
+    uint64_t bytes = 0;
+};
+
 class NodeStore {
   public:
     explicit NodeStore(const GlApi& gl) : gl_(gl) {}
@@ -23,6 +29,7 @@ class NodeStore {
 
     size_t nodeCount() const { return nodes_.size(); }
     size_t triangleCount() const;
+    const UploadCount& uploads() const { return uploads_; }
 
     // Draws what may be inside the view volume of clip_from_V with the program in use (uniforms origin and
     // step). Returns the number of triangles drawn.
@@ -40,6 +47,7 @@ class NodeStore {
     };
     const GlApi& gl_;
     std::map<uint32_t, Node> nodes_;
+    UploadCount uploads_;
 };
 
 }  // namespace bonemill

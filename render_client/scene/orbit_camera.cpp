@@ -7,8 +7,6 @@ namespace bonemill {
 namespace {
 
 constexpr double kFitMargin = 1.06;
-constexpr double kMaxDepthRatio =
-    5000;  // far / near; 24 bit of depth still resolve 1e-3 of the distance well
 
 }  // namespace
 
@@ -50,23 +48,13 @@ Eigen::Matrix3d OrbitCamera::R_WC() const {
     return axes;
 }
 
-Eigen::Matrix4f OrbitCamera::X_CW() const {
-    const Eigen::Matrix3d R_CW = R_WC().transpose();
-    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-    matrix.topLeftCorner<3, 3>() = R_CW;
-    matrix.topRightCorner<3, 1>() = -R_CW * eye();
-    return matrix.cast<float>();
-}
-
-Eigen::Matrix4f OrbitCamera::clipFromCamera(double aspect, const DepthRange& range) const {
-    const double focal = 1 / std::tan(kFieldOfView / 2);
-    Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
-    matrix(0, 0) = focal / aspect;
-    matrix(1, 1) = focal;
-    matrix(2, 2) = -(range.far + range.near) / (range.far - range.near);
-    matrix(2, 3) = -2 * range.far * range.near / (range.far - range.near);
-    matrix(3, 2) = -1;
-    return matrix.cast<float>();
+Camera OrbitCamera::view() const {
+    Camera camera;
+    camera.eye = eye();
+    camera.R_WC = R_WC();
+    camera.field_of_view = kFieldOfView;
+    camera.focus = distance;
+    return camera;
 }
 
 void OrbitCamera::fit(std::span<const Eigen::Vector3d> corners, double aspect) {
@@ -83,16 +71,6 @@ void OrbitCamera::fit(std::span<const Eigen::Vector3d> corners, double aspect) {
             {needed, p_C.z() + std::abs(p_C.x()) / tangent_x, p_C.z() + std::abs(p_C.y()) / tangent_y});
     }
     distance = std::min(needed, kMaxDistance);
-}
-
-DepthRange OrbitCamera::depthRange(const Eigen::Vector3d& center, double radius) const {
-    const double depth = (eye() - center).dot(towardsEye());
-    const double far = std::max(depth + radius, 2 * kMinDistance);
-    return {std::max(depth - radius, far / kMaxDepthRatio), far};
-}
-
-double OrbitCamera::metresPerPixel(int height) const {
-    return 2 * distance * std::tan(kFieldOfView / 2) / height;
 }
 
 }  // namespace bonemill

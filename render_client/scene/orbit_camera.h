@@ -9,12 +9,9 @@
 #include <Eigen/Geometry>
 #include <span>
 
-namespace bonemill {
+#include "render_client/scene/camera.h"
 
-struct DepthRange {
-    double near = 0;  // m in front of the eye
-    double far = 0;
-};
+namespace bonemill {
 
 class OrbitCamera {
   public:
@@ -42,17 +39,10 @@ class OrbitCamera {
     Eigen::Vector3d towardsEye() const;
     // Columns are the camera's axes in W.
     Eigen::Matrix3d R_WC() const;
-    Eigen::Matrix4f X_CW() const;
-    Eigen::Matrix4f clipFromCamera(double aspect, const DepthRange& range) const;
+    Camera view() const;
 
     // Centres on the box and goes as near as every corner (W, m) allows with a margin. Keeps the angles.
     void fit(std::span<const Eigen::Vector3d> corners, double aspect);
-
-    // Near and far planes that hold the sphere (W, m) as well as the depth buffer's resolution allows.
-    DepthRange depthRange(const Eigen::Vector3d& center, double radius) const;
-
-    // Metres that one pixel spans at the target.
-    double metresPerPixel(int height) const;
 
   private:
     Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();

@@ -1,15 +1,35 @@
 #include "render_client/scene/render_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
+#include "render_client/scene/endoscope.h"
 #include "render_client/scene/wire_pose.h"
 
 namespace bonemill {
+namespace {
 
-RenderScene::RenderScene(const GlApi& gl) : nodes_(gl), tool_(gl), renderer_(gl), hud_painter_(gl), gl_(gl) {}
+Eigen::AlignedBox3d boxIn(const Pose& X_WV, const Eigen::AlignedBox3d& box_V) {
+    Eigen::AlignedBox3d box_W;
+    for (int i = 0; i < 8 && !box_V.isEmpty(); ++i)
+        box_W.extend(X_WV * box_V.corner(Eigen::AlignedBox3d::CornerType(i)));
+    return box_W;
+}
+
+std::optional<Eigen::Vector3d> pointerOf(const topics::Viewer& watcher) {
+    if (watcher.role() != topics::Viewer::INSTRUCTOR) return std::nullopt;
+    return readVector(watcher.pointer_m());
+}
+
+}  // namespace
+
+RenderScene::RenderScene(const GlApi& gl)
+    : nodes_(gl), tool_(gl), renderer_(gl), anaglyph_(gl), hud_painter_(gl), gl_(gl) {}
 
 void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
+    const auto& old = hud_input_.info;
+    if (old && old->epoch() == info.epoch() && old->revision() > info.revision()) return;
     const auto X_WV = readPose(info.p_wv_m(), info.q_wv());
     const auto low = readVector(info.bone_min_m());
     const auto high = readVector(info.bone_max_m());
@@ -17,7 +37,7 @@ void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     tool_.set(info.tool());
     X_WV_ = *X_WV;
     bone_V_ = Eigen::AlignedBox3d(*low, *high);
-    if (!hud_input_.info || hud_input_.info->name() != info.name()) view_pending_ = true;
+    if (!old || old->name() != info.name()) view_pending_ = true;
     hud_input_.info = info;
 }
 
@@ -54,33 +74,120 @@ void RenderScene::applyFirstView(double aspect) {
     view_pending_ = false;
 }
 
+bool RenderScene::followsTool() const {
+    if (settings_.camera != CameraMode::kEndoscope || !hud_input_.tool || tool_.isEmpty()) return false;
+    return readPose(hud_input_.tool->p_wt_m(), hud_input_.tool->q_wt()).has_value();
+}
+
 FrameView RenderScene::makeView() const {
     FrameView view;
-    view.camera = camera_;
+    view.camera = camera_.view();
     view.X_WV = X_WV_;
     view.bone_V = bone_V_;
+    view.cuts_W = cutPlanes(settings_.cuts, boxIn(X_WV_, bone_V_));
+    if (settings_.is_transparent) view.bone_opacity = std::clamp(settings_.opacity, 0.0, 1.0);
     if (hud_input_.info) view.burr_radius = hud_input_.info->burr_radius_m();
-    if (hud_input_.tool) {
-        const topics::ToolState& tool = *hud_input_.tool;
-        view.X_WT = readPose(tool.p_wt_m(), tool.q_wt());
-        view.X_WT_device = readPose(tool.p_wt_device_m(), tool.q_wt_device());
-        view.burr_work = tool.buttons() & 1u   ? BurrWork::kRemoving
-                         : tool.buttons() & 2u ? BurrWork::kAdding
-                                               : BurrWork::kIdle;
-    }
+    for (const topics::Viewer& watcher : hud_input_.watchers)
+        if (const auto pointer = pointerOf(watcher)) view.pointers_W.push_back(*pointer);
+    if (hud_input_.tool) showTool(view);
     return view;
 }
 
+void RenderScene::showTool(FrameView& view) const {
+    const topics::ToolState& tool = *hud_input_.tool;
+    view.X_WT = readPose(tool.p_wt_m(), tool.q_wt());
+    view.X_WT_device = readPose(tool.p_wt_device_m(), tool.q_wt_device());
+    view.burr_work = tool.buttons() & 1u   ? BurrWork::kRemoving
+                     : tool.buttons() & 2u ? BurrWork::kAdding
+                                           : BurrWork::kIdle;
+    if (settings_.show_force) view.f_T_W = readVector(tool.force_n());
+    if (!followsTool()) return;
+    view.camera = endoscopeCamera(*view.X_WT, view.burr_radius);
+    view.is_lit_from_eye = true;
+}
+
 void RenderScene::draw(int width, int height, float ui_scale, GLuint target) {
-    if (view_pending_) applyFirstView(double(width) / height);
-    renderer_.draw(makeView(), nodes_, tool_, width, height, target);
-    if (!settings_.show_hud) return;
+    const bool is_divided = settings_.stereo == StereoMode::kSideBySide;
+    if (view_pending_) applyFirstView(double(is_divided ? width / 2 : width) / height);
     hud_input_.node_count = nodes_.nodeCount();
-    const double metres_per_pixel = camera_.metresPerPixel(height);
-    const ScaleBar bar = hasSceneInfo() ? makeScaleBar(metres_per_pixel, 0.2 * width) : ScaleBar{};
-    hud_painter_.paint(makeHud(hud_input_), bar, metres_per_pixel, settings_.show_help, width, height,
-                       ui_scale);
+    can_pick_ = settings_.stereo == StereoMode::kOff;
+    const FrameView view = makeView();
+    const PictureArea whole{0, width, height};
+    switch (settings_.stereo) {
+        case StereoMode::kOff:
+            drawEye(view, view.camera, whole, ui_scale, target);
+            paintHud(view.camera, whole, ui_scale);
+            break;
+        case StereoMode::kSideBySide:
+            drawSideBySide(view, width, height, ui_scale, target);
+            break;
+        case StereoMode::kAnaglyph:
+            drawAnaglyph(view, width, height, ui_scale, target);
+            break;
+    }
     gl_.check("drawing the head-up display");
+}
+
+std::optional<Eigen::Vector3d> RenderScene::pick(int x, int y) const {
+    if (!can_pick_) return std::nullopt;
+    return renderer_.pick(x, y);
+}
+
+// Names stand in each eye's picture, so that they have the depth of what they name.
+void RenderScene::drawEye(FrameView view, const Camera& camera, const PictureArea& area, float ui_scale,
+                          GLuint target) {
+    view.camera = camera;
+    renderer_.draw(view, nodes_, tool_, area, target);
+    paintNames(view, area, ui_scale);
+}
+
+void RenderScene::drawSideBySide(const FrameView& view, int width, int height, float ui_scale,
+                                 GLuint target) {
+    const StereoPair eyes = stereoPair(view.camera);
+    const int half = width / 2;
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
+    gl_.ClearColor(0, 0, 0, 1);
+    gl_.Clear(GL_COLOR_BUFFER_BIT);  // the last column of an odd width belongs to neither eye
+    for (const auto& [camera, x] : {std::pair{eyes.left, 0}, std::pair{eyes.right, half}}) {
+        const PictureArea area{x, half, height};
+        drawEye(view, camera, area, ui_scale, target);
+        paintHud(camera, area, ui_scale);
+    }
+    gl_.Viewport(0, 0, width, height);
+}
+
+void RenderScene::drawAnaglyph(const FrameView& view, int width, int height, float ui_scale, GLuint target) {
+    const StereoPair eyes = stereoPair(view.camera);
+    const PictureArea whole{0, width, height};
+    anaglyph_.resize(width, height);
+    drawEye(view, eyes.left, whole, ui_scale, anaglyph_.left());
+    drawEye(view, eyes.right, whole, ui_scale, anaglyph_.right());
+    anaglyph_.combine(target);
+    paintHud(view.camera, whole, ui_scale);
+}
+
+// The renderer has bound the framebuffer and set the viewport.
+void RenderScene::paintHud(const Camera& camera, const PictureArea& area, float ui_scale) {
+    if (!settings_.show_hud) return;
+    hud_input_.show_watchers = settings_.show_watchers;
+    const double metres_per_pixel = camera.metresPerPixel(area.height);
+    const ScaleBar bar = hasSceneInfo() ? makeScaleBar(metres_per_pixel, 0.2 * area.width) : ScaleBar{};
+    hud_painter_.paint(makeHud(hud_input_), bar, metres_per_pixel, settings_.show_help, area.width,
+                       area.height, ui_scale);
+}
+
+void RenderScene::paintNames(const FrameView& view, const PictureArea& area, float ui_scale) {
+    std::vector<HudLabel> labels;
+    for (const topics::Viewer& watcher : hud_input_.watchers) {
+        const auto pointer = pointerOf(watcher);
+        if (!pointer || watcher.name().empty()) continue;
+        const Eigen::Vector3d p_C = view.camera.R_WC.transpose() * (*pointer - view.camera.eye);
+        if (p_C.z() >= 0) continue;
+        const double pixels = area.height / (2 * view.camera.halfTangent() * -p_C.z());
+        const double right = area.width / 2.0 + (p_C.x() + view.camera.shift * p_C.z()) * pixels;
+        labels.push_back({float(right), float(area.height / 2.0 - p_C.y() * pixels), watcher.name()});
+    }
+    if (!labels.empty()) hud_painter_.paintLabels(labels, area.width, area.height, ui_scale);
 }
 
 }  // namespace bonemill

@@ -6,8 +6,11 @@
 
 #include <optional>
 #include <utility>
+#include <vector>
 
+#include "render_client/scene/anaglyph.h"
 #include "render_client/scene/hud_painter.h"
+#include "render_client/scene/orbit_camera.h"
 #include "render_client/scene/scene_renderer.h"
 #include "render_client/scene/view_settings.h"
 
@@ -32,8 +35,9 @@ class RenderScene {
     void removeNode(uint32_t leaf) { nodes_.remove(leaf); }
     void clearNodes() { nodes_.clear(); }
 
-    // The first scene, and every scene of another name, resets the view. Throws std::invalid_argument on a
-    // bad message.
+    // The first scene, and every scene of another name, resets the view; a newer revision of the same one
+    // brings another tool. An older revision of the same epoch changes nothing. Throws std::invalid_argument
+    // on a bad message.
     void setSceneInfo(const topics::SceneInfo& info);
     void setToolState(const topics::ToolState& tool) { hud_input_.tool = tool; }
     void setStatus(const topics::Status& status) { hud_input_.status = status; }
@@ -41,17 +45,26 @@ class RenderScene {
     // Shown until it is replaced; nullopt: nothing is shown.
     void setNotice(std::optional<HudNotice> notice) { hud_input_.notice = std::move(notice); }
 
+    // Of this viewer, pictures per second over the last second; 0: not known.
+    void setFrameRate(double frame_rate_hz) { hud_input_.frame_rate_hz = frame_rate_hz; }
+
     OrbitCamera& camera() { return camera_; }
     void setViewOverrides(const ViewOverrides& overrides);
     // Back to the first view, at the next draw().
     void resetView() { view_pending_ = true; }
     ViewSettings& settings() { return settings_; }
-    // Who else is watching, and where instructors point.
-    void setWatchers(std::vector<topics::Viewer> watchers) { watchers_ = std::move(watchers); }
+    // Who is watching, and where instructors point.
+    void setWatchers(std::vector<topics::Viewer> watchers) { hud_input_.watchers = std::move(watchers); }
+
+    // The point of bone or tool (W, m) in the last drawn picture under that pixel, counted from the upper
+    // left: of transparent bone the outer surface, of cut bone also the cut. Nothing over the background,
+    // outside the picture, in stereo and before the first picture.
+    std::optional<Eigen::Vector3d> pick(int x, int y) const;
 
     size_t nodeCount() const { return nodes_.nodeCount(); }
     size_t triangleCount() const { return nodes_.triangleCount(); }
     size_t trianglesDrawn() const { return renderer_.trianglesDrawn(); }
+    const UploadCount& uploads() const { return nodes_.uploads(); }
     bool hasSceneInfo() const { return hud_input_.info.has_value(); }
 
     // Into `target`, a framebuffer of this size (pixels). ui_scale 1 suits 800 pixels of height.
@@ -59,11 +72,20 @@ class RenderScene {
 
   private:
     void applyFirstView(double aspect);
+    bool followsTool() const;
     FrameView makeView() const;
+    void showTool(FrameView& view) const;
+    void drawEye(FrameView view, const Camera& camera, const PictureArea& area, float ui_scale,
+                 GLuint target);
+    void drawSideBySide(const FrameView& view, int width, int height, float ui_scale, GLuint target);
+    void drawAnaglyph(const FrameView& view, int width, int height, float ui_scale, GLuint target);
+    void paintHud(const Camera& camera, const PictureArea& area, float ui_scale);
+    void paintNames(const FrameView& view, const PictureArea& area, float ui_scale);
 
     NodeStore nodes_;
     ToolMesh tool_;
     SceneRenderer renderer_;
+    Anaglyph anaglyph_;
     HudPainter hud_painter_;
     HudInput hud_input_;
     Pose X_WV_;
@@ -72,7 +94,7 @@ class RenderScene {
     ViewOverrides overrides_;
     bool view_pending_ = true;
     ViewSettings settings_;
-    std::vector<topics::Viewer> watchers_;
+    bool can_pick_ = false;
     const GlApi& gl_;
 };
 

@@ -33,20 +33,23 @@ void RenderTargets::makeScene() {
     gl_.BindRenderbuffer(GL_RENDERBUFFER, scene_colour_.name());
     gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width_, height_);
     gl_.BindRenderbuffer(GL_RENDERBUFFER, scene_depth_.name());
-    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH_COMPONENT24, width_, height_);
+    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH24_STENCIL8, width_, height_);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, scene_.name());
     gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, scene_colour_.name());
-    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, scene_depth_.name());
+    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
+                                scene_depth_.name());
     checkComplete("scene");
 }
 
 void RenderTargets::makeResolved() {
     makeTexture(colour_texture_, GL_RGBA8, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
-    makeTexture(depth_texture_, GL_DEPTH_COMPONENT24, width_, height_, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
+    // A depth buffer is resolved only into one of the same format.
+    makeTexture(depth_texture_, GL_DEPTH24_STENCIL8, width_, height_, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
                 GL_NEAREST);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, resolved_.name());
     gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour_texture_.name(), 0);
-    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_texture_.name(), 0);
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D,
+                             depth_texture_.name(), 0);
     checkComplete("resolved scene");
 }
 
@@ -86,6 +89,16 @@ void RenderTargets::resolve() const {
     gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.name());
     gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_,
                         GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+}
+
+std::optional<float> RenderTargets::depthAt(int x, int y) const {
+    if (x < 0 || y < 0 || x >= width_ || y >= height_) return std::nullopt;
+    float depth = 1;
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.name());
+    gl_.ReadPixels(x, height_ - 1 - y, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &depth);
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    if (depth >= 1) return std::nullopt;
+    return depth;
 }
 
 void RenderTargets::checkComplete(const char* what) const {

@@ -3,6 +3,8 @@
 // Thread: the one of the context.
 #pragma once
 
+#include <optional>
+
 #include "render_client/gl/gl_object.h"
 
 namespace bonemill {
@@ -31,6 +33,8 @@ class RenderTargets {
 
     // Scene -> colourTexture and depthTexture.
     void resolve() const;
+    // 0 .. 1 of the resolved picture at a pixel from the upper left; nothing outside and on the background.
+    std::optional<float> depthAt(int x, int y) const;
 
   private:
     void makeScene();

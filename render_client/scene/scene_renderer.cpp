@@ -1,150 +1,72 @@
 #include "render_client/scene/scene_renderer.h"
 
-#include <algorithm>
-#include <cmath>
+#include <string>
 
+#include "render_client/scene/clip_planes.h"
 #include "render_client/scene/shaders.h"
 
 namespace bonemill {
 namespace {
 
-constexpr double kGhostDistance = 1.5e-4;  // m
-constexpr double kGhostAngle = 0.03;       // rad
-constexpr double kShownBeyondView =
-    2.0;  // half picture diagonals at the target that the shadow map covers when one is close
+constexpr GLenum kEyePlane = 3;             // number of the clip plane after those of the cuts
 constexpr double kOcclusionRadius = 0.10;   // of the bone's radius
 constexpr float kOcclusionPicture = 0.06f;  // at most this part of the picture's height
-constexpr double kGrain = 0.045;            // size of the mottling over the bone's radius
-
-Eigen::Matrix4f matrixOf(const Pose& X_AB) {
-    Eigen::Matrix4f matrix = Eigen::Matrix4f::Identity();
-    matrix.topLeftCorner<3, 3>() = X_AB.rotation.toRotationMatrix().cast<float>();
-    matrix.topRightCorner<3, 1>() = X_AB.position.cast<float>();
-    return matrix;
-}
-
-struct Sphere {
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();
-    double radius = 0;
-};
-
-Sphere around(const Eigen::AlignedBox3d& box) {
-    if (box.isEmpty()) return {};
-    return {box.center(), box.diagonal().norm() / 2};
-}
-
-template <class Box>
-void extendBy(Eigen::AlignedBox3d& box_W, const Pose& X_WA, const Box& box_A) {
-    if (box_A.isEmpty()) return;
-    for (int i = 0; i < 8; ++i) {
-        box_W.extend(X_WA * box_A.corner(static_cast<typename Box::CornerType>(i)).template cast<double>());
-    }
-}
-
-struct KeyLight {
-    Eigen::Vector3f direction;           // C, towards the light
-    Eigen::Matrix4f shadow_from_camera;  // to the shadow map's -1 .. 1
-    float shadow_texel;                  // m
-};
-
-// From the upper left of the camera; its shadow map covers the sphere.
-KeyLight aimKeyLight(const OrbitCamera& camera, const Sphere& lit_W) {
-    const Eigen::Vector3d key_C = Eigen::Vector3d(-0.55, 0.70, 0.62).normalized();
-    const double half_size = std::max(lit_W.radius, 1e-4);
-    Eigen::Matrix3d R_LC;
-    R_LC.row(2) = -key_C;  // depth grows away from the light
-    R_LC.row(0) = Eigen::Vector3d::UnitY().cross(key_C).normalized();
-    R_LC.row(1) = key_C.cross(Eigen::Vector3d(R_LC.row(0)));
-    const Eigen::Vector3d center_C = camera.R_WC().transpose() * (lit_W.center - camera.eye());
-    Eigen::Matrix4d shadow_from_camera = Eigen::Matrix4d::Identity();
-    shadow_from_camera.topLeftCorner<3, 3>() = R_LC / half_size;
-    shadow_from_camera.topRightCorner<3, 1>() = -(R_LC * center_C) / half_size;
-    return {key_C.cast<float>(), shadow_from_camera.cast<float>(),
-            float(2 * half_size / RenderTargets::kShadowSize)};
-}
 
 }  // namespace
 
-bool isGhostVisible(const Pose& X_WT, const Pose& X_WT_device) {
-    return (X_WT.position - X_WT_device.position).norm() > kGhostDistance ||
-           X_WT.rotation.angularDistance(X_WT_device.rotation) > kGhostAngle;
-}
-
-struct SceneRenderer::Frame {
-    Eigen::Matrix4f camera_from_V;
-    Eigen::Matrix4f clip_from_camera;
-    std::optional<Eigen::Matrix4f> camera_from_T;
-    std::optional<Eigen::Matrix4f> camera_from_ghost;
-    KeyLight key;
-    Eigen::Vector2f near_far;
-    Eigen::Vector2f tangents;  // of half the field of view
-    float bone_radius;         // m
-};
-
 SceneRenderer::SceneRenderer(const GlApi& gl)
     : gl_(gl),
-      bone_(gl, "bone", shaders::kMeshVertex, std::string(shaders::kLighting) + shaders::kBoneFragment),
+      bone_(gl),
+      markers_(gl),
       tool_(gl, "tool", shaders::kToolVertex, std::string(shaders::kLighting) + shaders::kToolFragment),
       ghost_(gl, "ghost", shaders::kToolVertex, shaders::kGhostFragment),
-      depth_(gl, "depth", shaders::kDepthVertex, shaders::kDepthFragment),
+      shadow_(gl, "shadow", shaders::kShadowVertex, shaders::kDepthFragment),
       background_(gl, "background", shaders::kFullScreenVertex, shaders::kBackgroundFragment),
       occlusion_(gl, "occlusion", shaders::kFullScreenVertex, shaders::kOcclusionFragment),
       composite_(gl, "composite", shaders::kFullScreenVertex, shaders::kCompositeFragment),
       no_attributes_(gl) {}
 
-void SceneRenderer::draw(const FrameView& view, const NodeStore& nodes, const ToolMesh& tool, int width,
-                         int height, GLuint target) {
-    if (!targets_ || !targets_->hasSize(width, height))
-        targets_ = std::make_unique<RenderTargets>(gl_, width, height);
-    const Frame frame = makeFrame(view, tool, double(width) / height);
+void SceneRenderer::draw(const FrameView& view, const NodeStore& nodes, const ToolMesh& tool,
+                         const PictureArea& area, GLuint target) {
+    if (!targets_ || !targets_->hasSize(area.width, area.height))
+        targets_ = std::make_unique<RenderTargets>(gl_, area.width, area.height);
+    const Frame frame = Frame::make(view, tool.box(), area.aspect());
+    last_camera_ = view.camera;
+    last_near_far_ = frame.near_far;
 
     gl_.Disable(GL_BLEND);
     gl_.Disable(GL_CULL_FACE);
-    drawShadowMap(frame, nodes, tool);
+    drawShadowMap(frame, view, nodes, tool);
 
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->scene());
-    gl_.Viewport(0, 0, width, height);
-    gl_.Clear(GL_DEPTH_BUFFER_BIT);
+    gl_.Viewport(0, 0, area.width, area.height);
+    gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
     drawBackground();
-    drawBone(frame, nodes);
-    drawTool(frame, view, tool);
+    drawSolids(frame, view, nodes, tool);
     drawGhost(frame, tool);
+    markers_.draw(frame, view);
     targets_->resolve();
     drawOcclusion(frame);
-    compose(frame, target);
+    compose(frame, area, target);
     gl_.check("drawing the scene");
 }
 
-SceneRenderer::Frame SceneRenderer::makeFrame(const FrameView& view, const ToolMesh& tool,
-                                              double aspect) const {
-    const OrbitCamera& camera = view.camera;
-    Eigen::AlignedBox3d everything_W;
-    extendBy(everything_W, view.X_WV, view.bone_V);
-    const Sphere bone = around(everything_W);
-    const bool has_tool = view.X_WT && !tool.isEmpty();
-    const bool has_ghost = has_tool && view.X_WT_device && isGhostVisible(*view.X_WT, *view.X_WT_device);
-    if (has_tool) extendBy(everything_W, *view.X_WT, tool.box());
-    if (has_ghost) extendBy(everything_W, *view.X_WT_device, tool.box());
-    const Sphere all = around(everything_W);
-
-    Frame frame;
-    const Eigen::Matrix4f X_CW = camera.X_CW();
-    const DepthRange range = camera.depthRange(all.center, std::max(all.radius, 1e-3) * 1.01);
-    frame.camera_from_V = X_CW * matrixOf(view.X_WV);
-    frame.clip_from_camera = camera.clipFromCamera(aspect, range);
-    if (has_tool) frame.camera_from_T = X_CW * matrixOf(*view.X_WT);
-    if (has_ghost) frame.camera_from_ghost = X_CW * matrixOf(*view.X_WT_device);
-    frame.near_far = Eigen::Vector2d(range.near, range.far).cast<float>();
-    const double tangent = std::tan(OrbitCamera::kFieldOfView / 2);
-    frame.tangents = Eigen::Vector2d(tangent * aspect, tangent).cast<float>();
-    frame.bone_radius = float(std::max(bone.radius, 1e-4));
-
-    const double shown = kShownBeyondView * camera.distance * tangent * std::hypot(1.0, aspect);
-    frame.key = aimKeyLight(camera, shown < bone.radius ? Sphere{camera.target, shown} : bone);
-    return frame;
+std::optional<Eigen::Vector3d> SceneRenderer::pick(int x, int y) const {
+    if (!targets_) return std::nullopt;
+    const auto stored = targets_->depthAt(x, y);
+    if (!stored) return std::nullopt;
+    const double near = last_near_far_.x(), far = last_near_far_.y();
+    const double depth = 2 * near * far / (near + far - (2.0 * *stored - 1) * (far - near));
+    const double tangent = last_camera_.halfTangent();
+    const double aspect = double(targets_->width()) / targets_->height();
+    const double right = (2 * (x + 0.5) / targets_->width() - 1) * tangent * aspect + last_camera_.shift;
+    const double up = (1 - 2 * (y + 0.5) / targets_->height()) * tangent;
+    return last_camera_.eye + last_camera_.R_WC * (depth * Eigen::Vector3d(right, up, -1));
 }
 
-void SceneRenderer::drawShadowMap(const Frame& frame, const NodeStore& nodes, const ToolMesh& tool) const {
+// Transparent bone casts no shadow: what is seen through it would be dark.
+void SceneRenderer::drawShadowMap(const Frame& frame, const FrameView& view, const NodeStore& nodes,
+                                  const ToolMesh& tool) const {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->shadow());
     gl_.Viewport(0, 0, RenderTargets::kShadowSize, RenderTargets::kShadowSize);
     gl_.Enable(GL_DEPTH_TEST);
@@ -152,16 +74,26 @@ void SceneRenderer::drawShadowMap(const Frame& frame, const NodeStore& nodes, co
     gl_.DepthMask(GL_TRUE);
     gl_.Enable(GL_DEPTH_CLAMP);  // casters between the light and the map's near plane still cast
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
-    depth_.use();
-    const Eigen::Matrix4f shadow_from_V = frame.key.shadow_from_camera * frame.camera_from_V;
-    depth_.set("clip_from_model", shadow_from_V);
-    nodes.draw(depth_, shadow_from_V);
+    if (view.is_lit_from_eye) gl_.Enable(GL_CLIP_DISTANCE0 + kEyePlane);
+    shadow_.use();
+    const auto aim = [&](const Eigen::Matrix4f& camera_from_model) {
+        const Eigen::Matrix4f shadow_from_model = frame.key.shadow_from_camera * camera_from_model;
+        shadow_.set("clip_from_model", shadow_from_model);
+        shadow_.set("eye_plane", Eigen::Vector4f(-camera_from_model.row(2).transpose()));
+        return shadow_from_model;
+    };
+    if (!view.bone_opacity) {
+        const ClipPlanes clip(gl_, frame.cuts_V);
+        setCutPlanes(shadow_, frame.cuts_V);
+        nodes.draw(shadow_, aim(frame.camera_from_V));
+    }
     if (frame.camera_from_T) {
-        depth_.set("clip_from_model", Eigen::Matrix4f(frame.key.shadow_from_camera * *frame.camera_from_T));
-        depth_.set("origin", Eigen::Vector3f(Eigen::Vector3f::Zero()));
-        depth_.set("step", Eigen::Vector3f(Eigen::Vector3f::Ones()));
+        aim(*frame.camera_from_T);
+        shadow_.set("origin", Eigen::Vector3f(Eigen::Vector3f::Zero()));
+        shadow_.set("step", Eigen::Vector3f(Eigen::Vector3f::Ones()));
         tool.draw();
     }
+    gl_.Disable(GL_CLIP_DISTANCE0 + kEyePlane);
     gl_.Disable(GL_DEPTH_CLAMP);
 }
 
@@ -172,22 +104,13 @@ void SceneRenderer::drawBackground() const {
     gl_.Enable(GL_DEPTH_TEST);
 }
 
-void SceneRenderer::setLight(const Program& program, const Frame& frame) const {
-    gl_.ActiveTexture(GL_TEXTURE0);
-    gl_.BindTexture(GL_TEXTURE_2D, targets_->shadowTexture());
-    program.set("shadow_map", 0);
-    program.set("key_direction", frame.key.direction);
-    program.set("shadow_texel", frame.key.shadow_texel);
-    program.set("shadow_from_camera", frame.key.shadow_from_camera);
-    program.set("clip_from_camera", frame.clip_from_camera);
-}
-
-void SceneRenderer::drawBone(const Frame& frame, const NodeStore& nodes) {
-    bone_.use();
-    setLight(bone_, frame);
-    bone_.set("camera_from_model", frame.camera_from_V);
-    bone_.set("grain_size", float(kGrain) * frame.bone_radius);
-    triangles_drawn_ = nodes.draw(bone_, frame.clip_from_camera * frame.camera_from_V);
+void SceneRenderer::drawSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes,
+                               const ToolMesh& tool) {
+    const auto draw_tool = [&] { drawTool(frame, view, tool); };
+    if (view.bone_opacity)
+        return bone_.drawTransparent(frame, nodes, targets_->shadowTexture(), *view.bone_opacity, draw_tool);
+    bone_.drawOpaque(frame, nodes, targets_->shadowTexture());
+    draw_tool();
 }
 
 void SceneRenderer::drawTool(const Frame& frame, const FrameView& view, const ToolMesh& tool) const {
@@ -196,7 +119,7 @@ void SceneRenderer::drawTool(const Frame& frame, const FrameView& view, const To
                                  : view.burr_work == BurrWork::kAdding ? Eigen::Vector3f(0.05f, 0.75f, 1.1f)
                                                                        : Eigen::Vector3f(0, 0, 0);
     tool_.use();
-    setLight(tool_, frame);
+    frame.setLight(gl_, tool_, targets_->shadowTexture());
     tool_.set("camera_from_model", *frame.camera_from_T);
     tool_.set("burr_radius", float(view.burr_radius));
     tool_.set("milling_glow", glow);
@@ -239,14 +162,15 @@ void SceneRenderer::drawOcclusion(const Frame& frame) const {
     occlusion_.set("depth_map", 0);
     occlusion_.set("near_far", frame.near_far);
     occlusion_.set("tangents", frame.tangents);
+    occlusion_.set("shift", frame.shift);
     occlusion_.set("radius", float(kOcclusionRadius) * frame.bone_radius);
     occlusion_.set("max_radius", kOcclusionPicture);
     drawFullScreen();
 }
 
-void SceneRenderer::compose(const Frame& frame, GLuint target) const {
+void SceneRenderer::compose(const Frame& frame, const PictureArea& area, GLuint target) const {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
-    gl_.Viewport(0, 0, targets_->width(), targets_->height());
+    gl_.Viewport(area.x, 0, area.width, area.height);
     const GLuint textures[] = {targets_->colourTexture(), targets_->depthTexture(),
                                targets_->occlusionTexture()};
     for (GLenum unit = 0; unit < 3; ++unit) {

@@ -9,6 +9,7 @@ uniform sampler2DShadow shadow_map;
 uniform vec3 key_direction;   // C, towards the light
 uniform float shadow_texel;   // m in the world per texel of the shadow map
 uniform mat4 shadow_from_camera;
+uniform float light_reach;    // m from the eye to where its own light is as bright as the room's; 0: the room's
 
 const vec3 kKeyColour = vec3(1.00, 0.94, 0.85) * 2.35;
 const vec3 kFillColour = vec3(0.60, 0.70, 0.92) * 0.30;
@@ -36,7 +37,26 @@ float keyVisibility(vec3 p_C, vec3 normal) {
     return sum / 9.0;
 }
 
+float falloff(vec3 p_C) {
+    if (light_reach <= 0.0) return 1.0;
+    return 1.5 / (0.85 + dot(p_C, p_C) / (light_reach * light_reach));
+}
+
 vec3 hemisphere(vec3 normal) { return mix(kGround, kSky, 0.5 + 0.5 * normal.y); }
+)";
+
+const char kNoise[] = R"(
+float hash(vec3 cell) { return fract(sin(dot(cell, vec3(127.1, 311.7, 74.7))) * 43758.5453); }
+
+float valueNoise(vec3 p) {
+    vec3 cell = floor(p), f = fract(p);
+    f = f * f * (3.0 - 2.0 * f);
+    vec4 low = vec4(hash(cell), hash(cell + vec3(1, 0, 0)), hash(cell + vec3(0, 1, 0)), hash(cell + vec3(1, 1, 0)));
+    cell.z += 1.0;
+    vec4 high = vec4(hash(cell), hash(cell + vec3(1, 0, 0)), hash(cell + vec3(0, 1, 0)), hash(cell + vec3(1, 1, 0)));
+    vec4 z = mix(low, high, f.z);
+    return mix(mix(z.x, z.y, f.x), mix(z.z, z.w, f.x), f.y);
+}
 )";
 
 const char kMeshVertex[] = R"(
@@ -46,9 +66,12 @@ uniform vec3 origin;
 uniform vec3 step;
 uniform mat4 camera_from_model;
 uniform mat4 clip_from_camera;
+uniform vec4 cut_planes[3];  // model frame: shown where dot(plane, (p, 1)) >= 0
 out vec3 p_C;
 out vec3 n_C;
 out vec3 p_M;
+out float gl_ClipDistance[3];
+invariant gl_Position;  // a layer is found by its depth first and then drawn where the depth is equal
 
 vec3 unitVector(vec2 uv) {
     vec3 v = vec3(uv, 1.0 - abs(uv.x) - abs(uv.y));
@@ -61,6 +84,7 @@ void main() {
     p_C = (camera_from_model * vec4(p_M, 1.0)).xyz;
     n_C = mat3(camera_from_model) * unitVector(octahedral / 127.0);
     gl_Position = clip_from_camera * vec4(p_C, 1.0);
+    for (int i = 0; i < 3; ++i) gl_ClipDistance[i] = dot(cut_planes[i], vec4(p_M, 1.0));
 }
 )";
 
@@ -81,12 +105,20 @@ void main() {
 }
 )";
 
-const char kDepthVertex[] = R"(
+const char kShadowVertex[] = R"(
 layout(location = 0) in vec3 steps;
 uniform vec3 origin;
 uniform vec3 step;
 uniform mat4 clip_from_model;
-void main() { gl_Position = clip_from_model * vec4(origin + step * steps, 1.0); }
+uniform vec4 cut_planes[3];  // model frame
+uniform vec4 eye_plane;      // model frame: what lies behind the eye casts no shadow
+out float gl_ClipDistance[4];
+void main() {
+    vec4 p_M = vec4(origin + step * steps, 1.0);
+    gl_Position = clip_from_model * p_M;
+    for (int i = 0; i < 3; ++i) gl_ClipDistance[i] = dot(cut_planes[i], p_M);
+    gl_ClipDistance[3] = dot(eye_plane, p_M);
+}
 )";
 
 const char kDepthFragment[] = "void main() {}\n";
@@ -115,20 +147,10 @@ const char kBoneFragment[] = R"(
 in vec3 p_C;
 in vec3 n_C;
 in vec3 p_M;
-uniform float grain_size;  // m, of the faint mottling
+uniform float grain_size;    // m, of the faint mottling
+uniform vec2 opacity;        // facing the eye, and the part of the rest that the outline adds
+uniform vec3 inside_colour;  // linear
 out vec4 colour;
-
-float hash(vec3 cell) { return fract(sin(dot(cell, vec3(127.1, 311.7, 74.7))) * 43758.5453); }
-
-float valueNoise(vec3 p) {
-    vec3 cell = floor(p), f = fract(p);
-    f = f * f * (3.0 - 2.0 * f);
-    vec4 low = vec4(hash(cell), hash(cell + vec3(1, 0, 0)), hash(cell + vec3(0, 1, 0)), hash(cell + vec3(1, 1, 0)));
-    cell.z += 1.0;
-    vec4 high = vec4(hash(cell), hash(cell + vec3(1, 0, 0)), hash(cell + vec3(0, 1, 0)), hash(cell + vec3(1, 1, 0)));
-    vec4 z = mix(low, high, f.z);
-    return mix(mix(z.x, z.y, f.x), mix(z.z, z.w, f.x), f.y);
-}
 
 void main() {
     vec3 to_eye = normalize(-p_C);
@@ -138,7 +160,7 @@ void main() {
 
     float mottling = valueNoise(p_M / grain_size) * 0.65 + valueNoise(p_M / grain_size * 2.7 + 11.0) * 0.35;
     vec3 albedo = mix(vec3(0.69, 0.55, 0.38), vec3(0.82, 0.71, 0.54), mottling);
-    if (inside) albedo = vec3(0.42, 0.16, 0.12);
+    if (inside) albedo = inside_colour;
 
     float facing = dot(normal, key_direction);
     float visible = keyVisibility(p_C, normal);
@@ -147,11 +169,69 @@ void main() {
     vec3 light = kKeyColour * key + kFillColour * max(dot(normal, kFillDirection), 0.0) + hemisphere(normal);
     // Light inside the bone gives the edge of the shadow a warm tint.
     light += vec3(0.34, 0.13, 0.05) * key * (1.0 - visible);
+    light *= falloff(p_C);
 
     vec3 half_way = normalize(key_direction + to_eye);
     float gloss = pow(max(dot(normal, half_way), 0.0), 42.0) * 0.34 * visible * step(0.0, facing);
     float rim = pow(1.0 - max(dot(normal, to_eye), 0.0), 4.0) * (0.35 + 0.65 * max(normal.y, 0.0));
-    colour = vec4(toneMap(albedo * light * 0.56 + kKeyColour * gloss * 0.4 + kRimColour * rim * 0.16), 1.0);
+    float outline = pow(1.0 - max(dot(normal, to_eye), 0.0), 2.0);
+    colour = vec4(toneMap(albedo * light * 0.56 + kKeyColour * gloss * 0.4 + kRimColour * rim * 0.16),
+                  opacity.x + (1.0 - opacity.x) * opacity.y * outline);
+}
+)";
+
+// The cut face of bone, where the line of sight enters what the cut-planes leave. Hatch and mottling are
+// fixed to the bone.
+const char kCapFragment[] = R"(
+in vec2 uv;
+uniform vec4 cut_planes[3];  // C: shown where dot(plane, (p, 1)) >= 0
+uniform vec2 near_far;
+uniform vec2 tangents;       // of the half field of view, x and y
+uniform float shift;         // x / depth of the picture's middle
+uniform mat4 clip_from_camera;
+uniform mat4 model_from_camera;
+uniform vec3 bone_low, bone_high;  // V
+uniform float grain_size;          // m
+uniform float opacity;
+out vec4 colour;
+
+void main() {
+    vec3 ray = vec3((uv * 2.0 - 1.0) * tangents + vec2(shift, 0.0), -1.0);
+    float entry = near_far.x;
+    vec3 normal = vec3(0.0);
+    for (int i = 0; i < 3; ++i) {
+        float closing = dot(cut_planes[i].xyz, ray);
+        float crossing = -cut_planes[i].w / closing;
+        if (closing > 0.0 && crossing > entry) {
+            entry = crossing;
+            normal = -cut_planes[i].xyz;
+        }
+    }
+    if (normal == vec3(0.0)) discard;  // the eye is inside the bone
+
+    vec3 eye_M = model_from_camera[3].xyz, ray_M = mat3(model_from_camera) * ray;
+    vec3 low = (bone_low - eye_M) / ray_M, high = (bone_high - eye_M) / ray_M;
+    vec3 first = min(low, high);
+    if (max(max(first.x, first.y), first.z) > entry) discard;  // through the scan's open border
+
+    vec3 p_C = entry * ray;
+    vec3 p_M = eye_M + entry * ray_M;
+    float mottling = valueNoise(p_M / grain_size * 1.6) * 0.6 + valueNoise(p_M / grain_size * 5.0) * 0.4;
+    vec3 albedo = mix(vec3(0.52, 0.20, 0.15), vec3(0.78, 0.44, 0.34), mottling);
+    float across = (p_M.x + p_M.y + p_M.z) / grain_size * 2.2;
+    float soft = fwidth(across);
+    float line = smoothstep(0.5 - soft, 0.5, abs(fract(across) - 0.5) + 0.10);
+    albedo *= 1.0 - 0.16 * line * (1.0 - smoothstep(0.25, 0.6, soft));
+
+    float facing = max(dot(normal, key_direction), 0.0);
+    float visible = keyVisibility(p_C, normal);
+    vec3 light = kKeyColour * facing * mix(0.06, 1.0, visible)
+               + kFillColour * max(dot(normal, kFillDirection), 0.0) + hemisphere(normal);
+    // A section is read by its outline, not by its tilt towards the light.
+    light = mix(light, vec3(1.25), 0.35);
+    colour = vec4(toneMap(albedo * light * falloff(p_C) * 0.56), opacity);
+    vec4 clip = clip_from_camera * vec4(p_C, 1.0);
+    gl_FragDepth = clip.z / clip.w * 0.5 + 0.5;
 }
 )";
 
@@ -218,6 +298,7 @@ in vec2 uv;
 uniform sampler2D depth_map;
 uniform vec2 near_far;
 uniform vec2 tangents;      // of the half field of view, x and y
+uniform float shift;        // x / depth of the picture's middle
 uniform float radius;       // m
 uniform float max_radius;   // in picture heights
 out vec2 occlusion_depth;
@@ -231,7 +312,7 @@ float eyeDepth(ivec2 texel) {
 vec3 position(ivec2 texel, vec2 size) {
     vec2 ndc = (vec2(texel) + 0.5) / size * 2.0 - 1.0;
     float depth = eyeDepth(texel);
-    return vec3(ndc * tangents * depth, -depth);
+    return vec3((ndc * tangents + vec2(shift, 0.0)) * depth, -depth);
 }
 vec3 nearest(vec3 center, vec3 a, vec3 b) {
     return abs(a.z - center.z) < abs(b.z - center.z) ? a - center : center - b;
@@ -277,12 +358,13 @@ out vec4 colour;
 
 void main() {
     vec3 shaded = texture(colour_map, uv).rgb;
-    float stored = texelFetch(depth_map, ivec2(gl_FragCoord.xy), 0).r;
+    vec2 pixel = uv * vec2(textureSize(depth_map, 0));
+    float stored = texelFetch(depth_map, ivec2(pixel), 0).r;
     if (stored < 1.0) {
         float z = stored * 2.0 - 1.0;
         float depth = 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - z * (near_far.y - near_far.x));
         ivec2 limit = textureSize(occlusion_map, 0) - 1;
-        ivec2 base = ivec2(floor(gl_FragCoord.xy * 0.5 - 0.5)) - 1;
+        ivec2 base = ivec2(floor(pixel * 0.5 - 0.5)) - 1;
         float sum = 0.0, weights = 1e-4;
         for (int y = 0; y < 4; ++y)
             for (int x = 0; x < 4; ++x) {
@@ -296,6 +378,44 @@ void main() {
         shaded *= mix(vec3(0.24, 0.15, 0.11), vec3(1.0), occlusion);
     }
     colour = vec4(shaded, 1.0);
+}
+)";
+
+// Half-colour: red from the left eye's brightness, green and blue from the right eye. Ivory keeps a hue.
+const char kAnaglyphFragment[] = R"(
+in vec2 uv;
+uniform sampler2D left_eye;
+uniform sampler2D right_eye;
+out vec4 colour;
+void main() {
+    float red = dot(texture(left_eye, uv).rgb, vec3(0.299, 0.587, 0.114));
+    colour = vec4(red, texture(right_eye, uv).gb, 1.0);
+}
+)";
+
+const char kMarkerVertex[] = R"(
+layout(location = 0) in vec3 position;  // C, m
+layout(location = 1) in vec3 normal;    // C; 0: it glows by itself
+layout(location = 2) in vec4 colour;
+uniform mat4 clip_from_camera;
+out vec3 f_normal;
+out vec4 f_colour;
+void main() {
+    f_normal = normal;
+    f_colour = colour;
+    gl_Position = clip_from_camera * vec4(position, 1.0);
+}
+)";
+
+const char kMarkerFragment[] = R"(
+in vec3 f_normal;
+in vec4 f_colour;
+uniform float strength;
+out vec4 colour;
+void main() {
+    float shade = 1.0;
+    if (dot(f_normal, f_normal) > 0.25) shade = 0.62 + 0.38 * max(dot(normalize(f_normal), normalize(vec3(-0.4, 0.6, 0.7))), 0.0);
+    colour = vec4(f_colour.rgb * shade, f_colour.a * strength);
 }
 )";
 

@@ -5,18 +5,23 @@ namespace bonemill::shaders {
 
 // Vertex attributes of meshes: 0 position (quantisation steps), 1 normal (octahedral ±127, or a vector for
 // the tool).
-extern const char kMeshVertex[];   // bone nodes
-extern const char kToolVertex[];   // the tool
-extern const char kDepthVertex[];  // shadow casters, bone or tool
-extern const char kDepthFragment[];
+extern const char kMeshVertex[];        // bone nodes
+extern const char kToolVertex[];        // the tool
+extern const char kShadowVertex[];      // shadow casters, bone or tool
+extern const char kDepthFragment[];     // no colour
 extern const char kFullScreenVertex[];  // 3 vertices, no attributes
 extern const char kBackgroundFragment[];
-extern const char kLighting[];  // goes before the next two
+extern const char kLighting[];  // goes before the next four
+extern const char kNoise[];     // goes before the next two
 extern const char kBoneFragment[];
+extern const char kCapFragment[];
 extern const char kToolFragment[];
 extern const char kGhostFragment[];
 extern const char kOcclusionFragment[];
 extern const char kCompositeFragment[];
+extern const char kAnaglyphFragment[];
+extern const char kMarkerVertex[];
+extern const char kMarkerFragment[];
 extern const char kHudVertex[];
 extern const char kHudFragment[];
 

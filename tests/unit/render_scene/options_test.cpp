@@ -76,6 +76,46 @@ TEST(Options, SetAccuracyIsAModeOfItsOwn) {
     EXPECT_FALSE(parse({})->set_accuracy);
 }
 
+TEST(Options, WhatIsShownAtTheStart) {
+    const ViewSettings plain = parse({})->settings;
+    EXPECT_FALSE(plain.cuts[0].is_on || plain.cuts[1].is_on || plain.cuts[2].is_on);
+    EXPECT_FALSE(plain.is_transparent);
+    EXPECT_TRUE(plain.show_hud);
+    const ViewSettings all = parse({"--cut-x", "0.25", "--cut-z", "0.5", "--flip-z", "--transparent", "0.2",
+                                    "--stereo", "anaglyph", "--camera", "endoscope", "--no-hud"})
+                                 ->settings;
+    EXPECT_TRUE(all.cuts[0].is_on && !all.cuts[1].is_on && all.cuts[2].is_on);
+    EXPECT_DOUBLE_EQ(all.cuts[0].position, 0.25);
+    EXPECT_FALSE(all.cuts[0].is_flipped);
+    EXPECT_TRUE(all.cuts[2].is_flipped);
+    EXPECT_TRUE(all.is_transparent);
+    EXPECT_DOUBLE_EQ(all.opacity, 0.2);
+    EXPECT_EQ(all.stereo, StereoMode::kAnaglyph);
+    EXPECT_EQ(all.camera, CameraMode::kEndoscope);
+    EXPECT_FALSE(all.show_hud);
+    EXPECT_EQ(parse({"--stereo", "side-by-side"})->settings.stereo, StereoMode::kSideBySide);
+    const ViewSettings by_default = parse({"--transparent"})->settings;
+    EXPECT_TRUE(by_default.is_transparent);
+    EXPECT_DOUBLE_EQ(by_default.opacity, ViewSettings::kDefaultOpacity);
+    EXPECT_TRUE(parse({"--transparent", "--offscreen", "--out", "p"})->offscreen);
+}
+
+TEST(Options, RefusesViewsThatMakeNoSense) {
+    EXPECT_THROW(parse({"--cut-x"}), UserError);
+    EXPECT_THROW(parse({"--cut-x", "1.5"}), UserError);
+    EXPECT_THROW(parse({"--cut-y", "-0.5"}), UserError);
+    EXPECT_THROW(parse({"--flip-y"}), UserError);
+    EXPECT_THROW(parse({"--cut-x", "0.5", "--flip-y"}), UserError);
+    EXPECT_THROW(parse({"--transparent", "2"}), UserError);
+    EXPECT_THROW(parse({"--transparent", "0.2", "0.3"}), UserError);
+    EXPECT_THROW(parse({"--stereo", "cross-eyed"}), UserError);
+    EXPECT_THROW(parse({"--camera", "fly"}), UserError);
+    for (const char* view : {"--transparent", "--no-hud"})
+        EXPECT_THROW(parse({"--set-accuracy", "fast", view}), UserError) << view;
+    EXPECT_THROW(parse({"--set-accuracy", "fast", "--cut-x", "0.5"}), UserError);
+    EXPECT_THROW(parse({"--set-accuracy", "fast", "--camera", "orbit"}), UserError);
+}
+
 TEST(Options, RefusesWhatMakesNoSense) {
     EXPECT_THROW(parse({"--set-accuracy"}), UserError);
     EXPECT_THROW(parse({"--set-accuracy", ""}), UserError);

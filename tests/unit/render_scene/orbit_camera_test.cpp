@@ -11,8 +11,9 @@ namespace {
 using Eigen::Vector3d;
 
 // Normalised device coordinates of a point in W.
-Eigen::Vector3f project(const OrbitCamera& camera, double aspect, const DepthRange& range,
+Eigen::Vector3f project(const OrbitCamera& orbit, double aspect, const DepthRange& range,
                         const Vector3d& p_W) {
+    const Camera camera = orbit.view();
     const Eigen::Vector4f clip =
         camera.clipFromCamera(aspect, range) * camera.X_CW() * p_W.cast<float>().homogeneous();
     return clip.hnormalized();
@@ -111,13 +112,13 @@ TEST(OrbitCamera, FitShowsEveryCornerAndNearlyFillsThePicture) {
 TEST(OrbitCamera, DepthRangeHoldsTheSphereOrStaysInFrontOfTheEye) {
     OrbitCamera camera;
     camera.distance = 0.5;
-    const DepthRange outside = camera.depthRange(camera.target, 0.1);
+    const DepthRange outside = camera.view().depthRange(camera.target, 0.1);
     EXPECT_NEAR(outside.near, 0.4, 1e-12);
     EXPECT_NEAR(outside.far, 0.6, 1e-12);
-    const DepthRange within = camera.depthRange(camera.target, 3);
+    const DepthRange within = camera.view().depthRange(camera.target, 3);
     EXPECT_GT(within.near, 0);
     EXPECT_NEAR(within.far, 3.5, 1e-12);
-    const DepthRange behind = camera.depthRange(camera.eye() + camera.towardsEye(), 0.1);
+    const DepthRange behind = camera.view().depthRange(camera.eye() + camera.towardsEye(), 0.1);
     EXPECT_GT(behind.near, 0);
     EXPECT_GT(behind.far, behind.near);
 }
@@ -125,7 +126,7 @@ TEST(OrbitCamera, DepthRangeHoldsTheSphereOrStaysInFrontOfTheEye) {
 TEST(OrbitCamera, MetresPerPixelAgreesWithTheProjection) {
     OrbitCamera camera;
     constexpr int kHeight = 600;
-    const Vector3d point = camera.target + camera.R_WC().col(1) * camera.metresPerPixel(kHeight);
+    const Vector3d point = camera.target + camera.R_WC().col(1) * camera.view().metresPerPixel(kHeight);
     EXPECT_NEAR(project(camera, 1, {0.01, 2}, point).y(), 2.0 / kHeight, 1e-6);
 }
 

@@ -1,0 +1,28 @@
+// Pictures compared with those in the repository (tests/gl/golden).
+#pragma once
+
+#include <string>
+
+#include "render_client/offscreen/picture.h"
+
+namespace bonemill::test {
+
+struct PictureDifference {
+    double bad_part = 0;  // of the pixels that differ visibly after the same soft focus of both pictures
+    Picture shown{1, 1};  // where: bright red
+    bool isVisible() const { return bad_part > kTolerated; }
+    // Antialiasing of another Mesa version changes single pixels of outlines and letters: nearly nothing
+    // after the soft focus.
+    static constexpr double kTolerated = 0.0015;
+};
+
+// Pictures of different sizes differ everywhere.
+PictureDifference compare(const Picture& actual, const Picture& expected);
+
+// With BONEMILL_WRITE_GOLDEN=1 in the environment the picture becomes the golden one. Else the message is
+// empty when they look the same; if not it names the actual and the difference picture, which were written.
+std::string goldenProblem(const Picture& actual, const std::string& name);
+
+Picture readGolden(const std::string& name);
+
+}  // namespace bonemill::test

@@ -1,0 +1,204 @@
+// One picture per way of looking, compared with the ones in the repository; and proof that the comparison
+// sees what matters.
+#include "tests/gl/golden.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "render_client/offscreen/osmesa_context.h"
+#include "tests/gl/altered_shaders.h"
+#include "tests/gl/milled_scene.h"
+
+namespace bonemill {
+namespace {
+
+using test::Alteration;
+
+constexpr int kWidth = 480;
+constexpr int kHeight = 300;
+constexpr float kUiScale = 0.75f;
+
+class Golden : public testing::Test {
+  protected:
+    Golden() : context_(kWidth, kHeight) { begin(context_.gl()); }
+
+    void begin(const GlApi& gl) {
+        scene_.reset();
+        scene_ = std::make_unique<RenderScene>(gl);
+        scene_->settings().show_hud = false;
+        scene_->settings().show_force = false;
+    }
+    Picture draw() {
+        scene_->draw(kWidth, kHeight, kUiScale);
+        return context_.read();
+    }
+    Picture drawMilledBlock() {
+        test::showMilledBlock(*scene_);
+        return draw();
+    }
+    void cut(size_t axis, double position, bool is_flipped) {
+        scene_->settings().cuts[axis] = {true, position, is_flipped};
+    }
+    void lookThroughTheCut() {
+        cut(0, 0.45, false);
+        scene_->setViewOverrides({.target = {}, .distance = {}, .azimuth = 0.9, .elevation = {}});
+    }
+
+    // Draws what `prepare` sets up with altered shaders, and expects the comparison to see it.
+    template <class Prepare>
+    void expectSeen(const std::string& golden, const std::vector<Alteration>& alterations,
+                    Prepare&& prepare) {
+        const GlApi altered = test::alterShaders(context_.gl(), alterations);
+        begin(altered);
+        ASSERT_GT(test::alterationsDone(), 0) << "the shaders have changed: " << alterations.front().what;
+        prepare();
+        const Picture broken = drawMilledBlock();
+        const test::PictureDifference difference = test::compare(broken, test::readGolden(golden));
+        EXPECT_TRUE(difference.isVisible())
+            << golden << " without " << alterations.front().what << ": only " << difference.bad_part;
+        scene_.reset();
+    }
+
+    OsmesaContext context_;
+    std::unique_ptr<RenderScene> scene_;
+};
+
+TEST_F(Golden, Plain) {
+    EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "plain"), "");
+}
+
+TEST_F(Golden, OneCut) {
+    lookThroughTheCut();
+    EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "cut"), "");
+}
+
+TEST_F(Golden, TwoCuts) {
+    lookThroughTheCut();
+    cut(2, 0.62, false);
+    EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "two_cuts"), "");
+}
+
+TEST_F(Golden, Transparent) {
+    scene_->settings().is_transparent = true;
+    EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "transparent"), "");
+}
+
+TEST_F(Golden, TransparentAndCut) {
+    lookThroughTheCut();
+    scene_->settings().is_transparent = true;
+    EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "transparent_cut"), "");
+}
+
+TEST_F(Golden, SideBySide) {
+    scene_->settings().stereo = StereoMode::kSideBySide;
+    EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "side_by_side"), "");
+}
+
+TEST_F(Golden, Anaglyph) {
+    scene_->settings().stereo = StereoMode::kAnaglyph;
+    EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "anaglyph"), "");
+}
+
+TEST_F(Golden, Endoscope) {
+    scene_->settings().camera = CameraMode::kEndoscope;
+    EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "endoscope"), "");
+}
+
+TEST_F(Golden, ArrowAndPointer) {
+    scene_->settings().show_force = true;
+    topics::Viewer instructor = test::makeWatcher("Dr. Berg", topics::Viewer::INSTRUCTOR, 60);
+    const Eigen::Vector3d on_surface =
+        test::kBlockCenter + test::kBlockRadius * Eigen::Vector3d(-0.35, -0.75, 0.56).normalized();
+    test::setVector(on_surface, instructor.mutable_pointer_m());
+    topics::Viewer behind = instructor;
+    behind.set_name("Dr. Lund");
+    test::setVector(test::kBlockCenter + Eigen::Vector3d(0.001, 0.004, -0.002), behind.mutable_pointer_m());
+    scene_->setWatchers({instructor, behind});
+    test::showMilledBlock(*scene_);
+    topics::ToolState tool = test::makeToolState(test::toolInCavity(), test::toolInCavity(), 1);
+    test::setVector({-1.2, -2.5, 0.6}, tool.mutable_force_n());
+    scene_->setToolState(tool);
+    EXPECT_EQ(test::goldenProblem(draw(), "arrow_pointer"), "");
+}
+
+TEST_F(Golden, HudWithWatchers) {
+    scene_->settings().show_hud = true;
+    topics::Status status = test::makeStatus();
+    status.set_session_s(3723);
+    status.set_is_milling_paused(true);
+    scene_->setStatus(status);
+    std::vector<topics::Viewer> watchers = {test::makeWatcher("Anna", topics::Viewer::OPERATOR, 60)};
+    for (int i = 1; i <= 10; ++i)
+        watchers.push_back(test::makeWatcher("student " + std::to_string(i), topics::Viewer::VIEWER, 30));
+    watchers[2].set_is_complete(false);
+    scene_->setWatchers(watchers);
+    scene_->setFrameRate(59.6);
+    EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "hud"), "");
+}
+
+TEST_F(Golden, TheComparisonSeesAMissingLight) {
+    expectSeen("plain", {{"vec3(1.00, 0.94, 0.85) * 2.35", "vec3(0.0)"}}, [] {});
+}
+
+TEST_F(Golden, TheComparisonSeesAMissingShadow) {
+    expectSeen("plain", {{"return sum / 9.0;", "return 1.0;"}}, [] {});
+}
+
+TEST_F(Golden, TheComparisonSeesMissingOcclusion) {
+    expectSeen("endoscope", {{"float occlusion = sum / weights;", "float occlusion = 1.0;"}},
+               [this] { scene_->settings().camera = CameraMode::kEndoscope; });
+}
+
+TEST_F(Golden, TheComparisonSeesTurnedNormalsInTheShader) {
+    expectSeen("plain", {{"vec3 normal = normalize(n_C);", "vec3 normal = -normalize(n_C);"}}, [] {});
+}
+
+TEST_F(Golden, TheComparisonSeesACutWithoutItsCap) {
+    expectSeen("cut", {{"vec3 p_C = entry * ray;", "vec3 p_C = entry * ray; if (entry > 0.0) discard;"}},
+               [this] { lookThroughTheCut(); });
+}
+
+TEST_F(Golden, TheComparisonSeesATransparentCutWithoutItsCap) {
+    expectSeen("transparent_cut",
+               {{"vec3 p_C = entry * ray;", "vec3 p_C = entry * ray; if (entry > 0.0) discard;"}}, [this] {
+                   lookThroughTheCut();
+                   scene_->settings().is_transparent = true;
+               });
+}
+
+TEST_F(Golden, TheComparisonSeesAMissingLayer) {
+    expectSeen("transparent", {{"if (inside) albedo = inside_colour;", "if (inside) discard;"}},
+               [this] { scene_->settings().is_transparent = true; });
+}
+
+TEST_F(Golden, TheComparisonSeesMirroredNormalsOfTheMeshes) {
+    test::showMilledBlock(*scene_);
+    for (NodeMesh node : test::milledBlock()) {
+        for (PackedVertex& v : node.vertices) {
+            const OctahedralNormal turned = encodeNormal(-decodeNormal(v.octahedral_u, v.octahedral_v));
+            v.octahedral_u = turned.u;
+            v.octahedral_v = turned.v;
+        }
+        scene_->setNode(node);
+    }
+    EXPECT_TRUE(test::compare(draw(), test::readGolden("plain")).isVisible());
+}
+
+// No antialiasing at all is more than what another Mesa version may do differently.
+TEST_F(Golden, TheComparisonPassesOtherAntialiasing) {
+    const GlApi coarse = test::withoutAntialiasing(context_.gl());
+    begin(coarse);
+    const Picture picture = drawMilledBlock();
+    EXPECT_NE(picture, test::readGolden("plain"));
+    const test::PictureDifference difference = test::compare(picture, test::readGolden("plain"));
+    EXPECT_FALSE(difference.isVisible()) << difference.bad_part;
+    scene_.reset();
+}
+
+TEST_F(Golden, APictureOfAnotherSizeDiffers) {
+    EXPECT_TRUE(test::compare(Picture(10, 10), Picture(10, 11)).isVisible());
+}
+
+}  // namespace
+}  // namespace bonemill

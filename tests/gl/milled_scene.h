@@ -1,0 +1,63 @@
+// A block with a milled cavity, a closed hollow and an overhang, and a tool in the cavity: what the golden
+// pictures show.
+#pragma once
+
+#include "render_client/scene/render_scene.h"
+#include "tests/gl/synthetic_scene.h"
+
+namespace bonemill::test {
+
+inline const Eigen::Vector3d kBlockCenter(0.008, 0.008, 0.008);  // W = V, m
+inline constexpr double kBlockRadius = 0.0055;
+inline const Eigen::Vector3d kCavityCenter = kBlockCenter + Eigen::Vector3d(0.0012, -0.0045, 0.0008);
+inline constexpr double kCavityRadius = 0.0022;
+inline const Eigen::Vector3d kHollowCenter = kBlockCenter + Eigen::Vector3d(-0.0016, 0.0004, 0);
+inline constexpr double kHollowRadius = 0.0015;
+inline constexpr double kBurrRadius = 0.0009;
+
+inline const std::vector<NodeMesh>& milledBlock() {
+    static const std::vector<NodeMesh> nodes = meshBody(65, 2.5e-4, [](const Eigen::Vector3d& p) {
+        const double outside = (p - kBlockCenter).norm() - kBlockRadius;
+        const double cavity = kCavityRadius - (p - kCavityCenter).norm();
+        const double hollow = kHollowRadius - (p - kHollowCenter).norm();
+        return std::max({outside, cavity, hollow});
+    });
+    return nodes;
+}
+
+inline topics::SceneInfo milledInfo() {
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(kBlockRadius);
+    topics::SceneInfo info = makeSceneInfo("milled block", kBlockCenter - half, kBlockCenter + half);
+    *info.mutable_tool() = makeToolMesh(kBurrRadius, 4e-4, 0.014);
+    info.set_burr_radius_m(kBurrRadius);
+    info.mutable_camera()->set_azimuth_rad(0.45);
+    info.mutable_camera()->set_elevation_rad(0.35);
+    return info;
+}
+
+// The burr in the cavity, its shaft out to the front (-y), to the right and up.
+inline Pose toolInCavity() {
+    Pose X_WT;
+    X_WT.position = kCavityCenter + Eigen::Vector3d(0, -0.0004, 0);
+    X_WT.rotation =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), Eigen::Vector3d(0.55, -0.75, 0.35));
+    return X_WT;
+}
+
+inline void showMilledBlock(RenderScene& scene) {
+    scene.setSceneInfo(milledInfo());
+    for (const NodeMesh& node : milledBlock()) scene.setNode(node);
+    scene.setToolState(makeToolState(toolInCavity(), toolInCavity(), 1));
+    scene.setConnection(Connection::kLive);
+}
+
+inline topics::Viewer makeWatcher(const std::string& name, topics::Viewer::Role role, double frame_rate_hz) {
+    topics::Viewer viewer;
+    viewer.set_name(name);
+    viewer.set_role(role);
+    viewer.set_frame_rate_hz(frame_rate_hz);
+    viewer.set_is_complete(true);
+    return viewer;
+}
+
+}  // namespace bonemill::test
