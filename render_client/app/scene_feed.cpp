@@ -10,7 +10,10 @@ void SceneFeed::update() {
     const SceneModel::Changes changes = subscriber_.poll();
     if (changes.is_cleared) scene_.clearNodes();
     try {
-        for (const SceneModel::Change& change : changes.nodes) scene_.setNode(change.mesh);
+        for (const SceneModel::Change& change : changes.nodes) {
+            scene_.setNode(change.mesh);
+            cut_to_screen_.willShow(change.cut_stamp_ns);
+        }
         const auto& info = subscriber_.sceneInfo();
         if (info && info->epoch() != info_epoch_) {
             info_epoch_ = info->epoch();
@@ -22,6 +25,11 @@ void SceneFeed::update() {
     if (subscriber_.toolState()) scene_.setToolState(*subscriber_.toolState());
     if (subscriber_.status()) scene_.setStatus(*subscriber_.status());
     updateConnection();
+}
+
+void SceneFeed::hasShown() {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    cut_to_screen_.hasShown(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
 }
 
 // Tool states are not kept for late clients: a loop that has ticked will send one soon.

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "render_client/app/cut_to_screen.h"
 #include "render_client/scene/render_scene.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
@@ -22,6 +23,10 @@ class SceneFeed {
     // The scene shows exactly the server's model, and the tool if the server has one to show.
     bool isComplete() const;
 
+    // To be called when the picture drawn after the last update is finished.
+    void hasShown();
+    CutToScreen& cutToScreen() { return cut_to_screen_; }
+
     SceneSubscriber& subscriber() { return subscriber_; }
 
   private:
@@ -29,6 +34,7 @@ class SceneFeed {
 
     SceneSubscriber subscriber_;
     RenderScene& scene_;
+    CutToScreen cut_to_screen_;
     uint64_t info_epoch_ = 0;      // of the scene info that was passed on; 0: none
     uint64_t complete_epoch_ = 0;  // server run whose model was complete once; 0: none
     bool had_server_ = false;

@@ -65,6 +65,7 @@
     X(PFNGLREADBUFFERPROC, ReadBuffer)                                         \
     X(PFNGLREADPIXELSPROC, ReadPixels)                                         \
     X(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC, RenderbufferStorageMultisample) \
+    X(PFNGLSCISSORPROC, Scissor)                                               \
     X(PFNGLSHADERSOURCEPROC, ShaderSource)                                     \
     X(PFNGLSTENCILFUNCPROC, StencilFunc)                                       \
     X(PFNGLSTENCILMASKPROC, StencilMask)                                       \

@@ -75,7 +75,7 @@ void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint
     surface_.set("grain_size", float(kGrain) * frame.bone_radius);
     surface_.set("opacity", look.opacity);
     surface_.set("inside_colour", look.inside);
-    triangles_drawn_ = nodes.draw(surface_, frame.clip_from_camera * frame.camera_from_V);
+    triangles_drawn_ = nodes.draw(surface_, frame.cull_from_V);
 }
 
 void BonePainter::drawDepth(const Frame& frame, const NodeStore& nodes) const {
@@ -85,7 +85,7 @@ void BonePainter::drawDepth(const Frame& frame, const NodeStore& nodes) const {
     depth_.set("camera_from_model", frame.camera_from_V);
     depth_.set("clip_from_camera", frame.clip_from_camera);
     gl_.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    nodes.draw(depth_, frame.clip_from_camera * frame.camera_from_V);
+    nodes.draw(depth_, frame.cull_from_V);
     gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 

@@ -67,24 +67,42 @@ bool isGhostVisible(const Pose& X_WT, const Pose& X_WT_device) {
            X_WT.rotation.angularDistance(X_WT_device.rotation) > kGhostAngle;
 }
 
-Frame Frame::make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, double aspect) {
-    const Camera& camera = view.camera;
-    Eigen::AlignedBox3d everything_W;
-    extendBy(everything_W, view.X_WV, view.bone_V);
-    const Sphere bone = around(everything_W);
-    const bool has_tool = view.X_WT && !tool_T.isEmpty();
-    const bool has_ghost = has_tool && view.X_WT_device && isGhostVisible(*view.X_WT, *view.X_WT_device);
-    if (has_tool) extendBy(everything_W, *view.X_WT, tool_T);
-    if (has_ghost) extendBy(everything_W, *view.X_WT_device, tool_T);
-    const Sphere all = around(everything_W);
+namespace {
 
+bool showsTool(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {
+    return view.X_WT && !tool_T.isEmpty();
+}
+bool showsGhost(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {
+    return showsTool(view, tool_T) && view.X_WT_device && isGhostVisible(*view.X_WT, *view.X_WT_device);
+}
+Eigen::AlignedBox3d boneIn(const FrameView& view) {
+    Eigen::AlignedBox3d box_W;
+    extendBy(box_W, view.X_WV, view.bone_V);
+    return box_W;
+}
+
+}  // namespace
+
+DepthRange Frame::neededRange(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {
+    Eigen::AlignedBox3d everything_W = boneIn(view);
+    if (showsTool(view, tool_T)) extendBy(everything_W, *view.X_WT, tool_T);
+    if (showsGhost(view, tool_T)) extendBy(everything_W, *view.X_WT_device, tool_T);
+    const Sphere all = around(everything_W);
+    return view.camera.depthRange(all.center, std::max(all.radius, kSmallestScene) * 1.01);
+}
+
+Frame Frame::make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, double aspect,
+                  const DepthRange& range) {
+    const Camera& camera = view.camera;
+    const Sphere bone = around(boneIn(view));
     Frame frame;
     const Eigen::Matrix4f X_CW = camera.X_CW();
-    const DepthRange range = camera.depthRange(all.center, std::max(all.radius, kSmallestScene) * 1.01);
     frame.camera_from_V = X_CW * matrixOf(view.X_WV);
     frame.clip_from_camera = camera.clipFromCamera(aspect, range);
-    if (has_tool) frame.camera_from_T = X_CW * matrixOf(*view.X_WT);
-    if (has_ghost) frame.camera_from_ghost = X_CW * matrixOf(*view.X_WT_device);
+    frame.cull_from_V = frame.clip_from_camera * frame.camera_from_V;
+    frame.has_shadow = view.quality == Quality::kFull;
+    if (showsTool(view, tool_T)) frame.camera_from_T = X_CW * matrixOf(*view.X_WT);
+    if (showsGhost(view, tool_T)) frame.camera_from_ghost = X_CW * matrixOf(*view.X_WT_device);
     frame.near_far = Eigen::Vector2d(range.near, range.far).cast<float>();
     const double tangent = camera.halfTangent();
     frame.tangents = Eigen::Vector2d(tangent * aspect, tangent).cast<float>();
@@ -104,6 +122,7 @@ void Frame::setLight(const GlApi& gl, const Program& program, GLuint shadow_text
     gl.ActiveTexture(GL_TEXTURE0);
     gl.BindTexture(GL_TEXTURE_2D, shadow_texture);
     program.set("shadow_map", 0);
+    program.set("has_shadow", has_shadow ? 1 : 0);
     program.set("key_direction", key.direction);
     program.set("shadow_texel", key.shadow_texel);
     program.set("light_reach", key.reach);

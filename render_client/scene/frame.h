@@ -10,6 +10,7 @@
 #include "render_client/gl/program.h"
 #include "render_client/scene/camera.h"
 #include "render_client/scene/cut_planes.h"
+#include "render_client/scene/view_settings.h"
 
 namespace bonemill {
 
@@ -28,6 +29,7 @@ struct FrameView {
     CutPlanes cuts_W;
     std::optional<double> bone_opacity;  // empty: opaque
     std::vector<Eigen::Vector3d> pointers_W;
+    Quality quality = Quality::kFull;
 };
 
 // Does the device pose lie visibly off the simulated tool?
@@ -53,8 +55,13 @@ struct Frame {
     Eigen::AlignedBox3f bone_V;
     CutPlanes cuts_V, cuts_C;
 
-    // tool_T: the tool's box; empty without one.
-    static Frame make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, double aspect);
+    bool has_shadow;
+    Eigen::Matrix4f cull_from_V;  // bone outside of this clip space need not be drawn
+
+    // tool_T: the tool's box; empty without one. The range must hold neededRange().
+    static Frame make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, double aspect,
+                      const DepthRange& range);
+    static DepthRange neededRange(const FrameView& view, const Eigen::AlignedBox3f& tool_T);
 
     // Uniforms of the lighting and of the projection; the shadow map goes to unit 0.
     void setLight(const GlApi& gl, const Program& program, GLuint shadow_texture) const;

@@ -72,12 +72,26 @@ void MarkerPainter::draw(const Frame& frame, const FrameView& view) {
     vertices_.clear();
     addArrow(frame, view);
     flush(frame, GL_BACK);
+    addPointers(frame, view);
+    flush(frame, 0);
+}
+
+Eigen::AlignedBox3f MarkerPainter::box(const Frame& frame, const FrameView& view) {
+    vertices_.clear();
+    addArrow(frame, view);
+    addPointers(frame, view);
+    Eigen::AlignedBox3f box;
+    for (const Vertex& vertex : vertices_) box.extend(vertex.p_C);
+    vertices_.clear();
+    return box;
+}
+
+void MarkerPainter::addPointers(const Frame& frame, const FrameView& view) {
     const Eigen::Matrix4f X_CW = view.camera.X_CW();
     for (const Eigen::Vector3d& p_W : view.pointers_W) {
         const Eigen::Vector4f p = X_CW * p_W.cast<float>().homogeneous();
         if (-p.z() > frame.near_far.x()) addPointer(p.head<3>(), 2 * frame.tangents.y() * -p.z());
     }
-    flush(frame, 0);
 }
 
 // From the burr's surface, the way the force pushes the hand; with a head of constant size.

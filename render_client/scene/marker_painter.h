@@ -26,7 +26,11 @@ class MarkerPainter {
     // Into the bound framebuffer, whose depth it reads and leaves as it is.
     void draw(const Frame& frame, const FrameView& view);
 
+    // Around all of it (C, m).
+    Eigen::AlignedBox3f box(const Frame& frame, const FrameView& view);
+
   private:
+    void addPointers(const Frame& frame, const FrameView& view);
     struct Vertex {
         Eigen::Vector3f p_C, n_C;
         Eigen::Vector4f colour;

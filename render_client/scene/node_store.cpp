@@ -54,7 +54,21 @@ void NodeStore::set(const NodeMesh& mesh) {
     gl_.EnableVertexAttribArray(0);
     gl_.EnableVertexAttribArray(1);
     gl_.BindVertexArray(0);
-    nodes_.insert_or_assign(mesh.leaf, std::move(node));
+    remove(mesh.leaf);
+    changed_.extend(node.box);
+    nodes_.emplace(mesh.leaf, std::move(node));
+}
+
+void NodeStore::remove(uint32_t leaf) {
+    const auto node = nodes_.find(leaf);
+    if (node == nodes_.end()) return;
+    changed_.extend(node->second.box);
+    nodes_.erase(node);
+}
+
+void NodeStore::clear() {
+    for (const auto& [leaf, node] : nodes_) changed_.extend(node.box);
+    nodes_.clear();
 }
 
 size_t NodeStore::triangleCount() const {

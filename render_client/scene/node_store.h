@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <utility>
 
 #include "common/geometry/node_mesh.h"
 #include "render_client/gl/gl_object.h"
@@ -24,12 +25,15 @@ class NodeStore {
     // Replaces the leaf's mesh; an empty one removes it. Throws std::invalid_argument when an index has no
     // vertex.
     void set(const NodeMesh& mesh);
-    void remove(uint32_t leaf) { nodes_.erase(leaf); }
-    void clear() { nodes_.clear(); }
+    void remove(uint32_t leaf);
+    void clear();
 
     size_t nodeCount() const { return nodes_.size(); }
     size_t triangleCount() const;
     const UploadCount& uploads() const { return uploads_; }
+
+    // Around all that was set or removed since the last call, before and after; V, m.
+    Eigen::AlignedBox3f takeChanged() { return std::exchange(changed_, {}); }
 
     // Draws what may be inside the view volume of clip_from_V with the program in use (uniforms origin and
     // step). Returns the number of triangles drawn.
@@ -48,6 +52,7 @@ class NodeStore {
     const GlApi& gl_;
     std::map<uint32_t, Node> nodes_;
     UploadCount uploads_;
+    Eigen::AlignedBox3f changed_;
 };
 
 }  // namespace bonemill

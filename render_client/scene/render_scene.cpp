@@ -84,6 +84,7 @@ FrameView RenderScene::makeView() const {
     view.camera = camera_.view();
     view.X_WV = X_WV_;
     view.bone_V = bone_V_;
+    view.quality = settings_.quality;
     view.cuts_W = cutPlanes(settings_.cuts, boxIn(X_WV_, bone_V_));
     if (settings_.is_transparent) view.bone_opacity = std::clamp(settings_.opacity, 0.0, 1.0);
     if (hud_input_.info) view.burr_radius = hud_input_.info->burr_radius_m();

@@ -67,6 +67,9 @@ class RenderScene {
     const UploadCount& uploads() const { return nodes_.uploads(); }
     bool hasSceneInfo() const { return hud_input_.info.has_value(); }
 
+    // In quick quality too, the next draw() draws everything: the same picture, only slower.
+    void drawWholeNext() { renderer_.drawWholeNext(); }
+
     // Into `target`, a framebuffer of this size (pixels). ui_scale 1 suits 800 pixels of height.
     void draw(int width, int height, float ui_scale, GLuint target = 0);
 

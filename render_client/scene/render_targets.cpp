@@ -4,22 +4,28 @@
 
 namespace bonemill {
 
-RenderTargets::RenderTargets(const GlApi& gl, int width, int height)
+RenderTargets::RenderTargets(const GlApi& gl, int width, int height, Quality quality)
     : gl_(gl),
       width_(width),
       height_(height),
+      quality_(quality),
       scene_(gl),
       resolved_(gl),
       occlusion_(gl),
       shadow_(gl),
+      bone_(gl),
+      finished_(gl),
       scene_colour_(gl),
       scene_depth_(gl),
       colour_texture_(gl),
       depth_texture_(gl),
       occlusion_texture_(gl),
-      shadow_texture_(gl) {
-    makeScene();
+      shadow_texture_(gl),
+      bone_colour_(gl),
+      bone_depth_(gl),
+      finished_colour_(gl) {
     makeResolved();
+    quality == Quality::kFull ? makeScene() : makeKept();
     makeOcclusion();
     makeShadow();
     gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -39,6 +45,21 @@ void RenderTargets::makeScene() {
     gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
                                 scene_depth_.name());
     checkComplete("scene");
+}
+
+void RenderTargets::makeKept() {
+    makeTexture(bone_colour_, GL_RGBA8, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
+    makeTexture(bone_depth_, GL_DEPTH24_STENCIL8, width_, height_, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
+                GL_NEAREST);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, bone_.name());
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, bone_colour_.name(), 0);
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, bone_depth_.name(),
+                             0);
+    checkComplete("bone");
+    makeTexture(finished_colour_, GL_RGBA8, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, finished_.name());
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, finished_colour_.name(), 0);
+    checkComplete("finished picture");
 }
 
 void RenderTargets::makeResolved() {
@@ -62,9 +83,11 @@ void RenderTargets::makeOcclusion() {
     checkComplete("occlusion");
 }
 
+// The sampler wants a texture in quick quality too.
 void RenderTargets::makeShadow() {
-    makeTexture(shadow_texture_, GL_DEPTH_COMPONENT24, kShadowSize, kShadowSize, GL_DEPTH_COMPONENT,
-                GL_UNSIGNED_INT, GL_LINEAR);
+    const int size = quality_ == Quality::kFull ? kShadowSize : 1;
+    makeTexture(shadow_texture_, GL_DEPTH_COMPONENT24, size, size, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
+                GL_LINEAR);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, shadow_.name());
@@ -84,11 +107,17 @@ void RenderTargets::makeTexture(const GlTexture& texture, GLint format, int widt
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
+void RenderTargets::copy(GLuint from, GLuint to, const PixelBox& part, GLbitfield what) const {
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, from);
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
+    gl_.BlitFramebuffer(part.x0, part.y0, part.x1, part.y1, part.x0, part.y0, part.x1, part.y1, what,
+                        GL_NEAREST);
+}
+
 void RenderTargets::resolve() const {
-    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, scene_.name());
-    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.name());
-    gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_,
-                        GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    if (quality_ == Quality::kQuick) return;  // drawn there
+    copy(scene_.name(), resolved_.name(), PixelBox::whole(width_, height_),
+         GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 std::optional<float> RenderTargets::depthAt(int x, int y) const {

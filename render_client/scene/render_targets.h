@@ -1,4 +1,6 @@
 // The buffers a frame passes through: multisampled scene, its resolved copy, half-size occlusion, shadow map.
+// In quick quality the scene is not multisampled and has no shadow, and the bone alone and the finished
+// picture are kept for the next frame.
 //
 // Thread: the one of the context.
 #pragma once
@@ -6,6 +8,8 @@
 #include <optional>
 
 #include "render_client/gl/gl_object.h"
+#include "render_client/scene/pixel_box.h"
+#include "render_client/scene/view_settings.h"
 
 namespace bonemill {
 
@@ -15,15 +19,17 @@ class RenderTargets {
     static constexpr int kWantedSamples = 4;
 
     // Throws GlError when the driver refuses a buffer of this size (pixels).
-    RenderTargets(const GlApi& gl, int width, int height);
+    RenderTargets(const GlApi& gl, int width, int height, Quality quality);
 
-    bool hasSize(int width, int height) const { return width_ == width && height_ == height; }
+    bool suits(int width, int height, Quality quality) const {
+        return width_ == width && height_ == height && quality_ == quality;
+    }
     int width() const { return width_; }
     int height() const { return height_; }
     int occlusionWidth() const { return (width_ + 1) / 2; }
     int occlusionHeight() const { return (height_ + 1) / 2; }
 
-    GLuint scene() const { return scene_.name(); }
+    GLuint scene() const { return quality_ == Quality::kFull ? scene_.name() : resolved_.name(); }
     GLuint occlusion() const { return occlusion_.name(); }
     GLuint shadow() const { return shadow_.name(); }
     GLuint colourTexture() const { return colour_texture_.name(); }
@@ -31,6 +37,11 @@ class RenderTargets {
     GLuint occlusionTexture() const { return occlusion_texture_.name(); }
     GLuint shadowTexture() const { return shadow_texture_.name(); }
 
+    GLuint bone() const { return bone_.name(); }          // quick only
+    GLuint finished() const { return finished_.name(); }  // quick only
+
+    // Colour and depth of that part from one framebuffer to the other.
+    void copy(GLuint from, GLuint to, const PixelBox& part, GLbitfield what) const;
     // Scene -> colourTexture and depthTexture.
     void resolve() const;
     // 0 .. 1 of the resolved picture at a pixel from the upper left; nothing outside and on the background.
@@ -38,6 +49,7 @@ class RenderTargets {
 
   private:
     void makeScene();
+    void makeKept();
     void makeResolved();
     void makeOcclusion();
     void makeShadow();
@@ -48,9 +60,11 @@ class RenderTargets {
     const GlApi& gl_;
     int width_;
     int height_;
-    GlFramebuffer scene_, resolved_, occlusion_, shadow_;
+    Quality quality_;
+    GlFramebuffer scene_, resolved_, occlusion_, shadow_, bone_, finished_;
     GlRenderbuffer scene_colour_, scene_depth_;
-    GlTexture colour_texture_, depth_texture_, occlusion_texture_, shadow_texture_;
+    GlTexture colour_texture_, depth_texture_, occlusion_texture_, shadow_texture_, bone_colour_, bone_depth_,
+        finished_colour_;
 };
 
 }  // namespace bonemill

@@ -1,5 +1,6 @@
 #include "render_client/scene/scene_renderer.h"
 
+#include <cmath>
 #include <string>
 
 #include "render_client/scene/clip_planes.h"
@@ -11,6 +12,7 @@ namespace {
 constexpr GLenum kEyePlane = 3;             // number of the clip plane after those of the cuts
 constexpr double kOcclusionRadius = 0.10;   // of the bone's radius
 constexpr float kOcclusionPicture = 0.06f;  // at most this part of the picture's height
+constexpr int kFilterReach = 8;             // pixels that the composite's filter looks beyond
 
 }  // namespace
 
@@ -26,18 +28,30 @@ SceneRenderer::SceneRenderer(const GlApi& gl)
       composite_(gl, "composite", shaders::kFullScreenVertex, shaders::kCompositeFragment),
       no_attributes_(gl) {}
 
-void SceneRenderer::draw(const FrameView& view, const NodeStore& nodes, const ToolMesh& tool,
+void SceneRenderer::draw(const FrameView& view, NodeStore& nodes, const ToolMesh& tool,
                          const PictureArea& area, GLuint target) {
-    if (!targets_ || !targets_->hasSize(area.width, area.height))
-        targets_ = std::make_unique<RenderTargets>(gl_, area.width, area.height);
-    const Frame frame = Frame::make(view, tool.box(), area.aspect());
+    if (!targets_ || !targets_->suits(area.width, area.height, view.quality)) {
+        targets_ = std::make_unique<RenderTargets>(gl_, area.width, area.height, view.quality);
+        changes_.forget();
+    }
+    const bool is_quick = view.quality == Quality::kQuick;
+    const DepthRange needed = Frame::neededRange(view, tool.box());
+    const DepthRange range = is_quick ? changes_.range(view.camera, needed) : needed;
+    const Frame frame = Frame::make(view, tool.box(), area.aspect(), range);
     last_camera_ = view.camera;
     last_near_far_ = frame.near_far;
 
     gl_.Disable(GL_BLEND);
     gl_.Disable(GL_CULL_FACE);
-    drawShadowMap(frame, view, nodes, tool);
+    is_quick ? drawQuick(frame, view, nodes, tool, area, target)
+             : drawFull(frame, view, nodes, tool, area, target);
+    nodes.takeChanged();
+    gl_.check("drawing the scene");
+}
 
+void SceneRenderer::drawFull(const Frame& frame, const FrameView& view, const NodeStore& nodes,
+                             const ToolMesh& tool, const PictureArea& area, GLuint target) {
+    drawShadowMap(frame, view, nodes, tool);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->scene());
     gl_.Viewport(0, 0, area.width, area.height);
     gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
@@ -47,8 +61,78 @@ void SceneRenderer::draw(const FrameView& view, const NodeStore& nodes, const To
     markers_.draw(frame, view);
     targets_->resolve();
     drawOcclusion(frame);
-    compose(frame, area, target);
-    gl_.check("drawing the scene");
+    compose(frame, area.x, target);
+}
+
+// The bone of the last picture is kept: where it has changed it is drawn anew, where something moves before
+// it it is copied back.
+void SceneRenderer::drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes,
+                              const ToolMesh& tool, const PictureArea& area, GLuint target) {
+    const PixelBox whole = PixelBox::whole(area.width, area.height);
+    PictureChanges::Dirty dirty =
+        changes_.next(frame, area.width, area.height, nodes.takeChanged(), movingPixels(frame, view, tool));
+    if (view.bone_opacity) {  // the tool is seen through it: nothing can be kept
+        dirty = {whole, whole};
+        changes_.forget();
+    }
+    const int reach = int(std::ceil(kOcclusionPicture * float(area.height))) + kFilterReach;
+    const PixelBox part = dirty.all.isEmpty() ? dirty.all : dirty.all.grown(reach).within(whole);
+    gl_.Viewport(0, 0, area.width, area.height);
+    gl_.Enable(GL_SCISSOR_TEST);
+    if (view.bone_opacity) {
+        scissor(whole);
+        gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->scene());
+        gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+        drawBackground();
+        drawSolids(frame, view, nodes, tool);
+    } else if (!part.isEmpty()) {
+        drawKeptBone(frame, nodes, dirty.bone);
+        scissor(part);
+        targets_->copy(targets_->bone(), targets_->scene(), part, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->scene());
+        gl_.Enable(GL_DEPTH_TEST);
+        drawTool(frame, view, tool);
+    }
+    if (!part.isEmpty()) {
+        drawGhost(frame, tool);
+        markers_.draw(frame, view);
+        scissor({part.x0 / 2 - 1, part.y0 / 2 - 1, part.x1 / 2 + 2, part.y1 / 2 + 2});
+        drawOcclusion(frame);
+        scissor(part);
+        compose(frame, 0, targets_->finished());
+    }
+    gl_.Disable(GL_SCISSOR_TEST);
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_->finished());
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
+    gl_.BlitFramebuffer(0, 0, area.width, area.height, area.x, 0, area.x + area.width, area.height,
+                        GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
+    gl_.Viewport(area.x, 0, area.width, area.height);
+}
+
+void SceneRenderer::drawKeptBone(Frame frame, const NodeStore& nodes, const PixelBox& part) {
+    if (part.isEmpty()) return;
+    scissor(part);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->bone());
+    gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+    drawBackground();
+    frame.cull_from_V = part.zoom(targets_->width(), targets_->height()) * frame.cull_from_V;
+    bone_.drawOpaque(frame, nodes, targets_->shadowTexture());
+}
+
+PixelBox SceneRenderer::movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool) {
+    const auto pixels = [&](const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& camera_from_box) {
+        return PixelBox::around(box, frame.clip_from_camera * camera_from_box, targets_->width(),
+                                targets_->height());
+    };
+    PixelBox moving = pixels(markers_.box(frame, view), Eigen::Matrix4f::Identity());
+    if (frame.camera_from_T) moving = moving.joined(pixels(tool.box(), *frame.camera_from_T));
+    if (frame.camera_from_ghost) moving = moving.joined(pixels(tool.box(), *frame.camera_from_ghost));
+    return moving;
+}
+
+void SceneRenderer::scissor(const PixelBox& part) const {
+    gl_.Scissor(part.x0, part.y0, part.width(), part.height());
 }
 
 std::optional<Eigen::Vector3d> SceneRenderer::pick(int x, int y) const {
@@ -168,9 +252,9 @@ void SceneRenderer::drawOcclusion(const Frame& frame) const {
     drawFullScreen();
 }
 
-void SceneRenderer::compose(const Frame& frame, const PictureArea& area, GLuint target) const {
+void SceneRenderer::compose(const Frame& frame, int x, GLuint target) const {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
-    gl_.Viewport(area.x, 0, area.width, area.height);
+    gl_.Viewport(x, 0, targets_->width(), targets_->height());
     const GLuint textures[] = {targets_->colourTexture(), targets_->depthTexture(),
                                targets_->occlusionTexture()};
     for (GLenum unit = 0; unit < 3; ++unit) {

@@ -11,6 +11,7 @@
 #include "render_client/scene/frame.h"
 #include "render_client/scene/marker_painter.h"
 #include "render_client/scene/node_store.h"
+#include "render_client/scene/picture_changes.h"
 #include "render_client/scene/render_targets.h"
 #include "render_client/scene/tool_mesh.h"
 
@@ -29,9 +30,11 @@ class SceneRenderer {
     // Throws GlError with the compiler's log when the driver refuses a shader.
     explicit SceneRenderer(const GlApi& gl);
 
-    // Leaves the picture (without HUD) in that part of `target`, a framebuffer.
-    void draw(const FrameView& view, const NodeStore& nodes, const ToolMesh& tool, const PictureArea& area,
+    // Leaves the picture (without HUD) in that part of `target`, a framebuffer. Takes the nodes' changes.
+    void draw(const FrameView& view, NodeStore& nodes, const ToolMesh& tool, const PictureArea& area,
               GLuint target);
+    // The next picture is drawn whole, also in quick quality.
+    void drawWholeNext() { changes_.forget(); }
 
     // The nearest surface of bone or tool (W, m) under a pixel of the last picture, counted from its upper
     // left corner; nothing over the background.
@@ -41,6 +44,13 @@ class SceneRenderer {
     size_t trianglesDrawn() const { return bone_.trianglesDrawn(); }
 
   private:
+    void drawFull(const Frame& frame, const FrameView& view, const NodeStore& nodes, const ToolMesh& tool,
+                  const PictureArea& area, GLuint target);
+    void drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes, const ToolMesh& tool,
+                   const PictureArea& area, GLuint target);
+    void drawKeptBone(Frame frame, const NodeStore& nodes, const PixelBox& part);
+    PixelBox movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool);
+    void scissor(const PixelBox& part) const;
     void drawShadowMap(const Frame& frame, const FrameView& view, const NodeStore& nodes,
                        const ToolMesh& tool) const;
     void drawBackground() const;
@@ -48,7 +58,7 @@ class SceneRenderer {
     void drawTool(const Frame& frame, const FrameView& view, const ToolMesh& tool) const;
     void drawGhost(const Frame& frame, const ToolMesh& tool) const;
     void drawOcclusion(const Frame& frame) const;
-    void compose(const Frame& frame, const PictureArea& area, GLuint target) const;
+    void compose(const Frame& frame, int x, GLuint target) const;
     void drawFullScreen() const;
 
     const GlApi& gl_;
@@ -57,7 +67,8 @@ class SceneRenderer {
     Program tool_, ghost_, shadow_, background_, occlusion_, composite_;
     GlVertexArray no_attributes_;
     std::unique_ptr<RenderTargets> targets_;
-    Camera last_camera_;  // of the last picture, for pick()
+    PictureChanges changes_;  // quick quality
+    Camera last_camera_;      // of the last picture, for pick()
     Eigen::Vector2f last_near_far_ = Eigen::Vector2f::Zero();
 };
 

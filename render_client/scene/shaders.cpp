@@ -7,6 +7,7 @@ namespace bonemill::shaders {
 const char kLighting[] = R"(
 uniform sampler2DShadow shadow_map;
 uniform vec3 key_direction;   // C, towards the light
+uniform bool has_shadow;
 uniform float shadow_texel;   // m in the world per texel of the shadow map
 uniform mat4 shadow_from_camera;
 uniform float light_reach;    // m from the eye to where its own light is as bright as the room's; 0: the room's
@@ -25,6 +26,7 @@ vec3 toneMap(vec3 linear) {
 }
 
 float keyVisibility(vec3 p_C, vec3 normal) {
+    if (!has_shadow) return 1.0;
     vec3 offset = normal * shadow_texel * (1.5 + 2.5 * (1.0 - max(dot(normal, key_direction), 0.0)));
     vec4 clip = shadow_from_camera * vec4(p_C + offset, 1.0);
     vec3 uvw = clip.xyz * 0.5 + 0.5;

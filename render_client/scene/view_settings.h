@@ -7,6 +7,9 @@
 namespace bonemill {
 
 enum class CameraMode { kOrbit, kEndoscope };
+// kQuick: without shadow and antialiasing; while the view rests, only what changed is drawn anew. For
+// software OpenGL.
+enum class Quality { kFull, kQuick };
 enum class StereoMode { kOff, kSideBySide, kAnaglyph };
 
 // Hides the bone on one side of a plane across a world axis, and shows the cut.
@@ -20,6 +23,7 @@ struct ViewSettings {
     static constexpr double kDefaultOpacity = 0.35;
 
     CameraMode camera = CameraMode::kOrbit;
+    Quality quality = Quality::kFull;
     StereoMode stereo = StereoMode::kOff;
     bool is_transparent = false;
     double opacity = kDefaultOpacity;  // of the transparent bone

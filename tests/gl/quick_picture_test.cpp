@@ -1,0 +1,143 @@
+// Quick quality draws only what changed: the picture must be the one that is drawn whole.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "render_client/offscreen/osmesa_context.h"
+#include "render_client/scene/render_scene.h"
+#include "tests/gl/synthetic_scene.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int kWidth = 320, kHeight = 240;
+constexpr double kRadius = 0.005;
+const Eigen::Vector3d kCenter(0.008, 0.008, 0.008);
+
+std::vector<NodeMesh> ball(double radius) {
+    return test::meshBody(65, 2.5e-4,
+                          [=](const Eigen::Vector3d& p) { return (p - kCenter).norm() - radius; });
+}
+
+class QuickPicture : public testing::Test {
+  protected:
+    QuickPicture() : context_(kWidth, kHeight), scene_(context_.gl()) {
+        const Eigen::Vector3d half = Eigen::Vector3d::Constant(kRadius);
+        topics::SceneInfo info = test::makeSceneInfo("ball", kCenter - half, kCenter + half);
+        *info.mutable_tool() = test::makeToolMesh(1e-3, 4e-4, 0.006);
+        info.set_burr_radius_m(1e-3);
+        scene_.setSceneInfo(info);
+        scene_.settings().quality = Quality::kQuick;
+        scene_.settings().show_hud = false;
+        for (const NodeMesh& node : large_) scene_.setNode(node);
+        moveTool();
+    }
+    void moveTool() {
+        std::uniform_real_distribution<double> place(-0.006, 0.006);
+        const auto somewhere = [&] {
+            return Eigen::Vector3d(place(random_), place(random_), place(random_));
+        };
+        Pose X_WT;
+        X_WT.position = kCenter + somewhere();
+        X_WT.rotation = expRotation(300 * somewhere());
+        Pose device = X_WT;
+        if (random_() % 2) device.position += 0.2 * somewhere();
+        topics::ToolState tool = test::makeToolState(X_WT, device, random_() % 3);
+        test::setVector(500 * somewhere(), tool.mutable_force_n());
+        scene_.setToolState(tool);
+    }
+    void point() {
+        topics::Viewer instructor;
+        instructor.set_role(topics::Viewer::INSTRUCTOR);
+        for (int axis = 0; axis < 3; ++axis) instructor.add_pointer_m(kCenter[axis] + 1e-3 * (random_() % 7));
+        scene_.setWatchers({instructor});
+    }
+    // Some nodes become those of the smaller ball, some those of the larger one, some go.
+    void changeNodes() {
+        for (int n = 0; n < 2; ++n) changeNode();
+    }
+    void changeNode() {
+        const std::vector<NodeMesh>& nodes = random_() % 2 ? large_ : small_;
+        const NodeMesh& node = nodes[random_() % nodes.size()];
+        random_() % 4 ? scene_.setNode(node) : scene_.removeNode(node.leaf);
+    }
+    Picture draw() {
+        scene_.draw(kWidth, kHeight, 1);
+        return context_.read();
+    }
+    void expectWhole(const std::string& when) {
+        const Picture kept = draw();
+        scene_.drawWholeNext();
+        const Picture whole = draw();
+        EXPECT_TRUE(kept == whole) << when;
+    }
+
+    OsmesaContext context_;
+    RenderScene scene_;
+    std::mt19937 random_{7};
+    const std::vector<NodeMesh> large_ = ball(kRadius), small_ = ball(0.9 * kRadius);
+};
+
+TEST_F(QuickPicture, IsTheOneThatIsDrawnWhole) {
+    draw();
+    for (int frame = 0; frame < 40; ++frame) {
+        if (frame % 3) changeNodes();
+        if (frame % 4) moveTool();
+        if (frame % 5 == 0) point();
+        expectWhole("frame " + std::to_string(frame));
+    }
+}
+
+TEST_F(QuickPicture, FollowsTheViewToo) {
+    draw();
+    scene_.camera().orbit(0.4, 0.1);
+    expectWhole("orbit");
+    scene_.settings().cuts[0] = {true, 0.4, false};
+    expectWhole("a cut");
+    changeNodes();
+    expectWhole("a changed node of cut bone");
+    scene_.settings().is_transparent = true;
+    expectWhole("transparent");
+    moveTool();
+    changeNodes();
+    expectWhole("transparent, changed");
+    scene_.settings().is_transparent = false;
+    expectWhole("opaque again");
+    scene_.settings().stereo = StereoMode::kAnaglyph;
+    changeNodes();
+    expectWhole("anaglyph");
+    scene_.settings().stereo = StereoMode::kOff;
+    scene_.settings().camera = CameraMode::kEndoscope;
+    expectWhole("endoscope");
+    changeNodes();
+    moveTool();
+    expectWhole("endoscope, moved");
+    scene_.clearNodes();
+    expectWhole("no bone");
+}
+
+TEST_F(QuickPicture, DrawsOnlyTheBoneThatMayHaveChanged) {
+    draw();
+    EXPECT_EQ(scene_.trianglesDrawn(), scene_.triangleCount());
+    changeNode();
+    draw();
+    EXPECT_GT(scene_.trianglesDrawn(), 0u);
+    EXPECT_LT(scene_.trianglesDrawn(), scene_.triangleCount() / 2);
+}
+
+TEST_F(QuickPicture, LooksLikeTheFullOneButForShadowAndEdges) {
+    const Picture quick = draw();
+    scene_.settings().quality = Quality::kFull;
+    const Picture full = draw();
+    size_t far_off = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const auto a = quick.at(x, y), b = full.at(x, y);
+            far_off += std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]) > 60;
+        }
+    EXPECT_GT(far_off, 0u);
+    EXPECT_LT(far_off, size_t(kWidth * kHeight / 8));
+}
+
+}  // namespace
+}  // namespace bonemill
