@@ -1,7 +1,9 @@
 #include "tests/support/virtual_network.h"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <sched.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <cstring>
@@ -90,6 +92,19 @@ Descriptor::~Descriptor() {
 std::unique_ptr<Process> Host::start(const std::vector<std::string>& arguments) const {
     const Inside inside(namespace_);
     return std::make_unique<Process>(arguments);
+}
+
+Descriptor Host::udpSocket(int port) const {
+    const Inside inside(namespace_);
+    Descriptor made(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(uint16_t(port));
+    const timeval patience{5, 0};
+    if (setsockopt(made.number(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience) != 0 ||
+        bind(made.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+        throw std::runtime_error(lastError("UDP socket"));
+    return made;
 }
 
 void Host::unplug() const {

@@ -36,6 +36,8 @@ class Host {
   public:
     // Starts a program on this PC (tests/support/process.h).
     std::unique_ptr<Process> start(const std::vector<std::string>& arguments) const;
+    // Bound to this port of this PC, 5 s until a read gives up.
+    Descriptor udpSocket(int port) const;
     const std::string& address() const { return address_; }
     // The cable at the switch.
     void unplug() const;
