@@ -98,6 +98,7 @@ class Server {
         recorder = {};
         mesher = {};
         publisher = {};
+        published_.writes = publisher_.writeTimes();
         published_.nodes = publisher_.digest().count();
         published_.digest = publisher_.digest().value();
         recorder_.setPublished(published_);

@@ -141,6 +141,7 @@ std::string RunStatistics::toJson() const {
     }
     if (published_) {
         report["publish_round_ms"] = summary(published_->rounds, double(kNsPerMillisecond));
+        report["node_write_ms"] = summary(published_->writes, double(kNsPerMillisecond));
         report["published_nodes"] = published_->nodes;
         report["published_digest"] = hexText(published_->digest);
     }

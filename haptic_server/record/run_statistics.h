@@ -18,6 +18,7 @@ namespace bonemill {
 // What the clients were shown.
 struct PublishFigures {
     LatencyHistogram rounds;  // each round of the publisher thread: encoding and all writes
+    LatencyHistogram writes;  // of one node each
     uint32_t nodes = 0;       // at the end, as in the last Status
     uint64_t digest = 0;
 };

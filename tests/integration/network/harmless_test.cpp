@@ -42,9 +42,8 @@ class Harmless : public test::NetworkSession {
         EXPECT_LT(report["publish_round_ms"]["max"], kLongestStall_ms);
         EXPECT_LT(report["publish_round_ms"]["p99"], 100);
         EXPECT_EQ(report["lost_records"], 0);
+        EXPECT_LT(report["dropped_ticks"], 0.1 * double(report["ticks"]));
         EXPECT_FALSE(report["fault_ticks"].contains("solve")) << report["fault_ticks"];
-        std::cout << good << "\npublish_round_ms " << report["publish_round_ms"] << " dropped "
-                  << report["dropped_ticks"] << " of " << report["ticks"] << std::endl;
     }
 
     const Words kLab{"--profile", "lab", "--interface", "eth0"};
@@ -71,10 +70,10 @@ TEST_F(Harmless, StoppedAndKilledViewers) {
 TEST_F(Harmless, ViewersBehindSlowAndLossyLines) {
     const Host good_pc = network_->addHost();
     startWithGoodViewerOn(good_pc);
-    const Host slow_pc = network_->addHost({.rate_kbit_per_s = 1000, .delay_ms = 20});
+    const Host slow_pc = network_->addHost({.rate_kbit_per_s = 1000, .delay_ms = 20, .queue_kib = 64});
     const Host lossy_pc = network_->addHost({.delay_ms = 5, .loss_per_mille = 20});
     const auto slow = probe(slow_pc, kLab), lossy = probe(lossy_pc, kLab);
-    startMilling(4);
+    startMilling(3);
     waitForDevice();
     EXPECT_FALSE(agree({good_.get(), slow.get()}));
     expectNoHarm({slow.get(), lossy.get()});

@@ -24,8 +24,9 @@ class Probe {
     void run() {
         for (Clock::time_point due = Clock::now();;) {
             subscriber_.waitForData(10ms);
+            measure();  // what was shown until now
             changes_ += subscriber_.poll().nodes.size();
-            measure();
+            if (subscriber_.isComplete()) whole_since_ = Clock::now();
             if (Clock::now() < due) continue;
             due = Clock::now() + 100ms;
             print();
@@ -34,16 +35,16 @@ class Probe {
 
   private:
     void measure() {
-        const auto now = std::chrono::system_clock::now().time_since_epoch();
-        const auto age = now - std::chrono::nanoseconds(stamp());
-        if (subscriber_.toolState())
-            longest_age_ = std::max(longest_age_, std::chrono::round<std::chrono::milliseconds>(age));
-        if (subscriber_.isComplete()) whole_since_ = Clock::now();
+        using std::chrono::milliseconds;
+        if (subscriber_.toolState()) {
+            const auto now = std::chrono::system_clock::now().time_since_epoch();
+            const auto age = now - std::chrono::nanoseconds(subscriber_.toolState()->stamp_ns());
+            longest_age_ = std::max(longest_age_, std::chrono::round<milliseconds>(age));
+        }
         if (whole_since_)
-            longest_behind_ = std::max(
-                longest_behind_, std::chrono::round<std::chrono::milliseconds>(Clock::now() - *whole_since_));
+            longest_behind_ =
+                std::max(longest_behind_, std::chrono::round<milliseconds>(Clock::now() - *whole_since_));
     }
-    int64_t stamp() const { return subscriber_.toolState() ? subscriber_.toolState()->stamp_ns() : 0; }
     void print() const {
         std::printf("{\"complete\":%s,\"server\":%s,\"nodes\":%u,\"digest\":\"%016" PRIx64
                     "\",\"changes\":%zu,\"longest_age_ms\":%lld,\"longest_behind_ms\":%lld}\n",
