@@ -125,9 +125,12 @@ std::string VirtualNetwork::enter() {
     if (run({kIp, "link", "add", "probe0", "type", "veth", "peer", "name", "probe1"}).exit_code != 0)
         return "this kernel has no pairs of interfaces (module veth)";
     ip("link del probe0");
-    if (Descriptor(open("/dev/net/tun", O_RDWR | O_CLOEXEC)).number() < 0)
-        return lastError("/dev/net/tun cannot be opened");
     return "";
+}
+
+std::string VirtualNetwork::missingForLines() {
+    const bool is_open = Descriptor(open("/dev/net/tun", O_RDWR | O_CLOEXEC)).number() >= 0;
+    return is_open ? "" : lastError("/dev/net/tun cannot be opened");
 }
 
 VirtualNetwork::VirtualNetwork() {

@@ -56,6 +56,8 @@ class VirtualNetwork {
     // Moves this process into a network of its own. Returns what is missing for that here, in one line; empty
     // when nothing is. First call of a test.
     static std::string enter();
+    // What is missing for bad lines; also once this process has entered.
+    static std::string missingForLines();
 
     // The switch. Throws std::runtime_error as everything here does.
     VirtualNetwork();

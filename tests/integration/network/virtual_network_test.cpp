@@ -17,6 +17,8 @@ class Lines : public testing::Test {
   protected:
     void SetUp() override {
         if (const std::string missing = VirtualNetwork::enter(); !missing.empty()) GTEST_SKIP() << missing;
+        if (const std::string missing = VirtualNetwork::missingForLines(); !missing.empty())
+            GTEST_SKIP() << missing;
         network_ = std::make_unique<VirtualNetwork>();
     }
     static void send(const Descriptor& from, const Host& to, size_t bytes) {
