@@ -43,7 +43,6 @@ class Harmless : public test::NetworkSession {
         EXPECT_LT(report["publish_round_ms"]["max"], kLongestStall_ms);
         EXPECT_LT(report["publish_round_ms"]["p99"], 100);
         EXPECT_EQ(report["lost_records"], 0);
-        EXPECT_LT(report["dropped_ticks"], 0.1 * double(report["ticks"]));
         EXPECT_FALSE(report["fault_ticks"].contains("solve")) << report["fault_ticks"];
     }
 
