@@ -107,6 +107,20 @@ Descriptor Host::udpSocket(int port) const {
     return made;
 }
 
+Host::Traffic Host::traffic() const {
+    std::istringstream table(readFile("/proc/self/net/dev"));
+    for (std::string line; std::getline(table, line);) {
+        std::istringstream words(line);
+        std::string name;
+        uint64_t into_switch = 0, out_of_switch = 0, other = 0;
+        words >> name >> into_switch;
+        for (int column = 0; column < 7; ++column) words >> other;
+        words >> out_of_switch;
+        if (name == port_ + ":") return {into_switch, out_of_switch};
+    }
+    throw std::runtime_error(port_ + " is not in /proc/self/net/dev");
+}
+
 void Host::unplug() const {
     ip("link set " + port_ + " down");
 }

@@ -2,6 +2,7 @@
 // with the process. For tests with one thread: a namespace belongs to a thread.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,6 +39,12 @@ class Host {
     std::unique_ptr<Process> start(const std::vector<std::string>& arguments) const;
     // Bound to this port of this PC, 5 s until a read gives up.
     Descriptor udpSocket(int port) const;
+    struct Traffic {
+        uint64_t sent_bytes = 0;
+        uint64_t received_bytes = 0;
+    };
+    // Through its cable so far.
+    Traffic traffic() const;
     const std::string& address() const { return address_; }
     // The cable at the switch.
     void unplug() const;

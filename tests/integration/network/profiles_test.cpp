@@ -20,8 +20,12 @@ class Profiles : public test::NetworkSession {
         for (const auto& probe : probes)
             ASSERT_TRUE(waitFor([&] { return isWhole(*probe); })) << probe->errSoFar();
         const std::string first = newest(*probes.front())["digest"];
+        const uint64_t sent = haptics_pc_->traffic().sent_bytes;
+        const uint64_t received = viewers.back().first->traffic().received_bytes;
         startMilling(2);
         waitForDevice();
+        sent_bytes_ = haptics_pc_->traffic().sent_bytes - sent;
+        received_bytes_ = viewers.back().first->traffic().received_bytes - received;
         const auto late = picture(*viewers.back().first, viewers.back().second);
         std::vector<const Process*> all;
         for (const auto& probe : probes) all.push_back(probe.get());
@@ -32,6 +36,8 @@ class Profiles : public test::NetworkSession {
         EXPECT_EQ(late["complete"], true);
         for (const auto& probe : probes) EXPECT_EQ(newest(*probe)["digest"], report["published_digest"]);
     }
+    // While the bone was milled: by the haptics PC, and by the last viewer's.
+    uint64_t sent_bytes_ = 0, received_bytes_ = 0;
 };
 
 TEST_F(Profiles, OnePcServesItsOwnViewersAndNobodyElse) {
@@ -66,6 +72,8 @@ TEST_F(Profiles, ClassroomServesManyPcs) {
     for (int i = 0; i < 6; ++i) pupils.push_back(network_->addHost());
     for (const Host& pupil : pupils) viewers.push_back({&pupil, classroom});
     expectAllConverge(classroom, viewers);
+    EXPECT_GT(received_bytes_, 100'000u);
+    EXPECT_LT(sent_bytes_, 2 * received_bytes_) << "not once for all";
 }
 
 TEST_F(Profiles, AWrongInterfaceEndsEveryProgramWithOneMessage) {
