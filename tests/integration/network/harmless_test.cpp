@@ -66,7 +66,7 @@ TEST_F(Harmless, StoppedAndKilledViewers) {
     EXPECT_GT(newest(*stopped)["longest_behind_ms"], 2000);
 }
 
-// What the bone loses goes through the slow line many times too slowly: it lags until the milling is over.
+// What the bone loses does not fit through the slow line: its viewer leaves out what is outdated.
 TEST_F(Harmless, ViewersBehindSlowAndLossyLines) {
     if (const std::string missing = VirtualNetwork::missingForLines(); !missing.empty())
         GTEST_SKIP() << missing;
@@ -77,8 +77,8 @@ TEST_F(Harmless, ViewersBehindSlowAndLossyLines) {
     const auto slow = probe(slow_pc, kLab), lossy = probe(lossy_pc, kLab);
     startMilling(3);
     waitForDevice();
-    EXPECT_FALSE(agree({good_.get(), slow.get()}));
     expectNoHarm({slow.get(), lossy.get()});
+    EXPECT_LT(newest(*slow)["changes"], newest(*good_)["changes"]);
 }
 
 // For longer than the lease of 4 s: server and viewer have given each other up in between.

@@ -22,8 +22,7 @@ class NetworkSession : public testing::Test {
     // Skips the test where no network can be made.
     void SetUp() override;
 
-    // The haptics PC is the first host; every function below that names a profile adds --interface eth0 to
-    // it.
+    // On the haptics PC, the first host; `network`: options of its network, here and below.
     void startServer(const Words& network);
     // Mills for that long; returns at once. waitForDevice() returns when it has withdrawn.
     void startMilling(int seconds);
