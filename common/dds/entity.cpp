@@ -12,9 +12,8 @@ Entity::~Entity() {
 
 Entity requireEntity(int32_t result, const std::string& what) {
     if (result < 0) {
-        throw UserError(
-            "cannot create " + what + " (" + dds_strretcode(result) +
-            "): check the network interfaces and the profile in CYCLONEDDS_URI (docs/network.md)");
+        throw UserError("cannot create " + what + " (" + dds_strretcode(result) +
+                        "): check the network interfaces and the profile (docs/network.md)");
     }
     return Entity(result);
 }

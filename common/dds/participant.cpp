@@ -2,12 +2,12 @@
 
 #include <dds/dds.h>
 
-#include <cstdlib>
 #include <map>
 #include <mutex>
+#include <optional>
 
 #include "common/config/user_error.h"
-#include "local_profile.h"
+#include "common/dds/network.h"
 
 #ifdef __SANITIZE_THREAD__
 // Debian's Cyclone is not instrumented and synchronises with atomics of its own, which ThreadSanitizer cannot
@@ -24,9 +24,10 @@ namespace bonemill::dds {
 // once.
 class Domain {
   public:
-    explicit Domain(uint32_t id) {
-        if (const char* uri = std::getenv("CYCLONEDDS_URI"); uri != nullptr && *uri != '\0') return;
-        entity_ = requireEntity(dds_create_domain(id, kLocalProfile), "DDS domain " + std::to_string(id));
+    Domain(uint32_t id, const std::string& configuration) {
+        if (configuration.empty()) return;  // Cyclone reads CYCLONEDDS_URI itself
+        entity_ =
+            requireEntity(dds_create_domain(id, configuration.c_str()), "DDS domain " + std::to_string(id));
     }
 
   private:
@@ -37,13 +38,15 @@ namespace {
 
 // The mutex spans creation and deletion: a domain being deleted must be gone before it is created again.
 std::mutex domains_mutex;
+std::optional<std::string> chosen_configuration;  // guarded by domains_mutex
 
 std::shared_ptr<Domain> acquireDomain(uint32_t id) {
     static std::map<uint32_t, std::weak_ptr<Domain>> domains;
     const std::lock_guard lock(domains_mutex);
     std::shared_ptr<Domain> domain = domains[id].lock();
     if (!domain) {
-        domain = std::make_shared<Domain>(id);
+        domain = std::make_shared<Domain>(
+            id, chosen_configuration ? *chosen_configuration : networkConfiguration({}));
         domains[id] = domain;
     }
     return domain;
@@ -62,6 +65,11 @@ Participant::Participant(uint32_t domain) {
 }
 
 Participant::Participant(Participant&&) noexcept = default;
+
+void Participant::setConfiguration(std::string configuration) {
+    const std::lock_guard lock(domains_mutex);
+    chosen_configuration = std::move(configuration);
+}
 
 Participant::~Participant() {
     entity_ = Entity();

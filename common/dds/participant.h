@@ -1,10 +1,10 @@
 // A program's membership in one DDS domain. Not for the tick.
 //
-// Network settings come from CYCLONEDDS_URI; when that is unset, from the built-in copy of
-// deploy/dds/local.xml (loopback only). Endpoints that do not match because of their QoS or type are logged.
+// Which network: common/dds/network.h. Endpoints that do not match because of their QoS or type are logged.
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "common/dds/entity.h"
 
@@ -22,6 +22,9 @@ class Participant {
     Participant(Participant&&) noexcept;
 
     ~Participant();
+
+    // For domains joined from now on; see setNetwork().
+    static void setConfiguration(std::string configuration);
 
     int32_t handle() const noexcept { return entity_.handle(); }
 

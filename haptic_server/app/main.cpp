@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "common/config/user_error.h"
+#include "common/dds/network_cli.h"
 #include "common/log/log.h"
 #include "haptic_server/accuracy_report/accuracy_report.h"
 #include "haptic_server/app/describe_scene.h"
@@ -20,6 +21,7 @@ void addServerOptions(CLI::App& app, bonemill::ServerOptions& server) {
     app.add_option("--scene", server.scene, "scene file (.textproto)");
     app.add_option("--session", server.session, "session number: names the device link and the topics");
     app.add_option("--domain", server.domain, "DDS domain, 0 to 230");
+    bonemill::dds::addNetworkOptions(app, server.network);
     app.add_option("--seconds", server.seconds,
                    "stop this long after the first tick; 0: run until SIGINT or SIGTERM");
     app.add_option(

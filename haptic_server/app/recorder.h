@@ -43,6 +43,8 @@ class Recorder {
     void setCutToPublisher(const LatencyHistogram& cut_to_publisher) {
         statistics_.setCutToPublisher(cut_to_publisher);
     }
+    // By whoever has joined the publisher thread.
+    void setPublished(const PublishFigures& published) { statistics_.setPublished(published); }
     // After finish() only.
     const RunStatistics& statistics() const { return statistics_; }
 

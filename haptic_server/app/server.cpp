@@ -91,13 +91,17 @@ class Server {
             [this](std::stop_token stop) { loop(stop, kRecordPeriod, [this] { recorder_.drain(); }); });
         std::jthread mesher([this](std::stop_token stop) { meshUntil(stop); });
         std::jthread publisher(
-            [this](std::stop_token stop) { loop(stop, kPublishPeriod, [this] { show_.round(); }); });
+            [this](std::stop_token stop) { loop(stop, kPublishPeriod, [this] { publishRound(); }); });
         waitForTheEnd();
         io_.stop();
         tick_thread_.join();
         recorder = {};
         mesher = {};
         publisher = {};
+        published_.writes = publisher_.writeTimes();
+        published_.nodes = publisher_.digest().count();
+        published_.digest = publisher_.digest().value();
+        recorder_.setPublished(published_);
         return finish();
     }
 
@@ -140,6 +144,12 @@ class Server {
             has_failed_ = true;
             stop_requested_ = true;
         }
+    }
+
+    void publishRound() {
+        const int64_t start_ns = monotonicNowNs();
+        show_.round();
+        published_.rounds.record(monotonicNowNs() - start_ns);
     }
 
     void meshUntil(const std::stop_token& stop) {
@@ -229,6 +239,7 @@ class Server {
     std::atomic<bool> has_failed_{false};
     Publisher publisher_;
     ShowSession show_;
+    PublishFigures published_;  // publisher thread's until it is joined
     pid_t tick_thread_id_ = -1;
     std::optional<PageFaults> warm_;  // of the tick thread, when it had run for kWarmUpNs
     std::jthread tick_thread_;
@@ -239,6 +250,7 @@ class Server {
 int runServer(const ServerOptions& options) {
     for (const std::string& path : {options.report, options.save_volume, options.save_mesh})
         requireWritable(path);
+    dds::setNetwork(options.network);
     return Server(options).run();
 }
 

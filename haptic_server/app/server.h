@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "common/dds/network.h"
+
 namespace bonemill {
 
 inline constexpr int kLastCore = -2;
@@ -12,6 +14,7 @@ struct ServerOptions {
     std::string scene;
     uint32_t session = 1;
     uint32_t domain = 0;
+    dds::NetworkOptions network;
     double seconds = 0;              // after the first tick; 0: until a signal or a shut_down command
     double stream_mbit_per_s = 200;  // of node meshes; nearest to the burr first
     std::string accuracy;  // accuracy.json of accuracy-report; empty: beside the scene, if there is one

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cinttypes>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -29,6 +31,13 @@ nlohmann::ordered_json summary(const LatencyHistogram& histogram, double ns_per_
             {"p99_9", double(histogram.percentileNs(99.9)) / ns_per_unit},
             {"max", double(histogram.maxNs()) / ns_per_unit},
             {"mean", histogram.meanNs() / ns_per_unit}};
+}
+
+// 16 digits, as render_client prints its digest: JSON readers do not keep 64 bits of a number.
+std::string hexText(uint64_t value) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016" PRIx64, value);
+    return text;
 }
 
 nlohmann::ordered_json summaryUs(const LatencyHistogram& histogram) {
@@ -129,6 +138,12 @@ std::string RunStatistics::toJson() const {
     if (cut_to_publisher_) {
         report["cut_to_publisher_ms"] = summary(*cut_to_publisher_, double(kNsPerMillisecond));
         report["cuts_at_publisher"] = cut_to_publisher_->count();
+    }
+    if (published_) {
+        report["publish_round_ms"] = summary(published_->rounds, double(kNsPerMillisecond));
+        report["node_write_ms"] = summary(published_->writes, double(kNsPerMillisecond));
+        report["published_nodes"] = published_->nodes;
+        report["published_digest"] = hexText(published_->digest);
     }
     return report.dump(2);
 }

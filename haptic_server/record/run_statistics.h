@@ -15,6 +15,14 @@
 
 namespace bonemill {
 
+// What the clients were shown.
+struct PublishFigures {
+    LatencyHistogram rounds;  // each round of the publisher thread: encoding and all writes
+    LatencyHistogram writes;  // of one node each
+    uint32_t nodes = 0;       // at the end, as in the last Status
+    uint64_t digest = 0;
+};
+
 class RunStatistics {
   public:
     // period_ns: nominal time between ticks, > 0.
@@ -32,6 +40,9 @@ class RunStatistics {
     // From the start of each tick that cut until its node meshes were with the publisher; not known if never
     // set.
     void setCutToPublisher(const LatencyHistogram& cut_to_publisher) { cut_to_publisher_ = cut_to_publisher; }
+
+    // Of the publisher thread after its last round; not known if never set.
+    void setPublished(const PublishFigures& published) { published_ = published; }
 
     uint64_t ticks() const { return has_records_ ? last_tick_ - first_tick_ + 1 : 0; }
     double durationS() const;   // from the first to the last tick's start
@@ -81,6 +92,7 @@ class RunStatistics {
     uint64_t lost_records_ = 0;
     std::optional<PageFaults> page_faults_;
     std::optional<LatencyHistogram> cut_to_publisher_;
+    std::optional<PublishFigures> published_;
     uint64_t cuts_ = 0;  // ticks that changed voxels
     LatencyHistogram wakeup_latency_;
     LatencyHistogram force_ready_;

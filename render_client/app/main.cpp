@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
         const auto options = bonemill::parseOptions(argc, argv);
         if (!options) return 0;
         bonemill::setUpLog("render_client", options->log_level);
+        bonemill::dds::setNetwork(options->network);
         bonemill::catchStopSignals();
         if (options->set_accuracy) return bonemill::runSetAccuracy(*options);
         options->offscreen ? bonemill::runOffscreen(*options) : bonemill::runWindow(*options);

@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "common/config/user_error.h"
+#include "common/dds/network_cli.h"
 
 namespace bonemill {
 namespace {
@@ -105,6 +106,7 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
         ->capture_default_str();
     app.add_option("--session", options.subscriber.session, "Number that haptic_server was started with")
         ->capture_default_str();
+    dds::addNetworkOptions(app, options.network);
     app.add_option("--size", raw.size, "Picture or window, pixels (default 1280x800)")->type_name("WxH");
     app.add_option("--camera-azimuth-deg", raw.azimuth_deg, "Eye: 0 in front of the patient, 90 at the left")
         ->check(CLI::Range(-360.0, 360.0));

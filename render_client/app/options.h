@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "common/dds/network.h"
 #include "render_client/scene/render_scene.h"
 #include "render_client/scene/view_settings.h"
 #include "render_client/subscribe/scene_subscriber.h"
@@ -28,6 +29,7 @@ struct SetAccuracyOptions {
 
 struct ClientOptions {
     SubscriberOptions subscriber;
+    dds::NetworkOptions network;
     ViewOverrides view;
     ViewSettings settings;  // what is shown at the start
     int width = 1280;       // pixels

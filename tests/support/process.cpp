@@ -73,6 +73,10 @@ Finished Process::wait(std::chrono::seconds limit) {
     return finished;
 }
 
+std::string Process::outSoFar() const {
+    return readFile(folder_ / "out");
+}
+
 std::string Process::errSoFar() const {
     return readFile(folder_ / "err");
 }

@@ -28,7 +28,8 @@ class Process {
     bool isRunning();
     int pid() const { return pid_; }
     Finished wait(std::chrono::seconds limit = std::chrono::seconds(120));
-    // What it has printed on stderr so far.
+    // What it has printed so far.
+    std::string outSoFar() const;
     std::string errSoFar() const;
 
   private:

@@ -152,6 +152,23 @@ TEST(RunStatistics, jsonSaysHowLongCutsWaitedForThePublisher) {
     EXPECT_DOUBLE_EQ(json["cut_to_publisher_ms"]["max"], 4.5);
 }
 
+TEST(RunStatistics, whatWasPublishedIsInTheReport) {
+    RunStatistics statistics(kPeriodNs);
+    statistics.add(recordOf(1, 1));
+    EXPECT_FALSE(nlohmann::json::parse(statistics.toJson()).contains("publish_round_ms"));
+    PublishFigures published{{}, {}, 3, 0x0123456789abcdef};
+    published.rounds.record(2'000'000);
+    published.rounds.record(7'500'000);
+    published.writes.record(1'250'000);
+    statistics.setPublished(published);
+    const auto json = nlohmann::json::parse(statistics.toJson());
+    EXPECT_DOUBLE_EQ(json["publish_round_ms"]["max"], 7.5);
+    EXPECT_NEAR(json["publish_round_ms"]["p50"], 2.0, 0.02);
+    EXPECT_DOUBLE_EQ(json["node_write_ms"]["max"], 1.25);
+    EXPECT_EQ(json["published_nodes"], 3);
+    EXPECT_EQ(json["published_digest"], "0123456789abcdef");
+}
+
 TEST(RunStatistics, unwritableReportIsAUserError) {
     EXPECT_THROW(RunStatistics(kPeriodNs).writeJson("/no/such/folder/report.json"), UserError);
 }

@@ -64,6 +64,16 @@ TEST(Options, OffscreenWithUnitsConverted) {
     EXPECT_TRUE(options->view.target.value().isApprox(Eigen::Vector3d(-0.001, 0.0025, -0.03)));
 }
 
+TEST(Options, TheNetwork) {
+    const auto options =
+        parse({"--profile", "lab", "--interface", "eth0", "--peer", "10.0.0.1", "--peer", "pc2"});
+    ASSERT_TRUE(options);
+    EXPECT_EQ(options->network.profile, "lab");
+    EXPECT_EQ(options->network.interface, "eth0");
+    EXPECT_EQ(options->network.peers, (std::vector<std::string>{"10.0.0.1", "pc2"}));
+    EXPECT_EQ(parse({})->network.profile, "");
+}
+
 TEST(Options, SetAccuracyIsAModeOfItsOwn) {
     const auto options = parse({"--set-accuracy", "balanced", "--session", "9"});
     ASSERT_TRUE(options && options->set_accuracy);

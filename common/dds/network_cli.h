@@ -1,0 +1,23 @@
+// The options with which every program chooses its network.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "common/dds/network.h"
+
+namespace bonemill::dds {
+
+inline void addNetworkOptions(CLI::App& app, NetworkOptions& network) {
+    app.add_option("--profile", network.profile,
+                   "network: one-pc (default), lab, classroom, or a Cyclone DDS file (docs/network.md)")
+        ->type_name("NAME|FILE.xml");
+    app.add_option("--interface", network.interface,
+                   "this PC's interface to the others, name or IPv4 address; for lab and classroom")
+        ->type_name("NAME|ADDRESS");
+    app.add_option("--peer", network.peers, "a PC to look for where multicast does not work; may be repeated")
+        ->type_name("ADDRESS")
+        ->expected(1)
+        ->take_all();
+}
+
+}  // namespace bonemill::dds

@@ -1,0 +1,21 @@
+// The network interfaces of this PC. Any thread; not for the tick.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace bonemill::dds {
+
+struct NetworkInterface {
+    std::string name;
+    std::string address;  // IPv4, dotted
+    bool is_up = false;
+};
+
+// Those with an IPv4 address, without the loopback; one entry per address.
+std::vector<NetworkInterface> networkInterfaces();
+
+// "eth0 (192.168.1.5), wlan0 (10.0.0.3, down)".
+std::string textOf(const std::vector<NetworkInterface>& interfaces);
+
+}  // namespace bonemill::dds
