@@ -39,7 +39,8 @@ float keyVisibility(vec3 p_C, vec3 normal) {
 
 float falloff(vec3 p_C) {
     if (light_reach <= 0.0) return 1.0;
-    return 1.5 / (0.85 + dot(p_C, p_C) / (light_reach * light_reach));
+    float spot = mix(0.5, 1.0, smoothstep(0.60, 0.97, -normalize(p_C).z));
+    return spot * 1.5 / (0.85 + dot(p_C, p_C) / (light_reach * light_reach));
 }
 
 vec3 hemisphere(vec3 normal) { return mix(kGround, kSky, 0.5 + 0.5 * normal.y); }
