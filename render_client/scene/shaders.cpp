@@ -41,7 +41,8 @@ float keyVisibility(vec3 p_C, vec3 normal) {
 
 float falloff(vec3 p_C) {
     if (light_reach <= 0.0) return 1.0;
-    return 1.5 / (0.85 + dot(p_C, p_C) / (light_reach * light_reach));
+    float spot = mix(0.5, 1.0, smoothstep(0.60, 0.97, -normalize(p_C).z));
+    return spot * 1.5 / (0.85 + dot(p_C, p_C) / (light_reach * light_reach));
 }
 
 vec3 hemisphere(vec3 normal) { return mix(kGround, kSky, 0.5 + 0.5 * normal.y); }
@@ -171,13 +172,13 @@ void main() {
     vec3 light = kKeyColour * key + kFillColour * max(dot(normal, kFillDirection), 0.0) + hemisphere(normal);
     // Light inside the bone gives the edge of the shadow a warm tint.
     light += vec3(0.34, 0.13, 0.05) * key * (1.0 - visible);
-    light *= falloff(p_C);
 
     vec3 half_way = normalize(key_direction + to_eye);
     float gloss = pow(max(dot(normal, half_way), 0.0), 42.0) * 0.34 * visible * step(0.0, facing);
     float rim = pow(1.0 - max(dot(normal, to_eye), 0.0), 4.0) * (0.35 + 0.65 * max(normal.y, 0.0));
     float outline = pow(1.0 - max(dot(normal, to_eye), 0.0), 2.0);
-    colour = vec4(toneMap(albedo * light * 0.56 + kKeyColour * gloss * 0.4 + kRimColour * rim * 0.16),
+    vec3 shaded = albedo * light * 0.56 + kKeyColour * gloss * 0.4 + kRimColour * rim * 0.16;
+    colour = vec4(toneMap(shaded * falloff(p_C)),
                   opacity.x + (1.0 - opacity.x) * opacity.y * outline);
 }
 )";

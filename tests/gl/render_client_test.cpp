@@ -117,6 +117,21 @@ TEST_F(RenderClient, ClientsThatStartEarlyAndLateShowTheSamePicture) {
     EXPECT_TRUE(early_png == readFile(late_folder + "/frame_0000.png"));
 }
 
+TEST_F(RenderClient, ShowsTheViewThatItsOptionsSay) {
+    const SphereServer server;
+    const std::string common = " --size 320x240 --wait-complete --timeout-s 120" + sessionArguments();
+    const std::string plain_folder = (folder_ / "plain").string(), cut_folder = (folder_ / "cut").string();
+    const Outcome plain = run("--offscreen --no-hud --out " + plain_folder + common);
+    const Outcome cut =
+        run("--offscreen --no-hud --cut-y 0.5 --flip-y --transparent 0.3 --stereo side-by-side --out " +
+            cut_folder + common);
+    ASSERT_EQ(plain.exit_code, 0) << plain.errors;
+    ASSERT_EQ(cut.exit_code, 0) << cut.errors;
+    EXPECT_FALSE(readFile(plain_folder + "/frame_0000.png") == readFile(cut_folder + "/frame_0000.png"));
+    const std::string uploaded = "\"uploaded_nodes\":" + std::to_string(server.nodeCount()) + ",";
+    EXPECT_NE(plain.output.find(uploaded), std::string::npos) << plain.output;
+}
+
 TEST_F(RenderClient, WritesEveryFrameAtTheWantedSizeWithoutAServerToo) {
     const Outcome result = run("--offscreen --frames 3 --interval-ms 10 --size 160x90 --out " +
                                (folder_ / "out").string() + sessionArguments());
@@ -149,7 +164,8 @@ TEST_F(RenderClient, WithoutADisplayItTellsAboutOffscreen) {
 }
 
 TEST_F(RenderClient, BadArgumentsEndWithCodeTwo) {
-    for (const char* arguments : {"--bogus", "--offscreen", "--size 1x1", "--offscreen --out /dev/null/x"}) {
+    for (const char* arguments : {"--bogus", "--offscreen", "--size 1x1", "--offscreen --out /dev/null/x",
+                                  "--cut-x 2", "--transparent --set-accuracy fast"}) {
         const Outcome result = run(arguments);
         EXPECT_EQ(result.exit_code, 2) << arguments;
         EXPECT_EQ(result.errors.rfind("error: ", 0), 0u) << result.errors;

@@ -121,6 +121,89 @@ TEST(Hud, LongSettingsTakeMoreThanOneLine) {
     EXPECT_EQ(first[2].label, "Force error");
 }
 
+TEST(Hud, TheSessionsClockAndAPausedBurr) {
+    HudInput input = liveInput();
+    EXPECT_EQ(find(makeHud(input), "Session")->value, "0:00:00");
+    EXPECT_FALSE(find(makeHud(input), "Milling"));
+    input.status->set_session_s(3725.9);
+    input.status->set_is_milling_paused(true);
+    EXPECT_EQ(find(makeHud(input), "Session")->value, "1:02:05");
+    ASSERT_TRUE(find(makeHud(input), "Milling"));
+    EXPECT_EQ(find(makeHud(input), "Milling")->value, "paused");
+    EXPECT_EQ(find(makeHud(input), "Milling")->tone, HudTone::kWarning);
+    input.status->set_session_s(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_EQ(find(makeHud(input), "Session")->value, "\u2013");
+    input.status->set_ticks(0);
+    EXPECT_FALSE(find(makeHud(input), "Session"));
+}
+
+TEST(Hud, TheToolsNameWhenThereIsAChoice) {
+    HudInput input = liveInput();
+    input.info->add_tool_names("round burr 4 mm");
+    EXPECT_FALSE(find(makeHud(input), "Tool"));
+    input.info->add_tool_names("round burr 2 mm");
+    input.info->set_tool_index(1);
+    EXPECT_EQ(find(makeHud(input), "Tool")->value, "round burr 2 mm");
+    input.info->set_tool_index(7);
+    EXPECT_FALSE(find(makeHud(input), "Tool"));
+}
+
+TEST(Hud, TheViewersOwnFrameRate) {
+    HudInput input = liveInput();
+    EXPECT_FALSE(find(makeHud(input), "Pictures"));
+    input.frame_rate_hz = 59.7;
+    EXPECT_EQ(find(makeHud(input), "Pictures")->value, "60 Hz");
+}
+
+topics::Viewer watcher(const std::string& name) {
+    topics::Viewer viewer;
+    viewer.set_name(name);
+    viewer.set_frame_rate_hz(29.9);
+    viewer.set_is_complete(true);
+    return viewer;
+}
+
+TEST(Hud, WhoIsWatching) {
+    HudInput input = liveInput();
+    EXPECT_TRUE(makeHud(input).watchers.empty());
+    input.watchers = {watcher("Anna"), watcher(""), watcher("Dr. Berg")};
+    input.watchers[1].set_role(topics::Viewer::OPERATOR);
+    input.watchers[1].set_is_complete(false);
+    input.watchers[2].set_role(topics::Viewer::INSTRUCTOR);
+    const std::vector<HudRow> rows = makeHud(input).watchers;
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_EQ(rows[0].label, "Anna");
+    EXPECT_EQ(rows[0].value, "viewer, 30 Hz");
+    EXPECT_EQ(rows[1].label, "(no name)");
+    EXPECT_EQ(rows[1].value, "operator, 30 Hz, incomplete");
+    EXPECT_EQ(rows[1].tone, HudTone::kWarning);
+    EXPECT_EQ(rows[2].value, "instructor, 30 Hz");
+    input.show_watchers = false;
+    EXPECT_TRUE(makeHud(input).watchers.empty());
+}
+
+TEST(Hud, ALongListOfWatchersIsCut) {
+    HudInput input = liveInput();
+    for (int i = 0; i < 8; ++i) input.watchers.push_back(watcher("w" + std::to_string(i)));
+    EXPECT_EQ(makeHud(input).watchers.size(), 8u);
+    EXPECT_EQ(makeHud(input).watchers.back().label, "w7");
+    for (int i = 8; i < 30; ++i) input.watchers.push_back(watcher("w" + std::to_string(i)));
+    const std::vector<HudRow> rows = makeHud(input).watchers;
+    ASSERT_EQ(rows.size(), 8u);
+    EXPECT_EQ(rows[6].label, "w6");
+    EXPECT_EQ(rows[7].label, "and 23 more");
+}
+
+TEST(Hud, ALongNameIsCutBetweenLetters) {
+    HudInput input = liveInput();
+    std::string name;
+    for (int i = 0; i < 40; ++i) name += "\u00e4";
+    input.watchers = {watcher(name)};
+    std::string expected;
+    for (int i = 0; i < 23; ++i) expected += "\u00e4";
+    EXPECT_EQ(makeHud(input).watchers[0].label, expected + "\u2026");
+}
+
 TEST(Hud, ANoticeIsPassedOn) {
     HudInput input = liveInput();
     EXPECT_FALSE(makeHud(input).notice);
@@ -145,6 +228,15 @@ TEST(AccuracyKeys, AreInTheHelp) {
         ASSERT_NE(row, rows.end()) << key;
         EXPECT_EQ(row->value, "accuracy " + std::string(kAccuracyOfKey[key]));
     }
+}
+
+TEST(HelpRows, NameEveryKey) {
+    const std::vector<HudRow> rows = helpRows();
+    for (const char* key :
+         {"R", "C",   "F", "X Y Z", "Shift + X Y Z",      "[ ]", "T", "S", "E", "P", "K", "U", "N", "0", "W",
+          "M", "Tab", "H", "Esc",   "Ctrl + left drag, L"})
+        EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [&](const HudRow& r) { return r.label == key; }))
+            << key;
 }
 
 TEST(Hud, NumbersThatAreNoneBecomeADash) {
