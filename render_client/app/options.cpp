@@ -1,11 +1,15 @@
 #include "render_client/app/options.h"
 
+#include <pwd.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
 #include <iostream>
+#include <map>
 
 #include "common/config/user_error.h"
 #include "common/dds/network_cli.h"
@@ -37,6 +41,11 @@ struct RawOptions {
     std::string camera = "orbit";
     bool no_hud = false;
 };
+
+std::string loginName() {
+    const passwd* user = getpwuid(getuid());
+    return user ? user->pw_name : "";
+}
 
 void parseSize(const std::string& text, ClientOptions& options) {
     int width = 0, height = 0, used = 0;
@@ -107,6 +116,17 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     app.add_option("--session", options.subscriber.session, "Number that haptic_server was started with")
         ->capture_default_str();
     dds::addNetworkOptions(app, options.network);
+    app.add_option("--name", options.subscriber.name, "What the others read in their list of viewers")
+        ->capture_default_str();
+    app.add_option(
+           "--role", options.subscriber.role,
+           "viewer: only looks; operator: also commands; instructor: also points and ends the session "
+           "(default operator)")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, topics::Viewer::Role>{{"viewer", topics::Viewer::VIEWER},
+                                                        {"operator", topics::Viewer::OPERATOR},
+                                                        {"instructor", topics::Viewer::INSTRUCTOR}}))
+        ->type_name("ROLE");
     app.add_option("--size", raw.size, "Picture or window, pixels (default 1280x800)")->type_name("WxH");
     app.add_option("--camera-azimuth-deg", raw.azimuth_deg, "Eye: 0 in front of the patient, 90 at the left")
         ->check(CLI::Range(-360.0, 360.0));
@@ -196,6 +216,7 @@ std::string serverQuestion(const SubscriberOptions& subscriber) {
 
 std::optional<ClientOptions> parseOptions(int argc, const char* const* argv) {
     ClientOptions options;
+    options.subscriber.name = loginName();
     RawOptions raw;
     CLI::App app{
         "Shows the session of a haptic_server in a window, or off screen as pictures (docs/viewer.md)."};
