@@ -35,7 +35,7 @@ class Panel {
     // Brings the panel up to date with the settings and the session, to be drawn.
     void layOut(ViewerControls& controls, const SessionView& session, Wishes& wishes);
 
-    // The middle of the button, slider or box with this label, if it can be seen.
+    // Where to click on the button, box or slider with this label, if it can be seen.
     std::optional<PixelPoint> find(const std::string& label) const;
 
     // What to draw; null while the panel is closed. Valid until the next call of setPicture() or handle().

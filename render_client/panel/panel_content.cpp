@@ -52,11 +52,10 @@ void PanelContent::build() {
 }
 
 void PanelContent::note(const char* label, const char* what) {
-    if (ImGui::IsItemVisible()) {
-        const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-        // A label beside its box or slider belongs to it, but the left end is what is always the control.
-        places_[label] = {double(low.x) + double(high.y - low.y) / 2, double(low.y + high.y) / 2};
-    }
+    // A box's label belongs to it, but its left end is always the control.
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const ImVec2 place(low.x + (high.y - low.y) / 2, (low.y + high.y) / 2);
+    if (ImGui::IsRectVisible(place, ImVec2(place.x + 1, place.y + 1))) places_[label] = {place.x, place.y};
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", what);
 }
 
