@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
 #include "common/config/user_error.h"
 #include "render_client/app/scene_feed.h"
@@ -46,6 +47,25 @@ class Notices {
   private:
     RenderScene& scene_;
     Clock::time_point end_;
+};
+
+// Logs who comes and goes.
+class Attendance {
+  public:
+    void update(const std::vector<topics::Viewer>& others) {
+        std::map<uint64_t, std::string> here;
+        for (const topics::Viewer& other : others) {
+            here[other.sender()] = other.name();
+            if (!here_.contains(other.sender()))
+                spdlog::info("{} ({}) is watching", other.name(), roleName(other.role()));
+        }
+        for (const auto& [sender, name] : here_)
+            if (!here.contains(sender)) spdlog::info("{} is no longer watching", name);
+        here_ = std::move(here);
+    }
+
+  private:
+    std::map<uint64_t, std::string> here_;  // names by sender
 };
 
 // The first free name in the current folder.
@@ -94,6 +114,7 @@ class WindowViewer {
         if (!is_minimised) panel_.layOut(controls_, session, wishes);
         carryOut(wishes);
         announce();
+        attendance_.update(session.others);
         notices_.showOutcomes(feed_.subscriber());
         notices_.removeOld();
         if (is_minimised) return feed_.updateUntil(Clock::now() + kMinimisedPause, stopRequested);
@@ -168,6 +189,7 @@ class WindowViewer {
     Panel panel_;
     PanelPainter painter_;
     Notices notices_;
+    Attendance attendance_;
     FrameRate frame_rate_;
     AnnounceClock announce_clock_;
     Clock::time_point last_picture_ = Clock::now();

@@ -43,11 +43,11 @@ void PanelContent::build() {
     ImGui::Begin("Controls (M)", nullptr,
                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                      ImGuiWindowFlags_NoSavedSettings);
-    ImGui::PushItemWidth(width * 0.42f);
     if (isOpen("View")) buildView();
+    gap();
     if (isOpen("Session")) buildSession();
+    gap();
     if (isOpen("Who is watching")) buildWatchers();
-    ImGui::PopItemWidth();
     ImGui::End();
 }
 

@@ -74,6 +74,9 @@ GlfwWindow::GlfwWindow(int width, int height, const std::string& title) {
     glfwSwapInterval(1);
     gl_ = GlApi::load([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); });
     glfwSetWindowUserPointer(window_, this);
+    double x = 0, y = 0;
+    glfwGetCursorPos(window_, &x, &y);
+    mouse_ = toPixels(x, y);
     listen();
 }
 
@@ -88,7 +91,8 @@ void GlfwWindow::listen() {
         of(w).onButton(button, action, modifiers);
     });
     glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
-        of(w).events_.push_back(MouseMoveEvent{of(w).toPixels(x, y)});
+        of(w).mouse_ = of(w).toPixels(x, y);
+        of(w).events_.push_back(MouseMoveEvent{of(w).mouse_});
     });
     glfwSetScrollCallback(window_,
                           [](GLFWwindow* w, double, double y) { of(w).events_.push_back(ScrollEvent{y}); });
@@ -140,9 +144,7 @@ PixelPoint GlfwWindow::toPixels(double x, double y) const {
 }
 
 void GlfwWindow::onButton(int button, int action, int modifiers) {
-    double x = 0, y = 0;
-    glfwGetCursorPos(window_, &x, &y);
-    MouseButtonEvent event{MouseButton::kLeft, action == GLFW_PRESS, toPixels(x, y), modifiersOf(modifiers),
+    MouseButtonEvent event{MouseButton::kLeft, action == GLFW_PRESS, mouse_, modifiersOf(modifiers),
                            glfwGetTime()};
     if (button == GLFW_MOUSE_BUTTON_RIGHT) {
         event.button = MouseButton::kRight;

@@ -51,6 +51,7 @@ class GlfwWindow {
     GLFWwindow* window_;
     GlApi gl_;
     std::vector<WindowEvent> events_;
+    PixelPoint mouse_;  // of the last event: the mouse itself may be elsewhere by the time it is handled
 };
 
 }  // namespace bonemill
