@@ -189,6 +189,7 @@ class PanelTwin {
 TEST_F(Window, EveryModeByKeyLooksAsItDid) {
     WindowedViewer& viewer = start("me", "operator");
     key("Tab");  // the figures change
+    moveTo({5, 5});
     const Picture plain = look(viewer);
     expectGolden(plain, "plain");
     const auto switchOn = [&](const std::string& key_name, const std::string& picture) {
