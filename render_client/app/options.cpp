@@ -9,7 +9,6 @@
 #include <cctype>
 #include <cmath>
 #include <iostream>
-#include <map>
 
 #include "common/config/user_error.h"
 #include "common/dds/network_cli.h"
@@ -29,6 +28,7 @@ struct RawOptions {
     OffscreenOptions offscreen_options;
     uint32_t interval_ms = 500;
     std::optional<uint32_t> timeout_s;
+    std::string role = "operator";
     std::string size;
     std::string set_accuracy;
     std::optional<double> azimuth_deg, elevation_deg, distance_mm;
@@ -119,14 +119,10 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     app.add_option("--name", options.subscriber.name, "What the others read in their list of viewers")
         ->capture_default_str();
     app.add_option(
-           "--role", options.subscriber.role,
-           "viewer: only looks; operator: also commands; instructor: also points and ends the session "
-           "(default operator)")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, topics::Viewer::Role>{{"viewer", topics::Viewer::VIEWER},
-                                                        {"operator", topics::Viewer::OPERATOR},
-                                                        {"instructor", topics::Viewer::INSTRUCTOR}}))
-        ->type_name("ROLE");
+           "--role", raw.role,
+           "viewer: only looks; operator: also commands; instructor: also points and ends the session")
+        ->check(CLI::IsMember({"viewer", "operator", "instructor"}))
+        ->capture_default_str();
     app.add_option("--size", raw.size, "Picture or window, pixels (default 1280x800)")->type_name("WxH");
     app.add_option("--camera-azimuth-deg", raw.azimuth_deg, "Eye: 0 in front of the patient, 90 at the left")
         ->check(CLI::Range(-360.0, 360.0));
@@ -171,6 +167,12 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
         ->check(CLI::Range(1u, 86400u));
 }
 
+topics::Viewer::Role roleOf(const std::string& name) {
+    return name == "viewer"       ? topics::Viewer::VIEWER
+           : name == "instructor" ? topics::Viewer::INSTRUCTOR
+                                  : topics::Viewer::OPERATOR;
+}
+
 ViewSettings viewSettings(const RawOptions& raw) {
     ViewSettings settings;
     for (size_t axis = 0; axis < 3; ++axis)
@@ -187,6 +189,7 @@ ViewSettings viewSettings(const RawOptions& raw) {
 
 ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     options.settings = viewSettings(raw);
+    options.subscriber.role = roleOf(raw.role);
     if (!raw.size.empty()) parseSize(raw.size, options);
     if (raw.azimuth_deg) options.view.azimuth = *raw.azimuth_deg * kDegreesToRadians;
     if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegreesToRadians;
