@@ -118,7 +118,7 @@ class WindowViewer {
         notices_.showOutcomes(feed_.subscriber());
         notices_.removeOld();
         if (is_minimised) return feed_.updateUntil(Clock::now() + kMinimisedPause, stopRequested);
-        scene_.setWatchers(session.others);
+        scene_.setWatchers(watchers(session));
         scene_.setFrameRate(frame_rate_.perSecond());
         scene_.draw(width, height, window_.contentScale());
         painter_.paint(panel_, width, height);
@@ -166,9 +166,23 @@ class WindowViewer {
     std::optional<Eigen::Vector3d> pick(const PixelPoint& at) { return scene_.pick(int(at.x), int(at.y)); }
 
     void announce() {
-        const auto pointing = controls_.pointing();
-        if (!announce_clock_.isDue(Clock::now(), pointing.has_value())) return;
-        feed_.subscriber().announce(frame_rate_.perSecond(), pointing ? pick(*pointing) : std::nullopt);
+        const auto at = controls_.pointing();
+        if (!announce_clock_.isDue(Clock::now(), at.has_value())) return;
+        pointer_W_ = at ? pick(*at) : std::nullopt;
+        feed_.subscriber().announce(frame_rate_.perSecond(), pointer_W_);
+    }
+
+    // The others, and the user while it points: the laser is seen where it is held, too.
+    std::vector<topics::Viewer> watchers(const SessionView& session) const {
+        std::vector<topics::Viewer> watchers = session.others;
+        if (!pointer_W_) return watchers;
+        topics::Viewer& self = watchers.emplace_back();
+        self.set_name(session.name);
+        self.set_role(session.role);
+        self.set_frame_rate_hz(session.frame_rate_hz);
+        self.set_is_complete(session.is_complete);
+        self.mutable_pointer_m()->Assign(pointer_W_->begin(), pointer_W_->end());
+        return watchers;
     }
 
     void savePicture(int width, int height) {
@@ -192,6 +206,7 @@ class WindowViewer {
     Attendance attendance_;
     FrameRate frame_rate_;
     AnnounceClock announce_clock_;
+    std::optional<Eigen::Vector3d> pointer_W_;  // where the user points, as announced last
     Clock::time_point last_picture_ = Clock::now();
     bool has_quit_ = false;
 };

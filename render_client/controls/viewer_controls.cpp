@@ -101,8 +101,13 @@ void ViewerControls::onDoubleClick(const MouseButtonEvent& event, Wishes& wishes
     if (!first || event.time - first->time > kDoubleClickTime ||
         std::hypot(event.at.x - first->at.x, event.at.y - first->at.y) > kDoubleClickRadius)
         return;
-    wishes.centre_at = event.at;
     last_click_.reset();
+    const std::string why_not = whyNoPlace();
+    if (why_not.empty()) {
+        wishes.centre_at = event.at;
+    } else {
+        wishes.notice = HudNotice{why_not, HudTone::kWarning};
+    }
 }
 
 void ViewerControls::onMove(const MouseMoveEvent& event, int picture_height) {
@@ -119,9 +124,15 @@ std::optional<PixelPoint> ViewerControls::pointing() const {
 }
 
 bool ViewerControls::mayPoint(const SessionView& session, Wishes& wishes) const {
-    const std::string why_not = whyNotPoint(session);
+    std::string why_not = whyNotPoint(session);
+    if (why_not.empty()) why_not = whyNoPlace();
     if (!why_not.empty()) wishes.notice = HudNotice{why_not, HudTone::kWarning};
     return why_not.empty();
+}
+
+// A pixel of a stereo picture stands for no one place (RenderScene::pick).
+std::string ViewerControls::whyNoPlace() const {
+    return settings_.stereo == StereoMode::kOff ? "" : "No place can be shown in stereo: S switches it off";
 }
 
 void ViewerControls::act(Action action, const SessionView& session, Wishes& wishes) {

@@ -59,6 +59,7 @@ class ViewerControls {
     void flipCut(size_t axis);
     void moveCut(double by);
     bool mayPoint(const SessionView& session, Wishes& wishes) const;
+    std::string whyNoPlace() const;
 
     ViewSettings& settings_;
     OrbitCamera& camera_;

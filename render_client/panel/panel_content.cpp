@@ -268,8 +268,8 @@ void PanelContent::buildWatchers() {
                         bool is_complete) {
         ImGui::Text("%s", name.empty() ? "(no name)" : name.c_str());
         ImGui::SameLine();
-        ImGui::TextColored(kQuiet, "%s, %.0f pictures/s%s", roleName(role).c_str(), rate_hz,
-                           is_complete ? "" : ", incomplete");
+        ImGui::TextColored(kQuiet, "%s, %.*f pictures/s%s", roleName(role).c_str(), rate_hz < 10 ? 1 : 0,
+                           rate_hz, is_complete ? "" : ", incomplete");
     };
     row(session_.name + " (you)", session_.role, session_.frame_rate_hz, session_.is_complete);
     for (const topics::Viewer& other : session_.others)

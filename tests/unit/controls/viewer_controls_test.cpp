@@ -184,6 +184,21 @@ TEST_F(Controls, OthersAreToldWhyTheyCannotPoint) {
     EXPECT_TRUE(wishes_.notice);
 }
 
+TEST_F(Controls, InStereoNoPlaceCanBeMeant) {
+    session_.role = topics::Viewer::INSTRUCTOR;
+    settings_.stereo = StereoMode::kAnaglyph;
+    send(KeyEvent{keyOf('L'), true, false, {}});
+    EXPECT_FALSE(controls_.pointing());
+    EXPECT_TRUE(wishes_.notice);
+    wishes_ = {};
+    for (int i = 0; i < 2; ++i) {
+        press(200, 100);
+        release(200, 100);
+    }
+    EXPECT_FALSE(wishes_.centre_at);
+    EXPECT_TRUE(wishes_.notice);
+}
+
 TEST_F(Controls, CommandsAreWishesAndRefusalsNotices) {
     type('C');
     ASSERT_EQ(wishes_.commands.size(), 1u);
