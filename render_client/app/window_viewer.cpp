@@ -96,6 +96,7 @@ class WindowViewer {
           notices_(scene_) {
         spdlog::info("window, {}", window_.gl().describe());
         scene_.setViewOverrides(options.view);
+        scene_.settings() = options.settings;
     }
 
     void run() {

@@ -1,4 +1,4 @@
-// A session for viewers to look at: a small body with a milled hole, and answers to their commands.
+// A session for viewers to look at: the milled block, and answers to their commands.
 #pragma once
 
 #include <atomic>
@@ -7,26 +7,21 @@
 #include <vector>
 
 #include "haptic_server/publish/publisher.h"
-#include "tests/gl/synthetic_scene.h"
+#include "tests/gl/milled_scene.h"
 #include "tests/support/dds_session.h"
 
 namespace bonemill::test {
 
 class ShownSession {
   public:
-    static constexpr double kRadius = 0.005;  // m, of the body
-    static Eigen::Vector3d center() { return Eigen::Vector3d::Constant(0.008); }
-
     ShownSession() : publisher_({.domain = testDomain(), .session = testSession(), .epoch = 0}) {
-        info_ = makeSceneInfo("sphere", center() - half(), center() + half());
-        *info_.mutable_tool() = makeToolMesh(1e-3, 5e-4, 0.02);
-        info_.set_burr_radius_m(1e-3);
+        info_ = milledInfo();
         info_.add_tool_names("6 mm");
         info_.add_tool_names("3 mm");
         status_ = makeStatus();
         status_.set_preset("balanced");
         publisher_.publishSceneInfo(info_);
-        for (const NodeMesh& node : meshBody(65, 2.5e-4, distance)) publisher_.publishNode(node);
+        for (const NodeMesh& node : milledBlock()) publisher_.publishNode(node);
         thread_ = std::thread([this] { serve(); });
     }
     ~ShownSession() {
@@ -49,20 +44,16 @@ class ShownSession {
     }
 
   private:
-    static Eigen::Vector3d half() { return Eigen::Vector3d::Constant(kRadius); }
-    // A ball with a round hole from its front (-y) to the middle.
-    static double distance(const Eigen::Vector3d& p) {
-        const Eigen::Vector3d end = center() - Eigen::Vector3d(0, 0.004, 0);
-        return std::max((p - center()).norm() - kRadius, 0.002 - (p - end).norm());
-    }
     static TickRecord tool() {
+        const Pose X_WT = toolInCavity();
+        const Eigen::Quaterniond& q = X_WT.rotation;
         TickRecord record{};
         record.tick = 1000;
-        record.q_WT[0] = record.q_WT_device[0] = M_SQRT1_2;  // the shaft leaves the hole towards -y and +z
-        record.q_WT[1] = record.q_WT_device[1] = M_SQRT1_2;
-        const Eigen::Vector3d p = center() + Eigen::Vector3d(0, -0.0045, 0.0012);
-        std::copy(p.begin(), p.end(), record.p_WT);
-        std::copy(p.begin(), p.end(), record.p_WT_device);
+        record.f_hand_W[2] = 3;  // N
+        for (double* p : {record.p_WT, record.p_WT_device})
+            std::copy(X_WT.position.begin(), X_WT.position.end(), p);
+        for (double* to : {record.q_WT, record.q_WT_device})
+            for (const double part : {q.w(), q.x(), q.y(), q.z()}) *to++ = part;
         return record;
     }
     void serve() {

@@ -9,7 +9,7 @@
 
 #include "render_client/panel/panel.h"
 #include "render_client/subscribe/scene_subscriber.h"
-#include "tests/gl/window/golden.h"
+#include "tests/gl/golden.h"
 #include "tests/gl/window/shown_session.h"
 #include "tests/gl/window/virtual_display.h"
 
@@ -17,8 +17,6 @@ namespace bonemill {
 namespace {
 
 using namespace std::chrono_literals;
-using test::differentShare;
-using test::expectGolden;
 using test::VirtualDisplay;
 using Viewer = topics::Viewer;
 
@@ -30,6 +28,14 @@ constexpr double kNoChange = 0.002;
 void useSoftwareRenderer() {
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
     setenv("LP_NUM_THREADS", "1", 1);
+}
+
+double differentShare(const Picture& a, const Picture& b) {
+    return test::compare(a, b).bad_part;
+}
+
+void expectGolden(const Picture& picture, const std::string& name) {
+    EXPECT_EQ(test::goldenProblem(picture, "window_" + name), "");
 }
 
 std::string number(double value) {
@@ -194,8 +200,13 @@ TEST_F(Window, EveryModeByKeyLooksAsItDid) {
     expectGolden(plain, "plain");
     const auto switchOn = [&](const std::string& key_name, const std::string& picture) {
         key(key_name);
-        expectGolden(look(viewer), picture);
+        const Picture shown = look(viewer);
+        expectGolden(shown, picture);
+        EXPECT_GT(differentShare(shown, plain), kClearChange) << picture;
     };
+    key("f");
+    EXPECT_GT(differentShare(look(viewer), plain), kNoChange) << "the force arrow is gone";
+    key("f");
     switchOn("x", "cut_x");
     switchOn("shift+x", "cut_x_flipped");
     display_.type({"key", "bracketright", "bracketright", "bracketright", "bracketright", "bracketright"});
@@ -333,8 +344,8 @@ TEST_F(Window, ViewersSeeEachOtherAndTheInstructorsPointer) {
     };
     const auto expectOnTheBody = [&](const char* how) {
         waitFor(how, [&] { return pointer().has_value(); });
-        const double from_center = (*pointer() - test::ShownSession::center()).norm();
-        EXPECT_LT(from_center, 2 * test::ShownSession::kRadius) << how;
+        const double from_center = (*pointer() - test::kBlockCenter).norm();
+        EXPECT_LT(from_center, 1.02 * test::kBlockRadius) << how;
     };
     moveTo({240, 150});
     display_.type({"keydown", "l"});
