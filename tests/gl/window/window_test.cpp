@@ -222,7 +222,7 @@ TEST_F(Window, EveryModeByKeyLooksAsItDid) {
     key("s");
     switchOn("e", "endoscope");
     key("e");
-    switchOn("m", "panel");
+    switchOn("m", "panel_after_keys");  // it shows what they left
     key("m");
     EXPECT_LT(differentShare(look(viewer), plain), kNoChange) << "everything is switched off again";
     key("Escape");
