@@ -111,6 +111,8 @@ void PanelContent::buildView() {
     ImGui::SameLine();
     if (box("Watchers (W)", settings_.show_watchers, "Who is watching, over the picture"))
         act(Action::kWatchers);
+    ImGui::SameLine();
+    if (box("Help (H)", settings_.show_help, "All keys, over the picture")) act(Action::kHelp);
 }
 
 void PanelContent::buildSides() {

@@ -93,6 +93,8 @@ class Window : public testing::Test {
     WindowedViewer& start(const std::string& name, const std::string& role) {
         viewers_.push_back(std::make_unique<WindowedViewer>(name, role));
         waitFor(name + " to show the model", [&] {
+            if (!viewers_.back()->process().isRunning())
+                throw std::runtime_error(name + " has ended: " + viewers_.back()->process().errSoFar());
             const auto viewer = heard(name);
             return viewer && viewer->is_complete();
         });

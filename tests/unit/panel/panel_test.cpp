@@ -80,6 +80,8 @@ TEST_F(PanelClicks, BoxesSwitchWhatIsSeen) {
     EXPECT_FALSE(settings_.show_hud);
     click("Watchers (W)");
     EXPECT_FALSE(settings_.show_watchers);
+    click("Help (H)");
+    EXPECT_TRUE(settings_.show_help);
     click("Red/cyan");
     EXPECT_EQ(settings_.stereo, StereoMode::kAnaglyph);
     click("Off");
