@@ -118,14 +118,20 @@ class WindowViewer {
         attendance_.update(session.others);
         notices_.showOutcomes(feed_.subscriber());
         notices_.removeOld();
-        if (is_minimised) return feed_.updateUntil(Clock::now() + kMinimisedPause, stopRequested);
+        if (is_minimised) return pause();
         scene_.setWatchers(watchers(session));
         scene_.setFrameRate(frame_rate_.perSecond());
         scene_.draw(width, height, window_.contentScale());
         painter_.paint(panel_, width, height);
         if (wishes.save_picture) savePicture(width, height);
         window_.show();
+        feed_.hasShown();
         frame_rate_.countPicture(Clock::now());
+    }
+
+    void pause() {
+        feed_.updateUntil(Clock::now() + kMinimisedPause, stopRequested);
+        feed_.cutToScreen().forget();
     }
 
     SessionView lookAtSession() {

@@ -107,6 +107,10 @@ void PanelContent::buildView() {
     gap();
     if (box("Force arrow (F)", settings_.show_force, "The contact force on the hand, at the burr"))
         act(Action::kForceArrow);
+    ImGui::SameLine();
+    const bool is_quick = settings_.quality == Quality::kQuick;
+    if (box("Quick drawing", is_quick, "Without shadows and smooth edges: for PCs without a graphics card"))
+        settings_.quality = is_quick ? Quality::kFull : Quality::kQuick;
     if (box("Figures (Tab)", settings_.show_hud, "What is written over the picture")) act(Action::kHud);
     ImGui::SameLine();
     if (box("Watchers (W)", settings_.show_watchers, "Who is watching, over the picture"))

@@ -23,6 +23,7 @@ using Viewer = topics::Viewer;
 constexpr int kWidth = 480, kHeight = 360;
 constexpr double kClearChange = 0.01;  // of the picture: what a change of the view changes at least
 constexpr double kNoChange = 0.002;
+constexpr double kSmallChange = 0.1;  // shadows and smooth edges
 
 // The renderer is as deterministic as its driver with one thread, and leaves the other core to the test.
 void useSoftwareRenderer() {
@@ -287,7 +288,9 @@ TEST_F(Window, CommandsByKeyArrive) {
 
 TEST_F(Window, ThePanelWorksByMouse) {
     WindowedViewer& viewer = start("me", "instructor");
-    display_.type({"key", "Tab", "m"});
+    key("Tab");
+    const Picture plain = look(viewer);
+    key("m");
     PanelTwin panel(display_, session_, Viewer::INSTRUCTOR);
     panel.rest();
     expectGolden(look(viewer), "panel");
@@ -299,6 +302,11 @@ TEST_F(Window, ThePanelWorksByMouse) {
     panel.click("Left");
     expectGolden(look(viewer), "panel_left");
     panel.click("First view (R)");
+    panel.click("Quick drawing");
+    expectGolden(look(viewer), "panel_quick");
+    key("m");
+    EXPECT_LT(differentShare(look(viewer), plain), kSmallChange) << "nothing of the panel is left";
+    key("m");
 
     panel.click("Pause milling (P)");
     EXPECT_TRUE(waitForCommand(1).pause_milling());

@@ -76,6 +76,10 @@ TEST_F(PanelClicks, BoxesSwitchWhatIsSeen) {
     EXPECT_EQ(settings_.camera, CameraMode::kEndoscope);
     click("Force arrow (F)");
     EXPECT_FALSE(settings_.show_force);
+    click("Quick drawing");
+    EXPECT_EQ(settings_.quality, Quality::kQuick);
+    click("Quick drawing");
+    EXPECT_EQ(settings_.quality, Quality::kFull);
     click("Figures (Tab)");
     EXPECT_FALSE(settings_.show_hud);
     click("Watchers (W)");
