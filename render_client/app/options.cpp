@@ -28,7 +28,7 @@ struct RawOptions {
     OffscreenOptions offscreen_options;
     uint32_t interval_ms = 500;
     std::optional<uint32_t> timeout_s;
-    std::string role = "operator";
+    std::string role;
     std::string size;
     std::string set_accuracy;
     std::optional<double> azimuth_deg, elevation_deg, distance_mm;
@@ -120,9 +120,9 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
         ->capture_default_str();
     app.add_option(
            "--role", raw.role,
-           "viewer: only looks; operator: also commands; instructor: also points and ends the session")
-        ->check(CLI::IsMember({"viewer", "operator", "instructor"}))
-        ->capture_default_str();
+           "viewer: only looks; operator: also commands; instructor: also points and ends the session "
+           "(default operator, with --profile lab or classroom viewer)")
+        ->check(CLI::IsMember({"viewer", "operator", "instructor"}));
     app.add_option("--size", raw.size, "Picture or window, pixels (default 1280x800)")->type_name("WxH");
     app.add_option("--camera-azimuth-deg", raw.azimuth_deg, "Eye: 0 in front of the patient, 90 at the left")
         ->check(CLI::Range(-360.0, 360.0));
@@ -167,10 +167,13 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
         ->check(CLI::Range(1u, 86400u));
 }
 
-topics::Viewer::Role roleOf(const std::string& name) {
-    return name == "viewer"       ? topics::Viewer::VIEWER
-           : name == "instructor" ? topics::Viewer::INSTRUCTOR
-                                  : topics::Viewer::OPERATOR;
+// Among several PCs whoever commands says so.
+topics::Viewer::Role roleOf(const RawOptions& raw, const dds::NetworkOptions& network) {
+    if (raw.role == "viewer") return topics::Viewer::VIEWER;
+    if (raw.role == "instructor") return topics::Viewer::INSTRUCTOR;
+    const bool only_looks =
+        raw.role.empty() && raw.set_accuracy.empty() && dds::isLanProfile(network.profile);
+    return only_looks ? topics::Viewer::VIEWER : topics::Viewer::OPERATOR;
 }
 
 ViewSettings viewSettings(const RawOptions& raw) {
@@ -189,7 +192,7 @@ ViewSettings viewSettings(const RawOptions& raw) {
 
 ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     options.settings = viewSettings(raw);
-    options.subscriber.role = roleOf(raw.role);
+    options.subscriber.role = roleOf(raw, options.network);
     if (!raw.size.empty()) parseSize(raw.size, options);
     if (raw.azimuth_deg) options.view.azimuth = *raw.azimuth_deg * kDegreesToRadians;
     if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegreesToRadians;

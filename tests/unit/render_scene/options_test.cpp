@@ -34,6 +34,14 @@ TEST(Options, ANameOfOnesOwnAndTheRoleOfAnOperator) {
     EXPECT_EQ(teacher->subscriber.name, "Anna B");
     EXPECT_EQ(teacher->subscriber.role, topics::Viewer::INSTRUCTOR);
     EXPECT_EQ(parse({"--role", "viewer"})->subscriber.role, topics::Viewer::VIEWER);
+    for (const char* profile : {"lab", "classroom"}) {
+        EXPECT_EQ(parse({"--profile", profile})->subscriber.role, topics::Viewer::VIEWER);
+        EXPECT_EQ(parse({"--profile", profile, "--set-accuracy", "fast"})->subscriber.role,
+                  topics::Viewer::OPERATOR);
+        EXPECT_EQ(parse({"--profile", profile, "--role", "operator"})->subscriber.role,
+                  topics::Viewer::OPERATOR);
+    }
+    EXPECT_EQ(parse({"--profile", "one-pc"})->subscriber.role, topics::Viewer::OPERATOR);
     for (const char* role : {"boss", "7", ""}) EXPECT_THROW(parse({"--role", role}), UserError) << role;
 }
 
