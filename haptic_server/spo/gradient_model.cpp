@@ -69,9 +69,10 @@ bool GradientModel::State::isFinite() const noexcept {
 GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world, double dt)
     : config_(config),
       world_(world),
+      tool_(&world.tool),
       dt_(dt),
       X_VW_(world.volume.geometry().X_WV.inverse()),
-      field_(&world.tool.field(settings_)),
+      field_(&tool_->field(settings_)),
       contact_(config.contact, std::min(kMostCandidates, config.most_point_tests / 4)),
       relaxing_(config.coupling, dt) {
     setAccuracy(settings_);
@@ -80,10 +81,19 @@ GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world
 void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
     settings_ = settings;
     level_ = levelOf(world_.shell, settings);
-    field_ = &world_.tool.field(settings);
+    field_ = &tool_->field(settings);
     most_point_tests_ = size_t(double(config_.most_point_tests) / field_->testCost());
     contact_.limitCandidates(most_point_tests_ / 4);
     contact_.forget();
+}
+
+void GradientModel::setTool(const SpoTool& tool) noexcept {
+    tool_ = tool.model;
+    config_.burr_radius = tool.burr_radius;
+    config_.coupling.saturation_force = tool.saturation_force;
+    relaxing_.setSaturationForce(tool.saturation_force);
+    lambda_ = 0;
+    setAccuracy(settings_);
 }
 
 void GradientModel::restart() noexcept {

@@ -27,6 +27,7 @@ class GradientModel final : public SpoModel {
     SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept override;
     void restart() noexcept override;
     void setAccuracy(const AccuracySettings& settings) noexcept override;
+    void setTool(const SpoTool& tool) noexcept override;
 
     // J of the last advance(): all energy of the solve, damping included, at its final pose. For tests and
     // reports.
@@ -64,6 +65,7 @@ class GradientModel final : public SpoModel {
 
     GradientConfig config_;
     SpoWorld world_;
+    const ToolModel* tool_;
     double dt_;
     Pose X_VW_;
     AccuracySettings settings_;
