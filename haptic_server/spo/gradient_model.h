@@ -5,6 +5,7 @@
 
 #include "haptic_server/contact/gradient_contact.h"
 #include "haptic_server/spo/spo_model.h"
+#include "haptic_server/tool/growing_field.h"
 
 namespace bonemill {
 
@@ -47,6 +48,9 @@ class GradientModel final : public SpoModel {
         Pose start, device;
         SpoStep* out;
     };
+    void useTool() noexcept;
+    void fitTool(const Tick& tick) noexcept;
+    void growTool(double depth) noexcept;
     void gather(const Pose& X_VT, double margin, SpoStep& out) noexcept;
     State evaluate(const Pose& X_VT, const Tick& tick) noexcept;
     void goOn(State& state, const Tick& tick) noexcept;
@@ -70,7 +74,10 @@ class GradientModel final : public SpoModel {
     Pose X_VW_;
     AccuracySettings settings_;
     int level_ = 0;
-    const ToolField* field_;
+    const ToolField* field_;  // of tool_, or growing_
+    GrowingField growing_;
+    bool is_new_tool_ = false;
+    double last_depth_ = 0;  // m
     GradientContact contact_;
     Pose gathered_at_;
     uint32_t gatherings_ = 0;

@@ -54,7 +54,10 @@ HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const ToolMode
     bone.shell.prepare(bone.volume, bone.lattice, levelOf(bone.shell, settings),
                        int(bone.lattice.leafCount()));
     takeUp(settings);
-    if (tools) takeUp((*tools)[tool_ = tools->chosen()]);
+    if (!tools) return;
+    tool_ = tools->chosen();
+    takeUp((*tools)[tool_]);
+    model_->restart();
 }
 
 // A choice is taken up when its contact points are up to date; until then the old one stays in force.

@@ -111,6 +111,24 @@ double leftInPlane(const Variant& variant) {
     return (kTop + kLarge - bench.loop.stepper.spo().position.z()) / kVoxel;
 }
 
+// The hand draws the large burr, which became it in the hole, out: ms until it is 5 mm up and touches
+// nothing.
+double drawnOut(const Variant& variant) {
+    constexpr double kUp = 5e-3;
+    Bench bench = inHole(variant);
+    const double bottom = bench.loop.stepper.spo().position.z();
+    bench.change(kLargeTool);
+    bench.loop.run(0.3);
+    bench.loop.plant.setTarget(upright({3.05e-3, 2.95e-3, bottom + 1.5 * kUp}));
+    for (int n = 0; n < 1000; ++n) {
+        bench.loop.step();
+        if (!bench.loop.stepper.isFinite()) return kNan;
+        if (bench.loop.stepper.spo().position.z() > bottom + kUp && bench.loop.stepper.record().contacts == 0)
+            return n * bench.scene.config.dt * 1e3;
+    }
+    return kLost;
+}
+
 // The hand's highest speed, mm/s, while the larger burr lifts it.
 double liftSpeed(const Variant& variant) {
     Bench bench = onPlane(variant);
@@ -145,9 +163,10 @@ const std::vector<StabilityCase> kCases{
     {"tool_change_jump_on_plane", "of_allowed", 1 + 1e-6, jumpOnPlane, {}},
     {"tool_change_jump_in_hole", "of_allowed", 1 + 1e-6, jumpInHole, {}},
     {"tool_change_jump_while_milling", "of_allowed", 1 + 1e-6, jumpWhileMilling, {}},
-    {"tool_change_rest_on_plane", "N_rms", 0.05, restOnPlane, {}},
-    {"tool_change_rest_in_hole", "N_rms", 0.05, restInHole, {}},
-    {"tool_change_left_in_plane", "voxels", 0.5, leftInPlane, {}},
+    {"tool_change_rest_on_plane", "N_rms", 0.05, restOnPlane, {"thesis_2012"}},
+    {"tool_change_rest_in_hole", "N_rms", 0.05, restInHole, {"thesis_2012"}},
+    {"tool_change_left_in_plane", "voxels", 0.5, leftInPlane, {"thesis_2012"}},
+    {"tool_change_drawn_out", "ms", 300, drawnOut, {}},
     {"tool_change_lift", "mm/s", 100, liftSpeed, {}},
     {"tool_change_growth", "ratio", 1.05, growthOverRounds, {}},
 };
