@@ -20,10 +20,10 @@ constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;
 // Rounding of the depths must not refuse a step: their share of the energy, some 10 roundings each.
 constexpr double kFloatNoise = 1e-6, kDoubleNoise = 1e-13;
 // A new tool grows by this much per time, m/s, which the hand feels as less than its coupling times that,
-// and only while it is not deeper in the bone than this share of its thinnest radius: before the far-side
-// guard sets in.
+// and only while it is not deeper in the bone than this share of its thinnest radius: squeezed more than that
+// by a hole that is too narrow, it could not be drawn out.
 constexpr double kGrowth = 0.01;
-constexpr double kMostDepthToGrow = 0.2;
+constexpr double kMostDepthToGrow = 0.05;
 constexpr double kFelt = 0.05;  // N, and N·m by kRotationLength: less is not felt
 constexpr size_t kMostCandidates = 65'536;
 
