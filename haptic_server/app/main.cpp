@@ -44,6 +44,8 @@ void addSimulateOptions(CLI::App& app, bonemill::SimulateOptions& simulate) {
     app.add_option("--trajectory", simulate.trajectory,
                    "device poses: t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons")
         ->required();
+    app.add_option("--tool", simulate.tool, "name of the scene's tool, or its number; default: the first")
+        ->type_name("NAME|NUMBER");
     app.add_option("--trace", simulate.trace, "write one CSV line per tick");
     app.add_option("--save-volume", simulate.save_volume, "write the milled volume (NRRD)");
     app.add_option("--save-mesh", simulate.save_mesh, "write the milled surface (STL, mm)");
