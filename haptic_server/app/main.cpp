@@ -36,6 +36,8 @@ void addServerOptions(CLI::App& app, bonemill::ServerOptions& server) {
     app.add_option("--rt-core", server.rt_core, "core of the haptic thread; -1: any");
     app.add_flag("--until-device-leaves", server.until_device_leaves,
                  "stop when device_daemon shuts down in order");
+    app.add_flag("--instructor-only", server.instructor_only,
+                 "carry out commands of instructors only, for examinations");
     app.add_flag("--best-effort-rt", server.best_effort_rt, "go on without real-time permissions");
 }
 

@@ -45,7 +45,8 @@ std::string SessionCommands::carryOut(const topics::Command& command) {
 std::string SessionCommands::refusalOf(const topics::Command& command) const {
     if (command.role() == topics::Viewer::INSTRUCTOR) return "";
     if (only_instructors_)
-        return "refused: only instructors command this session (--instructor-only); start with --role instructor";
+        return "refused: only instructors command this session (--instructor-only); start with --role "
+               "instructor";
     if (command.role() != topics::Viewer::OPERATOR)
         return "refused: a viewer only looks; start with --role operator";
     if (command.action_case() == topics::Command::kShutDown)
@@ -73,10 +74,10 @@ std::string SessionCommands::selectTool(uint32_t index) {
 std::string SessionCommands::restore(uint32_t checkpoint) {
     if (checkpoints_.restore(checkpoint)) return "done";
     return "refused: there is no checkpoint " + std::to_string(checkpoint) +
-           (checkpoints_.kept().empty() ? "; none is saved"
-                                        : "; the oldest is " + std::to_string(checkpoints_.kept().front().id) +
-                                              ", the newest " +
-                                              std::to_string(checkpoints_.kept().back().id));
+           (checkpoints_.kept().empty()
+                ? "; none is saved"
+                : "; the oldest is " + std::to_string(checkpoints_.kept().front().id) + ", the newest " +
+                      std::to_string(checkpoints_.kept().back().id));
 }
 
 double SessionCommands::sessionS() const {
