@@ -4,7 +4,7 @@
 #include "common/config/user_error.h"
 #include "common/log/log.h"
 #include "render_client/app/offscreen_viewer.h"
-#include "render_client/app/set_accuracy.h"
+#include "render_client/app/send_command.h"
 #include "render_client/app/stop_signal.h"
 #include "render_client/app/window_viewer.h"
 
@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
         if (!options) return 0;
         bonemill::setUpLog("render_client", options->log_level);
         bonemill::catchStopSignals();
-        if (options->set_accuracy) return bonemill::runSetAccuracy(*options);
+        if (options->command) return bonemill::runSendCommand(*options);
         options->offscreen ? bonemill::runOffscreen(*options) : bonemill::runWindow(*options);
         return 0;
     } catch (const bonemill::UserError& error) {

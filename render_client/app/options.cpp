@@ -1,12 +1,14 @@
 #include "render_client/app/options.h"
 
+#include <pwd.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <iostream>
 
 #include "common/config/user_error.h"
+#include "render_client/subscribe/command_words.h"
 
 namespace bonemill {
 namespace {
@@ -23,11 +25,17 @@ struct RawOptions {
     OffscreenOptions offscreen_options;
     uint32_t interval_ms = 500;
     std::optional<uint32_t> timeout_s;
+    std::string role = "operator";
     std::string size;
-    std::string set_accuracy;
+    std::string command;
     std::optional<double> azimuth_deg, elevation_deg, distance_mm;
     std::vector<double> target_mm;
 };
+
+std::string loginName() {
+    const passwd* user = getpwuid(getuid());
+    return user ? user->pw_name : "";
+}
 
 void parseSize(const std::string& text, ClientOptions& options) {
     int width = 0, height = 0, used = 0;
@@ -41,18 +49,18 @@ void parseSize(const std::string& text, ClientOptions& options) {
     options.height = height;
 }
 
-// The server knows which names there are; here only what cannot be one is refused.
-std::string accuracyNameProblem(const std::string& name) {
-    const auto is_sign = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
-    if (!name.empty() && std::all_of(name.begin(), name.end(), is_sign)) return "";
-    return "'" + name + "' is no name of a preset, such as balanced, nor scene";
-}
-
 void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     app.add_option("--domain", options.subscriber.domain, "DDS domain of the server")
         ->check(CLI::Range(uint32_t{0}, dds::kMaxDomain))
         ->capture_default_str();
     app.add_option("--session", options.subscriber.session, "Number that haptic_server was started with")
+        ->capture_default_str();
+    app.add_option("--name", options.subscriber.name, "What the others read in their list of viewers")
+        ->capture_default_str();
+    app.add_option(
+           "--role", raw.role,
+           "viewer: only looks; operator: also commands; instructor: also points and ends the session")
+        ->check(CLI::IsMember({"viewer", "operator", "instructor"}))
         ->capture_default_str();
     app.add_option("--size", raw.size, "Picture or window, pixels (default 1280x800)")->type_name("WxH");
     app.add_option("--camera-azimuth-deg", raw.azimuth_deg, "Eye: 0 in front of the patient, 90 at the left")
@@ -86,18 +94,26 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
                  "Take the first picture when the whole model has arrived")
         ->needs(offscreen);
     app.add_option(
-           "--set-accuracy", raw.set_accuracy,
-           "No viewer: ask the server for thesis_2012, fast, balanced, exact or scene (what the scene file "
-           "says), print what it answers and stop")
-        ->check(accuracyNameProblem)
-        ->type_name("NAME")
+           "--command", raw.command,
+           "No viewer: ask the server for \"reset\", \"pause\", \"resume\", \"tool NAME-or-number\", "
+           "\"checkpoint\", \"restore NUMBER-or-last\", \"accuracy NAME\" or \"shutdown\", print what it "
+           "answers and stop")
+        ->check(commandProblem)
+        ->type_name("TEXT")
         ->excludes(offscreen);
     app.add_option("--timeout-s", raw.timeout_s,
-                   "Give up --wait-complete, or --set-accuracy without a server, after this (default 60)")
+                   "Give up --wait-complete, or --command without a server, after this (default 60)")
         ->check(CLI::Range(1u, 86400u));
 }
 
+topics::Viewer::Role roleOf(const std::string& name) {
+    return name == "viewer"       ? topics::Viewer::VIEWER
+           : name == "instructor" ? topics::Viewer::INSTRUCTOR
+                                  : topics::Viewer::OPERATOR;
+}
+
 ClientOptions convert(const RawOptions& raw, ClientOptions options) {
+    options.subscriber.role = roleOf(raw.role);
     if (!raw.size.empty()) parseSize(raw.size, options);
     if (raw.azimuth_deg) options.view.azimuth = *raw.azimuth_deg * kDegreesToRadians;
     if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegreesToRadians;
@@ -106,15 +122,15 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
         options.view.target =
             kMmToMetres * Eigen::Vector3d(raw.target_mm[0], raw.target_mm[1], raw.target_mm[2]);
     }
-    if (raw.timeout_s && !raw.offscreen && raw.set_accuracy.empty())
-        throw UserError("--timeout-s needs --offscreen or --set-accuracy");
+    if (raw.timeout_s && !raw.offscreen && raw.command.empty())
+        throw UserError("--timeout-s needs --offscreen or --command");
     const std::chrono::seconds timeout(raw.timeout_s.value_or(kDefaultTimeoutS));
     if (raw.offscreen) {
         options.offscreen = raw.offscreen_options;
         options.offscreen->interval = std::chrono::milliseconds(raw.interval_ms);
         options.offscreen->timeout = timeout;
     }
-    if (!raw.set_accuracy.empty()) options.set_accuracy = SetAccuracyOptions{raw.set_accuracy, timeout};
+    if (!raw.command.empty()) options.command = CommandOptions{raw.command, timeout};
     return options;
 }
 
@@ -127,6 +143,7 @@ std::string serverQuestion(const SubscriberOptions& subscriber) {
 
 std::optional<ClientOptions> parseOptions(int argc, const char* const* argv) {
     ClientOptions options;
+    options.subscriber.name = loginName();
     RawOptions raw;
     CLI::App app{
         "Shows the session of a haptic_server in a window, or off screen as pictures (docs/viewer.md)."};

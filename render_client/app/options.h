@@ -19,9 +19,9 @@ struct OffscreenOptions {
     std::chrono::seconds timeout{60};  // of wait_complete
 };
 
-// Instead of a viewer: this accuracy is asked for, once there is a server.
-struct SetAccuracyOptions {
-    std::string name;
+// Instead of a viewer: this is asked for, once there is a server.
+struct CommandOptions {
+    std::string text;                  // subscribe/command_words.h
     std::chrono::seconds timeout{60};  // of waiting for the server
 };
 
@@ -31,7 +31,7 @@ struct ClientOptions {
     int width = 1280;  // pixels
     int height = 800;
     std::optional<OffscreenOptions> offscreen;  // neither given: a window
-    std::optional<SetAccuracyOptions> set_accuracy;
+    std::optional<CommandOptions> command;
     std::string log_level = "info";
 };
 
