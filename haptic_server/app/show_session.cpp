@@ -137,7 +137,9 @@ void ShowSession::publishStatus() {
     topics::Status status;
     status.set_scene(scene_name_);
     status.set_preset(settingsName(commands_.accuracy().chosen()));
-    if (const auto figure = figures_.find(status.preset()); figure != figures_.end()) {
+    // accuracy-report measures with the first tool.
+    const auto figure = commands_.tools().chosen() == 0 ? figures_.find(status.preset()) : figures_.end();
+    if (figure != figures_.end()) {
         status.set_has_accuracy_error(true);
         status.set_force_error_percent(figure->second.force_error_percent);
         status.set_force_direction_error_deg(figure->second.direction_error_deg);
