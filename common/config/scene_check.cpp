@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/config/field_unit.h"
+#include "common/config/scene_tools.h"
 #include "common/config/user_error.h"
 
 namespace bonemill {
@@ -18,7 +19,8 @@ class SceneChecker {
 
     void checkValues(const Message& message, const std::string& prefix, std::string_view outer_unit);
     void checkVolume(const scene::Scene& scene) const;
-    void checkTool(const scene::Tool& tool) const;
+    void checkTools(const scene::Scene& scene) const;
+    void checkTool(const scene::Tool& tool, const std::string& path) const;
     void checkWaypoints(const scene::SimulatedOperator& simulated_operator) const;
 
   private:
@@ -137,13 +139,27 @@ void SceneChecker::checkVolume(const scene::Scene& scene) const {
         refuse("volume.iso_value", iso + " is above window_high = " + numberText(volume.window_high()));
 }
 
-void SceneChecker::checkTool(const scene::Tool& tool) const {
+void SceneChecker::checkTools(const scene::Scene& scene) const {
+    const auto pathOf = [](int index) { return "tool[" + std::to_string(index) + "]"; };
+    if (scene.tool_size() > kMostTools)
+        refuse(pathOf(kMostTools), "is one tool too many: a scene has at most " + std::to_string(kMostTools));
+    const std::vector<std::string> names = toolNamesOf(scene);
+    for (int i = 0; i < scene.tool_size(); ++i) {
+        checkTool(scene.tool(i), pathOf(i));
+        for (int k = 0; k < i; ++k)
+            if (names[size_t(i)] == names[size_t(k)])
+                refuse(pathOf(i) + ".name", "= \"" + names[size_t(i)] + "\" is also what " + pathOf(k) +
+                                                " is called: give each tool a name of its own");
+    }
+}
+
+void SceneChecker::checkTool(const scene::Tool& tool, const std::string& path) const {
     if (tool.shape_size() > 0 && !tool.mesh_path().empty())
-        refuse("tool.mesh_path",
-               "stands beside tool.shape: the tool is made of shapes or of a mesh, give one");
+        refuse(path + ".mesh_path",
+               "stands beside " + path + ".shape: the tool is made of shapes or of a mesh, give one");
     for (int i = 0; i < tool.shape_size(); ++i)
         if (tool.shape(i).kind_case() == scene::Tool::Shape::KIND_NOT_SET)
-            refuse("tool.shape[" + std::to_string(i) + "]",
+            refuse(path + ".shape[" + std::to_string(i) + "]",
                    "is empty: give it a sphere, capsule, cylinder or cone");
 }
 
@@ -164,7 +180,7 @@ void checkScene(const ParsedScene& parsed, const std::string& name) {
     SceneChecker checker(parsed.lines, name);
     checker.checkValues(parsed.scene, "", {});
     checker.checkVolume(parsed.scene);
-    checker.checkTool(parsed.scene.tool());
+    checker.checkTools(parsed.scene);
     checker.checkWaypoints(parsed.scene.simulated_operator());
 }
 

@@ -6,6 +6,7 @@
 #include <ostream>
 #include <thread>
 
+#include "common/config/scene_tools.h"
 #include "common/config/user_error.h"
 #include "haptic_server/accuracy_report/plot.h"
 #include "haptic_server/accuracy_report/sweep_settings.h"
@@ -81,8 +82,8 @@ class Progress {
 
 // Everything that is measured; the files come later.
 ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::ostream& progress) {
-    const auto settings = sweepSettings(simulation.tick.accuracy, simulation.tool.model.hasShapes());
-    const ToolConfig tool_config = toolConfigOf(loaded);
+    const auto settings = sweepSettings(simulation.tick.accuracy, simulation.firstTool().hasShapes());
+    const ToolConfig tool_config = toolConfigOf(loaded, *toolsOf(loaded.scene).front());
     const BuiltTool tool = buildTool(tool_config, refinementsOf(settings));
     const TickConfig& tick = simulation.tick;
 

@@ -87,8 +87,8 @@ PosePath millingPath(const ProbingPlace& place, const TickConfig& tick) {
     return path;
 }
 
-MillingRun millAndRestore(const TickConfig& tick, BoneModel& bone, const ToolModel& tool, VolumeReset& reset,
-                          const PosePath& path) {
+MillingRun millAndRestore(const TickConfig& tick, BoneModel& bone, const ToolModel& tool,
+                          BoneHistory& history, const PosePath& path) {
     const Pose X_WV = bone.volume.geometry().X_WV;
     const double radius = tick.burr_radius;
     const double margin = radius + 2 * bone.volume.spacing().maxCoeff();
@@ -108,9 +108,9 @@ MillingRun millAndRestore(const TickConfig& tick, BoneModel& bone, const ToolMod
     for (const Pose& pose : path) device_path.push_back(pose.position);
     run.swept = sweptBy(tool_path);
     run.wanted = sweptBy(device_path);
-    reset.request();
-    reset.startIfRequested();
-    while (reset.isRunning()) reset.restoreSome(bone);
+    history.restore();
+    for (bool shell_is_complete = true; history.restoreSome(bone, shell_is_complete);) {
+    }
     return run;
 }
 

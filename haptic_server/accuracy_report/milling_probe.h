@@ -5,7 +5,7 @@
 
 #include "haptic_server/accuracy_report/probing_places.h"
 #include "haptic_server/accuracy_report/run_path.h"
-#include "haptic_server/tick/volume_reset.h"
+#include "haptic_server/tick/bone_history.h"
 
 namespace bonemill {
 
@@ -20,8 +20,8 @@ struct MillingRun {
     double wanted = 0;   // m³ of bone inside the burr at any pose of the device
 };
 
-// Mills and puts the bone back with `reset`, which must have been made from it.
-MillingRun millAndRestore(const TickConfig& tick, BoneModel& bone, const ToolModel& tool, VolumeReset& reset,
-                          const PosePath& path);
+// Mills and puts the bone back with `history`, which must have been made from it.
+MillingRun millAndRestore(const TickConfig& tick, BoneModel& bone, const ToolModel& tool,
+                          BoneHistory& history, const PosePath& path);
 
 }  // namespace bonemill

@@ -13,10 +13,10 @@ namespace {
 // Settings that keep the same shell levels up to date share one bone; milling puts it back as it was.
 struct SharedBone {
     BoneModel bone;
-    VolumeReset reset;
+    BoneHistory history;
 
     SharedBone(const SweepInput& input, const ShellConfig& shell)
-        : bone(VoxelVolume(input.volume), input.leaf_cells, shell), reset(bone) {}
+        : bone(VoxelVolume(input.volume), input.leaf_cells, shell), history(bone) {}
 };
 
 void addTimes(const RunRecords& records, std::vector<int64_t>& durations) {
@@ -48,10 +48,11 @@ void probe(const SweepInput& input, const TickConfig& tick, BoneModel& bone, Set
 
 void mill(const SweepInput& input, const TickConfig& tick, SharedBone& shared, SettingFigures& figures,
           std::vector<int64_t>& durations) {
-    MillingRun run = millAndRestore(tick, shared.bone, input.tool, shared.reset, input.milling);
+    MillingRun run = millAndRestore(tick, shared.bone, input.tool, shared.history, input.milling);
     for (int pass = 1; pass < kPasses; ++pass)
-        keepShorterTimes(run.records,
-                         millAndRestore(tick, shared.bone, input.tool, shared.reset, input.milling).records);
+        keepShorterTimes(
+            run.records,
+            millAndRestore(tick, shared.bone, input.tool, shared.history, input.milling).records);
     figures.removal = {run.removed, run.swept, run.wanted};
     for (const TickRecord& record : run.records) figures.faults |= record.faults;
     addTimes(run.records, durations);

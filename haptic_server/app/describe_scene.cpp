@@ -67,6 +67,18 @@ std::string describeLevels(const PointShell& shell) {
     return text;
 }
 
+void describeTools(const Simulation& simulation, std::ostream& out) {
+    int number = 0;
+    for (const SceneTool& tool : simulation.tools) {
+        const SdfGrid& grid = tool.built.model.grid();
+        ++number;
+        out << "tool " << number << " '" << tool.name << "'" << (number == 1 ? ", in use at the start" : "")
+            << ": distance grid " << grid.nodes().transpose() << " nodes of " << grid.spacing() * 1e3
+            << " mm, burr radius " << tool.burr_radius * 1e3 << " mm, pull of the coupling at most "
+            << tool.saturation_force << " N\n";
+    }
+}
+
 void describeBudget(const TickConfig& tick, std::ostream& out) {
     out << "most point tests in a tick: " << tick.gradient.most_point_tests
         << (tick.accuracy.law == ContactLaw::kThesis2012 ? ", without effect on the thesis' law\n" : "\n")
@@ -75,7 +87,7 @@ void describeBudget(const TickConfig& tick, std::ostream& out) {
 
 void describeCost(const LoadedScene& loaded, Simulation& simulation, std::ostream& out) {
     ScenarioIo io(loaded.scene.simulated_operator());
-    HapticTick tick(simulation.tick, *simulation.bone, simulation.tool.model, nullptr);
+    HapticTick tick(simulation.tick, *simulation.bone, simulation.firstTool(), nullptr);
     while (tick.tick(io)) {
     }
     if (io.records.empty()) {
@@ -109,10 +121,8 @@ std::string describeScene(const std::string& scene_file) {
         << " .. " << simulation.mapping.high << '\n'
         << "octree: " << bone.lattice.leavesPerAxis().transpose() << " leaves of "
         << bone.lattice.leafCells().transpose() << " cells, " << bone.lattice.levelCount() << " levels\n"
-        << "point-shell: " << describeLevels(bone.shell) << '\n'
-        << "tool: distance grid " << simulation.tool.model.grid().nodes().transpose() << " nodes of "
-        << simulation.tool.model.grid().spacing() * 1e3 << " mm, burr radius "
-        << simulation.tick.burr_radius * 1e3 << " mm\n";
+        << "point-shell: " << describeLevels(bone.shell) << '\n';
+    describeTools(simulation, out);
     describeBudget(simulation.tick, out);
     describeCost(loaded, simulation, out);
     out << "\nwhat the scene file sets (all else has its default):\n"

@@ -38,6 +38,8 @@ void addServerOptions(CLI::App& app, bonemill::ServerOptions& server) {
     app.add_option("--rt-core", server.rt_core, "core of the haptic thread; -1: any");
     app.add_flag("--until-device-leaves", server.until_device_leaves,
                  "stop when device_daemon shuts down in order");
+    app.add_flag("--instructor-only", server.instructor_only,
+                 "carry out commands of instructors only, for examinations");
     app.add_flag("--best-effort-rt", server.best_effort_rt, "go on without real-time permissions");
 }
 
@@ -46,6 +48,8 @@ void addSimulateOptions(CLI::App& app, bonemill::SimulateOptions& simulate) {
     app.add_option("--trajectory", simulate.trajectory,
                    "device poses: t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons")
         ->required();
+    app.add_option("--tool", simulate.tool, "name of the scene's tool, or its number; default: the first")
+        ->type_name("NAME|NUMBER");
     app.add_option("--trace", simulate.trace, "write one CSV line per tick");
     app.add_option("--save-volume", simulate.save_volume, "write the milled volume (NRRD)");
     app.add_option("--save-mesh", simulate.save_mesh, "write the milled surface (STL, mm)");

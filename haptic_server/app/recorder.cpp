@@ -24,7 +24,6 @@ void Recorder::drain() {
     health_.ticks = statistics_.ticks();
     health_.dropped_ticks = statistics_.droppedTicks();
     health_.faults = statistics_.faults();
-    health_.removed = statistics_.removed();
 }
 
 void Recorder::addToWindow(const TickRecord& record) {

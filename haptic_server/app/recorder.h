@@ -21,7 +21,6 @@ struct LoopHealth {
     double tick_max_us = 0;
     uint64_t dropped_ticks = 0;
     uint32_t faults = 0;
-    double removed = 0;  // m³
 };
 
 class Recorder {

@@ -5,6 +5,8 @@
 #include <map>
 #include <set>
 
+#include "common/config/scene_tools.h"
+
 namespace bonemill {
 namespace {
 
@@ -27,6 +29,11 @@ Preset presetOf(scene::Accuracy::Preset preset) {
 ShellNormals givenNormals(scene::Accuracy::Normals normals) {
     return normals == scene::Accuracy::TRILINEAR ? ShellNormals::kTrilinear
                                                  : ShellNormals::kCentralDifference;
+}
+
+GradientContactConfig contactConfigOf(const scene::Contact& contact) {
+    return {.stiffness_per_area = contact.stiffness_n_per_mm3() * 1e9,
+            .stiffness_cap = contact.stiffness_cap_n_per_mm() / kMillimetre};
 }
 
 }  // namespace
@@ -75,8 +82,8 @@ ShellConfig shellConfigOf(const scene::Scene& scene) {
     return config;
 }
 
-std::vector<int> sdfRefinementsOf(const scene::Scene& scene) {
-    const bool has_shapes = !scene.tool().has_mesh_path();
+std::vector<int> sdfRefinementsOf(const scene::Scene& scene, const scene::Tool& tool) {
+    const bool has_shapes = !tool.has_mesh_path();
     std::set<int> refinements;
     for (const AccuracySettings& choice : accuracyChoices(scene)) {
         const bool needs_grid = choice.law == ContactLaw::kGradient &&
@@ -97,28 +104,31 @@ double wallForce(const GradientContactConfig& contact, double radius, double wal
                     contact.stiffness_cap * depth);
 }
 
+double saturationForceOf(const scene::Scene& scene, const scene::Tool& tool, double finest_spacing) {
+    return std::min(scene.coupling().max_force_n(),
+                    wallForce(contactConfigOf(scene.contact()), tool.burr_radius_mm() * kMillimetre,
+                              thinnestWall(scene, finest_spacing)));
+}
+
 GradientConfig gradientConfigOf(const scene::Scene& scene, double finest_spacing) {
     const scene::Coupling& coupling = scene.coupling();
-    const scene::Contact& contact = scene.contact();
+    const scene::Tool& tool = *toolsOf(scene).front();
     GradientConfig config;
-    config.burr_radius = scene.tool().burr_radius_mm() * kMillimetre;
+    config.burr_radius = tool.burr_radius_mm() * kMillimetre;
     config.max_speed = coupling.max_speed_mm_per_s() * kMillimetre;
     config.max_angular_speed = coupling.max_angular_speed_deg_per_s() * kDegree;
-    config.contact = {.stiffness_per_area = contact.stiffness_n_per_mm3() * 1e9,
-                      .stiffness_cap = contact.stiffness_cap_n_per_mm() / kMillimetre};
+    config.contact = contactConfigOf(scene.contact());
     const double stiffness = coupling.rotation_stiffness_nmm_per_rad() * kMillimetre / 2;
-    config.coupling = {
-        .translation_stiffness = coupling.translation_stiffness_n_per_mm() / kMillimetre,
-        .rotation_stiffness = stiffness,
-        .saturation_force = std::min(coupling.max_force_n(), wallForce(config.contact, config.burr_radius,
-                                                                       thinnestWall(scene, finest_spacing))),
-        .saturation_torque = std::min(coupling.max_torque_nmm() * kMillimetre,
-                                      stiffness * coupling.saturation_angle_deg() * kDegree),
-        .damping_time = coupling.damping_time_ms() * 1e-3,
-        .relaxing_share = coupling.relaxing_share(),
-        .relaxing_time = coupling.relaxing_time_ms() * 1e-3,
-        .p_TG = kMillimetre *
-                Eigen::Vector3d(coupling.grip_mm().x(), coupling.grip_mm().y(), coupling.grip_mm().z())};
+    config.coupling = {.translation_stiffness = coupling.translation_stiffness_n_per_mm() / kMillimetre,
+                       .rotation_stiffness = stiffness,
+                       .saturation_force = saturationForceOf(scene, tool, finest_spacing),
+                       .saturation_torque = std::min(coupling.max_torque_nmm() * kMillimetre,
+                                                     stiffness * coupling.saturation_angle_deg() * kDegree),
+                       .damping_time = coupling.damping_time_ms() * 1e-3,
+                       .relaxing_share = coupling.relaxing_share(),
+                       .relaxing_time = coupling.relaxing_time_ms() * 1e-3,
+                       .p_TG = kMillimetre * Eigen::Vector3d(coupling.grip_mm().x(), coupling.grip_mm().y(),
+                                                             coupling.grip_mm().z())};
     return config;
 }
 

@@ -17,8 +17,8 @@ std::vector<AccuracySettings> accuracyChoices(const scene::Scene& scene);
 
 ShellConfig shellConfigOf(const scene::Scene& scene);
 
-// Grids beside the scene's own that any of the choices needs; ascending.
-std::vector<int> sdfRefinementsOf(const scene::Scene& scene);
+// Grids beside the tool's own that any of the choices needs; ascending.
+std::vector<int> sdfRefinementsOf(const scene::Scene& scene, const scene::Tool& tool);
 
 // What the tool must not be pushed through, m: the scene's, or one voxel.
 double thinnestWall(const scene::Scene& scene, double finest_spacing);
@@ -28,7 +28,11 @@ double thinnestWall(const scene::Scene& scene, double finest_spacing);
 // saturates there for the burr, so that no push goes through a wall of that thickness.
 double wallForce(const GradientContactConfig& contact, double radius, double wall);
 
-// Contact and coupling of the gradient law. `finest_spacing`: the volume's smallest voxel spacing, m.
+// What the coupling pulls with at most while this tool is in use, N.
+double saturationForceOf(const scene::Scene& scene, const scene::Tool& tool, double finest_spacing);
+
+// Contact and coupling of the gradient law, with the scene's first tool. `finest_spacing`: the volume's
+// smallest voxel spacing, m.
 GradientConfig gradientConfigOf(const scene::Scene& scene, double finest_spacing);
 
 }  // namespace bonemill

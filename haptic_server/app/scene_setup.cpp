@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/config/scene_tools.h"
 #include "common/config/user_error.h"
 #include "haptic_server/tick/tick_budget.h"
 #include "haptic_server/volume/import/far_air.h"
@@ -79,41 +80,81 @@ void warnOfLargeLeaves(Simulation& simulation) {
             " cells make milling ticks long; raise volume.octree_depth or use volume.leaf_voxels");
 }
 
-void warnOfCoarseShell(Simulation& simulation, const scene::Scene& scene) {
-    const AccuracySettings settings = accuracyOf(scene);
-    if (settings.tool_distance == ToolDistance::kAnalytic && simulation.tool.model.hasShapes()) return;
+// Which tool, if there are several.
+std::string ofTool(const Simulation& simulation, const SceneTool& tool) {
+    return simulation.tools.size() > 1 ? tool.name + ": " : "";
+}
+
+void warnOfCoarseShell(Simulation& simulation, const SceneTool& tool) {
+    const AccuracySettings& settings = simulation.tick.accuracy;
+    if (settings.tool_distance == ToolDistance::kAnalytic && tool.built.model.hasShapes()) return;
     const double shell_spacing = settings.shell_factor * simulation.bone->volume.spacing().maxCoeff();
-    const double sdf_spacing = simulation.tool.model.grid().spacing();
+    const double sdf_spacing = tool.built.model.grid().spacing();
     if (shell_spacing <= sdf_spacing * (1 + 1e-9)) return;
-    simulation.warnings.push_back("point-shell spacing " + textOf(shell_spacing / kMillimetre) +
-                                  " mm is coarser than the tool's distance grid (" +
-                                  textOf(sdf_spacing / kMillimetre) +
-                                  " mm): contact can miss thin features; lower accuracy.shell_factor");
+    simulation.warnings.push_back(
+        ofTool(simulation, tool) + "point-shell spacing " + textOf(shell_spacing / kMillimetre) +
+        " mm is coarser than the tool's distance grid (" + textOf(sdf_spacing / kMillimetre) +
+        " mm): contact can miss thin features; lower accuracy.shell_factor");
 }
 
 // The coupling's pull is limited by what the burr carries.
-void warnOfThinTool(Simulation& simulation, const scene::Scene& scene) {
+void warnOfThinTool(Simulation& simulation, const scene::Scene& scene, const SceneTool& tool) {
     const GradientConfig& config = simulation.tick.gradient;
-    const double radius = simulation.tool.model.field(simulation.tick.accuracy).thinnestRadius();
-    if (simulation.tick.accuracy.law != ContactLaw::kGradient || radius >= config.burr_radius) return;
+    const double radius = tool.built.model.field(simulation.tick.accuracy).thinnestRadius();
+    if (simulation.tick.accuracy.law != ContactLaw::kGradient || radius >= tool.burr_radius) return;
     const double wall = thinnestWall(scene, simulation.bone->volume.spacing().minCoeff());
     const double carried = wallForce(config.contact, radius, wall);
-    if (config.coupling.saturation_force <= kMostOverload * carried) return;
-    simulation.warnings.push_back("the tool's thinnest part has a radius of " + textOf(radius / kMillimetre) +
-                                  " mm: its tip goes through a wall of " + textOf(wall / kMillimetre) +
-                                  " mm at " + textOf(carried) + " N, and the coupling pulls with up to " +
-                                  textOf(config.coupling.saturation_force) +
+    if (tool.saturation_force <= kMostOverload * carried) return;
+    simulation.warnings.push_back(ofTool(simulation, tool) + "the tool's thinnest part has a radius of " +
+                                  textOf(radius / kMillimetre) + " mm: its tip goes through a wall of " +
+                                  textOf(wall / kMillimetre) + " mm at " + textOf(carried) +
+                                  " N, and the coupling pulls with up to " + textOf(tool.saturation_force) +
                                   " N; lower coupling.max_force_n or contact.thinnest_wall_mm");
 }
 
+// But for what needs the volume.
+std::vector<SceneTool> buildTools(const LoadedScene& loaded) {
+    const std::vector<std::string> names = toolNamesOf(loaded.scene);
+    std::vector<SceneTool> tools;
+    for (const scene::Tool* tool : toolsOf(loaded.scene)) {
+        const ToolConfig config = toolConfigOf(loaded, *tool);
+        tools.push_back({.name = names[tools.size()],
+                         .built = buildTool(config, sdfRefinementsOf(loaded.scene, *tool)),
+                         .surface = toolSurface(config),
+                         .burr_radius = config.burr_radius,
+                         .saturation_force = 0});
+    }
+    return tools;
+}
+
+void fitToolsToBone(Simulation& simulation, const scene::Scene& scene) {
+    const std::vector<const scene::Tool*> of_scene = toolsOf(scene);
+    const double finest_spacing = simulation.bone->volume.spacing().minCoeff();
+    for (size_t n = 0; n < of_scene.size(); ++n) {
+        SceneTool& tool = simulation.tools[n];
+        tool.saturation_force = saturationForceOf(scene, *of_scene[n], finest_spacing);
+        for (const std::string& warning : tool.built.warnings)
+            simulation.warnings.push_back(ofTool(simulation, tool) + warning);
+        warnOfCoarseShell(simulation, tool);
+        warnOfThinTool(simulation, scene, tool);
+    }
+}
+
 }  // namespace
+
+std::vector<SpoTool> Simulation::spoTools() const {
+    std::vector<SpoTool> all;
+    for (const SceneTool& tool : tools)
+        all.push_back({&tool.built.model, tool.burr_radius, tool.saturation_force});
+    return all;
+}
 
 TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing) {
     TickConfig config;
     config.accuracy = accuracyOf(scene);
     config.gradient = gradientConfigOf(scene, finest_spacing);
     config.dt = 1 / scene.loop().rate_hz();
-    config.burr_radius = scene.tool().burr_radius_mm() * kMillimetre;
+    config.burr_radius = toolsOf(scene).front()->burr_radius_mm() * kMillimetre;
     config.contact = {.point_stiffness = scene.contact().point_stiffness_n_per_mm() / kMillimetre,
                       .full_stiffness_contacts = scene.contact().full_stiffness_contacts()};
     const scene::Coupling& coupling = scene.coupling();
@@ -131,8 +172,7 @@ TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing) {
     return config;
 }
 
-ToolConfig toolConfigOf(const LoadedScene& loaded) {
-    const scene::Tool& tool = loaded.scene.tool();
+ToolConfig toolConfigOf(const LoadedScene& loaded, const scene::Tool& tool) {
     ToolConfig config;
     for (const scene::Tool::Shape& shape : tool.shape()) config.shapes.push_back(shapeOf(shape));
     if (tool.has_mesh_path()) config.mesh_path = resolvePath(loaded, tool.mesh_path());
@@ -150,12 +190,10 @@ Pose devicePoseOf(const scene::Device& device) {
 
 Simulation makeSimulation(const LoadedScene& loaded) {
     const scene::Scene& scene = loaded.scene;
-    const ToolConfig tool_config = toolConfigOf(loaded);
     Simulation simulation{.tick = {},
                           .bone = nullptr,
                           .mapping = {},
-                          .tool = buildTool(tool_config, sdfRefinementsOf(scene)),
-                          .tool_surface = toolSurface(tool_config),
+                          .tools = buildTools(loaded),
                           .X_WD = devicePoseOf(scene.device()),
                           .remarks = {},
                           .warnings = {}};
@@ -171,10 +209,8 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), volume.geometry());
     simulation.tick = tickConfigOf(scene, volume.spacing().minCoeff());
     simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells, shellConfigOf(scene));
-    simulation.warnings = simulation.tool.warnings;
     warnOfLargeLeaves(simulation);
-    warnOfCoarseShell(simulation, scene);
-    warnOfThinTool(simulation, scene);
+    fitToolsToBone(simulation, scene);
     return simulation;
 }
 

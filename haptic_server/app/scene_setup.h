@@ -14,23 +14,34 @@
 
 namespace bonemill {
 
+struct SceneTool {
+    std::string name;
+    BuiltTool built;
+    TriangleSurface surface;
+    double burr_radius;       // m
+    double saturation_force;  // N
+};
+
 struct Simulation {
-    TickConfig tick;
+    TickConfig tick;  // with the first tool
     std::unique_ptr<BoneModel> bone;
     DensityMapping mapping;
-    BuiltTool tool;
-    TriangleSurface tool_surface;
+    std::vector<SceneTool> tools;       // at least one
     Pose X_WD;                          // device base in the world
     std::vector<std::string> remarks;   // for people: what was read or proposed
     std::vector<std::string> warnings;  // what the user would better change in the scene
+
+    const ToolModel& firstTool() const { return tools.front().built.model; }
+    // For ToolSwitch; point into `tools`.
+    std::vector<SpoTool> spoTools() const;
 };
 
-// Imports the volume, builds tree, shell and tool. Throws UserError.
+// Imports the volume, builds tree, shell and tools. Throws UserError.
 Simulation makeSimulation(const LoadedScene& loaded);
 
 // `finest_spacing` as in gradientConfigOf().
 TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing);
-ToolConfig toolConfigOf(const LoadedScene& loaded);
+ToolConfig toolConfigOf(const LoadedScene& loaded, const scene::Tool& tool);
 Pose devicePoseOf(const scene::Device& device);
 
 }  // namespace bonemill

@@ -69,16 +69,19 @@ class Server {
           simulation_(makeSimulation(loaded_)),  // forks to read the volume: before signals, link and threads
           stop_signals_(blockStopSignals()),
           link_(DeviceLink::create(DeviceLink::nameOfSession(options.session), LinkSide::kServer)),
-          reset_(*simulation_.bone),
+          history_(*simulation_.bone),
           accuracy_(simulation_.tick.accuracy),
+          tools_(simulation_.spoTools()),
           ring_(kRingRecords),
           cuts_(kRingCuts),
           io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), link_, ring_, cuts_),
-          tick_(simulation_.tick, *simulation_.bone, simulation_.tool.model, &reset_, &accuracy_),
+          tick_(simulation_.tick, *simulation_.bone, simulation_.firstTool(), &history_, &accuracy_, &tools_),
           recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace),
           publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
-          show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, reset_,
-                accuracy_, options.stream_mbit_per_s * 1e6 / 8, stop_requested_) {
+          commands_(loaded_.scene, *simulation_.bone, recorder_,
+                    {history_, accuracy_, tools_, stop_requested_}, options.instructor_only),
+          show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, commands_,
+                options.stream_mbit_per_s * 1e6 / 8) {
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
         for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     }
@@ -197,7 +200,14 @@ class Server {
         if (!has_failed_) spdlog::info("shut down by a client's command");
     }
 
+    // The tick thread has ended: what it was putting back is in the files, too.
+    void putBackTheRest() {
+        for (bool shell_is_complete = true; history_.restoreSome(*simulation_.bone, shell_is_complete);) {
+        }
+    }
+
     int finish() {
+        putBackTheRest();
         const bool trace_is_whole = recorder_.finish();
         if (!trace_is_whole)
             spdlog::error("{}: part of the trace could not be written (disk full?)", options_.trace);
@@ -227,8 +237,9 @@ class Server {
     Simulation simulation_;
     sigset_t stop_signals_;
     DeviceLink link_;
-    VolumeReset reset_;
+    BoneHistory history_;
     AccuracySwitch accuracy_;
+    ToolSwitch tools_;
     SpscRing<TickRecord> ring_;
     SpscRing<Cut> cuts_;
     DeviceLinkIo io_;
@@ -238,6 +249,7 @@ class Server {
     std::atomic<bool> stop_requested_{false};
     std::atomic<bool> has_failed_{false};
     Publisher publisher_;
+    SessionCommands commands_;
     ShowSession show_;
     PublishFigures published_;  // publisher thread's until it is joined
     pid_t tick_thread_id_ = -1;

@@ -24,6 +24,7 @@ struct ServerOptions {
     std::string save_mesh;
     int rt_core = kLastCore;  // core of the tick thread; kAnyCore (-1) leaves the choice to the kernel
     bool best_effort_rt = false;
+    bool instructor_only = false;      // others may look, not command
     bool until_device_leaves = false;  // end when the daemon shuts down in order
 };
 

@@ -30,6 +30,7 @@ void fillCamera(const scene::Camera& camera, topics::Camera* out) {
 }
 
 void fillTool(const TriangleSurface& surface, topics::TriangleMesh* out) {
+    out->Clear();
     for (const Eigen::Vector3f& p : surface.positions)
         for (int axis = 0; axis < 3; ++axis) out->add_vertices_m(p[axis]);
     for (const Eigen::Vector3f& n : surface.normals)
@@ -49,6 +50,7 @@ Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
     return box;
 }
 
+// But for the tool in use.
 topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulation) {
     topics::SceneInfo info;
     info.set_name(scene.name());
@@ -59,8 +61,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     const Eigen::AlignedBox3d box = boneBox(*simulation.bone);
     assign(info.mutable_bone_min_m(), box.min());
     assign(info.mutable_bone_max_m(), box.max());
-    info.set_burr_radius_m(simulation.tick.burr_radius);
-    fillTool(simulation.tool_surface, info.mutable_tool());
+    for (const SceneTool& tool : simulation.tools) info.add_tool_names(tool.name);
     fillCamera(scene.camera(), info.mutable_camera());
     info.set_leaf_count(simulation.bone->lattice.leafCount());
     return info;
@@ -70,20 +71,27 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
 
 ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                          const AccuracyFigures& figures, MeshOutbox& outbox, const Recorder& recorder,
-                         VolumeReset& reset, AccuracySwitch& accuracy, double bytes_per_s,
-                         std::atomic<bool>& stop_requested)
+                         SessionCommands& commands, double bytes_per_s)
     : publisher_(publisher),
       scene_name_(scene.name()),
       outbox_(outbox),
       budget_(bytes_per_s),
       X_VW_(simulation.bone->volume.geometry().X_WV.inverse()),
       recorder_(recorder),
-      reset_(reset),
-      accuracy_(accuracy),
+      commands_(commands),
       figures_(figures),
-      is_switchable_(scene.accuracy().switchable()),
-      stop_requested_(stop_requested) {
-    publisher_.publishSceneInfo(sceneInfo(scene, simulation));
+      tools_(simulation.tools),
+      scene_info_(sceneInfo(scene, simulation)) {
+    publishSceneInfo();
+}
+
+void ShowSession::publishSceneInfo() {
+    const size_t tool = commands_.tools().chosen();
+    scene_info_.set_revision(scene_info_.revision() + 1);
+    scene_info_.set_tool_index(uint32_t(tool));
+    scene_info_.set_burr_radius_m(tools_[tool].burr_radius);
+    fillTool(tools_[tool].surface, scene_info_.mutable_tool());
+    publisher_.publishSceneInfo(scene_info_);
 }
 
 void ShowSession::round() {
@@ -91,8 +99,7 @@ void ShowSession::round() {
     if (const auto latest = recorder_.latest()) publisher_.publishToolState(*latest);
     // A status, also an acknowledging one, counts the nodes: part of the bone would look complete.
     if (!is_whole_) return;
-    for (const topics::Command& command : publisher_.takeCommands())
-        publisher_.acknowledge(command, carryOut(command));
+    carryOutCommands();
     if (has_changed || monotonicNowNs() - last_status_ns_ > kStatusPeriodNs) publishStatus();
 }
 
@@ -114,13 +121,25 @@ bool ShowSession::publishNodes() {
     return !groups.empty();
 }
 
+// Who reads that a command is done finds what it did in the same status.
+void ShowSession::carryOutCommands() {
+    for (const topics::Command& command : publisher_.takeCommands()) {
+        const std::string result = commands_.carryOut(command);
+        if (commands_.tools().chosen() != scene_info_.tool_index()) publishSceneInfo();
+        publishStatus();
+        publisher_.acknowledge(command, result);
+    }
+}
+
 void ShowSession::publishStatus() {
     last_status_ns_ = monotonicNowNs();
     const LoopHealth health = recorder_.health();
     topics::Status status;
     status.set_scene(scene_name_);
-    status.set_preset(settingsName(accuracy_.chosen()));
-    if (const auto figure = figures_.find(status.preset()); figure != figures_.end()) {
+    status.set_preset(settingsName(commands_.accuracy().chosen()));
+    // accuracy-report measures with the first tool.
+    const auto figure = commands_.tools().chosen() == 0 ? figures_.find(status.preset()) : figures_.end();
+    if (figure != figures_.end()) {
         status.set_has_accuracy_error(true);
         status.set_force_error_percent(figure->second.force_error_percent);
         status.set_force_direction_error_deg(figure->second.direction_error_deg);
@@ -133,37 +152,10 @@ void ShowSession::publishStatus() {
     status.set_dropped_ticks(health.dropped_ticks);
     status.set_faults(health.faults);
     status.set_fault_text(faultNames(health.faults));
-    status.set_removed_mm3(health.removed * 1e9);
+    commands_.describe(status);
     const auto latest = recorder_.latest();
     status.set_device_stale(!latest || (latest->faults & kFaultStaleDevice));
     publisher_.publishStatus(std::move(status));
-}
-
-std::string ShowSession::carryOut(const topics::Command& command) {
-    switch (command.action_case()) {
-        case topics::Command::kResetVolume:
-            reset_.request();
-            return "done";
-        case topics::Command::kPauseMilling:
-            reset_.pauseMilling(command.pause_milling());
-            return "done";
-        case topics::Command::kSetAccuracy:
-            return setAccuracy(command.set_accuracy());
-        case topics::Command::kShutDown:
-            stop_requested_ = true;
-            return "done";
-        default:
-            return "refused: this server does not know the action";
-    }
-}
-
-std::string ShowSession::setAccuracy(const std::string& name) {
-    const auto preset = presetOfName(name);
-    if (name != "scene" && !preset)
-        return "refused: no preset is called '" + name + "'; thesis_2012, fast, balanced, exact or scene";
-    if (!is_switchable_ && preset) return "refused: the scene says accuracy.switchable: false";
-    accuracy_.choose(preset ? AccuracySwitch::choiceOf(*preset) : AccuracySwitch::kSceneChoice);
-    return "done";
 }
 
 }  // namespace bonemill

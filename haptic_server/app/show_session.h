@@ -2,11 +2,10 @@
 // tick.
 #pragma once
 
-#include <atomic>
-
 #include "haptic_server/app/accuracy_figures.h"
 #include "haptic_server/app/recorder.h"
 #include "haptic_server/app/scene_setup.h"
+#include "haptic_server/app/session_commands.h"
 #include "haptic_server/mesh/mesh_outbox.h"
 #include "haptic_server/publish/byte_budget.h"
 #include "haptic_server/publish/publisher.h"
@@ -18,8 +17,7 @@ class ShowSession {
     // Publishes the scene at once. Node meshes take bytes_per_s at most. References must outlive this object.
     ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                 const AccuracyFigures& figures, MeshOutbox& outbox, const Recorder& recorder,
-                VolumeReset& reset, AccuracySwitch& accuracy, double bytes_per_s,
-                std::atomic<bool>& stop_requested);
+                SessionCommands& commands, double bytes_per_s);
 
     // One round, about 100 times per second; publisher thread only.
     void round();
@@ -27,8 +25,8 @@ class ShowSession {
   private:
     bool publishNodes();
     void publishStatus();
-    std::string carryOut(const topics::Command& command);
-    std::string setAccuracy(const std::string& name);
+    void publishSceneInfo();
+    void carryOutCommands();
 
     Publisher& publisher_;
     std::string scene_name_;
@@ -37,11 +35,10 @@ class ShowSession {
     Pose X_VW_;
     bool is_whole_ = false;  // all of the bone has been published
     const Recorder& recorder_;
-    VolumeReset& reset_;
-    AccuracySwitch& accuracy_;
+    SessionCommands& commands_;
     AccuracyFigures figures_;
-    bool is_switchable_;
-    std::atomic<bool>& stop_requested_;
+    const std::vector<SceneTool>& tools_;
+    topics::SceneInfo scene_info_;  // as last published
     int64_t last_status_ns_ = 0;
 };
 

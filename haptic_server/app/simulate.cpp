@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/config/scene_tools.h"
 #include "common/config/user_error.h"
 #include "common/rt/clock.h"
 #include "haptic_server/app/scene_setup.h"
@@ -60,6 +61,15 @@ void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::
     }
 }
 
+size_t toolOf(const scene::Scene& scene, const std::string& wanted) {
+    if (wanted.empty()) return 0;
+    const std::vector<std::string> names = toolNamesOf(scene);
+    if (const auto index = toolIndexOf(names, wanted)) return *index;
+    std::string known;
+    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+    throw UserError("--tool " + wanted + ": no tool of the scene is called so; it has: " + known);
+}
+
 std::string hexOf(uint64_t value) {
     char text[17];
     std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
@@ -95,6 +105,7 @@ std::string simulate(const SimulateOptions& options) {
     const LoadedScene loaded = loadScene(options.scene);
     const std::vector<TrajectoryRow> rows = readTrajectory(options.trajectory);
     checkSpacing(rows, 1 / loaded.scene.loop().rate_hz(), options.trajectory);
+    const size_t tool = toolOf(loaded.scene, options.tool);
     for (const std::string& path : {options.save_volume, options.save_mesh}) requireWritable(path);
     std::optional<TraceWriter> trace;
     if (!options.trace.empty()) trace.emplace(options.trace);
@@ -103,7 +114,8 @@ std::string simulate(const SimulateOptions& options) {
     BoneModel& bone = *simulation.bone;
     const double volume_before = checkMesh(meshWholeBone(bone), MeshGrid(bone.volume, bone.lattice)).volume;
 
-    HapticTick tick(simulation.tick, bone, simulation.tool.model, nullptr);
+    const ToolSwitch tools(simulation.spoTools(), tool);
+    HapticTick tick(simulation.tick, bone, simulation.firstTool(), nullptr, nullptr, &tools);
     RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * 1e9)));
     StateHash hash;
     FileIo io(rows);
@@ -122,6 +134,7 @@ std::string simulate(const SimulateOptions& options) {
     saveMesh(options.save_mesh, bone, meshes);
     nlohmann::json json = totals(statistics, hash);
     json["scene"] = loaded.scene.name();
+    json["tool"] = simulation.tools[tool].name;
     json["preset"] = settingsName(simulation.tick.accuracy);
     json["iso_value"] = simulation.mapping.iso_value;
     json["shell_points"] = bone.shell.pointCount(bone.shell.followed());

@@ -9,6 +9,7 @@ namespace bonemill {
 struct SimulateOptions {
     std::string scene;
     std::string trajectory;
+    std::string tool;         // name or number from 1; empty: the first
     std::string trace;        // empty: none
     std::string save_volume;  // empty: none
     std::string save_mesh;    // empty: none

@@ -78,6 +78,7 @@ class RelaxingSpring {
     // End of a tick: d_f goes its way towards d.
     void follow(const Pose& spo, const Pose& device) noexcept;
     void forget() noexcept { has_memory_ = false; }
+    void setSaturationForce(double force) noexcept { config_.saturation_force = force; }  // N
 
   private:
     Eigen::Vector3d stretchOf(const Pose& spo, const Pose& device) const noexcept;

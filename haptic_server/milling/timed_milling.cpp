@@ -40,10 +40,10 @@ void include(MillingResult& sum, const MillingResult& other) noexcept {
 }  // namespace
 
 TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volume, const LeafLattice& lattice,
-                           double burr_radius)
-    : config_(config), burr_radius_(burr_radius) {
+                           double largest_burr_radius)
+    : config_(config), largest_burr_radius_(largest_burr_radius), burr_radius_(largest_burr_radius) {
     const auto reach = [&](int direction) {
-        return BurrLimit(volume, burr_radius, MillingShape::kSubVoxel, direction).reach();
+        return BurrLimit(volume, largest_burr_radius, MillingShape::kSubVoxel, direction).reach();
     };
     const double farthest = std::max(reach(-1), reach(+1));
     const Eigen::Array3d voxels = (2 * farthest / volume.spacing().array()).floor() + 2;

@@ -2,6 +2,7 @@
 // lose or gain density until they are at the burr's limit (burr_limit.h).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -29,11 +30,12 @@ struct MillingResult {
     bool has_room = true;       // false: no memory for some bricks to be changed, and they were not
 };
 
-// Owns the scratch memory of one burr. Construction allocates; apply() is RT-safe (tick thread only).
+// Owns the scratch memory of the burr in use. Construction allocates; apply() is RT-safe (tick thread only).
 class TimedMilling {
   public:
+    // Room for burrs up to `largest_burr_radius`, which is the one in use at first.
     TimedMilling(const MillingConfig& config, const VoxelVolume& volume, const LeafLattice& lattice,
-                 double burr_radius);
+                 double largest_burr_radius);
 
     // Changes the voxels beyond their limit by rate·dt, but not past it, then the leaf versions, density
     // ranges and point-shell with them. direction -1 removes, +1 adds. p_VB: centre of the burr.
@@ -42,6 +44,10 @@ class TimedMilling {
 
     // From the next apply() on.
     void setShape(MillingShape shape) noexcept { config_.shape = shape; }
+    void setBurrRadius(double burr_radius) noexcept {
+        burr_radius_ = std::min(burr_radius, largest_burr_radius_);
+        next_leaf_ = kNoLeaf;
+    }
 
   private:
     // A run of voxels along x with their new densities, new_density_[first_new ..].
@@ -69,6 +75,7 @@ class TimedMilling {
                      MillingResult& result) noexcept;
 
     MillingConfig config_;
+    double largest_burr_radius_;
     double burr_radius_;
     double carry_ = 0;  // fraction of a density count left over from earlier ticks, same direction
     int carry_direction_ = 0;

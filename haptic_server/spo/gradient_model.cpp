@@ -19,6 +19,11 @@ constexpr double kLongestCut = 0.5, kShortestCut = 0.05;
 constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;
 // Rounding of the depths must not refuse a step: their share of the energy, some 10 roundings each.
 constexpr double kFloatNoise = 1e-6, kDoubleNoise = 1e-13;
+// A new tool grows by this much per time, m/s, which the hand feels as less than its coupling times that,
+// and only while it is not deeper in the bone than this share of its thinnest radius: squeezed more than that
+// by a hole that is too narrow, it could not be drawn out.
+constexpr double kGrowth = 0.01;
+constexpr double kMostDepthToGrow = 0.05;
 constexpr double kFelt = 0.05;  // N, and N·m by kRotationLength: less is not felt
 constexpr size_t kMostCandidates = 65'536;
 
@@ -69,9 +74,10 @@ bool GradientModel::State::isFinite() const noexcept {
 GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world, double dt)
     : config_(config),
       world_(world),
+      tool_(&world.tool),
       dt_(dt),
       X_VW_(world.volume.geometry().X_WV.inverse()),
-      field_(&world.tool.field(settings_)),
+      field_(&tool_->field(settings_)),
       contact_(config.contact, std::min(kMostCandidates, config.most_point_tests / 4)),
       relaxing_(config.coupling, dt) {
     setAccuracy(settings_);
@@ -80,10 +86,46 @@ GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world
 void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
     settings_ = settings;
     level_ = levelOf(world_.shell, settings);
-    field_ = &world_.tool.field(settings);
+    useTool();
     most_point_tests_ = size_t(double(config_.most_point_tests) / field_->testCost());
     contact_.limitCandidates(most_point_tests_ / 4);
     contact_.forget();
+}
+
+void GradientModel::setTool(const SpoTool& tool) noexcept {
+    tool_ = tool.model;
+    config_.burr_radius = tool.burr_radius;
+    config_.coupling.saturation_force = tool.saturation_force;
+    relaxing_.setSaturationForce(tool.saturation_force);
+    lambda_ = 0;
+    is_new_tool_ = true;
+    setAccuracy(settings_);
+}
+
+void GradientModel::useTool() noexcept {
+    const ToolField& whole = tool_->field(settings_);
+    growing_.setWhole(whole);
+    field_ = growing_.offset() > 0 ? static_cast<const ToolField*>(&growing_) : &whole;
+}
+
+// So much smaller that it is not deeper in the bone than the last tool was. A tool whose surroundings are
+// inside of it would otherwise find its way on into the solid bone, where there is no surface to push it
+// back.
+void GradientModel::fitTool(const Tick& tick) noexcept {
+    is_new_tool_ = false;
+    growing_.setOffset(0);
+    useTool();
+    gather(tick.start, kLeastMargin, *tick.out);
+    growing_.setOffset(evaluate(tick.start, tick).max_depth - last_depth_);
+    useTool();
+    contact_.forget();
+}
+
+void GradientModel::growTool(double depth) noexcept {
+    last_depth_ = depth;
+    if (growing_.offset() == 0 || depth > kMostDepthToGrow * growing_.whole().thinnestRadius()) return;
+    growing_.setOffset(growing_.offset() - kGrowth * dt_);
+    useTool();
 }
 
 void GradientModel::restart() noexcept {
@@ -94,6 +136,10 @@ void GradientModel::restart() noexcept {
     last_motion_.setZero();
     last_reach_ = 0;
     last_wrench_hand_ = {};
+    is_new_tool_ = false;
+    last_depth_ = 0;
+    growing_.setOffset(0);
+    useTool();
 }
 
 // Halved every tick, what is left of an old motion would end in subnormal numbers, which are slow.
@@ -256,6 +302,7 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
     SpoStep out;
     const Tick tick{X_VW_ * spo_W, X_VW_ * device_W, &out};
     point_tests_ = 0;
+    if (is_new_tool_) fitTool(tick);
     // What the last tick moved is a good guess of what this one will; a longer step gathers anew.
     gather(tick.start, std::min(trustRadius(), std::max(kLeastMargin, kMotionGrowth * last_reach_)), out);
     State state = evaluate(tick.start, tick);
@@ -267,6 +314,7 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
     out.contacts = state.contacts;
     out.budget_share = double(point_tests_) / double(most_point_tests_);
     out.max_penetration = state.max_depth;
+    growTool(state.max_depth);
     feel(state.X_VT, tick);
     return out;
 }

@@ -5,6 +5,7 @@
 
 #include "haptic_server/contact/gradient_contact.h"
 #include "haptic_server/spo/spo_model.h"
+#include "haptic_server/tool/growing_field.h"
 
 namespace bonemill {
 
@@ -27,6 +28,7 @@ class GradientModel final : public SpoModel {
     SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept override;
     void restart() noexcept override;
     void setAccuracy(const AccuracySettings& settings) noexcept override;
+    void setTool(const SpoTool& tool) noexcept override;
 
     // J of the last advance(): all energy of the solve, damping included, at its final pose. For tests and
     // reports.
@@ -46,6 +48,9 @@ class GradientModel final : public SpoModel {
         Pose start, device;
         SpoStep* out;
     };
+    void useTool() noexcept;
+    void fitTool(const Tick& tick) noexcept;
+    void growTool(double depth) noexcept;
     void gather(const Pose& X_VT, double margin, SpoStep& out) noexcept;
     State evaluate(const Pose& X_VT, const Tick& tick) noexcept;
     void goOn(State& state, const Tick& tick) noexcept;
@@ -64,11 +69,15 @@ class GradientModel final : public SpoModel {
 
     GradientConfig config_;
     SpoWorld world_;
+    const ToolModel* tool_;
     double dt_;
     Pose X_VW_;
     AccuracySettings settings_;
     int level_ = 0;
-    const ToolField* field_;
+    const ToolField* field_;  // of tool_, or growing_
+    GrowingField growing_;
+    bool is_new_tool_ = false;
+    double last_depth_ = 0;  // m
     GradientContact contact_;
     Pose gathered_at_;
     uint32_t gatherings_ = 0;

@@ -18,6 +18,13 @@ struct SpoWorld {
     const ToolModel& tool;
 };
 
+// What a model needs to know of the tool in use.
+struct SpoTool {
+    const ToolModel* model;
+    double burr_radius;       // m
+    double saturation_force;  // N: of the coupling, gradient law only
+};
+
 struct SpoStep {
     Pose spo;            // after the tick, W
     Wrench wrench_hand;  // on the hand, axes W, about the tool point; not yet limited
@@ -43,6 +50,8 @@ class SpoModel {
     virtual void restart() noexcept = 0;
     // Takes effect with the next advance(). RT-safe; tick thread only.
     virtual void setAccuracy(const AccuracySettings& settings) noexcept = 0;
+    // Another tool at the same pose; takes effect with the next advance(). RT-safe; tick thread only.
+    virtual void setTool(const SpoTool& tool) noexcept = 0;
 };
 
 // The shell level of these settings: their factor's, or the first level if that was not built.

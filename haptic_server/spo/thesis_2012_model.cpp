@@ -7,6 +7,7 @@ Thesis2012Model::Thesis2012Model(const PenaltyContactConfig& contact, const Coup
     : contact_(contact),
       coupling_(coupling),
       world_(world),
+      tool_(&world.tool),
       dt_(dt),
       X_VW_(world.volume.geometry().X_WV.inverse()) {}
 
@@ -15,8 +16,8 @@ void Thesis2012Model::setAccuracy(const AccuracySettings& settings) noexcept {
 }
 
 ContactResult Thesis2012Model::contactInWorld(const Pose& spo_W) const noexcept {
-    ContactResult contact = penaltyContact(contact_, world_.volume, world_.lattice, world_.shell,
-                                           world_.tool.grid(), X_VW_ * spo_W);
+    ContactResult contact =
+        penaltyContact(contact_, world_.volume, world_.lattice, world_.shell, tool_->grid(), X_VW_ * spo_W);
     const Eigen::Quaterniond R_WV = X_VW_.rotation.conjugate();
     contact.wrench = contact.wrench.rotatedBy(R_WV);
     const Eigen::Matrix3d R = R_WV.toRotationMatrix();

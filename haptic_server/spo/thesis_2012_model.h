@@ -16,6 +16,7 @@ class Thesis2012Model final : public SpoModel {
     SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept override;
     void restart() noexcept override {}
     void setAccuracy(const AccuracySettings& settings) noexcept override;
+    void setTool(const SpoTool& tool) noexcept override { tool_ = tool.model; }
 
   private:
     ContactResult contactInWorld(const Pose& spo_W) const noexcept;
@@ -23,6 +24,7 @@ class Thesis2012Model final : public SpoModel {
     PenaltyContactConfig contact_;
     CouplingConfig coupling_;
     SpoWorld world_;
+    const ToolModel* tool_;
     double dt_;
     Pose X_VW_;
 };

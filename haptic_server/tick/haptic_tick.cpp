@@ -23,24 +23,41 @@ constexpr double kFarthest = 1e3;  // m from W's origin: beyond any scan, and sq
 // a thesis' leaf of 32³ up to 0.4 ms. Only leaves that were milled or restored since are stale.
 constexpr int kLeavesPreparedPerTick = 1;
 
+// As stiff as the quicker of the two laws.
+ToolChange toolChangeOf(const TickConfig& config) noexcept {
+    const EnergyCouplingConfig& gradient = config.gradient.coupling;
+    return {config.dt,
+            std::max(config.coupling.translation_stiffness,
+                     gradient.translation_stiffness * (1 + gradient.relaxing_share)),
+            std::max(config.coupling.rotation_stiffness / 2, gradient.rotation_stiffness),
+            gradient.p_TG.norm()};
+}
+
 }  // namespace
 
-HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const ToolModel& tool, VolumeReset* reset,
-                       const AccuracySwitch* accuracy)
+HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const ToolModel& tool, BoneHistory* history,
+                       const AccuracySwitch* accuracy, const ToolSwitch* tools)
     : config_(config),
       bone_(bone),
-      reset_(reset),
+      history_(history),
       accuracy_(accuracy),
+      tools_(tools),
       thesis_(config.contact, config.coupling, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
       gradient_(config.gradient, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
       model_(&gradient_),
       affordable_(config.dt),
-      milling_(config.milling, bone.volume, bone.lattice, config.burr_radius),
+      milling_(config.milling, bone.volume, bone.lattice,
+               tools ? tools->largestBurrRadius() : config.burr_radius),
+      tool_change_(toolChangeOf(config)),
       X_VW_(bone.volume.geometry().X_WV.inverse()) {
     const AccuracySettings& settings = accuracy ? accuracy->chosen() : config.accuracy;
     bone.shell.prepare(bone.volume, bone.lattice, levelOf(bone.shell, settings),
                        int(bone.lattice.leafCount()));
     takeUp(settings);
+    if (!tools) return;
+    tool_ = tools->chosen();
+    takeUp((*tools)[tool_]);
+    model_->restart();
 }
 
 // A choice is taken up when its contact points are up to date; until then the old one stays in force.
@@ -68,12 +85,28 @@ void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     milling_.setShape(is_thesis ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel);
 }
 
+void HapticTick::takeUp(const SpoTool& tool) noexcept {
+    thesis_.setTool(tool);
+    gradient_.setTool(tool);
+    milling_.setBurrRadius(tool.burr_radius);
+}
+
+void HapticTick::chooseTool() noexcept {
+    if (!tools_) return;
+    const size_t chosen = tools_->chosen();
+    if (chosen == tool_) return;
+    tool_ = chosen;
+    takeUp((*tools_)[tool_]);
+    tool_change_.begin();
+}
+
 bool HapticTick::tick(TickIo& io) noexcept {
     DeviceInput input;
     if (!io.read(input)) return false;
     const RtScope scope;
     uint32_t faults = input.is_stale ? kFaultStaleDevice : kFaultNone;
     device_ = acceptPose(input, faults);
+    chooseTool();
     const SpoStep step = moveAndFeel(input.force_factor, faults);
     const int64_t force_at_ns = io.write(step.wrench_hand);
 
@@ -117,6 +150,7 @@ SpoStep HapticTick::moveAndFeel(double force_factor, uint32_t& faults) noexcept 
     if (step.is_motion_clamped) faults |= kFaultMotionClamped;
     if (step.has_stalled) faults |= kFaultStalled;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
+    step.wrench_hand = tool_change_.next(step.wrench_hand, device_);
     if (limitWrench(config_.coupling, step.wrench_hand)) faults |= kFaultForceClamped;
     step.wrench_hand.force *= force_factor;
     step.wrench_hand.torque *= force_factor;
@@ -124,14 +158,21 @@ SpoStep HapticTick::moveAndFeel(double force_factor, uint32_t& faults) noexcept 
 }
 
 MillingResult HapticTick::mill(const DeviceInput& input, uint32_t& faults) noexcept {
-    if (reset_) reset_->startIfRequested();
-    if (reset_ && reset_->isRunning()) {
-        if (!reset_->restoreSome(bone_)) faults |= kFaultShellOverflow;
-        return {};
-    }
+    if (!history_) return millWithTool(input, faults);
+    if (!history_->beginWrite()) return {};
+    MillingResult milled;
+    bool shell_is_complete = true;
+    if (!history_->restoreSome(bone_, shell_is_complete) && !history_->isMillingPaused())
+        milled = millWithTool(input, faults);
+    if (!shell_is_complete) faults |= kFaultShellOverflow;
+    history_->endWrite(milled.removed_voxels, milled.added_voxels);
+    return milled;
+}
+
+MillingResult HapticTick::millWithTool(const DeviceInput& input, uint32_t& faults) noexcept {
     const bool remove = input.buttons & kButtonRemove;
     const bool add = input.buttons & kButtonAdd;
-    if (input.is_stale || remove == add || (reset_ && reset_->isMillingPaused())) return {};
+    if (input.is_stale || remove == add) return {};
     const MillingResult milled = milling_.apply(bone_.volume, bone_.lattice, bone_.shell,
                                                 X_VW_ * spo_.position, remove ? -1 : 1, config_.dt);
     if (!milled.shell_is_complete) faults |= kFaultShellOverflow;

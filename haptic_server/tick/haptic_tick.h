@@ -7,9 +7,11 @@
 #include "haptic_server/spo/thesis_2012_model.h"
 #include "haptic_server/tick/accuracy_switch.h"
 #include "haptic_server/tick/affordable_shell.h"
+#include "haptic_server/tick/bone_history.h"
 #include "haptic_server/tick/bone_model.h"
 #include "haptic_server/tick/tick_record.h"
-#include "haptic_server/tick/volume_reset.h"
+#include "haptic_server/tick/tool_change.h"
+#include "haptic_server/tick/tool_switch.h"
 
 namespace bonemill {
 
@@ -55,10 +57,11 @@ class HapticTick {
     HapticTick(const HapticTick&) = delete;
     HapticTick& operator=(const HapticTick&) = delete;
     // Keeps references; allocates the scratch memory of contact and milling; from now on the bone's shell
-    // follows the level of the settings in force. `reset` may be null (no reset then), and `accuracy` too
-    // (the settings are those of config then).
-    HapticTick(const TickConfig& config, BoneModel& bone, const ToolModel& tool, VolumeReset* reset,
-               const AccuracySwitch* accuracy = nullptr);
+    // follows the level of the settings in force. May be null: `history` (then nothing is put back or
+    // paused), `accuracy` (the settings are those of config then) and `tools` (`tool` with the burr of config
+    // is used then; else the chosen one).
+    HapticTick(const TickConfig& config, BoneModel& bone, const ToolModel& tool, BoneHistory* history,
+               const AccuracySwitch* accuracy = nullptr, const ToolSwitch* tools = nullptr);
 
     // One tick; RT-safe. False when io.read() said stop. Sets the RtScope guard around its work.
     bool tick(TickIo& io) noexcept;
@@ -71,20 +74,26 @@ class HapticTick {
     Pose acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
+    void takeUp(const SpoTool& tool) noexcept;
+    void chooseTool() noexcept;
     SpoStep moveAndFeel(double force_factor, uint32_t& faults) noexcept;
     MillingResult mill(const DeviceInput& input, uint32_t& faults) noexcept;
+    MillingResult millWithTool(const DeviceInput& input, uint32_t& faults) noexcept;
     TickRecord makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept;
 
     TickConfig config_;
     BoneModel& bone_;
-    VolumeReset* reset_;
+    BoneHistory* history_;
     const AccuracySwitch* accuracy_;
+    const ToolSwitch* tools_;
+    size_t tool_ = 0;  // of tools_
     Thesis2012Model thesis_;
     GradientModel gradient_;
     SpoModel* model_;  // thesis_ or gradient_
     AccuracySettings settings_;
     AffordableShell affordable_;
     TimedMilling milling_;
+    ToolChange tool_change_;
     Pose X_VW_;
     Pose device_;
     Pose spo_;

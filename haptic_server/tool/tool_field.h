@@ -68,6 +68,9 @@ class ToolField {
         : box_(box),
           thinnest_radius_(thinnest_radius),
           reach_(box.isEmpty() ? 0 : box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm()) {}
+    ToolField(const ToolField&) = default;
+    ToolField& operator=(const ToolField&) = default;
+    void setThinnestRadius(double radius) noexcept { thinnest_radius_ = radius; }
 
   private:
     Eigen::AlignedBox3d box_;

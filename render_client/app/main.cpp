@@ -3,8 +3,9 @@
 
 #include "common/config/user_error.h"
 #include "common/log/log.h"
+#include "render_client/app/measure_viewer.h"
 #include "render_client/app/offscreen_viewer.h"
-#include "render_client/app/set_accuracy.h"
+#include "render_client/app/send_command.h"
 #include "render_client/app/stop_signal.h"
 #include "render_client/app/window_viewer.h"
 
@@ -15,8 +16,14 @@ int main(int argc, char** argv) {
         bonemill::setUpLog("render_client", options->log_level);
         bonemill::dds::setNetwork(options->network);
         bonemill::catchStopSignals();
-        if (options->set_accuracy) return bonemill::runSetAccuracy(*options);
-        options->offscreen ? bonemill::runOffscreen(*options) : bonemill::runWindow(*options);
+        if (options->command) return bonemill::runSendCommand(*options);
+        if (options->measure) {
+            bonemill::runMeasurement(*options);
+        } else if (options->offscreen) {
+            bonemill::runOffscreen(*options);
+        } else {
+            bonemill::runWindow(*options);
+        }
         return 0;
     } catch (const bonemill::UserError& error) {
         std::cerr << "error: " << error.what() << std::endl;

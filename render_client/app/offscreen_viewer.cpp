@@ -16,22 +16,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr float kReferenceHeight = 800;  // pixels at which text has its nominal size
-constexpr float kSmallestText = 0.7f;
-
 void makeFolder(const std::filesystem::path& folder) {
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) throw UserError("--out " + folder.string() + ": " + failure.message());
-}
-
-void waitUntilComplete(SceneFeed& feed, const ClientOptions& options) {
-    const Clock::time_point end = Clock::now() + options.offscreen->timeout;
-    feed.updateUntil(end, [&] { return feed.isComplete() || stopRequested(); });
-    if (feed.isComplete() || stopRequested()) return;
-    throw std::runtime_error("the model was not complete after " +
-                             std::to_string(options.offscreen->timeout.count()) +
-                             " s: " + serverQuestion(options.subscriber));
 }
 
 // What the picture shows; to be taken before the drawing, which may take longer than the server's time-out.
@@ -63,10 +51,9 @@ void runOffscreen(const ClientOptions& options) {
 
     Clock::time_point due = Clock::now() + wish.interval;
     if (wish.wait_complete) {
-        waitUntilComplete(feed, options);
+        waitUntilComplete(feed, options.subscriber, wish.timeout);
         due = Clock::now();
     }
-    const float ui_scale = std::max(float(options.height) / kReferenceHeight, kSmallestText);
     for (uint32_t frame = 0; frame < wish.frames; ++frame) {
         feed.updateUntil(due, stopRequested);
         if (stopRequested()) return;
@@ -75,7 +62,7 @@ void runOffscreen(const ClientOptions& options) {
         char name[32];
         std::snprintf(name, sizeof name, "frame_%04u.png", frame);
         const std::string description = describe(frame, name, scene, feed);
-        scene.draw(options.width, options.height, ui_scale);
+        scene.draw(options.width, options.height, textScale(options.height));
         writePng(context.read(), wish.directory / name);
         std::cout << description << std::endl;
     }

@@ -5,13 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <iostream>
 
 #include "common/config/user_error.h"
 #include "common/dds/network_cli.h"
+#include "render_client/app/view_options.h"
+#include "render_client/subscribe/command_words.h"
 
 namespace bonemill {
 namespace {
@@ -28,18 +28,13 @@ struct RawOptions {
     OffscreenOptions offscreen_options;
     uint32_t interval_ms = 500;
     std::optional<uint32_t> timeout_s;
-    std::string role;
+    std::optional<uint32_t> measure_s;
+    std::optional<std::string> role;
     std::string size;
-    std::string set_accuracy;
+    std::string command;
     std::optional<double> azimuth_deg, elevation_deg, distance_mm;
     std::vector<double> target_mm;
-    std::array<std::optional<double>, 3> cuts;
-    std::array<bool, 3> flips{};
-    std::optional<double> opacity;
-    bool is_transparent = false;
-    std::string stereo = "off";
-    std::string camera = "orbit";
-    bool no_hud = false;
+    RawView view;
 };
 
 std::string loginName() {
@@ -59,57 +54,8 @@ void parseSize(const std::string& text, ClientOptions& options) {
     options.height = height;
 }
 
-// The server knows which names there are; here only what cannot be one is refused.
-std::string accuracyNameProblem(const std::string& name) {
-    const auto is_sign = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
-    if (!name.empty() && std::all_of(name.begin(), name.end(), is_sign)) return "";
-    return "'" + name + "' is no name of a preset, such as balanced, nor scene";
-}
-
-void addCutOptions(CLI::App& app, RawOptions& raw, std::vector<CLI::Option*>& view_options) {
-    constexpr const char* kAxes[] = {"x", "y", "z"};
-    constexpr const char* kHidden[] = {"the patient's left", "the back", "the upper part"};
-    for (size_t axis = 0; axis < 3; ++axis) {
-        const std::string cut_name = std::string("--cut-") + kAxes[axis];
-        auto* cut = app.add_option(cut_name, raw.cuts[axis],
-                                   std::string("Cut-plane that hides ") + kHidden[axis] +
-                                       ", from the low (0) to the high end (1) of the bone")
-                        ->check(CLI::Range(0.0, 1.0))
-                        ->type_name("POSITION");
-        auto* flip = app.add_flag(std::string("--flip-") + kAxes[axis], raw.flips[axis],
-                                  "Hides the other side of " + cut_name)
-                         ->needs(cut);
-        view_options.insert(view_options.end(), {cut, flip});
-    }
-}
-
-// What the window's keys switch, at the start.
-std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawOptions& raw) {
-    std::vector<CLI::Option*> view_options;
-    addCutOptions(app, raw, view_options);
-    auto* transparent = app.add_option_function<std::string>(
-                               "--transparent",
-                               [&raw](const std::string& opacity) {  // empty: none was given
-                                   raw.is_transparent = true;
-                                   if (!opacity.empty()) raw.opacity = std::stod(opacity);
-                               },
-                               "Transparent bone, of this opacity, 0 to 1 (default 0.35)")
-                            ->expected(0, 1)
-                            ->check(CLI::Range(0.0, 1.0))
-                            ->type_name("[OPACITY]");
-    auto* stereo = app.add_option("--stereo", raw.stereo, "off, side-by-side or anaglyph (red-cyan glasses)")
-                       ->check(CLI::IsMember({"off", "side-by-side", "anaglyph"}))
-                       ->capture_default_str();
-    auto* camera = app.add_option("--camera", raw.camera, "orbit, or endoscope: rides on the tool")
-                       ->check(CLI::IsMember({"orbit", "endoscope"}))
-                       ->capture_default_str();
-    auto* no_hud = app.add_flag("--no-hud", raw.no_hud, "Nothing but the picture: no panel, list or scale");
-    view_options.insert(view_options.end(), {transparent, stereo, camera, no_hud});
-    return view_options;
-}
-
 void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
-    const std::vector<CLI::Option*> view_options = addViewOptions(app, raw);
+    const std::vector<CLI::Option*> view_options = addViewOptions(app, raw.view);
     app.add_option("--domain", options.subscriber.domain, "DDS domain of the server")
         ->check(CLI::Range(uint32_t{0}, dds::kMaxDomain))
         ->capture_default_str();
@@ -121,7 +67,7 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     app.add_option(
            "--role", raw.role,
            "viewer: only looks; operator: also commands; instructor: also points and ends the session "
-           "(default operator, with --profile lab or classroom viewer)")
+           "(default operator; viewer under the profiles lab and classroom)")
         ->check(CLI::IsMember({"viewer", "operator", "instructor"}));
     app.add_option("--size", raw.size, "Picture or window, pixels (default 1280x800)")->type_name("WxH");
     app.add_option("--camera-azimuth-deg", raw.azimuth_deg, "Eye: 0 in front of the patient, 90 at the left")
@@ -154,45 +100,38 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     app.add_flag("--wait-complete", raw.offscreen_options.wait_complete,
                  "Take the first picture when the whole model has arrived")
         ->needs(offscreen);
-    auto* set_accuracy = app.add_option("--set-accuracy", raw.set_accuracy,
-                                        "No viewer: ask the server for thesis_2012, fast, balanced, exact or "
-                                        "scene (what the scene file "
-                                        "says), print what it answers and stop")
-                             ->check(accuracyNameProblem)
-                             ->type_name("NAME")
-                             ->excludes(offscreen);
-    for (CLI::Option* option : view_options) set_accuracy->excludes(option);
+    auto* command =
+        app.add_option(
+               "--command", raw.command,
+               "No viewer: ask the server for \"reset\", \"pause\", \"resume\", \"tool NAME-or-number\", "
+               "\"checkpoint\", \"restore NUMBER-or-last\", \"accuracy NAME\" or \"shutdown\", print what it "
+               "answers and stop")
+            ->check(commandProblem)
+            ->type_name("TEXT")
+            ->excludes(offscreen);
+    for (CLI::Option* option : view_options) command->excludes(option);
+    app.add_option("--measure-s", raw.measure_s,
+                   "No viewer: draw off screen as fast as possible for so long, print what it costs and stop")
+        ->check(CLI::Range(1u, 3600u))
+        ->excludes(offscreen)
+        ->excludes(command);
     app.add_option("--timeout-s", raw.timeout_s,
-                   "Give up --wait-complete, or --set-accuracy without a server, after this (default 60)")
+                   "Give up --wait-complete, or --command and --measure-s without a server, after this "
+                   "(default 60)")
         ->check(CLI::Range(1u, 86400u));
 }
 
-// Among several PCs whoever commands says so.
-topics::Viewer::Role roleOf(const RawOptions& raw, const dds::NetworkOptions& network) {
-    if (raw.role == "viewer") return topics::Viewer::VIEWER;
-    if (raw.role == "instructor") return topics::Viewer::INSTRUCTOR;
-    const bool only_looks =
-        raw.role.empty() && raw.set_accuracy.empty() && dds::isLanProfile(network.profile);
-    return only_looks ? topics::Viewer::VIEWER : topics::Viewer::OPERATOR;
-}
-
-ViewSettings viewSettings(const RawOptions& raw) {
-    ViewSettings settings;
-    for (size_t axis = 0; axis < 3; ++axis)
-        if (raw.cuts[axis]) settings.cuts[axis] = {true, *raw.cuts[axis], raw.flips[axis]};
-    settings.is_transparent = raw.is_transparent;
-    settings.opacity = raw.opacity.value_or(ViewSettings::kDefaultOpacity);
-    settings.stereo = raw.stereo == "side-by-side" ? StereoMode::kSideBySide
-                      : raw.stereo == "anaglyph"   ? StereoMode::kAnaglyph
-                                                   : StereoMode::kOff;
-    settings.camera = raw.camera == "endoscope" ? CameraMode::kEndoscope : CameraMode::kOrbit;
-    settings.show_hud = !raw.no_hud;
-    return settings;
+topics::Viewer::Role roleOf(const std::string& name) {
+    return name == "viewer"       ? topics::Viewer::VIEWER
+           : name == "instructor" ? topics::Viewer::INSTRUCTOR
+                                  : topics::Viewer::OPERATOR;
 }
 
 ClientOptions convert(const RawOptions& raw, ClientOptions options) {
-    options.settings = viewSettings(raw);
-    options.subscriber.role = roleOf(raw, options.network);
+    options.settings = viewSettings(raw.view);
+    options.chooses_quality = raw.view.quality == "auto";
+    const bool is_one_of_many = dds::isLanProfile(options.network.profile);
+    options.subscriber.role = roleOf(raw.role.value_or(is_one_of_many ? "viewer" : "operator"));
     if (!raw.size.empty()) parseSize(raw.size, options);
     if (raw.azimuth_deg) options.view.azimuth = *raw.azimuth_deg * kDegreesToRadians;
     if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegreesToRadians;
@@ -201,19 +140,25 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
         options.view.target =
             kMmToMetres * Eigen::Vector3d(raw.target_mm[0], raw.target_mm[1], raw.target_mm[2]);
     }
-    if (raw.timeout_s && !raw.offscreen && raw.set_accuracy.empty())
-        throw UserError("--timeout-s needs --offscreen or --set-accuracy");
+    if (raw.timeout_s && !raw.offscreen && raw.command.empty() && !raw.measure_s)
+        throw UserError("--timeout-s needs --offscreen, --command or --measure-s");
     const std::chrono::seconds timeout(raw.timeout_s.value_or(kDefaultTimeoutS));
     if (raw.offscreen) {
         options.offscreen = raw.offscreen_options;
         options.offscreen->interval = std::chrono::milliseconds(raw.interval_ms);
         options.offscreen->timeout = timeout;
     }
-    if (!raw.set_accuracy.empty()) options.set_accuracy = SetAccuracyOptions{raw.set_accuracy, timeout};
+    if (raw.measure_s) options.measure = MeasureOptions{std::chrono::seconds(*raw.measure_s), timeout};
+    if (!raw.command.empty()) options.command = CommandOptions{raw.command, timeout};
     return options;
 }
 
 }  // namespace
+
+float textScale(int height) {
+    constexpr float kReferenceHeight = 800, kSmallestText = 0.7f;
+    return std::max(float(height) / kReferenceHeight, kSmallestText);
+}
 
 std::string serverQuestion(const SubscriberOptions& subscriber) {
     return "is a haptic_server running in domain " + std::to_string(subscriber.domain) + ", session " +

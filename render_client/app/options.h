@@ -21,23 +21,34 @@ struct OffscreenOptions {
     std::chrono::seconds timeout{60};  // of wait_complete
 };
 
-// Instead of a viewer: this accuracy is asked for, once there is a server.
-struct SetAccuracyOptions {
-    std::string name;
+// Instead of a viewer: this is asked for, once there is a server.
+struct CommandOptions {
+    std::string text;                  // subscribe/command_words.h
     std::chrono::seconds timeout{60};  // of waiting for the server
+};
+
+// Instead of a viewer: what drawing costs.
+struct MeasureOptions {
+    std::chrono::seconds time{10};
+    std::chrono::seconds timeout{60};  // of waiting for the whole model
 };
 
 struct ClientOptions {
     SubscriberOptions subscriber;
     dds::NetworkOptions network;
     ViewOverrides view;
-    ViewSettings settings;  // what is shown at the start
-    int width = 1280;       // pixels
+    ViewSettings settings;        // what is shown at the start
+    bool chooses_quality = true;  // kQuick where OpenGL is software and pictures follow each other
+    int width = 1280;             // pixels
     int height = 800;
-    std::optional<OffscreenOptions> offscreen;  // neither given: a window
-    std::optional<SetAccuracyOptions> set_accuracy;
+    std::optional<OffscreenOptions> offscreen;  // none given: a window
+    std::optional<CommandOptions> command;
+    std::optional<MeasureOptions> measure;
     std::string log_level = "info";
 };
+
+// Size of text in a picture of this height, 1 at 800 pixels.
+float textScale(int height);
 
 // What to ask a user to whom no server answers.
 std::string serverQuestion(const SubscriberOptions& subscriber);

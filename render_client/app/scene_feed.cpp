@@ -4,6 +4,9 @@
 
 #include <stdexcept>
 
+#include "render_client/app/options.h"
+#include "render_client/app/stop_signal.h"
+
 namespace bonemill {
 
 void SceneFeed::update() {
@@ -50,6 +53,14 @@ void SceneFeed::updateConnection() {
                          : complete_epoch_ != 0 && complete_epoch_ == subscriber_.epoch()
                              ? Connection::kLive
                              : Connection::kReceiving);
+}
+
+void waitUntilComplete(SceneFeed& feed, const SubscriberOptions& options, std::chrono::seconds timeout) {
+    const auto end = std::chrono::steady_clock::now() + timeout;
+    feed.updateUntil(end, [&] { return feed.isComplete() || stopRequested(); });
+    if (feed.isComplete() || stopRequested()) return;
+    throw std::runtime_error("the model was not complete after " + std::to_string(timeout.count()) +
+                             " s: " + serverQuestion(options));
 }
 
 }  // namespace bonemill

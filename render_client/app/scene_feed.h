@@ -40,6 +40,10 @@ class SceneFeed {
     bool had_server_ = false;
 };
 
+// Returns early after a stop signal. Throws std::runtime_error with a question for the user when the model
+// was not complete in time.
+void waitUntilComplete(SceneFeed& feed, const SubscriberOptions& options, std::chrono::seconds timeout);
+
 template <class Stop>
 void SceneFeed::updateUntil(std::chrono::steady_clock::time_point end, Stop&& stop) {
     constexpr std::chrono::milliseconds kSlice{20};  // how late `stop` may be noticed

@@ -12,6 +12,13 @@ GlApi GlApi::load(const std::function<void*(const char*)>& address_of) {
     return gl;
 }
 
+bool GlApi::isSoftware() const {
+    const std::string renderer = describe();
+    for (const char* name : {"llvmpipe", "softpipe", "swrast", "Software Rasterizer"})
+        if (renderer.find(name) != std::string::npos) return true;
+    return false;
+}
+
 std::string GlApi::describe() const {
     const auto text = [this](GLenum name) {
         const auto* value = reinterpret_cast<const char*>(GetString(name));

@@ -101,6 +101,9 @@ struct GlApi {
     // function.
     static GlApi load(const std::function<void*(const char*)>& address_of);
 
+    // The processor draws, not a graphics card.
+    bool isSoftware() const;
+
     // For people: renderer and version of the current context.
     std::string describe() const;
 

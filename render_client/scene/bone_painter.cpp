@@ -46,10 +46,10 @@ void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint 
 }
 
 void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
-                                  double opacity, const std::function<void()>& drawTool) {
+                                  double opacity, const std::function<void()>& draw_tool) {
     drawFarWall(frame, nodes, shadow_texture);
     if (frame.cuts_V.any()) markOpened(frame, nodes);
-    drawTool();
+    draw_tool();
     gl_.Enable(GL_BLEND);
     gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     drawInnerWall(frame, nodes, shadow_texture);

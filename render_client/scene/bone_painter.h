@@ -24,10 +24,10 @@ class BonePainter {
     explicit BonePainter(const GlApi& gl);
 
     // Both draw into the bound framebuffer, whose depth and stencil are clear, and leave depth test and depth
-    // writes on. drawTool draws opaque things.
+    // writes on. draw_tool draws opaque things.
     void drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
     void drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, double opacity,
-                         const std::function<void()>& drawTool);
+                         const std::function<void()>& draw_tool);
 
     // Bone triangles inside the view volume of the last picture.
     size_t trianglesDrawn() const { return triangles_drawn_; }

@@ -165,7 +165,7 @@ TEST_F(RenderClient, WithoutADisplayItTellsAboutOffscreen) {
 
 TEST_F(RenderClient, BadArgumentsEndWithCodeTwo) {
     for (const char* arguments : {"--bogus", "--offscreen", "--size 1x1", "--offscreen --out /dev/null/x",
-                                  "--cut-x 2", "--transparent --set-accuracy fast"}) {
+                                  "--cut-x 2", "--transparent --command reset"}) {
         const Outcome result = run(arguments);
         EXPECT_EQ(result.exit_code, 2) << arguments;
         EXPECT_EQ(result.errors.rfind("error: ", 0), 0u) << result.errors;

@@ -135,6 +135,24 @@ TEST_F(ViewMode, AFlippedCutHidesTheOtherSide) {
     EXPECT_NEAR(cap->x(), kCenter.x() + 0.2 * kRadius, 2e-6);
 }
 
+// The volume's axes are not the world's: a plane across W's x, whatever V is.
+TEST_F(ViewMode, CutsAreAcrossTheWorldsAxes) {
+    const Vector3d half = Vector3d::Constant(kRadius);
+    topics::SceneInfo info = test::makeSceneInfo("turned sphere", kCenter - half, kCenter + half);
+    const Pose X_WV{{0.02, -0.01, 0.03}, expRotation({0.5, -0.3, 0.9})};
+    test::setVector(X_WV.position, info.mutable_p_wv_m());
+    test::setQuaternion(X_WV.rotation, info.mutable_q_wv());
+    lookFromTheLeft();
+    scene_->setSceneInfo(info);
+    for (const NodeMesh& node : sphereNodes()) scene_->setNode(node);
+    scene_->settings().cuts[0] = {true, 0.5, false};  // the turned box' middle is the sphere's
+    draw();
+    const auto cap = scene_->pick(kWidth / 2, kHeight / 2);
+    ASSERT_TRUE(cap);
+    EXPECT_LT((*cap - X_WV * kCenter).norm(), scene_->camera().view().metresPerPixel(kHeight));
+    EXPECT_NEAR(cap->x(), (X_WV * kCenter).x(), 2e-6);
+}
+
 TEST_F(ViewMode, ThreeCutsLeaveOneCorner) {
     showSphere();
     scene_->setViewOverrides({.target = {}, .distance = {}, .azimuth = M_PI * 3 / 4, .elevation = 0.6});

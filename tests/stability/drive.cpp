@@ -21,7 +21,8 @@ double spread(const std::vector<Eigen::Vector3d>& values) {
 
 }  // namespace
 
-Stepper::Stepper(Scene& scene) : tick_(scene.config, scene.bone, scene.tool, nullptr) {}
+Stepper::Stepper(Scene& scene, const ToolSwitch* tools)
+    : tick_(scene.config, scene.bone, scene.tool, nullptr, nullptr, tools) {}
 
 const TickRecord& Stepper::step(const Pose& X_WT_device, uint32_t buttons) {
     input_.X_WT_device = X_WT_device;
@@ -40,9 +41,9 @@ int64_t Stepper::write(const Wrench& wrench_hand_W) noexcept {
     return 0;
 }
 
-ClosedLoop::ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start)
+ClosedLoop::ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start, const ToolSwitch* tools)
     : plant(config.device, config.hand, start),
-      stepper(scene),
+      stepper(scene, tools),
       dt(scene.config.dt),
       on_the_way_(size_t(config.delay_ticks)) {}
 

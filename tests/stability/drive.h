@@ -12,7 +12,8 @@ namespace bonemill::test {
 // One tick at a time with whatever device pose the caller says.
 class Stepper : private TickIo {
   public:
-    explicit Stepper(Scene& scene);
+    // With `tools` instead of the scene's tool, if it is not null.
+    explicit Stepper(Scene& scene, const ToolSwitch* tools = nullptr);
 
     const TickRecord& step(const Pose& X_WT_device, uint32_t buttons = 0);
     const Wrench& wrenchOnHand() const noexcept { return wrench_; }
@@ -47,7 +48,7 @@ struct LoopConfig {
 
 class ClosedLoop {
   public:
-    ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start);
+    ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start, const ToolSwitch* tools = nullptr);
 
     void step(uint32_t buttons = 0);
     // The controller misses a period: the device holds the last wrench.

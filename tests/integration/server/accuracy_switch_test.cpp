@@ -56,7 +56,8 @@ class AccuracySwitching : public testing::Test {
                 "--session",     session(), "--best-effort-rt"};
     }
     static Finished setAccuracy(const std::string& name) {
-        return run({"render_client", "--set-accuracy", name, "--session", session(), "--domain", domain()});
+        return run(
+            {"render_client", "--command", "accuracy " + name, "--session", session(), "--domain", domain()});
     }
     static std::string session() { return std::to_string(testSession()); }
     static std::string domain() { return std::to_string(testDomain()); }
@@ -159,8 +160,8 @@ TEST_F(AccuracySwitching, RefusesWhatTheSceneDoesNotAllow) {
 }
 
 TEST_F(AccuracySwitching, WithoutAServerTheClientGivesUpWithAHint) {
-    const Finished answer = run({"render_client", "--set-accuracy", "fast", "--timeout-s", "1", "--session",
-                                 session(), "--domain", domain()});
+    const Finished answer = run({"render_client", "--command", "accuracy fast", "--timeout-s", "1",
+                                 "--session", session(), "--domain", domain()});
     EXPECT_EQ(answer.exit_code, 1);
     EXPECT_EQ(answer.out, "");
     EXPECT_NE(answer.err.find("is a haptic_server running"), std::string::npos) << answer.err;

@@ -36,6 +36,13 @@ TEST_F(DescribeScene, SaysHowMuchATickMayDo) {
     expectLine(at_4_khz, "most milled cells in a tick: 18750");
 }
 
+TEST_F(DescribeScene, ListsTheTools) {
+    const std::string text = describe("tool { } tool { name: \"fine\" burr_radius_mm: 0.5 }");
+    EXPECT_NE(text.find("\ntool 1 'tool 1', in use at the start: "), std::string::npos) << text;
+    EXPECT_NE(text.find("\ntool 2 'fine': "), std::string::npos) << text;
+    EXPECT_NE(text.find("burr radius 0.5 mm"), std::string::npos) << text;
+}
+
 TEST_F(DescribeScene, TheThesisLawHasNoBudgetOfPointTests) {
     expectLine(describe("accuracy { preset: THESIS_2012 }"),
                "most point tests in a tick: 100000, without effect on the thesis' law");

@@ -75,6 +75,34 @@ TEST(Simulate, TwoRunsGiveTheSameHashAndAnotherPathAnotherOne) {
     EXPECT_EQ(first["ticks"], 900);
 }
 
+TEST(Simulate, MillsWithTheToolThatIsAskedFor) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
+    writeFile(folder / "s.textproto",
+              "volume { path: \"slab.nrrd\" }\ntool { }\n"
+              "tool { name: \"fine\" burr_radius_mm: 0.5 sdf_spacing_mm: 0.0625 }");
+    writeFile(folder / "fine.textproto",
+              "volume { path: \"slab.nrrd\" }\n"
+              "tool { name: \"fine\" burr_radius_mm: 0.5 sdf_spacing_mm: 0.0625 }");
+    writeFile(folder / "a.csv", plunge(0.03e-3, -0.08e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
+    const auto go = [&](const std::string& scene, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"haptic_server", "simulate",     "--scene",
+                                           folder / scene,  "--trajectory", folder / "a.csv"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
+    };
+    const auto first = simulateOnce(go("s.textproto", {})), alone = simulateOnce(go("fine.textproto", {})),
+               fine = simulateOnce(go("s.textproto", {"--tool", "fine"}));
+    EXPECT_EQ(first["tool"], "tool 1");
+    EXPECT_EQ(fine["tool"], "fine");
+    EXPECT_LT(fine["removed_mm3"], first["removed_mm3"]);
+    EXPECT_EQ(fine["state_hash"], alone["state_hash"]);
+    EXPECT_EQ(simulateOnce(go("s.textproto", {"--tool", "2"}))["state_hash"], alone["state_hash"]);
+    const auto refused = run(go("s.textproto", {"--tool", "drill"}));
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.err.find("tool 1, fine"), std::string::npos) << refused.err;
+}
+
 // A recorded session can be checked on another PC.
 TEST(Simulate, TheHashDoesNotDependOnTheCpusInstructionSet) {
     const TemporaryFolder folder;

@@ -24,14 +24,14 @@ TEST(MillingProbe, SweptVolumeIsThatOfTheCapsuleAndTheBoneComesBack) {
         test::bodyVolume(test::cubeGeometry(49, 0.125e-3), [](const Vector3d&) { return -1.0; }));
     const auto before = densitiesOf(bone.volume);
     const ToolModel tool = test::burrTool();
-    VolumeReset reset(bone);
+    BoneHistory history(bone);
     TickConfig tick;
     tick.accuracy = presetSettings(Preset::kThesis2012);  // never held up by what it has just laid open
     tick.contact.point_stiffness = 1e-3;
     PosePath path;
     for (int n = 0; n < 900; ++n)
         path.push_back({{2e-3 + 2e-3 * std::min(1.0, n / 600.0), 3e-3, 3e-3}, upright()});
-    const MillingRun run = millAndRestore(tick, bone, tool, reset, path);
+    const MillingRun run = millAndRestore(tick, bone, tool, history, path);
     const double capsule = M_PI * 1e-9 * (4.0 / 3) + M_PI * 1e-6 * 2e-3;
     EXPECT_NEAR(run.wanted / capsule, 1, 0.01);
     EXPECT_NEAR(run.swept / capsule, 1, 0.01);

@@ -10,6 +10,7 @@
 
 #include "common/config/field_unit.h"
 #include "common/config/scene_table.h"
+#include "common/config/scene_tools.h"
 #include "common/config/user_error.h"
 
 namespace bonemill {
@@ -98,10 +99,10 @@ TEST_F(SceneFile, valueOutsideItsRangeNamesFieldValueRangeAndUnit) {
     EXPECT_EQ(refusal("volume { path: 'v' }\ncoupling {\n  max_speed_mm_per_s: -3\n}"),
               "s.textproto:3: field `coupling.max_speed_mm_per_s` = -3 is outside 1 .. 1000000 (mm/s)");
     EXPECT_EQ(refusal("volume { path: 'v' }\ntool { burr_radius_mm: -1 }"),
-              "s.textproto:2: field `tool.burr_radius_mm` = -1 is outside 0.01 .. 50 (mm)");
+              "s.textproto:2: field `tool[0].burr_radius_mm` = -1 is outside 0.01 .. 50 (mm)");
     EXPECT_EQ(refusal("volume { path: 'v' }\ntool { shape { sphere { radius_mm: 1 } }\nshape { sphere "
                       "{\nradius_mm: 0 } } }"),
-              "s.textproto:4: field `tool.shape[1].sphere.radius_mm` = 0 is outside 0.01 .. 100 (mm)");
+              "s.textproto:4: field `tool[0].shape[1].sphere.radius_mm` = 0 is outside 0.01 .. 100 (mm)");
     EXPECT_EQ(refusal("volume { path: 'v' leaf_voxels: 40 }"),
               "s.textproto:1: field `volume.leaf_voxels` = 40 is outside 4 .. 31 (voxels)");
     EXPECT_EQ(refusal("device { p_WD_mm { z: 1e7 } }"),
@@ -160,9 +161,41 @@ TEST_F(SceneFile, quaternionsMustHaveLengthOne) {
 }
 
 TEST_F(SceneFile, toolIsMadeOfShapesOrOfAMesh) {
-    EXPECT_EQ(refusal("volume { path: 'v' }\ntool { shape { } }"),
-              "s.textproto:2: field `tool.shape[0]` is empty: give it a sphere, capsule, cylinder or cone");
+    EXPECT_EQ(
+        refusal("volume { path: 'v' }\ntool { shape { } }"),
+        "s.textproto:2: field `tool[0].shape[0]` is empty: give it a sphere, capsule, cylinder or cone");
     EXPECT_NE(refusal("volume { path: 'v' }\ntool { shape { sphere { } } mesh_path: 'a.stl' }"), "accepted");
+}
+
+TEST_F(SceneFile, toolsHaveNamesOfTheirOwn) {
+    const std::string volume = "volume { path: 'v' }\n";
+    EXPECT_EQ(
+        refusal(volume + "tool { }\ntool { name: 'drill' }\ntool { name: 'drill' }"),
+        "s.textproto:4: field `tool[2].name` = \"drill\" is also what tool[1] is called: give each tool a "
+        "name of its own");
+    EXPECT_NE(refusal(volume + "tool { name: 'tool 2' } tool { }"), "accepted");
+    EXPECT_EQ(refusal(volume + "tool { } tool { }"), "accepted");
+    std::string many = volume;
+    for (int n = 0; n < kMostTools; ++n) many += "tool { }\n";
+    EXPECT_EQ(refusal(many), "accepted");
+    EXPECT_EQ(refusal(many + "tool { }"),
+              "s.textproto:18: field `tool[16]` is one tool too many: a scene has at most 16");
+}
+
+TEST(SceneTools, AreNamedByPlaceWhereTheSceneDoesNot) {
+    scene::Scene scene;
+    EXPECT_EQ(toolNamesOf(scene), std::vector<std::string>{"tool 1"});
+    EXPECT_EQ(toolsOf(scene).front()->burr_radius_mm(), 1);
+    scene.add_tool();
+    scene.add_tool()->set_name("fine");
+    scene.add_tool();
+    const auto names = toolNamesOf(scene);
+    EXPECT_EQ(names, (std::vector<std::string>{"tool 1", "fine", "tool 3"}));
+    EXPECT_EQ(toolIndexOf(names, "fine"), 1u);
+    EXPECT_EQ(toolIndexOf(names, "tool 3"), 2u);
+    EXPECT_EQ(toolIndexOf(names, "3"), 2u);
+    for (const char* none : {"", "0", "4", "-1", "2x", "coarse", "99999999999999999999"})
+        EXPECT_FALSE(toolIndexOf(names, none)) << none;
 }
 
 TEST_F(SceneFile, textsMustBePrintableUtf8) {
@@ -184,7 +217,7 @@ TEST(FieldUnit, isTheSuffixOfTheName) {
 TEST(SceneTable, schemaRowsHaveUnitDefaultAndRange) {
     const std::string table = describeDefaults();
     EXPECT_NE(table.find("| `coupling.max_speed_mm_per_s` | mm/s | 500 | 1 .. 1000000 |"), std::string::npos);
-    EXPECT_NE(table.find("| `tool.shape[].sphere.radius_mm` | mm | 1 | 0.01 .. 100 |"), std::string::npos);
+    EXPECT_NE(table.find("| `tool[].shape[].sphere.radius_mm` | mm | 1 | 0.01 .. 100 |"), std::string::npos);
     EXPECT_NE(table.find("| `volume.leaf_voxels` | voxels | not set | 4 .. 31 |"), std::string::npos);
     EXPECT_NE(table.find("| `device.p_WD_mm` | mm | not set | x, y, z |"), std::string::npos);
     EXPECT_NE(table.find("| `accuracy.preset` |  | BALANCED | THESIS_2012, FAST, BALANCED, EXACT |"),

@@ -36,8 +36,6 @@ TEST(Options, ANameOfOnesOwnAndTheRoleOfAnOperator) {
     EXPECT_EQ(parse({"--role", "viewer"})->subscriber.role, topics::Viewer::VIEWER);
     for (const char* profile : {"lab", "classroom"}) {
         EXPECT_EQ(parse({"--profile", profile})->subscriber.role, topics::Viewer::VIEWER);
-        EXPECT_EQ(parse({"--profile", profile, "--set-accuracy", "fast"})->subscriber.role,
-                  topics::Viewer::OPERATOR);
         EXPECT_EQ(parse({"--profile", profile, "--role", "operator"})->subscriber.role,
                   topics::Viewer::OPERATOR);
     }
@@ -95,16 +93,15 @@ TEST(Options, TheNetwork) {
     EXPECT_EQ(parse({})->network.profile, "");
 }
 
-TEST(Options, SetAccuracyIsAModeOfItsOwn) {
-    const auto options = parse({"--set-accuracy", "balanced", "--session", "9"});
-    ASSERT_TRUE(options && options->set_accuracy);
-    EXPECT_EQ(options->set_accuracy->name, "balanced");
-    EXPECT_EQ(options->set_accuracy->timeout, std::chrono::seconds(60));
+TEST(Options, ACommandIsAModeOfItsOwn) {
+    const auto options = parse({"--command", "tool fine burr", "--session", "9"});
+    ASSERT_TRUE(options && options->command);
+    EXPECT_EQ(options->command->text, "tool fine burr");
+    EXPECT_EQ(options->command->timeout, std::chrono::seconds(60));
     EXPECT_EQ(options->subscriber.session, 9u);
     EXPECT_FALSE(options->offscreen);
-    EXPECT_EQ(parse({"--set-accuracy", "fast", "--timeout-s", "3"})->set_accuracy->timeout,
-              std::chrono::seconds(3));
-    EXPECT_FALSE(parse({})->set_accuracy);
+    EXPECT_EQ(parse({"--command", "reset", "--timeout-s", "3"})->command->timeout, std::chrono::seconds(3));
+    EXPECT_FALSE(parse({})->command);
 }
 
 TEST(Options, WhatIsShownAtTheStart) {
@@ -142,17 +139,17 @@ TEST(Options, RefusesViewsThatMakeNoSense) {
     EXPECT_THROW(parse({"--stereo", "cross-eyed"}), UserError);
     EXPECT_THROW(parse({"--camera", "fly"}), UserError);
     for (const char* view : {"--transparent", "--no-hud"})
-        EXPECT_THROW(parse({"--set-accuracy", "fast", view}), UserError) << view;
-    EXPECT_THROW(parse({"--set-accuracy", "fast", "--cut-x", "0.5"}), UserError);
-    EXPECT_THROW(parse({"--set-accuracy", "fast", "--camera", "orbit"}), UserError);
+        EXPECT_THROW(parse({"--command", "reset", view}), UserError) << view;
+    EXPECT_THROW(parse({"--command", "reset", "--cut-x", "0.5"}), UserError);
+    EXPECT_THROW(parse({"--command", "reset", "--camera", "orbit"}), UserError);
 }
 
 TEST(Options, RefusesWhatMakesNoSense) {
-    EXPECT_THROW(parse({"--set-accuracy"}), UserError);
-    EXPECT_THROW(parse({"--set-accuracy", ""}), UserError);
-    EXPECT_THROW(parse({"--set-accuracy", "no name"}), UserError);
-    EXPECT_THROW(parse({"--set-accuracy", "\xff"}), UserError);
-    EXPECT_THROW(parse({"--set-accuracy", "fast", "--offscreen", "--out", "p"}), UserError);
+    EXPECT_THROW(parse({"--command"}), UserError);
+    EXPECT_THROW(parse({"--command", ""}), UserError);
+    EXPECT_THROW(parse({"--command", "explode"}), UserError);
+    EXPECT_THROW(parse({"--command", "restore \xff"}), UserError);
+    EXPECT_THROW(parse({"--command", "reset", "--offscreen", "--out", "p"}), UserError);
     EXPECT_THROW(parse({"--timeout-s", "3"}), UserError);
     EXPECT_THROW(parse({"--bogus"}), UserError);
     EXPECT_THROW(parse({"--offscreen"}), UserError);

@@ -143,9 +143,9 @@ TEST(HapticTick, WorkBeyondTheDeadlineIsAnOverrun) {
 
 TEST(HapticTick, PausedMillingTakesNothingButIsFelt) {
     Bench bench;
-    VolumeReset reset(bench.bone);
-    reset.pauseMilling(true);
-    HapticTick tick(bench.config, bench.bone, bench.tool, &reset);
+    BoneHistory history(bench.bone);
+    history.pauseMilling(true);
+    HapticTick tick(bench.config, bench.bone, bench.tool, &history);
     const Pose start = bench.atV(kStart);
     test::ScriptedIo io(test::straightPath(start, bench.atV(kStart - Eigen::Vector3d(0, 0, 1e-3)).position,
                                            400, kButtonRemove));

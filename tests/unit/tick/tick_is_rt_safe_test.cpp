@@ -4,10 +4,12 @@
 
 #include <limits>
 
+#include "haptic_server/tick/checkpoints.h"
 #include "haptic_server/tick/haptic_tick.h"
 #include "tests/support/rt_guard/rt_probe.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
+#include "tests/unit/tick/tool_bench.h"
 
 namespace bonemill {
 namespace {
@@ -19,8 +21,8 @@ class TickIsRtSafe : public testing::Test {
                                  test::halfSpace({0, 0, 5e-3}, Eigen::Vector3d::UnitZ())),
                 Eigen::Vector3i::Constant(16), ShellConfig{}),
           tool_(test::sphereToolModel(1e-3, 0.125e-3)),
-          reset_(bone_),
-          tick_({}, bone_, tool_, &reset_) {}
+          history_(bone_),
+          tick_({}, bone_, tool_, &history_) {}
 
     // Runs the inputs under the probe; what the test itself keeps is allocated before.
     void expectQuiet(const std::vector<DeviceInput>& inputs) { expectQuiet(tick_, inputs); }
@@ -43,7 +45,7 @@ class TickIsRtSafe : public testing::Test {
 
     BoneModel bone_;
     ToolModel tool_;
-    VolumeReset reset_;
+    BoneHistory history_;
     HapticTick tick_;
     std::vector<TickRecord> records_;
 };
@@ -52,15 +54,15 @@ TEST_F(TickIsRtSafe, WhileMillingAndAddingAndResetting) {
     expectQuiet(test::straightPath(at(6.2e-3), {4e-3, 4e-3, 3e-3}, 1000, kButtonRemove));
     EXPECT_GT(removedVoxels(), 1000u);
     expectQuiet(test::straightPath(at(3e-3), {4e-3, 4e-3, 6e-3}, 300, kButtonAdd));
-    reset_.request();
+    history_.restore();
     expectQuiet(test::straightPath(at(6.2e-3), {4e-3, 4e-3, 6.2e-3}, 500, 0));
-    EXPECT_FALSE(reset_.isRunning());
+    EXPECT_FALSE(history_.isRestoring());
 }
 
 TEST_F(TickIsRtSafe, AsThesis2012) {
     TickConfig config;
     config.accuracy = presetSettings(Preset::kThesis2012);
-    HapticTick tick(config, bone_, tool_, &reset_);
+    HapticTick tick(config, bone_, tool_, &history_);
     expectQuiet(tick, test::straightPath(at(6.2e-3), {4e-3, 4e-3, 3e-3}, 1000, kButtonRemove));
     EXPECT_GT(removedVoxels(), 1000u);
     expectQuiet(tick, test::straightPath(at(3e-3), {4e-3, 4e-3, 6e-3}, 300, kButtonAdd));
@@ -88,6 +90,35 @@ TEST_F(TickIsRtSafe, WhileFaultsHappen) {
     expectQuiet(inputs);
     EXPECT_TRUE(tick_.latchedFaults() & kFaultBadDevicePose);
     EXPECT_TRUE(tick_.latchedFaults() & kFaultMotionClamped);
+}
+
+TEST(ToolSwitchIsRtSafe, WhilePressingAndMilling) {
+    for (const uint32_t buttons : {0u, uint32_t(kButtonRemove)}) {
+        test::ToolBench bench;
+        const Pose from = test::SwitchingBench::at(6.2e-3);
+        test::ScriptedIo io(test::straightPath(from, {4.05e-3, 3.95e-3, 4.8e-3}, 1000, buttons));
+        RtProbe probe;
+        bench.runChanging(io);
+        probe.stop();
+        EXPECT_EQ(probe.heapCalls(), 0u) << probe.firstCall();
+        EXPECT_EQ(probe.lockCalls(), 0u) << probe.firstCall();
+        EXPECT_EQ(io.records.size(), 1000u);
+        EXPECT_GT(io.records.back().contacts + bench.history.missingVoxels(), 0);
+    }
+}
+
+TEST_F(TickIsRtSafe, WhileACheckpointIsRestored) {
+    Checkpoints checkpoints(history_, bone_);
+    expectQuiet(test::straightPath(at(6.2e-3), {4e-3, 4e-3, 5e-3}, 500, kButtonRemove));
+    checkpoints.save(0);
+    const int64_t missing = history_.missingVoxels();
+    EXPECT_GT(missing, 0);
+    expectQuiet(test::straightPath(at(5e-3), {4e-3, 4e-3, 4e-3}, 500, kButtonRemove));
+    EXPECT_GT(history_.missingVoxels(), missing);
+    checkpoints.restore(1);
+    expectQuiet(test::straightPath(at(6.2e-3), {4e-3, 4e-3, 6.2e-3}, 500, 0));
+    EXPECT_FALSE(history_.isRestoring());
+    EXPECT_EQ(history_.missingVoxels(), missing);
 }
 
 }  // namespace

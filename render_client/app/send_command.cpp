@@ -1,10 +1,11 @@
-#include "render_client/app/set_accuracy.h"
+#include "render_client/app/send_command.h"
 
 #include <iostream>
 #include <stdexcept>
 
 #include "render_client/app/stop_signal.h"
 #include "render_client/subscribe/command_text.h"
+#include "render_client/subscribe/command_words.h"
 
 namespace bonemill {
 namespace {
@@ -25,19 +26,19 @@ bool pollUntil(SceneSubscriber& subscriber, Clock::time_point end, Condition&& c
 
 }  // namespace
 
-int runSetAccuracy(const ClientOptions& options) {
-    const SetAccuracyOptions& wish = *options.set_accuracy;
+int runSendCommand(const ClientOptions& options) {
+    const CommandOptions& wish = *options.command;
     SceneSubscriber subscriber(options.subscriber);
     // A server takes commands as soon as it shows a status.
-    const auto is_ready = [&] { return subscriber.hasServer() && subscriber.status(); };
+    const auto is_ready = [&] {
+        return subscriber.hasServer() && subscriber.status() && subscriber.sceneInfo();
+    };
     if (!pollUntil(subscriber, Clock::now() + wish.timeout, is_ready)) {
         if (stopRequested()) return 1;
         throw std::runtime_error("no server within " + std::to_string(wish.timeout.count()) +
                                  " s: " + serverQuestion(options.subscriber));
     }
-    topics::Command command;
-    command.set_set_accuracy(wish.name);
-    subscriber.sendCommand(command);
+    subscriber.sendCommand(commandOf(wish.text, *subscriber.sceneInfo(), *subscriber.status()));
     std::vector<CommandOutcome> outcomes;
     // The outbox itself gives up in time.
     pollUntil(subscriber, Clock::time_point::max(),

@@ -1,0 +1,52 @@
+// What clients may ask of a session, and what the session says of itself in return. Publisher thread only.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "haptic_server/app/recorder.h"
+#include "haptic_server/app/scene_setup.h"
+#include "haptic_server/tick/accuracy_switch.h"
+#include "haptic_server/tick/checkpoints.h"
+#include "haptic_server/tick/tool_switch.h"
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+// What the commands act on: the tick takes each up by itself.
+struct SessionControls {
+    BoneHistory& history;
+    AccuracySwitch& accuracy;
+    ToolSwitch& tools;
+    std::atomic<bool>& stop_requested;
+};
+
+class SessionCommands {
+  public:
+    // References must outlive this object. `only_instructors`: others may only look.
+    SessionCommands(const scene::Scene& scene, const BoneModel& bone, const Recorder& recorder,
+                    const SessionControls& controls, bool only_instructors);
+
+    // "done" or "refused: <why>".
+    std::string carryOut(const topics::Command& command);
+    // Of the status: session clock, pause, checkpoints, what the bone has lost.
+    void describe(topics::Status& status) const;
+    const ToolSwitch& tools() const noexcept { return controls_.tools; }
+    const AccuracySwitch& accuracy() const noexcept { return controls_.accuracy; }
+
+  private:
+    std::string refusalOf(const topics::Command& command) const;
+    std::string setAccuracy(const std::string& name);
+    std::string selectTool(uint32_t index);
+    std::string restore(uint32_t checkpoint);
+    double sessionS() const;
+
+    SessionControls controls_;
+    const Recorder& recorder_;
+    Checkpoints checkpoints_;
+    double voxel_mm3_;
+    bool is_switchable_, only_instructors_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,91 @@
+// Copies of the bone as it was, and the way back to them, while the tick goes on: the tick gives back a few
+// leaves at a time, so that none becomes long. Also what pauses milling, and counts what the bone has lost.
+//
+// Three kinds of callers. *Tick*: the tick thread, RT-safe. *Any*: any thread. *Keeper*: one normal thread at
+// a time, the publisher's in a session; allocates, never RT-safe.
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "haptic_server/tick/bone_model.h"
+#include "haptic_server/tick/bone_snapshot.h"
+
+namespace bonemill {
+
+class BoneHistory {
+  public:
+    // Copies the densities: the scanned bone; allocates.
+    explicit BoneHistory(const BoneModel& bone);
+
+    // Any. Relaxed is enough: the tick only needs to see the flag at some later tick.
+    void pauseMilling(bool pause) noexcept { is_paused_.store(pause, std::memory_order_relaxed); }
+    bool isMillingPaused() const noexcept { return is_paused_.load(std::memory_order_relaxed); }
+    // Any: voxels at or above the iso-value, scanned bone minus bone now.
+    int64_t missingVoxels() const noexcept { return missing_voxels_.load(std::memory_order_relaxed); }
+
+    // Keeper: the bone between two ticks, whole: what one tick mills is in it or not. Most is copied while
+    // milling goes on; for the leaves that changed meanwhile milling is held (the force goes on), for as long
+    // as it takes to copy them. While the bone is being put back: the snapshot to which it is.
+    std::shared_ptr<const BoneSnapshot> snapshot(const BoneModel& bone);
+    // Keeper: to this snapshot, or (null) to the scanned bone; instead of what is on its way, if anything is.
+    void restore(std::shared_ptr<const BoneSnapshot> snapshot = nullptr);
+    // Keeper: the tick is not yet done with the last restore().
+    bool isRestoring() const noexcept {
+        return finished_.load(std::memory_order_acquire) != orders_.back()->number;
+    }
+
+    // Tick: opens the part of a tick that changes voxels. False: not now, a snapshot is being taken; then no
+    // endWrite().
+    bool beginWrite() noexcept;
+    // Tick: what milling changed meanwhile.
+    void endWrite(uint32_t removed_voxels, uint32_t added_voxels) noexcept;
+    // Tick, within a write: looks at a bounded number of voxels and restores at most one changed leaf.
+    // False: there is nothing to restore. Otherwise `shell_is_complete` says whether the point-shell pool
+    // had room.
+    bool restoreSome(BoneModel& bone, bool& shell_is_complete) noexcept;
+
+  private:
+    // Where the tick is to go. The number grows with each.
+    struct Order {
+        uint64_t number;
+        std::shared_ptr<const BoneSnapshot> target;  // null: the scanned bone
+    };
+    class Hold;
+    using Copies = std::vector<std::shared_ptr<const LeafCopy>>;  // by leaf; null: never written
+    void copyChanged(const BoneModel& bone, Copies& copies) const;
+    std::shared_ptr<const LeafCopy> copyOf(const BoneModel& bone, LeafId leaf, uint32_t version) const;
+    bool takeUpNewestOrder() noexcept;
+    void finishOrder() noexcept;
+    bool restoreLeaf(BoneModel& bone, LeafId leaf, bool& shell_is_complete) noexcept;
+    bool readRows(const BoneModel& bone, const IndexBox& cells, const Density* copy,
+                  const Eigen::Vector3i& first, int count) noexcept;
+    int64_t lostVoxels(int count, Density iso) const noexcept;
+
+    VoxelVolume scanned_;
+
+    // Keeper.
+    std::deque<std::unique_ptr<const Order>> orders_;  // that the tick may look at; the last is the newest
+    std::shared_ptr<const BoneSnapshot> last_snapshot_;
+
+    // Tick.
+    const Order* order_;  // the newest taken up
+    bool is_restoring_ = false;
+    LeafId next_leaf_ = 0;
+    std::vector<Density> now_, then_;  // rows of a leaf
+
+    // Release by the keeper, acquire by the tick: the order is whole.
+    std::atomic<const Order*> newest_order_;
+    // Number of the order after which the tick looks at no earlier one. Release by the tick, acquire by the
+    // keeper.
+    std::atomic<uint64_t> finished_{0};
+    // Each side sets its own and then looks at the other's, sequentially consistent: at least one of them
+    // sees the other.
+    std::atomic<bool> is_writing_{false}, is_held_{false};
+    std::atomic<int64_t> missing_voxels_{0};  // written by the tick
+    std::atomic<bool> is_paused_{false};
+};
+
+}  // namespace bonemill

@@ -1,0 +1,54 @@
+// The moments of a session to which the bone can be put back. One normal thread, BoneHistory's keeper.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+
+#include "haptic_server/tick/bone_history.h"
+
+namespace bonemill {
+
+class Checkpoints {
+  public:
+    static constexpr size_t kMost = 8;
+    static constexpr uint32_t kScannedBone = 0;  // as an id
+
+    struct Checkpoint {
+        uint32_t id;       // from 1, never given again
+        double session_s;  // when it was saved
+        std::shared_ptr<const BoneSnapshot> snapshot;
+    };
+
+    // Keep references, which must outlive this object.
+    Checkpoints(BoneHistory& history, const BoneModel& bone) : history_(history), bone_(bone) {}
+
+    // The bone as it is now; the oldest one goes if there are too many. Returns its id.
+    uint32_t save(double session_s) {
+        kept_.push_back({++last_id_, session_s, history_.snapshot(bone_)});
+        if (kept_.size() > kMost) kept_.pop_front();
+        return last_id_;
+    }
+    // False: there is none with this id (any more).
+    bool restore(uint32_t id) {
+        if (id == kScannedBone) {
+            history_.restore();
+            return true;
+        }
+        for (const Checkpoint& checkpoint : kept_) {
+            if (checkpoint.id != id) continue;
+            history_.restore(checkpoint.snapshot);
+            return true;
+        }
+        return false;
+    }
+    const std::deque<Checkpoint>& kept() const noexcept { return kept_; }  // oldest first
+
+  private:
+    BoneHistory& history_;
+    const BoneModel& bone_;
+    std::deque<Checkpoint> kept_;
+    uint32_t last_id_ = 0;
+};
+
+}  // namespace bonemill

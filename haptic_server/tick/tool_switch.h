@@ -1,0 +1,36 @@
+// From other threads to the tick: work with this tool from now on.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+#include "haptic_server/spo/spo_model.h"
+
+namespace bonemill {
+
+// Fixed tools, all built at the start; at least one. Their models must outlive the switch.
+class ToolSwitch {
+  public:
+    explicit ToolSwitch(std::vector<SpoTool> tools, size_t first = 0)
+        : tools_(std::move(tools)), choice_(first) {}
+
+    // Any thread; index < count(). Relaxed is enough: the tools themselves never change.
+    void choose(size_t index) noexcept { choice_.store(index, std::memory_order_relaxed); }
+    size_t chosen() const noexcept { return choice_.load(std::memory_order_relaxed); }
+
+    size_t count() const noexcept { return tools_.size(); }
+    const SpoTool& operator[](size_t index) const noexcept { return tools_[index]; }
+    double largestBurrRadius() const noexcept {
+        return std::max_element(
+                   tools_.begin(), tools_.end(),
+                   [](const SpoTool& a, const SpoTool& b) { return a.burr_radius < b.burr_radius; })
+            ->burr_radius;
+    }
+
+  private:
+    std::vector<SpoTool> tools_;
+    std::atomic<size_t> choice_;
+};
+
+}  // namespace bonemill

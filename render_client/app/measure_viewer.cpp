@@ -1,0 +1,80 @@
+#include "render_client/app/measure_viewer.h"
+
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+
+#include "common/rt/clock.h"
+#include "render_client/app/scene_feed.h"
+#include "render_client/app/stop_signal.h"
+#include "render_client/offscreen/osmesa_context.h"
+
+namespace bonemill {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kLongestFrame{33};  // a picture at least so often, news or not
+
+struct Measured {
+    LatencyHistogram render;  // from the start of the drawing to the finished picture
+    uint64_t frames = 0;
+    double seconds = 0;
+};
+
+Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const OsmesaContext& context,
+                 RenderScene& scene, SceneFeed& feed) {
+    Measured measured;
+    const int64_t start_ns = monotonicNowNs();
+    const Clock::time_point end = Clock::now() + time;
+    while (Clock::now() < end && !stopRequested()) {
+        feed.subscriber().waitForData(kLongestFrame);
+        feed.update();
+        const int64_t draw_ns = monotonicNowNs();
+        scene.draw(options.width, options.height, textScale(options.height));
+        context.gl().Finish();
+        measured.render.record(monotonicNowNs() - draw_ns);
+        feed.hasShown();
+        ++measured.frames;
+    }
+    measured.seconds = secondsOfNs(monotonicNowNs() - start_ns);
+    return measured;
+}
+
+void printTimes(const char* key, const LatencyHistogram& times) {
+    const auto ms = [&](double percent) { return double(times.percentileNs(percent)) * 1e-6; };
+    std::printf("\"%s\":{\"count\":%llu,\"p50\":%.2f,\"p99\":%.2f,\"max\":%.2f}", key,
+                (unsigned long long)times.count(), ms(50), ms(99), double(times.maxNs()) * 1e-6);
+}
+
+}  // namespace
+
+void runMeasurement(const ClientOptions& options) {
+    const OsmesaContext context(options.width, options.height);
+    spdlog::info("off screen, {}", context.gl().describe());
+    RenderScene scene(context.gl());
+    scene.setViewOverrides(options.view);
+    scene.settings() = options.settings;
+    if (options.chooses_quality && context.gl().isSoftware()) scene.settings().quality = Quality::kQuick;
+    SceneFeed feed(options.subscriber, scene);
+    waitUntilComplete(feed, options.subscriber, options.measure->timeout);
+    scene.draw(options.width, options.height,
+               textScale(options.height));  // makes buffers and compiles shaders
+    context.gl().Finish();
+    feed.cutToScreen().forget();
+    const UploadCount before = scene.uploads();
+    const Measured measured = drawFor(options.measure->time, options, context, scene, feed);
+    const UploadCount after = scene.uploads();
+    std::printf(
+        "{\"width\":%d,\"height\":%d,\"nodes\":%zu,\"triangles\":%zu,\"frames\":%llu,\"frame_rate_hz\":%.2f,",
+        options.width, options.height, scene.nodeCount(), scene.triangleCount(),
+        (unsigned long long)measured.frames, double(measured.frames) / measured.seconds);
+    printTimes("render_ms", measured.render);
+    std::printf(",");
+    printTimes("cut_to_screen_ms", feed.cutToScreen().times());
+    std::printf(",\"uploaded_nodes\":%llu,\"uploaded_bytes\":%llu}\n",
+                (unsigned long long)(after.nodes - before.nodes),
+                (unsigned long long)(after.bytes - before.bytes));
+}
+
+}  // namespace bonemill

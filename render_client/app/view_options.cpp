@@ -1,0 +1,72 @@
+#include "render_client/app/view_options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace bonemill {
+namespace {
+
+void addCutOptions(CLI::App& app, RawView& raw, std::vector<CLI::Option*>& view_options) {
+    constexpr const char* kAxes[] = {"x", "y", "z"};
+    constexpr const char* kHidden[] = {"the patient's left", "the back", "the upper part"};
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const std::string cut_name = std::string("--cut-") + kAxes[axis];
+        auto* cut = app.add_option(cut_name, raw.cuts[axis],
+                                   std::string("Cut-plane that hides ") + kHidden[axis] +
+                                       ", from the low (0) to the high end (1) of the bone")
+                        ->check(CLI::Range(0.0, 1.0))
+                        ->type_name("POSITION");
+        auto* flip = app.add_flag(std::string("--flip-") + kAxes[axis], raw.flips[axis],
+                                  "Hides the other side of " + cut_name)
+                         ->needs(cut);
+        view_options.insert(view_options.end(), {cut, flip});
+    }
+}
+
+}  // namespace
+
+std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
+    std::vector<CLI::Option*> view_options;
+    addCutOptions(app, raw, view_options);
+    auto* transparent = app.add_option_function<std::string>(
+                               "--transparent",
+                               [&raw](const std::string& opacity) {  // empty: none was given
+                                   raw.is_transparent = true;
+                                   if (!opacity.empty()) raw.opacity = std::stod(opacity);
+                               },
+                               "Transparent bone, of this opacity, 0 to 1 (default 0.35)")
+                            ->expected(0, 1)
+                            ->check(CLI::Range(0.0, 1.0))
+                            ->type_name("[OPACITY]");
+    auto* stereo = app.add_option("--stereo", raw.stereo, "off, side-by-side or anaglyph (red-cyan glasses)")
+                       ->check(CLI::IsMember({"off", "side-by-side", "anaglyph"}))
+                       ->capture_default_str();
+    auto* camera = app.add_option("--camera", raw.camera, "orbit, or endoscope: rides on the tool")
+                       ->check(CLI::IsMember({"orbit", "endoscope"}))
+                       ->capture_default_str();
+    auto* quality =
+        app.add_option("--quality", raw.quality,
+                       "full; quick: without shadow and antialiasing, draws only what changed; auto: "
+                       "quick in a window without a graphics card")
+            ->check(CLI::IsMember({"auto", "full", "quick"}))
+            ->capture_default_str();
+    auto* no_hud = app.add_flag("--no-hud", raw.no_hud, "Nothing but the picture: no panel, list or scale");
+    view_options.insert(view_options.end(), {transparent, stereo, camera, quality, no_hud});
+    return view_options;
+}
+
+ViewSettings viewSettings(const RawView& raw) {
+    ViewSettings settings;
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (raw.cuts[axis]) settings.cuts[axis] = {true, *raw.cuts[axis], raw.flips[axis]};
+    settings.is_transparent = raw.is_transparent;
+    settings.opacity = raw.opacity.value_or(ViewSettings::kDefaultOpacity);
+    settings.stereo = raw.stereo == "side-by-side" ? StereoMode::kSideBySide
+                      : raw.stereo == "anaglyph"   ? StereoMode::kAnaglyph
+                                                   : StereoMode::kOff;
+    settings.camera = raw.camera == "endoscope" ? CameraMode::kEndoscope : CameraMode::kOrbit;
+    settings.quality = raw.quality == "quick" ? Quality::kQuick : Quality::kFull;
+    settings.show_hud = !raw.no_hud;
+    return settings;
+}
+
+}  // namespace bonemill

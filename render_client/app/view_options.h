@@ -1,0 +1,33 @@
+// The part of render_client's command line that says what is shown at the start.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render_client/scene/view_settings.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace bonemill {
+
+struct RawView {
+    std::array<std::optional<double>, 3> cuts;
+    std::array<bool, 3> flips{};
+    std::optional<double> opacity;
+    bool is_transparent = false;
+    std::string stereo = "off";
+    std::string camera = "orbit";
+    std::string quality = "auto";
+    bool no_hud = false;
+};
+
+// Returns the options, for those that exclude them. `raw` must outlive the parsing.
+std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw);
+ViewSettings viewSettings(const RawView& raw);
+
+}  // namespace bonemill

@@ -1,0 +1,19 @@
+// Commands as people write them: reset, pause, resume, tool NAME (or its number), checkpoint, restore N (or
+// last), accuracy NAME, shutdown.
+#pragma once
+
+#include <string>
+
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+// Why this is none, as far as can be said without a server; empty: it may be one.
+std::string commandProblem(const std::string& text);
+
+// What it means in the session that shows these. Throws UserError for what is no command, and for names and
+// checkpoints that this session does not have.
+topics::Command commandOf(const std::string& text, const topics::SceneInfo& scene,
+                          const topics::Status& status);
+
+}  // namespace bonemill

@@ -1,0 +1,189 @@
+// A live session under an instructor's commands: checkpoints, tools, pause, roles. haptic_server,
+// device_daemon and render_client as processes, the test itself as a viewer.
+#include <gtest/gtest.h>
+
+#include "haptic_server/app/scene_setup.h"
+#include "haptic_server/app/state_hash.h"
+#include "haptic_server/mesh/mesher.h"
+#include "tests/integration/dds/client_probe.h"
+#include "tests/support/node_meshes.h"
+#include "tests/support/process.h"
+
+namespace bonemill {
+namespace {
+
+using test::Finished;
+using test::Process;
+using test::run;
+using test::TemporaryFolder;
+
+// Of all triangles, however they are ordered in their nodes.
+uint64_t surfaceHash(const std::vector<NodeMesh>& nodes) {
+    std::map<uint32_t, const NodeMesh*> by_leaf;
+    for (const NodeMesh& node : nodes)
+        if (!node.isEmpty()) by_leaf[node.leaf] = &node;
+    StateHash hash;
+    for (const auto& [leaf, node] : by_leaf) {
+        hash.addBytes(&leaf, sizeof leaf);
+        for (const auto& key : test::triangleKeys(*node)) hash.addBytes(&key, sizeof key);
+    }
+    return hash.value();
+}
+
+// A slab (top at z = 2 mm) that the simulated hand mills slowly for as long as the test takes.
+class Instructor : public testing::Test {
+  protected:
+    Instructor() {
+        EXPECT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder_ / "slab.nrrd"}).exit_code,
+                  0);
+        writeScene("s.textproto", "slab.nrrd");
+    }
+    void writeScene(const std::string& name, const std::string& volume) const {
+        const auto waypoint = [](int time_s, double z_mm, bool removes) {
+            return "  waypoint { time_s: " + std::to_string(time_s) +
+                   " p_WT_mm { x: 0 y: 0.1 z: " + std::to_string(z_mm) +
+                   " } q_WT { w: 0.70710678 x: 0.70710678 } remove: " + (removes ? "true" : "false") + " }\n";
+        };
+        test::writeFile(folder_ / name,
+                        "name: \"instructed\" volume { path: \"" + volume +
+                            "\" window_low: 0 window_high: 65535 iso_value: 32768 }\n"
+                            "tool { name: \"coarse\" }\ntool { name: \"fine\" burr_radius_mm: 0.5 "
+                            "sdf_spacing_mm: 0.0625 }\n"
+                            "device { p_WD_mm { x: 0 y: 0.1 z: 2 } q_WD { w: 0.70710678 x: 0.70710678 } }\n"
+                            "simulated_operator {\n" +
+                            waypoint(0, 3.6, false) + waypoint(1, 2.8, true) + waypoint(30, -1, true) +
+                            waypoint(300, -1, true) + "}\n");
+    }
+    std::vector<std::string> server(const std::vector<std::string>& more) const {
+        std::vector<std::string> arguments{"haptic_server", "--scene",         folder_ / "s.textproto",
+                                           "--session",     session(),         "--domain",
+                                           domain(),        "--best-effort-rt"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
+    }
+    std::vector<std::string> daemon() const {
+        return {"device_daemon", "--scene", folder_ / "s.textproto",
+                "--session",     session(), "--best-effort-rt"};
+    }
+    static Finished command(const std::string& text, const std::string& role = "operator") {
+        return run({"render_client", "--command", text, "--role", role, "--session", session(), "--domain",
+                    domain()});
+    }
+    static void expectDone(const std::string& text, const std::string& role = "operator") {
+        const Finished answer = command(text, role);
+        EXPECT_EQ(answer.exit_code, 0) << text << ": " << answer.out << answer.err;
+    }
+    static void expectRefused(const std::string& text, const std::string& role, const std::string& why) {
+        const Finished answer = command(text, role);
+        EXPECT_EQ(answer.exit_code, 1) << text;
+        EXPECT_NE(answer.out.find("refused: " + why), std::string::npos) << answer.out << answer.err;
+    }
+    static std::string session() { return std::to_string(testSession()); }
+    static std::string domain() { return std::to_string(testDomain()); }
+
+    const topics::Status& status() { return *probe_.subscriber.status(); }
+    bool hasSession() {
+        return probe_.pollUntil(
+            [this] { return probe_.subscriber.status() && probe_.subscriber.sceneInfo(); });
+    }
+    bool isRemoved(double mm3) {
+        return probe_.pollUntil([&] { return status().removed_mm3() > mm3; });
+    }
+    bool isPaused(bool pause) {
+        return probe_.pollUntil([&] { return status().is_milling_paused() == pause; });
+    }
+    uint64_t shownHash() const {
+        std::vector<NodeMesh> nodes;
+        for (const auto& [leaf, node] : probe_.nodes) nodes.push_back(node);
+        return surfaceHash(nodes);
+    }
+    // When nothing has changed for a while.
+    uint64_t settledHash() {
+        using namespace std::chrono_literals;
+        auto since = std::chrono::steady_clock::now();
+        uint32_t changes = probe_.changes;
+        EXPECT_TRUE(probe_.pollUntil([&] {
+            const auto now = std::chrono::steady_clock::now();
+            if (probe_.changes != changes || !probe_.subscriber.isComplete()) since = now;
+            changes = probe_.changes;
+            return now - since > 1s;
+        }));
+        return shownHash();
+    }
+    // As the server would stream it.
+    uint64_t hashOfFile(const std::string& volume) {
+        writeScene("saved.textproto", volume);
+        const auto bone = makeSimulation(loadScene(folder_ / "saved.textproto")).bone;
+        std::vector<NodeMesh> nodes;
+        Mesher(bone->volume, bone->lattice, MeshGrid::kStreamedStepsPerCell).pass([&](NodeMesh&& node) {
+            nodes.push_back(std::move(node));
+        });
+        return surfaceHash(nodes);
+    }
+
+    TemporaryFolder folder_;
+    ClientProbe probe_;
+};
+
+TEST_F(Instructor, GoesBackToACheckpointAfterMillingOnWithAnotherTool) {
+    Process server_process(server({"--save-volume", folder_ / "end.nrrd"}));
+    ASSERT_TRUE(hasSession());
+    EXPECT_EQ(settledHash(), hashOfFile("slab.nrrd"));
+    Process daemon_process(daemon());
+    EXPECT_EQ(probe_.subscriber.sceneInfo()->tool_names_size(), 2);
+    EXPECT_EQ(probe_.subscriber.sceneInfo()->tool_index(), 0u);
+    EXPECT_EQ(probe_.subscriber.sceneInfo()->burr_radius_m(), 1e-3);
+    const uint32_t revision = probe_.subscriber.sceneInfo()->revision();
+
+    ASSERT_TRUE(isRemoved(0.1));
+    expectDone("checkpoint");  // while it mills
+    ASSERT_TRUE(isRemoved(0.4));
+    expectDone("pause");
+    ASSERT_TRUE(isPaused(true));
+    expectDone("checkpoint");
+    ASSERT_TRUE(probe_.pollUntil([&] { return status().checkpoints_size() == 2; }));
+    const topics::Checkpoint first = status().checkpoints(0), second = status().checkpoints(1);
+    EXPECT_LT(first.id(), second.id());
+    EXPECT_GT(first.session_s(), 0);
+    EXPECT_LT(first.session_s(), second.session_s());
+    EXPECT_GT(first.removed_mm3(), 0.1);
+    EXPECT_EQ(second.removed_mm3(), status().removed_mm3());
+    const uint64_t at_checkpoint = settledHash();
+
+    expectDone("tool fine");
+    ASSERT_TRUE(probe_.pollUntil([&] { return probe_.subscriber.sceneInfo()->tool_index() == 1; }));
+    EXPECT_GT(probe_.subscriber.sceneInfo()->revision(), revision);
+    EXPECT_EQ(probe_.subscriber.sceneInfo()->burr_radius_m(), 0.5e-3);
+    expectDone("resume");
+    ASSERT_TRUE(isRemoved(second.removed_mm3() + 0.05));
+    expectDone("pause");
+    EXPECT_NE(settledHash(), at_checkpoint);
+    expectDone("restore 1");
+    EXPECT_TRUE(probe_.pollUntil([&] { return status().removed_mm3() == first.removed_mm3(); }));
+    expectDone("restore last");
+    EXPECT_TRUE(probe_.pollUntil([&] { return status().removed_mm3() == second.removed_mm3(); }));
+    EXPECT_TRUE(probe_.pollUntil([&] { return shownHash() == at_checkpoint; }));
+
+    expectRefused("restore 9", "operator", "there is no checkpoint 9");
+    expectRefused("reset", "viewer", "a viewer only looks");
+    expectRefused("shutdown", "operator", "only an instructor");
+    EXPECT_EQ(command("tool drill").exit_code, 2);
+    EXPECT_GT(status().session_s(), second.session_s());
+    expectDone("shutdown", "instructor");
+    const Finished finished = server_process.wait();
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    EXPECT_EQ(hashOfFile("end.nrrd"), at_checkpoint);
+    EXPECT_NE(hashOfFile("slab.nrrd"), at_checkpoint);
+}
+
+TEST_F(Instructor, AloneCommandsInAnExamination) {
+    Process server_process(server({"--instructor-only"}));
+    expectRefused("pause", "operator", "only instructors command this session");
+    expectRefused("pause", "viewer", "only instructors command this session");
+    expectDone("pause", "instructor");
+    expectDone("shutdown", "instructor");
+    EXPECT_EQ(server_process.wait().exit_code, 0);
+}
+
+}  // namespace
+}  // namespace bonemill

@@ -1,0 +1,127 @@
+// Checkpoints are saved and restored while the tick mills: clean under ThreadSanitizer, and each is the bone
+// between two ticks.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <set>
+#include <thread>
+
+#include "haptic_server/tick/haptic_tick.h"
+#include "tests/unit/tick/milled_ball.h"
+
+namespace bonemill {
+namespace {
+
+using test::MilledBall;
+
+constexpr int kTicks = 400, kSaved = 30;  // at least
+
+// Mills to and fro through the ball until it is told to stop, and no less than kTicks; keeps what the bone
+// was after each tick.
+class MillingIo final : public TickIo {
+  public:
+    MillingIo(const BoneModel& bone, const std::atomic<bool>& stop) : bone_(bone), stop_(stop) { remember(); }
+    bool read(DeviceInput& input) noexcept override {
+        if (stop_ && n_ >= kTicks) return false;
+        const double phase = double(n_++) / 50;
+        input = {};
+        input.X_WT_device.position = {10e-3 + 5e-3 * std::sin(phase), 10e-3 + 4e-3 * std::sin(0.37 * phase),
+                                      16e-3 - 8e-3 * std::min(1.0, double(n_) / kTicks)};
+        input.buttons = kButtonRemove;
+        return true;
+    }
+    int64_t write(const Wrench&) noexcept override { return 0; }
+    int64_t now() noexcept override { return 0; }
+    void push(const TickRecord& record) noexcept override {
+        removed += record.removed_voxels;
+        remember();
+    }
+
+    std::vector<uint64_t> states;  // hashes
+    uint64_t removed = 0;
+
+    static uint64_t hashOf(const std::vector<Density>& densities) {
+        uint64_t hash = 14695981039346656037ull;
+        for (const Density density : densities) hash = (hash ^ density) * 1099511628211ull;
+        return hash;
+    }
+
+  private:
+    void remember() { states.push_back(hashOf(MilledBall::densitiesOf(bone_))); }
+
+    const BoneModel& bone_;
+    const std::atomic<bool>& stop_;
+    int n_ = 0;
+};
+
+struct Threads {
+    Threads() : io(ball.bone, stop), tool(test::sphereToolModel(1.5e-3, 0.2e-3)) {
+        config.burr_radius = config.gradient.burr_radius = 1.5e-3;
+        config.accuracy.iterations = 1;  // ThreadSanitizer slows each a hundred times
+        tick = std::make_unique<HapticTick>(config, ball.bone, tool, &ball.history);
+    }
+    void run(const std::function<void()>& keeper) {
+        std::atomic<bool> is_running{true};
+        std::thread tick_thread([&] {
+            while (tick->tick(io)) std::this_thread::sleep_for(std::chrono::microseconds(300));
+            is_running = false;
+        });
+        while (is_running) keeper();
+        tick_thread.join();
+    }
+    // After the last tick.
+    std::vector<Density> restored(uint32_t id) {
+        EXPECT_TRUE(ball.checkpoints.restore(id));
+        ball.restoreAll();
+        return ball.densities();
+    }
+
+    MilledBall ball;
+    std::atomic<bool> stop{false};
+    MillingIo io;
+    ToolModel tool;
+    TickConfig config;
+    std::unique_ptr<HapticTick> tick;
+};
+
+TEST(CheckpointsBesideTick, EachIsTheBoneBetweenTwoTicks) {
+    Threads threads;
+    int saved = 0;
+    threads.run([&] {
+        threads.ball.checkpoints.save(saved++);
+        threads.stop = saved > kSaved;
+        std::this_thread::sleep_for(std::chrono::milliseconds(3));
+    });
+    EXPECT_GT(threads.io.removed, 500u);
+    ASSERT_EQ(threads.ball.checkpoints.kept().size(), Checkpoints::kMost) << saved;
+    const std::set<uint64_t> states(threads.io.states.begin(), threads.io.states.end());
+    EXPECT_GT(states.size(), 50u);
+    std::set<uint64_t> found;
+    for (const Checkpoints::Checkpoint& checkpoint : threads.ball.checkpoints.kept()) {
+        const uint64_t hash = MillingIo::hashOf(threads.restored(checkpoint.id));
+        EXPECT_TRUE(states.contains(hash)) << checkpoint.id;
+        EXPECT_EQ(threads.ball.history.missingVoxels(), checkpoint.snapshot->missing_voxels);
+        found.insert(hash);
+    }
+    EXPECT_GT(found.size(), 2u);
+}
+
+TEST(CheckpointsBesideTick, RestoringAgainAndAgainLosesNothing) {
+    Threads threads;
+    const int64_t scanned = threads.ball.voxelsOfBone();
+    uint32_t n = 0;
+    threads.run([&] {
+        const uint32_t id = threads.ball.checkpoints.save(n);
+        threads.stop = n > kSaved;
+        if (++n % 3 == 0) threads.ball.checkpoints.restore(n % 2 ? id - 1 : Checkpoints::kScannedBone);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    });
+    EXPECT_GT(threads.io.removed, 50u);
+    threads.ball.restoreAll();
+    EXPECT_EQ(threads.ball.history.missingVoxels(), scanned - threads.ball.voxelsOfBone());
+    EXPECT_EQ(threads.restored(Checkpoints::kScannedBone), MilledBall::densitiesOf(MilledBall::makeBone()));
+    EXPECT_EQ(threads.ball.history.missingVoxels(), 0);
+}
+
+}  // namespace
+}  // namespace bonemill

@@ -1,0 +1,49 @@
+// A slab under three burrs, and a tick whose tool is changed.
+#pragma once
+
+#include "haptic_server/tick/haptic_tick.h"
+#include "tests/support/scripted_io.h"
+#include "tests/unit/tick/switching_bench.h"
+
+namespace bonemill::test {
+
+inline constexpr double kBurrs[] = {0.5e-3, 1e-3, 1.5e-3};  // radius, m
+
+struct ToolBench {
+    static constexpr size_t kTicksPerTool = 120;
+
+    explicit ToolBench(size_t first = 0, const AccuracySettings& accuracy = presetSettings(Preset::kBalanced))
+        : bone(bodyVolume(cubeGeometry(64, 0.125e-3), halfSpace({0, 0, kBenchTop}, Eigen::Vector3d::UnitZ())),
+               Eigen::Vector3i::Constant(16), SwitchingBench::shellLevels()),
+          models{sphereToolModel(kBurrs[0], 0.125e-3), sphereToolModel(kBurrs[1], 0.125e-3),
+                 sphereToolModel(kBurrs[2], 0.125e-3)},
+          history(bone),
+          tools({{&models[0], kBurrs[0], 5}, {&models[1], kBurrs[1], 10}, {&models[2], kBurrs[2], 15}},
+                first),
+          tick(configOf(accuracy), bone, models[0], &history, nullptr, &tools) {}
+
+    static TickConfig configOf(const AccuracySettings& accuracy) {
+        TickConfig config;
+        config.accuracy = accuracy;
+        return config;
+    }
+    void run(ScriptedIo& io) noexcept {
+        while (tick.tick(io)) {
+        }
+    }
+    void runChanging(ScriptedIo& io) noexcept {
+        constexpr std::array<size_t, 6> kOrder{0, 1, 2, 0, 2, 1};
+        size_t n = 0;
+        do {
+            tools.choose(kOrder[n++ / kTicksPerTool % kOrder.size()]);
+        } while (tick.tick(io));
+    }
+
+    BoneModel bone;
+    std::array<ToolModel, 3> models;
+    BoneHistory history;
+    ToolSwitch tools;
+    HapticTick tick;
+};
+
+}  // namespace bonemill::test

@@ -1,0 +1,59 @@
+// Another tool takes over in the tick: what is felt and what is milled are its own.
+#include "haptic_server/tick/tool_switch.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/tick/tool_bench.h"
+
+namespace bonemill {
+namespace {
+
+using test::kBurrs;
+using test::ToolBench;
+
+TEST(ToolSwitch, KnowsTheLargestBurr) {
+    ToolBench bench(2);
+    EXPECT_EQ(bench.tools.count(), 3u);
+    EXPECT_EQ(bench.tools.chosen(), 2u);
+    EXPECT_EQ(bench.tools.largestBurrRadius(), kBurrs[2]);
+}
+
+// At rest on the slab, the tool's centre stands a burr's radius above it.
+TEST(ToolSwitch, EachToolRestsOnItsOwnBurr) {
+    for (const Preset preset : kPresets) {
+        ToolBench bench(0, presetSettings(preset));
+        const auto down = test::SwitchingBench::at(test::kBenchTop + 0.1e-3);
+        for (const size_t index : {0u, 2u, 1u, 0u}) {
+            bench.tools.choose(index);
+            test::ScriptedIo io(test::straightPath(down, down.position, 400, 0));
+            bench.run(io);
+            const TickRecord& last = io.records.back();
+            EXPECT_GT(last.contacts, 0u);
+            // The thesis' springs give way.
+            const double slack = preset == Preset::kThesis2012 ? 0.4 * kBurrs[index] : 0.06e-3;
+            EXPECT_NEAR(last.p_WT[2], test::kBenchTop + kBurrs[index], slack)
+                << presetName(preset) << " " << index;
+        }
+    }
+}
+
+// The groove of a tool that was changed to is as that of the same tool from the start.
+TEST(ToolSwitch, EachToolMillsWithItsOwnBurr) {
+    const auto removedBy = [](size_t first, size_t then) {
+        ToolBench bench(first);
+        const auto above = test::SwitchingBench::at(test::kBenchTop + 2e-3);
+        test::ScriptedIo wait(test::straightPath(above, above.position, 10, 0));
+        bench.run(wait);
+        bench.tools.choose(then);
+        test::ScriptedIo mill(
+            test::straightPath(above, {4.05e-3, 3.95e-3, test::kBenchTop}, 400, kButtonRemove));
+        bench.run(mill);
+        return bench.history.missingVoxels();
+    };
+    EXPECT_EQ(removedBy(0, 2), removedBy(2, 2));
+    EXPECT_EQ(removedBy(2, 0), removedBy(0, 0));
+    EXPECT_GT(removedBy(2, 2), 5 * removedBy(0, 0));
+}
+
+}  // namespace
+}  // namespace bonemill
