@@ -2,9 +2,18 @@
 
 #include <spdlog/spdlog.h>
 
+#include <cstdio>
+#include <filesystem>
+#include <map>
+
+#include "common/config/user_error.h"
 #include "render_client/app/scene_feed.h"
 #include "render_client/app/stop_signal.h"
-#include "render_client/scene/accuracy_keys.h"
+#include "render_client/controls/announce_clock.h"
+#include "render_client/controls/frame_rate.h"
+#include "render_client/controls/viewer_controls.h"
+#include "render_client/offscreen/read_picture.h"
+#include "render_client/panel/panel_painter.h"
 #include "render_client/subscribe/command_text.h"
 #include "render_client/window/glfw_window.h"
 
@@ -16,67 +25,205 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kMinimisedPause{50};
 constexpr std::chrono::seconds kNoticeTime{4};
 
-void send(const WindowInput& input, SceneSubscriber& subscriber) {
-    topics::Command command;
-    if (input.reset_volume) {
-        command.set_reset_volume(true);
-        subscriber.sendCommand(command);
-    }
-    if (input.accuracy_key) {
-        command.set_set_accuracy(std::string(kAccuracyOfKey[*input.accuracy_key]));
-        subscriber.sendCommand(command);
-    }
-}
-
-void apply(const WindowInput& input, RenderScene& scene) {
-    OrbitCamera& camera = scene.camera();
-    camera.orbit(input.orbit_azimuth, input.orbit_elevation);
-    camera.pan(input.pan_right, input.pan_up);
-    camera.zoom(input.zoom_factor);
-    if (input.reset_view) scene.resetView();
-    if (input.toggle_help) scene.settings().show_help = !scene.settings().show_help;
-}
-
-// Says how commands ended: in the log, and over the picture for a while.
-class OutcomeNotice {
+// Shows over the picture, for a while, what the user should notice.
+class Notices {
   public:
-    void update(SceneSubscriber& subscriber, RenderScene& scene) {
-        for (const CommandOutcome& outcome : subscriber.takeOutcomes()) {
-            const std::string text = outcomeText(outcome);
-            spdlog::log(outcome.isDone() ? spdlog::level::info : spdlog::level::warn, "{}", text);
-            scene.setNotice(HudNotice{text, outcome.isDone() ? HudTone::kGood : HudTone::kWarning});
-            end_ = Clock::now() + kNoticeTime;
-        }
-        if (Clock::now() >= end_) scene.setNotice(std::nullopt);
+    explicit Notices(RenderScene& scene) : scene_(scene) {}
+
+    void show(HudNotice notice) {
+        spdlog::log(notice.tone == HudTone::kGood ? spdlog::level::info : spdlog::level::warn, "{}",
+                    notice.text);
+        scene_.setNotice(std::move(notice));
+        end_ = Clock::now() + kNoticeTime;
+    }
+    void showOutcomes(SceneSubscriber& subscriber) {
+        for (const CommandOutcome& outcome : subscriber.takeOutcomes())
+            show({outcomeText(outcome), outcome.isDone() ? HudTone::kGood : HudTone::kWarning});
+    }
+    void removeOld() {
+        if (Clock::now() >= end_) scene_.setNotice(std::nullopt);
     }
 
   private:
+    RenderScene& scene_;
     Clock::time_point end_;
+};
+
+// Logs who comes and goes.
+class Attendance {
+  public:
+    void update(const std::vector<topics::Viewer>& others) {
+        std::map<uint64_t, std::string> here;
+        for (const topics::Viewer& other : others) {
+            here[other.sender()] = other.name();
+            if (!here_.contains(other.sender()))
+                spdlog::info("{} ({}) is watching", other.name(), roleName(other.role()));
+        }
+        for (const auto& [sender, name] : here_)
+            if (!here.contains(sender)) spdlog::info("{} is no longer watching", name);
+        here_ = std::move(here);
+    }
+
+  private:
+    std::map<uint64_t, std::string> here_;  // names by sender
+};
+
+// The first free name in the current folder.
+std::filesystem::path nextPictureName() {
+    for (int number = 1;; ++number) {
+        char name[32];
+        std::snprintf(name, sizeof name, "bonemill_%04d.png", number);
+        if (!std::filesystem::exists(name)) return name;
+    }
+}
+
+// A release or a move ends or follows what began before the mouse came to the panel.
+bool concernsOngoing(const WindowEvent& event) {
+    if (const auto* key = std::get_if<KeyEvent>(&event)) return !key->is_down;
+    if (const auto* button = std::get_if<MouseButtonEvent>(&event)) return !button->is_down;
+    return std::holds_alternative<MouseMoveEvent>(event);
+}
+
+class WindowViewer {
+  public:
+    explicit WindowViewer(const ClientOptions& options)
+        : options_(options),
+          window_(options.width, options.height, "bonemill"),
+          scene_(window_.gl()),
+          feed_(options.subscriber, scene_),
+          controls_(scene_.settings(), scene_.camera()),
+          painter_(window_.gl()),
+          notices_(scene_) {
+        spdlog::info("window, {}", window_.gl().describe());
+        scene_.setViewOverrides(options.view);
+        scene_.settings() = options.settings;
+        if (options.chooses_quality && window_.gl().isSoftware())
+            scene_.settings().quality = Quality::kQuick;
+    }
+
+    void run() {
+        while (!window_.shouldClose() && !stopRequested() && !has_quit_) step();
+    }
+
+  private:
+    void step() {
+        feed_.update();
+        const int width = window_.pixelWidth(), height = window_.pixelHeight();
+        const bool is_minimised = width == 0 || height == 0;
+        const SessionView session = lookAtSession();
+        Wishes wishes;
+        if (!is_minimised) preparePanel(width, height);
+        takeInput(height, session, wishes);
+        if (!is_minimised) panel_.layOut(controls_, session, wishes);
+        carryOut(wishes);
+        announce();
+        attendance_.update(session.others);
+        notices_.showOutcomes(feed_.subscriber());
+        notices_.removeOld();
+        if (is_minimised) return pause();
+        scene_.setWatchers(watchers(session));
+        scene_.setFrameRate(frame_rate_.perSecond());
+        scene_.draw(width, height, window_.contentScale());
+        painter_.paint(panel_, width, height);
+        if (wishes.save_picture) savePicture(width, height);
+        window_.show();
+        feed_.hasShown();
+        frame_rate_.countPicture(Clock::now());
+    }
+
+    void pause() {
+        feed_.updateUntil(Clock::now() + kMinimisedPause, stopRequested);
+        feed_.cutToScreen().forget();
+    }
+
+    SessionView lookAtSession() {
+        SceneSubscriber& subscriber = feed_.subscriber();
+        SessionView session;
+        session.name = options_.subscriber.name;
+        session.role = options_.subscriber.role;
+        session.has_server = subscriber.hasServer();
+        session.is_complete = subscriber.isComplete();
+        session.frame_rate_hz = frame_rate_.perSecond();
+        if (subscriber.sceneInfo()) session.info = &*subscriber.sceneInfo();
+        if (subscriber.status()) session.status = &*subscriber.status();
+        session.others = subscriber.viewers();
+        return session;
+    }
+
+    void preparePanel(int width, int height) {
+        const Clock::time_point now = Clock::now();
+        const std::chrono::duration<double> seconds = now - std::exchange(last_picture_, now);
+        panel_.setPicture(width, height, window_.contentScale(), seconds.count());
+    }
+
+    void takeInput(int height, const SessionView& session, Wishes& wishes) {
+        for (const WindowEvent& event : window_.takeEvents()) {
+            const bool is_panels = panel_.handle(event, controls_, session, wishes);
+            if (!is_panels || concernsOngoing(event)) controls_.handle(event, height, session, wishes);
+        }
+    }
+
+    void carryOut(const Wishes& wishes) {
+        for (const topics::Command& command : wishes.commands) feed_.subscriber().sendCommand(command);
+        if (wishes.reset_view) scene_.resetView();
+        if (wishes.centre_at)
+            if (const auto p_W = pick(*wishes.centre_at)) scene_.camera().target = *p_W;
+        if (wishes.notice) notices_.show(*wishes.notice);
+        has_quit_ = has_quit_ || wishes.quit;
+    }
+
+    std::optional<Eigen::Vector3d> pick(const PixelPoint& at) { return scene_.pick(int(at.x), int(at.y)); }
+
+    void announce() {
+        const auto at = controls_.pointing();
+        if (!announce_clock_.isDue(Clock::now(), at.has_value())) return;
+        pointer_W_ = at ? pick(*at) : std::nullopt;
+        feed_.subscriber().announce(frame_rate_.perSecond(), pointer_W_);
+    }
+
+    // The others, and the user while it points: the laser is seen where it is held, too.
+    std::vector<topics::Viewer> watchers(const SessionView& session) const {
+        std::vector<topics::Viewer> watchers = session.others;
+        if (!pointer_W_) return watchers;
+        topics::Viewer& self = watchers.emplace_back();
+        self.set_name(session.name);
+        self.set_role(session.role);
+        self.set_frame_rate_hz(session.frame_rate_hz);
+        self.set_is_complete(session.is_complete);
+        self.mutable_pointer_m()->Assign(pointer_W_->begin(), pointer_W_->end());
+        return watchers;
+    }
+
+    void savePicture(int width, int height) {
+        try {
+            const std::filesystem::path name = nextPictureName();
+            writePng(readPicture(window_.gl(), width, height), name);
+            notices_.show({"Picture saved: " + name.string(), HudTone::kGood});
+        } catch (const UserError& error) {
+            notices_.show({error.what(), HudTone::kWarning});
+        }
+    }
+
+    const ClientOptions& options_;
+    GlfwWindow window_;
+    RenderScene scene_;
+    SceneFeed feed_;
+    ViewerControls controls_;
+    Panel panel_;
+    PanelPainter painter_;
+    Notices notices_;
+    Attendance attendance_;
+    FrameRate frame_rate_;
+    AnnounceClock announce_clock_;
+    std::optional<Eigen::Vector3d> pointer_W_;  // where the user points, as announced last
+    Clock::time_point last_picture_ = Clock::now();
+    bool has_quit_ = false;
 };
 
 }  // namespace
 
 void runWindow(const ClientOptions& options) {
-    GlfwWindow window(options.width, options.height, "bonemill");
-    spdlog::info("window, {}", window.gl().describe());
-    RenderScene scene(window.gl());
-    scene.setViewOverrides(options.view);
-    SceneFeed feed(options.subscriber, scene);
-    OutcomeNotice notice;
-    while (!window.shouldClose() && !stopRequested()) {
-        const WindowInput input = window.takeInput();
-        apply(input, scene);
-        send(input, feed.subscriber());
-        feed.update();
-        notice.update(feed.subscriber(), scene);
-        const int width = window.pixelWidth(), height = window.pixelHeight();
-        if (width == 0 || height == 0) {
-            feed.updateUntil(Clock::now() + kMinimisedPause, stopRequested);
-            continue;
-        }
-        scene.draw(width, height, window.contentScale());
-        window.show();
-    }
+    WindowViewer(options).run();
 }
 
 }  // namespace bonemill

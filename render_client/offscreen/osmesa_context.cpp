@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "render_client/offscreen/read_picture.h"
+
 namespace bonemill {
 namespace {
 
@@ -42,17 +44,7 @@ OsmesaContext::~OsmesaContext() {
 }
 
 Picture OsmesaContext::read() const {
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
-    gl_.Finish();
-    Picture picture(width_, height_);
-    std::vector<uint8_t> row(size_t(width_) * 3);
-    gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
-    for (int y = 0; y < height_; ++y) {  // OpenGL counts rows from below
-        gl_.ReadPixels(0, height_ - 1 - y, width_, 1, GL_RGB, GL_UNSIGNED_BYTE, row.data());
-        std::copy(row.begin(), row.end(), picture.row(y));
-    }
-    gl_.check("reading the picture");
-    return picture;
+    return readPicture(gl_, width_, height_);
 }
 
 }  // namespace bonemill

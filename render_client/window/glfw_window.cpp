@@ -4,7 +4,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cctype>
 #include <utility>
 
 #include "common/config/user_error.h"
@@ -12,14 +12,38 @@
 namespace bonemill {
 namespace {
 
-constexpr double kOrbitPerHeight = 3.5;  // rad for a drag over the window's height
-constexpr double kZoomPerStep = 0.9;     // distance factor of one notch of the wheel
-constexpr int kAccuracyKeys = 5;         // 0 .. 4, in the digit row or on the number pad
+constexpr struct {
+    int glfw;
+    Key key;
+} kSpecialKeys[] = {
+    {GLFW_KEY_ENTER, Key::kEnter},   {GLFW_KEY_KP_ENTER, Key::kEnter},
+    {GLFW_KEY_TAB, Key::kTab},       {GLFW_KEY_BACKSPACE, Key::kBackspace},
+    {GLFW_KEY_DELETE, Key::kDelete}, {GLFW_KEY_ESCAPE, Key::kEscape},
+    {GLFW_KEY_LEFT, Key::kLeft},     {GLFW_KEY_RIGHT, Key::kRight},
+    {GLFW_KEY_UP, Key::kUp},         {GLFW_KEY_DOWN, Key::kDown},
+    {GLFW_KEY_HOME, Key::kHome},     {GLFW_KEY_END, Key::kEnd},
+    {GLFW_KEY_F12, Key::kF12},
+};
 
-std::optional<int> digitOf(int key) {
-    for (int digit = 0; digit < kAccuracyKeys; ++digit)
-        if (key == GLFW_KEY_0 + digit || key == GLFW_KEY_KP_0 + digit) return digit;
-    return std::nullopt;
+// GLFW names letters by their place on a US keyboard; the user reads what is printed on them.
+Key letterOf(int key, int scancode) {
+    const char* name = glfwGetKeyName(key, scancode);
+    if (name && name[1] == '\0' && std::isalpha(static_cast<unsigned char>(name[0])))
+        return keyOf(char(std::toupper(static_cast<unsigned char>(name[0]))));
+    const bool is_latin = name && static_cast<unsigned char>(name[0]) < 0x80;
+    return !is_latin && key >= GLFW_KEY_A && key <= GLFW_KEY_Z ? Key(key) : Key::kNone;
+}
+
+Key keyOfGlfw(int key, int scancode) {
+    if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) return Key(key);
+    if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) return Key(key - GLFW_KEY_KP_0 + '0');
+    for (const auto& special : kSpecialKeys)
+        if (special.glfw == key) return special.key;
+    return letterOf(key, scancode);
+}
+
+Modifiers modifiersOf(int bits) {
+    return {(bits & GLFW_MOD_SHIFT) != 0, (bits & GLFW_MOD_CONTROL) != 0};
 }
 
 [[noreturn]] void failWith(const std::string& what) {
@@ -50,11 +74,28 @@ GlfwWindow::GlfwWindow(int width, int height, const std::string& title) {
     glfwSwapInterval(1);
     gl_ = GlApi::load([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); });
     glfwSetWindowUserPointer(window_, this);
-    glfwSetKeyCallback(window_,
-                       [](GLFWwindow* w, int key, int, int action, int) { of(w).onKey(key, action); });
-    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) { of(w).onMove(x, y); });
-    glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) { of(w).onScroll(y); });
-    glfwGetCursorPos(window_, &mouse_x_, &mouse_y_);
+    double x = 0, y = 0;
+    glfwGetCursorPos(window_, &x, &y);
+    mouse_ = toPixels(x, y);
+    listen();
+}
+
+void GlfwWindow::listen() {
+    glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
+        of(w).events_.push_back(KeyEvent{keyOfGlfw(key, scancode), action != GLFW_RELEASE,
+                                         action == GLFW_REPEAT, modifiersOf(modifiers)});
+    });
+    glfwSetCharCallback(window_,
+                        [](GLFWwindow* w, unsigned sign) { of(w).events_.push_back(TextEvent{sign}); });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int modifiers) {
+        of(w).onButton(button, action, modifiers);
+    });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
+        of(w).mouse_ = of(w).toPixels(x, y);
+        of(w).events_.push_back(MouseMoveEvent{of(w).mouse_});
+    });
+    glfwSetScrollCallback(window_,
+                          [](GLFWwindow* w, double, double y) { of(w).events_.push_back(ScrollEvent{y}); });
 }
 
 GlfwWindow::~GlfwWindow() {
@@ -65,9 +106,9 @@ GlfwWindow& GlfwWindow::of(GLFWwindow* window) {
     return *static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
 }
 
-WindowInput GlfwWindow::takeInput() {
+std::vector<WindowEvent> GlfwWindow::takeEvents() {
     glfwPollEvents();
-    return std::exchange(input_, WindowInput());
+    return std::exchange(events_, {});
 }
 
 bool GlfwWindow::shouldClose() const {
@@ -96,47 +137,23 @@ void GlfwWindow::show() {
     glfwSwapBuffers(window_);
 }
 
-void GlfwWindow::onKey(int key, int action) {
-    if (action != GLFW_PRESS) return;
-    if (const auto digit = digitOf(key)) input_.accuracy_key = digit;
-    switch (key) {
-        case GLFW_KEY_R:
-            input_.reset_view = true;
-            break;
-        case GLFW_KEY_C:
-            input_.reset_volume = true;
-            break;
-        case GLFW_KEY_H:
-            input_.toggle_help = !input_.toggle_help;
-            break;
-        case GLFW_KEY_ESCAPE:
-            glfwSetWindowShouldClose(window_, GLFW_TRUE);
-            break;
-        default:
-            break;
-    }
-}
-
-void GlfwWindow::onMove(double x, double y) {
+PixelPoint GlfwWindow::toPixels(double x, double y) const {
     int width = 0, height = 0;
     glfwGetWindowSize(window_, &width, &height);
-    const double right = (x - std::exchange(mouse_x_, x)) / std::max(height, 1);
-    const double down = (y - std::exchange(mouse_y_, y)) / std::max(height, 1);
-    const auto holds = [this](int button) { return glfwGetMouseButton(window_, button) == GLFW_PRESS; };
-    const bool shift = glfwGetKey(window_, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
-                       glfwGetKey(window_, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
-    const bool left = holds(GLFW_MOUSE_BUTTON_LEFT);
-    if (holds(GLFW_MOUSE_BUTTON_RIGHT) || holds(GLFW_MOUSE_BUTTON_MIDDLE) || (left && shift)) {
-        input_.pan_right += right;
-        input_.pan_up -= down;
-    } else if (left) {
-        input_.orbit_azimuth -= right * kOrbitPerHeight;
-        input_.orbit_elevation += down * kOrbitPerHeight;
-    }
+    return {x * pixelWidth() / std::max(width, 1), y * pixelHeight() / std::max(height, 1)};
 }
 
-void GlfwWindow::onScroll(double steps) {
-    input_.zoom_factor *= std::pow(kZoomPerStep, steps);
+void GlfwWindow::onButton(int button, int action, int modifiers) {
+    MouseButtonEvent event{MouseButton::kLeft, action == GLFW_PRESS, mouse_, modifiersOf(modifiers),
+                           glfwGetTime()};
+    if (button == GLFW_MOUSE_BUTTON_RIGHT) {
+        event.button = MouseButton::kRight;
+    } else if (button == GLFW_MOUSE_BUTTON_MIDDLE) {
+        event.button = MouseButton::kMiddle;
+    } else if (button != GLFW_MOUSE_BUTTON_LEFT) {
+        return;
+    }
+    events_.push_back(event);
 }
 
 }  // namespace bonemill

@@ -1,30 +1,17 @@
-// A window with an OpenGL 3.3 core context, and what mouse and keys ask of the viewer.
+// A window with an OpenGL 3.3 core context, and what happens at it.
 //
 // Thread: the main thread, one window per process.
 #pragma once
 
-#include <memory>
-#include <optional>
 #include <string>
+#include <vector>
 
+#include "render_client/controls/window_event.h"
 #include "render_client/gl/gl_api.h"
 
 struct GLFWwindow;
 
 namespace bonemill {
-
-// What the user did since the last look. Angles in rad, pans in picture heights (OrbitCamera).
-struct WindowInput {
-    double orbit_azimuth = 0;
-    double orbit_elevation = 0;
-    double pan_right = 0;
-    double pan_up = 0;
-    double zoom_factor = 1;
-    bool reset_view = false;
-    bool reset_volume = false;
-    bool toggle_help = false;
-    std::optional<int> accuracy_key;  // 0 .. 4: the digit that was pressed last
-};
 
 class GlfwWindow {
   public:
@@ -37,8 +24,8 @@ class GlfwWindow {
 
     const GlApi& gl() const { return gl_; }
 
-    // Handles what happened and returns it. Never waits.
-    WindowInput takeInput();
+    // What happened since the last call, oldest first. Never waits.
+    std::vector<WindowEvent> takeEvents();
     bool shouldClose() const;
 
     // Pixels; 0 x 0 while the window is minimised.
@@ -56,16 +43,15 @@ class GlfwWindow {
         ~Library();
     };
     static GlfwWindow& of(GLFWwindow* window);
-    void onKey(int key, int action);
-    void onMove(double x, double y);
-    void onScroll(double steps);
+    void listen();
+    PixelPoint toPixels(double x, double y) const;
+    void onButton(int button, int action, int modifiers);
 
     Library library_;
     GLFWwindow* window_;
     GlApi gl_;
-    WindowInput input_;
-    double mouse_x_ = 0;
-    double mouse_y_ = 0;
+    std::vector<WindowEvent> events_;
+    PixelPoint mouse_;  // of the last event: the mouse itself may be elsewhere by the time it is handled
 };
 
 }  // namespace bonemill

@@ -17,19 +17,6 @@ std::filesystem::path goldenPath(const std::string& name) {
     return std::filesystem::path(BONEMILL_SOURCE_DIR) / "tests/gl/golden" / (name + ".png");
 }
 
-Picture readPng(const std::filesystem::path& path) {
-    png_image header{};
-    header.version = PNG_IMAGE_VERSION;
-    if (!png_image_begin_read_from_file(&header, path.c_str()))
-        throw std::runtime_error("cannot read " + path.string() + ": " + header.message +
-                                 " (BONEMILL_WRITE_GOLDEN=1 writes the golden pictures)");
-    header.format = PNG_FORMAT_RGB;
-    Picture picture(int(header.width), int(header.height));
-    if (!png_image_finish_read(&header, nullptr, picture.row(0), 0, nullptr))
-        throw std::runtime_error("cannot read " + path.string() + ": " + header.message);
-    return picture;
-}
-
 std::array<int, 3> softened(const Picture& picture, int x, int y) {
     std::array<int, 3> sum{};
     int count = 0;
@@ -65,6 +52,19 @@ PictureDifference compare(const Picture& actual, const Picture& expected) {
         }
     difference.bad_part = double(bad) / (double(actual.width()) * actual.height());
     return difference;
+}
+
+Picture readPng(const std::filesystem::path& path) {
+    png_image header{};
+    header.version = PNG_IMAGE_VERSION;
+    if (!png_image_begin_read_from_file(&header, path.c_str()))
+        throw std::runtime_error("cannot read " + path.string() + ": " + header.message +
+                                 " (BONEMILL_WRITE_GOLDEN=1 writes the golden pictures)");
+    header.format = PNG_FORMAT_RGB;
+    Picture picture(int(header.width), int(header.height));
+    if (!png_image_finish_read(&header, nullptr, picture.row(0), 0, nullptr))
+        throw std::runtime_error("cannot read " + path.string() + ": " + header.message);
+    return picture;
 }
 
 Picture readGolden(const std::string& name) {

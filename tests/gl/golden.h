@@ -25,4 +25,7 @@ std::string goldenProblem(const Picture& actual, const std::string& name);
 
 Picture readGolden(const std::string& name);
 
+// Throws std::runtime_error when it is no picture.
+Picture readPng(const std::filesystem::path& path);
+
 }  // namespace bonemill::test

@@ -24,6 +24,27 @@ TEST(Options, AWindowByDefault) {
     EXPECT_FALSE(options->view.target);
 }
 
+TEST(Options, ANameOfOnesOwnAndTheRoleOfAnOperator) {
+    const auto options = parse({});
+    ASSERT_TRUE(options);
+    EXPECT_FALSE(options->subscriber.name.empty());
+    EXPECT_EQ(options->subscriber.role, topics::Viewer::OPERATOR);
+    const auto teacher = parse({"--name", "Anna B", "--role", "instructor"});
+    ASSERT_TRUE(teacher);
+    EXPECT_EQ(teacher->subscriber.name, "Anna B");
+    EXPECT_EQ(teacher->subscriber.role, topics::Viewer::INSTRUCTOR);
+    EXPECT_EQ(parse({"--role", "viewer"})->subscriber.role, topics::Viewer::VIEWER);
+    for (const char* profile : {"lab", "classroom"}) {
+        EXPECT_EQ(parse({"--profile", profile})->subscriber.role, topics::Viewer::VIEWER);
+        EXPECT_EQ(parse({"--profile", profile, "--set-accuracy", "fast"})->subscriber.role,
+                  topics::Viewer::OPERATOR);
+        EXPECT_EQ(parse({"--profile", profile, "--role", "operator"})->subscriber.role,
+                  topics::Viewer::OPERATOR);
+    }
+    EXPECT_EQ(parse({"--profile", "one-pc"})->subscriber.role, topics::Viewer::OPERATOR);
+    for (const char* role : {"boss", "7", ""}) EXPECT_THROW(parse({"--role", role}), UserError) << role;
+}
+
 TEST(Options, OffscreenWithUnitsConverted) {
     const auto options = parse({"--offscreen",
                                 "--frames",

@@ -1,0 +1,104 @@
+#include "render_client/controls/session_view.h"
+
+#include "render_client/scene/accuracy_keys.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int kFirstAccuracy = int(Action::kAccuracyScene);
+
+CommandOrReason refuse(std::string why_not) {
+    return {std::nullopt, std::move(why_not)};
+}
+
+CommandOrReason pauseOrGoOn(const SessionView& session) {
+    topics::Command command;
+    command.set_pause_milling(!(session.status && session.status->is_milling_paused()));
+    return {command, ""};
+}
+
+CommandOrReason backToLastCheckpoint(const SessionView& session) {
+    if (!session.status || session.status->checkpoints().empty())
+        return refuse("there is no checkpoint yet: K saves one");
+    topics::Command command;
+    command.set_restore_checkpoint(session.status->checkpoints().rbegin()->id());
+    return {command, ""};
+}
+
+CommandOrReason nextTool(const SessionView& session) {
+    const uint32_t count = session.info ? uint32_t(session.info->tool_names_size()) : 0;
+    if (count < 2) return refuse("the scene has one tool only");
+    topics::Command command;
+    command.set_select_tool((session.info->tool_index() + 1) % count);
+    return {command, ""};
+}
+
+}  // namespace
+
+std::string roleName(topics::Viewer::Role role) {
+    switch (role) {
+        case topics::Viewer::VIEWER:
+            return "viewer";
+        case topics::Viewer::OPERATOR:
+            return "operator";
+        case topics::Viewer::INSTRUCTOR:
+            return "instructor";
+        default:
+            return "?";
+    }
+}
+
+std::string whyNotCommand(const SessionView& session) {
+    if (session.role == topics::Viewer::VIEWER) return "A viewer only looks: start with --role operator";
+    if (!session.has_server) return "There is no server";
+    return "";
+}
+
+std::string whyNotPoint(const SessionView& session) {
+    if (session.role == topics::Viewer::INSTRUCTOR) return "";
+    return "Only an instructor points: start with --role instructor";
+}
+
+std::string whyNotEndSession(const SessionView& session) {
+    if (session.role != topics::Viewer::INSTRUCTOR)
+        return "Only an instructor ends the session: start with --role instructor";
+    return whyNotCommand(session);
+}
+
+CommandOrReason commandOf(Action action, const SessionView& session) {
+    topics::Command command;
+    CommandOrReason asked;
+    switch (action) {
+        case Action::kResetBone:
+            command.set_reset_volume(true);
+            asked = {command, ""};
+            break;
+        case Action::kPauseMilling:
+            asked = pauseOrGoOn(session);
+            break;
+        case Action::kSaveCheckpoint:
+            command.set_save_checkpoint(true);
+            asked = {command, ""};
+            break;
+        case Action::kLastCheckpoint:
+            asked = backToLastCheckpoint(session);
+            break;
+        case Action::kNextTool:
+            asked = nextTool(session);
+            break;
+        case Action::kAccuracyScene:
+        case Action::kAccuracy1:
+        case Action::kAccuracy2:
+        case Action::kAccuracy3:
+        case Action::kAccuracy4:
+            command.set_set_accuracy(std::string(kAccuracyOfKey[int(action) - kFirstAccuracy]));
+            asked = {command, ""};
+            break;
+        default:
+            return {};
+    }
+    const std::string why_not = whyNotCommand(session);
+    return why_not.empty() ? asked : refuse(why_not);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,40 @@
+// What a viewer knows about its session, for those who show it, and who may ask the server for what.
+//
+// Plain values; any thread. The pointers are the owner's and may be null: nothing has come yet.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "proto/topics.pb.h"
+#include "render_client/controls/key_table.h"
+
+namespace bonemill {
+
+struct SessionView {
+    std::string name;  // of this viewer
+    topics::Viewer::Role role = topics::Viewer::OPERATOR;
+    bool has_server = false;
+    bool is_complete = false;  // this viewer shows the server's whole model
+    double frame_rate_hz = 0;  // of this viewer
+    const topics::SceneInfo* info = nullptr;
+    const topics::Status* status = nullptr;
+    std::vector<topics::Viewer> others = {};
+};
+
+std::string roleName(topics::Viewer::Role role);
+
+// Empty when it is allowed; else a sentence for the user.
+std::string whyNotCommand(const SessionView& session);
+std::string whyNotPoint(const SessionView& session);
+std::string whyNotEndSession(const SessionView& session);
+
+// What an action asks of the server, or why it cannot be asked. Both are empty for actions that are none of
+// the server's business.
+struct CommandOrReason {
+    std::optional<topics::Command> command;
+    std::string why_not;
+};
+CommandOrReason commandOf(Action action, const SessionView& session);
+
+}  // namespace bonemill

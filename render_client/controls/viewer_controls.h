@@ -1,0 +1,75 @@
+// What keys, mouse and panel do to a viewer: one meaning of each action, whoever asked for it.
+//
+// View settings and camera are changed at once; what others have to do is left in the wishes. Thread: the
+// render thread. Never throws.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render_client/controls/key_table.h"
+#include "render_client/controls/session_view.h"
+#include "render_client/scene/hud.h"
+#include "render_client/scene/orbit_camera.h"
+#include "render_client/scene/view_settings.h"
+
+namespace bonemill {
+
+// What the user asked for and the owner of the viewer has to carry out.
+struct Wishes {
+    std::vector<topics::Command> commands;
+    bool reset_view = false;
+    std::optional<PixelPoint> centre_at;  // orbit around the surface there from now on
+    std::optional<HudNotice> notice;      // why something was not done
+    bool save_picture = false;
+    bool quit = false;
+};
+
+// From which side of the patient the bone is looked at.
+enum class Side { kFront, kBack, kLeft, kRight, kTop, kBottom };
+
+class ViewerControls {
+  public:
+    // Both must outlive the controls.
+    ViewerControls(ViewSettings& settings, OrbitCamera& camera) : settings_(settings), camera_(camera) {}
+
+    // An event of the window, over a picture of this height (pixels).
+    void handle(const WindowEvent& event, int picture_height, const SessionView& session, Wishes& wishes);
+    void act(Action action, const SessionView& session, Wishes& wishes);
+    // Turns around the target; the distance stays.
+    void lookFrom(Side side);
+
+    ViewSettings& settings() { return settings_; }
+    const OrbitCamera& camera() const { return camera_; }
+    bool isPanelOpen() const { return is_panel_open_; }
+    // Where the user points with the laser now.
+    std::optional<PixelPoint> pointing() const;
+
+  private:
+    enum class Drag { kNone, kOrbit, kPan, kPoint };
+
+    void onKey(const KeyEvent& event, const SessionView& session, Wishes& wishes);
+    void onButton(const MouseButtonEvent& event, const SessionView& session, Wishes& wishes);
+    void onMove(const MouseMoveEvent& event, int picture_height);
+    void onDoubleClick(const MouseButtonEvent& event, Wishes& wishes);
+    void changeView(Action action);
+    void switchCut(size_t axis);
+    void flipCut(size_t axis);
+    void moveCut(double by);
+    bool mayPoint(const SessionView& session, Wishes& wishes) const;
+    std::string whyNoPlace() const;
+
+    ViewSettings& settings_;
+    OrbitCamera& camera_;
+    size_t last_cut_ = 0;  // axis of the cut-plane that was switched last
+    bool is_panel_open_ = false;
+    bool is_point_key_down_ = false;
+    Drag drag_ = Drag::kNone;
+    MouseButton drag_button_ = MouseButton::kLeft;
+    PixelPoint mouse_;
+    std::optional<MouseButtonEvent> last_click_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,12 @@
+// Copies what was drawn out of an OpenGL context. Thread: the one of the context, which must be current.
+#pragma once
+
+#include "render_client/gl/gl_api.h"
+#include "render_client/offscreen/picture.h"
+
+namespace bonemill {
+
+// Waits for the drawing and copies the default framebuffer of this size (pixels). Throws GlError.
+Picture readPicture(const GlApi& gl, int width, int height);
+
+}  // namespace bonemill

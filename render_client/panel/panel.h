@@ -1,0 +1,69 @@
+// The control panel: every setting of the view, the session's commands and who is watching, for the mouse.
+//
+// A function of what is set and what the server says: it keeps nothing but what is folded, scrolled or half
+// typed, so it follows whoever changed something. It needs no OpenGL; PanelPainter draws it. Positions in
+// pixels from the picture's upper left corner. Thread: the render thread.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "render_client/controls/viewer_controls.h"
+
+struct ImDrawData;
+struct ImGuiContext;
+
+namespace bonemill {
+
+class Panel {
+  public:
+    // Throws UserError (font).
+    Panel();
+    Panel(const Panel&) = delete;
+    Panel& operator=(const Panel&) = delete;
+    ~Panel();
+
+    // Size (pixels) of the picture to come, how much larger than usual its text is, and the time (s) since
+    // the picture before. Call it before the events of the picture.
+    void setPicture(int width, int height, float scale, double seconds);
+    // Passes an event on to the panel, which changes settings and wishes. True: it was meant for the panel
+    // and nobody else is to act on it.
+    bool handle(const WindowEvent& event, ViewerControls& controls, const SessionView& session,
+                Wishes& wishes);
+    // Brings the panel up to date with the settings and the session, to be drawn.
+    void layOut(ViewerControls& controls, const SessionView& session, Wishes& wishes);
+
+    // Where to click on the button, box or slider with this label, if it can be seen.
+    std::optional<PixelPoint> find(const std::string& label) const;
+
+    // What to draw; null while the panel is closed. Valid until the next call of setPicture() or handle().
+    const ImDrawData* drawData() const;
+    // The font's pixels, 8 bits each, and a number that changes with them.
+    struct FontPixels {
+        const unsigned char* pixels;
+        int width;
+        int height;
+        int version;
+    };
+    FontPixels fontPixels() const;
+
+  private:
+    struct Destroy {
+        void operator()(ImGuiContext* context) const;
+    };
+    void feed(const WindowEvent& event);
+    void frame(double seconds, ViewerControls& controls, const SessionView& session, Wishes& wishes);
+    void setScale(float scale);
+
+    std::unique_ptr<ImGuiContext, Destroy> context_;
+    std::map<std::string, PixelPoint> places_;  // of the controls that can be seen, by label
+    float scale_ = 0;
+    int font_version_ = 0;
+    double pending_seconds_ = 0;
+    bool was_open_ = false;
+    bool is_ending_ = false;  // the session's end was asked for and waits to be confirmed
+};
+
+}  // namespace bonemill

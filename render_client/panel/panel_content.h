@@ -1,0 +1,58 @@
+// What the control panel says and offers, as one frame of ImGui. Thread: the render thread.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "render_client/controls/viewer_controls.h"
+
+namespace bonemill {
+
+class PanelContent {
+  public:
+    // Everything must outlive the object. `places` takes where each control is; `is_ending` says whether the
+    // end of the session waits to be confirmed.
+    PanelContent(ViewerControls& controls, const SessionView& session, Wishes& wishes,
+                 std::map<std::string, PixelPoint>& places, bool& is_ending, float scale)
+        : controls_(controls),
+          settings_(controls.settings()),
+          session_(session),
+          wishes_(wishes),
+          places_(places),
+          is_ending_(is_ending),
+          scale_(scale) {}
+
+    // Between ImGui::NewFrame() and ImGui::Render().
+    void build();
+
+  private:
+    void buildView();
+    void buildSides();
+    void buildCuts();
+    void buildStereo();
+    void buildSession();
+    void buildCheckpoints();
+    void buildTools();
+    void buildAccuracy();
+    void buildEnd();
+    void buildWatchers();
+
+    // Controls: a label, and what it does in words while the mouse rests on it.
+    bool button(const char* label, const char* what);
+    bool box(const char* label, bool is_on, const char* what);
+    bool choice(const char* label, bool is_chosen, const char* what);
+    bool slider(const char* label, double& fraction, double least, const char* what);
+    void note(const char* label, const char* what);
+    void send(topics::Command command) { wishes_.commands.push_back(std::move(command)); }
+    void act(Action action) { controls_.act(action, session_, wishes_); }
+
+    ViewerControls& controls_;
+    ViewSettings& settings_;
+    const SessionView& session_;
+    Wishes& wishes_;
+    std::map<std::string, PixelPoint>& places_;
+    bool& is_ending_;
+    float scale_;
+};
+
+}  // namespace bonemill

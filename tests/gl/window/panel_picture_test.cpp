@@ -1,0 +1,80 @@
+// The control panel's pixels, drawn off screen by the very code of the window.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "render_client/offscreen/osmesa_context.h"
+#include "render_client/panel/panel_painter.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int kWidth = 640, kHeight = 480;
+
+class PanelPicture : public testing::Test {
+  protected:
+    PanelPicture() {
+        session_.has_server = true;
+        session_.status = &status_;
+    }
+    // Over a mid-grey picture.
+    Picture draw() {
+        panel_.setPicture(kWidth, kHeight, 1, 0.02);
+        panel_.layOut(controls_, session_, wishes_);
+        const GlApi& gl = context_.gl();
+        gl.ClearColor(0.5f, 0.5f, 0.5f, 1);
+        gl.Clear(GL_COLOR_BUFFER_BIT);
+        painter_.paint(panel_, kWidth, kHeight);
+        return context_.read();
+    }
+    void open() { controls_.act(Action::kPanel, session_, wishes_); }
+
+    OsmesaContext context_{kWidth, kHeight};
+    topics::Status status_;
+    SessionView session_;
+    Wishes wishes_;
+    ViewSettings settings_;
+    OrbitCamera camera_;
+    ViewerControls controls_{settings_, camera_};
+    Panel panel_;
+    PanelPainter painter_{context_.gl()};
+};
+
+size_t countDifferent(const Picture& a, const Picture& b, int left, int right) {
+    size_t count = 0;
+    for (int y = 0; y < a.height(); ++y)
+        for (int x = left; x < right; ++x) count += a.at(x, y) != b.at(x, y);
+    return count;
+}
+
+TEST_F(PanelPicture, AClosedPanelLeavesThePictureAlone) {
+    const Picture picture = draw();
+    EXPECT_EQ(countDifferent(picture, Picture(kWidth, kHeight), 0, kWidth), size_t(kWidth) * kHeight);
+    EXPECT_EQ(picture.at(500, 100), picture.at(10, 10));
+}
+
+TEST_F(PanelPicture, AnOpenOneCoversTheRightSideAndNoMore) {
+    const Picture closed = draw();
+    open();
+    const Picture picture = draw();
+    EXPECT_EQ(countDifferent(picture, closed, 0, 290), 0u);
+    EXPECT_GT(countDifferent(picture, closed, 300, kWidth), 300u * 440u);
+    size_t bright = 0;  // the text
+    for (int y = 20; y < kHeight - 20; ++y)
+        for (int x = 300; x < kWidth - 20; ++x) bright += picture.at(x, y)[1] > 200;
+    EXPECT_GT(bright, 1000u);
+}
+
+TEST_F(PanelPicture, ABoxShowsWhatIsSet) {
+    open();
+    const Picture before = draw();
+    const PixelPoint box = panel_.find("Cut X").value();
+    settings_.cuts[0].is_on = true;
+    const Picture after = draw();
+    const int x = int(box.x), y = int(box.y);
+    EXPECT_GT(after.at(x, y)[2], before.at(x, y)[2] + 60) << "the tick is in the middle of the box";
+    EXPECT_EQ(countDifferent(before, after, 0, x - 20), 0u);
+}
+
+}  // namespace
+}  // namespace bonemill

@@ -1,0 +1,25 @@
+// A display in memory (Xvfb) and hands for it (xdotool).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/support/process.h"
+
+namespace bonemill::test {
+
+class VirtualDisplay {
+  public:
+    // The display is that of this process and its children from now on. Throws std::runtime_error naming the
+    // package that is missing.
+    VirtualDisplay(int width, int height);
+
+    // xdotool with these words, such as {"key", "x"}: returns when the display has taken it.
+    void type(const std::vector<std::string>& words) const;
+
+  private:
+    std::unique_ptr<Process> server_;
+};
+
+}  // namespace bonemill::test

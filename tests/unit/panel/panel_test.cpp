@@ -1,0 +1,242 @@
+// The control panel, clicked with a simulated mouse; no OpenGL.
+#include "render_client/panel/panel.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace bonemill {
+namespace {
+
+constexpr int kWidth = 900, kHeight = 1200;
+
+class PanelClicks : public testing::Test {
+  protected:
+    PanelClicks() {
+        session_.role = topics::Viewer::INSTRUCTOR;
+        session_.has_server = true;
+        session_.name = "me";
+        session_.info = &info_;
+        session_.status = &status_;
+        info_.add_tool_names("6 mm");
+        info_.add_tool_names("3 mm");
+        status_.set_preset("balanced");
+        for (const uint32_t id : {3u, 5u}) status_.add_checkpoints()->set_id(id);
+        controls_.act(Action::kPanel, session_, wishes_);
+        layOut();
+    }
+
+    void layOut() {
+        panel_.setPicture(kWidth, height_, 1, 0.02);
+        panel_.layOut(controls_, session_, wishes_);
+    }
+    bool send(const WindowEvent& event) { return panel_.handle(event, controls_, session_, wishes_); }
+    PixelPoint at(const std::string& label) {
+        layOut();
+        const auto place = panel_.find(label);
+        EXPECT_TRUE(place) << "no control '" << label << "' can be seen";
+        return place.value_or(PixelPoint{});
+    }
+    // Press and release before any picture, as a quick hand on a slow computer does.
+    void click(const std::string& label) { click(at(label)); }
+    void click(const PixelPoint& place) {
+        send(MouseMoveEvent{place});
+        EXPECT_TRUE(send(MouseButtonEvent{MouseButton::kLeft, true, place, {}, 0}));
+        EXPECT_TRUE(send(MouseButtonEvent{MouseButton::kLeft, false, place, {}, 0}));
+        layOut();
+    }
+    topics::Command clickForCommand(const std::string& label) {
+        wishes_ = {};
+        click(label);
+        EXPECT_EQ(wishes_.commands.size(), 1u) << label;
+        return wishes_.commands.empty() ? topics::Command() : wishes_.commands[0];
+    }
+
+    int height_ = kHeight;
+    topics::SceneInfo info_;
+    topics::Status status_;
+    SessionView session_;
+    Wishes wishes_;
+    ViewSettings settings_;
+    OrbitCamera camera_;
+    ViewerControls controls_{settings_, camera_};
+    Panel panel_;
+};
+
+TEST_F(PanelClicks, BoxesSwitchWhatIsSeen) {
+    click("Cut Y");
+    EXPECT_TRUE(settings_.cuts[1].is_on);
+    click("Flip##z");
+    EXPECT_TRUE(settings_.cuts[2].is_flipped);
+    click("Transparent (T)");
+    EXPECT_TRUE(settings_.is_transparent);
+    click("Transparent (T)");
+    EXPECT_FALSE(settings_.is_transparent);
+    click("Endoscope (E)");
+    EXPECT_EQ(settings_.camera, CameraMode::kEndoscope);
+    click("Force arrow (F)");
+    EXPECT_FALSE(settings_.show_force);
+    click("Quick drawing");
+    EXPECT_EQ(settings_.quality, Quality::kQuick);
+    click("Quick drawing");
+    EXPECT_EQ(settings_.quality, Quality::kFull);
+    click("Figures (Tab)");
+    EXPECT_FALSE(settings_.show_hud);
+    click("Watchers (W)");
+    EXPECT_FALSE(settings_.show_watchers);
+    click("Help (H)");
+    EXPECT_TRUE(settings_.show_help);
+    click("Red/cyan");
+    EXPECT_EQ(settings_.stereo, StereoMode::kAnaglyph);
+    click("Off");
+    EXPECT_EQ(settings_.stereo, StereoMode::kOff);
+    EXPECT_TRUE(wishes_.commands.empty());
+}
+
+TEST_F(PanelClicks, SlidersSetHowMuch) {
+    const PixelPoint middle = at("##cut x"), opacity = at("##opacity");
+    click(PixelPoint{middle.x + 60, middle.y});
+    EXPECT_NE(settings_.cuts[0].position, 0.5);
+    EXPECT_TRUE(settings_.cuts[0].is_on) << "whoever moves a plane wants to see it";
+    click(PixelPoint{kWidth - 30.0, opacity.y});
+    EXPECT_GT(settings_.opacity, 0.85);
+    EXPECT_TRUE(settings_.is_transparent);
+}
+
+TEST_F(PanelClicks, ASlidersValueCanBeTyped) {
+    const PixelPoint slider = at("##cut z");
+    send(MouseMoveEvent{slider});
+    send(MouseButtonEvent{MouseButton::kLeft, true, slider, {false, true}, 0});
+    send(MouseButtonEvent{MouseButton::kLeft, false, slider, {false, false}, 0});
+    layOut();
+    // The keys are the panel's now: 2 would be an accuracy.
+    EXPECT_TRUE(send(KeyEvent{keyOf('2'), true, false, {}}));
+    send(TextEvent{U'2'});
+    send(KeyEvent{keyOf('2'), false, false, {}});
+    send(TextEvent{U'5'});
+    send(KeyEvent{Key::kEnter, true, false, {}});
+    send(KeyEvent{Key::kEnter, false, false, {}});
+    EXPECT_NEAR(settings_.cuts[2].position, 0.25, 1e-6);
+    EXPECT_TRUE(wishes_.commands.empty());
+    layOut();
+    EXPECT_FALSE(send(KeyEvent{keyOf('T'), true, false, {}})) << "keys are shortcuts again";
+}
+
+TEST_F(PanelClicks, ViewButtonsTurnTheCamera) {
+    click("Left");
+    EXPECT_GT(camera_.towardsEye().x(), 0.99);
+    click("Top");
+    EXPECT_GT(camera_.towardsEye().z(), 0.99);
+    click("First view (R)");
+    EXPECT_TRUE(wishes_.reset_view);
+}
+
+TEST_F(PanelClicks, SessionButtonsAreCommands) {
+    EXPECT_TRUE(clickForCommand("Pause milling (P)").pause_milling());
+    EXPECT_TRUE(clickForCommand("Put the bone back (C)").reset_volume());
+    EXPECT_TRUE(clickForCommand("Save a checkpoint (K)").save_checkpoint());
+    EXPECT_EQ(clickForCommand("Back to 3").restore_checkpoint(), 3u);
+    EXPECT_EQ(clickForCommand("Back to 5").restore_checkpoint(), 5u);
+    const topics::Command tool = clickForCommand("3 mm##tool 1");
+    EXPECT_EQ(tool.action_case(), topics::Command::kSelectTool);
+    EXPECT_EQ(tool.select_tool(), 1u);
+    EXPECT_EQ(clickForCommand("exact").set_accuracy(), "exact");
+    EXPECT_EQ(clickForCommand("As the scene file says (0)").set_accuracy(), "scene");
+}
+
+TEST_F(PanelClicks, WhatIsInForceAlreadyIsNotAskedForAgain) {
+    click("6 mm##tool 0");
+    click("balanced");
+    EXPECT_TRUE(wishes_.commands.empty());
+}
+
+TEST_F(PanelClicks, ItFollowsTheServer) {
+    status_.set_is_milling_paused(true);
+    const topics::Command go_on = clickForCommand("Pause milling (P)");
+    EXPECT_EQ(go_on.action_case(), topics::Command::kPauseMilling);
+    EXPECT_FALSE(go_on.pause_milling());
+    status_.clear_checkpoints();
+    status_.add_checkpoints()->set_id(9);
+    info_.set_tool_index(1);
+    layOut();
+    EXPECT_FALSE(panel_.find("Back to 3"));
+    EXPECT_TRUE(panel_.find("Back to 9"));
+    EXPECT_EQ(clickForCommand("6 mm##tool 0").select_tool(), 0u);
+}
+
+TEST_F(PanelClicks, TheSessionEndsOnlyAfterASecondClick) {
+    click("End the session");
+    EXPECT_TRUE(wishes_.commands.empty());
+    click("Go on");
+    EXPECT_FALSE(panel_.find("End"));
+    click("End the session");
+    EXPECT_TRUE(clickForCommand("End").shut_down());
+}
+
+TEST_F(PanelClicks, AViewerClicksCommandsInVain) {
+    session_.role = topics::Viewer::VIEWER;
+    for (const char* label : {"Pause milling (P)", "Put the bone back (C)", "Save a checkpoint (K)",
+                              "Back to 3", "3 mm##tool 1", "exact", "End the session"})
+        click(label);
+    EXPECT_TRUE(wishes_.commands.empty());
+    EXPECT_FALSE(panel_.find("End"));
+    click("Cut X");
+    EXPECT_TRUE(settings_.cuts[0].is_on);
+}
+
+TEST_F(PanelClicks, AnOperatorCannotEndTheSession) {
+    session_.role = topics::Viewer::OPERATOR;
+    click("End the session");
+    EXPECT_FALSE(panel_.find("End"));
+    EXPECT_TRUE(clickForCommand("Put the bone back (C)").reset_volume());
+}
+
+TEST_F(PanelClicks, TheMouseBesideThePanelIsNotThePanels) {
+    const PixelPoint beside{50, 300};
+    EXPECT_FALSE(send(MouseMoveEvent{beside}));
+    EXPECT_FALSE(send(MouseButtonEvent{MouseButton::kLeft, true, beside, {}, 0}));
+    EXPECT_FALSE(send(MouseMoveEvent{at("Cut X")})) << "a drag that began beside it goes on over it";
+    send(MouseButtonEvent{MouseButton::kLeft, false, at("Cut X"), {}, 0});
+    EXPECT_FALSE(settings_.cuts[0].is_on);
+    EXPECT_TRUE(send(MouseMoveEvent{at("Cut X")}));
+    EXPECT_TRUE(send(ScrollEvent{1}));
+    send(MouseMoveEvent{beside});
+    EXPECT_FALSE(send(ScrollEvent{1}));
+}
+
+TEST_F(PanelClicks, AClosedPanelTakesNothing) {
+    const PixelPoint place = at("Cut X");
+    controls_.act(Action::kPanel, session_, wishes_);
+    layOut();
+    EXPECT_FALSE(panel_.drawData());
+    EXPECT_FALSE(panel_.find("Cut X"));
+    EXPECT_FALSE(send(MouseMoveEvent{place}));
+    EXPECT_FALSE(send(MouseButtonEvent{MouseButton::kLeft, true, place, {}, 0}));
+    EXPECT_FALSE(settings_.cuts[0].is_on);
+}
+
+TEST_F(PanelClicks, InALowPictureItScrolls) {
+    height_ = 300;
+    layOut();
+    layOut();
+    ASSERT_FALSE(panel_.find("exact"));
+    send(MouseMoveEvent{at("Cut X")});
+    for (int i = 0; i < 60 && !panel_.find("exact"); ++i) {
+        send(ScrollEvent{-1});
+        layOut();
+    }
+    EXPECT_EQ(clickForCommand("exact").set_accuracy(), "exact");
+}
+
+TEST_F(PanelClicks, ItGrowsWithTheDisplaysScale) {
+    const double before = at("Cut Z").y - at("Cut X").y;
+    const int version = panel_.fontPixels().version;
+    panel_.setPicture(2 * kWidth, 2 * kHeight, 2, 0.02);
+    panel_.layOut(controls_, session_, wishes_);
+    panel_.layOut(controls_, session_, wishes_);
+    EXPECT_NEAR(panel_.find("Cut Z")->y - panel_.find("Cut X")->y, 2 * before, 3);
+    EXPECT_NE(panel_.fontPixels().version, version);
+}
+
+}  // namespace
+}  // namespace bonemill
