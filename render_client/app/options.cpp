@@ -130,8 +130,8 @@ topics::Viewer::Role roleOf(const std::string& name) {
 ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     options.settings = viewSettings(raw.view);
     options.chooses_quality = raw.view.quality == "auto";
-    const bool is_one_of_many = dds::isLanProfile(options.network.profile);
-    options.subscriber.role = roleOf(raw.role.value_or(is_one_of_many ? "viewer" : "operator"));
+    const bool only_looks = raw.command.empty() && dds::isLanProfile(options.network.profile);
+    options.subscriber.role = roleOf(raw.role.value_or(only_looks ? "viewer" : "operator"));
     if (!raw.size.empty()) parseSize(raw.size, options);
     if (raw.azimuth_deg) options.view.azimuth = *raw.azimuth_deg * kDegreesToRadians;
     if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegreesToRadians;
