@@ -97,8 +97,7 @@ class WindowViewer {
         spdlog::info("window, {}", window_.gl().describe());
         scene_.setViewOverrides(options.view);
         scene_.settings() = options.settings;
-        if (options.chooses_quality && window_.gl().isSoftware())
-            scene_.settings().quality = Quality::kQuick;
+        if (options.chooses_quality && window_.gl().isSoftware()) scene_.settings().quality = Quality::kQuick;
     }
 
     void run() {

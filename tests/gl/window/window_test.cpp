@@ -48,7 +48,8 @@ class WindowedViewer {
   public:
     explicit WindowedViewer(const std::string& name, const std::string& role)
         : process_({"/bin/sh", "-c",
-                    "cd " + folder_.path().string() + " && exec " BONEMILL_BIN_DIR "/render_client --size " +
+                    "cd " + folder_.path().string() +
+                        " && exec " BONEMILL_BIN_DIR "/render_client --quality full --size " +
                         std::to_string(kWidth) + "x" + std::to_string(kHeight) + " --domain " +
                         std::to_string(testDomain()) + " --session " + std::to_string(testSession()) +
                         " --name " + name + " --role " + role}) {}

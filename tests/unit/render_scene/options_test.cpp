@@ -36,7 +36,7 @@ TEST(Options, ANameOfOnesOwnAndTheRoleOfAnOperator) {
     EXPECT_EQ(parse({"--role", "viewer"})->subscriber.role, topics::Viewer::VIEWER);
     for (const char* profile : {"lab", "classroom"}) {
         EXPECT_EQ(parse({"--profile", profile})->subscriber.role, topics::Viewer::VIEWER);
-        EXPECT_EQ(parse({"--profile", profile, "--set-accuracy", "fast"})->subscriber.role,
+        EXPECT_EQ(parse({"--profile", profile, "--command", "accuracy fast"})->subscriber.role,
                   topics::Viewer::OPERATOR);
         EXPECT_EQ(parse({"--profile", profile, "--role", "operator"})->subscriber.role,
                   topics::Viewer::OPERATOR);
