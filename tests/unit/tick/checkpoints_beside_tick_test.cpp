@@ -14,19 +14,19 @@ namespace {
 
 using test::MilledBall;
 
-constexpr int kTicks = 400, kSaved = 30;  // at least
+constexpr int kTicksBetween = 6, kSaved = 14;
 
-// Mills to and fro through the ball until it is told to stop, and no less than kTicks; keeps what the bone
+// Mills to and fro through the ball until it is told to stop; keeps what the bone
 // was after each tick.
 class MillingIo final : public TickIo {
   public:
     MillingIo(const BoneModel& bone, const std::atomic<bool>& stop) : bone_(bone), stop_(stop) { remember(); }
     bool read(DeviceInput& input) noexcept override {
-        if (stop_ && n_ >= kTicks) return false;
-        const double phase = double(n_++) / 50;
+        if (stop_) return false;
+        const double phase = double(n_++) / 20;
         input = {};
         input.X_WT_device.position = {10e-3 + 5e-3 * std::sin(phase), 10e-3 + 4e-3 * std::sin(0.37 * phase),
-                                      16e-3 - 8e-3 * std::min(1.0, double(n_) / kTicks)};
+                                      16e-3 - 8e-3 * std::min(1.0, double(n_) / 150)};
         input.buttons = kButtonRemove;
         return true;
     }
@@ -35,10 +35,12 @@ class MillingIo final : public TickIo {
     void push(const TickRecord& record) noexcept override {
         removed += record.removed_voxels;
         remember();
+        ++ticks;
     }
 
     std::vector<uint64_t> states;  // hashes
     uint64_t removed = 0;
+    std::atomic<int> ticks{0};
 
     static uint64_t hashOf(const std::vector<Density>& densities) {
         uint64_t hash = 14695981039346656037ull;
@@ -60,14 +62,27 @@ struct Threads {
         config.accuracy.iterations = 1;  // ThreadSanitizer slows each a hundred times
         tick = std::make_unique<HapticTick>(config, ball.bone, tool, &ball.history);
     }
-    void run(const std::function<void()>& keeper) {
-        std::atomic<bool> is_running{true};
+    // Calls keeper(n), n = 0 .. kSaved - 1, with some ticks between; the tick goes on meanwhile.
+    void run(const std::function<void(int)>& keeper) {
         std::thread tick_thread([&] {
-            while (tick->tick(io)) std::this_thread::sleep_for(std::chrono::microseconds(300));
-            is_running = false;
+            while (tick->tick(io)) {
+            }
         });
-        while (is_running) keeper();
+        for (int n = 0; n < kSaved; ++n) {
+            waitForTicks();
+            keeper(n);
+        }
+        waitForTicks();
+        stop = true;
         tick_thread.join();
+    }
+    void waitForTicks() const {
+        const int until = io.ticks + kTicksBetween;
+        while (io.ticks < until) std::this_thread::yield();
+    }
+    void waitUntilRestored() const {
+        while (ball.history.isRestoring()) std::this_thread::yield();
+        waitForTicks();
     }
     // After the last tick.
     std::vector<Density> restored(uint32_t id) {
@@ -86,16 +101,10 @@ struct Threads {
 
 TEST(CheckpointsBesideTick, EachIsTheBoneBetweenTwoTicks) {
     Threads threads;
-    int saved = 0;
-    threads.run([&] {
-        threads.ball.checkpoints.save(saved++);
-        threads.stop = saved > kSaved;
-        std::this_thread::sleep_for(std::chrono::milliseconds(3));
-    });
-    EXPECT_GT(threads.io.removed, 500u);
-    ASSERT_EQ(threads.ball.checkpoints.kept().size(), Checkpoints::kMost) << saved;
+    threads.run([&](int n) { threads.ball.checkpoints.save(n); });
+    EXPECT_GT(threads.io.removed, 100u);
+    ASSERT_EQ(threads.ball.checkpoints.kept().size(), Checkpoints::kMost);
     const std::set<uint64_t> states(threads.io.states.begin(), threads.io.states.end());
-    EXPECT_GT(states.size(), 50u);
     std::set<uint64_t> found;
     for (const Checkpoints::Checkpoint& checkpoint : threads.ball.checkpoints.kept()) {
         const uint64_t hash = MillingIo::hashOf(threads.restored(checkpoint.id));
@@ -103,20 +112,20 @@ TEST(CheckpointsBesideTick, EachIsTheBoneBetweenTwoTicks) {
         EXPECT_EQ(threads.ball.history.missingVoxels(), checkpoint.snapshot->missing_voxels);
         found.insert(hash);
     }
-    EXPECT_GT(found.size(), 2u);
+    EXPECT_GT(found.size(), 3u);
 }
 
 TEST(CheckpointsBesideTick, RestoringAgainAndAgainLosesNothing) {
     Threads threads;
     const int64_t scanned = threads.ball.voxelsOfBone();
-    uint32_t n = 0;
-    threads.run([&] {
+    threads.run([&](int n) {
         const uint32_t id = threads.ball.checkpoints.save(n);
-        threads.stop = n > kSaved;
-        if (++n % 3 == 0) threads.ball.checkpoints.restore(n % 2 ? id - 1 : Checkpoints::kScannedBone);
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        if (n % 3 != 2) return;
+        threads.ball.checkpoints.restore(n % 2 ? id - 1 : Checkpoints::kScannedBone);
+        if (n % 4 == 0) threads.ball.checkpoints.restore(id);
+        threads.waitUntilRestored();
     });
-    EXPECT_GT(threads.io.removed, 50u);
+    EXPECT_GT(threads.io.removed, 100u);
     threads.ball.restoreAll();
     EXPECT_EQ(threads.ball.history.missingVoxels(), scanned - threads.ball.voxelsOfBone());
     EXPECT_EQ(threads.restored(Checkpoints::kScannedBone), MilledBall::densitiesOf(MilledBall::makeBone()));
