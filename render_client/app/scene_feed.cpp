@@ -18,8 +18,8 @@ void SceneFeed::update() {
             cut_to_screen_.willShow(change.cut_stamp_ns);
         }
         const auto& info = subscriber_.sceneInfo();
-        if (info && info->epoch() != info_epoch_) {
-            info_epoch_ = info->epoch();
+        if (info && std::pair(info->epoch(), info->revision()) != shown_info_) {
+            shown_info_ = {info->epoch(), info->revision()};
             scene_.setSceneInfo(*info);
         }
     } catch (const std::invalid_argument& error) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <utility>
 
 #include "render_client/app/cut_to_screen.h"
 #include "render_client/scene/render_scene.h"
@@ -35,8 +36,8 @@ class SceneFeed {
     SceneSubscriber subscriber_;
     RenderScene& scene_;
     CutToScreen cut_to_screen_;
-    uint64_t info_epoch_ = 0;      // of the scene info that was passed on; 0: none
-    uint64_t complete_epoch_ = 0;  // server run whose model was complete once; 0: none
+    std::pair<uint64_t, uint32_t> shown_info_;  // epoch and revision of the scene info that was passed on
+    uint64_t complete_epoch_ = 0;               // server run whose model was complete once; 0: none
     bool had_server_ = false;
 };
 

@@ -76,7 +76,9 @@ void SceneSubscriber::takeSceneInfo() {
             if (!info.has_data || sample.session != options_.session) return;
             std::optional<topics::SceneInfo> scene_info = parseSceneInfo(dds::payloadOf(sample));
             if (!scene_info) return dropMalformed("scene info");
-            if (enterEpoch(scene_info->epoch())) scene_info_ = std::move(scene_info);
+            if (!enterEpoch(scene_info->epoch())) return;
+            if (scene_info_ && scene_info->revision() < scene_info_->revision()) return;
+            scene_info_ = std::move(scene_info);
         });
 }
 

@@ -58,7 +58,9 @@ TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
     const auto publish = [&] {
         for (NodeGroup& group : outbox.takeNearest(Eigen::Vector3f::Zero(), INT64_MAX, monotonicNowNs())) {
             EXPECT_TRUE(publisher.publishNodes(group.meshes, group.oldest_cut_ns).is_whole);
-            for (NodeMesh& mesh : group.meshes) shown[mesh.leaf] = std::move(mesh);
+            for (NodeMesh& mesh : group.meshes)  // as the publisher: a group may hold what was overtaken
+                if (!shown.count(mesh.leaf) || shown[mesh.leaf].revision < mesh.revision)
+                    shown[mesh.leaf] = std::move(mesh);
         }
         TickRecord record;
         while (ring.tryPop(record)) {
