@@ -10,11 +10,11 @@
 namespace bonemill {
 
 void SceneFeed::update() {
-    const SceneModel::Changes changes = subscriber_.poll();
+    SceneModel::Changes changes = subscriber_.poll();
     if (changes.is_cleared) scene_.clearNodes();
     try {
-        for (const SceneModel::Change& change : changes.nodes) {
-            scene_.setNode(change.mesh);
+        for (SceneModel::Change& change : changes.nodes) {
+            scene_.setNode(std::move(change.mesh));
             cut_to_screen_.willShow(change.cut_stamp_ns);
         }
         const auto& info = subscriber_.sceneInfo();

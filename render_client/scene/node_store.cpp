@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "render_client/scene/mesh_difference.h"
+
 namespace bonemill {
 namespace {
 
@@ -23,21 +25,12 @@ bool mayBeVisible(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_fr
 
 }  // namespace
 
-void NodeStore::set(const NodeMesh& mesh) {
+void NodeStore::set(NodeMesh mesh) {
     if (mesh.isEmpty()) return remove(mesh.leaf);
     if (*std::max_element(mesh.indices.begin(), mesh.indices.end()) >= mesh.vertices.size()) {
         throw std::invalid_argument("node " + std::to_string(mesh.leaf) + ": a triangle without its vertex");
     }
-    Node node{GlVertexArray(gl_),
-              GlBuffer(gl_),
-              GlBuffer(gl_),
-              GLsizei(mesh.indices.size()),
-              mesh.origin,
-              mesh.step,
-              {}};
-    for (const PackedVertex& v : mesh.vertices) {
-        node.box.extend(mesh.origin + mesh.step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z)));
-    }
+    Node node{GlVertexArray(gl_), GlBuffer(gl_), GlBuffer(gl_), boxOf(mesh), {}};
     gl_.BindVertexArray(node.layout.name());
     gl_.BindBuffer(GL_ARRAY_BUFFER, node.vertices.name());
     const size_t vertex_bytes = mesh.vertices.size() * sizeof(PackedVertex);
@@ -54,9 +47,11 @@ void NodeStore::set(const NodeMesh& mesh) {
     gl_.EnableVertexAttribArray(0);
     gl_.EnableVertexAttribArray(1);
     gl_.BindVertexArray(0);
-    remove(mesh.leaf);
-    changed_.extend(node.box);
-    nodes_.emplace(mesh.leaf, std::move(node));
+    const auto known = nodes_.find(mesh.leaf);
+    changed_.extend(known == nodes_.end() ? node.box : differenceBox(known->second.mesh, mesh));
+    const uint32_t leaf = mesh.leaf;
+    node.mesh = std::move(mesh);
+    nodes_.insert_or_assign(leaf, std::move(node));
 }
 
 void NodeStore::remove(uint32_t leaf) {
@@ -73,7 +68,7 @@ void NodeStore::clear() {
 
 size_t NodeStore::triangleCount() const {
     size_t count = 0;
-    for (const auto& [leaf, node] : nodes_) count += size_t(node.index_count) / 3;
+    for (const auto& [leaf, node] : nodes_) count += node.mesh.indices.size() / 3;
     return count;
 }
 
@@ -83,11 +78,11 @@ size_t NodeStore::draw(const Program& program, const Eigen::Matrix4f& clip_from_
     size_t triangles = 0;
     for (const auto& [leaf, node] : nodes_) {
         if (!mayBeVisible(node.box, clip_from_V)) continue;
-        program.set(origin, node.origin);
-        program.set(step, node.step);
+        program.set(origin, node.mesh.origin);
+        program.set(step, node.mesh.step);
         gl_.BindVertexArray(node.layout.name());
-        gl_.DrawElements(GL_TRIANGLES, node.index_count, GL_UNSIGNED_INT, nullptr);
-        triangles += size_t(node.index_count) / 3;
+        gl_.DrawElements(GL_TRIANGLES, GLsizei(node.mesh.indices.size()), GL_UNSIGNED_INT, nullptr);
+        triangles += node.mesh.indices.size() / 3;
     }
     gl_.BindVertexArray(0);
     return triangles;

@@ -24,7 +24,7 @@ class NodeStore {
 
     // Replaces the leaf's mesh; an empty one removes it. Throws std::invalid_argument when an index has no
     // vertex.
-    void set(const NodeMesh& mesh);
+    void set(NodeMesh mesh);
     void remove(uint32_t leaf);
     void clear();
 
@@ -44,10 +44,8 @@ class NodeStore {
         GlVertexArray layout;
         GlBuffer vertices;
         GlBuffer indices;
-        GLsizei index_count;
-        Eigen::Vector3f origin;   // V, m
-        Eigen::Vector3f step;     // V, m
         Eigen::AlignedBox3f box;  // V, m
+        NodeMesh mesh;            // what the buffers hold
     };
     const GlApi& gl_;
     std::map<uint32_t, Node> nodes_;

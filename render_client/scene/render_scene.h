@@ -31,7 +31,7 @@ class RenderScene {
 
     // Replaces the node's mesh; an empty one removes it. Throws std::invalid_argument on a mesh that
     // contradicts itself.
-    void setNode(const NodeMesh& mesh) { nodes_.set(mesh); }
+    void setNode(NodeMesh mesh) { nodes_.set(std::move(mesh)); }
     void removeNode(uint32_t leaf) { nodes_.remove(leaf); }
     void clearNodes() { nodes_.clear(); }
 
