@@ -69,21 +69,27 @@ nlohmann::json wire(const Options& o, Table& table) {
             {"decode_us", microseconds(decode)}};
 }
 
-// The scene with a hand that mills round and round for as long as wanted.
+void replace(std::string& text, const std::string& what, const std::string& by) {
+    const size_t at = text.find(what);
+    if (at != std::string::npos) text.replace(at, what.size(), by);
+}
+
+// The scene with every piece of bone, and a hand that mills round and round for as long as wanted.
 std::string millingScene(const std::string& scene, int seconds) {
     std::ifstream file(scene);
     std::ostringstream text;
     text << file.rdbuf();
-    const std::string whole = text.str();
+    std::string whole = text.str();
+    replace(whole, "smallest_piece_voxels: 30000", "smallest_piece_voxels: 0");
     const size_t begin = whole.find("simulated_operator"), end = whole.find("\n}\n", begin);
     if (begin == std::string::npos || end == std::string::npos)
         throw UserError(scene + ": no simulated_operator to replace");
     std::ostringstream path;
     path << "simulated_operator { hand_stiffness_n_per_m: 1500\n";
     for (int s = 0; s <= 2 * seconds; ++s) {
-        const double angle = 0.9 * s, depth = std::min(16.0, 0.1 * s);
+        const double angle = 0.9 * s, depth = std::min(16.0, 1.0 * s), radius = 3 + 0.1 * s;
         path << "  waypoint { time_s: " << 0.5 * s << " p_WT_mm { x: " << 200 - depth
-             << " y: " << 154 + 6 * std::cos(angle) << " z: " << 32 + 6 * std::sin(angle)
+             << " y: " << 154 + radius * std::cos(angle) << " z: " << 32 + radius * std::sin(angle)
              << " } q_WT { w: 0.70710678 z: -0.70710678 } remove: true }\n";
     }
     return whole.substr(0, begin) + path.str() + "}\n" + whole.substr(end + 3);
@@ -107,8 +113,10 @@ double shareOfACore(int pid, std::chrono::seconds time) {
 // A real server whose simulated hand mills all the time.
 class Session {
   public:
-    explicit Session(const std::string& scene)
-        : server_(arguments("haptic_server", scene, {"--domain", std::to_string(testDomain())})),
+    Session(const std::string& scene, const std::string& report)
+        : report_(report),
+          server_(arguments("haptic_server", scene,
+                            {"--domain", std::to_string(testDomain()), "--report", report})),
           daemon_(arguments("device_daemon", scene, {"--wait-seconds", "60"})) {
         SceneSubscriber watcher({.domain = testDomain(), .session = testSession()});
         while (!watcher.isComplete() || !watcher.toolState()) {
@@ -120,6 +128,11 @@ class Session {
     }
     int serverPid() const { return server_.pid(); }
     void stopMilling() { daemon_.signal(SIGTERM); }
+    nlohmann::json finish() {
+        server_.signal(SIGTERM);
+        server_.wait();
+        return nlohmann::json::parse(test::readFile(report_));
+    }
 
   private:
     static std::vector<std::string> arguments(const std::string& program, const std::string& scene,
@@ -129,6 +142,7 @@ class Session {
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
+    std::string report_;
     Process server_, daemon_;
 };
 
@@ -139,8 +153,8 @@ std::vector<double> numbersOf(const std::string& line) {
     return numbers;
 }
 
-nlohmann::json live(const std::string& scene, int viewers, Table& table) {
-    Session session(scene);
+nlohmann::json live(const test::TemporaryFolder& folder, int viewers, Table& table) {
+    Session session(folder / "scene.textproto", folder / "report.json");
     const double alone = shareOfACore(session.serverPid(), kSteady);
     std::vector<std::unique_ptr<ChildProcess>> readers;
     for (int n = 0; n < viewers; ++n) readers.push_back(std::make_unique<ChildProcess>("stream_reader"));
@@ -160,15 +174,22 @@ nlohmann::json live(const std::string& scene, int viewers, Table& table) {
         states.push_back(answer.substr(0, answer.rfind(' ')));
         reader_s += numbersOf(answer).at(2);
     }
-    const bool agree = !states[0].empty() &&
-                       std::all_of(states.begin(), states.end(), [&](auto& s) { return s == states[0]; });
+    const nlohmann::json report = session.finish();
+    const uint64_t digest = std::stoull(report["published_digest"].get<std::string>(), nullptr, 16);
+    const std::string published = report["published_nodes"].dump() + ' ' + std::to_string(digest);
+    const bool agree =
+        std::all_of(states.begin(), states.end(), [&](const std::string& s) { return s == published; });
     table.add({std::to_string(viewers), number(joins[joins.size() / 2]), number(joins.back()),
-               number(100 * alone, 3), number(100 * watched, 3), agree ? "yes" : "NO"});
+               number(100 * alone, 3), number(100 * watched, 3), number(report["removed_mm3"]),
+               agree ? "yes" : "NO"});
     return {{"viewers", viewers},
             {"join_s", {{"p50", joins[joins.size() / 2]}, {"max", joins.back()}}},
             {"server_share_alone", alone},
             {"server_share", watched},
             {"reader_s_mean", reader_s / viewers},
+            {"removed_mm3", report["removed_mm3"]},
+            {"node_write_ms", report["node_write_ms"]},
+            {"dropped_ticks", report["dropped_ticks"]},
             {"states_agree", agree}};
 }
 
@@ -181,10 +202,10 @@ void run(const Options& o) {
     }
     const int most = o.viewers.empty() ? 0 : *std::max_element(o.viewers.begin(), o.viewers.end());
     const test::TemporaryFolder folder;
-    const std::string scene = folder / "scene.textproto";
-    test::writeFile(scene, millingScene(o.scene, 60 + most));
-    Table table({"viewers", "join, s p50", "max", "server alone, % of a core", "watched", "states agree"});
-    for (const int viewers : o.viewers) json["live"].push_back(live(scene, viewers, table));
+    test::writeFile(folder / "scene.textproto", millingScene(o.scene, 60 + most));
+    Table table({"viewers", "join, s p50", "max", "server alone, % of a core", "watched", "removed, mm3",
+                 "states agree"});
+    for (const int viewers : o.viewers) json["live"].push_back(live(folder, viewers, table));
     table.print();
     writeJson(o.json, json);
 }
