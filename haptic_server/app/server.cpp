@@ -26,7 +26,7 @@ using namespace std::chrono_literals;
 constexpr size_t kRingRecords = 8192;  // 8 s at 1 kHz: a stalled disk loses nothing
 constexpr size_t kRingCuts = 8192;
 constexpr int kTickPriority = 80;
-constexpr auto kPublishPeriod = 10ms;
+constexpr auto kPublishPeriod = 5ms;
 constexpr auto kRecordPeriod = 4ms;
 constexpr int64_t kWarmUpNs = kNsPerSecond;
 

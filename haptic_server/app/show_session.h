@@ -19,7 +19,7 @@ class ShowSession {
                 const AccuracyFigures& figures, MeshOutbox& outbox, const Recorder& recorder,
                 SessionCommands& commands, double bytes_per_s);
 
-    // One round, about 100 times per second; publisher thread only.
+    // One round, about 200 times per second; publisher thread only.
     void round();
 
   private:

@@ -41,6 +41,16 @@ Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const 
     return measured;
 }
 
+// Makes buffers, compiles shaders, draws the whole model, and what has come meanwhile.
+void warmUp(const ClientOptions& options, const OsmesaContext& context, RenderScene& scene, SceneFeed& feed) {
+    constexpr int kPictures = 3;
+    for (int n = 0; n < kPictures; ++n) {
+        feed.update();
+        scene.draw(options.width, options.height, textScale(options.height));
+        context.gl().Finish();
+    }
+}
+
 void printTimes(const char* key, const LatencyHistogram& times) {
     const auto ms = [&](double percent) { return double(times.percentileNs(percent)) * 1e-6; };
     std::printf("\"%s\":{\"count\":%llu,\"p50\":%.2f,\"p99\":%.2f,\"max\":%.2f}", key,
@@ -58,9 +68,7 @@ void runMeasurement(const ClientOptions& options) {
     if (options.chooses_quality && context.gl().isSoftware()) scene.settings().quality = Quality::kQuick;
     SceneFeed feed(options.subscriber, scene);
     waitUntilComplete(feed, options.subscriber, options.measure->timeout);
-    scene.draw(options.width, options.height,
-               textScale(options.height));  // makes buffers and compiles shaders
-    context.gl().Finish();
+    warmUp(options, context, scene, feed);
     feed.cutToScreen().forget();
     const UploadCount before = scene.uploads();
     const Measured measured = drawFor(options.measure->time, options, context, scene, feed);
