@@ -8,7 +8,9 @@
 namespace bonemill {
 namespace {
 
+constexpr int64_t kToolStatePeriodNs = 9 * kNsPerMillisecond;
 constexpr int64_t kStatusPeriodNs = 250 * kNsPerMillisecond;
+constexpr int64_t kStatusAfterChangeNs = 20 * kNsPerMillisecond;
 
 template <class Repeated, class Vector>
 void assign(Repeated* out, const Vector& v) {
@@ -95,12 +97,20 @@ void ShowSession::publishSceneInfo() {
 }
 
 void ShowSession::round() {
-    const bool has_changed = publishNodes();
-    if (const auto latest = recorder_.latest()) publisher_.publishToolState(*latest);
+    has_changed_ |= publishNodes();
+    const int64_t now_ns = monotonicNowNs();
+    if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
     // A status, also an acknowledging one, counts the nodes: part of the bone would look complete.
     if (!is_whole_) return;
     carryOutCommands();
-    if (has_changed || monotonicNowNs() - last_status_ns_ > kStatusPeriodNs) publishStatus();
+    if (now_ns - last_status_ns_ > (has_changed_ ? kStatusAfterChangeNs : kStatusPeriodNs)) publishStatus();
+}
+
+void ShowSession::publishToolState(int64_t now_ns) {
+    const auto latest = recorder_.latest();
+    if (!latest) return;
+    publisher_.publishToolState(*latest);
+    last_tool_state_ns_ = now_ns;
 }
 
 // Those nearest to the burr first, as many as the budget allows.
@@ -133,6 +143,7 @@ void ShowSession::carryOutCommands() {
 
 void ShowSession::publishStatus() {
     last_status_ns_ = monotonicNowNs();
+    has_changed_ = false;
     const LoopHealth health = recorder_.health();
     topics::Status status;
     status.set_scene(scene_name_);

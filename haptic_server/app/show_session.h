@@ -24,6 +24,7 @@ class ShowSession {
 
   private:
     bool publishNodes();
+    void publishToolState(int64_t now_ns);
     void publishStatus();
     void publishSceneInfo();
     void carryOutCommands();
@@ -39,7 +40,9 @@ class ShowSession {
     AccuracyFigures figures_;
     const std::vector<SceneTool>& tools_;
     topics::SceneInfo scene_info_;  // as last published
+    int64_t last_tool_state_ns_ = 0;
     int64_t last_status_ns_ = 0;
+    bool has_changed_ = false;  // since the last status
 };
 
 }  // namespace bonemill

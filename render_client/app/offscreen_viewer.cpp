@@ -29,7 +29,7 @@ std::string describe(uint32_t frame, const std::string& file, const RenderScene&
     char line[512];
     std::snprintf(line, sizeof line,
                   "{\"frame\":%u,\"file\":\"%s\",\"nodes\":%zu,\"triangles\":%zu,"
-                  "\"revision_digest\":\"%016" PRIx64 "\",\"complete\":%s,\"server\":%s,\"epoch\":%" PRIu64
+                  "\"node_digest\":\"%016" PRIx64 "\",\"complete\":%s,\"server\":%s,\"epoch\":%" PRIu64
                   ",\"tick\":%" PRIu64 ",\"uploaded_nodes\":%" PRIu64 ",\"uploaded_bytes\":%" PRIu64 "}",
                   frame, file.c_str(), scene.nodeCount(), scene.triangleCount(), subscriber.digest().value(),
                   feed.isComplete() ? "true" : "false", subscriber.hasServer() ? "true" : "false",

@@ -32,7 +32,7 @@ class Profiles : public test::NetworkSession {
         ASSERT_TRUE(waitFor([&] { return agree(all); }));
         const auto report = stopServer();
         EXPECT_NE(report["published_digest"], first) << "nothing was milled";
-        EXPECT_EQ(late["revision_digest"], report["published_digest"]);
+        EXPECT_EQ(late["node_digest"], report["published_digest"]);
         EXPECT_EQ(late["complete"], true);
         for (const auto& probe : probes) EXPECT_EQ(newest(*probe)["digest"], report["published_digest"]);
     }

@@ -124,8 +124,8 @@ TEST_F(Session, ALateClientShowsTheSamePicture) {
     ASSERT_GT(lines.size(), 5u);
     const auto first_json = nlohmann::json::parse(lines.front());
     const auto early_json = nlohmann::json::parse(lines.back()), late_json = nlohmann::json::parse(late.out);
-    EXPECT_NE(first_json["revision_digest"], early_json["revision_digest"]);  // it saw the milling
-    EXPECT_EQ(early_json["revision_digest"], late_json["revision_digest"]);
+    EXPECT_NE(first_json["node_digest"], early_json["node_digest"]);  // it saw the milling
+    EXPECT_EQ(early_json["node_digest"], late_json["node_digest"]);
     EXPECT_TRUE(early_json["complete"] && late_json["complete"]);
     const auto picture = [this](const std::string& folder, const nlohmann::json& json) {
         return test::readFile(folder_ / (folder + "/" + json["file"].get<std::string>()));
