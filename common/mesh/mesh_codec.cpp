@@ -14,6 +14,9 @@ namespace {
 
 // meshoptimizer spends at least one byte on each triangle.
 constexpr uint64_t kMaxIndicesPerByte = 3;
+// m: no bone is there; what is computed from it stays finite.
+constexpr float kFarthest = 1e6f;
+constexpr float kLargestStep = 1;
 
 struct Buffers {
     std::vector<PackedVertex> vertices;
@@ -122,7 +125,10 @@ std::optional<DecodedNode> decodeNodeMesh(std::string_view bytes, uint32_t leaf)
     if (!message.ParseFromArray(bytes.data(), int(bytes.size()))) return std::nullopt;
     const auto origin = finiteVector(message.origin_m());
     const auto step = finiteVector(message.step_m());
-    if (!origin || !step || !(step->minCoeff() > 0) || !hasPlausibleCounts(message)) return std::nullopt;
+    if (!origin || !step || !hasPlausibleCounts(message)) return std::nullopt;
+    if (origin->cwiseAbs().maxCoeff() > kFarthest || step->maxCoeff() > kLargestStep ||
+        !(step->minCoeff() > 0))
+        return std::nullopt;
 
     DecodedNode node;
     NodeMesh& mesh = node.mesh;

@@ -22,7 +22,8 @@ PixelBox PixelBox::around(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f&
     for (int i = 0; i < 8; ++i) {
         const Eigen::Vector4f corner =
             clip_from_model * box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(i)).homogeneous();
-        if (!(corner.w() > 0) || corner.z() < -corner.w()) return whole(width, height);
+        if (!(corner.w() > 0) || !(corner.z() >= -corner.w()) || !corner.allFinite())
+            return whole(width, height);
         ndc.extend(Eigen::Vector2f(corner.head<2>() / corner.w()));
     }
     const auto pixel = [](float value, int size) {

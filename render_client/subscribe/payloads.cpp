@@ -12,16 +12,24 @@ namespace {
 
 // A quaternion that went through double arithmetic stays far closer to unit length than this.
 constexpr double kUnitTolerance = 1e-3;
-constexpr size_t kLongestName = 64;  // bytes
+constexpr size_t kLongestName = 64;   // bytes
+constexpr size_t kLongestText = 512;  // bytes
+constexpr double kLargestNumber = 1e6;
+constexpr int kMostTools = 64;  // far more than a scene may have
 
 template <class Field>
 bool isFinite(const Field& field) {
     return std::ranges::all_of(field, [](auto value) { return std::isfinite(value); });
 }
 
+// Finite, and small enough that what is computed from it stays so.
+bool isSane(double value) {
+    return std::abs(value) <= kLargestNumber;
+}
+
 template <class Field>
 bool isVector(const Field& field) {
-    return field.size() == 3 && isFinite(field);
+    return field.size() == 3 && std::ranges::all_of(field, isSane);
 }
 
 template <class Field>
@@ -36,21 +44,20 @@ bool isDrawable(const topics::TriangleMesh& mesh) {
     const auto vertex_count = static_cast<uint32_t>(coordinates / 3);
     const auto& indices = mesh.indices();
     return coordinates % 3 == 0 && mesh.normals_size() == coordinates && indices.size() % 3 == 0 &&
-           isFinite(mesh.vertices_m()) && isFinite(mesh.normals()) &&
+           std::ranges::all_of(mesh.vertices_m(), isSane) && std::ranges::all_of(mesh.normals(), isSane) &&
            std::ranges::all_of(indices, [&](uint32_t index) { return index < vertex_count; });
 }
 
 bool isUsable(const topics::Camera& camera) {
     return (!camera.has_target() || isVector(camera.target_m())) &&
-           (camera.up().empty() || isVector(camera.up())) && std::isfinite(camera.distance_m()) &&
-           camera.distance_m() >= 0 && std::isfinite(camera.azimuth_rad()) &&
-           std::isfinite(camera.elevation_rad());
+           (camera.up().empty() || isVector(camera.up())) && isSane(camera.distance_m()) &&
+           camera.distance_m() >= 0 && isSane(camera.azimuth_rad()) && isSane(camera.elevation_rad());
 }
 
 bool isUsable(const topics::SceneInfo& info) {
     return isVector(info.p_wv_m()) && isQuaternion(info.q_wv()) && isVector(info.bone_min_m()) &&
-           isVector(info.bone_max_m()) && std::isfinite(info.burr_radius_m()) && info.burr_radius_m() >= 0 &&
-           isDrawable(info.tool()) && isUsable(info.camera());
+           isVector(info.bone_max_m()) && isSane(info.burr_radius_m()) && info.burr_radius_m() >= 0 &&
+           info.tool_names_size() <= kMostTools && isDrawable(info.tool()) && isUsable(info.camera());
 }
 
 bool isUsable(const topics::ToolState& state) {
@@ -72,16 +79,19 @@ bool isUsable(const topics::Viewer& viewer) {
 }
 
 // What stands on a screen: no control signs, no broken UTF-8 (cut off with all that follows), not too long.
-std::string shownName(const std::string& name) {
+std::string shownText(const std::string& name, size_t longest) {
     std::string shown;
-    for (size_t i = 0; i < name.size() && shown.size() < kLongestName;) {
+    for (size_t i = 0; i < name.size() && shown.size() < longest;) {
         const auto lead = static_cast<unsigned char>(name[i]);
         const size_t length = lead < 0x80 ? 1 : lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
-        if (i + length > name.size() || shown.size() + length > kLongestName) break;
+        if (i + length > name.size() || shown.size() + length > longest) break;
         if (length > 1 || std::isprint(lead)) shown.append(name, i, length);
         i += length;
     }
     return shown;
+}
+std::string shownName(const std::string& name) {
+    return shownText(name, kLongestName);
 }
 
 template <class Message>
@@ -113,7 +123,11 @@ std::optional<DecodedNode> parseNode(std::span<const uint8_t> payload, uint32_t 
 }
 
 std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload) {
-    return parseOfEpoch<topics::SceneInfo>(payload);
+    std::optional<topics::SceneInfo> info = parseOfEpoch<topics::SceneInfo>(payload);
+    if (!info) return info;
+    info->set_name(shownName(info->name()));
+    for (std::string& name : *info->mutable_tool_names()) name = shownName(name);
+    return info;
 }
 
 std::optional<topics::ToolState> parseToolState(std::span<const uint8_t> payload) {
@@ -121,7 +135,12 @@ std::optional<topics::ToolState> parseToolState(std::span<const uint8_t> payload
 }
 
 std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {
-    return parseOfEpoch<topics::Status>(payload);
+    std::optional<topics::Status> status = parseOfEpoch<topics::Status>(payload);
+    if (!status) return status;
+    for (std::string* text : {status->mutable_scene(), status->mutable_preset(), status->mutable_fault_text(),
+                              status->mutable_last_command_result()})
+        *text = shownText(*text, kLongestText);
+    return status;
 }
 
 std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint64_t sender) {

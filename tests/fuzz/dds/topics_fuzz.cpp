@@ -8,6 +8,7 @@
 #include "common/mesh/mesh_codec.h"
 #include "haptic_server/publish/command_inbox.h"
 #include "render_client/subscribe/payloads.h"
+#include "tests/support/mutated_bytes.h"
 #include "tests/support/synthetic_nodes.h"
 
 namespace bonemill {
@@ -17,40 +18,12 @@ constexpr int kRounds = 20000;
 
 using Bytes = std::span<const uint8_t>;
 
-// Valid bytes with a few bits, bytes, or the length changed; now and then only noise.
-std::string mutated(const std::string& valid, std::mt19937& random) {
-    const auto below = [&](size_t n) { return std::uniform_int_distribution<size_t>(0, n - 1)(random); };
-    std::string bytes = valid;
-    if (below(20) == 0) {
-        bytes.resize(below(200));
-        for (char& c : bytes) c = static_cast<char>(random());
-        return bytes;
-    }
-    for (size_t changes = 1 + below(4); changes > 0 && !bytes.empty(); --changes) {
-        switch (below(4)) {
-            case 0:
-                bytes[below(bytes.size())] ^= static_cast<char>(1u << below(8));
-                break;
-            case 1:
-                bytes[below(bytes.size())] = static_cast<char>(random());
-                break;
-            case 2:
-                bytes.resize(below(bytes.size() + 1));
-                break;
-            default:
-                bytes.insert(below(bytes.size() + 1), 1, static_cast<char>(random()));
-                break;
-        }
-    }
-    return bytes;
-}
-
 // Returns how many of the mutated byte strings were accepted.
 int fuzz(const std::string& valid, const std::function<bool(Bytes)>& accepts) {
     std::mt19937 random(20121);
     int accepted = 0;
     for (int round = 0; round < kRounds; ++round) {
-        const std::string bytes = mutated(valid, random);
+        const std::string bytes = test::mutated(valid, random);
         accepted += accepts({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
     }
     EXPECT_TRUE(accepts({reinterpret_cast<const uint8_t*>(valid.data()), valid.size()}));
@@ -110,6 +83,22 @@ TEST(TopicsFuzz, Status) {
     fuzz(status.SerializeAsString(), [](Bytes bytes) {
         const auto parsed = parseStatus(bytes);
         return parsed && std::isfinite(parsed->rate_hz());
+    });
+}
+
+TEST(TopicsFuzz, Viewer) {
+    topics::Viewer viewer;
+    viewer.set_sender(7);
+    viewer.set_name("Ärztin");
+    viewer.set_role(topics::Viewer::INSTRUCTOR);
+    viewer.mutable_pointer_m()->Resize(3, 0.5);
+    fuzz(viewer.SerializeAsString(), [](Bytes bytes) {
+        const auto parsed = parseViewer(bytes, 7);
+        if (!parsed) return false;
+        EXPECT_LE(parsed->name().size(), 64u);
+        EXPECT_TRUE(parsed->pointer_m().empty() || parsed->pointer_m_size() == 3);
+        for (const double coordinate : parsed->pointer_m()) EXPECT_TRUE(std::isfinite(coordinate));
+        return true;
     });
 }
 
