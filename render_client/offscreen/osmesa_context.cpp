@@ -6,6 +6,14 @@
 
 #include "render_client/offscreen/read_picture.h"
 
+#ifdef __SANITIZE_ADDRESS__
+// Mesa keeps about a kilobyte for the process.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() {
+    return "leak:libOSMesa.so\n";
+}
+#endif
+
 namespace bonemill {
 namespace {
 
