@@ -161,7 +161,7 @@ class Server {
         loop(stop, MeshRounds::kPeriod, [&] {
             for (bool is_more = true; is_more && !stop.stop_requested();) {
                 is_more = rounds.round(put);
-                if (rounds.hasMeshedAll()) outbox_.markWhole();
+                if (rounds.hasMeshedAll()) outbox_.markWhole(monotonicNowNs());
             }
         });
         recorder_.setCutToPublisher(rounds.cutToSink());

@@ -100,8 +100,6 @@ void ShowSession::round() {
     has_changed_ |= publishNodes();
     const int64_t now_ns = monotonicNowNs();
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
-    // A status, also an acknowledging one, counts the nodes: part of the bone would look complete.
-    if (!is_whole_) return;
     carryOutCommands();
     if (now_ns - last_status_ns_ > (has_changed_ ? kStatusAfterChangeNs : kStatusPeriodNs)) publishStatus();
 }
@@ -115,7 +113,6 @@ void ShowSession::publishToolState(int64_t now_ns) {
 
 // Those nearest to the burr first, as many as the budget allows.
 bool ShowSession::publishNodes() {
-    const bool will_be_whole = outbox_.isWhole();  // before taking
     Eigen::Vector3d burr_V = Eigen::Vector3d::Zero();
     if (const auto latest = recorder_.latest())
         burr_V = X_VW_ * Eigen::Map<const Eigen::Vector3d>(latest->p_WT);
@@ -127,7 +124,7 @@ bool ShowSession::publishNodes() {
         budget_.spend(written.bytes);
         if (!written.is_whole) outbox_.put(std::move(group), now_ns);  // next round; a newer revision wins
     }
-    is_whole_ = is_whole_ || (will_be_whole && outbox_.isEmpty());
+    is_whole_ = is_whole_ || outbox_.hasGivenWhole();
     return !groups.empty();
 }
 
@@ -147,6 +144,7 @@ void ShowSession::publishStatus() {
     const LoopHealth health = recorder_.health();
     topics::Status status;
     status.set_scene(scene_name_);
+    status.set_is_model_partial(!is_whole_);
     status.set_preset(settingsName(commands_.accuracy().chosen()));
     // accuracy-report measures with the first tool.
     const auto figure = commands_.tools().chosen() == 0 ? figures_.find(status.preset()) : figures_.end();

@@ -21,12 +21,12 @@ int64_t codedSize(const std::map<uint32_t, NodeMesh>& meshes) {
 float distanceOf(const std::map<uint32_t, NodeMesh>& meshes, const Eigen::Vector3f& point) {
     float nearest = std::numeric_limits<float>::max();
     for (const auto& [leaf, mesh] : meshes) {
-        if (mesh.isEmpty()) return 0;  // an emptied leaf has no place, and costs nothing to send
+        if (mesh.isEmpty()) continue;  // an emptied leaf has no place
         const PackedVertex& v = mesh.vertices.front();
         const Eigen::Vector3f p = mesh.origin + mesh.step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z));
         nearest = std::min(nearest, (p - point).norm());
     }
-    return nearest;
+    return nearest < std::numeric_limits<float>::max() ? nearest : 0;  // nothing but emptied: costs nothing
 }
 
 int64_t olderCut(int64_t a, int64_t b) {
@@ -40,7 +40,7 @@ void MeshOutbox::join(Waiting& into, Waiting&& other) {
         const auto [place, is_new] = into.meshes.try_emplace(leaf);
         if (is_new || place->second.revision < mesh.revision) place->second = std::move(mesh);
     }
-    into.leaves.insert(into.leaves.end(), other.leaves.begin(), other.leaves.end());
+    into.leaves.insert(other.leaves.begin(), other.leaves.end());
     into.oldest_cut_ns = olderCut(into.oldest_cut_ns, other.oldest_cut_ns);
     into.since_ns = std::min(into.since_ns, other.since_ns);
 }
@@ -50,26 +50,33 @@ bool MeshOutbox::isEmpty() const {
     return groups_.empty();
 }
 
+void MeshOutbox::markWhole(int64_t now_ns) {
+    const std::lock_guard lock(mutex_);
+    if (whole_ns_ == 0) whole_ns_ = now_ns;
+}
+
+bool MeshOutbox::hasGivenWhole() const {
+    const std::lock_guard lock(mutex_);
+    const auto is_of_whole = [this](const auto& group) { return group.second.since_ns <= whole_ns_; };
+    return whole_ns_ != 0 && std::ranges::none_of(groups_, is_of_whole);
+}
+
 void MeshOutbox::put(NodeGroup&& group, int64_t now_ns) {
     if (group.meshes.empty()) return;
     Waiting joined;
     joined.since_ns = now_ns;
     joined.oldest_cut_ns = group.oldest_cut_ns;
-    joined.leaves = std::move(group.neighbours);
+    joined.leaves.insert(group.neighbours.begin(), group.neighbours.end());
     for (NodeMesh& mesh : group.meshes) {
-        joined.leaves.push_back(mesh.leaf);
+        joined.leaves.insert(mesh.leaf);
         joined.meshes.insert_or_assign(mesh.leaf, std::move(mesh));
     }
     const std::lock_guard lock(mutex_);
-    const std::vector<uint32_t> leaves = joined.leaves;
-    for (const uint32_t leaf : leaves) {
-        const auto of_leaf = group_of_.find(leaf);
-        if (of_leaf == group_of_.end()) continue;
-        const auto waiting = groups_.find(of_leaf->second);
-        if (waiting == groups_.end()) continue;
-        join(joined, std::move(waiting->second));
-        groups_.erase(waiting);
-    }
+    std::set<uint64_t> touched;
+    for (const uint32_t leaf : joined.leaves)
+        if (const auto group_id = group_of_.find(leaf); group_id != group_of_.end())
+            touched.insert(group_id->second);
+    for (const uint64_t id : touched) join(joined, std::move(groups_.extract(id).mapped()));
     const uint64_t id = next_group_++;
     for (const uint32_t leaf : joined.leaves) group_of_[leaf] = id;
     groups_.emplace(id, std::move(joined));

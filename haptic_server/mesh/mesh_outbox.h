@@ -2,9 +2,10 @@
 // that changed together in one group. Any normal thread; never the tick.
 #pragma once
 
-#include <atomic>
+#include <cstdint>
 #include <map>
 #include <mutex>
+#include <set>
 #include <vector>
 
 #include "common/geometry/node_mesh.h"
@@ -32,14 +33,15 @@ class MeshOutbox {
 
     bool isEmpty() const;
 
-    // Every leaf has been put once: from now on a client that has all nodes has the whole bone.
-    void markWhole() { is_whole_.store(true, std::memory_order_release); }
-    bool isWhole() const { return is_whole_.load(std::memory_order_acquire); }
+    // Every leaf has been put once. (Later calls change nothing.)
+    void markWhole(int64_t now_ns);
+    // All that was put until then has been taken: who has all nodes has the whole bone.
+    bool hasGivenWhole() const;
 
   private:
     struct Waiting {
         std::map<uint32_t, NodeMesh> meshes;  // by leaf
-        std::vector<uint32_t> leaves;         // of these meshes and their neighbours
+        std::set<uint32_t> leaves;            // of these meshes and their neighbours
         int64_t oldest_cut_ns = 0;
         int64_t since_ns = 0;
     };
@@ -49,7 +51,7 @@ class MeshOutbox {
     std::map<uint64_t, Waiting> groups_;
     std::map<uint32_t, uint64_t> group_of_;  // by leaf
     uint64_t next_group_ = 0;
-    std::atomic<bool> is_whole_{false};
+    int64_t whole_ns_ = 0;  // 0: not yet
 };
 
 }  // namespace bonemill

@@ -51,7 +51,8 @@ void SceneFeed::updateUntil(std::chrono::steady_clock::time_point end, Stop&& st
     while (!stop()) {
         const auto left = end - std::chrono::steady_clock::now();
         if (left <= left.zero()) return;
-        if (subscriber_.waitForData(std::min<std::chrono::nanoseconds>(left, kSlice))) update();
+        subscriber_.waitForData(std::min<std::chrono::nanoseconds>(left, kSlice));
+        update();
     }
 }
 

@@ -1,8 +1,9 @@
 // Which node meshes the client has, and the changes that the renderer has not seen yet. One thread.
 //
 // Applies what arrives idempotently, whatever its order: the newest epoch counts, and in it the newest
-// revision. Nodes of one batch come out together, so that no crack shows between them: DDS delivers a
-// writer's samples in order, so only the newest batch can still be on its way.
+// revision. What belongs together comes out together, so that no crack shows: nodes wait until the newest
+// batch is whole. DDS delivers a writer's samples in order, but of each node keeps only the newest; so an
+// older batch may lack nodes that were overtaken, and is whole as soon as the newest one is.
 #pragma once
 
 #include <chrono>
@@ -18,7 +19,7 @@ namespace bonemill {
 class SceneModel {
   public:
     using Clock = std::chrono::steady_clock;
-    // A batch that is not whole by then comes out all the same.
+    // What has waited for longer comes out all the same.
     static constexpr std::chrono::milliseconds kLongestWait{50};
 
     struct Change {
@@ -50,14 +51,17 @@ class SceneModel {
         uint32_t revision;
         uint64_t content;
     };
+    bool isNewestWhole() const;
     void release();
     void show(DecodedNode&& node);
+    void hide(uint32_t leaf);
 
     uint64_t epoch_ = 0;
     std::unordered_map<uint32_t, Node> nodes_;  // the leaves with a mesh
     std::unordered_map<uint64_t, uint64_t> writer_epochs_;
     uint64_t batch_ = 0;                // the newest one
-    std::vector<DecodedNode> waiting_;  // of it
+    uint32_t batch_nodes_ = 0;          // of it
+    std::vector<DecodedNode> waiting_;  // in the order of their arrival; an empty mesh removes its leaf
     Clock::time_point waiting_since_;
     NodeDigest digest_;
     Changes changes_;

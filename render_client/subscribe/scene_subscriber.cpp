@@ -38,6 +38,7 @@ SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
     wait_set_.add(scene_info_reader_.handle());
     wait_set_.add(tool_state_reader_.handle());
     wait_set_.add(status_reader_.handle());
+    wait_set_.add(viewer_reader_.handle());
 }
 
 SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
@@ -164,7 +165,8 @@ void SceneSubscriber::dropMalformed(const char* what) {
 }
 
 bool SceneSubscriber::isComplete() const {
-    return status_ && status_->node_count() == digest().count() && status_->node_digest() == digest().value();
+    return status_ && !status_->is_model_partial() && status_->node_count() == digest().count() &&
+           status_->node_digest() == digest().value();
 }
 
 bool SceneSubscriber::hasServer() const {

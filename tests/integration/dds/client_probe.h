@@ -15,8 +15,8 @@ struct ClientProbe {
     uint32_t changes = 0;
     uint32_t clearings = 0;
 
-    void poll() {
-        SceneModel::Changes update = subscriber.poll();
+    void poll(size_t max_nodes = SceneSubscriber::kAllNodes) {
+        SceneModel::Changes update = subscriber.poll(max_nodes);
         if (update.is_cleared) {
             nodes.clear();
             ++clearings;

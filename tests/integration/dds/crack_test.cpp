@@ -1,5 +1,5 @@
-// A burr mills across node borders under a tight budget: what a viewer holds is a closed surface in every
-// frame.
+// A burr mills across node borders under a tight budget, and the viewer's frames cut the batches that arrive:
+// what it shows is a closed surface all the time.
 #include <gtest/gtest.h>
 
 #include "common/rt/clock.h"
@@ -53,6 +53,7 @@ class Cracks : public testing::Test {
     MeshOutbox outbox_;
     Publisher publisher_{{.domain = testDomain(), .session = testSession(), .epoch = 0}};
     ClientProbe client_;
+    int open_pictures_ = 0;
 };
 
 TEST_F(Cracks, NoneIsSeenForMoreThanAFrame) {
@@ -60,20 +61,22 @@ TEST_F(Cracks, NoneIsSeenForMoreThanAFrame) {
     publish(Eigen::Vector3d::Zero(), INT64_MAX);
     ASSERT_TRUE(client_.pollUntil([&] { return client_.subscriber.isComplete(); }));
     ASSERT_TRUE(isClosed());
-    int open_frames = 0, frames_in_a_row = 0;
+    int open_in_a_row = 0;
     for (int frame = 0; frame < 150; ++frame) {
         const double along = 2e-3 + 7e-3 * frame / 150;
         const Eigen::Vector3d burr(along, 6e-3 + 3e-3 * std::sin(along * 3e3), 5.6e-3);
         millAt(burr);
         mesh();
         publish(burr, frame % 3 == 0 ? 2000 : 0);  // what changed waits, and only little may go at a time
-        client_.poll();
-        const bool is_open = !isClosed();
-        open_frames += is_open;
-        frames_in_a_row = is_open ? frames_in_a_row + 1 : 0;
-        ASSERT_LE(frames_in_a_row, 1) << "frame " << frame;
+        for (const size_t nodes : {size_t(3), SceneSubscriber::kAllNodes}) {
+            client_.poll(nodes);
+            // Once only if this process was not run for so long that the viewer no longer waited.
+            open_in_a_row = isClosed() ? 0 : open_in_a_row + 1;
+            ASSERT_LE(open_in_a_row, 1) << "frame " << frame;
+            open_pictures_ += open_in_a_row;
+        }
     }
-    RecordProperty("open_frames", open_frames);
+    EXPECT_LE(open_pictures_, 3);
     publish(Eigen::Vector3d::Zero(), INT64_MAX);
     ASSERT_TRUE(client_.pollUntil([&] {
         return client_.subscriber.isComplete() && client_.subscriber.digest() == publisher_.digest();

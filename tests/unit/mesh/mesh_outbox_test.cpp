@@ -110,5 +110,41 @@ TEST(MeshOutbox, AGroupPutBackIsTheSameGroup) {
     EXPECT_EQ(leavesOf(outbox.takeNearest(kOrigin, kAll, 0)), (Leaves{{1, 2, 8}}));
 }
 
+// A restore changes many leaves far away, and empties one.
+TEST(MeshOutbox, AnEmptiedLeafDoesNotMakeItsGroupNear) {
+    MeshOutbox outbox;
+    outbox.put(groupOf({emptyMeshOf(1, 2), meshOf(2, 2, 0.2f)}), 0);
+    outbox.put(groupOf({meshOf(3, 2, 0.01f)}), 0);
+    EXPECT_EQ(leavesOf(outbox.takeNearest(kOrigin, 1, 0)), (Leaves{{3}}));
+}
+
+TEST(MeshOutbox, WaitingDoesNotPileUpNeighbours) {
+    MeshOutbox outbox;
+    for (uint32_t n = 0; n < 100; ++n) {
+        NodeGroup group = groupOf({meshOf(1, 2 * n + 2)});
+        group.neighbours = {1, 2, 3};
+        outbox.put(std::move(group), 0);
+    }
+    const auto taken = outbox.takeNearest(kOrigin, kAll, 0);
+    ASSERT_EQ(taken.size(), 1u);
+    EXPECT_EQ(taken[0].neighbours, (std::vector<uint32_t>{2, 3}));
+}
+
+// Milling goes on while the first model waits for its turn: what it adds does not count.
+TEST(MeshOutbox, TheWholeIsGivenWhenAllThatWasThereIs) {
+    MeshOutbox outbox;
+    outbox.put(groupOf({meshOf(1, 2, 0.01f)}), 10);
+    outbox.put(groupOf({meshOf(2, 2, 0.05f)}), 10);
+    EXPECT_FALSE(outbox.hasGivenWhole());
+    outbox.markWhole(20);
+    outbox.put(groupOf({meshOf(3, 2, 0.002f)}), 30);
+    EXPECT_EQ(leavesOf(outbox.takeNearest(kOrigin, 1, 30)), (Leaves{{3}}));
+    EXPECT_EQ(leavesOf(outbox.takeNearest(kOrigin, 1, 30)), (Leaves{{1}}));
+    EXPECT_FALSE(outbox.hasGivenWhole());
+    outbox.put(groupOf({meshOf(4, 2, 0.09f)}), 40);
+    EXPECT_EQ(leavesOf(outbox.takeNearest(kOrigin, 1, 40)), (Leaves{{2}}));
+    EXPECT_TRUE(outbox.hasGivenWhole());
+}
+
 }  // namespace
 }  // namespace bonemill
