@@ -49,7 +49,7 @@ class Publisher {
     // Best effort, for 60 to 100 calls per second; the time stamp is that of the call.
     bool publishToolState(const TickRecord& record);
     // Epoch, node count, node digest and last command are filled in. Clients take a server for lost that
-    // publishes no status for 3 s: call at least once per second, and right after the last of a group of
+    // publishes nothing for 3 s: call at least once per second, and right after the last of a group of
     // nodes.
     bool publishStatus(topics::Status status);
 

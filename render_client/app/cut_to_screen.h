@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <set>
 
 #include "common/rt/latency_histogram.h"
 
@@ -12,20 +12,22 @@ namespace bonemill {
 
 class CutToScreen {
   public:
-    // The next picture shows a node with a cut that began then (NodeTag::cut_stamp_ns; 0: no cut).
+    // The next picture shows the first node of a group with this stamp (NodeTag::cut_stamp_ns; 0: no cut).
     void willShow(int64_t cut_stamp_ns) {
-        if (cut_stamp_ns != 0) stamps_ns_.push_back(cut_stamp_ns);
+        if (cut_stamp_ns != 0) stamps_ns_.insert(cut_stamp_ns);
     }
-    // That picture is finished: now, in ns of CLOCK_REALTIME.
+    // That picture is finished: now, in ns of CLOCK_REALTIME. Stamps of another time are left out.
     void hasShown(int64_t now_ns) {
-        for (const int64_t stamp_ns : stamps_ns_) times_.record(now_ns - stamp_ns);
+        for (const int64_t stamp_ns : stamps_ns_)
+            if (stamp_ns <= now_ns && stamp_ns > now_ns - LatencyHistogram::kLargestNs)
+                times_.record(now_ns - stamp_ns);
         stamps_ns_.clear();
     }
+    // One for each group of nodes that was published.
     const LatencyHistogram& times() const { return times_; }
-    void forget() { *this = {}; }
 
   private:
-    std::vector<int64_t> stamps_ns_;
+    std::set<int64_t> stamps_ns_;
     LatencyHistogram times_;
 };
 

@@ -17,14 +17,21 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kLongestFrame{33};  // a picture at least so often, news or not
 
 struct Measured {
+    CutToScreen cuts;
     LatencyHistogram render;  // from the start of the drawing to the finished picture
     uint64_t frames = 0;
     double seconds = 0;
 };
 
+int64_t realtimeNowNs() {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
 Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const OsmesaContext& context,
                  RenderScene& scene, SceneFeed& feed) {
     Measured measured;
+    feed.watchCuts(&measured.cuts);
     const int64_t start_ns = monotonicNowNs();
     const Clock::time_point end = Clock::now() + time;
     while (Clock::now() < end && !stopRequested()) {
@@ -34,9 +41,10 @@ Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const 
         scene.draw(options.width, options.height, textScale(options.height));
         context.gl().Finish();
         measured.render.record(monotonicNowNs() - draw_ns);
-        feed.hasShown();
+        measured.cuts.hasShown(realtimeNowNs());
         ++measured.frames;
     }
+    feed.watchCuts(nullptr);
     measured.seconds = secondsOfNs(monotonicNowNs() - start_ns);
     return measured;
 }
@@ -52,6 +60,10 @@ void warmUp(const ClientOptions& options, const OsmesaContext& context, RenderSc
 }
 
 void printTimes(const char* key, const LatencyHistogram& times) {
+    if (times.count() == 0) {
+        std::printf("\"%s\":null", key);
+        return;
+    }
     const auto ms = [&](double percent) { return double(times.percentileNs(percent)) * 1e-6; };
     std::printf("\"%s\":{\"count\":%llu,\"p50\":%.2f,\"p99\":%.2f,\"max\":%.2f}", key,
                 (unsigned long long)times.count(), ms(50), ms(99), double(times.maxNs()) * 1e-6);
@@ -69,7 +81,6 @@ void runMeasurement(const ClientOptions& options) {
     SceneFeed feed(options.subscriber, scene);
     waitUntilComplete(feed, options.subscriber, options.measure->timeout);
     warmUp(options, context, scene, feed);
-    feed.cutToScreen().forget();
     const UploadCount before = scene.uploads();
     const Measured measured = drawFor(options.measure->time, options, context, scene, feed);
     const UploadCount after = scene.uploads();
@@ -79,7 +90,7 @@ void runMeasurement(const ClientOptions& options) {
         (unsigned long long)measured.frames, double(measured.frames) / measured.seconds);
     printTimes("render_ms", measured.render);
     std::printf(",");
-    printTimes("cut_to_screen_ms", feed.cutToScreen().times());
+    printTimes("cut_to_screen_ms", measured.cuts.times());
     std::printf(",\"uploaded_nodes\":%llu,\"uploaded_bytes\":%llu}\n",
                 (unsigned long long)(after.nodes - before.nodes),
                 (unsigned long long)(after.bytes - before.bytes));

@@ -48,6 +48,7 @@ void runOffscreen(const ClientOptions& options) {
     scene.setViewOverrides(options.view);
     scene.settings() = options.settings;
     SceneFeed feed(options.subscriber, scene);
+    feed.takePart();
 
     Clock::time_point due = Clock::now() + wish.interval;
     if (wish.wait_complete) {

@@ -8,6 +8,11 @@
 #include "render_client/app/stop_signal.h"
 
 namespace bonemill {
+namespace {
+
+constexpr std::chrono::seconds kAnnouncePeriod{1};
+
+}  // namespace
 
 void SceneFeed::update() {
     SceneModel::Changes changes = subscriber_.poll();
@@ -15,7 +20,7 @@ void SceneFeed::update() {
     try {
         for (SceneModel::Change& change : changes.nodes) {
             scene_.setNode(std::move(change.mesh));
-            cut_to_screen_.willShow(change.cut_stamp_ns);
+            if (cuts_) cuts_->willShow(change.cut_stamp_ns);
         }
         const auto& info = subscriber_.sceneInfo();
         if (info && std::pair(info->epoch(), info->revision()) != shown_info_) {
@@ -28,11 +33,15 @@ void SceneFeed::update() {
     if (subscriber_.toolState()) scene_.setToolState(*subscriber_.toolState());
     if (subscriber_.status()) scene_.setStatus(*subscriber_.status());
     updateConnection();
+    if (takes_part_) announce();
 }
 
-void SceneFeed::hasShown() {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    cut_to_screen_.hasShown(std::chrono::duration_cast<std::chrono::nanoseconds>(now).count());
+void SceneFeed::announce() {
+    scene_.setWatchers(subscriber_.viewers());
+    const auto now = std::chrono::steady_clock::now();
+    if (now - announced_ < kAnnouncePeriod) return;
+    announced_ = now;
+    subscriber_.announce(0, std::nullopt);
 }
 
 // Tool states are not kept for late clients: a loop that has ticked will send one soon.

@@ -24,18 +24,24 @@ class SceneFeed {
     // The scene shows exactly the server's model, and the tool if the server has one to show.
     bool isComplete() const;
 
-    // To be called when the picture drawn after the last update is finished.
-    void hasShown();
-    CutToScreen& cutToScreen() { return cut_to_screen_; }
+    // From now on the others' lists show this viewer, and the scene shows the others. (A window does both
+    // itself: it points, and measures its rate.)
+    void takePart() { takes_part_ = true; }
+
+    // Tells it of every cut that the next picture will show first.
+    void watchCuts(CutToScreen* cuts) { cuts_ = cuts; }
 
     SceneSubscriber& subscriber() { return subscriber_; }
 
   private:
     void updateConnection();
+    void announce();
 
     SceneSubscriber subscriber_;
     RenderScene& scene_;
-    CutToScreen cut_to_screen_;
+    CutToScreen* cuts_ = nullptr;
+    bool takes_part_ = false;
+    std::chrono::steady_clock::time_point announced_;
     std::pair<uint64_t, uint32_t> shown_info_;  // epoch and revision of the scene info that was passed on
     uint64_t complete_epoch_ = 0;               // server run whose model was complete once; 0: none
     bool had_server_ = false;

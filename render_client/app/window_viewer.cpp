@@ -126,14 +126,10 @@ class WindowViewer {
         painter_.paint(panel_, width, height);
         if (wishes.save_picture) savePicture(width, height);
         window_.show();
-        feed_.hasShown();
         frame_rate_.countPicture(Clock::now());
     }
 
-    void pause() {
-        feed_.updateUntil(Clock::now() + kMinimisedPause, stopRequested);
-        feed_.cutToScreen().forget();
-    }
+    void pause() { feed_.updateUntil(Clock::now() + kMinimisedPause, stopRequested); }
 
     SessionView lookAtSession() {
         SceneSubscriber& subscriber = feed_.subscriber();

@@ -30,7 +30,14 @@ void NodeStore::set(NodeMesh mesh) {
     if (*std::max_element(mesh.indices.begin(), mesh.indices.end()) >= mesh.vertices.size()) {
         throw std::invalid_argument("node " + std::to_string(mesh.leaf) + ": a triangle without its vertex");
     }
-    Node node{GlVertexArray(gl_), GlBuffer(gl_), GlBuffer(gl_), boxOf(mesh), {}};
+    Node node{GlVertexArray(gl_),
+              GlBuffer(gl_),
+              GlBuffer(gl_),
+              boxOf(mesh),
+              mesh.origin,
+              mesh.step,
+              GLsizei(mesh.indices.size()),
+              {}};
     gl_.BindVertexArray(node.layout.name());
     gl_.BindBuffer(GL_ARRAY_BUFFER, node.vertices.name());
     const size_t vertex_bytes = mesh.vertices.size() * sizeof(PackedVertex);
@@ -47,11 +54,17 @@ void NodeStore::set(NodeMesh mesh) {
     gl_.EnableVertexAttribArray(0);
     gl_.EnableVertexAttribArray(1);
     gl_.BindVertexArray(0);
-    const auto known = nodes_.find(mesh.leaf);
-    changed_.extend(known == nodes_.end() ? node.box : differenceBox(known->second.mesh, mesh));
+    if (tracks_changes_) changed_.extend(changeTo(mesh, node.box));
     const uint32_t leaf = mesh.leaf;
-    node.mesh = std::move(mesh);
+    if (tracks_changes_) node.mesh = std::move(mesh);
     nodes_.insert_or_assign(leaf, std::move(node));
+}
+
+Eigen::AlignedBox3f NodeStore::changeTo(const NodeMesh& mesh, const Eigen::AlignedBox3f& box) const {
+    const auto known = nodes_.find(mesh.leaf);
+    if (known == nodes_.end()) return box;
+    const Node& before = known->second;
+    return before.mesh ? differenceBox(*before.mesh, mesh) : before.box.merged(box);
 }
 
 void NodeStore::remove(uint32_t leaf) {
@@ -68,7 +81,7 @@ void NodeStore::clear() {
 
 size_t NodeStore::triangleCount() const {
     size_t count = 0;
-    for (const auto& [leaf, node] : nodes_) count += node.mesh.indices.size() / 3;
+    for (const auto& [leaf, node] : nodes_) count += size_t(node.index_count) / 3;
     return count;
 }
 
@@ -78,11 +91,11 @@ size_t NodeStore::draw(const Program& program, const Eigen::Matrix4f& clip_from_
     size_t triangles = 0;
     for (const auto& [leaf, node] : nodes_) {
         if (!mayBeVisible(node.box, clip_from_V)) continue;
-        program.set(origin, node.mesh.origin);
-        program.set(step, node.mesh.step);
+        program.set(origin, node.origin);
+        program.set(step, node.step);
         gl_.BindVertexArray(node.layout.name());
-        gl_.DrawElements(GL_TRIANGLES, GLsizei(node.mesh.indices.size()), GL_UNSIGNED_INT, nullptr);
-        triangles += node.mesh.indices.size() / 3;
+        gl_.DrawElements(GL_TRIANGLES, node.index_count, GL_UNSIGNED_INT, nullptr);
+        triangles += size_t(node.index_count) / 3;
     }
     gl_.BindVertexArray(0);
     return triangles;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "common/geometry/node_mesh.h"
@@ -32,7 +33,9 @@ class NodeStore {
     size_t triangleCount() const;
     const UploadCount& uploads() const { return uploads_; }
 
-    // Around all that was set or removed since the last call, before and after; V, m.
+    // From now on, or no longer, the store knows where it changes; that takes memory and time.
+    void trackChanges(bool wants_changes) { tracks_changes_ = wants_changes; }
+    // Around the triangles that came or went since the last call; V, m.
     Eigen::AlignedBox3f takeChanged() { return std::exchange(changed_, {}); }
 
     // Draws what may be inside the view volume of clip_from_V with the program in use (uniforms origin and
@@ -45,11 +48,17 @@ class NodeStore {
         GlBuffer vertices;
         GlBuffer indices;
         Eigen::AlignedBox3f box;  // V, m
-        NodeMesh mesh;            // what the buffers hold
+        Eigen::Vector3f origin;   // V, m
+        Eigen::Vector3f step;     // V, m
+        GLsizei index_count;
+        std::optional<NodeMesh> mesh;  // what the buffers hold, while changes are tracked
     };
+    Eigen::AlignedBox3f changeTo(const NodeMesh& mesh, const Eigen::AlignedBox3f& box) const;
+
     const GlApi& gl_;
     std::map<uint32_t, Node> nodes_;
     UploadCount uploads_;
+    bool tracks_changes_ = false;
     Eigen::AlignedBox3f changed_;
 };
 

@@ -6,6 +6,7 @@
 namespace bonemill {
 namespace {
 
+constexpr double kLoosest = 2;        // a range that is so many times too wide is made anew
 constexpr double kRangeMargin = 0.1;  // of the near and far distance: room for the tool to move
 
 bool isSame(const Camera& a, const Camera& b) {
@@ -32,7 +33,8 @@ std::vector<float> signatureOf(const Frame& frame, int width, int height) {
 }  // namespace
 
 DepthRange PictureChanges::range(const Camera& camera, const DepthRange& needed) {
-    if (isSame(camera, camera_)) {
+    const bool is_tight = needed.far * kLoosest > range_.far && needed.near < range_.near * kLoosest;
+    if (isSame(camera, camera_) && is_tight) {
         range_ = {std::min(range_.near, needed.near), std::max(range_.far, needed.far)};
     } else {
         range_ = {needed.near * (1 - kRangeMargin), needed.far * (1 + kRangeMargin)};

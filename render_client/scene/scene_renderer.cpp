@@ -35,6 +35,7 @@ void SceneRenderer::draw(const FrameView& view, NodeStore& nodes, const ToolMesh
         changes_.forget();
     }
     const bool is_quick = view.quality == Quality::kQuick;
+    nodes.trackChanges(is_quick);
     const DepthRange needed = Frame::neededRange(view, tool.box());
     const DepthRange range = is_quick ? changes_.range(view.camera, needed) : needed;
     const Frame frame = Frame::make(view, tool.box(), area.aspect(), range);
@@ -45,7 +46,6 @@ void SceneRenderer::draw(const FrameView& view, NodeStore& nodes, const ToolMesh
     gl_.Disable(GL_CULL_FACE);
     is_quick ? drawQuick(frame, view, nodes, tool, area, target)
              : drawFull(frame, view, nodes, tool, area, target);
-    nodes.takeChanged();
     gl_.check("drawing the scene");
 }
 

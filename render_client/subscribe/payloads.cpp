@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
 
 namespace bonemill {
 namespace {
@@ -15,11 +14,17 @@ constexpr double kUnitTolerance = 1e-3;
 constexpr size_t kLongestName = 64;   // bytes
 constexpr size_t kLongestText = 512;  // bytes
 constexpr double kLargestNumber = 1e6;
+constexpr double kLongestSession = 1e9;  // s
+constexpr int kMostCheckpoints = 64;
 constexpr int kMostTools = 64;  // far more than a scene may have
 
 template <class Field>
 bool isFinite(const Field& field) {
     return std::ranges::all_of(field, [](auto value) { return std::isfinite(value); });
+}
+
+bool isTime(double seconds) {
+    return seconds >= 0 && seconds <= kLongestSession;
 }
 
 // Finite, and small enough that what is computed from it stays so.
@@ -67,9 +72,18 @@ bool isUsable(const topics::ToolState& state) {
 }
 
 bool isUsable(const topics::Status& status) {
-    const double numbers[] = {status.rate_hz(), status.tick_p50_us(), status.tick_p99_us(),
-                              status.tick_max_us(), status.removed_mm3()};
-    return isFinite(numbers);
+    const double numbers[] = {status.rate_hz(),
+                              status.tick_p50_us(),
+                              status.tick_p99_us(),
+                              status.tick_max_us(),
+                              status.removed_mm3(),
+                              status.force_error_percent(),
+                              status.force_direction_error_deg()};
+    const auto is_usable = [](const topics::Checkpoint& c) {
+        return isTime(c.session_s()) && std::isfinite(c.removed_mm3());
+    };
+    return isFinite(numbers) && isTime(status.session_s()) && status.checkpoints_size() <= kMostCheckpoints &&
+           std::ranges::all_of(status.checkpoints(), is_usable);
 }
 
 bool isUsable(const topics::Viewer& viewer) {
@@ -94,12 +108,26 @@ std::string shownName(const std::string& name) {
     return shownText(name, kLongestName);
 }
 
+// Bytes; what sane messages need many times over.
+constexpr size_t mostBytes(const topics::SceneInfo*) {
+    return 64u << 20;
+}
+constexpr size_t mostBytes(const topics::ToolState*) {
+    return 4u << 10;
+}
+constexpr size_t mostBytes(const topics::Status*) {
+    return 64u << 10;
+}
+constexpr size_t mostBytes(const topics::Viewer*) {
+    return 4u << 10;
+}
+
 template <class Message>
 std::optional<Message> parse(std::span<const uint8_t> payload) {
     // Bad bytes are counted by the caller; a hostile peer must not fill the log.
     const google::protobuf::LogSilencer silencer;
     Message message;
-    if (payload.size() > static_cast<size_t>(std::numeric_limits<int>::max()) ||
+    if (payload.size() > mostBytes(&message) ||
         !message.ParseFromArray(payload.data(), static_cast<int>(payload.size())) || !isUsable(message))
         return std::nullopt;
     return message;
@@ -146,6 +174,7 @@ std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {
 std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint64_t sender) {
     std::optional<topics::Viewer> viewer = parse<topics::Viewer>(payload);
     if (!viewer || viewer->sender() != sender || sender == 0) return std::nullopt;
+    viewer->DiscardUnknownFields();
     viewer->set_name(shownName(viewer->name()));
     if (viewer->role() != topics::Viewer::INSTRUCTOR) viewer->clear_pointer_m();
     return viewer;
