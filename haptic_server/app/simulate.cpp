@@ -13,6 +13,7 @@
 #include "haptic_server/app/state_hash.h"
 #include "haptic_server/app/surface_export.h"
 #include "haptic_server/record/fault_names.h"
+#include "haptic_server/record/hex_text.h"
 #include "haptic_server/record/run_statistics.h"
 #include "haptic_server/record/trace_writer.h"
 #include "haptic_server/record/trajectory_reader.h"
@@ -70,12 +71,6 @@ size_t toolOf(const scene::Scene& scene, const std::string& wanted) {
     throw UserError("--tool " + wanted + ": no tool of the scene is called so; it has: " + known);
 }
 
-std::string hexOf(uint64_t value) {
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-    return text;
-}
-
 nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
     const auto us = [](double ns) { return ns * 1e-3; };
     const LatencyHistogram& compute = statistics.tickCompute();
@@ -96,7 +91,7 @@ nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
               {"p99", us(double(compute.percentileNs(99)))},
               {"p99_9", us(double(compute.percentileNs(99.9)))},
               {"max", us(double(compute.maxNs()))}}},
-            {"state_hash", hexOf(hash.value())}};
+            {"state_hash", hexText(hash.value())}};
 }
 
 }  // namespace
