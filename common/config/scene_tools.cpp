@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "common/config/user_error.h"
+
 namespace bonemill {
 
 std::vector<const scene::Tool*> toolsOf(const scene::Scene& scene) {
@@ -19,13 +21,16 @@ std::vector<std::string> toolNamesOf(const scene::Scene& scene) {
     return names;
 }
 
-std::optional<size_t> toolIndexOf(const std::vector<std::string>& names, const std::string& text) {
+size_t toolIndexOf(const std::vector<std::string>& names, const std::string& text) {
     const auto named = std::find(names.begin(), names.end(), text);
     if (named != names.end()) return size_t(named - names.begin());
     size_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     const bool is_number = error == std::errc() && end == text.data() + text.size();
-    return is_number && number >= 1 && number <= names.size() ? std::optional(number - 1) : std::nullopt;
+    if (is_number && number >= 1 && number <= names.size()) return number - 1;
+    std::string known;
+    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+    throw UserError("no tool of the scene is called '" + text + "'; it has: " + known);
 }
 
 }  // namespace bonemill

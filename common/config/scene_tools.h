@@ -1,7 +1,6 @@
 // The tools of a scene. Start-up only.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +16,8 @@ std::vector<const scene::Tool*> toolsOf(const scene::Scene& scene);
 // What people call them, in the same order: their names, else "tool 1", "tool 2", ... by place.
 std::vector<std::string> toolNamesOf(const scene::Scene& scene);
 
-// Place of the tool that `text` means: its name, or its number from 1. Nothing: none.
-std::optional<size_t> toolIndexOf(const std::vector<std::string>& names, const std::string& text);
+// Place of the tool that `text` means: its name, or its number from 1. None: throws UserError, which says
+// what there is.
+size_t toolIndexOf(const std::vector<std::string>& names, const std::string& text);
 
 }  // namespace bonemill

@@ -13,6 +13,7 @@
 #include "haptic_server/app/state_hash.h"
 #include "haptic_server/app/surface_export.h"
 #include "haptic_server/record/fault_names.h"
+#include "haptic_server/record/hex_text.h"
 #include "haptic_server/record/run_statistics.h"
 #include "haptic_server/record/trace_writer.h"
 #include "haptic_server/record/trajectory_reader.h"
@@ -61,21 +62,6 @@ void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::
     }
 }
 
-size_t toolOf(const scene::Scene& scene, const std::string& wanted) {
-    if (wanted.empty()) return 0;
-    const std::vector<std::string> names = toolNamesOf(scene);
-    if (const auto index = toolIndexOf(names, wanted)) return *index;
-    std::string known;
-    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
-    throw UserError("--tool " + wanted + ": no tool of the scene is called so; it has: " + known);
-}
-
-std::string hexOf(uint64_t value) {
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-    return text;
-}
-
 nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
     const auto us = [](double ns) { return ns * 1e-3; };
     const LatencyHistogram& compute = statistics.tickCompute();
@@ -96,7 +82,7 @@ nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
               {"p99", us(double(compute.percentileNs(99)))},
               {"p99_9", us(double(compute.percentileNs(99.9)))},
               {"max", us(double(compute.maxNs()))}}},
-            {"state_hash", hexOf(hash.value())}};
+            {"state_hash", hexText(hash.value())}};
 }
 
 }  // namespace
@@ -105,7 +91,7 @@ std::string simulate(const SimulateOptions& options) {
     const LoadedScene loaded = loadScene(options.scene);
     const std::vector<TrajectoryRow> rows = readTrajectory(options.trajectory);
     checkSpacing(rows, 1 / loaded.scene.loop().rate_hz(), options.trajectory);
-    const size_t tool = toolOf(loaded.scene, options.tool);
+    const size_t tool = options.tool.empty() ? 0 : toolIndexOf(toolNamesOf(loaded.scene), options.tool);
     for (const std::string& path : {options.save_volume, options.save_mesh}) requireWritable(path);
     std::optional<TraceWriter> trace;
     if (!options.trace.empty()) trace.emplace(options.trace);

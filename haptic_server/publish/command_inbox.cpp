@@ -1,16 +1,17 @@
 #include "haptic_server/publish/command_inbox.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace bonemill {
 namespace {
 
 // Far more than a classroom; bounds what invented sender ids can take.
 constexpr size_t kMaxSenders = 1024;
+// Many times what any command needs.
+constexpr size_t kLongestPayload = 4096;
 
 bool parse(std::span<const uint8_t> payload, topics::Command& command) {
-    if (payload.size() > static_cast<size_t>(std::numeric_limits<int>::max())) return false;
+    if (payload.size() > kLongestPayload) return false;
     return command.ParseFromArray(payload.data(), static_cast<int>(payload.size()));
 }
 

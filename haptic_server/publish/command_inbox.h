@@ -28,8 +28,8 @@ class CommandInbox {
         std::optional<CommandAcknowledgement> acknowledgement;
     };
 
-    // `envelope_sender` is the key of the sample. Bytes that are no command of that sender are counted and
-    // dropped.
+    // `envelope_sender` is the key of the sample. Bytes that are no command of that sender, or more than
+    // 4 KiB, are counted and dropped.
     Decision receive(uint64_t envelope_sender, std::span<const uint8_t> payload);
 
     // Remembers how a command ended, for senders that repeat it because they missed the acknowledgement.

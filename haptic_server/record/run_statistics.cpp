@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cinttypes>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,6 +10,7 @@
 #include "common/config/user_error.h"
 #include "common/rt/clock.h"
 #include "haptic_server/record/fault_names.h"
+#include "haptic_server/record/hex_text.h"
 
 namespace bonemill {
 namespace {
@@ -31,13 +30,6 @@ nlohmann::ordered_json summary(const LatencyHistogram& histogram, double ns_per_
             {"p99_9", double(histogram.percentileNs(99.9)) / ns_per_unit},
             {"max", double(histogram.maxNs()) / ns_per_unit},
             {"mean", histogram.meanNs() / ns_per_unit}};
-}
-
-// 16 digits, as render_client prints its digest: JSON readers do not keep 64 bits of a number.
-std::string hexText(uint64_t value) {
-    char text[17];
-    std::snprintf(text, sizeof text, "%016" PRIx64, value);
-    return text;
 }
 
 nlohmann::ordered_json summaryUs(const LatencyHistogram& histogram) {

@@ -50,7 +50,6 @@ BoneHistory::BoneHistory(const BoneModel& bone)
       then_(now_.size()) {
     orders_.push_back(std::make_unique<const Order>(Order{0, nullptr}));
     order_ = orders_.back().get();
-    newest_order_.store(order_);
 }
 
 std::shared_ptr<const BoneSnapshot> BoneHistory::snapshot(const BoneModel& bone) {
@@ -107,10 +106,13 @@ std::shared_ptr<const LeafCopy> BoneHistory::copyOf(const BoneModel& bone, LeafI
 }
 
 void BoneHistory::restore(std::shared_ptr<const BoneSnapshot> snapshot) {
+    if (isRestoring() && snapshot == orders_.back()->target) return;
     const uint64_t number = orders_.back()->number + 1;
     orders_.push_back(std::make_unique<const Order>(Order{number, std::move(snapshot)}));
-    newest_order_.store(orders_.back().get(), std::memory_order_release);
-    while (orders_.front()->number < finished_.load(std::memory_order_acquire)) orders_.pop_front();
+    const Order* replaced = next_order_.exchange(orders_.back().get(), std::memory_order_release);
+    if (replaced) orders_.erase(orders_.end() - 2);  // the tick has never seen it
+    const uint64_t taken_up = taken_up_.load(std::memory_order_acquire);
+    while (orders_.front()->number < taken_up) orders_.pop_front();
 }
 
 bool BoneHistory::beginWrite() noexcept {
@@ -127,9 +129,9 @@ void BoneHistory::endWrite(uint32_t removed_voxels, uint32_t added_voxels) noexc
 }
 
 bool BoneHistory::takeUpNewestOrder() noexcept {
-    const Order* newest = newest_order_.load(std::memory_order_acquire);
-    if (newest == order_) return is_restoring_;
-    order_ = newest;
+    if (!next_order_.load(std::memory_order_relaxed)) return is_restoring_;
+    order_ = next_order_.exchange(nullptr, std::memory_order_acquire);
+    taken_up_.store(order_->number, std::memory_order_release);
     next_leaf_ = 0;
     return is_restoring_ = true;
 }

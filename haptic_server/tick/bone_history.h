@@ -31,6 +31,7 @@ class BoneHistory {
     // as it takes to copy them. While the bone is being put back: the snapshot to which it is.
     std::shared_ptr<const BoneSnapshot> snapshot(const BoneModel& bone);
     // Keeper: to this snapshot, or (null) to the scanned bone; instead of what is on its way, if anything is.
+    // Asked again for the one that is on its way: goes on with it.
     void restore(std::shared_ptr<const BoneSnapshot> snapshot = nullptr);
     // Keeper: the tick is not yet done with the last restore().
     bool isRestoring() const noexcept {
@@ -67,7 +68,9 @@ class BoneHistory {
     VoxelVolume scanned_;
 
     // Keeper.
-    std::deque<std::unique_ptr<const Order>> orders_;  // that the tick may look at; the last is the newest
+    // That the tick may look at, three at most: the one it is known to have taken up, one that it has taken
+    // up since, the newest.
+    std::deque<std::unique_ptr<const Order>> orders_;
     std::shared_ptr<const BoneSnapshot> last_snapshot_;
 
     // Tick.
@@ -76,11 +79,14 @@ class BoneHistory {
     LeafId next_leaf_ = 0;
     std::vector<Density> now_, then_;  // rows of a leaf
 
-    // Release by the keeper, acquire by the tick: the order is whole.
-    std::atomic<const Order*> newest_order_;
-    // Number of the order after which the tick looks at no earlier one. Release by the tick, acquire by the
-    // keeper.
-    std::atomic<uint64_t> finished_{0};
+    // The newest order until the tick takes it, then null: each side exchanges, so that the keeper knows
+    // whether the tick has ever seen what it replaces. Release by the keeper, acquire by the tick: the order
+    // is whole.
+    std::atomic<const Order*> next_order_{nullptr};
+    // Numbers of the order that the tick has taken up, and of the one it is done with: it looks at none
+    // before the first. Release by the tick, acquire by the keeper: the tick has read the orders before, and
+    // written what the finished one says.
+    std::atomic<uint64_t> taken_up_{0}, finished_{0};
     // Each side sets its own and then looks at the other's, sequentially consistent: at least one of them
     // sees the other.
     std::atomic<bool> is_writing_{false}, is_held_{false};

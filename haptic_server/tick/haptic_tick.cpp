@@ -26,7 +26,7 @@ constexpr int kLeavesPreparedPerTick = 1;
 // As stiff as the quicker of the two laws.
 ToolChange toolChangeOf(const TickConfig& config) noexcept {
     const EnergyCouplingConfig& gradient = config.gradient.coupling;
-    return {config.dt,
+    return {config.coupling, config.dt,
             std::max(config.coupling.translation_stiffness,
                      gradient.translation_stiffness * (1 + gradient.relaxing_share)),
             std::max(config.coupling.rotation_stiffness / 2, gradient.rotation_stiffness),
@@ -150,8 +150,7 @@ SpoStep HapticTick::moveAndFeel(double force_factor, uint32_t& faults) noexcept 
     if (step.is_motion_clamped) faults |= kFaultMotionClamped;
     if (step.has_stalled) faults |= kFaultStalled;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
-    step.wrench_hand = tool_change_.next(step.wrench_hand, device_);
-    if (limitWrench(config_.coupling, step.wrench_hand)) faults |= kFaultForceClamped;
+    if (tool_change_.limit(step.wrench_hand, device_)) faults |= kFaultForceClamped;
     step.wrench_hand.force *= force_factor;
     step.wrench_hand.torque *= force_factor;
     return step;

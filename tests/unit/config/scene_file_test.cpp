@@ -195,7 +195,12 @@ TEST(SceneTools, AreNamedByPlaceWhereTheSceneDoesNot) {
     EXPECT_EQ(toolIndexOf(names, "tool 3"), 2u);
     EXPECT_EQ(toolIndexOf(names, "3"), 2u);
     for (const char* none : {"", "0", "4", "-1", "2x", "coarse", "99999999999999999999"})
-        EXPECT_FALSE(toolIndexOf(names, none)) << none;
+        EXPECT_THROW(toolIndexOf(names, none), UserError) << none;
+    try {
+        toolIndexOf(names, "coarse");
+    } catch (const UserError& error) {
+        EXPECT_STREQ(error.what(), "no tool of the scene is called 'coarse'; it has: tool 1, fine, tool 3");
+    }
 }
 
 TEST_F(SceneFile, textsMustBePrintableUtf8) {

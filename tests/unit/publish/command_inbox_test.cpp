@@ -78,6 +78,23 @@ TEST_F(CommandInboxTest, CountsAndDropsWhatIsNoCommandOfThatSender) {
     EXPECT_TRUE(receive(7, resetCommand(7, 1)).command);
 }
 
+// Nothing that is said in a command needs more; what it says may be kept per sender.
+TEST_F(CommandInboxTest, LongPayloadsAreMalformed) {
+    const auto ofLength = [](size_t length) {
+        topics::Command command = resetCommand(7, 1);
+        command.set_set_accuracy(std::string(length, 'a'));
+        return command;
+    };
+    constexpr size_t kLongest = 4096;
+    size_t length = kLongest;
+    while (ofLength(length).ByteSizeLong() > kLongest) --length;
+    EXPECT_FALSE(receive(7, ofLength(length + 1)).command);
+    EXPECT_FALSE(receive(7, ofLength(10'000'000)).command);
+    EXPECT_EQ(inbox_.malformedCount(), 2u);
+    EXPECT_TRUE(receive(7, ofLength(length)).command);
+    EXPECT_EQ(inbox_.malformedCount(), 2u);
+}
+
 TEST_F(CommandInboxTest, StillKnowsABusySenderAfterAFloodOfInventedOnes) {
     for (uint64_t invented = 1000; invented < 6000; ++invented) {
         const auto decision = receive(7, resetCommand(7, 1));

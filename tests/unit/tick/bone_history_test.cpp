@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "tests/unit/tick/milled_ball.h"
 
 namespace bonemill {
@@ -84,6 +87,61 @@ TEST(BoneHistory, TheNewestOfTwoOrdersCountsAlsoHalfWayThere) {
     ball.checkpoints.restore(1);  // two before the tick looks
     ball.restoreAll();
     EXPECT_EQ(ball.densities(), first);
+}
+
+int aliveOf(const std::vector<std::weak_ptr<const BoneSnapshot>>& snapshots) {
+    return int(std::count_if(snapshots.begin(), snapshots.end(), [](const auto& s) { return !s.expired(); }));
+}
+
+// As while the server waits for a device.
+TEST(BoneHistory, WithoutATickOnlyTheNewestOrderIsKept) {
+    MilledBall ball;
+    ball.groove(7e-3);
+    std::vector<std::weak_ptr<const BoneSnapshot>> asked_for;
+    for (int n = 0; n < 100; ++n) {
+        const auto snapshot = std::make_shared<const BoneSnapshot>();
+        ball.history.restore(snapshot);
+        asked_for.push_back(snapshot);
+    }
+    EXPECT_EQ(aliveOf(asked_for), 1);
+    EXPECT_FALSE(asked_for.back().expired());
+    ball.restoreAll();
+    EXPECT_EQ(ball.densities(), MilledBall::densitiesOf(MilledBall::makeBone()));
+}
+
+TEST(BoneHistory, OrdersFasterThanTheTickCarriesThemOutDoNotPileUp) {
+    MilledBall ball;
+    ball.groove(7e-3);
+    std::vector<std::weak_ptr<const BoneSnapshot>> asked_for;
+    for (int n = 0; n < 100; ++n) {
+        for (int of_one_tick = 0; of_one_tick < 1 + n % 3; ++of_one_tick) {
+            const auto snapshot = std::make_shared<const BoneSnapshot>();
+            ball.history.restore(snapshot);
+            asked_for.push_back(snapshot);
+        }
+        ASSERT_LE(aliveOf(asked_for), 2) << n;  // the one under way and the one to come
+        ASSERT_TRUE(ball.restoreSome());
+    }
+    ball.restoreAll();
+    EXPECT_EQ(ball.densities(), MilledBall::densitiesOf(MilledBall::makeBone()));
+}
+
+TEST(BoneHistory, AskedForAgainOnTheWayItArrivesAsSoon) {
+    const auto ticksOf = [](bool is_repeated, uint32_t id) {
+        MilledBall ball;
+        ball.groove(7e-3);
+        ball.checkpoints.save(0);
+        ball.groove(13e-3);
+        ball.checkpoints.restore(id);
+        int ticks = 0;
+        for (; ball.restoreSome() && ticks < 1000; ++ticks)
+            if (is_repeated && ball.history.isRestoring()) ball.checkpoints.restore(id);
+        return ticks;
+    };
+    for (const uint32_t id : {Checkpoints::kScannedBone, 1u}) {
+        EXPECT_GT(ticksOf(false, id), 3);
+        EXPECT_EQ(ticksOf(true, id), ticksOf(false, id));
+    }
 }
 
 // Nothing in between can be saved: what is saved on the way is where the way leads.

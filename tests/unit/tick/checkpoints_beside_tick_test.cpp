@@ -132,5 +132,23 @@ TEST(CheckpointsBesideTick, RestoringAgainAndAgainLosesNothing) {
     EXPECT_EQ(threads.ball.history.missingVoxels(), 0);
 }
 
+TEST(CheckpointsBesideTick, OrdersFasterThanTheTickTakesThemUpLeadToTheLast) {
+    Threads threads;
+    threads.run([&](int n) {
+        const uint32_t id = threads.ball.checkpoints.save(n);
+        if (n % 5 != 3) return;
+        for (int order = 0; order < 300; ++order) {
+            const auto snapshot = std::make_shared<const BoneSnapshot>();
+            threads.ball.history.restore(snapshot);
+            if (order % 7 == 0) std::this_thread::yield();
+        }
+        threads.ball.checkpoints.restore(n % 2 ? id : Checkpoints::kScannedBone);
+        threads.waitUntilRestored();
+    });
+    EXPECT_GT(threads.io.removed, 100u);
+    EXPECT_EQ(threads.restored(Checkpoints::kScannedBone), MilledBall::densitiesOf(MilledBall::makeBone()));
+    EXPECT_EQ(threads.ball.history.missingVoxels(), 0);
+}
+
 }  // namespace
 }  // namespace bonemill

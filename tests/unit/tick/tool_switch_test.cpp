@@ -37,6 +37,26 @@ TEST(ToolSwitch, EachToolRestsOnItsOwnBurr) {
     }
 }
 
+// What the change starts from is what the hand feels, not what was computed beyond the limit.
+TEST(ToolSwitch, AForceAtItsLimitFallsAtOnce) {
+    ToolBench bench(2);
+    TickConfig config = ToolBench::configOf(presetSettings(Preset::kBalanced));
+    config.coupling.max_force = 0.5;
+    HapticTick tick(config, bench.bone, bench.models[2], &bench.history, nullptr, &bench.tools);
+    // Deep in the slab for the largest burr, above it for the smallest.
+    const auto hand = test::SwitchingBench::at(test::kBenchTop + 0.7e-3);
+    const auto feltAfter = [&](int ticks) {
+        test::ScriptedIo io(test::straightPath(hand, hand.position, ticks, 0));
+        while (tick.tick(io)) {
+        }
+        return io.last_wrench.force.norm();
+    };
+    EXPECT_NEAR(feltAfter(200), 0.5, 1e-9);
+    bench.tools.choose(0);
+    constexpr int kTicks = 10;  // some, in which the small burr goes down to the hand
+    EXPECT_LT(feltAfter(kTicks), 0.1);
+}
+
 // The groove of a tool that was changed to is as that of the same tool from the start.
 TEST(ToolSwitch, EachToolMillsWithItsOwnBurr) {
     const auto removedBy = [](size_t first, size_t then) {
