@@ -11,9 +11,11 @@
 #include "render_client/app/stop_signal.h"
 #include "render_client/controls/announce_clock.h"
 #include "render_client/controls/frame_rate.h"
+#include "render_client/controls/help_rows.h"
 #include "render_client/controls/viewer_controls.h"
 #include "render_client/offscreen/read_picture.h"
 #include "render_client/panel/panel_painter.h"
+#include "render_client/scene/session_text.h"
 #include "render_client/subscribe/command_text.h"
 #include "render_client/window/glfw_window.h"
 
@@ -97,6 +99,7 @@ class WindowViewer {
         spdlog::info("window, {}", window_.gl().describe());
         scene_.setViewOverrides(options.view);
         scene_.settings() = options.settings;
+        scene_.setHelp(helpRows());
         if (options.chooses_quality && window_.gl().isSoftware()) scene_.settings().quality = Quality::kQuick;
     }
 

@@ -1,4 +1,4 @@
-// Which key does what: the one place. Any thread.
+// Which key does what, and how the help page says it: the one place. Any thread.
 #pragma once
 
 #include <optional>
@@ -23,6 +23,7 @@ enum class Action {
     kCutHigher,
     kTransparency,
     kStereo,
+    kQuickDrawing,
     kEndoscope,
     kPauseMilling,
     kSaveCheckpoint,
@@ -53,7 +54,8 @@ struct KeyBinding {
     Key key;
     bool with_shift;
     Action action;
-    bool repeats = false;  // acts again while the key is held
+    std::string_view meaning;  // for the help page; neighbours with the same one share a row
+    bool repeats = false;      // acts again while the key is held
 };
 
 // Signs such as [ and + are bound by the text they make: where they lie differs from layout to layout.
@@ -61,6 +63,7 @@ struct SignBinding {
     std::string_view label;
     char32_t sign;
     Action action;
+    std::string_view meaning;
 };
 
 std::span<const KeyBinding> keyTable();

@@ -35,19 +35,6 @@ CommandOrReason nextTool(const SessionView& session) {
 
 }  // namespace
 
-std::string roleName(topics::Viewer::Role role) {
-    switch (role) {
-        case topics::Viewer::VIEWER:
-            return "viewer";
-        case topics::Viewer::OPERATOR:
-            return "operator";
-        case topics::Viewer::INSTRUCTOR:
-            return "instructor";
-        default:
-            return "?";
-    }
-}
-
 std::string whyNotCommand(const SessionView& session) {
     if (session.role == topics::Viewer::VIEWER) return "A viewer only looks: start with --role operator";
     if (!session.has_server) return "There is no server";

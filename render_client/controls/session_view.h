@@ -22,8 +22,6 @@ struct SessionView {
     std::vector<topics::Viewer> others = {};
 };
 
-std::string roleName(topics::Viewer::Role role);
-
 // Empty when it is allowed; else a sentence for the user.
 std::string whyNotCommand(const SessionView& session);
 std::string whyNotPoint(const SessionView& session);

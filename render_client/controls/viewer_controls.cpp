@@ -182,7 +182,9 @@ void ViewerControls::changeView(Action action) {
         case Action::kTransparency:
             return toggle(settings_.is_transparent);
         case Action::kStereo:
-            settings_.stereo = nextStereo(settings_.stereo);
+            return setStereo(nextStereo(settings_.stereo));
+        case Action::kQuickDrawing:
+            settings_.quality = settings_.quality == Quality::kFull ? Quality::kQuick : Quality::kFull;
             return;
         case Action::kEndoscope:
             settings_.camera =
@@ -226,6 +228,17 @@ void ViewerControls::flipCut(size_t axis) {
 void ViewerControls::moveCut(double by) {
     CutPlane& cut = settings_.cuts[last_cut_];
     cut.position = std::clamp(cut.position + by, 0.0, 1.0);
+}
+
+void ViewerControls::moveCutTo(size_t axis, double position) {
+    settings_.cuts[axis].is_on = true;
+    settings_.cuts[axis].position = std::clamp(position, 0.0, 1.0);
+    last_cut_ = axis;
+}
+
+void ViewerControls::setOpacity(double opacity) {
+    settings_.is_transparent = true;
+    settings_.opacity = std::clamp(opacity, 0.0, 1.0);
 }
 
 void ViewerControls::lookFrom(Side side) {

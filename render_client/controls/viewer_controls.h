@@ -41,7 +41,14 @@ class ViewerControls {
     // Turns around the target; the distance stays.
     void lookFrom(Side side);
 
-    ViewSettings& settings() { return settings_; }
+    void setStereo(StereoMode mode) { settings_.stereo = mode; }
+    // 0 to 1; bone becomes transparent.
+    void setOpacity(double opacity);
+    // From the low (0) to the high end (1) of the bone's box along W's axis (0 to 2). The cut is switched on
+    // and becomes the one that [ and ] move.
+    void moveCutTo(size_t axis, double position);
+
+    const ViewSettings& settings() const { return settings_; }
     const OrbitCamera& camera() const { return camera_; }
     bool isPanelOpen() const { return is_panel_open_; }
     // Where the user points with the laser now.
@@ -63,7 +70,7 @@ class ViewerControls {
 
     ViewSettings& settings_;
     OrbitCamera& camera_;
-    size_t last_cut_ = 0;  // axis of the cut-plane that was switched last
+    size_t last_cut_ = 0;  // axis of the cut-plane that was switched or moved last
     bool is_panel_open_ = false;
     bool is_point_key_down_ = false;
     Drag drag_ = Drag::kNone;

@@ -1,8 +1,9 @@
 // The control panel: every setting of the view, the session's commands and who is watching, for the mouse.
 //
-// A function of what is set and what the server says: it keeps nothing but what is folded, scrolled or half
-// typed, so it follows whoever changed something. It needs no OpenGL; PanelPainter draws it. Positions in
-// pixels from the picture's upper left corner. Thread: the render thread.
+// A function of what is set and what the server says: it keeps nothing but what is folded, scrolled, half
+// typed or half confirmed (the end of the session), so it follows whoever changed something. It needs no
+// OpenGL; PanelPainter draws it. Positions in pixels from the picture's upper left corner. Thread: the render
+// thread.
 #pragma once
 
 #include <map>

@@ -3,11 +3,10 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <iterator>
 
 #include "render_client/scene/accuracy_keys.h"
+#include "render_client/scene/session_text.h"
 
 namespace bonemill {
 namespace {
@@ -17,13 +16,6 @@ constexpr float kMargin = 14;  // to the picture's edge
 constexpr double kLeastOpacity = 0.05;
 const ImVec4 kQuiet{0.62f, 0.68f, 0.74f, 1};
 const ImVec4 kWarning{0.98f, 0.76f, 0.3f, 1};
-
-std::string clock(double seconds) {
-    const long whole = std::isfinite(seconds) && seconds > 0 ? long(seconds) : 0;
-    char text[32];
-    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
-    return text;
-}
 
 bool isOpen(const char* title) {
     return ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
@@ -77,13 +69,13 @@ bool PanelContent::choice(const char* label, bool is_chosen, const char* what) {
     return is_pressed && !is_chosen;
 }
 
-bool PanelContent::slider(const char* label, double& fraction, double least, const char* what) {
+std::optional<double> PanelContent::slider(const char* label, double fraction, double least,
+                                           const char* what) {
     auto percent = float(fraction * 100);
     const bool is_moved =
         ImGui::SliderFloat(label, &percent, float(least * 100), 100, "%.0f %%", ImGuiSliderFlags_AlwaysClamp);
     note(label, what);
-    if (is_moved) fraction = double(percent) / 100;
-    return is_moved;
+    return is_moved ? std::optional(double(percent) / 100) : std::nullopt;
 }
 
 void PanelContent::buildView() {
@@ -97,8 +89,9 @@ void PanelContent::buildView() {
         act(Action::kTransparency);
     ImGui::SameLine();
     ImGui::PushItemWidth(-1);
-    if (slider("##opacity", settings_.opacity, kLeastOpacity, "How dense the transparent bone is"))
-        settings_.is_transparent = true;
+    if (const auto opacity =
+            slider("##opacity", settings_.opacity, kLeastOpacity, "How dense the transparent bone is"))
+        controls_.setOpacity(*opacity);
     ImGui::PopItemWidth();
     gap();
     buildCuts();
@@ -108,9 +101,9 @@ void PanelContent::buildView() {
     if (box("Force arrow (F)", settings_.show_force, "The contact force on the hand, at the burr"))
         act(Action::kForceArrow);
     ImGui::SameLine();
-    const bool is_quick = settings_.quality == Quality::kQuick;
-    if (box("Quick drawing", is_quick, "Without shadows and smooth edges: for PCs without a graphics card"))
-        settings_.quality = is_quick ? Quality::kFull : Quality::kQuick;
+    if (box("Quick drawing (Q)", settings_.quality == Quality::kQuick,
+            "Without shadows and smooth edges: for PCs without a graphics card"))
+        act(Action::kQuickDrawing);
     if (box("Figures (Tab)", settings_.show_hud, "What is written over the picture")) act(Action::kHud);
     ImGui::SameLine();
     if (box("Watchers (W)", settings_.show_watchers, "Who is watching, over the picture"))
@@ -147,22 +140,23 @@ void PanelContent::buildCuts() {
                  {"Cut Z", "Flip##z", "##cut z", "Axial plane: hides the bone above"}};
     for (size_t axis = 0; axis < std::size(kCuts); ++axis) {
         const auto& cut = kCuts[axis];
-        CutPlane& plane = settings_.cuts[axis];
+        const CutPlane& plane = settings_.cuts[axis];
         if (box(cut.label, plane.is_on, cut.what)) act(Action(int(Action::kCutX) + int(axis)));
         ImGui::SameLine();
         if (box(cut.flip, plane.is_flipped, "Hides the other side"))
             act(Action(int(Action::kFlipX) + int(axis)));
         ImGui::SameLine();
         ImGui::PushItemWidth(-1);
-        if (slider(cut.position, plane.position, 0, "Where the plane is, across the bone") && !plane.is_on)
-            act(Action(int(Action::kCutX) + int(axis)));
+        if (const auto position =
+                slider(cut.position, plane.position, 0, "Where the plane is, across the bone"))
+            controls_.moveCutTo(axis, *position);
         ImGui::PopItemWidth();
     }
 }
 
 void PanelContent::buildStereo() {
     const auto offer = [this](const char* label, StereoMode mode, const char* what) {
-        if (choice(label, settings_.stereo == mode, what)) settings_.stereo = mode;
+        if (choice(label, settings_.stereo == mode, what)) controls_.setStereo(mode);
     };
     ImGui::TextColored(kQuiet, "Stereo (S)");
     offer("Off", StereoMode::kOff, "One picture");
@@ -214,7 +208,7 @@ void PanelContent::buildCheckpoints() {
             send(std::move(command));
         }
         ImGui::SameLine();
-        ImGui::Text("%s", clock(checkpoint->session_s()).c_str());
+        ImGui::Text("%s", clockText(checkpoint->session_s()).c_str());
         ImGui::SameLine();
         ImGui::TextColored(kQuiet, "%.1f mm\u00b3 removed", checkpoint->removed_mm3());
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "render_client/controls/viewer_controls.h"
@@ -41,13 +42,14 @@ class PanelContent {
     bool button(const char* label, const char* what);
     bool box(const char* label, bool is_on, const char* what);
     bool choice(const char* label, bool is_chosen, const char* what);
-    bool slider(const char* label, double& fraction, double least, const char* what);
+    // The fraction that it was moved to, at least `least`.
+    std::optional<double> slider(const char* label, double fraction, double least, const char* what);
     void note(const char* label, const char* what);
     void send(topics::Command command) { wishes_.commands.push_back(std::move(command)); }
     void act(Action action) { controls_.act(action, session_, wishes_); }
 
     ViewerControls& controls_;
-    ViewSettings& settings_;
+    const ViewSettings& settings_;
     const SessionView& session_;
     Wishes& wishes_;
     std::map<std::string, PixelPoint>& places_;

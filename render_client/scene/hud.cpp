@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <iterator>
 #include <sstream>
 #include <utility>
 
-#include "render_client/scene/accuracy_keys.h"
+#include "render_client/scene/session_text.h"
 
 namespace bonemill {
 namespace {
@@ -55,14 +54,6 @@ std::vector<std::string> wrapped(const std::string& text, size_t most) {
     return lines;
 }
 
-std::string clock(double seconds) {
-    if (!(seconds >= 0) || !std::isfinite(seconds)) return "\u2013";
-    const auto whole = static_cast<unsigned long long>(std::min(seconds, 1e9));
-    char text[32];
-    std::snprintf(text, sizeof text, "%llu:%02llu:%02llu", whole / 3600, whole / 60 % 60, whole % 60);
-    return text;
-}
-
 // Cut between code points.
 std::string shortened(const std::string& text, size_t most) {
     const std::vector<std::string> signs = splitSigns(text);
@@ -73,24 +64,13 @@ std::string shortened(const std::string& text, size_t most) {
 }
 
 void addSessionRows(const topics::Status& status, std::vector<HudRow>& rows) {
-    if (status.ticks() > 0) rows.push_back({"Session", clock(status.session_s())});
+    if (status.ticks() > 0) rows.push_back({"Session", clockText(status.session_s())});
     if (status.is_milling_paused()) rows.push_back({"Milling", "paused", HudTone::kWarning});
 }
 
 void addToolNameRow(const topics::SceneInfo& info, std::vector<HudRow>& rows) {
     if (info.tool_names_size() < 2 || info.tool_index() >= uint32_t(info.tool_names_size())) return;
     rows.push_back({"Tool", shortened(info.tool_names(int(info.tool_index())), kLongestName)});
-}
-
-const char* roleName(topics::Viewer::Role role) {
-    switch (role) {
-        case topics::Viewer::OPERATOR:
-            return "operator";
-        case topics::Viewer::INSTRUCTOR:
-            return "instructor";
-        default:
-            return "viewer";
-    }
 }
 
 HudRow watcherRow(const topics::Viewer& watcher) {
@@ -204,36 +184,8 @@ Hud makeHud(const HudInput& input) {
     }
     if (input.frame_rate_hz > 0) hud.rows.push_back({"Pictures", number(input.frame_rate_hz, 0, " Hz")});
     if (input.show_watchers) hud.watchers = watcherRows(input.watchers);
+    if (input.show_help) hud.help = input.help;
     return hud;
-}
-
-std::vector<HudRow> helpRows() {
-    std::vector<HudRow> rows{{"Left drag", "orbit"},
-                             {"Right or middle drag, Shift + left", "pan"},
-                             {"Wheel", "zoom"},
-                             {"Ctrl + left drag, L", "point (instructor)"},
-                             {"R", "reset the view"},
-                             {"E", "endoscope"},
-                             {"S", "stereo: off, side by side, anaglyph"},
-                             {"X Y Z", "cut-planes on, off"},
-                             {"Shift + X Y Z", "cut from the other side"},
-                             {"[ ]", "move the last cut-plane"},
-                             {"T", "transparent bone"},
-                             {"F", "force arrow"},
-                             {"P", "pause milling"},
-                             {"N", "next tool"},
-                             {"K", "save a checkpoint"},
-                             {"U", "back to the last checkpoint"},
-                             {"C", "put the bone back"}};
-    for (size_t key = 1; key < std::size(kAccuracyOfKey); ++key)
-        rows.push_back({std::to_string(key), "accuracy " + std::string(kAccuracyOfKey[key])});
-    rows.push_back({"0", "accuracy of the scene file"});
-    rows.push_back({"W", "who is watching"});
-    rows.push_back({"M", "control panel"});
-    rows.push_back({"Tab", "show or hide the display"});
-    rows.push_back({"H", "show or hide this"});
-    rows.push_back({"Esc", "quit"});
-    return rows;
 }
 
 ScaleBar makeScaleBar(double metres_per_pixel, double max_pixels) {

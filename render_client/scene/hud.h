@@ -37,6 +37,7 @@ struct Hud {
     HudTone state_tone = HudTone::kPlain;
     std::vector<HudRow> rows;
     std::vector<HudRow> watchers;  // empty: no list
+    std::vector<HudRow> help;      // keys and what they do; empty: no help page
     std::optional<HudNotice> notice;
 };
 
@@ -56,13 +57,12 @@ struct HudInput {
     double frame_rate_hz = 0;  // of this viewer; 0: not known
     std::vector<topics::Viewer> watchers;
     bool show_watchers = true;
+    std::vector<HudRow> help;
+    bool show_help = false;
     std::optional<HudNotice> notice;
 };
 
 Hud makeHud(const HudInput& input);
-
-// The keys and mouse buttons of the window.
-std::vector<HudRow> helpRows();
 
 // A round length (1, 2 or 5 times a power of ten, m) that spans at most max_pixels, and its name.
 struct ScaleBar {

@@ -15,7 +15,9 @@ constexpr std::array<float, 4> kTitleColour{1, 1, 1, 1};
 constexpr std::array<float, 4> kLineColour{1, 1, 1, 0.14f};
 constexpr std::array<float, 4> kPointerName{1, 0.62f, 0.88f, 1};
 constexpr std::string_view kWatchersTitle = "Watching";
-constexpr float kGlyph = -1;  // marks a glyph in the shader
+constexpr float kHelpPadding = 1.4f, kHelpLine = 1.7f, kHelpGap = 2;  // of the text's height
+constexpr float kSmallestHelp = 7;                                    // pixels: what can just be read
+constexpr float kGlyph = -1;                                          // marks a glyph in the shader
 
 }  // namespace
 
@@ -39,13 +41,19 @@ HudPainter::HudPainter(const GlApi& gl)
     gl_.BindVertexArray(0);
 }
 
-void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel, bool show_help,
-                       int width, int height, float ui_scale) {
+void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel, int width,
+                       int height, float ui_scale) {
     begin(ui_scale);
     const Corner panel = layOutPanel(hud);
     if (!hud.watchers.empty()) layOutWatchers(hud.watchers, panel, width);
     layOutScaleBar(scale_bar, metres_per_pixel, width, height);
-    if (show_help) layOutHelp(width, height);
+    if (!hud.help.empty()) {
+        flush(width, height);
+        useFont(helpTextHeight(hud.help, width, height));
+        layOutHelp(hud.help, width, height);
+        flush(width, height);
+        begin(ui_scale);
+    }
     if (hud.notice) layOutNotice(*hud.notice, width, height);
     flush(width, height);
 }
@@ -57,8 +65,14 @@ void HudPainter::paintLabels(const std::vector<HudLabel>& labels, int width, int
 }
 
 void HudPainter::begin(float ui_scale) {
-    em_ = std::round(kFontPixels * ui_scale);
-    if (!font_ || font_->pixelHeight() != em_) font_ = std::make_unique<FontAtlas>(gl_, em_);
+    useFont(std::round(kFontPixels * ui_scale));
+}
+
+void HudPainter::useFont(float em) {
+    em_ = em;
+    std::unique_ptr<FontAtlas>& font = fonts_[em];
+    if (!font) font = std::make_unique<FontAtlas>(gl_, em);
+    font_ = font.get();
     vertices_.clear();
 }
 
@@ -142,31 +156,62 @@ void HudPainter::layOutScaleBar(const ScaleBar& bar, double metres_per_pixel, in
     text(right - (pixels + label_width) / 2, base - em_ * 0.6f, bar.label, FontStyle::kPlain, colour);
 }
 
-// In as many columns as the picture's height needs.
-void HudPainter::layOutHelp(int width, int height) {
-    const std::vector<HudRow> rows = helpRows();
-    const float padding = em_ * 1.4f, line = em_ * 1.7f, gap = em_ * 2;
-    const float room = std::max(float(height) - 2 * padding - em_, line);
-    const size_t columns = size_t(std::ceil(line * float(rows.size()) / room));
-    const size_t per_column = (rows.size() + columns - 1) / columns;
-    float keys = 0, meanings = 0;
-    for (const HudRow& row : rows) {
-        keys = std::max(keys, font_->width(row.label, FontStyle::kBold));
-        meanings = std::max(meanings, font_->width(row.value, FontStyle::kPlain));
+size_t HudPainter::helpRowsPerColumn(size_t rows, float em, int height) const {
+    const float room = std::max(float(height) - 2 * em * kHelpPadding - em, em * kHelpLine);
+    const auto columns = size_t(std::ceil(em * kHelpLine * float(rows) / room));
+    return (rows + columns - 1) / columns;
+}
+
+std::vector<HudPainter::HelpColumn> HudPainter::helpColumns(const std::vector<HudRow>& rows,
+                                                            size_t per_column) const {
+    std::vector<HelpColumn> columns;
+    for (size_t first = 0; first < rows.size(); first += per_column) {
+        HelpColumn column{first, std::min(first + per_column, rows.size()), 0, 0};
+        for (size_t i = first; i < column.end; ++i) {
+            column.keys = std::max(column.keys, font_->width(rows[i].label, FontStyle::kBold));
+            column.meanings = std::max(column.meanings, font_->width(rows[i].value, FontStyle::kPlain));
+        }
+        columns.push_back(column);
     }
-    const float column = keys + gap + meanings;
-    const float panel_width = float(columns) * column + float(columns - 1) * gap + 2 * padding;
+    return columns;
+}
+
+float HudPainter::helpWidth(const std::vector<HelpColumn>& columns) const {
+    float width = em_ * (2 * kHelpPadding - kHelpGap);
+    for (const HelpColumn& column : columns) width += column.keys + column.meanings + 2 * em_ * kHelpGap;
+    return width;
+}
+
+// Widths grow with the height of the text, near enough.
+float HudPainter::helpTextHeight(const std::vector<HudRow>& rows, int width, int height) const {
+    float em = em_;
+    while (em > kSmallestHelp) {
+        const auto columns = helpColumns(rows, helpRowsPerColumn(rows.size(), em, height));
+        if (helpWidth(columns) * em / em_ <= float(width) - em) break;
+        em = std::max(em - 1, kSmallestHelp);
+    }
+    return em;
+}
+
+void HudPainter::layOutHelp(const std::vector<HudRow>& rows, int width, int height) {
+    const size_t per_column = helpRowsPerColumn(rows.size(), em_, height);
+    const std::vector<HelpColumn> columns = helpColumns(rows, per_column);
+    const float padding = em_ * kHelpPadding, line = em_ * kHelpLine, gap = em_ * kHelpGap;
+    const float panel_width = helpWidth(columns);
     const float panel_height = line * float(per_column) + 2 * padding - em_ * 0.5f;
-    const float left = std::round((float(width) - panel_width) / 2) + padding,
+    const float left = std::round((float(width) - panel_width) / 2),
                 top = std::round((float(height) - panel_height) / 2);
     Colour backing = kPanelColour;
     backing[3] = 0.86f;
-    box(left - padding, top, panel_width, panel_height, em_ * 0.6f, backing);
-    for (size_t i = 0; i < rows.size(); ++i) {
-        const float x = left + float(i / per_column) * (column + gap);
-        const float base = top + padding + em_ * 0.85f + line * float(i % per_column);
-        text(x, base, rows[i].label, FontStyle::kBold, kTitleColour);
-        text(x + keys + gap, base, rows[i].value, FontStyle::kPlain, kLabelColour);
+    box(left, top, panel_width, panel_height, em_ * 0.6f, backing);
+    float x = left + padding;
+    for (const HelpColumn& column : columns) {
+        float base = top + padding + em_ * 0.85f;
+        for (size_t i = column.first; i < column.end; ++i, base += line) {
+            text(x, base, rows[i].label, FontStyle::kBold, kTitleColour);
+            text(x + column.keys + gap, base, rows[i].value, FontStyle::kPlain, kLabelColour);
+        }
+        x += column.keys + column.meanings + 2 * gap;
     }
 }
 

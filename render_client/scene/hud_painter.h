@@ -3,6 +3,7 @@
 // Thread: the one of the context. Pixels count from the upper left corner.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -18,8 +19,8 @@ class HudPainter {
     explicit HudPainter(const GlApi& gl);
 
     // Into the bound framebuffer. ui_scale 1 suits a picture 800 pixels high.
-    void paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel, bool show_help, int width,
-               int height, float ui_scale);
+    void paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel, int width, int height,
+               float ui_scale);
 
     // Names beside points of the picture.
     void paintLabels(const std::vector<HudLabel>& labels, int width, int height, float ui_scale);
@@ -38,6 +39,7 @@ class HudPainter {
     // Returns the pen's x after the text; y is the base line.
     float text(float x, float y, std::string_view utf8, FontStyle style, const Colour& colour);
     void begin(float ui_scale);
+    void useFont(float em);
     struct Corner {
         float right, bottom;
     };
@@ -45,7 +47,16 @@ class HudPainter {
     void layOutWatchers(const std::vector<HudRow>& watchers, const Corner& panel, int width);
     void layOutLabel(const HudLabel& label);
     void layOutScaleBar(const ScaleBar& bar, double metres_per_pixel, int width, int height);
-    void layOutHelp(int width, int height);
+    // In as many columns as the picture's height needs, in smaller text where they are too wide.
+    struct HelpColumn {
+        size_t first, end;     // rows
+        float keys, meanings;  // pixels, widths
+    };
+    std::vector<HelpColumn> helpColumns(const std::vector<HudRow>& rows, size_t per_column) const;
+    size_t helpRowsPerColumn(size_t rows, float em, int height) const;
+    float helpWidth(const std::vector<HelpColumn>& columns) const;
+    float helpTextHeight(const std::vector<HudRow>& rows, int width, int height) const;
+    void layOutHelp(const std::vector<HudRow>& rows, int width, int height);
     void layOutNotice(const HudNotice& notice, int width, int height);
     void flush(int width, int height);
     static Colour colourOf(HudTone tone);
@@ -54,7 +65,8 @@ class HudPainter {
     Program program_;
     GlVertexArray layout_;
     GlBuffer buffer_;
-    std::unique_ptr<FontAtlas> font_;
+    std::map<float, std::unique_ptr<FontAtlas>> fonts_;  // by height, pixels
+    const FontAtlas* font_ = nullptr;                    // the one in use
     std::vector<Vertex> vertices_;
     float em_ = 14;  // pixels: height of the font, unit of the layout
 };

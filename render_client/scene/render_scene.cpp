@@ -171,10 +171,10 @@ void RenderScene::drawAnaglyph(const FrameView& view, int width, int height, flo
 void RenderScene::paintHud(const Camera& camera, const PictureArea& area, float ui_scale) {
     if (!settings_.show_hud) return;
     hud_input_.show_watchers = settings_.show_watchers;
+    hud_input_.show_help = settings_.show_help;
     const double metres_per_pixel = camera.metresPerPixel(area.height);
     const ScaleBar bar = hasSceneInfo() ? makeScaleBar(metres_per_pixel, 0.2 * area.width) : ScaleBar{};
-    hud_painter_.paint(makeHud(hud_input_), bar, metres_per_pixel, settings_.show_help, area.width,
-                       area.height, ui_scale);
+    hud_painter_.paint(makeHud(hud_input_), bar, metres_per_pixel, area.width, area.height, ui_scale);
 }
 
 void RenderScene::paintNames(const FrameView& view, const PictureArea& area, float ui_scale) {

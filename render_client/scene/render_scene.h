@@ -45,6 +45,9 @@ class RenderScene {
     // Shown until it is replaced; nullopt: nothing is shown.
     void setNotice(std::optional<HudNotice> notice) { hud_input_.notice = std::move(notice); }
 
+    // The help page: keys and what they do. None before the first call.
+    void setHelp(std::vector<HudRow> rows) { hud_input_.help = std::move(rows); }
+
     // Of this viewer, pictures per second over the last second; 0: not known.
     void setFrameRate(double frame_rate_hz) { hud_input_.frame_rate_hz = frame_rate_hz; }
 

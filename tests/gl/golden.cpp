@@ -71,11 +71,14 @@ Picture readGolden(const std::string& name) {
     return readPng(goldenPath(name));
 }
 
+std::string writeGolden(const Picture& picture, const std::filesystem::path& path) {
+    writePng(picture, path);
+    return "written, look at it, then test without BONEMILL_WRITE_GOLDEN: " + path.string();
+}
+
 std::string goldenProblem(const Picture& actual, const std::string& name) {
-    if (const char* wish = std::getenv("BONEMILL_WRITE_GOLDEN"); wish && std::string(wish) == "1") {
-        writePng(actual, goldenPath(name));
-        return "";
-    }
+    if (const char* wish = std::getenv("BONEMILL_WRITE_GOLDEN"); wish && std::string(wish) == "1")
+        return writeGolden(actual, goldenPath(name));
     const PictureDifference difference = compare(actual, readGolden(name));
     if (!difference.isVisible()) return "";
     const std::filesystem::path folder = testing::TempDir();
@@ -85,7 +88,7 @@ std::string goldenProblem(const Picture& actual, const std::string& name) {
     writePng(difference.shown, difference_path);
     return std::to_string(100 * difference.bad_part) + " % of the pixels differ visibly from " +
            goldenPath(name).string() + ": look at " + actual_path.string() + " and " +
-           difference_path.string() + "; BONEMILL_WRITE_GOLDEN=1 accepts the new pictures";
+           difference_path.string() + "; BONEMILL_WRITE_GOLDEN=1 writes the new pictures";
 }
 
 }  // namespace bonemill::test

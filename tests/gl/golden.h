@@ -1,6 +1,7 @@
 // Pictures compared with those in the repository (tests/gl/golden).
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "render_client/offscreen/picture.h"
@@ -19,9 +20,13 @@ struct PictureDifference {
 // Pictures of different sizes differ everywhere.
 PictureDifference compare(const Picture& actual, const Picture& expected);
 
-// With BONEMILL_WRITE_GOLDEN=1 in the environment the picture becomes the golden one. Else the message is
-// empty when they look the same; if not it names the actual and the difference picture, which were written.
+// The message is empty when they look the same; if not it names the actual and the difference picture, which
+// were written. With BONEMILL_WRITE_GOLDEN=1 in the environment the picture becomes the golden one, and the
+// message says so: nothing was compared, so no test passes.
 std::string goldenProblem(const Picture& actual, const std::string& name);
+
+// The message that it was written.
+std::string writeGolden(const Picture& picture, const std::filesystem::path& path);
 
 Picture readGolden(const std::string& name);
 

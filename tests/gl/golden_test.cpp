@@ -6,6 +6,7 @@
 
 #include <memory>
 
+#include "render_client/controls/help_rows.h"
 #include "render_client/offscreen/osmesa_context.h"
 #include "tests/gl/altered_shaders.h"
 #include "tests/gl/milled_scene.h"
@@ -135,6 +136,24 @@ TEST_F(Golden, HudWithWatchers) {
     scene_->setWatchers(watchers);
     scene_->setFrameRate(59.6);
     EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "hud"), "");
+}
+
+TEST_F(Golden, HelpPage) {
+    scene_->settings().show_hud = true;
+    scene_->settings().show_help = true;
+    scene_->setHelp(helpRows());
+    EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "help"), "");
+}
+
+TEST(GoldenFiles, WritingOneIsNoPass) {
+    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "bonemill_written.png";
+    Picture picture(3, 2);
+    picture.row(1)[4] = 200;
+    const std::string message = test::writeGolden(picture, path);
+    EXPECT_NE(message.find("written, look at it"), std::string::npos) << message;
+    EXPECT_NE(message.find(path.string()), std::string::npos) << message;
+    EXPECT_EQ(test::readPng(path), picture);
+    std::filesystem::remove(path);
 }
 
 TEST_F(Golden, TheComparisonSeesAMissingLight) {

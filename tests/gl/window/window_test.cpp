@@ -303,7 +303,7 @@ TEST_F(Window, ThePanelWorksByMouse) {
     panel.click("Left");
     expectGolden(look(viewer), "panel_left");
     panel.click("First view (R)");
-    panel.click("Quick drawing");
+    panel.click("Quick drawing (Q)");
     expectGolden(look(viewer), "panel_quick");
     key("m");
     EXPECT_LT(differentShare(look(viewer), plain), kSmallChange) << "nothing of the panel is left";

@@ -88,6 +88,29 @@ TEST_F(Controls, BracketsMoveTheCutThatWasSwitchedLastWithinTheBone) {
     EXPECT_EQ(settings_.cuts[1].position, 1);
 }
 
+TEST_F(Controls, BracketsMoveTheCutThatWasPlacedLast) {
+    type('X');
+    controls_.moveCutTo(1, 0.3);
+    EXPECT_TRUE(settings_.cuts[1].is_on) << "whoever moves a plane wants to see it";
+    send(TextEvent{U']'});
+    EXPECT_NEAR(settings_.cuts[1].position, 0.32, 1e-12);
+    EXPECT_EQ(settings_.cuts[0].position, 0.5);
+    controls_.moveCutTo(1, 7);
+    EXPECT_EQ(settings_.cuts[1].position, 1);
+}
+
+TEST_F(Controls, TheRestOfTheViewIsSetWithinBounds) {
+    controls_.setStereo(StereoMode::kAnaglyph);
+    EXPECT_EQ(settings_.stereo, StereoMode::kAnaglyph);
+    controls_.setOpacity(1.5);
+    EXPECT_EQ(settings_.opacity, 1);
+    EXPECT_TRUE(settings_.is_transparent);
+    type('Q');
+    EXPECT_EQ(settings_.quality, Quality::kQuick);
+    type('Q');
+    EXPECT_EQ(settings_.quality, Quality::kFull);
+}
+
 TEST_F(Controls, DragsOrbitAndPan) {
     const OrbitCamera before = camera_;
     drag(MouseButton::kLeft);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace bonemill {
 namespace {
@@ -76,9 +77,9 @@ TEST_F(PanelClicks, BoxesSwitchWhatIsSeen) {
     EXPECT_EQ(settings_.camera, CameraMode::kEndoscope);
     click("Force arrow (F)");
     EXPECT_FALSE(settings_.show_force);
-    click("Quick drawing");
+    click("Quick drawing (Q)");
     EXPECT_EQ(settings_.quality, Quality::kQuick);
-    click("Quick drawing");
+    click("Quick drawing (Q)");
     EXPECT_EQ(settings_.quality, Quality::kFull);
     click("Figures (Tab)");
     EXPECT_FALSE(settings_.show_hud);
@@ -101,6 +102,24 @@ TEST_F(PanelClicks, SlidersSetHowMuch) {
     click(PixelPoint{kWidth - 30.0, opacity.y});
     EXPECT_GT(settings_.opacity, 0.85);
     EXPECT_TRUE(settings_.is_transparent);
+}
+
+TEST_F(PanelClicks, BracketsMoveTheCutThatTheSliderMoved) {
+    click("Cut X");
+    const PixelPoint middle = at("##cut y");
+    click(PixelPoint{middle.x + 60, middle.y});
+    const double set = settings_.cuts[1].position;
+    controls_.act(Action::kCutHigher, session_, wishes_);
+    EXPECT_NEAR(settings_.cuts[1].position, set + 0.02, 1e-9);
+    EXPECT_EQ(settings_.cuts[0].position, 0.5);
+}
+
+TEST_F(PanelClicks, ACheckpointsTimeMayBeAnything) {
+    for (const double seconds : {1e300, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+        status_.mutable_checkpoints(0)->set_session_s(seconds);
+        layOut();
+        EXPECT_TRUE(panel_.find("Back to 3")) << seconds;
+    }
 }
 
 TEST_F(PanelClicks, ASlidersValueCanBeTyped) {

@@ -220,23 +220,13 @@ TEST(AccuracyKeys, AskForTheSceneAndForEveryPresetOfTheServer) {
         EXPECT_EQ(kAccuracyOfKey[1 + n], presetName(kPresets[n]));
 }
 
-TEST(AccuracyKeys, AreInTheHelp) {
-    const std::vector<HudRow> rows = helpRows();
-    for (size_t key = 1; key < std::size(kAccuracyOfKey); ++key) {
-        const auto row = std::find_if(rows.begin(), rows.end(),
-                                      [&](const HudRow& r) { return r.label == std::to_string(key); });
-        ASSERT_NE(row, rows.end()) << key;
-        EXPECT_EQ(row->value, "accuracy " + std::string(kAccuracyOfKey[key]));
-    }
-}
-
-TEST(HelpRows, NameEveryKey) {
-    const std::vector<HudRow> rows = helpRows();
-    for (const char* key :
-         {"R", "C",   "F", "X Y Z", "Shift + X Y Z",      "[ ]", "T", "S", "E", "P", "K", "U", "N", "0", "W",
-          "M", "Tab", "H", "Esc",   "Ctrl + left drag, L"})
-        EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [&](const HudRow& r) { return r.label == key; }))
-            << key;
+TEST(Hud, TheHelpPageIsShownOnRequest) {
+    HudInput input;
+    input.help = {{"H", "help"}};
+    EXPECT_TRUE(makeHud(input).help.empty());
+    input.show_help = true;
+    ASSERT_EQ(makeHud(input).help.size(), 1u);
+    EXPECT_EQ(makeHud(input).help[0].label, "H");
 }
 
 TEST(Hud, NumbersThatAreNoneBecomeADash) {

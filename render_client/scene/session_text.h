@@ -1,0 +1,17 @@
+// How the session is put into words, the same in the figures, the panel and the log. Pure functions, any
+// thread.
+#pragma once
+
+#include <string>
+
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+// "?" for a role that this version does not know.
+std::string roleName(topics::Viewer::Role role);
+
+// A time of the session (s) as h:mm:ss, whole seconds; a dash for what is no time. Bounded at 1e9 s.
+std::string clockText(double seconds);
+
+}  // namespace bonemill
