@@ -138,7 +138,6 @@ void GradientModel::restart() noexcept {
     last_wrench_hand_ = {};
     is_new_tool_ = false;
     last_depth_ = 0;
-    growing_.setOffset(0);
     useTool();
 }
 

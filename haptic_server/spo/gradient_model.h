@@ -27,6 +27,8 @@ class GradientModel final : public SpoModel {
 
     SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept override;
     void restart() noexcept override;
+    // A tool that was chosen where it had no room is still felt smaller than it is.
+    bool isToolGrowing() const noexcept { return growing_.offset() > 0; }
     void setAccuracy(const AccuracySettings& settings) noexcept override;
     void setTool(const SpoTool& tool) noexcept override;
 

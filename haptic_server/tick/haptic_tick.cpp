@@ -24,7 +24,7 @@ constexpr double kFarthest = 1e3;  // m from W's origin: beyond any scan, and sq
 constexpr int kLeavesPreparedPerTick = 1;
 
 // As stiff as the quicker of the two laws.
-ToolChange toolChangeOf(const TickConfig& config) noexcept {
+SuddenChange suddenChangeOf(const TickConfig& config) noexcept {
     const EnergyCouplingConfig& gradient = config.gradient.coupling;
     return {config.coupling, config.dt,
             std::max(config.coupling.translation_stiffness,
@@ -48,7 +48,7 @@ HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const ToolMode
       affordable_(config.dt),
       milling_(config.milling, bone.volume, bone.lattice,
                tools ? tools->largestBurrRadius() : config.burr_radius),
-      tool_change_(toolChangeOf(config)),
+      sudden_change_(suddenChangeOf(config)),
       X_VW_(bone.volume.geometry().X_WV.inverse()) {
     const AccuracySettings& settings = accuracy ? accuracy->chosen() : config.accuracy;
     bone.shell.prepare(bone.volume, bone.lattice, levelOf(bone.shell, settings),
@@ -71,7 +71,9 @@ void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept 
     const auto [is_ready, is_complete] =
         shell.prepare(bone_.volume, bone_.lattice, levelOf(shell, chosen), kLeavesPreparedPerTick);
     if (!is_complete) faults |= kFaultShellOverflow;
-    if (is_ready) takeUp(chosen);
+    if (!is_ready) return;
+    if (chosen.law != settings_.law) sudden_change_.begin();
+    takeUp(chosen);
 }
 
 void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
@@ -97,7 +99,7 @@ void HapticTick::chooseTool() noexcept {
     if (chosen == tool_) return;
     tool_ = chosen;
     takeUp((*tools_)[tool_]);
-    tool_change_.begin();
+    sudden_change_.begin();
 }
 
 bool HapticTick::tick(TickIo& io) noexcept {
@@ -150,7 +152,8 @@ SpoStep HapticTick::moveAndFeel(double force_factor, uint32_t& faults) noexcept 
     if (step.is_motion_clamped) faults |= kFaultMotionClamped;
     if (step.has_stalled) faults |= kFaultStalled;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
-    if (tool_change_.limit(step.wrench_hand, device_)) faults |= kFaultForceClamped;
+    if (gradient_.isToolGrowing()) sudden_change_.begin();
+    if (sudden_change_.limit(step.wrench_hand, device_)) faults |= kFaultForceClamped;
     step.wrench_hand.force *= force_factor;
     step.wrench_hand.torque *= force_factor;
     return step;
@@ -161,8 +164,11 @@ MillingResult HapticTick::mill(const DeviceInput& input, uint32_t& faults) noexc
     if (!history_->beginWrite()) return {};
     MillingResult milled;
     bool shell_is_complete = true;
-    if (!history_->restoreSome(bone_, shell_is_complete) && !history_->isMillingPaused())
+    if (history_->restoreSome(bone_, shell_is_complete)) {
+        sudden_change_.begin();
+    } else if (!history_->isMillingPaused()) {
         milled = millWithTool(input, faults);
+    }
     if (!shell_is_complete) faults |= kFaultShellOverflow;
     history_->endWrite(milled.removed_voxels, milled.added_voxels);
     return milled;

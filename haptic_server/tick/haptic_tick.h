@@ -9,8 +9,8 @@
 #include "haptic_server/tick/affordable_shell.h"
 #include "haptic_server/tick/bone_history.h"
 #include "haptic_server/tick/bone_model.h"
+#include "haptic_server/tick/sudden_change.h"
 #include "haptic_server/tick/tick_record.h"
-#include "haptic_server/tick/tool_change.h"
 #include "haptic_server/tick/tool_switch.h"
 
 namespace bonemill {
@@ -93,7 +93,7 @@ class HapticTick {
     AccuracySettings settings_;
     AffordableShell affordable_;
     TimedMilling milling_;
-    ToolChange tool_change_;
+    SuddenChange sudden_change_;
     Pose X_VW_;
     Pose device_;
     Pose spo_;

@@ -57,6 +57,56 @@ TEST(ToolSwitch, AForceAtItsLimitFallsAtOnce) {
     EXPECT_LT(feltAfter(kTicks), 0.1);
 }
 
+// Largest change of the force from one tick to the next.
+double largestStep(const std::vector<TickRecord>& records) {
+    double largest = 0;
+    for (size_t i = 1; i < records.size(); ++i)
+        largest = std::max(largest, (Eigen::Map<const Eigen::Vector3d>(records[i].f_hand_W) -
+                                     Eigen::Map<const Eigen::Vector3d>(records[i - 1].f_hand_W))
+                                        .norm());
+    return largest;
+}
+
+// The burr rests at the bottom of its own pit, and the pit is filled again.
+TEST(SuddenBone, ThatIsPutBackAroundTheToolPushesAtALimitedRate) {
+    ToolBench bench(1);
+    const auto above = test::SwitchingBench::at(test::kBenchTop + 1.2e-3);
+    const auto bottom = test::SwitchingBench::at(test::kBenchTop - 0.2e-3);
+    test::ScriptedIo down(test::straightPath(above, bottom.position, 600, kButtonRemove));
+    bench.run(down);
+    test::ScriptedIo rest(test::straightPath(bottom, bottom.position, 200, 0));
+    bench.run(rest);
+    bench.history.restore();
+    test::ScriptedIo back(test::straightPath(bottom, bottom.position, 400, 0));
+    bench.run(back);
+    const Eigen::Map<const Eigen::Vector3d> force(back.records.back().f_hand_W);
+    EXPECT_GT(force.z(), 2);
+    EXPECT_LE(largestStep(back.records), 1.001 * SuddenChange::kForceRate * 1e-3);
+}
+
+// A burr that has no room stays small when another law was in force for a while.
+TEST(SuddenLaw, ChangesTheForceAtALimitedRateAndLeavesAToolSmall) {
+    ToolBench bench(0);
+    AccuracySwitch accuracy(presetSettings(Preset::kBalanced));
+    HapticTick tick(ToolBench::configOf(presetSettings(Preset::kBalanced)), bench.bone, bench.models[0],
+                    &bench.history, &accuracy, &bench.tools);
+    const auto hand = test::SwitchingBench::at(test::kBenchTop + 0.1e-3);
+    std::vector<TickRecord> records;
+    const auto rest = [&](int ticks) {
+        test::ScriptedIo io(test::straightPath(hand, hand.position, ticks, 0));
+        while (tick.tick(io)) {
+        }
+        records.insert(records.end(), io.records.begin(), io.records.end());
+    };
+    rest(300);
+    records.clear();
+    for (const Preset preset : {Preset::kThesis2012, Preset::kBalanced, Preset::kThesis2012, Preset::kFast}) {
+        accuracy.choose(AccuracySwitch::choiceOf(preset));
+        rest(300);
+    }
+    EXPECT_LE(largestStep(records), 1.001 * SuddenChange::kForceRate * 1e-3);
+}
+
 // The groove of a tool that was changed to is as that of the same tool from the start.
 TEST(ToolSwitch, EachToolMillsWithItsOwnBurr) {
     const auto removedBy = [](size_t first, size_t then) {

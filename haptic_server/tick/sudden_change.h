@@ -1,14 +1,14 @@
-// The last before the hand: the limits of what it may feel, and of a change of the tool the way from the old
-// tool's wrench to the new one's, at a limited rate. A larger burr may find bone where there was room for the
-// smaller one: the simulated tool is out of it within some ticks, and the coupling's pull would grow as fast.
-// RT-safe; tick thread only.
+// The last before the hand: the limits of what it may feel, and, when what it feels has changed at one
+// stroke, the way from the old wrench to the new one at a limited rate. A larger burr may find bone where
+// there was room for the smaller one, a restored bone may be where the tool is: the simulated tool is out of
+// it within some ticks, and the coupling's pull would grow as fast. RT-safe; tick thread only.
 #pragma once
 
 #include "haptic_server/coupling/virtual_coupling.h"
 
 namespace bonemill {
 
-class ToolChange {
+class SuddenChange {
   public:
     static constexpr double kForceRate = 100;  // N/s: from nothing to 10 N in 0.1 s
     static constexpr double kTorqueRate = 3;   // N·m/s: that force at 30 mm
@@ -16,8 +16,8 @@ class ToolChange {
 
     // Beside the rates the wrench may change by what the hand's own motion makes of these, N/m and N·m/rad,
     // with the force's lever about the tool point, m. Of `limits`, the largest force and torque.
-    ToolChange(const CouplingConfig& limits, double dt, double stiffness, double rotation_stiffness,
-               double lever) noexcept
+    SuddenChange(const CouplingConfig& limits, double dt, double stiffness, double rotation_stiffness,
+                 double lever) noexcept
         : limits_(limits),
           dt_(dt),
           stiffness_(stiffness),
