@@ -20,8 +20,10 @@ constexpr int kTicksBetween = 6, kSaved = 14;
 // was after each tick.
 class MillingIo final : public TickIo {
   public:
-    MillingIo(const BoneModel& bone, const std::atomic<bool>& stop) : bone_(bone), stop_(stop) { remember(); }
+    MillingIo(const BoneModel& bone, const std::atomic<bool>& stop) : bone_(bone), stop_(stop) {}
+    // Between two ticks, where memory may be had: here the bone is looked at.
     bool read(DeviceInput& input) noexcept override {
+        remember();
         if (stop_) return false;
         const double phase = double(n_++) / 20;
         input = {};
@@ -34,7 +36,6 @@ class MillingIo final : public TickIo {
     int64_t now() noexcept override { return 0; }
     void push(const TickRecord& record) noexcept override {
         removed += record.removed_voxels;
-        remember();
         ++ticks;
     }
 
