@@ -15,7 +15,7 @@ using test::Process;
 using test::VirtualNetwork;
 using test::Words;
 
-constexpr int kLongestStall_ms = 1000;
+constexpr int kLongestStall_ms = 2000;
 
 class Harmless : public test::NetworkSession {
   protected:
@@ -41,7 +41,7 @@ class Harmless : public test::NetworkSession {
         const auto report = stopServer();
         for (const Process* probe : all) EXPECT_EQ(newest(*probe)["digest"], report["published_digest"]);
         EXPECT_LT(report["publish_round_ms"]["max"], kLongestStall_ms);
-        EXPECT_LT(report["publish_round_ms"]["p99"], 100);
+        EXPECT_LT(report["publish_round_ms"]["p99"], 300);
         EXPECT_EQ(report["lost_records"], 0);
         EXPECT_FALSE(report["fault_ticks"].contains("solve")) << report["fault_ticks"];
     }
