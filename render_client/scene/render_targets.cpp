@@ -48,14 +48,7 @@ void RenderTargets::makeScene() {
 }
 
 void RenderTargets::makeKept() {
-    makeTexture(bone_colour_, GL_RGBA8, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
-    makeTexture(bone_depth_, GL_DEPTH24_STENCIL8, width_, height_, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
-                GL_NEAREST);
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, bone_.name());
-    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, bone_colour_.name(), 0);
-    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, bone_depth_.name(),
-                             0);
-    checkComplete("bone");
+    makeLayer(bone_, bone_colour_, bone_depth_, "bone");
     makeTexture(finished_colour_, GL_RGBA8, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, finished_.name());
     gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, finished_colour_.name(), 0);
@@ -63,15 +56,19 @@ void RenderTargets::makeKept() {
 }
 
 void RenderTargets::makeResolved() {
-    makeTexture(colour_texture_, GL_RGBA8, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
-    // A depth buffer is resolved only into one of the same format.
-    makeTexture(depth_texture_, GL_DEPTH24_STENCIL8, width_, height_, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
+    makeLayer(resolved_, colour_texture_, depth_texture_, "resolved scene");
+}
+
+// Colour and depth of the picture's size. A depth buffer is resolved only into one of the same format.
+void RenderTargets::makeLayer(const GlFramebuffer& layer, const GlTexture& colour, const GlTexture& depth,
+                              const char* what) const {
+    makeTexture(colour, GL_RGBA8, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
+    makeTexture(depth, GL_DEPTH24_STENCIL8, width_, height_, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8,
                 GL_NEAREST);
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, resolved_.name());
-    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour_texture_.name(), 0);
-    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D,
-                             depth_texture_.name(), 0);
-    checkComplete("resolved scene");
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, layer.name());
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour.name(), 0);
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, depth.name(), 0);
+    checkComplete(what);
 }
 
 void RenderTargets::makeOcclusion() {

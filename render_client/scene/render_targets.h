@@ -51,6 +51,8 @@ class RenderTargets {
     void makeScene();
     void makeKept();
     void makeResolved();
+    void makeLayer(const GlFramebuffer& layer, const GlTexture& colour, const GlTexture& depth,
+                   const char* what) const;
     void makeOcclusion();
     void makeShadow();
     void makeTexture(const GlTexture& texture, GLint format, int width, int height, GLenum layout,
