@@ -89,7 +89,7 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
 
     BoneModel bone = layoutBone(simulation);
     TouchProbe probe(bone, tool.model);
-    const auto places = findProbingPlaces(loaded.scene.simulated_operator(), bone, tick.burr_radius, probe);
+    const auto places = findProbingPlaces(loaded.scene.simulated_operator(), bone, tick.burr.radius, probe);
     if (places.empty())
         throw UserError(loaded.file.string() +
                         ": the tool touches no bone, neither on the way of simulated_operator nor "
@@ -97,7 +97,8 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
     std::vector<ProbingStroke> strokes;
     for (const ProbingPlace& place : places) strokes.push_back(makeStroke(place, {}, tick, probe));
     PosePath milling;
-    if (tick.milling.enabled && tick.milling.removal_rate > 0) milling = millingPath(places.front(), tick);
+    const std::optional<TimeRemovalConfig>& removal = tick.effects.time_removal;
+    if (removal && removal->rate > 0) milling = millingPath(places.front(), tick);
 
     progress << "truth along " << strokes.size() << " strokes" << std::endl;
     const int threads = std::clamp(int(std::thread::hardware_concurrency()), 1, kMostThreads);
@@ -120,10 +121,10 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
     data.scene_file = loaded.file.string();
     data.machine = machineName();
     data.spacing = bone.volume.spacing().minCoeff();
-    data.burr_radius = tick.burr_radius;
+    data.burr_radius = tick.burr.radius;
     data.tick_period = tick.dt;
     data.contact_width =
-        contactWidth(tick.gradient.contact.stiffness_per_area, tick.burr_radius, data.truth.force_rms);
+        contactWidth(tick.gradient.contact.stiffness_per_area, tick.burr.radius, data.truth.force_rms);
     return data;
 }
 

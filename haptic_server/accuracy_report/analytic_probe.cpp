@@ -32,7 +32,7 @@ double depthOfWidth(double radius, double width) {
 
 ToolModel buildBurr(const AnalyticProbeConfig& config) {
     ToolConfig tool;
-    tool.burr_radius = config.tick.burr_radius;
+    tool.burr_radius = config.tick.burr.radius;
     tool.shapes = {SphereShape{Vector3d::Zero(), tool.burr_radius}};
     tool.sdf_spacing = config.sdf_spacing;
     const int half = int(std::ceil(tool.burr_radius / config.sdf_spacing)) + 3;
@@ -134,7 +134,7 @@ AnalyticProbe::AnalyticProbe(const AnalyticProbeConfig& config) : config_(config
     std::mt19937 random(1);
     std::vector<ShellLevel> levels;
     for (const int factor : config.shell_factors) levels.push_back({factor});
-    const double radius = config.tick.burr_radius;
+    const double radius = config.tick.burr.radius;
     const double widest =
         std::min(kWidestOfRadius * radius, kWidths[std::size(kWidths) - 1] * config.spacing);
     for (int n = 0; n < kGrids; ++n) {
@@ -152,7 +152,7 @@ PlaneErrors AnalyticProbe::measure(const AccuracySettings& settings) {
     TickConfig tick = config_.tick;
     tick.accuracy = settings;
     if (!config_.has_analytic_tool) tick.accuracy.tool_distance = ToolDistance::kGrid;
-    const double radius = tick.burr_radius;
+    const double radius = tick.burr.radius;
     PlaneErrors errors;
     int count = 0;
     for (const double load : kLoads) {
@@ -179,7 +179,7 @@ PlaneErrors AnalyticProbe::measure(const AccuracySettings& settings) {
 }
 
 PatchErrors AnalyticProbe::patchAt(const AccuracySettings& settings, double width_voxels) const {
-    const double radius = config_.tick.burr_radius;
+    const double radius = config_.tick.burr.radius;
     const double kappa = config_.tick.gradient.contact.stiffness_per_area;
     PatchErrors errors{.shell_factor = settings.shell_factor,
                        .tool_distance = settings.tool_distance,
@@ -227,7 +227,7 @@ std::vector<PatchErrors> AnalyticProbe::patchErrors() const {
     std::vector<PatchErrors> all;
     for (const int factor : config_.shell_factors)
         for (const double width : kWidths) {
-            if (width * config_.spacing > kWidestOfRadius * config_.tick.burr_radius) continue;
+            if (width * config_.spacing > kWidestOfRadius * config_.tick.burr.radius) continue;
             for (AccuracySettings kind : kinds) {
                 kind.shell_factor = factor;
                 all.push_back(patchAt(kind, width));

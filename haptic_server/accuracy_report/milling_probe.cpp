@@ -20,8 +20,8 @@ constexpr size_t kMostSamples = 4'000'000;
 constexpr double kPathStep =
     0.02;  // burr radii between the kept poses: ridges between their spheres are below 1e-4 R
 
-double vanishingTime(const MillingConfig& milling) {
-    return kMaxDensity / milling.removal_rate;
+double vanishingTime(const TickConfig& tick) {
+    return kMaxDensity / tick.effects.time_removal->rate;
 }
 
 // Positions in V, at least `step` apart, and the last one.
@@ -69,13 +69,13 @@ Eigen::AlignedBox3d boxOfPath(const PosePath& path, const Pose& X_VW) {
 }  // namespace
 
 PosePath millingPath(const ProbingPlace& place, const TickConfig& tick) {
-    const double radius = tick.burr_radius;
+    const double radius = tick.burr.radius;
     const Vector3d start = place.X_WT.position + place.room * place.normal_W;
     const Vector3d bottom = place.X_WT.position - kDepth * radius * place.normal_W;
     const Vector3d end = bottom + kSideways * radius * tangentOf(place.normal_W);
     const double length = (start - bottom).norm() + (end - bottom).norm();
-    const double rest = kRestTimes * vanishingTime(tick.milling);
-    const double time = length / (kFrontThickness * radius / vanishingTime(tick.milling)) + rest;
+    const double rest = kRestTimes * vanishingTime(tick);
+    const double time = length / (kFrontThickness * radius / vanishingTime(tick)) + rest;
     const double ticks = std::clamp(time / tick.dt, double(kLeastTicks), double(kMostTicks));
     const double rest_ticks = std::min(std::max(rest / tick.dt, 100.0), ticks / 3);
     std::vector<PathKnot> knots;
@@ -90,7 +90,7 @@ PosePath millingPath(const ProbingPlace& place, const TickConfig& tick) {
 MillingRun millAndRestore(const TickConfig& tick, BoneModel& bone, const ToolModel& tool,
                           BoneHistory& history, const PosePath& path) {
     const Pose X_WV = bone.volume.geometry().X_WV;
-    const double radius = tick.burr_radius;
+    const double radius = tick.burr.radius;
     const double margin = radius + 2 * bone.volume.spacing().maxCoeff();
     const IndexBox part = voxelsAround(bone.volume, boxOfPath(path, X_WV.inverse()), margin);
     const int times = affordableRefinement(part, kRefinement, kMostSamples);

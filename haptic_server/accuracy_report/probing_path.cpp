@@ -52,7 +52,7 @@ double stretchOf(const EnergyCouplingConfig& coupling, double force) {
 ProbingStroke makeStroke(const ProbingPlace& place, const StrokeConfig& stroke, const TickConfig& tick,
                          TouchProbe& probe) {
     const Vector3d t = tangentOf(place.normal_W);
-    const Loop loop{place, t, place.normal_W.cross(t), std::min(stroke.loop_radius, tick.burr_radius),
+    const Loop loop{place, t, place.normal_W.cross(t), std::min(stroke.loop_radius, tick.burr.radius),
                     stroke.turning};
     const double heaviest =
         std::min(stroke.heaviest, kHeaviestShare * tick.gradient.coupling.saturation_force);

@@ -70,7 +70,7 @@ Truth computeOne(const ProbingStroke& stroke, const TickConfig& tick, const Bone
 
 int wantedRefinement(double spacing, const TickConfig& tick) noexcept {
     const double width =
-        contactWidth(tick.gradient.contact.stiffness_per_area, tick.burr_radius, kLightForce);
+        contactWidth(tick.gradient.contact.stiffness_per_area, tick.burr.radius, kLightForce);
     return int(std::clamp(std::ceil(kVoxelsAcross * spacing / width), double(kLeastRefinement),
                           double(kMostRefinement)));
 }

@@ -74,7 +74,7 @@ void describeTools(const Simulation& simulation, std::ostream& out) {
         ++number;
         out << "tool " << number << " '" << tool.name << "'" << (number == 1 ? ", in use at the start" : "")
             << ": distance grid " << grid.nodes().transpose() << " nodes of " << grid.spacing() * 1e3
-            << " mm, burr radius " << tool.burr_radius * 1e3 << " mm, pull of the coupling at most "
+            << " mm, burr radius " << tool.burr.radius * 1e3 << " mm, pull of the coupling at most "
             << tool.saturation_force << " N\n";
     }
 }
@@ -82,7 +82,7 @@ void describeTools(const Simulation& simulation, std::ostream& out) {
 void describeBudget(const TickConfig& tick, std::ostream& out) {
     out << "most point tests in a tick: " << tick.gradient.most_point_tests
         << (tick.accuracy.law == ContactLaw::kThesis2012 ? ", without effect on the thesis' law\n" : "\n")
-        << "most milled cells in a tick: " << tick.milling.most_cells << '\n';
+        << "most milled cells in a tick: " << tick.most_milled_cells << '\n';
 }
 
 void describeCost(const LoadedScene& loaded, Simulation& simulation, std::ostream& out) {
@@ -102,7 +102,7 @@ void describeCost(const LoadedScene& loaded, Simulation& simulation, std::ostrea
     out << "cost per tick on this machine, along the scenario's waypoints (" << io.records.size()
         << " ticks):\n"
         << "  contact, coupling, equilibrium: " << percentilesUs(force) << '\n';
-    if (!milling.empty()) out << "  timed milling and shell refresh: " << percentilesUs(milling) << '\n';
+    if (!milling.empty()) out << "  removal, addition and shell refresh: " << percentilesUs(milling) << '\n';
 }
 
 }  // namespace

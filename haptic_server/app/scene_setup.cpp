@@ -4,6 +4,7 @@
 
 #include "common/config/scene_tools.h"
 #include "common/config/user_error.h"
+#include "haptic_server/app/scene_effects.h"
 #include "haptic_server/tick/tick_budget.h"
 #include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/import_volume.h"
@@ -101,7 +102,7 @@ void warnOfCoarseShell(Simulation& simulation, const SceneTool& tool) {
 void warnOfThinTool(Simulation& simulation, const scene::Scene& scene, const SceneTool& tool) {
     const GradientConfig& config = simulation.tick.gradient;
     const double radius = tool.built.model.field(simulation.tick.accuracy).thinnestRadius();
-    if (simulation.tick.accuracy.law != ContactLaw::kGradient || radius >= tool.burr_radius) return;
+    if (simulation.tick.accuracy.law != ContactLaw::kGradient || radius >= tool.burr.radius) return;
     const double wall = thinnestWall(scene, simulation.bone->volume.spacing().minCoeff());
     const double carried = wallForce(config.contact, radius, wall);
     if (tool.saturation_force <= kMostOverload * carried) return;
@@ -121,7 +122,7 @@ std::vector<SceneTool> buildTools(const LoadedScene& loaded) {
         tools.push_back({.name = names[tools.size()],
                          .built = buildTool(config, sdfRefinementsOf(loaded.scene, *tool)),
                          .surface = toolSurface(config),
-                         .burr_radius = config.burr_radius,
+                         .burr = burrOf(*tool),
                          .saturation_force = 0});
     }
     return tools;
@@ -144,8 +145,7 @@ void fitToolsToBone(Simulation& simulation, const scene::Scene& scene) {
 
 std::vector<SpoTool> Simulation::spoTools() const {
     std::vector<SpoTool> all;
-    for (const SceneTool& tool : tools)
-        all.push_back({&tool.built.model, tool.burr_radius, tool.saturation_force});
+    for (const SceneTool& tool : tools) all.push_back({&tool.built.model, tool.burr, tool.saturation_force});
     return all;
 }
 
@@ -154,7 +154,7 @@ TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing) {
     config.accuracy = accuracyOf(scene);
     config.gradient = gradientConfigOf(scene, finest_spacing);
     config.dt = 1 / scene.loop().rate_hz();
-    config.burr_radius = toolsOf(scene).front()->burr_radius_mm() * kMillimetre;
+    config.burr = burrOf(*toolsOf(scene).front());
     config.contact = {.point_stiffness = scene.contact().point_stiffness_n_per_mm() / kMillimetre,
                       .full_stiffness_contacts = scene.contact().full_stiffness_contacts()};
     const scene::Coupling& coupling = scene.coupling();
@@ -165,10 +165,8 @@ TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing) {
                        .static_damping = coupling.static_damping(),
                        .max_force = coupling.max_force_n(),
                        .max_torque = coupling.max_torque_nmm() * kMillimetre};
-    config.milling = {.enabled = scene.milling().enabled(),
-                      .removal_rate = scene.milling().removal_rate_density_per_s() * kDensityCountsPerUnit,
-                      .addition_rate = scene.milling().addition_rate_density_per_s() * kDensityCountsPerUnit};
-    TickBudget::apply(config.dt, config.gradient, config.milling);
+    config.effects = effectConfigsOf(scene);
+    TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     return config;
 }
 

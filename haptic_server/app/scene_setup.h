@@ -18,7 +18,7 @@ struct SceneTool {
     std::string name;
     BuiltTool built;
     TriangleSurface surface;
-    double burr_radius;       // m
+    Burr burr;
     double saturation_force;  // N
 };
 

@@ -91,7 +91,7 @@ void ShowSession::publishSceneInfo() {
     const size_t tool = commands_.tools().chosen();
     scene_info_.set_revision(scene_info_.revision() + 1);
     scene_info_.set_tool_index(uint32_t(tool));
-    scene_info_.set_burr_radius_m(tools_[tool].burr_radius);
+    scene_info_.set_burr_radius_m(tools_[tool].burr.radius);
     fillTool(tools_[tool].surface, scene_info_.mutable_tool());
     publisher_.publishSceneInfo(scene_info_);
 }

@@ -24,12 +24,15 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "haptic_server/contact/candidates.h"
+#include "haptic_server/contact/contact_weights.h"
 #include "haptic_server/contact/patch_memory.h"
 #include "haptic_server/contact/point_shell.h"
+#include "haptic_server/contact/surface_contact.h"
 #include "haptic_server/coupling/energy_coupling.h"
 #include "haptic_server/tool/tool_field.h"
 
@@ -88,6 +91,12 @@ class GradientContact {
     template <class Scalar>
     GradientContactResult evaluate(const ToolField& tool, const Pose& X_VT) const noexcept;
 
+    // The gathered points that touch the tool at this pose, as many as `out` has room for; returns how many.
+    size_t list(const ToolField& tool, const Pose& X_VT, std::span<SurfaceContact> out) const noexcept;
+
+    // Scales the weights at each gathering from now on; null: nothing does.
+    void setWeights(ContactWeights* weights) noexcept { weights_ = weights; }
+
     // Largest share t of the motion `step` (world increment x, ω) for which no gathered point that is free at
     // X_VT comes deeper than `allowed_depth`, and none in contact gets deeper by more than that: conservative
     // advancement. The share may be smaller than the largest, never larger. In 0 .. 1. Ends early after about
@@ -98,6 +107,7 @@ class GradientContact {
     // Work of gather() and advance() since the last call, in distances of one candidate to the tool.
     size_t takePointTests() noexcept { return std::exchange(point_tests_, 0); }
 
+    size_t room() const noexcept { return candidates_.patch.size(); }
     size_t candidateCount() const noexcept { return candidates_.count; }
     double margin() const noexcept { return margin_; }
 
@@ -142,6 +152,7 @@ class GradientContact {
     void capStiffness(const ToolField& tool, const Pose& X_VT) noexcept;
 
     GradientContactConfig config_;
+    ContactWeights* weights_ = nullptr;
     Candidates candidates_;
     // Of the refined places, from the first one on: the patch's own point (V, from origin_), how far a place
     // may be from its start, m², and the patches that they stand for.

@@ -30,13 +30,6 @@ bool isFinished(const DensityRange& range, int direction) noexcept {
     return direction < 0 ? range.max == 0 : range.min == kMaxDensity;
 }
 
-void include(MillingResult& sum, const MillingResult& other) noexcept {
-    sum.changed.include(other.changed);
-    sum.removed_voxels += other.removed_voxels;
-    sum.added_voxels += other.added_voxels;
-    sum.has_room &= other.has_room;
-}
-
 }  // namespace
 
 TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volume, const LeafLattice& lattice,
@@ -131,7 +124,7 @@ int TimedMilling::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int f
         changed_[changed_count_] = of_leaf.changed;
         end_run_[changed_count_++] = run_count_;
     }
-    include(result, of_leaf);
+    result.include(of_leaf);
     return left;
 }
 
@@ -161,7 +154,7 @@ bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t
         of_leaf.has_room = false;
         return true;
     }
-    include(of_leaf, of_part);
+    of_leaf.include(of_part);
     return true;
 }
 

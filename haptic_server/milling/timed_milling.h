@@ -28,6 +28,15 @@ struct MillingResult {
     bool shell_is_complete = true;
     bool is_cut_short = false;  // most_cells were not enough
     bool has_room = true;       // false: no memory for some bricks to be changed, and they were not
+
+    void include(const MillingResult& other) noexcept {
+        changed.include(other.changed);
+        removed_voxels += other.removed_voxels;
+        added_voxels += other.added_voxels;
+        shell_is_complete &= other.shell_is_complete;
+        is_cut_short |= other.is_cut_short;
+        has_room &= other.has_room;
+    }
 };
 
 // Owns the scratch memory of the burr in use. Construction allocates; apply() is RT-safe (tick thread only).
@@ -45,7 +54,9 @@ class TimedMilling {
     // From the next apply() on.
     void setShape(MillingShape shape) noexcept { config_.shape = shape; }
     void setBurrRadius(double burr_radius) noexcept {
-        burr_radius_ = std::min(burr_radius, largest_burr_radius_);
+        const double radius = std::min(burr_radius, largest_burr_radius_);
+        if (radius == burr_radius_) return;
+        burr_radius_ = radius;
         next_leaf_ = kNoLeaf;
     }
 

@@ -94,12 +94,21 @@ void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
 
 void GradientModel::setTool(const SpoTool& tool) noexcept {
     tool_ = tool.model;
-    config_.burr_radius = tool.burr_radius;
+    config_.burr_radius = tool.burr.radius;
     config_.coupling.saturation_force = tool.saturation_force;
     relaxing_.setSaturationForce(tool.saturation_force);
     lambda_ = 0;
     is_new_tool_ = true;
     setAccuracy(settings_);
+}
+
+void GradientModel::setEffects(ContactWeights* weights, SolveEnergy* energy) noexcept {
+    contact_.setWeights(weights);
+    effects_ = energy;
+}
+
+size_t GradientModel::listContacts(std::span<SurfaceContact> out) noexcept {
+    return contact_.list(*field_, X_VT_end_, out);
 }
 
 void GradientModel::useTool() noexcept {
@@ -179,6 +188,7 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
     state.total += couplingEnergy(config_.coupling, X_VT, tick.device, way_);
     state.total += relaxing_.energy(X_VT, tick.device);
     state.total += dampingEnergy(config_.coupling, X_VT, tick.start, dt_);
+    if (effects_) state.total += effects_->at(X_VT);
     return state;
 }
 
@@ -307,6 +317,7 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
     State state = evaluate(tick.start, tick);
     goOn(state, tick);
     out.is_solved = descend(state, tick);
+    X_VT_end_ = state.X_VT;
     last_motion_ = between(tick.start, state.X_VT);
     last_reach_ = reachOf(last_motion_);
     energy_ = state.total.energy;

@@ -31,7 +31,10 @@ class GradientModel final : public SpoModel {
     bool isToolGrowing() const noexcept { return growing_.offset() > 0; }
     void setAccuracy(const AccuracySettings& settings) noexcept override;
     void setTool(const SpoTool& tool) noexcept override;
+    void setEffects(ContactWeights* weights, SolveEnergy* energy) noexcept override;
+    size_t listContacts(std::span<SurfaceContact> out) noexcept override;
 
+    size_t mostCandidates() const noexcept { return contact_.room(); }
     // J of the last advance(): all energy of the solve, damping included, at its final pose. For tests and
     // reports.
     double energy() const noexcept { return energy_; }
@@ -81,6 +84,8 @@ class GradientModel final : public SpoModel {
     bool is_new_tool_ = false;
     double last_depth_ = 0;  // m
     GradientContact contact_;
+    SolveEnergy* effects_ = nullptr;
+    Pose X_VT_end_;  // of the last advance()
     Pose gathered_at_;
     uint32_t gatherings_ = 0;
     size_t most_point_tests_ = 0;  // with this field

@@ -3,9 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "haptic_server/accuracy/accuracy_settings.h"
+#include "haptic_server/contact/contact_weights.h"
 #include "haptic_server/contact/point_shell.h"
+#include "haptic_server/contact/surface_contact.h"
+#include "haptic_server/spo/solve_energy.h"
+#include "haptic_server/tool/burr.h"
 #include "haptic_server/tool/tool_model.h"
 
 namespace bonemill {
@@ -21,7 +26,7 @@ struct SpoWorld {
 // What a model needs to know of the tool in use.
 struct SpoTool {
     const ToolModel* model;
-    double burr_radius;       // m
+    Burr burr;
     double saturation_force;  // N: of the coupling, gradient law only
 };
 
@@ -52,6 +57,11 @@ class SpoModel {
     virtual void setAccuracy(const AccuracySettings& settings) noexcept = 0;
     // Another tool at the same pose; takes effect with the next advance(). RT-safe; tick thread only.
     virtual void setTool(const SpoTool& tool) noexcept = 0;
+    // What effects add; null: nothing. Only the gradient law has room for them.
+    virtual void setEffects(ContactWeights*, SolveEnergy*) noexcept {}
+    // Where the tool at the last advance()'s end touches the bone, as many as `out` has room for; returns how
+    // many. RT-safe; tick thread only.
+    virtual size_t listContacts(std::span<SurfaceContact>) noexcept { return 0; }
 };
 
 // The shell level of these settings: their factor's, or the first level if that was not built.

@@ -45,14 +45,18 @@ HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const ToolMode
       thesis_(config.contact, config.coupling, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
       gradient_(config.gradient, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
       model_(&gradient_),
+      tool_in_use_{&tool, config.burr, config.gradient.coupling.saturation_force},
       affordable_(config.dt),
-      milling_(config.milling, bone.volume, bone.lattice,
-               tools ? tools->largestBurrRadius() : config.burr_radius),
+      effects_(makeEffects(config.effects, bone,
+                           {config.dt, tools ? tools->largestBurrRadius() : config.burr.radius,
+                            config.most_milled_cells}),
+               gradient_.mostCandidates(), config.gradient.contact.stiffness_per_area),
       sudden_change_(suddenChangeOf(config)),
       X_VW_(bone.volume.geometry().X_WV.inverse()) {
     const AccuracySettings& settings = accuracy ? accuracy->chosen() : config.accuracy;
     bone.shell.prepare(bone.volume, bone.lattice, levelOf(bone.shell, settings),
                        int(bone.lattice.leafCount()));
+    gradient_.setEffects(effects_.weights(), effects_.energy());
     takeUp(settings);
     if (!tools) return;
     tool_ = tools->chosen();
@@ -82,15 +86,18 @@ void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     const bool is_thesis = settings.law == ContactLaw::kThesis2012;
     SpoModel* model = is_thesis ? static_cast<SpoModel*>(&thesis_) : &gradient_;
     model->setAccuracy(settings);
-    if (model != model_) model->restart();
+    if (model != model_) {
+        model->restart();
+        effects_.restart();
+    }
     model_ = model;
-    milling_.setShape(is_thesis ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel);
 }
 
 void HapticTick::takeUp(const SpoTool& tool) noexcept {
     thesis_.setTool(tool);
     gradient_.setTool(tool);
-    milling_.setBurrRadius(tool.burr_radius);
+    tool_in_use_ = tool;
+    effects_.restart();
 }
 
 void HapticTick::chooseTool() noexcept {
@@ -109,10 +116,13 @@ bool HapticTick::tick(TickIo& io) noexcept {
     uint32_t faults = input.is_stale ? kFaultStaleDevice : kFaultNone;
     device_ = acceptPose(input, faults);
     chooseTool();
+    beginEffects(input);
     const SpoStep step = moveAndFeel(input.force_factor, faults);
     const int64_t force_at_ns = io.write(step.wrench_hand);
 
-    const MillingResult milled = mill(input, faults);
+    effects_.afterSolve(X_VW_ * spo_, *model_);
+    const MillingResult milled = mill(faults);
+    const EffectRecord& effects = effects_.finish();
     chooseSettings(step, faults);
     TickRecord record = makeRecord(input, step);
     record.removed_voxels = milled.removed_voxels;
@@ -120,6 +130,7 @@ bool HapticTick::tick(TickIo& io) noexcept {
     record.removed = milled.removed_voxels * bone_.volume.voxelVolume();
     record.added = milled.added_voxels * bone_.volume.voxelVolume();
     record.cut = cutOf(milled.changed, input.start_ns);
+    record.effects = effects;
     record.force_ns = force_at_ns - input.start_ns;
     const int64_t end_ns = io.now();
     record.compute_ns = end_ns - input.start_ns;
@@ -145,6 +156,31 @@ Pose HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept
     return pose;
 }
 
+void HapticTick::beginEffects(const DeviceInput& input) noexcept {
+    if (effects_.isEmpty()) return;
+    const bool remove = input.buttons & kButtonRemove;
+    const bool add = input.buttons & kButtonAdd;
+    const bool may_mill = !input.is_stale && remove != add && !(history_ && history_->isMillingPaused());
+    EffectTick start;
+    start.dt = config_.dt;
+    start.is_pedal_down = may_mill && remove;
+    start.is_add_wanted = may_mill && add;
+    start.tool = &tool_in_use_;
+    start.shape = model_ == &thesis_ ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
+    start.X_VT_start = X_VW_ * spo_;
+    start.X_VT_device = X_VW_ * device_;
+    effects_.begin(start);
+}
+
+// What they add is at home in V.
+void HapticTick::addEffectsToHand(Wrench& wrench_hand_W) noexcept {
+    if (effects_.isEmpty()) return;
+    const Eigen::Quaterniond R_WV = X_VW_.rotation.conjugate();
+    Wrench added_V;
+    effects_.addToHand(added_V);
+    wrench_hand_W = wrench_hand_W + added_V.rotatedBy(R_WV);
+}
+
 SpoStep HapticTick::moveAndFeel(double force_factor, uint32_t& faults) noexcept {
     SpoStep step = model_->advance(spo_, device_);
     spo_ = step.spo;
@@ -153,33 +189,32 @@ SpoStep HapticTick::moveAndFeel(double force_factor, uint32_t& faults) noexcept 
     if (step.has_stalled) faults |= kFaultStalled;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
     if (gradient_.isToolGrowing()) sudden_change_.begin();
+    addEffectsToHand(step.wrench_hand);
     if (sudden_change_.limit(step.wrench_hand, device_)) faults |= kFaultForceClamped;
     step.wrench_hand.force *= force_factor;
     step.wrench_hand.torque *= force_factor;
     return step;
 }
 
-MillingResult HapticTick::mill(const DeviceInput& input, uint32_t& faults) noexcept {
-    if (!history_) return millWithTool(input, faults);
+MillingResult HapticTick::mill(uint32_t& faults) noexcept {
+    if (!history_) return millWithEffects(faults);
     if (!history_->beginWrite()) return {};
     MillingResult milled;
     bool shell_is_complete = true;
     if (history_->restoreSome(bone_, shell_is_complete)) {
         sudden_change_.begin();
-    } else if (!history_->isMillingPaused()) {
-        milled = millWithTool(input, faults);
+        effects_.restart();
+    } else {
+        milled = millWithEffects(faults);
     }
     if (!shell_is_complete) faults |= kFaultShellOverflow;
     history_->endWrite(milled.removed_voxels, milled.added_voxels);
     return milled;
 }
 
-MillingResult HapticTick::millWithTool(const DeviceInput& input, uint32_t& faults) noexcept {
-    const bool remove = input.buttons & kButtonRemove;
-    const bool add = input.buttons & kButtonAdd;
-    if (input.is_stale || remove == add) return {};
-    const MillingResult milled = milling_.apply(bone_.volume, bone_.lattice, bone_.shell,
-                                                X_VW_ * spo_.position, remove ? -1 : 1, config_.dt);
+MillingResult HapticTick::millWithEffects(uint32_t& faults) noexcept {
+    MillingResult milled;
+    effects_.mill(bone_, milled);
     if (!milled.shell_is_complete) faults |= kFaultShellOverflow;
     if (!milled.has_room) faults |= kFaultVolumeFull;
     if (milled.is_cut_short) faults |= kFaultMillingCutShort;

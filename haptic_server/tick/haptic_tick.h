@@ -1,8 +1,9 @@
 // One cycle of the haptic loop: read → pose → contact → solve → limit → write → mill → refresh shell → push
-// telemetry. The same tick runs behind the device link in real time and in `simulate` without it.
+// telemetry; the effects of the scene act in between (effects/haptic_effect.h). The same tick runs behind the
+// device link in real time and in `simulate` without it.
 #pragma once
 
-#include "haptic_server/milling/timed_milling.h"
+#include "haptic_server/effects/make_effects.h"
 #include "haptic_server/spo/gradient_model.h"
 #include "haptic_server/spo/thesis_2012_model.h"
 #include "haptic_server/tick/accuracy_switch.h"
@@ -48,8 +49,9 @@ struct TickConfig {
     PenaltyContactConfig contact;  // thesis_2012
     CouplingConfig coupling;       // thesis_2012, and the limits of what the hand may feel
     GradientConfig gradient;
-    MillingConfig milling;
-    double burr_radius = 1e-3;  // m
+    Burr burr;
+    EffectConfigs effects;
+    size_t most_milled_cells = MillingConfig{}.most_cells;  // in a tick
 };
 
 class HapticTick {
@@ -76,9 +78,11 @@ class HapticTick {
     void takeUp(const AccuracySettings& settings) noexcept;
     void takeUp(const SpoTool& tool) noexcept;
     void chooseTool() noexcept;
+    void beginEffects(const DeviceInput& input) noexcept;
     SpoStep moveAndFeel(double force_factor, uint32_t& faults) noexcept;
-    MillingResult mill(const DeviceInput& input, uint32_t& faults) noexcept;
-    MillingResult millWithTool(const DeviceInput& input, uint32_t& faults) noexcept;
+    void addEffectsToHand(Wrench& wrench_hand_W) noexcept;
+    MillingResult mill(uint32_t& faults) noexcept;
+    MillingResult millWithEffects(uint32_t& faults) noexcept;
     TickRecord makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept;
 
     TickConfig config_;
@@ -86,13 +90,14 @@ class HapticTick {
     BoneHistory* history_;
     const AccuracySwitch* accuracy_;
     const ToolSwitch* tools_;
+    SpoTool tool_in_use_;
     size_t tool_ = 0;  // of tools_
     Thesis2012Model thesis_;
     GradientModel gradient_;
     SpoModel* model_;  // thesis_ or gradient_
     AccuracySettings settings_;
     AffordableShell affordable_;
-    TimedMilling milling_;
+    EffectHost effects_;
     SuddenChange sudden_change_;
     Pose X_VW_;
     Pose device_;

@@ -15,9 +15,9 @@ struct TickBudget {
     static constexpr double kPointTest = 5e-9, kMilledCell = 4e-9;   // s
     static constexpr double kForceShare = 0.5, kMillingShare = 0.3;  // the rest is for all else
 
-    static void apply(double period, GradientConfig& force, MillingConfig& milling) noexcept {
+    static void apply(double period, GradientConfig& force, size_t& most_milled_cells) noexcept {
         force.most_point_tests = size_t(std::lround(period * kForceShare / kPointTest));
-        milling.most_cells = size_t(std::lround(period * kMillingShare / kMilledCell));
+        most_milled_cells = size_t(std::lround(period * kMillingShare / kMilledCell));
     }
 };
 

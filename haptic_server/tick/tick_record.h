@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "haptic_server/effects/effect_record.h"
 #include "haptic_server/volume/cut.h"
 
 namespace bonemill {
@@ -50,6 +51,7 @@ struct TickRecord {
     uint32_t buttons;         // kButtonRemove | kButtonAdd
     uint32_t faults;          // TickFault bits of this tick
     Cut cut;                  // the voxels milled in this tick
+    EffectRecord effects;
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 

@@ -24,8 +24,8 @@ class ToolSwitch {
     double largestBurrRadius() const noexcept {
         return std::max_element(
                    tools_.begin(), tools_.end(),
-                   [](const SpoTool& a, const SpoTool& b) { return a.burr_radius < b.burr_radius; })
-            ->burr_radius;
+                   [](const SpoTool& a, const SpoTool& b) { return a.burr.radius < b.burr.radius; })
+            ->burr.radius;
     }
 
   private:

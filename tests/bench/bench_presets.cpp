@@ -52,6 +52,7 @@ void measure(const Setting& setting, const RawVolume& scan, const ToolModel& too
     BoneModel bone(densify(scan, DensityWindow{-1000, 3000, 600, 0}), leaf_cells,
                    {.levels = {{setting.scaling_factor}}});
     TickConfig config;
+    config.effects.time_removal.emplace();
     config.accuracy = presetSettings(setting.preset);
     config.accuracy.shell_factor = setting.scaling_factor;
     HapticTick tick(config, bone, tool, nullptr);

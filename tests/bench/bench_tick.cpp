@@ -21,11 +21,12 @@ constexpr int kLeafCells = 16;
 TickConfig configOf(const TickCase& c) {
     TickConfig config;
     config.accuracy = presetSettings(c.preset);
-    config.burr_radius = c.burr_radius;
+    config.burr.radius = c.burr_radius;
     config.gradient.burr_radius = c.burr_radius;
     config.gradient.coupling.translation_stiffness = kCouplingStiffness;
     config.coupling.translation_stiffness = kCouplingStiffness;
-    TickBudget::apply(config.dt, config.gradient, config.milling);
+    config.effects.time_removal.emplace();
+    TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     return config;
 }
 

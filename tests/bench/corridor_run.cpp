@@ -48,7 +48,8 @@ BoneModel corridorBone(int leaf_cells) {
 TickConfig corridorTick(double rate_hz) {
     TickConfig config;
     config.dt = 1 / rate_hz;
-    TickBudget::apply(config.dt, config.gradient, config.milling);
+    config.effects.time_removal.emplace();
+    TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     return config;
 }
 

@@ -1,12 +1,14 @@
 #include "tests/stability/scene.h"
 
+#include "tests/support/milling_config.h"
+
 namespace bonemill::test {
 namespace {
 
 TickConfig configOf(const Variant& variant, double dt, const std::function<void(TickConfig&)>& edit) {
-    TickConfig config;
+    TickConfig config = millingConfig();
     config.dt = dt;
-    config.burr_radius = kBurrRadius;
+    config.burr.radius = kBurrRadius;
     config.gradient.burr_radius = kBurrRadius;
     applyVariant(variant, config);
     if (edit) edit(config);

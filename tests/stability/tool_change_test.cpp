@@ -23,7 +23,7 @@ struct Bench {
         : scene(std::move(volume), ballTool(kSmall), variant),
           small(modelOf(ballTool(kSmall))),
           large(modelOf(ballTool(kLarge))),
-          tools({{&small, kSmall, 10}, {&large, kLarge, 30}}),
+          tools({{&small, {.radius = kSmall}, 10}, {&large, {.radius = kLarge}, 30}}),
           loop({}, scene, upright(start), &tools) {
         loop.plant.setTarget(upright(target));
         loop.run(0.5);

@@ -18,7 +18,8 @@ name: "fuzz"
 volume { path: "v.nrrd" window_low: -1000 window_high: 3000 iso_value: 600 leaf_voxels: 16 }
 tool { shape { sphere { center_mm { x: 1 y: 2 z: 3 } radius_mm: 1.5 } } shape { cone { from_radius_mm: 0.3 } } }
 coupling { max_speed_mm_per_s: 500 static_damping: 0.5 }
-milling { enabled: true removal_rate_density_per_s: 1e4 }
+effects { time_removal { rate_density_per_s: 1e4 } spindle {} bone_dust {} }
+material { name: "enamel" from_value: 2000 label: 3 color { red: 0.9 } }
 device { p_WD_mm { z: -20 } q_WD { w: 0.7071068 x: 0.7071068 } }
 simulated_operator {
   waypoint { time_s: 0 p_WT_mm { z: 5 } }

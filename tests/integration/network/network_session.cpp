@@ -30,7 +30,7 @@ void NetworkSession::writeScene(int seconds) const {
         text << "  waypoint { time_s: " << time_s << " p_WT_mm { x: " << x_mm << " y: 0.1 z: " << z_mm
              << " } q_WT { w: 0.70710678 x: 0.70710678 } " << more << " }\n";
     };
-    text << "name: \"network\" volume { path: \"slab.nrrd\" }\n"
+    text << "name: \"network\" effects { time_removal {} } volume { path: \"slab.nrrd\" }\n"
             "device { p_WD_mm { x: 0 y: 0.1 z: 2 } q_WD { w: 0.70710678 x: 0.70710678 } }\n"
             "simulated_operator {\n";
     waypoint(0, 0, 3.6, "phase: \"approach\"");

@@ -23,9 +23,8 @@ class AccuracyReport : public testing::Test {
                                "40", "40", "--out", folder_ / "ball.nrrd"});
         EXPECT_EQ(made.exit_code, 0) << made.err;
         // Few ticks per second of path: this test is about files, not figures.
-        writeFile(
-            folder_ / "s.textproto",
-            "name: \"tiny\" volume { path: \"ball.nrrd\" } loop { rate_hz: 250 } milling { enabled: false }");
+        writeFile(folder_ / "s.textproto",
+                  "name: \"tiny\" volume { path: \"ball.nrrd\" } loop { rate_hz: 250 }");
     }
     std::vector<std::string> arguments(const std::string& out) {
         return {"haptic_server",         "accuracy-report", "--scene",

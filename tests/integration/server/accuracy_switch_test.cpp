@@ -39,7 +39,7 @@ class AccuracySwitching : public testing::Test {
         };
         const double end_mm = removes ? -1 : 2.5;  // of the burr's centre, 1 mm above its pole
         writeFile(folder_ / "s.textproto",
-                  "name: \"switching\" volume { path: \"slab.nrrd\" }\n"
+                  "name: \"switching\" effects { time_removal {} } volume { path: \"slab.nrrd\" }\n"
                   "device { p_WD_mm { x: 0 y: 0.1 z: 2 } q_WD { w: 0.70710678 x: 0.70710678 } }\n"
                   "accuracy { " +
                       accuracy + " }\nsimulated_operator {\n" + waypoint(0, 3.6, false) +

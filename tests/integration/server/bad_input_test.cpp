@@ -81,8 +81,8 @@ TEST_F(BadInput, TruncatedSlice) {
 }
 
 TEST_F(BadInput, MisspeltField) {
-    expectSceneRefused("volume { path: \"ball.nrrd\" }\nmiling { enabled: true }",
-                       {"scene.textproto:2", "miling", "milling"});
+    expectSceneRefused("volume { path: \"ball.nrrd\" }\nefects { spindle {} }",
+                       {"scene.textproto:2", "efects", "effects"});
 }
 
 TEST_F(BadInput, NegativeRadius) {

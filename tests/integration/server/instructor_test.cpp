@@ -45,7 +45,7 @@ class Instructor : public testing::Test {
                    " } q_WT { w: 0.70710678 x: 0.70710678 } remove: " + (removes ? "true" : "false") + " }\n";
         };
         test::writeFile(folder_ / name,
-                        "name: \"instructed\" volume { path: \"" + volume +
+                        "name: \"instructed\" effects { time_removal {} } volume { path: \"" + volume +
                             "\" window_low: 0 window_high: 65535 iso_value: 32768 }\n"
                             "tool { name: \"coarse\" }\ntool { name: \"fine\" burr_radius_mm: 0.5 "
                             "sdf_spacing_mm: 0.0625 }\n"

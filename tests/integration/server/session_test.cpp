@@ -29,7 +29,7 @@ class Session : public testing::Test {
                   0);
         const std::string upright = "q_WT { w: 0.70710678 x: 0.70710678 }";
         writeFile(folder_ / "s.textproto",
-                  "name: \"session\" volume { path: \"slab.nrrd\" }\n"
+                  "name: \"session\" effects { time_removal {} } volume { path: \"slab.nrrd\" }\n"
                   "device { p_WD_mm { x: 0 y: 0.1 z: 2 } q_WD { w: 0.70710678 x: 0.70710678 } }\n"
                   "simulated_operator {\n"
                   "  waypoint { time_s: 0 p_WT_mm { x: 0 y: 0.1 z: 3.6 } " +

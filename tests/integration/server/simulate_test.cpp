@@ -59,7 +59,7 @@ std::vector<std::vector<double>> readCsv(const std::string& path, std::string& h
 TEST(Simulate, TwoRunsGiveTheSameHashAndAnotherPathAnotherOne) {
     const TemporaryFolder folder;
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
-    writeFile(folder / "s.textproto", "volume { path: \"slab.nrrd\" }");
+    writeFile(folder / "s.textproto", "effects { time_removal {} } volume { path: \"slab.nrrd\" }");
     // The slab fills |z| < 2 mm.
     writeFile(folder / "a.csv", plunge(0.03e-3, -0.08e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
     writeFile(folder / "b.csv", plunge(0.03e-3, -0.07e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
@@ -79,10 +79,10 @@ TEST(Simulate, MillsWithTheToolThatIsAskedFor) {
     const TemporaryFolder folder;
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
     writeFile(folder / "s.textproto",
-              "volume { path: \"slab.nrrd\" }\ntool { }\n"
+              "effects { time_removal {} } volume { path: \"slab.nrrd\" }\ntool { }\n"
               "tool { name: \"fine\" burr_radius_mm: 0.5 sdf_spacing_mm: 0.0625 }");
     writeFile(folder / "fine.textproto",
-              "volume { path: \"slab.nrrd\" }\n"
+              "effects { time_removal {} } volume { path: \"slab.nrrd\" }\n"
               "tool { name: \"fine\" burr_radius_mm: 0.5 sdf_spacing_mm: 0.0625 }");
     writeFile(folder / "a.csv", plunge(0.03e-3, -0.08e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
     const auto go = [&](const std::string& scene, const std::vector<std::string>& more) {
@@ -107,7 +107,7 @@ TEST(Simulate, MillsWithTheToolThatIsAskedFor) {
 TEST(Simulate, TheHashDoesNotDependOnTheCpusInstructionSet) {
     const TemporaryFolder folder;
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
-    writeFile(folder / "s.textproto", "volume { path: \"slab.nrrd\" }");
+    writeFile(folder / "s.textproto", "effects { time_removal {} } volume { path: \"slab.nrrd\" }");
     writeFile(folder / "a.csv", plunge(0.03e-3, -0.08e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
     std::vector<std::string> hashes;
     for (const CpuLevel level : kCpuLevels) {
@@ -125,7 +125,8 @@ TEST(Simulate, WarnsOfATipThatTheCouplingPushesThroughAWall) {
     writeFile(folder / "a.csv", plunge(0, 0, 3.3e-3, 3.2e-3, 10, 0, 0));
     const auto warnings = [&](const std::string& pin_radius_mm) {
         writeFile(folder / "s.textproto",
-                  "volume { path: \"slab.nrrd\" } tool { shape { capsule { from_mm { y: 0 } "
+                  "effects { time_removal {} } volume { path: \"slab.nrrd\" } tool { shape { capsule { "
+                  "from_mm { y: 0 } "
                   "to_mm { y: 8 } radius_mm: " +
                       pin_radius_mm + " } } }");
         const auto finished = run({"haptic_server", "simulate", "--scene", folder / "s.textproto",
@@ -140,7 +141,8 @@ TEST(Simulate, WarnsOfATipThatTheCouplingPushesThroughAWall) {
 TEST(Simulate, TraceHasTheDocumentedColumnsAndAddsUp) {
     const TemporaryFolder folder;
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
-    writeFile(folder / "s.textproto", "volume { path: \"slab.nrrd\" } accuracy { preset: THESIS_2012 }");
+    writeFile(folder / "s.textproto",
+              "effects { time_removal {} } volume { path: \"slab.nrrd\" } accuracy { preset: THESIS_2012 }");
     writeFile(folder / "a.csv", plunge(0.03e-3, -0.08e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
     const auto json = simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto",
                                     "--trajectory", folder / "a.csv", "--trace", folder / "o.csv"});
@@ -169,14 +171,15 @@ TEST(Simulate, TraceHasTheDocumentedColumnsAndAddsUp) {
 TEST(Simulate, SavedVolumeGoesOnWhereTheRunEnded) {
     const TemporaryFolder folder;
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
-    writeFile(folder / "s.textproto", "volume { path: \"slab.nrrd\" }");
+    writeFile(folder / "s.textproto", "effects { time_removal {} } volume { path: \"slab.nrrd\" }");
     writeFile(folder / "mill.csv", plunge(0.03e-3, -0.08e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
     writeFile(folder / "away.csv", plunge(0, 0, 7e-3, 7e-3, 2, 0, 0));
     const auto milled = simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto",
                                       "--trajectory", folder / "mill.csv", "--save-volume",
                                       folder / "milled.nrrd", "--save-mesh", folder / "milled.stl"});
     writeFile(folder / "again.textproto",
-              "volume { path: \"milled.nrrd\" window_low: 0 window_high: 65535 iso_value: 32768 }");
+              "volume { path: \"milled.nrrd\" window_low: 0 window_high: 65535 iso_value: 32768 } effects { "
+              "time_removal {} }");
     const auto again = simulateOnce({"haptic_server", "simulate", "--scene", folder / "again.textproto",
                                      "--trajectory", folder / "away.csv"});
     EXPECT_NEAR(again["bone_mm3"].get<double>(), milled["bone_mm3"].get<double>(),
@@ -195,7 +198,8 @@ TEST_P(SimulatePresets, CorridorInTheToothIsTheSweptBurr) {
     ASSERT_EQ(run({"make_phantom", "tooth", "--out", folder / "tooth"}).exit_code, 0);
     constexpr double kIso = 600, kBurr = 1e-3;
     writeFile(folder / "s.textproto",
-              "volume { path: \"tooth\" iso_value: 600 octree_depth: 3 } accuracy { preset: " +
+              "effects { time_removal {} } volume { path: \"tooth\" iso_value: 600 octree_depth: 3 } "
+              "accuracy { preset: " +
                   std::string(GetParam()) + " }");
     // From above a cusp straight down into the middle of the tooth, at 1 mm/s.
     writeFile(folder / "a.csv", plunge(2.7e-3, -2.45e-3, 21e-3, 12.2e-3, 8800, 400, 1));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/milling_config.h"
 #include "tests/unit/accuracy_report/probe_scene.h"
 
 namespace bonemill {
@@ -25,7 +26,7 @@ TEST(MillingProbe, SweptVolumeIsThatOfTheCapsuleAndTheBoneComesBack) {
     const auto before = densitiesOf(bone.volume);
     const ToolModel tool = test::burrTool();
     BoneHistory history(bone);
-    TickConfig tick;
+    TickConfig tick = test::millingConfig();
     tick.accuracy = presetSettings(Preset::kThesis2012);  // never held up by what it has just laid open
     tick.contact.point_stiffness = 1e-3;
     PosePath path;
@@ -42,7 +43,7 @@ TEST(MillingProbe, SweptVolumeIsThatOfTheCapsuleAndTheBoneComesBack) {
 
 TEST(MillingProbe, PathGoesInAndSidewaysAtAFeedThatTheRemovalKeepsUpWith) {
     const ProbingPlace place{"", {{3e-3, 3e-3, 4e-3}, upright()}, Vector3d::UnitZ(), 0.5e-3};
-    TickConfig tick;
+    TickConfig tick = test::millingConfig();
     const PosePath path = millingPath(place, tick);
     EXPECT_GE(path.size(), 3000u);
     double lowest = 1, fastest = 0;
@@ -53,10 +54,10 @@ TEST(MillingProbe, PathGoesInAndSidewaysAtAFeedThatTheRemovalKeepsUpWith) {
     EXPECT_NEAR(lowest, 4e-3 - 0.8 * test::kBurr, 1e-6);
     EXPECT_NEAR((path.back().position - place.X_WT.position).head<2>().norm(), test::kBurr, 1e-6);
     EXPECT_EQ(path.back().position, path[path.size() - 50].position);  // rests
-    const double vanishing = kMaxDensity / tick.milling.removal_rate;
+    const double vanishing = kMaxDensity / tick.effects.time_removal->rate;
     EXPECT_LT(fastest * vanishing, 0.25 * test::kBurr);
 
-    tick.milling.removal_rate /= 20;
+    tick.effects.time_removal->rate /= 20;
     const PosePath slower = millingPath(place, tick);
     EXPECT_GT(slower.size(), path.size());
 }

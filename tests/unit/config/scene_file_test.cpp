@@ -86,7 +86,7 @@ TEST_F(SceneFile, misspeltFieldNamesTheNearestOne) {
 TEST_F(SceneFile, badSyntaxNamesTheLine) {
     EXPECT_EQ(refusal("name: 'a'\nvolume {\n").substr(0, 14), "s.textproto:3:");
     EXPECT_EQ(refusal("name: 'a'\nname: 'b'").substr(0, 14), "s.textproto:2:");
-    EXPECT_EQ(refusal("milling {\nenabled: ture }").substr(0, 14), "s.textproto:2:");
+    EXPECT_EQ(refusal("accuracy {\nswitchable: ture }").substr(0, 14), "s.textproto:2:");
     EXPECT_EQ(refusal("accuracy { shell_factor: -1 }").substr(0, 14), "s.textproto:1:");
     EXPECT_EQ(refusal(std::string("\x7f"
                                   "ELF\0\1\2",

@@ -14,7 +14,7 @@ class SessionCommandsTest : public testing::Test {
           recorder_(ring_, 1'000'000, ""),
           tool_(test::sphereToolModel(1e-3, 0.2e-3)),
           accuracy_(presetSettings(Preset::kBalanced)),
-          tools_({{&tool_, 1e-3, 5}}, 0),
+          tools_(std::vector<SpoTool>{{&tool_, {.radius = 1e-3}, 5}}, 0),
           commands_(sceneOf(), ball_.bone, recorder_, {ball_.history, accuracy_, tools_, stop_requested_},
                     false) {}
 

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "haptic_server/tick/haptic_tick.h"
+#include "tests/support/milling_config.h"
 #include "tests/unit/tick/milled_ball.h"
 
 namespace bonemill {
@@ -59,7 +60,7 @@ class MillingIo final : public TickIo {
 
 struct Threads {
     Threads() : io(ball.bone, stop), tool(test::sphereToolModel(1.5e-3, 0.2e-3)) {
-        config.burr_radius = config.gradient.burr_radius = 1.5e-3;
+        config.burr.radius = config.gradient.burr_radius = 1.5e-3;
         config.accuracy.iterations = 1;  // ThreadSanitizer slows each a hundred times
         tick = std::make_unique<HapticTick>(config, ball.bone, tool, &ball.history);
     }
@@ -96,7 +97,7 @@ struct Threads {
     std::atomic<bool> stop{false};
     MillingIo io;
     ToolModel tool;
-    TickConfig config;
+    TickConfig config = test::millingConfig();
     std::unique_ptr<HapticTick> tick;
 };
 

@@ -6,6 +6,7 @@
 
 #include "haptic_server/mesh/mesh_check.h"
 #include "haptic_server/mesh/mesher.h"
+#include "tests/support/milling_config.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
 #include "tests/support/voxel_fields.h"
@@ -22,7 +23,7 @@ struct Bench {
     explicit Bench(const Pose& X_WV = {{0.1, -0.2, 0.3}, expRotation({0.4, -0.9, 0.2})})
         : bone(slab(X_WV), Eigen::Vector3i::Constant(16), ShellConfig{}),
           tool(test::sphereToolModel(kBurr, kVoxel)) {
-        config.burr_radius = kBurr;
+        config.burr.radius = kBurr;
         config.accuracy = presetSettings(Preset::kThesis2012);
     }
     static VoxelVolume slab(const Pose& X_WV) {
@@ -50,7 +51,7 @@ struct Bench {
         return meshVolume(meshes, MeshGrid(bone.volume, bone.lattice));
     }
 
-    TickConfig config;
+    TickConfig config = test::millingConfig();
     BoneModel bone;
     ToolModel tool;
 };

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "haptic_server/tick/haptic_tick.h"
+#include "tests/support/milling_config.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
 
@@ -21,7 +22,7 @@ struct SwitchingBench {
                Eigen::Vector3i::Constant(16), shellLevels()),
           tool(sphereToolModel(kBenchBurr, 0.125e-3)),
           accuracy(start),
-          tick(TickConfig{}, bone, tool, nullptr, &accuracy) {}
+          tick(millingConfig(), bone, tool, nullptr, &accuracy) {}
 
     static ShellConfig shellLevels() {
         ShellConfig config;

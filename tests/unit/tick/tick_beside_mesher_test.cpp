@@ -41,7 +41,8 @@ TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
                    Eigen::Vector3i::Constant(8), ShellConfig{});
     const ToolModel tool = test::sphereToolModel(1e-3, 0.125e-3);
     TickConfig config;
-    config.milling.removal_rate = 1e9;  // few ticks move much: ThreadSanitizer slows each a hundred times
+    config.effects.time_removal = {
+        .rate = 1e9};  // few ticks move much: ThreadSanitizer slows each a hundred times
     HapticTick tick(config, bone, tool, nullptr);
     SpscRing<TickRecord> ring(1024);
     SpscRing<Cut> cuts(1024);

@@ -74,7 +74,8 @@ TEST(TickBudget, TooManyPointsForATickMeanACoarserShellAndSaySo) {
 TEST(TickBudget, PlentyOfTimeChangesNothing) {
     TickConfig config;
     const auto free = Bench(config).run(dip(300, 0, kButtonRemove));
-    TickBudget::apply(config.dt, config.gradient, config.milling);
+    config.effects.time_removal.emplace();
+    TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     const auto budgeted = Bench(config).run(dip(300, 0, kButtonRemove));
     for (size_t n = 0; n < free.size(); ++n) {
         ASSERT_EQ(budgeted[n].f_hand_W[2], free[n].f_hand_W[2]) << n;
@@ -85,8 +86,9 @@ TEST(TickBudget, PlentyOfTimeChangesNothing) {
 
 TEST(TickBudget, MillingThatIsCutShortIsAFault) {
     TickConfig config;
-    config.burr_radius = kBurr;
-    config.milling.most_cells = 200;
+    config.effects.time_removal.emplace();
+    config.burr.radius = kBurr;
+    config.most_milled_cells = 200;
     Bench bench(config);
     uint32_t faults = 0;
     for (const TickRecord& r : bench.run(dip(300, 0, kButtonRemove))) faults |= r.faults;
@@ -95,12 +97,12 @@ TEST(TickBudget, MillingThatIsCutShortIsAFault) {
 
 TEST(TickBudget, AFasterLoopMayDoLessInATick) {
     TickConfig slow, fast;
-    TickBudget::apply(1e-3, slow.gradient, slow.milling);
-    TickBudget::apply(0.25e-3, fast.gradient, fast.milling);
+    TickBudget::apply(1e-3, slow.gradient, slow.most_milled_cells);
+    TickBudget::apply(0.25e-3, fast.gradient, fast.most_milled_cells);
     EXPECT_EQ(slow.gradient.most_point_tests, 100'000u);
-    EXPECT_EQ(slow.milling.most_cells, 75'000u);
+    EXPECT_EQ(slow.most_milled_cells, 75'000u);
     EXPECT_EQ(fast.gradient.most_point_tests, 25'000u);
-    EXPECT_EQ(fast.milling.most_cells, 18'750u);
+    EXPECT_EQ(fast.most_milled_cells, 18'750u);
 }
 
 }  // namespace

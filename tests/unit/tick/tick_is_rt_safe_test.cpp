@@ -6,6 +6,7 @@
 
 #include "haptic_server/tick/checkpoints.h"
 #include "haptic_server/tick/haptic_tick.h"
+#include "tests/support/milling_config.h"
 #include "tests/support/rt_guard/rt_probe.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
@@ -22,7 +23,7 @@ class TickIsRtSafe : public testing::Test {
                 Eigen::Vector3i::Constant(16), ShellConfig{}),
           tool_(test::sphereToolModel(1e-3, 0.125e-3)),
           history_(bone_),
-          tick_({}, bone_, tool_, &history_) {}
+          tick_(test::millingConfig(), bone_, tool_, &history_) {}
 
     // Runs the inputs under the probe; what the test itself keeps is allocated before.
     void expectQuiet(const std::vector<DeviceInput>& inputs) { expectQuiet(tick_, inputs); }
@@ -60,7 +61,7 @@ TEST_F(TickIsRtSafe, WhileMillingAndAddingAndResetting) {
 }
 
 TEST_F(TickIsRtSafe, AsThesis2012) {
-    TickConfig config;
+    TickConfig config = test::millingConfig();
     config.accuracy = presetSettings(Preset::kThesis2012);
     HapticTick tick(config, bone_, tool_, &history_);
     expectQuiet(tick, test::straightPath(at(6.2e-3), {4e-3, 4e-3, 3e-3}, 1000, kButtonRemove));
@@ -73,7 +74,7 @@ TEST_F(TickIsRtSafe, WhileLevelsArePreparedAndTakenUp) {
                                     test::halfSpace({0, 0, 5e-3}, Eigen::Vector3d::UnitZ())),
                    Eigen::Vector3i::Constant(16), {.levels = {{1}, {2}, {3}}});
     AccuracySwitch accuracy(presetSettings(Preset::kBalanced));
-    HapticTick tick({}, bone, tool_, nullptr, &accuracy);
+    HapticTick tick(test::millingConfig(), bone, tool_, nullptr, &accuracy);
     for (const Preset preset : {Preset::kFast, Preset::kThesis2012, Preset::kExact}) {
         accuracy.choose(AccuracySwitch::choiceOf(preset));
         expectQuiet(tick, test::straightPath(at(6.2e-3), {4e-3, 4e-3, 3e-3}, 300, kButtonRemove));

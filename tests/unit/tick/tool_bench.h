@@ -2,6 +2,7 @@
 #pragma once
 
 #include "haptic_server/tick/haptic_tick.h"
+#include "tests/support/milling_config.h"
 #include "tests/support/scripted_io.h"
 #include "tests/unit/tick/switching_bench.h"
 
@@ -18,12 +19,14 @@ struct ToolBench {
           models{sphereToolModel(kBurrs[0], 0.125e-3), sphereToolModel(kBurrs[1], 0.125e-3),
                  sphereToolModel(kBurrs[2], 0.125e-3)},
           history(bone),
-          tools({{&models[0], kBurrs[0], 5}, {&models[1], kBurrs[1], 10}, {&models[2], kBurrs[2], 15}},
+          tools({{&models[0], {.radius = kBurrs[0]}, 5},
+                 {&models[1], {.radius = kBurrs[1]}, 10},
+                 {&models[2], {.radius = kBurrs[2]}, 15}},
                 first),
           tick(configOf(accuracy), bone, models[0], &history, nullptr, &tools) {}
 
     static TickConfig configOf(const AccuracySettings& accuracy) {
-        TickConfig config;
+        TickConfig config = millingConfig();
         config.accuracy = accuracy;
         return config;
     }

@@ -1,0 +1,14 @@
+// What the scene's effects, materials and tools ask of the tick's effects. Start-up only.
+#pragma once
+
+#include "haptic_server/effects/effect_configs.h"
+#include "haptic_server/tool/burr.h"
+#include "proto/scene.pb.h"
+
+namespace bonemill {
+
+Burr burrOf(const scene::Tool& tool);
+
+EffectConfigs effectConfigsOf(const scene::Scene& scene);
+
+}  // namespace bonemill

@@ -1,0 +1,21 @@
+// Free form: the burr lays down material at a rate of density per time where it is held.
+#pragma once
+
+#include "haptic_server/effects/effect_configs.h"
+#include "haptic_server/effects/haptic_effect.h"
+
+namespace bonemill {
+
+class AddMaterial final : public HapticEffect {
+  public:
+    // Room for burrs up to largest_burr_radius, m. most_cells as MillingConfig.
+    AddMaterial(const AddMaterialConfig& config, const BoneModel& bone, double largest_burr_radius,
+                size_t most_cells);
+    const char* name() const noexcept override { return "add_material"; }
+    void mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept override;
+
+  private:
+    TimedMilling milling_;
+};
+
+}  // namespace bonemill

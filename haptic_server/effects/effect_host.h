@@ -1,0 +1,52 @@
+// The effects of a scene, as the tick and the contact model call them. None listed: nothing is called.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "haptic_server/effects/haptic_effect.h"
+#include "haptic_server/spo/solve_energy.h"
+
+namespace bonemill {
+
+using EffectList = std::vector<std::unique_ptr<HapticEffect>>;
+
+class EffectHost final : private ContactWeights, private SolveEnergy {
+  public:
+    // Allocates. Room for the contacts of `most_candidates`; κ in N/m³.
+    EffectHost(EffectList effects, size_t most_candidates, double stiffness_per_area);
+
+    // For the contact model; null if no effect needs it. Live as long as the host.
+    ContactWeights* weights() noexcept {
+        return any(HapticEffect::kScales | HapticEffect::kReadsContacts) ? this : nullptr;
+    }
+    SolveEnergy* energy() noexcept { return any(HapticEffect::kHasEnergy) ? this : nullptr; }
+
+    // The phases of a tick, in this order. Tick thread, RT-safe.
+    void restart() noexcept;
+    void begin(const EffectTick& start) noexcept;  // takes from it what is known at the start
+    void addToHand(Wrench& wrench_V) noexcept;
+    // After the force went out: where the solve ended, and its contacts.
+    void afterSolve(const Pose& X_VT, SpoModel& model) noexcept;
+    void mill(BoneModel& bone, MillingResult& result) noexcept;
+    const EffectRecord& finish() noexcept;
+
+    bool isEmpty() const noexcept { return effects_.empty(); }
+    const EffectTick& tick() const noexcept { return tick_; }
+
+  private:
+    bool any(uint32_t needs) const noexcept { return needs_ & needs; }
+    double scale(Candidates& candidates, const Eigen::Vector3d& origin_V, const ToolField& tool,
+                 const Pose& X_VT) noexcept override;
+    EnergyTerm at(const Pose& X_VT) const noexcept override;
+
+    EffectList effects_;
+    uint32_t needs_ = 0;
+    double stiffness_per_area_;
+    EffectTick tick_;
+    std::vector<SurfaceContact> contacts_;  // room for all candidates, if any effect reads them
+    std::vector<uint8_t> is_on_burr_;
+    std::vector<float> place_area_;
+};
+
+}  // namespace bonemill

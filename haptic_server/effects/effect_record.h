@@ -1,0 +1,37 @@
+// What the effects of one tick tell the rest of the server; part of TickRecord. Zero without an effect that
+// says so.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+namespace bonemill {
+
+// Bit mask: what the trainee should know of a tick.
+enum TickEvent : uint32_t {
+    kEventNone = 0,
+    kEventSpindleStalled = 1u << 0,
+    kEventNearProtected = 1u << 1,     // nearer than the structure's warning distance
+    kEventProtectedTouched = 1u << 2,  // contact with it
+    kEventProtectedDamaged = 1u << 3,  // some of it was removed in this tick
+    kEventTooHot = 1u << 4,            // bone above the temperature of necrosis
+};
+
+struct EffectRecord {
+    uint32_t events;           // TickEvent bits
+    uint32_t protected_id;     // 1 + index of the scene's material that is nearest; 0: none
+    float spin_speed;          // rad/s about T's +y
+    float burr_force;          // N: sum of the normal forces on the burr
+    float axis_torque;         // N·m against the spin, on the tool
+    float cutting_power;       // W: of all friction between burr and bone
+    float removal_power;       // W: the part above the threshold pressure, which removes bone
+    float removed_energy;      // J: specific energy of what was removed in this tick
+    float temperature;         // °C: the hottest bone
+    float necrotic_volume;     // m³ in all
+    float protected_distance;  // m from the burr's surface; negative: inside
+    float protected_force;     // N on the tool, from protected structures
+    float damaged_volume;      // m³ of protected structures in all
+};
+static_assert(std::is_trivially_copyable_v<EffectRecord>);
+
+}  // namespace bonemill

@@ -1,0 +1,87 @@
+// What a scene adds to contact and coupling. Each effect is one small class; one that the scene does not list
+// is not constructed. The host (effect_host.h) calls the hooks, each effect's in the order of
+// effect_configs.h.
+//
+// In a tick: begin() → scale() at each gathering → energy() at each pose of the solve → addToHand() → the
+// force goes out → mill() → finish(). All RT-safe, tick thread only; construction allocates all that is ever
+// needed.
+#pragma once
+
+#include <span>
+
+#include "haptic_server/contact/contact_weights.h"
+#include "haptic_server/contact/surface_contact.h"
+#include "haptic_server/coupling/energy_coupling.h"
+#include "haptic_server/effects/effect_record.h"
+#include "haptic_server/milling/timed_milling.h"
+#include "haptic_server/spo/spo_model.h"
+#include "haptic_server/tick/bone_model.h"
+
+namespace bonemill {
+
+// What effects see of the tick, and tell each other. SI, axes V unless the name says otherwise.
+struct EffectTick {
+    // From the start of the tick on.
+    double dt = 1e-3;
+    bool is_pedal_down = false;  // and milling is neither paused nor stale
+    bool is_add_wanted = false;  // the add button alone, likewise
+    const SpoTool* tool = nullptr;
+    MillingShape shape = MillingShape::kSubVoxel;  // that the contact law calls for
+    Pose X_VT_start, X_VT_device;
+    double spin_speed =
+        0;  // rad/s about T's +y; without a spindle the full speed as soon as the pedal is down
+
+    // After the solve.
+    Pose X_VT;
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          // of the tool point, m/s
+    Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // rad/s
+
+    // After the force went out, for effects that read contacts; kept until the next tick's.
+    std::span<const SurfaceContact> contacts;  // of the whole tool
+    std::span<const uint8_t> is_on_burr;       // per contact
+    std::span<const float> place_area;         // per candidate: what it stands for, m²
+
+    EffectRecord
+        record{};  // starts each tick as zeros but for what the last one said of spin, torque and power
+
+    Eigen::Vector3d axis() const noexcept { return X_VT_start.rotation * Eigen::Vector3d::UnitY(); }
+};
+
+class HapticEffect {
+  public:
+    // What an effect needs to be called for beside begin(), mill() and finish().
+    enum Need : uint32_t {
+        kScales = 1,         // scale()
+        kHasEnergy = 2,      // energy()
+        kReadsContacts = 4,  // EffectTick::contacts
+    };
+    explicit HapticEffect(uint32_t needs) noexcept : needs_(needs) {}
+    virtual ~HapticEffect() = default;
+    HapticEffect(const HapticEffect&) = delete;
+    HapticEffect& operator=(const HapticEffect&) = delete;
+
+    virtual const char* name() const noexcept = 0;  // as in the scene
+    uint32_t needs() const noexcept { return needs_; }
+
+    // Another tool, another contact law, or the bone was put back: forget what came before.
+    virtual void restart() noexcept {}
+    virtual void begin(EffectTick&) noexcept {}
+    // As ContactWeights::scale().
+    virtual double scale(const EffectTick&, Candidates&, const Eigen::Vector3d& /*origin_V*/,
+                         const ToolField&, const Pose& /*X_VT*/) noexcept {
+        return 1;
+    }
+    // As SolveEnergy::at().
+    virtual EnergyTerm energy(const EffectTick&, const Pose& /*X_VT*/) const noexcept { return {}; }
+    // On the hand about the tool point that it holds, before the limits of what the hand may feel.
+    virtual void addToHand(const EffectTick&, Wrench& /*wrench_V*/) noexcept {}
+    // Changes the bone. Not called while a snapshot is taken or the bone is put back.
+    virtual void mill(EffectTick&, BoneModel&, MillingResult&) noexcept {}
+    // At the end of every tick: what the record says.
+    virtual void finish(EffectTick&) noexcept {}
+
+  private:
+    uint32_t needs_;
+};
+
+}  // namespace bonemill

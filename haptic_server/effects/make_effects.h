@@ -1,0 +1,18 @@
+// From what a scene lists to the effects themselves. Start-up only; allocates.
+#pragma once
+
+#include "haptic_server/effects/effect_configs.h"
+#include "haptic_server/effects/effect_host.h"
+
+namespace bonemill {
+
+struct EffectRoom {
+    double dt;                   // s
+    double largest_burr_radius;  // m, of all tools
+    size_t most_cells;           // as MillingConfig
+};
+
+// In the order in which they act.
+EffectList makeEffects(const EffectConfigs& configs, const BoneModel& bone, const EffectRoom& room);
+
+}  // namespace bonemill

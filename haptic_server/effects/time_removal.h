@@ -1,0 +1,22 @@
+// The thesis' removal: what is inside the burr goes at a rate of density per time, however hard it is
+// pressed.
+#pragma once
+
+#include "haptic_server/effects/effect_configs.h"
+#include "haptic_server/effects/haptic_effect.h"
+
+namespace bonemill {
+
+class TimeRemoval final : public HapticEffect {
+  public:
+    // Room for burrs up to largest_burr_radius, m. most_cells as MillingConfig.
+    TimeRemoval(const TimeRemovalConfig& config, const BoneModel& bone, double largest_burr_radius,
+                size_t most_cells);
+    const char* name() const noexcept override { return "time_removal"; }
+    void mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept override;
+
+  private:
+    TimedMilling milling_;
+};
+
+}  // namespace bonemill

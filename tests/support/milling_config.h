@@ -1,0 +1,14 @@
+// Settings of a tick that mills and adds by time, as most tests of the tick want it.
+#pragma once
+
+#include "haptic_server/tick/haptic_tick.h"
+
+namespace bonemill::test {
+
+inline TickConfig millingConfig() {
+    TickConfig config;
+    config.effects = {.time_removal = TimeRemovalConfig{}, .add_material = AddMaterialConfig{}};
+    return config;
+}
+
+}  // namespace bonemill::test
