@@ -90,11 +90,11 @@ class HapticTick {
     BoneHistory* history_;
     const AccuracySwitch* accuracy_;
     const ToolSwitch* tools_;
-    SpoTool tool_in_use_;
     size_t tool_ = 0;  // of tools_
     Thesis2012Model thesis_;
     GradientModel gradient_;
     SpoModel* model_;  // thesis_ or gradient_
+    SpoTool tool_in_use_;
     AccuracySettings settings_;
     AffordableShell affordable_;
     EffectHost effects_;

@@ -7,7 +7,8 @@ namespace bonemill::test {
 
 inline TickConfig millingConfig() {
     TickConfig config;
-    config.effects = {.time_removal = TimeRemovalConfig{}, .add_material = AddMaterialConfig{}};
+    config.effects.time_removal.emplace();
+    config.effects.add_material.emplace();
     return config;
 }
 
