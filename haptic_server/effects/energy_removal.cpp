@@ -4,20 +4,21 @@
 #include <cmath>
 
 #include "haptic_server/contact/into_tool.h"
+#include "haptic_server/effects/burr_speed.h"
 #include "haptic_server/effects/make_effects.h"
 
 namespace bonemill {
 
-double cuttingSpeed(double spin, double off_axis, double area) noexcept {
-    return std::abs(spin) * std::sqrt(off_axis * off_axis + area / (4 * M_PI));
-}
-
-EnergyRemoval::EnergyRemoval(const EnergyRemovalConfig& config,
-                             std::shared_ptr<const BoneProperties> properties, const BoneModel& bone,
-                             const EffectRoom& room)
+EnergyRemoval::EnergyRemoval(const EnergyRemovalConfig& config, const EffectConfigs& all,
+                             const BoneModel& bone, const EffectRoom& room)
     : HapticEffect(kScales | kReadsContacts),
       config_(config),
-      specific_energy_(config.specific_energy, std::move(properties), bone.volume.iso()),
+      specific_energy_({.reference = config.specific_energy,
+                        .reference_density = config.reference_density,
+                        .exponent = config.density_exponent,
+                        .materials = all.materials},
+                       all.properties, bone.volume.iso()),
+      inverse_spacing_(bone.volume.spacing().cwiseInverse()),
       shift_(bone, room.largest_burr_reach, room.most_contacts, room.most_cells) {}
 
 void EnergyRemoval::begin(EffectTick& tick) noexcept {
@@ -31,7 +32,6 @@ double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, cons
     constexpr int kBatch = PointBatch<float>::kCapacity;
     const Burr& burr = tick.tool->burr;
     const double wear = burr.friction * tick.dt / energyFactor(burr), slack = burrSlack(tool);
-    const Eigen::Array3d inverse = 1 / tick.spacing.array();
     const IntoTool<float> into_tool(X_VT, origin_V);
     PointBatch<float> batch;
     float distance[kBatch];
@@ -48,12 +48,11 @@ double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, cons
             double factor = 1;
             if (burr.signedDistance({x, y, z}) <= std::max(0.0, double(distance[i])) + slack) {
                 const double area = double(tick.place_area[n]);
-                const Eigen::Vector3i here = ((origin_V + candidates.position(n).cast<double>()).array() * inverse)
-                                                 .floor()
-                                                 .cast<int>();
+                const Eigen::Vector3d p_V = origin_V + candidates.position(n).cast<double>();
+                const Eigen::Vector3i here = (p_V.array() * inverse_spacing_).floor().cast<int>();
                 if (here != cell) u = specific_energy_.ofCell(cell = here);
                 const double stiffness = double(candidates.weight[n]) / area;  // κ
-                const double speed = cuttingSpeed(tick.spin_speed, std::sqrt(x * x + z * z), area);
+                const double speed = std::abs(tick.spin_speed) * std::sqrt(x * x + z * z + patchSpread(area));
                 factor = 1 / (1 + stiffness * wear * speed / u);
                 candidates.weight[n] *= float(factor);
             }
@@ -66,15 +65,15 @@ double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, cons
 // Gives the contacts' energies to the surface, and sums them; J.
 double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept {
     const Burr& burr = tick.tool->burr;
-    const Eigen::Quaterniond R_TV = tick.X_VT.rotation.conjugate();
+    const Eigen::Vector3d axis = tick.X_VT.rotation * Eigen::Vector3d::UnitY();
     shift_.begin(bone, tick.X_VT.position);
     double energy = 0;
     for (size_t n = 0; n < tick.contacts.size(); ++n) {
         if (!tick.is_on_burr[n]) continue;
         const SurfaceContact& contact = tick.contacts[n];
-        const Eigen::Vector3d r_T = R_TV * contact.r_V.cast<double>();
         const double area = double(tick.place_area[contact.candidate]), force = double(contact.force);
-        const double speed = cuttingSpeed(tick.spin_speed, std::hypot(r_T.x(), r_T.z()), area);
+        const double speed =
+            std::abs(tick.spin_speed) * rubbingRadius(contact.r_V.cast<double>(), axis, area);
         const double above = std::max(0.0, force - config_.threshold_pressure * area);
         const double of_contact = burr.friction * speed * above * tick.dt;
         burr_force_ += force;

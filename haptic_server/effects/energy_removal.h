@@ -11,12 +11,12 @@
 // pressure is v/c whatever dt and κ. The threshold does not enter the weights: below it the burr only rubs, on
 // bone as soft as that, and sinks in by dt c p_th more.
 //
+// v_c = |Ω| ρ with the mean of ρ over the point's patch (burr_speed.h), so that the pole of a burr cuts, if hardly.
+//
 // mill() then spends the energy of the contacts on the surface (milling/surface_shift.h). What was spent too
 // much or too little is kept in an account and made good within kRepayTime, so that Σ u ΔV = ∫ P dt but for
 // what is in the account.
 #pragma once
-
-#include <memory>
 
 #include "haptic_server/effects/effect_configs.h"
 #include "haptic_server/effects/haptic_effect.h"
@@ -26,18 +26,14 @@ namespace bonemill {
 
 struct EffectRoom;
 
-// m/s: of a place of this area (m²) at `off_axis` m from the axis of a burr that turns at `spin`, rad/s.
-// A plane surface that recedes everywhere at the same rate needs p ~ 1/r: on the axis the mean of that over a
-// disc is what it is at half of the disc's radius, so that the pole of a burr cuts, if hardly.
-double cuttingSpeed(double spin, double off_axis, double area) noexcept;
-
 class EnergyRemoval final : public HapticEffect {
   public:
     static constexpr double kRepayTime = 5e-3;  // s
     static constexpr double kMostShare = 2;     // of a tick's energy, that it may spend
 
-    EnergyRemoval(const EnergyRemovalConfig& config, std::shared_ptr<const BoneProperties> properties,
-                  const BoneModel& bone, const EffectRoom& room);
+    // Of `all`: the bone's properties and materials.
+    EnergyRemoval(const EnergyRemovalConfig& config, const EffectConfigs& all, const BoneModel& bone,
+                  const EffectRoom& room);
     const char* name() const noexcept override { return "energy_removal"; }
     void restart() noexcept override { account_ = 0; }
     void begin(EffectTick& tick) noexcept override;
@@ -54,6 +50,7 @@ class EnergyRemoval final : public HapticEffect {
 
     EnergyRemovalConfig config_;
     SpecificEnergy specific_energy_;
+    Eigen::Array3d inverse_spacing_;
     SurfaceShift shift_;
     bool is_cutting_ = false;
     double account_ = 0;  // J not yet spent; negative: too much was

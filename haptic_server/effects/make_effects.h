@@ -9,6 +9,8 @@ namespace bonemill {
 struct EffectRoom {
     double dt;                   // s
     double largest_burr_radius;  // m, of all tools
+    double largest_burr_reach;   // m, of all tools: Burr::reach()
+    size_t most_contacts;
     size_t most_cells;           // as MillingConfig
 };
 

@@ -10,7 +10,7 @@ SpecificEnergy::SpecificEnergy(const SpecificEnergyConfig& config,
     : properties_(std::move(properties)),
       reference_(config.reference),
       iso_(iso),
-      of_material_(config.of_material) {
+      materials_(config.materials) {
     for (int density = 0; density <= kMaxDensity + 1; density += kStep) {
         const double bone = std::max(density, int(iso));
         of_density_.push_back(reference_ * std::pow(bone / config.reference_density, config.exponent));
@@ -29,7 +29,7 @@ double SpecificEnergy::ofScannedCell(const Eigen::Vector3i& cell) const noexcept
     }
     if (densest < iso_) return reference_;
     const MaterialId material = properties_->material(voxel);
-    const double own = material < of_material_.size() ? of_material_[material] : 0;
+    const double own = material < materials_.size() ? materials_[material].specific_energy : 0;
     return own > 0 ? own : ofDensity(densest);
 }
 

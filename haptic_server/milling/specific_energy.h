@@ -14,7 +14,7 @@ struct SpecificEnergyConfig {
     double reference = 0.5e9;                // u_ref, J/m³
     double reference_density = kMaxDensity;  // ρ_ref, counts
     double exponent = 0;
-    std::vector<double> of_material;  // J/m³ by MaterialId, at any density; 0: by density
+    MaterialTable materials;  // those with a specific_energy of their own have it at any density
 };
 
 class SpecificEnergy {
@@ -37,7 +37,7 @@ class SpecificEnergy {
     std::shared_ptr<const BoneProperties> properties_;
     double reference_;
     Density iso_;
-    std::vector<double> of_material_;
+    MaterialTable materials_;
     std::vector<double> of_density_;  // at multiples of kStep
 };
 
