@@ -1,53 +1,69 @@
-// How much of a cell is bone. RT-safe.
+// How much of a cell is bone: the volume behind the surface that is drawn (marching cubes). RT-safe, any
+// thread; but for the first construction, which makes the tables.
+//
+// Divergence theorem with the field (0, 0, z): ∫ z n_z over the cell's triangles, plus the bone's part of the
+// face z = 1. What is bone on a face only depends on the face, as for the triangles: the cells' volumes add up
+// to that of the closed surface.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "haptic_server/contact/cell_corners.h"
+#include "haptic_server/volume/marching_cubes_table.h"
 
 namespace bonemill {
 
-// Share of a unit cube where level + slope·(t - ½) >= 0, t in 0 .. 1 along each axis: a plane cuts the cube
-// (Scardovelli and Zaleski 2000, J. Comput. Phys. 164, eq 3).
-inline double planeFill(double level, const Eigen::Vector3d& slope) noexcept {
-    constexpr double kLeastShare = 1e-6;  // of the slope along an axis; keeps the quotients small
-    const double size = slope.cwiseAbs().sum();
-    if (size <= 0) return level >= 0 ? 1 : 0;
-    const double depth = level / size + 0.5;  // 0: nothing, 1: all
-    if (depth <= 0) return 0;
-    if (depth >= 1) return 1;
-    Eigen::Array3d m = (slope.array().abs() / size).max(kLeastShare);
-    m /= m.sum();
-    if (m[0] > m[1]) std::swap(m[0], m[1]);
-    if (m[1] > m[2]) std::swap(m[1], m[2]);
-    if (m[0] > m[1]) std::swap(m[0], m[1]);
-    const double a = std::min(depth, 1 - depth);
-    const auto cut = [&](int i) { return m[i] * m[i] * (m[i] - 3 * a); };
-    const double six = 6 * m[0] * m[1] * m[2], both = m[0] + m[1];
-    double fill = 0;
-    if (a < m[0])
-        fill = a * a * a / six;
-    else if (a < m[1])
-        fill = a * (a - m[0]) / (2 * m[1] * m[2]) + m[0] * m[0] / (6 * m[1] * m[2]);
-    else if (a < std::min(both, m[2]))
-        fill = (a * a * (3 * both - a) + cut(0) + cut(1)) / six;
-    else if (m[2] < both)
-        fill = (a * a * (3 - 2 * a) + cut(0) + cut(1) + cut(2)) / six;
-    else
-        fill = (2 * a - both) / (2 * m[2]);
-    return depth > 0.5 ? 1 - fill : fill;
-}
+class CellFill {
+  public:
+    CellFill() : triangles_(cubeTriangles()) {}
 
-// With the corners' mean density and mean slope.
-inline double cellFill(const CellCorners& corners) noexcept {
-    bool has_bone = false, has_air = false;
-    for (const float e : corners.excess) (e >= 0 ? has_bone : has_air) = true;
-    if (!has_air) return 1;
-    if (!has_bone) return 0;
-    const FieldSample middle = sampleField(corners, Eigen::Vector3f::Constant(0.5f));
-    return planeFill(double(middle.excess), middle.slope.cast<double>());
-}
+    // Share of the cell, 0 .. 1.
+    double operator()(const CellCorners& corners) const noexcept {
+        unsigned inside = 0;
+        for (unsigned c = 0; c < 8; ++c) inside |= unsigned(corners.excess[c] >= 0) << c;
+        if (inside == 0) return 0;
+        if (inside == 0xff) return 1;
+        double fill = topFace(corners, inside >> 4);
+        const CubeTriangles& cell = triangles_[inside];
+        for (size_t n = 0; n < cell.count; ++n) {
+            const Eigen::Vector3d a = crossing(corners, cell.edges[n][0]);
+            const Eigen::Vector3d b = crossing(corners, cell.edges[n][1]);
+            const Eigen::Vector3d c = crossing(corners, cell.edges[n][2]);
+            const double area_z =
+                ((b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x())) / 2;
+            fill += (a.z() + b.z() + c.z()) / 3 * area_z;
+        }
+        return fill;
+    }
+
+  private:
+    // Share of the way from one density to the other, of which one is inside.
+    static double share(double from, double to) noexcept { return from / (from - to); }
+    static Eigen::Vector3d crossing(const CellCorners& corners, int edge) noexcept {
+        const unsigned low = kCubeEdges[size_t(edge)].low_corner, axis = kCubeEdges[size_t(edge)].axis;
+        Eigen::Vector3d place(low & 1, low >> 1 & 1, low >> 2 & 1);
+        place[axis] = share(double(corners.excess[low]), double(corners.excess[low | 1u << axis]));
+        return place;
+    }
+    // Area of bone on the face z = 1: each inside corner or run of such cut off by itself.
+    static double topFace(const CellCorners& corners, unsigned inside) noexcept {
+        constexpr unsigned kAround[4] = {0, 1, 3, 2};
+        if (inside == 0xf) return 1;
+        double area = 0;
+        for (unsigned n = 0; n < 4; ++n) {
+            const auto corner = [&](unsigned step) { return kAround[(n + step) & 3]; };
+            const auto is_in = [&](unsigned step) { return (inside >> corner(step) & 1) != 0; };
+            const auto e = [&](unsigned step) { return double(corners.excess[4 + corner(step)]); };
+            if (!is_in(0)) continue;
+            if (!is_in(3) && !is_in(1))  // a corner by itself
+                area += share(e(0), e(3)) * share(e(0), e(1)) / 2;
+            else if (!is_in(3) && !is_in(2))  // the first of two
+                area += (share(e(0), e(3)) + share(e(1), e(2))) / 2;
+            else if (is_in(3) && is_in(1))  // the middle one of three
+                area += 1 - share(e(2), e(1)) * share(e(2), e(3)) / 2;
+        }
+        return area;
+    }
+
+    const std::array<CubeTriangles, 256>& triangles_;
+};
 
 }  // namespace bonemill

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "haptic_server/contact/cell_corners.h"
-#include "haptic_server/milling/cell_fill.h"
 
 namespace bonemill {
 namespace {
@@ -253,14 +252,14 @@ double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double shar
     if (touched_.isEmpty()) return 0;
     spreadRest(bone);
     forEachCell(bone, [&](const Vector3i& cell, Node& node) {
-        node.fill = float(cellFill(readCorners(bone.volume, cell)));
+        node.fill = float(fill_(readCorners(bone.volume, cell)));
     });
     collect(bone, result);
     if (changes_.isEmpty()) return 0;
     result.shell_is_complete &= changes_.write(bone.volume, bone.lattice, bone.shell, -1);
     double spent = 0;
     forEachCell(bone, [&](const Vector3i& cell, const Node& node) {
-        const double gone = double(node.fill) - double(float(cellFill(readCorners(bone.volume, cell))));
+        const double gone = double(node.fill) - double(float(fill_(readCorners(bone.volume, cell))));
         if (gone != 0) spent += u.ofCell(cell) * gone;
     });
     return spent * bone.volume.voxelVolume();

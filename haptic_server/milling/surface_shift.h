@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "haptic_server/milling/cell_fill.h"
 #include "haptic_server/milling/changed_runs.h"
 #include "haptic_server/milling/specific_energy.h"
 #include "haptic_server/milling/timed_milling.h"
@@ -84,6 +85,7 @@ class SurfaceShift {
     void forget() noexcept;
 
     size_t most_cells_;
+    CellFill fill_;
     Eigen::Vector3i size_;                              // of the scratch box
     Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // its first voxel
     std::vector<Node> nodes_;

@@ -69,13 +69,15 @@ class MillingRig final : private TickIo {
         while (tick_.tick(*this)) {
         }
     }
-    // Along `direction` (unit) with this force; across it the hand stays where it starts.
+    // Along `direction` (unit) with this force, ahead of the tool by what it moved in the last tick; across it
+    // the hand stays where it starts.
     void press(double seconds, const Eigen::Vector3d& start, const Eigen::Vector3d& direction, double force,
                uint32_t buttons = kButtonRemove) {
         const double way = force / EnergyCouplingConfig{}.translation_stiffness;
         run(seconds, start,
-            [=](double, const Eigen::Vector3d& p) -> Eigen::Vector3d {
-                return start + direction * ((p - start).dot(direction) + way);
+            [=, last = 0.0](double, const Eigen::Vector3d& p) mutable -> Eigen::Vector3d {
+                const double now = (p - start).dot(direction), moved = now - std::exchange(last, now);
+                return start + direction * (now + moved + way);
             },
             buttons);
     }
