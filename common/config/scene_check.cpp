@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/config/effect_check.h"
 #include "common/config/field_unit.h"
 #include "common/config/material_check.h"
 #include "common/config/scene_tools.h"
@@ -163,6 +164,9 @@ void SceneChecker::checkTool(const scene::Tool& tool, const std::string& path) c
         if (tool.shape(i).kind_case() == scene::Tool::Shape::KIND_NOT_SET)
             refuse(path + ".shape[" + std::to_string(i) + "]",
                    "is empty: give it a sphere, capsule, cylinder or cone");
+    if (tool.burr_kind() != scene::Tool::BALL && !tool.has_burr_length_mm())
+        refuse(path + ".burr_length_mm", "is missing: a burr_kind of " +
+                                             scene::Tool::BurrKind_Name(tool.burr_kind()) + " needs it");
 }
 
 void SceneChecker::checkWaypoints(const scene::SimulatedOperator& simulated_operator) const {
@@ -184,8 +188,9 @@ void checkScene(const ParsedScene& parsed, const std::string& name) {
     checker.checkVolume(parsed.scene);
     checker.checkTools(parsed.scene);
     checker.checkWaypoints(parsed.scene.simulated_operator());
-    checkMaterials(parsed.scene,
-                   [&](const std::string& path, const std::string& why) { checker.refuse(path, why); });
+    const auto refuse = [&](const std::string& path, const std::string& why) { checker.refuse(path, why); };
+    checkMaterials(parsed.scene, refuse);
+    checkEffects(parsed.scene, refuse);
 }
 
 }  // namespace bonemill

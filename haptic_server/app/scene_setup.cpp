@@ -188,7 +188,11 @@ ToolConfig toolConfigOf(const LoadedScene& loaded, const scene::Tool& tool) {
     ToolConfig config;
     for (const scene::Tool::Shape& shape : tool.shape()) config.shapes.push_back(shapeOf(shape));
     if (tool.has_mesh_path()) config.mesh_path = resolvePath(loaded, tool.mesh_path());
-    config.burr_radius = tool.burr_radius_mm() * kMillimetre;
+    const Burr burr = burrOf(tool);
+    config.burr_kind = burr.kind;
+    config.burr_radius = burr.radius;
+    config.burr_length = burr.length;
+    config.burr_tip_radius = burr.tip_radius;
     config.sdf_nodes = {int(tool.sdf_nodes_x()), int(tool.sdf_nodes_y()), int(tool.sdf_nodes_z())};
     config.sdf_spacing = tool.sdf_spacing_mm() * kMillimetre;
     if (tool.has_sdf_origin_mm()) config.sdf_origin_T = metres(tool.sdf_origin_mm());
@@ -221,6 +225,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     clearFarFromBone(volume);
     const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), volume.geometry());
     simulation.tick = tickConfigOf(scene, volume.spacing().minCoeff());
+    mapRawValues(simulation.tick.effects, loaded, simulation.mapping);
     addProperties(simulation.tick.effects, loaded, volume, material_ids);
     simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells, shellConfigOf(scene));
     warnOfLargeLeaves(simulation);

@@ -11,10 +11,11 @@ int main(int argc, char** argv) {
     if(axis=="side") c.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(M_PI/2, Eigen::Vector3d::UnitX()));
     if(axis=="pole") c.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(M_PI/2, Eigen::Vector3d::UnitX()));
     if(axis=="side") c.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(M_PI/2, Eigen::Vector3d::UnitZ()));
+    if(axis=="oblique") c.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(M_PI/4, Eigen::Vector3d(1,0.3,0).normalized()));
     MillingRig rig(c);
     Eigen::Vector3d start(2.03e-3,1.98e-3,c.surface+c.burr.radius-1e-6);
     if (feedspeed>0) rig.feed(seconds,start,{0,0,-feedspeed}); else rig.press(seconds,start,-Eigen::Vector3d::UnitZ(),force);
     double vol=rig.removedVolume();
     std::printf("h %.4f rate %g: depth %.4f mm removed %.5f mm3 work %.6g removedE %.6g uV %.6g  work/uV-1 %.4f%% remE/work-1 %.4f%% faults %x\n", c.spacing[0]*1e3,c.rate, (start-rig.position()).z()*1e3, vol*1e9, rig.work(), rig.removedEnergy(), vol*c.removal.specific_energy, 100*(rig.work()/(vol*c.removal.specific_energy)-1), 100*(rig.removedEnergy()/rig.work()-1), rig.faults());
-    if(trace) for (size_t n=0;n<rig.records.size();++n) { auto&r=rig.records[n]; std::printf("T %g %.6f %.5f %.5f %.5f %.5f %.6f %u\n", r.t_s*1e3, (start.z()-r.p_WT[2])*1e3, double(r.effects.burr_force), r.f_hand_W[2], double(r.effects.removal_power), double(r.effects.removed_energy)*c.rate, r.max_penetration*1e6, r.contacts); }
+    if(trace) for (size_t n=0;n<rig.records.size();++n) { auto&r=rig.records[n]; std::printf("T %g %.6f %.5f %.5f %.5f %.5f %.6f %u %x %u %u\n", r.t_s*1e3, (start.z()-r.p_WT[2])*1e3, double(r.effects.burr_force), r.f_hand_W[2], double(r.effects.removal_power), double(r.effects.removed_energy)*c.rate, r.max_penetration*1e6, r.contacts, r.faults, r.iterations, r.candidates); }
 }
