@@ -9,10 +9,10 @@ struct EffectRule {
     bool needs_gradient_law;
     bool needs_speed;
 };
-constexpr EffectRule kRules[] = {
-    {"energy_removal", true, true},    {"cutting_force", true, true},      {"spindle", true, true},
-    {"burr_vibration", true, true},    {"surface_friction", true, false},  {"thermal", true, true},
-    {"virtual_fixture", true, false},  {"protected_structures", true, false}};
+constexpr EffectRule kRules[] = {{"energy_removal", true, true},    {"cutting_force", true, true},
+                                 {"spindle", true, true},           {"burr_vibration", true, true},
+                                 {"surface_friction", true, false}, {"thermal", true, true},
+                                 {"virtual_fixture", true, false},  {"protected_structures", true, false}};
 
 bool isListed(const scene::Effects& effects, const std::string& name) {
     const auto* field = effects.GetDescriptor()->FindFieldByName(name);
@@ -54,8 +54,8 @@ void checkBallOnly(const scene::Scene& scene, const RefuseField& refuse) {
         for (int i = 0; i < scene.tool_size(); ++i)
             if (scene.tool(i).burr_kind() != scene::Tool::BALL)
                 refuse("tool[" + std::to_string(i) + "].burr_kind",
-                       "= " + scene::Tool::BurrKind_Name(scene.tool(i).burr_kind()) +
-                           " does not go with " + pathOf(effect) + ", which knows only a BALL");
+                       "= " + scene::Tool::BurrKind_Name(scene.tool(i).burr_kind()) + " does not go with " +
+                           pathOf(effect) + ", which knows only a BALL");
     }
 }
 

@@ -165,8 +165,8 @@ void SceneChecker::checkTool(const scene::Tool& tool, const std::string& path) c
             refuse(path + ".shape[" + std::to_string(i) + "]",
                    "is empty: give it a sphere, capsule, cylinder or cone");
     if (tool.burr_kind() != scene::Tool::BALL && !tool.has_burr_length_mm())
-        refuse(path + ".burr_length_mm", "is missing: a burr_kind of " +
-                                             scene::Tool::BurrKind_Name(tool.burr_kind()) + " needs it");
+        refuse(path + ".burr_length_mm",
+               "is missing: a burr_kind of " + scene::Tool::BurrKind_Name(tool.burr_kind()) + " needs it");
 }
 
 void SceneChecker::checkWaypoints(const scene::SimulatedOperator& simulated_operator) const {

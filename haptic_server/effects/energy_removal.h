@@ -1,17 +1,18 @@
 // Removal by pressure times cutting speed against the bone's specific energy (ALGORITHMS §4).
 //
-// Per area of the contact between burr and bone, with pressure p, friction μ_c and cutting speed v_c, the power
-// μ_c (p - p_th)₊ v_c goes into bone of specific energy u, whose surface recedes at v_n = μ_c v_c (p - p_th)₊ / u
-// (Archard's law of wear, its rate given by energy).
+// Per area of the contact between burr and bone, with pressure p, friction μ_c and cutting speed v_c, the
+// power μ_c (p - p_th)₊ v_c goes into bone of specific energy u, whose surface recedes at v_n = μ_c v_c (p -
+// p_th)₊ / u (Archard's law of wear, its rate given by energy).
 //
 // The time constant of that wear against the contact's stiffness κ (N/m³), u/(μ_c κ v_c), is shorter than a
-// tick. The tick therefore takes it implicitly (backward Euler). With c = μ_c v_c / u and the recession s = dt c p
-// in this tick, p = κ (δ - s) makes p = κ δ / (1 + κ c dt): scale() multiplies each point's weight by
+// tick. The tick therefore takes it implicitly (backward Euler). With c = μ_c v_c / u and the recession s =
+// dt c p in this tick, p = κ (δ - s) makes p = κ δ / (1 + κ c dt): scale() multiplies each point's weight by
 // 1/(1 + κ c dt), so that the solve moves the tool through what the tick will cut. At a steady feed v the
-// pressure is v/c whatever dt and κ. The threshold does not enter the weights: below it the burr only rubs, on
-// bone as soft as that, and sinks in by dt c p_th more.
+// pressure is v/c whatever dt and κ. The threshold does not enter the weights: below it the burr only rubs,
+// on bone as soft as that, and sinks in by dt c p_th more.
 //
-// v_c = |Ω| ρ with the mean of ρ over the point's patch (burr_speed.h), so that the pole of a burr cuts, if hardly.
+// v_c = |Ω| ρ with the mean of ρ over the point's patch (burr_speed.h), so that the pole of a burr cuts, if
+// hardly.
 //
 // mill() then spends the energy of the contacts on the surface (milling/surface_shift.h). What was spent too
 // much or too little is kept in an account and made good within kRepayTime, so that Σ u ΔV = ∫ P dt but for

@@ -9,8 +9,7 @@ namespace bonemill {
 EffectList makeEffects(const EffectConfigs& configs, const BoneModel& bone, const EffectRoom& room) {
     EffectList effects;
     if (configs.energy_removal)
-        effects.push_back(
-            std::make_unique<EnergyRemoval>(*configs.energy_removal, configs, bone, room));
+        effects.push_back(std::make_unique<EnergyRemoval>(*configs.energy_removal, configs, bone, room));
     if (configs.time_removal)
         effects.push_back(std::make_unique<TimeRemoval>(*configs.time_removal, bone, room.largest_burr_radius,
                                                         room.most_cells));

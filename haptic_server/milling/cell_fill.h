@@ -2,8 +2,8 @@
 // thread; but for the first construction, which makes the tables.
 //
 // Divergence theorem with the field (0, 0, z): ∫ z n_z over the cell's triangles, plus the bone's part of the
-// face z = 1. What is bone on a face only depends on the face, as for the triangles: the cells' volumes add up
-// to that of the closed surface.
+// face z = 1. What is bone on a face only depends on the face, as for the triangles: the cells' volumes add
+// up to that of the closed surface.
 #pragma once
 
 #include "haptic_server/contact/cell_corners.h"
@@ -27,8 +27,7 @@ class CellFill {
             const Eigen::Vector3d a = crossing(corners, cell.edges[n][0]);
             const Eigen::Vector3d b = crossing(corners, cell.edges[n][1]);
             const Eigen::Vector3d c = crossing(corners, cell.edges[n][2]);
-            const double area_z =
-                ((b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x())) / 2;
+            const double area_z = ((b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x())) / 2;
             fill += (a.z() + b.z() + c.z()) / 3 * area_z;
         }
         return fill;

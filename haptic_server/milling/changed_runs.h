@@ -1,6 +1,6 @@
-// The voxels that one tick changes: collected leaf by leaf in runs along x, then written with all that hangs on
-// them: leaf versions, density ranges, point-shell. Construction allocates; all else is RT-safe (tick thread
-// only).
+// The voxels that one tick changes: collected leaf by leaf in runs along x, then written with all that hangs
+// on them: leaf versions, density ranges, point-shell. Construction allocates; all else is RT-safe (tick
+// thread only).
 #pragma once
 
 #include <cstddef>

@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-// Of the slope of a ramp from air to the iso-value in one voxel: flatter ones count as this, so that a surface
-// on a plateau moves on.
+// Of the slope of a ramp from air to the iso-value in one voxel: flatter ones count as this, so that a
+// surface on a plateau moves on.
 constexpr double kLeastSlope = 0.25;
 constexpr double kGoldenRatio = 0.6180339887498949;  // spreads the roundings evenly
 constexpr int kUnclampedRounds = 3;                  // of corners that come to rest at zero
@@ -44,8 +44,8 @@ float equalDrop(const CellCorners& corners, float iso, const Vector3f& t, float 
     for (int round = 0; round < kUnclampedRounds; ++round) {
         float done = 0, share = 0;
         for (int c = 0; c < 8; ++c) {
-            const float weight = (c & 1 ? t.x() : 1 - t.x()) * (c & 2 ? t.y() : 1 - t.y()) *
-                                 (c & 4 ? t.z() : 1 - t.z());
+            const float weight =
+                (c & 1 ? t.x() : 1 - t.x()) * (c & 2 ? t.y() : 1 - t.y()) * (c & 4 ? t.z() : 1 - t.z());
             const float density = corners.excess[size_t(c)] + iso;
             if (density < drop)
                 done += weight * density;
@@ -155,8 +155,8 @@ void SurfaceShift::forEachVoxelAround(const BoneModel& bone, const Vector3f& at,
                                       Visit&& visit) const noexcept {
     const auto width = float(kernelOf(bone));
     const Vector3i room_low = first_.array() + 1, room_high = (first_ + size_).array() - 2;
-    const Vector3i low = ((at.array() - width).floor().cast<int>() + 1).matrix().cwiseMax(room_low).cwiseMax(
-        Vector3i::Zero());
+    const Vector3i low =
+        ((at.array() - width).floor().cast<int>() + 1).matrix().cwiseMax(room_low).cwiseMax(Vector3i::Zero());
     const Vector3i high = ((at.array() + width).ceil().cast<int>() - 1)
                               .matrix()
                               .cwiseMin(room_high)
@@ -286,7 +286,8 @@ void SurfaceShift::collect(BoneModel& bone, MillingResult& result) noexcept {
     }
 }
 
-// False: it would take more than a tick's cells, and nothing of it is kept; nor without memory for its bricks.
+// False: it would take more than a tick's cells, and nothing of it is kept; nor without memory for its
+// bricks.
 bool SurfaceShift::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, MillingResult& result) noexcept {
     const ChangedRuns::Mark before = changes_.mark();
     MillingResult of_leaf;

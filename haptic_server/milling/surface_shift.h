@@ -1,14 +1,15 @@
-// Moves the bone's surface into the bone by a given energy at each contact: a level-set shift of the densities.
+// Moves the bone's surface into the bone by a given energy at each contact: a level-set shift of the
+// densities.
 //
-// The energies of all contacts on one patch of the shell (point b, area a) make its recession s = E / (u a). To
-// bring the iso-surface from b to b' = b - s n, the densities around b' must fall by the excess over the
+// The energies of all contacts on one patch of the shell (point b, area a) make its recession s = E / (u a).
+// To bring the iso-surface from b to b' = b - s n, the densities around b' must fall by the excess over the
 // iso-value that they have there; all corners of a cell by the same, so that the ramp of densities keeps its
 // slope. A voxel falls by the mean of what the patches around it ask for, weighted by area and distance
 // (trilinear hat of the shell's block size); patches without contact ask for nothing, so that the surface
 // beside the burr stays.
 //
-// What that removes is then measured: the sum over the cells of specific energy times the change of their fill
-// (cell_fill.h). The sum telescopes: over a session it is that of what is missing in the end.
+// What that removes is then measured: the sum over the cells of specific energy times the change of their
+// fill (cell_fill.h). The sum telescopes: over a session it is that of what is missing in the end.
 //
 // Frame V, SI. Construction allocates; all else is RT-safe (tick thread only).
 #pragma once
@@ -86,11 +87,11 @@ class SurfaceShift {
 
     size_t most_cells_;
     CellFill fill_;
-    Eigen::Vector3i size_;                              // of the scratch box
+    Eigen::Vector3i size_;                             // of the scratch box
     Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // its first voxel
     std::vector<Node> nodes_;
-    std::vector<Span> spans_;  // per row along x: voxels that something was asked of
-    IndexBox touched_;         // all of those
+    std::vector<Span> spans_;      // per row along x: voxels that something was asked of
+    IndexBox touched_;             // all of those
     std::vector<size_t> patches_;  // nodes with energy; the first patch_count_
     size_t patch_count_ = 0;
     IndexBox patch_cells_;  // blocks of those begin in it

@@ -63,8 +63,7 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
     collectChanges(volume, lattice,
                    {p_VB, direction, amount, BurrLimit(volume, burr_radius_, config_.shape, direction)},
                    result);
-    if (!changes_.isEmpty())
-        result.shell_is_complete = changes_.write(volume, lattice, shell, direction);
+    if (!changes_.isEmpty()) result.shell_is_complete = changes_.write(volume, lattice, shell, direction);
     return result;
 }
 

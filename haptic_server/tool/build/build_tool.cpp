@@ -15,9 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDefaultShaftRadius = 0.8;       // of the burr's
-constexpr double kShaftOverlap = 0.2;             // of half the burr's length, that the shaft begins inside it
-constexpr double kFinestBurrRadiusSpacings = 2;   // below it the grid no longer shows a ball
+constexpr double kDefaultShaftRadius = 0.8;      // of the burr's
+constexpr double kShaftOverlap = 0.2;            // of half the burr's length, that the shaft begins inside it
+constexpr double kFinestBurrRadiusSpacings = 2;  // below it the grid no longer shows a ball
 constexpr int64_t kMostNodes = int64_t(1) << 26;  // 256 MiB of distances
 constexpr double kLipschitzSlack = 1.001;         // float rounding
 
@@ -193,7 +193,8 @@ double burrOutside(const Burr& burr, const SdfGrid& sdf) {
     double farthest = 0;
     for (int i = 0; i < kAround; ++i)
         for (int k = 0; k <= kAlong; ++k) {
-            const double angle = 2 * M_PI * i / kAround, along = 2.0 * k / kAlong - 1;  // -1: far from the hand
+            const double angle = 2 * M_PI * i / kAround,
+                         along = 2.0 * k / kAlong - 1;  // -1: far from the hand
             double y = burr.length / 2 * along;
             double off_axis = burr.radius;
             if (burr.kind == BurrKind::kCone)
@@ -220,9 +221,10 @@ std::vector<std::string> warningsFor(const ToolConfig& config, const Sampled& sa
             "tool: the origin of frame T, where the burr cuts, is not inside the tool: bone goes where the "
             "tool is not; move the shapes or the mesh so that the burr's centre is at (0, 0, 0)");
     else if (const double outside = burrOutside(config.burr(), sampled.sdf); outside > config.sdf_spacing)
-        warnings.push_back(text("tool: its burr sticks out of it by %.3f mm: that part cuts nothing it touches; "
-                                "correct burr_kind and the burr's sizes, or the shapes or the mesh",
-                                outside * 1e3));
+        warnings.push_back(
+            text("tool: its burr sticks out of it by %.3f mm: that part cuts nothing it touches; "
+                 "correct burr_kind and the burr's sizes, or the shapes or the mesh",
+                 outside * 1e3));
     return warnings;
 }
 
@@ -247,15 +249,16 @@ std::vector<ToolShape> toolShapes(const ToolConfig& config) {
     const double radius = kDefaultShaftRadius * config.burr_radius;
     const double first =
         config.sdf_origin_T ? config.sdf_origin_T->y() : marginedBurrEnd(config, burrEnd(config));
-    const double hand_end =
-        config.burr_kind == BurrKind::kBall ? config.burr_radius : config.burr_length / 2;
+    const double hand_end = config.burr_kind == BurrKind::kBall ? config.burr_radius : config.burr_length / 2;
     const Vector3d last = std::max(first + gridSize(config).y() + radius, hand_end) * Vector3d::UnitY();
     if (config.burr_kind == BurrKind::kBall)
-        return {SphereShape{Vector3d::Zero(), config.burr_radius}, CapsuleShape{Vector3d::Zero(), last, radius}};
+        return {SphereShape{Vector3d::Zero(), config.burr_radius},
+                CapsuleShape{Vector3d::Zero(), last, radius}};
     const Vector3d half = config.burr_length / 2 * Vector3d::UnitY();
     // Inside a cone, which is as wide as the shaft only there.
     const CylinderShape shaft{(1 - kShaftOverlap) * half, last + radius * Vector3d::UnitY(), radius};
-    if (config.burr_kind == BurrKind::kCylinder) return {CylinderShape{-half, half, config.burr_radius}, shaft};
+    if (config.burr_kind == BurrKind::kCylinder)
+        return {CylinderShape{-half, half, config.burr_radius}, shaft};
     return {ConeShape{-half, half, config.burr_tip_radius, config.burr_radius}, shaft};
 }
 

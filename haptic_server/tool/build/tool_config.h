@@ -20,7 +20,8 @@ struct ToolConfig {
     double burr_radius = 1.0e-3;
     double burr_length = 0, burr_tip_radius = 0;  // as Burr
     Burr burr() const {
-        return {.kind = burr_kind, .radius = burr_radius, .length = burr_length, .tip_radius = burr_tip_radius};
+        return {
+            .kind = burr_kind, .radius = burr_radius, .length = burr_length, .tip_radius = burr_tip_radius};
     }
     Eigen::Vector3i sdf_nodes{22, 128, 22};
     double sdf_spacing = 0.125e-3;                // m

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <functional>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "haptic_server/mesh/mesh_check.h"
@@ -15,10 +15,15 @@ namespace bonemill::test {
 inline constexpr double kKrpm = 1000 * 2 * M_PI / 60;  // rad/s
 
 struct RigConfig {
-    Eigen::Vector3d size{4e-3, 4e-3, 3e-3};  // of the block; its top is the plane z = surface
-    double surface = 2e-3;
+    Eigen::Vector3d size{4e-3, 4e-3, 3e-3};  // of the volume
+    double surface = 2e-3;                   // of the bone: the plane z = this
+    // The bone is a wall of these thicknesses along x and y around the middle; zero: a block as large as the
+    // volume.
+    Eigen::Vector2d wall = Eigen::Vector2d::Zero();
     Eigen::Vector3d spacing = Eigen::Vector3d::Constant(0.125e-3);
     double ramp = 2;  // voxels from the surface to full density
+    double is_hard_below =
+        0;  // m under the surface: from there on four times the specific energy; 0: nowhere
     Density iso = kTestIso;
     double rate = 1000;  // Hz
     Burr burr{.radius = 1e-3, .speed = 40 * kKrpm};
@@ -56,7 +61,7 @@ class MillingRig final : private TickIo {
           bone(blockOf(config), Eigen::Vector3i::Constant(16), {.levels = {{config.shell_factor}}}),
           tool_(gridOf(shapesOf(config.burr), config.burr.radius / 8), shapesOf(config.burr),
                 config.burr.radius),
-          tick_(tickConfigOf(config), bone, tool_, nullptr),
+          tick_(tickConfigOf(config, bone.volume), bone, tool_, nullptr),
           volume_before_(boneVolume()) {}
 
     // From `start` on.
@@ -69,13 +74,15 @@ class MillingRig final : private TickIo {
         while (tick_.tick(*this)) {
         }
     }
-    // Along `direction` (unit) with this force, ahead of the tool by what it moved in the last tick; across it
-    // the hand stays where it starts.
+    // Along `direction` (unit) with this force, ahead of the tool by what it moved in the last tick; across
+    // it the hand stays where it starts.
     void press(double seconds, const Eigen::Vector3d& start, const Eigen::Vector3d& direction, double force,
                uint32_t buttons = kButtonRemove) {
         const double way = force / EnergyCouplingConfig{}.translation_stiffness;
-        run(seconds, start,
-            [=, last = 0.0](double, const Eigen::Vector3d& p) mutable -> Eigen::Vector3d {
+        const double from = records.empty() ? 0 : (spo_ - start).dot(direction);
+        run(
+            seconds, start,
+            [=, last = from](double, const Eigen::Vector3d& p) mutable -> Eigen::Vector3d {
                 const double now = (p - start).dot(direction), moved = now - std::exchange(last, now);
                 return start + direction * (now + moved + way);
             },
@@ -104,7 +111,15 @@ class MillingRig final : private TickIo {
         return sum;
     }
     Eigen::Vector3d position() const { return spo_; }
-    uint32_t faults() const { return tick_.latchedFaults(); }
+    Eigen::Vector3d center() const { return {config.size.x() / 2, config.size.y() / 2, config.surface}; }
+    // Mean of a figure over the last so many seconds.
+    template <class Figure>
+    double mean(double seconds, Figure&& figure) const {
+        const size_t count = size_t(std::lround(seconds * config.rate));
+        double sum = 0;
+        for (size_t n = records.size() - count; n < records.size(); ++n) sum += double(figure(records[n]));
+        return sum / double(count);
+    }
 
     RigConfig config;
     BoneModel bone;
@@ -117,14 +132,20 @@ class MillingRig final : private TickIo {
         geometry.spacing = config.spacing;
         VoxelVolume volume(geometry, config.iso);
         const double voxel = config.spacing.maxCoeff();
-        volume.fill([&](int, int, int k) {
-            const double depth = (config.surface - k * config.spacing.z()) / (config.ramp * voxel);
+        volume.fill([&](int i, int j, int k) {
+            const Eigen::Vector3d p = config.spacing.cwiseProduct(Eigen::Vector3d(i, j, k));
+            double inside = config.surface - p.z();
+            for (int axis = 0; axis < 2; ++axis)
+                if (config.wall[axis] > 0)
+                    inside =
+                        std::min(inside, config.wall[axis] / 2 - std::abs(p[axis] - config.size[axis] / 2));
+            const double depth = inside / (config.ramp * voxel);
             const double density = config.iso + depth * (depth < 0 ? config.iso : kMaxDensity - config.iso);
             return Density(std::lround(std::clamp(density, 0.0, double(kMaxDensity))));
         });
         return volume;
     }
-    static TickConfig tickConfigOf(const RigConfig& config) {
+    static TickConfig tickConfigOf(const RigConfig& config, const VoxelVolume& volume) {
         TickConfig tick;
         tick.dt = 1 / config.rate;
         tick.burr = config.burr;
@@ -132,6 +153,12 @@ class MillingRig final : private TickIo {
         tick.accuracy = presetSettings(config.preset);
         tick.accuracy.shell_factor = config.shell_factor;
         tick.effects.energy_removal = config.removal;
+        if (config.is_hard_below > 0) {
+            const double hard_below = (config.surface - config.is_hard_below) / config.spacing.z();
+            tick.effects.properties = std::make_shared<const BoneProperties>(
+                volume, [&](const Eigen::Vector3i& v) { return MaterialId(v.z() < hard_below); });
+            tick.effects.materials = {{}, {.specific_energy = 4 * config.removal.specific_energy}};
+        }
         return tick;
     }
     bool read(DeviceInput& input) noexcept override {
