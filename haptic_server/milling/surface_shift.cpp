@@ -13,9 +13,9 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-// Of the slope of a ramp from air to the iso-value in one voxel: flatter ones count as this, so that a
-// surface on a plateau moves on.
-constexpr double kLeastSlope = 0.25;
+// Of the slope of a ramp from air, or from full density, to the iso-value in one voxel: flatter ones count as
+// this, so that a surface on a plateau moves on.
+constexpr double kLeastSlope = 0.02;
 constexpr double kGoldenRatio = 0.6180339887498949;  // spreads the roundings evenly
 constexpr int kUnclampedRounds = 3;                  // of corners that come to rest at zero
 
@@ -186,7 +186,8 @@ SurfaceShift::Wish SurfaceShift::wishOf(const VoxelVolume& volume, const Vector3
     const Vector3i target_cell = cellAt(target);
     const Vector3f t = target - target_cell.cast<float>();
     const CellCorners corners = readCorners(volume, target_cell);
-    const double least = kLeastSlope * volume.iso() / volume.spacing().maxCoeff() * recession;
+    const int to_iso = std::min(int(volume.iso()), kMaxDensity - volume.iso());
+    const double least = kLeastSlope * to_iso / volume.spacing().maxCoeff() * recession;
     const float excess = std::max(sampleField(corners, t).excess, float(least));
     return {target, equalDrop(corners, float(volume.iso()), t, excess)};
 }

@@ -12,7 +12,8 @@ using test::kKrpm;
 using test::MillingRig;
 using test::RigConfig;
 
-constexpr double kPress = 3;  // N
+constexpr double kPress = 3;      // N
+constexpr double kLeading = 2e5;  // N/m: a hand that feeds
 
 const Vector3d kDown = -Vector3d::UnitZ();
 // The tool's axis, which is y in T, along these.
@@ -67,9 +68,10 @@ TEST(EnergyRemoval, SpendsTheWorkOfFrictionOnTheBone) {
 TEST(EnergyRemoval, KeepsTheBalanceAlongAGroove) {
     RigConfig config;
     config.rotation = kOblique;
+    config.hand_stiffness = kLeading;
     MillingRig rig(config);
-    rig.press(0.05, onTop(rig) - Vector3d(1e-3, 0, 0), kDown, kPress);
-    rig.feed(0.3, rig.position(), {8e-3, 2e-3, -1e-3});
+    rig.feed(0.1, onTop(rig) - Vector3d(1e-3, 0, 0), {0, 0, -6e-3});
+    rig.feed(0.25, rig.position(), {8e-3, 2e-3, -1e-3});
     EXPECT_GT(rig.removedVolume(), 2e-9);
     expectBalance(rig, config.removal.specific_energy);
 }
@@ -111,6 +113,7 @@ TEST(EnergyRemoval, MeetsTheCheckValue) {
     config.burr = {.kind = BurrKind::kCylinder, .radius = 1.61e-3, .length = 4e-3, .friction = 0.5};
     config.burr.speed = 10 / config.burr.radius;
     config.removal.specific_energy = 0.3e9;
+    config.hand_stiffness = kLeading;
     MillingRig rig(config);
     rig.feed(0.1, onTop(rig), {0, 0, -10e-3});
     const double before = rig.removedVolume();
@@ -131,6 +134,7 @@ TEST(EnergyRemoval, ThePoleOfABallGoesThrough) {
     constexpr double kFeed = 3e-3;
     RigConfig config;
     config.rotation = kUpright;
+    config.hand_stiffness = kLeading;
     MillingRig rig(config);
     rig.feed(0.25, onTop(rig), kFeed * kDown);
     const double speed = -(rig.records.back().p_WT[2] - rig.records[rig.records.size() - 51].p_WT[2]) / 0.05;
@@ -248,6 +252,7 @@ TEST(EnergyRemoval, KnowsHardBoneFromSoft) {
 TEST(EnergyRemoval, SurvivesWhatNoHandDoes) {
     RigConfig config = sideways();
     config.wall = {4e-3, 0.4e-3};
+    config.hand_stiffness = kLeading;
     MillingRig rig(config);
     rig.feed(0.05, onTop(rig), {0, 0, -60e-3});
     rig.feed(0.1, rig.position(), {30e-3, 5e-3, 15e-3});

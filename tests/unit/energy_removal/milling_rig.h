@@ -31,6 +31,7 @@ struct RigConfig {
     EnergyRemovalConfig removal;
     Preset preset = Preset::kBalanced;
     int shell_factor = 1;
+    double hand_stiffness = 3000;  // N/m: of the coupling
 };
 
 inline std::vector<ToolShape> shapesOf(const Burr& burr) {
@@ -74,20 +75,21 @@ class MillingRig final : private TickIo {
         while (tick_.tick(*this)) {
         }
     }
-    // Along `direction` (unit) with this force, ahead of the tool by what it moved in the last tick; across
-    // it the hand stays where it starts.
+    // Along `direction` (unit) with this force, which comes up within kRise, ahead of the tool by what it
+    // moved in the last tick; across it the hand stays where it starts.
     void press(double seconds, const Eigen::Vector3d& start, const Eigen::Vector3d& direction, double force,
                uint32_t buttons = kButtonRemove) {
-        const double way = force / EnergyCouplingConfig{}.translation_stiffness;
+        const double way = force / config.hand_stiffness, begin = t_;
         const double from = records.empty() ? 0 : (spo_ - start).dot(direction);
         run(
             seconds, start,
-            [=, last = from](double, const Eigen::Vector3d& p) mutable -> Eigen::Vector3d {
+            [=, last = from](double t, const Eigen::Vector3d& p) mutable -> Eigen::Vector3d {
                 const double now = (p - start).dot(direction), moved = now - std::exchange(last, now);
-                return start + direction * (now + moved + way);
+                return start + direction * (now + moved + way * std::min(1.0, (t - begin) / kRise));
             },
             buttons);
     }
+    static constexpr double kRise = 0.02;  // s
     // At a steady speed.
     void feed(double seconds, const Eigen::Vector3d& start, const Eigen::Vector3d& velocity) {
         const double from = t_;
@@ -152,6 +154,8 @@ class MillingRig final : private TickIo {
         tick.gradient.burr_radius = config.burr.radius;
         tick.accuracy = presetSettings(config.preset);
         tick.accuracy.shell_factor = config.shell_factor;
+        tick.gradient.coupling.translation_stiffness = config.hand_stiffness;
+        tick.gradient.coupling.relaxing_share = 0;
         tick.effects.energy_removal = config.removal;
         if (config.is_hard_below > 0) {
             const double hard_below = (config.surface - config.is_hard_below) / config.spacing.z();
