@@ -115,18 +115,19 @@ TEST(EnergyRemoval, MeetsTheCheckValue) {
     config.removal.specific_energy = 0.3e9;
     config.hand_stiffness = kLeading;
     MillingRig rig(config);
-    rig.feed(0.1, onTop(rig), {0, 0, -10e-3});
+    constexpr double kRunIn = 0.1, kTime = 0.05;
+    const Vector3d velocity(0, 0, -10e-3);
+    rig.feed(kRunIn, onTop(rig), velocity);
     const double before = rig.removedVolume();
-    constexpr double kTime = 0.05;
-    rig.feed(kTime, rig.position(), {0, 0, -10e-3});  // it stays one tick in its place
+    rig.feed(kTime, onTop(rig) + kRunIn * velocity, velocity);
     const double force = rig.mean(kTime, [](const TickRecord& r) { return r.effects.burr_force; });
     const double power = rig.mean(kTime, [](const TickRecord& r) { return r.effects.removal_power; });
     const double friction = rig.mean(kTime, [](const TickRecord& r) { return r.effects.cutting_power; });
-    EXPECT_NEAR(force, 3.6, 0.03 * 3.6);
-    EXPECT_NEAR(power, 18, 0.03 * 18);
+    EXPECT_NEAR(force, 3.6, 0.02 * 3.6);
+    EXPECT_NEAR(power, 18, 0.02 * 18);
     EXPECT_NEAR(friction, power, 1e-4 * power);
-    EXPECT_NEAR((rig.removedVolume() - before) / kTime, 60e-9, 0.03 * 60e-9);
-    EXPECT_NEAR(friction / config.burr.speed, 2.9e-3, 0.03 * 2.9e-3);
+    EXPECT_NEAR((rig.removedVolume() - before) / kTime, 60e-9, 0.02 * 60e-9);
+    EXPECT_NEAR(friction / config.burr.speed, 2.9e-3, 0.02 * 2.9e-3);
 }
 
 // A ball fed along its own axis: p = v cos θ u / (μ Ω ρ), so that ∫ p dA = 2 π ρ_rim v u / (μ Ω).
