@@ -3,7 +3,9 @@
 #include <cmath>
 #include <vector>
 
+#include "common/config/effect_check.h"
 #include "common/config/field_unit.h"
+#include "common/config/material_check.h"
 #include "common/config/scene_tools.h"
 #include "common/config/user_error.h"
 
@@ -23,10 +25,11 @@ class SceneChecker {
     void checkTool(const scene::Tool& tool, const std::string& path) const;
     void checkWaypoints(const scene::SimulatedOperator& simulated_operator) const;
 
-  private:
     [[noreturn]] void refuse(const std::string& path, const std::string& why) const {
         throw UserError(placeOf(name_, lines_, path) + "field `" + path + "` " + why);
     }
+
+  private:
     void checkNumber(const FieldDescriptor& field, double value, const std::string& path,
                      std::string_view unit) const;
     void checkText(const std::string& text, const std::string& path) const;
@@ -161,6 +164,9 @@ void SceneChecker::checkTool(const scene::Tool& tool, const std::string& path) c
         if (tool.shape(i).kind_case() == scene::Tool::Shape::KIND_NOT_SET)
             refuse(path + ".shape[" + std::to_string(i) + "]",
                    "is empty: give it a sphere, capsule, cylinder or cone");
+    if (tool.burr_kind() != scene::Tool::BALL && !tool.has_burr_length_mm())
+        refuse(path + ".burr_length_mm",
+               "is missing: a burr_kind of " + scene::Tool::BurrKind_Name(tool.burr_kind()) + " needs it");
 }
 
 void SceneChecker::checkWaypoints(const scene::SimulatedOperator& simulated_operator) const {
@@ -182,6 +188,9 @@ void checkScene(const ParsedScene& parsed, const std::string& name) {
     checker.checkVolume(parsed.scene);
     checker.checkTools(parsed.scene);
     checker.checkWaypoints(parsed.scene.simulated_operator());
+    const auto refuse = [&](const std::string& path, const std::string& why) { checker.refuse(path, why); };
+    checkMaterials(parsed.scene, refuse);
+    checkEffects(parsed.scene, refuse);
 }
 
 }  // namespace bonemill

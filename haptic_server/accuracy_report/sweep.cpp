@@ -59,7 +59,10 @@ void mill(const SweepInput& input, const TickConfig& tick, SharedBone& shared, S
 }
 
 SettingFigures measure(const SweepInput& input, const AccuracySettings& settings, SharedBone& shared) {
-    const TickConfig tick = tickConfigOf(sceneWith(input.scene, settings), input.volume.spacing().minCoeff());
+    TickConfig tick = tickConfigOf(sceneWith(input.scene, settings), input.volume.spacing().minCoeff());
+    EffectConfigs by_time;  // contact is measured, and what goes by time
+    by_time.time_removal = tick.effects.time_removal;
+    tick.effects = by_time;
     SettingFigures figures;
     figures.settings = settings;
 

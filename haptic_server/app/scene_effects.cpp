@@ -2,11 +2,23 @@
 
 #include <cmath>
 
+#include "common/config/field_unit.h"
+#include "common/config/user_error.h"
+#include "haptic_server/app/scene_materials.h"
+
 namespace bonemill {
 namespace {
 
 constexpr double kMillimetre = 1e-3;
 constexpr double kRpm = 2 * M_PI / 60;  // rad/s
+
+EnergyRemovalConfig energyRemovalOf(const scene::EnergyRemoval& removal) {
+    constexpr double kPerCubicMillimetre = 1e9, kMega = 1e6;
+    return {.specific_energy = removal.specific_energy_j_per_mm3() * kPerCubicMillimetre,
+            .density_exponent = removal.density_exponent(),
+            .threshold_pressure = removal.threshold_pressure_mpa() * kMega,
+            .diamond_energy_factor = removal.diamond_energy_factor()};
+}
 
 }  // namespace
 
@@ -25,11 +37,26 @@ Burr burrOf(const scene::Tool& tool) {
 EffectConfigs effectConfigsOf(const scene::Scene& scene) {
     const scene::Effects& effects = scene.effects();
     EffectConfigs configs;
+    configs.materials = materialTableOf(scene);
+    if (effects.has_energy_removal()) configs.energy_removal = energyRemovalOf(effects.energy_removal());
     if (effects.has_time_removal())
         configs.time_removal = {effects.time_removal().rate_density_per_s() * kDensityCountsPerUnit};
     if (effects.has_add_material())
         configs.add_material = {effects.add_material().rate_density_per_s() * kDensityCountsPerUnit};
     return configs;
+}
+
+void mapRawValues(EffectConfigs& configs, const LoadedScene& loaded, const DensityMapping& mapping) {
+    const scene::EnergyRemoval& removal = loaded.scene.effects().energy_removal();
+    if (!configs.energy_removal || !removal.has_reference_value()) return;
+    const double share = (removal.reference_value() - mapping.low) / (mapping.high - mapping.low);
+    const std::string path = "effects.energy_removal.reference_value";
+    if (!(share > 0))
+        throw UserError(placeOf(loaded.file.string(), loaded.lines, path) + "field `" + path +
+                        "` = " + numberText(removal.reference_value()) +
+                        " is not above the lower end of the window, " + numberText(mapping.low) +
+                        ", which is no bone at all");
+    configs.energy_removal->reference_density = share * kMaxDensity;
 }
 
 }  // namespace bonemill

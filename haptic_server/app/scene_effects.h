@@ -1,14 +1,19 @@
 // What the scene's effects, materials and tools ask of the tick's effects. Start-up only.
 #pragma once
 
+#include "common/config/scene_file.h"
 #include "haptic_server/effects/effect_configs.h"
 #include "haptic_server/tool/burr.h"
-#include "proto/scene.pb.h"
+#include "haptic_server/volume/import/densify.h"
 
 namespace bonemill {
 
 Burr burrOf(const scene::Tool& tool);
 
+// But for what depends on the volume.
 EffectConfigs effectConfigsOf(const scene::Scene& scene);
+
+// Raw values of the scene become densities. Throws UserError for one that is none.
+void mapRawValues(EffectConfigs& configs, const LoadedScene& loaded, const DensityMapping& mapping);
 
 }  // namespace bonemill

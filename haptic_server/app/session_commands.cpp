@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/config/effect_check.h"
+
 namespace bonemill {
 namespace {
 
@@ -25,6 +27,7 @@ SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bon
       checkpoints_(controls.history, bone),
       voxel_mm3_(bone.volume.voxelVolume() * kMm3PerM3),
       is_switchable_(scene.accuracy().switchable()),
+      effect_of_gradient_law_(effectOfGradientLaw(scene.effects())),
       only_instructors_(only_instructors) {}
 
 std::string SessionCommands::carryOut(const topics::Command& command) {
@@ -71,6 +74,9 @@ std::string SessionCommands::setAccuracy(const std::string& name) {
         return "refused: no preset is called '" + repeated(name) +
                "'; thesis_2012, fast, balanced, exact or scene";
     if (!is_switchable_ && preset) return "refused: the scene says accuracy.switchable: false";
+    if (preset == Preset::kThesis2012 && effect_of_gradient_law_)
+        return std::string("refused: effects.") + effect_of_gradient_law_ +
+               " of the scene needs the gradient contact law, which thesis_2012 is not";
     controls_.accuracy.choose(preset ? AccuracySwitch::choiceOf(*preset) : AccuracySwitch::kSceneChoice);
     return "done";
 }

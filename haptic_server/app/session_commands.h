@@ -46,7 +46,9 @@ class SessionCommands {
     const Recorder& recorder_;
     Checkpoints checkpoints_;
     double voxel_mm3_;
-    bool is_switchable_, only_instructors_;
+    bool is_switchable_;
+    const char* effect_of_gradient_law_;  // null: none
+    bool only_instructors_;
 };
 
 }  // namespace bonemill

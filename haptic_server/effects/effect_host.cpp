@@ -21,6 +21,7 @@ void EffectHost::restart() noexcept {
 
 void EffectHost::begin(const EffectTick& start) noexcept {
     tick_.dt = start.dt;
+    tick_.may_mill = start.may_mill;
     tick_.is_pedal_down = start.is_pedal_down;
     tick_.is_add_wanted = start.is_add_wanted;
     tick_.tool = start.tool;
@@ -37,6 +38,8 @@ double EffectHost::scale(Candidates& candidates, const Eigen::Vector3d& origin_V
         const float area_per_weight = float(1 / stiffness_per_area_);
         for (size_t n = 0; n < candidates.count; ++n) place_area_[n] = area_per_weight * candidates.weight[n];
         tick_.place_area = {place_area_.data(), candidates.count};
+        tick_.candidates = &candidates;
+        burr_slack_ = burrSlack(tool);
     }
     double largest = 1;
     for (const auto& effect : effects_)
@@ -64,11 +67,12 @@ void EffectHost::afterSolve(const Pose& X_VT, SpoModel& model) noexcept {
     const size_t count = model.listContacts(contacts_);
     tick_.contacts = {contacts_.data(), count};
     tick_.is_on_burr = {is_on_burr_.data(), count};
-    // A contact lies inside the tool, so that those of the burr lie inside the burr.
+    // A contact lies inside the tool, so that those of the burr lie inside the burr but for what the tool's
+    // distances may be wrong.
     const Eigen::Quaternionf R_TV = X_VT.rotation.conjugate().cast<float>();
     for (size_t n = 0; n < count; ++n) {
         const Eigen::Vector3f r_T = R_TV * contacts_[n].r_V;
-        is_on_burr_[n] = tick_.tool->burr.signedDistance(r_T.cast<double>()) < 0;
+        is_on_burr_[n] = tick_.tool->burr.signedDistance(r_T.cast<double>()) < burr_slack_;
     }
 }
 

@@ -43,6 +43,7 @@ class EffectHost final : private ContactWeights, private SolveEnergy {
     EffectList effects_;
     uint32_t needs_ = 0;
     double stiffness_per_area_;
+    double burr_slack_ = 0;  // m
     EffectTick tick_;
     std::vector<SurfaceContact> contacts_;  // room for all candidates, if any effect reads them
     std::vector<uint8_t> is_on_burr_;

@@ -23,7 +23,8 @@ namespace bonemill {
 struct EffectTick {
     // From the start of the tick on.
     double dt = 1e-3;
-    bool is_pedal_down = false;  // and milling is neither paused nor stale
+    bool may_mill = false;       // milling is neither paused nor stale
+    bool is_pedal_down = false;  // and may mill
     bool is_add_wanted = false;  // the add button alone, likewise
     const SpoTool* tool = nullptr;
     MillingShape shape = MillingShape::kSubVoxel;  // that the contact law calls for
@@ -40,12 +41,19 @@ struct EffectTick {
     std::span<const SurfaceContact> contacts;  // of the whole tool
     std::span<const uint8_t> is_on_burr;       // per contact
     std::span<const float> place_area;         // per candidate: what it stands for, m²
+    const Candidates* candidates = nullptr;    // of the last gathering
 
     EffectRecord
         record{};  // starts each tick as zeros but for what the last one said of spin, torque and power
 
     Eigen::Vector3d axis() const noexcept { return X_VT_start.rotation * Eigen::Vector3d::UnitY(); }
 };
+
+// How far outside of the burr a contact of the tool still counts as the burr's, m.
+inline double burrSlack(const ToolField& tool) noexcept {
+    constexpr double kRim = 2e-6;  // m
+    return kRim + 2 * tool.distanceError();
+}
 
 class HapticEffect {
   public:

@@ -1,12 +1,15 @@
 #include "haptic_server/effects/make_effects.h"
 
 #include "haptic_server/effects/add_material.h"
+#include "haptic_server/effects/energy_removal.h"
 #include "haptic_server/effects/time_removal.h"
 
 namespace bonemill {
 
 EffectList makeEffects(const EffectConfigs& configs, const BoneModel& bone, const EffectRoom& room) {
     EffectList effects;
+    if (configs.energy_removal)
+        effects.push_back(std::make_unique<EnergyRemoval>(*configs.energy_removal, configs, bone, room));
     if (configs.time_removal)
         effects.push_back(std::make_unique<TimeRemoval>(*configs.time_removal, bone, room.largest_burr_radius,
                                                         room.most_cells));

@@ -9,7 +9,9 @@ namespace bonemill {
 struct EffectRoom {
     double dt;                   // s
     double largest_burr_radius;  // m, of all tools
-    size_t most_cells;           // as MillingConfig
+    double largest_burr_reach;   // m, of all tools: Burr::reach()
+    size_t most_contacts;
+    size_t most_cells;  // as MillingConfig
 };
 
 // In the order in which they act.

@@ -26,6 +26,16 @@ double squaredDistance(const VoxelVolume& volume, const IndexBox& voxels,
     return low.max(high).max(0.0).matrix().squaredNorm();
 }
 
+// That a burr of this radius can change.
+Eigen::Vector3i mostVoxels(const VoxelVolume& volume, double burr_radius) noexcept {
+    const auto reach = [&](int direction) {
+        return BurrLimit(volume, burr_radius, MillingShape::kSubVoxel, direction).reach();
+    };
+    const double farthest = std::max(reach(-1), reach(+1));
+    const Eigen::Array3d voxels = (2 * farthest / volume.spacing().array()).floor() + 2;
+    return voxels.min(volume.dims().cast<double>().array()).cast<int>().matrix();
+}
+
 bool isFinished(const DensityRange& range, int direction) noexcept {
     return direction < 0 ? range.max == 0 : range.min == kMaxDensity;
 }
@@ -34,21 +44,10 @@ bool isFinished(const DensityRange& range, int direction) noexcept {
 
 TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volume, const LeafLattice& lattice,
                            double largest_burr_radius)
-    : config_(config), largest_burr_radius_(largest_burr_radius), burr_radius_(largest_burr_radius) {
-    const auto reach = [&](int direction) {
-        return BurrLimit(volume, largest_burr_radius, MillingShape::kSubVoxel, direction).reach();
-    };
-    const double farthest = std::max(reach(-1), reach(+1));
-    const Eigen::Array3d voxels = (2 * farthest / volume.spacing().array()).floor() + 2;
-    const Eigen::Array3d most = voxels.min(volume.dims().cast<double>().array());
-    new_density_.resize(size_t(most.prod()));
-    // Cut at the borders of leaves and of bricks.
-    const Eigen::Array3d leaf_cells = lattice.leafCells().cast<double>();
-    const Eigen::Array3d parts = (most / kBrickCells).floor() + (most / leaf_cells).floor() + 3;
-    runs_.resize(size_t(parts.x() * most.y() * most.z()));
-    changed_.resize(size_t(parts.prod()));
-    end_run_.resize(changed_.size());
-}
+    : config_(config),
+      largest_burr_radius_(largest_burr_radius),
+      burr_radius_(largest_burr_radius),
+      changes_(lattice, mostVoxels(volume, largest_burr_radius)) {}
 
 MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
                                   const Eigen::Vector3d& p_VB, int direction, double dt) noexcept {
@@ -64,28 +63,16 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
     collectChanges(volume, lattice,
                    {p_VB, direction, amount, BurrLimit(volume, burr_radius_, config_.shape, direction)},
                    result);
-    if (run_count_ == 0) return result;
-    writeChanges(volume, lattice, direction);
-    result.shell_is_complete = shell.refresh(volume, lattice, {changed_.data(), changed_count_});
+    if (!changes_.isEmpty()) result.shell_is_complete = changes_.write(volume, lattice, shell, direction);
     return result;
-}
-
-void TimedMilling::writeChanges(VoxelVolume& volume, LeafLattice& lattice, int direction) noexcept {
-    size_t run = 0;
-    for (size_t n = 0; n < changed_count_; ++n) {
-        lattice.beginWrite(changed_[n]);
-        for (; run < end_run_[n]; ++run)
-            volume.writeRow(runs_[run].first, runs_[run].count, &new_density_[runs_[run].first_new]);
-        lattice.endWrite(changed_[n]);
-    }
-    for (size_t n = 0; n < changed_count_; ++n) lattice.refreshRanges(volume, changed_[n], direction);
 }
 
 // Leaf by leaf and brick by brick, from where the last tick was cut short to the last leaf, then the leaves
 // before it.
 void TimedMilling::collectChanges(VoxelVolume& volume, const LeafLattice& lattice, const Stroke& stroke,
                                   MillingResult& result) noexcept {
-    run_count_ = new_count_ = changed_count_ = cells_ = 0;
+    changes_.clear();
+    cells_ = 0;
     const double reach_squared = stroke.limit.reach() * stroke.limit.reach();
     const IndexBox box = boxAround(volume, stroke.p_VB, stroke.limit.reach());
     const auto is_wanted = [&](const DensityRange& range, const IndexBox& voxels) {
@@ -120,10 +107,7 @@ int TimedMilling::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int f
         if (index < first_part || left != kAllParts) return;
         if (!collectPart(volume, part, offset, stroke, of_leaf)) left = index;
     });
-    if (!of_leaf.changed.isEmpty()) {
-        changed_[changed_count_] = of_leaf.changed;
-        end_run_[changed_count_++] = run_count_;
-    }
+    if (!of_leaf.changed.isEmpty()) changes_.closeLeaf(of_leaf.changed);
     result.include(of_leaf);
     return left;
 }
@@ -132,7 +116,7 @@ int TimedMilling::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int f
 // bricks.
 bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset, const Stroke& stroke,
                                MillingResult& of_leaf) noexcept {
-    const size_t runs_before = run_count_, new_before = new_count_;
+    const ChangedRuns::Mark before = changes_.mark();
     MillingResult of_part;
     IndexBox plane = part;
     const double reach_squared = stroke.limit.reach() * stroke.limit.reach();
@@ -141,16 +125,15 @@ bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t
         if (squaredDistance(volume, plane, stroke.p_VB) >= reach_squared) continue;
         collectPlane(volume, plane, offset, stroke, of_part);
     }
-    const auto drop = [&] { run_count_ = runs_before, new_count_ = new_before; };
     const size_t cells_before = std::exchange(
         cells_, cells_ + size_t(part.count() / kCellsLookedAtPerWorkedOn + of_part.changed.count()));
     if (cells_ > config_.most_cells && cells_before > 0) {
-        drop();
+        changes_.backTo(before);
         return false;
     }
     if (of_part.changed.isEmpty()) return true;
     if (!volume.openBricksIn(of_part.changed)) {
-        drop();
+        changes_.backTo(before);
         of_leaf.has_room = false;
         return true;
     }
@@ -169,23 +152,10 @@ void TimedMilling::collectPlane(const VoxelVolume& volume, const IndexBox& plane
     const MilledPlane milled = mill(burr, old, count, rows, fresh);
     for (int r = 0; r < rows; ++r)
         if (milled.is_changed >> r & 1)
-            keepChanges(plane.min + Eigen::Vector3i(0, r, 0), count, old + VoxelVolume::kStrideY * size_t(r),
-                        fresh + kBrickCells * r, result);
+            changes_.add(plane.min + Eigen::Vector3i(0, r, 0), count, old + VoxelVolume::kStrideY * size_t(r),
+                         fresh + kBrickCells * r, result.changed);
     result.removed_voxels += uint32_t(milled.removed);
     result.added_voxels += uint32_t(milled.added);
-}
-
-// From the first to the last voxel of the row that changed.
-void TimedMilling::keepChanges(const Eigen::Vector3i& first, int count, const Density* old,
-                               const Density* fresh, MillingResult& result) noexcept {
-    int low = 0, high = count - 1;
-    while (old[low] == fresh[low]) ++low;
-    while (old[high] == fresh[high]) --high;
-    std::copy(fresh + low, fresh + high + 1, new_density_.begin() + ptrdiff_t(new_count_));
-    runs_[run_count_++] = {first + Eigen::Vector3i(low, 0, 0), new_count_, high - low + 1};
-    new_count_ += size_t(high - low) + 1;
-    result.changed.include(first + Eigen::Vector3i(low, 0, 0));
-    result.changed.include(first + Eigen::Vector3i(high, 0, 0));
 }
 
 }  // namespace bonemill

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "haptic_server/contact/point_shell.h"
 #include "haptic_server/milling/burr_limit.h"
+#include "haptic_server/milling/changed_runs.h"
 
 namespace bonemill {
 
@@ -61,12 +61,6 @@ class TimedMilling {
     }
 
   private:
-    // A run of voxels along x with their new densities, new_density_[first_new ..].
-    struct ChangedRun {
-        Eigen::Vector3i first;
-        size_t first_new;
-        int count;
-    };
     // What one tick mills.
     struct Stroke {
         Eigen::Vector3d p_VB;
@@ -81,27 +75,18 @@ class TimedMilling {
                      MillingResult& of_leaf) noexcept;
     void collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset, const Stroke& stroke,
                       MillingResult& result) noexcept;
-    void writeChanges(VoxelVolume& volume, LeafLattice& lattice, int direction) noexcept;
-    void keepChanges(const Eigen::Vector3i& first, int count, const Density* old, const Density* fresh,
-                     MillingResult& result) noexcept;
 
     MillingConfig config_;
     double largest_burr_radius_;
     double burr_radius_;
     double carry_ = 0;  // fraction of a density count left over from earlier ticks, same direction
     int carry_direction_ = 0;
-    std::vector<ChangedRun> runs_;  // the first run_count_
-    size_t run_count_ = 0;
-    std::vector<IndexBox> changed_;  // leaf by leaf; the first changed_count_
-    std::vector<size_t> end_run_;    // of each: its runs go from the last one's to here
-    size_t changed_count_ = 0;
+    ChangedRuns changes_;
     static constexpr LeafId kNoLeaf = ~LeafId(0);
     static constexpr int kAllParts = -1;
     LeafId next_leaf_ = kNoLeaf;  // where the last tick was cut short
     int next_part_ = 0;
-    size_t cells_ = 0;                  // of this tick
-    std::vector<Density> new_density_;  // the first new_count_
-    size_t new_count_ = 0;
+    size_t cells_ = 0;  // of this tick
 };
 
 }  // namespace bonemill

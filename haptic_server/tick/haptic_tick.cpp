@@ -49,7 +49,8 @@ HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const ToolMode
       affordable_(config.dt),
       effects_(makeEffects(config.effects, bone,
                            {config.dt, tools ? tools->largestBurrRadius() : config.burr.radius,
-                            config.most_milled_cells}),
+                            tools ? tools->largestBurrReach() : config.burr.reach(),
+                            gradient_.mostCandidates(), config.most_milled_cells}),
                gradient_.mostCandidates(), config.gradient.contact.stiffness_per_area),
       sudden_change_(suddenChangeOf(config)),
       X_VW_(bone.volume.geometry().X_WV.inverse()) {
@@ -160,11 +161,11 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     if (effects_.isEmpty()) return;
     const bool remove = input.buttons & kButtonRemove;
     const bool add = input.buttons & kButtonAdd;
-    const bool may_mill = !input.is_stale && remove != add && !(history_ && history_->isMillingPaused());
     EffectTick start;
     start.dt = config_.dt;
-    start.is_pedal_down = may_mill && remove;
-    start.is_add_wanted = may_mill && add;
+    start.may_mill = !input.is_stale && !(history_ && history_->isMillingPaused());
+    start.is_pedal_down = start.may_mill && remove && !add;
+    start.is_add_wanted = start.may_mill && add && !remove;
     start.tool = &tool_in_use_;
     start.shape = model_ == &thesis_ ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
     start.X_VT_start = X_VW_ * spo_;

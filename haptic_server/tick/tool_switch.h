@@ -27,6 +27,12 @@ class ToolSwitch {
                    [](const SpoTool& a, const SpoTool& b) { return a.burr.radius < b.burr.radius; })
             ->burr.radius;
     }
+    double largestBurrReach() const noexcept {
+        return std::max_element(
+                   tools_.begin(), tools_.end(),
+                   [](const SpoTool& a, const SpoTool& b) { return a.burr.reach() < b.burr.reach(); })
+            ->burr.reach();
+    }
 
   private:
     std::vector<SpoTool> tools_;

@@ -30,15 +30,28 @@ struct Burr {
     double signedDistance(const Eigen::Vector3d& p_T) const noexcept;
 };
 
+namespace burr_profile {
+
+// In the half-plane through the axis: off it and along it.
+inline double toSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
+                        const Eigen::Vector2d& b) noexcept {
+    const Eigen::Vector2d way = b - a;
+    const double share = std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0);
+    return (p - a - share * way).norm();
+}
+
+}  // namespace burr_profile
+
 inline double Burr::signedDistance(const Eigen::Vector3d& p_T) const noexcept {
     if (kind == BurrKind::kBall) return p_T.norm() - radius;
-    const double off_axis = std::hypot(p_T.x(), p_T.z()), half = length / 2;
-    const double slope = kind == BurrKind::kCone ? (radius - tip_radius) / length : 0;
-    const double middle = kind == BurrKind::kCone ? (radius + tip_radius) / 2 : radius;
-    const double from_side = (off_axis - (middle + slope * p_T.y())) / std::sqrt(1 + slope * slope);
-    const double from_end = std::abs(p_T.y()) - half;
-    if (from_side <= 0 || from_end <= 0) return std::max(from_side, from_end);
-    return std::hypot(from_side, from_end);  // beside the rim; of a cone nearly
+    const double far_radius = kind == BurrKind::kCone ? tip_radius : radius, half = length / 2;
+    const Eigen::Vector2d p(std::sqrt(p_T.x() * p_T.x() + p_T.z() * p_T.z()), p_T.y());
+    const double side = burr_profile::toSegment(p, {far_radius, -half}, {radius, half});
+    const double far_end = std::hypot(std::max(0.0, p.x() - far_radius), p.y() + half);
+    const double hand_end = std::hypot(std::max(0.0, p.x() - radius), p.y() - half);
+    const double nearest = std::min({side, far_end, hand_end});
+    const double width = far_radius + (radius - far_radius) * (p.y() + half) / length;
+    return std::abs(p.y()) < half && p.x() < width ? -nearest : nearest;
 }
 
 }  // namespace bonemill

@@ -19,12 +19,14 @@ Eigen::AlignedBox3d boxOf(const std::vector<ToolShape>& shapes) {
     return box;
 }
 
+// Of a flat disc half of its height.
 double radiusOf(const ToolShape& shape) {
     if (const auto* cone = std::get_if<ConeShape>(&shape))
-        return std::max(cone->from_radius, cone->to_radius);
+        return std::min(std::max(cone->from_radius, cone->to_radius), (cone->to - cone->from).norm() / 2);
     if (const auto* sphere = std::get_if<SphereShape>(&shape)) return sphere->radius;
     if (const auto* capsule = std::get_if<CapsuleShape>(&shape)) return capsule->radius;
-    return std::get<CylinderShape>(shape).radius;
+    const auto& cylinder = std::get<CylinderShape>(shape);
+    return std::min(cylinder.radius, (cylinder.to - cylinder.from).norm() / 2);
 }
 
 double thinnestOf(const std::vector<ToolShape>& shapes) {

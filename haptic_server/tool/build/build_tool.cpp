@@ -15,8 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDefaultShaftRadius = 0.8;       // of the burr's
-constexpr double kFinestBurrRadiusSpacings = 2;   // below it the grid no longer shows a ball
+constexpr double kDefaultShaftRadius = 0.8;      // of the burr's
+constexpr double kShaftOverlap = 0.2;            // of half the burr's length, that the shaft begins inside it
+constexpr double kFinestBurrRadiusSpacings = 2;  // below it the grid no longer shows a ball
 constexpr int64_t kMostNodes = int64_t(1) << 26;  // 256 MiB of distances
 constexpr double kLipschitzSlack = 1.001;         // float rounding
 
@@ -26,6 +27,15 @@ std::string text(const char* format, auto... values) {
     return buffer;
 }
 
+// Sizes that the radius alone does not tell.
+void checkBurr(const ToolConfig& config) {
+    if (config.burr_kind == BurrKind::kBall) return;
+    if (!(config.burr_length > 0) || !std::isfinite(config.burr_length))
+        throw UserError("tool.burr_length_mm must be a positive number: the burr is no ball");
+    if (!(config.burr_tip_radius >= 0) || !std::isfinite(config.burr_tip_radius))
+        throw UserError("tool.burr_tip_radius_mm must be a number not below 0");
+}
+
 void checkConfig(const ToolConfig& config) {
     if (!config.shapes.empty() && !config.mesh_path.empty())
         throw UserError("tool: both shape and mesh_path are given; keep one of them");
@@ -33,6 +43,7 @@ void checkConfig(const ToolConfig& config) {
         checkShape(config.shapes[i], "tool.shape[" + std::to_string(i) + "]");
     if (!(config.burr_radius > 0) || !std::isfinite(config.burr_radius))
         throw UserError("tool.burr_radius_mm must be a positive number");
+    checkBurr(config);
     if (!(config.sdf_spacing > 0) || !std::isfinite(config.sdf_spacing))
         throw UserError("tool.sdf_spacing_mm must be a positive number");
     const auto nodes = config.sdf_nodes.cast<int64_t>();
@@ -51,6 +62,11 @@ Vector3d gridSize(const ToolConfig& config) {
 
 double marginedBurrEnd(const ToolConfig& config, double burr_end_y) {
     return burr_end_y - kBurrMarginSpacings * config.sdf_spacing;
+}
+
+// Its farthest place from the hand, along y.
+double burrEnd(const ToolConfig& config) {
+    return config.burr_kind == BurrKind::kBall ? -config.burr_radius : -config.burr_length / 2;
 }
 
 Vector3d gridOrigin(const ToolConfig& config, const Eigen::AlignedBox3d& tool_box) {
@@ -171,6 +187,28 @@ std::vector<std::string> cutWarnings(const SdfGrid& sdf, const Eigen::AlignedBox
     return warnings;
 }
 
+// Farthest that the burr reaches out of the tool, m; at places all over its surface.
+double burrOutside(const Burr& burr, const SdfGrid& sdf) {
+    constexpr int kAround = 24, kAlong = 24;
+    double farthest = 0;
+    for (int i = 0; i < kAround; ++i)
+        for (int k = 0; k <= kAlong; ++k) {
+            const double angle = 2 * M_PI * i / kAround,
+                         along = 2.0 * k / kAlong - 1;  // -1: far from the hand
+            double y = burr.length / 2 * along;
+            double off_axis = burr.radius;
+            if (burr.kind == BurrKind::kCone)
+                off_axis = burr.tip_radius + (burr.radius - burr.tip_radius) * (1 + along) / 2;
+            if (burr.kind == BurrKind::kBall) {
+                y = burr.radius * std::sin(M_PI / 2 * along);
+                off_axis = burr.radius * std::cos(M_PI / 2 * along);
+            }
+            const Vector3d p(off_axis * std::cos(angle), y, off_axis * std::sin(angle));
+            if (sdf.gridBox().contains(p)) farthest = std::max(farthest, double(sdf.distance(p)));
+        }
+    return farthest;
+}
+
 std::vector<std::string> warningsFor(const ToolConfig& config, const Sampled& sampled) {
     std::vector<std::string> warnings = cutWarnings(sampled.sdf, sampled.tool_box);
     if (config.burr_radius < kFinestBurrRadiusSpacings * config.sdf_spacing)
@@ -182,6 +220,11 @@ std::vector<std::string> warningsFor(const ToolConfig& config, const Sampled& sa
         warnings.push_back(
             "tool: the origin of frame T, where the burr cuts, is not inside the tool: bone goes where the "
             "tool is not; move the shapes or the mesh so that the burr's centre is at (0, 0, 0)");
+    else if (const double outside = burrOutside(config.burr(), sampled.sdf); outside > config.sdf_spacing)
+        warnings.push_back(
+            text("tool: its burr sticks out of it by %.3f mm: that part cuts nothing it touches; "
+                 "correct burr_kind and the burr's sizes, or the shapes or the mesh",
+                 outside * 1e3));
     return warnings;
 }
 
@@ -205,11 +248,18 @@ std::vector<ToolShape> toolShapes(const ToolConfig& config) {
     if (!config.shapes.empty() || !config.mesh_path.empty()) return config.shapes;
     const double radius = kDefaultShaftRadius * config.burr_radius;
     const double first =
-        config.sdf_origin_T ? config.sdf_origin_T->y() : marginedBurrEnd(config, -config.burr_radius);
-    const double last = first + gridSize(config).y();
-    const CapsuleShape shaft{Vector3d::Zero(),
-                             std::max(last + radius, config.burr_radius) * Vector3d::UnitY(), radius};
-    return {SphereShape{Vector3d::Zero(), config.burr_radius}, shaft};
+        config.sdf_origin_T ? config.sdf_origin_T->y() : marginedBurrEnd(config, burrEnd(config));
+    const double hand_end = config.burr_kind == BurrKind::kBall ? config.burr_radius : config.burr_length / 2;
+    const Vector3d last = std::max(first + gridSize(config).y() + radius, hand_end) * Vector3d::UnitY();
+    if (config.burr_kind == BurrKind::kBall)
+        return {SphereShape{Vector3d::Zero(), config.burr_radius},
+                CapsuleShape{Vector3d::Zero(), last, radius}};
+    const Vector3d half = config.burr_length / 2 * Vector3d::UnitY();
+    // Inside a cone, which is as wide as the shaft only there.
+    const CylinderShape shaft{(1 - kShaftOverlap) * half, last + radius * Vector3d::UnitY(), radius};
+    if (config.burr_kind == BurrKind::kCylinder)
+        return {CylinderShape{-half, half, config.burr_radius}, shaft};
+    return {ConeShape{-half, half, config.burr_tip_radius, config.burr_radius}, shaft};
 }
 
 TriangleSurface toolSurface(const ToolConfig& config) {

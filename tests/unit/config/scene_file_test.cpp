@@ -167,6 +167,58 @@ TEST_F(SceneFile, toolIsMadeOfShapesOrOfAMesh) {
     EXPECT_NE(refusal("volume { path: 'v' }\ntool { shape { sphere { } } mesh_path: 'a.stl' }"), "accepted");
 }
 
+TEST_F(SceneFile, aBurrThatIsNoBallSaysHowLongItIs) {
+    EXPECT_EQ(refusal("volume { path: 'v' }\n"
+                      "tool {\n  burr_kind: CYLINDER }"),
+              "s.textproto:2: field `tool[0].burr_length_mm` is missing: a burr_kind of CYLINDER needs it");
+    EXPECT_EQ(refusal("volume { path: 'v' } tool { burr_kind: CONE burr_length_mm: 2 }"), "accepted");
+}
+
+TEST_F(SceneFile, effectsByTimeKnowOnlyABall) {
+    for (const std::string effect : {"time_removal", "add_material"})
+        EXPECT_EQ(refusal("volume { path: 'v' } tool {} effects { " + effect +
+                          " {} }\n"
+                          "tool { burr_length_mm: 2\n burr_kind: CYLINDER }"),
+                  "s.textproto:3: field `tool[1].burr_kind` = CYLINDER does not go with effects." + effect +
+                      ", which knows only a BALL");
+}
+
+TEST_F(SceneFile, effectsThatTurnNeedTheToolsSpeed) {
+    EXPECT_EQ(refusal("volume { path: 'v' }\n"
+                      "tool { speed_rpm: 9000 }\n"
+                      "tool { name: 'b' }\n"
+                      "effects { energy_removal {} }"),
+              "s.textproto:3: field `tool[1].speed_rpm` is missing: effects.energy_removal needs it");
+    EXPECT_EQ(
+        refusal("volume { path: 'v' }\n effects {\n spindle {} }"),
+        "s.textproto:3: field `effects.spindle` needs a tool that turns: list one in tool, with speed_rpm");
+    EXPECT_EQ(refusal("volume { path: 'v' } tool { speed_rpm: -9000 } effects { energy_removal {} }"),
+              "accepted");
+}
+
+TEST_F(SceneFile, effectsThatReadContactsNeedTheGradientLaw) {
+    const std::string scene =
+        "volume { path: 'v' } tool { speed_rpm: 9000 }\neffects { energy_removal {} }\n";
+    for (const std::string law : {"preset: THESIS_2012", "contact_law: PENALTY_THESIS_2012"})
+        EXPECT_EQ(
+            refusal(scene + "accuracy { " + law + " }"),
+            "s.textproto:2: field `effects.energy_removal` needs the gradient contact law, and accuracy "
+            "asks for that of thesis_2012: take the preset FAST, BALANCED or EXACT, or leave the effect "
+            "out");
+    EXPECT_EQ(refusal(scene + "accuracy { preset: THESIS_2012 contact_law: GRADIENT }"), "accepted");
+    EXPECT_EQ(refusal("volume { path: 'v' } effects { time_removal {} } accuracy { preset: THESIS_2012 }"),
+              "accepted");
+}
+
+TEST_F(SceneFile, boneGoesByTimeOrByEnergy) {
+    EXPECT_EQ(
+        refusal("volume { path: 'v' } tool { speed_rpm: 9000 }\n"
+                "effects { energy_removal {}\n"
+                "time_removal {} }"),
+        "s.textproto:3: field `effects.time_removal` stands beside effects.energy_removal: bone goes by "
+        "time or by energy, list one");
+}
+
 TEST_F(SceneFile, toolsHaveNamesOfTheirOwn) {
     const std::string volume = "volume { path: 'v' }\n";
     EXPECT_EQ(

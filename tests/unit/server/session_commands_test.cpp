@@ -47,6 +47,23 @@ TEST_F(SessionCommandsTest, APresetsNameIsTakenAndAnUnknownOneRefused) {
     EXPECT_EQ(setAccuracy("best"), std::string("refused: no preset is called 'best'") + kPresets);
 }
 
+TEST_F(SessionCommandsTest, TheThesisLawIsRefusedWhereAnEffectNeedsTheOther) {
+    EXPECT_EQ(setAccuracy("thesis_2012"), "done");
+    scene::Scene scene = sceneOf();
+    scene.mutable_effects()->mutable_energy_removal();
+    SessionCommands commands(scene, ball_.bone, recorder_,
+                             {ball_.history, accuracy_, tools_, stop_requested_}, false);
+    topics::Command command;
+    command.set_role(topics::Viewer::OPERATOR);
+    command.set_set_accuracy("thesis_2012");
+    EXPECT_EQ(
+        commands.carryOut(command),
+        "refused: effects.energy_removal of the scene needs the gradient contact law, which thesis_2012 "
+        "is not");
+    command.set_set_accuracy("exact");
+    EXPECT_EQ(commands.carryOut(command), "done");
+}
+
 // The refusal is kept and sent to everyone.
 TEST_F(SessionCommandsTest, OfAnUnknownNameOnly32PrintableCharactersAreRepeated) {
     EXPECT_EQ(setAccuracy(std::string(3000, 'x')),

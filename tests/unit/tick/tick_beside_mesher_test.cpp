@@ -35,14 +35,11 @@ class RingIo final : public TickIo {
     SpscRing<Cut>& cuts_;
 };
 
-TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
+void expectStreamedAsRemeshed(const TickConfig& config) {
     BoneModel bone(test::bodyVolume(test::cubeGeometry(44, 0.125e-3),
                                     test::halfSpace({0, 0, 4e-3}, Eigen::Vector3d::UnitZ())),
                    Eigen::Vector3i::Constant(8), ShellConfig{});
     const ToolModel tool = test::sphereToolModel(1e-3, 0.125e-3);
-    TickConfig config;
-    config.effects.time_removal = {
-        .rate = 1e9};  // few ticks move much: ThreadSanitizer slows each a hundred times
     HapticTick tick(config, bone, tool, nullptr);
     SpscRing<TickRecord> ring(1024);
     SpscRing<Cut> cuts(1024);
@@ -104,6 +101,20 @@ TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
     EXPECT_GT(removed, 400u);
     EXPECT_GT(rounds.cutToSink().count(), 10u);
     EXPECT_EQ(cuts.dropped(), 0u);
+}
+
+// Few ticks move much: ThreadSanitizer slows each a hundred times.
+TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
+    TickConfig config;
+    config.effects.time_removal = {.rate = 1e9};
+    expectStreamedAsRemeshed(config);
+}
+
+TEST(TickBesideMesherAndPublisher, AlsoWhenEnergyRemoves) {
+    TickConfig config;
+    config.burr.speed = 6000;
+    config.effects.energy_removal = {.specific_energy = 0.02e9};
+    expectStreamedAsRemeshed(config);
 }
 
 }  // namespace

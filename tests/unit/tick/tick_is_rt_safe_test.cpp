@@ -60,6 +60,21 @@ TEST_F(TickIsRtSafe, WhileMillingAndAddingAndResetting) {
     EXPECT_FALSE(history_.isRestoring());
 }
 
+TEST_F(TickIsRtSafe, WhileEnergyRemovesBoneOfSeveralKinds) {
+    TickConfig config;
+    config.burr.speed = 6000;
+    config.effects.energy_removal = {.specific_energy = 0.05e9, .density_exponent = 1.5};
+    config.effects.properties = std::make_shared<const BoneProperties>(
+        bone_.volume, [](const Eigen::Vector3i& v) { return MaterialId(v.x() % 2); });
+    config.effects.materials = {{}, {.specific_energy = 0.03e9}};
+    HapticTick tick(config, bone_, tool_, &history_);
+    expectQuiet(tick, test::straightPath(at(6.2e-3), {4e-3, 4e-3, 3e-3}, 1000, kButtonRemove));
+    EXPECT_GT(removedVoxels(), 1000u);
+    history_.restore();
+    expectQuiet(tick, test::straightPath(at(6.2e-3), {4e-3, 4e-3, 6.2e-3}, 500, kButtonRemove));
+    EXPECT_FALSE(history_.isRestoring());
+}
+
 TEST_F(TickIsRtSafe, AsThesis2012) {
     TickConfig config = test::millingConfig();
     config.accuracy = presetSettings(Preset::kThesis2012);

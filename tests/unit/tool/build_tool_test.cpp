@@ -189,5 +189,51 @@ TEST(BuildTool, RefusesBadConfigs) {
                   "both shape and mesh_path");
 }
 
+ToolConfig withBurr(BurrKind kind) {
+    ToolConfig config;
+    config.burr_kind = kind;
+    config.burr_length = 3e-3;
+    config.burr_tip_radius = 0.3e-3;
+    return config;
+}
+
+// Nothing of the shaft looks out of the burr's far half, and the tool begins where its burr does.
+TEST(BuildTool, IsItsBurrAndAShaftWhereShapesAreNotGiven) {
+    for (const BurrKind kind : {BurrKind::kBall, BurrKind::kCylinder, BurrKind::kCone}) {
+        const ToolConfig config = withBurr(kind);
+        const BuiltTool tool = buildTool(config);
+        EXPECT_EQ(joined(tool.warnings), "");
+        const ToolField& field = tool.model.field({.tool_distance = ToolDistance::kAnalytic});
+        std::mt19937 random(7);
+        std::uniform_real_distribution<double> where(-1.6e-3, 1.6e-3);
+        for (int n = 0; n < 2000; ++n) {
+            const Vector3d p(where(random), where(random), where(random));
+            if (p.y() > 0) continue;
+            const double burr = config.burr().signedDistance(p);
+            if (burr > 0) EXPECT_NEAR(field.sample(p).distance, burr, 1e-9) << p.transpose();
+            if (burr < 0) EXPECT_LT(field.sample(p).distance, 1e-12) << p.transpose();
+        }
+        const double end = kind == BurrKind::kBall ? config.burr_radius : config.burr_length / 2;
+        EXPECT_NEAR(field.box().min().y(), -end, 1e-12);
+        EXPECT_LT(field.sample(Vector3d(0, 5e-3, 0)).distance, -0.5e-3);  // the shaft
+    }
+}
+
+TEST(BuildTool, WarnsOfABurrThatSticksOutOfIt) {
+    ToolConfig config = withBurr(BurrKind::kCylinder);
+    config.shapes = {CylinderShape{{0, -1.5e-3, 0}, {0, 8e-3, 0}, 1e-3}};
+    EXPECT_EQ(joined(buildTool(config).warnings), "");
+    config.burr_radius = 1.4e-3;
+    EXPECT_NE(joined(buildTool(config).warnings).find("its burr sticks out of it by 0.400 mm"),
+              std::string::npos)
+        << joined(buildTool(config).warnings);
+}
+
+TEST(BuildTool, RefusesABurrWithoutALength) {
+    ToolConfig config = withBurr(BurrKind::kCone);
+    config.burr_length = 0;
+    expectRefused(config, "burr_length_mm must be a positive number");
+}
+
 }  // namespace
 }  // namespace bonemill

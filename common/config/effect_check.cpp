@@ -1,0 +1,79 @@
+#include "common/config/effect_check.h"
+
+namespace bonemill {
+namespace {
+
+// What an effect needs beside being listed.
+struct EffectRule {
+    const char* name;
+    bool needs_gradient_law;
+    bool needs_speed;
+};
+constexpr EffectRule kRules[] = {{"energy_removal", true, true},    {"cutting_force", true, true},
+                                 {"spindle", true, true},           {"burr_vibration", true, true},
+                                 {"surface_friction", true, false}, {"thermal", true, true},
+                                 {"virtual_fixture", true, false},  {"protected_structures", true, false}};
+
+bool isListed(const scene::Effects& effects, const std::string& name) {
+    const auto* field = effects.GetDescriptor()->FindFieldByName(name);
+    return field != nullptr && effects.GetReflection()->HasField(effects, field);
+}
+
+std::string pathOf(const std::string& effect) {
+    return "effects." + effect;
+}
+
+bool isThesisLaw(const scene::Accuracy& accuracy) {
+    return accuracy.has_contact_law() ? accuracy.contact_law() == scene::Accuracy::PENALTY_THESIS_2012
+                                      : accuracy.preset() == scene::Accuracy::THESIS_2012;
+}
+
+void checkLaw(const scene::Scene& scene, const RefuseField& refuse) {
+    const char* effect = effectOfGradientLaw(scene.effects());
+    if (effect == nullptr || !isThesisLaw(scene.accuracy())) return;
+    refuse(pathOf(effect),
+           "needs the gradient contact law, and accuracy asks for that of thesis_2012: take the preset FAST, "
+           "BALANCED or EXACT, or leave the effect out");
+}
+
+void checkSpeed(const scene::Scene& scene, const RefuseField& refuse) {
+    for (const EffectRule& rule : kRules) {
+        if (!rule.needs_speed || !isListed(scene.effects(), rule.name)) continue;
+        if (scene.tool_size() == 0)
+            refuse(pathOf(rule.name), "needs a tool that turns: list one in tool, with speed_rpm");
+        for (int i = 0; i < scene.tool_size(); ++i)
+            if (!scene.tool(i).has_speed_rpm())
+                refuse("tool[" + std::to_string(i) + "].speed_rpm",
+                       "is missing: " + pathOf(rule.name) + " needs it");
+    }
+}
+
+void checkBallOnly(const scene::Scene& scene, const RefuseField& refuse) {
+    for (const char* effect : {"time_removal", "add_material"}) {
+        if (!isListed(scene.effects(), effect)) continue;
+        for (int i = 0; i < scene.tool_size(); ++i)
+            if (scene.tool(i).burr_kind() != scene::Tool::BALL)
+                refuse("tool[" + std::to_string(i) + "].burr_kind",
+                       "= " + scene::Tool::BurrKind_Name(scene.tool(i).burr_kind()) + " does not go with " +
+                           pathOf(effect) + ", which knows only a BALL");
+    }
+}
+
+}  // namespace
+
+const char* effectOfGradientLaw(const scene::Effects& effects) {
+    for (const EffectRule& rule : kRules)
+        if (rule.needs_gradient_law && isListed(effects, rule.name)) return rule.name;
+    return nullptr;
+}
+
+void checkEffects(const scene::Scene& scene, const RefuseField& refuse) {
+    checkLaw(scene, refuse);
+    checkSpeed(scene, refuse);
+    checkBallOnly(scene, refuse);
+    if (scene.effects().has_time_removal() && scene.effects().has_energy_removal())
+        refuse("effects.time_removal",
+               "stands beside effects.energy_removal: bone goes by time or by energy, list one");
+}
+
+}  // namespace bonemill

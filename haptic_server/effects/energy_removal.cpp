@@ -1,0 +1,108 @@
+#include "haptic_server/effects/energy_removal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptic_server/contact/into_tool.h"
+#include "haptic_server/effects/burr_speed.h"
+#include "haptic_server/effects/make_effects.h"
+
+namespace bonemill {
+
+EnergyRemoval::EnergyRemoval(const EnergyRemovalConfig& config, const EffectConfigs& all,
+                             const BoneModel& bone, const EffectRoom& room)
+    : HapticEffect(kScales | kReadsContacts),
+      config_(config),
+      specific_energy_({.reference = config.specific_energy,
+                        .reference_density = config.reference_density,
+                        .exponent = config.density_exponent,
+                        .materials = all.materials},
+                       all.properties, bone.volume.iso()),
+      inverse_spacing_(bone.volume.spacing().cwiseInverse()),
+      shift_(bone, room.largest_burr_reach, room.most_contacts, room.most_cells) {}
+
+void EnergyRemoval::begin(EffectTick& tick) noexcept {
+    is_cutting_ = tick.may_mill && !tick.is_add_wanted && tick.spin_speed != 0;
+    burr_force_ = cutting_power_ = removal_power_ = removed_energy_ = 0;
+}
+
+double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
+                            const ToolField& tool, const Pose& X_VT) noexcept {
+    if (!is_cutting_ || candidates.count == 0) return 1;
+    constexpr int kBatch = PointBatch<float>::kCapacity;
+    const Burr& burr = tick.tool->burr;
+    const double wear = burr.friction * tick.dt / energyFactor(burr), slack = burrSlack(tool);
+    const IntoTool<float> into_tool(X_VT, origin_V);
+    PointBatch<float> batch;
+    float distance[kBatch];
+    double largest = 0;
+    Eigen::Vector3i cell = Eigen::Vector3i::Constant(-2);
+    double u = 1;
+    for (size_t first = 0; first < candidates.count; first += kBatch) {
+        const int count = int(std::min(size_t(kBatch), candidates.count - first));
+        into_tool.fill(batch, &candidates.x[first], &candidates.y[first], &candidates.z[first], count);
+        tool.distances(batch, distance);
+        for (int i = 0; i < count; ++i) {
+            const size_t n = first + size_t(i);
+            const double x = double(batch.x[i]), y = double(batch.y[i]), z = double(batch.z[i]);
+            double factor = 1;
+            if (burr.signedDistance({x, y, z}) <= std::max(0.0, double(distance[i])) + slack) {
+                const double area = double(tick.place_area[n]);
+                const Eigen::Vector3d p_V = origin_V + candidates.position(n).cast<double>();
+                const Eigen::Vector3i here = (p_V.array() * inverse_spacing_).floor().cast<int>();
+                if (here != cell) u = specific_energy_.ofCell(cell = here);
+                const double stiffness = double(candidates.weight[n]) / area;  // κ
+                const double speed = std::abs(tick.spin_speed) * std::sqrt(x * x + z * z + patchSpread(area));
+                factor = 1 / (1 + stiffness * wear * speed / u);
+                candidates.weight[n] *= float(factor);
+            }
+            largest = std::max(largest, factor);
+        }
+    }
+    return largest;
+}
+
+// Gives the contacts' energies to the surface, and sums them; J.
+double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept {
+    const Burr& burr = tick.tool->burr;
+    const Eigen::Vector3d axis = tick.X_VT.rotation * Eigen::Vector3d::UnitY();
+    shift_.begin(bone, tick.X_VT.position);
+    double energy = 0;
+    for (size_t n = 0; n < tick.contacts.size(); ++n) {
+        if (!tick.is_on_burr[n]) continue;
+        const SurfaceContact& contact = tick.contacts[n];
+        const double area = double(tick.place_area[contact.candidate]), force = double(contact.force);
+        const double speed =
+            std::abs(tick.spin_speed) * rubbingRadius(contact.r_V.cast<double>(), axis, area);
+        const double above = std::max(0.0, force - config_.threshold_pressure * area);
+        const double of_contact = burr.friction * speed * above * tick.dt;
+        burr_force_ += force;
+        cutting_power_ += burr.friction * speed * force;
+        energy += of_contact;
+        shift_.add(bone, tick.candidates->patch[contact.candidate], of_contact, double(contact.depth));
+    }
+    removal_power_ = energy / tick.dt;
+    return energy;
+}
+
+void EnergyRemoval::mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept {
+    if (!is_cutting_ || tick.contacts.empty()) return;
+    const double energy = spendContacts(tick, bone);
+    if (!(energy > 0)) return;
+    const double factor = energyFactor(tick.tool->burr);
+    const double repaid = account_ * (1 - std::exp(-tick.dt / kRepayTime));
+    const double share = std::clamp((energy + repaid) / energy, 0.0, kMostShare);
+    removed_energy_ = factor * shift_.apply(bone, specific_energy_, share / factor, result);
+    account_ += energy - removed_energy_;
+    // What the surface could not take, as it was too quick or there was no time, is lost.
+    account_ = std::min(account_, energy * kRepayTime / tick.dt);
+}
+
+void EnergyRemoval::finish(EffectTick& tick) noexcept {
+    tick.record.burr_force = float(burr_force_);
+    tick.record.cutting_power = float(cutting_power_);
+    tick.record.removal_power = float(removal_power_);
+    tick.record.removed_energy = float(removed_energy_);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,62 @@
+// Removal by pressure times cutting speed against the bone's specific energy (ALGORITHMS §4).
+//
+// Per area of the contact between burr and bone, with pressure p, friction μ_c and cutting speed v_c, the
+// power μ_c (p - p_th)₊ v_c goes into bone of specific energy u, whose surface recedes at v_n = μ_c v_c (p -
+// p_th)₊ / u (Archard's law of wear, its rate given by energy).
+//
+// The time constant of that wear against the contact's stiffness κ (N/m³), u/(μ_c κ v_c), is shorter than a
+// tick. The tick therefore takes it implicitly (backward Euler). With c = μ_c v_c / u and the recession s =
+// dt c p in this tick, p = κ (δ - s) makes p = κ δ / (1 + κ c dt): scale() multiplies each point's weight by
+// 1/(1 + κ c dt), so that the solve moves the tool through what the tick will cut. At a steady feed v the
+// pressure is v/c whatever dt and κ. The threshold does not enter the weights: below it the burr only rubs,
+// on bone as soft as that, and sinks in by dt c p_th more.
+//
+// v_c = |Ω| ρ with the mean of ρ over the point's patch (burr_speed.h), so that the pole of a burr cuts, if
+// hardly.
+//
+// mill() then spends the energy of the contacts on the surface (milling/surface_shift.h). What was spent too
+// much or too little is kept in an account and made good within kRepayTime, so that Σ u ΔV = ∫ P dt but for
+// what is in the account.
+#pragma once
+
+#include "haptic_server/effects/effect_configs.h"
+#include "haptic_server/effects/haptic_effect.h"
+#include "haptic_server/milling/surface_shift.h"
+
+namespace bonemill {
+
+struct EffectRoom;
+
+class EnergyRemoval final : public HapticEffect {
+  public:
+    static constexpr double kRepayTime = 5e-3;  // s
+    static constexpr double kMostShare = 2;     // of a tick's energy, that it may spend
+
+    // Of `all`: the bone's properties and materials.
+    EnergyRemoval(const EnergyRemovalConfig& config, const EffectConfigs& all, const BoneModel& bone,
+                  const EffectRoom& room);
+    const char* name() const noexcept override { return "energy_removal"; }
+    void restart() noexcept override { account_ = 0; }
+    void begin(EffectTick& tick) noexcept override;
+    double scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
+                 const ToolField& tool, const Pose& X_VT) noexcept override;
+    void mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept override;
+    void finish(EffectTick& tick) noexcept override;
+
+  private:
+    double energyFactor(const Burr& burr) const noexcept {
+        return burr.grit == BurrGrit::kDiamond ? config_.diamond_energy_factor : 1;
+    }
+    double spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept;
+
+    EnergyRemovalConfig config_;
+    SpecificEnergy specific_energy_;
+    Eigen::Array3d inverse_spacing_;
+    SurfaceShift shift_;
+    bool is_cutting_ = false;
+    double account_ = 0;  // J not yet spent; negative: too much was
+    // Of this tick.
+    double burr_force_ = 0, cutting_power_ = 0, removal_power_ = 0, removed_energy_ = 0;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,332 @@
+#include "haptic_server/milling/surface_shift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "haptic_server/contact/cell_corners.h"
+
+namespace bonemill {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using Eigen::Vector3i;
+
+// Of the slope of a ramp from air, or from full density, to the iso-value in one voxel: flatter ones count as
+// this, so that a surface on a plateau moves on.
+constexpr double kLeastSlope = 0.02;
+constexpr double kGoldenRatio = 0.6180339887498949;  // spreads the roundings evenly
+constexpr int kUnclampedRounds = 3;                  // of corners that come to rest at zero
+
+int coarsestFactor(const PointShell& shell) noexcept {
+    int factor = 1;
+    for (int level = 0; level < shell.levelCount(); ++level)
+        factor = std::max(factor, shell.scalingFactor(level));
+    return factor;
+}
+
+// Beyond the burr: a block, its kernel, the cells around.
+int paddingOf(int factor) noexcept {
+    return 2 * factor + 2;
+}
+
+Vector3i scratchSize(const BoneModel& bone, double reach) noexcept {
+    const int padding = paddingOf(coarsestFactor(bone.shell));
+    const Eigen::Array3d voxels = (2 * reach / bone.volume.spacing().array()).ceil() + 2 * padding + 1;
+    return voxels.min((bone.volume.dims().array() + 2).cast<double>()).cast<int>().matrix();
+}
+
+// That all corners of a cell must fall by, so that the density at `t` falls by `excess`: those that come to
+// rest at zero leave the rest to the others.
+float equalDrop(const CellCorners& corners, float iso, const Vector3f& t, float excess) noexcept {
+    float drop = excess;
+    for (int round = 0; round < kUnclampedRounds; ++round) {
+        float done = 0, share = 0;
+        for (int c = 0; c < 8; ++c) {
+            const float weight =
+                (c & 1 ? t.x() : 1 - t.x()) * (c & 2 ? t.y() : 1 - t.y()) * (c & 4 ? t.z() : 1 - t.z());
+            const float density = corners.excess[size_t(c)] + iso;
+            if (density < drop)
+                done += weight * density;
+            else
+                share += weight;
+        }
+        if (!(share > 0)) break;
+        drop = (excess - done) / share;
+    }
+    return std::clamp(drop, 0.0f, float(kMaxDensity));
+}
+
+}  // namespace
+
+SurfaceShift::SurfaceShift(const BoneModel& bone, double largest_reach, size_t most_contacts,
+                           size_t most_cells)
+    : most_cells_(most_cells),
+      size_(scratchSize(bone, largest_reach)),
+      nodes_(size_t(size_.cast<int64_t>().prod())),
+      spans_(size_t(size_.y()) * size_t(size_.z())),
+      patches_(most_contacts),
+      old_(size_t(size_.x() + VoxelVolume::kReadSlack)),
+      fresh_(size_t(size_.x())),
+      changes_(bone.lattice, size_) {}
+
+int SurfaceShift::kernelOf(const BoneModel& bone) noexcept {
+    return bone.shell.scalingFactor(bone.shell.followed());
+}
+
+void SurfaceShift::begin(const BoneModel& bone, const Vector3d& p_VB) noexcept {
+    forget();
+    const Eigen::Array3d middle = p_VB.array() / bone.volume.spacing().array();
+    const Eigen::Array3d last = (bone.volume.dims().array() + 1 - size_.array()).cast<double>();
+    first_ = (middle - size_.cast<double>().array() / 2).max(-1.0).min(last).floor().cast<int>().matrix();
+    rounding_ += kGoldenRatio;
+    rounding_ -= std::floor(rounding_);
+}
+
+void SurfaceShift::forget() noexcept {
+    for (size_t n = 0; n < patch_count_; ++n) nodes_[patches_[n]].energy = nodes_[patches_[n]].depth = 0;
+    patch_count_ = 0;
+    patch_cells_ = {};
+    if (touched_.isEmpty()) return;
+    for (int k = touched_.min.z(); k <= touched_.max.z(); ++k)
+        for (int j = touched_.min.y(); j <= touched_.max.y(); ++j) {
+            Span& span = spans_[row(j, k)];
+            for (int i = span.low; i <= span.high; ++i) {
+                Node& node = nodes_[index({i, j, k})];
+                node.drop = node.weight = 0;
+            }
+            span = {};
+        }
+    touched_ = {};
+}
+
+// Its kernel and the cells around that lie in the scratch box.
+bool SurfaceShift::hasRoomAround(const Vector3i& voxel) const noexcept {
+    const Vector3i local = voxel - first_;
+    return (local.array() >= 0).all() && (local.array() < size_.array()).all();
+}
+
+void SurfaceShift::add(const BoneModel& bone, uint64_t patch, double energy, double depth) noexcept {
+    constexpr uint32_t kMask = (1u << kShellKeyBits) - 1;
+    const auto key = uint32_t(patch);
+    const Vector3i block(int(key & kMask), int(key >> kShellKeyBits & kMask),
+                         int(key >> 2 * kShellKeyBits & kMask));
+    const Vector3i cell = bone.lattice.cellsOf(LeafId(patch >> 32)).min + block * kernelOf(bone);
+    if (!hasRoomAround(cell)) return;
+    const size_t at = index(cell);
+    if (nodes_[at].depth == 0) {
+        if (patch_count_ == patches_.size()) return;
+        patches_[patch_count_++] = at;
+    }
+    nodes_[at].energy += float(energy);
+    nodes_[at].depth = std::max(nodes_[at].depth, float(depth));
+    patch_cells_.include(cell);
+}
+
+// visit(point V, area, node of its block) for the shell's points around those with energy.
+template <class Visit>
+void SurfaceShift::forEachPatch(const BoneModel& bone, Visit&& visit) const noexcept {
+    constexpr uint32_t kMask = (1u << kShellKeyBits) - 1;
+    const int factor = kernelOf(bone);
+    const IndexBox cells = patch_cells_.grown(2 * factor);
+    const auto has_surface = [iso = bone.volume.iso()](const DensityRange& range, const IndexBox&) {
+        return range.min < iso && range.max >= iso;
+    };
+    bone.lattice.forEachLeaf(cells, has_surface, [&](LeafId leaf) {
+        const Vector3i first = bone.lattice.cellsOf(leaf).min;
+        bone.shell.forEachBlock(bone.shell.followed(), leaf, [&](const ShellBlock& b, uint32_t count) {
+            for (uint32_t n = 0; n < count; ++n) {
+                const Vector3i block(int(b.key[n] & kMask), int(b.key[n] >> kShellKeyBits & kMask),
+                                     int(b.key[n] >> 2 * kShellKeyBits & kMask));
+                const Vector3i cell = first + block * factor;
+                if ((cell.array() < cells.min.array()).any() || (cell.array() > cells.max.array()).any() ||
+                    !hasRoomAround(cell))
+                    continue;
+                visit(Vector3f(b.x[n], b.y[n], b.z[n]), b.area[n], nodes_[index(cell)]);
+            }
+        });
+    });
+}
+
+// visit(voxel, weight) with the hat's weights, > 0, of the voxels that can be written. `at` in voxel steps.
+template <class Visit>
+void SurfaceShift::forEachVoxelAround(const BoneModel& bone, const Vector3f& at,
+                                      Visit&& visit) const noexcept {
+    const auto width = float(kernelOf(bone));
+    const Vector3i room_low = first_.array() + 1, room_high = (first_ + size_).array() - 2;
+    const Vector3i low =
+        ((at.array() - width).floor().cast<int>() + 1).matrix().cwiseMax(room_low).cwiseMax(Vector3i::Zero());
+    const Vector3i high = ((at.array() + width).ceil().cast<int>() - 1)
+                              .matrix()
+                              .cwiseMin(room_high)
+                              .cwiseMin((bone.volume.dims().array() - 1).matrix());
+    const auto hat = [&](int voxel, float place) { return width - std::abs(float(voxel) - place); };
+    for (int k = low.z(); k <= high.z(); ++k)
+        for (int j = low.y(); j <= high.y(); ++j) {
+            const float off_row = hat(k, at.z()) * hat(j, at.y());
+            for (int i = low.x(); i <= high.x(); ++i) visit(Vector3i(i, j, k), off_row * hat(i, at.x()));
+        }
+}
+
+SurfaceShift::Wish SurfaceShift::wishOf(const VoxelVolume& volume, const Vector3f& point,
+                                        double recession) const noexcept {
+    const Vector3f inverse = volume.spacing().cwiseInverse().cast<float>();
+    const Vector3i last = volume.dims().array() - 1;
+    const auto cellAt = [&](const Vector3f& at) -> Vector3i {
+        return at.array().floor().cast<int>().matrix().cwiseMax(-1).cwiseMin(last);
+    };
+    const Vector3f at = point.cwiseProduct(inverse);
+    const Vector3i cell = cellAt(at);
+    const Vector3f inward =
+        sampleField(readCorners(volume, cell), at - cell.cast<float>()).slope.cwiseProduct(inverse);
+    const float slope = inward.norm();
+    Vector3f target = at;
+    if (slope > 0) target += float(recession) / slope * inward.cwiseProduct(inverse);
+    const Vector3i target_cell = cellAt(target);
+    const Vector3f t = target - target_cell.cast<float>();
+    const CellCorners corners = readCorners(volume, target_cell);
+    const int to_iso = std::min(int(volume.iso()), kMaxDensity - volume.iso());
+    const double least = kLeastSlope * to_iso / volume.spacing().maxCoeff() * recession;
+    const float excess = std::max(sampleField(corners, t).excess, float(least));
+    return {target, equalDrop(corners, float(volume.iso()), t, excess)};
+}
+
+void SurfaceShift::touch(const Vector3i& voxel) noexcept {
+    Span& span = spans_[row(voxel.y(), voxel.z())];
+    if (span.low > span.high) span = {voxel.x(), voxel.x()};
+    span.low = std::min(span.low, voxel.x());
+    span.high = std::max(span.high, voxel.x());
+    touched_.include(voxel);
+}
+
+void SurfaceShift::spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share) noexcept {
+    const double most = kMostShift * bone.volume.spacing().minCoeff();
+    const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
+    forEachPatch(bone, [&](const Vector3f& point, float area, const Node& node) {
+        if (!(node.energy > 0)) return;
+        const Vector3i cell = point.cwiseProduct(inverse).array().floor().cast<int>();
+        const double wanted = share * double(node.energy) / (u.ofCell(cell) * double(area));
+        const Wish wish = wishOf(bone.volume, point, std::min({wanted, double(node.depth), most}));
+        forEachVoxelAround(bone, wish.at, [&](const Vector3i& voxel, float hat) {
+            touch(voxel);
+            Node& to = nodes_[index(voxel)];
+            to.drop += hat * area * wish.drop;
+            to.weight += hat * area;
+        });
+    });
+}
+
+// The surface that is to stay has its say, where the other one has.
+void SurfaceShift::spreadRest(const BoneModel& bone) noexcept {
+    const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
+    forEachPatch(bone, [&](const Vector3f& point, float area, const Node& node) {
+        if (node.energy > 0) return;
+        forEachVoxelAround(bone, point.cwiseProduct(inverse), [&](const Vector3i& voxel, float hat) {
+            Node& to = nodes_[index(voxel)];
+            if (to.weight > 0) to.weight += hat * area;
+        });
+    });
+}
+
+// visit(cell, node) for the cells that have a touched voxel.
+template <class Visit>
+void SurfaceShift::forEachCell(const BoneModel& bone, Visit&& visit) noexcept {
+    const Vector3i last = bone.volume.dims().array() - 1;
+    for (int k = touched_.min.z() - 1; k <= std::min(touched_.max.z(), last.z()); ++k)
+        for (int j = touched_.min.y() - 1; j <= std::min(touched_.max.y(), last.y()); ++j) {
+            Span cells{size_.x() + first_.x(), first_.x() - 1};
+            for (int side = 0; side < 4; ++side) {
+                const Span& span = spans_[row(j + (side & 1), k + (side >> 1))];
+                if (span.low > span.high) continue;
+                cells = {std::min(cells.low, span.low - 1), std::max(cells.high, span.high)};
+            }
+            for (int i = cells.low; i <= std::min(cells.high, last.x()); ++i)
+                visit(Vector3i(i, j, k), nodes_[index({i, j, k})]);
+        }
+}
+
+double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double share,
+                           MillingResult& result) noexcept {
+    if (patch_count_ == 0 || !(share > 0)) return 0;
+    spreadWishes(bone, u, share);
+    if (touched_.isEmpty()) return 0;
+    spreadRest(bone);
+    forEachCell(bone, [&](const Vector3i& cell, Node& node) {
+        node.fill = float(fill_(readCorners(bone.volume, cell)));
+    });
+    collect(bone, result);
+    if (changes_.isEmpty()) return 0;
+    result.shell_is_complete &= changes_.write(bone.volume, bone.lattice, bone.shell, -1);
+    double spent = 0;
+    forEachCell(bone, [&](const Vector3i& cell, const Node& node) {
+        const double gone = double(node.fill) - double(float(fill_(readCorners(bone.volume, cell))));
+        if (gone != 0) spent += u.ofCell(cell) * gone;
+    });
+    return spent * bone.volume.voxelVolume();
+}
+
+// Leaf by leaf, from where the last tick was cut short to the last leaf, then the leaves before it.
+void SurfaceShift::collect(BoneModel& bone, MillingResult& result) noexcept {
+    changes_.clear();
+    cells_ = 0;
+    const auto is_wanted = [](const DensityRange& range, const IndexBox&) { return range.max > 0; };
+    const LeafId first = std::exchange(next_leaf_, kNoLeaf);
+    for (const bool is_second_round : {false, true}) {
+        if (is_second_round && first == kNoLeaf) break;
+        bool is_later = first == kNoLeaf;
+        // A voxel is the first corner of its cell.
+        bone.lattice.forEachLeaf(touched_, is_wanted, [&](LeafId leaf) {
+            is_later |= leaf == first;
+            if (is_later == is_second_round || next_leaf_ != kNoLeaf) return;
+            const IndexBox voxels = bone.lattice.cellsOf(leaf).clamped(touched_.min, touched_.max);
+            if (collectLeaf(bone.volume, voxels, result)) return;
+            next_leaf_ = leaf;
+            result.is_cut_short = true;
+        });
+    }
+}
+
+// False: it would take more than a tick's cells, and nothing of it is kept; nor without memory for its
+// bricks.
+bool SurfaceShift::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, MillingResult& result) noexcept {
+    const ChangedRuns::Mark before = changes_.mark();
+    MillingResult of_leaf;
+    for (int k = voxels.min.z(); k <= voxels.max.z(); ++k)
+        for (int j = voxels.min.y(); j <= voxels.max.y(); ++j) {
+            const Span& span = spans_[row(j, k)];
+            const int low = std::max(span.low, voxels.min.x()), high = std::min(span.high, voxels.max.x());
+            if (low <= high) collectRow(volume, {low, j, k}, high - low + 1, of_leaf);
+        }
+    if (of_leaf.changed.isEmpty()) return true;
+    const size_t cells_before = std::exchange(cells_, cells_ + size_t(of_leaf.changed.count()));
+    const bool has_time = cells_ <= most_cells_ || cells_before == 0;
+    if (!has_time || !volume.openBricksIn(of_leaf.changed)) {
+        changes_.backTo(before);
+        result.has_room &= !has_time;
+        return has_time;
+    }
+    changes_.closeLeaf(of_leaf.changed);
+    result.include(of_leaf);
+    return true;
+}
+
+void SurfaceShift::collectRow(const VoxelVolume& volume, const Vector3i& first, int count,
+                              MillingResult& of_leaf) noexcept {
+    volume.readRow(first, count, old_.data());
+    const Node* node = &nodes_[index(first)];
+    bool is_changed = false;
+    for (int i = 0; i < count; ++i) {
+        const Density old = old_[size_t(i)];
+        fresh_[size_t(i)] = old;
+        if (!(node[i].drop > 0) || old == 0) continue;
+        const double left = double(old) - double(node[i].drop) / double(node[i].weight);
+        const auto density = Density(std::floor(std::max(left, 0.0) + rounding_));
+        fresh_[size_t(i)] = std::min(old, density);
+        is_changed |= density < old;
+        of_leaf.removed_voxels += old >= volume.iso() && density < volume.iso();
+    }
+    if (is_changed) changes_.add(first, count, old_.data(), fresh_.data(), of_leaf.changed);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,106 @@
+// Moves the bone's surface into the bone by a given energy at each contact: a level-set shift of the
+// densities.
+//
+// The energies of all contacts on one patch of the shell (point b, area a) make its recession s = E / (u a).
+// To bring the iso-surface from b to b' = b - s n, the densities around b' must fall by the excess over the
+// iso-value that they have there; all corners of a cell by the same, so that the ramp of densities keeps its
+// slope. A voxel falls by the mean of what the patches around it ask for, weighted by area and distance
+// (trilinear hat of the shell's block size); patches without contact ask for nothing, so that the surface
+// beside the burr stays.
+//
+// What that removes is then measured: the sum over the cells of specific energy times the change of their
+// fill (cell_fill.h). The sum telescopes: over a session it is that of what is missing in the end.
+//
+// Frame V, SI. Construction allocates; all else is RT-safe (tick thread only).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "haptic_server/milling/cell_fill.h"
+#include "haptic_server/milling/changed_runs.h"
+#include "haptic_server/milling/specific_energy.h"
+#include "haptic_server/milling/timed_milling.h"
+#include "haptic_server/tick/bone_model.h"
+
+namespace bonemill {
+
+class SurfaceShift {
+  public:
+    // Of the thinnest voxel: the surface moves no farther in a tick.
+    static constexpr double kMostShift = 0.25;
+
+    // Room for contacts no farther from the burr's centre than `largest_reach`, m. most_cells as
+    // MillingConfig.
+    SurfaceShift(const BoneModel& bone, double largest_reach, size_t most_contacts, size_t most_cells);
+
+    // A new tick with the burr's centre here.
+    void begin(const BoneModel& bone, const Eigen::Vector3d& p_VB) noexcept;
+    // Energy to be spent at one contact of this patch (as Candidates::patch), J, and its depth, m: the patch
+    // recedes no farther than its deepest contact reaches.
+    void add(const BoneModel& bone, uint64_t patch, double energy, double depth) noexcept;
+    // Spends `share` of the energies. Returns what was spent, J.
+    double apply(BoneModel& bone, const SpecificEnergy& u, double share, MillingResult& result) noexcept;
+
+  private:
+    // One voxel, and the cell that begins there.
+    struct Node {
+        float drop = 0, weight = 0;   // voxel: weighted sum of what is asked for, and of the weights
+        float energy = 0, depth = 0;  // of the patch whose block begins at the cell
+        float fill = 0;               // of the cell, before
+    };
+    // One that spans a single cell sees its corners.
+    struct Wish {
+        Eigen::Vector3f at;  // voxel steps
+        float drop;          // counts
+    };
+    struct Span {
+        int low = 1, high = 0;
+    };
+
+    size_t index(const Eigen::Vector3i& voxel) const noexcept {
+        const Eigen::Vector3i local = voxel - first_;
+        return size_t(local.x()) +
+               size_t(size_.x()) * (size_t(local.y()) + size_t(size_.y()) * size_t(local.z()));
+    }
+    size_t row(int j, int k) const noexcept {
+        return size_t(j - first_.y()) + size_t(size_.y()) * size_t(k - first_.z());
+    }
+    bool hasRoomAround(const Eigen::Vector3i& voxel) const noexcept;
+    static int kernelOf(const BoneModel& bone) noexcept;
+
+    template <class Visit>
+    void forEachPatch(const BoneModel& bone, Visit&& visit) const noexcept;
+    template <class Visit>
+    void forEachVoxelAround(const BoneModel& bone, const Eigen::Vector3f& at, Visit&& visit) const noexcept;
+    template <class Visit>
+    void forEachCell(const BoneModel& bone, Visit&& visit) noexcept;
+    Wish wishOf(const VoxelVolume& volume, const Eigen::Vector3f& point, double recession) const noexcept;
+    void spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share) noexcept;
+    void spreadRest(const BoneModel& bone) noexcept;
+    void touch(const Eigen::Vector3i& voxel) noexcept;
+    void collect(BoneModel& bone, MillingResult& result) noexcept;
+    bool collectLeaf(VoxelVolume& volume, const IndexBox& voxels, MillingResult& result) noexcept;
+    void collectRow(const VoxelVolume& volume, const Eigen::Vector3i& first, int count,
+                    MillingResult& of_leaf) noexcept;
+    void forget() noexcept;
+
+    size_t most_cells_;
+    CellFill fill_;
+    Eigen::Vector3i size_;                             // of the scratch box
+    Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // its first voxel
+    std::vector<Node> nodes_;
+    std::vector<Span> spans_;      // per row along x: voxels that something was asked of
+    IndexBox touched_;             // all of those
+    std::vector<size_t> patches_;  // nodes with energy; the first patch_count_
+    size_t patch_count_ = 0;
+    IndexBox patch_cells_;  // blocks of those begin in it
+    std::vector<Density> old_, fresh_;
+    ChangedRuns changes_;
+    size_t cells_ = 0;  // of this tick
+    static constexpr LeafId kNoLeaf = ~LeafId(0);
+    LeafId next_leaf_ = kNoLeaf;  // where the last tick was cut short
+    double rounding_ = 0;         // 0 .. 1, another one each tick: what is less than a count is not lost
+};
+
+}  // namespace bonemill
