@@ -9,6 +9,7 @@ namespace bonemill::test {
 namespace {
 
 constexpr double kPush = 3;  // N, of the hand's springs
+constexpr double kMicro = 1e6;
 
 // A round pit half as wide again as the burr: friction drives the burr along its floor to the wall, and
 // round.
@@ -182,27 +183,31 @@ double pauseStep(const Variant& variant) {
     return worseOf(stopping, largestStep(pit, 0.3));
 }
 
-// Pressed, drawn round in the pit and let go: energy that the hand got beyond what the motor gave, µJ.
-double beyondTheMotor(const Variant& variant) {
+// Pressed against floor and wall, drawn round in the pit and let go: energy that the hand got beyond what the
+// motor gave, µJ.
+double beyondTheMotor(const Variant& variant, int way) {
     Scene scene(pitBone(), burr(), variant);
     Stepper stepper(scene);
     AlgorithmEnergy meter;
     double motor = 0, worst = 0;
     const Eigen::Vector3d middle = kPitFloor + Eigen::Vector3d(0, 0, kBurrRadius);
-    constexpr int kRound = 1500;
+    constexpr int kRound = 1500, kPressed = 3 * kRound;
     for (int n = 0; n < 4 * kRound; ++n) {
-        const double angle = 2 * M_PI * n / kRound, out = n < 3 * kRound ? 0.7e-3 : 0;
-        const double down = n < 3 * kRound ? 0.4e-3 * std::min(1.0, n / 300.0) : -0.1e-3;
-        const Pose device =
-            upright(middle + Eigen::Vector3d(out * std::cos(angle), out * std::sin(angle), -down));
+        const double angle = way * 2 * M_PI * n / kRound, out = n < kPressed ? 0.7e-3 : 0;
+        const double down = n < kPressed ? 0.4e-3 * std::min(1.0, n / 300.0) : -0.1e-3;
+        const Eigen::Vector3d shift(out * std::cos(angle), out * std::sin(angle), -down);
+        const Pose device{middle + shift, kStanding};
         stepper.step(device);
         if (!stepper.isFinite()) return kNan;
         meter.add(device, stepper.wrenchOnHand());
         const EffectRecord& record = stepper.record().effects;
         motor += double(record.axis_torque) * std::abs(double(record.spin_speed)) * scene.config.dt;
-        worst = std::max(worst, -(meter.energy() + motor) * 1e6);
+        worst = std::max(worst, -(meter.energy() + motor) * kMicro);
     }
     return motor > 1e-3 ? worst : kLost;
+}
+double beyondTheMotor(const Variant& variant) {
+    return worseOf(beyondTheMotor(variant, 1), beyondTheMotor(variant, -1));
 }
 
 // Drilled into full bone by a hand that goes ahead: the largest step of the force.
