@@ -10,6 +10,7 @@ namespace bonemill {
 namespace {
 
 constexpr double kMillimetre = 1e-3;
+constexpr double kMillisecond = 1e-3;
 constexpr double kRpm = 2 * M_PI / 60;  // rad/s
 
 EnergyRemovalConfig energyRemovalOf(const scene::EnergyRemoval& removal) {
@@ -18,6 +19,14 @@ EnergyRemovalConfig energyRemovalOf(const scene::EnergyRemoval& removal) {
             .density_exponent = removal.density_exponent(),
             .threshold_pressure = removal.threshold_pressure_mpa() * kMega,
             .diamond_energy_factor = removal.diamond_energy_factor()};
+}
+
+SpindleConfig spindleConfigOf(const scene::Spindle& spindle) {
+    constexpr double kTorquePerKrpm = kMillimetre / (1000 * kRpm);  // N·m·s/rad
+    return {.inertia = spindle.inertia_kg_mm2() * kMillimetre * kMillimetre,
+            .max_torque = spindle.max_torque_nmm() * kMillimetre,
+            .droop = spindle.droop_nmm_per_krpm() * kTorquePerKrpm,
+            .drag = spindle.drag_nmm_per_krpm() * kTorquePerKrpm};
 }
 
 }  // namespace
@@ -43,6 +52,17 @@ EffectConfigs effectConfigsOf(const scene::Scene& scene) {
         configs.time_removal = {effects.time_removal().rate_density_per_s() * kDensityCountsPerUnit};
     if (effects.has_add_material())
         configs.add_material = {effects.add_material().rate_density_per_s() * kDensityCountsPerUnit};
+    if (effects.has_spindle()) configs.spindle = spindleConfigOf(effects.spindle());
+    if (effects.has_cutting_force())
+        configs.cutting_force = {effects.cutting_force().slow_speed_mm_per_s() * kMillimetre,
+                                 effects.cutting_force().smoothing_time_ms() * kMillisecond};
+    if (effects.has_surface_friction())
+        configs.surface_friction = {effects.surface_friction().coefficient(),
+                                    effects.surface_friction().presliding_stiffness_n_per_mm() / kMillimetre};
+    if (effects.has_burr_vibration())
+        configs.burr_vibration = {effects.burr_vibration().amplitude_per_force(),
+                                  effects.burr_vibration().max_amplitude_n(),
+                                  effects.burr_vibration().diamond_factor()};
     return configs;
 }
 

@@ -1,6 +1,7 @@
 // How burr and bone rub on each other where they touch. SI, axes V. RT-safe, thread-safe.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "haptic_server/effects/haptic_effect.h"
@@ -18,6 +19,12 @@ inline double patchSpread(double area) noexcept {
 // its patch.
 inline double rubbingRadius(const Eigen::Vector3d& r, const Eigen::Vector3d& axis, double area) noexcept {
     return std::sqrt(axis.cross(r).squaredNorm() + patchSpread(area));
+}
+
+// How much of the burr's friction is that of a turning burr, 0 .. 1; the rest is that of one that stands.
+inline double spinShare(double spin_speed, const Burr& burr) noexcept {
+    constexpr double kSlowRim = 10e-3;  // m/s: what is slower rather sticks
+    return std::min(1.0, std::abs(spin_speed) * burr.radius / kSlowRim);
 }
 
 // Calls visit(contact, r, ρ) for each of the last tick's contacts on the burr.

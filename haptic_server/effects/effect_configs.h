@@ -25,13 +25,37 @@ struct EnergyRemovalConfig {
     double threshold_pressure = 0;           // p_th, Pa
     double diamond_energy_factor = 2.5;      // of u, for burrs of diamond grit
 };
+struct SpindleConfig {
+    double inertia = 5e-7;     // J, kg·m²
+    double max_torque = 0.02;  // T, N·m
+    double droop = 4.8e-5;     // k, N·m·s/rad: torque per speed that is missing
+    double drag = 1.9e-7;      // c, N·m·s/rad
+};
+struct CuttingForceConfig {
+    double slow_speed = 0.01;      // v_ε, m/s
+    double smoothing_time = 2e-3;  // s
+};
+struct BurrVibrationConfig {
+    double amplitude_per_force = 0.05;  // N per N of cutting force μ_c Σ F
+    double max_amplitude = 0.5;         // N
+    double diamond_factor = 0.3;        // of both, for burrs of diamond grit
+};
+struct SurfaceFrictionConfig {
+    double coefficient = 0.2;           // μ
+    double presliding_stiffness = 5e4;  // N/m
+};
 
 struct EffectConfigs {
     std::shared_ptr<const BoneProperties> properties;  // null: no effect asks for it
     MaterialTable materials;
     std::shared_ptr<const DistanceField> protected_field;  // null: no effect asks for it
 
+    // In the order in which they act.
+    std::optional<SpindleConfig> spindle;
     std::optional<EnergyRemovalConfig> energy_removal;
+    std::optional<CuttingForceConfig> cutting_force;
+    std::optional<SurfaceFrictionConfig> surface_friction;
+    std::optional<BurrVibrationConfig> burr_vibration;
     std::optional<TimeRemovalConfig> time_removal;
     std::optional<AddMaterialConfig> add_material;
 };

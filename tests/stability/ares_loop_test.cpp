@@ -76,7 +76,7 @@ double pegInHole(const Variant& variant) {
 
 const std::vector<StabilityCase> kCases{
     {"ares_presses_on_plane", "N_rms", 0.05, plane, {}},
-    {"ares_peg_in_hole", "N_rms", 0.05, pegInHole, {}},
+    {"ares_peg_in_hole", "N_rms", 0.05, pegInHole, {}, feltEffects()},
 };
 BONEMILL_STABILITY_CASES(Ares, kCases);
 

@@ -110,12 +110,12 @@ double manyContacts(const Variant& variant) {
 }
 
 const std::vector<StabilityCase> kCases{
-    {"random_noise_ct", "of_limit", 1 + 1e-9, noise, {}},
-    {"single_voxel_dust", "of_limit", 1 + 1e-9, dust, {}},
+    {"random_noise_ct", "of_limit", 1 + 1e-9, noise, {}, {"all_felt", "all_effects"}},
+    {"single_voxel_dust", "of_limit", 1 + 1e-9, dust, {}, {"all_felt", "all_effects"}},
     {"zero_gradient_chessboard", "of_limit", 1 + 1e-9, chessboard, {}},
     {"zero_gradient_flat", "of_limit", 1 + 1e-9, flat, {}},
-    {"nan_in_ct", "of_limit", 1 + 1e-9, notANumber, {}},
-    {"ten_thousand_contacts", "of_limit", 1 + 1e-9, manyContacts, {}},
+    {"nan_in_ct", "of_limit", 1 + 1e-9, notANumber, {}, {"all_felt", "all_effects"}},
+    {"ten_thousand_contacts", "of_limit", 1 + 1e-9, manyContacts, {}, {"all_felt", "all_effects"}},
 };
 BONEMILL_STABILITY_CASES(BadVolume, kCases);
 

@@ -9,9 +9,20 @@
 namespace bonemill::test {
 namespace {
 
+bool isAmong(const Names& names, const Variant& variant) {
+    return std::find(names.begin(), names.end(), variant.name) != names.end();
+}
+
+std::vector<Variant> variantsOf(const StabilityCase& stability_case) {
+    std::vector<Variant> variants;
+    if (!stability_case.needs_effects) variants = allVariants();
+    for (const Variant& variant : effectVariants())
+        if (isAmong(stability_case.with_effects, variant)) variants.push_back(variant);
+    return variants;
+}
+
 Expectation expectationOf(const StabilityCase& stability_case, const Variant& variant) {
-    const auto& fails = stability_case.fails_for;
-    if (std::find(fails.begin(), fails.end(), variant.name) == fails.end()) return Expectation::kHolds;
+    if (!isAmong(stability_case.fails_for, variant)) return Expectation::kHolds;
     return variant.name == baselineVariant().name ? Expectation::kBaselineFails : Expectation::kKnownLimit;
 }
 
@@ -37,7 +48,7 @@ double StabilityTrial::measureAndReport() const {
     const auto& [c, variant] = GetParam();
     const double figure = c.measure(variant);
     const bool pass = isWithin(figure, c.bound);
-    std::printf("%-34s %-12s %12.5g %s bound %.5g %s  %s\n", c.name.c_str(), variant.name.c_str(), figure,
+    std::printf("%-34s %-16s %12.5g %s bound %.5g %s  %s\n", c.name.c_str(), variant.name.c_str(), figure,
                 pass ? "<=" : "> ", c.bound, c.unit, pass ? "holds" : "FAILS");
     char line[256];
     std::snprintf(line, sizeof line, "%s,%s,%.6g,%.6g,%s,%d", c.name.c_str(), variant.name.c_str(), figure,
@@ -49,7 +60,7 @@ double StabilityTrial::measureAndReport() const {
 std::vector<Trial> trials(const std::vector<StabilityCase>& cases, Expectation expectation) {
     std::vector<Trial> result;
     for (const StabilityCase& c : cases)
-        for (const Variant& variant : allVariants())
+        for (const Variant& variant : variantsOf(c))
             if (expectationOf(c, variant) == expectation) result.push_back({c, variant});
     return result;
 }

@@ -1,4 +1,5 @@
-// One hard case = one figure and its bound, measured for every variant. A case holds if figure <= bound.
+// One hard case = one figure and its bound, measured for every variant, and some with effects as well. A case
+// holds if figure <= bound.
 //
 // A variant for which a case is known to fail, deterministically, is not left out: it runs in the suite
 // BaselineFails (thesis_2012) or KnownLimit (any other), which expects the figure beyond the bound, so that
@@ -29,7 +30,9 @@ struct StabilityCase {
     const char* unit;
     double bound;
     double (*measure)(const Variant&);
-    std::vector<std::string> fails_for;  // names of variants
+    Names fails_for;             // names of variants
+    Names with_effects = {};     // names of effectVariants() for which it is measured as well
+    bool needs_effects = false;  // only for those
 };
 
 struct Trial {

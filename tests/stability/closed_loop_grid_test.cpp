@@ -148,7 +148,12 @@ const std::vector<StabilityCase> kCases{
     {"loop_grid_plane_one_tick", "N_rms_worst", kLargestBuzz, planeOneTick, {}},
     {"loop_grid_plane_three_ticks", "percent_buzzing", 0, planeThreeTicks, kEveryVariant},
     {"loop_grid_hole_passive", "N_rms_worst", kLargestBuzz, holePassive, {}},
-    {"loop_grid_hole_one_tick", "N_rms_worst", kLargestBuzz, holeOneTick, {"thesis_2012"}},
+    {"loop_grid_hole_one_tick",
+     "N_rms_worst",
+     kLargestBuzz,
+     holeOneTick,
+     {"thesis_2012"},
+     {"cutting_force", "surface_friction", "all_felt"}},
     {"loop_grid_hole_three_ticks", "percent_buzzing", 0, holeThreeTicks, kEveryVariant},
 };
 BONEMILL_STABILITY_CASES(ClosedLoopGrid, kCases);

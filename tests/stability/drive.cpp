@@ -19,14 +19,26 @@ double spread(const std::vector<Eigen::Vector3d>& values) {
     return spread(values, 0, values.size());
 }
 
+// Means over `window` values in a row.
+std::vector<Eigen::Vector3d> averaged(const std::vector<Eigen::Vector3d>& values, size_t window) {
+    std::vector<Eigen::Vector3d> means;
+    for (size_t n = 0; n + window <= values.size(); ++n) {
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        for (size_t i = 0; i < window; ++i) sum += values[n + i];
+        means.push_back(sum / double(window));
+    }
+    return means;
+}
+
 }  // namespace
 
-Stepper::Stepper(Scene& scene, const ToolSwitch* tools)
-    : tick_(scene.config, scene.bone, scene.tool, nullptr, nullptr, tools) {}
+Stepper::Stepper(Scene& scene, const ToolSwitch* tools, BoneHistory* history)
+    : held_buttons_(scene.held_buttons),
+      tick_(scene.config, scene.bone, scene.tool, history, nullptr, tools) {}
 
 const TickRecord& Stepper::step(const Pose& X_WT_device, uint32_t buttons) {
     input_.X_WT_device = X_WT_device;
-    input_.buttons = buttons;
+    input_.buttons = buttons | held_buttons_;
     tick_.tick(*this);
     return record_;
 }
@@ -41,10 +53,12 @@ int64_t Stepper::write(const Wrench& wrench_hand_W) noexcept {
     return 0;
 }
 
-ClosedLoop::ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start, const ToolSwitch* tools)
+ClosedLoop::ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start, const ToolSwitch* tools,
+                       BoneHistory* history)
     : plant(config.device, config.hand, start),
-      stepper(scene, tools),
+      stepper(scene, tools, history),
       dt(scene.config.dt),
+      averaged_ticks(scene.averaged_ticks),
       on_the_way_(size_t(config.delay_ticks)) {}
 
 void ClosedLoop::step(uint32_t buttons) {
@@ -77,7 +91,7 @@ Residual residual(ClosedLoop& loop, double seconds) {
     }
     const size_t half = force.size() / 2;
     result.is_touching = loop.stepper.record().contacts > 0;
-    result.rms = spread(force);
+    result.rms = spread(averaged(force, loop.averaged_ticks));
     result.torque_rms = spread(torque);
     result.position_rms = spread(position);
     result.growth = spread(position, half, position.size()) / std::max(spread(position, 0, half), 1e-12);

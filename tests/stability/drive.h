@@ -12,10 +12,11 @@ namespace bonemill::test {
 // One tick at a time with whatever device pose the caller says.
 class Stepper : private TickIo {
   public:
-    // With `tools` instead of the scene's tool, if it is not null.
-    explicit Stepper(Scene& scene, const ToolSwitch* tools = nullptr);
+    // With `tools` instead of the scene's tool, if it is not null, and with a history if that is not null.
+    explicit Stepper(Scene& scene, const ToolSwitch* tools = nullptr, BoneHistory* history = nullptr);
 
     const TickRecord& step(const Pose& X_WT_device, uint32_t buttons = 0);
+    void holdButtons(uint32_t buttons) noexcept { held_buttons_ = buttons; }
     const Wrench& wrenchOnHand() const noexcept { return wrench_; }
     const Pose& spo() const noexcept { return tick_.spo(); }
     const TickRecord& record() const noexcept { return record_; }
@@ -34,6 +35,7 @@ class Stepper : private TickIo {
     }
 
     uint32_t faults_ = 0;
+    uint32_t held_buttons_;
     HapticTick tick_;
     DeviceInput input_;
     Wrench wrench_;
@@ -48,8 +50,10 @@ struct LoopConfig {
 
 class ClosedLoop {
   public:
-    ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start, const ToolSwitch* tools = nullptr);
+    ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start, const ToolSwitch* tools = nullptr,
+               BoneHistory* history = nullptr);
 
+    // With these buttons beside those that the scene holds.
     void step(uint32_t buttons = 0);
     // The controller misses a period: the device holds the last wrench.
     void dropTick();
@@ -58,6 +62,7 @@ class ClosedLoop {
     Plant plant;
     Stepper stepper;
     double dt;
+    size_t averaged_ticks;
 
   private:
     std::deque<Wrench> on_the_way_;
@@ -66,7 +71,7 @@ class ClosedLoop {
 
 // Signal of a window: spread about its mean, and whether it grows.
 struct Residual {
-    double rms = 0;           // of the force about its mean, N
+    double rms = 0;           // of the force (mean over the scene's averaged_ticks) about its mean, N
     double torque_rms = 0;    // N·m
     double position_rms = 0;  // of the true handle position about its mean, m
     double growth = 0;        // RMS of the second half over that of the first

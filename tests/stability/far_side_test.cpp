@@ -93,8 +93,8 @@ double handOutsideForce(const Variant& variant) {
 }
 
 const std::vector<StabilityCase> kCases{
-    {"inside_thin_wall_device_outside", "ms", 20, deviceOutsideTime, {}},
-    {"inside_thin_wall_hand_pulls", "ms", 100, handOutsideTime, {"thesis_2012"}},
+    {"inside_thin_wall_device_outside", "ms", 20, deviceOutsideTime, {}, feltEffects()},
+    {"inside_thin_wall_hand_pulls", "ms", 100, handOutsideTime, {"thesis_2012"}, feltEffects()},
     {"inside_thin_wall_force", "N", 10, handOutsideForce, {}},
 };
 BONEMILL_STABILITY_CASES(FarSide, kCases);

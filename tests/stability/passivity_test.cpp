@@ -169,11 +169,11 @@ double droppedTicksAtThePort(const Variant& variant) {
 }
 
 const std::vector<StabilityCase> kCases{
-    {"energy_loop_over_plane", "uJ_gained", kEnergySlack_uJ, loopOverPlane, {}},
-    {"energy_round_the_hole", "uJ_gained", kEnergySlack_uJ, pegMoving, {}},
+    {"energy_loop_over_plane", "uJ_gained", kEnergySlack_uJ, loopOverPlane, {}, {"surface_friction"}},
+    {"energy_round_the_hole", "uJ_gained", kEnergySlack_uJ, pegMoving, {}, {"surface_friction"}},
     {"energy_over_edge_at_rest", "uJ_gained", kEnergySlack_uJ, overTheEdge, {"thesis_2012"}},
     {"energy_round_hole_at_rest", "uJ_gained", kEnergySlack_uJ, pegAtRest, {}},
-    {"energy_dropped_ticks", "uJ_gained", kEnergySlack_uJ, worstDroppedTicks, {}},
+    {"energy_dropped_ticks", "uJ_gained", kEnergySlack_uJ, worstDroppedTicks, {}, {"surface_friction"}},
     {"port_energy_dropped_ticks", "of_hold_bound", 1, droppedTicksAtThePort, {}},
 };
 BONEMILL_STABILITY_CASES(Passivity, kCases);

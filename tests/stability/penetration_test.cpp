@@ -83,11 +83,16 @@ double deepPushDirection(const Variant& variant) {
 }
 
 const std::vector<StabilityCase> kCases{
-    {"one_voxel_wall", "mm_past_wall", 0, oneVoxelWall, {"thesis_2012"}},
-    {"one_voxel_wall_fast_hand", "mm_past_wall", 0, oneVoxelWallFast, {"thesis_2012"}},
-    {"pin_through_wall_fast_hand", "mm_past_wall", 0, pinThroughWall, {"thesis_2012"}},
-    {"deep_push_side", "mm_past_surface", 0, deepPush, {"thesis_2012"}},
-    {"deep_push_force", "of_max_force", 1 + 1e-9, deepPushForce, {}},
+    {"one_voxel_wall", "mm_past_wall", 0, oneVoxelWall, {"thesis_2012"}, feltEffectsBut({"cutting_force"})},
+    {"one_voxel_wall_fast_hand",
+     "mm_past_wall",
+     0,
+     oneVoxelWallFast,
+     {"thesis_2012"},
+     feltEffectsBut({"cutting_force"})},
+    {"pin_through_wall_fast_hand", "mm_past_wall", 0, pinThroughWall, {"thesis_2012"}, feltEffects()},
+    {"deep_push_side", "mm_past_surface", 0, deepPush, {"thesis_2012"}, feltEffectsBut({"cutting_force"})},
+    {"deep_push_force", "of_max_force", 1 + 1e-9, deepPushForce, {}, feltEffects()},
     {"deep_push_direction", "degrees", 10, deepPushDirection, {"thesis_2012"}},
 };
 BONEMILL_STABILITY_CASES(Penetration, kCases);

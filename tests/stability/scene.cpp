@@ -20,6 +20,8 @@ TickConfig configOf(const Variant& variant, double dt, const std::function<void(
 Scene::Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, double dt,
              const std::function<void(TickConfig&)>& edit)
     : config(configOf(variant, dt, edit)),
+      held_buttons(variant.heldButtons()),
+      averaged_ticks(config.effects.burr_vibration ? kVibrationTicks : 1),
       bone(std::move(volume), Eigen::Vector3i::Constant(16),
            ShellConfig{.levels = {{config.accuracy.shell_factor}}}),
       tool(std::move(test_tool.grid), test_tool.shapes, test_tool.thinnest_radius) {}

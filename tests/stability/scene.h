@@ -27,6 +27,8 @@ struct Scene {
           const std::function<void(TickConfig&)>& edit = {});
 
     TickConfig config;
+    uint32_t held_buttons;
+    size_t averaged_ticks;  // of what is called a residual: so that it leaves the wanted vibration out
     BoneModel bone;
     ToolModel tool;
 };

@@ -91,10 +91,10 @@ double buriedSettles(const Variant& v) {
 }
 
 const std::vector<StabilityCase> kCases{
-    {"device_jump_50mm_180deg", "of_limit", 1 + 1e-9, deviceJump, {}},
-    {"near_antipodal", "percent_of_max", 1, nearAntipodal, {"thesis_2012"}},
-    {"start_half_inside_fades_in", "of_speed_limit", 1.1, halfInsideFadeIn, {}},
-    {"start_half_inside_settles", "N_rms", 0.05, halfInsideSettles, {}},
+    {"device_jump_50mm_180deg", "of_limit", 1 + 1e-9, deviceJump, {}, feltEffects()},
+    {"near_antipodal", "percent_of_max", 1, nearAntipodal, {"thesis_2012"}, feltEffects()},
+    {"start_half_inside_fades_in", "of_speed_limit", 1.1, halfInsideFadeIn, {}, feltEffects()},
+    {"start_half_inside_settles", "N_rms", 0.05, halfInsideSettles, {}, feltEffects()},
     {"start_buried_fades_in", "of_speed_limit", 1.1, buriedFadeIn, {}},
     {"start_buried_settles", "N_rms", 0.05, buriedSettles, {}},
 };

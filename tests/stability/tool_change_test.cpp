@@ -23,12 +23,17 @@ struct Bench {
         : scene(std::move(volume), ballTool(kSmall), variant),
           small(modelOf(ballTool(kSmall))),
           large(modelOf(ballTool(kLarge))),
-          tools({{&small, {.radius = kSmall}, 10}, {&large, {.radius = kLarge}, 30}}),
+          tools({{&small, burrOf(kSmall), 10}, {&large, burrOf(kLarge), 30}}),
           loop({}, scene, upright(start), &tools) {
         loop.plant.setTarget(upright(target));
         loop.run(0.5);
     }
     void change(size_t tool) { tools.choose(tool); }
+    Burr burrOf(double radius) const {
+        Burr burr = scene.config.burr;
+        burr.radius = radius;
+        return burr;
+    }
 
     Scene scene;
     ToolModel small, large;
@@ -160,15 +165,20 @@ double growthOverRounds(const Variant& variant) {
 }
 
 const std::vector<StabilityCase> kCases{
-    {"tool_change_jump_on_plane", "of_allowed", 1 + 1e-6, jumpOnPlane, {}},
-    {"tool_change_jump_in_hole", "of_allowed", 1 + 1e-6, jumpInHole, {}},
+    {"tool_change_jump_on_plane", "of_allowed", 1 + 1e-6, jumpOnPlane, {}, feltEffects()},
+    {"tool_change_jump_in_hole", "of_allowed", 1 + 1e-6, jumpInHole, {}, feltEffects()},
     {"tool_change_jump_while_milling", "of_allowed", 1 + 1e-6, jumpWhileMilling, {}},
-    {"tool_change_rest_on_plane", "N_rms", 0.05, restOnPlane, {"thesis_2012"}},
-    {"tool_change_rest_in_hole", "N_rms", 0.05, restInHole, {"thesis_2012"}},
+    {"tool_change_rest_on_plane",
+     "N_rms",
+     0.05,
+     restOnPlane,
+     {"thesis_2012"},
+     feltEffectsBut({"cutting_force"})},
+    {"tool_change_rest_in_hole", "N_rms", 0.05, restInHole, {"thesis_2012"}, feltEffects()},
     {"tool_change_left_in_plane", "voxels", 0.5, leftInPlane, {"thesis_2012"}},
-    {"tool_change_drawn_out", "ms", 300, drawnOut, {}},
-    {"tool_change_lift", "mm/s", 100, liftSpeed, {}},
-    {"tool_change_growth", "ratio", 1.05, growthOverRounds, {}},
+    {"tool_change_drawn_out", "ms", 300, drawnOut, {}, feltEffectsBut({"cutting_force"})},
+    {"tool_change_lift", "mm/s", 100, liftSpeed, {}, feltEffects()},
+    {"tool_change_growth", "ratio", 1.05, growthOverRounds, {}, feltEffects()},
 };
 BONEMILL_STABILITY_CASES(ToolChange, kCases);
 

@@ -1,7 +1,34 @@
 #include "tests/stability/variant.h"
 
+#include <algorithm>
+
 namespace bonemill::test {
 namespace {
+
+constexpr const char* kAllFelt = "all_felt";
+
+struct NamedEffect {
+    const char* name;
+    bool mills;
+    void (*add)(EffectConfigs&);
+};
+
+// One line per effect.
+constexpr NamedEffect kEffects[] = {
+    {"spindle", false, [](EffectConfigs& e) { e.spindle.emplace(); }},
+    {"cutting_force", false, [](EffectConfigs& e) { e.cutting_force.emplace(); }},
+    {"surface_friction", false, [](EffectConfigs& e) { e.surface_friction.emplace(); }},
+    {"burr_vibration", false, [](EffectConfigs& e) { e.burr_vibration.emplace(); }},
+    {"time_removal", true, [](EffectConfigs& e) { e.time_removal.emplace(); }},
+};
+
+void addFelt(EffectConfigs& configs) {
+    for (const NamedEffect& effect : kEffects)
+        if (!effect.mills) effect.add(configs);
+}
+void addAll(EffectConfigs& configs) {
+    for (const NamedEffect& effect : kEffects) effect.add(configs);
+}
 
 bool isThesis(const TickConfig& config) {
     return config.accuracy.law == ContactLaw::kThesis2012;
@@ -24,8 +51,42 @@ const Variant& baselineVariant() {
     return allVariants().front();
 }
 
+const std::vector<Variant>& effectVariants() {
+    static const std::vector<Variant> kVariants = [] {
+        std::vector<Variant> list;
+        for (const NamedEffect& effect : kEffects)
+            list.push_back({effect.name, Preset::kBalanced, effect.add});
+        list.push_back({kAllFelt, Preset::kBalanced, addFelt});
+        list.push_back({"all_effects", Preset::kBalanced, addAll});
+        return list;
+    }();
+    return kVariants;
+}
+
+Names feltEffects() {
+    Names names;
+    for (const NamedEffect& effect : kEffects)
+        if (!effect.mills) names.push_back(effect.name);
+    names.push_back(kAllFelt);
+    return names;
+}
+
+Names feltEffectsBut(const Names& left_out) {
+    Names names = feltEffects();
+    std::erase(names, kAllFelt);
+    std::erase_if(names, [&](const std::string& name) {
+        return std::find(left_out.begin(), left_out.end(), name) != left_out.end();
+    });
+    return names;
+}
+
 void applyVariant(const Variant& variant, TickConfig& config) {
     config.accuracy = presetSettings(variant.preset);
+    if (!variant.add_effects) return;
+    config.burr.speed = kSpinSpeed;
+    config.burr.friction = kCuttingFriction;
+    config.effects = {};
+    variant.add_effects(config.effects);
 }
 
 CouplingFigures couplingFigures(const TickConfig& config) {

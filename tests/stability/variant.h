@@ -11,12 +11,27 @@ namespace bonemill::test {
 struct Variant {
     std::string name;
     Preset preset;
+    // Effects in place of milling by time, with a burr that spins; null: milling by time.
+    void (*add_effects)(EffectConfigs&) = nullptr;
 
     bool isBaseline() const { return preset == Preset::kThesis2012; }
+    // All the while; a pedal that is down does no harm to a case unless something mills.
+    uint32_t heldButtons() const { return add_effects ? uint32_t(kButtonRemove) : 0; }
 };
 
 const std::vector<Variant>& allVariants();
 const Variant& baselineVariant();
+
+// The default preset with each haptic effect alone, with all of them that leave the bone as it is
+// ("all_felt"), and with all ("all_effects").
+const std::vector<Variant>& effectVariants();
+using Names = std::vector<std::string>;
+Names feltEffects();                          // of the variants that leave the bone as it is
+Names feltEffectsBut(const Names& left_out);  // and not all together
+// What the burr of these is like: faster than vibration can follow, and friction as high as can be expected.
+inline constexpr double kSpinSpeed = 4000, kCuttingFriction = 0.7;  // rad/s; μ_c
+// The vibration is of 400 Hz then: over so many ticks it sums to nothing.
+inline constexpr size_t kVibrationTicks = 5;
 
 void applyVariant(const Variant& variant, TickConfig& config);
 

@@ -1,0 +1,39 @@
+// The tool's contacts merged into a few, for what is evaluated again and again in a solve. SI, axes V, about
+// the tool point. RT-safe; tick thread only.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "haptic_server/effects/haptic_effect.h"
+
+namespace bonemill {
+
+struct ContactGroup {
+    double force = 0;                                      // N: Σ F
+    Eigen::Vector3d r = Eigen::Vector3d::Zero();           // from the tool point, weighted by F
+    Eigen::Matrix3d tangential = Eigen::Matrix3d::Zero();  // I − n nᵀ, weighted by F
+};
+
+// One group for each of 4 × 4 × 4 boxes that hold contacts; together the boxes just hold all, along the
+// tool's axes. Forces, and what the contacts do to a translation, are kept exactly; of turns the part that
+// comes from the places' spread inside a box, about 1/16, is lost.
+class ContactGroups {
+  public:
+    static constexpr int kBoxesPerAxis = 4;
+    static constexpr size_t kMost = kBoxesPerAxis * kBoxesPerAxis * kBoxesPerAxis;
+
+    // Of the last tick's contacts; each one's force times share(is_on_burr), 0 leaves it out.
+    void gather(const EffectTick& tick, double burr_share) noexcept;
+    void clear() noexcept { count_ = 0, force_ = 0; }
+
+    std::span<const ContactGroup> groups() const noexcept { return {groups_.data(), count_}; }
+    double force() const noexcept { return force_; }  // N, of all
+
+  private:
+    std::array<ContactGroup, kMost> groups_;
+    size_t count_ = 0;
+    double force_ = 0;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,87 @@
+#include "haptic_server/effects/cutting_force.h"
+
+#include <cmath>
+
+#include "haptic_server/effects/burr_speed.h"
+#include "haptic_server/effects/increment.h"
+
+namespace bonemill {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace {
+
+// Adds D at r from the tool point: a force −D v against the motion v there.
+void addDamper(Matrix6d& damping, const Matrix3d& D, const Vector3d& r) noexcept {
+    const Matrix3d r_skew = skew(r);
+    damping.topLeftCorner<3, 3>() += D;
+    damping.topRightCorner<3, 3>() -= D * r_skew;
+    damping.bottomLeftCorner<3, 3>() += r_skew * D;
+    damping.bottomRightCorner<3, 3>() -= r_skew * D * r_skew;
+}
+
+}  // namespace
+
+void CuttingForce::restart() noexcept {
+    pull_ = {};
+    felt_ = {};
+    power_ = force_ = 0;
+}
+
+CuttingForce::Pull CuttingForce::pullOf(const EffectTick& tick) const noexcept {
+    Pull pull;
+    const Burr& burr = tick.tool->burr;
+    const double spin = tick.spin_speed, share = spinShare(spin, burr);
+    if (share == 0) return pull;
+    const Vector3d axis = tick.axis();
+    forEachBurrContact(tick, [&](const SurfaceContact& contact, const Vector3d& r, double) {
+        const double spread = patchSpread(double(tick.place_area[contact.candidate]));
+        const Vector3d n = contact.push_V.cast<double>();
+        const Matrix3d tangential = Matrix3d::Identity() - n * n.transpose();
+        const Vector3d v_spin = tangential * (spin * axis.cross(r));
+        const Vector3d v_tool = tangential * (tick.velocity + tick.angular_velocity.cross(r));
+        const double v_mean = std::sqrt((v_spin + v_tool).squaredNorm() + spin * spin * spread);
+        const double per_speed =
+            share * burr.friction * double(contact.force) / (v_mean + config_.slow_speed);
+        const Vector3d force = -per_speed * v_spin;
+        pull.of_spin.force += force;
+        pull.of_spin.torque += r.cross(force) - per_speed * spin * spread * axis;
+        addDamper(pull.damping, per_speed * tangential, r);
+    });
+    return pull;
+}
+
+void CuttingForce::begin(EffectTick& tick) noexcept {
+    const Pull now = pullOf(tick);
+    const double way = tick.dt / (config_.smoothing_time + tick.dt);
+    pull_.of_spin.force += way * (now.of_spin.force - pull_.of_spin.force);
+    pull_.of_spin.torque += way * (now.of_spin.torque - pull_.of_spin.torque);
+    pull_.damping += way * (now.damping - pull_.damping);
+    const BurrLoad load = burrLoadOf(tick);
+    force_ = load.force;
+    power_ = tick.tool->burr.friction * load.moment * std::abs(tick.spin_speed);
+}
+
+// Bounded from below together with the solve's own damping.
+EnergyTerm CuttingForce::energy(const EffectTick& tick, const Pose& X_VT) const noexcept {
+    const Increment step(tick.X_VT_start, X_VT);
+    const Vector6d drag = pull_.damping * step.twist / tick.dt;
+    EnergyTerm term;
+    term.energy = -pull_.of_spin.force.dot(step.translation()) - pull_.of_spin.torque.dot(step.rotation()) +
+                  drag.dot(step.twist) / 2;
+    term.wrench =
+        step.wrenchOf({pull_.of_spin.force - drag.head<3>(), pull_.of_spin.torque - drag.tail<3>()});
+    term.stiffness = pull_.damping / tick.dt;
+    return term;
+}
+
+void CuttingForce::finish(EffectTick& tick) noexcept {
+    const double against = tick.spin_speed < 0 ? 1 : -1;
+    const EnergyTerm at_end = energy(tick, tick.X_VT);
+    tick.record.axis_torque = float(against * tick.axis().dot(at_end.wrench.torque));
+    tick.record.cutting_power = float(power_);
+    tick.record.burr_force = float(force_);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,61 @@
+#include "haptic_server/effects/spindle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptic_server/effects/burr_speed.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kStandsBelow = 0.05;    // of the full speed
+constexpr double kShortestStall = 0.05;  // s
+constexpr double kSlowStart = 2;         // a run-up to that takes this many times as long under load
+
+}  // namespace
+
+void Spindle::restart() noexcept {
+    speed_ = 0;
+    load_ = 0;
+    stands_for_ = 0;
+}
+
+// Its residual rises with the new speed throughout, so that there is one root: at 0, where dry friction takes
+// up what is needed, or with friction against the spin, where the motor is or is not at its limit.
+double Spindle::advanced(const SpindleConfig& config, double speed, double wanted, double load,
+                         double dt) noexcept {
+    const double momentum = config.inertia / dt * speed;
+    const auto motor = [&](double at) {
+        return std::clamp(config.droop * (wanted - at), -config.max_torque, config.max_torque);
+    };
+    const double drive = momentum + motor(0);
+    if (std::abs(drive) <= load) return 0;
+    const double driven = momentum - std::copysign(load, drive);
+    const double linear =
+        (driven + config.droop * wanted) / (config.inertia / dt + config.droop + config.drag);
+    const double limited = motor(linear);
+    if (std::abs(limited) < config.max_torque) return linear;
+    return (driven + limited) / (config.inertia / dt + config.drag);
+}
+
+void Spindle::begin(EffectTick& tick) noexcept {
+    const Burr& burr = tick.tool->burr;
+    const double wanted = tick.is_pedal_down ? burr.speed : 0;
+    load_ = burr.friction * burrLoadOf(tick).moment;
+    speed_ = advanced(config_, speed_, wanted, load_, tick.dt);
+    watch(wanted, tick.dt);
+    tick.spin_speed = speed_;
+}
+
+void Spindle::watch(double wanted, double dt) noexcept {
+    const double slow = kStandsBelow * std::abs(wanted);
+    longest_start_ = std::max(kShortestStall, kSlowStart * config_.inertia * slow / config_.max_torque);
+    stands_for_ = std::abs(speed_) < slow ? stands_for_ + dt : 0;
+}
+
+void Spindle::finish(EffectTick& tick) noexcept {
+    if (isStalled()) tick.record.events |= kEventSpindleStalled;
+    tick.record.axis_torque = speed_ == 0 ? 0 : float(load_);
+}
+
+}  // namespace bonemill

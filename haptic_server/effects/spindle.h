@@ -1,0 +1,42 @@
+// The motor that turns the burr: it runs up when the pedal goes down and brakes when it comes up, droops
+// under load and stalls when that is too much:
+//   J dΩ/dt = clamp(k (Ω₀ − Ω), ±T) − M sgn(Ω) − c Ω,   M = μ_c Σ F ρ over the burr's contacts
+//   (burr_speed.h),
+// one implicit Euler step a tick: k may be as stiff as one likes. M is dry friction, from the last tick's
+// contacts: it stops the burr, at exactly 0, and never drives it. Sets EffectTick::spin_speed.
+//
+// Tick thread, RT-safe.
+#pragma once
+
+#include "haptic_server/effects/effect_configs.h"
+#include "haptic_server/effects/haptic_effect.h"
+
+namespace bonemill {
+
+class Spindle final : public HapticEffect {
+  public:
+    explicit Spindle(const SpindleConfig& config) noexcept : HapticEffect(kReadsContacts), config_(config) {}
+
+    const char* name() const noexcept override { return "spindle"; }
+    void restart() noexcept override;
+    void begin(EffectTick& tick) noexcept override;
+    void finish(EffectTick& tick) noexcept override;
+
+    // The pedal is down, and the burr has stood nearly still for longer than its run-up explains.
+    bool isStalled() const noexcept { return stands_for_ > longest_start_; }
+
+    // Speed after dt, rad/s: `speed` before, `wanted` Ω₀, dry friction of at most `load` N·m.
+    static double advanced(const SpindleConfig& config, double speed, double wanted, double load,
+                           double dt) noexcept;
+
+  private:
+    void watch(double wanted, double dt) noexcept;
+
+    SpindleConfig config_;
+    double speed_ = 0;          // rad/s
+    double load_ = 0;           // N·m
+    double stands_for_ = 0;     // s
+    double longest_start_ = 0;  // s
+};
+
+}  // namespace bonemill

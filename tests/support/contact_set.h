@@ -1,0 +1,57 @@
+// Contacts as an effect sees them, made by hand.
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "haptic_server/effects/haptic_effect.h"
+#include "tests/support/random_direction.h"
+
+namespace bonemill::test {
+
+struct ContactSet {
+    // On the burr or the shaft, at r_V from the tool point; the bone pushes along push_V.
+    void add(const Eigen::Vector3d& r_V, const Eigen::Vector3d& push_V, double force, double area = 0,
+             bool is_on_burr = true) {
+        contacts.push_back(
+            {r_V.cast<float>(), push_V.cast<float>(), 1e-5f, float(force), uint32_t(contacts.size())});
+        on_burr.push_back(is_on_burr);
+        areas.push_back(float(area));
+    }
+    // Anywhere on a ball.
+    void addOnBall(std::mt19937& random, double radius, int count) {
+        std::uniform_real_distribution<double> uniform(0.1, 1);
+        for (int n = 0; n < count; ++n) {
+            const Eigen::Vector3d out = randomDirection(random);
+            add(radius * out, -out, uniform(random), 1e-9 * uniform(random));
+        }
+    }
+    // A tick's start with these as the last one's contacts.
+    void giveTo(EffectTick& tick) const {
+        tick.contacts = contacts;
+        tick.is_on_burr = on_burr;
+        tick.place_area = areas;
+    }
+
+    std::vector<SurfaceContact> contacts;
+    std::vector<uint8_t> on_burr;
+    std::vector<float> areas;
+};
+
+// A tick of a spinning ball burr of 1 mm radius, friction 0.5, 40,000 rpm.
+struct BurrTick {
+    BurrTick() {
+        tool.burr.friction = 0.5;
+        tool.burr.speed = 40'000 * 2 * M_PI / 60;
+        tick.tool = &tool;
+        tick.is_pedal_down = true;
+        tick.spin_speed = tool.burr.speed;
+    }
+    BurrTick(const BurrTick&) = delete;
+    BurrTick& operator=(const BurrTick&) = delete;
+
+    SpoTool tool{nullptr, {}, 10};
+    EffectTick tick;
+};
+
+}  // namespace bonemill::test

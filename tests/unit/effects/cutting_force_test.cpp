@@ -1,0 +1,135 @@
+#include "haptic_server/effects/cutting_force.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "haptic_server/effects/burr_speed.h"
+#include "tests/support/contact_set.h"
+#include "tests/support/energy_check.h"
+
+namespace bonemill {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr CuttingForceConfig kPrompt{.slow_speed = 0.01, .smoothing_time = 0};
+
+struct CuttingForceTest : testing::Test {
+    CuttingForceTest() {
+        bench.tick.X_VT_start = {{1e-3, 2e-3, 3e-3}, expRotation({0.3, -0.7, 1.1})};
+        bench.tick.X_VT = bench.tick.X_VT_start;
+    }
+    EnergyTerm feltAfterBegin() {
+        contacts.giveTo(bench.tick);
+        cutting.begin(bench.tick);
+        cutting.finish(bench.tick);
+        return cutting.energy(bench.tick, bench.tick.X_VT);
+    }
+
+    std::mt19937 random{7};
+    test::BurrTick bench;
+    test::ContactSet contacts;
+    CuttingForce cutting{kPrompt};
+};
+
+TEST_F(CuttingForceTest, PullsAgainstTheSpinWithFrictionTimesForce) {
+    const Vector3d axis = bench.tick.axis(), out = axis.unitOrthogonal();
+    contacts.add(bench.tool.burr.radius * out, -out, 4);
+    const Wrench felt = feltAfterBegin().wrench;
+    const double v = bench.tool.burr.speed * bench.tool.burr.radius;
+    EXPECT_LT((felt.force + 0.5 * 4 * v / (v + kPrompt.slow_speed) * axis.cross(out)).norm(), 1e-6);
+    EXPECT_NEAR(bench.tick.record.axis_torque, 0.5 * 4 * 1e-3, 1e-5);
+    EXPECT_NEAR(bench.tick.record.burr_force, 4, 1e-6);
+}
+
+// M Ω = μ_c Σ F v · v/(v + v_ε), for any contacts; with v_ε out of the way, the power of friction.
+TEST_F(CuttingForceTest, AxisTorqueTimesSpinIsThePowerOfFriction) {
+    const Vector3d axis = bench.tick.axis();
+    for (const double spin : {30.0, 4000.0, -4000.0}) {
+        contacts = {};
+        contacts.addOnBall(random, bench.tool.burr.radius, 100);
+        bench.tick.spin_speed = spin;
+        const Wrench felt = feltAfterBegin().wrench;
+        double power = 0, with_slow = 0;
+        for (size_t n = 0; n < contacts.contacts.size(); ++n) {
+            const Vector3d r = contacts.contacts[n].r_V.cast<double>();
+            const double v = std::abs(spin) *
+                             std::hypot(axis.cross(r).norm(), 2.0 / 3 * std::sqrt(contacts.areas[n] / M_PI));
+            power += 0.5 * contacts.contacts[n].force * v;
+            with_slow += 0.5 * contacts.contacts[n].force * v * v / (v + kPrompt.slow_speed);
+        }
+        EXPECT_NEAR(-axis.dot(felt.torque) * spin, with_slow, 1e-5 * power);
+        EXPECT_NEAR(bench.tick.record.axis_torque * std::abs(spin), with_slow, 1e-5 * power);
+        EXPECT_NEAR(bench.tick.record.cutting_power, power, 1e-5 * power);
+    }
+    EXPECT_LT(kPrompt.slow_speed, 0.01 * 4000 * bench.tool.burr.radius);  // what "out of the way" means
+}
+
+TEST_F(CuttingForceTest, IsMinusTheGradientOfItsEnergyForFiniteStepsToo) {
+    contacts.addOnBall(random, bench.tool.burr.radius, 30);
+    bench.tick.velocity = {0.02, -0.05, 0.03};
+    bench.tick.angular_velocity = {1, 2, -3};
+    feltAfterBegin();
+    const auto energy = [&](const Pose& pose) { return cutting.energy(bench.tick, pose); };
+    for (const double turn : {1e-3, 0.1, 1.0}) {
+        const Pose pose =
+            bench.tick.X_VT_start.incremented({1e-4, -2e-4, 1e-4}, turn * Vector3d(0.4, 0.8, -0.5));
+        const double scale = energy(pose).wrench.force.norm() + energy(pose).wrench.torque.norm() / 1e-3;
+        test::expectWrenchIsGradient(energy, pose, 1e-6, 1e-3, 1e-5 * scale);
+    }
+}
+
+TEST_F(CuttingForceTest, HoldsBackTheToolsOwnMotion) {
+    contacts.addOnBall(random, bench.tool.burr.radius, 30);
+    feltAfterBegin();
+    const auto energy = [&](const Pose& pose) { return cutting.energy(bench.tick, pose); };
+    const EnergyTerm at_start = energy(bench.tick.X_VT_start);
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> modes(at_start.stiffness);
+    EXPECT_GE(modes.eigenvalues()[0], -1e-12 * modes.eigenvalues()[5]);
+    const Vector3d step(1e-5, 0, 0);
+    const Vector3d change = energy(bench.tick.X_VT_start.incremented(step, Vector3d::Zero())).wrench.force -
+                            at_start.wrench.force;
+    EXPECT_LT(change.dot(step), 0);
+}
+
+TEST_F(CuttingForceTest, IsNothingForAStandingBurrAndOffTheBurr) {
+    contacts.addOnBall(random, bench.tool.burr.radius, 10);
+    bench.tick.spin_speed = 0;
+    EXPECT_EQ(feltAfterBegin().wrench.force.norm(), 0);
+    EXPECT_EQ(bench.tick.record.axis_torque, 0);
+    bench.tick.spin_speed = bench.tool.burr.speed;
+    std::fill(contacts.on_burr.begin(), contacts.on_burr.end(), uint8_t(0));
+    EXPECT_EQ(feltAfterBegin().wrench.force.norm(), 0);
+    EXPECT_EQ(bench.tick.record.burr_force, 0);
+}
+
+// The pole of a burr does not move: what is left there is the patch's own turning.
+TEST_F(CuttingForceTest, PoleTurnsButDoesNotPull) {
+    const Vector3d axis = bench.tick.axis();
+    const double area = 1e-8, rho = 2.0 / 3 * std::sqrt(area / M_PI);
+    contacts.add(-bench.tool.burr.radius * axis, axis, 2, area);
+    const Wrench felt = feltAfterBegin().wrench;
+    const double v = bench.tool.burr.speed * rho;
+    EXPECT_LT(felt.force.norm(), 1e-4);
+    EXPECT_NEAR(-felt.torque.dot(axis), 0.5 * 2 * rho * v / (v + kPrompt.slow_speed), 1e-8);
+}
+
+TEST_F(CuttingForceTest, FollowsAChangeOfLoadWithItsTimeConstant) {
+    constexpr double kTau = 20e-3;
+    CuttingForce smooth({.slow_speed = 0.01, .smoothing_time = kTau});
+    const Vector3d out = bench.tick.axis().unitOrthogonal();
+    contacts.add(bench.tool.burr.radius * out, -out, 4);
+    contacts.giveTo(bench.tick);
+    for (int n = 0; n < 20; ++n) smooth.begin(bench.tick);
+    smooth.finish(bench.tick);
+    // Backward Euler: 1 − (1 + dt/τ)^(−n).
+    const double full = 0.5 * 4 * 1e-3, share = 1 - std::pow(1 + bench.tick.dt / kTau, -20);
+    EXPECT_NEAR(bench.tick.record.axis_torque, share * full, 0.01 * full);
+    smooth.restart();
+    smooth.finish(bench.tick);
+    EXPECT_EQ(bench.tick.record.axis_torque, 0);
+}
+
+}  // namespace
+}  // namespace bonemill
