@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/config/field_unit.h"
+#include "common/config/material_check.h"
 #include "common/config/scene_tools.h"
 #include "common/config/user_error.h"
 
@@ -23,10 +24,11 @@ class SceneChecker {
     void checkTool(const scene::Tool& tool, const std::string& path) const;
     void checkWaypoints(const scene::SimulatedOperator& simulated_operator) const;
 
-  private:
     [[noreturn]] void refuse(const std::string& path, const std::string& why) const {
         throw UserError(placeOf(name_, lines_, path) + "field `" + path + "` " + why);
     }
+
+  private:
     void checkNumber(const FieldDescriptor& field, double value, const std::string& path,
                      std::string_view unit) const;
     void checkText(const std::string& text, const std::string& path) const;
@@ -182,6 +184,8 @@ void checkScene(const ParsedScene& parsed, const std::string& name) {
     checker.checkVolume(parsed.scene);
     checker.checkTools(parsed.scene);
     checker.checkWaypoints(parsed.scene.simulated_operator());
+    checkMaterials(parsed.scene,
+                   [&](const std::string& path, const std::string& why) { checker.refuse(path, why); });
 }
 
 }  // namespace bonemill

@@ -41,7 +41,8 @@ std::string readSceneText(const fs::path& file) {
 LoadedScene loadScene(const fs::path& file) {
     ParsedScene parsed = parseSceneText(readSceneText(file), file.string());
     checkScene(parsed, file.string());
-    return {std::move(parsed.scene), fs::absolute(file).parent_path().lexically_normal(), file};
+    return {std::move(parsed.scene), fs::absolute(file).parent_path().lexically_normal(), file,
+            std::move(parsed.lines)};
 }
 
 fs::path resolvePath(const LoadedScene& loaded, const std::string& path_in_scene) {

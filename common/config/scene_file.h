@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "proto/scene.pb.h"
+#include "common/config/scene_text.h"
 
 namespace bonemill {
 
@@ -12,6 +12,7 @@ struct LoadedScene {
     scene::Scene scene;
     std::filesystem::path directory;  // absolute folder of `file`: where the scene's relative paths start
     std::filesystem::path file;       // as given
+    FieldLines lines;                 // for messages: placeOf()
 };
 
 // Reads and checks a scene. Throws UserError with "file:line: ..." for a missing, unreadable or too large

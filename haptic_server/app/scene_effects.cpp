@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "haptic_server/app/scene_materials.h"
+
 namespace bonemill {
 namespace {
 
@@ -25,6 +27,7 @@ Burr burrOf(const scene::Tool& tool) {
 EffectConfigs effectConfigsOf(const scene::Scene& scene) {
     const scene::Effects& effects = scene.effects();
     EffectConfigs configs;
+    configs.materials = materialTableOf(scene);
     if (effects.has_time_removal())
         configs.time_removal = {effects.time_removal().rate_density_per_s() * kDensityCountsPerUnit};
     if (effects.has_add_material())

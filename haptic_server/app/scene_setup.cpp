@@ -5,6 +5,7 @@
 #include "common/config/scene_tools.h"
 #include "common/config/user_error.h"
 #include "haptic_server/app/scene_effects.h"
+#include "haptic_server/app/scene_materials.h"
 #include "haptic_server/tick/tick_budget.h"
 #include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/import_volume.h"
@@ -141,6 +142,19 @@ void fitToolsToBone(Simulation& simulation, const scene::Scene& scene) {
     }
 }
 
+// What the scanned bone was made of, for the effects that ask for it.
+void addProperties(EffectConfigs& effects, const LoadedScene& loaded, const VoxelVolume& volume,
+                   const std::vector<MaterialId>& material_ids) {
+    if (!wantsProperties(loaded.scene)) return;
+    const Eigen::Vector3i& dims = volume.dims();
+    effects.properties = std::make_shared<const BoneProperties>(volume, [&](const Eigen::Vector3i& v) {
+        const size_t at =
+            size_t(v.x()) + size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z()));
+        return material_ids.empty() ? kNoMaterial : material_ids[at];
+    });
+    effects.protected_field = protectedFieldOf(loaded, *effects.properties, volume.spacing());
+}
+
 }  // namespace
 
 std::vector<SpoTool> Simulation::spoTools() const {
@@ -201,11 +215,13 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     if (simulation.mapping.is_iso_proposed)
         simulation.remarks.push_back("no volume.iso_value in the scene: " +
                                      textOf(simulation.mapping.iso_value) + " proposed from the histogram");
+    const std::vector<MaterialId> material_ids = materialIdsOf(loaded, raw);
     VoxelVolume volume = densify(std::move(raw), simulation.mapping);
     removeSmallPieces(volume, scene.volume().smallest_piece_voxels());
     clearFarFromBone(volume);
     const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), volume.geometry());
     simulation.tick = tickConfigOf(scene, volume.spacing().minCoeff());
+    addProperties(simulation.tick.effects, loaded, volume, material_ids);
     simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells, shellConfigOf(scene));
     warnOfLargeLeaves(simulation);
     fitToolsToBone(simulation, scene);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "haptic_server/volume/bone_properties.h"
+#include "haptic_server/volume/distance_field.h"
 #include "haptic_server/volume/material_properties.h"
 
 namespace bonemill {
@@ -20,6 +21,7 @@ struct AddMaterialConfig {
 struct EffectConfigs {
     std::shared_ptr<const BoneProperties> properties;  // null: no effect asks for it
     MaterialTable materials;
+    std::shared_ptr<const DistanceField> protected_field;  // null: no effect asks for it
 
     std::optional<TimeRemovalConfig> time_removal;
     std::optional<AddMaterialConfig> add_material;

@@ -1,0 +1,16 @@
+// Do the materials of a scene, and the effects that need them, agree?
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "proto/scene.pb.h"
+
+namespace bonemill {
+
+// Path of a field, and what is wrong with it; throws.
+using RefuseField = std::function<void(const std::string& path, const std::string& why)>;
+
+void checkMaterials(const scene::Scene& scene, const RefuseField& refuse);
+
+}  // namespace bonemill

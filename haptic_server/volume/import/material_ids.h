@@ -1,0 +1,30 @@
+// Which material a scanned voxel is of: by its raw value or by a volume of labels on the same grid.
+//
+// Not RT-safe (allocates); no shared state.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "haptic_server/volume/material_properties.h"
+#include "haptic_server/volume/raw_volume.h"
+
+namespace bonemill {
+
+// A voxel is of the material if its raw value lies in the range or its label is one of these.
+struct MaterialRule {
+    bool has_range = false;
+    std::optional<double> from, below;  // raw values: included, not included; absent: no end
+    std::vector<uint32_t> labels;       // 0 .. kMostLabel
+};
+inline constexpr uint32_t kMostLabel = 65535;
+
+// Of each voxel, x fastest; of several rules that fit the last one wins. Values that are not finite fit no
+// range. `labels` may be null; its file may store the axes in another order or direction as long as the
+// voxels are the same. Throws UserError, beginning with the labels' `label_file`, when they are not, or are
+// no whole numbers.
+std::vector<MaterialId> materialIds(const RawVolume& raw, std::span<const MaterialRule> rules,
+                                    const RawVolume* labels, const std::string& label_file);
+
+}  // namespace bonemill
