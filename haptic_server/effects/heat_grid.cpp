@@ -15,9 +15,11 @@ constexpr double kPoolShare = 0.8;  // of the bricks that could have their turn 
 constexpr size_t kMostBricks = 1024, kMostDeadBricks = 16384;
 constexpr size_t kLookupsPerStep = 4;  // of a brick's cubes in the volume
 constexpr int64_t kMostBricksToRevisit = 512;
-// K: a brick whose border is warmer than that opens its neighbour; one that is all cooler is closed. Cold
-// matters less.
-constexpr float kWarm = 0.05f, kSettled = 0.02f, kCold = -2, kSettledCold = -0.5f;
+// K: a brick whose border is warmer than that opens its neighbour; one that is cooler all over is closed when
+// it has been open for a while. Cold matters less.
+constexpr float kWarm = 0.01f, kCold = -2, kSettledCold = -0.5f;
+constexpr double kShortestLife = 1;        // s
+constexpr double kSpareForSources = 0.25;  // of the pool, that heat on its way does not take
 
 const std::array<Eigen::Vector3i, 6> kSides = {
     {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
@@ -82,9 +84,9 @@ HeatGrid::Brick* HeatGrid::findOrOpen(const Eigen::Vector3i& index) noexcept {
     active_.push_back(slot);
     directory_[directoryIndex(index)] = slot;
     Brick& brick = pool_[slot];
-    brick = {};
+    brick = Brick{};
     brick.index = index;
-    brick.last_time = now_;
+    brick.opened = brick.last_time = now_;
     lookUpBone(brick);
     return &brick;
 }
@@ -189,6 +191,7 @@ void HeatGrid::step() noexcept {
 
 // Those that heat is about to come to.
 void HeatGrid::openNeighbours(Brick& brick) noexcept {
+    if (double(free_.size()) < kSpareForSources * double(pool_.size())) return;
     for (size_t side = 0; side < kSides.size(); ++side) {
         const Eigen::Vector3i neighbour = brick.index + kSides[side];
         if (lookups_ == 0 || !isInside(neighbour) || find(neighbour)) continue;
@@ -293,7 +296,7 @@ void HeatGrid::removeDead(const Brick& brick, int cell) noexcept {
 }
 
 bool HeatGrid::isSettled(const Brick& brick) const noexcept {
-    return brick.hottest < kSettled && brick.coldest > kSettledCold;
+    return brick.hottest < kWarm && brick.coldest > kSettledCold && now_ - brick.opened > kShortestLife;
 }
 
 void HeatGrid::close(size_t place) noexcept {

@@ -45,9 +45,9 @@ class HeatGrid {
     static constexpr uint32_t kNone = ~uint32_t(0);
 
     struct Brick {
-        Eigen::Vector3i index;
-        double last_time;  // s: up to then its faces are done
-        float hottest;     // above body temperature; of its bone
+        Eigen::Vector3i index = Eigen::Vector3i::Zero();
+        double opened, last_time;  // s; up to the latter its faces are done
+        float hottest;             // above body temperature; of its bone
         float coldest;
         bool is_stale;           // whether cells are bone is to be looked up anew
         float excess[kCells];    // temperature above the body's

@@ -78,7 +78,8 @@ TEST(HeatGrid, PointSourceSpreadsAsInTheInfiniteMedium) {
     HeatGrid heat(config, bone, kDt);
     constexpr double kHeat = 1;  // J
     heat.addHeat(cubeAt(32, 32, 32), Vector3d::Zero(), kHeat);
-    for (const double seconds : {4.0, 8.0}) {
+    // A heap of heat in one cube is a point only when it has spread over many: the error falls as 1 / time.
+    for (const double seconds : {8.0, 16.0}) {
         run(heat, seconds - heat.time());
         const double spread = 4 * diffusivity(config) * seconds;
         const double peak = kHeat / (config.heat_capacity * std::pow(M_PI * spread, 1.5));
@@ -88,7 +89,8 @@ TEST(HeatGrid, PointSourceSpreadsAsInTheInfiniteMedium) {
             const double expected = peak * std::exp(-r * r / spread);
             const double excess =
                 heat.temperatureAt(cubeAt(32 + away.x(), 32 + away.y(), 32 + away.z())) - kBody;
-            EXPECT_NEAR(excess, expected, 0.04 * peak) << away.transpose() << " after " << seconds << " s";
+            EXPECT_NEAR(excess, expected, 0.35 / seconds * peak)
+                << away.transpose() << " after " << seconds << " s";
         }
     }
 }

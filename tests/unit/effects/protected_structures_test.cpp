@@ -25,12 +25,12 @@ struct ProtectedBench : TissueBench {
 };
 
 TEST(ProtectedStructures, DistanceIsThatOfTheBurrsSurface) {
-    ProtectedBench bench(layer(0, 2e-3 + kVoxel / 2));  // its last voxels' faces lie at 2.0625 mm
+    ProtectedBench bench(layer(0, 3e-3 + kVoxel / 2));  // its last voxels' faces lie at 3.0625 mm
     HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
     bool was_far = false, was_near = false;
     for (const TickRecord& record : bench.run(tick, straightPath(TissueBench::at({kMiddle, kMiddle, 9e-3}),
                                                                  {kMiddle, kMiddle, 6e-3}, 500, 0))) {
-        const double expected = record.p_WT[2] - kBurr - 2.0625e-3;
+        const double expected = record.p_WT[2] - kBurr - 3.0625e-3;
         const EffectRecord& effects = record.effects;
         if (expected > 3e-3) {
             EXPECT_EQ(effects.protected_id, 0u);
@@ -78,9 +78,10 @@ TEST(ProtectedStructures, ABurrThatStandsStillHarmsNothing) {
     EXPECT_EQ(
         bench.run(tick, straightPath(TissueBench::at(place), place, 50, 0)).back().effects.damaged_volume, 0);
     const auto records = bench.run(tick, straightPath(TissueBench::at(place), place, 50, kButtonRemove));
-    // Soft tissue that is no bone: inside the burr it is lost as well. What lies in its lower 0.8 mm.
-    const double cap = 0.8e-3, expected = M_PI * cap * cap * (kBurr - cap / 3);
-    EXPECT_NEAR(records.back().effects.damaged_volume / expected, 1, 0.15);
+    // Soft tissue that is no bone: inside the burr it is lost as well. All but the burr's upper 0.2 mm.
+    const double cap = 0.2e-3;
+    const double expected = 4.0 / 3 * M_PI * std::pow(kBurr, 3) - M_PI * cap * cap * (kBurr - cap / 3);
+    EXPECT_NEAR(records.back().effects.damaged_volume / expected, 1, 0.05);
 }
 
 TEST(ProtectedStructures, ForceIsThatOfTheContactsOnThem) {

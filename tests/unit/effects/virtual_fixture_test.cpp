@@ -98,7 +98,7 @@ TEST(VirtualFixture, StiffnessIsPositiveSemiDefiniteAndBounded) {
         const EnergyTerm term = fixture.at(randomPose(random));
         const Vector6d values = Eigen::SelfAdjointEigenSolver<Matrix6d>(term.stiffness).eigenvalues();
         EXPECT_GE(values.minCoeff(), -1e-9 * values.maxCoeff());
-        EXPECT_LE(term.stiffness.topLeftCorner<3, 3>().norm(), 3 * 3000);
+        EXPECT_LE((term.stiffness.topLeftCorner<3, 3>().norm()), 3 * 3000);
         EXPECT_GE(term.energy, 0);
     }
 }
