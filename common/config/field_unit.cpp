@@ -9,10 +9,14 @@ namespace bonemill {
 
 std::string_view unitOfField(std::string_view field_name) noexcept {
     // A suffix stands before every shorter suffix that it ends with.
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kUnits{{
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 27> kUnits{{
         {"_density_per_s", "density/s"},
+        {"_w_per_m2_k", "W/(m²·K)"},
+        {"_w_per_m_k", "W/(m·K)"},
+        {"_j_per_cm3_k", "J/(cm³·K)"},
         {"_mm_per_s", "mm/s"},
         {"_deg_per_s", "deg/s"},
+        {"_per_s", "1/s"},
         {"_n_per_mm3", "N/mm³"},
         {"_n_per_mm", "N/mm"},
         {"_n_per_m", "N/m"},
@@ -32,6 +36,7 @@ std::string_view unitOfField(std::string_view field_name) noexcept {
         {"_hu", "HU"},
         {"_n", "N"},
         {"_s", "s"},
+        {"_c", "°C"},
     }};
     for (const auto& [suffix, unit] : kUnits)
         if (field_name.ends_with(suffix)) return unit;

@@ -33,7 +33,7 @@ void checkWhere(const scene::Scene& scene, int index, const RefuseField& refuse)
                "= " + numberText(material.from_value()) + " is not below below_value = " +
                    numberText(material.below_value()) + ": no voxel is of this material");
     if (material.label_size() > 0 && scene.volume().label_path().empty())
-        refuse(pathOf(index) + ".label", "needs volume.label_path: name the file with the labels");
+        refuse(pathOf(index) + ".label[0]", "needs volume.label_path: name the file with the labels");
 }
 
 void checkProtection(const scene::Scene& scene, const RefuseField& refuse) {

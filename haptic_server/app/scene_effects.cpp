@@ -29,6 +29,24 @@ SpindleConfig spindleConfigOf(const scene::Spindle& spindle) {
             .drag = spindle.drag_nmm_per_krpm() * kTorquePerKrpm};
 }
 
+ThermalConfig thermalConfigOf(const scene::Thermal& thermal) {
+    constexpr double kPerCubicCentimetre = 1e6;  // 1/m³
+    ThermalConfig config;
+    config.heat_share = thermal.heat_share();
+    config.irrigation_radius = thermal.irrigation_radius_mm() * kMillimetre;
+    config.heat = {.cell = thermal.cell_mm() * kMillimetre,
+                   .conductivity = thermal.conductivity_w_per_m_k(),
+                   .heat_capacity = thermal.heat_capacity_j_per_cm3_k() * kPerCubicCentimetre,
+                   .perfusion = thermal.perfusion_per_s(),
+                   .body_temperature = thermal.body_temperature_c(),
+                   .wet_transfer = thermal.irrigation_w_per_m2_k(),
+                   .irrigation_temperature = thermal.irrigation_temperature_c(),
+                   .dry_transfer = thermal.dry_w_per_m2_k(),
+                   .necrosis_temperature = thermal.necrosis_temperature_c(),
+                   .necrosis_time = thermal.necrosis_time_s()};
+    return config;
+}
+
 }  // namespace
 
 Burr burrOf(const scene::Tool& tool) {
@@ -63,6 +81,16 @@ EffectConfigs effectConfigsOf(const scene::Scene& scene) {
         configs.burr_vibration = {effects.burr_vibration().amplitude_per_force(),
                                   effects.burr_vibration().max_amplitude_n(),
                                   effects.burr_vibration().diamond_factor()};
+    if (effects.has_virtual_fixture()) {
+        const scene::VirtualFixture& fixture = effects.virtual_fixture();
+        configs.virtual_fixture = {.distance = fixture.distance_mm() * kMillimetre,
+                                   .stiffness = fixture.stiffness_n_per_mm() / kMillimetre,
+                                   .max_force = fixture.max_force_n(),
+                                   .hand_force_scale = fixture.hand_force_scale()};
+    }
+    if (effects.has_thermal()) configs.thermal = thermalConfigOf(effects.thermal());
+    if (effects.has_protected_structures())
+        configs.protected_structures = {effects.protected_structures().warning_distance_mm() * kMillimetre};
     return configs;
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "haptic_server/effects/heat_config.h"
 #include "haptic_server/volume/bone_properties.h"
 #include "haptic_server/volume/distance_field.h"
 #include "haptic_server/volume/material_properties.h"
@@ -44,6 +45,24 @@ struct SurfaceFrictionConfig {
     double coefficient = 0.2;           // μ
     double presliding_stiffness = 5e4;  // N/m
 };
+// Needs materials with is_protected, and EffectConfigs::protected_field.
+struct ProtectedStructuresConfig {
+    double warning_distance = 2e-3;  // m
+};
+
+// Needs EffectConfigs::protected_field.
+struct VirtualFixtureConfig {
+    double distance = 1e-3;       // m, of the burr's surface
+    double stiffness = 2000;      // N/m
+    double max_force = 10;        // N
+    double hand_force_scale = 1;  // 0 .. 1
+};
+
+struct ThermalConfig {
+    double heat_share = 0.5;           // of the cutting power
+    double irrigation_radius = 10e-3;  // m
+    HeatConfig heat;
+};
 
 struct EffectConfigs {
     std::shared_ptr<const BoneProperties> properties;  // null: no effect asks for it
@@ -56,8 +75,11 @@ struct EffectConfigs {
     std::optional<CuttingForceConfig> cutting_force;
     std::optional<SurfaceFrictionConfig> surface_friction;
     std::optional<BurrVibrationConfig> burr_vibration;
+    std::optional<VirtualFixtureConfig> virtual_fixture;
     std::optional<TimeRemovalConfig> time_removal;
     std::optional<AddMaterialConfig> add_material;
+    std::optional<ThermalConfig> thermal;
+    std::optional<ProtectedStructuresConfig> protected_structures;
 };
 
 }  // namespace bonemill

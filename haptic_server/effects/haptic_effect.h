@@ -81,7 +81,8 @@ class HapticEffect {
     }
     // As SolveEnergy::at().
     virtual EnergyTerm energy(const EffectTick&, const Pose& /*X_VT*/) const noexcept { return {}; }
-    // On the hand about the tool point that it holds, before the limits of what the hand may feel.
+    // Changes what is on the hand about the tool point that it holds (contact, coupling and the effects
+    // before this one), before the limits of what the hand may feel.
     virtual void addToHand(const EffectTick&, Wrench& /*wrench_V*/) noexcept {}
     // Changes the bone. Not called while a snapshot is taken or the bone is put back.
     virtual void mill(EffectTick&, BoneModel&, MillingResult&) noexcept {}

@@ -177,9 +177,10 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
 void HapticTick::addEffectsToHand(Wrench& wrench_hand_W) noexcept {
     if (effects_.isEmpty()) return;
     const Eigen::Quaterniond R_WV = X_VW_.rotation.conjugate();
-    Wrench added_V;
-    effects_.addToHand(added_V);
-    wrench_hand_W = wrench_hand_W + added_V.rotatedBy(R_WV);
+    const Wrench before_V = wrench_hand_W.rotatedBy(X_VW_.rotation);
+    Wrench after_V = before_V;
+    effects_.addToHand(after_V);
+    wrench_hand_W = wrench_hand_W + (after_V + -before_V).rotatedBy(R_WV);
 }
 
 SpoStep HapticTick::moveAndFeel(double force_factor, uint32_t& faults) noexcept {

@@ -10,7 +10,8 @@
 namespace bonemill {
 namespace {
 
-constexpr double kMostShift = 0.25;  // voxels: headers round
+constexpr double kMostShift = 0.25;    // voxels, anywhere: headers round
+constexpr double kMostStretch = 0.05;  // per voxel: more is another size
 
 std::string sizeText(const Eigen::Vector3i& dims) {
     return std::to_string(dims.x()) + " x " + std::to_string(dims.y()) + " x " + std::to_string(dims.z());
@@ -30,7 +31,8 @@ struct LabelOrder {
 Eigen::Matrix3i axesBetween(const Eigen::Matrix3d& voxel_to_label, const std::string& label_file) {
     const Eigen::Matrix3i axes = voxel_to_label.array().round().cast<int>();
     const bool are_parallel = (axes.cwiseAbs().rowwise().sum().array() == 1).all() &&
-                              (axes.cwiseAbs().colwise().sum().array() == 1).all();
+                              (axes.cwiseAbs().colwise().sum().array() == 1).all() &&
+                              (voxel_to_label - axes.cast<double>()).cwiseAbs().maxCoeff() < kMostStretch;
     if (!are_parallel) refuse(label_file, "has voxels of another size or direction than the volume");
     return axes;
 }

@@ -15,8 +15,8 @@ namespace bonemill {
 // A voxel is of the material if its raw value lies in the range or its label is one of these.
 struct MaterialRule {
     bool has_range = false;
-    std::optional<double> from, below;  // raw values: included, not included; absent: no end
-    std::vector<uint32_t> labels;       // 0 .. kMostLabel
+    std::optional<double> from = {}, below = {};  // raw values: included, not included; absent: no end
+    std::vector<uint32_t> labels = {};            // 0 .. kMostLabel
 };
 inline constexpr uint32_t kMostLabel = 65535;
 

@@ -8,7 +8,6 @@ namespace bonemill {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
-constexpr int64_t kMostVoxelsAtOnce = 20 << 20;
 
 struct NearestVoxel {
     float squared = kNone;  // m², between centres
@@ -129,10 +128,10 @@ class FieldBuilder {
     }
     bool isEmpty() const { return marked_.isEmpty(); }
 
-    std::unique_ptr<DistanceField> build(double reach) {
+    std::unique_ptr<DistanceField> build(double reach, int64_t voxels_at_once) {
         const IndexBox box{marked_.min - halo_, marked_.max + halo_};
         auto field = std::make_unique<DistanceField>(box, spacing_, reach);
-        const int layers = layersAtOnce(*field);
+        const int layers = layersAtOnce(*field, voxels_at_once);
         for (int first = 0; first < field->layerCount(); first += layers)
             fill(*field, first, std::min(layers, field->layerCount() - first));
         return field;
@@ -143,10 +142,10 @@ class FieldBuilder {
         const MaterialId id = properties_.material(voxel);
         return materials_[id].is_protected ? id : kNoMaterial;
     }
-    int layersAtOnce(const DistanceField& field) const {
+    int layersAtOnce(const DistanceField& field, int64_t voxels_at_once) const {
         const IndexBox one = field.layer(0);
         const int64_t slice = one.count() / (one.max.z() - one.min.z() + 1);
-        const int64_t slices = kMostVoxelsAtOnce / slice - 2 * halo_.z();
+        const int64_t slices = voxels_at_once / slice - 2 * halo_.z();
         return int(std::max<int64_t>(1, slices / BrickMap::kEdge));
     }
     void fill(DistanceField& field, int first, int count) {
@@ -180,10 +179,11 @@ class FieldBuilder {
 
 std::unique_ptr<DistanceField> protectedDistance(const BoneProperties& properties,
                                                  const MaterialTable& materials,
-                                                 const Eigen::Vector3d& spacing, double reach) {
+                                                 const Eigen::Vector3d& spacing, double reach,
+                                                 int64_t voxels_at_once) {
     FieldBuilder builder(properties, materials, spacing, reach);
     if (builder.isEmpty()) return nullptr;
-    return builder.build(reach);
+    return builder.build(reach, voxels_at_once);
 }
 
 }  // namespace bonemill

@@ -12,9 +12,13 @@
 
 namespace bonemill {
 
+// In slabs of so many voxels, with what lies within reach of them.
+inline constexpr int64_t kVoxelsAtOnce = 20 << 20;
+
 // Null: no voxel is of a protected material. reach in m, > 0.
 std::unique_ptr<DistanceField> protectedDistance(const BoneProperties& properties,
                                                  const MaterialTable& materials,
-                                                 const Eigen::Vector3d& spacing, double reach);
+                                                 const Eigen::Vector3d& spacing, double reach,
+                                                 int64_t voxels_at_once = kVoxelsAtOnce);
 
 }  // namespace bonemill

@@ -1,0 +1,42 @@
+#include "haptic_server/effects/burr_probes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bonemill {
+
+BurrProbes::BurrProbes(const Burr& burr) noexcept {
+    if (burr.kind == BurrKind::kBall) {
+        add({Eigen::Vector3d::Zero(), burr.radius});
+        return;
+    }
+    const double half = burr.length / 2;
+    for (size_t n = 0; n < kBalls; ++n) {
+        const double y = half * (2.0 * (double(n) + 0.5) / kBalls - 1);
+        const Eigen::Vector3d center(0, y, 0);
+        add({center, std::max(0.0, -burr.signedDistance(center))});
+    }
+    addRim(half, burr.radius);
+    addRim(-half, burr.kind == BurrKind::kCone ? burr.tip_radius : burr.radius);
+}
+
+void BurrProbes::addRim(double y, double radius) noexcept {
+    for (size_t n = 0; n < kRim; ++n) {
+        const double angle = 2 * M_PI * double(n) / kRim;
+        add({Eigen::Vector3d(radius * std::cos(angle), y, radius * std::sin(angle)), 0});
+    }
+}
+
+NearestStructure nearestStructure(const DistanceField& field, const BurrProbes& burr,
+                                  const Pose& X_VT) noexcept {
+    NearestStructure nearest{field.reach(), kNoMaterial};
+    for (const BurrProbe& probe : burr) {
+        const DistanceSample sample = field.at(X_VT * probe.center_T);
+        const double distance = sample.distance - probe.radius;
+        if (sample.nearest == kNoMaterial || distance >= nearest.distance) continue;
+        nearest = {distance, sample.nearest};
+    }
+    return nearest;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,44 @@
+// A burr as a few balls and points, whose distances to a structure stand for the burr's own. RT-safe.
+#pragma once
+
+#include <array>
+
+#include "haptic_server/tool/burr.h"
+#include "haptic_server/volume/distance_field.h"
+
+namespace bonemill {
+
+struct BurrProbe {
+    Eigen::Vector3d center_T = Eigen::Vector3d::Zero();
+    double radius = 0;  // m; 0: a point
+};
+
+// A ball is one probe. Of a cylinder or cone: balls inside of it along the axis, and points on both rims.
+class BurrProbes {
+  public:
+    BurrProbes() = default;
+    explicit BurrProbes(const Burr& burr) noexcept;
+
+    const BurrProbe* begin() const noexcept { return probes_.data(); }
+    const BurrProbe* end() const noexcept { return probes_.data() + count_; }
+    size_t size() const noexcept { return count_; }
+
+    static constexpr size_t kBalls = 5, kRim = 8;
+    static constexpr size_t kMost = kBalls + 2 * kRim;
+
+  private:
+    void add(const BurrProbe& probe) noexcept { probes_[count_++] = probe; }
+    void addRim(double y, double radius) noexcept;
+
+    std::array<BurrProbe, kMost> probes_;
+    size_t count_ = 0;
+};
+
+struct NearestStructure {
+    double distance;  // m from the burr's surface; the field's reach: nothing within it
+    MaterialId material;
+};
+NearestStructure nearestStructure(const DistanceField& field, const BurrProbes& burr,
+                                  const Pose& X_VT) noexcept;
+
+}  // namespace bonemill

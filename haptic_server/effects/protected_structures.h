@@ -1,0 +1,41 @@
+// Watches the burr near protected structures: how far it is, how hard the tool presses on them, how much of
+// them was destroyed. Changes nothing.
+//
+// Damaged is a voxel of a protected material once a turning burr has covered its centre, or it has lost its
+// bone. It counts once, and stays damaged though the bone be put back: what is counted is what was done in
+// the session.
+#pragma once
+
+#include "haptic_server/effects/burr_probes.h"
+#include "haptic_server/effects/effect_configs.h"
+#include "haptic_server/effects/haptic_effect.h"
+
+namespace bonemill {
+
+class ProtectedStructures final : public HapticEffect {
+  public:
+    // Keeps a reference to the bone.
+    ProtectedStructures(const ProtectedStructuresConfig& config, const EffectConfigs& all,
+                        const BoneModel& bone);
+    const char* name() const noexcept override { return "protected_structures"; }
+    void finish(EffectTick& tick) noexcept override;
+
+  private:
+    bool isProtected(MaterialId id) const noexcept { return is_protected_[id]; }
+    double pressedOn(const EffectTick& tick) const noexcept;
+    size_t countDamage(const EffectTick& tick) noexcept;
+    size_t damageInRow(const EffectTick& tick, const Pose& X_TV, const IndexBox& row) noexcept;
+    bool isDestroyed(const EffectTick& tick, const Pose& X_TV, const Eigen::Vector3i& voxel,
+                     size_t place) const noexcept;
+
+    ProtectedStructuresConfig config_;
+    std::shared_ptr<const BoneProperties> properties_;
+    std::shared_ptr<const DistanceField> field_;
+    const BoneModel& bone_;
+    std::array<bool, kMostMaterials + 1> is_protected_{};
+    std::vector<bool> is_damaged_;    // by place in properties_
+    Eigen::Vector2i next_row_{0, 0};  // y, z: where the last tick's search ended
+    size_t damaged_ = 0;              // voxels
+};
+
+}  // namespace bonemill

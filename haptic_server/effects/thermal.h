@@ -1,0 +1,31 @@
+// Heat from cutting into the bone: a share of the friction power μ_c |Ω| Σ F ρ of the burr's contacts goes
+// into the bone where they touch, spreads (heat_grid.h), and leaves it to irrigation while the pedal is down,
+// to the dry surroundings and to the blood. The rest of the power goes with the chips.
+#pragma once
+
+#include "haptic_server/effects/effect_configs.h"
+#include "haptic_server/effects/haptic_effect.h"
+#include "haptic_server/effects/heat_grid.h"
+
+namespace bonemill {
+
+class Thermal final : public HapticEffect {
+  public:
+    // Keeps a reference to the bone. dt: of a tick, s.
+    Thermal(const ThermalConfig& config, const BoneModel& bone, double dt);
+    const char* name() const noexcept override { return "thermal"; }
+    void restart() noexcept override { heat_.noteChangeEverywhere(); }
+    void mill(EffectTick&, BoneModel&, MillingResult& result) noexcept override {
+        heat_.noteChange(result.changed);
+    }
+    void finish(EffectTick& tick) noexcept override;
+
+  private:
+    double putIn(const EffectTick& tick) noexcept;
+
+    ThermalConfig config_;
+    HeatGrid heat_;
+    size_t turn_ = 0;
+};
+
+}  // namespace bonemill

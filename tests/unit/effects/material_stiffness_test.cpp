@@ -1,0 +1,49 @@
+#include "haptic_server/effects/material_stiffness.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/effects/tissue_bench.h"
+
+namespace bonemill {
+namespace {
+
+using namespace test;
+using Eigen::Vector3d;
+
+// Nerve, in this scene, where x > 4 mm.
+TissueBench benchOf(double factor) {
+    TissueBench bench(halfSpace({4e-3, 0, 0}, -Vector3d::UnitX()));
+    bench.config.effects.materials[kNerve].stiffness_factor = factor;
+    bench.config.gradient.coupling.saturation_force = 50;
+    return bench;
+}
+
+double depthAt(TissueBench& bench, double x) {
+    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    const Vector3d end(x, 4e-3, kTop + kBurr - 0.4e-3);
+    auto inputs = straightPath(TissueBench::at({x, 4e-3, kTop + kBurr + 0.2e-3}), end, 200, 0);
+    inputs.insert(inputs.end(), 100, inputs.back());
+    return bench.run(tick, inputs).back().max_penetration;
+}
+
+// Of a ball on a plane the force goes with κ depth²: a quarter of κ, twice the depth at nearly the same
+// force.
+TEST(MaterialStiffness, ContactYieldsByTheMaterialsFactor) {
+    TissueBench bench = benchOf(0.25);
+    EXPECT_NEAR(depthAt(bench, 6e-3) / depthAt(bench, 2e-3), 2, 0.1);
+}
+
+TEST(MaterialStiffness, IsNotThereWhereNoMaterialAsksForIt) {
+    EXPECT_FALSE(MaterialStiffness::isAskedFor(tissueTable()));
+    EXPECT_FALSE(MaterialStiffness::isAskedFor({}));
+    TissueBench plain = benchOf(1), soft = benchOf(0.5);
+    EXPECT_TRUE(MaterialStiffness::isAskedFor(soft.config.effects.materials));
+    const auto effects = [](const TissueBench& bench) {
+        return makeEffects(bench.config.effects, bench.bone, {1e-3, kBurr, 1000}).size();
+    };
+    EXPECT_EQ(effects(plain), 0u);
+    EXPECT_EQ(effects(soft), 1u);
+}
+
+}  // namespace
+}  // namespace bonemill

@@ -1,0 +1,105 @@
+#include "haptic_server/effects/protected_structures.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/effects/tissue_bench.h"
+
+namespace bonemill {
+namespace {
+
+using namespace test;
+using Eigen::Vector3d;
+
+constexpr double kMiddle = 4e-3;
+
+// A layer of nerve, across the whole block, from z = low to high.
+DistanceFunction layer(double low, double high) {
+    return [=](const Vector3d& p) { return std::max(low - p.z(), p.z() - high); };
+}
+
+struct ProtectedBench : TissueBench {
+    explicit ProtectedBench(const DistanceFunction& nerve) : TissueBench(nerve) {
+        config.effects.time_removal.emplace();
+        config.effects.protected_structures = {.warning_distance = 1e-3};
+    }
+};
+
+TEST(ProtectedStructures, DistanceIsThatOfTheBurrsSurface) {
+    ProtectedBench bench(layer(0, 3e-3 + kVoxel / 2));  // its last voxels' faces lie at 3.0625 mm
+    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    bool was_far = false, was_near = false;
+    for (const TickRecord& record : bench.run(tick, straightPath(TissueBench::at({kMiddle, kMiddle, 9e-3}),
+                                                                 {kMiddle, kMiddle, 6e-3}, 500, 0))) {
+        const double expected = record.p_WT[2] - kBurr - 3.0625e-3;
+        const EffectRecord& effects = record.effects;
+        if (expected > 3e-3) {
+            EXPECT_EQ(effects.protected_id, 0u);
+            was_far = true;
+        } else if (expected < 2.9e-3) {
+            EXPECT_NEAR(effects.protected_distance, expected, 1e-6);
+            EXPECT_EQ(effects.protected_id, kNerve);
+            was_near = true;
+        }
+        EXPECT_EQ(effects.events, 0u);
+        EXPECT_EQ(effects.damaged_volume, 0);
+    }
+    EXPECT_TRUE(was_far && was_near);
+}
+
+// Straight down through the layer: a hole of the burr's section.
+TEST(ProtectedStructures, DamageIsTheVolumeThatTheBurrSwept) {
+    ProtectedBench bench(layer(2.5e-3 - kVoxel / 2, 3.5e-3 - kVoxel / 2));
+    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    const Vector3d end(kMiddle, kMiddle, 1.2e-3);
+    auto inputs = straightPath(TissueBench::at({kMiddle, kMiddle, 6.2e-3}), end, 4000, kButtonRemove);
+    inputs.insert(inputs.end(), 500, inputs.back());
+    uint32_t events = 0;
+    double last_damage = 0;
+    for (const TickRecord& record : bench.run(tick, inputs)) {
+        const EffectRecord& effects = record.effects;
+        EXPECT_GE(effects.damaged_volume, last_damage);
+        EXPECT_EQ(bool(effects.events & kEventProtectedDamaged), effects.damaged_volume > last_damage);
+        EXPECT_EQ(bool(effects.events & kEventNearProtected), effects.protected_distance < 1e-3);
+        last_damage = effects.damaged_volume;
+        events |= effects.events;
+    }
+    EXPECT_TRUE(events & kEventProtectedTouched);
+    const double swept = M_PI * kBurr * kBurr * 1e-3;
+    EXPECT_NEAR(last_damage / swept, 1, 0.05);
+    // It stays, though nobody cuts any more.
+    EXPECT_EQ(bench.run(tick, straightPath(TissueBench::at(end), end, 10, 0)).back().effects.damaged_volume,
+              float(last_damage));
+}
+
+TEST(ProtectedStructures, ABurrThatStandsStillHarmsNothing) {
+    ProtectedBench bench(layer(3.5e-3, 7e-3));  // up into the air above the bone
+    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    const Vector3d place(kMiddle, kMiddle, kTop + kBurr + 0.2e-3);
+    EXPECT_EQ(
+        bench.run(tick, straightPath(TissueBench::at(place), place, 50, 0)).back().effects.damaged_volume, 0);
+    const auto records = bench.run(tick, straightPath(TissueBench::at(place), place, 50, kButtonRemove));
+    // Soft tissue that is no bone: inside the burr it is lost as well. All but the burr's upper 0.2 mm.
+    const double cap = 0.2e-3;
+    const double expected = 4.0 / 3 * M_PI * std::pow(kBurr, 3) - M_PI * cap * cap * (kBurr - cap / 3);
+    EXPECT_NEAR(records.back().effects.damaged_volume / expected, 1, 0.05);
+}
+
+TEST(ProtectedStructures, ForceIsThatOfTheContactsOnThem) {
+    for (const bool is_nerve_on_top : {true, false}) {
+        ProtectedBench bench(is_nerve_on_top ? layer(3e-3, 7e-3) : layer(0, 3e-3));
+        HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+        const Vector3d end(kMiddle, kMiddle, kTop + kBurr - 0.5e-3);
+        auto inputs = straightPath(TissueBench::at({kMiddle, kMiddle, 6.2e-3}), end, 200, 0);
+        inputs.insert(inputs.end(), 200, inputs.back());
+        const TickRecord last = bench.run(tick, inputs).back();
+        EXPECT_GT(last.f_hand_W[2], 0.5);
+        if (is_nerve_on_top)
+            EXPECT_NEAR(last.effects.protected_force / last.f_hand_W[2], 1, 0.03);
+        else
+            EXPECT_EQ(last.effects.protected_force, 0);
+        EXPECT_EQ(bool(last.effects.events & kEventProtectedTouched), is_nerve_on_top);
+    }
+}
+
+}  // namespace
+}  // namespace bonemill

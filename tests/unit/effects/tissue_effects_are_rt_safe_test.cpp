@@ -1,0 +1,36 @@
+// With materials, protected structures, fixture and heat the tick allocates nothing and takes no lock.
+#include <gtest/gtest.h>
+
+#include "tests/support/rt_guard/rt_probe.h"
+#include "tests/unit/effects/tissue_bench.h"
+
+namespace bonemill {
+namespace {
+
+using namespace test;
+
+TEST(TissueEffectsAreRtSafe, WhileMillingThroughAllOfThem) {
+    TissueBench bench(sphereAt({4e-3, 4e-3, 3e-3}, 0.8e-3));
+    EffectConfigs& effects = bench.config.effects;
+    effects.materials[kNerve].stiffness_factor = 0.5;
+    effects.time_removal.emplace();
+    effects.thermal.emplace();
+    effects.virtual_fixture = {.stiffness = 500, .hand_force_scale = 0.5};
+    effects.protected_structures.emplace();
+    bench.config.burr.speed = 3000;
+    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    ScriptedIo io(
+        straightPath(TissueBench::at({4e-3, 4e-3, 6.2e-3}), {4e-3, 4e-3, 2e-3}, 1500, kButtonRemove));
+    RtProbe probe;
+    while (tick.tick(io)) {
+    }
+    probe.stop();
+    EXPECT_EQ(probe.heapCalls(), 0u) << probe.firstCall();
+    EXPECT_EQ(probe.lockCalls(), 0u) << probe.firstCall();
+    const EffectRecord& last = io.records.back().effects;
+    EXPECT_GT(last.damaged_volume, 0);
+    EXPECT_GT(last.temperature, 37);
+}
+
+}  // namespace
+}  // namespace bonemill
