@@ -23,4 +23,12 @@ struct EffectConfigs {
     std::optional<AddMaterialConfig> add_material;
 };
 
+// Calls visit(name as in the scene, std::optional<Config>&) for each effect, in the order in which they act.
+// Configs: EffectConfigs, const or not.
+template <class Configs, class Visit>
+void forEachEffect(Configs& configs, Visit&& visit) {
+    visit("time_removal", configs.time_removal);
+    visit("add_material", configs.add_material);
+}
+
 }  // namespace bonemill
