@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "haptic_server/volume/bone_properties.h"
 
@@ -29,6 +31,21 @@ template <class Configs, class Visit>
 void forEachEffect(Configs& configs, Visit&& visit) {
     visit("time_removal", configs.time_removal);
     visit("add_material", configs.add_material);
+}
+
+// Of those that are listed. Allocates; start-up only.
+inline std::vector<std::string> effectNames(const EffectConfigs& configs) {
+    std::vector<std::string> names;
+    forEachEffect(configs, [&](const char* name, const auto& config) {
+        if (config) names.push_back(name);
+    });
+    return names;
+}
+inline EffectConfigs withoutEffect(EffectConfigs configs, const std::string& which) {
+    forEachEffect(configs, [&](const char* name, auto& config) {
+        if (name == which) config.reset();
+    });
+    return configs;
 }
 
 }  // namespace bonemill
