@@ -37,9 +37,9 @@ TEST_F(DescribeScene, SaysHowMuchATickMayDo) {
 }
 
 constexpr const char* kPress =
-    " simulated_operator { waypoint { time_s: 0 p_WT_mm { z: 5 } } waypoint { time_s: 1 p_WT_mm { z: 4.5 } "
+    " simulated_operator { waypoint { time_s: 0 p_WT_mm { z: 5 } } waypoint { time_s: 1 p_WT_mm { z: 4.95 } "
     "remove: true } "
-    "waypoint { time_s: 2 p_WT_mm { z: 4.5 } } }";
+    "waypoint { time_s: 2 p_WT_mm { z: 4.95 } } }";
 
 TEST_F(DescribeScene, SaysWhatEachListedEffectIsAndCosts) {
     const std::string text =
