@@ -4,13 +4,14 @@
 #include <sstream>
 
 #include "common/config/scene_table.h"
-#include "common/rt/clock.h"
+#include "haptic_server/app/describe_effects.h"
 #include "haptic_server/app/scene_setup.h"
 
 namespace bonemill {
 namespace {
 
 constexpr int kMeasuredTicks = 4000;
+constexpr int kRounds = 5;
 
 Pose waypointPose(const scene::SimulatedOperator::Waypoint& waypoint) {
     const scene::Vec3& p = waypoint.p_wt_mm();
@@ -19,37 +20,24 @@ Pose waypointPose(const scene::SimulatedOperator::Waypoint& waypoint) {
             Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
 }
 
-// Leads the device straight along the scenario's waypoints, spread over kMeasuredTicks.
-class ScenarioIo final : public TickIo {
-  public:
-    explicit ScenarioIo(const scene::SimulatedOperator& scenario) : scenario_(scenario) {
-        records.reserve(kMeasuredTicks);
-    }
-
-    bool read(DeviceInput& input) noexcept override {
-        const int waypoints = scenario_.waypoint_size();
-        if (waypoints == 0 || tick_ == kMeasuredTicks) return false;
-        const double at = double(tick_++) / kMeasuredTicks * std::max(1, waypoints - 1);
+// The device straight along the scenario's waypoints, spread over kMeasuredTicks.
+std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario) {
+    const int waypoints = scenario.waypoint_size();
+    std::vector<DeviceInput> path(waypoints > 0 ? kMeasuredTicks : 0);
+    for (int tick = 0; tick < int(path.size()); ++tick) {
+        const double at = double(tick) / kMeasuredTicks * std::max(1, waypoints - 1);
         const int from = std::min(int(at), waypoints - 1);
-        const Pose a = waypointPose(scenario_.waypoint(from));
-        const Pose b = waypointPose(scenario_.waypoint(std::min(from + 1, waypoints - 1)));
+        const Pose a = waypointPose(scenario.waypoint(from));
+        const Pose b = waypointPose(scenario.waypoint(std::min(from + 1, waypoints - 1)));
+        DeviceInput& input = path[size_t(tick)];
         input.X_WT_device = {a.position + (at - from) * (b.position - a.position),
                              a.rotation.slerp(at - from, b.rotation)};
-        input.buttons = (scenario_.waypoint(from).remove() ? kButtonRemove : 0u) |
-                        (scenario_.waypoint(from).add() ? kButtonAdd : 0u);
-        input.start_ns = monotonicNowNs();
-        return true;
+        input.buttons = (scenario.waypoint(from).remove() ? kButtonRemove : 0u) |
+                        (scenario.waypoint(from).add() ? kButtonAdd : 0u);
+        input.t_s = tick * 1e-3;
     }
-    int64_t write(const Wrench&) noexcept override { return monotonicNowNs(); }
-    int64_t now() noexcept override { return monotonicNowNs(); }
-    void push(const TickRecord& record) noexcept override { records.push_back(record); }  // reserved above
-
-    std::vector<TickRecord> records;
-
-  private:
-    const scene::SimulatedOperator& scenario_;
-    int tick_ = 0;
-};
+    return path;
+}
 
 std::string percentilesUs(std::vector<int64_t> durations_ns) {
     std::sort(durations_ns.begin(), durations_ns.end());
@@ -85,22 +73,17 @@ void describeBudget(const TickConfig& tick, std::ostream& out) {
         << "most milled cells in a tick: " << tick.most_milled_cells << '\n';
 }
 
-void describeCost(const LoadedScene& loaded, Simulation& simulation, std::ostream& out) {
-    ScenarioIo io(loaded.scene.simulated_operator());
-    HapticTick tick(simulation.tick, *simulation.bone, simulation.firstTool(), nullptr);
-    while (tick.tick(io)) {
-    }
-    if (io.records.empty()) {
+void describeCost(const std::vector<TickRecord>& records, std::ostream& out) {
+    if (records.empty()) {
         out << "cost per tick: not measured, the scene has no simulated_operator.waypoint to follow\n";
         return;
     }
     std::vector<int64_t> force, milling;
-    for (const TickRecord& record : io.records) {
+    for (const TickRecord& record : records) {
         force.push_back(record.force_ns);
         if (record.buttons) milling.push_back(record.compute_ns - record.force_ns);
     }
-    out << "cost per tick on this machine, along the scenario's waypoints (" << io.records.size()
-        << " ticks):\n"
+    out << "cost per tick on this machine, along the scenario's waypoints (" << records.size() << " ticks):\n"
         << "  contact, coupling, equilibrium: " << percentilesUs(force) << '\n';
     if (!milling.empty()) out << "  removal, addition and shell refresh: " << percentilesUs(milling) << '\n';
 }
@@ -124,7 +107,11 @@ std::string describeScene(const std::string& scene_file) {
         << "point-shell: " << describeLevels(bone.shell) << '\n';
     describeTools(simulation, out);
     describeBudget(simulation.tick, out);
-    describeCost(loaded, simulation, out);
+    const std::vector<DeviceInput> path = pathOf(loaded.scene.simulated_operator());
+    const EffectCosts costs =
+        measureEffectCosts(simulation.tick, *simulation.bone, simulation.firstTool(), path, kRounds);
+    out << describeEffects(loaded.scene, path.empty() ? nullptr : &costs);
+    describeCost(recordsOf(simulation.tick, *simulation.bone, simulation.firstTool(), path), out);
     out << "\nwhat the scene file sets (all else has its default):\n"
         << loaded.scene.DebugString() << "\nevery field, its unit, default and range:\n"
         << describeDefaults();

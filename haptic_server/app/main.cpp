@@ -17,6 +17,13 @@ int exitCodeOf(const CLI::App& app, const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : bonemill::kUserErrorExitCode;
 }
 
+void addSaveOptions(CLI::App& app, bonemill::SavePaths& save) {
+    app.add_option("--save-volume", save.volume, "at the end: the densities (.nrrd)");
+    app.add_option("--save-mesh", save.mesh, "at the end: the surface (.stl or .ply, mm)");
+    app.add_option("--save-difference", save.difference,
+                   "at the end: what was removed (positive) and added (negative) (.nrrd, docs/simulate.md)");
+}
+
 void addServerOptions(CLI::App& app, bonemill::ServerOptions& server) {
     app.add_option("--scene", server.scene, "scene file (.textproto)");
     app.add_option("--session", server.session, "session number: names the device link and the topics");
@@ -33,8 +40,9 @@ void addServerOptions(CLI::App& app, bonemill::ServerOptions& server) {
         ->capture_default_str();
     app.add_option("--trace", server.trace, "write one CSV line per tick");
     app.add_option("--report", server.report, "write the run's statistics as JSON");
-    app.add_option("--save-volume", server.save_volume, "write the milled volume (NRRD) at the end");
-    app.add_option("--save-mesh", server.save_mesh, "write the milled surface (STL, mm) at the end");
+    addSaveOptions(app, server.save);
+    app.add_option("--export-dir", server.export_dir,
+                   "folder for what clients' export commands write while the session runs");
     app.add_option("--rt-core", server.rt_core, "core of the haptic thread; -1: any");
     app.add_flag("--until-device-leaves", server.until_device_leaves,
                  "stop when device_daemon shuts down in order");
@@ -51,8 +59,7 @@ void addSimulateOptions(CLI::App& app, bonemill::SimulateOptions& simulate) {
     app.add_option("--tool", simulate.tool, "name of the scene's tool, or its number; default: the first")
         ->type_name("NAME|NUMBER");
     app.add_option("--trace", simulate.trace, "write one CSV line per tick");
-    app.add_option("--save-volume", simulate.save_volume, "write the milled volume (NRRD)");
-    app.add_option("--save-mesh", simulate.save_mesh, "write the milled surface (STL, mm)");
+    addSaveOptions(app, simulate.save);
 }
 
 void addReportOptions(CLI::App& app, bonemill::AccuracyReportOptions& report) {

@@ -10,6 +10,9 @@ namespace bonemill {
 
 Burr burrOf(const scene::Tool& tool);
 
+// Fields of scene::Effects from this number on are the viewer's: they cost the tick nothing.
+inline constexpr int kFirstViewerEffect = 20;
+
 // But for what depends on the volume.
 EffectConfigs effectConfigsOf(const scene::Scene& scene);
 

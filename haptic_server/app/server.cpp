@@ -14,9 +14,9 @@
 #include "common/rt/realtime.h"
 #include "haptic_server/app/device_link_io.h"
 #include "haptic_server/app/show_session.h"
-#include "haptic_server/app/surface_export.h"
 #include "haptic_server/mesh/mesh_rounds.h"
 #include "haptic_server/record/fault_names.h"
+#include "haptic_server/volume/import/nrrd_writer.h"
 
 namespace bonemill {
 namespace {
@@ -78,8 +78,9 @@ class Server {
           tick_(simulation_.tick, *simulation_.bone, simulation_.firstTool(), &history_, &accuracy_, &tools_),
           recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace),
           publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
+          bone_export_(history_, *simulation_.bone, options.export_dir),
           commands_(loaded_.scene, *simulation_.bone, recorder_,
-                    {history_, accuracy_, tools_, stop_requested_}, options.instructor_only),
+                    {history_, accuracy_, tools_, stop_requested_, bone_export_}, options.instructor_only),
           show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, commands_,
                 options.stream_mbit_per_s * 1e6 / 8) {
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
@@ -225,9 +226,12 @@ class Server {
                 all_written = false;
             }
         };
-        write(options_.save_volume, [this] { saveVolume(options_.save_volume, *simulation_.bone); });
-        write(options_.save_mesh,
-              [this] { saveMesh(options_.save_mesh, *simulation_.bone, meshWholeBone(*simulation_.bone)); });
+        const VoxelVolume& volume = simulation_.bone->volume;
+        const LeafLattice& lattice = simulation_.bone->lattice;
+        const SavePaths& save = options_.save;
+        write(save.volume, [&] { writeNrrd(save.volume, volume); });
+        write(save.mesh, [&] { saveMesh(save.mesh, volume, lattice, meshWholeBone(volume, lattice)); });
+        write(save.difference, [&] { saveDifference(save.difference, history_.scanned(), volume); });
         write(options_.report, [&] { statistics.writeJson(options_.report); });
         return all_written && !has_failed_ ? 0 : 1;
     }
@@ -249,6 +253,7 @@ class Server {
     std::atomic<bool> stop_requested_{false};
     std::atomic<bool> has_failed_{false};
     Publisher publisher_;
+    SessionExport bone_export_;
     SessionCommands commands_;
     ShowSession show_;
     PublishFigures published_;  // publisher thread's until it is joined
@@ -260,8 +265,8 @@ class Server {
 }  // namespace
 
 int runServer(const ServerOptions& options) {
-    for (const std::string& path : {options.report, options.save_volume, options.save_mesh})
-        requireWritable(path);
+    requireWritable(options.report);
+    requireWritable(options.save);
     dds::setNetwork(options.network);
     return Server(options).run();
 }

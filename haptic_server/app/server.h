@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/dds/network.h"
+#include "haptic_server/app/bone_files.h"
 
 namespace bonemill {
 
@@ -20,8 +21,8 @@ struct ServerOptions {
     std::string accuracy;  // accuracy.json of accuracy-report; empty: beside the scene, if there is one
     std::string trace;     // files to write; empty: none
     std::string report;
-    std::string save_volume;
-    std::string save_mesh;
+    SavePaths save;
+    std::string export_dir;   // where clients' export commands write; empty: they are refused
     int rt_core = kLastCore;  // core of the tick thread; kAnyCore (-1) leaves the choice to the kernel
     bool best_effort_rt = false;
     bool instructor_only = false;      // others may look, not command

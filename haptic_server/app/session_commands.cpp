@@ -1,6 +1,6 @@
 #include "haptic_server/app/session_commands.h"
 
-#include <algorithm>
+#include "haptic_server/app/repeated_text.h"
 
 #include "common/config/effect_check.h"
 
@@ -8,15 +8,6 @@ namespace bonemill {
 namespace {
 
 constexpr double kMm3PerM3 = 1e9;
-constexpr size_t kMostRepeated = 32;  // longer than any preset's name
-
-// Of what a client wrote: an answer is kept and sent to all.
-std::string repeated(const std::string& text) {
-    std::string start = text.substr(0, kMostRepeated);
-    std::replace_if(
-        start.begin(), start.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return text.size() > kMostRepeated ? start + "..." : start;
-}
 
 }  // namespace
 
@@ -50,6 +41,8 @@ std::string SessionCommands::carryOut(const topics::Command& command) {
         case topics::Command::kShutDown:
             controls_.stop_requested = true;
             return "done";
+        case topics::Command::kExport:
+            return controls_.bone_export.begin(command.export_());
         default:
             return "refused: this server does not know the action";
     }
@@ -71,7 +64,7 @@ std::string SessionCommands::refusalOf(const topics::Command& command) const {
 std::string SessionCommands::setAccuracy(const std::string& name) {
     const auto preset = presetOfName(name);
     if (name != "scene" && !preset)
-        return "refused: no preset is called '" + repeated(name) +
+        return "refused: no preset is called '" + repeatedText(name) +
                "'; thesis_2012, fast, balanced, exact or scene";
     if (!is_switchable_ && preset) return "refused: the scene says accuracy.switchable: false";
     if (preset == Preset::kThesis2012 && effect_of_gradient_law_)

@@ -7,6 +7,7 @@
 
 #include "haptic_server/app/recorder.h"
 #include "haptic_server/app/scene_setup.h"
+#include "haptic_server/app/session_export.h"
 #include "haptic_server/tick/accuracy_switch.h"
 #include "haptic_server/tick/checkpoints.h"
 #include "haptic_server/tick/tool_switch.h"
@@ -20,6 +21,7 @@ struct SessionControls {
     AccuracySwitch& accuracy;
     ToolSwitch& tools;
     std::atomic<bool>& stop_requested;
+    SessionExport& bone_export;
 };
 
 class SessionCommands {
@@ -28,8 +30,10 @@ class SessionCommands {
     SessionCommands(const scene::Scene& scene, const BoneModel& bone, const Recorder& recorder,
                     const SessionControls& controls, bool only_instructors);
 
-    // "done" or "refused: <why>".
+    // "done" or "refused: <why>"; empty: begun, its end comes with takeResult().
     std::string carryOut(const topics::Command& command);
+    // Of the command that was begun, once it has ended: "done" or "failed: <why>".
+    std::optional<std::string> takeResult() { return controls_.bone_export.takeResult(); }
     // Of the status: session clock, pause, checkpoints, what the bone has lost.
     void describe(topics::Status& status) const;
     const ToolSwitch& tools() const noexcept { return controls_.tools; }

@@ -133,9 +133,17 @@ void ShowSession::carryOutCommands() {
     for (const topics::Command& command : publisher_.takeCommands()) {
         const std::string result = commands_.carryOut(command);
         if (commands_.tools().chosen() != scene_info_.tool_index()) publishSceneInfo();
-        publishStatus();
-        publisher_.acknowledge(command, result);
+        if (result.empty())
+            under_way_ = command;
+        else
+            answer(command, result);
     }
+    if (const auto result = commands_.takeResult()) answer(under_way_, *result);
+}
+
+void ShowSession::answer(const topics::Command& command, const std::string& result) {
+    publishStatus();
+    publisher_.acknowledge(command, result);
 }
 
 void ShowSession::publishStatus() {

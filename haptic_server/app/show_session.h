@@ -28,6 +28,7 @@ class ShowSession {
     void publishStatus();
     void publishSceneInfo();
     void carryOutCommands();
+    void answer(const topics::Command& command, const std::string& result);
 
     Publisher& publisher_;
     std::string scene_name_;
@@ -40,6 +41,7 @@ class ShowSession {
     AccuracyFigures figures_;
     const std::vector<SceneTool>& tools_;
     topics::SceneInfo scene_info_;  // as last published
+    topics::Command under_way_;     // that was begun and has not ended
     int64_t last_tool_state_ns_ = 0;
     int64_t last_status_ns_ = 0;
     bool has_changed_ = false;  // since the last status

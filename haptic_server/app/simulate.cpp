@@ -11,12 +11,12 @@
 #include "common/rt/clock.h"
 #include "haptic_server/app/scene_setup.h"
 #include "haptic_server/app/state_hash.h"
-#include "haptic_server/app/surface_export.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/record/hex_text.h"
 #include "haptic_server/record/run_statistics.h"
 #include "haptic_server/record/trace_writer.h"
 #include "haptic_server/record/trajectory_reader.h"
+#include "haptic_server/volume/import/nrrd_writer.h"
 
 namespace bonemill {
 namespace {
@@ -92,13 +92,16 @@ std::string simulate(const SimulateOptions& options) {
     const std::vector<TrajectoryRow> rows = readTrajectory(options.trajectory);
     checkSpacing(rows, 1 / loaded.scene.loop().rate_hz(), options.trajectory);
     const size_t tool = options.tool.empty() ? 0 : toolIndexOf(toolNamesOf(loaded.scene), options.tool);
-    for (const std::string& path : {options.save_volume, options.save_mesh}) requireWritable(path);
+    requireWritable(options.save);
     std::optional<TraceWriter> trace;
     if (!options.trace.empty()) trace.emplace(options.trace);
     Simulation simulation = makeSimulation(loaded);
     for (const std::string& warning : simulation.warnings) spdlog::warn("{}", warning);
     BoneModel& bone = *simulation.bone;
-    const double volume_before = checkMesh(meshWholeBone(bone), MeshGrid(bone.volume, bone.lattice)).volume;
+    const MeshGrid grid(bone.volume, bone.lattice);
+    const double volume_before = meshVolume(meshWholeBone(bone.volume, bone.lattice), grid);
+    std::optional<VoxelVolume> before;
+    if (!options.save.difference.empty()) before = bone.volume.withoutSpareBricks();
 
     const ToolSwitch tools(simulation.spoTools(), tool);
     HapticTick tick(simulation.tick, bone, simulation.firstTool(), nullptr, nullptr, &tools);
@@ -114,10 +117,11 @@ std::string simulate(const SimulateOptions& options) {
     if (trace && !trace->close())
         throw UserError(options.trace + ": the trace could not be written to its end (disk full?)");
 
-    const std::vector<NodeMesh> meshes = meshWholeBone(bone);
-    const MeshCheck mesh = checkMesh(meshes, MeshGrid(bone.volume, bone.lattice));
-    saveVolume(options.save_volume, bone);
-    saveMesh(options.save_mesh, bone, meshes);
+    const std::vector<NodeMesh> meshes = meshWholeBone(bone.volume, bone.lattice);
+    const MeshCheck mesh = checkMesh(meshes, grid);
+    if (!options.save.volume.empty()) writeNrrd(options.save.volume, bone.volume);
+    if (!options.save.mesh.empty()) saveMesh(options.save.mesh, bone.volume, bone.lattice, meshes);
+    if (before) saveDifference(options.save.difference, *before, bone.volume);
     nlohmann::json json = totals(statistics, hash);
     json["scene"] = loaded.scene.name();
     json["tool"] = simulation.tools[tool].name;

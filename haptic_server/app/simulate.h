@@ -4,15 +4,16 @@
 
 #include <string>
 
+#include "haptic_server/app/bone_files.h"
+
 namespace bonemill {
 
 struct SimulateOptions {
     std::string scene;
     std::string trajectory;
-    std::string tool;         // name or number from 1; empty: the first
-    std::string trace;        // empty: none
-    std::string save_volume;  // empty: none
-    std::string save_mesh;    // empty: none
+    std::string tool;   // name or number from 1; empty: the first
+    std::string trace;  // empty: none
+    SavePaths save;
 };
 
 // Runs all rows and returns the JSON object with totals and `state_hash` (docs/simulate.md). Throws

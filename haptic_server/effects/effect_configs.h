@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "haptic_server/effects/heat_config.h"
 #include "haptic_server/volume/bone_properties.h"
@@ -81,5 +83,36 @@ struct EffectConfigs {
     std::optional<ThermalConfig> thermal;
     std::optional<ProtectedStructuresConfig> protected_structures;
 };
+
+// Calls visit(name as in the scene, std::optional<Config>&) for each effect, in the order in which they act.
+// Configs: EffectConfigs, const or not.
+template <class Configs, class Visit>
+void forEachEffect(Configs& configs, Visit&& visit) {
+    visit("spindle", configs.spindle);
+    visit("energy_removal", configs.energy_removal);
+    visit("cutting_force", configs.cutting_force);
+    visit("surface_friction", configs.surface_friction);
+    visit("virtual_fixture", configs.virtual_fixture);
+    visit("burr_vibration", configs.burr_vibration);
+    visit("time_removal", configs.time_removal);
+    visit("add_material", configs.add_material);
+    visit("thermal", configs.thermal);
+    visit("protected_structures", configs.protected_structures);
+}
+
+// Of those that are listed. Allocates; start-up only.
+inline std::vector<std::string> effectNames(const EffectConfigs& configs) {
+    std::vector<std::string> names;
+    forEachEffect(configs, [&](const char* name, const auto& config) {
+        if (config) names.push_back(name);
+    });
+    return names;
+}
+inline EffectConfigs withoutEffect(EffectConfigs configs, const std::string& which) {
+    forEachEffect(configs, [&](const char* name, auto& config) {
+        if (name == which) config.reset();
+    });
+    return configs;
+}
 
 }  // namespace bonemill

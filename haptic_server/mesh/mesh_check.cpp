@@ -1,27 +1,13 @@
 #include "haptic_server/mesh/mesh_check.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <utility>
 #include <vector>
+
+#include "haptic_server/mesh/welded_mesh.h"
 
 namespace bonemill {
 namespace {
-
-using Point = std::array<int, 3>;
-
-std::vector<Point> distinctPoints(std::span<const NodeMesh> meshes, const MeshGrid& grid) {
-    std::vector<Point> points;
-    for (const NodeMesh& mesh : meshes)
-        for (const PackedVertex& vertex : mesh.vertices) {
-            const Eigen::Vector3i s = grid.stepsOf(mesh.leaf, vertex);
-            points.push_back({s.x(), s.y(), s.z()});
-        }
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    return points;
-}
 
 struct Edge {
     uint32_t low, high;  // point numbers
@@ -29,23 +15,13 @@ struct Edge {
     auto operator<=>(const Edge&) const = default;
 };
 
-std::vector<Edge> sortedEdges(std::span<const NodeMesh> meshes, const MeshGrid& grid,
-                              const std::vector<Point>& points) {
+std::vector<Edge> sortedEdges(const WeldedMesh& mesh) {
     std::vector<Edge> edges;
-    for (const NodeMesh& mesh : meshes) {
-        std::vector<uint32_t> number;
-        for (const PackedVertex& vertex : mesh.vertices) {
-            const Eigen::Vector3i s = grid.stepsOf(mesh.leaf, vertex);
-            const auto found = std::lower_bound(points.begin(), points.end(), Point{s.x(), s.y(), s.z()});
-            number.push_back(uint32_t(found - points.begin()));
+    for (const auto& triangle : mesh.triangles)
+        for (size_t corner = 0; corner < 3; ++corner) {
+            const uint32_t from = triangle[corner], to = triangle[(corner + 1) % 3];
+            edges.push_back({std::min(from, to), std::max(from, to), from < to});
         }
-        for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-            for (size_t corner = 0; corner < 3; ++corner) {
-                const uint32_t from = number[mesh.indices[i + corner]];
-                const uint32_t to = number[mesh.indices[i + (corner + 1) % 3]];
-                edges.push_back({std::min(from, to), std::max(from, to), from < to});
-            }
-    }
     std::sort(edges.begin(), edges.end());
     return edges;
 }
@@ -80,11 +56,10 @@ double meshVolume(std::span<const NodeMesh> meshes, const MeshGrid& grid) {
 
 MeshCheck checkMesh(std::span<const NodeMesh> meshes, const MeshGrid& grid) {
     MeshCheck check;
-    const std::vector<Point> points = distinctPoints(meshes, grid);
-    const std::vector<Edge> edges = sortedEdges(meshes, grid, points);
-    check.vertices = points.size();
-    check.triangles = edges.size() / 3;
-    countEdges(edges, check);
+    const WeldedMesh mesh = weld(meshes, grid);
+    check.vertices = mesh.vertices.size();
+    check.triangles = mesh.triangles.size();
+    countEdges(sortedEdges(mesh), check);
     check.volume = meshVolume(meshes, grid);
     return check;
 }

@@ -1,5 +1,5 @@
-// Is the surface closed, and what does it enclose? Vertices of different leaves are the same when they lie on
-// the same integer point of the grid: exact, no tolerance. For tests and reports; not RT-safe, thread-safe.
+// Is the surface closed, welded as welded_mesh.h does it, and what does it enclose? For tests and reports;
+// not RT-safe, thread-safe.
 #pragma once
 
 #include <cstddef>

@@ -105,6 +105,19 @@ std::shared_ptr<const LeafCopy> BoneHistory::copyOf(const BoneModel& bone, LeafI
     return copy;
 }
 
+VoxelVolume BoneHistory::volumeOf(const BoneSnapshot& snapshot, const LeafLattice& lattice) const {
+    VoxelVolume volume = scanned_;
+    const Eigen::Vector3i last = volume.dims().array() - 1;
+    for (const auto& copy : snapshot.leaves) {
+        const IndexBox cells = lattice.cellsOf(copy->leaf);
+        forEachIndex(voxelsOf(cells).clamped(Eigen::Vector3i::Zero(), last), [&](const Eigen::Vector3i& v) {
+            const Density density = copy->densities[placeOf(cells, v)];
+            if (volume.at(v.x(), v.y(), v.z()) != density) volume.set(v.x(), v.y(), v.z(), density);
+        });
+    }
+    return volume;
+}
+
 void BoneHistory::restore(std::shared_ptr<const BoneSnapshot> snapshot) {
     if (isRestoring() && snapshot == orders_.back()->target) return;
     const uint64_t number = orders_.back()->number + 1;

@@ -26,6 +26,11 @@ class BoneHistory {
     // Any: voxels at or above the iso-value, scanned bone minus bone now.
     int64_t missingVoxels() const noexcept { return missing_voxels_.load(std::memory_order_relaxed); }
 
+    // Any: the bone as it was at the start; never changes.
+    const VoxelVolume& scanned() const noexcept { return scanned_; }
+    // Any: the densities that a snapshot stands for; `lattice` as of its bone. Allocates, not RT-safe.
+    VoxelVolume volumeOf(const BoneSnapshot& snapshot, const LeafLattice& lattice) const;
+
     // Keeper: the bone between two ticks, whole: what one tick mills is in it or not. Most is copied while
     // milling goes on; for the leaves that changed meanwhile milling is held (the force goes on), for as long
     // as it takes to copy them. While the bone is being put back: the snapshot to which it is.

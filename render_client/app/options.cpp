@@ -104,7 +104,8 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
         app.add_option(
                "--command", raw.command,
                "No viewer: ask the server for \"reset\", \"pause\", \"resume\", \"tool NAME-or-number\", "
-               "\"checkpoint\", \"restore NUMBER-or-last\", \"accuracy NAME\" or \"shutdown\", print what it "
+               "\"checkpoint\", \"restore NUMBER-or-last\", \"accuracy NAME\", \"export NAME\" or "
+               "\"shutdown\", print what it "
                "answers and stop")
             ->check(commandProblem)
             ->type_name("TEXT")

@@ -8,6 +8,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kTimeout = 5s;
+constexpr auto kExportTimeout = 300s;  // a large scan on a slow disk
 // A first command can be lost while the two sides discover each other; the server carries a repeated one out
 // once.
 constexpr auto kRepeatAfter = 500ms;
@@ -32,7 +33,8 @@ void CommandOutbox::step(Clock::time_point now, bool is_connected,
                          const std::function<void(const topics::Command&)>& write) {
     if (waiting_.empty()) return;
     if (!started_) started_ = now;
-    if (now - *started_ >= kTimeout) {
+    const bool is_long = written_ && waiting_.front().action_case() == topics::Command::kExport;
+    if (now - *started_ >= (is_long ? kExportTimeout : kTimeout)) {
         finish(false, written_ ? "the server did not answer" : "no server");
         return;
     }

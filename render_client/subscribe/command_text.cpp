@@ -20,6 +20,8 @@ std::string commandText(const topics::Command& command) {
             return command.restore_checkpoint() == 0
                        ? "put the bone back"
                        : "back to checkpoint " + std::to_string(command.restore_checkpoint());
+        case topics::Command::kExport:
+            return "export " + command.export_();
         case topics::Command::ACTION_NOT_SET:
             break;
     }

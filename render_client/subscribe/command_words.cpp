@@ -12,7 +12,8 @@ namespace bonemill {
 namespace {
 
 constexpr const char* kKnown =
-    "reset, pause, resume, tool NAME-or-number, checkpoint, restore NUMBER-or-last, accuracy NAME, shutdown";
+    "reset, pause, resume, tool NAME-or-number, checkpoint, restore NUMBER-or-last, accuracy NAME, export "
+    "NAME, shutdown";
 
 struct Words {
     std::string action, argument;  // the rest of the text: a tool's name may be several words
@@ -52,7 +53,7 @@ uint32_t checkpointOf(const std::string& text, const topics::Status& status) {
 
 std::string commandProblem(const std::string& text) {
     const auto [action, argument] = split(text);
-    const bool needs_argument = isOneOf(action, {"tool", "restore", "accuracy"});
+    const bool needs_argument = isOneOf(action, {"tool", "restore", "accuracy", "export"});
     if (!needs_argument && !isOneOf(action, {"reset", "pause", "resume", "checkpoint", "shutdown"}))
         return "'" + text + "' is no command; there are: " + kKnown;
     if (needs_argument && argument.empty()) return "'" + text + "' says not which; there are: " + kKnown;
@@ -73,6 +74,7 @@ topics::Command commandOf(const std::string& text, const topics::SceneInfo& scen
     if (action == "checkpoint") command.set_save_checkpoint(true);
     if (action == "restore") command.set_restore_checkpoint(checkpointOf(argument, status));
     if (action == "accuracy") command.set_set_accuracy(argument);
+    if (action == "export") command.set_export_(argument);
     if (action == "shutdown") command.set_shut_down(true);
     return command;
 }

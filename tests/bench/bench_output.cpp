@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "common/config/user_error.h"
-#include "haptic_server/app/surface_export.h"
+#include "haptic_server/app/bone_files.h"
 
 namespace bonemill::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "haptic_server/accuracy_report/plot.h"
-#include "haptic_server/app/surface_export.h"
+#include "haptic_server/app/bone_files.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/bench_tick.h"
 
@@ -93,7 +93,9 @@ void addScaleCommand(CLI::App& app) {
     command->add_option("--runs", o->runs, "medians of so many")->check(CLI::Range(1, 99));
     command->add_option("--largest-edge", o->largest_edge, "of the volume, voxels; 1024 needs 0.9 GB")
         ->check(CLI::Range(kEdges[0], *std::rbegin(kEdges)));
-    command->add_option("--plot", o->picture, "write a PNG")->each(requireWritable);
+    command->add_option("--plot", o->picture, "write a PNG")->each([](const std::string& file) {
+        requireWritable(file);
+    });
     addJsonOption(*command, o->json);
     command->callback([o] { run(o->runs, o->largest_edge, o->picture, o->json); });
 }

@@ -25,7 +25,7 @@ TickConfig configOf(const TickCase& c) {
     config.gradient.burr_radius = c.burr_radius;
     config.gradient.coupling.translation_stiffness = kCouplingStiffness;
     config.coupling.translation_stiffness = kCouplingStiffness;
-    config.effects.time_removal.emplace();
+    if (c.mills) config.effects.time_removal.emplace();
     TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     return config;
 }
@@ -62,7 +62,7 @@ void addTickCommand(CLI::App& app) {
     command->add_option("--preset", o->preset, "thesis_2012, fast, balanced or exact");
     command->add_option("--ticks", o->tick_case.ticks)->check(CLI::Range(1000, 1'000'000));
     command->add_option("--runs", o->runs, "repeat, and take each figure's median")->check(CLI::Range(1, 99));
-    command->add_flag("--no-mill", o->is_still, "press and slide only");
+    command->add_flag("--no-mill", o->is_still, "press and slide only, without any effect");
     addJsonOption(*command, o->json);
     command->callback([o] {
         const auto preset = presetOfName(o->preset);

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "common/config/user_error.h"
+#include "tests/bench/bench_effects.h"
 #include "tests/bench/bench_load.h"
 #include "tests/bench/bench_loop.h"
 #include "tests/bench/bench_mesh.h"
@@ -25,6 +26,7 @@ int main(int argc, char** argv) {
     bench::addScaleCommand(app);
     bench::addPresetsCommand(app);
     bench::addStreamCommand(app);
+    bench::addEffectsCommand(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -125,11 +125,17 @@ TEST_F(BadInput, BadTrajectories) {
 TEST_F(BadInput, UnwritableOutputs) {
     const std::vector<std::string> base{"haptic_server", "simulate",     "--scene",
                                         ball(),          "--trajectory", folder_ / "t.csv"};
-    for (const char* option : {"--trace", "--save-volume", "--save-mesh"}) {
+    const auto refuse = [&](const char* option, const char* file, const char* word) {
         auto arguments = base;
-        arguments.insert(arguments.end(), {option, folder_ / "no/such/folder/file"});
-        expectRefused(arguments, {"no/such/folder/file"});
-    }
+        arguments.insert(arguments.end(), {option, folder_ / file});
+        expectRefused(arguments, {file, word});
+    };
+    refuse("--trace", "no/such/folder/file", "folder");
+    refuse("--save-volume", "no/such/folder/file.nrrd", "folder");
+    refuse("--save-mesh", "no/such/folder/file.ply", "folder");
+    refuse("--save-difference", "no/such/folder/file.nrrd", "folder");
+    refuse("--save-mesh", "file.obj", ".stl or .ply");
+    refuse("--save-difference", "file.nii", ".nrrd");
 }
 
 TEST_F(BadInput, WrongArguments) {

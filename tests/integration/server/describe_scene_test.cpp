@@ -36,6 +36,34 @@ TEST_F(DescribeScene, SaysHowMuchATickMayDo) {
     expectLine(at_4_khz, "most milled cells in a tick: 18750");
 }
 
+constexpr const char* kPress =
+    " simulated_operator { waypoint { time_s: 0 p_WT_mm { z: 5 } } waypoint { time_s: 1 p_WT_mm { z: 4.95 } "
+    "remove: true } "
+    "waypoint { time_s: 2 p_WT_mm { z: 4.95 } } }";
+
+TEST_F(DescribeScene, SaysWhatEachListedEffectIsAndCosts) {
+    const std::string text =
+        describe(std::string("effects { time_removal { rate_density_per_s: 700 } bone_dust {} }") + kPress);
+    const size_t effects = text.find("\neffects:\n");
+    ASSERT_NE(effects, std::string::npos) << text;
+    const std::string plan = text.substr(effects, text.find("\ncost per tick") - effects);
+    EXPECT_NE(plan.find("\n  time_removal: rate_density_per_s 700; adds p50 "), std::string::npos) << plan;
+    EXPECT_NE(plan.find("\n  bone_dust"), std::string::npos) << plan;
+    EXPECT_NE(plan.find("; in the viewer\n"), std::string::npos) << plan;
+    EXPECT_NE(plan.find("\n  all of them: p50 "), std::string::npos) << plan;
+    for (const char* other : {"add_material", "energy_removal", "spindle", "thermal", "material"})
+        EXPECT_EQ(plan.find(other), std::string::npos) << other << " in: " << plan;
+}
+
+TEST_F(DescribeScene, WithoutEffectsSaysSo) {
+    expectLine(describe(kPress), "effects: none");
+}
+
+// Without a way to follow there is nothing to measure.
+TEST_F(DescribeScene, WithoutWaypointsListsTheEffectsOnly) {
+    expectLine(describe("effects { add_material {} }"), "  add_material: rate_density_per_s 12750");
+}
+
 TEST_F(DescribeScene, ListsTheTools) {
     const std::string text = describe("tool { } tool { name: \"fine\" burr_radius_mm: 0.5 }");
     EXPECT_NE(text.find("\ntool 1 'tool 1', in use at the start: "), std::string::npos) << text;

@@ -7,6 +7,7 @@
 #include "haptic_server/mesh/mesher.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/node_meshes.h"
+#include "tests/support/ply_reader.h"
 #include "tests/support/process.h"
 
 namespace bonemill {
@@ -174,6 +175,39 @@ TEST_F(Instructor, GoesBackToACheckpointAfterMillingOnWithAnotherTool) {
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
     EXPECT_EQ(hashOfFile("end.nrrd"), at_checkpoint);
     EXPECT_NE(hashOfFile("slab.nrrd"), at_checkpoint);
+}
+
+TEST_F(Instructor, ExportsTheBoneWhileTheSessionGoesOn) {
+    std::filesystem::create_directory(folder_ / "results");
+    std::filesystem::create_symlink("/dev/full", folder_ / "end.ply");
+    Process server_process(
+        server({"--export-dir", folder_ / "results", "--save-difference", folder_ / "end.nrrd", "--save-mesh",
+                folder_ / "end.ply", "--report", folder_ / "report.json"}));
+    ASSERT_TRUE(hasSession());
+    Process daemon_process(daemon());
+    ASSERT_TRUE(isRemoved(0.1));
+    expectDone("pause");
+    ASSERT_TRUE(isPaused(true));
+    expectDone("checkpoint");
+    const uint64_t paused = settledHash();
+    expectDone("resume");
+    ASSERT_TRUE(isRemoved(status().removed_mm3() + 0.1));
+    expectDone("pause");
+    expectDone("restore last");
+    expectDone("export cut");  // as it will be when all is put back
+    EXPECT_EQ(hashOfFile("results/cut.nrrd"), paused);
+    EXPECT_TRUE(test::readPly(folder_ / "results/cut.ply").isClosed());
+    expectRefused("export cut", "operator", "cut.stl is there already");
+    expectRefused("export ../cut", "operator", "'../cut' is no name");
+    expectRefused("export other", "viewer", "a viewer only looks");
+    const uint64_t ticks = status().ticks();
+    EXPECT_TRUE(probe_.pollUntil([&] { return status().ticks() > ticks; }));
+    expectDone("shutdown", "instructor");
+    const Finished finished = server_process.wait();
+    EXPECT_EQ(finished.exit_code, 1) << finished.err;  // the disk is full for one of its files
+    EXPECT_NE(finished.err.find("end.ply"), std::string::npos) << finished.err;
+    EXPECT_GT(std::filesystem::file_size(folder_ / "end.nrrd"), 100u);
+    EXPECT_GT(std::filesystem::file_size(folder_ / "report.json"), 100u);
 }
 
 TEST_F(Instructor, AloneCommandsInAnExamination) {

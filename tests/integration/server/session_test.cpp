@@ -138,11 +138,16 @@ TEST_F(Session, ALateClientShowsTheSamePicture) {
 }
 
 TEST_F(Session, AnOutputThatCannotBeWrittenIsRefusedBeforeTheSession) {
-    for (const char* option : {"--trace", "--save-volume", "--save-mesh"}) {
-        const auto finished = run(server({option, folder_ / "no/such/folder/file"}));
+    const auto expectRefused = [this](const std::string& option, const std::string& file) {
+        const auto finished = run(server({option, folder_ / file}));
         EXPECT_EQ(finished.exit_code, 2) << finished.err;
-        EXPECT_NE(finished.err.find("no/such/folder/file"), std::string::npos) << finished.err;
-    }
+        EXPECT_NE(finished.err.find(file), std::string::npos) << finished.err;
+    };
+    expectRefused("--trace", "no/such/folder/file");
+    expectRefused("--save-volume", "no/such/folder/file.nrrd");
+    expectRefused("--save-mesh", "no/such/folder/file.stl");
+    expectRefused("--save-difference", "no/such/folder/file.nrrd");
+    expectRefused("--export-dir", "no/such/folder");
     std::filesystem::create_directory(folder_ / "report.json");  // a folder where the report should go
     EXPECT_EQ(run(server()).exit_code, 2);
 }

@@ -10,6 +10,7 @@
 #include "haptic_server/app/scene_setup.h"
 #include "haptic_server/kernels/kernels.h"
 #include "haptic_server/volume/import/import_volume.h"
+#include "tests/support/ply_reader.h"
 #include "tests/support/process.h"
 
 namespace bonemill {
@@ -187,6 +188,27 @@ TEST(Simulate, SavedVolumeGoesOnWhereTheRunEnded) {
     EXPECT_LT(milled["bone_mm3"].get<double>(), milled["bone_before_mm3"].get<double>() - 3);
     EXPECT_EQ(std::filesystem::file_size(folder / "milled.stl"),
               84 + 50 * milled["mesh"]["triangles"].get<size_t>());
+}
+
+TEST(Simulate, SavedDifferenceAndMeshAddUp) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
+    writeFile(folder / "s.textproto", "effects { time_removal {} } volume { path: \"slab.nrrd\" }");
+    writeFile(folder / "mill.csv", plunge(0.03e-3, -0.08e-3, 3.3e-3, 0.1e-3, 800, 100, 1));
+    const auto milled = simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto",
+                                      "--trajectory", folder / "mill.csv", "--save-difference",
+                                      folder / "d.nrrd", "--save-mesh", folder / "milled.ply"});
+    const double removed_mm3 = milled["bone_before_mm3"].get<double>() - milled["bone_mm3"].get<double>();
+    const RawVolume slab = importVolume(folder / "slab.nrrd"), lost = importVolume(folder / "d.nrrd");
+    EXPECT_EQ(lost.geometry.dims, slab.geometry.dims);
+    EXPECT_EQ(lost.geometry.X_WV.position, slab.geometry.X_WV.position);
+    double sum = 0;
+    for (size_t n = 0; n < lost.values.size(); ++n) sum += lost.values[n];
+    const double voxel_mm3 = slab.geometry.spacing.prod() * 1e9;
+    EXPECT_NEAR(sum / 32767 * voxel_mm3, removed_mm3, 0.05 * removed_mm3);
+    const test::PlyMesh ply = test::readPly(folder / "milled.ply");
+    EXPECT_TRUE(ply.isClosed());
+    EXPECT_NEAR(ply.volume(), milled["bone_mm3"].get<double>(), 1e-4 * ply.volume());
 }
 
 // The corridor in the tooth is where the trajectory says. Oracle: all voxels of the scan that lie inside the

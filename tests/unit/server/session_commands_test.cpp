@@ -15,8 +15,9 @@ class SessionCommandsTest : public testing::Test {
           tool_(test::sphereToolModel(1e-3, 0.2e-3)),
           accuracy_(presetSettings(Preset::kBalanced)),
           tools_(std::vector<SpoTool>{{&tool_, {.radius = 1e-3}, 5}}, 0),
-          commands_(sceneOf(), ball_.bone, recorder_, {ball_.history, accuracy_, tools_, stop_requested_},
-                    false) {}
+          bone_export_(ball_.history, ball_.bone, ""),
+          commands_(sceneOf(), ball_.bone, recorder_,
+                    {ball_.history, accuracy_, tools_, stop_requested_, bone_export_}, false) {}
 
     static scene::Scene sceneOf() {
         scene::Scene scene;
@@ -37,6 +38,7 @@ class SessionCommandsTest : public testing::Test {
     AccuracySwitch accuracy_;
     ToolSwitch tools_;
     std::atomic<bool> stop_requested_{false};
+    SessionExport bone_export_;
     SessionCommands commands_;
 };
 

@@ -29,6 +29,7 @@ TEST_F(CommandWords, EachWordIsItsCommand) {
     EXPECT_TRUE(of(" checkpoint ").save_checkpoint());
     EXPECT_TRUE(of("shutdown").shut_down());
     EXPECT_EQ(of("accuracy fast").set_accuracy(), "fast");
+    EXPECT_EQ(of("export after lunch").export_(), "after lunch");
 }
 
 TEST_F(CommandWords, ToolsAndCheckpointsAreThoseOfTheSession) {
@@ -47,7 +48,7 @@ TEST_F(CommandWords, ToolsAndCheckpointsAreThoseOfTheSession) {
 
 TEST_F(CommandWords, WhatIsNoCommandIsRefusedWithoutAServer) {
     for (const char* text : {"", " ", "explode", "pause now", "tool", "restore", "restore first",
-                             "restore -1", "restore 4294967296", "accuracy", "Reset"}) {
+                             "restore -1", "restore 4294967296", "accuracy", "export", "Reset"}) {
         EXPECT_NE(commandProblem(text), "") << text;
         EXPECT_THROW(of(text), UserError) << text;
     }

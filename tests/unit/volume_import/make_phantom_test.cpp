@@ -51,6 +51,78 @@ TEST(MakePhantom, bodyFileHoldsTheStatedSurface) {
         1e-12);
 }
 
+// Value at a position in W, mm; on a voxel, or on a line of the grid.
+class Grid {
+  public:
+    explicit Grid(const std::string& file) : raw_(importVolume(file)) {}
+    double at(double x_mm, double y_mm, double z_mm) const {
+        const VolumeGeometry& g = raw_.geometry;
+        const Eigen::Vector3d index =
+            (g.X_WV.inverse() * (Eigen::Vector3d(x_mm, y_mm, z_mm) * 1e-3)).cwiseQuotient(g.spacing);
+        const Eigen::Vector3i low = index.array().floor().cast<int>().max(0).min(g.dims.array() - 2);
+        const Eigen::Vector3d f = index - low.cast<double>();
+        double sum = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+            double weight = 1;
+            Eigen::Vector3i v = low;
+            for (int axis = 0; axis < 3; ++axis) {
+                const bool is_high = corner >> axis & 1;
+                weight *= is_high ? f[axis] : 1 - f[axis];
+                v[axis] += is_high;
+            }
+            sum += weight *
+                   raw_.values[size_t(v.x()) +
+                               size_t(g.dims.x()) * (size_t(v.y()) + size_t(g.dims.y()) * size_t(v.z()))];
+        }
+        return sum;
+    }
+    const RawVolume& raw() const { return raw_; }
+
+  private:
+    RawVolume raw_;
+};
+
+TEST(MakePhantom, blockHasItsFacesAndLayersWhereTheyAreSaid) {
+    const test::TemporaryFolder folder;
+    const Outcome outcome =
+        runMakePhantom("block --out " + (folder / "b.nrrd") + " --labels " + (folder / "l.nrrd") +
+                       " --size-mm 5.03 4 3.1 --layers 0.7:1800 1.1:900 400 --voxel-mm 0.1");
+    ASSERT_EQ(outcome.code, 0) << outcome.output;
+    EXPECT_NE(outcome.output.find("surface at 400 HU"), std::string::npos) << outcome.output;
+    const Grid hu(folder / "b.nrrd"), label(folder / "l.nrrd");
+    EXPECT_EQ(hu.at(0, 0, 0.5), -1000);
+    for (const double x : {-1.0, 0.037, 1.234}) {
+        EXPECT_NEAR(hu.at(x, 0.02, 0), 400, 1) << "top face, half-way";
+        EXPECT_NEAR(hu.at(x, 0.02, -0.7), 1350, 1);
+        EXPECT_NEAR(hu.at(x, 0.02, -1.8), 650, 1);
+    }
+    EXPECT_NEAR(hu.at(2.515, 0.3, -0.35), 400, 1) << "side face";
+    EXPECT_EQ(hu.at(0, 0, -0.35), 1800);
+    EXPECT_EQ(hu.at(0, 0, -1.25), 900);
+    EXPECT_EQ(hu.at(0, 0, -2.5), 400);
+    EXPECT_NEAR(hu.at(0, 0, -3.1), -300, 1);
+    for (const auto& [z, layer] : {std::pair(0.3, 0), {-0.3, 1}, {-1.2, 2}, {-2.5, 3}, {-3.4, 0}})
+        EXPECT_EQ(label.at(0, 0, z), layer) << z;
+    EXPECT_EQ(label.raw().geometry.dims, hu.raw().geometry.dims);
+    EXPECT_EQ(label.raw().geometry.X_WV.position, hu.raw().geometry.X_WV.position);
+}
+
+TEST(MakePhantom, shellFollowsAllFaces) {
+    const test::TemporaryFolder folder;
+    const Outcome outcome =
+        runMakePhantom("block --out " + (folder / "b.nrrd") + " --labels " + (folder / "l.nrrd") +
+                       " --size-mm 6 6 6 --layers 1:1800 500 --shell --voxel-mm 0.2");
+    ASSERT_EQ(outcome.code, 0) << outcome.output;
+    const Grid hu(folder / "b.nrrd"), label(folder / "l.nrrd");
+    for (const Eigen::Vector3d& p :
+         {Eigen::Vector3d(2.5, 0, -3), {0, -2.5, -3}, {0, 0, -5.5}, {0, 0, -0.5}}) {
+        EXPECT_EQ(hu.at(p.x(), p.y(), p.z()), 1800);
+        EXPECT_EQ(label.at(p.x(), p.y(), p.z()), 1);
+    }
+    EXPECT_EQ(hu.at(0, 0, -3), 500);
+    EXPECT_EQ(label.at(0, 0, -3), 2);
+}
+
 TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
     const test::TemporaryFolder folder;
     const std::string out = " --out " + (folder / "a.nrrd");
@@ -67,6 +139,13 @@ TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
         {"body --kind wedge --angle-deg 180" + out, "--angle-deg"},
         {"body --kind slab --thicknes-mm 3" + out, "--thicknes-mm"},
         {"body --kind slab --out /nonexistent/a.nrrd", "/nonexistent/a.nrrd"},
+        {"block", "--out"},
+        {"block --layers 1500 800" + out, "how thick"},
+        {"block --layers 1:99999" + out, "no layer"},
+        {"block --layers nan:5 4" + out, "no layer"},
+        {"block --layers x" + out, "no layer"},
+        {"block --size-mm 900 900 900" + out, "2^30"},
+        {"block --size-mm 1 1" + out, "--size-mm"},
         {"tooth", "--out"},
         {"tooth --noise-hu -5 --out " + folder.path().string(), "--noise-hu"},
     };

@@ -1,5 +1,6 @@
-// Writes phantoms: a tooth as a DICOM CT series, analytic bodies as NRRD. See docs/volumes.md.
+// Writes phantoms: a tooth as a DICOM CT series, blocks and analytic bodies as NRRD. See docs/volumes.md.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <iostream>
 #include <limits>
 #include <numbers>
@@ -7,6 +8,7 @@
 #include "common/config/user_error.h"
 #include "haptic_server/volume/import/nrrd_stream.h"
 #include "haptic_server/volume/import/phantom/analytic_body.h"
+#include "haptic_server/volume/import/phantom/block_phantom.h"
 #include "haptic_server/volume/import/phantom/dicom_series_writer.h"
 #include "haptic_server/volume/import/phantom/tooth_phantom.h"
 
@@ -18,7 +20,17 @@ constexpr double kMillimetre = 1e-3;
 
 struct ToothArguments {
     std::string folder;
+    std::string labels;  // file; empty: none
     ToothScan scan;
+};
+
+struct BlockArguments {
+    std::string file;
+    std::string labels;  // file; empty: none
+    std::vector<double> size_mm{20, 20, 10};
+    std::vector<std::string> layers{"1500"};
+    bool is_shell = false;
+    double air_hu = -1000, voxel_mm = 0.125, margin_mm = 1;
 };
 
 struct BodyArguments {
@@ -34,12 +46,77 @@ struct BodyArguments {
     double angle_deg = 40;
 };
 
+// valueAt(position in W) for each voxel.
+template <class T, class ValueAt>
+void writeGrid(const std::string& file, const VolumeGeometry& grid, ValueAt&& valueAt) {
+    NrrdStream<T> stream(file, grid, NrrdEncoding::kGzip);
+    std::vector<T> row(size_t(grid.dims.x()));
+    for (int k = 0; k < grid.dims.z(); ++k)
+        for (int j = 0; j < grid.dims.y(); ++j) {
+            for (int i = 0; i < grid.dims.x(); ++i)
+                row[size_t(i)] = T(valueAt(grid.X_WV * grid.spacing.cwiseProduct(Eigen::Vector3d(i, j, k))));
+            stream.append(row);
+        }
+    stream.close();
+    std::cout << "wrote " << file << "\n";
+}
+
 void makeTooth(const ToothArguments& arguments) {
     const std::string seed = "bonemill tooth, noise " + std::to_string(arguments.scan.noise_hu) +
                              " HU, seed " + std::to_string(arguments.scan.seed);
     const RawVolume tooth = scanTooth(toothGrid(), arguments.scan);
     writeCtSeries(arguments.folder, tooth, {"PHANTOM^TOOTH", "bonemill tooth phantom", seed});
     std::cout << "wrote " << tooth.geometry.dims.z() << " slices to " << arguments.folder << "\n";
+    if (!arguments.labels.empty())
+        writeGrid<uint8_t>(arguments.labels, tooth.geometry,
+                           [](const Eigen::Vector3d& p_W) { return int(toothTissue(p_W)); });
+}
+
+// "THICKNESS_MM:HU", or "HU" for the last one.
+BlockLayer layerOf(const std::string& text, bool is_last) {
+    const size_t colon = text.find(':');
+    const std::string thickness = colon == std::string::npos ? "0" : text.substr(0, colon);
+    const std::string hu = colon == std::string::npos ? text : text.substr(colon + 1);
+    BlockLayer layer{};
+    const bool is_read = CLI::detail::lexical_cast(thickness, layer.thickness) &&
+                         CLI::detail::lexical_cast(hu, layer.hu) && std::isfinite(layer.thickness);
+    if (!is_read || !(layer.hu >= -1024 && layer.hu <= 30000))
+        throw UserError("--layers " + text +
+                        ": no layer; write THICKNESS_MM:HU, and HU alone for the last one");
+    if (!is_last && !(layer.thickness > 0))
+        throw UserError("--layers " + text + ": how thick? Only the last layer takes what is left");
+    layer.thickness *= kMillimetre;
+    return layer;
+}
+
+BlockPhantom blockOf(const BlockArguments& arguments) {
+    constexpr size_t kMostLayers = 255;  // labels of 8 bit
+    constexpr double kMostVoxels = 1u << 30;
+    if (arguments.layers.size() > kMostLayers) throw UserError("--layers: 255 at most");
+    BlockPhantom block;
+    block.size = Eigen::Vector3d(arguments.size_mm.data()) * kMillimetre;
+    block.layers.clear();
+    for (const std::string& text : arguments.layers)
+        block.layers.push_back(layerOf(text, block.layers.size() + 1 == arguments.layers.size()));
+    block.is_shell = arguments.is_shell;
+    block.air_hu = arguments.air_hu;
+    block.voxel = arguments.voxel_mm * kMillimetre;
+    block.margin = arguments.margin_mm * kMillimetre;
+    const Eigen::Vector3d voxels = ((block.size.array() + 2 * block.margin) / block.voxel).matrix();
+    if (voxels.prod() > kMostVoxels)
+        throw UserError("--size-mm and --voxel-mm: more than 2^30 voxels; take larger ones");
+    return block;
+}
+
+void makeBlock(const BlockArguments& arguments) {
+    const BlockPhantom block = blockOf(arguments);
+    const VolumeGeometry grid = block.grid();
+    writeGrid<int16_t>(arguments.file, grid,
+                       [&](const Eigen::Vector3d& p_W) { return std::lround(block.hu(p_W)); });
+    if (!arguments.labels.empty())
+        writeGrid<uint8_t>(arguments.labels, grid,
+                           [&](const Eigen::Vector3d& p_W) { return int(block.label(p_W)); });
+    std::cout << "top face at z = 0, surface at " << (block.air_hu + block.layers.front().hu) / 2 << " HU\n";
 }
 
 BodyKind kindOf(const std::string& name) {
@@ -102,6 +179,32 @@ void addTooth(CLI::App& app, ToothArguments& arguments) {
         ->check(within(0, 500))
         ->capture_default_str();
     tooth->add_option("--seed", arguments.scan.seed, "seed of the noise")->capture_default_str();
+    tooth->add_option("--labels", arguments.labels,
+                      "NRRD file to write: 1 pulp, 2 caries, 3 dentine, 4 enamel, 0 none");
+}
+
+void addBlock(CLI::App& app, BlockArguments& arguments) {
+    CLI::App* block =
+        app.add_subcommand("block", "block of layers of any density as NRRD, HU; top face at z = 0");
+    block->add_option("--out", arguments.file, "NRRD file to write")->required();
+    block->add_option("--labels", arguments.labels, "NRRD file to write: layers from 1, 0 outside");
+    block->add_option("--size-mm", arguments.size_mm, "of the block")
+        ->expected(3)
+        ->check(within(0.1, 1e3))
+        ->capture_default_str();
+    block
+        ->add_option("--layers", arguments.layers,
+                     "from the surface inwards: THICKNESS_MM:HU ..., the last one HU alone")
+        ->expected(1, 255)
+        ->capture_default_str();
+    block->add_flag("--shell", arguments.is_shell, "layers follow all faces, not only the top");
+    block->add_option("--air-hu", arguments.air_hu)->check(within(-1024, 30000))->capture_default_str();
+    block->add_option("--voxel-mm", arguments.voxel_mm, "edge of a voxel")
+        ->check(within(1e-3, 100))
+        ->capture_default_str();
+    block->add_option("--margin-mm", arguments.margin_mm, "air around the block")
+        ->check(within(0, 1e3))
+        ->capture_default_str();
 }
 
 void addBody(CLI::App& app, BodyArguments& arguments) {
@@ -138,13 +241,17 @@ void addBody(CLI::App& app, BodyArguments& arguments) {
 int run(int argc, char** argv) {
     CLI::App app("Writes phantoms of known shape as CT volumes.", "make_phantom");
     ToothArguments tooth;
+    BlockArguments block;
     BodyArguments body;
     addTooth(app, tooth);
+    addBlock(app, block);
     addBody(app, body);
     app.require_subcommand(1);
     try {
         app.parse(argc, argv);
-        app.got_subcommand("tooth") ? makeTooth(tooth) : makeBody(body);
+        if (app.got_subcommand("tooth")) makeTooth(tooth);
+        if (app.got_subcommand("block")) makeBlock(block);
+        if (app.got_subcommand("body")) makeBody(body);
     } catch (const CLI::Success& success) {
         return app.exit(success);
     } catch (const std::exception& error) {  // CLI::ParseError, UserError, std::bad_alloc

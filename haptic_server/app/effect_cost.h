@@ -1,0 +1,41 @@
+// What each effect of a scene adds to a tick on this machine: the same path with all of them and without
+// each, in turn, again and again on the same bone. Not RT-safe; milliseconds to minutes.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "haptic_server/tick/haptic_tick.h"
+
+namespace bonemill {
+
+// Of whole ticks, µs.
+struct TickTimes {
+    double p50 = 0, p99 = 0, p999 = 0, max = 0;
+};
+
+struct EffectCost {
+    std::string name;
+    TickTimes without;              // with all but this one; median of the rounds
+    double p50_us = 0, p99_us = 0;  // with all, less that; median of the rounds' differences
+};
+
+struct EffectCosts {
+    std::vector<EffectCost> effects;  // that config lists
+    TickTimes all, none;              // with all, with no effect; medians of the rounds
+    // Largest difference of a round between two runs with all: what is no more than that says nothing.
+    double noise_p50_us = 0, noise_p99_us = 0;
+    size_t ticks = 0;  // of each run, that were looked at
+};
+
+// Times the ticks in contact or with a button pressed, if there are any. The bone is as it was afterwards,
+// but for the order of its contact points.
+EffectCosts measureEffectCosts(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
+                               std::span<const DeviceInput> path, int rounds);
+
+// All ticks of a path.
+std::vector<TickRecord> recordsOf(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
+                                  std::span<const DeviceInput> path);
+
+}  // namespace bonemill

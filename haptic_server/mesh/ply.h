@@ -1,0 +1,16 @@
+// The bone's surface as a binary PLY file, for anyone outside.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "haptic_server/mesh/mesh_grid.h"
+
+namespace bonemill {
+
+// Binary little endian: welded vertices (x, y, z in mm, normal; float) and triangles, frame W. Throws
+// UserError when the file cannot be written. Not RT-safe.
+void savePly(const std::string& path, std::span<const NodeMesh> meshes, const MeshGrid& grid,
+             const Pose& X_WV);
+
+}  // namespace bonemill
