@@ -76,7 +76,8 @@ class Server {
           cuts_(kRingCuts),
           io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), link_, ring_, cuts_),
           tick_(simulation_.tick, *simulation_.bone, simulation_.firstTool(), &history_, &accuracy_, &tools_),
-          recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace),
+          recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace,
+                    recordedEffectsOf(loaded_.scene.effects())),
           publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
           commands_(loaded_.scene, *simulation_.bone, recorder_,
                     {history_, accuracy_, tools_, stop_requested_}, options.instructor_only),
@@ -156,7 +157,9 @@ class Server {
     }
 
     void meshUntil(const std::stop_token& stop) {
-        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_);
+        const bool is_coloured = hasColouredMaterials(loaded_.scene);
+        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_,
+                          is_coloured ? simulation_.tick.effects.properties.get() : nullptr);
         const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
         loop(stop, MeshRounds::kPeriod, [&] {
             for (bool is_more = true; is_more && !stop.stop_requested();) {
@@ -228,7 +231,8 @@ class Server {
         write(options_.save_volume, [this] { saveVolume(options_.save_volume, *simulation_.bone); });
         write(options_.save_mesh,
               [this] { saveMesh(options_.save_mesh, *simulation_.bone, meshWholeBone(*simulation_.bone)); });
-        write(options_.report, [&] { statistics.writeJson(options_.report); });
+        write(options_.report,
+              [&] { statistics.writeJson(options_.report, materialNamesOf(loaded_.scene)); });
         return all_written && !has_failed_ ? 0 : 1;
     }
 

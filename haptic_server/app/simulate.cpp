@@ -10,6 +10,7 @@
 #include "common/config/user_error.h"
 #include "common/rt/clock.h"
 #include "haptic_server/app/scene_setup.h"
+#include "haptic_server/app/shown_effects.h"
 #include "haptic_server/app/state_hash.h"
 #include "haptic_server/app/surface_export.h"
 #include "haptic_server/record/fault_names.h"
@@ -94,7 +95,8 @@ std::string simulate(const SimulateOptions& options) {
     const size_t tool = options.tool.empty() ? 0 : toolIndexOf(toolNamesOf(loaded.scene), options.tool);
     for (const std::string& path : {options.save_volume, options.save_mesh}) requireWritable(path);
     std::optional<TraceWriter> trace;
-    if (!options.trace.empty()) trace.emplace(options.trace);
+    const RecordedEffects recorded = recordedEffectsOf(loaded.scene.effects());
+    if (!options.trace.empty()) trace.emplace(options.trace, recorded);
     Simulation simulation = makeSimulation(loaded);
     for (const std::string& warning : simulation.warnings) spdlog::warn("{}", warning);
     BoneModel& bone = *simulation.bone;
@@ -102,11 +104,11 @@ std::string simulate(const SimulateOptions& options) {
 
     const ToolSwitch tools(simulation.spoTools(), tool);
     HapticTick tick(simulation.tick, bone, simulation.firstTool(), nullptr, nullptr, &tools);
-    RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * 1e9)));
+    RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * 1e9)), recorded);
     StateHash hash;
     FileIo io(rows);
     while (tick.tick(io)) {
-        hash.addRecord(io.lastRecord());
+        hash.addRecord(io.lastRecord(), recorded);
         statistics.add(io.lastRecord());
         if (trace) trace->write(io.lastRecord());
     }
@@ -119,6 +121,8 @@ std::string simulate(const SimulateOptions& options) {
     saveVolume(options.save_volume, bone);
     saveMesh(options.save_mesh, bone, meshes);
     nlohmann::json json = totals(statistics, hash);
+    for (const auto& [key, value] : statistics.effects().figures()) json[key] = value;
+    if (recorded.any()) json["warnings"] = statistics.effects().warnings(materialNamesOf(loaded.scene));
     json["scene"] = loaded.scene.name();
     json["tool"] = simulation.tools[tool].name;
     json["preset"] = settingsName(simulation.tick.accuracy);
