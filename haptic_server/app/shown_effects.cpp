@@ -7,6 +7,14 @@ namespace bonemill {
 namespace {
 
 constexpr double kMm3PerM3 = 1e9, kMmPerM = 1e3;
+constexpr size_t kMostWarnings = 32;  // in a status
+
+// The tick's bits go out as they are.
+static_assert(int(kEventSpindleStalled) == topics::EffectState::SPINDLE_STALLED);
+static_assert(int(kEventNearProtected) == topics::EffectState::NEAR_PROTECTED);
+static_assert(int(kEventProtectedTouched) == topics::EffectState::PROTECTED_TOUCHED);
+static_assert(int(kEventProtectedDamaged) == topics::EffectState::PROTECTED_DAMAGED);
+static_assert(int(kEventTooHot) == topics::EffectState::TOO_HOT);
 
 // A client drops a state with a number that is none.
 double finite(float value) {
@@ -96,7 +104,13 @@ void ShownEffects::describe(const EffectStatistics& statistics, const std::vecto
         if (const auto temperature = statistics.maxTemperature())
             training.set_max_temperature_c(*temperature);
     }
-    for (std::string& warning : statistics.warnings(materials)) training.add_warnings(std::move(warning));
+    std::vector<std::string> warnings = statistics.warnings(materials);
+    if (warnings.size() > kMostWarnings) {
+        const size_t more = warnings.size() - (kMostWarnings - 1);
+        warnings.resize(kMostWarnings - 1);
+        warnings.push_back("and " + std::to_string(more) + " more");
+    }
+    for (std::string& warning : warnings) training.add_warnings(std::move(warning));
 }
 
 }  // namespace bonemill
