@@ -80,7 +80,7 @@ std::optional<HudNotice> effectAlert(uint32_t events, uint32_t structure, const 
         alert = {"Near " + name, HudTone::kWarning};
     }
     if (events & EffectState::TOO_HOT)
-        alert = {alert.text + (alert.text.empty() ? "" : ", ") + "Bone too hot", HudTone::kAlarm};
+        alert = {alert.text.empty() ? "Bone too hot" : alert.text + ", bone too hot", HudTone::kAlarm};
     return alert.text.empty() ? std::nullopt : std::optional(alert);
 }
 
