@@ -157,16 +157,16 @@ TEST_F(Golden, MaterialsWithoutColoursArePlainBone) {
     EXPECT_EQ(test::goldenProblem(draw(), "plain"), "");
 }
 
-TEST_F(Golden, FiguresAndAlertOfEffects) {
-    const OsmesaContext large(640, 480);
-    begin(large.gl());
-    scene_->settings().show_hud = true;
+TEST(GoldenFigures, OfEffectsWithAnAlert) {
+    const OsmesaContext context(640, 480);
+    RenderScene scene(context.gl());
+    scene.settings().show_hud = true;
     topics::SceneInfo info = test::milledInfo();
     info.add_materials()->set_name("facial nerve");
-    scene_->setSceneInfo(info);
-    for (const NodeMesh& node : test::milledBlock()) scene_->setNode(node);
-    scene_->setConnection(Connection::kLive);
-    scene_->setStatus(test::makeStatus());
+    scene.setSceneInfo(info);
+    for (const NodeMesh& node : test::milledBlock()) scene.setNode(node);
+    scene.setConnection(Connection::kLive);
+    scene.setStatus(test::makeStatus());
     topics::ToolState tool = test::makeToolState(test::toolInCavity(), test::toolInCavity(), 1);
     topics::EffectState& effects = *tool.mutable_effects();
     effects.set_events(topics::EffectState::NEAR_PROTECTED | topics::EffectState::TOO_HOT);
@@ -178,11 +178,10 @@ TEST_F(Golden, FiguresAndAlertOfEffects) {
     effects.set_protected_id(1);
     effects.set_protected_distance_m(0.8e-3);
     effects.set_damaged_mm3(0);
-    scene_->setToolState(tool);
-    scene_->setNotice(HudNotice{"Picture saved", HudTone::kGood});
-    scene_->draw(640, 480, kUiScale);
-    EXPECT_EQ(test::goldenProblem(large.read(), "effects_hud"), "");
-    scene_.reset();
+    scene.setToolState(tool);
+    scene.setNotice(HudNotice{"Picture saved", HudTone::kGood});
+    scene.draw(640, 480, kUiScale);
+    EXPECT_EQ(test::goldenProblem(context.read(), "effects_hud"), "");
 }
 
 TEST_F(Golden, AnAlertIsShownWithoutFiguresToo) {
