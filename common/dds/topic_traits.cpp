@@ -8,6 +8,8 @@ using namespace std::chrono_literals;
 constexpr auto kMaxBlocking = 1s;
 // Bounds what a flood of commands can take of the server's memory.
 constexpr int kMaxQueuedCommands = 1024;
+// Tool states that a viewer finds when it has drawn: at 100 per second those of a third of a second.
+constexpr int kQueuedToolStates = 32;
 
 // State that a late joiner must have: the newest sample per key. Measured: such a writer never waits for a
 // reader.
@@ -17,9 +19,10 @@ Qos stateQos() {
     return qos;
 }
 
-Qos streamQos() {
+// Only the newest counts, but for what is counted since the sample before.
+Qos streamQos(int depth) {
     Qos qos;
-    qos.bestEffort().keepLast(1);
+    qos.bestEffort().keepLast(depth);
     return qos;
 }
 
@@ -43,7 +46,7 @@ TopicDescription describeTopic<SceneInfoSample>() {
 
 template <>
 TopicDescription describeTopic<ToolStateSample>() {
-    return {"bonemill_tool_state", &bonemill_dds_ToolStateSample_desc, streamQos()};
+    return {"bonemill_tool_state", &bonemill_dds_ToolStateSample_desc, streamQos(kQueuedToolStates)};
 }
 
 template <>
@@ -53,7 +56,7 @@ TopicDescription describeTopic<StatusSample>() {
 
 template <>
 TopicDescription describeTopic<ViewerSample>() {
-    return {"bonemill_viewer", &bonemill_dds_ViewerSample_desc, streamQos()};
+    return {"bonemill_viewer", &bonemill_dds_ViewerSample_desc, streamQos(1)};
 }
 
 template <>

@@ -24,6 +24,8 @@ struct NodeMesh {
     Eigen::Vector3f step = Eigen::Vector3f::Zero();    // V, m
     std::vector<PackedVertex> vertices;
     std::vector<uint32_t> indices;  // 3 per triangle, counter-clockwise seen from outside
+    // Per vertex: 1 + index in the scene's list of materials, 0: none. Empty: none has one.
+    std::vector<uint8_t> materials;
 
     bool isEmpty() const noexcept { return indices.empty(); }
 };

@@ -21,17 +21,55 @@ constexpr float kLargestStep = 1;
 struct Buffers {
     std::vector<PackedVertex> vertices;
     std::vector<uint32_t> indices;
+    std::vector<uint8_t> materials;
 };
 
 Buffers optimised(const NodeMesh& mesh) {
-    Buffers b{std::vector<PackedVertex>(mesh.vertices.size()), std::vector<uint32_t>(mesh.indices.size())};
-    meshopt_optimizeVertexCache(b.indices.data(), mesh.indices.data(), mesh.indices.size(),
-                                mesh.vertices.size());
+    const size_t index_count = mesh.indices.size(), vertex_count = mesh.vertices.size();
+    Buffers b{{}, std::vector<uint32_t>(index_count), {}};
+    meshopt_optimizeVertexCache(b.indices.data(), mesh.indices.data(), index_count, vertex_count);
+    std::vector<uint32_t> place(vertex_count);
     const size_t used =
-        meshopt_optimizeVertexFetch(b.vertices.data(), b.indices.data(), b.indices.size(),
-                                    mesh.vertices.data(), mesh.vertices.size(), sizeof(PackedVertex));
+        meshopt_optimizeVertexFetchRemap(place.data(), b.indices.data(), index_count, vertex_count);
+    meshopt_remapIndexBuffer(b.indices.data(), b.indices.data(), index_count, place.data());
     b.vertices.resize(used);
+    meshopt_remapVertexBuffer(b.vertices.data(), mesh.vertices.data(), vertex_count, sizeof(PackedVertex),
+                              place.data());
+    if (mesh.materials.empty()) return b;
+    b.materials.resize(used);
+    meshopt_remapVertexBuffer(b.materials.data(), mesh.materials.data(), vertex_count, 1, place.data());
     return b;
+}
+
+std::string codedMaterials(const std::vector<uint8_t>& materials) {
+    std::string out;
+    for (auto run = materials.begin(); run != materials.end();) {
+        const auto end = std::find_if(run, materials.end(), [run](uint8_t m) { return m != *run; });
+        out.push_back(char(*run));
+        auto length = size_t(end - run);
+        for (; length > 0x7f; length >>= 7) out.push_back(char((length & 0x7f) | 0x80));
+        out.push_back(char(length));
+        run = end;
+    }
+    return out;
+}
+
+// As many as there are vertices, or false.
+bool decodeMaterials(std::string_view coded, size_t vertices, std::vector<uint8_t>& materials) {
+    constexpr int kMostShift = 28;  // a length has 32 bits
+    for (size_t at = 0; at < coded.size();) {
+        const auto material = uint8_t(coded[at++]);
+        uint64_t length = 0;
+        for (int shift = 0;; shift += 7) {
+            if (at == coded.size() || shift > kMostShift) return false;
+            const auto byte = uint8_t(coded[at++]);
+            length |= uint64_t(byte & 0x7f) << shift;
+            if (byte < 0x80) break;
+        }
+        if (length == 0 || length > vertices - materials.size()) return false;
+        materials.insert(materials.end(), size_t(length), material);
+    }
+    return materials.size() == vertices;
 }
 
 std::string codedVertices(const std::vector<PackedVertex>& vertices) {
@@ -60,7 +98,7 @@ uint64_t contentOf(const topics::NodeMesh& message) {
     hashInto(hash, &revision, sizeof revision);
     for (const auto* vector : {&message.origin_m(), &message.step_m()})
         hashInto(hash, vector->data(), size_t(vector->size()) * sizeof(float));
-    for (const std::string* part : {&message.vertices(), &message.indices()})
+    for (const std::string* part : {&message.vertices(), &message.indices(), &message.materials()})
         hashInto(hash, part->data(), part->size());
     return hash;
 }
@@ -84,7 +122,8 @@ const unsigned char* unsignedBytes(const std::string& s) {
 }
 
 bool decodeBuffers(const topics::NodeMesh& message, NodeMesh& mesh) {
-    if (message.index_count() == 0) return message.vertices().empty() && message.indices().empty();
+    if (message.index_count() == 0)
+        return message.vertices().empty() && message.indices().empty() && message.materials().empty();
     mesh.vertices.resize(message.vertex_count());
     mesh.indices.resize(message.index_count());
     if (meshopt_decodeVertexBuffer(mesh.vertices.data(), mesh.vertices.size(), sizeof(PackedVertex),
@@ -93,7 +132,10 @@ bool decodeBuffers(const topics::NodeMesh& message, NodeMesh& mesh) {
     if (meshopt_decodeIndexBuffer(mesh.indices.data(), mesh.indices.size(), sizeof(uint32_t),
                                   unsignedBytes(message.indices()), message.indices().size()) != 0)
         return false;
-    return std::ranges::all_of(mesh.indices, [&](uint32_t index) { return index < mesh.vertices.size(); });
+    if (std::ranges::any_of(mesh.indices, [&](uint32_t index) { return index >= mesh.vertices.size(); }))
+        return false;
+    return message.materials().empty() ||
+           decodeMaterials(message.materials(), mesh.vertices.size(), mesh.materials);
 }
 
 }  // namespace
@@ -115,6 +157,7 @@ EncodedNode encodeNodeMesh(const NodeMesh& mesh, const NodeTag& tag) {
         message.set_index_count(uint32_t(buffers.indices.size()));
         message.set_vertices(codedVertices(buffers.vertices));
         message.set_indices(codedIndices(buffers));
+        message.set_materials(codedMaterials(buffers.materials));
     }
     return {message.SerializeAsString(), contentOf(message)};
 }

@@ -26,7 +26,8 @@ struct EncodedNode {
 
 // Serialized NodeMesh message. Vertices and triangles are put in an order that the vertex cache likes and
 // that codes well (the same surface, the same winding), vertices that no triangle names are dropped; equal
-// meshes give equal bytes. `mesh.indices` must be a multiple of 3 long and smaller than vertices.size() each.
+// meshes give equal bytes. `mesh.indices` must be a multiple of 3 long and smaller than vertices.size() each,
+// `mesh.materials` empty or as many as the vertices.
 EncodedNode encodeNodeMesh(const NodeMesh& mesh, const NodeTag& tag);
 
 struct DecodedNode {

@@ -1,26 +1,36 @@
 #include "haptic_server/app/recorder.h"
 
+#include <utility>
+
 #include "common/rt/clock.h"
 
 namespace bonemill {
 
-Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const std::string& trace_path)
-    : ring_(ring), statistics_(period_ns) {
-    if (!trace_path.empty()) trace_.emplace(trace_path);
+Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const std::string& trace_path,
+                   const RecordedEffects& recorded)
+    : ring_(ring), statistics_(period_ns, recorded), effects_(recorded) {
+    if (!trace_path.empty()) trace_.emplace(trace_path, recorded);
 }
 
 void Recorder::drain() {
     TickRecord record;
     bool any = false;
+    uint32_t events = 0;
+    double removed = 0;
     while (ring_.tryPop(record)) {
         any = true;
         statistics_.add(record);
         if (trace_) trace_->write(record);
         addToWindow(record);
+        events |= record.effects.events;
+        removed += record.removed;
     }
     if (!any) return;
     const std::lock_guard lock(mutex_);
     latest_ = record;
+    new_events_ |= events;
+    new_removed_ += removed;
+    if (effects_.recorded().any()) effects_ = statistics_.effects();
     health_.ticks = statistics_.ticks();
     health_.dropped_ticks = statistics_.droppedTicks();
     health_.faults = statistics_.faults();
@@ -50,6 +60,17 @@ bool Recorder::finish() {
 std::optional<TickRecord> Recorder::latest() const {
     const std::lock_guard lock(mutex_);
     return latest_;
+}
+
+std::optional<Recorder::Since> Recorder::takeSince() {
+    const std::lock_guard lock(mutex_);
+    if (!latest_) return std::nullopt;
+    return Since{*latest_, std::exchange(new_events_, 0), std::exchange(new_removed_, 0)};
+}
+
+EffectStatistics Recorder::effects() const {
+    const std::lock_guard lock(mutex_);
+    return effects_;
 }
 
 LoopHealth Recorder::health() const {

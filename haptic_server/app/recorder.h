@@ -25,8 +25,10 @@ struct LoopHealth {
 
 class Recorder {
   public:
-    // trace_path empty: no trace. Throws UserError when the trace cannot be created.
-    Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const std::string& trace_path);
+    // trace_path empty: no trace. recorded: what the records say of effects. Throws UserError when the trace
+    // cannot be created.
+    Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const std::string& trace_path,
+             const RecordedEffects& recorded = {});
 
     // Recorder thread: takes what is in the ring. Call every few milliseconds.
     void drain();
@@ -35,6 +37,14 @@ class Recorder {
 
     // Any normal thread.
     std::optional<TickRecord> latest() const;
+    // The newest, and what happened in all ticks since the call before.
+    struct Since {
+        TickRecord latest;
+        uint32_t events;  // TickEvent bits
+        double removed;   // m³
+    };
+    std::optional<Since> takeSince();
+    EffectStatistics effects() const;
     LoopHealth health() const;
     // Before finish(): what the tick thread's page faults were after its first second.
     void setPageFaults(const PageFaults& faults) { statistics_.setPageFaults(faults); }
@@ -55,8 +65,11 @@ class Recorder {
     std::optional<TraceWriter> trace_;
     LatencyHistogram window_;  // tick compute time in the second under way
     int64_t window_start_ns_ = 0;
-    mutable std::mutex mutex_;  // guards the two below
+    mutable std::mutex mutex_;  // guards what is below
     std::optional<TickRecord> latest_;
+    uint32_t new_events_ = 0;  // since takeSince()
+    double new_removed_ = 0;
+    EffectStatistics effects_;  // as of latest_
     LoopHealth health_;
 };
 

@@ -76,7 +76,8 @@ class Server {
           cuts_(kRingCuts),
           io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), link_, ring_, cuts_),
           tick_(simulation_.tick, *simulation_.bone, simulation_.firstTool(), &history_, &accuracy_, &tools_),
-          recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace),
+          recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace,
+                    recordedEffectsOf(loaded_.scene.effects())),
           publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
           bone_export_(history_, *simulation_.bone, options.export_dir),
           commands_(loaded_.scene, *simulation_.bone, recorder_,
@@ -157,7 +158,9 @@ class Server {
     }
 
     void meshUntil(const std::stop_token& stop) {
-        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_);
+        const bool is_coloured = hasColouredMaterials(loaded_.scene);
+        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_,
+                          is_coloured ? simulation_.tick.effects.properties.get() : nullptr);
         const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
         loop(stop, MeshRounds::kPeriod, [&] {
             for (bool is_more = true; is_more && !stop.stop_requested();) {
@@ -232,7 +235,8 @@ class Server {
         write(save.volume, [&] { writeNrrd(save.volume, volume); });
         write(save.mesh, [&] { saveMesh(save.mesh, volume, lattice, meshWholeBone(volume, lattice)); });
         write(save.difference, [&] { saveDifference(save.difference, history_.scanned(), volume); });
-        write(options_.report, [&] { statistics.writeJson(options_.report); });
+        write(options_.report,
+              [&] { statistics.writeJson(options_.report, materialNamesOf(loaded_.scene)); });
         return all_written && !has_failed_ ? 0 : 1;
     }
 

@@ -1,8 +1,7 @@
 #include "haptic_server/app/session_commands.h"
 
-#include "haptic_server/app/repeated_text.h"
-
 #include "common/config/effect_check.h"
+#include "haptic_server/app/repeated_text.h"
 
 namespace bonemill {
 namespace {

@@ -65,6 +65,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     assign(info.mutable_bone_max_m(), box.max());
     for (const SceneTool& tool : simulation.tools) info.add_tool_names(tool.name);
     fillCamera(scene.camera(), info.mutable_camera());
+    describeToViewers(scene, info);
     info.set_leaf_count(simulation.bone->lattice.leafCount());
     return info;
 }
@@ -72,7 +73,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
 }  // namespace
 
 ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
-                         const AccuracyFigures& figures, MeshOutbox& outbox, const Recorder& recorder,
+                         const AccuracyFigures& figures, MeshOutbox& outbox, Recorder& recorder,
                          SessionCommands& commands, double bytes_per_s)
     : publisher_(publisher),
       scene_name_(scene.name()),
@@ -82,6 +83,8 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
       recorder_(recorder),
       commands_(commands),
       figures_(figures),
+      effects_(scene.effects()),
+      material_names_(materialNamesOf(scene)),
       tools_(simulation.tools),
       scene_info_(sceneInfo(scene, simulation)) {
     publishSceneInfo();
@@ -105,9 +108,11 @@ void ShowSession::round() {
 }
 
 void ShowSession::publishToolState(int64_t now_ns) {
-    const auto latest = recorder_.latest();
-    if (!latest) return;
-    publisher_.publishToolState(*latest);
+    const auto since = recorder_.takeSince();
+    if (!since) return;
+    std::optional<topics::EffectState> effects;
+    if (effects_.areShown()) effects = effects_.at(since->latest.effects, since->events, since->removed);
+    publisher_.publishToolState(since->latest, std::move(effects));
     last_tool_state_ns_ = now_ns;
 }
 
@@ -170,6 +175,7 @@ void ShowSession::publishStatus() {
     status.set_faults(health.faults);
     status.set_fault_text(faultNames(health.faults));
     commands_.describe(status);
+    effects_.describe(recorder_.effects(), material_names_, status);
     const auto latest = recorder_.latest();
     status.set_device_stale(!latest || (latest->faults & kFaultStaleDevice));
     publisher_.publishStatus(std::move(status));

@@ -6,6 +6,7 @@
 #include "haptic_server/app/recorder.h"
 #include "haptic_server/app/scene_setup.h"
 #include "haptic_server/app/session_commands.h"
+#include "haptic_server/app/shown_effects.h"
 #include "haptic_server/mesh/mesh_outbox.h"
 #include "haptic_server/publish/byte_budget.h"
 #include "haptic_server/publish/publisher.h"
@@ -16,7 +17,7 @@ class ShowSession {
   public:
     // Publishes the scene at once. Node meshes take bytes_per_s at most. References must outlive this object.
     ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
-                const AccuracyFigures& figures, MeshOutbox& outbox, const Recorder& recorder,
+                const AccuracyFigures& figures, MeshOutbox& outbox, Recorder& recorder,
                 SessionCommands& commands, double bytes_per_s);
 
     // One round, about 200 times per second; publisher thread only.
@@ -36,9 +37,11 @@ class ShowSession {
     ByteBudget budget_;
     Pose X_VW_;
     bool is_whole_ = false;  // all of the bone has been published
-    const Recorder& recorder_;
+    Recorder& recorder_;
     SessionCommands& commands_;
     AccuracyFigures figures_;
+    ShownEffects effects_;
+    std::vector<std::string> material_names_;
     const std::vector<SceneTool>& tools_;
     topics::SceneInfo scene_info_;  // as last published
     topics::Command under_way_;     // that was begun and has not ended

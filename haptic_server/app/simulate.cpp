@@ -10,6 +10,7 @@
 #include "common/config/user_error.h"
 #include "common/rt/clock.h"
 #include "haptic_server/app/scene_setup.h"
+#include "haptic_server/app/shown_effects.h"
 #include "haptic_server/app/state_hash.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/record/hex_text.h"
@@ -94,7 +95,8 @@ std::string simulate(const SimulateOptions& options) {
     const size_t tool = options.tool.empty() ? 0 : toolIndexOf(toolNamesOf(loaded.scene), options.tool);
     requireWritable(options.save);
     std::optional<TraceWriter> trace;
-    if (!options.trace.empty()) trace.emplace(options.trace);
+    const RecordedEffects recorded = recordedEffectsOf(loaded.scene.effects());
+    if (!options.trace.empty()) trace.emplace(options.trace, recorded);
     Simulation simulation = makeSimulation(loaded);
     for (const std::string& warning : simulation.warnings) spdlog::warn("{}", warning);
     BoneModel& bone = *simulation.bone;
@@ -105,11 +107,11 @@ std::string simulate(const SimulateOptions& options) {
 
     const ToolSwitch tools(simulation.spoTools(), tool);
     HapticTick tick(simulation.tick, bone, simulation.firstTool(), nullptr, nullptr, &tools);
-    RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * 1e9)));
+    RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * 1e9)), recorded);
     StateHash hash;
     FileIo io(rows);
     while (tick.tick(io)) {
-        hash.addRecord(io.lastRecord());
+        hash.addRecord(io.lastRecord(), recorded);
         statistics.add(io.lastRecord());
         if (trace) trace->write(io.lastRecord());
     }
@@ -123,6 +125,8 @@ std::string simulate(const SimulateOptions& options) {
     if (!options.save.mesh.empty()) saveMesh(options.save.mesh, bone.volume, bone.lattice, meshes);
     if (before) saveDifference(options.save.difference, *before, bone.volume);
     nlohmann::json json = totals(statistics, hash);
+    for (const auto& [key, value] : statistics.effects().figures()) json[key] = value;
+    if (recorded.any()) json["warnings"] = statistics.effects().warnings(materialNamesOf(loaded.scene));
     json["scene"] = loaded.scene.name();
     json["tool"] = simulation.tools[tool].name;
     json["preset"] = settingsName(simulation.tick.accuracy);

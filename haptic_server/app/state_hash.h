@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "haptic_server/effects/recorded_effects.h"
 #include "haptic_server/tick/tick_record.h"
 #include "haptic_server/volume/voxel_volume.h"
 
@@ -13,8 +14,9 @@ namespace bonemill {
 class StateHash {
   public:
     void addBytes(const void* data, size_t size) noexcept;
-    // Poses, wrench, contacts, removal and faults of a tick; not its measured times.
-    void addRecord(const TickRecord& record) noexcept;
+    // Poses, wrench, contacts, removal and faults of a tick, and what its effects told if that is recorded;
+    // not its measured times.
+    void addRecord(const TickRecord& record, const RecordedEffects& recorded = {}) noexcept;
     // All densities without the border of air.
     void addVolume(const VoxelVolume& volume);
     uint64_t value() const noexcept { return value_; }

@@ -21,9 +21,11 @@ int stepsToIso(Density low, Density high, Density iso, int steps_per_cell) noexc
 
 }  // namespace
 
-LeafMesher::LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice, int most_steps_per_cell)
+LeafMesher::LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice, int most_steps_per_cell,
+                       const BoneProperties* properties)
     : volume_(volume),
       lattice_(lattice),
+      properties_(properties),
       grid_(volume, lattice, most_steps_per_cell),
       triangles_(cubeTriangles()),
       crossed_(lattice.leafCells()),
@@ -37,6 +39,7 @@ std::optional<NodeMesh> LeafMesher::mesh(LeafId leaf) {
     mesh.step = grid_.step();
     vertices_.clear();
     indices_.clear();
+    materials_.clear();
     const bool is_being_written = (mesh.revision & 1) != 0;
     if (is_being_written) return std::nullopt;
     readVoxels(lattice_.cellsOf(leaf));
@@ -45,6 +48,8 @@ std::optional<NodeMesh> LeafMesher::mesh(LeafId leaf) {
     meshCells();
     mesh.vertices = vertices_;  // exactly as much memory as they need
     mesh.indices = indices_;
+    const auto has_material = [](MaterialId material) { return material != kNoMaterial; };
+    if (std::ranges::any_of(materials_, has_material)) mesh.materials = materials_;
     return mesh;
 }
 
@@ -108,12 +113,12 @@ uint32_t LeafMesher::vertexOnEdge(const Eigen::Vector3i& local, int axis) {
     uint32_t& vertex = edge_vertex_[3 * cornerIndex(local) + size_t(axis)];
     if (vertex == kNoVertex) {
         vertex = uint32_t(vertices_.size());
-        vertices_.push_back(makeVertex(local, axis));
+        addVertex(local, axis);
     }
     return vertex;
 }
 
-PackedVertex LeafMesher::makeVertex(const Eigen::Vector3i& local, int axis) const {
+void LeafMesher::addVertex(const Eigen::Vector3i& local, int axis) {
     const size_t low = cornerIndex(local);
     const size_t high = low + stride_[axis];
     const int steps = stepsToIso(density_[low], density_[high], volume_.iso(), grid_.stepsPerCell());
@@ -130,7 +135,25 @@ PackedVertex LeafMesher::makeVertex(const Eigen::Vector3i& local, int axis) cons
     const Eigen::Vector3f normal = gradient.isZero(0) ? Eigen::Vector3f(way_out * Eigen::Vector3f::Unit(axis))
                                                       : Eigen::Vector3f(-gradient);
     const OctahedralNormal packed = encodeNormal(normal);  // of any length
-    return {uint16_t(position.x()), uint16_t(position.y()), uint16_t(position.z()), packed.u, packed.v};
+    vertices_.push_back(
+        {uint16_t(position.x()), uint16_t(position.y()), uint16_t(position.z()), packed.u, packed.v});
+    if (!properties_) return;
+    const bool is_low_inside = density_[low] >= volume_.iso();
+    materials_.push_back(materialUnder(is_low_inside ? voxel : next, is_low_inside ? low : high, normal));
+}
+
+// Decided by the voxels around the edge alone, so that leaves agree. Outside the volume the original density
+// is 0.
+MaterialId LeafMesher::materialUnder(const Eigen::Vector3i& inside, size_t corner,
+                                     const Eigen::Vector3f& normal) const noexcept {
+    const Eigen::Vector3f inwards = -normal.cwiseProduct(inverse_spacing_).normalized();
+    const Eigen::Vector3i step = inwards.array().round().cast<int>();
+    const Eigen::Vector3i below = inside + step;
+    const size_t below_corner = size_t(ptrdiff_t(corner) + step.x() + step.y() * ptrdiff_t(stride_[1]) +
+                                       step.z() * ptrdiff_t(stride_[2]));
+    const bool is_denser_below = density_[below_corner] >= volume_.iso() &&
+                                 properties_->original(below) > properties_->original(inside);
+    return properties_->material(is_denser_below ? below : inside);
 }
 
 Eigen::Vector3f LeafMesher::gradientAt(const Eigen::Vector3i& voxel, size_t corner) const noexcept {

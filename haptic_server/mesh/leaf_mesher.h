@@ -7,6 +7,10 @@
 // arithmetic: the leaves that share an edge get the same vertex, bit for bit. A voxel is inside the bone when
 // its density >= iso.
 //
+// With `properties` a vertex also says what the bone under it is made of: as the inside voxel of its edge, or
+// as the next one below the surface if that is bone, too, and was denser: a voxel that bone fills only partly
+// looks like something less dense.
+//
 // Not RT-safe (allocates).
 #pragma once
 
@@ -14,6 +18,7 @@
 #include <vector>
 
 #include "haptic_server/mesh/mesh_grid.h"
+#include "haptic_server/volume/bone_properties.h"
 #include "haptic_server/volume/crossed_cells.h"
 #include "haptic_server/volume/marching_cubes_table.h"
 
@@ -22,9 +27,11 @@ namespace bonemill {
 // One leaf after another with reused memory; one thread at a time. Volume and lattice must outlive it.
 class LeafMesher {
   public:
-    // most_steps_per_cell as for MeshGrid.
+    // most_steps_per_cell as for MeshGrid. Without `properties` (which must outlive it) no vertex has a
+    // material.
     LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice,
-               int most_steps_per_cell = MeshGrid::kMostStepsPerCell);
+               int most_steps_per_cell = MeshGrid::kMostStepsPerCell,
+               const BoneProperties* properties = nullptr);
 
     // revision = the leaf's version. Empty without surface. Nothing if the voxels were written while they
     // were copied, which is the shorter part of the work.
@@ -37,7 +44,9 @@ class LeafMesher {
     void meshCells();
     void emitCell(int config, const Eigen::Vector3i& cell);
     uint32_t vertexOnEdge(const Eigen::Vector3i& local, int axis);
-    PackedVertex makeVertex(const Eigen::Vector3i& local, int axis) const;
+    void addVertex(const Eigen::Vector3i& local, int axis);
+    MaterialId materialUnder(const Eigen::Vector3i& inside, size_t corner,
+                             const Eigen::Vector3f& normal) const noexcept;
 
     size_t cornerIndex(const Eigen::Vector3i& local) const noexcept {
         return size_t(local.x() + 1) + stride_[1] * size_t(local.y() + 1) +
@@ -46,6 +55,7 @@ class LeafMesher {
 
     const VoxelVolume& volume_;
     const LeafLattice& lattice_;
+    const BoneProperties* properties_;
     MeshGrid grid_;
     const std::array<CubeTriangles, 256>& triangles_;
     CrossedCells crossed_;
@@ -56,6 +66,7 @@ class LeafMesher {
     std::vector<Density> density_;  // cells_ + 3 voxels per axis from local (-1, -1, -1) on, x fastest
     std::vector<PackedVertex> vertices_;
     std::vector<uint32_t> indices_;
+    std::vector<uint8_t> materials_;     // per vertex, with properties
     std::vector<uint32_t> edge_vertex_;  // per corner and axis: vertex on the edge that starts there
 };
 

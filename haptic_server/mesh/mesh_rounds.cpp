@@ -14,8 +14,9 @@ constexpr int64_t kPassPeriodNs = 8 * kNsPerMillisecond;
 
 }  // namespace
 
-MeshRounds::MeshRounds(const VoxelVolume& volume, const LeafLattice& lattice, SpscRing<Cut>& cuts)
-    : lattice_(lattice), cuts_(cuts), mesher_(volume, lattice, MeshGrid::kStreamedStepsPerCell) {}
+MeshRounds::MeshRounds(const VoxelVolume& volume, const LeafLattice& lattice, SpscRing<Cut>& cuts,
+                       const BoneProperties* properties)
+    : lattice_(lattice), cuts_(cuts), mesher_(volume, lattice, MeshGrid::kStreamedStepsPerCell, properties) {}
 
 bool MeshRounds::round(const Sink& sink) {
     takeCuts();

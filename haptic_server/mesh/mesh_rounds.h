@@ -17,9 +17,10 @@ namespace bonemill {
 
 class MeshRounds {
   public:
-    // Volume, lattice and ring must outlive this object. The ring holds the ticks' cuts, each pushed after
-    // its voxels were written; a cut that finds it full is meshed all the same, only later.
-    MeshRounds(const VoxelVolume& volume, const LeafLattice& lattice, SpscRing<Cut>& cuts);
+    // All must outlive this object; properties as for LeafMesher. The ring holds the ticks' cuts, each pushed
+    // after its voxels were written; a cut that finds it full is meshed all the same, only later.
+    MeshRounds(const VoxelVolume& volume, const LeafLattice& lattice, SpscRing<Cut>& cuts,
+               const BoneProperties* properties = nullptr);
 
     using Sink = std::function<void(NodeGroup&&)>;
 

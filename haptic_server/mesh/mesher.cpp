@@ -17,9 +17,10 @@ bool isBeingWritten(uint32_t version) noexcept {
 
 }  // namespace
 
-Mesher::Mesher(const VoxelVolume& volume, const LeafLattice& lattice, int most_steps_per_cell)
+Mesher::Mesher(const VoxelVolume& volume, const LeafLattice& lattice, int most_steps_per_cell,
+               const BoneProperties* properties)
     : lattice_(lattice),
-      leaf_mesher_(volume, lattice, most_steps_per_cell),
+      leaf_mesher_(volume, lattice, most_steps_per_cell, properties),
       meshed_version_(lattice.leafCount(), kNeverMeshed),
       has_mesh_(lattice.leafCount(), false) {}
 

@@ -16,9 +16,9 @@ namespace bonemill {
 
 class Mesher {
   public:
-    // Volume and lattice must outlive the mesher. most_steps_per_cell as for MeshGrid.
+    // All must outlive the mesher. most_steps_per_cell as for MeshGrid, properties as for LeafMesher.
     Mesher(const VoxelVolume& volume, const LeafLattice& lattice,
-           int most_steps_per_cell = MeshGrid::kMostStepsPerCell);
+           int most_steps_per_cell = MeshGrid::kMostStepsPerCell, const BoneProperties* properties = nullptr);
 
     using Sink = std::function<void(NodeMesh&&)>;
     static constexpr uint32_t kAllLeaves = std::numeric_limits<uint32_t>::max();

@@ -122,8 +122,10 @@ bool Publisher::publishSceneInfo(topics::SceneInfo info) {
     return writeMessage(scene_info_writer_, session_, info);
 }
 
-bool Publisher::publishToolState(const TickRecord& record) {
-    return writeMessage(tool_state_writer_, session_, toolState(record, epoch_));
+bool Publisher::publishToolState(const TickRecord& record, std::optional<topics::EffectState> effects) {
+    topics::ToolState state = toolState(record, epoch_);
+    if (effects) *state.mutable_effects() = std::move(*effects);
+    return writeMessage(tool_state_writer_, session_, state);
 }
 
 bool Publisher::publishStatus(topics::Status status) {

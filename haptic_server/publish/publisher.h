@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -46,8 +47,9 @@ class Publisher {
 
     // The epoch is filled in.
     bool publishSceneInfo(topics::SceneInfo info);
-    // Best effort, for 60 to 100 calls per second; the time stamp is that of the call.
-    bool publishToolState(const TickRecord& record);
+    // Best effort, for 60 to 100 calls per second; the time stamp is that of the call. effects: of the scene,
+    // if it has such that say something.
+    bool publishToolState(const TickRecord& record, std::optional<topics::EffectState> effects = {});
     // Epoch, node count, node digest and last command are filled in. Clients take a server for lost that
     // publishes nothing for 3 s: call at least once per second, and right after the last of a group of
     // nodes.

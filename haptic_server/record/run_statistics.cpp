@@ -54,6 +54,7 @@ void RunStatistics::add(const TickRecord& record) {
     removed_voxels_ += record.removed_voxels;
     added_voxels_ += record.added_voxels;
     cuts_ += !record.cut.isEmpty();
+    if (effects_.recorded().any()) effects_.add(record.effects);
     addFaults(record.faults);
 }
 
@@ -92,7 +93,7 @@ double RunStatistics::meanRateHz() const {
     return durationS() > 0.0 ? double(last_tick_ - first_tick_) / durationS() : 0.0;
 }
 
-std::string RunStatistics::toJson() const {
+std::string RunStatistics::toJson(const std::vector<std::string>& materials) const {
     constexpr double kMm3PerM3 = 1e9;
     constexpr double kMmPerM = 1e3;
     nlohmann::ordered_json faults = nlohmann::ordered_json::object();
@@ -124,6 +125,8 @@ std::string RunStatistics::toJson() const {
         {"cuts", cuts_},
         {"fault_ticks", faults},
     };
+    for (const auto& [key, value] : effects_.figures()) report[key] = value;
+    if (effects_.recorded().any()) report["warnings"] = effects_.warnings(materials);
     if (page_faults_)
         report["page_faults_after_warm_up"] = {{"minor", page_faults_->minor},
                                                {"major", page_faults_->major}};
@@ -140,9 +143,9 @@ std::string RunStatistics::toJson() const {
     return report.dump(2);
 }
 
-void RunStatistics::writeJson(const std::string& path) const {
+void RunStatistics::writeJson(const std::string& path, const std::vector<std::string>& materials) const {
     std::ofstream file(path);
-    file << toJson() << '\n';
+    file << toJson(materials) << '\n';
     file.close();
     if (!file) throw UserError("report " + path + " cannot be written (" + std::strerror(errno) + ")");
 }

@@ -11,6 +11,7 @@
 
 #include "common/rt/latency_histogram.h"
 #include "common/rt/page_faults.h"
+#include "haptic_server/record/effect_statistics.h"
 #include "haptic_server/tick/tick_record.h"
 
 namespace bonemill {
@@ -25,8 +26,9 @@ struct PublishFigures {
 
 class RunStatistics {
   public:
-    // period_ns: nominal time between ticks, > 0.
-    explicit RunStatistics(int64_t period_ns) : period_ns_(period_ns) {}
+    // period_ns: nominal time between ticks, > 0. recorded: what the records say of effects.
+    explicit RunStatistics(int64_t period_ns, const RecordedEffects& recorded = {})
+        : period_ns_(period_ns), effects_(recorded) {}
 
     // Records in the order of their ticks; those the ring dropped may be missing.
     void add(const TickRecord& record);
@@ -67,12 +69,13 @@ class RunStatistics {
     double added() const { return added_; }                     // m³
     uint64_t removedVoxels() const { return removed_voxels_; }
     uint64_t addedVoxels() const { return added_voxels_; }
+    const EffectStatistics& effects() const { return effects_; }
     uint32_t faults() const { return faults_; }  // every TickFault bit that was ever set
 
-    // One JSON object, keys with unit suffixes.
-    std::string toJson() const;
+    // One JSON object, keys with unit suffixes. materials: names of the scene's.
+    std::string toJson(const std::vector<std::string>& materials = {}) const;
     // Throws UserError when the file cannot be written.
-    void writeJson(const std::string& path) const;
+    void writeJson(const std::string& path, const std::vector<std::string>& materials = {}) const;
 
   private:
     void addSchedule(const TickRecord& record);
@@ -106,6 +109,7 @@ class RunStatistics {
     double added_ = 0.0;
     uint64_t removed_voxels_ = 0;
     uint64_t added_voxels_ = 0;
+    EffectStatistics effects_;
     uint32_t faults_ = 0;
     std::array<uint64_t, 32> fault_ticks_{};
 };

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <span>
 
@@ -9,6 +10,17 @@
 
 namespace bonemill {
 namespace {
+
+constexpr double kMm3PerM3 = 1e9;
+
+std::string headerOf(const RecordedEffects& recorded) {
+    std::string header = kTraceHeader;
+    if (recorded.burr) header += kBurrColumns;
+    if (recorded.heat) header += kHeatColumns;
+    if (recorded.protection) header += kProtectionColumns;
+    if (recorded.any()) header += kEventColumn;
+    return header + '\n';
+}
 
 template <class Number>
 void append(std::string& line, Number value) {
@@ -23,17 +35,40 @@ void appendAll(std::string& line, std::span<const double> values) {
 
 }  // namespace
 
-TraceWriter::TraceWriter(const std::string& path) : file_(std::fopen(path.c_str(), "w")) {
+TraceWriter::TraceWriter(const std::string& path, const RecordedEffects& recorded)
+    : recorded_(recorded), file_(std::fopen(path.c_str(), "w")) {
     if (!file_) {
         throw UserError("trace " + path + " cannot be written (" + std::strerror(errno) +
                         "): does its folder exist, and may you write there?");
     }
-    is_good_ = std::fputs(kTraceHeader, file_.get()) >= 0 && std::fputc('\n', file_.get()) != EOF;
+    is_good_ = std::fputs(headerOf(recorded).c_str(), file_.get()) >= 0;
+}
+
+void TraceWriter::appendEffects(const EffectRecord& effects) {
+    constexpr double kRadPerSPerRpm = 2 * M_PI / 60, kMmPerM = 1e3;
+    if (recorded_.burr) {
+        append(line_, double(effects.spin_speed) / kRadPerSPerRpm);
+        append(line_, effects.burr_force);
+        append(line_, effects.axis_torque);
+        append(line_, effects.cutting_power);
+        append(line_, effects.removal_power);
+        append(line_, effects.removed_energy);
+    }
+    if (recorded_.heat) {
+        append(line_, effects.temperature);
+        append(line_, double(effects.necrotic_volume) * kMm3PerM3);
+    }
+    if (recorded_.protection) {
+        append(line_, effects.protected_id);
+        append(line_, double(effects.protected_distance) * kMmPerM);
+        append(line_, effects.protected_force);
+        append(line_, double(effects.damaged_volume) * kMm3PerM3);
+    }
+    if (recorded_.any()) append(line_, effects.events);
 }
 
 bool TraceWriter::write(const TickRecord& record) {
     if (!is_good_ || !file_) return false;
-    constexpr double kMm3PerM3 = 1e9;
     constexpr double kNsPerUs = 1e3;
     line_.clear();
     append(line_, record.t_s);
@@ -49,6 +84,7 @@ bool TraceWriter::write(const TickRecord& record) {
     append(line_, record.removed * kMm3PerM3);
     append(line_, record.faults);
     append(line_, double(record.compute_ns) / kNsPerUs);
+    appendEffects(record.effects);
     line_.back() = '\n';
     is_good_ = std::fwrite(line_.data(), 1, line_.size(), file_.get()) == line_.size();
     return is_good_;

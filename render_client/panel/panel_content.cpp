@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "render_client/scene/accuracy_keys.h"
+#include "render_client/scene/effect_text.h"
 #include "render_client/scene/session_text.h"
 
 namespace bonemill {
@@ -16,6 +17,16 @@ constexpr float kMargin = 14;  // to the picture's edge
 constexpr double kLeastOpacity = 0.05;
 const ImVec4 kQuiet{0.62f, 0.68f, 0.74f, 1};
 const ImVec4 kWarning{0.98f, 0.76f, 0.3f, 1};
+const ImVec4 kAlarm{1.0f, 0.42f, 0.38f, 1};
+const ImVec4 kGood{0.45f, 0.88f, 0.55f, 1};
+const ImVec4 kPlain{0.95f, 0.96f, 0.97f, 1};
+
+const ImVec4& colourOf(HudTone tone) {
+    return tone == HudTone::kAlarm     ? kAlarm
+           : tone == HudTone::kWarning ? kWarning
+           : tone == HudTone::kGood    ? kGood
+                                       : kPlain;
+}
 
 bool isOpen(const char* title) {
     return ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
@@ -38,6 +49,10 @@ void PanelContent::build() {
     if (isOpen("View")) buildView();
     gap();
     if (isOpen("Session")) buildSession();
+    if (session_.status && session_.status->has_training()) {
+        gap();
+        if (isOpen("Training")) buildTraining();
+    }
     gap();
     if (isOpen("Who is watching")) buildWatchers();
     ImGui::End();
@@ -261,6 +276,16 @@ void PanelContent::buildEnd() {
         if (button("Go on", "Nothing is stopped")) is_ending_ = false;
     }
     ImGui::EndDisabled();
+}
+
+void PanelContent::buildTraining() {
+    for (const HudRow& row : trainingRows(session_.status->training())) {
+        if (!row.label.empty()) {
+            ImGui::TextColored(kQuiet, "%s", row.label.c_str());
+            ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.55f);
+        }
+        ImGui::TextColored(colourOf(row.tone), "%s", row.value.c_str());
+    }
 }
 
 void PanelContent::buildWatchers() {

@@ -36,6 +36,7 @@ class PanelContent {
     void buildTools();
     void buildAccuracy();
     void buildEnd();
+    void buildTraining();
     void buildWatchers();
 
     // Controls: a label, and what it does in words while the mouse rests on it.

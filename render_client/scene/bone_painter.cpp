@@ -34,6 +34,15 @@ BonePainter::BonePainter(const GlApi& gl)
            std::string(shaders::kLighting) + shaders::kNoise + shaders::kCapFragment),
       no_attributes_(gl) {}
 
+void BonePainter::setPalette(const std::vector<Eigen::Vector4f>& colours) {
+    coloured_.reset();
+    if (colours.empty()) return;
+    const std::string define = MaterialPalette::kDefine;
+    coloured_.reset(new Coloured{{gl_, colours},
+                                 {gl_, "bone of materials", define + shaders::kMeshVertex,
+                                  define + shaders::kLighting + shaders::kNoise + shaders::kBoneFragment}});
+}
+
 void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
     const Look look{{1, 0}, kInsideSolid};
     if (!frame.cuts_V.any()) return drawSurface(frame, nodes, shadow_texture, look);
@@ -68,14 +77,16 @@ void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, GL
 void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
                               const Look& look) {
     const ClipPlanes clip(gl_, frame.cuts_V);
-    surface_.use();
-    frame.setLight(gl_, surface_, shadow_texture);
-    setCutPlanes(surface_, frame.cuts_V);
-    surface_.set("camera_from_model", frame.camera_from_V);
-    surface_.set("grain_size", float(kGrain) * frame.bone_radius);
-    surface_.set("opacity", look.opacity);
-    surface_.set("inside_colour", look.inside);
-    triangles_drawn_ = nodes.draw(surface_, frame.cull_from_V);
+    const Program& surface = coloured_ ? coloured_->surface : surface_;
+    surface.use();
+    frame.setLight(gl_, surface, shadow_texture);
+    setCutPlanes(surface, frame.cuts_V);
+    surface.set("camera_from_model", frame.camera_from_V);
+    surface.set("grain_size", float(kGrain) * frame.bone_radius);
+    surface.set("opacity", look.opacity);
+    surface.set("inside_colour", look.inside);
+    if (coloured_) coloured_->palette.setUniforms(surface);
+    triangles_drawn_ = nodes.draw(surface, frame.cull_from_V);
 }
 
 void BonePainter::drawDepth(const Frame& frame, const NodeStore& nodes) const {

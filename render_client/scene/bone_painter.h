@@ -12,8 +12,10 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "render_client/scene/frame.h"
+#include "render_client/scene/material_palette.h"
 #include "render_client/scene/node_store.h"
 
 namespace bonemill {
@@ -28,6 +30,9 @@ class BonePainter {
     void drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
     void drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, double opacity,
                          const std::function<void()>& draw_tool);
+
+    // From now on bone has its materials' colours (paletteOf()); empty: bone's own. Throws GlError.
+    void setPalette(const std::vector<Eigen::Vector4f>& colours);
 
     // Bone triangles inside the view volume of the last picture.
     size_t trianglesDrawn() const { return triangles_drawn_; }
@@ -50,6 +55,11 @@ class BonePainter {
     const GlApi& gl_;
     Program surface_, depth_, cap_;
     GlVertexArray no_attributes_;
+    struct Coloured {
+        MaterialPalette palette;
+        Program surface;
+    };
+    std::unique_ptr<Coloured> coloured_;  // null: bone's own colour
     size_t triangles_drawn_ = 0;
 };
 

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <utility>
 
+#include "render_client/scene/effect_text.h"
+#include "render_client/scene/figure_text.h"
 #include "render_client/scene/session_text.h"
 
 namespace bonemill {
@@ -16,31 +18,8 @@ constexpr size_t kLongestValue = 26;  // characters
 constexpr size_t kLongestName = 24;
 constexpr int kMostWatchers = 8;  // rows of the list
 
-std::string number(double value, int decimals, const char* unit) {
-    if (!std::isfinite(value)) return "\u2013";
-    char text[64];
-    std::snprintf(text, sizeof text, "%.*f%s", decimals, value, unit);
-    return text;
-}
-
 double norm(const google::protobuf::RepeatedField<double>& v) {
     return v.size() == 3 ? std::hypot(v[0], v[1], v[2]) : std::nan("");
-}
-
-// Three significant digits or so, whatever the size.
-std::string readable(double value, const char* unit) {
-    const double magnitude = std::abs(value);
-    return number(value, magnitude < 10 ? 2 : magnitude < 1000 ? 1 : 0, unit);
-}
-
-std::vector<std::string> splitSigns(const std::string& utf8) {
-    std::vector<std::string> signs;
-    for (const char byte : utf8) {
-        const bool continues = (uint8_t(byte) & 0xc0) == 0x80;
-        if (signs.empty() || !continues) signs.emplace_back();
-        signs.back() += byte;
-    }
-    return signs;
 }
 
 // Lines of at most `most` bytes, cut at spaces; a longer word stays whole.
@@ -54,15 +33,6 @@ std::vector<std::string> wrapped(const std::string& text, size_t most) {
     return lines;
 }
 
-// Cut between code points.
-std::string shortened(const std::string& text, size_t most) {
-    const std::vector<std::string> signs = splitSigns(text);
-    if (signs.size() <= most) return text;
-    std::string result;
-    for (size_t i = 0; i + 1 < most; ++i) result += signs[i];
-    return result + "\u2026";
-}
-
 void addSessionRows(const topics::Status& status, std::vector<HudRow>& rows) {
     if (status.ticks() > 0) rows.push_back({"Session", clockText(status.session_s())});
     if (status.is_milling_paused()) rows.push_back({"Milling", "paused", HudTone::kWarning});
@@ -70,13 +40,14 @@ void addSessionRows(const topics::Status& status, std::vector<HudRow>& rows) {
 
 void addToolNameRow(const topics::SceneInfo& info, std::vector<HudRow>& rows) {
     if (info.tool_names_size() < 2 || info.tool_index() >= uint32_t(info.tool_names_size())) return;
-    rows.push_back({"Tool", shortened(info.tool_names(int(info.tool_index())), kLongestName)});
+    rows.push_back({"Tool", shortenedText(info.tool_names(int(info.tool_index())), kLongestName)});
 }
 
 HudRow watcherRow(const topics::Viewer& watcher) {
-    const std::string name = watcher.name().empty() ? "(no name)" : shortened(watcher.name(), kLongestName);
+    const std::string name =
+        watcher.name().empty() ? "(no name)" : shortenedText(watcher.name(), kLongestName);
     std::string value = roleName(watcher.role());
-    value += ", " + number(watcher.frame_rate_hz(), 0, " Hz");
+    value += ", " + figureText(watcher.frame_rate_hz(), 0, " Hz");
     if (!watcher.is_complete()) value += ", incomplete";
     return {name, value, watcher.is_complete() ? HudTone::kPlain : HudTone::kWarning};
 }
@@ -92,9 +63,9 @@ std::vector<HudRow> watcherRows(const std::vector<topics::Viewer>& watchers) {
 
 void addLoopRows(const topics::Status& status, std::vector<HudRow>& rows) {
     if (status.ticks() == 0) return rows.push_back({"Loop", "waits for a device", HudTone::kWarning});
-    rows.push_back({"Loop", number(status.rate_hz(), 1, " Hz")});
-    rows.push_back({"Tick p50 / p99",
-                    readable(status.tick_p50_us(), "") + " / " + readable(status.tick_p99_us(), " \u00b5s")});
+    rows.push_back({"Loop", figureText(status.rate_hz(), 1, " Hz")});
+    rows.push_back({"Tick p50 / p99", readableText(status.tick_p50_us(), "") + " / " +
+                                          readableText(status.tick_p99_us(), " \u00b5s")});
 }
 
 void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
@@ -103,14 +74,14 @@ void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
     for (const std::string& line : wrapped(status.preset(), kLongestValue))
         rows.push_back({std::exchange(label, ""), line});
     rows.push_back({"Force error", status.has_accuracy_error()
-                                       ? readable(status.force_error_percent(), " %") + ", " +
-                                             readable(status.force_direction_error_deg(), "\u00b0")
+                                       ? readableText(status.force_error_percent(), " %") + ", " +
+                                             readableText(status.force_direction_error_deg(), "\u00b0")
                                        : "not measured"});
 }
 
 void addToolRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
-    rows.push_back({"Force", readable(norm(tool.force_n()), " N")});
-    rows.push_back({"Torque", readable(norm(tool.torque_nm()) * 1e3, " N\u00b7mm")});
+    rows.push_back({"Force", readableText(norm(tool.force_n()), " N")});
+    rows.push_back({"Torque", readableText(norm(tool.torque_nm()) * 1e3, " N\u00b7mm")});
     rows.push_back({"Contacts", std::to_string(tool.contacts())});
     const bool removes = tool.buttons() & 1u;
     const bool adds = tool.buttons() & 2u;
@@ -119,6 +90,11 @@ void addToolRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
                     : adds  ? "adding"
                             : "idle",
                     removes || adds ? HudTone::kWarning : HudTone::kPlain});
+}
+
+void addEffectRows(const HudInput& input, std::vector<HudRow>& rows) {
+    const auto more = effectRows(input.tool->effects(), input.info ? &*input.info : nullptr, input.events);
+    rows.insert(rows.end(), more.begin(), more.end());
 }
 
 void addFaultRow(const topics::Status& status, std::vector<HudRow>& rows) {
@@ -163,6 +139,10 @@ HudTone stateTone(Connection connection) {
 
 }  // namespace
 
+std::optional<HudNotice> alertOf(const HudInput& input) {
+    return effectAlert(input.events, input.structure, input.info ? &*input.info : nullptr);
+}
+
 Hud makeHud(const HudInput& input) {
     Hud hud;
     hud.title = input.info && !input.info->name().empty() ? input.info->name()
@@ -171,6 +151,7 @@ Hud makeHud(const HudInput& input) {
     hud.state = stateText(input);
     hud.state_tone = stateTone(input.connection);
     hud.notice = input.notice;
+    hud.alert = alertOf(input);
     if (input.status) {
         addSessionRows(*input.status, hud.rows);
         addLoopRows(*input.status, hud.rows);
@@ -178,11 +159,12 @@ Hud makeHud(const HudInput& input) {
     }
     if (input.info) addToolNameRow(*input.info, hud.rows);
     if (input.tool) addToolRows(*input.tool, hud.rows);
+    if (input.tool && input.tool->has_effects()) addEffectRows(input, hud.rows);
     if (input.status) {
-        hud.rows.push_back({"Removed", readable(input.status->removed_mm3(), " mm\u00b3")});
+        hud.rows.push_back({"Removed", readableText(input.status->removed_mm3(), " mm\u00b3")});
         addFaultRow(*input.status, hud.rows);
     }
-    if (input.frame_rate_hz > 0) hud.rows.push_back({"Pictures", number(input.frame_rate_hz, 0, " Hz")});
+    if (input.frame_rate_hz > 0) hud.rows.push_back({"Pictures", figureText(input.frame_rate_hz, 0, " Hz")});
     if (input.show_watchers) hud.watchers = watcherRows(input.watchers);
     if (input.show_help) hud.help = input.help;
     return hud;

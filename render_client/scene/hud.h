@@ -39,6 +39,7 @@ struct Hud {
     std::vector<HudRow> watchers;  // empty: no list
     std::vector<HudRow> help;      // keys and what they do; empty: no help page
     std::optional<HudNotice> notice;
+    std::optional<HudNotice> alert;  // with a border around the picture
 };
 
 // A name beside a point of the picture, pixels from the upper left.
@@ -60,9 +61,13 @@ struct HudInput {
     std::vector<HudRow> help;
     bool show_help = false;
     std::optional<HudNotice> notice;
+    uint32_t events = 0;     // EffectState.Event bits that the trainee is to see now
+    uint32_t structure = 0;  // EffectState.protected_id of those of protected structures
 };
 
 Hud makeHud(const HudInput& input);
+// Also for a picture without figures.
+std::optional<HudNotice> alertOf(const HudInput& input);
 
 // A round length (1, 2 or 5 times a power of ten, m) that spans at most max_pixels, and its name.
 struct ScaleBar {

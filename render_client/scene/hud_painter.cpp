@@ -55,6 +55,13 @@ void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_
         begin(ui_scale);
     }
     if (hud.notice) layOutNotice(*hud.notice, width, height);
+    if (hud.alert) layOutAlert(*hud.alert, width, height);
+    flush(width, height);
+}
+
+void HudPainter::paintAlert(const HudNotice& alert, int width, int height, float ui_scale) {
+    begin(ui_scale);
+    layOutAlert(alert, width, height);
     flush(width, height);
 }
 
@@ -216,10 +223,25 @@ void HudPainter::layOutHelp(const std::vector<HudRow>& rows, int width, int heig
 }
 
 void HudPainter::layOutNotice(const HudNotice& notice, int width, int height) {
+    layOutBanner(notice, float(height) - em_ * 1.1f, width);
+}
+
+// Above the notice's place, so that neither hides the other.
+void HudPainter::layOutAlert(const HudNotice& alert, int width, int height) {
+    const float thick = std::max(3.0f, em_ * 0.4f), across = float(width), down = float(height);
+    Colour colour = colourOf(alert.tone);
+    colour[3] = 0.85f;
+    box(0, 0, across, thick, 0, colour);
+    box(0, down - thick, across, thick, 0, colour);
+    box(0, thick, thick, down - 2 * thick, 0, colour);
+    box(across - thick, thick, thick, down - 2 * thick, 0, colour);
+    layOutBanner(alert, down - em_ * 3.9f, width);
+}
+
+void HudPainter::layOutBanner(const HudNotice& notice, float bottom, int width) {
     const float padding = em_ * 0.9f, panel_height = em_ * 2.2f;
     const float text_width = font_->width(notice.text, FontStyle::kBold);
-    const float left = std::round((float(width) - text_width) / 2),
-                top = float(height) - em_ * 1.1f - panel_height;
+    const float left = std::round((float(width) - text_width) / 2), top = bottom - panel_height;
     box(left - padding, top, text_width + 2 * padding, panel_height, em_ * 0.6f, kPanelColour);
     text(left, top + em_ * 1.45f, notice.text, FontStyle::kBold, colourOf(notice.tone));
 }

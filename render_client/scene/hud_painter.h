@@ -22,6 +22,9 @@ class HudPainter {
     void paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel, int width, int height,
                float ui_scale);
 
+    // The alert alone, over a picture without figures.
+    void paintAlert(const HudNotice& alert, int width, int height, float ui_scale);
+
     // Names beside points of the picture.
     void paintLabels(const std::vector<HudLabel>& labels, int width, int height, float ui_scale);
 
@@ -58,6 +61,8 @@ class HudPainter {
     float helpTextHeight(const std::vector<HudRow>& rows, int width, int height) const;
     void layOutHelp(const std::vector<HudRow>& rows, int width, int height);
     void layOutNotice(const HudNotice& notice, int width, int height);
+    void layOutAlert(const HudNotice& alert, int width, int height);
+    void layOutBanner(const HudNotice& notice, float bottom, int width);
     void flush(int width, int height);
     static Colour colourOf(HudTone tone);
 

@@ -3,14 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <utility>
 
 namespace bonemill {
 namespace {
 
-using Triangle = std::array<PackedVertex, 3>;
+struct Corner {
+    PackedVertex vertex;
+    uint8_t material;
+};
+using Triangle = std::array<Corner, 3>;
 
-uint64_t keyOf(const PackedVertex& vertex) {
-    return std::bit_cast<uint64_t>(vertex);
+std::pair<uint64_t, uint8_t> keyOf(const Corner& corner) {
+    return {std::bit_cast<uint64_t>(corner.vertex), corner.material};
+}
+
+Corner cornerOf(const NodeMesh& mesh, uint32_t index) {
+    return {mesh.vertices[index], mesh.materials.empty() ? uint8_t(0) : mesh.materials[index]};
 }
 
 bool isBefore(const Triangle& a, const Triangle& b) {
@@ -24,7 +33,7 @@ std::vector<Triangle> sortedTriangles(const NodeMesh& mesh) {
     std::vector<Triangle> triangles(mesh.indices.size() / 3);
     for (size_t n = 0; n < triangles.size(); ++n) {
         Triangle& t = triangles[n];
-        for (size_t i = 0; i < 3; ++i) t[i] = mesh.vertices[mesh.indices[3 * n + i]];
+        for (size_t i = 0; i < 3; ++i) t[i] = cornerOf(mesh, mesh.indices[3 * n + i]);
         const auto first =
             std::min_element(t.begin(), t.end(), [](auto& a, auto& b) { return keyOf(a) < keyOf(b); });
         std::rotate(t.begin(), first, t.end());
@@ -53,7 +62,7 @@ Eigen::AlignedBox3f differenceBox(const NodeMesh& before, const NodeMesh& after)
                                   std::back_inserter(different), isBefore);
     Eigen::AlignedBox3f box;
     for (const Triangle& triangle : different)
-        for (const PackedVertex& vertex : triangle) box.extend(positionOf(after, vertex));
+        for (const Corner& corner : triangle) box.extend(positionOf(after, corner.vertex));
     return box;
 }
 

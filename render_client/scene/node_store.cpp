@@ -30,9 +30,12 @@ void NodeStore::set(NodeMesh mesh) {
     if (*std::max_element(mesh.indices.begin(), mesh.indices.end()) >= mesh.vertices.size()) {
         throw std::invalid_argument("node " + std::to_string(mesh.leaf) + ": a triangle without its vertex");
     }
+    if (!mesh.materials.empty() && mesh.materials.size() != mesh.vertices.size())
+        throw std::invalid_argument("node " + std::to_string(mesh.leaf) + ": not one material per vertex");
     Node node{GlVertexArray(gl_),
               GlBuffer(gl_),
               GlBuffer(gl_),
+              std::nullopt,
               boxOf(mesh),
               mesh.origin,
               mesh.step,
@@ -53,11 +56,22 @@ void NodeStore::set(NodeMesh mesh) {
                             reinterpret_cast<const void*>(offsetof(PackedVertex, octahedral_u)));
     gl_.EnableVertexAttribArray(0);
     gl_.EnableVertexAttribArray(1);
+    if (!mesh.materials.empty()) uploadMaterials(mesh.materials, node);
     gl_.BindVertexArray(0);
     if (tracks_changes_) changed_.extend(changeTo(mesh, node.box));
     const uint32_t leaf = mesh.leaf;
     if (tracks_changes_) node.mesh = std::move(mesh);
     nodes_.insert_or_assign(leaf, std::move(node));
+}
+
+// Into the layout in use. Vertices of other nodes have the attribute's own value, 0: no material.
+void NodeStore::uploadMaterials(const std::vector<uint8_t>& materials, Node& node) {
+    node.materials.emplace(gl_);
+    gl_.BindBuffer(GL_ARRAY_BUFFER, node.materials->name());
+    gl_.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(materials.size()), materials.data(), GL_DYNAMIC_DRAW);
+    gl_.VertexAttribPointer(2, 1, GL_UNSIGNED_BYTE, GL_FALSE, 1, nullptr);
+    gl_.EnableVertexAttribArray(2);
+    uploads_.bytes += materials.size();
 }
 
 Eigen::AlignedBox3f NodeStore::changeTo(const NodeMesh& mesh, const Eigen::AlignedBox3f& box) const {

@@ -24,7 +24,7 @@ class NodeStore {
     explicit NodeStore(const GlApi& gl) : gl_(gl) {}
 
     // Replaces the leaf's mesh; an empty one removes it. Throws std::invalid_argument when an index has no
-    // vertex.
+    // vertex or the materials are not as many as the vertices.
     void set(NodeMesh mesh);
     void remove(uint32_t leaf);
     void clear();
@@ -47,12 +47,14 @@ class NodeStore {
         GlVertexArray layout;
         GlBuffer vertices;
         GlBuffer indices;
+        std::optional<GlBuffer> materials;
         Eigen::AlignedBox3f box;  // V, m
         Eigen::Vector3f origin;   // V, m
         Eigen::Vector3f step;     // V, m
         GLsizei index_count;
         std::optional<NodeMesh> mesh;  // what the buffers hold, while changes are tracked
     };
+    void uploadMaterials(const std::vector<uint8_t>& materials, Node& node);
     Eigen::AlignedBox3f changeTo(const NodeMesh& mesh, const Eigen::AlignedBox3f& box) const;
 
     const GlApi& gl_;

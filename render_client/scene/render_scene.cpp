@@ -39,6 +39,20 @@ void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     bone_V_ = Eigen::AlignedBox3d(*low, *high);
     if (!old || old->name() != info.name()) view_pending_ = true;
     hud_input_.info = info;
+    std::vector<Eigen::Vector4f> palette = paletteOf(info);
+    if (palette == palette_) return;
+    renderer_.setPalette(palette);
+    palette_ = std::move(palette);
+}
+
+void RenderScene::setToolState(const topics::ToolState& tool) {
+    const auto& old = hud_input_.tool;
+    const bool is_new = !old || old->epoch() != tool.epoch() || old->tick() != tool.tick();
+    if (is_new && tool.has_effects()) {
+        events_.note(tool.effects().events());
+        if (tool.effects().protected_id() != 0) hud_input_.structure = tool.effects().protected_id();
+    }
+    hud_input_.tool = tool;
 }
 
 void RenderScene::setViewOverrides(const ViewOverrides& overrides) {
@@ -111,6 +125,7 @@ void RenderScene::draw(int width, int height, float ui_scale, GLuint target) {
     const bool is_divided = settings_.stereo == StereoMode::kSideBySide;
     if (view_pending_) applyFirstView(double(is_divided ? width / 2 : width) / height);
     hud_input_.node_count = nodes_.nodeCount();
+    hud_input_.events = events_.show(EventLatch::Clock::now());
     can_pick_ = settings_.stereo == StereoMode::kOff;
     const FrameView view = makeView();
     const PictureArea whole{0, width, height};
@@ -169,7 +184,11 @@ void RenderScene::drawAnaglyph(const FrameView& view, int width, int height, flo
 
 // The renderer has bound the framebuffer and set the viewport.
 void RenderScene::paintHud(const Camera& camera, const PictureArea& area, float ui_scale) {
-    if (!settings_.show_hud) return;
+    if (!settings_.show_hud) {
+        if (const auto alert = alertOf(hud_input_))
+            hud_painter_.paintAlert(*alert, area.width, area.height, ui_scale);
+        return;
+    }
     hud_input_.show_watchers = settings_.show_watchers;
     hud_input_.show_help = settings_.show_help;
     const double metres_per_pixel = camera.metresPerPixel(area.height);

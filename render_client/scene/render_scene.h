@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render_client/scene/anaglyph.h"
+#include "render_client/scene/event_latch.h"
 #include "render_client/scene/hud_painter.h"
 #include "render_client/scene/orbit_camera.h"
 #include "render_client/scene/scene_renderer.h"
@@ -39,7 +40,8 @@ class RenderScene {
     // brings another tool. An older revision of the same epoch changes nothing. Throws std::invalid_argument
     // on a bad message.
     void setSceneInfo(const topics::SceneInfo& info);
-    void setToolState(const topics::ToolState& tool) { hud_input_.tool = tool; }
+    // May be the same one again. What its effects tell of events stays on the screen for a while.
+    void setToolState(const topics::ToolState& tool);
     void setStatus(const topics::Status& status) { hud_input_.status = status; }
     void setConnection(Connection connection) { hud_input_.connection = connection; }
     // Shown until it is replaced; nullopt: nothing is shown.
@@ -101,6 +103,8 @@ class RenderScene {
     bool view_pending_ = true;
     ViewSettings settings_;
     bool can_pick_ = false;
+    EventLatch events_;
+    std::vector<Eigen::Vector4f> palette_;
     const GlApi& gl_;
 };
 

@@ -33,6 +33,11 @@ class SceneRenderer {
     // Leaves the picture (without HUD) in that part of `target`, a framebuffer. Takes the nodes' changes.
     void draw(const FrameView& view, NodeStore& nodes, const ToolMesh& tool, const PictureArea& area,
               GLuint target);
+    // As BonePainter.
+    void setPalette(const std::vector<Eigen::Vector4f>& colours) {
+        bone_.setPalette(colours);
+        changes_.forget();
+    }
     // The next picture is drawn whole, also in quick quality.
     void drawWholeNext() { changes_.forget(); }
 

@@ -65,6 +65,11 @@ float valueNoise(vec3 p) {
 const char kMeshVertex[] = R"(
 layout(location = 0) in vec3 steps;
 layout(location = 1) in vec2 octahedral;
+#ifdef MATERIALS
+layout(location = 2) in float material;  // 1 + index in the scene's list, 0: none
+uniform sampler2D palette;               // per material: linear colour; alpha 0: it has none
+out vec4 material_colour;
+#endif
 uniform vec3 origin;
 uniform vec3 step;
 uniform mat4 camera_from_model;
@@ -88,6 +93,9 @@ void main() {
     n_C = mat3(camera_from_model) * unitVector(octahedral / 127.0);
     gl_Position = clip_from_camera * vec4(p_C, 1.0);
     for (int i = 0; i < 3; ++i) gl_ClipDistance[i] = dot(cut_planes[i], vec4(p_M, 1.0));
+#ifdef MATERIALS
+    material_colour = texelFetch(palette, ivec2(int(material), 0), 0);
+#endif
 }
 )";
 
@@ -153,6 +161,9 @@ in vec3 p_M;
 uniform float grain_size;    // m, of the faint mottling
 uniform vec2 opacity;        // facing the eye, and the part of the rest that the outline adds
 uniform vec3 inside_colour;  // linear
+#ifdef MATERIALS
+in vec4 material_colour;  // colour times alpha, alpha
+#endif
 out vec4 colour;
 
 void main() {
@@ -163,6 +174,9 @@ void main() {
 
     float mottling = valueNoise(p_M / grain_size) * 0.65 + valueNoise(p_M / grain_size * 2.7 + 11.0) * 0.35;
     vec3 albedo = mix(vec3(0.69, 0.55, 0.38), vec3(0.82, 0.71, 0.54), mottling);
+#ifdef MATERIALS
+    albedo = albedo * (1.0 - material_colour.a) + material_colour.rgb * mix(0.88, 1.12, mottling);
+#endif
     if (inside) albedo = inside_colour;
 
     float facing = dot(normal, key_direction);

@@ -4,16 +4,16 @@
 namespace bonemill::shaders {
 
 // Vertex attributes of meshes: 0 position (quantisation steps), 1 normal (octahedral ±127, or a vector for
-// the tool).
-extern const char kMeshVertex[];        // bone nodes
+// the tool), 2 material.
+extern const char kMeshVertex[];        // bone nodes; #define MATERIALS: in their materials' colours
 extern const char kToolVertex[];        // the tool
 extern const char kShadowVertex[];      // shadow casters, bone or tool
 extern const char kDepthFragment[];     // no colour
 extern const char kFullScreenVertex[];  // 3 vertices, no attributes
 extern const char kBackgroundFragment[];
-extern const char kLighting[];  // goes before the next four
-extern const char kNoise[];     // goes before the next two
-extern const char kBoneFragment[];
+extern const char kLighting[];      // goes before the next four
+extern const char kNoise[];         // goes before the next two
+extern const char kBoneFragment[];  // #define MATERIALS as its vertex shader
 extern const char kCapFragment[];
 extern const char kToolFragment[];
 extern const char kGhostFragment[];

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "render_client/subscribe/scene_parts.h"
+
 namespace bonemill {
 namespace {
 
@@ -17,6 +19,7 @@ constexpr double kLargestNumber = 1e6;
 constexpr double kLongestSession = 1e9;  // s
 constexpr int kMostCheckpoints = 64;
 constexpr int kMostTools = 64;  // far more than a scene may have
+constexpr int kMostWarnings = 64;
 
 template <class Field>
 bool isFinite(const Field& field) {
@@ -62,13 +65,30 @@ bool isUsable(const topics::Camera& camera) {
 bool isUsable(const topics::SceneInfo& info) {
     return isVector(info.p_wv_m()) && isQuaternion(info.q_wv()) && isVector(info.bone_min_m()) &&
            isVector(info.bone_max_m()) && isSane(info.burr_radius_m()) && info.burr_radius_m() >= 0 &&
-           info.tool_names_size() <= kMostTools && isDrawable(info.tool()) && isUsable(info.camera());
+           info.tool_names_size() <= kMostTools && isDrawable(info.tool()) && isUsable(info.camera()) &&
+           info.materials_size() <= kMostMaterials && isWithinRanges(info.viewer_effects()) &&
+           std::ranges::all_of(info.materials(), isWithinRanges);
+}
+
+bool isUsable(const topics::EffectState& state) {
+    const double numbers[] = {state.spin_speed(),           state.burr_force_n(),      state.axis_torque_nm(),
+                              state.cutting_power_w(),      state.temperature_c(),     state.necrotic_mm3(),
+                              state.protected_distance_m(), state.protected_force_n(), state.damaged_mm3(),
+                              state.removed_mm3()};
+    return std::ranges::all_of(numbers, isSane) && state.removed_mm3() >= 0;
+}
+
+bool isUsable(const topics::Training& training) {
+    const double numbers[] = {training.damaged_mm3(), training.least_distance_mm(),
+                              training.max_protected_force_n(), training.necrotic_mm3(),
+                              training.max_temperature_c()};
+    return std::ranges::all_of(numbers, isSane) && training.warnings_size() <= kMostWarnings;
 }
 
 bool isUsable(const topics::ToolState& state) {
     return isVector(state.p_wt_m()) && isQuaternion(state.q_wt()) && isVector(state.p_wt_device_m()) &&
            isQuaternion(state.q_wt_device()) && isVector(state.force_n()) && isVector(state.torque_nm()) &&
-           std::isfinite(state.max_penetration_m());
+           std::isfinite(state.max_penetration_m()) && isUsable(state.effects());
 }
 
 bool isUsable(const topics::Status& status) {
@@ -83,7 +103,7 @@ bool isUsable(const topics::Status& status) {
         return isTime(c.session_s()) && std::isfinite(c.removed_mm3());
     };
     return isFinite(numbers) && isTime(status.session_s()) && status.checkpoints_size() <= kMostCheckpoints &&
-           std::ranges::all_of(status.checkpoints(), is_usable);
+           std::ranges::all_of(status.checkpoints(), is_usable) && isUsable(status.training());
 }
 
 bool isUsable(const topics::Viewer& viewer) {
@@ -155,6 +175,11 @@ std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload
     if (!info) return info;
     info->set_name(shownName(info->name()));
     for (std::string& name : *info->mutable_tool_names()) name = shownName(name);
+    if (info->has_viewer_effects()) keepViewerEffects(*info->mutable_viewer_effects());
+    for (scene::Material& material : *info->mutable_materials()) {
+        keepShownParts(material);
+        material.set_name(shownName(material.name()));
+    }
     return info;
 }
 
@@ -168,6 +193,9 @@ std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {
     for (std::string* text : {status->mutable_scene(), status->mutable_preset(), status->mutable_fault_text(),
                               status->mutable_last_command_result()})
         *text = shownText(*text, kLongestText);
+    if (status->has_training())
+        for (std::string& warning : *status->mutable_training()->mutable_warnings())
+            warning = shownText(warning, kLongestText);
     return status;
 }
 

@@ -15,7 +15,7 @@ namespace bonemill {
 std::optional<DecodedNode> parseNode(std::span<const uint8_t> payload, uint32_t leaf, uint32_t revision);
 
 // Vectors have their length, numbers are finite, quaternions are of unit length, the tool's triangles name
-// vertices.
+// vertices; of effects and materials only what scene_parts.h keeps, within the ranges of scene files.
 std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload);
 std::optional<topics::ToolState> parseToolState(std::span<const uint8_t> payload);
 std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload);

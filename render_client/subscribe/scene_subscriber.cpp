@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-// One sample per session is kept, so more than this many at once is a flood of foreign sessions.
+// Few samples per session are kept, so more than this many at once is a flood of foreign sessions.
 constexpr size_t kMaxSmallSamples = 256;
 constexpr size_t kMaxViewers = 256;  // bounds what invented senders can take
 
@@ -18,6 +18,12 @@ uint64_t randomSender() {
     uint64_t sender = 0;
     while (sender == 0) sender = (static_cast<uint64_t>(device()) << 32) | device();
     return sender;
+}
+
+// What happened between two pictures: none of the states in between is shown.
+void addCounts(const topics::EffectState& before, topics::EffectState& now) {
+    now.set_events(now.events() | before.events());
+    now.set_removed_mm3(now.removed_mm3() + before.removed_mm3());
 }
 
 }  // namespace
@@ -84,13 +90,17 @@ void SceneSubscriber::takeSceneInfo() {
 }
 
 void SceneSubscriber::takeToolState() {
+    std::optional<topics::EffectState> counted;
     tool_state_reader_.take(
-        kMaxSmallSamples, [this](const dds::ToolStateSample& sample, const dds::SampleInfo& info) {
+        kMaxSmallSamples, [&](const dds::ToolStateSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != options_.session) return;
             std::optional<topics::ToolState> state = parseToolState(dds::payloadOf(sample));
             if (!state) return dropMalformed("tool state");
             if (!enterEpoch(state->epoch())) return;
             if (tool_state_ && state->tick() < tool_state_->tick()) return;
+            if (!tool_state_) counted.reset();  // another run of the server
+            if (counted && state->has_effects()) addCounts(*counted, *state->mutable_effects());
+            if (state->has_effects()) counted = state->effects();
             tool_state_ = std::move(state);
         });
 }

@@ -41,6 +41,7 @@ class SceneSubscriber {
 
     // The newest ones of the current server run; nothing before the first.
     const std::optional<topics::SceneInfo>& sceneInfo() const noexcept { return scene_info_; }
+    // What its effects count since the state before, they count since the poll() before.
     const std::optional<topics::ToolState>& toolState() const noexcept { return tool_state_; }
     const std::optional<topics::Status>& status() const noexcept { return status_; }
 

@@ -138,6 +138,77 @@ TEST_F(Golden, HudWithWatchers) {
     EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "hud"), "");
 }
 
+TEST_F(Golden, Materials) {
+    topics::SceneInfo info = test::milledInfo();
+    test::addLayers(info);
+    scene_->setSceneInfo(info);
+    for (const NodeMesh& node : test::layeredBlock()) scene_->setNode(node);
+    scene_->setToolState(test::makeToolState(test::toolInCavity(), test::toolInCavity(), 1));
+    EXPECT_EQ(test::goldenProblem(draw(), "materials"), "");
+}
+
+// No colours in the scene: the same vertices are plain bone.
+TEST_F(Golden, MaterialsWithoutColoursArePlainBone) {
+    topics::SceneInfo info = test::milledInfo();
+    info.add_materials()->set_name("enamel");
+    scene_->setSceneInfo(info);
+    for (const NodeMesh& node : test::layeredBlock()) scene_->setNode(node);
+    scene_->setToolState(test::makeToolState(test::toolInCavity(), test::toolInCavity(), 1));
+    EXPECT_EQ(test::goldenProblem(draw(), "plain"), "");
+}
+
+TEST(GoldenFigures, OfEffectsWithAnAlert) {
+    const OsmesaContext context(640, 480);
+    RenderScene scene(context.gl());
+    scene.settings().show_hud = true;
+    topics::SceneInfo info = test::milledInfo();
+    info.add_materials()->set_name("facial nerve");
+    scene.setSceneInfo(info);
+    for (const NodeMesh& node : test::milledBlock()) scene.setNode(node);
+    scene.setConnection(Connection::kLive);
+    scene.setStatus(test::makeStatus());
+    topics::ToolState tool = test::makeToolState(test::toolInCavity(), test::toolInCavity(), 1);
+    topics::EffectState& effects = *tool.mutable_effects();
+    effects.set_events(topics::EffectState::NEAR_PROTECTED | topics::EffectState::TOO_HOT);
+    effects.set_spin_speed(2000);
+    effects.set_axis_torque_nm(2.9e-3);
+    effects.set_cutting_power_w(5.8);
+    effects.set_temperature_c(48.1);
+    effects.set_necrotic_mm3(0.12);
+    effects.set_protected_id(1);
+    effects.set_protected_distance_m(0.8e-3);
+    effects.set_damaged_mm3(0);
+    scene.setToolState(tool);
+    scene.setNotice(HudNotice{"Picture saved", HudTone::kGood});
+    scene.draw(640, 480, kUiScale);
+    EXPECT_EQ(test::goldenProblem(context.read(), "effects_hud"), "");
+}
+
+TEST_F(Golden, AnAlertIsShownWithoutFiguresToo) {
+    topics::ToolState tool = test::makeToolState(test::toolInCavity(), test::toolInCavity(), 1);
+    tool.set_tick(1);
+    tool.mutable_effects()->set_events(topics::EffectState::PROTECTED_TOUCHED);
+    test::showMilledBlock(*scene_);
+    scene_->setToolState(tool);
+    const Picture picture = draw();
+    EXPECT_TRUE(test::compare(picture, test::readGolden("plain")).isVisible());
+    EXPECT_GT(picture.at(1, kHeight / 2)[0], 150) << "a red border";
+    EXPECT_LT(picture.at(1, kHeight / 2)[2], 120);
+}
+
+TEST_F(Golden, TheComparisonSeesAMissingColour) {
+    const GlApi altered =
+        test::alterShaders(context_.gl(), {{"+ material_colour.rgb", "+ 0.9 * material_colour.rrr"}});
+    begin(altered);
+    topics::SceneInfo info = test::milledInfo();
+    test::addLayers(info);
+    scene_->setSceneInfo(info);
+    ASSERT_GT(test::alterationsDone(), 0);
+    for (const NodeMesh& node : test::layeredBlock()) scene_->setNode(node);
+    EXPECT_TRUE(test::compare(draw(), test::readGolden("materials")).isVisible());
+    scene_.reset();
+}
+
 TEST_F(Golden, HelpPage) {
     scene_->settings().show_hud = true;
     scene_->settings().show_help = true;

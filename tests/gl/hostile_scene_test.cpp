@@ -43,8 +43,14 @@ class HostileScene : public testing::TestWithParam<Quality> {
 TEST_P(HostileScene, IsDrawnWhateverTheMessagesSay) {
     topics::SceneInfo info = syntheticSceneInfo();
     info.mutable_camera()->set_distance_m(0.1);
+    for (int n = 0; n < 2; ++n) info.add_materials()->mutable_color()->set_red(0.5 * n);
     topics::ToolState tool = test::makeToolState({}, {}, 1);
     tool.set_epoch(1);
+    tool.mutable_effects()->set_events(31);
+    tool.mutable_effects()->set_spin_speed(3000);
+    tool.mutable_effects()->set_temperature_c(40);
+    tool.mutable_effects()->set_protected_distance_m(1e-3);
+    tool.mutable_effects()->set_protected_id(2);
     topics::Status status = test::makeStatus();
     status.set_epoch(1);
     topics::Viewer viewer;
@@ -58,7 +64,9 @@ TEST_P(HostileScene, IsDrawnWhateverTheMessagesSay) {
         SCOPED_TRACE("round " + std::to_string(round));
         show(sometimes(messages[0]), sometimes(messages[1]), sometimes(messages[2]), sometimes(messages[3]));
         for (uint32_t leaf = 0; leaf < 3; ++leaf) {
-            const std::string node = encodeNodeMesh(syntheticNode(leaf, 2), {.epoch = 1}).bytes;
+            NodeMesh mesh = syntheticNode(leaf, 2);
+            for (size_t n = 0; n < mesh.vertices.size(); ++n) mesh.materials.push_back(uint8_t(n * 50));
+            const std::string node = encodeNodeMesh(mesh, {.epoch = 1}).bytes;
             if (auto parsed = parseNode(bytesOf(sometimes(node)), leaf, 2))
                 scene_.setNode(std::move(parsed->mesh));
         }

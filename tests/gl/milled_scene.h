@@ -15,14 +15,39 @@ inline const Eigen::Vector3d kHollowCenter = kBlockCenter + Eigen::Vector3d(-0.0
 inline constexpr double kHollowRadius = 0.0015;
 inline constexpr double kBurrRadius = 0.0009;
 
+inline double milledBlockDistance(const Eigen::Vector3d& p) {
+    const double outside = (p - kBlockCenter).norm() - kBlockRadius;
+    const double cavity = kCavityRadius - (p - kCavityCenter).norm();
+    const double hollow = kHollowRadius - (p - kHollowCenter).norm();
+    return std::max({outside, cavity, hollow});
+}
+
 inline const std::vector<NodeMesh>& milledBlock() {
-    static const std::vector<NodeMesh> nodes = meshBody(65, 2.5e-4, [](const Eigen::Vector3d& p) {
-        const double outside = (p - kBlockCenter).norm() - kBlockRadius;
-        const double cavity = kCavityRadius - (p - kCavityCenter).norm();
-        const double hollow = kHollowRadius - (p - kHollowCenter).norm();
-        return std::max({outside, cavity, hollow});
-    });
+    static const std::vector<NodeMesh> nodes = meshBody(65, 2.5e-4, milledBlockDistance);
     return nodes;
+}
+
+// A shell of one material around a core of another, and a lump without one on the right.
+inline const std::vector<NodeMesh>& layeredBlock() {
+    static const std::vector<NodeMesh> nodes =
+        meshBody(65, 2.5e-4, milledBlockDistance, [](const Eigen::Vector3d& p) {
+            const double radius = (p - kBlockCenter).norm();
+            if (p.x() > kBlockCenter.x() + 0.0035) return uint8_t(0);
+            return uint8_t(radius > kBlockRadius - 0.0011 ? 1 : 2);
+        });
+    return nodes;
+}
+
+inline void addLayers(topics::SceneInfo& info) {
+    const auto add = [&](const char* name, double red, double green, double blue) {
+        scene::Material& material = *info.add_materials();
+        material.set_name(name);
+        material.mutable_color()->set_red(red);
+        material.mutable_color()->set_green(green);
+        material.mutable_color()->set_blue(blue);
+    };
+    add("enamel", 0.93, 0.95, 0.98);
+    add("dentine", 0.92, 0.72, 0.38);
 }
 
 inline topics::SceneInfo milledInfo() {

@@ -116,6 +116,24 @@ TEST_F(QuickPicture, FollowsTheViewToo) {
     expectWhole("no bone");
 }
 
+TEST_F(QuickPicture, SeesThatOnlyAMaterialChanged) {
+    topics::SceneInfo info =
+        test::makeSceneInfo("ball", kCenter.array() - kRadius, kCenter.array() + kRadius);
+    for (int n = 0; n < 3; ++n) info.add_materials()->mutable_color()->set_red(0.3 * n);
+    scene_.setSceneInfo(info);
+    draw();
+    for (int frame = 0; frame < 12; ++frame) {
+        NodeMesh node = large_[random_() % large_.size()];
+        if (frame % 3) node.materials.assign(node.vertices.size(), uint8_t(random_() % 5));
+        if (frame % 3 == 2) node.materials[random_() % node.materials.size()] = 2;
+        scene_.setNode(node);
+        expectWhole("frame " + std::to_string(frame));
+    }
+    info.clear_materials();
+    scene_.setSceneInfo(info);
+    expectWhole("no colours");
+}
+
 TEST_F(QuickPicture, DrawsOnlyTheBoneThatMayHaveChanged) {
     draw();
     EXPECT_EQ(scene_.trianglesDrawn(), scene_.triangleCount());

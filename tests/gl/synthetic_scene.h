@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "haptic_server/mesh/leaf_mesher.h"
@@ -10,10 +11,12 @@
 
 namespace bonemill::test {
 
-using DistanceFunction = std::function<double(const Eigen::Vector3d& p_V)>;  // m, negative inside
+using DistanceFunction = std::function<double(const Eigen::Vector3d& p_V)>;   // m, negative inside
+using MaterialFunction = std::function<uint8_t(const Eigen::Vector3d& p_V)>;  // 1 + index in the scene's list
 
 // Iso-surface of distance = 0 in a cube of `voxels` per side, cut into leaves of 16 cells.
-inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const DistanceFunction& distance) {
+inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const DistanceFunction& distance,
+                                      const MaterialFunction& material = {}) {
     VolumeGeometry geometry;
     geometry.dims.setConstant(voxels);
     geometry.spacing.setConstant(spacing);
@@ -26,7 +29,11 @@ inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const Distance
                 volume.set(i, j, k, Density(std::lround(kIso - std::clamp(steps / 2, -1.0, 0.99) * 32767)));
             }
     const LeafLattice lattice(volume, Eigen::Vector3i::Constant(16));
-    LeafMesher mesher(volume, lattice);
+    std::optional<BoneProperties> properties;
+    if (material)
+        properties.emplace(volume,
+                           [&](const Eigen::Vector3i& v) { return material(spacing * v.cast<double>()); });
+    LeafMesher mesher(volume, lattice, MeshGrid::kMostStepsPerCell, properties ? &*properties : nullptr);
     std::vector<NodeMesh> nodes;
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
         NodeMesh mesh = mesher.mesh(leaf).value();

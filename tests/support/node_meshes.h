@@ -33,15 +33,25 @@ inline NodeMesh sheetMesh(int side, unsigned seed) {
     return mesh;
 }
 
+// Like it, with patches of materials.
+inline NodeMesh colouredSheetMesh(int side, unsigned seed) {
+    NodeMesh mesh = sheetMesh(side, seed);
+    for (size_t n = 0; n < mesh.vertices.size(); ++n)
+        mesh.materials.push_back(uint8_t((n / 3 + seed) % 5 * 60));
+    return mesh;
+}
+
 // Triangles as their vertices' values, each begun at its smallest corner (winding kept), sorted.
-using TriangleKey = std::array<std::array<int, 5>, 3>;
+using TriangleKey = std::array<std::array<int, 6>, 3>;
 inline std::vector<TriangleKey> triangleKeys(const NodeMesh& mesh) {
     std::vector<TriangleKey> keys;
     for (size_t i = 0; i < mesh.indices.size(); i += 3) {
         TriangleKey key;
         for (size_t corner = 0; corner < 3; ++corner) {
-            const PackedVertex& v = mesh.vertices[mesh.indices[i + corner]];
-            key[corner] = {v.x, v.y, v.z, v.octahedral_u, v.octahedral_v};
+            const uint32_t index = mesh.indices[i + corner];
+            const PackedVertex& v = mesh.vertices[index];
+            const int material = mesh.materials.empty() ? 0 : mesh.materials[index];
+            key[corner] = {v.x, v.y, v.z, v.octahedral_u, v.octahedral_v, material};
         }
         std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
         keys.push_back(key);

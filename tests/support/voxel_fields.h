@@ -56,8 +56,15 @@ inline void fillWaves(VoxelVolume& volume, std::mt19937& random) {
     });
 }
 
-inline std::vector<NodeMesh> meshAll(const VoxelVolume& volume, const LeafLattice& lattice) {
-    LeafMesher mesher(volume, lattice);
+// Up to four materials in stripes, none in some of them.
+inline BoneProperties stripedProperties(const VoxelVolume& volume) {
+    return {volume,
+            [](const Eigen::Vector3i& v) { return MaterialId((v.x() / 5 + v.y() / 7 + v.z() / 3) % 5); }};
+}
+
+inline std::vector<NodeMesh> meshAll(const VoxelVolume& volume, const LeafLattice& lattice,
+                                     const BoneProperties* properties = nullptr) {
+    LeafMesher mesher(volume, lattice, MeshGrid::kMostStepsPerCell, properties);
     std::vector<NodeMesh> meshes;
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
         NodeMesh mesh = mesher.mesh(leaf).value();
@@ -87,7 +94,7 @@ inline IndexBox randomBox(const VoxelVolume& volume, int largest, std::mt19937& 
 
 inline bool sameMesh(const NodeMesh& a, const NodeMesh& b) {
     return a.leaf == b.leaf && a.origin == b.origin && a.step == b.step && a.vertices == b.vertices &&
-           a.indices == b.indices;
+           a.indices == b.indices && a.materials == b.materials;
 }
 
 }  // namespace bonemill::test

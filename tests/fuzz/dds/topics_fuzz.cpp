@@ -32,19 +32,36 @@ int fuzz(const std::string& valid, const std::function<bool(Bytes)>& accepts) {
 }
 
 TEST(TopicsFuzz, NodeMesh) {
-    fuzz(encodeNodeMesh(syntheticNode(3, 8), {.epoch = 42}).bytes, [](Bytes bytes) {
+    NodeMesh coloured = syntheticNode(3, 8);
+    for (size_t n = 0; n < coloured.vertices.size(); ++n) coloured.materials.push_back(uint8_t(n / 5));
+    fuzz(encodeNodeMesh(coloured, {.epoch = 42}).bytes, [](Bytes bytes) {
         const auto node = parseNode(bytes, 3, 8);
         if (!node) return false;
         EXPECT_FALSE(node->mesh.indices.empty());
         EXPECT_EQ(node->mesh.indices.size() % 3, 0u);
         for (const uint32_t index : node->mesh.indices) EXPECT_LT(index, node->mesh.vertices.size());
         EXPECT_TRUE(node->mesh.origin.allFinite() && node->mesh.step.allFinite());
+        EXPECT_TRUE(node->mesh.materials.empty() ||
+                    node->mesh.materials.size() == node->mesh.vertices.size());
         return true;
     });
 }
 
+topics::SceneInfo sceneInfoWithEffects() {
+    topics::SceneInfo info = syntheticSceneInfo();
+    info.mutable_viewer_effects()->mutable_bone_dust();
+    info.mutable_viewer_effects()->mutable_milling_sound();
+    for (const char* name : {"enamel", "facial nerve"}) {
+        scene::Material& material = *info.add_materials();
+        material.set_name(name);
+        material.mutable_color()->set_red(0.5);
+        material.mutable_color()->set_blue(0.125);
+    }
+    return info;
+}
+
 TEST(TopicsFuzz, SceneInfo) {
-    fuzz(syntheticSceneInfo().SerializeAsString(), [](Bytes bytes) {
+    fuzz(sceneInfoWithEffects().SerializeAsString(), [](Bytes bytes) {
         const auto info = parseSceneInfo(bytes);
         if (!info) return false;
         EXPECT_EQ(info->p_wv_m_size(), 3);
@@ -53,6 +70,14 @@ TEST(TopicsFuzz, SceneInfo) {
         for (const uint32_t index : info->tool().indices()) {
             EXPECT_LT(3 * index + 2, static_cast<uint32_t>(info->tool().vertices_m_size()));
         }
+        EXPECT_LE(info->materials_size(), 255);
+        for (const scene::Material& material : info->materials()) {
+            for (const double part :
+                 {material.color().red(), material.color().green(), material.color().blue()})
+                EXPECT_TRUE(part >= 0 && part <= 1) << part;
+            EXPECT_LE(material.name().size(), 64u);
+        }
+        EXPECT_FALSE(info->viewer_effects().has_energy_removal());
         return true;
     });
 }
@@ -65,11 +90,19 @@ TEST(TopicsFuzz, ToolState) {
         vector->Resize(3, 0.5);
     }
     for (auto* quaternion : {state.mutable_q_wt(), state.mutable_q_wt_device()}) quaternion->Resize(4, 0.5);
+    state.mutable_effects()->set_events(5);
+    state.mutable_effects()->set_spin_speed(3000);
+    state.mutable_effects()->set_temperature_c(40);
+    state.mutable_effects()->set_protected_distance_m(1e-3);
+    state.mutable_effects()->set_removed_mm3(0.5);
     fuzz(state.SerializeAsString(), [](Bytes bytes) {
         const auto parsed = parseToolState(bytes);
         if (!parsed) return false;
         for (const double coordinate : parsed->p_wt_m()) EXPECT_TRUE(std::isfinite(coordinate));
         EXPECT_EQ(parsed->q_wt_size(), 4);
+        EXPECT_TRUE(std::isfinite(parsed->effects().spin_speed()));
+        EXPECT_TRUE(std::isfinite(parsed->effects().temperature_c()));
+        EXPECT_GE(parsed->effects().removed_mm3(), 0);
         return true;
     });
 }
@@ -80,9 +113,13 @@ TEST(TopicsFuzz, Status) {
     status.set_scene("tooth");
     status.set_rate_hz(1000);
     status.set_node_digest(0x0123456789abcdef);
+    status.mutable_training()->set_least_distance_mm(0.5);
+    status.mutable_training()->add_warnings("touched facial nerve");
     fuzz(status.SerializeAsString(), [](Bytes bytes) {
         const auto parsed = parseStatus(bytes);
-        return parsed && std::isfinite(parsed->rate_hz());
+        return parsed && std::isfinite(parsed->rate_hz()) &&
+               std::isfinite(parsed->training().least_distance_mm()) &&
+               parsed->training().warnings_size() <= 64;
     });
 }
 

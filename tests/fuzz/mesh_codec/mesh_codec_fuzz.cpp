@@ -57,6 +57,11 @@ class MeshCodecFuzz : public testing::Test {
         EXPECT_LE(mesh->indices.size(), 3 * bytes.size());
         EXPECT_LE(mesh->vertices.size(), mesh->indices.size());
         for (const uint32_t index : mesh->indices) ASSERT_LT(index, mesh->vertices.size());
+        EXPECT_TRUE(mesh->materials.empty() || mesh->materials.size() == mesh->vertices.size());
+    }
+    NodeMesh anyMesh(int n) {
+        return n % 2 ? test::sheetMesh(1 + below(8), unsigned(n))
+                     : test::colouredSheetMesh(1 + below(8), unsigned(n));
     }
 
     std::mt19937 random_;
@@ -69,7 +74,7 @@ TEST_F(MeshCodecFuzz, RandomBytes) {
 
 TEST_F(MeshCodecFuzz, DamagedMessages) {
     for (int n = 0; n < 20000; ++n) {
-        std::string bytes = encodeNodeMesh(test::sheetMesh(1 + below(8), unsigned(n)), {}).bytes;
+        std::string bytes = encodeNodeMesh(anyMesh(n), {}).bytes;
         damage(bytes);
         decodeAndCheck(bytes);
     }
@@ -80,10 +85,10 @@ TEST_F(MeshCodecFuzz, DamagedMessages) {
 TEST_F(MeshCodecFuzz, DamagedBuffersInsideAWellFormedMessage) {
     for (int n = 0; n < 20000; ++n) {
         topics::NodeMesh message;
-        ASSERT_TRUE(
-            message.ParseFromString(encodeNodeMesh(test::sheetMesh(1 + below(8), unsigned(n)), {}).bytes));
+        ASSERT_TRUE(message.ParseFromString(encodeNodeMesh(anyMesh(n), {}).bytes));
         if (below(2) == 0) damage(*message.mutable_vertices());
         if (below(2) == 0) damage(*message.mutable_indices());
+        if (below(2) == 0) damage(*message.mutable_materials());
         if (below(4) == 0) message.set_vertex_count(message.vertex_count() + uint32_t(below(9)) - 4);
         if (below(4) == 0) message.set_index_count(message.index_count() + 3 * (uint32_t(below(9)) - 4));
         decodeAndCheck(message.SerializeAsString());
@@ -100,6 +105,7 @@ TEST_F(MeshCodecFuzz, RandomBuffersInsideAWellFormedMessage) {
         }
         message.set_vertices(randomBytes(size_t(below(200))));
         message.set_indices(randomBytes(size_t(below(200))));
+        message.set_materials(randomBytes(size_t(below(20))));
         // Valid headers, or nearly every try would end at the first byte.
         if (!message.vertices().empty()) (*message.mutable_vertices())[0] = char(0xa0);
         if (!message.indices().empty()) (*message.mutable_indices())[0] = char(0xe1);

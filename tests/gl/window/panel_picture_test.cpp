@@ -65,6 +65,15 @@ TEST_F(PanelPicture, AnOpenOneCoversTheRightSideAndNoMore) {
     EXPECT_GT(bright, 1000u);
 }
 
+TEST_F(PanelPicture, TrainingIsShownWhereTheSceneTeachesCare) {
+    open();
+    const Picture without = draw();
+    status_.mutable_training()->set_damaged_mm3(0.3);
+    status_.mutable_training()->add_warnings("damaged facial nerve");
+    for (int n = 0; n < 3; ++n) draw();  // until the scroll bar has settled
+    EXPECT_GT(countDifferent(draw(), without, 300, kWidth), 20u);
+}
+
 TEST_F(PanelPicture, ABoxShowsWhatIsSet) {
     open();
     const Picture before = draw();

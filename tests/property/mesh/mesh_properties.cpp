@@ -65,7 +65,9 @@ RC_GTEST_PROP(MeshProperties, LeavesAreAPartition, ()) {
 RC_GTEST_PROP(MeshProperties, IncrementalEqualsFull, ()) {
     VoxelVolume volume = anyVolume();
     LeafLattice lattice(volume, anySize(4));
-    Mesher mesher(volume, lattice);
+    const BoneProperties properties(
+        volume, [](const Eigen::Vector3i&) { return *rc::gen::element<MaterialId>(0, 1, 2, 255); });
+    Mesher mesher(volume, lattice, MeshGrid::kMostStepsPerCell, &properties);
     std::map<LeafId, NodeMesh> model;
     const auto sink = [&](NodeMesh&& mesh) {
         const LeafId leaf = mesh.leaf;
@@ -87,7 +89,7 @@ RC_GTEST_PROP(MeshProperties, IncrementalEqualsFull, ()) {
     }
     RC_ASSERT(mesher.pass(sink).pending == 0u);
 
-    const std::vector<NodeMesh> full = test::meshAll(volume, lattice);
+    const std::vector<NodeMesh> full = test::meshAll(volume, lattice, &properties);
     RC_ASSERT(model.size() == full.size());
     for (const NodeMesh& mesh : full)
         RC_ASSERT(model.contains(mesh.leaf) && test::sameMesh(model[mesh.leaf], mesh));

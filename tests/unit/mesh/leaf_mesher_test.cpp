@@ -101,17 +101,73 @@ TEST(LeafMesher, LeavesShareBitIdenticalVertices) {
     test::fillWaves(volume, random);
     const LeafLattice lattice(volume, {4, 5, 3});
     const MeshGrid grid(volume, lattice);
-    std::map<std::array<int, 3>, std::array<int, 2>> normal_at;
+    const BoneProperties properties = test::stripedProperties(volume);
+    std::map<std::array<int, 3>, std::array<int, 3>> look_at;
     size_t shared = 0;
-    for (const NodeMesh& mesh : meshAll(volume, lattice))
-        for (const PackedVertex& v : mesh.vertices) {
+    for (const NodeMesh& mesh : meshAll(volume, lattice, &properties))
+        for (size_t n = 0; n < mesh.vertices.size(); ++n) {
+            const PackedVertex& v = mesh.vertices[n];
             const Eigen::Vector3i s = grid.stepsOf(mesh.leaf, v);
-            const std::array<int, 2> normal = {v.octahedral_u, v.octahedral_v};
-            const auto [entry, is_new] = normal_at.try_emplace({s.x(), s.y(), s.z()}, normal);
-            EXPECT_EQ(entry->second, normal);
+            const int material = mesh.materials.empty() ? 0 : mesh.materials[n];
+            const std::array<int, 3> look = {v.octahedral_u, v.octahedral_v, material};
+            const auto [entry, is_new] = look_at.try_emplace({s.x(), s.y(), s.z()}, look);
+            EXPECT_EQ(entry->second, look);
             if (!is_new) ++shared;
         }
     EXPECT_GT(shared, 100u);
+}
+
+// Material by density, as a scene says it: the outermost voxels are only partly filled and would be of the
+// softer one.
+TEST(LeafMesher, AVoxelThatIsPartlyFilledLooksAsTheBoneBelowIt) {
+    constexpr MaterialId kSoft = 1, kHard = 2;
+    constexpr double kRadius = 7.3;
+    VoxelVolume volume(boxGeometry({20, 20, 20}, Eigen::Vector3d::Constant(5e-4)), kIso);
+    forEachVoxel(test::wholeBox(volume), [&](int i, int j, int k) {
+        const double depth = kRadius - (Eigen::Vector3d(i, j, k).array() - 9.6).matrix().norm();
+        volume.set(i, j, k, Density(std::clamp(kIso + 40000 * depth, 0.0, 60000.0)));
+    });
+    const auto material = [&](const Eigen::Vector3i& v) {
+        return volume.at(v.x(), v.y(), v.z()) > 55000 ? kHard : kSoft;
+    };
+    const BoneProperties properties(volume, material);
+    const LeafLattice lattice(volume, {6, 6, 6});
+    size_t hard = 0, all = 0;
+    for (const NodeMesh& mesh : meshAll(volume, lattice, &properties)) {
+        ASSERT_EQ(mesh.materials.size(), mesh.vertices.size());
+        hard += size_t(std::ranges::count(mesh.materials, kHard));
+        all += mesh.vertices.size();
+    }
+    EXPECT_EQ(hard, all);
+}
+
+// A cut through layers shows each where it is; what was never bone has none.
+TEST(LeafMesher, ACutShowsTheLayersBelow) {
+    VoxelVolume volume(boxGeometry({24, 24, 24}), kIso);
+    forEachVoxel({{4, 4, 4}, {19, 19, 19}}, [&](int i, int j, int k) { volume.set(i, j, k, kMaxDensity); });
+    const BoneProperties properties(volume, [&](const Eigen::Vector3i& v) {
+        if (volume.at(v.x(), v.y(), v.z()) == 0) return kNoMaterial;
+        return MaterialId(v.x() < 12 ? 1 : 2);
+    });
+    // The upper half is milled away, and something was added: in the gap, and where nothing ever was.
+    forEachVoxel({{4, 4, 12}, {19, 19, 19}}, [&](int i, int j, int k) { volume.set(i, j, k, 0); });
+    forEachVoxel({{4, 4, 12}, {6, 19, 14}}, [&](int i, int j, int k) { volume.set(i, j, k, kMaxDensity); });
+    forEachVoxel({{20, 4, 4}, {22, 19, 8}}, [&](int i, int j, int k) { volume.set(i, j, k, kMaxDensity); });
+    const LeafLattice lattice(volume, {7, 7, 7});
+    const MeshGrid grid(volume, lattice);
+    size_t seen[3] = {};
+    for (const NodeMesh& mesh : meshAll(volume, lattice, &properties))
+        for (size_t n = 0; n < mesh.vertices.size(); ++n) {
+            const Eigen::Vector3d at =
+                grid.stepsOf(mesh.leaf, mesh.vertices[n]).cast<double>() / grid.stepsPerCell();
+            const int expected = at.x() < 11.5 ? 1 : at.x() < 20 ? 2 : 0;
+            const bool is_at_border = std::abs(at.x() - 11.5) < 1.01 || std::abs(at.x() - 19.5) < 1.01;
+            const int material = mesh.materials.empty() ? 0 : mesh.materials[n];
+            if (is_at_border) continue;
+            EXPECT_EQ(material, expected) << at.transpose();
+            ++seen[material];
+        }
+    for (const size_t count : seen) EXPECT_GT(count, 100u);
 }
 
 // Oracle: walk every grid edge of the volume; each crossed one must carry exactly one vertex, where

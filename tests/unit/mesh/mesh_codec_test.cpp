@@ -119,6 +119,60 @@ TEST(MeshCodec, RefusesBadOriginAndStep) {
     EXPECT_TRUE(refusedWith([](auto& m) { m.set_step_m(0, -1e-6f); }));
 }
 
+TEST(MeshCodec, EachVertexKeepsItsMaterial) {
+    for (const int side : {1, 2, 7, 40}) {
+        NodeMesh mesh = test::colouredSheetMesh(side, unsigned(side));
+        mesh.vertices.push_back({1, 2, 3, 4, 5});  // named by no triangle
+        mesh.materials.push_back(9);
+        const EncodedNode encoded = encodeNodeMesh(mesh, {});
+        const auto decoded = decodeNodeMesh(encoded.bytes, mesh.leaf);
+        ASSERT_TRUE(decoded);
+        EXPECT_EQ(decoded->content, encoded.content);
+        EXPECT_EQ(decoded->mesh.materials.size(), decoded->mesh.vertices.size());
+        EXPECT_EQ(test::triangleKeys(decoded->mesh), test::triangleKeys(mesh));
+    }
+}
+
+TEST(MeshCodec, ALongRunOfOneMaterialTakesFewBytes) {
+    NodeMesh mesh = test::sheetMesh(40, 1);
+    const topics::NodeMesh plain = messageOf(mesh);
+    mesh.materials.assign(mesh.vertices.size(), 200);
+    const topics::NodeMesh coloured = messageOf(mesh);
+    EXPECT_EQ(plain.materials().size(), 0u);
+    EXPECT_EQ(coloured.materials().size(), 3u);
+    EXPECT_EQ(coloured.vertices(), plain.vertices());
+    EXPECT_EQ(coloured.indices(), plain.indices());
+    EXPECT_EQ(decodeNodeMesh(coloured.SerializeAsString(), 1)->mesh.materials, mesh.materials);
+}
+
+TEST(MeshCodec, MaterialsAreContent) {
+    NodeMesh mesh = test::colouredSheetMesh(5, 1);
+    const uint64_t coloured = encodeNodeMesh(mesh, {}).content;
+    mesh.materials.back() ^= 1;
+    EXPECT_NE(encodeNodeMesh(mesh, {}).content, coloured);
+    mesh.materials.clear();
+    EXPECT_NE(encodeNodeMesh(mesh, {}).content, coloured);
+}
+
+TEST(MeshCodec, RefusesMaterialsThatAreNotOnePerVertex) {
+    const topics::NodeMesh good = messageOf(test::sheetMesh(3, 1));
+    ASSERT_EQ(good.vertex_count(), 16u);
+    const auto refuses = [&](const std::string& materials) {
+        topics::NodeMesh message = good;
+        message.set_materials(materials);
+        return isRefused(message);
+    };
+    EXPECT_FALSE(refuses("\x01\x10"));
+    EXPECT_FALSE(refuses("\x01\x0f\x02\x01"));
+    EXPECT_TRUE(refuses("\x01\x0f"));                              // too few
+    EXPECT_TRUE(refuses("\x01\x11"));                              // too many
+    EXPECT_TRUE(refuses("\x01\x10\x02"));                          // a run without its length
+    EXPECT_TRUE(refuses("\x01\x90"));                              // a length that goes on
+    EXPECT_TRUE(refuses(std::string("\x01\x10\x02\x00", 4)));      // an empty run
+    EXPECT_TRUE(refuses("\x01\x90\x80\x80\x80\x80\x80\x80\x10"));  // a length without end
+    EXPECT_TRUE(refuses("\x01\xff\xff\xff\xff\x7f"));              // far too many
+}
+
 // The message cut just before its counts is, byte for byte, that of an emptied leaf; nothing else may pass.
 TEST(MeshCodec, NeverShowsPartOfATruncatedMesh) {
     const std::string bytes = encodeNodeMesh(test::sheetMesh(6, 1), {.epoch = kEpoch}).bytes;

@@ -39,8 +39,9 @@ struct Model {
     }
 };
 
-void expectEqualsFullRemesh(const Model& model, const VoxelVolume& volume, const LeafLattice& lattice) {
-    const std::vector<NodeMesh> full = test::meshAll(volume, lattice);
+void expectEqualsFullRemesh(const Model& model, const VoxelVolume& volume, const LeafLattice& lattice,
+                            const BoneProperties* properties = nullptr) {
+    const std::vector<NodeMesh> full = test::meshAll(volume, lattice, properties);
     ASSERT_EQ(model.meshes.size(), full.size());
     for (const NodeMesh& expected : full) {
         const auto found = model.meshes.find(expected.leaf);
@@ -195,7 +196,8 @@ TEST(Mesher, IncrementalEqualsFullAfterRandomEdits) {
     for (const Eigen::Vector3i& leaf_cells :
          {Eigen::Vector3i(8, 8, 8), Eigen::Vector3i(5, 3, 9), Eigen::Vector3i(1, 1, 1)}) {
         Bone bone({30, 25, 28}, leaf_cells, 4);
-        Mesher mesher(bone.volume, *bone.lattice);
+        const BoneProperties properties = test::stripedProperties(bone.volume);
+        Mesher mesher(bone.volume, *bone.lattice, MeshGrid::kMostStepsPerCell, &properties);
         Model model;
         mesher.pass(model.sink());
         std::uniform_int_distribution<int> density(0, 1);
@@ -209,9 +211,10 @@ TEST(Mesher, IncrementalEqualsFullAfterRandomEdits) {
         }
         while (mesher.pass(model.sink()).pending > 0) {
         }
-        expectEqualsFullRemesh(model, bone.volume, *bone.lattice);
+        expectEqualsFullRemesh(model, bone.volume, *bone.lattice, &properties);
         std::vector<NodeMesh> all;
         for (const auto& [leaf, mesh] : model.meshes) all.push_back(mesh);
+        EXPECT_TRUE(std::ranges::any_of(all, [](const NodeMesh& mesh) { return !mesh.materials.empty(); }));
         EXPECT_TRUE(checkMesh(all, MeshGrid(bone.volume, *bone.lattice)).isClosed());
     }
 }

@@ -64,6 +64,19 @@ class PanelClicks : public testing::Test {
     Panel panel_;
 };
 
+// Below it everything still works, and nothing is there without it.
+TEST_F(PanelClicks, TrainingTakesItsPlaceOnlyWhereTheSceneTeachesCare) {
+    const double before = at("End the session").y;
+    status_.mutable_training()->set_damaged_mm3(0.2);
+    status_.mutable_training()->add_warnings("damaged facial nerve");
+    status_.mutable_training()->add_warnings("bone too hot");
+    layOut();
+    EXPECT_NEAR(at("End the session").y, before, 1) << "it comes after the session's controls";
+    status_.clear_training();
+    layOut();
+    EXPECT_NEAR(at("End the session").y, before, 1);
+}
+
 TEST_F(PanelClicks, BoxesSwitchWhatIsSeen) {
     click("Cut Y");
     EXPECT_TRUE(settings_.cuts[1].is_on);

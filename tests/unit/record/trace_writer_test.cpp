@@ -86,6 +86,52 @@ TEST(TraceWriter, everyNumberRoundTrips) {
     }
 }
 
+TEST(TraceWriter, effectsAddTheirColumns) {
+    const TemporaryFile file("effects.csv");
+    TraceWriter writer(file.path(), {.burr = true, .heat = true, .protection = true});
+    TickRecord record{};
+    record.effects = {.events = kEventTooHot,
+                      .protected_id = 3,
+                      .spin_speed = float(1000 * 2 * M_PI / 60),
+                      .burr_force = 1,
+                      .axis_torque = 2,
+                      .cutting_power = 3,
+                      .removal_power = 4,
+                      .removed_energy = 5,
+                      .temperature = 6,
+                      .necrotic_volume = 7e-9f,
+                      .protected_distance = 8e-3f,
+                      .protected_force = 9,
+                      .damaged_volume = 10e-9f};
+    ASSERT_TRUE(writer.write(record));
+    ASSERT_TRUE(writer.close());
+    std::istringstream lines(file.content());
+    std::string header, line;
+    std::getline(lines, header);
+    std::getline(lines, line);
+    const std::vector<std::pair<std::string, double>> expected = {
+        {"spin_rpm", 1000},           {"burr_force_n", 1},      {"axis_torque_nm", 2},
+        {"cutting_power_w", 3},       {"removal_power_w", 4},   {"removed_energy_j", 5},
+        {"temperature_c", 6},         {"necrotic_mm3", 7},      {"protected_id", 3},
+        {"protected_distance_mm", 8}, {"protected_force_n", 9}, {"damaged_mm3", 10},
+        {"events", kEventTooHot}};
+    const std::vector<std::string> names = cellsOf(header), cells = cellsOf(line);
+    ASSERT_EQ(names.size(), cells.size());
+    const size_t without = cellsOf(kTraceHeader).size();
+    ASSERT_EQ(names.size(), without + expected.size());
+    for (size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_EQ(names[without + i], expected[i].first);
+        EXPECT_NEAR(std::strtod(cells[without + i].c_str(), nullptr), expected[i].second, 1e-4)
+            << names[without + i];
+    }
+}
+
+TEST(TraceWriter, onlyListedEffectsHaveColumns) {
+    const TemporaryFile file("heat.csv");
+    EXPECT_TRUE(TraceWriter(file.path(), {.heat = true}).close());
+    EXPECT_EQ(file.content(), std::string(kTraceHeader) + ",temperature_c,necrotic_mm3,events\n");
+}
+
 TEST(TraceWriter, unwritablePathIsAUserError) {
     EXPECT_THROW(TraceWriter("/no/such/folder/trace.csv"), UserError);
 }

@@ -47,6 +47,16 @@ TEST(MeshDifference, SeesNormalsWindingAndLossToo) {
     EXPECT_NEAR(lost.max().x(), 0.106f, 1e-6f);
 }
 
+TEST(MeshDifference, SeesMaterials) {
+    NodeMesh coloured = strip(6);
+    coloured.materials.assign(coloured.vertices.size(), 0);
+    EXPECT_TRUE(differenceBox(strip(6), coloured).isEmpty()) << "none is none";
+    coloured.materials[12] = 3;
+    const Eigen::AlignedBox3f box = differenceBox(strip(6), coloured);
+    EXPECT_NEAR(box.min().x(), 0.105f, 1e-6f);
+    EXPECT_NEAR(box.max().x(), 0.106f, 1e-6f);
+}
+
 TEST(MeshDifference, IsAroundBothWhenTheGridIsAnother) {
     NodeMesh shifted = strip(2);
     shifted.origin.x() = 0.2f;

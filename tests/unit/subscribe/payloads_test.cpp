@@ -94,6 +94,78 @@ TEST(Payloads, ToolStateIsChecked) {
     EXPECT_FALSE(isAccepted(&parseToolState, too_short));
 }
 
+TEST(Payloads, OfAScenesPartsOnlyWhatAViewerUsesComesThrough) {
+    topics::SceneInfo info = syntheticSceneInfo();
+    info.mutable_viewer_effects()->mutable_bone_dust();
+    info.mutable_viewer_effects()->mutable_energy_removal();
+    scene::Material& material = *info.add_materials();
+    material.set_name(std::string(200, 'n') + "\n");
+    material.mutable_color()->set_green(0.25);
+    material.set_is_protected(true);
+    for (uint32_t label = 0; label < 1000; ++label) material.add_label(label);
+    const auto parsed = parseSceneInfo(bytesOf(info.SerializeAsString()));
+    ASSERT_TRUE(parsed);
+    EXPECT_TRUE(parsed->viewer_effects().has_bone_dust());
+    EXPECT_FALSE(parsed->viewer_effects().has_energy_removal());
+    ASSERT_EQ(parsed->materials_size(), 1);
+    EXPECT_EQ(parsed->materials(0).name(), std::string(64, 'n'));
+    EXPECT_EQ(parsed->materials(0).color().green(), 0.25);
+    EXPECT_TRUE(parsed->materials(0).is_protected());
+    EXPECT_EQ(parsed->materials(0).label_size(), 0);
+}
+
+TEST(Payloads, MaterialsAndEffectsOutOfBoundsAreRefused) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const auto accepts = [](auto change) {
+        topics::SceneInfo info = syntheticSceneInfo();
+        change(info);
+        return isAccepted(&parseSceneInfo, info);
+    };
+    const auto withRed = [](double red) {
+        return [red](topics::SceneInfo& info) { info.add_materials()->mutable_color()->set_red(red); };
+    };
+    EXPECT_TRUE(accepts(withRed(1)));
+    EXPECT_FALSE(accepts(withRed(kNan)));
+    EXPECT_FALSE(accepts(withRed(1.5)));
+    EXPECT_FALSE(accepts(withRed(-std::numeric_limits<double>::infinity())));
+    const auto withMaterials = [](int count) {
+        return [count](topics::SceneInfo& info) {
+            for (int n = 0; n < count; ++n) info.add_materials();
+        };
+    };
+    EXPECT_TRUE(accepts(withMaterials(255)));
+    EXPECT_FALSE(accepts(withMaterials(256)));
+    EXPECT_FALSE(accepts([](topics::SceneInfo& info) {
+        info.mutable_viewer_effects()->mutable_spindle()->set_inertia_kg_mm2(kNan);
+    }));
+}
+
+TEST(Payloads, EffectStateAndTrainingAreChecked) {
+    topics::ToolState state = validToolState();
+    state.mutable_effects()->set_temperature_c(48);
+    state.mutable_effects()->set_events(~0u);
+    state.mutable_effects()->set_protected_id(~0u);
+    EXPECT_TRUE(isAccepted(&parseToolState, state));
+    state.mutable_effects()->set_removed_mm3(-1);
+    EXPECT_FALSE(isAccepted(&parseToolState, state));
+    state = validToolState();
+    state.mutable_effects()->set_protected_distance_m(std::numeric_limits<double>::infinity());
+    EXPECT_FALSE(isAccepted(&parseToolState, state));
+
+    topics::Status status;
+    status.set_epoch(1);
+    status.mutable_training()->set_least_distance_mm(-3);
+    status.mutable_training()->add_warnings("touched\nnerve");
+    const auto parsed = parseStatus(bytesOf(status.SerializeAsString()));
+    ASSERT_TRUE(parsed);
+    EXPECT_EQ(parsed->training().warnings(0), "touchednerve");
+    for (int n = 0; n < 64; ++n) status.mutable_training()->add_warnings("w");
+    EXPECT_FALSE(isAccepted(&parseStatus, status));
+    status.mutable_training()->clear_warnings();
+    status.mutable_training()->set_damaged_mm3(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_FALSE(isAccepted(&parseStatus, status));
+}
+
 TEST(Payloads, StatusIsChecked) {
     topics::Status status;
     status.set_epoch(1);

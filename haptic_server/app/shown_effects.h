@@ -1,0 +1,41 @@
+// What the world outside the tick is told of a scene's effects and materials: files, report and clients.
+// Start-up and publisher thread; allocates.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "haptic_server/effects/recorded_effects.h"
+#include "haptic_server/record/effect_statistics.h"
+#include "proto/scene.pb.h"
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+RecordedEffects recordedEffectsOf(const scene::Effects& effects);
+std::vector<std::string> materialNamesOf(const scene::Scene& scene);
+
+// A viewer is to show some material in its colour.
+bool hasColouredMaterials(const scene::Scene& scene);
+
+// What viewers are to know of effects and materials, nothing if the scene lists none.
+void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info);
+
+// The effects part of the tool states of a session.
+class ShownEffects {
+  public:
+    explicit ShownEffects(const scene::Effects& effects);
+    // False: tool states have no such part.
+    bool areShown() const noexcept { return recorded_.any() || is_seen_; }
+    // Of the newest tick; events and removed (m³) since the tool state before.
+    topics::EffectState at(const EffectRecord& newest, uint32_t events, double removed) const;
+    // Nothing without protected_structures and thermal.
+    void describe(const EffectStatistics& statistics, const std::vector<std::string>& materials,
+                  topics::Status& status) const;
+
+  private:
+    RecordedEffects recorded_;
+    bool is_seen_ = false;  // a viewer has effects that follow the burr
+};
+
+}  // namespace bonemill

@@ -1,0 +1,51 @@
+// What the effects of a run told, from its tick records: extremes, totals, and what the trainee was warned
+// of.
+//
+// One normal thread; add() allocates nothing. SI but for temperatures, °C.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "haptic_server/effects/effect_record.h"
+#include "haptic_server/effects/recorded_effects.h"
+
+namespace bonemill {
+
+class EffectStatistics {
+  public:
+    EffectStatistics() = default;
+    explicit EffectStatistics(const RecordedEffects& recorded) : recorded_(recorded) {}
+
+    void add(const EffectRecord& record) noexcept;
+
+    const RecordedEffects& recorded() const noexcept { return recorded_; }
+    double maxAxisTorque() const noexcept { return max_axis_torque_; }
+    double maxCuttingPower() const noexcept { return max_cutting_power_; }
+    double removedEnergy() const noexcept { return removed_energy_; }
+    std::optional<double> maxTemperature() const noexcept { return max_temperature_; }
+    double necrotic() const noexcept { return necrotic_; }
+    // Of the burr's surface; nothing while no structure was in reach.
+    std::optional<double> leastProtectedDistance() const noexcept { return least_protected_distance_; }
+    double maxProtectedForce() const noexcept { return max_protected_force_; }
+    double damaged() const noexcept { return damaged_; }
+
+    // Keys with unit suffixes, of what is recorded.
+    std::vector<std::pair<std::string, double>> figures() const;
+    // Each once, in words; materials: their names, in the scene's order.
+    std::vector<std::string> warnings(const std::vector<std::string>& materials) const;
+
+  private:
+    RecordedEffects recorded_;
+    double max_axis_torque_ = 0, max_cutting_power_ = 0, removed_energy_ = 0;
+    std::optional<double> max_temperature_, least_protected_distance_;
+    double necrotic_ = 0, max_protected_force_ = 0, damaged_ = 0;
+    uint32_t events_ = 0;  // that were ever set
+    uint64_t stalled_ticks_ = 0;
+    std::array<uint32_t, 256> events_near_ = {};  // by EffectRecord::protected_id
+};
+
+}  // namespace bonemill

@@ -1,0 +1,19 @@
+// The parts of a scene file that come over the network, checked and reduced to what a viewer uses.
+// Thread-safe; never throws (other than std::bad_alloc).
+#pragma once
+
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+// As many as a scene may have: a vertex names one of them in one byte.
+inline constexpr int kMostMaterials = 255;
+
+// Every number in it, however deep, is finite and in its (range) of scene.proto.
+bool isWithinRanges(const google::protobuf::Message& message);
+
+// Forgets what is no viewer's business, so that nobody relies on it.
+void keepViewerEffects(scene::Effects& effects);
+void keepShownParts(scene::Material& material);
+
+}  // namespace bonemill
