@@ -43,6 +43,7 @@ std::string headerText(const VolumeGeometry& geometry, const char* type, NrrdEnc
 template <class T>
 constexpr const char* typeName() {
     if (std::is_same_v<T, uint8_t>) return "uint8";
+    if (std::is_same_v<T, int16_t>) return "int16";
     return std::is_same_v<T, uint16_t> ? "uint16" : "float";
 }
 
@@ -130,6 +131,7 @@ void NrrdStream<T>::close() {
 }
 
 template class NrrdStream<uint8_t>;
+template class NrrdStream<int16_t>;
 template class NrrdStream<uint16_t>;
 template class NrrdStream<float>;
 

@@ -1,4 +1,4 @@
-// Writes phantoms: a tooth as a DICOM CT series, analytic bodies as NRRD. See docs/volumes.md.
+// Writes phantoms: a tooth as a DICOM CT series, a vertebra and analytic bodies as NRRD. See docs/volumes.md.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <limits>
@@ -7,7 +7,9 @@
 #include "common/config/user_error.h"
 #include "haptic_server/volume/import/nrrd_stream.h"
 #include "haptic_server/volume/import/phantom/analytic_body.h"
+#include "haptic_server/volume/import/phantom/anatomy_commands.h"
 #include "haptic_server/volume/import/phantom/dicom_series_writer.h"
+#include "haptic_server/volume/import/phantom/number_range.h"
 #include "haptic_server/volume/import/phantom/tooth_phantom.h"
 
 namespace bonemill {
@@ -83,17 +85,6 @@ void makeBody(const BodyArguments& arguments) {
     arguments.bits == 8 ? writeBody<uint8_t>(arguments) : writeBody<uint16_t>(arguments);
 }
 
-// CLI::Range lets NaN pass.
-CLI::Validator within(double low, double high) {
-    return {[=](std::string& text) -> std::string {
-                double value = 0;
-                if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
-                return text + " is not a number from " + CLI::detail::to_string(low) + " to " +
-                       CLI::detail::to_string(high);
-            },
-            "NUMBER"};
-}
-
 void addTooth(CLI::App& app, ToothArguments& arguments) {
     CLI::App* tooth =
         app.add_subcommand("tooth", "molar-like tooth as a DICOM CT series, 256x256x161, 0.125 mm, HU");
@@ -141,10 +132,12 @@ int run(int argc, char** argv) {
     BodyArguments body;
     addTooth(app, tooth);
     addBody(app, body);
+    addAnatomyCommands(app);
     app.require_subcommand(1);
     try {
         app.parse(argc, argv);
-        app.got_subcommand("tooth") ? makeTooth(tooth) : makeBody(body);
+        if (app.got_subcommand("tooth")) makeTooth(tooth);
+        if (app.got_subcommand("body")) makeBody(body);
     } catch (const CLI::Success& success) {
         return app.exit(success);
     } catch (const std::exception& error) {  // CLI::ParseError, UserError, std::bad_alloc
