@@ -10,16 +10,16 @@ namespace {
 // From the transverse sinus down the corner between petrous bone and skull, then under the labyrinth to the
 // jugular bulb.
 SplineTube sigmoidSinus() {
-    return {{{174, 177, 48.5},
-             {177.5, 170, 47},
-             {178.5, 164.5, 44},
+    return {{{176.5, 177, 48.5},
+             {179.5, 170, 47},
+             {179.5, 164.5, 44},
              {178.5, 160.5, 39},
              {177.5, 158.5, 34},
              {175, 156, 30},
              {172, 154, 26.5},
              {167, 152.5, 25},
-             {161, 150, 25},
-             {157.5, 145, 25.5},
+             {160, 150.5, 25.5},
+             {156, 145.5, 26},
              {158, 139, 25}},
             4.5};
 }
@@ -41,11 +41,11 @@ SplineSheet duraOfMiddleFossa() {
     SplineSheet::Lattice lattice;
     lattice.low = {160, 128};
     lattice.spacing = {8, 6};
-    lattice.heights = {{43.5, 41, 41, 45},
-                       {45.5, 45, 44, 46},
+    lattice.heights = {{42.5, 39.5, 39.5, 44},
+                       {44.5, 44, 43, 45.5},
                        {46.5, 46.5, 46, 48.5},
-                       {46, 46, 46, 48.5},
-                       {44.5, 45, 46.5, 49.5}};
+                       {45.5, 45, 45.5, 48},
+                       {43, 43.5, 45.5, 49}};
     return {lattice, 2};  // thick enough for slices 1.5 mm apart
 }
 

@@ -81,7 +81,7 @@ double canal(const Vector3d& p) {
 // Both sides at once: the vertebra is symmetric about x = 0.
 double arch(const Vector3d& p) {
     static const Limb kPedicle{{15, 9, 4.5}, {19, 31, 4.5}, {5, 7.25}, {5, 7.25}};
-    static const Limb kLamina{{18, 30, 2}, {1, 37, -5}, {3.2, 9}, {3.2, 10}};
+    static const Limb kLamina{{18, 30.5, 2.5}, {1, 37, -5}, {3.2, 6.5}, {3.2, 10}};
     static const Limb kSuperiorProcess{{18, 30.5, 4}, {20.5, 29.5, 18}, {4.5, 4.5}, {4.5, 5.5}};
     static const Limb kInferiorProcess{{13.5, 34.5, -4}, {12.5, 36.5, -21}, {4.5, 4.5}, {4.5, 5}};
     static const Limb kTransverseProcess{{20, 28, 4}, {45.2, 32, 6}, {3, 6}, {2.3, 4}};
@@ -144,7 +144,7 @@ class SoftParts {
         if (ellipsoidal<Vector2d>(p.head<2>() - Vector2d(0, 23.5), {7.5, 6}) < 0)
             return VertebraTissue::kDuralSac;
         const bool is_vessel = aorta_.contains(p) || segmental_.contains({std::abs(p.x()), p.y(), p.z()});
-        return is_vessel ? VertebraTissue::kVessel : VertebraTissue::kSoft;
+        return is_vessel ? VertebraTissue::kVessel : VertebraTissue::kFat;
     }
 
   private:
@@ -157,12 +157,12 @@ class SoftParts {
                           1.2};
 };
 
-// Share of bone around a depth (mm, positive inside) when edges are soft over `blur`.
+// Share of what begins at depth 0 (mm, growing inwards) where edges are soft over `blur`.
 double softStep(double depth, double blur) {
-    return std::clamp(0.5 + depth / blur, 0.0, 1.0);
+    return smoothStep(-blur / 2, blur / 2, depth);
 }
 
-constexpr double kBlurVoxels = 1.5;
+constexpr double kBlurVoxels = 2.5;
 
 struct Voxel {
     float hu;
@@ -171,11 +171,14 @@ struct Voxel {
 
 Voxel voxelAt(const Vector3d& p, double depth, double blur, const SoftParts& soft) {
     const double share = softStep(depth, blur);
-    if (share <= 0) return {float(kSoftHu), soft.at(p)};
+    const VertebraTissue around = share < 1 ? soft.at(p) : VertebraTissue::kFat;
+    const double around_hu = around == VertebraTissue::kFat ? kFatHu : kSoftHu;
+    if (share <= 0) return {float(around_hu), around};
     const double core = softStep(depth - shell(p), blur);
     const double bone_hu = (1 - core) * corticalHu(p) + (core > 0 ? core * trabecularHu(p) : 0);
-    return {float(std::round(kSoftHu + share * (bone_hu - kSoftHu))),
-            depth < shell(p) ? VertebraTissue::kCortical : VertebraTissue::kTrabecular};
+    const double hu = std::round(around_hu + share * (bone_hu - around_hu));
+    if (hu < kBoneHu) return {float(hu), around};
+    return {float(hu), depth < shell(p) ? VertebraTissue::kCortical : VertebraTissue::kTrabecular};
 }
 
 // Cubes of voxels that the bone's surface surely does not come near need no distance per voxel.

@@ -17,7 +17,7 @@ namespace bonemill {
 
 // The label volume holds these numbers.
 enum class VertebraTissue : uint8_t {
-    kSoft,
+    kFat,
     kCortical,
     kTrabecular,
     kDuralSac,
@@ -35,12 +35,13 @@ double corticalThickness(const Eigen::Vector3d& p_W) noexcept;
 // The whole vertebra and what lies around it.
 VolumeGeometry vertebraGrid(double voxel_size);
 
-inline constexpr double kSoftHu = 40;
+inline constexpr double kFatHu = -100, kSoftHu = 40;  // around, and of nerves and vessels
+inline constexpr double kBoneHu = 100;                // the bone's surface
 inline constexpr double kTrabecularLowHu = 160, kTrabecularHighHu = 390;
 
 struct VertebraScan {
-    RawVolume ct;                 // HU; edges are soft over 1.5 voxels, the scanner's blur
-    std::vector<uint8_t> labels;  // VertebraTissue, x fastest; bone: every voxel that holds some
+    RawVolume ct;                 // HU; edges are soft over 2.5 voxels, the scanner's blur
+    std::vector<uint8_t> labels;  // VertebraTissue, x fastest; bone where the CT has kBoneHu or more
 };
 
 // The same geometry gives the same values everywhere.
