@@ -6,6 +6,7 @@
 
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/phantom/analytic_body.h"
+#include "haptic_server/volume/import/phantom/vertebra_phantom.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {
@@ -51,6 +52,28 @@ TEST(MakePhantom, bodyFileHoldsTheStatedSurface) {
         1e-12);
 }
 
+TEST(MakePhantom, vertebraAndLabelsLieOnOneGrid) {
+    const test::TemporaryFolder folder;
+    const Outcome outcome = runMakePhantom("vertebra --voxel-mm 2 --out " + (folder / "v.nrrd") +
+                                           " --labels " + (folder / "l.nrrd"));
+    ASSERT_EQ(outcome.code, 0) << outcome.output;
+    const VertebraScan scan = scanVertebra(vertebraGrid(2e-3));
+    const RawVolume ct = importVolume(folder / "v.nrrd"), labels = importVolume(folder / "l.nrrd");
+    EXPECT_EQ(ct.values, scan.ct.values);
+    EXPECT_EQ(ct.geometry.dims, labels.geometry.dims);
+    EXPECT_EQ(ct.geometry.X_WV.position, labels.geometry.X_WV.position);
+    for (size_t n = 0; n < scan.labels.size(); ++n) ASSERT_EQ(labels.values[n], float(scan.labels[n]));
+}
+
+TEST(MakePhantom, skullLabelsRefuseAnotherScan) {
+    const test::TemporaryFolder folder;
+    const std::string body = folder / "ball.nrrd";
+    ASSERT_EQ(runMakePhantom("body --kind sphere --dims 8 8 8 --out " + body).code, 0);
+    const Outcome outcome = runMakePhantom("skull_labels --volume " + body + " --out " + (folder / "l.nrrd"));
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_NE(outcome.output.find(body + ": is not the CT head"), std::string::npos) << outcome.output;
+}
+
 TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
     const test::TemporaryFolder folder;
     const std::string out = " --out " + (folder / "a.nrrd");
@@ -68,6 +91,11 @@ TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
         {"body --kind slab --thicknes-mm 3" + out, "--thicknes-mm"},
         {"body --kind slab --out /nonexistent/a.nrrd", "/nonexistent/a.nrrd"},
         {"tooth", "--out"},
+        {"vertebra", "--out"},
+        {"vertebra --voxel-mm 0.01" + out, "--voxel-mm"},
+        {"vertebra --voxel-mm 2 --out /nonexistent/a.nrrd", "/nonexistent/a.nrrd"},
+        {"skull_labels" + out, "--volume"},
+        {"skull_labels --volume /nonexistent/a.inv3" + out, "/nonexistent/a.inv3"},
         {"tooth --noise-hu -5 --out " + folder.path().string(), "--noise-hu"},
     };
     for (const auto& [arguments, word] : cases) {

@@ -61,13 +61,13 @@ struct Limb {
     }
 };
 
-constexpr double kBodyHalfHeight = 14;
+constexpr double kBodyHalfHeight = 14.5;
 
 double body(const Vector3d& p) {
     const double up = std::min(std::abs(p.z()) / kBodyHalfHeight, 1.0);
-    const Vector2d half_axes = Vector2d(22.5, 16.5) * (0.91 + 0.09 * up * up);  // a waist
+    const Vector2d half_axes = Vector2d(22.5, 17) * (0.91 + 0.09 * up * up);  // a waist
     const double side = superellipse(p.head<2>(), half_axes);
-    const double off_axis = std::min(p.head<2>().cwiseQuotient(Vector2d(22.5, 16.5)).squaredNorm(), 1.0);
+    const double off_axis = std::min(p.head<2>().cwiseQuotient(Vector2d(22.5, 17)).squaredNorm(), 1.0);
     const double end_plate = std::abs(p.z()) - (kBodyHalfHeight - 1.5 * (1 - off_axis));  // hollow
     return -blend(-side, -end_plate, 2);
 }
@@ -80,8 +80,8 @@ double canal(const Vector3d& p) {
 
 // Both sides at once: the vertebra is symmetric about x = 0.
 double arch(const Vector3d& p) {
-    static const Limb kPedicle{{15, 9, 4.5}, {19, 31, 4.5}, {5, 7.25}, {5, 7.25}};
-    static const Limb kLamina{{18, 30.5, 2.5}, {1, 37, -5}, {3.2, 6.5}, {3.2, 10}};
+    static const Limb kPedicle{{14.4, 9, 4.5}, {18.4, 31, 4.5}, {5, 7.25}, {5, 7.25}};
+    static const Limb kLamina{{18, 30, 2.5}, {1, 36.2, -5}, {3.2, 6.5}, {3.2, 10}};
     static const Limb kSuperiorProcess{{18, 30.5, 4}, {20.5, 29.5, 18}, {4.5, 4.5}, {4.5, 5.5}};
     static const Limb kInferiorProcess{{13.5, 34.5, -4}, {12.5, 36.5, -21}, {4.5, 4.5}, {4.5, 5}};
     static const Limb kTransverseProcess{{20, 28, 4}, {45.2, 32, 6}, {3, 6}, {2.3, 4}};
