@@ -1,4 +1,5 @@
-// Writes phantoms: a tooth as a DICOM CT series, blocks and analytic bodies as NRRD. See docs/volumes.md.
+// Writes phantoms: a tooth as a DICOM CT series, blocks, a vertebra and analytic bodies as NRRD. See
+// docs/volumes.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
@@ -8,8 +9,10 @@
 #include "common/config/user_error.h"
 #include "haptic_server/volume/import/nrrd_stream.h"
 #include "haptic_server/volume/import/phantom/analytic_body.h"
+#include "haptic_server/volume/import/phantom/anatomy_commands.h"
 #include "haptic_server/volume/import/phantom/block_phantom.h"
 #include "haptic_server/volume/import/phantom/dicom_series_writer.h"
+#include "haptic_server/volume/import/phantom/number_range.h"
 #include "haptic_server/volume/import/phantom/tooth_phantom.h"
 
 namespace bonemill {
@@ -160,17 +163,6 @@ void makeBody(const BodyArguments& arguments) {
     arguments.bits == 8 ? writeBody<uint8_t>(arguments) : writeBody<uint16_t>(arguments);
 }
 
-// CLI::Range lets NaN pass.
-CLI::Validator within(double low, double high) {
-    return {[=](std::string& text) -> std::string {
-                double value = 0;
-                if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
-                return text + " is not a number from " + CLI::detail::to_string(low) + " to " +
-                       CLI::detail::to_string(high);
-            },
-            "NUMBER"};
-}
-
 void addTooth(CLI::App& app, ToothArguments& arguments) {
     CLI::App* tooth =
         app.add_subcommand("tooth", "molar-like tooth as a DICOM CT series, 256x256x161, 0.125 mm, HU");
@@ -246,6 +238,7 @@ int run(int argc, char** argv) {
     addTooth(app, tooth);
     addBlock(app, block);
     addBody(app, body);
+    addAnatomyCommands(app);
     app.require_subcommand(1);
     try {
         app.parse(argc, argv);

@@ -1,0 +1,52 @@
+// Soft structures of the phantoms: tubes and sheets about smooth curves through given points (Catmull-Rom).
+//
+// One length unit throughout (the phantoms use mm). Thread-safe; start-up only, allocates.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+namespace bonemill {
+
+// Round tube; its ends are round too.
+class SplineTube {
+  public:
+    // At least two points.
+    SplineTube(const std::vector<Eigen::Vector3d>& points, double radius);
+
+    // To the tube's surface, negative inside; exact but for the curve, which is followed in short straight
+    // pieces.
+    double signedDistance(const Eigen::Vector3d& p) const noexcept;
+    bool contains(const Eigen::Vector3d& p) const noexcept {
+        return box_.contains(p) && signedDistance(p) < 0;
+    }
+    const Eigen::AlignedBox3d& box() const noexcept { return box_; }
+
+  private:
+    std::vector<Eigen::Vector3d> curve_;
+    double radius_;
+    Eigen::AlignedBox3d box_;
+};
+
+// Membrane over a rectangle of x and y: what lies 0 to `thickness` above a height that runs smoothly through
+// a lattice of points.
+class SplineSheet {
+  public:
+    struct Lattice {
+        Eigen::Vector2d low, spacing;  // x and y of the first point, and between the points
+        std::vector<std::vector<double>>
+            heights;  // [row along y][point along x], at least 2 × 2, rows of one size
+    };
+    SplineSheet(Lattice lattice, double thickness);
+
+    // Inside the rectangle.
+    double heightAt(double x, double y) const noexcept;
+    bool contains(const Eigen::Vector3d& p) const noexcept;
+
+  private:
+    Lattice lattice_;
+    Eigen::Vector2d high_;
+    double thickness_;
+};
+
+}  // namespace bonemill
