@@ -177,8 +177,8 @@ SurfaceShift::Wish SurfaceShift::wishOf(const VoxelVolume& volume, const Vector3
     };
     const Vector3f at = point.cwiseProduct(inverse);
     const Vector3i cell = cellAt(at);
-    const Vector3f inward =
-        sampleField(readCorners(volume, cell), at - cell.cast<float>()).slope.cwiseProduct(inverse);
+    const FieldSample here = sampleField(readCorners(volume, cell), at - cell.cast<float>());
+    const Vector3f inward = here.slope.cwiseProduct(inverse);
     const float slope = inward.norm();
     Vector3f target = at;
     if (slope > 0) target += float(recession) / slope * inward.cwiseProduct(inverse);
@@ -187,7 +187,8 @@ SurfaceShift::Wish SurfaceShift::wishOf(const VoxelVolume& volume, const Vector3
     const CellCorners corners = readCorners(volume, target_cell);
     const int to_iso = std::min(int(volume.iso()), kMaxDensity - volume.iso());
     const double least = kLeastSlope * to_iso / volume.spacing().maxCoeff() * recession;
-    const float excess = std::max(sampleField(corners, t).excess, float(least));
+    // The point itself is on the surface but for its projection's tolerance.
+    const float excess = std::max(sampleField(corners, t).excess - here.excess, float(least));
     return {target, equalDrop(corners, float(volume.iso()), t, excess)};
 }
 
