@@ -30,36 +30,45 @@ double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, cons
                             const ToolField& tool, const Pose& X_VT) noexcept {
     if (!is_cutting_ || candidates.count == 0) return 1;
     constexpr int kBatch = PointBatch<float>::kCapacity;
-    const Burr& burr = tick.tool->burr;
-    const double wear = burr.friction * tick.dt / energyFactor(burr), slack = burrSlack(tool);
+    const double slack = burrSlack(tool);
     const IntoTool<float> into_tool(X_VT, origin_V);
     PointBatch<float> batch;
     float distance[kBatch];
     double largest = 0;
-    Eigen::Vector3i cell = Eigen::Vector3i::Constant(-2);
-    double u = 1;
     for (size_t first = 0; first < candidates.count; first += kBatch) {
         const int count = int(std::min(size_t(kBatch), candidates.count - first));
         into_tool.fill(batch, &candidates.x[first], &candidates.y[first], &candidates.z[first], count);
         tool.distances(batch, distance);
         for (int i = 0; i < count; ++i) {
             const size_t n = first + size_t(i);
-            const double x = double(batch.x[i]), y = double(batch.y[i]), z = double(batch.z[i]);
-            double factor = 1;
-            if (burr.signedDistance({x, y, z}) <= std::max(0.0, double(distance[i])) + slack) {
-                const double area = double(tick.place_area[n]);
-                const Eigen::Vector3d p_V = origin_V + candidates.position(n).cast<double>();
-                const Eigen::Vector3i here = (p_V.array() * inverse_spacing_).floor().cast<int>();
-                if (here != cell) u = specific_energy_.ofCell(cell = here);
-                const double stiffness = double(candidates.weight[n]) / area;  // κ
-                const double speed = std::abs(tick.spin_speed) * std::sqrt(x * x + z * z + patchSpread(area));
-                factor = 1 / (1 + stiffness * wear * speed / u);
-                candidates.weight[n] *= float(factor);
-            }
+            const Eigen::Vector3d p_T(batch.x[i], batch.y[i], batch.z[i]);
+            // The burr is what it touches or is nearest to.
+            const bool is_on_burr =
+                tick.tool->burr.signedDistance(p_T) <= std::max(0.0, double(distance[i])) + slack;
+            const double factor = is_on_burr ? softness(tick, candidates, n, origin_V, p_T) : 1;
+            candidates.weight[n] *= float(factor);
             largest = std::max(largest, factor);
         }
     }
     return largest;
+}
+
+// 1/(1 + κ c dt) of a candidate on the burr.
+double EnergyRemoval::softness(const EffectTick& tick, const Candidates& candidates, size_t n,
+                               const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T) noexcept {
+    const Burr& burr = tick.tool->burr;
+    const double area = double(tick.place_area[n]), stiffness = double(candidates.weight[n]) / area;
+    const double rho = std::sqrt(p_T.x() * p_T.x() + p_T.z() * p_T.z() + patchSpread(area));
+    const double u = energyFactor(burr) * specificEnergyAt(origin_V + candidates.position(n).cast<double>());
+    const double c = burr.friction * std::abs(tick.spin_speed) * rho / u;
+    return 1 / (1 + stiffness * c * tick.dt);
+}
+
+// The places of a patch follow each other.
+double EnergyRemoval::specificEnergyAt(const Eigen::Vector3d& p_V) noexcept {
+    const Eigen::Vector3i cell = (p_V.array() * inverse_spacing_).floor().cast<int>();
+    if (cell != last_cell_) last_energy_ = specific_energy_.ofCell(last_cell_ = cell);
+    return last_energy_;
 }
 
 // Gives the contacts' energies to the surface, and sums them; J.

@@ -19,6 +19,8 @@
 // what is in the account.
 #pragma once
 
+#include <climits>
+
 #include "haptic_server/effects/effect_configs.h"
 #include "haptic_server/effects/haptic_effect.h"
 #include "haptic_server/milling/surface_shift.h"
@@ -47,11 +49,16 @@ class EnergyRemoval final : public HapticEffect {
     double energyFactor(const Burr& burr) const noexcept {
         return burr.grit == BurrGrit::kDiamond ? config_.diamond_energy_factor : 1;
     }
+    double softness(const EffectTick& tick, const Candidates& candidates, size_t n,
+                    const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T) noexcept;
+    double specificEnergyAt(const Eigen::Vector3d& p_V) noexcept;
     double spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept;
 
     EnergyRemovalConfig config_;
     SpecificEnergy specific_energy_;
     Eigen::Array3d inverse_spacing_;
+    Eigen::Vector3i last_cell_ = Eigen::Vector3i::Constant(INT_MIN);  // and what it takes, J/m³
+    double last_energy_ = 0;
     SurfaceShift shift_;
     bool is_cutting_ = false;
     double account_ = 0;  // J not yet spent; negative: too much was

@@ -71,7 +71,7 @@ SurfaceShift::SurfaceShift(const BoneModel& bone, double largest_reach, size_t m
       fresh_(size_t(size_.x())),
       changes_(bone.lattice, size_) {}
 
-int SurfaceShift::kernelOf(const BoneModel& bone) noexcept {
+int SurfaceShift::blockOf(const BoneModel& bone) noexcept {
     return bone.shell.scalingFactor(bone.shell.followed());
 }
 
@@ -101,8 +101,7 @@ void SurfaceShift::forget() noexcept {
     touched_ = {};
 }
 
-// Its kernel and the cells around that lie in the scratch box.
-bool SurfaceShift::hasRoomAround(const Vector3i& voxel) const noexcept {
+bool SurfaceShift::isInScratch(const Vector3i& voxel) const noexcept {
     const Vector3i local = voxel - first_;
     return (local.array() >= 0).all() && (local.array() < size_.array()).all();
 }
@@ -112,8 +111,8 @@ void SurfaceShift::add(const BoneModel& bone, uint64_t patch, double energy, dou
     const auto key = uint32_t(patch);
     const Vector3i block(int(key & kMask), int(key >> kShellKeyBits & kMask),
                          int(key >> 2 * kShellKeyBits & kMask));
-    const Vector3i cell = bone.lattice.cellsOf(LeafId(patch >> 32)).min + block * kernelOf(bone);
-    if (!hasRoomAround(cell)) return;
+    const Vector3i cell = bone.lattice.cellsOf(LeafId(patch >> 32)).min + block * blockOf(bone);
+    if (!isInScratch(cell)) return;
     const size_t at = index(cell);
     if (nodes_[at].depth == 0) {
         if (patch_count_ == patches_.size()) return;
@@ -128,7 +127,7 @@ void SurfaceShift::add(const BoneModel& bone, uint64_t patch, double energy, dou
 template <class Visit>
 void SurfaceShift::forEachPatch(const BoneModel& bone, Visit&& visit) const noexcept {
     constexpr uint32_t kMask = (1u << kShellKeyBits) - 1;
-    const int factor = kernelOf(bone);
+    const int factor = blockOf(bone);
     const IndexBox cells = patch_cells_.grown(2 * factor);
     const auto has_surface = [iso = bone.volume.iso()](const DensityRange& range, const IndexBox&) {
         return range.min < iso && range.max >= iso;
@@ -141,7 +140,7 @@ void SurfaceShift::forEachPatch(const BoneModel& bone, Visit&& visit) const noex
                                      int(b.key[n] >> 2 * kShellKeyBits & kMask));
                 const Vector3i cell = first + block * factor;
                 if ((cell.array() < cells.min.array()).any() || (cell.array() > cells.max.array()).any() ||
-                    !hasRoomAround(cell))
+                    !isInScratch(cell))
                     continue;
                 visit(Vector3f(b.x[n], b.y[n], b.z[n]), b.area[n], nodes_[index(cell)]);
             }
@@ -153,7 +152,7 @@ void SurfaceShift::forEachPatch(const BoneModel& bone, Visit&& visit) const noex
 template <class Visit>
 void SurfaceShift::forEachVoxelAround(const BoneModel& bone, const Vector3f& at,
                                       Visit&& visit) const noexcept {
-    const auto width = float(kernelOf(bone));
+    const auto width = float(blockOf(bone));
     const Vector3i room_low = first_.array() + 1, room_high = (first_ + size_).array() - 2;
     const Vector3i low =
         ((at.array() - width).floor().cast<int>() + 1).matrix().cwiseMax(room_low).cwiseMax(Vector3i::Zero());
@@ -178,8 +177,8 @@ SurfaceShift::Wish SurfaceShift::wishOf(const VoxelVolume& volume, const Vector3
     };
     const Vector3f at = point.cwiseProduct(inverse);
     const Vector3i cell = cellAt(at);
-    const Vector3f inward =
-        sampleField(readCorners(volume, cell), at - cell.cast<float>()).slope.cwiseProduct(inverse);
+    const FieldSample here = sampleField(readCorners(volume, cell), at - cell.cast<float>());
+    const Vector3f inward = here.slope.cwiseProduct(inverse);
     const float slope = inward.norm();
     Vector3f target = at;
     if (slope > 0) target += float(recession) / slope * inward.cwiseProduct(inverse);
@@ -188,7 +187,8 @@ SurfaceShift::Wish SurfaceShift::wishOf(const VoxelVolume& volume, const Vector3
     const CellCorners corners = readCorners(volume, target_cell);
     const int to_iso = std::min(int(volume.iso()), kMaxDensity - volume.iso());
     const double least = kLeastSlope * to_iso / volume.spacing().maxCoeff() * recession;
-    const float excess = std::max(sampleField(corners, t).excess, float(least));
+    // The point itself is on the surface but for its projection's tolerance.
+    const float excess = std::max(sampleField(corners, t).excess - here.excess, float(least));
     return {target, equalDrop(corners, float(volume.iso()), t, excess)};
 }
 

@@ -49,12 +49,12 @@ class SurfaceShift {
         float energy = 0, depth = 0;  // of the patch whose block begins at the cell
         float fill = 0;               // of the cell, before
     };
-    // One that spans a single cell sees its corners.
+    // Of one patch: by how much the densities around a place shall fall.
     struct Wish {
         Eigen::Vector3f at;  // voxel steps
         float drop;          // counts
     };
-    struct Span {
+    struct Span {  // of voxels along x; empty: low > high
         int low = 1, high = 0;
     };
 
@@ -66,8 +66,8 @@ class SurfaceShift {
     size_t row(int j, int k) const noexcept {
         return size_t(j - first_.y()) + size_t(size_.y()) * size_t(k - first_.z());
     }
-    bool hasRoomAround(const Eigen::Vector3i& voxel) const noexcept;
-    static int kernelOf(const BoneModel& bone) noexcept;
+    bool isInScratch(const Eigen::Vector3i& voxel) const noexcept;
+    static int blockOf(const BoneModel& bone) noexcept;
 
     template <class Visit>
     void forEachPatch(const BoneModel& bone, Visit&& visit) const noexcept;
