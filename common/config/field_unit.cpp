@@ -9,7 +9,7 @@ namespace bonemill {
 
 std::string_view unitOfField(std::string_view field_name) noexcept {
     // A suffix stands before every shorter suffix that it ends with.
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 27> kUnits{{
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 29> kUnits{{
         {"_density_per_s", "density/s"},
         {"_w_per_m2_k", "W/(m²·K)"},
         {"_w_per_m_k", "W/(m·K)"},
@@ -21,10 +21,12 @@ std::string_view unitOfField(std::string_view field_name) noexcept {
         {"_n_per_mm", "N/mm"},
         {"_n_per_m", "N/m"},
         {"_nmm_per_rad", "N·mm/rad"},
+        {"_nmm_per_krpm", "N·mm per 1000/min"},
         {"_nm_s_per_rad", "N·m·s/rad"},
         {"_nm_per_rad", "N·m/rad"},
         {"_n_s_per_m", "N·s/m"},
         {"_kg_m2", "kg·m²"},
+        {"_kg_mm2", "kg·mm²"},
         {"_voxels", "voxels"},
         {"_nmm", "N·mm"},
         {"_deg", "deg"},

@@ -20,7 +20,7 @@ TickConfig configOf(const Variant& variant, double dt, const std::function<void(
 Scene::Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, double dt,
              const std::function<void(TickConfig&)>& edit)
     : config(configOf(variant, dt, edit)),
-      held_buttons(variant.heldButtons()),
+      held_buttons(variant.held_buttons),
       averaged_ticks(config.effects.burr_vibration ? kVibrationTicks : 1),
       bone(std::move(volume), Eigen::Vector3i::Constant(16),
            ShellConfig{.levels = {{config.accuracy.shell_factor}}}),

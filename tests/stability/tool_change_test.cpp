@@ -176,7 +176,7 @@ const std::vector<StabilityCase> kCases{
      feltEffectsBut({"cutting_force"})},
     {"tool_change_rest_in_hole", "N_rms", 0.05, restInHole, {"thesis_2012"}, feltEffects()},
     {"tool_change_left_in_plane", "voxels", 0.5, leftInPlane, {"thesis_2012"}},
-    {"tool_change_drawn_out", "ms", 300, drawnOut, {}, feltEffectsBut({"cutting_force"})},
+    {"tool_change_drawn_out", "ms", 300, drawnOut, {}, feltEffectsBut({"cutting_force", "surface_friction"})},
     {"tool_change_lift", "mm/s", 100, liftSpeed, {}, feltEffects()},
     {"tool_change_growth", "ratio", 1.05, growthOverRounds, {}, feltEffects()},
 };

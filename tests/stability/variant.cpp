@@ -5,21 +5,22 @@
 namespace bonemill::test {
 namespace {
 
+constexpr uint32_t kPedal = kButtonRemove;
 constexpr const char* kAllFelt = "all_felt";
 
 struct NamedEffect {
     const char* name;
-    bool mills;
+    bool mills, turns;  // turns: it is one of a burr that does
     void (*add)(EffectConfigs&);
 };
 
 // One line per effect.
 constexpr NamedEffect kEffects[] = {
-    {"spindle", false, [](EffectConfigs& e) { e.spindle.emplace(); }},
-    {"cutting_force", false, [](EffectConfigs& e) { e.cutting_force.emplace(); }},
-    {"surface_friction", false, [](EffectConfigs& e) { e.surface_friction.emplace(); }},
-    {"burr_vibration", false, [](EffectConfigs& e) { e.burr_vibration.emplace(); }},
-    {"time_removal", true, [](EffectConfigs& e) { e.time_removal.emplace(); }},
+    {"spindle", false, true, [](EffectConfigs& e) { e.spindle.emplace(); }},
+    {"cutting_force", false, true, [](EffectConfigs& e) { e.cutting_force.emplace(); }},
+    {"surface_friction", false, false, [](EffectConfigs& e) { e.surface_friction.emplace(); }},
+    {"burr_vibration", false, true, [](EffectConfigs& e) { e.burr_vibration.emplace(); }},
+    {"time_removal", true, true, [](EffectConfigs& e) { e.time_removal.emplace(); }},
 };
 
 void addFelt(EffectConfigs& configs) {
@@ -55,9 +56,9 @@ const std::vector<Variant>& effectVariants() {
     static const std::vector<Variant> kVariants = [] {
         std::vector<Variant> list;
         for (const NamedEffect& effect : kEffects)
-            list.push_back({effect.name, Preset::kBalanced, effect.add});
-        list.push_back({kAllFelt, Preset::kBalanced, addFelt});
-        list.push_back({"all_effects", Preset::kBalanced, addAll});
+            list.push_back({effect.name, Preset::kBalanced, effect.add, effect.turns ? kPedal : 0});
+        list.push_back({kAllFelt, Preset::kBalanced, addFelt, kPedal});
+        list.push_back({"all_effects", Preset::kBalanced, addAll, kPedal});
         return list;
     }();
     return kVariants;

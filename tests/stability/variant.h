@@ -11,12 +11,11 @@ namespace bonemill::test {
 struct Variant {
     std::string name;
     Preset preset;
-    // Effects in place of milling by time, with a burr that spins; null: milling by time.
+    // Effects in place of milling by time; null: milling by time.
     void (*add_effects)(EffectConfigs&) = nullptr;
+    uint32_t held_buttons = 0;  // all the while: with effects of a burr that turns the pedal is down
 
     bool isBaseline() const { return preset == Preset::kThesis2012; }
-    // All the while; a pedal that is down does no harm to a case unless something mills.
-    uint32_t heldButtons() const { return add_effects ? uint32_t(kButtonRemove) : 0; }
 };
 
 const std::vector<Variant>& allVariants();

@@ -25,6 +25,14 @@ struct FrictionTest : testing::Test {
         contacts = {};
         contacts.add({0, 0, -kRadius}, {0, 0, 1}, force);
     }
+    void standOnRing(double radius) {
+        contacts = {};
+        for (int n = 0; n < 36; ++n) {
+            const double angle = 2 * M_PI * n / 36;
+            contacts.add({radius * std::cos(angle), radius * std::sin(angle), 0}, {0, 0, 1}, 5.0 / 36, 0,
+                         false);
+        }
+    }
     // One tick that ends at `pose`; the wrench there.
     Wrench moveTo(const Pose& pose) {
         EffectTick& tick = bench.tick;
@@ -162,6 +170,15 @@ TEST_F(FrictionTest, NeverDrives) {
             most = std::max(most, given_to_friction);
         }
         EXPECT_GT(most, 1e-6);
+    }
+}
+
+// Turned on a narrow contact and back on a wide one, where the same turn stretches more.
+TEST_F(FrictionTest, AWiderContactGivesBackNoMoreThanTheNarrowOneGot) {
+    for (int n = 0; n < 20; ++n) {
+        standOnRing((n % 2 ? 1 : 0.5) * kRadius);
+        moveBy(Vector3d::Zero(), {0, 0, (n % 2 ? -1 : 1) * 0.3 * width(5) / kRadius});
+        ASSERT_GE(given_to_friction, -1e-15) << n;
     }
 }
 
