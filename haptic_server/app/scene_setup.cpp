@@ -142,11 +142,24 @@ void fitToolsToBone(Simulation& simulation, const scene::Scene& scene) {
     }
 }
 
+// A range or label that nothing has is most often a slip.
+void warnOfMissingMaterials(Simulation& simulation, const scene::Scene& scene,
+                            const std::vector<MaterialId>& material_ids) {
+    std::vector<bool> is_there(size_t(scene.material_size()) + 1);
+    for (const MaterialId id : material_ids) is_there[id] = true;
+    for (int n = 0; n < scene.material_size(); ++n)
+        if (!is_there[size_t(n) + 1])
+            simulation.warnings.push_back("no voxel is of material '" + scene.material(n).name() +
+                                          "'; check its range or labels, and what materials after it take");
+}
+
 // What the scanned bone was made of, for the effects that ask for it.
-void addProperties(EffectConfigs& effects, const LoadedScene& loaded, const VoxelVolume& volume,
+void addProperties(Simulation& simulation, const LoadedScene& loaded, const VoxelVolume& volume,
                    const std::vector<MaterialId>& material_ids) {
     if (!wantsProperties(loaded.scene)) return;
+    warnOfMissingMaterials(simulation, loaded.scene, material_ids);
     const Eigen::Vector3i& dims = volume.dims();
+    EffectConfigs& effects = simulation.tick.effects;
     effects.properties = std::make_shared<const BoneProperties>(volume, [&](const Eigen::Vector3i& v) {
         const size_t at =
             size_t(v.x()) + size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z()));
@@ -226,7 +239,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), volume.geometry());
     simulation.tick = tickConfigOf(scene, volume.spacing().minCoeff());
     mapRawValues(simulation.tick.effects, loaded, simulation.mapping);
-    addProperties(simulation.tick.effects, loaded, volume, material_ids);
+    addProperties(simulation, loaded, volume, material_ids);
     simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells, shellConfigOf(scene));
     warnOfLargeLeaves(simulation);
     fitToolsToBone(simulation, scene);

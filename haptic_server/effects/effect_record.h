@@ -18,19 +18,20 @@ enum TickEvent : uint32_t {
 };
 
 struct EffectRecord {
-    uint32_t events;           // TickEvent bits
-    uint32_t protected_id;     // 1 + index of the scene's material that is nearest; 0: none
-    float spin_speed;          // rad/s about T's +y
-    float burr_force;          // N: sum of the normal forces on the burr
-    float axis_torque;         // N·m against the spin, on the tool
-    float cutting_power;       // W: of all friction between burr and bone
-    float removal_power;       // W: the part above the threshold pressure, which removes bone
-    float removed_energy;      // J: specific energy of what was removed in this tick
-    float temperature;         // °C: the hottest bone
-    float necrotic_volume;     // m³ in all
-    float protected_distance;  // m from the burr's surface; negative: inside
-    float protected_force;     // N on the tool, from protected structures
-    float damaged_volume;      // m³ of protected structures in all
+    uint32_t events;        // TickEvent bits
+    uint32_t protected_id;  // 1 + index of the scene's material that is nearest; 0: none
+    float spin_speed;       // rad/s about T's +y
+    float burr_force;       // N: sum of the normal forces on the burr
+    float axis_torque;      // N·m against the spin, on the tool
+    float cutting_power;    // W: of all friction between burr and bone
+    float removal_power;    // W: the part above the threshold pressure, which removes bone
+    float removed_energy;   // J: specific energy of what was removed in this tick
+    float temperature;      // °C: the hottest bone
+    float necrotic_volume;  // m³ in all
+    float
+        protected_distance;  // m from the burr's surface, negative inside; of no meaning without protected_id
+    float protected_force;   // N on the tool, from protected structures
+    float damaged_volume;    // m³ of protected structures in all
 };
 static_assert(std::is_trivially_copyable_v<EffectRecord>);
 

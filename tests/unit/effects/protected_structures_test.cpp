@@ -101,5 +101,26 @@ TEST(ProtectedStructures, ForceIsThatOfTheContactsOnThem) {
     }
 }
 
+// Over a flat structure: the lowest point of a burr with edges, however it leans.
+TEST(BurrProbes, ReachAsFarAsTheBurr) {
+    const TissueBench bench(layer(0, 3e-3 + kVoxel / 2), 6e-3);
+    for (const BurrKind kind : {BurrKind::kBall, BurrKind::kCylinder, BurrKind::kCone}) {
+        Burr burr{.kind = kind, .radius = 1e-3, .length = 3e-3, .tip_radius = 0.4e-3};
+        const double tip = kind == BurrKind::kCone ? burr.tip_radius : burr.radius;
+        for (const double lean : {0.0, 0.3, 1.0, M_PI / 2}) {
+            const Pose pose{{kMiddle, kMiddle, 7e-3}, expRotation({M_PI / 2 - lean, 0, 0})};
+            // Of both rims of a body of revolution, its axis at this angle from the vertical.
+            const double up = std::cos(lean), across = std::sin(lean);
+            const double lowest =
+                std::max(burr.length / 2 * up + tip * across, -burr.length / 2 * up + burr.radius * across);
+            const double below = kind == BurrKind::kBall ? burr.radius : lowest;
+            const NearestStructure nearest =
+                nearestStructure(*bench.config.effects.protected_field, BurrProbes(burr), pose);
+            EXPECT_NEAR(nearest.distance, 7e-3 - 3.0625e-3 - below, 0.08e-3) << int(kind) << " " << lean;
+            EXPECT_EQ(nearest.material, kNerve);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace bonemill

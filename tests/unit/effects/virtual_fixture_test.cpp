@@ -194,5 +194,24 @@ TEST(VirtualFixture, ClosedPathsOfTheHandGainNoEnergy) {
     }
 }
 
+// Pressed into the region in the air, at the loop's rate: it comes to rest where coupling and fixture agree.
+TEST(VirtualFixture, HoldsThePressedToolStill) {
+    TissueBench air(sphereAt({4e-3, 4e-3, 6.5e-3}, kNerveRadius));
+    air.config.effects.virtual_fixture = {.distance = 0.5e-3, .stiffness = 4000};
+    HapticTick tick(air.config, air.bone, air.tool, nullptr);
+    const Vector3d start(5e-3, 4.3e-3, 9e-3), end(4.3e-3, 4.1e-3, 8.2e-3);
+    auto inputs = straightPath(TissueBench::at(start), end, 300, 0);
+    inputs.insert(inputs.end(), 700, inputs.back());
+    const auto records = air.run(tick, inputs);
+    const auto force = [](const TickRecord& r) {
+        return Vector3d(r.f_hand_W[0], r.f_hand_W[1], r.f_hand_W[2]);
+    };
+    const Vector3d last = force(records.back());
+    EXPECT_GT(last.norm(), 0.2);
+    EXPECT_GT(last.normalized().dot((end - Vector3d(4e-3, 4e-3, 6.5e-3)).normalized()), 0.8);
+    for (size_t n = 800; n < records.size(); ++n)
+        EXPECT_LT((force(records[n]) - last).norm(), 0.01 * last.norm());
+}
+
 }  // namespace
 }  // namespace bonemill

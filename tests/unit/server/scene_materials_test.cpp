@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "haptic_server/app/scene_setup.h"
@@ -54,6 +55,8 @@ const std::string kMaterials =
 TEST_F(SceneMaterials, ComeFromValuesAndLabels) {
     const Simulation simulation = makeSimulation(
         sceneOf("labels.nrrd", kMaterials + "effects { protected_structures { warning_distance_mm: 2 } }"));
+    EXPECT_TRUE(simulation.warnings.empty() ||
+                simulation.warnings.front().find("no voxel is of") == std::string::npos);
     const EffectConfigs& effects = simulation.tick.effects;
     ASSERT_EQ(effects.materials.size(), 4u);
     EXPECT_EQ(effects.materials[1].stiffness_factor, 0.5);
@@ -76,6 +79,14 @@ TEST_F(SceneMaterials, WithoutThemNothingIsKept) {
     EXPECT_FALSE(simulation.tick.effects.properties);
     EXPECT_FALSE(simulation.tick.effects.protected_field);
     EXPECT_TRUE(simulation.tick.effects.materials.empty());
+}
+
+TEST_F(SceneMaterials, ThatNoVoxelHasAreSaidSo) {
+    const Simulation simulation =
+        makeSimulation(sceneOf("labels.nrrd", kMaterials + "material { name: 'vessel' label: 6 }"));
+    EXPECT_TRUE(std::ranges::any_of(simulation.warnings, [](const std::string& warning) {
+        return warning.find("no voxel is of material 'vessel'") != std::string::npos;
+    }));
 }
 
 TEST_F(SceneMaterials, LabelsOfAnotherSizeAreRefusedWithTheirLine) {
