@@ -74,7 +74,7 @@ void printTimes(const char* key, const LatencyHistogram& times) {
 void runMeasurement(const ClientOptions& options) {
     const OsmesaContext context(options.width, options.height);
     spdlog::info("off screen, {}", context.gl().describe());
-    RenderScene scene(context.gl());
+    RenderScene scene(context.gl(), options.has_effects);
     scene.setViewOverrides(options.view);
     scene.settings() = options.settings;
     if (options.chooses_quality && context.gl().isSoftware()) scene.settings().quality = Quality::kQuick;

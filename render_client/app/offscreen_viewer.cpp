@@ -44,11 +44,13 @@ void runOffscreen(const ClientOptions& options) {
     makeFolder(wish.directory);
     const OsmesaContext context(options.width, options.height);
     spdlog::info("off screen, {}", context.gl().describe());
-    RenderScene scene(context.gl());
+    RenderScene scene(context.gl(), options.has_effects);
     scene.setViewOverrides(options.view);
     scene.settings() = options.settings;
     SceneFeed feed(options.subscriber, scene);
     feed.takePart();
+    SoundFeed sound({.is_played = false, .wav = options.sound_wav});
+    if (!options.sound_wav.empty()) feed.sound(&sound);
 
     Clock::time_point due = Clock::now() + wish.interval;
     if (wish.wait_complete) {
@@ -57,7 +59,7 @@ void runOffscreen(const ClientOptions& options) {
     }
     for (uint32_t frame = 0; frame < wish.frames; ++frame) {
         feed.updateUntil(due, stopRequested);
-        if (stopRequested()) return;
+        if (stopRequested()) break;
         due = Clock::now() + wish.interval;
         feed.update();
         char name[32];
@@ -67,6 +69,7 @@ void runOffscreen(const ClientOptions& options) {
         writePng(context.read(), wish.directory / name);
         std::cout << description << std::endl;
     }
+    sound.finish();
 }
 
 }  // namespace bonemill

@@ -80,6 +80,11 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
         ->expected(3)
         ->check(CLI::Range(-1e6, 1e6))
         ->type_name("X Y Z");
+    app.add_flag_callback(
+        "--no-effects", [&options] { options.has_effects = false; },
+        "None of the effects that the scene lists, neither seen nor heard");
+    app.add_option("--sound-wav", options.sound_wav, "Write the scene's milling sound into this WAV file too")
+        ->type_name("FILE");
     app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
         ->capture_default_str();
 
@@ -150,6 +155,9 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
         options.offscreen->timeout = timeout;
     }
     if (raw.measure_s) options.measure = MeasureOptions{std::chrono::seconds(*raw.measure_s), timeout};
+    if (!options.sound_wav.empty() && (!options.has_effects || raw.measure_s || !raw.command.empty()))
+        throw UserError(
+            "--sound-wav needs a viewer with effects: leave out --no-effects, --measure-s and --command");
     if (!raw.command.empty()) options.command = CommandOptions{raw.command, timeout};
     return options;
 }

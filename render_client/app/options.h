@@ -37,9 +37,11 @@ struct ClientOptions {
     SubscriberOptions subscriber;
     dds::NetworkOptions network;
     ViewOverrides view;
-    ViewSettings settings;        // what is shown at the start
-    bool chooses_quality = true;  // kQuick where OpenGL is software and pictures follow each other
-    int width = 1280;             // pixels
+    ViewSettings settings;            // what is shown at the start
+    bool has_effects = true;          // of the scene, seen and heard
+    std::filesystem::path sound_wav;  // empty: none
+    bool chooses_quality = true;      // kQuick where OpenGL is software and pictures follow each other
+    int width = 1280;                 // pixels
     int height = 800;
     std::optional<OffscreenOptions> offscreen;  // none given: a window
     std::optional<CommandOptions> command;

@@ -32,8 +32,20 @@ void SceneFeed::update() {
     }
     if (subscriber_.toolState()) scene_.setToolState(*subscriber_.toolState());
     if (subscriber_.status()) scene_.setStatus(*subscriber_.status());
+    advanceEffects();
     updateConnection();
     if (takes_part_) announce();
+}
+
+void SceneFeed::advanceEffects() {
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> passed = now - std::exchange(advanced_, now);
+    scene_.advance(passed.count());
+    if (!sound_) return;
+    // A server that is gone leaves the last state behind.
+    const auto& state = subscriber_.toolState();
+    sound_->update(subscriber_.sceneInfo(), subscriber_.hasServer() ? state : std::nullopt,
+                   scene_.settings().shows(ViewerEffect::kMillingSound), passed.count());
 }
 
 void SceneFeed::announce() {

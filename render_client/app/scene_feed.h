@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "render_client/app/cut_to_screen.h"
+#include "render_client/app/sound_feed.h"
 #include "render_client/scene/render_scene.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
@@ -28,6 +29,9 @@ class SceneFeed {
     // itself: it points, and measures its rate.)
     void takePart() { takes_part_ = true; }
 
+    // From now on it hears what the scene sounds like. It must outlive the feed.
+    void sound(SoundFeed* sound) { sound_ = sound; }
+
     // Tells it of every cut that the next picture will show first.
     void watchCuts(CutToScreen* cuts) { cuts_ = cuts; }
 
@@ -36,10 +40,13 @@ class SceneFeed {
   private:
     void updateConnection();
     void announce();
+    void advanceEffects();
 
     SceneSubscriber subscriber_;
     RenderScene& scene_;
     CutToScreen* cuts_ = nullptr;
+    SoundFeed* sound_ = nullptr;
+    std::chrono::steady_clock::time_point advanced_ = std::chrono::steady_clock::now();
     bool takes_part_ = false;
     std::chrono::steady_clock::time_point announced_;
     std::pair<uint64_t, uint32_t> shown_info_;  // epoch and revision of the scene info that was passed on

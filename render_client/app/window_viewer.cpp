@@ -91,7 +91,8 @@ class WindowViewer {
     explicit WindowViewer(const ClientOptions& options)
         : options_(options),
           window_(options.width, options.height, "bonemill"),
-          scene_(window_.gl()),
+          scene_(window_.gl(), options.has_effects),
+          sound_({.is_played = true, .wav = options.sound_wav}),
           feed_(options.subscriber, scene_),
           controls_(scene_.settings(), scene_.camera()),
           painter_(window_.gl()),
@@ -99,12 +100,14 @@ class WindowViewer {
         spdlog::info("window, {}", window_.gl().describe());
         scene_.setViewOverrides(options.view);
         scene_.settings() = options.settings;
+        if (options.has_effects) feed_.sound(&sound_);
         scene_.setHelp(helpRows());
         if (options.chooses_quality && window_.gl().isSoftware()) scene_.settings().quality = Quality::kQuick;
     }
 
     void run() {
         while (!window_.shouldClose() && !stopRequested() && !has_quit_) step();
+        sound_.finish();
     }
 
   private:
@@ -205,6 +208,7 @@ class WindowViewer {
     const ClientOptions& options_;
     GlfwWindow window_;
     RenderScene scene_;
+    SoundFeed sound_;
     SceneFeed feed_;
     ViewerControls controls_;
     Panel panel_;

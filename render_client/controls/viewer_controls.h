@@ -41,6 +41,7 @@ class ViewerControls {
     // Turns around the target; the distance stays.
     void lookFrom(Side side);
 
+    void showEffect(ViewerEffect effect, bool is_shown) { settings_.show_effects[size_t(effect)] = is_shown; }
     void setStereo(StereoMode mode) { settings_.stereo = mode; }
     // 0 to 1; bone becomes transparent.
     void setOpacity(double opacity);

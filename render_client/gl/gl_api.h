@@ -72,7 +72,9 @@
     X(PFNGLSTENCILOPPROC, StencilOp)                                           \
     X(PFNGLSTENCILOPSEPARATEPROC, StencilOpSeparate)                           \
     X(PFNGLTEXIMAGE2DPROC, TexImage2D)                                         \
+    X(PFNGLTEXIMAGE3DPROC, TexImage3D)                                         \
     X(PFNGLTEXPARAMETERIPROC, TexParameteri)                                   \
+    X(PFNGLTEXSUBIMAGE3DPROC, TexSubImage3D)                                   \
     X(PFNGLUNIFORM1FPROC, Uniform1f)                                           \
     X(PFNGLUNIFORM1IPROC, Uniform1i)                                           \
     X(PFNGLUNIFORM2FPROC, Uniform2f)                                           \

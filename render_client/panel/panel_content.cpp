@@ -48,6 +48,7 @@ void PanelContent::build() {
                      ImGuiWindowFlags_NoSavedSettings);
     if (isOpen("View")) buildView();
     gap();
+    buildEffects();
     if (isOpen("Session")) buildSession();
     if (session_.status && session_.status->has_training()) {
         gap();
@@ -179,6 +180,31 @@ void PanelContent::buildStereo() {
     offer("Side by side", StereoMode::kSideBySide, "The left eye's picture beside the right eye's");
     ImGui::SameLine();
     offer("Red/cyan", StereoMode::kAnaglyph, "For glasses with a red and a cyan lens");
+}
+
+// Only those that the scene lists.
+void PanelContent::buildEffects() {
+    const scene::Effects none;
+    const scene::Effects& listed = session_.info ? session_.info->viewer_effects() : none;
+    const struct {
+        const char* label;
+        ViewerEffect effect;
+        bool is_listed;
+        const char* what;
+    } effects[] = {
+        {"Bone dust", ViewerEffect::kBoneDust, listed.has_bone_dust(), "Grains that leave the burr"},
+        {"Bleeding", ViewerEffect::kBleeding, listed.has_bleeding(), "Blood on fresh cuts"},
+        {"Irrigation", ViewerEffect::kIrrigation, listed.has_irrigation(), "Water, while the pedal is down"},
+        {"Burr spin", ViewerEffect::kBurrSpin, listed.has_burr_spin(), "Flutes that turn"},
+        {"Milling sound", ViewerEffect::kMillingSound, listed.has_milling_sound(),
+         "Motor and cutting, heard here"}};
+    if (std::ranges::none_of(effects, [](const auto& e) { return e.is_listed; })) return;
+    if (isOpen("Effects"))
+        for (const auto& e : effects) {
+            const bool is_shown = settings_.shows(e.effect);
+            if (e.is_listed && box(e.label, is_shown, e.what)) controls_.showEffect(e.effect, !is_shown);
+        }
+    gap();
 }
 
 void PanelContent::buildSession() {

@@ -31,6 +31,7 @@ class PanelContent {
     void buildSides();
     void buildCuts();
     void buildStereo();
+    void buildEffects();
     void buildSession();
     void buildCheckpoints();
     void buildTools();

@@ -77,7 +77,7 @@ void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, GL
 void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
                               const Look& look) {
     const ClipPlanes clip(gl_, frame.cuts_V);
-    const Program& surface = coloured_ ? coloured_->surface : surface_;
+    const Program& surface = film_ ? film_->surface() : coloured_ ? coloured_->surface : surface_;
     surface.use();
     frame.setLight(gl_, surface, shadow_texture);
     setCutPlanes(surface, frame.cuts_V);
@@ -86,6 +86,7 @@ void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint
     surface.set("opacity", look.opacity);
     surface.set("inside_colour", look.inside);
     if (coloured_) coloured_->palette.setUniforms(surface);
+    if (film_) film_->setUniforms();
     triangles_drawn_ = nodes.draw(surface, frame.cull_from_V);
 }
 

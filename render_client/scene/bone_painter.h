@@ -14,6 +14,7 @@
 #include <functional>
 #include <memory>
 
+#include "render_client/scene/film_painter.h"
 #include "render_client/scene/frame.h"
 #include "render_client/scene/material_palette.h"
 #include "render_client/scene/node_store.h"
@@ -33,6 +34,8 @@ class BonePainter {
 
     // From now on bone has its materials' colours (paletteOf()); empty: bone's own. Throws GlError.
     void setPalette(const std::vector<Eigen::Vector4f>& colours);
+    // From now on bone is drawn with this film; null: as it is. It must outlive its use.
+    void setFilm(const FilmPainter* film) { film_ = film; }
 
     // Bone triangles inside the view volume of the last picture.
     size_t trianglesDrawn() const { return triangles_drawn_; }
@@ -60,6 +63,7 @@ class BonePainter {
         Program surface;
     };
     std::unique_ptr<Coloured> coloured_;  // null: bone's own colour
+    const FilmPainter* film_ = nullptr;
     size_t triangles_drawn_ = 0;
 };
 

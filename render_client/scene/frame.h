@@ -10,6 +10,7 @@
 #include "render_client/gl/program.h"
 #include "render_client/scene/camera.h"
 #include "render_client/scene/cut_planes.h"
+#include "render_client/scene/effect_picture.h"
 #include "render_client/scene/view_settings.h"
 
 namespace bonemill {
@@ -30,6 +31,7 @@ struct FrameView {
     std::optional<double> bone_opacity;  // empty: opaque
     std::vector<Eigen::Vector3d> pointers_W;
     Quality quality = Quality::kFull;
+    const EffectPicture* effects = nullptr;  // null: the scene lists none
 };
 
 // Does the device pose lie visibly off the simulated tool?

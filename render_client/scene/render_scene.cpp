@@ -4,8 +4,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "render_client/effects/wire_pose.h"
 #include "render_client/scene/endoscope.h"
-#include "render_client/scene/wire_pose.h"
 
 namespace bonemill {
 namespace {
@@ -24,8 +24,14 @@ std::optional<Eigen::Vector3d> pointerOf(const topics::Viewer& watcher) {
 
 }  // namespace
 
-RenderScene::RenderScene(const GlApi& gl)
-    : nodes_(gl), tool_(gl), renderer_(gl), anaglyph_(gl), hud_painter_(gl), gl_(gl) {}
+RenderScene::RenderScene(const GlApi& gl, bool has_effects)
+    : has_effects_(has_effects),
+      nodes_(gl),
+      tool_(gl),
+      renderer_(gl),
+      anaglyph_(gl),
+      hud_painter_(gl),
+      gl_(gl) {}
 
 void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     const auto& old = hud_input_.info;
@@ -40,9 +46,44 @@ void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     if (!old || old->name() != info.name()) view_pending_ = true;
     hud_input_.info = info;
     std::vector<Eigen::Vector4f> palette = paletteOf(info);
-    if (palette == palette_) return;
-    renderer_.setPalette(palette);
+    if (palette != palette_) renderer_.setPalette(palette);
     palette_ = std::move(palette);
+    makeEffects(info);
+}
+
+// Those of the same scene go on, also with another tool.
+void RenderScene::makeEffects(const topics::SceneInfo& info) {
+    const scene::Effects& wish = info.viewer_effects();
+    const std::string text = std::to_string(info.epoch()) + wish.SerializeAsString();
+    if (!has_effects_ || text == effects_text_) return early_nodes_.clear();
+    effects_text_ = text;
+    effects_.reset();
+    if (VisualEffects::anyIn(wish)) effects_ = std::make_unique<VisualEffects>(wish, info.burr_radius_m());
+    renderer_.prepare({wish.has_bleeding() || wish.has_irrigation(),
+                       wish.has_bone_dust() || wish.has_irrigation(), wish.has_burr_spin()});
+    effect_picture_ = {};
+    for (const auto& [leaf, mesh] : std::exchange(early_nodes_, {}))
+        if (effects_) effects_->setNode(mesh);
+    takeEffectInput();
+}
+
+void RenderScene::setNode(NodeMesh mesh) {
+    if (effects_) effects_->setNode(mesh);
+    if (has_effects_ && !hud_input_.info) early_nodes_.insert_or_assign(mesh.leaf, mesh);
+    nodes_.set(std::move(mesh));
+}
+
+void RenderScene::removeNode(uint32_t leaf) {
+    if (effects_) effects_->removeNode(leaf);
+    early_nodes_.erase(leaf);
+    nodes_.remove(leaf);
+}
+
+// Of another run of the server, of which nothing is known yet.
+void RenderScene::clearNodes() {
+    if (effects_) effects_->clear();
+    early_nodes_.clear();
+    nodes_.clear();
 }
 
 void RenderScene::setToolState(const topics::ToolState& tool) {
@@ -53,6 +94,31 @@ void RenderScene::setToolState(const topics::ToolState& tool) {
         if (tool.effects().protected_id() != 0) hud_input_.structure = tool.effects().protected_id();
     }
     hud_input_.tool = tool;
+    takeEffectInput();
+}
+
+void RenderScene::takeEffectInput() {
+    if (!effects_ || !hud_input_.tool) return;
+    const std::pair<uint64_t, uint64_t> state(hud_input_.tool->epoch(), hud_input_.tool->tick());
+    if (std::exchange(taken_state_, state) == state) return;
+    effects_->take(effectInputOf(*hud_input_.tool, *hud_input_.info));
+}
+
+const EffectPicture* RenderScene::effectPicture() {
+    if (!effects_) return nullptr;
+    EffectPicture& picture = effect_picture_;
+    picture.particles.clear();
+    const auto shows = [&](ViewerEffect effect) { return settings_.shows(effect); };
+    if (effects_->dust() && shows(ViewerEffect::kBoneDust)) effects_->dust()->appendTo(picture.particles);
+    if (effects_->irrigation() && shows(ViewerEffect::kIrrigation))
+        effects_->irrigation()->appendTo(picture.particles);
+    picture.turn.reset();
+    if (effects_->spin() && shows(ViewerEffect::kBurrSpin)) picture.turn = effects_->spin()->takeTurn();
+    picture.film = effects_->film();
+    picture.shows_blood = effects_->bleeding() && shows(ViewerEffect::kBleeding);
+    picture.shows_water = effects_->irrigation() && shows(ViewerEffect::kIrrigation);
+    if (effects_->bleeding()) picture.blood_colour = effects_->bleeding()->colour();
+    return &picture;
 }
 
 void RenderScene::setViewOverrides(const ViewOverrides& overrides) {
@@ -127,7 +193,8 @@ void RenderScene::draw(int width, int height, float ui_scale, GLuint target) {
     hud_input_.node_count = nodes_.nodeCount();
     hud_input_.events = events_.show(EventLatch::Clock::now());
     can_pick_ = settings_.stereo == StereoMode::kOff;
-    const FrameView view = makeView();
+    FrameView view = makeView();
+    view.effects = effectPicture();
     const PictureArea whole{0, width, height};
     switch (settings_.stereo) {
         case StereoMode::kOff:

@@ -4,10 +4,13 @@
 // newest updates, the view and the size, not on the order in which the updates came.
 #pragma once
 
+#include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "render_client/effects/visual_effects.h"
 #include "render_client/scene/anaglyph.h"
 #include "render_client/scene/event_latch.h"
 #include "render_client/scene/hud_painter.h"
@@ -28,19 +31,21 @@ struct ViewOverrides {
 class RenderScene {
   public:
     // Throws GlError (driver) or UserError (font).
-    explicit RenderScene(const GlApi& gl);
+    // has_effects false: those that scenes list are not made.
+    explicit RenderScene(const GlApi& gl, bool has_effects = true);
 
     // Replaces the node's mesh; an empty one removes it. Throws std::invalid_argument on a mesh that
     // contradicts itself.
-    void setNode(NodeMesh mesh) { nodes_.set(std::move(mesh)); }
-    void removeNode(uint32_t leaf) { nodes_.remove(leaf); }
-    void clearNodes() { nodes_.clear(); }
+    void setNode(NodeMesh mesh);
+    void removeNode(uint32_t leaf);
+    void clearNodes();
 
     // The first scene, and every scene of another name, resets the view; a newer revision of the same one
     // brings another tool. An older revision of the same epoch changes nothing. Throws std::invalid_argument
     // on a bad message.
     void setSceneInfo(const topics::SceneInfo& info);
-    // May be the same one again. What its effects tell of events stays on the screen for a while.
+    // May be the same one again. What its effects tell of events stays on the screen for a while; visual
+    // effects take what was removed from each new one.
     void setToolState(const topics::ToolState& tool);
     void setStatus(const topics::Status& status) { hud_input_.status = status; }
     void setConnection(Connection connection) { hud_input_.connection = connection; }
@@ -66,6 +71,13 @@ class RenderScene {
     // outside the picture, in stereo and before the first picture.
     std::optional<Eigen::Vector3d> pick(int x, int y) const;
 
+    // Visual effects go on by this time (s); nothing without effects.
+    void advance(double seconds) {
+        if (effects_) effects_->advance(seconds);
+    }
+    // Null: the scene lists none, or nothing is known of it yet.
+    const VisualEffects* effects() const { return effects_.get(); }
+
     size_t nodeCount() const { return nodes_.nodeCount(); }
     size_t triangleCount() const { return nodes_.triangleCount(); }
     size_t trianglesDrawn() const { return renderer_.trianglesDrawn(); }
@@ -80,6 +92,9 @@ class RenderScene {
 
   private:
     void applyFirstView(double aspect);
+    void makeEffects(const topics::SceneInfo& info);
+    void takeEffectInput();
+    const EffectPicture* effectPicture();
     bool followsTool() const;
     FrameView makeView() const;
     void showTool(FrameView& view) const;
@@ -90,12 +105,19 @@ class RenderScene {
     void paintHud(const Camera& camera, const PictureArea& area, float ui_scale);
     void paintNames(const FrameView& view, const PictureArea& area, float ui_scale);
 
+    const bool has_effects_;
     NodeStore nodes_;
     ToolMesh tool_;
     SceneRenderer renderer_;
     Anaglyph anaglyph_;
     HudPainter hud_painter_;
     HudInput hud_input_;
+    std::map<uint32_t, NodeMesh>
+        early_nodes_;  // what came before the scene info said whether effects need it
+    std::unique_ptr<VisualEffects> effects_;
+    EffectPicture effect_picture_;
+    std::string effects_text_;                   // the message they were made from
+    std::pair<uint64_t, uint64_t> taken_state_;  // epoch and tick of the tool state that effects took last
     Pose X_WV_;
     Eigen::AlignedBox3d bone_V_;
     OrbitCamera camera_;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "render_client/scene/clip_planes.h"
 #include "render_client/scene/shaders.h"
@@ -28,11 +29,33 @@ SceneRenderer::SceneRenderer(const GlApi& gl)
       composite_(gl, "composite", shaders::kFullScreenVertex, shaders::kCompositeFragment),
       no_attributes_(gl) {}
 
+void SceneRenderer::setPalette(const std::vector<Eigen::Vector4f>& colours) {
+    bone_.setPalette(colours);
+    has_materials_ = !colours.empty();
+    if (film_) film_->setMaterials(has_materials_);
+    changes_.forget();
+}
+
+void SceneRenderer::prepare(const EffectNeeds& needs) {
+    bone_.setFilm(nullptr);
+    film_ = needs.film ? std::make_unique<FilmPainter>(gl_, has_materials_) : nullptr;
+    particles_ = needs.particles ? std::make_unique<ParticlePainter>(gl_) : nullptr;
+    spinning_tool_ = needs.spin ? std::make_unique<Program>(gl_, "turning tool", shaders::kToolVertex,
+                                                            std::string("#define SPIN\n") +
+                                                                shaders::kLighting + shaders::kToolFragment)
+                                : nullptr;
+    changes_.forget();
+}
+
 void SceneRenderer::draw(const FrameView& view, NodeStore& nodes, const ToolMesh& tool,
                          const PictureArea& area, GLuint target) {
     if (!targets_ || !targets_->suits(area.width, area.height, view.quality)) {
         targets_ = std::make_unique<RenderTargets>(gl_, area.width, area.height, view.quality);
         changes_.forget();
+    }
+    if (film_) {
+        bone_.setFilm(view.effects->shows_blood || view.effects->shows_water ? film_.get() : nullptr);
+        film_changed_.extend(film_->update(*view.effects));
     }
     const bool is_quick = view.quality == Quality::kQuick;
     nodes.trackChanges(is_quick);
@@ -57,6 +80,7 @@ void SceneRenderer::drawFull(const Frame& frame, const FrameView& view, const No
     gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
     drawBackground();
     drawSolids(frame, view, nodes, tool);
+    drawParticles(frame, view);
     drawGhost(frame, tool);
     markers_.draw(frame, view);
     targets_->resolve();
@@ -69,8 +93,9 @@ void SceneRenderer::drawFull(const Frame& frame, const FrameView& view, const No
 void SceneRenderer::drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes,
                               const ToolMesh& tool, const PictureArea& area, GLuint target) {
     const PixelBox whole = PixelBox::whole(area.width, area.height);
-    PictureChanges::Dirty dirty =
-        changes_.next(frame, area.width, area.height, nodes.takeChanged(), movingPixels(frame, view, tool));
+    PictureChanges::Dirty dirty = changes_.next(frame, area.width, area.height,
+                                                nodes.takeChanged().merged(std::exchange(film_changed_, {})),
+                                                movingPixels(frame, view, tool));
     if (view.bone_opacity) {  // the tool is seen through it: nothing can be kept
         dirty = {whole, whole};
         changes_.forget();
@@ -94,6 +119,7 @@ void SceneRenderer::drawQuick(const Frame& frame, const FrameView& view, NodeSto
         drawTool(frame, view, tool);
     }
     if (!part.isEmpty()) {
+        drawParticles(frame, view);
         drawGhost(frame, tool);
         markers_.draw(frame, view);
         scissor({part.x0 / 2 - 1, part.y0 / 2 - 1, part.x1 / 2 + 2, part.y1 / 2 + 2});
@@ -126,9 +152,18 @@ PixelBox SceneRenderer::movingPixels(const Frame& frame, const FrameView& view, 
                                 targets_->height());
     };
     PixelBox moving = pixels(markers_.box(frame, view), Eigen::Matrix4f::Identity());
+    if (particles_ && !view.effects->particles.empty())
+        moving =
+            moving.joined(pixels(ParticlePainter::box(frame, view.effects->particles, targets_->height()),
+                                 Eigen::Matrix4f::Identity()));
     if (frame.camera_from_T) moving = moving.joined(pixels(tool.box(), *frame.camera_from_T));
     if (frame.camera_from_ghost) moving = moving.joined(pixels(tool.box(), *frame.camera_from_ghost));
     return moving;
+}
+
+void SceneRenderer::drawParticles(const Frame& frame, const FrameView& view) {
+    if (particles_)
+        particles_->draw(frame, view.effects->particles, targets_->height(), targets_->shadowTexture());
 }
 
 void SceneRenderer::scissor(const PixelBox& part) const {
@@ -202,11 +237,18 @@ void SceneRenderer::drawTool(const Frame& frame, const FrameView& view, const To
     const Eigen::Vector3f glow = view.burr_work == BurrWork::kRemoving ? Eigen::Vector3f(1.9f, 0.30f, 0.02f)
                                  : view.burr_work == BurrWork::kAdding ? Eigen::Vector3f(0.05f, 0.75f, 1.1f)
                                                                        : Eigen::Vector3f(0, 0, 0);
-    tool_.use();
-    frame.setLight(gl_, tool_, targets_->shadowTexture());
-    tool_.set("camera_from_model", *frame.camera_from_T);
-    tool_.set("burr_radius", float(view.burr_radius));
-    tool_.set("milling_glow", glow);
+    const bool spins = spinning_tool_ && view.effects->turn;
+    const Program& program = spins ? *spinning_tool_ : tool_;
+    program.use();
+    frame.setLight(gl_, program, targets_->shadowTexture());
+    program.set("camera_from_model", *frame.camera_from_T);
+    program.set("burr_radius", float(view.burr_radius));
+    program.set("milling_glow", glow);
+    if (spins) {
+        program.set("spin_angle", view.effects->turn->angle);
+        program.set("spin_sweep", view.effects->turn->sweep);
+        program.set("flutes", view.effects->turn->flutes);
+    }
     tool.draw();
 }
 

@@ -11,6 +11,7 @@
 #include "render_client/scene/frame.h"
 #include "render_client/scene/marker_painter.h"
 #include "render_client/scene/node_store.h"
+#include "render_client/scene/particle_painter.h"
 #include "render_client/scene/picture_changes.h"
 #include "render_client/scene/render_targets.h"
 #include "render_client/scene/tool_mesh.h"
@@ -25,6 +26,10 @@ struct PictureArea {
     double aspect() const { return double(width) / height; }
 };
 
+struct EffectNeeds {
+    bool film = false, particles = false, spin = false;
+};
+
 class SceneRenderer {
   public:
     // Throws GlError with the compiler's log when the driver refuses a shader.
@@ -34,10 +39,9 @@ class SceneRenderer {
     void draw(const FrameView& view, NodeStore& nodes, const ToolMesh& tool, const PictureArea& area,
               GLuint target);
     // As BonePainter.
-    void setPalette(const std::vector<Eigen::Vector4f>& colours) {
-        bone_.setPalette(colours);
-        changes_.forget();
-    }
+    void setPalette(const std::vector<Eigen::Vector4f>& colours);
+    // Makes what a scene's effects need to be drawn, and nothing else. Throws GlError.
+    void prepare(const EffectNeeds& needs);
     // The next picture is drawn whole, also in quick quality.
     void drawWholeNext() { changes_.forget(); }
 
@@ -54,6 +58,7 @@ class SceneRenderer {
     void drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes, const ToolMesh& tool,
                    const PictureArea& area, GLuint target);
     void drawKeptBone(Frame frame, const NodeStore& nodes, const PixelBox& part);
+    void drawParticles(const Frame& frame, const FrameView& view);
     PixelBox movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool);
     void scissor(const PixelBox& part) const;
     void drawShadowMap(const Frame& frame, const FrameView& view, const NodeStore& nodes,
@@ -70,10 +75,15 @@ class SceneRenderer {
     BonePainter bone_;
     MarkerPainter markers_;
     Program tool_, ghost_, shadow_, background_, occlusion_, composite_;
+    bool has_materials_ = false;
+    std::unique_ptr<FilmPainter> film_;
+    std::unique_ptr<ParticlePainter> particles_;
+    std::unique_ptr<Program> spinning_tool_;
     GlVertexArray no_attributes_;
     std::unique_ptr<RenderTargets> targets_;
-    PictureChanges changes_;  // quick quality
-    Camera last_camera_;      // of the last picture, for pick()
+    PictureChanges changes_;            // quick quality
+    Eigen::AlignedBox3f film_changed_;  // since the last quick picture
+    Camera last_camera_;                // of the last picture, for pick()
     Eigen::Vector2f last_near_far_ = Eigen::Vector2f::Zero();
 };
 

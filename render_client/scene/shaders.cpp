@@ -166,6 +166,19 @@ in vec4 material_colour;  // colour times alpha, alpha
 #endif
 out vec4 colour;
 
+#ifdef FILM
+uniform sampler3D film;            // blood, water; repeats
+uniform float film_period;         // m, V
+uniform vec3 film_low, film_high;  // V, of what the texture holds now
+uniform vec2 film_strength;
+uniform vec3 blood_colour;         // linear
+
+vec2 filmAt(vec3 p) {
+    if (any(lessThan(p, film_low)) || any(greaterThan(p, film_high))) return vec2(0.0);
+    return texture(film, p / film_period).rg * film_strength;
+}
+#endif
+
 void main() {
     vec3 to_eye = normalize(-p_C);
     vec3 normal = normalize(n_C);
@@ -178,6 +191,23 @@ void main() {
     albedo = albedo * (1.0 - material_colour.a) + material_colour.rgb * mix(0.88, 1.12, mottling);
 #endif
     if (inside) albedo = inside_colour;
+    vec3 sheen = vec3(0.0);
+#ifdef FILM
+    vec2 lying = inside ? vec2(0.0) : filmAt(p_M);
+    float fine = valueNoise(p_M / film_period * 150.0), coarse = valueNoise(p_M / film_period * 48.0 + 5.0);
+    float blood = smoothstep(0.10, 0.46, lying.x * (0.55 + 0.55 * fine + 0.45 * coarse));
+    float wet = max(smoothstep(0.05, 0.7, lying.y * (0.7 + 0.6 * coarse)), 0.75 * blood);
+    albedo = mix(albedo * (1.0 - 0.34 * wet), blood_colour * (0.75 + 0.45 * coarse), 0.95 * blood);
+    // The film's own surface is smoother than bone, but ripples.
+    vec3 ripple = vec3(fine, coarse, valueNoise(p_M / film_period * 90.0 + 9.0)) - 0.5;
+    vec3 film_normal = normalize(normal + 0.16 * ripple);
+    float grazing = pow(1.0 - max(dot(film_normal, to_eye), 0.0), 4.0);
+    vec3 film_mirror = reflect(-to_eye, film_normal);
+    float panel = smoothstep(0.88, 0.99, dot(film_mirror, key_direction));
+    float strip = smoothstep(0.86, 0.96, dot(film_mirror, kFillDirection));
+    sheen = wet * (0.04 + 0.80 * grazing) * kSky + wet * 0.16 * panel * kKeyColour * keyVisibility(p_C, normal)
+          + wet * 0.05 * strip * vec3(0.6, 0.8, 1.0);
+#endif
 
     float facing = dot(normal, key_direction);
     float visible = keyVisibility(p_C, normal);
@@ -192,6 +222,7 @@ void main() {
     float rim = pow(1.0 - max(dot(normal, to_eye), 0.0), 4.0) * (0.35 + 0.65 * max(normal.y, 0.0));
     float outline = pow(1.0 - max(dot(normal, to_eye), 0.0), 2.0);
     vec3 shaded = albedo * light * 0.56 + kKeyColour * gloss * 0.4 + kRimColour * rim * 0.16;
+    shaded += sheen;
     colour = vec4(toneMap(shaded * falloff(p_C)),
                   opacity.x + (1.0 - opacity.x) * opacity.y * outline);
 }
@@ -260,6 +291,30 @@ uniform float burr_radius;  // m
 uniform vec3 milling_glow;  // linear colour, 0 when idle
 out vec4 colour;
 
+float grooveAt(float phase) { return smoothstep(-0.2, -0.9, sin(phase)); }
+
+#ifdef SPIN
+uniform float spin_angle;  // rad about +y of T
+uniform float spin_sweep;  // rad while the picture is shown
+uniform float flutes;
+uniform mat4 camera_from_model;
+
+const float kMeanGroove = 0.285;
+
+// The flutes as a shutter that is open between two pictures sees them: groove, and its slope over the phase. From
+// half a period per picture on they could seem to turn backwards: nothing of them is left there.
+vec2 sweptGroove(float phase) {
+    float sweep = flutes * spin_sweep;
+    float blur = smoothstep(0.5, 1.0, abs(sweep) / 3.14159265);
+    vec2 sum = vec2(0.0);
+    for (int i = 0; i < 8; ++i) {
+        float at = phase - sweep * (float(i) + 0.5) / 8.0;
+        sum += vec2(grooveAt(at), grooveAt(at + 0.25) - grooveAt(at - 0.25));
+    }
+    return mix(sum / 8.0, vec2(kMeanGroove, 0.0), blur);
+}
+#endif
+
 // A photographer's tent: bright panels over a dark studio, seen in the mirror of the metal.
 vec3 studio(vec3 direction) {
     float panel = smoothstep(0.35, 0.75, dot(direction, key_direction));
@@ -280,8 +335,16 @@ void main() {
     // Spiral flutes of a round burr: ridges over the angle about the shaft (+y of T), twisted along it.
     float angle = atan(p_M.z, p_M.x);
     float around = length(p_M.xz) / max(burr_radius, 1e-6);
-    float flute = sin(10.0 * angle + 2.2 * p_M.y / max(burr_radius, 1e-6));
-    float groove = burr * smoothstep(0.15, 0.55, around) * smoothstep(-0.2, -0.9, flute);
+    float twist = 2.2 * p_M.y / max(burr_radius, 1e-6);
+    float fluted = burr * smoothstep(0.15, 0.55, around);
+#ifdef SPIN
+    vec2 swept = sweptGroove(flutes * (angle + spin_angle) + twist);
+    float groove = fluted * swept.x;
+    vec3 tangent = mat3(camera_from_model) * (vec3(-p_M.z, 0.0, p_M.x) / max(length(p_M.xz), 1e-6));
+    normal = normalize(normal + 0.55 * fluted * swept.y * tangent);
+#else
+    float groove = fluted * grooveAt(10.0 * angle + twist);
+#endif
 
     vec3 metal = mix(vec3(0.72, 0.74, 0.77), vec3(0.90, 0.78, 0.52), burr);
     vec3 mirror = studio(reflect(-to_eye, normal));
@@ -290,6 +353,11 @@ void main() {
     float fresnel = pow(1.0 - max(dot(normal, to_eye), 0.0), 5.0);
     vec3 shaded = metal * (mirror * mix(0.45, 0.75, visible) + diffuse * 0.16) + fresnel * 0.5;
     shaded *= 1.0 - 0.65 * groove - 0.25 * shaft_cut * (1.0 - burr);
+#ifdef SPIN
+    // What turns too fast shows rings about the axis.
+    float ring = 0.5 + 0.5 * sin(40.0 * p_M.y / max(burr_radius, 1e-6) + 6.0 * sin(17.0 * p_M.y / max(burr_radius, 1e-6)));
+    shaded *= 1.0 - 0.22 * fluted * ring * smoothstep(0.5, 1.0, abs(flutes * spin_sweep) / 3.14159265);
+#endif
     shaded *= 1.0 - 0.55 * burr * min(dot(milling_glow, vec3(1.0)), 1.0);  // leave room for the glow
     shaded += milling_glow * burr * (0.40 + 0.9 * pow(1.0 - max(dot(normal, to_eye), 0.0), 1.5)) * (1.0 - 0.6 * groove);
     colour = vec4(toneMap(shaded), 1.0);
@@ -407,6 +475,62 @@ out vec4 colour;
 void main() {
     float red = dot(texture(left_eye, uv).rgb, vec3(0.299, 0.587, 0.114));
     colour = vec4(red, texture(right_eye, uv).gb, 1.0);
+}
+)";
+
+const char kParticleVertex[] = R"(
+layout(location = 0) in vec3 position;  // C, m
+layout(location = 1) in vec2 place;     // along and across the streak, in radii
+layout(location = 2) in vec3 streak;    // direction in the picture, half length in radii
+layout(location = 3) in vec4 particle_colour;
+layout(location = 4) in float particle_gloss;
+uniform mat4 clip_from_camera;
+out vec3 p_C;
+out vec2 f_place;
+flat out vec3 f_streak;
+flat out vec4 f_colour;
+flat out float f_gloss;
+void main() {
+    p_C = position;
+    f_place = place;
+    f_streak = streak;
+    f_colour = particle_colour;
+    f_gloss = particle_gloss;
+    gl_Position = clip_from_camera * vec4(position, 1.0);
+}
+)";
+
+// A ball, or a capsule along the streak, as it would be seen from the front.
+const char kParticleFragment[] = R"(
+in vec3 p_C;
+in vec2 f_place;
+flat in vec3 f_streak;
+flat in vec4 f_colour;
+flat in float f_gloss;
+out vec4 colour;
+
+void main() {
+    vec2 off = vec2(sign(f_place.x) * max(abs(f_place.x) - f_streak.z, 0.0), f_place.y);
+    float squared = dot(off, off);
+    if (squared > 1.0) discard;
+    // A long streak has no ends to be seen.
+    float is_long = smoothstep(0.5, 2.0, f_streak.z);
+    float round_x = off.x * (1.0 - is_long);
+    vec2 turned = f_streak.xy * round_x + vec2(-f_streak.y, f_streak.x) * off.y;
+    vec3 normal = vec3(turned, sqrt(max(1.0 - dot(turned, turned), 0.0)));
+    vec3 to_eye = normalize(-p_C);
+    float visible = keyVisibility(p_C, normal);
+    vec3 light = kKeyColour * max(dot(normal, key_direction), 0.0) * mix(0.1, 1.0, visible)
+               + kFillColour * max(dot(normal, kFillDirection), 0.0) + hemisphere(normal);
+    vec3 matt = f_colour.rgb * light * 0.56;
+    float grazing = pow(1.0 - max(dot(normal, to_eye), 0.0), 3.0);
+    float spot = pow(max(dot(normal, normalize(key_direction + to_eye)), 0.0), 60.0);
+    vec3 water = f_colour.rgb * (0.18 + 0.7 * grazing) + kKeyColour * spot * 0.8 * visible;
+    float cover = mix(1.0, clamp(0.30 + 0.7 * grazing + spot, 0.0, 1.0) / 0.6, f_gloss);
+    float edge = 1.0 - smoothstep(0.75, 1.0, squared);
+    float ends = 1.0 - abs(f_place.x) / (f_streak.z + 1.0);
+    edge *= mix(1.0, smoothstep(0.0, 0.7, ends), is_long);
+    colour = vec4(toneMap(mix(matt, water, f_gloss) * falloff(p_C)), clamp(f_colour.a * cover * edge, 0.0, 1.0));
 }
 )";
 

@@ -19,6 +19,9 @@ struct CutPlane {
     bool is_flipped = false;  // false: the side above is hidden
 };
 
+// In the order of the scene's message Effects.
+enum class ViewerEffect : uint8_t { kBoneDust, kBleeding, kIrrigation, kBurrSpin, kMillingSound };
+
 struct ViewSettings {
     static constexpr double kDefaultOpacity = 0.35;
 
@@ -29,6 +32,9 @@ struct ViewSettings {
     double opacity = kDefaultOpacity;  // of the transparent bone
     std::array<CutPlane, 3> cuts;      // across W's x (sagittal), y (coronal), z (axial)
     bool show_force = true;
+    std::array<bool, 5> show_effects{true, true, true, true,
+                                     true};  // by ViewerEffect; only those that the scene lists
+    bool shows(ViewerEffect effect) const { return show_effects[size_t(effect)]; }
     bool show_hud = true;
     bool show_watchers = true;
     bool show_help = false;

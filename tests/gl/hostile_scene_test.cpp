@@ -51,6 +51,9 @@ TEST_P(HostileScene, IsDrawnWhateverTheMessagesSay) {
     tool.mutable_effects()->set_temperature_c(40);
     tool.mutable_effects()->set_protected_distance_m(1e-3);
     tool.mutable_effects()->set_protected_id(2);
+    test::listAllEffects(info);
+    tool.set_tick(5);
+    tool.mutable_effects()->set_removed_mm3(2);
     topics::Status status = test::makeStatus();
     status.set_epoch(1);
     topics::Viewer viewer;
@@ -58,8 +61,8 @@ TEST_P(HostileScene, IsDrawnWhateverTheMessagesSay) {
     viewer.set_name("teacher");
     viewer.set_role(topics::Viewer::INSTRUCTOR);
     viewer.mutable_pointer_m()->Resize(3, 0.01);
-    const std::string messages[] = {info.SerializeAsString(), tool.SerializeAsString(),
-                                    status.SerializeAsString(), viewer.SerializeAsString()};
+    std::string messages[] = {info.SerializeAsString(), tool.SerializeAsString(), status.SerializeAsString(),
+                              viewer.SerializeAsString()};
     for (int round = 0; round < kRounds; ++round) {
         SCOPED_TRACE("round " + std::to_string(round));
         show(sometimes(messages[0]), sometimes(messages[1]), sometimes(messages[2]), sometimes(messages[3]));
@@ -74,6 +77,9 @@ TEST_P(HostileScene, IsDrawnWhateverTheMessagesSay) {
         scene_.settings().cuts[0].is_on = round % 3 == 1;
         scene_.settings().camera = round % 4 == 1 ? CameraMode::kEndoscope : CameraMode::kOrbit;
         if (round % 10 == 0) scene_.resetView();
+        tool.set_tick(tool.tick() + 1);
+        messages[1] = tool.SerializeAsString();
+        scene_.advance(0.02);
         ASSERT_NO_THROW(scene_.draw(kWidth, kHeight, 0.7f));
     }
 }
@@ -87,6 +93,7 @@ TEST_P(HostileScene, IsDrawnFarAwayAndHuge) {
         info.set_bone_max_m(axis, axis == 1 ? -1e6 : 1e6);
     }
     info.set_burr_radius_m(1e6);
+    test::listAllEffects(info);
     ASSERT_TRUE(parseSceneInfo(bytesOf(info.SerializeAsString())));
     scene_.setSceneInfo(info);
     NodeMesh node = syntheticNode(1, 2);
@@ -97,7 +104,10 @@ TEST_P(HostileScene, IsDrawnFarAwayAndHuge) {
     scene_.setNode(parsed->mesh);
     topics::ToolState tool = test::makeToolState({}, {}, 1);
     for (int axis = 0; axis < 3; ++axis) tool.set_force_n(axis, 1e6);
+    tool.mutable_effects()->set_spin_speed(1e300);
+    tool.mutable_effects()->set_removed_mm3(1e300);
     scene_.setToolState(tool);
+    scene_.advance(1e9);
     for (const bool is_cut : {false, true}) {
         scene_.settings().cuts[0].is_on = is_cut;
         ASSERT_NO_THROW(scene_.draw(kWidth, kHeight, 0.7f));

@@ -114,6 +114,15 @@ inline topics::ToolState makeToolState(const Pose& X_WT, const Pose& X_WT_device
     return tool;
 }
 
+inline void listAllEffects(topics::SceneInfo& info) {
+    scene::Effects& effects = *info.mutable_viewer_effects();
+    effects.mutable_bone_dust();
+    effects.mutable_bleeding()->set_delay_s(0);
+    effects.mutable_irrigation()->mutable_nozzle_mm()->set_y(7);
+    effects.mutable_burr_spin();
+    effects.mutable_milling_sound();
+}
+
 inline topics::Status makeStatus() {
     topics::Status status;
     status.set_scene("synthetic");

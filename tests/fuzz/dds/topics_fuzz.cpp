@@ -49,8 +49,9 @@ TEST(TopicsFuzz, NodeMesh) {
 
 topics::SceneInfo sceneInfoWithEffects() {
     topics::SceneInfo info = syntheticSceneInfo();
-    info.mutable_viewer_effects()->mutable_bone_dust();
-    info.mutable_viewer_effects()->mutable_milling_sound();
+    info.mutable_viewer_effects()->mutable_bone_dust()->set_drag_time_ms(40);
+    info.mutable_viewer_effects()->mutable_bone_dust()->set_most_grains(100);
+    info.mutable_viewer_effects()->mutable_milling_sound()->set_idle_level(0.5);
     for (const char* name : {"enamel", "facial nerve"}) {
         scene::Material& material = *info.add_materials();
         material.set_name(name);
@@ -67,6 +68,10 @@ TEST(TopicsFuzz, SceneInfo) {
         EXPECT_EQ(info->p_wv_m_size(), 3);
         EXPECT_EQ(info->q_wv_size(), 4);
         EXPECT_EQ(info->tool().vertices_m_size(), info->tool().normals_size());
+        const scene::BoneDust& dust = info->viewer_effects().bone_dust();
+        EXPECT_TRUE(dust.drag_time_ms() >= 1 && dust.drag_time_ms() <= 10000);
+        EXPECT_LE(dust.most_grains(), 20000u);
+        EXPECT_LE(std::abs(info->viewer_effects().milling_sound().idle_level()), 1);
         for (const uint32_t index : info->tool().indices()) {
             EXPECT_LT(3 * index + 2, static_cast<uint32_t>(info->tool().vertices_m_size()));
         }

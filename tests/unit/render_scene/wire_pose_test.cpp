@@ -1,4 +1,4 @@
-#include "render_client/scene/wire_pose.h"
+#include "render_client/effects/wire_pose.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,60 @@
+// The sound of the motor and of the burr in bone, from speed and load.
+//
+// Motor: harmonics of the rotation frequency f = |Ω|/2π, up to kHighest, and two gear tones above them;
+// louder with the speed. Cutting: band-passed noise, its strength modulated at the tooth passing frequency
+// flutes·f, louder with the square root of the cutting power. All levels and the frequency follow their
+// targets with kSmoothing, and every tone keeps its phase, so nothing clicks.
+//
+// Units: rad/s, N, W; samples in -1 .. 1. One thread; RT-safe after construction (no memory, no lock). The
+// same settings, loads and block borders give the same samples.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "proto/scene.pb.h"
+
+namespace bonemill {
+
+// What the sound follows. Whatever is not a number counts as 0; bounds as in effect_input.h.
+struct SoundLoad {
+    double spin_speed = 0;     // rad/s, either way
+    double burr_force = 0;     // N
+    double cutting_power = 0;  // W
+};
+
+class MillingSynth {
+  public:
+    static constexpr int kSampleRate = 48000;    // Hz
+    static constexpr double kSmoothing = 0.025;  // s
+    static constexpr double kHighest = 16000;    // Hz of a tone
+
+    explicit MillingSynth(const scene::MillingSound& wish);
+
+    // From the next sample on. is_heard false: fades out.
+    void setLoad(const SoundLoad& load, bool is_heard = true) noexcept;
+    void render(std::span<float> samples) noexcept;
+
+    double frequency() const noexcept { return frequency_; }  // of the rotation now, Hz
+
+  private:
+    static constexpr size_t kTones = 8;
+    struct Targets {
+        double frequency = 0;  // Hz
+        double motor = 0, cutting = 0;
+    };
+    void updateTones() noexcept;
+    float nextSample() noexcept;
+    double noise() noexcept;
+
+    double volume_, idle_level_, full_frequency_, full_power_, flutes_;
+    Targets targets_;
+    double frequency_ = 0, motor_ = 0, cutting_ = 0;
+    std::array<double, kTones> phases_{}, levels_{}, wanted_levels_{};  // phases in turns
+    double tooth_phase_ = 0;
+    double low_ = 0, band_ = 0;  // of the state variable filter
+    uint32_t random_ = 0x9e3779b9u;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,52 @@
+// Blood on the surface film: it seeps from fresh cuts after a delay, spreads, begins to run down in rivulets,
+// and stops when it has clotted. The film's grid holds it; a cut through it takes it away.
+//
+// Frame V, m, s. One thread. The same inputs and steps give the same film.
+#pragma once
+
+#include <span>
+
+#include "proto/scene.pb.h"
+#include "render_client/effects/bone_surface.h"
+#include "render_client/effects/effect_random.h"
+#include "render_client/effects/surface_film.h"
+
+namespace bonemill {
+
+class Bleeding {
+  public:
+    explicit Bleeding(const scene::Bleeding& wish) : wish_(wish) {}
+
+    // Bone was cut here.
+    void open(std::span<const SurfacePoint> cut, const SurfaceFilm& film);
+    // The burr has cut all within: what bled there is gone.
+    void cutAway(const Eigen::Vector3f& p_V, float radius);
+    void advance(double dt, const Eigen::Vector3f& up_V, const BoneSurface& surface, SurfaceFilm& film);
+    void clear();
+
+    Eigen::Vector3f colour() const;  // linear
+    size_t woundCount() const { return wounds_.size(); }
+
+  private:
+    static constexpr size_t kMostWounds = 6000, kMostRuns = 48;
+    struct Wound {
+        SurfacePoint at;
+        float age;
+    };
+    struct Run {
+        SurfacePoint at;
+        float left;  // m that it still goes
+        float width;
+    };
+    void seep(double dt, SurfaceFilm& film);
+    void beginRuns(double dt, const SurfaceFilm& film);
+    void run(double dt, const Eigen::Vector3f& up_V, const BoneSurface& surface, SurfaceFilm& film);
+
+    scene::Bleeding wish_;
+    EffectRandom random_{47};
+    std::vector<Wound> wounds_;
+    std::vector<Run> runs_;
+    double runs_due_ = 0;
+};
+
+}  // namespace bonemill

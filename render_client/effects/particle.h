@@ -1,0 +1,18 @@
+// What the particle painter draws: a small ball, or a streak from p to p + streak. V, m.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace bonemill {
+
+struct Particle {
+    Eigen::Vector3f p_V, streak_V;
+    float radius;
+    Eigen::Vector4f colour;  // linear; w: opacity
+    float gloss;             // 0 matt .. 1 water
+};
+
+using Particles = std::vector<Particle>;
+
+}  // namespace bonemill

@@ -1,0 +1,70 @@
+// What lies on the bone around the burr: blood and water, 0 to 1 per cell of a grid that follows the burr.
+// What the grid leaves behind is forgotten.
+//
+// The grid is a torus: cell (i, j, k) of the volume frame's lattice lies in texel (i, j, k) mod kCells, so
+// that moving it copies nothing. Frame V, m. One thread; allocates only in the constructor.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace bonemill {
+
+class SurfaceFilm {
+  public:
+    static constexpr int kCells = 64;  // per axis
+    enum Layer : size_t { kBlood = 0, kWater = 1, kLayers = 2 };
+
+    explicit SurfaceFilm(float cell);
+
+    float cell() const { return cell_; }
+    float extent() const { return cell_ * kCells; }
+    // Where the shown part begins and ends; one cell is left at the border, where the torus meets itself.
+    Eigen::AlignedBox3f shownBox() const;
+
+    void centreOn(const Eigen::Vector3f& p_V);
+    bool holds(const Eigen::Vector3f& p_V) const { return isInside(cellOf(p_V)); }
+    float at(Layer layer, const Eigen::Vector3f& p_V) const;
+    // Adds to the cells within `radius` (at least the nearest one), less at its rim; 0 and 1 bound them.
+    void add(Layer layer, const Eigen::Vector3f& p_V, float amount, float radius);
+    void scale(Layer layer, const Eigen::Vector3f& p_V, float factor, float radius);
+    void scaleAll(Layer layer, float factor);
+    void clear();
+
+    // Blood and water of each texel, 0 to 255, x fastest; of slice z.
+    std::span<const uint8_t> slice(int z) const {
+        return {texels_.data() + size_t(z) * kSliceBytes, kSliceBytes};
+    }
+    // Slices whose texels changed, and around the changed cells, since the last call.
+    std::bitset<kCells> takeChangedSlices() { return std::exchange(changed_slices_, {}); }
+    Eigen::AlignedBox3f takeChanged() { return std::exchange(changed_, {}); }
+
+  private:
+    static constexpr size_t kSliceBytes = size_t(kCells) * kCells * kLayers;
+    static constexpr size_t kTexels = size_t(kCells) * kCells * kCells;
+
+    Eigen::Array3i cellOf(const Eigen::Vector3f& p_V) const;
+    Eigen::Vector3f middleOf(const Eigen::Array3i& c) const;
+    bool isInside(const Eigen::Array3i& c) const;
+    static size_t texelOf(const Eigen::Array3i& c);
+    template <class Change>
+    void changeAround(const Eigen::Vector3f& p_V, float radius, Change&& change);
+    void write(Layer layer, const Eigen::Array3i& c, float value);
+    void forgetSlab(int axis, int from, int to);
+
+    float cell_;
+    Eigen::Array3i low_ = Eigen::Array3i::Zero();  // first cell of the grid
+    bool is_placed_ = false;
+    std::array<std::vector<float>, kLayers> values_;
+    std::array<bool, kLayers> has_any_{};
+    std::vector<uint8_t> texels_;
+    std::bitset<kCells> changed_slices_;
+    Eigen::AlignedBox3f changed_;
+};
+
+}  // namespace bonemill

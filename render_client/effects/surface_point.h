@@ -1,0 +1,16 @@
+// A place on the bone's surface. V, m.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace bonemill {
+
+struct SurfacePoint {
+    Eigen::Vector3f p_V = Eigen::Vector3f::Zero();
+    Eigen::Vector3f n_V = Eigen::Vector3f::UnitZ();  // unit, out of the bone
+
+    // Of p above the tangent plane, m; negative: in the bone.
+    float heightOf(const Eigen::Vector3f& p) const { return n_V.dot(p - p_V); }
+};
+
+}  // namespace bonemill

@@ -1,0 +1,14 @@
+// A drop on the bone's surface, drawn down by gravity. Frame V, m. Plain functions, any thread.
+#pragma once
+
+#include "render_client/effects/bone_surface.h"
+
+namespace bonemill {
+
+enum class Walk { kGoesOn, kRests, kFallsOff };
+
+// Moves `at` along the surface by at most `distance`: less on level ground. Where the surface overhangs or
+// ends the drop falls off, and `at` stays.
+Walk walkDown(const BoneSurface& surface, const Eigen::Vector3f& up_V, float distance, SurfacePoint& at);
+
+}  // namespace bonemill

@@ -1,0 +1,20 @@
+// What visual effects add to one picture. Plain values; frame V, m, rad.
+#pragma once
+
+#include <optional>
+
+#include "render_client/effects/burr_spin.h"
+#include "render_client/effects/particle.h"
+#include "render_client/effects/surface_film.h"
+
+namespace bonemill {
+
+struct EffectPicture {
+    Particles particles;           // dust, water
+    std::optional<BurrTurn> turn;  // of the burr's flutes
+    bool shows_blood = false, shows_water = false;
+    Eigen::Vector3f blood_colour = Eigen::Vector3f::Zero();  // linear
+    SurfaceFilm* film = nullptr;  // where blood and water lie on the bone; its changes are taken
+};
+
+}  // namespace bonemill

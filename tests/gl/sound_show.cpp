@@ -1,0 +1,103 @@
+// A scripted load of the spindle, heard and seen:
+//   sound_show DIR    writes milling_sound.wav and, by gnuplot, milling_sound.png into DIR
+// Run-up, idle, light contact, heavy contact, stall, free again.
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <vector>
+
+#include "render_client/audio/milling_synth.h"
+#include "render_client/audio/wav_file.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kWindow = 4096, kHop = 1600;
+constexpr double kShownHz = 6000;
+
+// What a spindle does, by hand: (s, rpm, N, W), linear in between.
+constexpr struct {
+    double time, rpm, force, power;
+} kScript[] = {{0, 0, 0, 0},       {1.2, 30000, 0, 0}, {3, 30000, 0, 0}, {3.1, 28500, 1, 2},
+               {5.5, 28500, 1, 2}, {5.7, 22000, 6, 9}, {8, 22000, 6, 9}, {8.2, 9000, 12, 10},
+               {8.8, 0, 14, 0},    {9.8, 0, 14, 0},    {10, 0, 0, 0},    {11, 30000, 0, 0},
+               {12, 30000, 0, 0}};
+
+SoundLoad loadAt(double time) {
+    size_t n = 0;
+    while (n + 2 < std::size(kScript) && kScript[n + 1].time < time) ++n;
+    const auto &a = kScript[n], &b = kScript[n + 1];
+    const double part = (time - a.time) / (b.time - a.time);
+    const auto between = [&](double low, double high) { return low + part * (high - low); };
+    return {between(a.rpm, b.rpm) * 2 * M_PI / 60, between(a.force, b.force), between(a.power, b.power)};
+}
+
+std::vector<float> play() {
+    MillingSynth synth{scene::MillingSound()};
+    constexpr size_t kBlock = MillingSynth::kSampleRate / 60;
+    std::vector<float> samples(12 * MillingSynth::kSampleRate);
+    for (size_t at = 0; at < samples.size(); at += kBlock) {
+        synth.setLoad(loadAt(double(at) / MillingSynth::kSampleRate));
+        synth.render(std::span(samples).subspan(at, kBlock));
+    }
+    return samples;
+}
+
+// Rows "time frequency decibel", a blank line after each time.
+void writeSpectrogram(const std::vector<float>& samples, const std::filesystem::path& path) {
+    std::ofstream file(path);
+    const double bin = double(MillingSynth::kSampleRate) / kWindow;
+    for (size_t at = 0; at + kWindow < samples.size(); at += kHop) {
+        for (int k = 1; k * bin < kShownHz; k += 2) {
+            std::complex<double> sum = 0, turn = 1;
+            const std::complex<double> step = std::polar(1.0, -2 * M_PI * k / double(kWindow));
+            for (size_t i = 0; i < kWindow; ++i, turn *= step)
+                sum += (1 - std::cos(2 * M_PI * double(i) / kWindow)) * double(samples[at + i]) * turn;
+            const double level = 20 * std::log10(2 * std::abs(sum) / kWindow + 1e-5);
+            file << double(at) / MillingSynth::kSampleRate << ' ' << k * bin << ' ' << level << '\n';
+        }
+        file << '\n';
+    }
+}
+
+int plot(const std::filesystem::path& folder) {
+    std::ofstream script(folder / "milling_sound.gp");
+    script << "set terminal pngcairo size 1100,520 font 'DejaVu Sans,11'\nset output '"
+           << (folder / "milling_sound.png").string()
+           << "'\nset xlabel 'time (s)'\nset ylabel 'frequency (Hz)'\nset cblabel 'dB of full scale'\n"
+              "set xrange [0:11.9]\nset yrange [0:6000]\nset cbrange [-90:-15]\n"
+              "set palette defined (0 '#10141c', 0.35 '#1f4e79', 0.65 '#d9822b', 1 '#fff3c4')\n"
+              "set label 1 'run-up' at 0.2,5700 tc rgb 'white' front\nset label 2 'idle' at 1.8,5700 tc rgb "
+              "'white' front\n"
+              "set label 3 'light contact' at 3.4,5700 tc rgb 'white' front\n"
+              "set label 4 'heavy contact' at 5.9,5700 tc rgb 'white' front\n"
+              "set label 5 'stall' at 8.9,5700 tc rgb 'white' front\nset label 6 'free again' at 10.3,5700 "
+              "tc rgb 'white' front\n"
+              "plot '"
+           << (folder / "milling_sound.dat").string() << "' using 1:2:3 with image notitle\n";
+    script.close();
+    return std::system(("gnuplot " + (folder / "milling_sound.gp").string()).c_str());
+}
+
+}  // namespace
+}  // namespace bonemill
+
+int main(int argc, char** argv) {
+    using namespace bonemill;
+    if (argc != 2) {
+        std::cerr << "usage: sound_show DIR" << std::endl;
+        return 2;
+    }
+    const std::filesystem::path folder = argv[1];
+    std::filesystem::create_directories(folder);
+    const std::vector<float> samples = play();
+    WavFile wav(folder / "milling_sound.wav", MillingSynth::kSampleRate);
+    wav.write(samples);
+    wav.finish();
+    writeSpectrogram(samples, folder / "milling_sound.dat");
+    return plot(folder) == 0 ? 0 : 1;
+}
