@@ -219,6 +219,8 @@ class Server {
         spdlog::info("{} ticks, {:.1f} Hz, tick p99 {:.1f} us, {} dropped, faults: {}", statistics.ticks(),
                      statistics.meanRateHz(), double(statistics.tickCompute().percentileNs(99)) * 1e-3,
                      statistics.droppedTicks(), faultNames(statistics.faults()));
+        for (const std::string& warning : statistics.effects().warnings(materialNamesOf(loaded_.scene)))
+            spdlog::warn("effects warned: {}", warning);
         // Each on its own: one that fails must not cost the others.
         bool all_written = trace_is_whole;
         const auto write = [&all_written](const std::string& path, auto&& action) {

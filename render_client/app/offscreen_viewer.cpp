@@ -22,19 +22,36 @@ void makeFolder(const std::filesystem::path& folder) {
     if (failure) throw UserError("--out " + folder.string() + ": " + failure.message());
 }
 
+// The training's warnings as a JSON array; they are printable UTF-8 already.
+std::string warningsOf(const topics::Training& training) {
+    std::string list;
+    for (const std::string& warning : training.warnings()) {
+        list += list.empty() ? "\"" : ",\"";
+        for (const char sign : warning) {
+            if (sign == '"' || sign == '\\') list += '\\';
+            list += sign;
+        }
+        list += '"';
+    }
+    return "[" + list + "]";
+}
+
 // What the picture shows; to be taken before the drawing, which may take longer than the server's time-out.
 std::string describe(uint32_t frame, const std::string& file, const RenderScene& scene, SceneFeed& feed) {
     const SceneSubscriber& subscriber = feed.subscriber();
     const uint64_t tick = subscriber.toolState() ? subscriber.toolState()->tick() : 0;
+    const auto& status = subscriber.status();
+    const std::string warnings =
+        status && status->has_training() ? ",\"warnings\":" + warningsOf(status->training()) : "";
     char line[512];
     std::snprintf(line, sizeof line,
                   "{\"frame\":%u,\"file\":\"%s\",\"nodes\":%zu,\"triangles\":%zu,"
                   "\"node_digest\":\"%016" PRIx64 "\",\"complete\":%s,\"server\":%s,\"epoch\":%" PRIu64
-                  ",\"tick\":%" PRIu64 ",\"uploaded_nodes\":%" PRIu64 ",\"uploaded_bytes\":%" PRIu64 "}",
+                  ",\"tick\":%" PRIu64 ",\"uploaded_nodes\":%" PRIu64 ",\"uploaded_bytes\":%" PRIu64,
                   frame, file.c_str(), scene.nodeCount(), scene.triangleCount(), subscriber.digest().value(),
                   feed.isComplete() ? "true" : "false", subscriber.hasServer() ? "true" : "false",
                   subscriber.epoch(), tick, scene.uploads().nodes, scene.uploads().bytes);
-    return line;
+    return line + warnings + "}";
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ bool isUsable(const topics::SceneInfo& info) {
     return isVector(info.p_wv_m()) && isQuaternion(info.q_wv()) && isVector(info.bone_min_m()) &&
            isVector(info.bone_max_m()) && isSane(info.burr_radius_m()) && info.burr_radius_m() >= 0 &&
            info.tool_names_size() <= kMostTools && isDrawable(info.tool()) && isUsable(info.camera()) &&
-           info.materials_size() <= kMostMaterials && isWithinRanges(info.viewer_effects()) &&
+           info.materials_size() <= kMostShownMaterials && isWithinRanges(info.viewer_effects()) &&
            std::ranges::all_of(info.materials(), isWithinRanges);
 }
 

@@ -7,7 +7,7 @@
 namespace bonemill {
 
 // As many as a scene may have: a vertex names one of them in one byte.
-inline constexpr int kMostMaterials = 255;
+inline constexpr int kMostShownMaterials = 255;
 
 // Every number in it, however deep, is finite and in its (range) of scene.proto.
 bool isWithinRanges(const google::protobuf::Message& message);
