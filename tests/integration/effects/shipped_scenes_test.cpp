@@ -1,0 +1,145 @@
+// The scenes of deploy/scenes that need phantoms only, headless along their own waypoints in simulated time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "haptic_server/app/bone_files.h"
+#include "haptic_server/app/effect_cost.h"
+#include "haptic_server/app/scene_setup.h"
+#include "haptic_server/record/fault_names.h"
+#include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/volume/import/phantom/tooth_phantom.h"
+#include "tests/support/process.h"
+
+namespace bonemill {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ShippedRun {
+    double removed_mm3 = 0, added_mm3 = 0, largest_force = 0;
+    uint32_t faults = 0;
+    size_t ticks_in_contact = 0;
+    std::vector<std::string> effects;
+    double volume_change_mm3 = 0;  // of the surface
+    bool is_closed = false;
+};
+
+Pose poseAt(const scene::SimulatedOperator& scenario, double t_s, uint32_t& buttons) {
+    int from = 0;
+    while (from + 2 < scenario.waypoint_size() && scenario.waypoint(from + 1).time_s() <= t_s) ++from;
+    const auto &a = scenario.waypoint(from), &b = scenario.waypoint(from + 1);
+    const double share = std::clamp((t_s - a.time_s()) / (b.time_s() - a.time_s()), 0.0, 1.0);
+    const auto position = [](const auto& waypoint) -> Eigen::Vector3d {
+        const scene::Vec3& p = waypoint.p_wt_mm();
+        return Eigen::Vector3d(p.x(), p.y(), p.z()) * 1e-3;
+    };
+    const auto rotation = [](const auto& waypoint) -> Eigen::Quaterniond {
+        const scene::Quaternion& q = waypoint.q_wt();
+        return Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized();
+    };
+    buttons = (a.remove() ? kButtonRemove : 0u) | (a.add() ? kButtonAdd : 0u);
+    return {position(a) + share * (position(b) - position(a)), rotation(a).slerp(share, rotation(b))};
+}
+
+std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario, double dt) {
+    std::vector<DeviceInput> path;
+    const double end_s = scenario.waypoint().rbegin()->time_s();
+    for (double t_s = 0; t_s < end_s; t_s = double(path.size()) * dt) {
+        DeviceInput input;
+        input.X_WT_device = poseAt(scenario, t_s, input.buttons);
+        input.t_s = t_s;
+        path.push_back(input);
+    }
+    return path;
+}
+
+// Scene and phantoms as they lie to each other in the repository.
+class ShippedScenes : public testing::Test {
+  protected:
+    ShippedScenes() {
+        fs::create_directory(folder_ / "deploy");
+        fs::copy(BONEMILL_SOURCE_DIR "/deploy/scenes", folder_ / "deploy/scenes");
+    }
+    void makePhantom(const std::string& name) const {
+        const auto made = test::run({BONEMILL_SOURCE_DIR "/deploy/make-phantoms", "--bin", BONEMILL_BIN_DIR,
+                                     "--out", folder_ / "build/data", name});
+        ASSERT_EQ(made.exit_code, 0) << made.err;
+    }
+    ShippedRun run(const std::string& name) const {
+        const LoadedScene loaded = loadScene(folder_ / ("deploy/scenes/" + name + ".textproto"));
+        Simulation simulation = makeSimulation(loaded);
+        for (const std::string& warning : simulation.warnings) ADD_FAILURE() << warning;
+        BoneModel& bone = *simulation.bone;
+        const MeshGrid grid(bone.volume, bone.lattice);
+        ShippedRun result;
+        result.effects = effectNames(simulation.tick.effects);
+        const double before = meshVolume(meshWholeBone(bone.volume, bone.lattice), grid);
+        for (const TickRecord& record :
+             recordsOf(simulation.tick, bone, simulation.firstTool(),
+                       pathOf(loaded.scene.simulated_operator(), simulation.tick.dt))) {
+            result.removed_mm3 += record.removed * 1e9;
+            result.added_mm3 += record.added * 1e9;
+            result.faults |= record.faults;
+            result.ticks_in_contact += record.contacts > 0;
+            result.largest_force =
+                std::max(result.largest_force, Eigen::Map<const Eigen::Vector3d>(record.f_hand_W).norm());
+        }
+        const MeshCheck check = checkMesh(meshWholeBone(bone.volume, bone.lattice), grid);
+        result.is_closed = check.isClosed();
+        result.volume_change_mm3 = (before - check.volume) * 1e9;
+        return result;
+    }
+    static void expectSound(const ShippedRun& run) {
+        constexpr uint32_t kHarmless = kFaultMotionClamped | kFaultForceClamped;
+        EXPECT_EQ(faultNames(run.faults & ~kHarmless), faultNames(0));
+        EXPECT_GT(run.ticks_in_contact, 1000u);
+        EXPECT_GT(run.largest_force, 0.5);
+        EXPECT_TRUE(run.is_closed);
+    }
+
+    test::TemporaryFolder folder_;
+};
+
+TEST_F(ShippedScenes, MinimalTouchesAndDoesNothingElse) {
+    makePhantom("bone_block");
+    const ShippedRun run = this->run("minimal");
+    expectSound(run);
+    EXPECT_TRUE(run.effects.empty());
+    EXPECT_EQ(run.removed_mm3, 0);
+    EXPECT_EQ(run.volume_change_mm3, 0);
+}
+
+TEST_F(ShippedScenes, FreeformTakesAndGives) {
+    makePhantom("clay_block");
+    const ShippedRun run = this->run("freeform");
+    expectSound(run);
+    EXPECT_EQ(run.effects, (std::vector<std::string>{"time_removal", "add_material"}));
+    EXPECT_GT(run.removed_mm3, 10);
+    EXPECT_GT(run.added_mm3, 10);
+    EXPECT_NEAR(run.volume_change_mm3, run.removed_mm3 - run.added_mm3,
+                0.1 * (run.removed_mm3 + run.added_mm3));
+}
+
+TEST_F(ShippedScenes, LabelsOfTheToothAreItsTissues) {
+    makePhantom("tooth");
+    const RawVolume label = importVolume(folder_ / "build/data/tooth_labels.nrrd");
+    const RawVolume scan = importVolume(folder_ / "build/data/tooth");
+    EXPECT_EQ(label.geometry.dims, scan.geometry.dims);
+    EXPECT_LT((label.geometry.X_WV.position - scan.geometry.X_WV.position).norm(), 1e-7);
+    std::array<double, 5> sum{}, count{};
+    for (size_t n = 0; n < scan.values.size(); ++n) {
+        const auto tissue = size_t(label.values[n]);
+        ASSERT_LT(tissue, sum.size());
+        sum[tissue] += scan.values[n];
+        ++count[tissue];
+    }
+    for (size_t tissue = 0; tissue < sum.size(); ++tissue) {
+        EXPECT_GT(count[tissue], 1000) << tissue;
+        EXPECT_NEAR(sum[tissue] / count[tissue], kToothHu[tissue], 250) << tissue;  // the scanner's blur
+    }
+}
+
+}  // namespace
+}  // namespace bonemill
