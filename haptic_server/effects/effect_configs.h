@@ -92,8 +92,8 @@ void forEachEffect(Configs& configs, Visit&& visit) {
     visit("energy_removal", configs.energy_removal);
     visit("cutting_force", configs.cutting_force);
     visit("surface_friction", configs.surface_friction);
-    visit("virtual_fixture", configs.virtual_fixture);
     visit("burr_vibration", configs.burr_vibration);
+    visit("virtual_fixture", configs.virtual_fixture);
     visit("time_removal", configs.time_removal);
     visit("add_material", configs.add_material);
     visit("thermal", configs.thermal);

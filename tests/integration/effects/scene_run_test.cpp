@@ -56,9 +56,9 @@ std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario, double
 }
 
 // Scene and phantoms as they lie to each other in the repository.
-class ShippedScenes : public testing::Test {
+class SceneRun : public testing::Test {
   protected:
-    ShippedScenes() {
+    SceneRun() {
         fs::create_directory(folder_ / "deploy");
         fs::copy(BONEMILL_SOURCE_DIR "/deploy/scenes", folder_ / "deploy/scenes");
     }
@@ -102,7 +102,7 @@ class ShippedScenes : public testing::Test {
     test::TemporaryFolder folder_;
 };
 
-TEST_F(ShippedScenes, MinimalTouchesAndDoesNothingElse) {
+TEST_F(SceneRun, MinimalTouchesAndDoesNothingElse) {
     makePhantom("bone_block");
     const ShippedRun run = this->run("minimal");
     expectSound(run);
@@ -111,7 +111,7 @@ TEST_F(ShippedScenes, MinimalTouchesAndDoesNothingElse) {
     EXPECT_EQ(run.volume_change_mm3, 0);
 }
 
-TEST_F(ShippedScenes, FreeformTakesAndGives) {
+TEST_F(SceneRun, FreeformTakesAndGives) {
     makePhantom("clay_block");
     const ShippedRun run = this->run("freeform");
     expectSound(run);
@@ -122,7 +122,7 @@ TEST_F(ShippedScenes, FreeformTakesAndGives) {
                 0.1 * (run.removed_mm3 + run.added_mm3));
 }
 
-TEST_F(ShippedScenes, LabelsOfTheToothAreItsTissues) {
+TEST_F(SceneRun, LabelsOfTheToothAreItsTissues) {
     makePhantom("tooth");
     const RawVolume label = importVolume(folder_ / "build/data/tooth_labels.nrrd");
     const RawVolume scan = importVolume(folder_ / "build/data/tooth");
