@@ -20,7 +20,8 @@ constexpr NamedEffect kEffects[] = {
     {"cutting_force", false, true, [](EffectConfigs& e) { e.cutting_force.emplace(); }},
     {"surface_friction", false, false, [](EffectConfigs& e) { e.surface_friction.emplace(); }},
     {"burr_vibration", false, true, [](EffectConfigs& e) { e.burr_vibration.emplace(); }},
-    {"time_removal", true, true, [](EffectConfigs& e) { e.time_removal.emplace(); }},
+    {"thermal", false, true, [](EffectConfigs& e) { e.thermal.emplace(); }},
+    {"energy_removal", true, true, [](EffectConfigs& e) { e.energy_removal.emplace(); }},
 };
 
 void addFelt(EffectConfigs& configs) {
