@@ -25,12 +25,11 @@ class DistanceField {
         : first_(voxels.min),
           spacing_(spacing),
           reach_(reach),
-          unit_(reach / kMostCounts),
           map_(voxels.max - voxels.min + Eigen::Vector3i::Ones()) {}
 
     double reach() const noexcept { return reach_; }
     DistanceSample at(const Eigen::Vector3d& p_V) const noexcept;
-    size_t bytes() const noexcept { return counts_.size() * (sizeof(int16_t) + sizeof(MaterialId)); }
+    size_t bytes() const noexcept { return distance_.size() * (sizeof(float) + sizeof(MaterialId)); }
 
     // Start-up only. Bricks of samples, layer after layer along z; sample(voxel) gives {distance, nearest}
     // for the box's voxels.
@@ -40,20 +39,18 @@ class DistanceField {
     void fillLayer(int n, Sample&& sample);
 
   private:
-    static constexpr int16_t kMostCounts = 32767;
-
     void lookUp(const Eigen::Vector3i& voxel, double& distance, MaterialId& nearest) const noexcept {
         const size_t at = map_.find(voxel - first_);
         const bool is_known = at != BrickMap::kNowhere;
-        distance = is_known ? counts_[at] * unit_ : reach_;
+        distance = is_known ? double(distance_[at]) : reach_;
         nearest = is_known ? nearest_[at] : kNoMaterial;
     }
 
     Eigen::Vector3i first_;
     Eigen::Vector3d spacing_;
-    double reach_, unit_;
+    double reach_;
     BrickMap map_;
-    std::vector<int16_t> counts_;
+    std::vector<float> distance_;  // not in units of the reach: that depends on which effects ask
     std::vector<MaterialId> nearest_;
 };
 
@@ -95,22 +92,22 @@ inline IndexBox DistanceField::layer(int n) const noexcept {
 template <class Sample>
 void DistanceField::fillLayer(int n, Sample&& sample) {
     const Eigen::Vector3i& bricks = map_.bricksPerAxis();
-    std::vector<int16_t> counts(BrickMap::kBrick);
+    std::vector<float> distances(BrickMap::kBrick);
     std::vector<MaterialId> nearest(BrickMap::kBrick);
     forEachIndex({{0, 0, n}, {bricks.x() - 1, bricks.y() - 1, n}}, [&](const Eigen::Vector3i& brick) {
-        std::fill(counts.begin(), counts.end(), kMostCounts);
+        std::fill(distances.begin(), distances.end(), float(reach_));
         std::fill(nearest.begin(), nearest.end(), kNoMaterial);
         bool is_something = false;
         forEachIndex(map_.voxelsOf(brick), [&](const Eigen::Vector3i& v) {
             const auto [distance, id] = sample(Eigen::Vector3i(v + first_));
             if (!(distance < reach_)) return;
             is_something = true;
-            counts[BrickMap::inBrick(v)] = int16_t(std::lround(std::max(distance, -reach_) / unit_));
+            distances[BrickMap::inBrick(v)] = float(std::max(distance, -reach_));
             nearest[BrickMap::inBrick(v)] = id;
         });
         if (!is_something) return;
         map_.addBrick(brick);
-        counts_.insert(counts_.end(), counts.begin(), counts.end());
+        distance_.insert(distance_.end(), distances.begin(), distances.end());
         nearest_.insert(nearest_.end(), nearest.begin(), nearest.end());
     });
 }

@@ -1,6 +1,5 @@
 #include "tests/bench/bench_effects.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -14,9 +13,6 @@
 namespace bonemill::bench {
 namespace {
 
-constexpr const char* kByTime = "time_removal";  // the laws of removal: one at a time
-constexpr const char* kByEnergy = "energy_removal";
-
 struct Options {
     test::EveryEffectBlock block{
         .edge = 160, .voxel_mm = 0.125, .burr_radius_mm = 1.5, .protected_depth_mm = 3};
@@ -24,10 +20,10 @@ struct Options {
     std::string json;
 };
 
-Simulation simulationOf(const Options& o) {
+Simulation simulationOf(const Options& o, const char* law) {
     const test::TemporaryFolder folder;
     test::writeBlock(folder.path().string(), o.block);
-    test::writeScene(folder / "scene.textproto", test::everyEffectScene(o.block));
+    test::writeScene(folder / "scene.textproto", test::everyEffectScene(o.block, law));
     return makeSimulation(loadScene(folder / "scene.textproto"));
 }
 
@@ -71,31 +67,20 @@ nlohmann::json print(const EffectCosts& costs, const std::string& title) {
     return json;
 }
 
-EffectConfigs only(EffectConfigs configs, const std::string& which) {
-    for (const std::string& name : effectNames(configs))
-        if (name != which) configs = withoutEffect(std::move(configs), name);
-    return configs;
-}
-
-void measure(const Options& o) {
-    Simulation simulation = simulationOf(o);
-    const EffectConfigs all = simulation.tick.effects;
+EffectCosts costsOf(const Options& o, const char* law) {
+    Simulation simulation = simulationOf(o, law);
     const std::vector<DeviceInput> path =
         weave(simulation.bone->volume,
               {.burr_radius = o.block.burr_radius_mm * 1e-3, .depth = 0.5e-3, .ticks = o.ticks});
-    const auto costsOf = [&](const EffectConfigs& effects) {
-        simulation.tick.effects = effects;
-        return measureEffectCosts(simulation.tick, *simulation.bone, simulation.firstTool(), path, o.rounds);
-    };
+    return measureEffectCosts(simulation.tick, *simulation.bone, simulation.firstTool(), path, o.rounds);
+}
+
+void measure(const Options& o) {
     std::printf("block of %d^3 voxels of %g mm, ball of %g mm radius\n", o.block.edge, o.block.voxel_mm,
                 o.block.burr_radius_mm);
-    const std::vector<std::string> names = effectNames(all);
     nlohmann::json json;
-    json["by_time"] = print(costsOf(only(all, kByTime)), "removal by time alone");
-    const bool has_energy = std::find(names.begin(), names.end(), kByEnergy) != names.end();
-    json["every"] =
-        has_energy ? print(costsOf(withoutEffect(all, kByTime)), "removal by energy, and every other effect")
-                   : print(costsOf(all), "every effect");
+    for (const char* law : {test::kByTime, test::kByEnergy})
+        json[law] = print(costsOf(o, law), std::string("every effect, ") + law);
     writeJson(o.json, json);
 }
 

@@ -43,7 +43,7 @@ void writeBlock(const std::string& folder, const EveryEffectBlock& block) {
     });
 }
 
-scene::Scene everyEffectScene(const EveryEffectBlock& block) {
+scene::Scene everyEffectScene(const EveryEffectBlock& block, const std::string& law) {
     scene::Scene scene;
     scene.set_name("every effect");
     scene::Volume& volume = *scene.mutable_volume();
@@ -65,7 +65,8 @@ scene::Scene everyEffectScene(const EveryEffectBlock& block) {
     nerve.set_stiffness_factor(0.5);
     scene::Effects& effects = *scene.mutable_effects();
     for (const std::string& name : tickEffectNames())
-        effects.GetReflection()->MutableMessage(&effects, effects.GetDescriptor()->FindFieldByName(name));
+        if (name == law || (name != kByTime && name != kByEnergy))
+            effects.GetReflection()->MutableMessage(&effects, effects.GetDescriptor()->FindFieldByName(name));
     return scene;
 }
 

@@ -19,8 +19,13 @@ struct EveryEffectBlock {
 // Writes block.nrrd and labels.nrrd (1 bone, 2 protected, 0 air) to the folder.
 void writeBlock(const std::string& folder, const EveryEffectBlock& block);
 
-// Tool, materials, that volume, and every effect of the tick with its defaults.
-scene::Scene everyEffectScene(const EveryEffectBlock& block);
+// The laws of removal, of which a scene has one.
+inline constexpr const char* kByTime = "time_removal";
+inline constexpr const char* kByEnergy = "energy_removal";
+
+// Tool, materials, that volume, and every effect of the tick with its defaults, of the laws of removal this
+// one.
+scene::Scene everyEffectScene(const EveryEffectBlock& block, const std::string& law);
 
 // As text, to this file.
 void writeScene(const std::string& file, const scene::Scene& scene);

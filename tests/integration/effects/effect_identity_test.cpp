@@ -54,13 +54,14 @@ std::vector<DeviceInput> pathOver(const BoneModel& bone, double burr_radius) {
     return path;
 }
 
-class EffectIdentity : public testing::Test {
+class EffectIdentity : public testing::TestWithParam<const char*> {
   protected:
     EffectIdentity() {
         test::writeBlock(folder_.path().string(), block_);
-        scene_ = test::everyEffectScene(block_);
+        scene_ = test::everyEffectScene(block_, GetParam());
         // As slow as to leave something to the others.
-        scene_.mutable_effects()->mutable_time_removal()->set_rate_density_per_s(2500);
+        if (scene_.effects().has_time_removal())
+            scene_.mutable_effects()->mutable_time_removal()->set_rate_density_per_s(2500);
     }
     Simulation simulationOf(const scene::Scene& scene) const {
         test::writeScene(folder_ / "scene.textproto", scene);
@@ -92,7 +93,7 @@ class EffectIdentity : public testing::Test {
     scene::Scene scene_;
 };
 
-TEST_F(EffectIdentity, SceneWithoutAnEffectIsTheTickThatWasNeverGivenIt) {
+TEST_P(EffectIdentity, SceneWithoutAnEffectIsTheTickThatWasNeverGivenIt) {
     const EffectConfigs all = simulationOf(scene_).tick.effects;
     const Outcome with_all = run(scene_);
     EXPECT_GT(with_all.removed, 1e-9);
@@ -105,7 +106,7 @@ TEST_F(EffectIdentity, SceneWithoutAnEffectIsTheTickThatWasNeverGivenIt) {
     }
 }
 
-TEST_F(EffectIdentity, SceneWithNoneIsTheTickThatKnowsNoEffects) {
+TEST_P(EffectIdentity, SceneWithNoneIsTheTickThatKnowsNoEffects) {
     scene::Scene none = scene_;
     none.clear_effects();
     none.clear_material();
@@ -116,11 +117,14 @@ TEST_F(EffectIdentity, SceneWithNoneIsTheTickThatKnowsNoEffects) {
     EXPECT_FALSE(of_scene == run(scene_));
 }
 
-TEST_F(EffectIdentity, EveryRunIsTheSame) {
+TEST_P(EffectIdentity, EveryRunIsTheSame) {
     EXPECT_EQ(run(scene_), run(scene_));
 }
 
-TEST_F(EffectIdentity, EveryEffectOfTheTickIsAFieldOfTheScene) {
+INSTANTIATE_TEST_SUITE_P(Laws, EffectIdentity, testing::Values(test::kByTime, test::kByEnergy),
+                         [](const auto& law) { return std::string(law.param); });
+
+TEST(EffectConfigs, EveryEffectOfTheTickIsAFieldOfTheScene) {
     std::vector<std::string> fields = test::tickEffectNames();
     fields.push_back("materials");
     const EffectConfigs configs;

@@ -58,7 +58,7 @@ class EffectMemory : public testing::Test {
     Simulation makeScene() const {
         const test::EveryEffectBlock block;
         test::writeBlock(folder_.path().string(), block);
-        test::writeScene(folder_ / "scene.textproto", test::everyEffectScene(block));
+        test::writeScene(folder_ / "scene.textproto", test::everyEffectScene(block, test::kByEnergy));
         return makeSimulation(loadScene(folder_ / "scene.textproto"));
     }
     EffectConfigs only(const std::string& which) const {
