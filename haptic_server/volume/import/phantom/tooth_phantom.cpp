@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "haptic_server/volume/import/phantom/implicit_shapes.h"
+
 namespace bonemill {
 namespace {
 
@@ -18,17 +20,6 @@ constexpr double kHighest = 20.0;  // or higher
 
 double square(double x) {
     return x * x;
-}
-
-double smoothStep(double low, double high, double x) {
-    const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
-}
-
-// Smooth union of two implicit shapes with a fillet of about `fillet` mm.
-double blend(double a, double b, double fillet) {
-    const double h = std::max(fillet - std::abs(a - b), 0.0) / fillet;
-    return std::min(a, b) - h * h * fillet / 4;
 }
 
 double ellipsoid(const Eigen::Vector3d& p, const Eigen::Vector3d& centre, const Eigen::Vector3d& half_axes) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "haptic_server/volume/import/phantom/implicit_shapes.h"
 #include "haptic_server/volume/import/phantom/spline_shapes.h"
 
 namespace bonemill {
@@ -13,16 +14,6 @@ using Eigen::Vector2d, Eigen::Vector3d;
 
 // All shapes in mm; those on both sides are of the left side (x > 0).
 
-double smoothStep(double low, double high, double x) {
-    const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
-}
-
-// Union of two implicit shapes with a fillet of about `fillet`.
-double blend(double a, double b, double fillet) {
-    const double h = std::max(fillet - std::abs(a - b), 0.0) / fillet;
-    return std::min(a, b) - h * h * fillet / 4;
-}
 double roundedCut(double solid, double cut, double fillet) {
     return -blend(-solid, cut, fillet);
 }
