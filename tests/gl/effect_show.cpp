@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <vector>
 
 #include "haptic_server/volume/import/phantom/tooth_phantom.h"
 #include "render_client/offscreen/osmesa_context.h"
@@ -159,6 +160,53 @@ void drawSpin(const std::filesystem::path& folder) {
     std::cout << path.string() << std::endl;
 }
 
+// Milliseconds of one picture, advancing and drawing, while the burr mills: the median over the strokes.
+double medianMs(const scene::Effects& wish, Quality quality) {
+    using Clock = std::chrono::steady_clock;
+    Stage stage(640, 480, wish);
+    stage.context_width = 640;
+    stage.context_height = 480;
+    stage.scene.settings().quality = quality;
+    std::vector<double> times;
+    const int every = quality == Quality::kFull ? 16 : 1;  // a full picture takes long
+    int state = 0;
+    stage.session.after_state = [&] {
+        if (++state % every != 0) return stage.scene.advance(MillingSession::kPeriod);
+        const auto start = Clock::now();
+        stage.scene.advance(MillingSession::kPeriod);
+        stage.scene.draw(stage.context_width, stage.context_height, 1);
+        stage.context.gl().Finish();
+        times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+    };
+    stage.mill({});
+    std::ranges::sort(times);
+    return times[times.size() / 2];
+}
+
+void measure() {
+    struct Case {
+        const char* name;
+        scene::Effects wish;
+    };
+    std::vector<Case> cases(6);
+    cases[0].name = "none";
+    cases[1].name = "bone_dust";
+    cases[1].wish.mutable_bone_dust();
+    cases[2].name = "bleeding";
+    cases[2].wish.mutable_bleeding();
+    cases[3].name = "irrigation";
+    cases[3].wish.mutable_irrigation();
+    cases[4].name = "burr_spin";
+    cases[4].wish.mutable_burr_spin();
+    cases[5].name = "all";
+    for (size_t i = 1; i < 5; ++i) cases[5].wish.MergeFrom(cases[i].wish);
+    std::printf("{\"unit\":\"ms per picture, median\",\"size\":\"640x480\"");
+    for (const Case& c : cases)
+        std::printf(",\n\"%s\":{\"quick\":%.2f,\"full\":%.1f}", c.name, medianMs(c.wish, Quality::kQuick),
+                    medianMs(c.wish, Quality::kFull));
+    std::printf("}\n");
+}
+
 }  // namespace
 }  // namespace bonemill
 
@@ -173,6 +221,10 @@ int main(int argc, char** argv) {
         drawSpin(argv[2]);
         return 0;
     }
-    std::cerr << "usage: effect_show pictures DIR" << std::endl;
+    if (what == "measure" && argc == 2) {
+        measure();
+        return 0;
+    }
+    std::cerr << "usage: effect_show pictures DIR | measure" << std::endl;
     return 2;
 }

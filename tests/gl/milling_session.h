@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "haptic_server/mesh/leaf_mesher.h"
 #include "render_client/scene/render_scene.h"
@@ -49,14 +50,14 @@ class MillingSession {
             X_WT.position = from.position + (to.position - from.position) * (double(n) / states);
             const double removed = run.is_pedal_down ? cut(scene, X_WT.position) : 0;
             sendTool(scene, X_WT, run, removed);
-            scene.advance(kPeriod);
+            after_state ? after_state() : scene.advance(kPeriod);
         }
     }
     void wait(RenderScene& scene, const Pose& X_WT, double seconds, const BurrRun& run) {
         stroke(scene, X_WT, X_WT, seconds, run);
     }
 
-    double removed() const { return removed_; }  // m³ in all
+    std::function<void()> after_state;  // instead of advancing the scene by kPeriod
 
   private:
     static Density densityOf(double distance, double spacing) {
@@ -88,9 +89,7 @@ class MillingSession {
         if (changed.isEmpty()) return 0;
         forEachIndex(lattice_->leavesOfWrite(changed),
                      [&](const Eigen::Vector3i& leaf) { sendLeaf(scene, lattice_->leafId(leaf), true); });
-        const double volume = gone * volume_.voxelVolume();
-        removed_ += volume;
-        return volume;
+        return gone * volume_.voxelVolume();
     }
     void sendTool(RenderScene& scene, const Pose& X_WT, const BurrRun& run, double removed) {
         topics::ToolState tool = makeToolState(X_WT, X_WT, run.is_pedal_down ? 1 : 0);
@@ -109,7 +108,6 @@ class MillingSession {
     std::optional<LeafLattice> lattice_;
     std::optional<LeafMesher> mesher_;
     double burr_radius_;
-    double removed_ = 0;
     uint64_t tick_ = 0;
 };
 
