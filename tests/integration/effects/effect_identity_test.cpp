@@ -27,13 +27,13 @@ std::vector<DeviceInput> pathOver(const BoneModel& bone, double burr_radius) {
         double x, z;  // m, from the middle of the face, of the burr's lowest point, at its end
         uint32_t buttons;
     };
-    constexpr Phase kPhases[] = {{100, 0, 0.2e-3, 0},
-                                 {200, 0, -0.2e-3, 0},
-                                 {200, 0.5e-3, -0.2e-3, 0},
-                                 {500, 1e-3, -1.8e-3, kButtonRemove},
-                                 {200, -0.5e-3, -1.8e-3, kButtonRemove},
-                                 {150, -0.5e-3, 0.5e-3, kButtonAdd},
-                                 {100, -0.5e-3, 1.5e-3, 0}};
+    constexpr Phase kPhases[] = {{60, 0, 0.2e-3, 0},
+                                 {100, 0, -0.2e-3, 0},
+                                 {100, 0.5e-3, -0.2e-3, 0},
+                                 {250, 1e-3, -1.8e-3, kButtonRemove},
+                                 {100, -0.5e-3, -1.8e-3, kButtonRemove},
+                                 {80, -0.5e-3, 0.5e-3, kButtonAdd},
+                                 {60, -0.5e-3, 1.5e-3, 0}};
     const Eigen::Vector3d size = bone.volume.spacing().cwiseProduct(bone.volume.dims().cast<double>());
     const Eigen::Quaterniond upright(M_SQRT1_2, M_SQRT1_2, 0, 0);
     std::vector<DeviceInput> path;
