@@ -122,72 +122,73 @@ TEST(MakePhantom, shellFollowsAllFaces) {
     }
     EXPECT_EQ(hu.at(0, 0, -3), 500);
     EXPECT_EQ(label.at(0, 0, -3), 2);
-    TEST(MakePhantom, vertebraAndLabelsLieOnOneGrid) {
-        const test::TemporaryFolder folder;
-        const Outcome outcome = runMakePhantom("vertebra --voxel-mm 2 --out " + (folder / "v.nrrd") +
-                                               " --labels " + (folder / "l.nrrd"));
-        ASSERT_EQ(outcome.code, 0) << outcome.output;
-        const VertebraScan scan = scanVertebra(vertebraGrid(2e-3));
-        const RawVolume ct = importVolume(folder / "v.nrrd"), labels = importVolume(folder / "l.nrrd");
-        EXPECT_EQ(ct.values, scan.ct.values);
-        EXPECT_EQ(ct.geometry.dims, labels.geometry.dims);
-        EXPECT_EQ(ct.geometry.X_WV.position, labels.geometry.X_WV.position);
-        for (size_t n = 0; n < scan.labels.size(); ++n) ASSERT_EQ(labels.values[n], float(scan.labels[n]));
-    }
+}
 
-    TEST(MakePhantom, skullLabelsRefuseAnotherScan) {
-        const test::TemporaryFolder folder;
-        const std::string body = folder / "ball.nrrd";
-        ASSERT_EQ(runMakePhantom("body --kind sphere --dims 8 8 8 --out " + body).code, 0);
-        const Outcome outcome =
-            runMakePhantom("skull_labels --volume " + body + " --out " + (folder / "l.nrrd"));
-        EXPECT_EQ(outcome.code, 2);
-        EXPECT_NE(outcome.output.find(body + ": is not the CT head"), std::string::npos) << outcome.output;
-    }
+TEST(MakePhantom, vertebraAndLabelsLieOnOneGrid) {
+    const test::TemporaryFolder folder;
+    const Outcome outcome = runMakePhantom("vertebra --voxel-mm 2 --out " + (folder / "v.nrrd") +
+                                           " --labels " + (folder / "l.nrrd"));
+    ASSERT_EQ(outcome.code, 0) << outcome.output;
+    const VertebraScan scan = scanVertebra(vertebraGrid(2e-3));
+    const RawVolume ct = importVolume(folder / "v.nrrd"), labels = importVolume(folder / "l.nrrd");
+    EXPECT_EQ(ct.values, scan.ct.values);
+    EXPECT_EQ(ct.geometry.dims, labels.geometry.dims);
+    EXPECT_EQ(ct.geometry.X_WV.position, labels.geometry.X_WV.position);
+    for (size_t n = 0; n < scan.labels.size(); ++n) ASSERT_EQ(labels.values[n], float(scan.labels[n]));
+}
 
-    TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
-        const test::TemporaryFolder folder;
-        const std::string out = " --out " + (folder / "a.nrrd");
-        const std::pair<std::string, std::string> cases[] = {
-            {"", "subcommand"},
-            {"body --kind sphere", "--out"},
-            {"body --kind cube" + out, "cube"},
-            {"body --kind sphere --radius-mm -1" + out, "--radius-mm"},
-            {"body --kind sphere --radius-mm nan" + out, "--radius-mm"},
-            {"body --kind slab --bits 12" + out, "--bits"},
-            {"body --kind slab --dims 1 2 3" + out, "--dims"},
-            {"body --kind slab --dims 64 64" + out, "--dims"},
-            {"body --kind slab --voxel-mm 0" + out, "--voxel-mm"},
-            {"body --kind wedge --angle-deg 180" + out, "--angle-deg"},
-            {"body --kind slab --thicknes-mm 3" + out, "--thicknes-mm"},
-            {"body --kind slab --out /nonexistent/a.nrrd", "/nonexistent/a.nrrd"},
-            {"block", "--out"},
-            {"block --layers 1500 800" + out, "how thick"},
-            {"block --layers 1:99999" + out, "no layer"},
-            {"block --layers nan:5 4" + out, "no layer"},
-            {"block --layers x" + out, "no layer"},
-            {"block --size-mm 900 900 900" + out, "2^30"},
-            {"block --size-mm 1 1" + out, "--size-mm"},
-            {"tooth", "--out"},
-            {"vertebra", "--out"},
-            {"vertebra --voxel-mm 0.01" + out, "--voxel-mm"},
-            {"vertebra --voxel-mm 2 --out /nonexistent/a.nrrd", "/nonexistent/a.nrrd"},
-            {"skull_labels" + out, "--volume"},
-            {"skull_labels --volume /nonexistent/a.inv3" + out, "/nonexistent/a.inv3"},
-            {"tooth --noise-hu -5 --out " + folder.path().string(), "--noise-hu"},
-        };
-        for (const auto& [arguments, word] : cases) {
-            const Outcome outcome = runMakePhantom(arguments);
-            EXPECT_EQ(outcome.code, 2) << arguments;
-            EXPECT_EQ(outcome.output.rfind("error: ", 0), 0u) << outcome.output;
-            EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
-            EXPECT_NE(outcome.output.find(word), std::string::npos) << outcome.output;
-        }
-    }
+TEST(MakePhantom, skullLabelsRefuseAnotherScan) {
+    const test::TemporaryFolder folder;
+    const std::string body = folder / "ball.nrrd";
+    ASSERT_EQ(runMakePhantom("body --kind sphere --dims 8 8 8 --out " + body).code, 0);
+    const Outcome outcome = runMakePhantom("skull_labels --volume " + body + " --out " + (folder / "l.nrrd"));
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_NE(outcome.output.find(body + ": is not the CT head"), std::string::npos) << outcome.output;
+}
 
-    TEST(MakePhantom, helpIsNoError) {
-        EXPECT_EQ(runMakePhantom("body --help").code, 0);
+TEST(MakePhantom, badArgumentsGiveOneMessageAndCode2) {
+    const test::TemporaryFolder folder;
+    const std::string out = " --out " + (folder / "a.nrrd");
+    const std::pair<std::string, std::string> cases[] = {
+        {"", "subcommand"},
+        {"body --kind sphere", "--out"},
+        {"body --kind cube" + out, "cube"},
+        {"body --kind sphere --radius-mm -1" + out, "--radius-mm"},
+        {"body --kind sphere --radius-mm nan" + out, "--radius-mm"},
+        {"body --kind slab --bits 12" + out, "--bits"},
+        {"body --kind slab --dims 1 2 3" + out, "--dims"},
+        {"body --kind slab --dims 64 64" + out, "--dims"},
+        {"body --kind slab --voxel-mm 0" + out, "--voxel-mm"},
+        {"body --kind wedge --angle-deg 180" + out, "--angle-deg"},
+        {"body --kind slab --thicknes-mm 3" + out, "--thicknes-mm"},
+        {"body --kind slab --out /nonexistent/a.nrrd", "/nonexistent/a.nrrd"},
+        {"block", "--out"},
+        {"block --layers 1500 800" + out, "how thick"},
+        {"block --layers 1:99999" + out, "no layer"},
+        {"block --layers nan:5 4" + out, "no layer"},
+        {"block --layers x" + out, "no layer"},
+        {"block --size-mm 900 900 900" + out, "2^30"},
+        {"block --size-mm 1 1" + out, "--size-mm"},
+        {"tooth", "--out"},
+        {"vertebra", "--out"},
+        {"vertebra --voxel-mm 0.01" + out, "--voxel-mm"},
+        {"vertebra --voxel-mm 2 --out /nonexistent/a.nrrd", "/nonexistent/a.nrrd"},
+        {"skull_labels" + out, "--volume"},
+        {"skull_labels --volume /nonexistent/a.inv3" + out, "/nonexistent/a.inv3"},
+        {"tooth --noise-hu -5 --out " + folder.path().string(), "--noise-hu"},
+    };
+    for (const auto& [arguments, word] : cases) {
+        const Outcome outcome = runMakePhantom(arguments);
+        EXPECT_EQ(outcome.code, 2) << arguments;
+        EXPECT_EQ(outcome.output.rfind("error: ", 0), 0u) << outcome.output;
+        EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+        EXPECT_NE(outcome.output.find(word), std::string::npos) << outcome.output;
     }
+}
+
+TEST(MakePhantom, helpIsNoError) {
+    EXPECT_EQ(runMakePhantom("body --help").code, 0);
+}
 
 }  // namespace
 }  // namespace bonemill
