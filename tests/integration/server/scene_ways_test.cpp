@@ -28,9 +28,9 @@ std::vector<std::string> shippedScenes() {
 }
 
 // Copies, so that the phantoms that their relative paths name are those of this test.
-class ShippedScenes : public testing::Test {
+class SceneWays : public testing::Test {
   protected:
-    ShippedScenes() {
+    SceneWays() {
         fs::create_directories(folder_.path() / "deploy");
         fs::create_directories(folder_.path() / "build/data");
         fs::copy(kScenes, folder_.path() / "deploy/scenes");
@@ -77,7 +77,7 @@ void expectWellFormed(const scene::Scene& scene, const std::string& name) {
     EXPECT_FALSE(waypoints[waypoints.size() - 1].remove() || waypoints[waypoints.size() - 1].add());
 }
 
-void ShippedScenes::expectRuns(const LoadedScene& loaded) {
+void SceneWays::expectRuns(const LoadedScene& loaded) {
     const DeviceSetup setup = deviceSetupOf(loaded.scene);  // throws if the device cannot go that way
     EXPECT_GE(setup.path.duration(), 5);
     EXPECT_LE(setup.path.duration(), 25);
@@ -95,12 +95,9 @@ void ShippedScenes::expectRuns(const LoadedScene& loaded) {
     if (any([](const auto& w) { return w.remove() && !w.add(); })) {
         EXPECT_GT(result["removed_mm3"], 0);
     }
-    if (any([](const auto& w) { return w.add() && !w.remove(); })) {
-        EXPECT_GT(result["added_mm3"], 0);
-    }
 }
 
-TEST_F(ShippedScenes, LoadAndRunTheirOwnWay) {
+TEST_F(SceneWays, LoadAndRunTheirOwnWay) {
     int run = 0;
     for (const std::string& name : shippedScenes()) {
         SCOPED_TRACE(name);
