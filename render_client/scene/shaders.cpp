@@ -194,19 +194,21 @@ void main() {
     vec3 sheen = vec3(0.0);
 #ifdef FILM
     vec2 lying = inside ? vec2(0.0) : filmAt(p_M);
-    float fine = valueNoise(p_M / film_period * 150.0), coarse = valueNoise(p_M / film_period * 48.0 + 5.0);
-    float blood = smoothstep(0.10, 0.46, lying.x * (0.55 + 0.55 * fine + 0.45 * coarse));
-    float wet = max(smoothstep(0.05, 0.7, lying.y * (0.7 + 0.6 * coarse)), 0.75 * blood);
-    albedo = mix(albedo * (1.0 - 0.34 * wet), blood_colour * (0.75 + 0.45 * coarse), 0.95 * blood);
-    // The film's own surface is smoother than bone, but ripples.
-    vec3 ripple = vec3(fine, coarse, valueNoise(p_M / film_period * 90.0 + 9.0)) - 0.5;
-    vec3 film_normal = normalize(normal + 0.16 * ripple);
-    float grazing = pow(1.0 - max(dot(film_normal, to_eye), 0.0), 4.0);
-    vec3 film_mirror = reflect(-to_eye, film_normal);
-    float panel = smoothstep(0.88, 0.99, dot(film_mirror, key_direction));
-    float strip = smoothstep(0.86, 0.96, dot(film_mirror, kFillDirection));
-    sheen = wet * (0.04 + 0.80 * grazing) * kSky + wet * 0.16 * panel * kKeyColour * keyVisibility(p_C, normal)
-          + wet * 0.05 * strip * vec3(0.6, 0.8, 1.0);
+    if (lying.x + lying.y > 0.0) {  // noise is dear
+        float fine = valueNoise(p_M / film_period * 150.0), coarse = valueNoise(p_M / film_period * 48.0 + 5.0);
+        float blood = smoothstep(0.10, 0.46, lying.x * (0.55 + 0.55 * fine + 0.45 * coarse));
+        float wet = max(smoothstep(0.05, 0.7, lying.y * (0.7 + 0.6 * coarse)), 0.75 * blood);
+        albedo = mix(albedo * (1.0 - 0.34 * wet), blood_colour * (0.75 + 0.45 * coarse), 0.95 * blood);
+        // The film's own surface is smoother than bone, but ripples.
+        vec3 ripple = vec3(fine, coarse, valueNoise(p_M / film_period * 90.0 + 9.0)) - 0.5;
+        vec3 film_normal = normalize(normal + 0.16 * ripple);
+        float grazing = pow(1.0 - max(dot(film_normal, to_eye), 0.0), 4.0);
+        vec3 film_mirror = reflect(-to_eye, film_normal);
+        float panel = smoothstep(0.88, 0.99, dot(film_mirror, key_direction));
+        float strip = smoothstep(0.86, 0.96, dot(film_mirror, kFillDirection));
+        sheen = wet * (0.04 + 0.80 * grazing) * kSky + wet * 0.16 * panel * kKeyColour * keyVisibility(p_C, normal)
+              + wet * 0.05 * strip * vec3(0.6, 0.8, 1.0);
+    }
 #endif
 
     float facing = dot(normal, key_direction);
