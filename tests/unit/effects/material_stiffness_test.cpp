@@ -39,7 +39,7 @@ TEST(MaterialStiffness, IsNotThereWhereNoMaterialAsksForIt) {
     TissueBench plain = benchOf(1), soft = benchOf(0.5);
     EXPECT_TRUE(MaterialStiffness::isAskedFor(soft.config.effects.materials));
     const auto effects = [](const TissueBench& bench) {
-        return makeEffects(bench.config.effects, bench.bone, {1e-3, kBurr, 1000}).size();
+        return makeEffects(bench.config.effects, bench.bone, {1e-3, kBurr, kBurr, 1000, 1000}).size();
     };
     EXPECT_EQ(effects(plain), 0u);
     EXPECT_EQ(effects(soft), 1u);

@@ -54,7 +54,7 @@ TEST_F(SessionCommandsTest, TheThesisLawIsRefusedWhereAnEffectNeedsTheOther) {
     scene::Scene scene = sceneOf();
     scene.mutable_effects()->mutable_energy_removal();
     SessionCommands commands(scene, ball_.bone, recorder_,
-                             {ball_.history, accuracy_, tools_, stop_requested_}, false);
+                             {ball_.history, accuracy_, tools_, stop_requested_, bone_export_}, false);
     topics::Command command;
     command.set_role(topics::Viewer::OPERATOR);
     command.set_set_accuracy("thesis_2012");

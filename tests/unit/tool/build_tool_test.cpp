@@ -211,8 +211,11 @@ TEST(BuildTool, IsItsBurrAndAShaftWhereShapesAreNotGiven) {
             const Vector3d p(where(random), where(random), where(random));
             if (p.y() > 0) continue;
             const double burr = config.burr().signedDistance(p);
-            if (burr > 0) EXPECT_NEAR(field.sample(p).distance, burr, 1e-9) << p.transpose();
-            if (burr < 0) EXPECT_LT(field.sample(p).distance, 1e-12) << p.transpose();
+            if (burr > 0) {
+                EXPECT_NEAR(field.sample(p).distance, burr, 1e-9) << p.transpose();
+            } else if (burr < 0) {
+                EXPECT_LT(field.sample(p).distance, 1e-12) << p.transpose();
+            }
         }
         const double end = kind == BurrKind::kBall ? config.burr_radius : config.burr_length / 2;
         EXPECT_NEAR(field.box().min().y(), -end, 1e-12);

@@ -79,7 +79,9 @@ TEST(BoneDust, leavesInProportionFliesAndSettlesOnTheBone) {
     particles.clear();
     effects.dust()->appendTo(particles);
     for (const Particle& p : particles)
-        if (p.streak_V.norm() == 0) EXPECT_NEAR(p.p_V.z(), p.radius, 2e-5) << "lies on the floor";
+        if (p.streak_V.norm() == 0) {
+            EXPECT_NEAR(p.p_V.z(), p.radius, 2e-5) << "lies on the floor";
+        }
     for (int n = 0; n < 300; ++n) effects.advance(0.1);
     particles.clear();
     effects.dust()->appendTo(particles);
