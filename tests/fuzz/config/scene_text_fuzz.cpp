@@ -15,8 +15,8 @@ namespace {
 
 const std::string kScene = R"(
 name: "fuzz"
-volume { path: "v.nrrd" window_low: -1000 window_high: 3000 iso_value: 600 leaf_voxels: 16 }
-tool { shape { sphere { center_mm { x: 1 y: 2 z: 3 } radius_mm: 1.5 } } shape { cone { from_radius_mm: 0.3 } } }
+volume { path: "v.nrrd" window_low: -1000 window_high: 3000 iso_value: 600 leaf_voxels: 16 label_path: "l.nrrd" }
+tool { shape { sphere { center_mm { x: 1 y: 2 z: 3 } radius_mm: 1.5 } } shape { cone { from_radius_mm: 0.3 } } speed_rpm: 4e4 }
 coupling { max_speed_mm_per_s: 500 static_damping: 0.5 }
 effects { time_removal { rate_density_per_s: 1e4 } spindle {} bone_dust {} }
 material { name: "enamel" from_value: 2000 label: 3 color { red: 0.9 } }
