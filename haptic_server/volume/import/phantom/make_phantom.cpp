@@ -49,15 +49,15 @@ struct BodyArguments {
     double angle_deg = 40;
 };
 
-// valueAt(position in W) for each voxel.
+// value_at(position in W) for each voxel.
 template <class T, class ValueAt>
-void writeGrid(const std::string& file, const VolumeGeometry& grid, ValueAt&& valueAt) {
+void writeGrid(const std::string& file, const VolumeGeometry& grid, ValueAt&& value_at) {
     NrrdStream<T> stream(file, grid, NrrdEncoding::kGzip);
     std::vector<T> row(size_t(grid.dims.x()));
     for (int k = 0; k < grid.dims.z(); ++k)
         for (int j = 0; j < grid.dims.y(); ++j) {
             for (int i = 0; i < grid.dims.x(); ++i)
-                row[size_t(i)] = T(valueAt(grid.X_WV * grid.spacing.cwiseProduct(Eigen::Vector3d(i, j, k))));
+                row[size_t(i)] = T(value_at(grid.X_WV * grid.spacing.cwiseProduct(Eigen::Vector3d(i, j, k))));
             stream.append(row);
         }
     stream.close();
