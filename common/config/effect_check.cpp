@@ -1,5 +1,7 @@
 #include "common/config/effect_check.h"
 
+#include <algorithm>
+
 namespace bonemill {
 namespace {
 
@@ -59,6 +61,15 @@ void checkBallOnly(const scene::Scene& scene, const RefuseField& refuse) {
     }
 }
 
+void checkBleedingMaterials(const scene::Scene& scene, const RefuseField& refuse) {
+    const scene::Bleeding& bleeding = scene.effects().bleeding();
+    for (int n = 0; n < bleeding.material_size(); ++n)
+        if (std::ranges::none_of(scene.material(),
+                                 [&](const auto& m) { return m.name() == bleeding.material(n); }))
+            refuse(pathOf("bleeding") + ".material[" + std::to_string(n) + "]",
+                   "= \"" + bleeding.material(n) + "\" is no material of this scene");
+}
+
 }  // namespace
 
 const char* effectOfGradientLaw(const scene::Effects& effects) {
@@ -71,6 +82,7 @@ void checkEffects(const scene::Scene& scene, const RefuseField& refuse) {
     checkLaw(scene, refuse);
     checkSpeed(scene, refuse);
     checkBallOnly(scene, refuse);
+    checkBleedingMaterials(scene, refuse);
     if (scene.effects().has_time_removal() && scene.effects().has_energy_removal())
         refuse("effects.time_removal",
                "stands beside effects.energy_removal: bone goes by time or by energy, list one");

@@ -74,7 +74,8 @@ std::string line(const std::string& name, const std::string& parameters, const s
 
 std::string materialsText(const scene::Scene& scene, const EffectCosts* costs) {
     if (scene.material().empty()) return "";
-    std::string text = line("materials", std::to_string(scene.material_size()), costText("materials", costs));
+    std::string text =
+        line("materials", std::to_string(scene.material_size()), costText("material_stiffness", costs));
     for (const scene::Material& material : scene.material())
         text += "  " + line("material", parametersOf(material), "");
     return text;

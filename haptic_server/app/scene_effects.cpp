@@ -1,5 +1,6 @@
 #include "haptic_server/app/scene_effects.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/config/field_unit.h"
@@ -65,6 +66,8 @@ EffectConfigs effectConfigsOf(const scene::Scene& scene) {
     const scene::Effects& effects = scene.effects();
     EffectConfigs configs;
     configs.materials = materialTableOf(scene);
+    if (std::ranges::any_of(configs.materials, [](const auto& m) { return m.stiffness_factor != 1; }))
+        configs.material_stiffness.emplace();
     if (effects.has_energy_removal()) configs.energy_removal = energyRemovalOf(effects.energy_removal());
     if (effects.has_time_removal())
         configs.time_removal = {effects.time_removal().rate_density_per_s() * kDensityCountsPerUnit};

@@ -158,9 +158,9 @@ class Server {
     }
 
     void meshUntil(const std::stop_token& stop) {
-        const bool is_coloured = hasColouredMaterials(loaded_.scene);
+        const bool are_wanted = wantsVertexMaterials(loaded_.scene);
         MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_,
-                          is_coloured ? simulation_.tick.effects.properties.get() : nullptr);
+                          are_wanted ? simulation_.tick.effects.properties.get() : nullptr);
         const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
         loop(stop, MeshRounds::kPeriod, [&] {
             for (bool is_more = true; is_more && !stop.stop_requested();) {

@@ -41,8 +41,9 @@ std::vector<std::string> materialNamesOf(const scene::Scene& scene) {
     return names;
 }
 
-bool hasColouredMaterials(const scene::Scene& scene) {
-    return std::ranges::any_of(scene.material(), [](const scene::Material& m) { return m.has_color(); });
+bool wantsVertexMaterials(const scene::Scene& scene) {
+    return scene.effects().bleeding().material_size() > 0 ||
+           std::ranges::any_of(scene.material(), [](const scene::Material& m) { return m.has_color(); });
 }
 
 void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info) {

@@ -16,7 +16,7 @@ RecordedEffects recordedEffectsOf(const scene::Effects& effects);
 std::vector<std::string> materialNamesOf(const scene::Scene& scene);
 
 // A viewer is to show some material in its colour.
-bool hasColouredMaterials(const scene::Scene& scene);
+bool wantsVertexMaterials(const scene::Scene& scene);
 
 // What viewers are to know of effects and materials, nothing if the scene lists none.
 void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info);

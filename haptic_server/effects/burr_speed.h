@@ -27,10 +27,10 @@ inline double spinShare(double spin_speed, const Burr& burr) noexcept {
     return std::min(1.0, std::abs(spin_speed) * burr.radius / kSlowRim);
 }
 
-// Calls visit(contact, r, ρ) for each of the last tick's contacts on the burr.
+// Calls visit(contact, r, ρ) for each contact on the burr.
 template <class Visit>
 void forEachBurrContact(const EffectTick& tick, Visit&& visit) noexcept {
-    const Eigen::Vector3d axis = tick.axis();
+    const Eigen::Vector3d axis = tick.X_VT.rotation * Eigen::Vector3d::UnitY();  // of the contacts' tick
     for (size_t n = 0; n < tick.contacts.size(); ++n) {
         if (!tick.is_on_burr[n]) continue;
         const SurfaceContact& contact = tick.contacts[n];
@@ -40,11 +40,6 @@ void forEachBurrContact(const EffectTick& tick, Visit&& visit) noexcept {
     }
 }
 
-// What presses on the burr.
-struct BurrLoad {
-    double force = 0;   // N: Σ F
-    double moment = 0;  // N·m: Σ F ρ; times μ_c against the spin, times μ_c |Ω| the power
-};
 inline BurrLoad burrLoadOf(const EffectTick& tick) noexcept {
     BurrLoad load;
     forEachBurrContact(tick, [&](const SurfaceContact& contact, const Eigen::Vector3d&, double rho) {

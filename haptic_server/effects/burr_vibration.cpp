@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptic_server/effects/burr_speed.h"
-
 namespace bonemill {
 namespace {
 
@@ -21,7 +19,7 @@ double BurrVibration::wantedAmplitude(const EffectTick& tick) const noexcept {
     const Burr& burr = tick.tool->burr;
     const double slow = std::min(1.0, std::abs(tick.spin_speed) / (kTurn * kLowest));
     const double grit = burr.grit == BurrGrit::kDiamond ? config_.diamond_factor : 1;
-    const double by_load = config_.amplitude_per_force * burr.friction * burrLoadOf(tick).force;
+    const double by_load = config_.amplitude_per_force * burr.friction * tick.burr_load.force;
     return slow * grit * std::min(config_.max_amplitude, by_load);
 }
 

@@ -25,28 +25,28 @@ void addDamper(Matrix6d& damping, const Matrix3d& D, const Vector3d& r) noexcept
 
 void CuttingForce::restart() noexcept {
     pull_ = {};
-    felt_ = {};
-    power_ = force_ = 0;
 }
 
 CuttingForce::Pull CuttingForce::pullOf(const EffectTick& tick) const noexcept {
     Pull pull;
     const Burr& burr = tick.tool->burr;
-    const double spin = tick.spin_speed, share = spinShare(spin, burr);
-    if (share == 0) return pull;
+    const double spin = tick.spin_speed, share = spinShare(spin, burr), moment = tick.burr_load.moment;
+    const double held_per_moment = moment > 0 ? (1 - share) * tick.axis_load / moment : 0;
+    if (share == 0 && held_per_moment == 0) return pull;
     const Vector3d axis = tick.axis();
-    forEachBurrContact(tick, [&](const SurfaceContact& contact, const Vector3d& r, double) {
+    forEachBurrContact(tick, [&](const SurfaceContact& contact, const Vector3d& r, double rho) {
         const double spread = patchSpread(double(tick.place_area[contact.candidate]));
         const Vector3d n = contact.push_V.cast<double>();
         const Matrix3d tangential = Matrix3d::Identity() - n * n.transpose();
-        const Vector3d v_spin = tangential * (spin * axis.cross(r));
+        const Vector3d by_turn = tangential * axis.cross(r), v_spin = spin * by_turn;
         const Vector3d v_tool = tangential * (tick.velocity + tick.angular_velocity.cross(r));
         const double v_mean = std::sqrt((v_spin + v_tool).squaredNorm() + spin * spin * spread);
         const double per_speed =
             share * burr.friction * double(contact.force) / (v_mean + config_.slow_speed);
-        const Vector3d force = -per_speed * v_spin;
+        const double per_turn = per_speed * spin + held_per_moment * double(contact.force) / rho;
+        const Vector3d force = -per_turn * by_turn;
         pull.of_spin.force += force;
-        pull.of_spin.torque += r.cross(force) - per_speed * spin * spread * axis;
+        pull.of_spin.torque += r.cross(force) - per_turn * spread * axis;
         addDamper(pull.damping, per_speed * tangential, r);
     });
     return pull;
@@ -58,9 +58,6 @@ void CuttingForce::begin(EffectTick& tick) noexcept {
     pull_.of_spin.force += way * (now.of_spin.force - pull_.of_spin.force);
     pull_.of_spin.torque += way * (now.of_spin.torque - pull_.of_spin.torque);
     pull_.damping += way * (now.damping - pull_.damping);
-    const BurrLoad load = burrLoadOf(tick);
-    force_ = load.force;
-    power_ = tick.tool->burr.friction * load.moment * std::abs(tick.spin_speed);
 }
 
 // Bounded from below together with the solve's own damping.
@@ -77,11 +74,9 @@ EnergyTerm CuttingForce::energy(const EffectTick& tick, const Pose& X_VT) const 
 }
 
 void CuttingForce::finish(EffectTick& tick) noexcept {
-    const double against = tick.spin_speed < 0 ? 1 : -1;
+    const double against = (tick.spin_speed != 0 ? tick.spin_speed : tick.axis_load) < 0 ? 1 : -1;
     const EnergyTerm at_end = energy(tick, tick.X_VT);
     tick.record.axis_torque = float(against * tick.axis().dot(at_end.wrench.torque));
-    tick.record.cutting_power = float(power_);
-    tick.record.burr_force = float(force_);
 }
 
 }  // namespace bonemill

@@ -3,7 +3,9 @@
 // v (v the tool's own motion there, tangential parts) and pulls with
 //   F_t = −s μ_c F v_s / (|v_s| + v_ε),   |v_s| the mean over its patch (burr_speed.h),
 // so that about the axis M Ω = μ_c Σ F v_c · v_c / (v_c + v_ε), v_c = |Ω| ρ. s fades from 1 to 0 as
-// the burr comes to rest: what stands still sticks, and is surface_friction's.
+// the burr comes to rest. What stands still sticks, and is surface_friction's; but a burr that a spindle
+// cannot turn passes the motor's torque on, by forces in the direction of the spin in proportion to F:
+//   F_t = −(1 − s) (L/Σ F ρ) F (a × r)/ρ,   L the spindle's axis_load.
 //
 // From the last tick's contacts, smoothed with smoothing_time. In the solve it is a constant wrench for the
 // spin, and for the tool's own motion a damper: force that follows a velocity of the last tick would shake a
@@ -36,8 +38,6 @@ class CuttingForce final : public HapticEffect {
 
     CuttingForceConfig config_;
     Pull pull_;
-    Wrench felt_;                   // at the tick's end
-    double power_ = 0, force_ = 0;  // W, N: of all contacts on the burr
 };
 
 }  // namespace bonemill

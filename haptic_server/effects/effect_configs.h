@@ -47,6 +47,9 @@ struct SurfaceFrictionConfig {
     double coefficient = 0.2;           // μ
     double presliding_stiffness = 5e4;  // N/m
 };
+// By the materials' stiffness_factor; needs EffectConfigs::properties.
+struct MaterialStiffnessConfig {};
+
 // Needs materials with is_protected, and EffectConfigs::protected_field.
 struct ProtectedStructuresConfig {
     double warning_distance = 2e-3;  // m
@@ -73,6 +76,7 @@ struct EffectConfigs {
 
     // In the order in which they act.
     std::optional<SpindleConfig> spindle;
+    std::optional<MaterialStiffnessConfig> material_stiffness;  // where a material has a factor
     std::optional<EnergyRemovalConfig> energy_removal;
     std::optional<CuttingForceConfig> cutting_force;
     std::optional<SurfaceFrictionConfig> surface_friction;
@@ -84,11 +88,12 @@ struct EffectConfigs {
     std::optional<ProtectedStructuresConfig> protected_structures;
 };
 
-// Calls visit(name as in the scene, std::optional<Config>&) for each effect, in the order in which they act.
-// Configs: EffectConfigs, const or not.
+// Calls visit(name as in the scene's `effects` but for material_stiffness, std::optional<Config>&) for each
+// effect, in the order in which they act. Configs: EffectConfigs, const or not.
 template <class Configs, class Visit>
 void forEachEffect(Configs& configs, Visit&& visit) {
     visit("spindle", configs.spindle);
+    visit("material_stiffness", configs.material_stiffness);
     visit("energy_removal", configs.energy_removal);
     visit("cutting_force", configs.cutting_force);
     visit("surface_friction", configs.surface_friction);

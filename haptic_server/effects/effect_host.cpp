@@ -1,6 +1,9 @@
 #include "haptic_server/effects/effect_host.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "haptic_server/effects/burr_speed.h"
 
 namespace bonemill {
 
@@ -17,6 +20,7 @@ void EffectHost::restart() noexcept {
     for (const auto& effect : effects_) effect->restart();
     tick_.contacts = {};
     tick_.is_on_burr = {};
+    tick_.burr_load = {};
 }
 
 void EffectHost::begin(const EffectTick& start) noexcept {
@@ -29,6 +33,7 @@ void EffectHost::begin(const EffectTick& start) noexcept {
     tick_.X_VT_start = start.X_VT_start;
     tick_.X_VT_device = start.X_VT_device;
     tick_.spin_speed = start.is_pedal_down ? start.tool->burr.speed : 0;
+    tick_.axis_load = 0;
     for (const auto& effect : effects_) effect->begin(tick_);
 }
 
@@ -74,6 +79,7 @@ void EffectHost::afterSolve(const Pose& X_VT, SpoModel& model) noexcept {
         const Eigen::Vector3f r_T = R_TV * contacts_[n].r_V;
         is_on_burr_[n] = tick_.tool->burr.signedDistance(r_T.cast<double>()) < burr_slack_;
     }
+    tick_.burr_load = burrLoadOf(tick_);
 }
 
 void EffectHost::mill(BoneModel& bone, MillingResult& result) noexcept {
@@ -83,6 +89,12 @@ void EffectHost::mill(BoneModel& bone, MillingResult& result) noexcept {
 const EffectRecord& EffectHost::finish() noexcept {
     tick_.record = {};
     tick_.record.spin_speed = float(tick_.spin_speed);
+    if (any(HapticEffect::kReadsContacts)) {
+        const BurrLoad& load = tick_.burr_load;
+        tick_.record.burr_force = float(load.force);
+        tick_.record.cutting_power =
+            float(tick_.tool->burr.friction * load.moment * std::abs(tick_.spin_speed));
+    }
     for (const auto& effect : effects_) effect->finish(tick_);
     return tick_.record;
 }

@@ -1,5 +1,5 @@
 // What the effects of one tick tell the rest of the server; part of TickRecord. Zero without an effect that
-// says so.
+// says so; the burr's force and power without one that reads contacts.
 #pragma once
 
 #include <cstdint>

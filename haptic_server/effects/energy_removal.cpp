@@ -23,7 +23,7 @@ EnergyRemoval::EnergyRemoval(const EnergyRemovalConfig& config, const EffectConf
 
 void EnergyRemoval::begin(EffectTick& tick) noexcept {
     is_cutting_ = tick.may_mill && !tick.is_add_wanted && tick.spin_speed != 0;
-    burr_force_ = cutting_power_ = removal_power_ = removed_energy_ = 0;
+    removal_power_ = removed_energy_ = 0;
 }
 
 double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
@@ -85,8 +85,6 @@ double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bon
             std::abs(tick.spin_speed) * rubbingRadius(contact.r_V.cast<double>(), axis, area);
         const double above = std::max(0.0, force - config_.threshold_pressure * area);
         const double of_contact = burr.friction * speed * above * tick.dt;
-        burr_force_ += force;
-        cutting_power_ += burr.friction * speed * force;
         energy += of_contact;
         shift_.add(bone, tick.candidates->patch[contact.candidate], of_contact, double(contact.depth));
     }
@@ -108,8 +106,6 @@ void EnergyRemoval::mill(EffectTick& tick, BoneModel& bone, MillingResult& resul
 }
 
 void EnergyRemoval::finish(EffectTick& tick) noexcept {
-    tick.record.burr_force = float(burr_force_);
-    tick.record.cutting_power = float(cutting_power_);
     tick.record.removal_power = float(removal_power_);
     tick.record.removed_energy = float(removed_energy_);
 }

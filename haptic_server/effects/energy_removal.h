@@ -63,7 +63,7 @@ class EnergyRemoval final : public HapticEffect {
     bool is_cutting_ = false;
     double account_ = 0;  // J not yet spent; negative: too much was
     // Of this tick.
-    double burr_force_ = 0, cutting_power_ = 0, removal_power_ = 0, removed_energy_ = 0;
+    double removal_power_ = 0, removed_energy_ = 0;
 };
 
 }  // namespace bonemill

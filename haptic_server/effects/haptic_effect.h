@@ -19,6 +19,12 @@
 
 namespace bonemill {
 
+// What presses on the burr.
+struct BurrLoad {
+    double force = 0;   // N: Σ F
+    double moment = 0;  // N·m: Σ F ρ; times μ_c against the spin, times μ_c |Ω| the power
+};
+
 // What effects see of the tick, and tell each other. SI, axes V unless the name says otherwise.
 struct EffectTick {
     // From the start of the tick on.
@@ -31,6 +37,7 @@ struct EffectTick {
     Pose X_VT_start, X_VT_device;
     double spin_speed =
         0;  // rad/s about T's +y; without a spindle the full speed as soon as the pedal is down
+    double axis_load = 0;  // N·m about T's +y: what the bone takes of the torque of a spindle
 
     // After the solve.
     Pose X_VT;
@@ -41,6 +48,7 @@ struct EffectTick {
     std::span<const SurfaceContact> contacts;  // of the whole tool
     std::span<const uint8_t> is_on_burr;       // per contact
     std::span<const float> place_area;         // per candidate: what it stands for, m²
+    BurrLoad burr_load;                        // of the contacts on the burr
     const Candidates* candidates = nullptr;    // of the last gathering
 
     EffectRecord

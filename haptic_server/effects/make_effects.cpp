@@ -17,7 +17,7 @@ namespace bonemill {
 EffectList makeEffects(const EffectConfigs& configs, const BoneModel& bone, const EffectRoom& room) {
     EffectList effects;
     if (configs.spindle) effects.push_back(std::make_unique<Spindle>(*configs.spindle));
-    if (configs.properties && MaterialStiffness::isAskedFor(configs.materials))
+    if (configs.material_stiffness)
         effects.push_back(std::make_unique<MaterialStiffness>(configs.properties, configs.materials,
                                                               bone.volume.spacing()));
     if (configs.energy_removal)

@@ -6,11 +6,6 @@
 
 namespace bonemill {
 
-bool MaterialStiffness::isAskedFor(const MaterialTable& materials) noexcept {
-    return std::any_of(materials.begin(), materials.end(),
-                       [](const MaterialProperties& material) { return material.stiffness_factor != 1; });
-}
-
 MaterialStiffness::MaterialStiffness(std::shared_ptr<const BoneProperties> properties,
                                      const MaterialTable& materials, const Eigen::Vector3d& spacing)
     : HapticEffect(kScales), properties_(std::move(properties)), spacing_(spacing.cast<float>()) {

@@ -9,9 +9,6 @@ namespace bonemill {
 
 class MaterialStiffness final : public HapticEffect {
   public:
-    // Does any material ask for it?
-    static bool isAskedFor(const MaterialTable& materials) noexcept;
-
     MaterialStiffness(std::shared_ptr<const BoneProperties> properties, const MaterialTable& materials,
                       const Eigen::Vector3d& spacing);
     const char* name() const noexcept override { return "material_stiffness"; }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptic_server/effects/burr_speed.h"
-
 namespace bonemill {
 namespace {
 
@@ -12,11 +10,15 @@ constexpr double kStandsBelow = 0.05;    // of the full speed
 constexpr double kShortestStall = 0.05;  // s
 constexpr double kSlowStart = 2;         // a run-up to that takes this many times as long under load
 
+double motorTorque(const SpindleConfig& config, double wanted, double speed) noexcept {
+    return std::clamp(config.droop * (wanted - speed), -config.max_torque, config.max_torque);
+}
+
 }  // namespace
 
 void Spindle::restart() noexcept {
     speed_ = 0;
-    load_ = 0;
+    held_ = 0;
     stands_for_ = 0;
 }
 
@@ -25,9 +27,7 @@ void Spindle::restart() noexcept {
 double Spindle::advanced(const SpindleConfig& config, double speed, double wanted, double load,
                          double dt) noexcept {
     const double momentum = config.inertia / dt * speed;
-    const auto motor = [&](double at) {
-        return std::clamp(config.droop * (wanted - at), -config.max_torque, config.max_torque);
-    };
+    const auto motor = [&](double at) { return motorTorque(config, wanted, at); };
     const double drive = momentum + motor(0);
     if (std::abs(drive) <= load) return 0;
     const double driven = momentum - std::copysign(load, drive);
@@ -41,10 +41,13 @@ double Spindle::advanced(const SpindleConfig& config, double speed, double wante
 void Spindle::begin(EffectTick& tick) noexcept {
     const Burr& burr = tick.tool->burr;
     const double wanted = tick.is_pedal_down ? burr.speed : 0;
-    load_ = burr.friction * burrLoadOf(tick).moment;
-    speed_ = advanced(config_, speed_, wanted, load_, tick.dt);
+    const double load = burr.friction * tick.burr_load.moment;
+    speed_ = advanced(config_, speed_, wanted, load, tick.dt);
+    held_ =
+        speed_ == 0 ? std::clamp(motorTorque(config_, wanted, 0), -load, load) : std::copysign(load, speed_);
     watch(wanted, tick.dt);
     tick.spin_speed = speed_;
+    tick.axis_load = held_;
 }
 
 void Spindle::watch(double wanted, double dt) noexcept {
@@ -55,7 +58,7 @@ void Spindle::watch(double wanted, double dt) noexcept {
 
 void Spindle::finish(EffectTick& tick) noexcept {
     if (isStalled()) tick.record.events |= kEventSpindleStalled;
-    tick.record.axis_torque = speed_ == 0 ? 0 : float(load_);
+    tick.record.axis_torque = float(std::abs(held_));
 }
 
 }  // namespace bonemill

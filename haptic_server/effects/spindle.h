@@ -3,7 +3,8 @@
 //   J dΩ/dt = clamp(k (Ω₀ − Ω), ±T) − M sgn(Ω) − c Ω,   M = μ_c Σ F ρ over the burr's contacts
 //   (burr_speed.h),
 // one implicit Euler step a tick: k may be as stiff as one likes. M is dry friction, from the last tick's
-// contacts: it stops the burr, at exactly 0, and never drives it. Sets EffectTick::spin_speed.
+// contacts: it stops the burr, at exactly 0, and never drives it. A burr that stands under load takes
+// as much of M as the motor gives. Sets EffectTick::spin_speed and axis_load.
 //
 // Tick thread, RT-safe.
 #pragma once
@@ -34,7 +35,7 @@ class Spindle final : public HapticEffect {
 
     SpindleConfig config_;
     double speed_ = 0;          // rad/s
-    double load_ = 0;           // N·m
+    double held_ = 0;           // N·m: what the bone takes, with the sign of the spin
     double stands_for_ = 0;     // s
     double longest_start_ = 0;  // s
 };

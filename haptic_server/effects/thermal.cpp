@@ -15,36 +15,33 @@ constexpr size_t kMostSources = 256;  // in a tick; of more contacts every nth t
 Thermal::Thermal(const ThermalConfig& config, const BoneModel& bone, double dt)
     : HapticEffect(kReadsContacts), config_(config), heat_(config.heat, bone.volume, dt) {}
 
-// Returns the cutting power, W.
-double Thermal::putIn(const EffectTick& tick) noexcept {
+void Thermal::putIn(const EffectTick& tick) noexcept {
     const double per_moment = tick.tool->burr.friction * std::abs(tick.spin_speed);  // W per N·m
-    if (per_moment == 0) return 0;
+    if (per_moment == 0) return;
     size_t count = 0;
-    double moment = 0, chosen = 0;
+    double chosen = 0;
     const size_t every = tick.contacts.size() / kMostSources + 1;
     const size_t first = turn_++ % every;
     const auto isChosen = [&](size_t n) { return n % every == first; };
     forEachBurrContact(tick, [&](const SurfaceContact& contact, const Eigen::Vector3d&, double rho) {
-        moment += double(contact.force) * rho;
         if (isChosen(count++)) chosen += double(contact.force) * rho;
     });
-    if (chosen == 0) return per_moment * moment;
-    const double heat_per_moment = config_.heat_share * per_moment * tick.dt * (moment / chosen);
+    if (chosen == 0) return;
+    const double heat_per_moment =
+        config_.heat_share * per_moment * tick.dt * (tick.burr_load.moment / chosen);
     count = 0;
     forEachBurrContact(tick, [&](const SurfaceContact& contact, const Eigen::Vector3d& r, double rho) {
         if (!isChosen(count++)) return;
         heat_.addHeat(tick.X_VT.position + r, -contact.push_V.cast<double>(),
                       heat_per_moment * double(contact.force) * rho);
     });
-    return per_moment * moment;
 }
 
 void Thermal::finish(EffectTick& tick) noexcept {
-    const double power = putIn(tick);
+    putIn(tick);
     heat_.irrigate(tick.X_VT.position, tick.is_pedal_down ? config_.irrigation_radius : 0);
     heat_.step();
     EffectRecord& record = tick.record;
-    if (record.cutting_power == 0) record.cutting_power = float(power);
     record.temperature = float(heat_.hottest());
     record.necrotic_volume = float(heat_.necroticVolume());
     if (heat_.hottest() >= config_.heat.necrosis_temperature) record.events |= kEventTooHot;

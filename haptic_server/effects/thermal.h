@@ -21,7 +21,7 @@ class Thermal final : public HapticEffect {
     void finish(EffectTick& tick) noexcept override;
 
   private:
-    double putIn(const EffectTick& tick) noexcept;
+    void putIn(const EffectTick& tick) noexcept;
 
     ThermalConfig config_;
     HeatGrid heat_;

@@ -18,6 +18,7 @@ void Bleeding::open(std::span<const SurfacePoint> cut, const SurfaceFilm& film) 
     const float tight = kTightness * film.cell();
     for (const SurfacePoint& point : cut) {
         if (wounds_.size() >= kMostWounds) return;
+        if (!bleeds_[point.material]) continue;
         const auto is_near = [&](const Wound& w) {
             return (w.at.p_V - point.p_V).squaredNorm() < tight * tight;
         };

@@ -4,6 +4,7 @@
 // Frame V, m, s. One thread. The same inputs and steps give the same film.
 #pragma once
 
+#include <bitset>
 #include <span>
 
 #include "proto/scene.pb.h"
@@ -13,11 +14,14 @@
 
 namespace bonemill {
 
+using MaterialSet = std::bitset<256>;
+
 class Bleeding {
   public:
-    explicit Bleeding(const scene::Bleeding& wish) : wish_(wish) {}
+    // bleeds: by SurfacePoint::material.
+    Bleeding(const scene::Bleeding& wish, const MaterialSet& bleeds) : wish_(wish), bleeds_(bleeds) {}
 
-    // Bone was cut here.
+    // Bone was cut here; only that of the materials that bleed does.
     void open(std::span<const SurfacePoint> cut, const SurfaceFilm& film);
     // The burr has cut all within: what bled there is gone.
     void cutAway(const Eigen::Vector3f& p_V, float radius);
@@ -43,6 +47,7 @@ class Bleeding {
     void run(double dt, const Eigen::Vector3f& up_V, const BoneSurface& surface, SurfaceFilm& film);
 
     scene::Bleeding wish_;
+    MaterialSet bleeds_;
     EffectRandom random_{47};
     std::vector<Wound> wounds_;
     std::vector<Run> runs_;

@@ -29,7 +29,7 @@ static_assert(std::endian::native == std::endian::little, "placeOf() reads x, y,
 SurfacePoint BoneSurface::Leaf::point(size_t vertex) const {
     const PackedVertex& v = vertices[vertex];
     return {origin + step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z)),
-            decodeNormal(v.octahedral_u, v.octahedral_v)};
+            decodeNormal(v.octahedral_u, v.octahedral_v), materials.empty() ? uint8_t(0) : materials[vertex]};
 }
 
 Eigen::Array3i BoneSurface::Leaf::bucketOf(const Eigen::Vector3f& p) const {
@@ -73,7 +73,8 @@ void BoneSurface::Leaf::findNearer(const Eigen::Vector3f& p_V, float& reach,
 
 void BoneSurface::set(const NodeMesh& mesh) {
     if (mesh.isEmpty()) return remove(mesh.leaf);
-    Leaf leaf{mesh.origin, mesh.step, mesh.vertices, {}, {}, {}};
+    Leaf leaf{mesh.origin, mesh.step, mesh.vertices, {}, {}, {}, {}};
+    if (mesh.materials.size() == mesh.vertices.size()) leaf.materials = mesh.materials;
     for (size_t i = 0; i < leaf.vertices.size(); ++i) leaf.box.extend(leaf.point(i).p_V);
     const auto known = leaves_.find(mesh.leaf);
     if (tracks_fresh_) noteFresh(known == leaves_.end() ? nullptr : &known->second, leaf);

@@ -38,6 +38,7 @@ class BoneSurface {
     struct Leaf {
         Eigen::Vector3f origin, step;
         std::vector<PackedVertex> vertices;
+        std::vector<uint8_t> materials;  // per vertex, or none
         Eigen::AlignedBox3f box;
         mutable std::vector<uint32_t> starts, order;  // vertices by bucket; empty: not sorted yet
         SurfacePoint point(size_t vertex) const;

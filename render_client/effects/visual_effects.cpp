@@ -16,15 +16,23 @@ SurfaceFilm filmFor(double burr_radius) {
     return SurfaceFilm(float(std::clamp(burr_radius / kCellsPerRadius, kSmallestCell, kLargestCell)));
 }
 
+MaterialSet bleedingOf(const scene::Bleeding& wish, const VisualEffects::Materials& materials) {
+    MaterialSet bleeds;
+    if (wish.material().empty()) return bleeds.set();
+    for (size_t n = 0; n < size_t(materials.size()) && n + 1 < bleeds.size(); ++n)
+        bleeds[n + 1] = std::ranges::count(wish.material(), materials[int(n)].name()) > 0;
+    return bleeds;
+}
+
 }  // namespace
 
 bool VisualEffects::anyIn(const scene::Effects& wish) {
     return wish.has_bone_dust() || wish.has_bleeding() || wish.has_irrigation() || wish.has_burr_spin();
 }
 
-VisualEffects::VisualEffects(const scene::Effects& wish, double burr_radius) {
+VisualEffects::VisualEffects(const scene::Effects& wish, double burr_radius, const Materials& materials) {
     if (wish.has_bone_dust()) dust_.emplace(wish.bone_dust());
-    if (wish.has_bleeding()) bleeding_.emplace(wish.bleeding());
+    if (wish.has_bleeding()) bleeding_.emplace(wish.bleeding(), bleedingOf(wish.bleeding(), materials));
     if (wish.has_irrigation()) irrigation_.emplace(wish.irrigation());
     if (wish.has_burr_spin()) spin_.emplace(wish.burr_spin());
     if (bleeding_ || irrigation_) film_.emplace(filmFor(burr_radius));

@@ -17,10 +17,12 @@ namespace bonemill {
 
 class VisualEffects {
   public:
+    using Materials = google::protobuf::RepeatedPtrField<scene::Material>;
     static constexpr double kStep = 1.0 / 120;       // s
     static constexpr double kLongestAdvance = 0.25;  // s of one call; what is beyond is left out
 
-    VisualEffects(const scene::Effects& wish, double burr_radius);
+    // materials: the scene's, by name those that bleed are found.
+    VisualEffects(const scene::Effects& wish, double burr_radius, const Materials& materials = {});
     static bool anyIn(const scene::Effects& wish);
 
     // A new tool state: what was removed since the one before leaves the burr now.

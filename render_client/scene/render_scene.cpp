@@ -58,7 +58,8 @@ void RenderScene::makeEffects(const topics::SceneInfo& info) {
     if (!has_effects_ || text == effects_text_) return early_nodes_.clear();
     effects_text_ = text;
     effects_.reset();
-    if (VisualEffects::anyIn(wish)) effects_ = std::make_unique<VisualEffects>(wish, info.burr_radius_m());
+    if (VisualEffects::anyIn(wish))
+        effects_ = std::make_unique<VisualEffects>(wish, info.burr_radius_m(), info.materials());
     renderer_.prepare({wish.has_bleeding() || wish.has_irrigation(),
                        wish.has_bone_dust() || wish.has_irrigation(), wish.has_burr_spin()});
     effect_picture_ = {};

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "haptic_server/effects/haptic_effect.h"
+#include "haptic_server/effects/burr_speed.h"
 #include "tests/support/random_direction.h"
 
 namespace bonemill::test {
@@ -31,6 +31,7 @@ struct ContactSet {
         tick.contacts = contacts;
         tick.is_on_burr = on_burr;
         tick.place_area = areas;
+        tick.burr_load = burrLoadOf(tick);
     }
 
     std::vector<SurfaceContact> contacts;

@@ -83,6 +83,10 @@ std::vector<std::string> tickEffectNames() {
 }
 
 scene::Scene withoutEffect(scene::Scene scene, const std::string& name) {
+    if (name == kMaterialStiffness) {
+        for (scene::Material& material : *scene.mutable_material()) material.clear_stiffness_factor();
+        return scene;
+    }
     scene::Effects& effects = *scene.mutable_effects();
     effects.GetReflection()->ClearField(&effects, effects.GetDescriptor()->FindFieldByName(name));
     return scene;

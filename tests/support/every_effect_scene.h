@@ -30,6 +30,9 @@ scene::Scene everyEffectScene(const EveryEffectBlock& block, const std::string& 
 // As text, to this file.
 void writeScene(const std::string& file, const scene::Scene& scene);
 
+// The one that is not a field of the scene's `effects`.
+inline constexpr const char* kMaterialStiffness = "material_stiffness";
+
 // As scene::Effects calls those of the tick.
 std::vector<std::string> tickEffectNames();
 scene::Scene withoutEffect(scene::Scene scene, const std::string& name);

@@ -126,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, EffectIdentity, testing::Values(test::kByTime, te
 
 TEST(EffectConfigs, EveryEffectOfTheTickIsAFieldOfTheScene) {
     std::vector<std::string> fields = test::tickEffectNames();
-    fields.push_back("materials");
+    fields.push_back(test::kMaterialStiffness);
     const EffectConfigs configs;
     forEachEffect(configs, [&](const char* name, const auto& config) {
         EXPECT_FALSE(config) << name << ": what is not listed must not be there";

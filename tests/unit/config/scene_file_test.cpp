@@ -196,6 +196,15 @@ TEST_F(SceneFile, effectsThatTurnNeedTheToolsSpeed) {
               "accepted");
 }
 
+TEST_F(SceneFile, bleedingNamesMaterialsOfTheScene) {
+    const std::string scene =
+        "volume { path: 'v' } material { name: 'core' from_value: 100 }\n"
+        "effects { bleeding { material: 'core'\n material: ";
+    EXPECT_EQ(refusal(scene + "'corr' } }"),
+              "s.textproto:3: field `effects.bleeding.material[1]` = \"corr\" is no material of this scene");
+    EXPECT_EQ(refusal(scene + "'core' } }"), "accepted");
+}
+
 TEST_F(SceneFile, effectsThatReadContactsNeedTheGradientLaw) {
     const std::string scene =
         "volume { path: 'v' } tool { speed_rpm: 9000 }\neffects { energy_removal {} }\n";

@@ -40,7 +40,6 @@ TEST_F(CuttingForceTest, PullsAgainstTheSpinWithFrictionTimesForce) {
     const double v = bench.tool.burr.speed * bench.tool.burr.radius;
     EXPECT_LT((felt.force + 0.5 * 4 * v / (v + kPrompt.slow_speed) * axis.cross(out)).norm(), 1e-6);
     EXPECT_NEAR(bench.tick.record.axis_torque, 0.5 * 4 * 1e-3, 1e-5);
-    EXPECT_NEAR(bench.tick.record.burr_force, 4, 1e-6);
 }
 
 // M Ω = μ_c Σ F v · v/(v + v_ε), for any contacts; with v_ε out of the way, the power of friction.
@@ -61,7 +60,7 @@ TEST_F(CuttingForceTest, AxisTorqueTimesSpinIsThePowerOfFriction) {
         }
         EXPECT_NEAR(-axis.dot(felt.torque) * spin, with_slow, 1e-5 * power);
         EXPECT_NEAR(bench.tick.record.axis_torque * std::abs(spin), with_slow, 1e-5 * power);
-        EXPECT_NEAR(bench.tick.record.cutting_power, power, 1e-5 * power);
+        EXPECT_NEAR(0.5 * bench.tick.burr_load.moment * std::abs(spin), power, 1e-5 * power);
     }
     EXPECT_LT(kPrompt.slow_speed, 0.01 * 4000 * bench.tool.burr.radius);  // what "out of the way" means
 }
@@ -93,6 +92,18 @@ TEST_F(CuttingForceTest, HoldsBackTheToolsOwnMotion) {
     EXPECT_LT(change.dot(step), 0);
 }
 
+// What it passes on is the motor's torque, whichever way that turns, and all of it whatever touches where.
+TEST_F(CuttingForceTest, AStandingBurrPassesTheMotorsTorqueOn) {
+    contacts.addOnBall(random, bench.tool.burr.radius, 100);
+    bench.tick.spin_speed = 0;
+    for (const double load : {2e-3, -2e-3}) {
+        bench.tick.axis_load = load;
+        const Wrench felt = feltAfterBegin().wrench;
+        EXPECT_NEAR(bench.tick.axis().dot(felt.torque), -load, 1e-6 * std::abs(load));
+        EXPECT_NEAR(bench.tick.record.axis_torque, 2e-3, 1e-8);
+    }
+}
+
 TEST_F(CuttingForceTest, IsNothingForAStandingBurrAndOffTheBurr) {
     contacts.addOnBall(random, bench.tool.burr.radius, 10);
     bench.tick.spin_speed = 0;
@@ -101,7 +112,7 @@ TEST_F(CuttingForceTest, IsNothingForAStandingBurrAndOffTheBurr) {
     bench.tick.spin_speed = bench.tool.burr.speed;
     std::fill(contacts.on_burr.begin(), contacts.on_burr.end(), uint8_t(0));
     EXPECT_EQ(feltAfterBegin().wrench.force.norm(), 0);
-    EXPECT_EQ(bench.tick.record.burr_force, 0);
+    EXPECT_EQ(bench.tick.burr_load.force, 0);
 }
 
 // The pole of a burr does not move: what is left there is the patch's own turning.

@@ -125,5 +125,23 @@ TEST(CuttingForceInTick, GivesTheHandTheSixthDegreeOfFreedom) {
     EXPECT_NEAR(felt.force.x(), friction * normal, 0.05 * friction * normal);
 }
 
+// Too weak a motor: the burr stands, and the hand holds the whole torque of the motor.
+TEST(CuttingForceInTick, AStalledBurrHoldsTheMotorsTorque) {
+    constexpr double kWeak = 0.2e-3;  // N·m
+    Scene scene(planeBone(), burr(), balanced(), 1e-3, [](TickConfig& config) {
+        withoutMilling(config).burr.speed = 4000;
+        config.effects.cutting_force.emplace();
+        config.effects.spindle.emplace().max_torque = kWeak;
+    });
+    Stepper stepper(scene);
+    for (int n = 0; n < 1500; ++n)
+        stepper.step(abovePlane(-1.5e-3 * std::min(1.0, n / 200.0)), kButtonRemove);
+    const EffectRecord& record = stepper.record().effects;
+    EXPECT_TRUE(record.events & kEventSpindleStalled);
+    EXPECT_EQ(record.spin_speed, 0);
+    EXPECT_NEAR(record.axis_torque, kWeak, 0.01 * kWeak);
+    EXPECT_NEAR(-stepper.wrenchOnHand().torque.y(), kWeak, 0.01 * kWeak);
+}
+
 }  // namespace
 }  // namespace bonemill::test

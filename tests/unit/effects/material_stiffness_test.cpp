@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 TissueBench benchOf(double factor) {
     TissueBench bench(halfSpace({4e-3, 0, 0}, -Vector3d::UnitX()));
     bench.config.effects.materials[kNerve].stiffness_factor = factor;
+    bench.config.effects.material_stiffness.emplace();
     bench.config.gradient.coupling.saturation_force = 50;
     return bench;
 }
@@ -31,18 +32,6 @@ double depthAt(TissueBench& bench, double x) {
 TEST(MaterialStiffness, ContactYieldsByTheMaterialsFactor) {
     TissueBench bench = benchOf(0.25);
     EXPECT_NEAR(depthAt(bench, 6e-3) / depthAt(bench, 2e-3), 2, 0.1);
-}
-
-TEST(MaterialStiffness, IsNotThereWhereNoMaterialAsksForIt) {
-    EXPECT_FALSE(MaterialStiffness::isAskedFor(tissueTable()));
-    EXPECT_FALSE(MaterialStiffness::isAskedFor({}));
-    TissueBench plain = benchOf(1), soft = benchOf(0.5);
-    EXPECT_TRUE(MaterialStiffness::isAskedFor(soft.config.effects.materials));
-    const auto effects = [](const TissueBench& bench) {
-        return makeEffects(bench.config.effects, bench.bone, {1e-3, kBurr, kBurr, 1000, 1000}).size();
-    };
-    EXPECT_EQ(effects(plain), 0u);
-    EXPECT_EQ(effects(soft), 1u);
 }
 
 }  // namespace

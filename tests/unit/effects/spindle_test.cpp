@@ -123,6 +123,8 @@ TEST_F(PressedSpindle, StallsSaysSoAndStartsAgain) {
     run(1, 1.1 * stall_force, true);
     EXPECT_TRUE(isStalled());
     EXPECT_EQ(bench.tick.spin_speed, 0);
+    EXPECT_NEAR(bench.tick.record.axis_torque, SpindleConfig{}.max_torque, 1e-6);
+    EXPECT_NEAR(bench.tick.axis_load, SpindleConfig{}.max_torque, 1e-6);
     run(0.5, 0.8 * stall_force, true);
     EXPECT_FALSE(isStalled());
     EXPECT_GT(bench.tick.spin_speed, 0.8 * burr.speed);
@@ -140,6 +142,14 @@ TEST_F(PressedSpindle, BrakesToZeroInTheAir) {
     run(0.5, 0, true);
     run(0.5, 0, false);
     EXPECT_LT(std::abs(bench.tick.spin_speed), 1e-6 * bench.tool.burr.speed);
+    EXPECT_EQ(bench.tick.axis_load, 0);
+}
+
+TEST_F(PressedSpindle, HoldsNothingWithThePedalUp) {
+    run(0.5, 0, true);
+    run(1, 5, false);
+    EXPECT_EQ(bench.tick.spin_speed, 0);
+    EXPECT_EQ(bench.tick.axis_load, 0);
 }
 
 TEST_F(PressedSpindle, AnotherToolStartsFromRest) {

@@ -13,6 +13,7 @@ TEST(TissueEffectsAreRtSafe, WhileMillingThroughAllOfThem) {
     TissueBench bench(sphereAt({4e-3, 4e-3, 3e-3}, 0.8e-3));
     EffectConfigs& effects = bench.config.effects;
     effects.materials[kNerve].stiffness_factor = 0.5;
+    effects.material_stiffness.emplace();
     effects.time_removal.emplace();
     effects.thermal.emplace();
     effects.virtual_fixture = {.stiffness = 500, .hand_force_scale = 0.5};

@@ -60,6 +60,7 @@ TEST_F(SceneMaterials, ComeFromValuesAndLabels) {
     const EffectConfigs& effects = simulation.tick.effects;
     ASSERT_EQ(effects.materials.size(), 4u);
     EXPECT_EQ(effects.materials[1].stiffness_factor, 0.5);
+    EXPECT_TRUE(effects.material_stiffness);
     EXPECT_EQ(effects.materials[1].specific_energy, 0);
     EXPECT_EQ(effects.materials[2].specific_energy, 2e9);
     EXPECT_TRUE(effects.materials[3].is_protected);
@@ -72,6 +73,12 @@ TEST_F(SceneMaterials, ComeFromValuesAndLabels) {
     EXPECT_EQ(effects.protected_field->reach(), 2e-3 + 1e-3 + 1e-3);
     // Three voxels above the nerve's upper face.
     EXPECT_NEAR(effects.protected_field->at({5e-3, 4e-3, 9 * 0.5e-3}).distance, 1.25e-3, 1e-6);
+}
+
+TEST_F(SceneMaterials, OfEqualStiffnessDoNotAskForTheEffect) {
+    const Simulation simulation =
+        makeSimulation(sceneOf("", "material { name: 'hard' from_value: 1500 specific_energy_j_per_mm3: 2 }"));
+    EXPECT_FALSE(simulation.tick.effects.material_stiffness);
 }
 
 TEST_F(SceneMaterials, WithoutThemNothingIsKept) {

@@ -70,8 +70,11 @@ TEST(ShownEffects, OfMaterialsViewersGetNameColourAndCare) {
               sceneOf(R"(material { name: "enamel" color { red: 0.5 } })").material(0).SerializeAsString());
     EXPECT_EQ(info.materials(1).SerializeAsString(),
               sceneOf(R"(material { name: "nerve" is_protected: true })").material(0).SerializeAsString());
-    EXPECT_TRUE(hasColouredMaterials(scene));
-    EXPECT_FALSE(hasColouredMaterials(sceneOf(R"(material { name: "nerve" })")));
+    EXPECT_TRUE(wantsVertexMaterials(scene));
+    EXPECT_FALSE(wantsVertexMaterials(sceneOf(R"(material { name: "nerve" })")));
+    EXPECT_FALSE(wantsVertexMaterials(sceneOf("material { name: 'core' } effects { bleeding {} }")));
+    EXPECT_TRUE(
+        wantsVertexMaterials(sceneOf("material { name: 'core' } effects { bleeding { material: 'core' } }")));
     EXPECT_EQ(materialNamesOf(scene), (std::vector<std::string>{"enamel", "nerve"}));
 }
 

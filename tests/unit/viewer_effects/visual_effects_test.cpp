@@ -117,6 +117,32 @@ TEST(Bleeding, onlyWhereTheBurrHasCutAndAfterItsDelay) {
     EXPECT_EQ(effects.film()->at(SurfaceFilm::kBlood, beside), 0);
 }
 
+// One half of the floor is of the material that bleeds, the other of one that does not.
+TEST(Bleeding, onlyOfTheMaterialsNamed) {
+    const auto wounds = [](const std::string& named) {
+        scene::Effects wish;
+        if (!named.empty()) wish.mutable_bleeding()->add_material(named);
+        wish.mutable_bleeding();
+        VisualEffects::Materials materials;
+        materials.Add()->set_name("cortex");
+        materials.Add()->set_name("core");
+        VisualEffects effects(wish, kRadius, materials);
+        NodeMesh before = floorMesh(), after = floorMesh(300);
+        for (const PackedVertex& v : after.vertices) after.materials.push_back(v.x < 4000 ? 1 : 2);
+        before.materials = after.materials;
+        effects.setNode(before);
+        effects.take(burrAt({0, 0, 0.7e-3}, true));
+        effects.setNode(after);
+        effects.advance(0.2);
+        return effects.bleeding()->woundCount();
+    };
+    const size_t of_all = wounds(""), of_core = wounds("core"), of_cortex = wounds("cortex");
+    EXPECT_GT(of_core, 2u);
+    EXPECT_GT(of_cortex, 2u);
+    EXPECT_GT(of_all, std::max(of_core, of_cortex));
+    EXPECT_EQ(wounds("marrow"), 0u);
+}
+
 // A mesh that changes where no burr cuts: the bone was put back, or another tool works there.
 TEST(Bleeding, notWhereNothingWasCut) {
     VisualEffects effects(everything(), kRadius);
