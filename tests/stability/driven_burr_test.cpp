@@ -241,7 +241,7 @@ const std::vector<StabilityCase> kCases{
     {"pedal_on_and_off_rest", "N_rms", 0.05, pedalRest, {}, feltEffects(), true},
     {"pause_in_contact_rest", "N_rms", 0.05, pauseRest, {}, feltEffects(), true},
     {"pause_in_contact_step", "N_per_tick", kStep, pauseStep, {}, kStepping, true},
-    {"drilling_step", "N_per_tick", kStep, drillingStep, {}, {"all_effects"}, true},
+    {"drilling_step", "N_per_tick", kStep, drillingStep, {}, {"energy_removal", "all_effects"}, true},
     {"energy_beyond_the_motor", "uJ_gained", 1, beyondTheMotor, {}, kPulling, true},
 };
 BONEMILL_STABILITY_CASES(DrivenBurr, kCases);

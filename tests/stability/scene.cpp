@@ -1,5 +1,6 @@
 #include "tests/stability/scene.h"
 
+#include "haptic_server/volume/import/protected_distance.h"
 #include "tests/support/milling_config.h"
 
 namespace bonemill::test {
@@ -15,6 +16,24 @@ TickConfig configOf(const Variant& variant, double dt, const std::function<void(
     return config;
 }
 
+// Every second slab of the bone is soft, and protected: edges wherever the tool goes.
+constexpr double kSlab = 0.5e-3;  // m
+constexpr double kSoft = 0.4;
+constexpr MaterialId kSoftBone = 1;
+
+void layOut(EffectConfigs& effects, const BoneModel& bone, double reach) {
+    const VoxelVolume& volume = bone.volume;
+    const int slab = int(std::ceil(kSlab / volume.spacing().x()));
+    effects.materials.assign(2, {});
+    effects.materials[kSoftBone] = {.stiffness_factor = kSoft, .is_protected = true};
+    effects.properties = std::make_shared<const BoneProperties>(volume, [&](const Eigen::Vector3i& v) {
+        const bool is_bone = volume.at(v.x(), v.y(), v.z()) >= volume.iso();
+        return is_bone && v.x() / slab % 2 == 1 ? kSoftBone : kNoMaterial;
+    });
+    effects.protected_field =
+        protectedDistance(*effects.properties, effects.materials, volume.spacing(), reach);
+}
+
 }  // namespace
 
 Scene::Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, double dt,
@@ -24,7 +43,11 @@ Scene::Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, dou
       averaged_ticks(config.effects.burr_vibration ? kVibrationTicks : 1),
       bone(std::move(volume), Eigen::Vector3i::Constant(16),
            ShellConfig{.levels = {{config.accuracy.shell_factor}}}),
-      tool(std::move(test_tool.grid), test_tool.shapes, test_tool.thinnest_radius) {}
+      tool(std::move(test_tool.grid), test_tool.shapes, test_tool.thinnest_radius) {
+    EffectConfigs& effects = config.effects;
+    if (effects.material_stiffness || effects.virtual_fixture)
+        layOut(effects, bone, config.burr.radius + 1e-3);
+}
 
 VolumeGeometry boxOf(const Eigen::Vector3d& size, double spacing) {
     VolumeGeometry geometry;
