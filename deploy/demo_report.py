@@ -24,6 +24,7 @@ TITLES = {
     "corridor": "Milling a straight corridor from the crown into the tooth (thesis, figure 34)",
     "wall": "Pressing the shaft against the wall of the milled hole (thesis, figure 35)",
     "skull": "Milling a pit into the mastoid of a CT head",
+    "pedicle": "A corridor through the pedicle of a vertebra, with all effects",
 }
 FAULT_MEANING = {
     "overrun": "the tick's own work took longer than its period",
@@ -131,6 +132,7 @@ def real_time_remarks(log):
 
 def collect_run(out, name):
     trace = out / f"trace_{name}.csv"
+    sound = out / f"sound_{name}.wav"
     report = read_json(out / "logs" / f"server_{name}.json")
     devices = json_lines(out / "logs" / f"device_{name}.log")
     return {
@@ -142,6 +144,7 @@ def collect_run(out, name):
         "cyclictest_us": read_cyclictest(out / "logs" / f"cyclictest_{name}.json"),
         "real_time_remarks": real_time_remarks(out / "logs" / f"server_{name}.log"),
         "thesis_rate_hz": THESIS_RATE_HZ.get(name),
+        "sound": sound.name if sound.exists() else None,
     }
 
 
@@ -349,6 +352,30 @@ def contact_table(runs):
     return lines
 
 
+EFFECT_FIGURES = (
+    ("axis torque, max", "axis_torque_max_nm", 1e3, "N·mm"),
+    ("cutting power, max", "cutting_power_max_w", 1, "W"),
+    ("energy that removed bone", "removed_energy_j", 1, "J"),
+    ("hottest bone", "temperature_max_c", 1, "°C"),
+    ("nearest to a protected structure", "protected_distance_min_mm", 1, "mm"),
+    ("damage to them", "protected_damaged_mm3", 1, "mm³"),
+)
+
+
+def effect_lines(runs):
+    """What the effects of a scene measured; nothing where no run has any."""
+    lines = []
+    for run in runs:
+        figures = [
+            f"{label} {factor * run['loop'][key]:.3g} {unit}"
+            for label, key, factor, unit in EFFECT_FIGURES
+            if key in run["loop"]
+        ]
+        if figures:
+            lines.append(f"- {run['name']}: " + ", ".join(figures) + ".")
+    return ["", "Effects (docs/effects.md):", "", *lines] if lines else []
+
+
 def verdict(runs):
     """One plain sentence per verification run."""
     lines = []
@@ -407,6 +434,8 @@ def run_section(run):
             f"{device['max_tracking_mm']:.2f} mm from where it wanted to be.",
             "",
         ]
+    if run["sound"]:
+        lines += [f"What it sounded like: [{run['sound']}]({run['sound']}).", ""]
     lines += [f"Every tick: [{run['trace']}]({run['trace']}) (columns: docs/simulate.md).", ""]
     return lines
 
@@ -416,7 +445,8 @@ LIMITS = """- Hand and device are simulated: a hand impedance that follows waypo
 - The thesis' runs were made by hand on other bone with a scaling factor of 3; the rates compare, the curves only in kind.
 - All three programs shared this machine, and the viewer drew on the processor. On two cores that costs latency.
 - The force is that of the scene's accuracy preset (`balanced` unless it says otherwise); its error against a converged
-  solution: docs/accuracy.md. Removal is by time, as in the thesis, and so depends on more than force.
+  solution: docs/accuracy.md. Removal is by time, as in the thesis, and so depends on more than force;
+  only in `pedicle` by energy.
 - cyclictest ran right before each run, while the server idled, not during it: it would disturb what it measures."""
 
 
@@ -450,6 +480,7 @@ def write_markdown(out, report):
         "## Contact and milling",
         "",
         *contact_table(runs),
+        *effect_lines(runs),
         "",
         "## Faults",
         "",
