@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/config/field_unit.h"
+
 namespace bonemill {
 namespace {
 
@@ -61,6 +63,33 @@ void checkBallOnly(const scene::Scene& scene, const RefuseField& refuse) {
     }
 }
 
+void checkThermal(const scene::Scene& scene, const RefuseField& refuse) {
+    if (!scene.effects().has_thermal()) return;
+    const scene::Thermal& thermal = scene.effects().thermal();
+    if (thermal.necrosis_temperature_c() <= thermal.body_temperature_c())
+        refuse(pathOf("thermal") + ".necrosis_temperature_c",
+               "= " + numberText(thermal.necrosis_temperature_c()) +
+                   " is not above body_temperature_c = " + numberText(thermal.body_temperature_c()));
+    // Explicit steps are stable up to a sixth of the time that heat takes through a cube.
+    constexpr double kPerCubicCentimetre = 1e6, kMillimetre = 1e-3, kStable = 0.15;
+    const double cell = thermal.cell_mm() * kMillimetre;
+    const double longest = kStable * thermal.heat_capacity_j_per_cm3_k() * kPerCubicCentimetre * cell * cell /
+                           thermal.conductivity_w_per_m_k();
+    if (longest * scene.loop().rate_hz() < 1)
+        refuse(pathOf("thermal") + ".cell_mm",
+               "= " + numberText(thermal.cell_mm()) + " is too small: heat goes through such cubes within " +
+                   "a tick of " + numberText(scene.loop().rate_hz()) + " Hz; take larger ones");
+}
+
+// Only these say how hard the burr works.
+void checkSound(const scene::Scene& scene, const RefuseField& refuse) {
+    if (!scene.effects().has_milling_sound()) return;
+    for (const char* effect : {"energy_removal", "cutting_force", "spindle", "burr_vibration", "thermal"})
+        if (isListed(scene.effects(), effect)) return;
+    refuse(pathOf("milling_sound"),
+           "would never hear the burr in bone: list spindle, cutting_force or energy_removal as well");
+}
+
 void checkBleedingMaterials(const scene::Scene& scene, const RefuseField& refuse) {
     const scene::Bleeding& bleeding = scene.effects().bleeding();
     for (int n = 0; n < bleeding.material_size(); ++n)
@@ -83,6 +112,8 @@ void checkEffects(const scene::Scene& scene, const RefuseField& refuse) {
     checkSpeed(scene, refuse);
     checkBallOnly(scene, refuse);
     checkBleedingMaterials(scene, refuse);
+    checkThermal(scene, refuse);
+    checkSound(scene, refuse);
     if (scene.effects().has_time_removal() && scene.effects().has_energy_removal())
         refuse("effects.time_removal",
                "stands beside effects.energy_removal: bone goes by time or by energy, list one");

@@ -1,17 +1,12 @@
 // Marks the code that may neither allocate nor lock: the inside of a tick.
 //
-// In the rt-guard build (BONEMILL_RT_GUARD) an executable that links bonemill::rt_guard_interpose aborts with
-// a message when heap or lock functions are called by this thread inside an RtScope. In other builds RtScope
-// is nothing.
+// An executable that links bonemill::rt_guard aborts with a message when heap or lock functions are called by
+// this thread inside an RtScope: tests, and the programs' guarded twins. In others a scope only counts.
 #pragma once
 
-#ifdef BONEMILL_RT_GUARD
 #include <atomic>
-#endif
 
 namespace bonemill {
-
-#ifdef BONEMILL_RT_GUARD
 
 namespace rt_guard {
 inline constinit thread_local int scope_depth = 0;
@@ -31,14 +26,5 @@ class [[nodiscard]] RtScope {
     RtScope(const RtScope&) = delete;
     RtScope& operator=(const RtScope&) = delete;
 };
-
-#else
-
-class [[nodiscard]] RtScope {
-  public:
-    RtScope() noexcept {}  // user-provided: an unused RtScope variable is no warning
-};
-
-#endif
 
 }  // namespace bonemill

@@ -15,20 +15,20 @@ Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const std::str
 void Recorder::drain() {
     TickRecord record;
     bool any = false;
-    uint32_t events = 0;
+    EventSum events;
     double removed = 0;
     while (ring_.tryPop(record)) {
         any = true;
         statistics_.add(record);
         if (trace_) trace_->write(record);
         addToWindow(record);
-        events |= record.effects.events;
+        events.add(record.effects);
         removed += record.removed;
     }
     if (!any) return;
     const std::lock_guard lock(mutex_);
     latest_ = record;
-    new_events_ |= events;
+    new_events_.add(events);
     new_removed_ += removed;
     if (effects_.recorded().any()) effects_ = statistics_.effects();
     health_.ticks = statistics_.ticks();
@@ -65,7 +65,7 @@ std::optional<TickRecord> Recorder::latest() const {
 std::optional<Recorder::Since> Recorder::takeSince() {
     const std::lock_guard lock(mutex_);
     if (!latest_) return std::nullopt;
-    return Since{*latest_, std::exchange(new_events_, 0), std::exchange(new_removed_, 0)};
+    return Since{*latest_, std::exchange(new_events_, {}), std::exchange(new_removed_, 0)};
 }
 
 EffectStatistics Recorder::effects() const {

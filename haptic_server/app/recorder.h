@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/rt/spsc_ring.h"
+#include "haptic_server/record/event_sum.h"
 #include "haptic_server/record/run_statistics.h"
 #include "haptic_server/record/trace_writer.h"
 
@@ -40,8 +41,8 @@ class Recorder {
     // The newest, and what happened in all ticks since the call before.
     struct Since {
         TickRecord latest;
-        uint32_t events;  // TickEvent bits
-        double removed;   // m³
+        EventSum events;
+        double removed;  // m³
     };
     std::optional<Since> takeSince();
     EffectStatistics effects() const;
@@ -67,7 +68,7 @@ class Recorder {
     int64_t window_start_ns_ = 0;
     mutable std::mutex mutex_;  // guards what is below
     std::optional<TickRecord> latest_;
-    uint32_t new_events_ = 0;  // since takeSince()
+    EventSum new_events_;  // since takeSince()
     double new_removed_ = 0;
     EffectStatistics effects_;  // as of latest_
     LoopHealth health_;

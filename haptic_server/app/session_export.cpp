@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t kLongestName = 64;
 constexpr const char* kProbe = ".bonemill_export";
+constexpr const char* kPart = ".part_";  // no name of a result begins like that
 
 bool isName(const std::string& name) {
     const auto is_allowed = [](char c) {
@@ -47,20 +48,26 @@ class Writing {
     ~Writing() {
         std::error_code ignored;
         for (const auto& [part, path] : parts_) fs::remove(part, ignored);
+        for (const fs::path& path : renamed_) fs::remove(path, ignored);
     }
     void write(const fs::path& path, const std::function<void(const std::string&)>& save) {
         fs::path part = path;
-        part.replace_filename("part_" + path.filename().string());
+        part.replace_filename(kPart + path.filename().string());
         parts_.emplace_back(part, path);
         save(part.string());
     }
     void finish() {
-        for (const auto& [part, path] : parts_) fs::rename(part, path);
+        for (const auto& [part, path] : parts_) {
+            fs::rename(part, path);
+            renamed_.push_back(path);
+        }
         parts_.clear();
+        renamed_.clear();
     }
 
   private:
     std::vector<std::pair<fs::path, fs::path>> parts_;
+    std::vector<fs::path> renamed_;  // while others are not
 };
 
 void writeAll(const Files& files, const VoxelVolume& volume, const VoxelVolume& scanned,

@@ -67,9 +67,10 @@ void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info) {
 ShownEffects::ShownEffects(const scene::Effects& effects)
     : recorded_(recordedEffectsOf(effects)), is_seen_(hasViewerEffects(effects)) {}
 
-topics::EffectState ShownEffects::at(const EffectRecord& newest, uint32_t events, double removed) const {
+topics::EffectState ShownEffects::at(const EffectRecord& newest, const EventSum& events,
+                                     double removed) const {
     topics::EffectState state;
-    state.set_events(events);
+    state.set_events(events.events);
     state.set_removed_mm3(removed * kMm3PerM3);
     if (recorded_.burr || is_seen_) state.set_spin_speed(finite(newest.spin_speed));
     if (recorded_.burr) {
@@ -84,6 +85,7 @@ topics::EffectState ShownEffects::at(const EffectRecord& newest, uint32_t events
     if (!recorded_.protection) return state;
     state.set_protected_force_n(finite(newest.protected_force));
     state.set_damaged_mm3(finite(newest.damaged_volume) * kMm3PerM3);
+    state.set_event_id(events.structure);
     if (newest.protected_id == 0 || !std::isfinite(newest.protected_distance)) return state;
     state.set_protected_id(newest.protected_id);
     state.set_protected_distance_m(double(newest.protected_distance));

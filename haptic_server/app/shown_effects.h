@@ -7,6 +7,7 @@
 
 #include "haptic_server/effects/recorded_effects.h"
 #include "haptic_server/record/effect_statistics.h"
+#include "haptic_server/record/event_sum.h"
 #include "proto/scene.pb.h"
 #include "proto/topics.pb.h"
 
@@ -28,7 +29,7 @@ class ShownEffects {
     // False: tool states have no such part.
     bool areShown() const noexcept { return recorded_.any() || is_seen_; }
     // Of the newest tick; events and removed (m³) since the tool state before.
-    topics::EffectState at(const EffectRecord& newest, uint32_t events, double removed) const;
+    topics::EffectState at(const EffectRecord& newest, const EventSum& events, double removed) const;
     // Nothing without protected_structures and thermal.
     void describe(const EffectStatistics& statistics, const std::vector<std::string>& materials,
                   topics::Status& status) const;

@@ -11,8 +11,10 @@ BurrProbes::BurrProbes(const Burr& burr) noexcept {
         return;
     }
     const double half = burr.length / 2;
-    for (size_t n = 0; n < kBalls; ++n) {
-        const double y = half * (2.0 * (double(n) + 0.5) / kBalls - 1);
+    const double radii = burr.length / std::max(burr.radius, 1e-6);
+    const auto balls = size_t(std::clamp(std::ceil(radii), double(kLeastBalls), double(kMostBalls)));
+    for (size_t n = 0; n < balls; ++n) {
+        const double y = half * (2.0 * (double(n) + 0.5) / double(balls) - 1);
         const Eigen::Vector3d center(0, y, 0);
         add({center, std::max(0.0, -burr.signedDistance(center))});
     }

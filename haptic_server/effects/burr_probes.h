@@ -13,7 +13,8 @@ struct BurrProbe {
     double radius = 0;  // m; 0: a point
 };
 
-// A ball is one probe. Of a cylinder or cone: balls inside of it along the axis, and points on both rims.
+// A ball is one probe. Of a cylinder or cone: balls inside of it along the axis, a radius apart (more, if it
+// is longer than kMostBalls radii), and points on both rims.
 class BurrProbes {
   public:
     BurrProbes() = default;
@@ -23,8 +24,8 @@ class BurrProbes {
     const BurrProbe* end() const noexcept { return probes_.data() + count_; }
     size_t size() const noexcept { return count_; }
 
-    static constexpr size_t kBalls = 5, kRim = 8;
-    static constexpr size_t kMost = kBalls + 2 * kRim;
+    static constexpr size_t kLeastBalls = 5, kMostBalls = 24, kRim = 8;
+    static constexpr size_t kMost = kMostBalls + 2 * kRim;
 
   private:
     void add(const BurrProbe& probe) noexcept { probes_[count_++] = probe; }

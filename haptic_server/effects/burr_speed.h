@@ -45,6 +45,7 @@ inline BurrLoad burrLoadOf(const EffectTick& tick) noexcept {
     forEachBurrContact(tick, [&](const SurfaceContact& contact, const Eigen::Vector3d&, double rho) {
         load.force += double(contact.force);
         load.moment += double(contact.force) * rho;
+        ++load.contacts;
     });
     return load;
 }

@@ -22,7 +22,7 @@ class BurrVibration final : public HapticEffect {
         : HapticEffect(kReadsContacts), config_(config) {}
 
     const char* name() const noexcept override { return "burr_vibration"; }
-    void restart() noexcept override { amplitude_ = 0; }
+    void restart(Restart) noexcept override { amplitude_ = 0; }
     void begin(EffectTick& tick) noexcept override;
     void addToHand(const EffectTick& tick, Wrench& wrench_V) noexcept override;
 

@@ -23,7 +23,7 @@ void addDamper(Matrix6d& damping, const Matrix3d& D, const Vector3d& r) noexcept
 
 }  // namespace
 
-void CuttingForce::restart() noexcept {
+void CuttingForce::restart(Restart) noexcept {
     pull_ = {};
 }
 

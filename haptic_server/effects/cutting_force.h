@@ -23,7 +23,7 @@ class CuttingForce final : public HapticEffect {
         : HapticEffect(kReadsContacts | kHasEnergy), config_(config) {}
 
     const char* name() const noexcept override { return "cutting_force"; }
-    void restart() noexcept override;
+    void restart(Restart) noexcept override;
     void begin(EffectTick& tick) noexcept override;
     EnergyTerm energy(const EffectTick& tick, const Pose& X_VT) const noexcept override;
     void finish(EffectTick& tick) noexcept override;

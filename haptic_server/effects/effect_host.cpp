@@ -16,8 +16,8 @@ EffectHost::EffectHost(EffectList effects, size_t most_candidates, double stiffn
     place_area_.resize(most_candidates);
 }
 
-void EffectHost::restart() noexcept {
-    for (const auto& effect : effects_) effect->restart();
+void EffectHost::restart(Restart why) noexcept {
+    for (const auto& effect : effects_) effect->restart(why);
     tick_.contacts = {};
     tick_.is_on_burr = {};
     tick_.burr_load = {};

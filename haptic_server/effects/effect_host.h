@@ -23,7 +23,7 @@ class EffectHost final : private ContactWeights, private SolveEnergy {
     SolveEnergy* energy() noexcept { return any(HapticEffect::kHasEnergy) ? this : nullptr; }
 
     // The phases of a tick, in this order. Tick thread, RT-safe.
-    void restart() noexcept;
+    void restart(Restart why) noexcept;
     void begin(const EffectTick& start) noexcept;  // takes from it what is known at the start
     void addToHand(Wrench& wrench_V) noexcept;
     // After the force went out: where the solve ended, and its contacts.

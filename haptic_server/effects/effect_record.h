@@ -18,8 +18,10 @@ enum TickEvent : uint32_t {
 };
 
 struct EffectRecord {
-    uint32_t events;        // TickEvent bits
-    uint32_t protected_id;  // 1 + index of the scene's material that is nearest; 0: none
+    uint32_t events;  // TickEvent bits
+    // 1 + index of the scene's material that is nearest to the burr, is touched (hardest) and was damaged in
+    // this tick; 0: none.
+    uint32_t protected_id, touched_id, damaged_id;
     float spin_speed;       // rad/s about T's +y
     float burr_force;       // N: sum of the normal forces on the burr
     float axis_torque;      // N·m against the spin, on the tool

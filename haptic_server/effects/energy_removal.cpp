@@ -19,11 +19,20 @@ EnergyRemoval::EnergyRemoval(const EnergyRemovalConfig& config, const EffectConf
                         .materials = all.materials},
                        all.properties, bone.volume.iso()),
       inverse_spacing_(bone.volume.spacing().cwiseInverse()),
-      shift_(bone, room.largest_burr_reach, room.most_contacts, room.most_cells) {}
+      shift_(bone, room.largest_burr_reach, room.most_contacts, room.most_cells),
+      most_contacts_(std::max<size_t>(1, room.most_cells / kCellsPerContact)) {}
 
 void EnergyRemoval::begin(EffectTick& tick) noexcept {
     is_cutting_ = tick.may_mill && !tick.is_add_wanted && tick.spin_speed != 0;
+    takeTurn(tick);
     removal_power_ = removed_energy_ = 0;
+}
+
+// Another number of groups only when each has had its turn.
+void EnergyRemoval::takeTurn(const EffectTick& tick) noexcept {
+    if (++turn_ < turns_) return;
+    turn_ = 0;
+    turns_ = tick.contacts.size() / most_contacts_ + 1;
 }
 
 double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
@@ -61,7 +70,7 @@ double EnergyRemoval::softness(const EffectTick& tick, const Candidates& candida
     const double rho = std::sqrt(p_T.x() * p_T.x() + p_T.z() * p_T.z() + patchSpread(area));
     const double u = energyFactor(burr) * specificEnergyAt(origin_V + candidates.position(n).cast<double>());
     const double c = burr.friction * std::abs(tick.spin_speed) * rho / u;
-    return 1 / (1 + stiffness * c * tick.dt);
+    return 1 / (1 + stiffness * c * tick.dt * double(turns_));
 }
 
 // The places of a patch follow each other.
@@ -71,12 +80,12 @@ double EnergyRemoval::specificEnergyAt(const Eigen::Vector3d& p_V) noexcept {
     return last_energy_;
 }
 
-// Gives the contacts' energies to the surface, and sums them; J.
+// Gives the energies of the contacts whose turn it is to the surface, and sums them; J.
 double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept {
     const Burr& burr = tick.tool->burr;
     const Eigen::Vector3d axis = tick.X_VT.rotation * Eigen::Vector3d::UnitY();
     shift_.begin(bone, tick.X_VT.position);
-    double energy = 0;
+    double energy = 0, of_all = 0;
     for (size_t n = 0; n < tick.contacts.size(); ++n) {
         if (!tick.is_on_burr[n]) continue;
         const SurfaceContact& contact = tick.contacts[n];
@@ -85,10 +94,13 @@ double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bon
             std::abs(tick.spin_speed) * rubbingRadius(contact.r_V.cast<double>(), axis, area);
         const double above = std::max(0.0, force - config_.threshold_pressure * area);
         const double of_contact = burr.friction * speed * above * tick.dt;
-        energy += of_contact;
-        shift_.add(bone, tick.candidates->patch[contact.candidate], of_contact, double(contact.depth));
+        of_all += of_contact;
+        const uint64_t patch = tick.candidates->patch[contact.candidate];
+        if ((patch >> 32) % turns_ != turn_) continue;
+        energy += of_contact * double(turns_);
+        shift_.add(bone, patch, of_contact * double(turns_), double(contact.depth));
     }
-    removal_power_ = energy / tick.dt;
+    removal_power_ = of_all / tick.dt;
     return energy;
 }
 

@@ -14,6 +14,10 @@
 // v_c = |Ω| ρ with the mean of ρ over the point's patch (burr_speed.h), so that the pole of a burr cuts, if
 // hardly.
 //
+// Bone under a large burr takes turns: with more contacts than a tick has time for, the leaves mill in
+// `turns` groups, each in every turns-th tick and for as many ticks at once (the weights, too, then know that
+// dt).
+//
 // mill() then spends the energy of the contacts on the surface (milling/surface_shift.h). What was spent too
 // much or too little is kept in an account and made good within kRepayTime, so that Σ u ΔV = ∫ P dt but for
 // what is in the account.
@@ -31,14 +35,15 @@ struct EffectRoom;
 
 class EnergyRemoval final : public HapticEffect {
   public:
-    static constexpr double kRepayTime = 5e-3;  // s
-    static constexpr double kMostShare = 2;     // of a tick's energy, that it may spend
+    static constexpr double kRepayTime = 5e-3;       // s
+    static constexpr double kMostShare = 2;          // of a tick's energy, that it may spend
+    static constexpr size_t kCellsPerContact = 125;  // one takes as long as so many milled cells
 
     // Of `all`: the bone's properties and materials.
     EnergyRemoval(const EnergyRemovalConfig& config, const EffectConfigs& all, const BoneModel& bone,
                   const EffectRoom& room);
     const char* name() const noexcept override { return "energy_removal"; }
-    void restart() noexcept override { account_ = 0; }
+    void restart(Restart) noexcept override { account_ = 0, turn_ = 0, turns_ = 1; }
     void begin(EffectTick& tick) noexcept override;
     double scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
                  const ToolField& tool, const Pose& X_VT) noexcept override;
@@ -53,6 +58,7 @@ class EnergyRemoval final : public HapticEffect {
                     const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T) noexcept;
     double specificEnergyAt(const Eigen::Vector3d& p_V) noexcept;
     double spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept;
+    void takeTurn(const EffectTick& tick) noexcept;
 
     EnergyRemovalConfig config_;
     SpecificEnergy specific_energy_;
@@ -60,6 +66,8 @@ class EnergyRemoval final : public HapticEffect {
     Eigen::Vector3i last_cell_ = Eigen::Vector3i::Constant(INT_MIN);  // and what it takes, J/m³
     double last_energy_ = 0;
     SurfaceShift shift_;
+    size_t most_contacts_;
+    size_t turn_ = 0, turns_ = 1;
     bool is_cutting_ = false;
     double account_ = 0;  // J not yet spent; negative: too much was
     // Of this tick.

@@ -23,6 +23,7 @@ namespace bonemill {
 struct BurrLoad {
     double force = 0;   // N: Σ F
     double moment = 0;  // N·m: Σ F ρ; times μ_c against the spin, times μ_c |Ω| the power
+    size_t contacts = 0;
 };
 
 // What effects see of the tick, and tell each other. SI, axes V unless the name says otherwise.
@@ -63,6 +64,8 @@ inline double burrSlack(const ToolField& tool) noexcept {
     return kRim + 2 * tool.distanceError();
 }
 
+enum class Restart { kOtherTool, kOtherLaw, kBonePutBack };
+
 class HapticEffect {
   public:
     // What an effect needs to be called for beside begin(), mill() and finish().
@@ -79,8 +82,8 @@ class HapticEffect {
     virtual const char* name() const noexcept = 0;  // as in the scene
     uint32_t needs() const noexcept { return needs_; }
 
-    // Another tool, another contact law, or the bone was put back: forget what came before.
-    virtual void restart() noexcept {}
+    // Forget what came before, the contacts above all.
+    virtual void restart(Restart) noexcept {}
     virtual void begin(EffectTick&) noexcept {}
     // As ContactWeights::scale().
     virtual double scale(const EffectTick&, Candidates&, const Eigen::Vector3d& /*origin_V*/,

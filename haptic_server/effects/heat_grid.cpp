@@ -15,6 +15,7 @@ constexpr double kPoolShare = 0.8;  // of the bricks that could have their turn 
 constexpr size_t kMostBricks = 1024, kMostDeadBricks = 16384;
 constexpr size_t kLookupsPerStep = 4;  // of a brick's cubes in the volume
 constexpr int64_t kMostBricksToRevisit = 512;
+constexpr size_t kMostDeadSeen = 256;  // bricks with dead cells that a step looks through for stale ones
 // K: a brick whose border is warmer than that opens its neighbour; one that is cooler all over is closed when
 // it has been open for a while. Cold matters less.
 constexpr float kWarm = 0.01f, kCold = -2, kSettledCold = -0.5f;
@@ -149,15 +150,46 @@ void HeatGrid::noteChange(const IndexBox& voxels) noexcept {
         brick.is_stale |=
             (brick.index.array() >= box.min.array()).all() && (brick.index.array() <= box.max.array()).all();
     }
-    if (dead_used_ == 0 || box.count() > kMostBricksToRevisit) return;
+    if (dead_used_ == 0) return;
+    if (box.count() > kMostBricksToRevisit) return markDeadStale(0, dead_used_);
     forEachIndex(box.clamped(Eigen::Vector3i::Zero(), bricks_.array() - 1),
                  [&](const Eigen::Vector3i& index) {
-                     if (dead_directory_[directoryIndex(index)] != kNone) findOrOpen(index);
+                     const uint32_t slot = dead_directory_[directoryIndex(index)];
+                     if (slot != kNone) markDeadStale(slot, slot + 1);
                  });
 }
 
 void HeatGrid::noteChangeEverywhere() noexcept {
     for (const uint32_t slot : active_) pool_[slot].is_stale = true;
+    markDeadStale(0, dead_used_);
+}
+
+void HeatGrid::markDeadStale(size_t first, size_t end) noexcept {
+    for (size_t slot = first; slot < end; ++slot) {
+        stale_dead_ += !dead_pool_[slot].is_stale;
+        dead_pool_[slot].is_stale = true;
+    }
+}
+
+// Dead cells whose bone is gone are not counted any more, whether their brick is open or not.
+void HeatGrid::reviewDead() noexcept {
+    for (size_t n = 0; n < kMostDeadSeen && stale_dead_ > 0 && lookups_ > 0; ++n) {
+        next_dead_ = next_dead_ + 1 < dead_used_ ? next_dead_ + 1 : 0;
+        DeadCells& dead = dead_pool_[next_dead_];
+        if (!dead.is_stale) continue;
+        dead.is_stale = false;
+        --stale_dead_;
+        --lookups_;
+        for (int cell = 0; cell < kCells; ++cell) {
+            uint64_t& bits = dead.bits[cell / 64];
+            const uint64_t bit = uint64_t(1) << (cell % 64);
+            const Eigen::Vector3i place(cell & (kEdge - 1), cell >> kShift & (kEdge - 1),
+                                        cell >> (2 * kShift));
+            if (!(bits & bit) || isBone(dead.brick * kEdge + place)) continue;
+            bits &= ~bit;
+            --dead_count_;
+        }
+    }
 }
 
 void HeatGrid::irrigate(const Eigen::Vector3d& center_V, double radius) noexcept {
@@ -168,6 +200,7 @@ void HeatGrid::irrigate(const Eigen::Vector3d& center_V, double radius) noexcept
 void HeatGrid::step() noexcept {
     now_ += dt_;
     lookups_ = kLookupsPerStep;
+    reviewDead();
     turns_due_ = std::min(turns_due_ + double(active_.size()) * dt_ / turn_, double(most_turns_));
     for (; turns_due_ >= 1 && !active_.empty(); --turns_due_) {
         if (next_ >= active_.size()) next_ = 0;
@@ -279,6 +312,7 @@ void HeatGrid::markDead(Brick& brick, int cell) noexcept {
     if (slot == kNone) {
         if (dead_used_ == dead_pool_.size()) return;
         slot = uint32_t(dead_used_++);
+        dead_pool_[slot].brick = brick.index;
     }
     uint64_t& bits = dead_pool_[slot].bits[cell / 64];
     const uint64_t bit = uint64_t(1) << (cell % 64);

@@ -80,6 +80,8 @@ class HeatGrid {
     void harm(Brick& brick, double elapsed) noexcept;
     void markDead(Brick& brick, int cell) noexcept;
     void removeDead(const Brick& brick, int cell) noexcept;
+    void reviewDead() noexcept;
+    void markDeadStale(size_t first, size_t end) noexcept;
     bool isSettled(const Brick& brick) const noexcept;
     void close(size_t place) noexcept;
 
@@ -108,11 +110,14 @@ class HeatGrid {
     // Dead cells outlive their brick's memory: a bit each.
     struct DeadCells {
         uint64_t bits[kCells / 64];
+        Eigen::Vector3i brick;
+        bool is_stale;  // its bone may be gone
     };
     std::vector<uint32_t> dead_directory_;
     std::vector<DeadCells> dead_pool_;
     size_t dead_used_ = 0;
     size_t dead_count_ = 0;
+    size_t stale_dead_ = 0, next_dead_ = 0;  // how many are stale; where the search for them goes on
 };
 
 }  // namespace bonemill

@@ -22,9 +22,19 @@ class ProtectedStructures final : public HapticEffect {
 
   private:
     bool isProtected(MaterialId id) const noexcept { return is_protected_[id]; }
-    double pressedOn(const EffectTick& tick) const noexcept;
-    size_t countDamage(const EffectTick& tick) noexcept;
-    size_t damageInRow(const EffectTick& tick, const Pose& X_TV, const IndexBox& row) noexcept;
+    struct Pressed {
+        double force = 0;                  // N
+        MaterialId hardest = kNoMaterial;  // under the contact of the largest force
+    };
+    struct Destroyed {
+        size_t voxels = 0;
+        MaterialId material = kNoMaterial;  // of the last one
+    };
+    Pressed pressedOn(const EffectTick& tick) const noexcept;
+    Destroyed countDamage(const EffectTick& tick) noexcept;
+    bool mayHaveProtected(const IndexBox& row) const noexcept;
+    void damageInRow(const EffectTick& tick, const Pose& X_TV, const IndexBox& row,
+                     Destroyed& destroyed) noexcept;
     bool isDestroyed(const EffectTick& tick, const Pose& X_TV, const Eigen::Vector3i& voxel,
                      size_t place) const noexcept;
 

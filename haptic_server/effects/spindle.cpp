@@ -16,7 +16,9 @@ double motorTorque(const SpindleConfig& config, double wanted, double speed) noe
 
 }  // namespace
 
-void Spindle::restart() noexcept {
+// The motor goes on turning whatever happens to the bone.
+void Spindle::restart(Restart why) noexcept {
+    if (why != Restart::kOtherTool) return;
     speed_ = 0;
     held_ = 0;
     stands_for_ = 0;

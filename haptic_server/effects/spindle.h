@@ -19,7 +19,7 @@ class Spindle final : public HapticEffect {
     explicit Spindle(const SpindleConfig& config) noexcept : HapticEffect(kReadsContacts), config_(config) {}
 
     const char* name() const noexcept override { return "spindle"; }
-    void restart() noexcept override;
+    void restart(Restart why) noexcept override;
     void begin(EffectTick& tick) noexcept override;
     void finish(EffectTick& tick) noexcept override;
 

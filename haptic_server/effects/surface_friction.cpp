@@ -36,7 +36,7 @@ Jacobian jacobianOf(const Vector3d& r) noexcept {
 
 }  // namespace
 
-void SurfaceFriction::restart() noexcept {
+void SurfaceFriction::forget() noexcept {
     groups_.clear();
     stretch_.setZero();
     stored_ = given_ = 0;
@@ -74,7 +74,7 @@ EnergyTerm SurfaceFriction::energy(const EffectTick& tick, const Pose& X_VT) con
 // The contacts are those that the last tick ended with.
 void SurfaceFriction::begin(EffectTick& tick) noexcept {
     groups_.gather(tick, 1 - spinShare(tick.spin_speed, tick.tool->burr));
-    if (!(slipWidth() > 0)) return restart();
+    if (!(slipWidth() > 0)) return forget();
     const double now = at(stretch_).energy, gain = now - stored_;
     if (gain > given_) {
         stretch_ *= (stored_ + given_) / now;  // convex: so much less at least

@@ -26,7 +26,7 @@ class SurfaceFriction final : public HapticEffect {
         : HapticEffect(kReadsContacts | kHasEnergy), config_(config) {}
 
     const char* name() const noexcept override { return "surface_friction"; }
-    void restart() noexcept override;
+    void restart(Restart) noexcept override { forget(); }
     void begin(EffectTick& tick) noexcept override;
     EnergyTerm energy(const EffectTick& tick, const Pose& X_VT) const noexcept override;
     void finish(EffectTick& tick) noexcept override;
@@ -34,6 +34,7 @@ class SurfaceFriction final : public HapticEffect {
     const Vector6d& stretch() const noexcept { return stretch_; }  // u: m, rad
 
   private:
+    void forget() noexcept;
     EnergyTerm at(const Vector6d& stretch) const noexcept;  // by u
     double meanStretch(const Vector6d& stretch) const noexcept;
     double slipWidth() const noexcept {

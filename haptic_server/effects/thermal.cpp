@@ -20,7 +20,7 @@ void Thermal::putIn(const EffectTick& tick) noexcept {
     if (per_moment == 0) return;
     size_t count = 0;
     double chosen = 0;
-    const size_t every = tick.contacts.size() / kMostSources + 1;
+    const size_t every = tick.burr_load.contacts / kMostSources + 1;
     const size_t first = turn_++ % every;
     const auto isChosen = [&](size_t n) { return n % every == first; };
     forEachBurrContact(tick, [&](const SurfaceContact& contact, const Eigen::Vector3d&, double rho) {
@@ -42,9 +42,10 @@ void Thermal::finish(EffectTick& tick) noexcept {
     heat_.irrigate(tick.X_VT.position, tick.is_pedal_down ? config_.irrigation_radius : 0);
     heat_.step();
     EffectRecord& record = tick.record;
-    record.temperature = float(heat_.hottest());
+    const double hottest = heat_.hottest();
+    record.temperature = float(hottest);
     record.necrotic_volume = float(heat_.necroticVolume());
-    if (heat_.hottest() >= config_.heat.necrosis_temperature) record.events |= kEventTooHot;
+    if (hottest >= config_.heat.necrosis_temperature) record.events |= kEventTooHot;
 }
 
 }  // namespace bonemill

@@ -14,7 +14,9 @@ class Thermal final : public HapticEffect {
     // Keeps a reference to the bone. dt: of a tick, s.
     Thermal(const ThermalConfig& config, const BoneModel& bone, double dt);
     const char* name() const noexcept override { return "thermal"; }
-    void restart() noexcept override { heat_.noteChangeEverywhere(); }
+    void restart(Restart why) noexcept override {
+        if (why == Restart::kBonePutBack) heat_.noteChangeEverywhere();
+    }
     void mill(EffectTick&, BoneModel&, MillingResult& result) noexcept override {
         heat_.noteChange(result.changed);
     }

@@ -9,7 +9,8 @@ TimeRemoval::TimeRemoval(const TimeRemovalConfig& config, const BoneModel& bone,
                bone.lattice, largest_burr_radius) {}
 
 void TimeRemoval::mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept {
-    if (!tick.is_pedal_down) return;
+    const bool is_stalled = tick.tool->burr.speed != 0 && tick.spin_speed == 0;
+    if (!tick.is_pedal_down || is_stalled) return;
     milling_.setShape(tick.shape);
     milling_.setBurrRadius(tick.tool->burr.radius);
     result.include(milling_.apply(bone.volume, bone.lattice, bone.shell, tick.X_VT.position, -1, tick.dt));

@@ -1,6 +1,7 @@
 #include "haptic_server/milling/surface_shift.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -65,7 +66,8 @@ SurfaceShift::SurfaceShift(const BoneModel& bone, double largest_reach, size_t m
     : most_cells_(most_cells),
       size_(scratchSize(bone, largest_reach)),
       nodes_(size_t(size_.cast<int64_t>().prod())),
-      spans_(size_t(size_.y()) * size_t(size_.z())),
+      row_words_((size_.x() + kRowBits - 1) / kRowBits),
+      asked_(size_t(row_words_) * size_t(size_.y()) * size_t(size_.z())),
       patches_(most_contacts),
       old_(size_t(size_.x() + VoxelVolume::kReadSlack)),
       fresh_(size_t(size_.x())),
@@ -91,14 +93,20 @@ void SurfaceShift::forget() noexcept {
     if (touched_.isEmpty()) return;
     for (int k = touched_.min.z(); k <= touched_.max.z(); ++k)
         for (int j = touched_.min.y(); j <= touched_.max.y(); ++j) {
-            Span& span = spans_[row(j, k)];
-            for (int i = span.low; i <= span.high; ++i) {
-                Node& node = nodes_[index({i, j, k})];
-                node.drop = node.weight = 0;
-            }
-            span = {};
+            const size_t first_word = row(j, k), in_row = index({first_.x(), j, k});
+            for (int word = 0; word < row_words_; ++word)
+                forEachBit(word, std::exchange(asked_[first_word + size_t(word)], 0), [&](int i) {
+                    Node& node = nodes_[in_row + size_t(i)];
+                    node.drop = node.weight = 0;
+                });
         }
     touched_ = {};
+}
+
+// visit(voxels from the scratch box on) for the bits of this word of a row.
+template <class Visit>
+void SurfaceShift::forEachBit(int word, RowBits bits, Visit&& visit) const noexcept {
+    for (; bits != 0; bits &= bits - 1) visit(word * kRowBits + std::countr_zero(bits));
 }
 
 bool SurfaceShift::isInScratch(const Vector3i& voxel) const noexcept {
@@ -193,11 +201,20 @@ SurfaceShift::Wish SurfaceShift::wishOf(const VoxelVolume& volume, const Vector3
 }
 
 void SurfaceShift::touch(const Vector3i& voxel) noexcept {
-    Span& span = spans_[row(voxel.y(), voxel.z())];
-    if (span.low > span.high) span = {voxel.x(), voxel.x()};
-    span.low = std::min(span.low, voxel.x());
-    span.high = std::max(span.high, voxel.x());
+    const int i = voxel.x() - first_.x();
+    asked_[row(voxel.y(), voxel.z()) + size_t(i / kRowBits)] |= RowBits(1) << (i % kRowBits);
     touched_.include(voxel);
+}
+
+// From the first to the last of the row's touched voxels within low .. high.
+SurfaceShift::Span SurfaceShift::touchedIn(size_t row, int low, int high) const noexcept {
+    const auto isTouched = [&](int voxel) {
+        const int i = voxel - first_.x();
+        return (asked_[row + size_t(i / kRowBits)] >> (i % kRowBits) & 1) != 0;
+    };
+    while (low <= high && !isTouched(low)) ++low;
+    while (low <= high && !isTouched(high)) --high;
+    return {low, high};
 }
 
 void SurfaceShift::spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share) noexcept {
@@ -235,14 +252,24 @@ void SurfaceShift::forEachCell(const BoneModel& bone, Visit&& visit) noexcept {
     const Vector3i last = bone.volume.dims().array() - 1;
     for (int k = touched_.min.z() - 1; k <= std::min(touched_.max.z(), last.z()); ++k)
         for (int j = touched_.min.y() - 1; j <= std::min(touched_.max.y(), last.y()); ++j) {
-            Span cells{size_.x() + first_.x(), first_.x() - 1};
-            for (int side = 0; side < 4; ++side) {
-                const Span& span = spans_[row(j + (side & 1), k + (side >> 1))];
-                if (span.low > span.high) continue;
-                cells = {std::min(cells.low, span.low - 1), std::max(cells.high, span.high)};
+            const size_t in_row = index({first_.x(), j, k});
+            const size_t rows[4] = {row(j, k), row(j + 1, k), row(j, k + 1), row(j + 1, k + 1)};
+            const auto voxels = [&](int word) {
+                RowBits bits = 0;
+                for (const size_t row : rows) bits |= asked_[row + size_t(word)];
+                return bits;
+            };
+            RowBits bits = voxels(0);
+            for (int word = 0; word < row_words_; ++word) {
+                const RowBits next = word + 1 < row_words_ ? voxels(word + 1) : 0;
+                // A cell has its own voxel and the next one.
+                const RowBits cells = bits | bits >> 1 | next << (kRowBits - 1);
+                forEachBit(word, cells, [&](int i) {
+                    if (first_.x() + i <= last.x())
+                        visit(Vector3i(first_.x() + i, j, k), nodes_[in_row + size_t(i)]);
+                });
+                bits = next;
             }
-            for (int i = cells.low; i <= std::min(cells.high, last.x()); ++i)
-                visit(Vector3i(i, j, k), nodes_[index({i, j, k})]);
         }
 }
 
@@ -294,9 +321,9 @@ bool SurfaceShift::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, Mill
     MillingResult of_leaf;
     for (int k = voxels.min.z(); k <= voxels.max.z(); ++k)
         for (int j = voxels.min.y(); j <= voxels.max.y(); ++j) {
-            const Span& span = spans_[row(j, k)];
-            const int low = std::max(span.low, voxels.min.x()), high = std::min(span.high, voxels.max.x());
-            if (low <= high) collectRow(volume, {low, j, k}, high - low + 1, of_leaf);
+            const Span span = touchedIn(row(j, k), voxels.min.x(), voxels.max.x());
+            if (span.low <= span.high)
+                collectRow(volume, {span.low, j, k}, span.high - span.low + 1, of_leaf);
         }
     if (of_leaf.changed.isEmpty()) return true;
     const size_t cells_before = std::exchange(cells_, cells_ + size_t(of_leaf.changed.count()));

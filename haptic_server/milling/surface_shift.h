@@ -54,6 +54,9 @@ class SurfaceShift {
         Eigen::Vector3f at;  // voxel steps
         float drop;          // counts
     };
+    // Voxels of a row that something was asked of, one bit each from the scratch box on.
+    using RowBits = uint64_t;
+    static constexpr int kRowBits = 64;
     struct Span {  // of voxels along x; empty: low > high
         int low = 1, high = 0;
     };
@@ -63,8 +66,9 @@ class SurfaceShift {
         return size_t(local.x()) +
                size_t(size_.x()) * (size_t(local.y()) + size_t(size_.y()) * size_t(local.z()));
     }
+    // Of row_words_ words.
     size_t row(int j, int k) const noexcept {
-        return size_t(j - first_.y()) + size_t(size_.y()) * size_t(k - first_.z());
+        return size_t(row_words_) * (size_t(j - first_.y()) + size_t(size_.y()) * size_t(k - first_.z()));
     }
     bool isInScratch(const Eigen::Vector3i& voxel) const noexcept;
     static int blockOf(const BoneModel& bone) noexcept;
@@ -79,6 +83,9 @@ class SurfaceShift {
     void spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share) noexcept;
     void spreadRest(const BoneModel& bone) noexcept;
     void touch(const Eigen::Vector3i& voxel) noexcept;
+    Span touchedIn(size_t row, int low, int high) const noexcept;
+    template <class Visit>
+    void forEachBit(int word, RowBits bits, Visit&& visit) const noexcept;
     void collect(BoneModel& bone, MillingResult& result) noexcept;
     bool collectLeaf(VoxelVolume& volume, const IndexBox& voxels, MillingResult& result) noexcept;
     void collectRow(const VoxelVolume& volume, const Eigen::Vector3i& first, int count,
@@ -90,7 +97,8 @@ class SurfaceShift {
     Eigen::Vector3i size_;                             // of the scratch box
     Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // its first voxel
     std::vector<Node> nodes_;
-    std::vector<Span> spans_;      // per row along x: voxels that something was asked of
+    int row_words_;
+    std::vector<RowBits> asked_;   // row by row: voxels that something was asked of
     IndexBox touched_;             // all of those
     std::vector<size_t> patches_;  // nodes with energy; the first patch_count_
     size_t patch_count_ = 0;

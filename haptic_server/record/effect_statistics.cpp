@@ -6,8 +6,6 @@
 namespace bonemill {
 namespace {
 
-constexpr uint32_t kOfProtected = kEventNearProtected | kEventProtectedTouched | kEventProtectedDamaged;
-
 void raise(std::optional<double>& largest, double value) noexcept {
     if (std::isfinite(value)) largest = std::max(largest.value_or(value), value);
 }
@@ -37,8 +35,13 @@ void EffectStatistics::add(const EffectRecord& record) noexcept {
     damaged_ = double(record.damaged_volume);
     events_ |= record.events;
     stalled_ticks_ += record.events & kEventSpindleStalled ? 1 : 0;
-    events_near_[std::min<size_t>(record.protected_id, events_near_.size() - 1)] |=
-        record.events & kOfProtected;
+    book(kEventNearProtected, record.protected_id, record);
+    book(kEventProtectedTouched, record.touched_id, record);
+    book(kEventProtectedDamaged, record.damaged_id, record);
+}
+
+void EffectStatistics::book(uint32_t event, size_t structure, const EffectRecord& record) noexcept {
+    events_of_[std::min(structure, events_of_.size() - 1)] |= record.events & event;
 }
 
 std::vector<std::pair<std::string, double>> EffectStatistics::figures() const {
@@ -69,8 +72,8 @@ std::vector<std::string> EffectStatistics::warnings(const std::vector<std::strin
                                                                  {kEventNearProtected, "came near "}};
     std::vector<std::string> warnings;
     for (const auto& [event, what] : kWorstFirst)
-        for (size_t id = 0; id < events_near_.size(); ++id)
-            if (events_near_[id] & event) warnings.push_back(what + nameOf(id, materials));
+        for (size_t id = 0; id < events_of_.size(); ++id)
+            if (events_of_[id] & event) warnings.push_back(what + nameOf(id, materials));
     if (events_ & kEventTooHot) warnings.emplace_back("bone too hot");
     if (events_ & kEventSpindleStalled) warnings.emplace_back("spindle stalled");
     return warnings;

@@ -39,13 +39,15 @@ class EffectStatistics {
     std::vector<std::string> warnings(const std::vector<std::string>& materials) const;
 
   private:
+    void book(uint32_t event, size_t structure, const EffectRecord& record) noexcept;
+
     RecordedEffects recorded_;
     double max_axis_torque_ = 0, max_cutting_power_ = 0, removed_energy_ = 0;
     std::optional<double> max_temperature_, least_protected_distance_;
     double necrotic_ = 0, max_protected_force_ = 0, damaged_ = 0;
     uint32_t events_ = 0;  // that were ever set
     uint64_t stalled_ticks_ = 0;
-    std::array<uint32_t, 256> events_near_ = {};  // by EffectRecord::protected_id
+    std::array<uint32_t, 256> events_of_ = {};  // by material
 };
 
 }  // namespace bonemill

@@ -130,9 +130,8 @@ void GradientModel::fitTool(const Tick& tick) noexcept {
     contact_.forget();
 }
 
-void GradientModel::growTool(double depth) noexcept {
-    last_depth_ = depth;
-    if (growing_.offset() == 0 || depth > kMostDepthToGrow * growing_.whole().thinnestRadius()) return;
+void GradientModel::growTool() noexcept {
+    if (growing_.offset() == 0 || last_depth_ > kMostDepthToGrow * growing_.whole().thinnestRadius()) return;
     growing_.setOffset(growing_.offset() - kGrowth * dt_);
     useTool();
 }
@@ -311,7 +310,7 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
     SpoStep out;
     const Tick tick{X_VW_ * spo_W, X_VW_ * device_W, &out};
     point_tests_ = 0;
-    if (is_new_tool_) fitTool(tick);
+    is_new_tool_ ? fitTool(tick) : growTool();
     // What the last tick moved is a good guess of what this one will; a longer step gathers anew.
     gather(tick.start, std::min(trustRadius(), std::max(kLeastMargin, kMotionGrowth * last_reach_)), out);
     State state = evaluate(tick.start, tick);
@@ -324,7 +323,7 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
     out.contacts = state.contacts;
     out.budget_share = double(point_tests_) / double(most_point_tests_);
     out.max_penetration = state.max_depth;
-    growTool(state.max_depth);
+    last_depth_ = state.max_depth;
     feel(state.X_VT, tick);
     return out;
 }

@@ -55,7 +55,7 @@ class GradientModel final : public SpoModel {
     };
     void useTool() noexcept;
     void fitTool(const Tick& tick) noexcept;
-    void growTool(double depth) noexcept;
+    void growTool() noexcept;
     void gather(const Pose& X_VT, double margin, SpoStep& out) noexcept;
     State evaluate(const Pose& X_VT, const Tick& tick) noexcept;
     void goOn(State& state, const Tick& tick) noexcept;

@@ -89,7 +89,7 @@ void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     model->setAccuracy(settings);
     if (model != model_) {
         model->restart();
-        effects_.restart();
+        effects_.restart(Restart::kOtherLaw);
     }
     model_ = model;
 }
@@ -98,7 +98,7 @@ void HapticTick::takeUp(const SpoTool& tool) noexcept {
     thesis_.setTool(tool);
     gradient_.setTool(tool);
     tool_in_use_ = tool;
-    effects_.restart();
+    effects_.restart(Restart::kOtherTool);
 }
 
 void HapticTick::chooseTool() noexcept {
@@ -205,7 +205,7 @@ MillingResult HapticTick::mill(uint32_t& faults) noexcept {
     bool shell_is_complete = true;
     if (history_->restoreSome(bone_, shell_is_complete)) {
         sudden_change_.begin();
-        effects_.restart();
+        effects_.restart(Restart::kBonePutBack);
     } else {
         milled = millWithEffects(faults);
     }

@@ -99,9 +99,13 @@ float MillingSynth::nextSample() noexcept {
 }
 
 void MillingSynth::render(std::span<float> samples) noexcept {
-    for (size_t i = 0; i < samples.size(); ++i) {
-        if (i % kToneBlock == 0) updateTones();
-        samples[i] = nextSample();
+    for (float& sample : samples) {
+        if (to_update_ == 0) {
+            updateTones();
+            to_update_ = kToneBlock;
+        }
+        --to_update_;
+        sample = nextSample();
     }
 }
 

@@ -6,7 +6,7 @@
 // targets with kSmoothing, and every tone keeps its phase, so nothing clicks.
 //
 // Units: rad/s, N, W; samples in -1 .. 1. One thread; RT-safe after construction (no memory, no lock). The
-// same settings, loads and block borders give the same samples.
+// same settings and loads at the same samples give the same samples, in blocks of any length.
 #pragma once
 
 #include <array>
@@ -55,6 +55,7 @@ class MillingSynth {
     double tooth_phase_ = 0;
     double low_ = 0, band_ = 0;  // of the state variable filter
     uint32_t random_ = 0x9e3779b9u;
+    size_t to_update_ = 0;  // samples until the levels of the tones follow again
 };
 
 }  // namespace bonemill

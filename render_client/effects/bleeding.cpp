@@ -1,6 +1,8 @@
 #include "render_client/effects/bleeding.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "render_client/effects/surface_walker.h"
 
@@ -9,6 +11,7 @@ namespace {
 
 constexpr float kBrim = 0.55f;                              // of a full film: from here on blood runs
 constexpr float kShortestRun = 1e-3f, kLongestRun = 7e-3f;  // m
+constexpr double kMostCells = 300e3;                        // of the film, that a step looks at
 constexpr float kTightness = 0.7f;  // of a cell: nearer to a wound there is no second one
 const Eigen::Vector3f kDarkRed(0.105f, 0.0040f, 0.0045f);
 
@@ -22,7 +25,7 @@ void Bleeding::open(std::span<const SurfacePoint> cut, const SurfaceFilm& film) 
         const auto is_near = [&](const Wound& w) {
             return (w.at.p_V - point.p_V).squaredNorm() < tight * tight;
         };
-        if (film.holds(point.p_V) && std::ranges::none_of(wounds_, is_near)) wounds_.push_back({point, 0});
+        if (film.holds(point.p_V) && std::ranges::none_of(wounds_, is_near)) wounds_.push_back({point, 0, 0});
     }
 }
 
@@ -39,19 +42,32 @@ void Bleeding::advance(double dt, const Eigen::Vector3f& up_V, const BoneSurface
     run(dt, up_V, surface, film);
 }
 
-// Wounds lie close together, so each gives its share only.
+// Wounds lie close together, so each gives its share only. When they cost more than a picture has time for,
+// they take turns.
 void Bleeding::seep(double dt, SurfaceFilm& film) {
     const auto delay = float(wish_.delay_s()), end = float(wish_.delay_s() + wish_.clotting_time_s());
-    const float spread = float(wish_.spread_mm()) * 1e-3f;
     for (Wound& wound : wounds_) {
         wound.age += float(dt);
-        if (wound.age < delay || !film.holds(wound.at.p_V)) continue;
-        const float grown = std::min(1.0f, (wound.age - delay) * float(wish_.seep_per_s()));
-        const float radius = film.cell() + grown * spread;
-        const float share = film.cell() / radius;
-        film.add(SurfaceFilm::kBlood, wound.at.p_V, float(dt * wish_.seep_per_s()) * share * share, radius);
+        if (wound.age >= delay) wound.waited += float(dt);
+    }
+    double cells = kMostCells;
+    for (size_t n = 0; n < wounds_.size() && cells > 0; ++n) {
+        next_ = next_ + 1 < wounds_.size() ? next_ + 1 : 0;
+        if (wounds_[next_].waited > 0) cells -= feed(wounds_[next_], film);
     }
     std::erase_if(wounds_, [&](const Wound& w) { return w.age > end || !film.holds(w.at.p_V); });
+}
+
+// Returns how many cells it looked at.
+double Bleeding::feed(Wound& wound, SurfaceFilm& film) {
+    const auto waited = std::exchange(wound.waited, 0.0f);
+    if (!film.holds(wound.at.p_V)) return 0;
+    const auto seep = float(wish_.seep_per_s());
+    const float grown = std::min(1.0f, (wound.age - float(wish_.delay_s())) * seep);
+    const float radius = film.cell() + grown * float(wish_.spread_mm()) * 1e-3f;
+    const float share = film.cell() / radius;
+    film.add(SurfaceFilm::kBlood, wound.at.p_V, waited * seep * share * share, radius);
+    return std::pow(2 * double(radius / film.cell()) + 1, 3);
 }
 
 void Bleeding::beginRuns(double dt, const SurfaceFilm& film) {

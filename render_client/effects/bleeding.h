@@ -35,7 +35,7 @@ class Bleeding {
     static constexpr size_t kMostWounds = 6000, kMostRuns = 48;
     struct Wound {
         SurfacePoint at;
-        float age;
+        float age, waited;  // s: in all, and since blood came from it
     };
     struct Run {
         SurfacePoint at;
@@ -43,6 +43,7 @@ class Bleeding {
         float width;
     };
     void seep(double dt, SurfaceFilm& film);
+    double feed(Wound& wound, SurfaceFilm& film);
     void beginRuns(double dt, const SurfaceFilm& film);
     void run(double dt, const Eigen::Vector3f& up_V, const BoneSurface& surface, SurfaceFilm& film);
 
@@ -51,6 +52,7 @@ class Bleeding {
     EffectRandom random_{47};
     std::vector<Wound> wounds_;
     std::vector<Run> runs_;
+    size_t next_ = 0;  // of wounds_
     double runs_due_ = 0;
 };
 

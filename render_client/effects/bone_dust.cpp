@@ -37,7 +37,7 @@ void BoneDust::take(const EffectInput& input) {
 }
 
 void BoneDust::advance(double dt, const BoneSurface& surface) {
-    const auto leaving = size_t(due_);
+    const auto leaving = input_.X_VT ? size_t(due_) : 0;
     due_ -= double(leaving);
     for (Grain& grain : grains_) {
         grain.age += float(dt);

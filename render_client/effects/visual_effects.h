@@ -30,7 +30,7 @@ class VisualEffects {
     // A node's mesh came or changed. An empty one removes it.
     void setNode(const NodeMesh& mesh);
     void removeNode(uint32_t leaf);
-    // The bone is another one, or was put back.
+    // The bone is another one. Where it is put back, dust and blood stay for their time.
     void clear();
     void advance(double dt);
 

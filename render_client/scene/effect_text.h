@@ -13,7 +13,7 @@ namespace bonemill {
 std::vector<HudRow> effectRows(const topics::EffectState& state, const topics::SceneInfo* info,
                                uint32_t events);
 
-// What must not be overseen: protected structures and heat. structure: as EffectState.protected_id.
+// What must not be overseen: protected structures and heat. structure: as EffectState.event_id.
 std::optional<HudNotice> effectAlert(uint32_t events, uint32_t structure, const topics::SceneInfo* info);
 
 // How careful the session was so far; warnings last.

@@ -62,7 +62,7 @@ struct HudInput {
     bool show_help = false;
     std::optional<HudNotice> notice;
     uint32_t events = 0;     // EffectState.Event bits that the trainee is to see now
-    uint32_t structure = 0;  // EffectState.protected_id of those of protected structures
+    uint32_t structure = 0;  // EffectState.event_id of those of protected structures
 };
 
 Hud makeHud(const HudInput& input);

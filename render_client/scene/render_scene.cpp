@@ -92,7 +92,7 @@ void RenderScene::setToolState(const topics::ToolState& tool) {
     const bool is_new = !old || old->epoch() != tool.epoch() || old->tick() != tool.tick();
     if (is_new && tool.has_effects()) {
         events_.note(tool.effects().events());
-        if (tool.effects().protected_id() != 0) hud_input_.structure = tool.effects().protected_id();
+        if (tool.effects().event_id() != 0) hud_input_.structure = tool.effects().event_id();
     }
     hud_input_.tool = tool;
     takeEffectInput();

@@ -176,6 +176,7 @@ TEST(GoldenFigures, OfEffectsWithAnAlert) {
     effects.set_temperature_c(48.1);
     effects.set_necrotic_mm3(0.12);
     effects.set_protected_id(1);
+    effects.set_event_id(1);
     effects.set_protected_distance_m(0.8e-3);
     effects.set_damaged_mm3(0);
     scene.setToolState(tool);

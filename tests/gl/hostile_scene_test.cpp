@@ -51,6 +51,7 @@ TEST_P(HostileScene, IsDrawnWhateverTheMessagesSay) {
     tool.mutable_effects()->set_temperature_c(40);
     tool.mutable_effects()->set_protected_distance_m(1e-3);
     tool.mutable_effects()->set_protected_id(2);
+    tool.mutable_effects()->set_event_id(77);
     test::listAllEffects(info);
     tool.set_tick(5);
     tool.mutable_effects()->set_removed_mm3(2);

@@ -22,14 +22,22 @@ void redirect(int descriptor, const std::string& file) {
     close(opened);
 }
 
+// A name is that of a program of the build; of its guarded twin where the test asks for them and there is
+// one.
+std::filesystem::path programOf(const std::string& name) {
+    if (name.find('/') != std::string::npos) return name;
+#ifdef BONEMILL_GUARDED_DIR
+    const std::filesystem::path twin = std::filesystem::path(BONEMILL_GUARDED_DIR) / name;
+    if (exists(twin)) return twin;
+#endif
+    return std::filesystem::path(BONEMILL_BIN_DIR) / name;
+}
+
 }  // namespace
 
 Process::Process(const std::vector<std::string>& arguments) {
-    const std::filesystem::path program = arguments[0].find('/') == std::string::npos
-                                              ? std::filesystem::path(BONEMILL_BIN_DIR) / arguments[0]
-                                              : std::filesystem::path(arguments[0]);
     std::vector<std::string> words = arguments;
-    words[0] = program.string();
+    words[0] = programOf(arguments[0]).string();
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);

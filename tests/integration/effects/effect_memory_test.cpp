@@ -84,7 +84,7 @@ TEST_F(EffectMemory, NoneListedIsNotAByte) {
     const EffectRoom room{};
     EXPECT_EQ(bytesOf([&] {
                   EffectHost host(makeEffects(none, *simulation_.bone, room), 100'000, 1);
-                  host.restart();
+                  host.restart(Restart::kOtherTool);
                   host.begin({});
                   host.finish();
               }),

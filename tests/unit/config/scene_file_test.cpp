@@ -205,6 +205,23 @@ TEST_F(SceneFile, bleedingNamesMaterialsOfTheScene) {
     EXPECT_EQ(refusal(scene + "'core' } }"), "accepted");
 }
 
+TEST_F(SceneFile, heatNeedsRoomAndAnOrderOfTemperatures) {
+    const std::string scene = "volume { path: 'v' } tool { speed_rpm: 9000 }\neffects { thermal {\n ";
+    EXPECT_EQ(refusal(scene + "body_temperature_c: 40 necrosis_temperature_c: 38 } }"),
+              "s.textproto:3: field `effects.thermal.necrosis_temperature_c` = 38 is not above "
+              "body_temperature_c = 40");
+    EXPECT_NE(refusal(scene + "cell_mm: 0.2 conductivity_w_per_m_k: 20 heat_capacity_j_per_cm3_k: 0.1 } }"),
+              "accepted");
+    EXPECT_EQ(refusal(scene + "cell_mm: 0.5 } }"), "accepted");
+}
+
+TEST_F(SceneFile, soundNeedsAnEffectThatKnowsTheBurrsWork) {
+    EXPECT_NE(refusal("volume { path: 'v' } effects { time_removal {} milling_sound {} }"), "accepted");
+    EXPECT_EQ(
+        refusal("volume { path: 'v' } tool { speed_rpm: 9000 } effects { spindle {} milling_sound {} }"),
+        "accepted");
+}
+
 TEST_F(SceneFile, effectsThatReadContactsNeedTheGradientLaw) {
     const std::string scene =
         "volume { path: 'v' } tool { speed_rpm: 9000 }\neffects { energy_removal {} }\n";

@@ -137,7 +137,7 @@ TEST_F(CuttingForceTest, FollowsAChangeOfLoadWithItsTimeConstant) {
     // Backward Euler: 1 − (1 + dt/τ)^(−n).
     const double full = 0.5 * 4 * 1e-3, share = 1 - std::pow(1 + bench.tick.dt / kTau, -20);
     EXPECT_NEAR(bench.tick.record.axis_torque, share * full, 0.01 * full);
-    smooth.restart();
+    smooth.restart(Restart::kOtherTool);
     smooth.finish(bench.tick);
     EXPECT_EQ(bench.tick.record.axis_torque, 0);
 }

@@ -187,6 +187,22 @@ TEST(HeatGrid, WhatIsCutAwayIsNeitherHotNorDeadBone) {
     EXPECT_EQ(heat.necroticVolume(), 0);
 }
 
+// Its brick was closed long ago when the whole bone becomes another one.
+TEST(HeatGrid, DeadBoneThatIsGoneDoesNotCountThoughItIsCold) {
+    VoxelVolume bone = boneOf({32, 32, 32});
+    HeatGrid heat(HeatConfig{}, bone, kDt);
+    heat.addHeat(cubeAt(10, 10, 10), -kUp, 20e-3);
+    run(heat, 30);
+    EXPECT_EQ(heat.activeBricks(), 0u);
+    EXPECT_GT(heat.necroticVolume(), 0);
+    for (int k = 0; k < 32; ++k)
+        for (int j = 0; j < 32; ++j)
+            for (int i = 0; i < 16; ++i) bone.set(i, j, k, 0);
+    heat.noteChangeEverywhere();
+    run(heat, 0.1);
+    EXPECT_EQ(heat.necroticVolume(), 0);
+}
+
 // Cubes count once however often they are heated, also after their brick was given up meanwhile.
 TEST(HeatGrid, NecrosisIsCountedOnce) {
     const VoxelVolume bone = boneOf({32, 32, 32});

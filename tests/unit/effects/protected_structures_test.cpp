@@ -101,6 +101,59 @@ TEST(ProtectedStructures, ForceIsThatOfTheContactsOnThem) {
     }
 }
 
+// The spindle's burr that stands removes nothing, and covers nothing.
+TEST(ProtectedStructures, AStalledBurrHarmsNothing) {
+    ProtectedBench bench(layer(2.5e-3, 7e-3));
+    bench.config.burr.speed = 4000;
+    bench.config.effects.spindle.emplace().max_torque = 1e-9;
+    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    const Vector3d end(kMiddle, kMiddle, kTop + kBurr - 0.5e-3);
+    auto inputs = straightPath(TissueBench::at({kMiddle, kMiddle, 6.2e-3}), end, 200, kButtonRemove);
+    inputs.insert(inputs.end(), 300, inputs.back());
+    const auto records = bench.run(tick, inputs);
+    EXPECT_TRUE(records.back().effects.events & kEventSpindleStalled);
+    double removed = 0;
+    for (size_t n = 250; n < records.size(); ++n) removed += records[n].removed;
+    EXPECT_EQ(removed, 0);
+    EXPECT_EQ(records.back().effects.damaged_volume, records[250].effects.damaged_volume);
+}
+
+// A burr so large that a tick does not see all of it, on its way past a thin structure.
+TEST(ProtectedStructures, ALargeBurrMissesNothingOnItsWay) {
+    constexpr double kLarge = 2.5e-3, kSpeed = 50e-3;  // m, m/s
+    const DistanceFunction nerve = [](const Vector3d& p) {
+        return std::hypot(p.y() - kMiddle, p.z() - 2.5e-3) - 0.3e-3;
+    };
+    ProtectedBench bench(nerve);
+    bench.config.burr.radius = kLarge;
+    const ToolModel large = sphereToolModel(kLarge, 2 * kVoxel);
+    HapticTick tick(bench.config, bench.bone, large, nullptr);
+    // Free of bone above: only what the burr covers counts.
+    const Vector3d start(kMiddle, kMiddle - 8e-3, 2.5e-3), end(kMiddle, kMiddle + 8e-3, 2.5e-3);
+    for (int k = 0; k < 64; ++k)
+        for (int j = 0; j < 64; ++j)
+            for (int i = 0; i < 64; ++i) bench.bone.volume.set(i, j, k, 0);
+    const auto records =
+        bench.run(tick, straightPath(TissueBench::at(start), end, int(16e-3 / kSpeed * 1e3), kButtonRemove));
+    const double covered = M_PI * 0.3e-3 * 0.3e-3 * 2 * kLarge;
+    EXPECT_NEAR(records.back().effects.damaged_volume / covered, 1, 0.15);
+}
+
+// Of a long thin burr beside a ball as thin: never farther than it is by more than a tenth of the radius.
+TEST(BurrProbes, SeeAThinStructureBesideALongBurr) {
+    const Vector3d nerve(kMiddle, kMiddle, 4e-3);
+    const TissueBench bench(sphereAt(nerve, 0.3e-3), 4e-3);
+    const Burr burr{.kind = BurrKind::kCylinder, .radius = 0.5e-3, .length = 7e-3};
+    for (int n = 0; n <= 20; ++n) {
+        const double along = (n / 20.0 - 0.5) * 5e-3;
+        const Pose pose{nerve + Vector3d(1.5e-3, along, 0), Eigen::Quaterniond::Identity()};
+        const NearestStructure nearest =
+            nearestStructure(*bench.config.effects.protected_field, BurrProbes(burr), pose);
+        EXPECT_NEAR(nearest.distance, 1.5e-3 - 0.3e-3 - burr.radius, 0.12 * burr.radius + kVoxel / 2)
+            << along;
+    }
+}
+
 // Over a flat structure: the lowest point of a burr with edges, however it leans.
 TEST(BurrProbes, ReachAsFarAsTheBurr) {
     const TissueBench bench(layer(0, 3e-3 + kVoxel / 2), 6e-3);

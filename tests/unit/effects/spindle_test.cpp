@@ -154,7 +154,7 @@ TEST_F(PressedSpindle, HoldsNothingWithThePedalUp) {
 
 TEST_F(PressedSpindle, AnotherToolStartsFromRest) {
     run(0.5, 0, true);
-    spindle.restart();
+    spindle.restart(Restart::kOtherTool);
     run(2e-3, 0, true);
     EXPECT_LT(bench.tick.spin_speed, 0.03 * bench.tool.burr.speed);
 }

@@ -110,7 +110,7 @@ TEST_F(FrictionTest, IsMinusTheGradientOfItsEnergyStickingAndSlipping) {
         return sum;
     }();
     for (const double of_width : {0.3, 1.0, 30.0}) {
-        friction.restart();
+        friction.restart(Restart::kOtherTool);
         bench.tick.X_VT = {{1e-3, -1e-3, 2e-3}, expRotation({0.2, 0.5, -0.3})};
         moveBy(of_width * width(total) * Vector3d(0.3, 0.5, -0.1),
                of_width * width(total) / kRadius * Vector3d(-0.2, 0.1, 0.6));
@@ -153,7 +153,7 @@ TEST_F(FrictionTest, StiffnessIsSemiDefiniteAndThatOfAStickingTool) {
 TEST_F(FrictionTest, NeverDrives) {
     std::uniform_real_distribution<double> uniform(0, 1);
     for (int trial = 0; trial < 20; ++trial) {
-        friction.restart();
+        friction.restart(Restart::kOtherTool);
         given_to_friction = 0;
         bench.tick.X_VT = {};
         double most = 0;

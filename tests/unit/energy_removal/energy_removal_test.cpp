@@ -1,3 +1,5 @@
+#include "haptic_server/effects/energy_removal.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -265,6 +267,21 @@ TEST(EnergyRemoval, SurvivesWhatNoHandDoes) {
     EXPECT_LT(rig.removedVolume() * config.removal.specific_energy, 1.01 * rig.work());
     const auto meshes = test::meshAll(rig.bone.volume, rig.bone.lattice);
     EXPECT_TRUE(checkMesh(meshes, MeshGrid(rig.bone.volume, rig.bone.lattice)).isClosed());
+}
+
+// Where there is only time for some of the contacts at once: the leaves around the burr take turns, in the
+// air of a pit as well.
+TEST(EnergyRemoval, LeavesTakeTurnsUnderABurrWithTooManyContacts) {
+    constexpr size_t kFewContacts = 40;
+    RigConfig config = sideways(), in_turn = config;
+    in_turn.most_milled_cells = kFewContacts * EnergyRemoval::kCellsPerContact;
+    MillingRig at_once(config), turning(in_turn);
+    for (MillingRig* rig : {&at_once, &turning}) rig->press(0.2, onTop(*rig), kDown, kPress);
+    EXPECT_GT(at_once.records.back().contacts, 2 * kFewContacts);
+    EXPECT_NEAR(turning.removedVolume() / at_once.removedVolume(), 1, 0.02);
+    expectBalance(turning, config.removal.specific_energy);
+    for (size_t n = 100; n < turning.records.size(); ++n)
+        EXPECT_NEAR(turning.records[n].f_hand_W[2], kPress, 0.02 * kPress) << n;
 }
 
 // Where there is only time for coarser points.

@@ -31,6 +31,7 @@ struct RigConfig {
     EnergyRemovalConfig removal;
     Preset preset = Preset::kBalanced;
     int shell_factor = 1;
+    size_t most_milled_cells = TickConfig{}.most_milled_cells;
     double hand_stiffness = 3000;  // N/m: of the coupling
 };
 
@@ -156,6 +157,7 @@ class MillingRig final : private TickIo {
         tick.accuracy.shell_factor = config.shell_factor;
         tick.gradient.coupling.translation_stiffness = config.hand_stiffness;
         tick.gradient.coupling.relaxing_share = 0;
+        tick.most_milled_cells = config.most_milled_cells;
         tick.effects.energy_removal = config.removal;
         if (config.is_hard_below > 0) {
             const double hard_below = (config.surface - config.is_hard_below) / config.spacing.z();

@@ -17,7 +17,7 @@ std::map<std::string, double> figuresOf(const EffectStatistics& statistics) {
 
 EffectRecord nearNerve(float distance, uint32_t events) {
     EffectRecord record{};
-    record.protected_id = 2;
+    record.protected_id = record.touched_id = record.damaged_id = 2;
     record.protected_distance = distance;
     record.events = events;
     return record;
@@ -86,6 +86,16 @@ TEST(EffectStatistics, EachWarningOnceTheWorstFirst) {
                                             "came near facial nerve", "came near material 3", "bone too hot"};
     EXPECT_EQ(statistics.warnings({"bone", "facial nerve", ""}), expected);
     EXPECT_EQ(statistics.warnings({}).front(), "damaged a protected structure");
+}
+
+// The shaft lies on one structure while the burr is nearest to another.
+TEST(EffectStatistics, WarningsNameWhatWasTouchedNotWhatIsNearest) {
+    EffectStatistics statistics(kAll);
+    EffectRecord record = nearNerve(1e-3f, kEventNearProtected | kEventProtectedTouched);
+    record.touched_id = 1;
+    statistics.add(record);
+    const std::vector<std::string> expected{"touched dural sac", "came near facial nerve"};
+    EXPECT_EQ(statistics.warnings({"dural sac", "facial nerve"}), expected);
 }
 
 }  // namespace

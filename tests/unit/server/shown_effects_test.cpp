@@ -80,7 +80,7 @@ TEST(ShownEffects, OfMaterialsViewersGetNameColourAndCare) {
 
 TEST(ShownEffects, EachEffectBringsItsOwnFigures) {
     const auto shown = [](const char* effects) {
-        return ShownEffects(effectsOf(effects)).at(busyRecord(), kEventNearProtected, 3e-9);
+        return ShownEffects(effectsOf(effects)).at(busyRecord(), {kEventNearProtected, 4}, 3e-9);
     };
     const topics::EffectState dust = shown("time_removal {} bone_dust {}");
     EXPECT_NEAR(dust.removed_mm3(), 3, 1e-12);
@@ -96,6 +96,7 @@ TEST(ShownEffects, EachEffectBringsItsOwnFigures) {
     EXPECT_FLOAT_EQ(float(heat.necrotic_mm3()), 1);
     const topics::EffectState care = shown("protected_structures {}");
     EXPECT_EQ(care.protected_id(), 1u);
+    EXPECT_EQ(care.event_id(), 4u) << "of the worst of all ticks' events, not of what is nearest now";
     EXPECT_FLOAT_EQ(float(care.protected_distance_m()), 1e-3f);
     EXPECT_FLOAT_EQ(float(care.damaged_mm3()), 2);
     EXPECT_FALSE(care.has_spin_speed() || care.has_temperature_c());
@@ -106,7 +107,7 @@ TEST(ShownEffects, NoNumberIsShownThatIsNone) {
     record.axis_torque = std::nanf("");
     record.protected_distance = std::numeric_limits<float>::infinity();
     const topics::EffectState state =
-        ShownEffects(effectsOf("spindle {} protected_structures {}")).at(record, 0, 0);
+        ShownEffects(effectsOf("spindle {} protected_structures {}")).at(record, {}, 0);
     EXPECT_EQ(state.axis_torque_nm(), 0);
     EXPECT_FALSE(state.has_protected_distance_m());
     EXPECT_EQ(state.protected_id(), 0u);
@@ -117,6 +118,7 @@ TEST(ShownEffects, TheStatusSaysHowCarefulTheSessionWas) {
     EffectStatistics statistics(recordedEffectsOf(effects));
     EffectRecord record = busyRecord();
     record.events = kEventProtectedTouched;
+    record.touched_id = 1;
     statistics.add(record);
     topics::Status status;
     ShownEffects(effects).describe(statistics, {"nerve"}, status);
@@ -152,14 +154,41 @@ TEST(Recorder, EventsAndVolumeOfAllTicksReachTheNextToolState) {
     const auto since = recorder.takeSince();
     ASSERT_TRUE(since);
     EXPECT_EQ(since->latest.tick, 4u);
-    EXPECT_EQ(since->events, kEventSpindleStalled | kEventProtectedTouched);
+    EXPECT_EQ(since->events.events, kEventSpindleStalled | kEventProtectedTouched);
     EXPECT_DOUBLE_EQ(since->removed, 7e-9);
     const auto again = recorder.takeSince();
     ASSERT_TRUE(again);
     EXPECT_EQ(again->latest.tick, 4u);
-    EXPECT_EQ(again->events, 0u);
+    EXPECT_EQ(again->events.events, 0u);
     EXPECT_EQ(again->removed, 0);
     EXPECT_EQ(recorder.effects().warnings({}).size(), 2u);
+}
+
+TEST(EventSum, KnowsWhichStructureTheWorstWasAbout) {
+    EffectRecord near{}, touched{}, damaged{};
+    near.events = kEventNearProtected;
+    near.protected_id = 1;
+    touched.events = kEventNearProtected | kEventProtectedTouched;
+    touched.protected_id = 1;
+    touched.touched_id = 2;  // by the shaft
+    damaged.events = kEventProtectedDamaged;
+    damaged.protected_id = 1;
+    damaged.damaged_id = 3;
+    EventSum first, second;
+    first.add(near);
+    EXPECT_EQ(first.structure, 1u);
+    first.add(touched);
+    EXPECT_EQ(first.structure, 2u);
+    first.add(near);
+    EXPECT_EQ(first.structure, 2u);
+    second.add(damaged);
+    second.add(touched);
+    EXPECT_EQ(second.structure, 3u);
+    second.add(first);
+    EXPECT_EQ(second.structure, 3u);
+    first.add(second);
+    EXPECT_EQ(first.structure, 3u);
+    EXPECT_EQ(first.events, near.events | touched.events | damaged.events);
 }
 
 TEST(StateHash, EffectsCountOnlyWhereTheyAreRecorded) {
