@@ -40,6 +40,9 @@ class SurfaceFilm {
     std::span<const uint8_t> slice(int z) const {
         return {texels_.data() + size_t(z) * kSliceBytes, kSliceBytes};
     }
+    // It changes all over in each step; pictures follow when it is due.
+    void markDue() { is_due_ = true; }
+    bool takeDue() { return std::exchange(is_due_, false); }
     // Slices whose texels changed, and around the changed cells, since the last call.
     std::bitset<kCells> takeChangedSlices() { return std::exchange(changed_slices_, {}); }
     Eigen::AlignedBox3f takeChanged() { return std::exchange(changed_, {}); }
@@ -59,7 +62,7 @@ class SurfaceFilm {
 
     float cell_;
     Eigen::Array3i low_ = Eigen::Array3i::Zero();  // first cell of the grid
-    bool is_placed_ = false;
+    bool is_placed_ = false, is_due_ = true;
     std::array<std::vector<float>, kLayers> values_;
     std::array<bool, kLayers> has_any_{};
     std::vector<uint8_t> texels_;

@@ -5,8 +5,9 @@
 namespace bonemill {
 namespace {
 
-constexpr double kFilmStep = 1.0 / 15;                       // s: blood and drying are slow
-constexpr double kCellsPerRadius = 4;                        // of the burr
+constexpr double kShownStep = 0.15;     // s: a quick picture draws all that is wet anew when it changes
+constexpr double kFilmStep = 1.0 / 15;  // s: blood and drying are slow
+constexpr double kCellsPerRadius = 4;   // of the burr
 constexpr double kSmallestCell = 1e-4, kLargestCell = 6e-4;  // m
 constexpr double kTrailTime = 0.6;                           // s that a mesh may come after its cut
 constexpr size_t kMostTrail = 64;
@@ -68,6 +69,7 @@ void VisualEffects::clear() {
     if (bleeding_) bleeding_->clear();
     if (irrigation_) irrigation_->clear();
     if (film_) film_->clear();
+    if (film_) film_->markDue();
 }
 
 void VisualEffects::advance(double dt) {
@@ -84,6 +86,11 @@ void VisualEffects::step() {
     if (irrigation_) irrigation_->advance(kStep, surface_, *film_);
     if (irrigation_) wash(kStep);
     if (!film_) return;
+    shown_time_ += kStep;
+    if (shown_time_ >= kShownStep) {
+        film_->markDue();
+        shown_time_ = 0;
+    }
     film_time_ += kStep;
     if (film_time_ < kFilmStep) return;
     stepFilm(film_time_);

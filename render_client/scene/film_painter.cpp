@@ -35,8 +35,9 @@ void FilmPainter::setMaterials(bool has_materials) {
 
 Eigen::AlignedBox3f FilmPainter::update(const EffectPicture& picture) {
     SurfaceFilm& film = *picture.film;
-    Eigen::AlignedBox3f changed = film.takeChanged();
     const Eigen::Vector2f strength(picture.shows_blood, picture.shows_water);
+    if (!film.takeDue() && strength == strength_) return {};
+    Eigen::AlignedBox3f changed = film.takeChanged();
     if (strength != strength_) changed.extend(film.shownBox());
     strength_ = strength;
     blood_colour_ = picture.blood_colour;
