@@ -54,7 +54,8 @@ double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, cons
             // The burr is what it touches or is nearest to.
             const bool is_on_burr =
                 tick.tool->burr.signedDistance(p_T) <= std::max(0.0, double(distance[i])) + slack;
-            const double factor = is_on_burr ? softness(tick, candidates, n, origin_V, p_T) : 1;
+            const double depth = std::max(0.0, -double(distance[i]));
+            const double factor = is_on_burr ? softness(tick, candidates, n, origin_V, p_T, depth) : 1;
             candidates.weight[n] *= float(factor);
             largest = std::max(largest, factor);
         }
@@ -62,15 +63,20 @@ double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, cons
     return largest;
 }
 
-// 1/(1 + κ c dt) of a candidate on the burr.
+// Of a candidate on the burr, at its depth at the start of the tick.
 double EnergyRemoval::softness(const EffectTick& tick, const Candidates& candidates, size_t n,
-                               const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T) noexcept {
+                               const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T,
+                               double depth) noexcept {
     const Burr& burr = tick.tool->burr;
     const double area = double(tick.place_area[n]), stiffness = double(candidates.weight[n]) / area;
     const double rho = std::sqrt(p_T.x() * p_T.x() + p_T.z() * p_T.z() + patchSpread(area));
     const double u = energyFactor(burr) * specificEnergyAt(origin_V + candidates.position(n).cast<double>());
     const double c = burr.friction * std::abs(tick.spin_speed) * rho / u;
-    return 1 / (1 + stiffness * c * tick.dt * double(turns_));
+    const double wear = stiffness * c * tick.dt * double(turns_);
+    if (config_.threshold_pressure == 0) return 1 / (1 + wear);
+    const double pressure = stiffness * depth;  // if nothing were cut
+    if (pressure <= config_.threshold_pressure) return 1;
+    return (1 + wear * config_.threshold_pressure / pressure) / (1 + wear);
 }
 
 // The places of a patch follow each other.

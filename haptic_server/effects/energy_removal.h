@@ -8,8 +8,9 @@
 // tick. The tick therefore takes it implicitly (backward Euler). With c = μ_c v_c / u and the recession s =
 // dt c p in this tick, p = κ (δ - s) makes p = κ δ / (1 + κ c dt): scale() multiplies each point's weight by
 // 1/(1 + κ c dt), so that the solve moves the tool through what the tick will cut. At a steady feed v the
-// pressure is v/c whatever dt and κ. The threshold does not enter the weights: below it the burr only rubs,
-// on bone as soft as that, and sinks in by dt c p_th more.
+// pressure is v/c whatever dt and κ. With a threshold
+// p = (κ δ + κ c dt p_th)/(1 + κ c dt) above it and κ δ below: the weight is that secant at the depth which
+// the contact has at the start of the tick.
 //
 // v_c = |Ω| ρ with the mean of ρ over the point's patch (burr_speed.h), so that the pole of a burr cuts, if
 // hardly.
@@ -55,7 +56,7 @@ class EnergyRemoval final : public HapticEffect {
         return burr.grit == BurrGrit::kDiamond ? config_.diamond_energy_factor : 1;
     }
     double softness(const EffectTick& tick, const Candidates& candidates, size_t n,
-                    const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T) noexcept;
+                    const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T, double depth) noexcept;
     double specificEnergyAt(const Eigen::Vector3d& p_V) noexcept;
     double spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept;
     void takeTurn(const EffectTick& tick) noexcept;

@@ -55,7 +55,7 @@ void Spindle::begin(EffectTick& tick) noexcept {
 void Spindle::watch(double wanted, double dt) noexcept {
     const double slow = kStandsBelow * std::abs(wanted);
     longest_start_ = std::max(kShortestStall, kSlowStart * config_.inertia * slow / config_.max_torque);
-    stands_for_ = std::abs(speed_) < slow ? stands_for_ + dt : 0;
+    stands_for_ = std::abs(speed_) < slow && held_ != 0 ? stands_for_ + dt : 0;  // not in the air
 }
 
 void Spindle::finish(EffectTick& tick) noexcept {

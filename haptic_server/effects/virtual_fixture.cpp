@@ -30,7 +30,7 @@ EnergyTerm VirtualFixture::energy(const EffectTick&, const Pose& X_VT) const noe
     size_t count = 0;
     double least = field_->reach();
     for (const BurrProbe& probe : burr_) {
-        DistanceSample& sample = samples[count++] = field_->at(X_VT * probe.center_T);
+        DistanceSample& sample = samples[count++] = field_->smoothAt(X_VT * probe.center_T);
         sample.distance -= probe.radius;
         least = std::min(least, sample.distance);
     }

@@ -224,6 +224,7 @@ void SurfaceShift::spreadWishes(const BoneModel& bone, const SpecificEnergy& u, 
         if (!(node.energy > 0)) return;
         const Vector3i cell = point.cwiseProduct(inverse).array().floor().cast<int>();
         const double wanted = share * double(node.energy) / (u.ofCell(cell) * double(area));
+        is_too_fast_ |= wanted > most;
         const Wish wish = wishOf(bone.volume, point, std::min({wanted, double(node.depth), most}));
         forEachVoxelAround(bone, wish.at, [&](const Vector3i& voxel, float hat) {
             touch(voxel);
@@ -276,7 +277,9 @@ void SurfaceShift::forEachCell(const BoneModel& bone, Visit&& visit) noexcept {
 double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double share,
                            MillingResult& result) noexcept {
     if (patch_count_ == 0 || !(share > 0)) return 0;
+    is_too_fast_ = false;
     spreadWishes(bone, u, share);
+    result.is_cut_short |= is_too_fast_;
     if (touched_.isEmpty()) return 0;
     spreadRest(bone);
     forEachCell(bone, [&](const Vector3i& cell, Node& node) {

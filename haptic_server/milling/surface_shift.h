@@ -108,7 +108,8 @@ class SurfaceShift {
     size_t cells_ = 0;  // of this tick
     static constexpr LeafId kNoLeaf = ~LeafId(0);
     LeafId next_leaf_ = kNoLeaf;  // where the last tick was cut short
-    double rounding_ = 0;         // 0 .. 1, another one each tick: what is less than a count is not lost
+    bool is_too_fast_ = false;
+    double rounding_ = 0;  // 0 .. 1, another one each tick: what is less than a count is not lost
 };
 
 }  // namespace bonemill

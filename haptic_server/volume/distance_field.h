@@ -29,6 +29,9 @@ class DistanceField {
 
     double reach() const noexcept { return reach_; }
     DistanceSample at(const Eigen::Vector3d& p_V) const noexcept;
+    // By quadratic B-splines: with a gradient that has no jumps. Exact beside a plane; beside a ball of
+    // radius R it is h²/4R farther, h a voxel's size.
+    DistanceSample smoothAt(const Eigen::Vector3d& p_V) const noexcept;
     size_t bytes() const noexcept { return distance_.size() * (sizeof(float) + sizeof(MaterialId)); }
 
     // Start-up only. Bricks of samples, layer after layer along z; sample(voxel) gives {distance, nearest}
@@ -80,6 +83,35 @@ inline DistanceSample DistanceField::at(const Eigen::Vector3d& p_V) const noexce
     const Eigen::Vector3d gradient(mix(dxy[0], dxy[1], t.z()), mix(dy[0], dy[1], t.z()), y[1] - y[0]);
     const MaterialId closest = nearest[t.z() >= 0.5][t.y() >= 0.5][t.x() >= 0.5];
     return {mix(y[0], y[1], t.z()), gradient.cwiseQuotient(spacing_), closest};
+}
+
+inline DistanceSample DistanceField::smoothAt(const Eigen::Vector3d& p_V) const noexcept {
+    constexpr double kFar = 1e6;  // voxels: what an int holds
+    const Eigen::Array3d place = (p_V.array() / spacing_.array()).max(-kFar).min(kFar);
+    const Eigen::Array3d middle = place.round();
+    const Eigen::Vector3i voxel = middle.cast<int>();
+    double weight[3][3], slope[3][3];  // by axis, and voxel before, at and behind the middle
+    for (int axis = 0; axis < 3; ++axis) {
+        const double t = place[axis] - middle[axis], before = 0.5 - t, behind = 0.5 + t;
+        weight[axis][0] = before * before / 2, weight[axis][1] = 0.75 - t * t;
+        weight[axis][2] = behind * behind / 2;
+        slope[axis][0] = -before, slope[axis][1] = -2 * t, slope[axis][2] = behind;
+    }
+    DistanceSample sum{0, Eigen::Vector3d::Zero(), kNoMaterial};
+    for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i) {
+                double d;
+                MaterialId nearest;
+                lookUp(voxel + Eigen::Vector3i(i - 1, j - 1, k - 1), d, nearest);
+                if (i == 1 && j == 1 && k == 1) sum.nearest = nearest;
+                const double x = weight[0][i], y = weight[1][j], z = weight[2][k];
+                sum.distance += d * x * y * z;
+                sum.gradient_V +=
+                    d * Eigen::Vector3d(slope[0][i] * y * z, x * slope[1][j] * z, x * y * slope[2][k]);
+            }
+    sum.gradient_V = sum.gradient_V.cwiseQuotient(spacing_);
+    return sum;
 }
 
 inline IndexBox DistanceField::layer(int n) const noexcept {

@@ -138,6 +138,17 @@ TEST_F(PressedSpindle, IsNotStalledWhileItRunsUpOrStands) {
     EXPECT_FALSE(was_stalled);
 }
 
+// However slowly it runs up.
+TEST_F(PressedSpindle, NeverStallsInTheAir) {
+    Spindle slow{SpindleConfig{.inertia = 5e-6, .droop = 1e-7, .drag = 1e-6}};
+    bench.tick.is_pedal_down = true;
+    for (int n = 0; n < 5000; ++n) {
+        slow.begin(bench.tick);
+        ASSERT_FALSE(slow.isStalled());
+    }
+    EXPECT_LT(bench.tick.spin_speed, 0.1 * bench.tool.burr.speed);
+}
+
 TEST_F(PressedSpindle, BrakesToZeroInTheAir) {
     run(0.5, 0, true);
     run(0.5, 0, false);

@@ -61,6 +61,25 @@ TEST(VirtualFixture, PushesBackByDepthInTheRegion) {
     EXPECT_LE(deep.wrench.force.norm(), 10 * 1.8);  // the field of voxels is steeper than 1 in places
 }
 
+// Round a ball: no jumps from voxel to voxel, and the same force everywhere but for the stairs of the labels.
+TEST(VirtualFixture, ForceHasNoJumpsRoundABall) {
+    const VirtualFixtureConfig config{.distance = 1e-3, .stiffness = 2000, .max_force = 10};
+    const Fixture fixture(config);
+    constexpr int kSteps = 20'000;
+    const double radius = kNerveRadius + kBurr + 0.5e-3, step = 2 * M_PI * radius / kSteps;
+    Vector3d before = Vector3d::Zero();
+    for (int n = 0; n <= kSteps; ++n) {
+        const double angle = 2 * M_PI * n / kSteps;
+        const Vector3d place =
+            kNervePlace + radius * Vector3d(std::cos(angle), 0.6 * std::sin(angle), 0.8 * std::sin(angle));
+        const Vector3d force = fixture.at({place, Eigen::Quaterniond::Identity()}).wrench.force;
+        EXPECT_NEAR(force.norm(), 1, 0.15);
+        // 2 kN/m along, F/r and the bends of the field across.
+        if (n > 0) EXPECT_LT((force - before).norm(), 3 * config.stiffness * step) << n;
+        before = force;
+    }
+}
+
 TEST(VirtualFixture, WrenchIsMinusTheGradientOfTheEnergy) {
     std::mt19937 random(7);
     for (const BurrKind kind : {BurrKind::kBall, BurrKind::kCylinder, BurrKind::kCone}) {

@@ -90,6 +90,21 @@ TEST(EnergyRemoval, DoesNotDependOnTheTickRate) {
     }
 }
 
+// With a threshold, too: what is not cut does not make the bone softer.
+TEST(EnergyRemoval, WithAThresholdItDoesNotDependOnTheTickRate) {
+    double slowest = 0;
+    for (const double rate : {500.0, 1000.0, 2000.0, 4000.0}) {
+        RigConfig config = sideways();
+        config.rate = rate;
+        config.removal.threshold_pressure = 1e6;
+        MillingRig rig(config);
+        rig.press(0.15, onTop(rig), kDown, kPress);
+        if (slowest == 0) slowest = rig.removedVolume();
+        EXPECT_GT(slowest, 0.1e-9);
+        EXPECT_NEAR(rig.removedVolume() / slowest, 1, 0.03) << rate;
+    }
+}
+
 TEST(EnergyRemoval, DoesNotDependOnTheVoxels) {
     for (const Eigen::Quaterniond& rotation : {kAlongX, kOblique}) {
         double coarse = 0;
@@ -215,6 +230,12 @@ TEST(EnergyRemoval, BelowTheThresholdItOnlyRubs) {
     MillingRig rubbing(config);
     rubbing.press(0.05, onTop(rubbing), kDown, kPress);
     EXPECT_EQ(rubbing.removedVolume(), 0);
+    // On bone as hard as without a spin.
+    RigConfig still = config;
+    still.burr.speed = 0;
+    MillingRig standing(still);
+    standing.press(0.05, onTop(standing), kDown, kPress);
+    EXPECT_NEAR(rubbing.position().z(), standing.position().z(), 1e-7);
     EXPECT_GT(rubbing.records.back().effects.cutting_power, 1);
 
     config.removal.threshold_pressure = 0.3e6;
