@@ -6,7 +6,7 @@
 namespace bonemill {
 
 static_assert(std::endian::native == std::endian::little, "the digest is defined over little-endian bytes");
-static_assert(sizeof(EffectRecord) == 13 * sizeof(float), "no padding goes into the digest");
+static_assert(sizeof(EffectRecord) == 15 * sizeof(float), "no padding goes into the digest");
 
 void StateHash::addBytes(const void* data, size_t size) noexcept {
     constexpr uint64_t kFnvPrime = 1099511628211ull;

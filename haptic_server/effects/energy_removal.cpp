@@ -54,8 +54,7 @@ double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, cons
             // The burr is what it touches or is nearest to.
             const bool is_on_burr =
                 tick.tool->burr.signedDistance(p_T) <= std::max(0.0, double(distance[i])) + slack;
-            const double depth = std::max(0.0, -double(distance[i]));
-            const double factor = is_on_burr ? softness(tick, candidates, n, origin_V, p_T, depth) : 1;
+            const double factor = is_on_burr ? softness(tick, candidates, n, origin_V, p_T) : 1;
             candidates.weight[n] *= float(factor);
             largest = std::max(largest, factor);
         }
@@ -63,20 +62,15 @@ double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, cons
     return largest;
 }
 
-// Of a candidate on the burr, at its depth at the start of the tick.
+// 1/(1 + κ c dt) of a candidate on the burr.
 double EnergyRemoval::softness(const EffectTick& tick, const Candidates& candidates, size_t n,
-                               const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T,
-                               double depth) noexcept {
+                               const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T) noexcept {
     const Burr& burr = tick.tool->burr;
     const double area = double(tick.place_area[n]), stiffness = double(candidates.weight[n]) / area;
     const double rho = std::sqrt(p_T.x() * p_T.x() + p_T.z() * p_T.z() + patchSpread(area));
     const double u = energyFactor(burr) * specificEnergyAt(origin_V + candidates.position(n).cast<double>());
     const double c = burr.friction * std::abs(tick.spin_speed) * rho / u;
-    const double wear = stiffness * c * tick.dt * double(turns_);
-    if (config_.threshold_pressure == 0) return 1 / (1 + wear);
-    const double pressure = stiffness * depth;  // if nothing were cut
-    if (pressure <= config_.threshold_pressure) return 1;
-    return (1 + wear * config_.threshold_pressure / pressure) / (1 + wear);
+    return 1 / (1 + stiffness * c * tick.dt * double(turns_));
 }
 
 // The places of a patch follow each other.
@@ -86,12 +80,12 @@ double EnergyRemoval::specificEnergyAt(const Eigen::Vector3d& p_V) noexcept {
     return last_energy_;
 }
 
-// Gives the energies of the contacts whose turn it is to the surface, and sums them; J.
+// Gives the energies of the contacts whose turn it is to the surface. Returns the sum of all, J.
 double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept {
     const Burr& burr = tick.tool->burr;
     const Eigen::Vector3d axis = tick.X_VT.rotation * Eigen::Vector3d::UnitY();
     shift_.begin(bone, tick.X_VT.position);
-    double energy = 0, of_all = 0;
+    double energy = 0;
     for (size_t n = 0; n < tick.contacts.size(); ++n) {
         if (!tick.is_on_burr[n]) continue;
         const SurfaceContact& contact = tick.contacts[n];
@@ -100,13 +94,12 @@ double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bon
             std::abs(tick.spin_speed) * rubbingRadius(contact.r_V.cast<double>(), axis, area);
         const double above = std::max(0.0, force - config_.threshold_pressure * area);
         const double of_contact = burr.friction * speed * above * tick.dt;
-        of_all += of_contact;
+        energy += of_contact;
         const uint64_t patch = tick.candidates->patch[contact.candidate];
         if ((patch >> 32) % turns_ != turn_) continue;
-        energy += of_contact * double(turns_);
         shift_.add(bone, patch, of_contact * double(turns_), double(contact.depth));
     }
-    removal_power_ = of_all / tick.dt;
+    removal_power_ = energy / tick.dt;
     return energy;
 }
 
@@ -115,9 +108,12 @@ void EnergyRemoval::mill(EffectTick& tick, BoneModel& bone, MillingResult& resul
     const double energy = spendContacts(tick, bone);
     if (!(energy > 0)) return;
     const double factor = energyFactor(tick.tool->burr);
-    const double repaid = account_ * (1 - std::exp(-tick.dt / kRepayTime));
-    const double share = std::clamp((energy + repaid) / energy, 0.0, kMostShare);
-    removed_energy_ = factor * shift_.apply(bone, specific_energy_, share / factor, result);
+    if (turn_ == 0) to_repay_ = account_;
+    const double of_turns = energy * double(turns_);
+    const double repaid = to_repay_ * (1 - std::exp(-tick.dt * double(turns_) / kRepayTime));
+    const double share = std::clamp((of_turns + repaid) / of_turns, 0.0, kMostShare);
+    removed_energy_ = factor * shift_.apply(bone, specific_energy_, share / factor,
+                                            std::min(turns_, kMostTurnsAtOnce), result);
     account_ += energy - removed_energy_;
     // What the surface could not take, as it was too quick or there was no time, is lost.
     account_ = std::min(account_, energy * kRepayTime / tick.dt);

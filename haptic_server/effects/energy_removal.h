@@ -8,9 +8,9 @@
 // tick. The tick therefore takes it implicitly (backward Euler). With c = μ_c v_c / u and the recession s =
 // dt c p in this tick, p = κ (δ - s) makes p = κ δ / (1 + κ c dt): scale() multiplies each point's weight by
 // 1/(1 + κ c dt), so that the solve moves the tool through what the tick will cut. At a steady feed v the
-// pressure is v/c whatever dt and κ. With a threshold
-// p = (κ δ + κ c dt p_th)/(1 + κ c dt) above it and κ δ below: the weight is that secant at the depth which
-// the contact has at the start of the tick.
+// pressure is v/c whatever dt and κ. The threshold is not in the weights: below it the burr only rubs, on
+// bone as soft as that, and sinks in by dt c p_th more. (A weight by the depth of the tick before swings: its
+// gain is κ c dt p_th/p.)
 //
 // v_c = |Ω| ρ with the mean of ρ over the point's patch (burr_speed.h), so that the pole of a burr cuts, if
 // hardly.
@@ -38,13 +38,14 @@ class EnergyRemoval final : public HapticEffect {
   public:
     static constexpr double kRepayTime = 5e-3;       // s
     static constexpr double kMostShare = 2;          // of a tick's energy, that it may spend
+    static constexpr size_t kMostTurnsAtOnce = 3;    // that a surface may make good in a tick
     static constexpr size_t kCellsPerContact = 125;  // one takes as long as so many milled cells
 
     // Of `all`: the bone's properties and materials.
     EnergyRemoval(const EnergyRemovalConfig& config, const EffectConfigs& all, const BoneModel& bone,
                   const EffectRoom& room);
     const char* name() const noexcept override { return "energy_removal"; }
-    void restart(Restart) noexcept override { account_ = 0, turn_ = 0, turns_ = 1; }
+    void restart(Restart) noexcept override { account_ = to_repay_ = 0, turn_ = 0, turns_ = 1; }
     void begin(EffectTick& tick) noexcept override;
     double scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
                  const ToolField& tool, const Pose& X_VT) noexcept override;
@@ -56,7 +57,7 @@ class EnergyRemoval final : public HapticEffect {
         return burr.grit == BurrGrit::kDiamond ? config_.diamond_energy_factor : 1;
     }
     double softness(const EffectTick& tick, const Candidates& candidates, size_t n,
-                    const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T, double depth) noexcept;
+                    const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T) noexcept;
     double specificEnergyAt(const Eigen::Vector3d& p_V) noexcept;
     double spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept;
     void takeTurn(const EffectTick& tick) noexcept;
@@ -70,7 +71,8 @@ class EnergyRemoval final : public HapticEffect {
     size_t most_contacts_;
     size_t turn_ = 0, turns_ = 1;
     bool is_cutting_ = false;
-    double account_ = 0;  // J not yet spent; negative: too much was
+    double account_ = 0;   // J not yet spent; negative: too much was
+    double to_repay_ = 0;  // J: the account when the turns began
     // Of this tick.
     double removal_power_ = 0, removed_energy_ = 0;
 };

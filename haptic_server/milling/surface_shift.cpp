@@ -217,8 +217,8 @@ SurfaceShift::Span SurfaceShift::touchedIn(size_t row, int low, int high) const 
     return {low, high};
 }
 
-void SurfaceShift::spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share) noexcept {
-    const double most = kMostShift * bone.volume.spacing().minCoeff();
+void SurfaceShift::spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share,
+                                double most) noexcept {
     const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
     forEachPatch(bone, [&](const Vector3f& point, float area, const Node& node) {
         if (!(node.energy > 0)) return;
@@ -274,11 +274,11 @@ void SurfaceShift::forEachCell(const BoneModel& bone, Visit&& visit) noexcept {
         }
 }
 
-double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double share,
+double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double share, size_t ticks,
                            MillingResult& result) noexcept {
     if (patch_count_ == 0 || !(share > 0)) return 0;
     is_too_fast_ = false;
-    spreadWishes(bone, u, share);
+    spreadWishes(bone, u, share, kMostShift * double(ticks) * bone.volume.spacing().minCoeff());
     result.is_cut_short |= is_too_fast_;
     if (touched_.isEmpty()) return 0;
     spreadRest(bone);

@@ -27,7 +27,7 @@ namespace bonemill {
 
 class SurfaceShift {
   public:
-    // Of the thinnest voxel: the surface moves no farther in a tick.
+    // Of the thinnest voxel: the surface moves no farther in a tick, times `ticks` of apply().
     static constexpr double kMostShift = 0.25;
 
     // Room for contacts no farther from the burr's centre than `largest_reach`, m. most_cells as
@@ -40,7 +40,8 @@ class SurfaceShift {
     // recedes no farther than its deepest contact reaches.
     void add(const BoneModel& bone, uint64_t patch, double energy, double depth) noexcept;
     // Spends `share` of the energies. Returns what was spent, J.
-    double apply(BoneModel& bone, const SpecificEnergy& u, double share, MillingResult& result) noexcept;
+    double apply(BoneModel& bone, const SpecificEnergy& u, double share, size_t ticks,
+                 MillingResult& result) noexcept;
 
   private:
     // One voxel, and the cell that begins there.
@@ -80,7 +81,7 @@ class SurfaceShift {
     template <class Visit>
     void forEachCell(const BoneModel& bone, Visit&& visit) noexcept;
     Wish wishOf(const VoxelVolume& volume, const Eigen::Vector3f& point, double recession) const noexcept;
-    void spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share) noexcept;
+    void spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share, double most) noexcept;
     void spreadRest(const BoneModel& bone) noexcept;
     void touch(const Eigen::Vector3i& voxel) noexcept;
     Span touchedIn(size_t row, int low, int high) const noexcept;

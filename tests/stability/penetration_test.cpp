@@ -90,7 +90,7 @@ const std::vector<StabilityCase> kCases{
      oneVoxelWallFast,
      {"thesis_2012"},
      feltEffectsBut({"cutting_force"})},
-    {"pin_through_wall_fast_hand", "mm_past_wall", 0, pinThroughWall, {"thesis_2012"}, feltEffects()},
+    {"pin_through_wall_fast_hand", "mm_past_wall", 0, pinThroughWall, {"thesis_2012"}, feltEffectsBut({})},
     {"deep_push_side", "mm_past_surface", 0, deepPush, {"thesis_2012"}, feltEffectsBut({"cutting_force"})},
     {"deep_push_force", "of_max_force", 1 + 1e-9, deepPushForce, {}, feltEffects()},
     {"deep_push_direction", "degrees", 10, deepPushDirection, {"thesis_2012"}},

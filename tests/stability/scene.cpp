@@ -18,10 +18,11 @@ TickConfig configOf(const Variant& variant, double dt, const std::function<void(
 
 // Every second slab of the bone is soft, and protected: edges wherever the tool goes.
 constexpr double kSlab = 0.5e-3;  // m
-constexpr double kSoft = 0.4;
+constexpr double kSoft = 0.7;
 constexpr MaterialId kSoftBone = 1;
 
-void layOut(EffectConfigs& effects, const BoneModel& bone, double reach) {
+void layOut(TickConfig& config, const BoneModel& bone) {
+    EffectConfigs& effects = config.effects;
     const VoxelVolume& volume = bone.volume;
     const int slab = int(std::ceil(kSlab / volume.spacing().x()));
     effects.materials.assign(2, {});
@@ -30,8 +31,11 @@ void layOut(EffectConfigs& effects, const BoneModel& bone, double reach) {
         const bool is_bone = volume.at(v.x(), v.y(), v.z()) >= volume.iso();
         return is_bone && v.x() / slab % 2 == 1 ? kSoftBone : kNoMaterial;
     });
-    effects.protected_field =
-        protectedDistance(*effects.properties, effects.materials, volume.spacing(), reach);
+    effects.protected_field = protectedDistance(*effects.properties, effects.materials, volume.spacing(),
+                                                config.burr.radius + 1e-3);
+    if (!effects.protected_field) effects.virtual_fixture.reset();  // no bone in this scene
+    // What soft bone carries.
+    config.gradient.coupling.saturation_force *= kSoft;
 }
 
 }  // namespace
@@ -44,9 +48,7 @@ Scene::Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, dou
       bone(std::move(volume), Eigen::Vector3i::Constant(16),
            ShellConfig{.levels = {{config.accuracy.shell_factor}}}),
       tool(std::move(test_tool.grid), test_tool.shapes, test_tool.thinnest_radius) {
-    EffectConfigs& effects = config.effects;
-    if (effects.material_stiffness || effects.virtual_fixture)
-        layOut(effects, bone, config.burr.radius + 1e-3);
+    if (config.effects.material_stiffness || config.effects.virtual_fixture) layOut(config, bone);
 }
 
 VolumeGeometry boxOf(const Eigen::Vector3d& size, double spacing) {

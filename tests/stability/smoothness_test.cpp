@@ -50,7 +50,12 @@ constexpr double kRecession = 4 * kVoxel / 20;
 constexpr double kCouplingStiffness = CouplingConfig{}.translation_stiffness;
 
 const std::vector<StabilityCase> kCases{
-    {"grazing_slide", "percent", 2, grazingSlide, {"thesis_2012"}, feltEffectsBut({"burr_vibration"})},
+    {"grazing_slide",
+     "percent",
+     2,
+     grazingSlide,
+     {"thesis_2012"},
+     feltEffectsBut({"burr_vibration", "material_stiffness", "virtual_fixture"})},
     {"removal_under_load", "N_per_tick", 2 * kCouplingStiffness* kRecession, removalUnderLoad, {}},
 };
 BONEMILL_STABILITY_CASES(Smoothness, kCases);

@@ -22,9 +22,9 @@ constexpr NamedEffect kEffects[] = {
     {"burr_vibration", false, true, [](EffectConfigs& e) { e.burr_vibration.emplace(); }},
     {"thermal", false, true, [](EffectConfigs& e) { e.thermal.emplace(); }},
     {"material_stiffness", false, false, [](EffectConfigs& e) { e.material_stiffness.emplace(); }},
-    // Weak enough for the hand to press through it into contact.
+    // So weak that the bone has the last word.
     {"virtual_fixture", false, false,
-     [](EffectConfigs& e) { e.virtual_fixture = {.distance = 0.3e-3, .stiffness = 1000, .max_force = 1}; }},
+     [](EffectConfigs& e) { e.virtual_fixture = {.distance = 0.3e-3, .stiffness = 1000, .max_force = 0.1}; }},
     {"energy_removal", true, true, [](EffectConfigs& e) { e.energy_removal.emplace(); }},
 };
 

@@ -191,8 +191,8 @@ TEST(HeatGrid, WhatIsCutAwayIsNeitherHotNorDeadBone) {
 TEST(HeatGrid, DeadBoneThatIsGoneDoesNotCountThoughItIsCold) {
     VoxelVolume bone = boneOf({32, 32, 32});
     HeatGrid heat(HeatConfig{}, bone, kDt);
-    heat.addHeat(cubeAt(10, 10, 10), -kUp, 20e-3);
-    run(heat, 30);
+    heat.addHeat(cubeAt(10, 10, 10), -kUp, HeatConfig{}.heat_capacity * std::pow(kSpacing, 3) * 10.5);
+    run(heat, 20);
     EXPECT_EQ(heat.activeBricks(), 0u);
     EXPECT_GT(heat.necroticVolume(), 0);
     for (int k = 0; k < 32; ++k)

@@ -136,7 +136,7 @@ TEST_F(SessionExportTest, WithoutAFolderEveryNameIsRefused) {
 
 TEST_F(SessionExportTest, AFullDiskFailsItAndLeavesNothing) {
     SessionExport bone_export(ball_.history, ball_.bone, folder_.path().string());
-    std::filesystem::create_symlink("/dev/full", folder_ / "part_a.nrrd");
+    std::filesystem::create_symlink("/dev/full", folder_ / ".part_a.nrrd");
     ASSERT_EQ(bone_export.begin("a"), "");
     const std::string answer = resultOf(bone_export);
     EXPECT_EQ(answer.rfind("failed: ", 0), 0u) << answer;
@@ -144,6 +144,15 @@ TEST_F(SessionExportTest, AFullDiskFailsItAndLeavesNothing) {
     EXPECT_TRUE(filesOf().empty());
     ASSERT_EQ(bone_export.begin("a"), "");
     EXPECT_EQ(resultOf(bone_export), "done");
+}
+
+TEST_F(SessionExportTest, ANameLikeThatOfAHalfWrittenFileIsSafe) {
+    SessionExport bone_export(ball_.history, ball_.bone, folder_.path().string());
+    for (const char* name : {"part_a", "a"}) {
+        ASSERT_EQ(bone_export.begin(name), "");
+        EXPECT_EQ(resultOf(bone_export), "done");
+    }
+    EXPECT_EQ(filesOf().size(), 8u);
 }
 
 TEST(BoneFiles, AnEndingThatIsNoFormatIsRefusedBeforeTheRun) {
