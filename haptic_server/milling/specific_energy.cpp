@@ -19,16 +19,13 @@ SpecificEnergy::SpecificEnergy(const SpecificEnergyConfig& config,
 
 double SpecificEnergy::ofScannedCell(const Eigen::Vector3i& cell) const noexcept {
     Density densest = 0;
-    Eigen::Vector3i voxel = cell;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Eigen::Vector3i v = cell + Eigen::Vector3i(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-        const Density density = properties_->original(v);
-        if (density <= densest) continue;
+    MaterialId material = kNoMaterial;
+    properties_->forEachCorner(cell, [&](Density density, MaterialId of_corner) {
+        if (density <= densest) return;
         densest = density;
-        voxel = v;
-    }
+        material = of_corner;
+    });
     if (densest < iso_) return reference_;
-    const MaterialId material = properties_->material(voxel);
     const double own = material < materials_.size() ? materials_[material].specific_energy : 0;
     return own > 0 ? own : ofDensity(densest);
 }

@@ -28,6 +28,12 @@ class BoneProperties {
     }
     const Eigen::Vector3i& dims() const noexcept { return map_.dims(); }
 
+    // visit(density it had, material) for each corner of a cell that was bone or is of a material.
+    template <class Visit>
+    void forEachCorner(const Eigen::Vector3i& cell, Visit&& visit) const noexcept {
+        map_.forEachCorner(cell, [&](size_t place) { visit(density_[place], material_[place]); });
+    }
+
     // For those who keep something of their own per voxel: its place among placeCount(), or
     // BrickMap::kNowhere.
     size_t placeOf(const Eigen::Vector3i& voxel) const noexcept { return map_.find(voxel); }

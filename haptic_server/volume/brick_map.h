@@ -30,6 +30,22 @@ class BrickMap {
         const uint32_t slot = slots_[brickIndex(brick)];
         return slot == kNone ? kNowhere : slot * kBrick + inBrick(voxel);
     }
+    // visit(place) for those of a cell's eight corners that have one.
+    template <class Visit>
+    void forEachCorner(const Eigen::Vector3i& cell, Visit&& visit) const noexcept {
+        constexpr size_t kStep[3] = {1, kEdge, size_t(kEdge) * kEdge};
+        const bool is_in_one = cell.unaryExpr([](int v) { return v & (kEdge - 1); }).maxCoeff() < kEdge - 1 &&
+                               (cell.array() >= 0).all() && (cell.array() + 1 < dims_.array()).all();
+        const size_t first = is_in_one ? find(cell) : kNowhere;
+        if (is_in_one && first == kNowhere) return;
+        for (int corner = 0; corner < 8; ++corner) {
+            const Eigen::Vector3i off(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+            const size_t place = is_in_one ? first + size_t(off.x()) * kStep[0] + size_t(off.y()) * kStep[1] +
+                                                 size_t(off.z()) * kStep[2]
+                                           : find(cell + off);
+            if (place != kNowhere) visit(place);
+        }
+    }
     static size_t inBrick(const Eigen::Vector3i& voxel) noexcept {
         constexpr int kMask = kEdge - 1;
         return size_t(voxel.x() & kMask) +

@@ -75,7 +75,9 @@ TEST(VirtualFixture, ForceHasNoJumpsRoundABall) {
         const Vector3d force = fixture.at({place, Eigen::Quaterniond::Identity()}).wrench.force;
         EXPECT_NEAR(force.norm(), 1, 0.15);
         // 2 kN/m along, F/r and the bends of the field across.
-        if (n > 0) EXPECT_LT((force - before).norm(), 3 * config.stiffness * step) << n;
+        if (n > 0) {
+            EXPECT_LT((force - before).norm(), 3 * config.stiffness * step) << n;
+        }
         before = force;
     }
 }

@@ -68,7 +68,7 @@ double lower(BoneModel& bone, const Plane& plane, double recession, int ticks) {
                 shift.add(bone, patch, kEnergy * area * recession / ticks, 1e-3);
         });
         MillingResult result;
-        spent += shift.apply(bone, u, 1, result);
+        spent += shift.apply(bone, u, 1, 1, result);
         EXPECT_TRUE(result.has_room && result.shell_is_complete && !result.is_cut_short);
     }
     return spent;
@@ -125,7 +125,7 @@ TEST(SurfaceShift, MovesNoFartherThanAQuarterOfAVoxelOrTheDepth) {
             if (plane.sideways(p) < kReach && isOfPlane(bone, p)) shift.add(bone, patch, 1, depth);
         });
         MillingResult result;
-        shift.apply(bone, SpecificEnergy({}, nullptr, bone.volume.iso()), 1, result);
+        shift.apply(bone, SpecificEnergy({}, nullptr, bone.volume.iso()), 1, 1, result);
         double lowest = 0;
         forEachPoint(bone, [&](const Vector3d& p, double, uint64_t) {
             if (plane.sideways(p) < kReach / 2 && isOfPlane(bone, p))
@@ -149,7 +149,7 @@ TEST(SurfaceShift, LeavesTheRestForTheNextTickWhereTimeIsShort) {
                 shift.add(bone, patch, kEnergy * area * 1e-6, 1e-3);
         });
         MillingResult result;
-        EXPECT_GT(shift.apply(bone, u, 1, result), 0);
+        EXPECT_GT(shift.apply(bone, u, 1, 1, result), 0);
         short_ticks += result.is_cut_short;
         changed.include(result.changed);
     }
