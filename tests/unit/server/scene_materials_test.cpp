@@ -76,8 +76,8 @@ TEST_F(SceneMaterials, ComeFromValuesAndLabels) {
 }
 
 TEST_F(SceneMaterials, OfEqualStiffnessDoNotAskForTheEffect) {
-    const Simulation simulation =
-        makeSimulation(sceneOf("", "material { name: 'hard' from_value: 1500 specific_energy_j_per_mm3: 2 }"));
+    const Simulation simulation = makeSimulation(
+        sceneOf("", "material { name: 'hard' from_value: 1500 specific_energy_j_per_mm3: 2 }"));
     EXPECT_FALSE(simulation.tick.effects.material_stiffness);
 }
 
