@@ -6,6 +6,7 @@ namespace bonemill {
 namespace {
 // Below this angle sin and atan2 are replaced by their series: the error is below 1e-18.
 constexpr double kSmallAngle_rad = 1e-6;
+constexpr double kOpposite = 1e-8;  // of the sum of two unit vectors: its direction is noise
 }  // namespace
 
 Eigen::Matrix3d skew(const Eigen::Vector3d& v) noexcept {
@@ -28,6 +29,15 @@ Eigen::Vector3d logRotation(const Eigen::Quaterniond& q) noexcept {
     const double cosine = sign * q.w();
     if (sine < kSmallAngle_rad) return 2 * v / cosine;
     return 2 * std::atan2(sine, cosine) / sine * v;
+}
+
+Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {
+    const Eigen::Vector3d a = from.normalized();
+    const Eigen::Vector3d sum = a + to.normalized();
+    const double length = sum.norm();
+    const Eigen::Vector3d half = sum / length;  // half of the way
+    const Eigen::Vector3d v = length < kOpposite ? a.unitOrthogonal() : a.cross(half);
+    return Eigen::Quaterniond(length < kOpposite ? 0 : a.dot(half), v.x(), v.y(), v.z()).normalized();
 }
 
 }  // namespace bonemill

@@ -23,6 +23,10 @@ Eigen::Quaterniond expRotation(const Eigen::Vector3d& theta) noexcept;
 // result.
 Eigen::Vector3d logRotation(const Eigen::Quaterniond& q) noexcept;
 
+// The shortest rotation that turns direction `from` to direction `to` (any length, not 0); of opposite ones
+// half a turn about an axis across them.
+Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept;
+
 // Pose of frame B in frame A: p_A = R_AB p_B + p_AB. `rotation` is a unit quaternion.
 struct Pose {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();

@@ -74,8 +74,7 @@ void addFacePlaces(const BoneModel& bone, Approach& approach) {
         const Vector3d outward =
             geometry.X_WV.rotation * ((face & 1 ? 1.0 : -1.0) * Vector3d::Unit(2 - face / 2));
         const double way = size.norm();
-        const Pose from{middle + way * outward,
-                        Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitY(), outward)};
+        const Pose from{middle + way * outward, rotationBetween(Vector3d::UnitY(), outward)};
         approach.straight("from the volume's face " + std::to_string(face + 1), from, -outward, way);
     }
 }
@@ -101,7 +100,7 @@ void addLyingPlace(const ProbingPlace& first, double burr_radius, Approach& appr
         const double azimuth = 2 * M_PI * n / kAzimuths;
         const Vector3d along = std::cos(azimuth) * t + std::sin(azimuth) * u;
         const Pose from{first.X_WT.position + height * first.normal_W - kBeyond * burr_radius * along,
-                        Eigen::Quaterniond::FromTwoVectors(shaft, along) * first.X_WT.rotation};
+                        rotationBetween(shaft, along) * first.X_WT.rotation};
         std::vector<ProbingPlace> found;
         Approach lying{approach.probe, found};
         if (!lying.straight("lying on its shaft there", from, -first.normal_W, height + 4 * burr_radius))

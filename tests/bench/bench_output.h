@@ -1,12 +1,15 @@
 // What every sub-command of haptic_bench prints: a table for people, and on request the same as JSON.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "common/rt/latency_histogram.h"
+
+namespace CLI {
+class App;
+}
 
 namespace bonemill::bench {
 

@@ -64,8 +64,7 @@ inline topics::SceneInfo milledInfo() {
 inline Pose toolInCavity() {
     Pose X_WT;
     X_WT.position = kCavityCenter + Eigen::Vector3d(0, -0.0004, 0);
-    X_WT.rotation =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), Eigen::Vector3d(0.55, -0.75, 0.35));
+    X_WT.rotation = rotationBetween(Eigen::Vector3d::UnitY(), Eigen::Vector3d(0.55, -0.75, 0.35));
     return X_WT;
 }
 

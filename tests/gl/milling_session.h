@@ -113,7 +113,7 @@ class MillingSession {
 
 // Shaft along this direction from the burr (W).
 inline Pose toolAt(const Eigen::Vector3d& position, const Eigen::Vector3d& shaft) {
-    return {position, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), shaft)};
+    return {position, rotationBetween(Eigen::Vector3d::UnitY(), shaft)};
 }
 
 }  // namespace bonemill::test

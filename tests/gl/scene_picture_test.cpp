@@ -209,7 +209,7 @@ TEST_F(ScenePicture, TheToolIsDrawnAndGlowsWhileMilling) {
     const Picture empty = draw();
     Pose X_WT;
     X_WT.position = kCenter;
-    X_WT.rotation = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
+    X_WT.rotation = rotationBetween(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
     scene_->setToolState(makeToolState(X_WT, X_WT, 0));
     const Picture idle = draw();
     EXPECT_GT(countDifferent(empty, idle), 1000u);

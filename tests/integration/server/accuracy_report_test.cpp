@@ -57,14 +57,16 @@ TEST_F(AccuracyReport, WritesAllFilesAndProposesWithinTheBudget) {
     EXPECT_TRUE(settings["balanced"]["in_force"].get<bool>());
     EXPECT_FALSE(settings["thesis_2012"]["on_pareto_front"].get<bool>());
     EXPECT_TRUE(settings["exact"]["removed_volume_error_percent"].is_null());  // the scene does not mill
-    EXPECT_GT(settings["fast"]["force_error_percent"], settings["exact"]["force_error_percent"]);
-    EXPECT_GT(settings["exact"]["tick_p50_us"], 0);
-    EXPECT_GE(settings["exact"]["tick_max_us"], settings["exact"]["tick_p99_9_us"]);
+    EXPECT_GT(settings["fast"]["force_error_percent"].get<double>(),
+              settings["exact"]["force_error_percent"].get<double>());
+    EXPECT_GT(settings["exact"]["tick_p50_us"].get<double>(), 0);
+    EXPECT_GE(settings["exact"]["tick_max_us"].get<double>(),
+              settings["exact"]["tick_p99_9_us"].get<double>());
     // A ball of 0.25 mm voxels, some 3 voxels of contact: the exact preset is not far off.
-    EXPECT_LT(settings["exact"]["force_error_percent"], 5);
-    EXPECT_GT(json["truth"]["force_rms_n"], 0.5);
-    EXPECT_LT(json["truth"]["force_max_n"], 5);
-    EXPECT_GE(settings["exact"]["closed_path_energy_uj"], 0);
+    EXPECT_LT(settings["exact"]["force_error_percent"].get<double>(), 5);
+    EXPECT_GT(json["truth"]["force_rms_n"].get<double>(), 0.5);
+    EXPECT_LT(json["truth"]["force_max_n"].get<double>(), 5);
+    EXPECT_GE(settings["exact"]["closed_path_energy_uj"].get<double>(), 0);
     bool any_on_front = false;
     for (const auto& figures : settings) any_on_front |= figures["on_pareto_front"].get<bool>();
     EXPECT_TRUE(any_on_front);

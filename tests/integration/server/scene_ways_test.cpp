@@ -87,13 +87,13 @@ void SceneWays::expectRuns(const LoadedScene& loaded) {
         test::run({"haptic_server", "simulate", "--scene", loaded.file, "--trajectory", trajectory});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const auto result = nlohmann::json::parse(run.out.substr(run.out.rfind('\n', run.out.size() - 2) + 1));
-    EXPECT_EQ(result["ticks"], kTicks);
-    EXPECT_GT(result["max_contacts"], 0) << "the tool never meets the bone";
+    EXPECT_EQ(result["ticks"].get<double>(), kTicks);
+    EXPECT_GT(result["max_contacts"].get<double>(), 0) << "the tool never meets the bone";
     EXPECT_TRUE(result["mesh"]["is_closed"]);
     const auto& waypoints = loaded.scene.simulated_operator().waypoint();
     const auto any = [&](auto&& wants) { return std::any_of(waypoints.begin(), waypoints.end(), wants); };
     if (any([](const auto& w) { return w.remove() && !w.add(); })) {
-        EXPECT_GT(result["removed_mm3"], 0);
+        EXPECT_GT(result["removed_mm3"].get<double>(), 0);
     }
 }
 

@@ -71,9 +71,9 @@ TEST(Simulate, TwoRunsGiveTheSameHashAndAnotherPathAnotherOne) {
     const auto first = go("a.csv"), second = go("a.csv"), other = go("b.csv");
     EXPECT_EQ(first["state_hash"], second["state_hash"]);
     EXPECT_NE(first["state_hash"], other["state_hash"]);
-    EXPECT_GT(first["removed_voxels"], 100);
+    EXPECT_GT(first["removed_voxels"].get<double>(), 100);
     EXPECT_TRUE(first["mesh"]["is_closed"]);
-    EXPECT_EQ(first["ticks"], 900);
+    EXPECT_EQ(first["ticks"].get<double>(), 900);
 }
 
 TEST(Simulate, MillsWithTheToolThatIsAskedFor) {
@@ -96,7 +96,7 @@ TEST(Simulate, MillsWithTheToolThatIsAskedFor) {
                fine = simulateOnce(go("s.textproto", {"--tool", "fine"}));
     EXPECT_EQ(first["tool"], "tool 1");
     EXPECT_EQ(fine["tool"], "fine");
-    EXPECT_LT(fine["removed_mm3"], first["removed_mm3"]);
+    EXPECT_LT(fine["removed_mm3"].get<double>(), first["removed_mm3"].get<double>());
     EXPECT_EQ(fine["state_hash"], alone["state_hash"]);
     EXPECT_EQ(simulateOnce(go("s.textproto", {"--tool", "2"}))["state_hash"], alone["state_hash"]);
     const auto refused = run(go("s.textproto", {"--tool", "drill"}));

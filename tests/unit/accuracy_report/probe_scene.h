@@ -15,7 +15,7 @@ inline ToolModel burrTool() {
 
 // Shaft upwards.
 inline Eigen::Quaterniond upright() {
-    return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
+    return rotationBetween(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
 }
 
 inline BoneModel boneOf(VoxelVolume volume, const std::vector<int>& factors = {1}) {

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <vector>
 
+#include "tests/support/tone.h"
+
 namespace bonemill {
 namespace {
+
+using test::rms;
 
 constexpr double kRate = MillingSynth::kSampleRate;
 
@@ -24,33 +27,12 @@ std::vector<float> play(MillingSynth& synth, const SoundLoad& load, double secon
     return samples;
 }
 
-// Of a Hann window over all samples at this frequency (Hz).
 double amplitudeAt(const std::vector<float>& samples, double frequency) {
-    std::complex<double> sum = 0;
-    const double n = double(samples.size());
-    for (size_t i = 0; i < samples.size(); ++i) {
-        const double window = 1 - std::cos(2 * M_PI * double(i) / n);
-        sum += window * double(samples[i]) * std::polar(1.0, -2 * M_PI * frequency * double(i) / kRate);
-    }
-    return 2 * std::abs(sum) / n;
+    return test::amplitudeAt(samples, frequency, kRate);
 }
 
 double loudest(const std::vector<float>& samples, double low, double high) {
-    double best = low, most = 0;
-    for (double f = low; f <= high; f += 4) {
-        const double amplitude = amplitudeAt(samples, f);
-        if (amplitude > most) {
-            most = amplitude;
-            best = f;
-        }
-    }
-    return best;
-}
-
-double rms(const std::vector<float>& samples) {
-    double sum = 0;
-    for (const float s : samples) sum += double(s) * s;
-    return std::sqrt(sum / double(samples.size()));
+    return test::loudestTone(samples, low, high, kRate);
 }
 
 double largestStep(const std::vector<float>& samples) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 namespace bonemill {
@@ -45,6 +46,29 @@ TEST(Pose, InverseAndIncrementFollowTheConventions) {
                   .norm(),
               1e-14);
     EXPECT_LT((moved.position - Eigen::Vector3d(1.1, 2, 3)).norm(), 1e-15);
+}
+
+TEST(Pose, TheRotationBetweenDirectionsIsTheShortest) {
+    std::mt19937 random(2);
+    std::normal_distribution<double> normal;
+    const auto direction = [&] { return Eigen::Vector3d(normal(random), normal(random), normal(random)); };
+    for (int n = 0; n < 1000; ++n) {
+        const Eigen::Vector3d from = direction();
+        // Every third nearly opposite, by 1 rad down to 1e-16 rad.
+        const Eigen::Vector3d to =
+            n % 3 ? direction() : Eigen::Vector3d(-from + std::pow(10, -n / 60.0) * direction());
+        const Eigen::Quaterniond rotation = rotationBetween(from, to);
+        EXPECT_NEAR(rotation.norm(), 1, 1e-15);
+        EXPECT_LT((rotation * from.normalized() - to.normalized()).norm(), 1e-7) << n;
+        const double angle = std::atan2(from.cross(to).norm(), from.dot(to));
+        EXPECT_NEAR(logRotation(rotation).norm(), angle, 1e-7) << n;
+    }
+    EXPECT_LT(
+        (rotationBetween({0, 2, 0}, {0, 0, 3}) * Eigen::Vector3d(0, 1, 0) - Eigen::Vector3d(0, 0, 1)).norm(),
+        1e-15);
+    const Eigen::Quaterniond around = rotationBetween({0, 1, 0}, {0, -1, 0});
+    EXPECT_LT((around * Eigen::Vector3d(0, 1, 0) - Eigen::Vector3d(0, -1, 0)).norm(), 1e-15);
+    EXPECT_NEAR(logRotation(around).norm(), M_PI, 1e-15);
 }
 
 }  // namespace

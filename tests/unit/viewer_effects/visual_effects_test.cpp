@@ -32,8 +32,7 @@ NodeMesh floorMesh(uint16_t dent = 0) {
 
 EffectInput burrAt(const Eigen::Vector3d& p_V, bool is_pedal_down, double removed = 0) {
     EffectInput input;
-    input.X_VT =
-        Pose{p_V, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ())};
+    input.X_VT = Pose{p_V, rotationBetween(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ())};
     input.burr_radius = kRadius;
     input.is_pedal_down = is_pedal_down;
     input.spin_speed = 3000;

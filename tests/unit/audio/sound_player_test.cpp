@@ -1,0 +1,101 @@
+// What really leaves OpenAL: its "wave" backend writes a file in real time, as a sound card would play it.
+#include "render_client/audio/sound_player.h"
+
+#include <gtest/gtest.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <thread>
+#include <vector>
+
+#include "tests/support/temporary_folder.h"
+#include "tests/support/tone.h"
+
+namespace bonemill {
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kRate = MillingSynth::kSampleRate;
+
+// OpenAL reads its settings once per process: before any test's first call.
+void useWaveBackend(const std::string& settings_path, const std::string& settings) {
+    std::ofstream(settings_path) << settings;
+    setenv("ALSOFT_CONF", settings_path.c_str(), 1);
+    setenv("ALSOFT_DRIVERS", "wave", 1);
+}
+
+bool startsWithin(const SoundPlayer& player, milliseconds limit) {
+    for (const auto end = Clock::now() + limit; Clock::now() < end;
+         std::this_thread::sleep_for(milliseconds(5)))
+        if (player.isPlaying()) return true;
+    return false;
+}
+
+// Of the chunk "data" of a mono 16-bit file.
+std::vector<float> samplesOf(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+    const size_t start = bytes.find("data");
+    if (start == std::string::npos) return {};
+    std::vector<float> samples;
+    for (size_t at = start + 8; at + 2 <= bytes.size(); at += 2) {
+        int16_t value = 0;
+        std::memcpy(&value, &bytes[at], 2);
+        samples.push_back(float(value) / 32768);
+    }
+    return samples;
+}
+
+double amplitudeAt(const std::vector<float>& samples, double frequency) {
+    return test::amplitudeAt(samples, frequency, kRate);
+}
+
+TEST(SoundPlayer, playsTheSpeedsThatItIsToldAndFadesAtItsEnd) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder / "played.wav";
+    useWaveBackend(
+        folder / "alsoft.conf",
+        "[general]\nchannels = mono\nsample-type = int16\nfrequency = 48000\n[wave]\nfile = " + path + "\n");
+    {
+        SoundPlayer player{scene::MillingSound()};
+        ASSERT_TRUE(startsWithin(player, milliseconds(20000)));
+        player.setLoad({2 * M_PI * 400, 0, 0}, true);
+        std::this_thread::sleep_for(milliseconds(500));
+        player.setLoad({2 * M_PI * 640, 0, 0}, true);
+        std::this_thread::sleep_for(milliseconds(500));
+    }
+    const std::vector<float> samples = samplesOf(path);
+    ASSERT_GT(samples.size(), size_t(kRate));
+    const double between = amplitudeAt(samples, 540);
+    EXPECT_GT(amplitudeAt(samples, 400), 10 * between);
+    EXPECT_GT(amplitudeAt(samples, 640), 10 * between);
+    const size_t end_size = kRate / 100;
+    EXPECT_LT(test::rms(std::span(samples).last(end_size)), 0.1 * test::rms(samples));
+}
+
+// In a process that has not called OpenAL yet, and may not again.
+bool playsWithoutDevice() {
+    const test::TemporaryFolder folder;
+    useWaveBackend(folder / "alsoft.conf", "[wave]\n");  // a backend that has nowhere to write
+    spdlog::set_default_logger(spdlog::stderr_logger_mt("to stderr"));
+    const SoundPlayer player{scene::MillingSound()};
+    return startsWithin(player, milliseconds(300));
+}
+
+TEST(SoundPlayerDeathTest, withoutADeviceThereIsOneWarningAndSilence) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_EXIT(_exit(playsWithoutDevice() ? 1 : 0), testing::ExitedWithCode(0),
+                "no milling sound: no sound device\n$");
+}
+
+}  // namespace
+}  // namespace bonemill
