@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <ostream>
 
 #include "haptic_server/volume/import/densify.h"
 #include "haptic_server/volume/import/import_volume.h"
@@ -16,6 +17,10 @@ struct RealScan {
     Eigen::Vector3i dims;
     double iso_low, iso_high;
 };
+
+void PrintTo(const RealScan& scan, std::ostream* out) {
+    *out << scan.path;
+}
 
 const RealScan kScans[] = {
     {"tooth16_seg3d/tooth.nhdr", {103, 94, 161}, 560, 660},
