@@ -61,7 +61,7 @@ void addSpring(EnergyTerm& term, const Vector3d& r, const Vector3d& force, doubl
     term.stiffness.bottomRightCorner<3, 3>() -= r_skew * K * r_skew;
 }
 
-Eigen::Quaterniond rotationBetween(const Pose& spo, const Pose& device) noexcept {
+Eigen::Quaterniond fromSpoToDevice(const Pose& spo, const Pose& device) noexcept {
     return device.rotation * spo.rotation.conjugate();
 }
 
@@ -93,7 +93,7 @@ EnergyTerm couplingEnergy(const EnergyCouplingConfig& config, const Pose& spo, c
     const Vector3d stretch = device * config.p_TG - spo.position - r;
     const Spring force = springAt(config.translation_stiffness, config.saturation_force, stretch.norm());
 
-    const Vector3d theta = way.log(rotationBetween(spo, device));
+    const Vector3d theta = way.log(fromSpoToDevice(spo, device));
     const double angle = theta.norm();
     const Spring torque = springAt(config.rotation_stiffness, config.saturation_torque, angle);
 
@@ -112,7 +112,7 @@ Wrench couplingWrenchOnDevice(const EnergyCouplingConfig& config, const Pose& sp
     const Vector3d r = device.rotation * config.p_TG;
     const Vector3d stretch = device.position + r - spo * config.p_TG;
     const Spring force = springAt(config.translation_stiffness, config.saturation_force, stretch.norm());
-    const Vector3d theta = way.log(rotationBetween(spo, device));
+    const Vector3d theta = way.log(fromSpoToDevice(spo, device));
     const Spring torque = springAt(config.rotation_stiffness, config.saturation_torque, theta.norm());
     Wrench wrench;
     wrench.force = -springVector(stretch, force);
