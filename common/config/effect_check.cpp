@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/config/field_unit.h"
+#include "common/units.h"
 
 namespace bonemill {
 namespace {
@@ -71,7 +72,7 @@ void checkThermal(const scene::Scene& scene, const RefuseField& refuse) {
                "= " + numberText(thermal.necrosis_temperature_c()) +
                    " is not above body_temperature_c = " + numberText(thermal.body_temperature_c()));
     // Explicit steps are stable up to a sixth of the time that heat takes through a cube.
-    constexpr double kPerCubicCentimetre = 1e6, kMillimetre = 1e-3, kStable = 0.15;
+    constexpr double kStable = 0.15;
     const double cell = thermal.cell_mm() * kMillimetre;
     const double longest = kStable * thermal.heat_capacity_j_per_cm3_k() * kPerCubicCentimetre * cell * cell /
                            thermal.conductivity_w_per_m_k();

@@ -7,7 +7,7 @@
 #include "common/config/field_unit.h"
 #include "common/config/material_check.h"
 #include "common/config/scene_tools.h"
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

@@ -9,7 +9,7 @@
 #include <regex>
 #include <vector>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 

@@ -2,7 +2,7 @@
 
 #include <dds/dds.h>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill::dds {
 

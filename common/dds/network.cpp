@@ -8,9 +8,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "common/config/user_error.h"
 #include "common/dds/network_interfaces.h"
 #include "common/dds/participant.h"
+#include "common/user_error.h"
 #include "profiles.h"
 
 namespace bonemill::dds {

@@ -6,8 +6,8 @@
 #include <mutex>
 #include <optional>
 
-#include "common/config/user_error.h"
 #include "common/dds/network.h"
+#include "common/user_error.h"
 
 #ifdef __SANITIZE_THREAD__
 // Debian's Cyclone is not instrumented and synchronises with atomics of its own, which ThreadSanitizer cannot

@@ -13,9 +13,9 @@
 #include <new>
 #include <utility>
 
-#include "common/config/user_error.h"
 #include "common/ipc/link_layout.h"
 #include "common/rt/clock.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

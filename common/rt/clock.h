@@ -7,10 +7,9 @@
 
 #include <cstdint>
 
-namespace bonemill {
+#include "common/units.h"
 
-inline constexpr int64_t kNsPerSecond = 1'000'000'000;
-inline constexpr int64_t kNsPerMillisecond = 1'000'000;
+namespace bonemill {
 
 inline int64_t monotonicNowNs() noexcept {
     timespec now;
@@ -24,6 +23,15 @@ inline constexpr timespec timespecOfNs(int64_t ns) noexcept {
 
 inline constexpr double secondsOfNs(int64_t ns) noexcept {
     return double(ns) / double(kNsPerSecond);
+}
+
+// Of a mean or a difference too, hence no whole ns.
+inline constexpr double millisecondsOfNs(double ns) noexcept {
+    return ns / double(kNsPerMillisecond);
+}
+
+inline constexpr double microsecondsOfNs(double ns) noexcept {
+    return ns / double(kNsPerMicrosecond);
 }
 
 }  // namespace bonemill

@@ -7,10 +7,10 @@
 #include <limits>
 #include <thread>
 
-#include "common/config/user_error.h"
 #include "common/rt/clock.h"
 #include "common/rt/periodic_timer.h"
 #include "common/rt/rt_guard.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

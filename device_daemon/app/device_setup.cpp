@@ -1,34 +1,30 @@
 #include "device_daemon/app/device_setup.h"
 
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {
 
-constexpr double kMetresPerMm = 1e-3;
-constexpr double kMetresPerUm = 1e-6;
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
-constexpr double kNsPerMs = 1e6;
 constexpr uint32_t kButtonRemoveBit = 1u << 0;
 constexpr uint32_t kButtonAddBit = 1u << 1;
 constexpr int kChecksPerSegment = 32;
 
 Pose poseOf(const scene::Vec3& p_mm, const scene::Quaternion& q) {
-    return {kMetresPerMm * Eigen::Vector3d(p_mm.x(), p_mm.y(), p_mm.z()),
+    return {kMillimetre * Eigen::Vector3d(p_mm.x(), p_mm.y(), p_mm.z()),
             Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
 }
 
 AresGeometry geometryOf(const scene::Device& device) {
-    return {.base_radius = kMetresPerMm * device.base_radius_mm(),
-            .platform_radius = kMetresPerMm * device.platform_radius_mm(),
-            .base_half_angle = kRadiansPerDegree * device.base_half_angle_deg(),
-            .platform_half_angle = kRadiansPerDegree * device.platform_half_angle_deg(),
-            .link_length = kMetresPerMm * device.link_length_mm(),
-            .stroke = kMetresPerMm * device.stroke_mm()};
+    return {.base_radius = kMillimetre * device.base_radius_mm(),
+            .platform_radius = kMillimetre * device.platform_radius_mm(),
+            .base_half_angle = kDegree * device.base_half_angle_deg(),
+            .platform_half_angle = kDegree * device.platform_half_angle_deg(),
+            .link_length = kMillimetre * device.link_length_mm(),
+            .stroke = kMillimetre * device.stroke_mm()};
 }
 
 AresPlant plantOf(const scene::Device& device) {
@@ -38,7 +34,7 @@ AresPlant plantOf(const scene::Device& device) {
             .angular_friction = device.angular_friction_nm_s_per_rad(),
             .coulomb_friction = device.coulomb_friction_n(),
             .amplifier_bandwidth_hz = device.amplifier_bandwidth_hz(),
-            .encoder_step = kMetresPerUm * device.encoder_step_um()};
+            .encoder_step = kMicrometre * device.encoder_step_um()};
 }
 
 HandImpedance handOf(const scene::SimulatedOperator& person) {
@@ -58,7 +54,7 @@ OperatorPath pathOf(const scene::SimulatedOperator& person, const Pose& X_WD) {
             (waypoint.remove() ? kButtonRemoveBit : 0) | (waypoint.add() ? kButtonAddBit : 0);
         waypoints.push_back({waypoint.time_s(), X_DW * poseOf(waypoint.p_wt_mm(), waypoint.q_wt()), buttons});
     }
-    return OperatorPath(std::move(waypoints), kMetresPerMm * person.tremor_mm());
+    return OperatorPath(std::move(waypoints), kMillimetre * person.tremor_mm());
 }
 
 std::vector<std::string> phasesOf(const scene::SimulatedOperator& person) {
@@ -73,8 +69,8 @@ std::vector<std::string> phasesOf(const scene::SimulatedOperator& person) {
 DeviceLoopConfig loopOf(const scene::Scene& scene) {
     DeviceLoopConfig loop;
     loop.limits.max_actuator_force = scene.device().max_actuator_force_n();
-    loop.stale.stale_after_ns = std::llround(kNsPerMs * scene.loop().stale_after_ms());
-    loop.stale.ramp_down_ns = std::llround(kNsPerMs * scene.loop().ramp_ms());
+    loop.stale.stale_after_ns = std::llround(double(kNsPerMillisecond) * scene.loop().stale_after_ms());
+    loop.stale.ramp_down_ns = std::llround(double(kNsPerMillisecond) * scene.loop().ramp_ms());
     loop.sample_flags = kDeviceFlagSimulated;
     return loop;
 }
@@ -95,8 +91,8 @@ void checkPath(const scene::SimulatedOperator& person, const DeviceSetup& setup)
             const Pose X_DT = setup.path.at(t).X_DT;
             const uint32_t faults = kinematics.workspaceFaults(X_DT);
             if (faults == kWorkspaceOk) continue;
-            const Eigen::Vector3d p_mm = X_DT.position / kMetresPerMm;
-            const double turn_deg = logRotation(X_DT.rotation).norm() / kRadiansPerDegree;
+            const Eigen::Vector3d p_mm = X_DT.position / kMillimetre;
+            const double turn_deg = logRotation(X_DT.rotation).norm() / kDegree;
             std::ostringstream message;
             message.precision(4);
             message << "field `simulated_operator.waypoint[" << i

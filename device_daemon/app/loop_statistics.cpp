@@ -2,10 +2,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "common/rt/clock.h"
+#include "common/units.h"
+
 namespace bonemill {
 namespace {
-
-constexpr double kNsPerUs = 1e3;
 
 std::string quoted(const std::string& text) {
     std::string json = "\"";
@@ -18,8 +19,10 @@ std::string quoted(const std::string& text) {
 
 std::string percentilesOf(const LatencyHistogram& histogram) {
     return fmt::format(R"({{"p50":{:.1f},"p99":{:.1f},"p99_9":{:.1f},"max":{:.1f}}})",
-                       histogram.percentileNs(50) / kNsPerUs, histogram.percentileNs(99) / kNsPerUs,
-                       histogram.percentileNs(99.9) / kNsPerUs, histogram.maxNs() / kNsPerUs);
+                       microsecondsOfNs(double(histogram.percentileNs(50))),
+                       microsecondsOfNs(double(histogram.percentileNs(99))),
+                       microsecondsOfNs(double(histogram.percentileNs(99.9))),
+                       microsecondsOfNs(double(histogram.maxNs())));
 }
 
 }  // namespace
@@ -32,9 +35,9 @@ std::string jsonLineOf(const LoopStatistics& s) {
         R"("max_tracking_mm":{:.4f},"max_force_n":{:.4f},"max_torque_nmm":{:.3f},"clipped_ticks":{},)"
         R"("rate_limited_ticks":{},"stop_ticks":{},"failed_poses":{},"final_phase":{}}})",
         s.ticks, s.missed_periods, s.wall_time, s.scenario_time, rate_hz, percentilesOf(s.wakeup_latency),
-        percentilesOf(s.compute_time), s.attached_ticks, s.late_answers, 1e3 * s.max_tracking_error,
-        s.max_force, 1e3 * s.max_torque, s.clipped_ticks, s.rate_limited_ticks, s.stop_ticks, s.failed_poses,
-        quoted(s.final_phase));
+        percentilesOf(s.compute_time), s.attached_ticks, s.late_answers,
+        kPerMillimetre * s.max_tracking_error, s.max_force, kPerMilli * s.max_torque, s.clipped_ticks,
+        s.rate_limited_ticks, s.stop_ticks, s.failed_poses, quoted(s.final_phase));
 }
 
 }  // namespace bonemill

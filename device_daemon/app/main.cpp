@@ -4,8 +4,8 @@
 #include <iostream>
 
 #include "common/config/scene_file.h"
-#include "common/config/user_error.h"
 #include "common/log/log.h"
+#include "common/user_error.h"
 #include "device_daemon/app/daemon.h"
 
 namespace {

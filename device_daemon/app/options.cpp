@@ -5,7 +5,7 @@
 #include <iostream>
 #include <thread>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "common/config/scene_tools.h"
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/accuracy_report/plot.h"
 #include "haptic_server/accuracy_report/sweep_settings.h"
 #include "haptic_server/app/scene_setup.h"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/rt/clock.h"
+
 namespace bonemill {
 namespace {
 
@@ -84,7 +86,7 @@ TickTimes timesOf(std::vector<int64_t> durations_ns) {
     std::sort(durations_ns.begin(), durations_ns.end());
     const auto us = [&](double percent) {
         const auto rank = size_t(std::ceil(percent / 100 * double(durations_ns.size()) - 1e-9));
-        return double(durations_ns[std::max<size_t>(rank, 1) - 1]) * 1e-3;
+        return microsecondsOfNs(double(durations_ns[std::max<size_t>(rank, 1) - 1]));
     };
     return {us(50), us(99), us(99.9), us(100)};
 }

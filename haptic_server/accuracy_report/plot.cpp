@@ -10,7 +10,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/accuracy_report/label_layout.h"
 
 namespace bonemill {

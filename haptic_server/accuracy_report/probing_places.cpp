@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "common/units.h"
+
 namespace bonemill {
 namespace {
 
@@ -47,7 +49,7 @@ struct Approach {
 Pose poseOf(const scene::SimulatedOperator::Waypoint& waypoint) {
     const scene::Vec3& p = waypoint.p_wt_mm();
     const scene::Quaternion& q = waypoint.q_wt();
-    return {1e-3 * Vector3d(p.x(), p.y(), p.z()),
+    return {kMillimetre * Vector3d(p.x(), p.y(), p.z()),
             Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
 }
 

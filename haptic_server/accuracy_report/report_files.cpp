@@ -8,14 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/accuracy_report/pareto.h"
 #include "haptic_server/record/fault_names.h"
 
 namespace bonemill {
 namespace {
-
-constexpr double kDegree = M_PI / 180;
 
 using Columns = nlohmann::ordered_json;  // column name -> value, in order
 
@@ -46,19 +45,19 @@ Columns figuresOf(const SettingFigures& f, bool is_on_front) {
     row["force_error_percent"] = 100 * f.errors.force_vector;
     row["torque_error_percent"] = 100 * f.errors.torque;
     row["direction_error_deg"] = f.errors.direction / kDegree;
-    row["position_error_um"] = 1e6 * f.errors.position;
-    row["rotation_error_mrad"] = 1e3 * f.errors.rotation;
-    row["max_penetration_um"] = 1e6 * f.max_penetration;
-    row["noise_mn"] = 1e3 * f.noise;
+    row["position_error_um"] = kPerMicrometre * f.errors.position;
+    row["rotation_error_mrad"] = kPerMilli * f.errors.rotation;
+    row["max_penetration_um"] = kPerMicrometre * f.max_penetration;
+    row["noise_mn"] = kPerMilli * f.noise;
     row["plane_force_error_percent"] = isThesis(f) ? Columns() : Columns(100 * f.plane.force);
-    row["plane_depth_error_um"] = isThesis(f) ? Columns() : Columns(1e6 * f.plane.depth);
+    row["plane_depth_error_um"] = isThesis(f) ? Columns() : Columns(kPerMicrometre * f.plane.depth);
     row["anisotropy_percent"] = 100 * f.plane.anisotropy;
-    row["closed_path_energy_uj"] = 1e6 * f.closed_energy;
-    row["lowest_energy_uj"] = 1e6 * f.lowest_energy;
+    row["closed_path_energy_uj"] = kPerMicro * f.closed_energy;
+    row["lowest_energy_uj"] = kPerMicro * f.lowest_energy;
     row["removed_volume_error_percent"] = f.removal ? Columns(100 * f.removal->error()) : Columns();
-    row["removed_mm3"] = f.removal ? Columns(1e9 * f.removal->removed) : Columns();
-    row["wanted_mm3"] = f.removal ? Columns(1e9 * f.removal->wanted) : Columns();
-    row["swept_mm3"] = f.removal ? Columns(1e9 * f.removal->swept) : Columns();
+    row["removed_mm3"] = f.removal ? Columns(kPerCubicMillimetre * f.removal->removed) : Columns();
+    row["wanted_mm3"] = f.removal ? Columns(kPerCubicMillimetre * f.removal->wanted) : Columns();
+    row["swept_mm3"] = f.removal ? Columns(kPerCubicMillimetre * f.removal->swept) : Columns();
     addTimes(row, "tick_", f.times);
     addTimes(row, "probing_", f.probing_times);
     addTimes(row, "milling_", f.milling_times);
@@ -160,7 +159,7 @@ std::string patchCsv(const ReportData& data) {
                         {"sdf_refinement", p.sdf_refinement},
                         {"patch_points", p.patch_points},
                         {"patch_width_voxels", p.width_voxels},
-                        {"depth_um", 1e6 * p.depth},
+                        {"depth_um", kPerMicrometre * p.depth},
                         {"force_error_rms_percent", 100 * p.force_rms},
                         {"force_error_worst_percent", 100 * p.force_worst},
                         {"direction_error_rms_deg", p.direction_rms / kDegree}});
@@ -174,19 +173,19 @@ std::string accuracyJson(const ReportData& data) {
     const Columns truth = {{"voxel_refinement", data.truth.refinement},
                            {"force_rms_n", data.truth.force_rms},
                            {"force_max_n", data.truth.force_max},
-                           {"torque_rms_nmm", 1e3 * data.truth.torque_rms},
-                           {"torque_max_nmm", 1e3 * data.truth.torque_max},
-                           {"max_penetration_um", 1e6 * data.truth.max_penetration},
-                           {"noise_mn", 1e3 * data.truth.noise},
+                           {"torque_rms_nmm", kPerMilli * data.truth.torque_rms},
+                           {"torque_max_nmm", kPerMilli * data.truth.torque_max},
+                           {"max_penetration_um", kPerMicrometre * data.truth.max_penetration},
+                           {"noise_mn", kPerMilli * data.truth.noise},
                            {"half_refinement_force_error_percent", 100 * data.truth.coarser.force_vector},
-                           {"closed_path_energy_uj", 1e6 * data.truth.closed_energy}};
+                           {"closed_path_energy_uj", kPerMicro * data.truth.closed_energy}};
     const size_t in_force = indexInForce(data);
     Columns report = {{"scene", data.scene},
                       {"scene_file", data.scene_file},
                       {"machine", data.machine},
-                      {"voxel_mm", 1e3 * data.spacing},
+                      {"voxel_mm", kPerMillimetre * data.spacing},
                       {"contact_width_voxels", data.contact_width / data.spacing},
-                      {"tick_period_us", 1e6 * data.tick_period}};
+                      {"tick_period_us", kPerMicrosecond * data.tick_period}};
     report["in_force"] = data.settings[in_force].name;
     if (data.budget_us) {
         report["budget_us"] = *data.budget_us;

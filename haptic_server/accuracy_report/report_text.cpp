@@ -2,12 +2,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/units.h"
 #include "haptic_server/accuracy_report/report_files.h"
 
 namespace bonemill {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 constexpr double kStalledBelow = 0.5;  // of the wanted volume
 
 template <class... Values>
@@ -74,9 +74,9 @@ std::string settingRow(const ReportData& data, size_t n) {
                        : isThesis(f) ? " | † |"
                                      : " | |");
     row += cell(100 * f.errors.force_vector) + cell(100 * f.errors.force) + cell(100 * f.errors.torque) +
-           cell(f.errors.direction / kDegree) + cell(1e6 * f.errors.position) +
-           cell(1e3 * f.errors.rotation) + cell(1e6 * f.max_penetration) + cell(1e3 * f.noise) +
-           cell(100 * f.plane.anisotropy) + cell(1e6 * f.closed_energy);
+           cell(f.errors.direction / kDegree) + cell(kPerMicrometre * f.errors.position) +
+           cell(kPerMilli * f.errors.rotation) + cell(kPerMicrometre * f.max_penetration) +
+           cell(kPerMilli * f.noise) + cell(100 * f.plane.anisotropy) + cell(kPerMicro * f.closed_energy);
     row += f.removal ? cell(100 * f.removal->error()) + cell(100 * f.removal->progress()) : " – | – |";
 
     return row + cell(f.times.p50) + cell(f.times.p99) + cell(f.times.p99_9) + cell(f.times.max) + '\n';
@@ -104,8 +104,8 @@ std::string settingsTable(const ReportData& data) {
     table += '\n' + rule + '\n';
     for (size_t n = 0; n < data.settings.size(); ++n) table += settingRow(data, n);
     const TruthSummary& truth = data.truth;
-    table += "| | *truth* | | 0 | 0 | 0 | 0 | 0 | 0 |" + cell(1e6 * truth.max_penetration) +
-             cell(1e3 * truth.noise) + " |" + cell(1e6 * truth.closed_energy) + " | | | | | |\n";
+    table += "| | *truth* | | 0 | 0 | 0 | 0 | 0 | 0 |" + cell(kPerMicrometre * truth.max_penetration) +
+             cell(kPerMilli * truth.noise) + " |" + cell(kPerMicro * truth.closed_energy) + " | | | | | |\n";
     return table;
 }
 
@@ -121,11 +121,11 @@ std::string truthText(const ReportData& data) {
     text += format(
         "Along the probing path its force is %.3g N (root mean square; most %.3g N), its torque %.3g N·mm "
         "(most %.3g). ",
-        truth.force_rms, truth.force_max, 1e3 * truth.torque_rms, 1e3 * truth.torque_max);
+        truth.force_rms, truth.force_max, kPerMilli * truth.torque_rms, kPerMilli * truth.torque_max);
     return text + format(
                       "Sampled half as densely it would be off by %.2g %% (force) and %.2g µm: that bounds "
                       "its own error.\n\n",
-                      100 * truth.coarser.force_vector, 1e6 * truth.coarser.position);
+                      100 * truth.coarser.force_vector, kPerMicrometre * truth.coarser.position);
 }
 
 std::string pathText(const ReportData& data) {
@@ -150,12 +150,11 @@ std::string figuresText(const ReportData& data) {
         "**Closed-path "
         "energy**: the least that any closed stroke took from the hand; below zero a stroke gave energy "
         "out.\n\n";
-    text +=
-        "**Anisotropy**: spread of the force of the burr pressed on a plane with 0.5 to 4 N over " +
-        format("%d rotated and shifted voxel grids of %.3g mm", AnalyticProbe::kGrids, 1e3 * data.spacing) +
-        ", (largest − smallest) / mean at the worst load; accuracy.csv has the error there against the "
-        "closed "
-        "form.\n\n";
+    text += "**Anisotropy**: spread of the force of the burr pressed on a plane with 0.5 to 4 N over " +
+            format("%d rotated and shifted voxel grids of %.3g mm", AnalyticProbe::kGrids,
+                   kPerMillimetre * data.spacing) +
+            ", (largest − smallest) / mean at the worst load; accuracy.csv has the error there against the "
+            "closed form.\n\n";
     return text +
            "**Removed volume**: bone removed by milling into it and sideways, against the volume that the "
            "burr swept on "
@@ -170,7 +169,7 @@ std::string timesText(const ReportData& data) {
            "tick "
            "counts, so that "
            "what other programs take does not; a live session has that on top (docs/realtime.md)." +
-           format(" The scene's tick has %.4g µs.\n\n", 1e6 * data.tick_period);
+           format(" The scene's tick has %.4g µs.\n\n", kPerMicrosecond * data.tick_period);
 }
 
 std::string thesisText() {
@@ -203,7 +202,8 @@ std::string patchTable(const ReportData& data) {
     for (const PatchErrors& p : data.patches) {
         if (!row || p.width_voxels != row->width_voxels || p.shell_factor != row->shell_factor) {
             row = &p;
-            rows += format("\n| %d |", p.shell_factor) + cell(p.width_voxels) + cell(1e6 * p.depth);
+            rows +=
+                format("\n| %d |", p.shell_factor) + cell(p.width_voxels) + cell(kPerMicrometre * p.depth);
         }
         if (row == data.patches.data()) table += " " + kindText(p) + " |", rule += "--:|";
         rows += cell(100 * p.force_rms);
@@ -231,7 +231,8 @@ std::string reportText(const ReportData& data) {
         "- Voxels of %.3g mm, burr radius %.3g mm: with %.2g N the burr touches a plane over a circle of "
         "%.2g "
         "voxels; the table at the end says what so few voxels cost.\n\n",
-        1e3 * data.spacing, 1e3 * data.burr_radius, data.truth.force_rms, data.contact_width / data.spacing);
+        kPerMillimetre * data.spacing, kPerMillimetre * data.burr_radius, data.truth.force_rms,
+        data.contact_width / data.spacing);
     text += "![force error against tick time](pareto.png)\n\n";
     text += settingsTable(data) + '\n';
     return text + truthText(data) + pathText(data) + figuresText(data) + timesText(data) + thesisText() +

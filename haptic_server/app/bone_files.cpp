@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/mesh/mesher.h"
 #include "haptic_server/mesh/ply.h"
 #include "haptic_server/mesh/stl.h"

@@ -4,6 +4,8 @@
 #include <sstream>
 
 #include "common/config/scene_table.h"
+#include "common/rt/clock.h"
+#include "common/units.h"
 #include "haptic_server/app/describe_effects.h"
 #include "haptic_server/app/scene_setup.h"
 
@@ -16,7 +18,7 @@ constexpr int kRounds = 5;
 Pose waypointPose(const scene::SimulatedOperator::Waypoint& waypoint) {
     const scene::Vec3& p = waypoint.p_wt_mm();
     const scene::Quaternion& q = waypoint.q_wt();
-    return {Eigen::Vector3d(p.x(), p.y(), p.z()) * 1e-3,
+    return {Eigen::Vector3d(p.x(), p.y(), p.z()) * kMillimetre,
             Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
 }
 
@@ -34,7 +36,7 @@ std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario) {
                              a.rotation.slerp(at - from, b.rotation)};
         input.buttons = (scenario.waypoint(from).remove() ? kButtonRemove : 0u) |
                         (scenario.waypoint(from).add() ? kButtonAdd : 0u);
-        input.t_s = tick * 1e-3;
+        input.t_s = tick * kMillisecond;
     }
     return path;
 }
@@ -42,8 +44,8 @@ std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario) {
 std::string percentilesUs(std::vector<int64_t> durations_ns) {
     std::sort(durations_ns.begin(), durations_ns.end());
     std::ostringstream text;
-    text << "p50 " << double(durations_ns[durations_ns.size() / 2]) * 1e-3 << " us, p99 "
-         << double(durations_ns[durations_ns.size() * 99 / 100]) * 1e-3 << " us";
+    text << "p50 " << microsecondsOfNs(double(durations_ns[durations_ns.size() / 2])) << " us, p99 "
+         << microsecondsOfNs(double(durations_ns[durations_ns.size() * 99 / 100])) << " us";
     return text.str();
 }
 
@@ -61,9 +63,9 @@ void describeTools(const Simulation& simulation, std::ostream& out) {
         const SdfGrid& grid = tool.built.model.grid();
         ++number;
         out << "tool " << number << " '" << tool.name << "'" << (number == 1 ? ", in use at the start" : "")
-            << ": distance grid " << grid.nodes().transpose() << " nodes of " << grid.spacing() * 1e3
-            << " mm, burr radius " << tool.burr.radius * 1e3 << " mm, pull of the coupling at most "
-            << tool.saturation_force << " N\n";
+            << ": distance grid " << grid.nodes().transpose() << " nodes of "
+            << grid.spacing() * kPerMillimetre << " mm, burr radius " << tool.burr.radius * kPerMillimetre
+            << " mm, pull of the coupling at most " << tool.saturation_force << " N\n";
     }
 }
 
@@ -98,7 +100,7 @@ std::string describeScene(const std::string& scene_file) {
     out << "scene '" << loaded.scene.name() << "', preset " << settingsName(simulation.tick.accuracy) << '\n';
     for (const std::string& remark : simulation.remarks) out << "  " << remark << '\n';
     for (const std::string& warning : simulation.warnings) out << "  warning: " << warning << '\n';
-    const Eigen::Vector3d mm = bone.volume.spacing() * 1e3;
+    const Eigen::Vector3d mm = bone.volume.spacing() * kPerMillimetre;
     out << "volume: " << bone.volume.dims().transpose() << " voxels of " << mm.transpose()
         << " mm, iso-value " << simulation.mapping.iso_value << ", window " << simulation.mapping.low
         << " .. " << simulation.mapping.high << '\n'

@@ -8,8 +8,6 @@
 namespace bonemill {
 namespace {
 
-constexpr double kMicrosecond = 1e3;  // ns
-
 class PathIo final : public TickIo {
   public:
     explicit PathIo(std::span<const DeviceInput> path) : path_(path) { records.reserve(path.size()); }
@@ -41,7 +39,7 @@ TickTimes timesOf(const std::vector<TickRecord>& records, const std::vector<size
     for (const size_t n : which) ns.push_back(records[n].compute_ns);
     std::sort(ns.begin(), ns.end());
     const auto at = [&ns](double share) {
-        return double(ns[std::min(ns.size() - 1, size_t(share * double(ns.size())))]) / kMicrosecond;
+        return microsecondsOfNs(double(ns[std::min(ns.size() - 1, size_t(share * double(ns.size())))]));
     };
     return {at(0.5), at(0.99), at(0.999), at(1)};
 }

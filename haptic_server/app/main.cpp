@@ -2,9 +2,9 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "common/config/user_error.h"
 #include "common/dds/network_cli.h"
 #include "common/log/log.h"
+#include "common/user_error.h"
 #include "haptic_server/accuracy_report/accuracy_report.h"
 #include "haptic_server/app/describe_scene.h"
 #include "haptic_server/app/server.h"

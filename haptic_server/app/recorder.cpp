@@ -42,9 +42,9 @@ void Recorder::addToWindow(const TickRecord& record) {
     if (elapsed >= kNsPerSecond) {
         const std::lock_guard lock(mutex_);
         health_.rate_hz = double(window_.count()) / secondsOfNs(elapsed);
-        health_.tick_p50_us = double(window_.percentileNs(50)) * 1e-3;
-        health_.tick_p99_us = double(window_.percentileNs(99)) * 1e-3;
-        health_.tick_max_us = double(window_.maxNs()) * 1e-3;
+        health_.tick_p50_us = microsecondsOfNs(double(window_.percentileNs(50)));
+        health_.tick_p99_us = microsecondsOfNs(double(window_.percentileNs(99)));
+        health_.tick_max_us = microsecondsOfNs(double(window_.maxNs()));
         window_ = {};
         window_start_ns_ = record.start_ns;
     }

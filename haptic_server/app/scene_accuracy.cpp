@@ -6,12 +6,10 @@
 #include <set>
 
 #include "common/config/scene_tools.h"
+#include "common/units.h"
 
 namespace bonemill {
 namespace {
-
-constexpr double kMillimetre = 1e-3;
-constexpr double kDegree = M_PI / 180;
 
 Preset presetOf(scene::Accuracy::Preset preset) {
     switch (preset) {
@@ -32,7 +30,7 @@ ShellNormals givenNormals(scene::Accuracy::Normals normals) {
 }
 
 GradientContactConfig contactConfigOf(const scene::Contact& contact) {
-    return {.stiffness_per_area = contact.stiffness_n_per_mm3() * 1e9,
+    return {.stiffness_per_area = contact.stiffness_n_per_mm3() * kPerCubicMillimetre,
             .stiffness_cap = contact.stiffness_cap_n_per_mm() / kMillimetre};
 }
 
@@ -124,9 +122,9 @@ GradientConfig gradientConfigOf(const scene::Scene& scene, double finest_spacing
                        .saturation_force = saturationForceOf(scene, tool, finest_spacing),
                        .saturation_torque = std::min(coupling.max_torque_nmm() * kMillimetre,
                                                      stiffness * coupling.saturation_angle_deg() * kDegree),
-                       .damping_time = coupling.damping_time_ms() * 1e-3,
+                       .damping_time = coupling.damping_time_ms() * kMillisecond,
                        .relaxing_share = coupling.relaxing_share(),
-                       .relaxing_time = coupling.relaxing_time_ms() * 1e-3,
+                       .relaxing_time = coupling.relaxing_time_ms() * kMillisecond,
                        .p_TG = kMillimetre * Eigen::Vector3d(coupling.grip_mm().x(), coupling.grip_mm().y(),
                                                              coupling.grip_mm().z())};
     return config;

@@ -4,18 +4,14 @@
 #include <cmath>
 
 #include "common/config/field_unit.h"
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/app/scene_materials.h"
 
 namespace bonemill {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
-constexpr double kMillisecond = 1e-3;
-constexpr double kRpm = 2 * M_PI / 60;  // rad/s
-
 EnergyRemovalConfig energyRemovalOf(const scene::EnergyRemoval& removal) {
-    constexpr double kPerCubicMillimetre = 1e9, kMega = 1e6;
     return {.specific_energy = removal.specific_energy_j_per_mm3() * kPerCubicMillimetre,
             .density_exponent = removal.density_exponent(),
             .threshold_pressure = removal.threshold_pressure_mpa() * kMega,
@@ -31,7 +27,6 @@ SpindleConfig spindleConfigOf(const scene::Spindle& spindle) {
 }
 
 ThermalConfig thermalConfigOf(const scene::Thermal& thermal) {
-    constexpr double kPerCubicCentimetre = 1e6;  // 1/m³
     ThermalConfig config;
     config.heat_share = thermal.heat_share();
     config.irrigation_radius = thermal.irrigation_radius_mm() * kMillimetre;

@@ -4,7 +4,8 @@
 #include <optional>
 
 #include "common/config/scene_tools.h"
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/material_ids.h"
 #include "haptic_server/volume/import/protected_distance.h"
@@ -12,9 +13,7 @@
 namespace bonemill {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
-constexpr double kPerCubicMillimetre = 1e9;  // 1/m³
-constexpr double kBeyondWarning = 1e-3;      // m: so much farther a structure is still seen, and named
+constexpr double kBeyondWarning = kMillimetre;  // m: so much farther a structure is still seen, and named
 
 MaterialRule ruleOf(const scene::Material& material) {
     MaterialRule rule;

@@ -3,7 +3,8 @@
 #include <cmath>
 
 #include "common/config/scene_tools.h"
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/app/scene_effects.h"
 #include "haptic_server/app/scene_materials.h"
 #include "haptic_server/tick/tick_budget.h"
@@ -14,8 +15,6 @@
 namespace bonemill {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
-constexpr double kDegree = M_PI / 180;
 constexpr int kDefaultLeafCells = 16;
 constexpr double kMostOverload =
     3;  // a shaft of half the burr's radius is common, and leans more than it pokes

@@ -9,9 +9,10 @@
 #include <future>
 #include <thread>
 
-#include "common/config/user_error.h"
 #include "common/rt/clock.h"
 #include "common/rt/realtime.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/app/device_link_io.h"
 #include "haptic_server/app/show_session.h"
 #include "haptic_server/mesh/mesh_rounds.h"
@@ -34,9 +35,9 @@ DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& l
                               const Simulation& simulation) {
     DeviceLinkIoConfig config;
     config.ends_with_device = options.until_device_leaves;
-    config.period_ns = int64_t(std::llround(1e9 / loop.rate_hz()));
-    config.ramp.stale_after_ns = int64_t(loop.stale_after_ms() * 1e6);
-    config.ramp.ramp_down_ns = int64_t(loop.ramp_ms() * 1e6);
+    config.period_ns = int64_t(std::llround(double(kNsPerSecond) / loop.rate_hz()));
+    config.ramp.stale_after_ns = int64_t(loop.stale_after_ms() * double(kNsPerMillisecond));
+    config.ramp.ramp_down_ns = int64_t(loop.ramp_ms() * double(kNsPerMillisecond));
     config.X_WD = simulation.X_WD;
     return config;
 }
@@ -83,7 +84,7 @@ class Server {
           commands_(loaded_.scene, *simulation_.bone, recorder_,
                     {history_, accuracy_, tools_, stop_requested_, bone_export_}, options.instructor_only),
           show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, commands_,
-                options.stream_mbit_per_s * 1e6 / 8) {
+                options.stream_mbit_per_s * kMega / 8) {
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
         for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     }
@@ -217,7 +218,8 @@ class Server {
             spdlog::error("{}: part of the trace could not be written (disk full?)", options_.trace);
         const RunStatistics& statistics = recorder_.statistics();
         spdlog::info("{} ticks, {:.1f} Hz, tick p99 {:.1f} us, {} dropped, faults: {}", statistics.ticks(),
-                     statistics.meanRateHz(), double(statistics.tickCompute().percentileNs(99)) * 1e-3,
+                     statistics.meanRateHz(),
+                     microsecondsOfNs(double(statistics.tickCompute().percentileNs(99))),
                      statistics.droppedTicks(), faultNames(statistics.faults()));
         for (const std::string& warning : statistics.effects().warnings(materialNamesOf(loaded_.scene)))
             spdlog::warn("effects warned: {}", warning);

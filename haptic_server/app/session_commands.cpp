@@ -1,21 +1,17 @@
 #include "haptic_server/app/session_commands.h"
 
 #include "common/config/effect_check.h"
+#include "common/units.h"
 #include "haptic_server/app/repeated_text.h"
 
 namespace bonemill {
-namespace {
-
-constexpr double kMm3PerM3 = 1e9;
-
-}  // namespace
 
 SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bone, const Recorder& recorder,
                                  const SessionControls& controls, bool only_instructors)
     : controls_(controls),
       recorder_(recorder),
       checkpoints_(controls.history, bone),
-      voxel_mm3_(bone.volume.voxelVolume() * kMm3PerM3),
+      voxel_mm3_(bone.volume.voxelVolume() * kPerCubicMillimetre),
       is_switchable_(scene.accuracy().switchable()),
       effect_of_gradient_law_(effectOfGradientLaw(scene.effects())),
       only_instructors_(only_instructors) {}

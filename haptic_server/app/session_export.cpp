@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/app/bone_files.h"
 #include "haptic_server/app/repeated_text.h"
 #include "haptic_server/volume/import/nrrd_writer.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/rt/clock.h"
+#include "common/units.h"
 #include "haptic_server/record/fault_names.h"
 
 namespace bonemill {
@@ -22,11 +23,11 @@ void fillCamera(const scene::Camera& camera, topics::Camera* out) {
     if (camera.has_target_mm()) {
         out->set_has_target(true);
         const scene::Vec3& t = camera.target_mm();
-        assign(out->mutable_target_m(), Eigen::Vector3d(t.x(), t.y(), t.z()) * 1e-3);
+        assign(out->mutable_target_m(), Eigen::Vector3d(t.x(), t.y(), t.z()) * kMillimetre);
     }
-    out->set_distance_m(camera.has_distance_mm() ? camera.distance_mm() * 1e-3 : 0);
-    out->set_azimuth_rad(camera.azimuth_deg() * M_PI / 180);
-    out->set_elevation_rad(camera.elevation_deg() * M_PI / 180);
+    out->set_distance_m(camera.has_distance_mm() ? camera.distance_mm() * kMillimetre : 0);
+    out->set_azimuth_rad(camera.azimuth_deg() * kDegree);
+    out->set_elevation_rad(camera.elevation_deg() * kDegree);
     if (camera.has_up())
         assign(out->mutable_up(), Eigen::Vector3d(camera.up().x(), camera.up().y(), camera.up().z()));
 }

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units.h"
+
 namespace bonemill {
 namespace {
 
-constexpr double kMm3PerM3 = 1e9, kMmPerM = 1e3;
 constexpr size_t kMostWarnings = 32;  // in a status
 
 // The tick's bits go out as they are.
@@ -71,7 +72,7 @@ topics::EffectState ShownEffects::at(const EffectRecord& newest, const EventSum&
                                      double removed) const {
     topics::EffectState state;
     state.set_events(events.events);
-    state.set_removed_mm3(removed * kMm3PerM3);
+    state.set_removed_mm3(removed * kPerCubicMillimetre);
     if (recorded_.burr || is_seen_) state.set_spin_speed(finite(newest.spin_speed));
     if (recorded_.burr) {
         state.set_burr_force_n(finite(newest.burr_force));
@@ -80,11 +81,11 @@ topics::EffectState ShownEffects::at(const EffectRecord& newest, const EventSum&
     }
     if (recorded_.heat) {
         state.set_temperature_c(finite(newest.temperature));
-        state.set_necrotic_mm3(finite(newest.necrotic_volume) * kMm3PerM3);
+        state.set_necrotic_mm3(finite(newest.necrotic_volume) * kPerCubicMillimetre);
     }
     if (!recorded_.protection) return state;
     state.set_protected_force_n(finite(newest.protected_force));
-    state.set_damaged_mm3(finite(newest.damaged_volume) * kMm3PerM3);
+    state.set_damaged_mm3(finite(newest.damaged_volume) * kPerCubicMillimetre);
     state.set_event_id(events.structure);
     if (newest.protected_id == 0 || !std::isfinite(newest.protected_distance)) return state;
     state.set_protected_id(newest.protected_id);
@@ -97,13 +98,13 @@ void ShownEffects::describe(const EffectStatistics& statistics, const std::vecto
     if (!recorded_.heat && !recorded_.protection) return;
     topics::Training& training = *status.mutable_training();
     if (recorded_.protection) {
-        training.set_damaged_mm3(statistics.damaged() * kMm3PerM3);
+        training.set_damaged_mm3(statistics.damaged() * kPerCubicMillimetre);
         training.set_max_protected_force_n(statistics.maxProtectedForce());
         if (const auto distance = statistics.leastProtectedDistance())
-            training.set_least_distance_mm(*distance * kMmPerM);
+            training.set_least_distance_mm(*distance * kPerMillimetre);
     }
     if (recorded_.heat) {
-        training.set_necrotic_mm3(statistics.necrotic() * kMm3PerM3);
+        training.set_necrotic_mm3(statistics.necrotic() * kPerCubicMillimetre);
         if (const auto temperature = statistics.maxTemperature())
             training.set_max_temperature_c(*temperature);
     }

@@ -7,8 +7,9 @@
 #include <optional>
 
 #include "common/config/scene_tools.h"
-#include "common/config/user_error.h"
 #include "common/rt/clock.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/app/scene_setup.h"
 #include "haptic_server/app/shown_effects.h"
 #include "haptic_server/app/state_hash.h"
@@ -22,7 +23,6 @@
 namespace bonemill {
 namespace {
 
-constexpr double kCubicMillimetre = 1e-9;      // m³
 constexpr double kTickSpacingTolerance = 0.1;  // times are often written with three decimals
 
 // Rows in, records out; time comes from the file, only tick_us is measured.
@@ -57,20 +57,21 @@ void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::
         const double spacing = rows[n].t_s - rows[n - 1].t_s;
         if (std::abs(spacing / dt - 1) < kTickSpacingTolerance) continue;
         throw UserError(file + ":" + std::to_string(n + 2) + ": this row is " +
-                        std::to_string(spacing * 1e3) +
-                        " ms after the one before, but the scene's loop has " + std::to_string(dt * 1e3) +
+                        std::to_string(spacing * kPerMillisecond) +
+                        " ms after the one before, but the scene's loop has " +
+                        std::to_string(dt * kPerMillisecond) +
                         " ms per tick; resample the trajectory or set loop.rate_hz");
     }
 }
 
 nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
-    const auto us = [](double ns) { return ns * 1e-3; };
+    const auto us = microsecondsOfNs;
     const LatencyHistogram& compute = statistics.tickCompute();
     return {{"ticks", statistics.ticks()},
             {"removed_voxels", statistics.removedVoxels()},
-            {"removed_mm3", statistics.removed() / kCubicMillimetre},
+            {"removed_mm3", statistics.removed() * kPerCubicMillimetre},
             {"added_voxels", statistics.addedVoxels()},
-            {"added_mm3", statistics.added() / kCubicMillimetre},
+            {"added_mm3", statistics.added() * kPerCubicMillimetre},
             {"max_contacts", statistics.maxContacts()},
             {"max_penetration_m", statistics.maxPenetration()},
             {"max_force_n", statistics.maxForce()},
@@ -107,7 +108,7 @@ std::string simulate(const SimulateOptions& options) {
 
     const ToolSwitch tools(simulation.spoTools(), tool);
     HapticTick tick(simulation.tick, bone, simulation.firstTool(), nullptr, nullptr, &tools);
-    RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * 1e9)), recorded);
+    RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * double(kNsPerSecond))), recorded);
     StateHash hash;
     FileIo io(rows);
     while (tick.tick(io)) {
@@ -132,8 +133,8 @@ std::string simulate(const SimulateOptions& options) {
     json["preset"] = settingsName(simulation.tick.accuracy);
     json["iso_value"] = simulation.mapping.iso_value;
     json["shell_points"] = bone.shell.pointCount(bone.shell.followed());
-    json["bone_mm3"] = mesh.volume / kCubicMillimetre;
-    json["bone_before_mm3"] = volume_before / kCubicMillimetre;
+    json["bone_mm3"] = mesh.volume * kPerCubicMillimetre;
+    json["bone_before_mm3"] = volume_before * kPerCubicMillimetre;
     json["mesh"] = {
         {"triangles", mesh.triangles}, {"vertices", mesh.vertices}, {"is_closed", mesh.isClosed()}};
     return json.dump();

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units.h"
+
 namespace bonemill {
 namespace {
 
-constexpr double kTurn = 2 * M_PI;
 constexpr double kNothing = 1e-4;  // N
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "common/rt/clock.h"
+
 namespace bonemill {
 namespace {
 
@@ -86,7 +88,7 @@ std::vector<NodeGroup> MeshOutbox::takeNearest(const Eigen::Vector3f& point, int
     const std::lock_guard lock(mutex_);
     std::vector<std::pair<float, uint64_t>> order;
     for (const auto& [id, waiting] : groups_) {
-        const float age_s = float(now_ns - waiting.since_ns) * 1e-9f;
+        const float age_s = float(secondsOfNs(now_ns - waiting.since_ns));
         order.emplace_back(distanceOf(waiting.meshes, point) - kAgeing * age_s, id);
     }
     std::sort(order.begin(), order.end());

@@ -4,7 +4,8 @@
 #include <fstream>
 #include <vector>
 
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/mesh/welded_mesh.h"
 
 namespace bonemill {
@@ -12,7 +13,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the header says little endian");
 
-constexpr double kMmPerM = 1000;
 constexpr uint8_t kCorners = 3;
 constexpr size_t kVertexBytes = 6 * sizeof(float);
 constexpr size_t kTriangleBytes = sizeof kCorners + 3 * sizeof(uint32_t);
@@ -37,7 +37,7 @@ std::vector<char> contentOf(const WeldedMesh& mesh, const MeshGrid& grid, const 
     out.reserve(mesh.vertices.size() * kVertexBytes + mesh.triangles.size() * kTriangleBytes);
     const Eigen::Quaternionf R_WV = X_WV.rotation.cast<float>();
     for (size_t n = 0; n < mesh.vertices.size(); ++n) {
-        const Eigen::Vector3f p_mm = (X_WV * grid.position(mesh.vertices[n]) * kMmPerM).cast<float>();
+        const Eigen::Vector3f p_mm = (X_WV * grid.position(mesh.vertices[n]) * kPerMillimetre).cast<float>();
         const Eigen::Vector3f normal = R_WV * mesh.normals[n];
         append(out, p_mm.data(), 3 * sizeof(float));
         append(out, normal.data(), 3 * sizeof(float));

@@ -6,14 +6,14 @@
 #include <fstream>
 #include <vector>
 
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "STL is little-endian");
 
-constexpr double kMmPerM = 1000;
 constexpr size_t kHeaderBytes = 80;
 constexpr size_t kTriangleBytes = 50;  // normal and 3 points as float, 2 unused bytes
 
@@ -36,7 +36,7 @@ std::vector<Eigen::Vector3f> pointsInMm(const NodeMesh& mesh, const MeshGrid& gr
     points.reserve(mesh.vertices.size());
     for (const PackedVertex& vertex : mesh.vertices) {
         const Eigen::Vector3d p_W = X_WV * grid.position(grid.stepsOf(mesh.leaf, vertex));
-        points.push_back((p_W * kMmPerM).cast<float>());
+        points.push_back((p_W * kPerMillimetre).cast<float>());
     }
     return points;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units.h"
+
 namespace bonemill {
 namespace {
 
@@ -45,7 +47,6 @@ void EffectStatistics::book(uint32_t event, size_t structure, const EffectRecord
 }
 
 std::vector<std::pair<std::string, double>> EffectStatistics::figures() const {
-    constexpr double kMm3PerM3 = 1e9, kMmPerM = 1e3;
     std::vector<std::pair<std::string, double>> figures;
     if (recorded_.burr) {
         figures.emplace_back("axis_torque_max_nm", max_axis_torque_);
@@ -55,13 +56,13 @@ std::vector<std::pair<std::string, double>> EffectStatistics::figures() const {
     }
     if (recorded_.heat) {
         if (max_temperature_) figures.emplace_back("temperature_max_c", *max_temperature_);
-        figures.emplace_back("necrotic_mm3", necrotic_ * kMm3PerM3);
+        figures.emplace_back("necrotic_mm3", necrotic_ * kPerCubicMillimetre);
     }
     if (recorded_.protection) {
         if (least_protected_distance_)
-            figures.emplace_back("protected_distance_min_mm", *least_protected_distance_ * kMmPerM);
+            figures.emplace_back("protected_distance_min_mm", *least_protected_distance_ * kPerMillimetre);
         figures.emplace_back("protected_force_max_n", max_protected_force_);
-        figures.emplace_back("protected_damaged_mm3", damaged_ * kMm3PerM3);
+        figures.emplace_back("protected_damaged_mm3", damaged_ * kPerCubicMillimetre);
     }
     return figures;
 }

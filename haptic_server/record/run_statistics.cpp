@@ -7,8 +7,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "common/config/user_error.h"
 #include "common/rt/clock.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/record/hex_text.h"
 
@@ -33,7 +34,7 @@ nlohmann::ordered_json summary(const LatencyHistogram& histogram, double ns_per_
 }
 
 nlohmann::ordered_json summaryUs(const LatencyHistogram& histogram) {
-    return summary(histogram, 1e3);
+    return summary(histogram, double(kNsPerMicrosecond));
 }
 
 }  // namespace
@@ -94,8 +95,6 @@ double RunStatistics::meanRateHz() const {
 }
 
 std::string RunStatistics::toJson(const std::vector<std::string>& materials) const {
-    constexpr double kMm3PerM3 = 1e9;
-    constexpr double kMmPerM = 1e3;
     nlohmann::ordered_json faults = nlohmann::ordered_json::object();
     for (size_t bit = 0; bit < fault_ticks_.size(); ++bit) {
         if (fault_ticks_[bit] > 0) faults[faultNames(1u << bit)] = fault_ticks_[bit];
@@ -117,10 +116,10 @@ std::string RunStatistics::toJson(const std::vector<std::string>& materials) con
         {"contacts_max", max_contacts_},
         {"force_max_n", max_force_},
         {"torque_max_nm", max_torque_},
-        {"penetration_max_mm", max_penetration_ * kMmPerM},
-        {"removed_mm3", removed_ * kMm3PerM3},
+        {"penetration_max_mm", max_penetration_ * kPerMillimetre},
+        {"removed_mm3", removed_ * kPerCubicMillimetre},
         {"removed_voxels", removed_voxels_},
-        {"added_mm3", added_ * kMm3PerM3},
+        {"added_mm3", added_ * kPerCubicMillimetre},
         {"added_voxels", added_voxels_},
         {"cuts", cuts_},
         {"fault_ticks", faults},

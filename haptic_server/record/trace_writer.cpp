@@ -6,12 +6,12 @@
 #include <cstring>
 #include <span>
 
-#include "common/config/user_error.h"
+#include "common/rt/clock.h"
+#include "common/units.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {
-
-constexpr double kMm3PerM3 = 1e9;
 
 std::string headerOf(const RecordedEffects& recorded) {
     std::string header = kTraceHeader;
@@ -45,9 +45,8 @@ TraceWriter::TraceWriter(const std::string& path, const RecordedEffects& recorde
 }
 
 void TraceWriter::appendEffects(const EffectRecord& effects) {
-    constexpr double kRadPerSPerRpm = 2 * M_PI / 60, kMmPerM = 1e3;
     if (recorded_.burr) {
-        append(line_, double(effects.spin_speed) / kRadPerSPerRpm);
+        append(line_, double(effects.spin_speed) / kRpm);
         append(line_, effects.burr_force);
         append(line_, effects.axis_torque);
         append(line_, effects.cutting_power);
@@ -56,20 +55,19 @@ void TraceWriter::appendEffects(const EffectRecord& effects) {
     }
     if (recorded_.heat) {
         append(line_, effects.temperature);
-        append(line_, double(effects.necrotic_volume) * kMm3PerM3);
+        append(line_, double(effects.necrotic_volume) * kPerCubicMillimetre);
     }
     if (recorded_.protection) {
         append(line_, effects.protected_id);
-        append(line_, double(effects.protected_distance) * kMmPerM);
+        append(line_, double(effects.protected_distance) * kPerMillimetre);
         append(line_, effects.protected_force);
-        append(line_, double(effects.damaged_volume) * kMm3PerM3);
+        append(line_, double(effects.damaged_volume) * kPerCubicMillimetre);
     }
     if (recorded_.any()) append(line_, effects.events);
 }
 
 bool TraceWriter::write(const TickRecord& record) {
     if (!is_good_ || !file_) return false;
-    constexpr double kNsPerUs = 1e3;
     line_.clear();
     append(line_, record.t_s);
     appendAll(line_, record.p_WT);
@@ -81,9 +79,9 @@ bool TraceWriter::write(const TickRecord& record) {
     append(line_, record.contacts);
     append(line_, record.max_penetration);
     append(line_, record.removed_voxels);
-    append(line_, record.removed * kMm3PerM3);
+    append(line_, record.removed * kPerCubicMillimetre);
     append(line_, record.faults);
-    append(line_, double(record.compute_ns) / kNsPerUs);
+    append(line_, microsecondsOfNs(double(record.compute_ns)));
     appendEffects(record.effects);
     line_.back() = '\n';
     is_good_ = std::fwrite(line_.data(), 1, line_.size(), file_.get()) == line_.size();

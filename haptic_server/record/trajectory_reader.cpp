@@ -11,7 +11,7 @@
 #include <istream>
 #include <string_view>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

@@ -1,8 +1,8 @@
 // render_client: shows a session (docs/viewer.md).
 #include <iostream>
 
-#include "common/config/user_error.h"
 #include "common/log/log.h"
+#include "common/user_error.h"
 #include "render_client/app/measure_viewer.h"
 #include "render_client/app/offscreen_viewer.h"
 #include "render_client/app/send_command.h"

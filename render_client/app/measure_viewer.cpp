@@ -64,9 +64,9 @@ void printTimes(const char* key, const LatencyHistogram& times) {
         std::printf("\"%s\":null", key);
         return;
     }
-    const auto ms = [&](double percent) { return double(times.percentileNs(percent)) * 1e-6; };
+    const auto ms = [&](double percent) { return millisecondsOfNs(double(times.percentileNs(percent))); };
     std::printf("\"%s\":{\"count\":%llu,\"p50\":%.2f,\"p99\":%.2f,\"max\":%.2f}", key,
-                (unsigned long long)times.count(), ms(50), ms(99), double(times.maxNs()) * 1e-6);
+                (unsigned long long)times.count(), ms(50), ms(99), millisecondsOfNs(double(times.maxNs())));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "render_client/app/scene_feed.h"
 #include "render_client/app/stop_signal.h"
 #include "render_client/offscreen/osmesa_context.h"

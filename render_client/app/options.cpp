@@ -8,16 +8,15 @@
 #include <cmath>
 #include <iostream>
 
-#include "common/config/user_error.h"
 #include "common/dds/network_cli.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "render_client/app/view_options.h"
 #include "render_client/subscribe/command_words.h"
 
 namespace bonemill {
 namespace {
 
-constexpr double kMmToMetres = 1e-3;
-constexpr double kDegreesToRadians = M_PI / 180;
 constexpr int kMinSize = 64;
 constexpr uint32_t kDefaultTimeoutS = 60;
 constexpr int kMaxSize = 8192;  // pixels; every OpenGL 3.3 driver in use can do it
@@ -75,7 +74,7 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     app.add_option("--camera-elevation-deg", raw.elevation_deg, "Eye above the horizon")
         ->check(CLI::Range(-89.0, 89.0));
     app.add_option("--camera-distance-mm", raw.distance_mm, "Eye to target")
-        ->check(CLI::Range(OrbitCamera::kMinDistance / kMmToMetres, OrbitCamera::kMaxDistance / kMmToMetres));
+        ->check(CLI::Range(OrbitCamera::kMinDistance / kMillimetre, OrbitCamera::kMaxDistance / kMillimetre));
     app.add_option("--camera-target-mm", raw.target_mm, "Point to look at, world frame")
         ->expected(3)
         ->check(CLI::Range(-1e6, 1e6))
@@ -139,12 +138,12 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     const bool only_looks = raw.command.empty() && dds::isLanProfile(options.network.profile);
     options.subscriber.role = roleOf(raw.role.value_or(only_looks ? "viewer" : "operator"));
     if (!raw.size.empty()) parseSize(raw.size, options);
-    if (raw.azimuth_deg) options.view.azimuth = *raw.azimuth_deg * kDegreesToRadians;
-    if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegreesToRadians;
-    if (raw.distance_mm) options.view.distance = *raw.distance_mm * kMmToMetres;
+    if (raw.azimuth_deg) options.view.azimuth = *raw.azimuth_deg * kDegree;
+    if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegree;
+    if (raw.distance_mm) options.view.distance = *raw.distance_mm * kMillimetre;
     if (!raw.target_mm.empty()) {
         options.view.target =
-            kMmToMetres * Eigen::Vector3d(raw.target_mm[0], raw.target_mm[1], raw.target_mm[2]);
+            kMillimetre * Eigen::Vector3d(raw.target_mm[0], raw.target_mm[1], raw.target_mm[2]);
     }
     if (raw.timeout_s && !raw.offscreen && raw.command.empty() && !raw.measure_s)
         throw UserError("--timeout-s needs --offscreen, --command or --measure-s");

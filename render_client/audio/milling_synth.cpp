@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "common/units.h"
+
 namespace bonemill {
 namespace {
 
@@ -17,7 +19,6 @@ constexpr double kSlowestTurn = 8;                        // Hz below which the 
 constexpr double kNoiseMiddle = 2600, kNoiseWidth = 0.9;  // Hz, and 1/Q of the band-pass
 constexpr double kToothDepth = 0.7;
 constexpr int kToneBlock = 32;  // samples between two looks at the tones' levels
-constexpr double kTwoPi = 2 * M_PI;
 
 // Multiples of the rotation frequency and their strength: the rotor, its harmonics, and the whine of the
 // gear.
@@ -49,7 +50,7 @@ MillingSynth::MillingSynth(const scene::MillingSound& wish)
       flutes_(wish.flutes()) {}
 
 void MillingSynth::setLoad(const SoundLoad& load, bool is_heard) noexcept {
-    targets_.frequency = std::abs(bounded(load.spin_speed, -kFastest, kFastest)) / kTwoPi;
+    targets_.frequency = std::abs(bounded(load.spin_speed, -kFastest, kFastest)) / kTurn;
     const double force = bounded(load.burr_force, 0, 1000), power = bounded(load.cutting_power, 0, 1e4);
     const double contact = std::min(1.0, std::max(force / kTouchForce, power / (0.05 * full_power_)));
     const double turning = std::clamp((targets_.frequency - kSlowestTurn) / kSlowestTurn, 0.0, 1.0);
@@ -86,14 +87,14 @@ float MillingSynth::nextSample() noexcept {
         levels_[i] += kToneWeight * (wanted_levels_[i] - levels_[i]);
         phases_[i] += turn * kPartials[i].multiple;
         phases_[i] -= std::floor(phases_[i]);
-        tones += levels_[i] * std::sin(kTwoPi * phases_[i]);
+        tones += levels_[i] * std::sin(kTurn * phases_[i]);
     }
     tooth_phase_ += turn * flutes_;
     tooth_phase_ -= std::floor(tooth_phase_);
     // Chamberlin's state variable filter (Dodge, Jerse: Computer Music, 1997).
     low_ += kPitch * band_;
     band_ += kPitch * (noise() - low_ - kNoiseWidth * band_);
-    const double tooth = 1 - kToothDepth * 0.5 * (1 + std::cos(kTwoPi * tooth_phase_));
+    const double tooth = 1 - kToothDepth * 0.5 * (1 + std::cos(kTurn * tooth_phase_));
     const double sum = motor_ * tones + cutting_ * tooth * band_;
     return float(std::tanh(sum));
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

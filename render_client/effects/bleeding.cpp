@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/units.h"
 #include "render_client/effects/surface_walker.h"
 
 namespace bonemill {
@@ -64,7 +65,7 @@ double Bleeding::feed(Wound& wound, SurfaceFilm& film) {
     if (!film.holds(wound.at.p_V)) return 0;
     const auto seep = float(wish_.seep_per_s());
     const float grown = std::min(1.0f, (wound.age - float(wish_.delay_s())) * seep);
-    const float radius = film.cell() + grown * float(wish_.spread_mm()) * 1e-3f;
+    const float radius = film.cell() + grown * float(wish_.spread_mm() * kMillimetre);
     const float share = film.cell() / radius;
     film.add(SurfaceFilm::kBlood, wound.at.p_V, waited * seep * share * share, radius);
     return std::pow(2 * double(radius / film.cell()) + 1, 3);
@@ -82,7 +83,7 @@ void Bleeding::beginRuns(double dt, const SurfaceFilm& film) {
 }
 
 void Bleeding::run(double dt, const Eigen::Vector3f& up_V, const BoneSurface& surface, SurfaceFilm& film) {
-    const float distance = float(dt * wish_.run_speed_mm_per_s()) * 1e-3f;
+    const float distance = float(dt * wish_.run_speed_mm_per_s() * kMillimetre);
     std::erase_if(runs_, [&](Run& run) {
         run.left -= distance;
         const Walk walk = walkDown(surface, up_V, distance, run.at);

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units.h"
+
 namespace bonemill {
 namespace {
 
-constexpr double kCubicMetre = 1e9;              // mm³
 constexpr float kGravity = 9.81f;                // m/s²
 constexpr float kFastest = 2, kSlowest = 0.06f;  // m/s at the start
 constexpr float kStep = 4e-4f;                   // m that a grain flies between two looks for bone
@@ -27,7 +28,8 @@ BoneDust::BoneDust(const scene::BoneDust& wish) : wish_(wish) {
 void BoneDust::take(const EffectInput& input) {
     input_ = input;
     if (!input.X_VT) return;
-    due_ = std::min(due_ + input.removed * kCubicMetre * wish_.grains_per_mm3(), double(wish_.most_grains()));
+    due_ = std::min(due_ + input.removed * kPerCubicMillimetre * wish_.grains_per_mm3(),
+                    double(wish_.most_grains()));
     if (!input.is_pedal_down) return;
     // Where the burr sweeps nothing lies.
     const Eigen::Vector3f centre = input.X_VT->position.cast<float>();
@@ -67,7 +69,7 @@ void BoneDust::launch(float age) {
 void BoneDust::fly(Grain& grain, float dt, const BoneSurface& surface) {
     const float speed = grain.v.norm();
     const int steps = std::clamp(int(std::ceil(speed * dt / kStep)), 1, kMostSteps);
-    const float h = dt / float(steps), drag_time = float(wish_.drag_time_ms()) * 1e-3f;
+    const float h = dt / float(steps), drag_time = float(wish_.drag_time_ms() * kMillisecond);
     const Eigen::Vector3f gravity = -kGravity * input_.up_V.cast<float>();
     for (int n = 0; n < steps && !grain.is_resting; ++n) {
         grain.v = (grain.v + h * gravity) / (1 + h / drag_time);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units.h"
+
 namespace bonemill {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr double kLongestExposure = 1.0 / 24;  // s: pictures that come slower a
 }  // namespace
 
 void BurrSpin::advance(double dt, double spin_speed) {
-    angle_ = std::remainder(angle_ + spin_speed * dt, 2 * M_PI);
+    angle_ = std::remainder(angle_ + spin_speed * dt, kTurn);
     swept_ += spin_speed * dt;
     time_ += dt;
 }

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units.h"
 #include "render_client/effects/wire_pose.h"
 
 namespace bonemill {
 namespace {
 
-constexpr double kFastest = 25000;     // rad/s: a turbine of 240,000 rpm
-constexpr double kMostForce = 1000;    // N
-constexpr double kMostPower = 1e4;     // W
-constexpr double kMostRemoved = 1e-7;  // m³
-constexpr double kCubicMillimetre = 1e-9;
+constexpr double kFastest = 25000;                           // rad/s: a turbine of 240,000 rpm
+constexpr double kMostForce = 1000;                          // N
+constexpr double kMostPower = 1e4;                           // W
+constexpr double kMostRemoved = 1e-7;                        // m³
 constexpr double kSmallestBurr = 1e-4, kLargestBurr = 5e-2;  // m
 constexpr double kTouch = 0.05;                              // N
 

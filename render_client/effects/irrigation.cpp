@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units.h"
 #include "render_client/effects/surface_walker.h"
 
 namespace bonemill {
@@ -19,7 +20,6 @@ constexpr float kExposure = 0.006f;       // s of flight that a drop's streak sh
 constexpr float kWetting = 0.5f;          // of a full film, per piece
 constexpr float kSplash = 0.08f;          // of a full film on the bone around the burr, per piece
 constexpr float kSplashReach = 2.2f;      // in burr radii
-constexpr double kPerMinute = 1e-6 / 60;  // m³/s of ml/min
 constexpr int kMostSteps = 6;
 constexpr float kStep = 5e-4f;  // m
 
@@ -27,13 +27,15 @@ constexpr float kStep = 5e-4f;  // m
 
 // Continuity: a round stream of this flow and speed.
 float Irrigation::streamRadius() const {
-    const double speed = wish_.stream_speed_mm_per_s() * 1e-3;
-    return float(std::clamp(std::sqrt(wish_.flow_ml_per_min() * kPerMinute / (M_PI * speed)), 5e-5, 5e-3));
+    const double speed = wish_.stream_speed_mm_per_s() * kMillimetre;
+    return float(
+        std::clamp(std::sqrt(wish_.flow_ml_per_min() * kMillilitre / kMinute / (M_PI * speed)), 5e-5, 5e-3));
 }
 
 Eigen::Vector3d Irrigation::nozzle_T() const {
     if (wish_.has_nozzle_mm())
-        return 1e-3 * Eigen::Vector3d(wish_.nozzle_mm().x(), wish_.nozzle_mm().y(), wish_.nozzle_mm().z());
+        return kMillimetre *
+               Eigen::Vector3d(wish_.nozzle_mm().x(), wish_.nozzle_mm().y(), wish_.nozzle_mm().z());
     return input_.burr_radius * Eigen::Vector3d(2.2, 7, 0);
 }
 
@@ -41,7 +43,7 @@ void Irrigation::pour(double dt) {
     if (!input_.X_VT || !input_.is_pedal_down) return;
     const Eigen::Vector3d from_T = nozzle_T();
     const Eigen::Vector3d aim_T = from_T * (0.6 * input_.burr_radius / std::max(from_T.norm(), 1e-6));
-    const auto speed = float(wish_.stream_speed_mm_per_s() * 1e-3);
+    const auto speed = float(wish_.stream_speed_mm_per_s() * kMillimetre);
     const Eigen::Vector3f from = (*input_.X_VT * from_T).cast<float>();
     const Eigen::Vector3f way = (*input_.X_VT * aim_T).cast<float>() - from;
     if (way.norm() < 1e-6f) return;

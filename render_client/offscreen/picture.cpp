@@ -4,7 +4,7 @@
 
 #include <system_error>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "render_client/panel/panel_content.h"
 
 namespace bonemill {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/units.h"
 #include "render_client/scene/figure_text.h"
 
 namespace bonemill {
@@ -9,7 +10,6 @@ namespace {
 
 using topics::EffectState;
 
-constexpr double kRpm = 60 / (2 * M_PI);  // per rad/s
 constexpr size_t kLongestName = 16;
 // Above it bone is warm to worry about: 42 °C is where heat stress of cells is seen; 47 °C for a minute kills
 // bone (Eriksson and Albrektsson 1983).
@@ -26,7 +26,7 @@ std::string volumeText(double mm3) {
 
 HudRow spindleRow(double spin_speed, uint32_t events) {
     if (events & EffectState::SPINDLE_STALLED) return {"Spindle", "stalled", HudTone::kAlarm};
-    return {"Spindle", figureText(spin_speed * kRpm, 0, " rpm")};
+    return {"Spindle", figureText(spin_speed / kRpm, 0, " rpm")};
 }
 
 HudRow temperatureRow(double celsius, uint32_t events) {
@@ -38,7 +38,7 @@ HudRow temperatureRow(double celsius, uint32_t events) {
 
 // Negative: the burr is in it.
 HudRow structureRow(const EffectState& state, const topics::SceneInfo* info, uint32_t events) {
-    const double distance_mm = state.protected_distance_m() * 1e3;
+    const double distance_mm = state.protected_distance_m() * kPerMillimetre;
     const HudTone tone = events & kHarm || distance_mm <= 0     ? HudTone::kAlarm
                          : events & EffectState::NEAR_PROTECTED ? HudTone::kWarning
                                                                 : HudTone::kPlain;
@@ -58,7 +58,7 @@ std::vector<HudRow> effectRows(const EffectState& state, const topics::SceneInfo
     std::vector<HudRow> rows;
     if (state.has_spin_speed()) rows.push_back(spindleRow(state.spin_speed(), events));
     if (state.has_axis_torque_nm())
-        rows.push_back({"Load", readableText(state.axis_torque_nm() * 1e3, " N\u00b7mm")});
+        rows.push_back({"Load", readableText(state.axis_torque_nm() * kPerMilli, " N\u00b7mm")});
     if (state.has_cutting_power_w()) rows.push_back({"Cutting", readableText(state.cutting_power_w(), " W")});
     if (state.has_temperature_c()) rows.push_back(temperatureRow(state.temperature_c(), events));
     if (state.has_necrotic_mm3())

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <string>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include "common/units.h"
 #include "render_client/scene/effect_text.h"
 #include "render_client/scene/figure_text.h"
 #include "render_client/scene/session_text.h"
@@ -13,7 +14,6 @@
 namespace bonemill {
 namespace {
 
-constexpr double kMetresToMm = 1e3;
 constexpr size_t kLongestValue = 26;  // characters
 constexpr size_t kLongestName = 24;
 constexpr int kMostWatchers = 8;  // rows of the list
@@ -81,7 +81,7 @@ void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
 
 void addToolRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
     rows.push_back({"Force", readableText(norm(tool.force_n()), " N")});
-    rows.push_back({"Torque", readableText(norm(tool.torque_nm()) * 1e3, " N\u00b7mm")});
+    rows.push_back({"Torque", readableText(norm(tool.torque_nm()) * kPerMilli, " N\u00b7mm")});
     rows.push_back({"Contacts", std::to_string(tool.contacts())});
     const bool removes = tool.buttons() & 1u;
     const bool adds = tool.buttons() & 2u;
@@ -175,7 +175,7 @@ ScaleBar makeScaleBar(double metres_per_pixel, double max_pixels) {
     if (!(longest > 0) || !std::isfinite(longest)) return {};
     const double decade = std::pow(10.0, std::floor(std::log10(longest) + 1e-9));
     const double length = decade * (longest >= 5 * decade ? 5 : longest >= 2 * decade ? 2 : 1);
-    const double length_mm = length * kMetresToMm;
+    const double length_mm = length * kPerMillimetre;
     char text[32];
     std::snprintf(text, sizeof text, "%g mm", length_mm);
     return {length, text};

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/config/scene_tools.h"
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

@@ -7,7 +7,7 @@
 #include <cctype>
 #include <utility>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "common/units.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
 
@@ -17,7 +18,6 @@ namespace {
 
 constexpr double kSpin = 40'000 * 2 * M_PI / 60;  // rad/s
 constexpr int kTicks = 3000;
-constexpr double kMilli = 1e-3;
 
 struct Row {
     double force, torque, spin, motor_power, friction_power;
@@ -57,8 +57,7 @@ void writeCsv(const std::filesystem::path& file, const std::vector<Row>& off, co
     for (size_t n = 0; n < on.size(); ++n)
         out << double(n) * kMilli << ',' << on[n].force << ',' << off[n].torque / kMilli << ','
             << on[n].torque / kMilli << ',' << Burr{}.friction * on[n].force * kBurrRadius / kMilli << ','
-            << on[n].spin * 60 / (2 * M_PI) * kMilli << ',' << on[n].motor_power << ','
-            << on[n].friction_power << '\n';
+            << on[n].spin / kRpm * kMilli << ',' << on[n].motor_power << ',' << on[n].friction_power << '\n';
 }
 
 constexpr const char* kScript = R"(set terminal pngcairo size 900,800 font 'sans,11'

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "common/units.h"
 #include "haptic_server/app/effect_cost.h"
 #include "haptic_server/app/scene_setup.h"
 #include "tests/bench/bench_output.h"
@@ -71,7 +72,7 @@ EffectCosts costsOf(const Options& o, const char* law) {
     Simulation simulation = simulationOf(o, law);
     const std::vector<DeviceInput> path =
         weave(simulation.bone->volume,
-              {.burr_radius = o.block.burr_radius_mm * 1e-3, .depth = 0.5e-3, .ticks = o.ticks});
+              {.burr_radius = o.block.burr_radius_mm * kMillimetre, .depth = 0.5e-3, .ticks = o.ticks});
     return measureEffectCosts(simulation.tick, *simulation.bone, simulation.firstTool(), path, o.rounds);
 }
 

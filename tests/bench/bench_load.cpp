@@ -19,7 +19,7 @@ namespace {
 constexpr int kLeafCells = 16;
 
 double msSince(int64_t start_ns) {
-    return double(monotonicNowNs() - start_ns) * 1e-6;
+    return millisecondsOfNs(double(monotonicNowNs() - start_ns));
 }
 
 double mib(size_t bytes) {

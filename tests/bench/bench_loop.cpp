@@ -19,7 +19,7 @@ namespace {
 constexpr int kLeafCells = 16;
 
 void run(double rate_hz, double seconds, const std::string& json_path) {
-    const int64_t period_ns = std::llround(1e9 / rate_hz);
+    const int64_t period_ns = std::llround(double(kNsPerSecond) / rate_hz);
     BoneModel bone = corridorBone(kLeafCells);
     const ToolModel tool = buildTool({}).model;
     HapticTick tick(corridorTick(rate_hz), bone, tool, nullptr);
@@ -27,7 +27,7 @@ void run(double rate_hz, double seconds, const std::string& json_path) {
     Waits bare, loop;
     report.append(inRealTime([&] {
         PeriodicTimer timer(period_ns, monotonicNowNs());
-        const int64_t end = monotonicNowNs() + int64_t(seconds * 1e9);
+        const int64_t end = monotonicNowNs() + int64_t(seconds * double(kNsPerSecond));
         for (int64_t due = 0; due < end; ++bare.ticks) {
             due = timer.waitNext();
             bare.wake_up.record(monotonicNowNs() - due);

@@ -5,8 +5,9 @@
 #include <fstream>
 #include <random>
 
-#include "common/config/user_error.h"
 #include "common/rt/clock.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/mesh/mesher.h"
 #include "haptic_server/milling/timed_milling.h"
 #include "haptic_server/tick/bone_model.h"
@@ -30,7 +31,7 @@ struct Options {
 };
 
 double ms(int64_t ns) {
-    return double(ns) * 1e-6;
+    return millisecondsOfNs(double(ns));
 }
 double middleOf(std::vector<double> values) {
     std::sort(values.begin(), values.end());
@@ -96,7 +97,8 @@ nlohmann::json runVtk(const BoneModel& bone, int runs) {
     std::vector<std::string> arguments{
         "/usr/bin/python3", std::string(BONEMILL_SOURCE_DIR) + "/tests/bench/vtk_flying_edges.py", raw};
     for (int axis = 0; axis < 3; ++axis) arguments.push_back(std::to_string(bone.volume.dims()[axis]));
-    for (int axis = 0; axis < 3; ++axis) arguments.push_back(number(bone.volume.spacing()[axis] * 1e3, 9));
+    for (int axis = 0; axis < 3; ++axis)
+        arguments.push_back(number(bone.volume.spacing()[axis] * kPerMillimetre, 9));
     arguments.push_back(std::to_string(bone.volume.iso() - 0.5));  // a voxel is inside from iso on
     arguments.push_back(std::to_string(runs));
     const auto finished = test::run(arguments);

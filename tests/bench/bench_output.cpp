@@ -7,7 +7,8 @@
 #include <cstdio>
 #include <fstream>
 
-#include "common/config/user_error.h"
+#include "common/rt/clock.h"
+#include "common/user_error.h"
 #include "haptic_server/app/bone_files.h"
 
 namespace bonemill::bench {
@@ -23,12 +24,12 @@ size_t statusBytes(const char* field) {
 }  // namespace
 
 nlohmann::json microseconds(const LatencyHistogram& durations) {
-    const auto us = [&](double percent) { return double(durations.percentileNs(percent)) * 1e-3; };
-    return {{"mean", durations.meanNs() * 1e-3},
+    const auto us = [&](double percent) { return microsecondsOfNs(double(durations.percentileNs(percent))); };
+    return {{"mean", microsecondsOfNs(durations.meanNs())},
             {"p50", us(50)},
             {"p99", us(99)},
             {"p999", us(99.9)},
-            {"max", double(durations.maxNs()) * 1e-3}};
+            {"max", microsecondsOfNs(double(durations.maxNs()))}};
 }
 
 void Table::add(std::vector<std::string> cells, const LatencyHistogram& durations) {

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "common/rt/clock.h"
 #include "common/rt/latency_histogram.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
@@ -67,9 +68,9 @@ void measure(const Setting& setting, const RawVolume& scan, const ToolModel& too
 }
 
 void print(const char* what, const LatencyHistogram& h, const LatencyHistogram& reference) {
-    const auto us = [&h](double percent) { return double(h.percentileNs(percent)) * 1e-3; };
+    const auto us = [&h](double percent) { return microsecondsOfNs(double(h.percentileNs(percent))); };
     std::printf("    %-22s p50 %7.1f  p99 %7.1f  p99.9 %7.1f  max %8.1f us   median ratio %.2f\n", what,
-                us(50), us(99), us(99.9), double(h.maxNs()) * 1e-3,
+                us(50), us(99), us(99.9), microsecondsOfNs(double(h.maxNs())),
                 double(h.percentileNs(50)) / double(reference.percentileNs(50)));
 }
 

@@ -42,7 +42,7 @@ struct Remeshing {
 double threadCpuSeconds() {
     timespec used;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
-    return double(used.tv_sec) + double(used.tv_nsec) * 1e-9;
+    return double(used.tv_sec) + secondsOfNs(used.tv_nsec);
 }
 
 // The mesher thread of the server. Returns the processor time that it took, s.
@@ -86,7 +86,7 @@ Remeshing millBesideMesher(const Options& o) {
     std::jthread mesher([&] { result.mesher_share = meshWhile(is_running, rounds, put) / o.seconds; });
     std::jthread publisher([&] { publishWhile(is_running, outbox, result.published); });
     result.report.append(inRealTime([&] {
-        CorridorIo io(std::llround(1e9 / o.rate_hz), o.seconds, result.tick, &cuts);
+        CorridorIo io(std::llround(double(kNsPerSecond) / o.rate_hz), o.seconds, result.tick, &cuts);
         while (tick.tick(io)) {
         }
     }));

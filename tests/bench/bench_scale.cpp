@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "common/units.h"
 #include "haptic_server/accuracy_report/plot.h"
 #include "haptic_server/app/bone_files.h"
 #include "tests/bench/bench_output.h"
@@ -70,7 +71,7 @@ void run(int runs, int largest_edge, const std::string& picture, const std::stri
     }
     for (const double radius : kRadii_mm) {
         nlohmann::json row = medianTicks(
-            {.edge = 256, .spacing = kSpacing, .burr_radius = radius * 1e-3, .ticks = 2500}, runs);
+            {.edge = 256, .spacing = kSpacing, .burr_radius = radius * kMillimetre, .ticks = 2500}, runs);
         addRow(table, "256 voxels per edge, R = " + number(radius) + " mm", row);
         row["burr_radius_mm"] = radius;
         json["radius"].push_back(row);

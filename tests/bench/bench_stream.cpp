@@ -11,9 +11,9 @@
 #include <sstream>
 #include <thread>
 
-#include "common/config/user_error.h"
 #include "common/mesh/mesh_codec.h"
 #include "common/rt/clock.h"
+#include "common/user_error.h"
 #include "haptic_server/mesh/mesher.h"
 #include "haptic_server/tick/bone_model.h"
 #include "haptic_server/volume/import/densify.h"

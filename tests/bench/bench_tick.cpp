@@ -2,8 +2,9 @@
 
 #include <cstdio>
 
-#include "common/config/user_error.h"
 #include "common/rt/clock.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/tick/tick_budget.h"
 #include "haptic_server/tool/build/build_tool.h"
@@ -14,7 +15,6 @@
 namespace bonemill::bench {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 constexpr double kCouplingStiffness = 1000;  // N/m
 constexpr int kLeafCells = 16;
 

@@ -56,7 +56,7 @@ TickConfig corridorTick(double rate_hz) {
 CorridorIo::CorridorIo(int64_t period_ns, double seconds, Waits& waits, SpscRing<Cut>* cuts)
     : timer_(period_ns, monotonicNowNs()),
       period_ns_(period_ns),
-      end_ns_(monotonicNowNs() + int64_t(seconds * 1e9)),
+      end_ns_(monotonicNowNs() + int64_t(seconds * double(kNsPerSecond))),
       waits_(waits),
       cuts_(cuts) {}
 
@@ -64,7 +64,7 @@ bool CorridorIo::read(DeviceInput& input) noexcept {
     const int64_t due = timer_.waitNext();
     start_ns_ = monotonicNowNs();
     if (first_ns_ == 0) first_ns_ = start_ns_;
-    input.t_s = double(start_ns_ - first_ns_) * 1e-9;
+    input.t_s = secondsOfNs(start_ns_ - first_ns_);
     input.X_WT_device = deviceAt(input.t_s);
     input.buttons = kButtonRemove;
     input.start_ns = start_ns_;

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "tests/bench/bench_effects.h"
 #include "tests/bench/bench_load.h"
 #include "tests/bench/bench_loop.h"

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "common/rt/clock.h"
+#include "common/units.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
 namespace {
@@ -32,7 +33,7 @@ double processorSeconds() {
     rusage used{};
     getrusage(RUSAGE_SELF, &used);
     return double(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
-           1e-6 * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+           kMicrosecond * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "common/units.h"
 #include "haptic_server/mesh/leaf_mesher.h"
 #include "render_client/scene/render_scene.h"
 #include "tests/gl/synthetic_scene.h"
@@ -100,7 +101,7 @@ class MillingSession {
         tool.mutable_effects()->set_spin_speed(run.spin_speed);
         tool.mutable_effects()->set_burr_force_n(is_cutting ? run.force : 0);
         tool.mutable_effects()->set_cutting_power_w(is_cutting ? run.power : 0);
-        tool.mutable_effects()->set_removed_mm3(removed * 1e9);
+        tool.mutable_effects()->set_removed_mm3(removed * kPerCubicMillimetre);
         scene.setToolState(tool);
     }
 

@@ -1,6 +1,7 @@
 // Closed loop against a plane and in a hole over devices, hands, delays and encoders.
 #include <cstdio>
 
+#include "common/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
@@ -59,7 +60,7 @@ std::vector<GridPoint> gridPoints(const CouplingFigures& coupling, double dt) {
                                      coupling.rotation_stiffness) /
                         lag;
                     point.name = std::string(device.name) + "/" + hand.name + "/" + std::to_string(delay) +
-                                 "/" + std::to_string(int(encoders.step * 1e6)) + "um";
+                                 "/" + std::to_string(int(encoders.step * kPerMicrometre)) + "um";
                     points.push_back(point);
                 }
     return points;

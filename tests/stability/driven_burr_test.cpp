@@ -1,4 +1,5 @@
 // A burr that is driven, and what happens to it in contact: run-up, stall, pedal, pause, whirl, another tool.
+#include "common/units.h"
 #include "haptic_server/tick/bone_history.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
@@ -9,7 +10,6 @@ namespace bonemill::test {
 namespace {
 
 constexpr double kPush = 3;  // N, of the hand's springs
-constexpr double kMicro = 1e6;
 
 // A round pit half as wide again as the burr: friction drives the burr along its floor to the wall, and
 // round.
@@ -202,7 +202,7 @@ double beyondTheMotor(const Variant& variant, int way) {
         meter.add(device, stepper.wrenchOnHand());
         const EffectRecord& record = stepper.record().effects;
         motor += double(record.axis_torque) * std::abs(double(record.spin_speed)) * scene.config.dt;
-        worst = std::max(worst, -(meter.energy() + motor) * kMicro);
+        worst = std::max(worst, -(meter.energy() + motor) * kPerMicro);
     }
     return motor > 1e-3 ? worst : kLost;
 }

@@ -1,6 +1,7 @@
 // The bodies that several hard cases share, each with the pose where its tool starts.
 #pragma once
 
+#include "common/units.h"
 #include "tests/stability/scene.h"
 
 namespace bonemill::test {
@@ -36,7 +37,7 @@ inline TestTool peg() {
 }
 
 inline constexpr double degrees(double angle) {
-    return angle * M_PI / 180;
+    return angle * kDegree;
 }
 
 }  // namespace bonemill::test

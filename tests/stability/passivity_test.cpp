@@ -1,4 +1,5 @@
 // Energy on closed paths without milling: none comes from nowhere, with every tick run or with some dropped.
+#include "common/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/energy_meter.h"
@@ -8,7 +9,6 @@ namespace bonemill::test {
 namespace {
 
 constexpr double kEnergySlack_uJ = 1;
-constexpr double kMicro = 1e6;
 
 // Corners visited in order at `speed`, with the turn between them spread evenly, and a rest at the end.
 std::vector<Pose> polyline(const std::vector<Pose>& corners, double speed, int rest_ticks) {
@@ -41,7 +41,7 @@ double gained(Scene& scene, const std::vector<Pose>& path, size_t drop_from = 0,
         meter.add(path[n], is_dropped ? undisturbed.wrenchOnHand() : stepper.wrenchOnHand());
         pressed = std::max(pressed, stepper.wrenchOnHand().force.norm());
     }
-    return pressed > 0.1 ? std::max(0.0, -meter.energy() * kMicro) : kLost;
+    return pressed > 0.1 ? std::max(0.0, -meter.energy() * kPerMicro) : kLost;
 }
 
 // Down, sideways, up, back, over a plane that lies askew in the grid; both ways round.
@@ -77,7 +77,7 @@ double gainedAtRest(Scene& scene, std::vector<Pose> path) {
             if (!stepper.isFinite()) return kNan;
             meter.add(pose, stepper.wrenchOnHand());
         }
-        worst = worseOf(worst, -meter.energy() * kMicro);
+        worst = worseOf(worst, -meter.energy() * kPerMicro);
         std::reverse(path.begin(), path.end());
     }
     return worst;

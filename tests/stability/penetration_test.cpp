@@ -1,4 +1,5 @@
 // Maximum push: the tool stays on its side of the bone and the force within its limit.
+#include "common/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
@@ -32,7 +33,7 @@ double centreBelow(Scene& scene, const Pose& start, double height, double speed 
         lowest = std::min(lowest, z);
     };
     pushDown(stepper, start, note, speed);
-    return (height - lowest) * 1e3;
+    return (height - lowest) * kPerMillimetre;
 }
 
 double throughWall(const Variant& variant, double speed) {
@@ -79,7 +80,7 @@ double deepPushDirection(const Variant& variant) {
     pushDown(stepper, abovePlane(0.5e-3), [] {});
     const Eigen::Vector3d force = stepper.wrenchOnHand().force;
     if (!(force.norm() > 1e-6)) return 180;  // nothing holds it any more
-    return std::acos(force.z() / force.norm()) * 180 / M_PI;
+    return std::acos(force.z() / force.norm()) / kDegree;
 }
 
 const std::vector<StabilityCase> kCases{

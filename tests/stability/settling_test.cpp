@@ -1,4 +1,5 @@
 // Closed loop at rest under load: no limit cycle, no buzz.
+#include "common/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
@@ -82,7 +83,7 @@ double apartByIterations(const Variant& variant, int from) {
             const Pose device = upright(groove.start + s * Eigen::Vector3d(0.5e-3, 0, -3e-3));
             if (stepper.step(device).iterations > kFour) return kNan;
             reference.step(device);
-            const double apart = (stepper.spo().position - reference.spo().position).norm() * 1e6;
+            const double apart = (stepper.spo().position - reference.spo().position).norm() * kPerMicrometre;
             if (n >= from) worst = worseOf(worst, apart);
         }
         if (reference.record().contacts == 0) return kLost;
@@ -128,7 +129,7 @@ const std::vector<StabilityCase> kCases{
     {"wedge_10_to_60_degrees", "N_rms", 0.05, grooveWorst, {"thesis_2012"}, feltEffects()},
     {"wedge_four_iterations_pressing",
      "um_from_converged",
-     kVoxel / 4 * 1e6,
+     kVoxel / 4 * kPerMicrometre,
      fourIterationsPressing,
      {"fast"}},
     {"wedge_four_iterations_at_rest", "um_from_converged", 2, fourIterationsAtRest, {}},

@@ -1,4 +1,5 @@
 // The tool is changed for a larger or smaller one while it presses on the bone.
+#include "common/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
@@ -129,7 +130,7 @@ double drawnOut(const Variant& variant) {
         bench.loop.step();
         if (!bench.loop.stepper.isFinite()) return kNan;
         if (bench.loop.stepper.spo().position.z() > bottom + kUp && bench.loop.stepper.record().contacts == 0)
-            return n * bench.scene.config.dt * 1e3;
+            return n * bench.scene.config.dt * kPerMillisecond;
     }
     return kLost;
 }
@@ -141,7 +142,7 @@ double liftSpeed(const Variant& variant) {
     double worst = 0;
     for (int n = 0; n < 300; ++n) {
         bench.loop.step();
-        worst = worseOf(worst, bench.loop.plant.velocity().norm() * 1e3);
+        worst = worseOf(worst, bench.loop.plant.velocity().norm() * kPerMillimetre);
     }
     return worst;
 }

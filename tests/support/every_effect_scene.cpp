@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "common/units.h"
 #include "haptic_server/app/scene_effects.h"
 #include "haptic_server/volume/import/nrrd_writer.h"
 
@@ -14,7 +15,7 @@ constexpr double kFaceOffset = 0.3;                     // voxels: not in step w
 VolumeGeometry geometryOf(const EveryEffectBlock& block) {
     VolumeGeometry geometry;
     geometry.dims.setConstant(block.edge);
-    geometry.spacing.setConstant(block.voxel_mm * 1e-3);
+    geometry.spacing.setConstant(block.voxel_mm * kMillimetre);
     return geometry;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/rt/clock.h"
+#include "common/units.h"
 #include "haptic_server/tick/haptic_tick.h"
 
 namespace bonemill::test {
@@ -43,7 +44,7 @@ inline std::vector<DeviceInput> straightPath(const Pose& from, const Eigen::Vect
         inputs[size_t(n)].X_WT_device = {
             from.position + (to - from.position) * (double(n) / std::max(1, ticks - 1)), from.rotation};
         inputs[size_t(n)].buttons = buttons;
-        inputs[size_t(n)].t_s = n * 1e-3;
+        inputs[size_t(n)].t_s = n * kMillisecond;
     }
     return inputs;
 }

@@ -5,7 +5,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/tool/build/check_shape.h"
 #include "haptic_server/tool/build/mesh_distance.h"
 #include "haptic_server/tool/build/mesh_file.h"
@@ -101,7 +102,7 @@ void checkLipschitz(const SdfGrid& sdf, const std::string& file) {
                     const Eigen::Vector3i next = Eigen::Vector3i(i, j, k) + Eigen::Vector3i::Unit(axis);
                     if ((next.array() >= n.array()).any()) continue;
                     if (std::abs(sdf.at(next.x(), next.y(), next.z()) - sdf.at(i, j, k)) <= most) continue;
-                    const Vector3d p = 1e3 * sdf.nodePosition(i, j, k);
+                    const Vector3d p = kPerMillimetre * sdf.nodePosition(i, j, k);
                     throw UserError(
                         file + text(": inside and outside cannot be told apart near (%.3f, %.3f, %.3f) mm: "
                                     "parts pass through each other or are inside out; merge them into one "
@@ -116,7 +117,7 @@ void checkNotEmpty(const SdfGrid& sdf) {
         text("tool: no node of its distance grid lies inside the tool: it is thinner than "
              "tool.sdf_spacing_mm (%.3f mm) or outside of the grid; lower the spacing, or correct "
              "tool.sdf_origin_mm, the shapes or the mesh",
-             sdf.spacing() * 1e3));
+             sdf.spacing() * kPerMillimetre));
 }
 
 struct Sampled {
@@ -182,7 +183,7 @@ std::vector<std::string> cutWarnings(const SdfGrid& sdf, const Eigen::AlignedBox
         warnings.push_back(
             text("tool: it sticks out of its distance grid by %.3f mm at the %c%c side, and is not felt "
                  "there; raise tool.sdf_nodes_%c or tool.sdf_spacing_mm, or move tool.sdf_origin_mm",
-                 most * 1e3, below >= above ? '-' : '+', name, name));
+                 most * kPerMillimetre, below >= above ? '-' : '+', name, name));
     }
     return warnings;
 }
@@ -215,7 +216,8 @@ std::vector<std::string> warningsFor(const ToolConfig& config, const Sampled& sa
         warnings.push_back(
             text("tool: burr_radius_mm %.3f is below %g spacings of the distance grid (%.3f mm each): its "
                  "shape is lost; lower tool.sdf_spacing_mm",
-                 config.burr_radius * 1e3, kFinestBurrRadiusSpacings, config.sdf_spacing * 1e3));
+                 config.burr_radius * kPerMillimetre, kFinestBurrRadiusSpacings,
+                 config.sdf_spacing * kPerMillimetre));
     if (sampled.sdf.distance(Vector3d::Zero()) >= 0)
         warnings.push_back(
             "tool: the origin of frame T, where the burr cuts, is not inside the tool: bone goes where the "
@@ -224,7 +226,7 @@ std::vector<std::string> warningsFor(const ToolConfig& config, const Sampled& sa
         warnings.push_back(
             text("tool: its burr sticks out of it by %.3f mm: that part cuts nothing it touches; "
                  "correct burr_kind and the burr's sizes, or the shapes or the mesh",
-                 outside * 1e3));
+                 outside * kPerMillimetre));
     return warnings;
 }
 

@@ -12,12 +12,13 @@
 #include <string>
 #include <string_view>
 
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {
 
-constexpr double kMetresPerFileUnit = 1e-3;
+constexpr double kMetresPerFileUnit = kMillimetre;
 constexpr uintmax_t kLargestFile = uintmax_t(512) << 20;  // 10 million binary STL triangles
 
 constexpr size_t kStlHeader = 80;

@@ -4,6 +4,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "common/units.h"
+
 namespace bonemill {
 namespace {
 
@@ -11,7 +13,7 @@ using Eigen::Vector3d;
 
 constexpr int kSegments = 48;      // around the axis
 constexpr int kQuarterRings = 12;  // from a ball's pole to its equator
-constexpr double kSmoothBend = 40 * std::numbers::pi / 180;
+constexpr double kSmoothBend = 40 * kDegree;
 
 // A ring of a solid of revolution: how far along and off the axis, and the normal there.
 struct Ring {
@@ -32,7 +34,7 @@ void revolve(const Vector3d& origin, const Vector3d& axis, const std::vector<Rin
     for (size_t r = 0; r < rings.size(); ++r) {
         const auto base = uint32_t(surface.positions.size());
         for (int s = 0; s < kSegments; ++s) {
-            const double angle = 2 * std::numbers::pi * s / kSegments;
+            const double angle = kTurn * s / kSegments;
             const Vector3d radial = std::cos(angle) * u + std::sin(angle) * v;
             const Ring& ring = rings[r];
             surface.positions.push_back((origin + ring.along * axis + ring.off * radial).cast<float>());

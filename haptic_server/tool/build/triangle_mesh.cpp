@@ -6,7 +6,8 @@
 #include <numeric>
 #include <tuple>
 
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kLargestTool = 0.5;
 
 std::string inMillimetres(double metres) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.4g mm", metres * 1e3);
+    std::snprintf(text, sizeof text, "%.4g mm", metres * kPerMillimetre);
     return text;
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/propose_iso.h"
 #include "haptic_server/volume/import/small_pieces.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/dicom_frames.h"
 #include "haptic_server/volume/import/dicom_scan.h"
 #include "haptic_server/volume/import/dicom_series.h"

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

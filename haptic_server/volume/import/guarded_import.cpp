@@ -15,7 +15,7 @@
 #include <new>
 #include <type_traits>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/file_being_read.h"
 
 namespace bonemill {

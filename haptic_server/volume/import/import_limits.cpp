@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/kernels/brick_layout.h"
 
 namespace bonemill {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/dicom_folder.h"
 #include "haptic_server/volume/import/guarded_import.h"
 #include "haptic_server/volume/import/inv3_project.h"

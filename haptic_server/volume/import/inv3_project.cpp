@@ -11,7 +11,7 @@
 #include <pugixml.hpp>
 #include <utility>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/physical_frame.h"
 

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <type_traits>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/forget_memory.h"
 #include "haptic_server/volume/import/file_being_read.h"
 #include "haptic_server/volume/import/memory_cap.h"

@@ -5,7 +5,7 @@
 #include <map>
 #include <sstream>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

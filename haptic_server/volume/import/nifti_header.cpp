@@ -10,7 +10,7 @@
 #include <cstring>
 #include <memory>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

@@ -10,7 +10,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/nrrd_header.h"
 
 namespace bonemill {
@@ -26,7 +27,7 @@ std::string vectorText(const Eigen::Vector3d& v) {
 
 std::string headerText(const VolumeGeometry& geometry, const char* type, NrrdEncoding encoding) {
     const Eigen::Matrix3d R_WV = geometry.X_WV.rotation.toRotationMatrix();
-    const Eigen::Vector3d spacing_mm = geometry.spacing * 1000;
+    const Eigen::Vector3d spacing_mm = geometry.spacing * kPerMillimetre;
     std::string text = "NRRD0004\n";
     text += std::string("type: ") + type + "\ndimension: 3\nspace: left-posterior-superior\nsizes:";
     for (int a = 0; a < 3; ++a) text += ' ' + std::to_string(geometry.dims[a]);
@@ -35,7 +36,7 @@ std::string headerText(const VolumeGeometry& geometry, const char* type, NrrdEnc
     text += "\nkinds: domain domain domain\nendian: little\n";
     text += std::string("encoding: ") + (encoding == NrrdEncoding::kGzip ? "gzip" : "raw");
     text += "\nspace units: \"mm\" \"mm\" \"mm\"\n";
-    text += "space origin: " + vectorText(geometry.X_WV.position * 1000) + "\n";
+    text += "space origin: " + vectorText(geometry.X_WV.position * kPerMillimetre) + "\n";
     text += std::string(kNrrdGeometryKey) + ":=" + geometryToText(geometry) + "\n\n";
     return text;
 }

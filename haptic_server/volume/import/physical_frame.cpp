@@ -3,7 +3,8 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {
@@ -63,9 +64,9 @@ bool makeRightHanded(const FileFrame& frame, const std::string& file, VolumeGeom
         reverseAxis(values, frame.dims, 2);
     }
     geometry.dims = frame.dims;
-    geometry.spacing = frame.spacing_mm / 1000;
+    geometry.spacing = frame.spacing_mm / kPerMillimetre;
     geometry.X_WV.rotation = Eigen::Quaterniond(nearestRotation(axes)).normalized();
-    geometry.X_WV.position = origin_mm / 1000;
+    geometry.X_WV.position = origin_mm / kPerMillimetre;
     return left_handed;
 }
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <vector>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/import_limits.h"
 
 namespace bonemill {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/itk_image_file.h"
 #include "haptic_server/volume/import/meta_image_header.h"

@@ -8,7 +8,7 @@
 
 #include "common/config/scene_check.h"
 #include "common/config/scene_text.h"
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "common/config/user_error.h"
 #include "common/ipc/device_link.h"
 #include "common/rt/clock.h"
+#include "common/user_error.h"
 #include "tests/unit/ipc/link_test_tools.h"
 
 namespace bonemill {

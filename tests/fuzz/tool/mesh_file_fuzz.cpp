@@ -9,7 +9,7 @@
 #include <iostream>
 #include <random>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/support/stl_writer.h"
 #include "tests/support/temporary_folder.h"

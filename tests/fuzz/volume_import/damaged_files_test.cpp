@@ -8,7 +8,7 @@
 #include <iostream>
 #include <random>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/dicom_scan.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "tests/support/temporary_folder.h"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/units.h"
 #include "haptic_server/app/effect_cost.h"
 #include "haptic_server/app/scene_setup.h"
 #include "haptic_server/app/state_hash.h"
@@ -47,7 +48,7 @@ std::vector<DeviceInput> pathOver(const BoneModel& bone, double burr_radius) {
             input.X_WT_device = bone.volume.geometry().X_WV *
                                 Pose{size / 2 + Eigen::Vector3d(x, 0, z + burr_radius), upright};
             input.buttons = phase.buttons;
-            input.t_s = double(path.size()) * 1e-3;
+            input.t_s = double(path.size()) * kMillisecond;
             path.push_back(input);
         }
     }
@@ -74,7 +75,7 @@ class EffectIdentity : public testing::TestWithParam<const char*> {
         BoneModel& bone = *simulation.bone;
         Outcome outcome;
         for (const TickRecord& record : recordsOf(simulation.tick, bone, simulation.firstTool(),
-                                                  pathOver(bone, block_.burr_radius_mm * 1e-3))) {
+                                                  pathOver(bone, block_.burr_radius_mm * kMillimetre))) {
             StateHash hash;
             hash.addRecord(record);
             hash.addBytes(&record.effects, sizeof record.effects);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "common/units.h"
 #include "haptic_server/app/bone_files.h"
 #include "haptic_server/app/effect_cost.h"
 #include "haptic_server/app/scene_setup.h"
@@ -33,7 +34,7 @@ Pose poseAt(const scene::SimulatedOperator& scenario, double t_s, uint32_t& butt
     const double share = std::clamp((t_s - a.time_s()) / (b.time_s() - a.time_s()), 0.0, 1.0);
     const auto position = [](const auto& waypoint) -> Eigen::Vector3d {
         const scene::Vec3& p = waypoint.p_wt_mm();
-        return Eigen::Vector3d(p.x(), p.y(), p.z()) * 1e-3;
+        return Eigen::Vector3d(p.x(), p.y(), p.z()) * kMillimetre;
     };
     const auto rotation = [](const auto& waypoint) -> Eigen::Quaterniond {
         const scene::Quaternion& q = waypoint.q_wt();
@@ -79,8 +80,8 @@ class SceneRun : public testing::Test {
         for (const TickRecord& record :
              recordsOf(simulation.tick, bone, simulation.firstTool(),
                        pathOf(loaded.scene.simulated_operator(), simulation.tick.dt))) {
-            result.removed_mm3 += record.removed * 1e9;
-            result.added_mm3 += record.added * 1e9;
+            result.removed_mm3 += record.removed * kPerCubicMillimetre;
+            result.added_mm3 += record.added * kPerCubicMillimetre;
             result.faults |= record.faults;
             result.ticks_in_contact += record.contacts > 0;
             result.largest_force =
@@ -88,7 +89,7 @@ class SceneRun : public testing::Test {
         }
         const MeshCheck check = checkMesh(meshWholeBone(bone.volume, bone.lattice), grid);
         result.is_closed = check.isClosed();
-        result.volume_change_mm3 = (before - check.volume) * 1e9;
+        result.volume_change_mm3 = (before - check.volume) * kPerCubicMillimetre;
         return result;
     }
     static void expectSound(const ShippedRun& run) {

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <iostream>
 
-#include "common/config/user_error.h"
 #include "common/dds/network_cli.h"
+#include "common/user_error.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
 namespace {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/units.h"
 #include "haptic_server/app/scene_setup.h"
 #include "haptic_server/kernels/kernels.h"
 #include "haptic_server/volume/import/import_volume.h"
@@ -30,7 +31,8 @@ std::string plunge(double x, double y, double z_from, double z_to, int ticks, in
     csv << "t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons\n";
     for (int n = 0; n < ticks + dwell; ++n) {
         const double z = z_from + (z_to - z_from) * std::min(1.0, double(n) / (ticks - 1));
-        csv << n * 1e-3 << ',' << x << ',' << y << ',' << z << ',' << kUpright << ',' << buttons << '\n';
+        csv << n * kMillisecond << ',' << x << ',' << y << ',' << z << ',' << kUpright << ',' << buttons
+            << '\n';
     }
     return csv.str();
 }
@@ -204,7 +206,7 @@ TEST(Simulate, SavedDifferenceAndMeshAddUp) {
     EXPECT_EQ(lost.geometry.X_WV.position, slab.geometry.X_WV.position);
     double sum = 0;
     for (size_t n = 0; n < lost.values.size(); ++n) sum += lost.values[n];
-    const double voxel_mm3 = slab.geometry.spacing.prod() * 1e9;
+    const double voxel_mm3 = slab.geometry.spacing.prod() * kPerCubicMillimetre;
     EXPECT_NEAR(sum / 32767 * voxel_mm3, removed_mm3, 0.05 * removed_mm3);
     const test::PlyMesh ply = test::readPly(folder / "milled.ply");
     EXPECT_TRUE(ply.isClosed());

@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "common/units.h"
 #include "device_daemon/kinematics/ares_kinematics.h"
 
 namespace bonemill {
@@ -22,7 +23,7 @@ Pose poseInWorkspace() {
     const double height = fraction();
     const double radius = std::sqrt(1 - height * height);
     const Eigen::Vector3d axis(radius * std::cos(azimuth), radius * std::sin(azimuth), height);
-    X_DT.rotation = expRotation(axis * (40 * std::numbers::pi / 180 * fraction()));
+    X_DT.rotation = expRotation(axis * (40 * kDegree * fraction()));
     return X_DT;
 }
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "tests/unit/accuracy_report/report_data.h"
 
 namespace bonemill {

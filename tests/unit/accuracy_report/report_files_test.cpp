@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <sstream>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/app/accuracy_figures.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/accuracy_report/report_data.h"

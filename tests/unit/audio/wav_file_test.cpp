@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/config/scene_check.h"
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

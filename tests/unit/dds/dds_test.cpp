@@ -5,9 +5,9 @@
 #include <map>
 #include <thread>
 
-#include "common/config/user_error.h"
 #include "common/dds/endpoint.h"
 #include "common/dds/wait_set.h"
+#include "common/user_error.h"
 #include "tests/support/dds_session.h"
 
 namespace bonemill::dds {

@@ -4,9 +4,9 @@
 
 #include <cstdlib>
 
-#include "common/config/user_error.h"
 #include "common/dds/network_interfaces.h"
 #include "common/dds/participant.h"
+#include "common/user_error.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/temporary_folder.h"
 

@@ -4,9 +4,9 @@
 
 #include <thread>
 
-#include "common/config/user_error.h"
 #include "common/ipc/link_layout.h"
 #include "common/rt/clock.h"
+#include "common/user_error.h"
 #include "tests/unit/ipc/link_test_tools.h"
 
 namespace bonemill {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/mesh/mesh_check.h"
 #include "tests/support/ply_reader.h"
 #include "tests/support/temporary_folder.h"

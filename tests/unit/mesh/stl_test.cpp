@@ -9,7 +9,7 @@
 #include <optional>
 #include <sstream>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/mesh/mesh_check.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/voxel_fields.h"

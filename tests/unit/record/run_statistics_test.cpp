@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/config/user_error.h"
 #include "common/rt/clock.h"
+#include "common/user_error.h"
 #include "tests/unit/record/temporary_file.h"
 
 namespace bonemill {

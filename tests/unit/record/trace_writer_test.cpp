@@ -8,7 +8,7 @@
 #include <sstream>
 #include <vector>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "tests/unit/record/temporary_file.h"
 
 namespace bonemill {

@@ -6,7 +6,7 @@
 #include <random>
 #include <sstream>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "tests/unit/record/temporary_file.h"
 
 namespace bonemill {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {

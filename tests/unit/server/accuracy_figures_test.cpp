@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "tests/support/process.h"
 
 namespace bonemill {

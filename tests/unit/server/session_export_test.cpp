@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <thread>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/app/bone_files.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "tests/support/ply_reader.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/tool/mesh_test_support.h"
 

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/tool/mesh_test_support.h"

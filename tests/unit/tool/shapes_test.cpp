@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "haptic_server/tool/build/check_shape.h"
 
 namespace bonemill {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 #include "tests/unit/tool/mesh_test_support.h"
 
 namespace bonemill {

@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 

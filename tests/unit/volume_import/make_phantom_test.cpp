@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "common/units.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/phantom/analytic_body.h"
 #include "haptic_server/volume/import/phantom/vertebra_phantom.h"
@@ -40,7 +41,6 @@ TEST(MakePhantom, bodyFileHoldsTheStatedSurface) {
     body.kind = BodyKind::kHole;
     body.radius = 1.5e-3;
     body.thickness = 3e-3;
-    constexpr double kDegree = EIGEN_PI / 180;
     body.X_WB.rotation = Eigen::AngleAxisd(30 * kDegree, Eigen::Vector3d::UnitZ()) *
                          Eigen::AngleAxisd(20 * kDegree, Eigen::Vector3d::UnitY()) *
                          Eigen::AngleAxisd(10 * kDegree, Eigen::Vector3d::UnitX());
@@ -59,7 +59,7 @@ class Grid {
     double at(double x_mm, double y_mm, double z_mm) const {
         const VolumeGeometry& g = raw_.geometry;
         const Eigen::Vector3d index =
-            (g.X_WV.inverse() * (Eigen::Vector3d(x_mm, y_mm, z_mm) * 1e-3)).cwiseQuotient(g.spacing);
+            (g.X_WV.inverse() * (Eigen::Vector3d(x_mm, y_mm, z_mm) * kMillimetre)).cwiseQuotient(g.spacing);
         const Eigen::Vector3i low = index.array().floor().cast<int>().max(0).min(g.dims.array() - 2);
         const Eigen::Vector3d f = index - low.cast<double>();
         double sum = 0;

@@ -3,7 +3,8 @@
 #include <iostream>
 #include <memory>
 
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/nrrd_stream.h"
 #include "haptic_server/volume/import/phantom/number_range.h"
@@ -27,7 +28,7 @@ struct VertebraArguments {
 };
 
 void makeVertebra(const VertebraArguments& arguments) {
-    const VertebraScan scan = scanVertebra(vertebraGrid(arguments.voxel_mm * 1e-3));
+    const VertebraScan scan = scanVertebra(vertebraGrid(arguments.voxel_mm * kMillimetre));
     const std::vector<int16_t> hu = scan.ct.values.visit(
         [](const auto& samples) { return std::vector<int16_t>(samples.begin(), samples.end()); });
     write<int16_t>(arguments.file, scan.ct.geometry, hu);

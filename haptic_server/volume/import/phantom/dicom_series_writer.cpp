@@ -3,7 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/phantom/dicom_slice_writer.h"
 
 namespace bonemill {
@@ -63,12 +64,13 @@ void writeCtSeries(const std::filesystem::path& folder, const RawVolume& volume,
     slice.columns = geometry.dims.x();
     slice.rows = geometry.dims.y();
     for (int a = 0; a < 3; ++a) {
-        slice.spacing_mm[size_t(a)] = geometry.spacing[a] * 1000;
+        slice.spacing_mm[size_t(a)] = geometry.spacing[a] * kPerMillimetre;
         for (int row = 0; row < 3; ++row) slice.axis[size_t(a)][size_t(row)] = R_WV(row, a);
     }
     const Tags shared = seriesTags(text, slice.spacing_mm[2]);
     for (int k = 0; k < geometry.dims.z(); ++k) {
-        const Eigen::Vector3d p_mm = geometry.X_WV * Eigen::Vector3d(0, 0, k * geometry.spacing.z()) * 1000;
+        const Eigen::Vector3d p_mm =
+            geometry.X_WV * Eigen::Vector3d(0, 0, k * geometry.spacing.z()) * kPerMillimetre;
         slice.position_mm = {p_mm.x(), p_mm.y(), p_mm.z()};
         const std::vector<int16_t> values = sliceValues(volume, k);
         slice.hu = values;

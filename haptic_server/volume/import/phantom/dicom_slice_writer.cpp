@@ -4,7 +4,7 @@
 #include <itkGDCMImageIO.h>
 #include <itkMetaDataObject.h>
 
-#include "common/config/user_error.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 

@@ -6,7 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "common/config/user_error.h"
+#include "common/units.h"
+#include "common/user_error.h"
 #include "haptic_server/volume/import/nrrd_stream.h"
 #include "haptic_server/volume/import/phantom/analytic_body.h"
 #include "haptic_server/volume/import/phantom/anatomy_commands.h"
@@ -17,9 +18,6 @@
 
 namespace bonemill {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kMillimetre = 1e-3;
 
 struct ToothArguments {
     std::string folder;

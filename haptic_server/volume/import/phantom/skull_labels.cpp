@@ -1,5 +1,6 @@
 #include "haptic_server/volume/import/phantom/skull_labels.h"
 
+#include "common/units.h"
 #include "haptic_server/volume/import/phantom/spline_shapes.h"
 
 namespace bonemill {
@@ -65,7 +66,7 @@ std::vector<uint8_t> skullLabels(const VolumeGeometry& geometry) {
         for (int j = 0; j < geometry.dims.y(); ++j)
             for (int i = 0; i < geometry.dims.x(); ++i) {
                 const Eigen::Vector3d p_V = geometry.spacing.cwiseProduct(Eigen::Vector3d(i, j, k));
-                labels.push_back(uint8_t(labelAt(geometry.X_WV * p_V * 1000)));
+                labels.push_back(uint8_t(labelAt(geometry.X_WV * p_V * kPerMillimetre)));
             }
     return labels;
 }

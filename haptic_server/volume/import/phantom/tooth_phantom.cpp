@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "common/units.h"
 #include "haptic_server/volume/import/phantom/implicit_shapes.h"
 
 namespace bonemill {
@@ -152,7 +153,7 @@ double noise(uint64_t seed, uint64_t index) {
 }  // namespace
 
 ToothTissue toothTissue(const Eigen::Vector3d& p_W) noexcept {
-    const Eigen::Vector3d p_mm = p_W * 1000;
+    const Eigen::Vector3d p_mm = p_W * kPerMillimetre;
     const bool is_far = p_mm.head<2>().cwiseAbs().maxCoeff() > kReach || p_mm.z() < 0 || p_mm.z() > kHighest;
     return is_far ? ToothTissue::kAir : tissueAt(p_mm);
 }

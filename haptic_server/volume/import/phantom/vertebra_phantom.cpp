@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "common/units.h"
 #include "haptic_server/volume/import/phantom/implicit_shapes.h"
 #include "haptic_server/volume/import/phantom/spline_shapes.h"
 
@@ -177,7 +178,7 @@ class DepthMap {
   public:
     DepthMap(const VolumeGeometry& geometry) : geometry_(geometry) {
         const Eigen::Array3i cubes = (geometry.dims.array() + kEdge - 1) / kEdge;
-        const double reach = kMargin * (geometry.spacing * kEdge / 2).norm() * 1000;
+        const double reach = kMargin * (geometry.spacing * kEdge / 2).norm() * kPerMillimetre;
         for (int k = 0; k < cubes.z(); ++k)
             for (int j = 0; j < cubes.y(); ++j)
                 for (int i = 0; i < cubes.x(); ++i) {
@@ -188,7 +189,7 @@ class DepthMap {
         cubes_ = cubes;
     }
     Vector3d pointOf(const Vector3d& index) const {
-        return geometry_.X_WV * geometry_.spacing.cwiseProduct(index) * 1000;
+        return geometry_.X_WV * geometry_.spacing.cwiseProduct(index) * kPerMillimetre;
     }
     double depth(int i, int j, int k, const Vector3d& p) const {
         const int cube = i / kEdge + cubes_.x() * (j / kEdge + cubes_.y() * (k / kEdge));
@@ -208,15 +209,14 @@ class DepthMap {
 }  // namespace
 
 double vertebraDistance(const Vector3d& p_W) noexcept {
-    return bone(p_W * 1000) / 1000;
+    return bone(p_W * kPerMillimetre) / kPerMillimetre;
 }
 
 double corticalThickness(const Vector3d& p_W) noexcept {
-    return shell(p_W * 1000) / 1000;
+    return shell(p_W * kPerMillimetre) / kPerMillimetre;
 }
 
 VolumeGeometry vertebraGrid(double voxel_size) {
-    constexpr double kMillimetre = 1e-3;
     const Vector3d low = Vector3d(-50, -38, -28) * kMillimetre, high = Vector3d(50, 72, 27) * kMillimetre;
     VolumeGeometry geometry;
     geometry.dims = ((high - low) / voxel_size).array().ceil().cast<int>() + 1;
@@ -234,7 +234,7 @@ VertebraScan scanVertebra(const VolumeGeometry& geometry) {
     scan.labels.reserve(geometry.voxelCount());
     const DepthMap map(geometry);
     const SoftParts soft;
-    const double blur = kBlurVoxels * geometry.spacing.maxCoeff() * 1000;
+    const double blur = kBlurVoxels * geometry.spacing.maxCoeff() * kPerMillimetre;
     std::vector<float> row;
     for (int k = 0; k < geometry.dims.z(); ++k)
         for (int j = 0; j < geometry.dims.y(); ++j) {
