@@ -16,8 +16,8 @@ import shutil
 import subprocess
 import sys
 
-# Eriksson, Haptic Milling Simulation in Six Degrees-of-Freedom, KTH 2012, section 5.3: mean haptic rate, 20 s,
-# Pentium 4, point-shell scaling factor 3.
+# These are the mean haptic rates of Eriksson, Haptic Milling Simulation in Six Degrees-of-Freedom, KTH 2012, section 5.3:
+# 20 s on a Pentium 4 with a point-shell scaling factor of 3.
 THESIS_RATE_HZ = {"corridor": 983, "wall": 991}
 WANTED_RATE_HZ = 995
 TITLES = {
@@ -62,7 +62,7 @@ def read_trace(path):
 
 
 def json_lines(path):
-    """Every line of a log that is a JSON object."""
+    """Returns every line of a log that is a JSON object."""
     found = []
     for line in path.read_text(errors="replace").splitlines() if path.exists() else []:
         if line.startswith("{"):
@@ -71,7 +71,7 @@ def json_lines(path):
 
 
 def histogram_percentile(histogram, percent):
-    """histogram: latency in us -> count."""
+    """The histogram maps a latency in us to its count."""
     wanted = percent / 100 * sum(histogram.values())
     seen = 0
     for latency in sorted(histogram):
@@ -82,7 +82,7 @@ def histogram_percentile(histogram, percent):
 
 
 def read_cyclictest(path):
-    """The machine's own wake-up latency; None where it could not be measured."""
+    """Returns the machine's own wake-up latency, or None where it could not be measured."""
     if not path.exists():
         return None
     thread = read_json(path)["thread"]["0"]
@@ -122,7 +122,7 @@ def machine():
 
 
 def real_time_remarks(log):
-    """What the server says about the machine's real-time abilities."""
+    """Returns what the server says about the machine's real-time abilities."""
     remarks = []
     for line in log.read_text(errors="replace").splitlines() if log.exists() else []:
         if "real time: " in line:
@@ -152,8 +152,8 @@ def collect_run(out, name):
 
 
 def choose_pictures(out, name, ticks):
-    """before: the whole bone before the device came; during: the middle of the run; after: the last one while
-    the loop ran. Copied beside the report; returns their names."""
+    """Chooses three pictures, copies them beside the report and returns their names: "before" shows the whole bone before
+    the device came, "during" the middle of the run, "after" the last one while the loop ran."""
     folder = out / f"frames_{name}"
     chosen = {"before": folder / "before" / "frame_0000.png"}
     # Frames of the very end may already say that the server is gone.
@@ -180,17 +180,17 @@ def gnuplot(script):
 
 
 def rate_in_windows(rows, window_s=0.1):
-    """Ticks per second in windows of window_s."""
+    """Returns the ticks per second in windows of window_s."""
     counts = {}
     for row in rows:
         index = int(row["t_s"] / window_s)
         counts[index] = counts.get(index, 0) + 1
-    whole = range(max(counts)) if counts else []  # the last window is not full
+    whole = range(max(counts)) if counts else []  # The last window is not full.
     return [((i + 0.5) * window_s, counts.get(i, 0) / window_s) for i in whole]
 
 
 def shaft_direction(row):
-    """Tool's +y (along the shaft, to the hand) in the world: a point on the unit sphere."""
+    """Returns the tool's +y (along the shaft, to the hand) in the world, a point on the unit sphere."""
     w, x, y, z = (row[f"spo_q{c}"] for c in "wxyz")
     return (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x))
 
@@ -284,7 +284,7 @@ splot $path using 1:2:3:4 with linespoints pt 7 ps 0.5 lc palette notitle
 
 
 def plot_run(out, run):
-    """Plots of one run; with fewer than two ticks there is nothing to plot."""
+    """Makes the plots of one run; with fewer than two ticks there is nothing to plot."""
     rows = read_trace(out / run["trace"])
     if len(rows) < 2:
         return {}
@@ -363,7 +363,7 @@ EFFECT_FIGURES = (
 
 
 def effect_lines(runs):
-    """What the effects of a scene measured; nothing where no run has any."""
+    """Returns what the effects of a scene measured; nothing where no run has any."""
     lines = []
     for run in runs:
         figures = [
@@ -377,7 +377,7 @@ def effect_lines(runs):
 
 
 def verdict(runs):
-    """One plain sentence per verification run."""
+    """Returns one plain sentence per verification run."""
     lines = []
     for run in runs:
         if run["thesis_rate_hz"] is None:
