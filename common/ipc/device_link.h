@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <string>
 
-#include "common/ipc/device_messages.h"
+#include "common/device_messages/device_messages.h"
 
 namespace bonemill {
 

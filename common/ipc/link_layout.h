@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "common/ipc/device_messages.h"
+#include "common/device_messages/device_messages.h"
 #include "common/rt/seqlock.h"
 
 namespace bonemill {

@@ -3,14 +3,13 @@
 #include <cmath>
 #include <sstream>
 
+#include "common/device_messages/device_messages.h"
 #include "common/units.h"
 #include "common/user_error.h"
 
 namespace bonemill {
 namespace {
 
-constexpr uint32_t kButtonRemoveBit = 1u << 0;
-constexpr uint32_t kButtonAddBit = 1u << 1;
 constexpr int kChecksPerSegment = 32;
 
 Pose poseOf(const scene::Vec3& p_mm, const scene::Quaternion& q) {
@@ -51,7 +50,7 @@ OperatorPath pathOf(const scene::SimulatedOperator& person, const Pose& X_WD) {
     std::vector<Waypoint> waypoints;
     for (const auto& waypoint : person.waypoint()) {
         const uint32_t buttons =
-            (waypoint.remove() ? kButtonRemoveBit : 0) | (waypoint.add() ? kButtonAddBit : 0);
+            (waypoint.remove() ? kButtonRemove : 0u) | (waypoint.add() ? kButtonAdd : 0u);
         waypoints.push_back({waypoint.time_s(), X_DW * poseOf(waypoint.p_wt_mm(), waypoint.q_wt()), buttons});
     }
     return OperatorPath(std::move(waypoints), kMillimetre * person.tremor_mm());

@@ -6,7 +6,7 @@
 // comes in as a parameter: the same class runs in device_daemon and in simulated time. RT-safe, one thread.
 #pragma once
 
-#include "common/ipc/device_messages.h"
+#include "common/device_messages/device_messages.h"
 #include "common/ipc/stale_ramp.h"
 #include "device_daemon/driver/joint_device.h"
 #include "device_daemon/safety/force_limiter.h"

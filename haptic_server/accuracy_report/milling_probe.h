@@ -5,7 +5,7 @@
 
 #include "haptic_server/accuracy_report/probing_places.h"
 #include "haptic_server/accuracy_report/run_path.h"
-#include "haptic_server/tick/bone_history.h"
+#include "haptic_server/bone/bone_history.h"
 
 namespace bonemill {
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <span>
 
+#include "haptic_server/bone/bone_model.h"
 #include "haptic_server/contact/gradient_contact.h"
 #include "haptic_server/spo/spo_model.h"
-#include "haptic_server/tick/bone_model.h"
 
 namespace bonemill {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "haptic_server/bone/bone_model.h"
 #include "haptic_server/mesh/mesh_check.h"
-#include "haptic_server/tick/bone_model.h"
 
 namespace bonemill {
 

@@ -8,8 +8,8 @@
 #include "haptic_server/app/recorder.h"
 #include "haptic_server/app/scene_setup.h"
 #include "haptic_server/app/session_export.h"
+#include "haptic_server/bone/checkpoints.h"
 #include "haptic_server/tick/accuracy_switch.h"
-#include "haptic_server/tick/checkpoints.h"
 #include "haptic_server/tick/tool_switch.h"
 #include "proto/topics.pb.h"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "haptic_server/tick/bone_history.h"
+#include "haptic_server/bone/bone_history.h"
 
 namespace bonemill {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/effects/recorded_effects.h"
 #include "haptic_server/record/effect_statistics.h"
 #include "haptic_server/record/event_sum.h"
+#include "haptic_server/telemetry/recorded_effects.h"
 #include "proto/scene.pb.h"
 #include "proto/topics.pb.h"
 

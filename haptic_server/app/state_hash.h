@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "haptic_server/effects/recorded_effects.h"
-#include "haptic_server/tick/tick_record.h"
+#include "haptic_server/telemetry/recorded_effects.h"
+#include "haptic_server/telemetry/tick_record.h"
 #include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill {

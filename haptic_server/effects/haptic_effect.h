@@ -9,13 +9,13 @@
 
 #include <span>
 
+#include "haptic_server/bone/bone_model.h"
 #include "haptic_server/contact/contact_weights.h"
 #include "haptic_server/contact/surface_contact.h"
 #include "haptic_server/coupling/energy_coupling.h"
-#include "haptic_server/effects/effect_record.h"
 #include "haptic_server/milling/timed_milling.h"
 #include "haptic_server/spo/spo_model.h"
-#include "haptic_server/tick/bone_model.h"
+#include "haptic_server/telemetry/effect_record.h"
 
 namespace bonemill {
 

@@ -11,7 +11,7 @@
 #include "common/rt/spsc_ring.h"
 #include "haptic_server/mesh/mesh_outbox.h"
 #include "haptic_server/mesh/mesher.h"
-#include "haptic_server/volume/cut.h"
+#include "haptic_server/telemetry/cut.h"
 
 namespace bonemill {
 

@@ -17,11 +17,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "haptic_server/bone/bone_model.h"
 #include "haptic_server/milling/cell_fill.h"
 #include "haptic_server/milling/changed_runs.h"
 #include "haptic_server/milling/specific_energy.h"
 #include "haptic_server/milling/timed_milling.h"
-#include "haptic_server/tick/bone_model.h"
 
 namespace bonemill {
 

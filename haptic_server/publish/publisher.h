@@ -19,7 +19,7 @@
 #include "common/mesh/mesh_codec.h"
 #include "common/rt/latency_histogram.h"
 #include "haptic_server/publish/command_inbox.h"
-#include "haptic_server/tick/tick_record.h"
+#include "haptic_server/telemetry/tick_record.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {

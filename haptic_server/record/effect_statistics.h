@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "haptic_server/effects/effect_record.h"
-#include "haptic_server/effects/recorded_effects.h"
+#include "haptic_server/telemetry/effect_record.h"
+#include "haptic_server/telemetry/recorded_effects.h"
 
 namespace bonemill {
 

@@ -1,7 +1,7 @@
 // The events of several ticks, and which protected structure the worst of them was about. Plain value.
 #pragma once
 
-#include "haptic_server/effects/effect_record.h"
+#include "haptic_server/telemetry/effect_record.h"
 
 namespace bonemill {
 

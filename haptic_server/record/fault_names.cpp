@@ -1,6 +1,6 @@
 #include "haptic_server/record/fault_names.h"
 
-#include "haptic_server/tick/tick_record.h"
+#include "haptic_server/telemetry/tick_record.h"
 
 namespace bonemill {
 namespace {

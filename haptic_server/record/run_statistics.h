@@ -12,7 +12,7 @@
 #include "common/rt/latency_histogram.h"
 #include "common/rt/page_faults.h"
 #include "haptic_server/record/effect_statistics.h"
-#include "haptic_server/tick/tick_record.h"
+#include "haptic_server/telemetry/tick_record.h"
 
 namespace bonemill {
 

@@ -11,8 +11,8 @@
 #include <memory>
 #include <string>
 
-#include "haptic_server/effects/recorded_effects.h"
-#include "haptic_server/tick/tick_record.h"
+#include "haptic_server/telemetry/recorded_effects.h"
+#include "haptic_server/telemetry/tick_record.h"
 
 namespace bonemill {
 

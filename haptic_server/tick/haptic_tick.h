@@ -3,15 +3,16 @@
 // device link in real time and in `simulate` without it.
 #pragma once
 
+#include "common/device_messages/device_messages.h"  // Button
+#include "haptic_server/bone/bone_history.h"
+#include "haptic_server/bone/bone_model.h"
 #include "haptic_server/effects/make_effects.h"
 #include "haptic_server/spo/gradient_model.h"
 #include "haptic_server/spo/thesis_2012_model.h"
+#include "haptic_server/telemetry/tick_record.h"
 #include "haptic_server/tick/accuracy_switch.h"
 #include "haptic_server/tick/affordable_shell.h"
-#include "haptic_server/tick/bone_history.h"
-#include "haptic_server/tick/bone_model.h"
 #include "haptic_server/tick/sudden_change.h"
-#include "haptic_server/tick/tick_record.h"
 #include "haptic_server/tick/tool_switch.h"
 
 namespace bonemill {

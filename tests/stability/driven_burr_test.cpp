@@ -1,6 +1,6 @@
 // A burr that is driven, and what happens to it in contact: run-up, stall, pedal, pause, whirl, another tool.
 #include "common/units.h"
-#include "haptic_server/tick/bone_history.h"
+#include "haptic_server/bone/bone_history.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/energy_meter.h"

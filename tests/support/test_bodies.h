@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "haptic_server/tick/bone_model.h"
+#include "haptic_server/bone/bone_model.h"
 #include "haptic_server/tool/tool_model.h"
 
 namespace bonemill::test {

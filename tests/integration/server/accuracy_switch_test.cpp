@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "haptic_server/tick/tick_record.h"
+#include "haptic_server/telemetry/tick_record.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/process.h"
 

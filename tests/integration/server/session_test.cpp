@@ -8,7 +8,7 @@
 #include <sstream>
 #include <thread>
 
-#include "haptic_server/tick/tick_record.h"
+#include "haptic_server/telemetry/tick_record.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/process.h"
 

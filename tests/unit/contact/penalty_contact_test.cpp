@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "haptic_server/tick/bone_model.h"
+#include "haptic_server/bone/bone_model.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill {

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "haptic_server/tick/tick_record.h"
+#include "haptic_server/telemetry/tick_record.h"
 
 namespace bonemill {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/tick/milled_ball.h"
+#include "tests/unit/bone/milled_ball.h"
 
 namespace bonemill {
 namespace {

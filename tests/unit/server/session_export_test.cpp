@@ -11,7 +11,7 @@
 #include "haptic_server/volume/import/import_volume.h"
 #include "tests/support/ply_reader.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/unit/tick/milled_ball.h"
+#include "tests/unit/bone/milled_ball.h"
 
 namespace bonemill {
 namespace {

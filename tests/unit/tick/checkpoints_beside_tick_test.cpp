@@ -8,7 +8,7 @@
 
 #include "haptic_server/tick/haptic_tick.h"
 #include "tests/support/milling_config.h"
-#include "tests/unit/tick/milled_ball.h"
+#include "tests/unit/bone/milled_ball.h"
 
 namespace bonemill {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "haptic_server/tick/checkpoints.h"
+#include "haptic_server/bone/checkpoints.h"
 #include "haptic_server/tick/haptic_tick.h"
 #include "tests/support/milling_config.h"
 #include "tests/support/rt_guard/rt_probe.h"

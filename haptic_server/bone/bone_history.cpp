@@ -1,4 +1,4 @@
-#include "haptic_server/tick/bone_history.h"
+#include "haptic_server/bone/bone_history.h"
 
 #include <chrono>
 #include <cstring>

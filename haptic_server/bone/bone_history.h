@@ -10,8 +10,8 @@
 #include <memory>
 #include <vector>
 
-#include "haptic_server/tick/bone_model.h"
-#include "haptic_server/tick/bone_snapshot.h"
+#include "haptic_server/bone/bone_model.h"
+#include "haptic_server/bone/bone_snapshot.h"
 
 namespace bonemill {
 

@@ -5,7 +5,7 @@
 #include <deque>
 #include <memory>
 
-#include "haptic_server/tick/bone_history.h"
+#include "haptic_server/bone/bone_history.h"
 
 namespace bonemill {
 

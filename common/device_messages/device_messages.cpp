@@ -1,4 +1,4 @@
-#include "common/ipc/device_messages.h"
+#include "common/device_messages/device_messages.h"
 
 #include <cmath>
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "haptic_server/effects/effect_record.h"
-#include "haptic_server/volume/cut.h"
+#include "haptic_server/telemetry/cut.h"
+#include "haptic_server/telemetry/effect_record.h"
 
 namespace bonemill {
 
@@ -48,13 +48,11 @@ struct TickRecord {
     uint32_t iterations;      // of the equilibrium solve
     uint32_t removed_voxels;  // voxels that fell below the iso-value in this tick
     uint32_t added_voxels;    // voxels that rose to the iso-value or above in this tick
-    uint32_t buttons;         // kButtonRemove | kButtonAdd
+    uint32_t buttons;         // Button bits
     uint32_t faults;          // TickFault bits of this tick
     Cut cut;                  // the voxels milled in this tick
     EffectRecord effects;
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
-
-enum Button : uint32_t { kButtonRemove = 1u << 0, kButtonAdd = 1u << 1 };
 
 }  // namespace bonemill

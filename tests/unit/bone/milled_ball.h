@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "haptic_server/bone/checkpoints.h"
 #include "haptic_server/milling/timed_milling.h"
-#include "haptic_server/tick/checkpoints.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill::test {

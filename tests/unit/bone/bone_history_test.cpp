@@ -1,11 +1,11 @@
-#include "haptic_server/tick/bone_history.h"
+#include "haptic_server/bone/bone_history.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <vector>
 
-#include "tests/unit/tick/milled_ball.h"
+#include "tests/unit/bone/milled_ball.h"
 
 namespace bonemill {
 namespace {

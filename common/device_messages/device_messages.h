@@ -29,6 +29,11 @@ struct WrenchCommand {
     uint32_t reserved;
 };
 
+enum Button : uint32_t {
+    kButtonRemove = 1u << 0,  // the pedal: the burr removes bone
+    kButtonAdd = 1u << 1,     // the burr adds material
+};
+
 enum DeviceFlag : uint32_t {
     kDeviceFlagSimulated = 1u << 0,     // no hand and no motor behind this sample
     kDeviceFlagForceLimited = 1u << 1,  // the last wrench was reduced by the device's safety

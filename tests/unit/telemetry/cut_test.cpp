@@ -1,4 +1,4 @@
-#include "haptic_server/volume/cut.h"
+#include "haptic_server/telemetry/cut.h"
 
 #include <gtest/gtest.h>
 
