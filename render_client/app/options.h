@@ -7,8 +7,8 @@
 #include <string>
 
 #include "common/dds/network.h"
+#include "render_client/camera/view_settings.h"
 #include "render_client/scene/render_scene.h"
-#include "render_client/scene/view_settings.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
 namespace bonemill {

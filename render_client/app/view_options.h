@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "render_client/scene/view_settings.h"
+#include "render_client/camera/view_settings.h"
 
 namespace CLI {
 class App;

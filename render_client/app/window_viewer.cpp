@@ -13,9 +13,9 @@
 #include "render_client/controls/frame_rate.h"
 #include "render_client/controls/help_rows.h"
 #include "render_client/controls/viewer_controls.h"
+#include "render_client/hud/session_text.h"
 #include "render_client/offscreen/read_picture.h"
 #include "render_client/panel/panel_painter.h"
-#include "render_client/scene/session_text.h"
 #include "render_client/subscribe/command_text.h"
 #include "render_client/window/glfw_window.h"
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "render_client/scene/hud.h"
+#include "render_client/hud/hud.h"
 
 namespace bonemill {
 

@@ -1,6 +1,6 @@
 #include "render_client/controls/session_view.h"
 
-#include "render_client/scene/accuracy_keys.h"
+#include "render_client/controls/accuracy_keys.h"
 
 namespace bonemill {
 namespace {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "render_client/camera/orbit_camera.h"
+#include "render_client/camera/view_settings.h"
 #include "render_client/controls/key_table.h"
 #include "render_client/controls/session_view.h"
-#include "render_client/scene/hud.h"
-#include "render_client/scene/orbit_camera.h"
-#include "render_client/scene/view_settings.h"
+#include "render_client/hud/hud.h"
 
 namespace bonemill {
 

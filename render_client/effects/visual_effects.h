@@ -1,5 +1,5 @@
 // The visual effects that a scene lists: what they do between two pictures. No OpenGL here; the painters are
-// in render_client/scene.
+// in render_client/paint.
 //
 // An effect that is not listed is not constructed. Time goes on in steps of kStep whatever the calls, so the
 // same tool states at the same times give the same picture. Frame V, m, s. One thread.

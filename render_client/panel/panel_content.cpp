@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include "render_client/scene/accuracy_keys.h"
-#include "render_client/scene/effect_text.h"
-#include "render_client/scene/session_text.h"
+#include "render_client/controls/accuracy_keys.h"
+#include "render_client/hud/effect_text.h"
+#include "render_client/hud/session_text.h"
 
 namespace bonemill {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "render_client/camera/endoscope.h"
 #include "render_client/effects/wire_pose.h"
-#include "render_client/scene/endoscope.h"
 
 namespace bonemill {
 namespace {

@@ -10,13 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "render_client/camera/orbit_camera.h"
+#include "render_client/camera/view_settings.h"
 #include "render_client/effects/visual_effects.h"
-#include "render_client/scene/anaglyph.h"
-#include "render_client/scene/event_latch.h"
-#include "render_client/scene/hud_painter.h"
-#include "render_client/scene/orbit_camera.h"
-#include "render_client/scene/scene_renderer.h"
-#include "render_client/scene/view_settings.h"
+#include "render_client/hud/event_latch.h"
+#include "render_client/paint/anaglyph.h"
+#include "render_client/paint/hud_painter.h"
+#include "render_client/paint/scene_renderer.h"
 
 namespace bonemill {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
+#include "render_client/camera/endoscope.h"
 #include "render_client/offscreen/osmesa_context.h"
-#include "render_client/scene/endoscope.h"
 #include "tests/gl/milled_scene.h"
 
 namespace bonemill {

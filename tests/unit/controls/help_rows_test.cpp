@@ -6,8 +6,8 @@
 #include <iterator>
 #include <sstream>
 
+#include "render_client/controls/accuracy_keys.h"
 #include "render_client/controls/key_table.h"
-#include "render_client/scene/accuracy_keys.h"
 
 namespace bonemill {
 namespace {

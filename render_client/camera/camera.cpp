@@ -1,0 +1,61 @@
+#include "render_client/camera/camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bonemill {
+namespace {
+
+constexpr double kMaxDepthRatio =
+    5000;                             // far / near; 24 bit of depth still resolve 1e-3 of the distance well
+constexpr double kNearestFar = 1e-3;  // m
+constexpr double kEyesApart = 1.0 / 30;  // of the distance to the focus: comfortable on a desk
+
+Camera movedRight(Camera camera, double distance) {
+    camera.eye += distance * camera.R_WC.col(0);
+    camera.shift -= distance / camera.focus;
+    return camera;
+}
+
+}  // namespace
+
+double Camera::halfTangent() const {
+    return std::tan(field_of_view / 2);
+}
+
+Eigen::Matrix4f Camera::X_CW() const {
+    const Eigen::Matrix3d R_CW = R_WC.transpose();
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+    matrix.topLeftCorner<3, 3>() = R_CW;
+    matrix.topRightCorner<3, 1>() = -R_CW * eye;
+    return matrix.cast<float>();
+}
+
+Eigen::Matrix4f Camera::clipFromCamera(double aspect, const DepthRange& range) const {
+    const double focal = 1 / halfTangent();
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
+    matrix(0, 0) = focal / aspect;
+    matrix(0, 2) = focal / aspect * shift;
+    matrix(1, 1) = focal;
+    matrix(2, 2) = -(range.far + range.near) / (range.far - range.near);
+    matrix(2, 3) = -2 * range.far * range.near / (range.far - range.near);
+    matrix(3, 2) = -1;
+    return matrix.cast<float>();
+}
+
+DepthRange Camera::depthRange(const Eigen::Vector3d& center, double radius) const {
+    const double depth = (center - eye).dot(forward());
+    const double far = std::max(depth + radius, kNearestFar);
+    return {std::max(depth - radius, far / kMaxDepthRatio), far};
+}
+
+double Camera::metresPerPixel(int height) const {
+    return 2 * focus * halfTangent() / height;
+}
+
+StereoPair stereoPair(const Camera& camera) {
+    const double half = kEyesApart * camera.focus / 2;
+    return {movedRight(camera, -half), movedRight(camera, half)};
+}
+
+}  // namespace bonemill

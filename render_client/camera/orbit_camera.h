@@ -1,0 +1,51 @@
+// A camera on a sphere around a target: orbit, zoom, pan, fit.
+//
+// Frames: W world (LPS of the volume file, m); C camera: x right, y up, z out of the picture. Azimuth 0 looks
+// from the front of the patient (from -y for up = +z); positive azimuth moves the eye to the patient's left
+// (+x); positive elevation moves it towards `up`. Plain values, no thread of its own, never throws.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <span>
+
+#include "render_client/camera/camera.h"
+
+namespace bonemill {
+
+class OrbitCamera {
+  public:
+    static constexpr double kFieldOfView = 0.52;    // rad, vertical: a moderate telephoto keeps proportions
+    static constexpr double kMaxElevation = 1.553;  // rad, 89°: `up` never meets the line of sight
+    static constexpr double kMinDistance = 5e-4;    // m
+    static constexpr double kMaxDistance = 100.0;   // m
+
+    Eigen::Vector3d target = Eigen::Vector3d::Zero();  // W, m
+    double distance = 0.3;                             // m, eye to target
+    double azimuth = 0.61;                             // rad
+    double elevation = 0.44;                           // rad
+
+    // Unit vector, W. A null or non-finite vector means +z.
+    void setUp(const Eigen::Vector3d& up);
+    const Eigen::Vector3d& up() const { return up_; }
+
+    void orbit(double delta_azimuth, double delta_elevation);
+    // factor < 1 comes nearer.
+    void zoom(double factor);
+    // The picture follows by these fractions of the picture's height (right and up positive).
+    void pan(double right, double up);
+
+    Eigen::Vector3d eye() const { return target + distance * towardsEye(); }
+    Eigen::Vector3d towardsEye() const;
+    // Columns are the camera's axes in W.
+    Eigen::Matrix3d R_WC() const;
+    Camera view() const;
+
+    // Centres on the box and goes as near as every corner (W, m) allows with a margin. Keeps the angles.
+    void fit(std::span<const Eigen::Vector3d> corners, double aspect);
+
+  private:
+    Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();
+};
+
+}  // namespace bonemill

@@ -1,0 +1,44 @@
+#include "render_client/hud/figure_text.h"
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <vector>
+
+namespace bonemill {
+namespace {
+
+std::vector<std::string> splitSigns(const std::string& utf8) {
+    std::vector<std::string> signs;
+    for (const char byte : utf8) {
+        const bool continues = (uint8_t(byte) & 0xc0) == 0x80;
+        if (signs.empty() || !continues) signs.emplace_back();
+        signs.back() += byte;
+    }
+    return signs;
+}
+
+}  // namespace
+
+std::string figureText(double value, int decimals, const char* unit) {
+    if (!std::isfinite(value)) return "\u2013";
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f%s", decimals, value, unit);
+    return text;
+}
+
+std::string readableText(double value, const char* unit) {
+    const double magnitude = std::abs(value);
+    return figureText(value, magnitude < 10 ? 2 : magnitude < 1000 ? 1 : 0, unit);
+}
+
+// Cut between code points.
+std::string shortenedText(const std::string& text, size_t most) {
+    const std::vector<std::string> signs = splitSigns(text);
+    if (signs.size() <= most) return text;
+    std::string result;
+    for (size_t i = 0; i + 1 < most; ++i) result += signs[i];
+    return result + "\u2026";
+}
+
+}  // namespace bonemill

@@ -1,0 +1,184 @@
+#include "render_client/hud/hud.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+#include <utility>
+
+#include "common/units.h"
+#include "render_client/hud/effect_text.h"
+#include "render_client/hud/figure_text.h"
+#include "render_client/hud/session_text.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kLongestValue = 26;  // characters
+constexpr size_t kLongestName = 24;
+constexpr int kMostWatchers = 8;  // rows of the list
+
+double norm(const google::protobuf::RepeatedField<double>& v) {
+    return v.size() == 3 ? std::hypot(v[0], v[1], v[2]) : std::nan("");
+}
+
+// Lines of at most `most` bytes, cut at spaces; a longer word stays whole.
+std::vector<std::string> wrapped(const std::string& text, size_t most) {
+    std::vector<std::string> lines(1);
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        if (!lines.back().empty() && lines.back().size() + 1 + word.size() > most) lines.emplace_back();
+        lines.back() += (lines.back().empty() ? "" : " ") + word;
+    }
+    return lines;
+}
+
+void addSessionRows(const topics::Status& status, std::vector<HudRow>& rows) {
+    if (status.ticks() > 0) rows.push_back({"Session", clockText(status.session_s())});
+    if (status.is_milling_paused()) rows.push_back({"Milling", "paused", HudTone::kWarning});
+}
+
+void addToolNameRow(const topics::SceneInfo& info, std::vector<HudRow>& rows) {
+    if (info.tool_names_size() < 2 || info.tool_index() >= uint32_t(info.tool_names_size())) return;
+    rows.push_back({"Tool", shortenedText(info.tool_names(int(info.tool_index())), kLongestName)});
+}
+
+HudRow watcherRow(const topics::Viewer& watcher) {
+    const std::string name =
+        watcher.name().empty() ? "(no name)" : shortenedText(watcher.name(), kLongestName);
+    std::string value = roleName(watcher.role());
+    value += ", " + figureText(watcher.frame_rate_hz(), 0, " Hz");
+    if (!watcher.is_complete()) value += ", incomplete";
+    return {name, value, watcher.is_complete() ? HudTone::kPlain : HudTone::kWarning};
+}
+
+std::vector<HudRow> watcherRows(const std::vector<topics::Viewer>& watchers) {
+    const auto count = int(watchers.size());
+    const int shown = count <= kMostWatchers ? count : kMostWatchers - 1;
+    std::vector<HudRow> rows;
+    for (int i = 0; i < shown; ++i) rows.push_back(watcherRow(watchers[size_t(i)]));
+    if (shown < count) rows.push_back({"and " + std::to_string(count - shown) + " more", ""});
+    return rows;
+}
+
+void addLoopRows(const topics::Status& status, std::vector<HudRow>& rows) {
+    if (status.ticks() == 0) return rows.push_back({"Loop", "waits for a device", HudTone::kWarning});
+    rows.push_back({"Loop", figureText(status.rate_hz(), 1, " Hz")});
+    rows.push_back({"Tick p50 / p99", readableText(status.tick_p50_us(), "") + " / " +
+                                          readableText(status.tick_p99_us(), " \u00b5s")});
+}
+
+void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
+    // A preset is one word; all knobs take more than one line.
+    std::string label = "Accuracy";
+    for (const std::string& line : wrapped(status.preset(), kLongestValue))
+        rows.push_back({std::exchange(label, ""), line});
+    rows.push_back({"Force error", status.has_accuracy_error()
+                                       ? readableText(status.force_error_percent(), " %") + ", " +
+                                             readableText(status.force_direction_error_deg(), "\u00b0")
+                                       : "not measured"});
+}
+
+void addToolRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
+    rows.push_back({"Force", readableText(norm(tool.force_n()), " N")});
+    rows.push_back({"Torque", readableText(norm(tool.torque_nm()) * kPerMilli, " N\u00b7mm")});
+    rows.push_back({"Contacts", std::to_string(tool.contacts())});
+    const bool removes = tool.buttons() & 1u;
+    const bool adds = tool.buttons() & 2u;
+    rows.push_back({"Burr",
+                    removes ? "removing"
+                    : adds  ? "adding"
+                            : "idle",
+                    removes || adds ? HudTone::kWarning : HudTone::kPlain});
+}
+
+void addEffectRows(const HudInput& input, std::vector<HudRow>& rows) {
+    const auto more = effectRows(input.tool->effects(), input.info ? &*input.info : nullptr, input.events);
+    rows.insert(rows.end(), more.begin(), more.end());
+}
+
+void addFaultRow(const topics::Status& status, std::vector<HudRow>& rows) {
+    if (status.device_stale() && status.ticks() > 0)
+        rows.push_back({"Device", "no fresh samples", HudTone::kAlarm});
+    if (status.faults() == 0) return rows.push_back({"Faults", "none", HudTone::kGood});
+    char code[16];
+    std::snprintf(code, sizeof code, "0x%x", status.faults());
+    rows.push_back({"Faults", status.fault_text().empty() ? code : status.fault_text(), HudTone::kAlarm});
+}
+
+std::string stateText(const HudInput& input) {
+    switch (input.connection) {
+        case Connection::kNoServer:
+            return "waiting for a server";
+        case Connection::kReceiving: {
+            std::string text = "receiving " + std::to_string(input.node_count);
+            if (input.status) text += " of " + std::to_string(input.status->node_count());
+            return text + " nodes";
+        }
+        case Connection::kLive:
+            return "live, " + std::to_string(input.node_count) + " nodes";
+        case Connection::kServerLost:
+            return "server lost";
+    }
+    return "";
+}
+
+HudTone stateTone(Connection connection) {
+    switch (connection) {
+        case Connection::kLive:
+            return HudTone::kGood;
+        case Connection::kReceiving:
+            return HudTone::kWarning;
+        case Connection::kNoServer:
+            return HudTone::kWarning;
+        case Connection::kServerLost:
+            return HudTone::kAlarm;
+    }
+    return HudTone::kPlain;
+}
+
+}  // namespace
+
+std::optional<HudNotice> alertOf(const HudInput& input) {
+    return effectAlert(input.events, input.structure, input.info ? &*input.info : nullptr);
+}
+
+Hud makeHud(const HudInput& input) {
+    Hud hud;
+    hud.title = input.info && !input.info->name().empty() ? input.info->name()
+                : input.status                            ? input.status->scene()
+                                                          : "bonemill";
+    hud.state = stateText(input);
+    hud.state_tone = stateTone(input.connection);
+    hud.notice = input.notice;
+    hud.alert = alertOf(input);
+    if (input.status) {
+        addSessionRows(*input.status, hud.rows);
+        addLoopRows(*input.status, hud.rows);
+        addAccuracyRows(*input.status, hud.rows);
+    }
+    if (input.info) addToolNameRow(*input.info, hud.rows);
+    if (input.tool) addToolRows(*input.tool, hud.rows);
+    if (input.tool && input.tool->has_effects()) addEffectRows(input, hud.rows);
+    if (input.status) {
+        hud.rows.push_back({"Removed", readableText(input.status->removed_mm3(), " mm\u00b3")});
+        addFaultRow(*input.status, hud.rows);
+    }
+    if (input.frame_rate_hz > 0) hud.rows.push_back({"Pictures", figureText(input.frame_rate_hz, 0, " Hz")});
+    if (input.show_watchers) hud.watchers = watcherRows(input.watchers);
+    if (input.show_help) hud.help = input.help;
+    return hud;
+}
+
+ScaleBar makeScaleBar(double metres_per_pixel, double max_pixels) {
+    const double longest = metres_per_pixel * max_pixels;
+    if (!(longest > 0) || !std::isfinite(longest)) return {};
+    const double decade = std::pow(10.0, std::floor(std::log10(longest) + 1e-9));
+    const double length = decade * (longest >= 5 * decade ? 5 : longest >= 2 * decade ? 2 : 1);
+    const double length_mm = length * kPerMillimetre;
+    char text[32];
+    std::snprintf(text, sizeof text, "%g mm", length_mm);
+    return {length, text};
+}
+
+}  // namespace bonemill

@@ -1,0 +1,30 @@
+#include "render_client/hud/session_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace bonemill {
+
+std::string roleName(topics::Viewer::Role role) {
+    switch (role) {
+        case topics::Viewer::VIEWER:
+            return "viewer";
+        case topics::Viewer::OPERATOR:
+            return "operator";
+        case topics::Viewer::INSTRUCTOR:
+            return "instructor";
+        default:
+            return "?";
+    }
+}
+
+std::string clockText(double seconds) {
+    if (!(seconds >= 0) || !std::isfinite(seconds)) return "\u2013";
+    const auto whole = static_cast<unsigned long long>(std::min(seconds, 1e9));
+    char text[32];
+    std::snprintf(text, sizeof text, "%llu:%02llu:%02llu", whole / 3600, whole / 60 % 60, whole % 60);
+    return text;
+}
+
+}  // namespace bonemill

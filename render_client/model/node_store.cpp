@@ -1,0 +1,118 @@
+#include "render_client/model/node_store.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "render_client/model/mesh_difference.h"
+
+namespace bonemill {
+namespace {
+
+// No part of the box can be seen when all its corners lie beyond one face of the view volume.
+bool mayBeVisible(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_from_model) {
+    Eigen::Matrix<float, 4, 8> corners;
+    for (int i = 0; i < 8; ++i) {
+        const auto corner = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(i));
+        corners.col(i) = clip_from_model * corner.homogeneous();
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto value = corners.row(axis).array();
+        const auto w = corners.row(3).array();
+        if ((value > w).all() || (value < -w).all()) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+void NodeStore::set(NodeMesh mesh) {
+    if (mesh.isEmpty()) return remove(mesh.leaf);
+    if (*std::max_element(mesh.indices.begin(), mesh.indices.end()) >= mesh.vertices.size()) {
+        throw std::invalid_argument("node " + std::to_string(mesh.leaf) + ": a triangle without its vertex");
+    }
+    if (!mesh.materials.empty() && mesh.materials.size() != mesh.vertices.size())
+        throw std::invalid_argument("node " + std::to_string(mesh.leaf) + ": not one material per vertex");
+    Node node{GlVertexArray(gl_),
+              GlBuffer(gl_),
+              GlBuffer(gl_),
+              std::nullopt,
+              boxOf(mesh),
+              mesh.origin,
+              mesh.step,
+              GLsizei(mesh.indices.size()),
+              {}};
+    gl_.BindVertexArray(node.layout.name());
+    gl_.BindBuffer(GL_ARRAY_BUFFER, node.vertices.name());
+    const size_t vertex_bytes = mesh.vertices.size() * sizeof(PackedVertex);
+    gl_.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(vertex_bytes), mesh.vertices.data(), GL_DYNAMIC_DRAW);
+    gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, node.indices.name());
+    const size_t index_bytes = mesh.indices.size() * sizeof(uint32_t);
+    gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, GLsizeiptr(index_bytes), mesh.indices.data(), GL_DYNAMIC_DRAW);
+    ++uploads_.nodes;
+    uploads_.bytes += vertex_bytes + index_bytes;
+    constexpr GLsizei kStride = sizeof(PackedVertex);
+    gl_.VertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, kStride, nullptr);
+    gl_.VertexAttribPointer(1, 2, GL_BYTE, GL_FALSE, kStride,
+                            reinterpret_cast<const void*>(offsetof(PackedVertex, octahedral_u)));
+    gl_.EnableVertexAttribArray(0);
+    gl_.EnableVertexAttribArray(1);
+    if (!mesh.materials.empty()) uploadMaterials(mesh.materials, node);
+    gl_.BindVertexArray(0);
+    if (tracks_changes_) changed_.extend(changeTo(mesh, node.box));
+    const uint32_t leaf = mesh.leaf;
+    if (tracks_changes_) node.mesh = std::move(mesh);
+    nodes_.insert_or_assign(leaf, std::move(node));
+}
+
+// Into the layout in use. Vertices of other nodes have the attribute's own value, 0: no material.
+void NodeStore::uploadMaterials(const std::vector<uint8_t>& materials, Node& node) {
+    node.materials.emplace(gl_);
+    gl_.BindBuffer(GL_ARRAY_BUFFER, node.materials->name());
+    gl_.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(materials.size()), materials.data(), GL_DYNAMIC_DRAW);
+    gl_.VertexAttribPointer(2, 1, GL_UNSIGNED_BYTE, GL_FALSE, 1, nullptr);
+    gl_.EnableVertexAttribArray(2);
+    uploads_.bytes += materials.size();
+}
+
+Eigen::AlignedBox3f NodeStore::changeTo(const NodeMesh& mesh, const Eigen::AlignedBox3f& box) const {
+    const auto known = nodes_.find(mesh.leaf);
+    if (known == nodes_.end()) return box;
+    const Node& before = known->second;
+    return before.mesh ? differenceBox(*before.mesh, mesh) : before.box.merged(box);
+}
+
+void NodeStore::remove(uint32_t leaf) {
+    const auto node = nodes_.find(leaf);
+    if (node == nodes_.end()) return;
+    changed_.extend(node->second.box);
+    nodes_.erase(node);
+}
+
+void NodeStore::clear() {
+    for (const auto& [leaf, node] : nodes_) changed_.extend(node.box);
+    nodes_.clear();
+}
+
+size_t NodeStore::triangleCount() const {
+    size_t count = 0;
+    for (const auto& [leaf, node] : nodes_) count += size_t(node.index_count) / 3;
+    return count;
+}
+
+size_t NodeStore::draw(const Program& program, const Eigen::Matrix4f& clip_from_V) const {
+    const GLint origin = program.uniform("origin");
+    const GLint step = program.uniform("step");
+    size_t triangles = 0;
+    for (const auto& [leaf, node] : nodes_) {
+        if (!mayBeVisible(node.box, clip_from_V)) continue;
+        program.set(origin, node.origin);
+        program.set(step, node.step);
+        gl_.BindVertexArray(node.layout.name());
+        gl_.DrawElements(GL_TRIANGLES, node.index_count, GL_UNSIGNED_INT, nullptr);
+        triangles += size_t(node.index_count) / 3;
+    }
+    gl_.BindVertexArray(0);
+    return triangles;
+}
+
+}  // namespace bonemill

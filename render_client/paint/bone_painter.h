@@ -1,0 +1,70 @@
+// Draws the bone, whole or cut, opaque or transparent.
+//
+// Where a cut opens solid bone its cap is drawn: a ray that reaches a back face first was inside the bone
+// already when it came through the plane. This holds for a closed surface; where the scan's border leaves it
+// open, and where the eye itself is inside, the back face is shown in dark red.
+//
+// Transparent: the nearest layers from outside and from inside, and the farthest wall that can be looked at,
+// each found by depth and blended once: the same picture in whatever order the triangles come. The tool is
+// drawn between them.
+//
+// Thread: the one of the context.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "render_client/model/material_palette.h"
+#include "render_client/model/node_store.h"
+#include "render_client/paint/film_painter.h"
+#include "render_client/paint/frame.h"
+
+namespace bonemill {
+
+class BonePainter {
+  public:
+    // Throws GlError with the compiler's log when the driver refuses a shader.
+    explicit BonePainter(const GlApi& gl);
+
+    // Both draw into the bound framebuffer, whose depth and stencil are clear, and leave depth test and depth
+    // writes on. draw_tool draws opaque things.
+    void drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
+    void drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, double opacity,
+                         const std::function<void()>& draw_tool);
+
+    // From now on bone has its materials' colours (paletteOf()); empty: bone's own. Throws GlError.
+    void setPalette(const std::vector<Eigen::Vector4f>& colours);
+    // From now on bone is drawn with this film; null: as it is. It must outlive its use.
+    void setFilm(const FilmPainter* film) { film_ = film; }
+
+    // Bone triangles inside the view volume of the last picture.
+    size_t trianglesDrawn() const { return triangles_drawn_; }
+
+  private:
+    struct Look {
+        Eigen::Vector2f opacity;  // facing the eye, and what the outline adds
+        Eigen::Vector3f inside;   // linear colour of the surface seen from within
+    };
+    void drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, const Look& look);
+    void drawDepth(const Frame& frame, const NodeStore& nodes) const;
+    void drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
+    void drawInnerWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture);
+    void findNearestLayer(const Frame& frame, const NodeStore& nodes, GLenum culled) const;
+    void drawFoundLayer(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, const Look& look);
+    void markOpened(const Frame& frame, const NodeStore& nodes) const;
+    void beginMarking() const;
+    void drawCap(const Frame& frame, GLuint shadow_texture, float opacity) const;
+
+    const GlApi& gl_;
+    Program surface_, depth_, cap_;
+    GlVertexArray no_attributes_;
+    struct Coloured {
+        MaterialPalette palette;
+        Program surface;
+    };
+    std::unique_ptr<Coloured> coloured_;  // null: bone's own colour
+    const FilmPainter* film_ = nullptr;
+    size_t triangles_drawn_ = 0;
+};
+
+}  // namespace bonemill

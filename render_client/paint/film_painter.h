@@ -1,0 +1,38 @@
+// The bone with blood and water on it: a surface shader of its own, and the film as a texture.
+//
+// Thread: the one of the context.
+#pragma once
+
+#include <memory>
+
+#include "render_client/effects/surface_film.h"
+#include "render_client/gl/gl_object.h"
+#include "render_client/gl/program.h"
+#include "render_client/paint/effect_picture.h"
+
+namespace bonemill {
+
+class FilmPainter {
+  public:
+    // has_materials: bone has its materials' colours (MaterialPalette). Throws GlError with the compiler's
+    // log when the driver refuses the shader.
+    FilmPainter(const GlApi& gl, bool has_materials);
+    void setMaterials(bool has_materials);
+
+    // Uploads the slices that changed. Returns around where the bone looks different now (V).
+    Eigen::AlignedBox3f update(const EffectPicture& picture);
+    // Draws bone in place of the plain surface's program. In use: sets the film's uniforms; texture unit 1.
+    const Program& surface() const { return *surface_; }
+    void setUniforms() const;
+
+  private:
+    const GlApi& gl_;
+    std::unique_ptr<Program> surface_;
+    GlTexture texture_;
+    float period_ = 1;
+    Eigen::AlignedBox3f shown_;
+    Eigen::Vector2f strength_ = Eigen::Vector2f::Zero();
+    Eigen::Vector3f blood_colour_ = Eigen::Vector3f::Zero();
+};
+
+}  // namespace bonemill

@@ -1,0 +1,133 @@
+#include "render_client/paint/frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render_client/paint/render_targets.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kGhostDistance = 1.5e-4;  // m
+constexpr double kGhostAngle = 0.03;       // rad
+constexpr double kShownBeyondView =
+    2.0;  // half picture diagonals at the target that the shadow map covers when one is close
+constexpr double kReach = 1.7;           // of the distance to the focus
+constexpr double kSmallestScene = 1e-3;  // m, radius
+constexpr double kSmallestBone = 1e-4;   // m, radius
+
+struct Sphere {
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+    double radius = 0;
+};
+
+Sphere around(const Eigen::AlignedBox3d& box) {
+    if (box.isEmpty()) return {};
+    return {box.center(), box.diagonal().norm() / 2};
+}
+
+template <class Box>
+void extendBy(Eigen::AlignedBox3d& box_W, const Pose& X_WA, const Box& box_A) {
+    if (box_A.isEmpty()) return;
+    for (int i = 0; i < 8; ++i) {
+        box_W.extend(X_WA * box_A.corner(static_cast<typename Box::CornerType>(i)).template cast<double>());
+    }
+}
+
+// Its shadow map covers the sphere.
+KeyLight aimKeyLight(const Camera& camera, bool is_lit_from_eye, const Sphere& lit_W) {
+    const Eigen::Vector3d key_C =
+        (is_lit_from_eye ? Eigen::Vector3d(-0.22, 0.32, 1.0) : Eigen::Vector3d(-0.55, 0.70, 0.62))
+            .normalized();
+    const double half_size = std::max(lit_W.radius, kSmallestBone);
+    Eigen::Matrix3d R_LC;
+    R_LC.row(2) = -key_C;  // depth grows away from the light
+    R_LC.row(0) = Eigen::Vector3d::UnitY().cross(key_C).normalized();
+    R_LC.row(1) = key_C.cross(Eigen::Vector3d(R_LC.row(0)));
+    const Eigen::Vector3d center_C = camera.R_WC.transpose() * (lit_W.center - camera.eye);
+    Eigen::Matrix4d shadow_from_camera = Eigen::Matrix4d::Identity();
+    shadow_from_camera.topLeftCorner<3, 3>() = R_LC / half_size;
+    shadow_from_camera.topRightCorner<3, 1>() = -(R_LC * center_C) / half_size;
+    return {key_C.cast<float>(), shadow_from_camera.cast<float>(),
+            float(2 * half_size / RenderTargets::kShadowSize),
+            is_lit_from_eye ? float(kReach * camera.focus) : 0};
+}
+
+}  // namespace
+
+Eigen::Matrix4f matrixOf(const Pose& X_AB) {
+    Eigen::Matrix4f matrix = Eigen::Matrix4f::Identity();
+    matrix.topLeftCorner<3, 3>() = X_AB.rotation.toRotationMatrix().cast<float>();
+    matrix.topRightCorner<3, 1>() = X_AB.position.cast<float>();
+    return matrix;
+}
+
+bool isGhostVisible(const Pose& X_WT, const Pose& X_WT_device) {
+    return (X_WT.position - X_WT_device.position).norm() > kGhostDistance ||
+           X_WT.rotation.angularDistance(X_WT_device.rotation) > kGhostAngle;
+}
+
+namespace {
+
+bool showsTool(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {
+    return view.X_WT && !tool_T.isEmpty();
+}
+bool showsGhost(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {
+    return showsTool(view, tool_T) && view.X_WT_device && isGhostVisible(*view.X_WT, *view.X_WT_device);
+}
+Eigen::AlignedBox3d boneIn(const FrameView& view) {
+    Eigen::AlignedBox3d box_W;
+    extendBy(box_W, view.X_WV, view.bone_V);
+    return box_W;
+}
+
+}  // namespace
+
+DepthRange Frame::neededRange(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {
+    Eigen::AlignedBox3d everything_W = boneIn(view);
+    if (showsTool(view, tool_T)) extendBy(everything_W, *view.X_WT, tool_T);
+    if (showsGhost(view, tool_T)) extendBy(everything_W, *view.X_WT_device, tool_T);
+    const Sphere all = around(everything_W);
+    return view.camera.depthRange(all.center, std::max(all.radius, kSmallestScene) * 1.01);
+}
+
+Frame Frame::make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, double aspect,
+                  const DepthRange& range) {
+    const Camera& camera = view.camera;
+    const Sphere bone = around(boneIn(view));
+    Frame frame;
+    const Eigen::Matrix4f X_CW = camera.X_CW();
+    frame.camera_from_V = X_CW * matrixOf(view.X_WV);
+    frame.clip_from_camera = camera.clipFromCamera(aspect, range);
+    frame.cull_from_V = frame.clip_from_camera * frame.camera_from_V;
+    frame.has_shadow = view.quality == Quality::kFull;
+    if (showsTool(view, tool_T)) frame.camera_from_T = X_CW * matrixOf(*view.X_WT);
+    if (showsGhost(view, tool_T)) frame.camera_from_ghost = X_CW * matrixOf(*view.X_WT_device);
+    frame.near_far = Eigen::Vector2d(range.near, range.far).cast<float>();
+    const double tangent = camera.halfTangent();
+    frame.tangents = Eigen::Vector2d(tangent * aspect, tangent).cast<float>();
+    frame.shift = float(camera.shift);
+    frame.bone_radius = float(std::max(bone.radius, kSmallestBone));
+    frame.bone_V = view.bone_V.cast<float>();
+    frame.cuts_V = transformed(view.cuts_W, matrixOf(view.X_WV.inverse()));
+    frame.cuts_C = transformed(view.cuts_W, X_CW);
+
+    const double shown = kShownBeyondView * camera.focus * tangent * std::hypot(1.0, aspect);
+    frame.key = aimKeyLight(camera, view.is_lit_from_eye,
+                            shown < bone.radius ? Sphere{camera.target(), shown} : bone);
+    return frame;
+}
+
+void Frame::setLight(const GlApi& gl, const Program& program, GLuint shadow_texture) const {
+    gl.ActiveTexture(GL_TEXTURE0);
+    gl.BindTexture(GL_TEXTURE_2D, shadow_texture);
+    program.set("shadow_map", 0);
+    program.set("has_shadow", has_shadow ? 1 : 0);
+    program.set("key_direction", key.direction);
+    program.set("shadow_texel", key.shadow_texel);
+    program.set("light_reach", key.reach);
+    program.set("shadow_from_camera", key.shadow_from_camera);
+    program.set("clip_from_camera", clip_from_camera);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,74 @@
+// What one picture shows, and the matrices, light and planes that follow from it.
+//
+// Frames: W world, V volume, T tool, C camera (camera.h); m, rad. Plain values.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/geometry/pose.h"
+#include "render_client/camera/camera.h"
+#include "render_client/camera/cut_planes.h"
+#include "render_client/camera/view_settings.h"
+#include "render_client/gl/program.h"
+#include "render_client/paint/effect_picture.h"
+
+namespace bonemill {
+
+enum class BurrWork { kIdle, kRemoving, kAdding };
+
+struct FrameView {
+    Camera camera;
+    bool is_lit_from_eye = false;  // an endoscope's light, instead of one from the upper left
+    Pose X_WV;
+    Eigen::AlignedBox3d bone_V;  // the bone at start; empty: nothing known yet
+    double burr_radius = 0;
+    std::optional<Pose> X_WT;              // the simulated tool (SPO)
+    std::optional<Pose> X_WT_device;       // where the hand is; drawn when it differs visibly
+    std::optional<Eigen::Vector3d> f_T_W;  // the arrow's force, N
+    BurrWork burr_work = BurrWork::kIdle;
+    CutPlanes cuts_W;
+    std::optional<double> bone_opacity;  // empty: opaque
+    std::vector<Eigen::Vector3d> pointers_W;
+    Quality quality = Quality::kFull;
+    const EffectPicture* effects = nullptr;  // null: the scene lists none
+};
+
+// Does the device pose lie visibly off the simulated tool?
+bool isGhostVisible(const Pose& X_WT, const Pose& X_WT_device);
+
+struct KeyLight {
+    Eigen::Vector3f direction;           // C, towards the light
+    Eigen::Matrix4f shadow_from_camera;  // to the shadow map's -1 .. 1
+    float shadow_texel;                  // m
+    float reach;  // m from the eye to where an endoscope's light is as bright; 0: it is the room's
+};
+
+struct Frame {
+    Eigen::Matrix4f camera_from_V;
+    Eigen::Matrix4f clip_from_camera;
+    std::optional<Eigen::Matrix4f> camera_from_T;
+    std::optional<Eigen::Matrix4f> camera_from_ghost;
+    KeyLight key;
+    Eigen::Vector2f near_far;
+    Eigen::Vector2f tangents;  // of half the field of view
+    float shift;               // Camera::shift
+    float bone_radius;         // m
+    Eigen::AlignedBox3f bone_V;
+    CutPlanes cuts_V, cuts_C;
+
+    bool has_shadow;
+    Eigen::Matrix4f cull_from_V;  // bone outside of this clip space need not be drawn
+
+    // tool_T: the tool's box; empty without one. The range must hold neededRange().
+    static Frame make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, double aspect,
+                      const DepthRange& range);
+    static DepthRange neededRange(const FrameView& view, const Eigen::AlignedBox3f& tool_T);
+
+    // Uniforms of the lighting and of the projection; the shadow map goes to unit 0.
+    void setLight(const GlApi& gl, const Program& program, GLuint shadow_texture) const;
+};
+
+Eigen::Matrix4f matrixOf(const Pose& X_AB);
+
+}  // namespace bonemill

@@ -1,0 +1,57 @@
+// Draws signs into the scene: the contact force as an arrow, instructors' pointers as glowing dots in rings.
+// What lies behind bone or tool shines through, fainter.
+//
+// Thread: the one of the context. Frames: C camera, W world; m.
+#pragma once
+
+#include <vector>
+
+#include "render_client/gl/gl_object.h"
+#include "render_client/paint/frame.h"
+
+namespace bonemill {
+
+// How the arrow shows a force, N: its length as a part of the picture's height, logarithmic between the
+// smallest that is shown and 20 N, 0 below; its colour from green through yellow to red.
+struct ForceLook {
+    double length = 0;
+    Eigen::Vector3f colour = Eigen::Vector3f::Zero();
+};
+ForceLook forceLook(double newtons);
+
+class MarkerPainter {
+  public:
+    explicit MarkerPainter(const GlApi& gl);
+
+    // Into the bound framebuffer, whose depth it reads and leaves as it is.
+    void draw(const Frame& frame, const FrameView& view);
+
+    // Around all of it (C, m).
+    Eigen::AlignedBox3f box(const Frame& frame, const FrameView& view);
+
+  private:
+    void addPointers(const Frame& frame, const FrameView& view);
+    struct Vertex {
+        Eigen::Vector3f p_C, n_C;
+        Eigen::Vector4f colour;
+    };
+    void addArrow(const Frame& frame, const FrameView& view);
+    // The part of a cone between two radii, with its lower end at `base` (C).
+    void addCone(const Eigen::Vector3f& base, const Eigen::Vector3f& axis, float low, float high,
+                 const Eigen::Vector3f& colour);
+    void addDisc(const Eigen::Vector3f& base, const Eigen::Vector3f& axis, float radius,
+                 const Eigen::Vector3f& colour);
+    void addPointer(const Eigen::Vector3f& p_C, float metres_per_height);
+    // Faces the eye; the colour runs from the inner to the outer radius.
+    void addRing(const Eigen::Vector3f& p_C, float inner, float outer, const Eigen::Vector4f& inner_colour,
+                 const Eigen::Vector4f& outer_colour);
+    void flush(const Frame& frame, GLenum culling);
+
+    const GlApi& gl_;
+    Program program_;
+    GlVertexArray layout_;
+    GlBuffer buffer_;
+    std::vector<Vertex> vertices_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,36 @@
+// Which pixels of a resting view have to be drawn anew. Plain values, one thread.
+#pragma once
+
+#include <vector>
+
+#include "render_client/paint/frame.h"
+#include "render_client/paint/pixel_box.h"
+
+namespace bonemill {
+
+class PictureChanges {
+  public:
+    struct Dirty {
+        PixelBox bone;  // bone and background
+        PixelBox all;   // and what moves before them
+    };
+
+    // A range that holds the needed one, and stays the same as long as it can while the camera rests.
+    DepthRange range(const Camera& camera, const DepthRange& needed);
+
+    // What the next picture of this size must draw: all of it when anything but nodes and moving things has
+    // changed. changed_V: around the nodes that changed; moving: pixels of what moves now.
+    Dirty next(const Frame& frame, int width, int height, const Eigen::AlignedBox3f& changed_V,
+               const PixelBox& moving);
+
+    // The next picture is drawn whole.
+    void forget() { signature_.clear(); }
+
+  private:
+    std::vector<float> signature_;  // of the last view
+    Camera camera_;
+    DepthRange range_;
+    PixelBox moving_;  // in the last picture
+};
+
+}  // namespace bonemill

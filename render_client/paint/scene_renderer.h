@@ -1,0 +1,90 @@
+// Draws bone, tool, signs and the ghost of the device pose with light, shadow and ambient occlusion.
+//
+// Thread: the one of the context. Frames: W world, V volume, T tool, C camera (camera.h); m, rad.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "render_client/gl/program.h"
+#include "render_client/model/node_store.h"
+#include "render_client/model/tool_mesh.h"
+#include "render_client/paint/bone_painter.h"
+#include "render_client/paint/frame.h"
+#include "render_client/paint/marker_painter.h"
+#include "render_client/paint/particle_painter.h"
+#include "render_client/paint/picture_changes.h"
+#include "render_client/paint/render_targets.h"
+
+namespace bonemill {
+
+// Part of a framebuffer, pixels; x from its left edge, over its whole height.
+struct PictureArea {
+    int x = 0;
+    int width = 0;
+    int height = 0;
+    double aspect() const { return double(width) / height; }
+};
+
+struct EffectNeeds {
+    bool film = false, particles = false, spin = false;
+};
+
+class SceneRenderer {
+  public:
+    // Throws GlError with the compiler's log when the driver refuses a shader.
+    explicit SceneRenderer(const GlApi& gl);
+
+    // Leaves the picture (without HUD) in that part of `target`, a framebuffer. Takes the nodes' changes.
+    void draw(const FrameView& view, NodeStore& nodes, const ToolMesh& tool, const PictureArea& area,
+              GLuint target);
+    // As BonePainter.
+    void setPalette(const std::vector<Eigen::Vector4f>& colours);
+    // Makes what a scene's effects need to be drawn, and nothing else. Throws GlError.
+    void prepare(const EffectNeeds& needs);
+    // The next picture is drawn whole, also in quick quality.
+    void drawWholeNext() { changes_.forget(); }
+
+    // The nearest surface of bone or tool (W, m) under a pixel of the last picture, counted from its upper
+    // left corner; nothing over the background.
+    std::optional<Eigen::Vector3d> pick(int x, int y) const;
+
+    // Bone triangles inside the view volume of the last frame.
+    size_t trianglesDrawn() const { return bone_.trianglesDrawn(); }
+
+  private:
+    void drawFull(const Frame& frame, const FrameView& view, const NodeStore& nodes, const ToolMesh& tool,
+                  const PictureArea& area, GLuint target);
+    void drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes, const ToolMesh& tool,
+                   const PictureArea& area, GLuint target);
+    void drawKeptBone(Frame frame, const NodeStore& nodes, const PixelBox& part);
+    void drawParticles(const Frame& frame, const FrameView& view);
+    PixelBox movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool);
+    void scissor(const PixelBox& part) const;
+    void drawShadowMap(const Frame& frame, const FrameView& view, const NodeStore& nodes,
+                       const ToolMesh& tool) const;
+    void drawBackground() const;
+    void drawSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes, const ToolMesh& tool);
+    void drawTool(const Frame& frame, const FrameView& view, const ToolMesh& tool) const;
+    void drawGhost(const Frame& frame, const ToolMesh& tool) const;
+    void drawOcclusion(const Frame& frame) const;
+    void compose(const Frame& frame, int x, GLuint target) const;
+    void drawFullScreen() const;
+
+    const GlApi& gl_;
+    BonePainter bone_;
+    MarkerPainter markers_;
+    Program tool_, ghost_, shadow_, background_, occlusion_, composite_;
+    bool has_materials_ = false;
+    std::unique_ptr<FilmPainter> film_;
+    std::unique_ptr<ParticlePainter> particles_;
+    std::unique_ptr<Program> spinning_tool_;
+    GlVertexArray no_attributes_;
+    std::unique_ptr<RenderTargets> targets_;
+    PictureChanges changes_;            // quick quality
+    Eigen::AlignedBox3f film_changed_;  // since the last quick picture
+    Camera last_camera_;                // of the last picture, for pick()
+    Eigen::Vector2f last_near_far_ = Eigen::Vector2f::Zero();
+};
+
+}  // namespace bonemill

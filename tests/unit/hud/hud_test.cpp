@@ -1,0 +1,241 @@
+#include "render_client/hud/hud.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+namespace bonemill {
+namespace {
+
+const HudRow* find(const Hud& hud, const std::string& label) {
+    const auto row =
+        std::find_if(hud.rows.begin(), hud.rows.end(), [&](const HudRow& r) { return r.label == label; });
+    return row == hud.rows.end() ? nullptr : &*row;
+}
+
+HudInput liveInput() {
+    HudInput input;
+    topics::SceneInfo info;
+    info.set_name("skull");
+    input.info = info;
+    topics::Status status;
+    status.set_preset("thesis_2012");
+    status.set_ticks(1000);
+    status.set_rate_hz(999.84);
+    status.set_tick_p50_us(92.04);
+    status.set_tick_p99_us(187.42);
+    status.set_removed_mm3(12.345);
+    status.set_node_count(40);
+    input.status = status;
+    topics::ToolState tool;
+    for (const double v : {3.0, 0.0, 4.0}) tool.add_force_n(v);
+    for (const double v : {0.0, 0.012, 0.0}) tool.add_torque_nm(v);
+    tool.set_contacts(17);
+    tool.set_buttons(1);
+    input.tool = tool;
+    input.connection = Connection::kLive;
+    input.node_count = 40;
+    return input;
+}
+
+TEST(Hud, ShowsWhatTheServerMeasuresWithUnits) {
+    const Hud hud = makeHud(liveInput());
+    EXPECT_EQ(hud.title, "skull");
+    EXPECT_EQ(hud.state, "live, 40 nodes");
+    EXPECT_EQ(hud.state_tone, HudTone::kGood);
+    ASSERT_TRUE(find(hud, "Loop"));
+    EXPECT_EQ(find(hud, "Loop")->value, "999.8 Hz");
+    EXPECT_EQ(find(hud, "Tick p50 / p99")->value, "92.0 / 187.4 \u00b5s");
+    EXPECT_EQ(find(hud, "Force")->value, "5.00 N");
+    EXPECT_EQ(find(hud, "Torque")->value, "12.0 N\u00b7mm");
+    EXPECT_EQ(find(hud, "Contacts")->value, "17");
+    EXPECT_EQ(find(hud, "Burr")->value, "removing");
+    EXPECT_EQ(find(hud, "Removed")->value, "12.3 mm\u00b3");
+    EXPECT_EQ(find(hud, "Accuracy")->value, "thesis_2012");
+    EXPECT_EQ(find(hud, "Faults")->value, "none");
+}
+
+TEST(Hud, AlarmsAboutFaultsAndAStaleDevice) {
+    HudInput input = liveInput();
+    input.status->set_faults(0x22);
+    EXPECT_EQ(find(makeHud(input), "Faults")->value, "0x22");
+    EXPECT_EQ(find(makeHud(input), "Faults")->tone, HudTone::kAlarm);
+    input.status->set_fault_text("stale device");
+    EXPECT_EQ(find(makeHud(input), "Faults")->value, "stale device");
+    EXPECT_FALSE(find(makeHud(input), "Device"));
+    input.status->set_device_stale(true);
+    ASSERT_TRUE(find(makeHud(input), "Device"));
+    EXPECT_EQ(find(makeHud(input), "Device")->tone, HudTone::kAlarm);
+}
+
+TEST(Hud, SaysHowItStandsWithTheServer) {
+    HudInput input;
+    EXPECT_EQ(makeHud(input).state, "waiting for a server");
+    EXPECT_TRUE(makeHud(input).rows.empty());
+    input = liveInput();
+    input.connection = Connection::kReceiving;
+    input.node_count = 12;
+    EXPECT_EQ(makeHud(input).state, "receiving 12 of 40 nodes");
+    input.connection = Connection::kServerLost;
+    EXPECT_EQ(makeHud(input).state, "server lost");
+    EXPECT_EQ(makeHud(input).state_tone, HudTone::kAlarm);
+}
+
+TEST(Hud, ALoopThatNeverTickedHasNoNumbers) {
+    HudInput input = liveInput();
+    input.status->set_ticks(0);
+    EXPECT_EQ(find(makeHud(input), "Loop")->value, "waits for a device");
+    EXPECT_FALSE(find(makeHud(input), "Tick p50 / p99"));
+    EXPECT_EQ(find(makeHud(input), "Accuracy")->value, "thesis_2012");
+}
+
+TEST(Hud, TheForceErrorIsTheServersOrNotMeasured) {
+    HudInput input = liveInput();
+    input.status->set_preset("balanced");
+    input.status->set_force_error_percent(0.8);
+    input.status->set_force_direction_error_deg(0.4);
+    EXPECT_EQ(find(makeHud(input), "Force error")->value, "not measured")
+        << "figures that the server disowns";
+    input.status->set_has_accuracy_error(true);
+    EXPECT_EQ(find(makeHud(input), "Accuracy")->value, "balanced");
+    EXPECT_EQ(find(makeHud(input), "Force error")->value, "0.80 %, 0.40\u00b0");
+    input.status->set_force_error_percent(123.4);
+    input.status->set_force_direction_error_deg(12.34);
+    EXPECT_EQ(find(makeHud(input), "Force error")->value, "123.4 %, 12.3\u00b0");
+}
+
+TEST(Hud, LongSettingsTakeMoreThanOneLine) {
+    HudInput input = liveInput();
+    input.status->set_preset("gradient s=2 q=2 grid x1 float iterations=3 ccd");
+    const Hud hud = makeHud(input);
+    const HudRow* first = find(hud, "Accuracy");
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->value, "gradient s=2 q=2 grid x1");
+    EXPECT_EQ(first[1].label, "");
+    EXPECT_EQ(first[1].value, "float iterations=3 ccd");
+    EXPECT_EQ(first[2].label, "Force error");
+}
+
+TEST(Hud, TheSessionsClockAndAPausedBurr) {
+    HudInput input = liveInput();
+    EXPECT_EQ(find(makeHud(input), "Session")->value, "0:00:00");
+    EXPECT_FALSE(find(makeHud(input), "Milling"));
+    input.status->set_session_s(3725.9);
+    input.status->set_is_milling_paused(true);
+    EXPECT_EQ(find(makeHud(input), "Session")->value, "1:02:05");
+    ASSERT_TRUE(find(makeHud(input), "Milling"));
+    EXPECT_EQ(find(makeHud(input), "Milling")->value, "paused");
+    EXPECT_EQ(find(makeHud(input), "Milling")->tone, HudTone::kWarning);
+    input.status->set_session_s(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_EQ(find(makeHud(input), "Session")->value, "\u2013");
+    input.status->set_ticks(0);
+    EXPECT_FALSE(find(makeHud(input), "Session"));
+}
+
+TEST(Hud, TheToolsNameWhenThereIsAChoice) {
+    HudInput input = liveInput();
+    input.info->add_tool_names("round burr 4 mm");
+    EXPECT_FALSE(find(makeHud(input), "Tool"));
+    input.info->add_tool_names("round burr 2 mm");
+    input.info->set_tool_index(1);
+    EXPECT_EQ(find(makeHud(input), "Tool")->value, "round burr 2 mm");
+    input.info->set_tool_index(7);
+    EXPECT_FALSE(find(makeHud(input), "Tool"));
+}
+
+TEST(Hud, TheViewersOwnFrameRate) {
+    HudInput input = liveInput();
+    EXPECT_FALSE(find(makeHud(input), "Pictures"));
+    input.frame_rate_hz = 59.7;
+    EXPECT_EQ(find(makeHud(input), "Pictures")->value, "60 Hz");
+}
+
+topics::Viewer watcher(const std::string& name) {
+    topics::Viewer viewer;
+    viewer.set_name(name);
+    viewer.set_frame_rate_hz(29.9);
+    viewer.set_is_complete(true);
+    return viewer;
+}
+
+TEST(Hud, WhoIsWatching) {
+    HudInput input = liveInput();
+    EXPECT_TRUE(makeHud(input).watchers.empty());
+    input.watchers = {watcher("Anna"), watcher(""), watcher("Dr. Berg")};
+    input.watchers[1].set_role(topics::Viewer::OPERATOR);
+    input.watchers[1].set_is_complete(false);
+    input.watchers[2].set_role(topics::Viewer::INSTRUCTOR);
+    const std::vector<HudRow> rows = makeHud(input).watchers;
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_EQ(rows[0].label, "Anna");
+    EXPECT_EQ(rows[0].value, "viewer, 30 Hz");
+    EXPECT_EQ(rows[1].label, "(no name)");
+    EXPECT_EQ(rows[1].value, "operator, 30 Hz, incomplete");
+    EXPECT_EQ(rows[1].tone, HudTone::kWarning);
+    EXPECT_EQ(rows[2].value, "instructor, 30 Hz");
+    input.show_watchers = false;
+    EXPECT_TRUE(makeHud(input).watchers.empty());
+}
+
+TEST(Hud, ALongListOfWatchersIsCut) {
+    HudInput input = liveInput();
+    for (int i = 0; i < 8; ++i) input.watchers.push_back(watcher("w" + std::to_string(i)));
+    EXPECT_EQ(makeHud(input).watchers.size(), 8u);
+    EXPECT_EQ(makeHud(input).watchers.back().label, "w7");
+    for (int i = 8; i < 30; ++i) input.watchers.push_back(watcher("w" + std::to_string(i)));
+    const std::vector<HudRow> rows = makeHud(input).watchers;
+    ASSERT_EQ(rows.size(), 8u);
+    EXPECT_EQ(rows[6].label, "w6");
+    EXPECT_EQ(rows[7].label, "and 23 more");
+}
+
+TEST(Hud, ALongNameIsCutBetweenLetters) {
+    HudInput input = liveInput();
+    std::string name;
+    for (int i = 0; i < 40; ++i) name += "\u00e4";
+    input.watchers = {watcher(name)};
+    std::string expected;
+    for (int i = 0; i < 23; ++i) expected += "\u00e4";
+    EXPECT_EQ(makeHud(input).watchers[0].label, expected + "\u2026");
+}
+
+TEST(Hud, ANoticeIsPassedOn) {
+    HudInput input = liveInput();
+    EXPECT_FALSE(makeHud(input).notice);
+    input.notice = HudNotice{"accuracy fast: done", HudTone::kGood};
+    ASSERT_TRUE(makeHud(input).notice);
+    EXPECT_EQ(makeHud(input).notice->text, "accuracy fast: done");
+    EXPECT_EQ(makeHud(input).notice->tone, HudTone::kGood);
+}
+
+TEST(Hud, TheHelpPageIsShownOnRequest) {
+    HudInput input;
+    input.help = {{"H", "help"}};
+    EXPECT_TRUE(makeHud(input).help.empty());
+    input.show_help = true;
+    ASSERT_EQ(makeHud(input).help.size(), 1u);
+    EXPECT_EQ(makeHud(input).help[0].label, "H");
+}
+
+TEST(Hud, NumbersThatAreNoneBecomeADash) {
+    HudInput input = liveInput();
+    input.status->set_rate_hz(std::numeric_limits<double>::quiet_NaN());
+    input.tool->clear_force_n();
+    const Hud hud = makeHud(input);
+    EXPECT_EQ(find(hud, "Loop")->value, "\u2013");
+    EXPECT_EQ(find(hud, "Force")->value, "\u2013");
+}
+
+TEST(ScaleBar, IsTheLongestRoundLengthThatFits) {
+    EXPECT_DOUBLE_EQ(makeScaleBar(1e-5, 250).length, 2e-3);
+    EXPECT_EQ(makeScaleBar(1e-5, 250).label, "2 mm");
+    EXPECT_EQ(makeScaleBar(1e-5, 99).label, "0.5 mm");
+    EXPECT_EQ(makeScaleBar(1e-3, 60).label, "50 mm");
+    EXPECT_EQ(makeScaleBar(1e-5, 100).label, "1 mm");
+    EXPECT_EQ(makeScaleBar(0, 100).length, 0);
+}
+
+}  // namespace
+}  // namespace bonemill
