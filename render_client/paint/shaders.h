@@ -1,30 +1,43 @@
-// GLSL sources (without #version) of everything that is drawn. Colours are linear until toneMap().
+// The GLSL sources (without #version) of everything that is drawn over or into the scene. Each group stands
+// in the source file that its heading names. Colours are linear until toneMap().
 #pragma once
 
 namespace bonemill::shaders {
 
-// Vertex attributes of meshes: 0 position (quantisation steps), 1 normal (octahedral ±127, or a vector for
-// the tool), 2 material.
-extern const char kMeshVertex[];        // bone nodes; #define MATERIALS: in their materials' colours
-extern const char kToolVertex[];        // the tool
-extern const char kShadowVertex[];      // shadow casters, bone or tool
-extern const char kDepthFragment[];     // no colour
-extern const char kFullScreenVertex[];  // 3 vertices, no attributes
-extern const char kBackgroundFragment[];
-extern const char kLighting[];  // goes before the next four and kParticleFragment
-extern const char kNoise[];     // goes before the next two
-extern const char
-    kBoneFragment[];  // #define MATERIALS as its vertex shader, FILM: with blood and water on it
-extern const char kCapFragment[];
-extern const char kToolFragment[];  // #define SPIN: with flutes that turn
+// lighting_shaders.cpp: what goes before other sources.
+extern const char kLighting[];  // before the fragment shaders of bone, cap, tool and particles
+extern const char kNoise[];     // after kLighting, before those of bone and cap
+
+// bone_shaders.cpp. Vertex attributes of meshes: 0 is the position (quantisation steps), 1 the normal
+// (octahedral, ±127), 2 the material. With `#define MATERIALS` before both, bone has its materials' colours.
+extern const char kMeshVertex[];
+extern const char kBoneFragment[];  // with `#define FILM`: blood and water lie on it
+extern const char kCapFragment[];   // the face of a cut
+
+// tool_shaders.cpp. Vertex attributes: 0 is the position (T, m), 1 the normal.
+extern const char kToolVertex[];
+extern const char kToolFragment[];  // with `#define SPIN`: flutes turn
 extern const char kGhostFragment[];
+
+// frame_shaders.cpp: passes over the whole frame.
+extern const char kShadowVertex[];   // what casts a shadow, bone or tool
+extern const char kDepthFragment[];  // writes no colour
+extern const char
+    kFullScreenVertex[];  // makes a triangle over all of the picture from 3 vertices without attributes
+extern const char kBackgroundFragment[];
 extern const char kOcclusionFragment[];
 extern const char kCompositeFragment[];
 extern const char kAnaglyphFragment[];
+
+// particle_shaders.cpp
 extern const char kParticleVertex[];
 extern const char kParticleFragment[];
+
+// marker_shaders.cpp
 extern const char kMarkerVertex[];
 extern const char kMarkerFragment[];
+
+// hud_shaders.cpp
 extern const char kHudVertex[];
 extern const char kHudFragment[];
 

@@ -1,0 +1,61 @@
+#include "render_client/paint/shaders.h"
+
+namespace bonemill::shaders {
+
+const char kParticleVertex[] = R"(
+layout(location = 0) in vec3 position;  // C, m
+layout(location = 1) in vec2 place;     // along and across the streak, in radii
+layout(location = 2) in vec3 streak;    // direction in the picture, half length in radii
+layout(location = 3) in vec4 particle_colour;
+layout(location = 4) in float particle_gloss;
+uniform mat4 clip_from_camera;
+out vec3 p_C;
+out vec2 f_place;
+flat out vec3 f_streak;
+flat out vec4 f_colour;
+flat out float f_gloss;
+void main() {
+    p_C = position;
+    f_place = place;
+    f_streak = streak;
+    f_colour = particle_colour;
+    f_gloss = particle_gloss;
+    gl_Position = clip_from_camera * vec4(position, 1.0);
+}
+)";
+
+// A ball, or a capsule along the streak, as it would be seen from the front.
+const char kParticleFragment[] = R"(
+in vec3 p_C;
+in vec2 f_place;
+flat in vec3 f_streak;
+flat in vec4 f_colour;
+flat in float f_gloss;
+out vec4 colour;
+
+void main() {
+    vec2 off = vec2(sign(f_place.x) * max(abs(f_place.x) - f_streak.z, 0.0), f_place.y);
+    float squared = dot(off, off);
+    if (squared > 1.0) discard;
+    // A long streak has no ends to be seen.
+    float is_long = smoothstep(0.5, 2.0, f_streak.z);
+    float round_x = off.x * (1.0 - is_long);
+    vec2 turned = f_streak.xy * round_x + vec2(-f_streak.y, f_streak.x) * off.y;
+    vec3 normal = vec3(turned, sqrt(max(1.0 - dot(turned, turned), 0.0)));
+    vec3 to_eye = normalize(-p_C);
+    float visible = keyVisibility(p_C, normal);
+    vec3 light = kKeyColour * max(dot(normal, key_direction), 0.0) * mix(0.1, 1.0, visible)
+               + kFillColour * max(dot(normal, kFillDirection), 0.0) + hemisphere(normal);
+    vec3 matt = f_colour.rgb * light * 0.56;
+    float grazing = pow(1.0 - max(dot(normal, to_eye), 0.0), 3.0);
+    float spot = pow(max(dot(normal, normalize(key_direction + to_eye)), 0.0), 60.0);
+    vec3 water = f_colour.rgb * (0.18 + 0.7 * grazing) + kKeyColour * spot * 0.8 * visible;
+    float cover = mix(1.0, clamp(0.30 + 0.7 * grazing + spot, 0.0, 1.0) / 0.6, f_gloss);
+    float edge = 1.0 - smoothstep(0.75, 1.0, squared);
+    float ends = 1.0 - abs(f_place.x) / (f_streak.z + 1.0);
+    edge *= mix(1.0, smoothstep(0.0, 0.7, ends), is_long);
+    colour = vec4(toneMap(mix(matt, water, f_gloss) * falloff(p_C)), clamp(f_colour.a * cover * edge, 0.0, 1.0));
+}
+)";
+
+}  // namespace bonemill::shaders

@@ -1,0 +1,114 @@
+#include "render_client/paint/shaders.h"
+
+namespace bonemill::shaders {
+
+const char kToolVertex[] = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+uniform mat4 camera_from_model;
+uniform mat4 clip_from_camera;
+out vec3 p_C;
+out vec3 n_C;
+out vec3 p_M;
+
+void main() {
+    p_M = position;
+    p_C = (camera_from_model * vec4(p_M, 1.0)).xyz;
+    n_C = mat3(camera_from_model) * normal;
+    gl_Position = clip_from_camera * vec4(p_C, 1.0);
+}
+)";
+
+const char kToolFragment[] = R"(
+in vec3 p_C;
+in vec3 n_C;
+in vec3 p_M;
+uniform float burr_radius;  // m
+uniform vec3 milling_glow;  // linear colour, 0 when idle
+out vec4 colour;
+
+float grooveAt(float phase) { return smoothstep(-0.2, -0.9, sin(phase)); }
+
+#ifdef SPIN
+uniform float spin_angle;  // rad about +y of T
+uniform float spin_sweep;  // rad while the picture is shown
+uniform float flutes;
+uniform mat4 camera_from_model;
+
+const float kMeanGroove = 0.285;
+
+// The flutes as a shutter that is open between two pictures sees them: groove, and its slope over the phase. From
+// half a period per picture on they could seem to turn backwards: nothing of them is left there.
+vec2 sweptGroove(float phase) {
+    float sweep = flutes * spin_sweep;
+    float blur = smoothstep(0.5, 1.0, abs(sweep) / 3.14159265);
+    vec2 sum = vec2(0.0);
+    for (int i = 0; i < 8; ++i) {
+        float at = phase - sweep * (float(i) + 0.5) / 8.0;
+        sum += vec2(grooveAt(at), grooveAt(at + 0.25) - grooveAt(at - 0.25));
+    }
+    return mix(sum / 8.0, vec2(kMeanGroove, 0.0), blur);
+}
+#endif
+
+// A photographer's tent: bright panels over a dark studio, seen in the mirror of the metal.
+vec3 studio(vec3 direction) {
+    float panel = smoothstep(0.35, 0.75, dot(direction, key_direction));
+    float strip = smoothstep(0.80, 0.93, dot(direction, kFillDirection));
+    float horizon = smoothstep(-0.25, 0.35, direction.y);
+    return mix(vec3(0.05, 0.05, 0.06), vec3(0.50, 0.55, 0.62), horizon) + panel * vec3(1.5, 1.42, 1.3)
+         + strip * vec3(0.45, 0.6, 0.9);
+}
+
+void main() {
+    vec3 to_eye = normalize(-p_C);
+    vec3 normal = normalize(n_C);
+    if (dot(normal, to_eye) < 0.0) normal = -normal;  // a tool file may have its triangles turned inside out
+
+    float radial = length(p_M) / max(burr_radius, 1e-6);
+    float burr = 1.0 - smoothstep(1.03, 1.08, radial);
+    float shaft_cut = 1.0 - smoothstep(0.0, 0.25, radial - 1.02);
+    // Spiral flutes of a round burr: ridges over the angle about the shaft (+y of T), twisted along it.
+    float angle = atan(p_M.z, p_M.x);
+    float around = length(p_M.xz) / max(burr_radius, 1e-6);
+    float twist = 2.2 * p_M.y / max(burr_radius, 1e-6);
+    float fluted = burr * smoothstep(0.15, 0.55, around);
+#ifdef SPIN
+    vec2 swept = sweptGroove(flutes * (angle + spin_angle) + twist);
+    float groove = fluted * swept.x;
+    vec3 tangent = mat3(camera_from_model) * (vec3(-p_M.z, 0.0, p_M.x) / max(length(p_M.xz), 1e-6));
+    normal = normalize(normal + 0.55 * fluted * swept.y * tangent);
+#else
+    float groove = fluted * grooveAt(10.0 * angle + twist);
+#endif
+
+    vec3 metal = mix(vec3(0.72, 0.74, 0.77), vec3(0.90, 0.78, 0.52), burr);
+    vec3 mirror = studio(reflect(-to_eye, normal));
+    float visible = keyVisibility(p_C, normal);
+    vec3 diffuse = kKeyColour * max(dot(normal, key_direction), 0.0) * visible + hemisphere(normal);
+    float fresnel = pow(1.0 - max(dot(normal, to_eye), 0.0), 5.0);
+    vec3 shaded = metal * (mirror * mix(0.45, 0.75, visible) + diffuse * 0.16) + fresnel * 0.5;
+    shaded *= 1.0 - 0.65 * groove - 0.25 * shaft_cut * (1.0 - burr);
+#ifdef SPIN
+    // What turns too fast shows rings about the axis.
+    float ring = 0.5 + 0.5 * sin(40.0 * p_M.y / max(burr_radius, 1e-6) + 6.0 * sin(17.0 * p_M.y / max(burr_radius, 1e-6)));
+    shaded *= 1.0 - 0.22 * fluted * ring * smoothstep(0.5, 1.0, abs(flutes * spin_sweep) / 3.14159265);
+#endif
+    shaded *= 1.0 - 0.55 * burr * min(dot(milling_glow, vec3(1.0)), 1.0);  // leave room for the glow
+    shaded += milling_glow * burr * (0.40 + 0.9 * pow(1.0 - max(dot(normal, to_eye), 0.0), 1.5)) * (1.0 - 0.6 * groove);
+    colour = vec4(toneMap(shaded), 1.0);
+}
+)";
+
+const char kGhostFragment[] = R"(
+in vec3 p_C;
+in vec3 n_C;
+uniform float strength;
+out vec4 colour;
+void main() {
+    float edge = pow(1.0 - abs(dot(normalize(n_C), normalize(-p_C))), 1.5);
+    colour = vec4(0.35, 0.80, 1.0, strength * (0.03 + 0.60 * edge * edge));
+}
+)";
+
+}  // namespace bonemill::shaders
