@@ -1,0 +1,57 @@
+// Signs in the scene: the force arrow and the pointers of instructors.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/gl/view_mode.h"
+
+namespace bonemill::test {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST_F(ViewMode, NoArrowForNoForce) {
+    showMilledBlock(*scene_);
+    const auto effect_of = [&](const Vector3d& force) {
+        topics::ToolState tool = makeToolState(toolInCavity(), toolInCavity(), 1);
+        setVector(force, tool.mutable_force_n());
+        scene_->setToolState(tool);
+        scene_->settings().show_force = false;
+        const Picture without = draw();
+        scene_->settings().show_force = true;
+        return countDifferent(without, draw());
+    };
+    const Vector3d up = Vector3d(0.1, 0, 1).normalized();
+    EXPECT_EQ(effect_of(0.04 * up), 0u);
+    const size_t small = effect_of(0.2 * up), large = effect_of(20 * up);
+    EXPECT_GT(small, 40u);
+    EXPECT_GT(large, 2 * small);
+    EXPECT_EQ(effect_of({std::nan(""), 0, 0}), 0u);
+}
+
+TEST_F(ViewMode, OnlyInstructorsPointAndAlsoFromBehindBone) {
+    showSphere();
+    const Picture bare = draw();
+    topics::Viewer viewer = makeWatcher("", topics::Viewer::INSTRUCTOR, 60);
+    const Vector3d towards_eye = scene_->camera().towardsEye();
+    const auto effect_at = [&](const Vector3d& p) {
+        setVector(p, viewer.mutable_pointer_m());
+        scene_->setWatchers({viewer});
+        const Picture picture = draw();
+        int strongest = 0;
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x)
+                strongest = std::max(strongest, std::abs(picture.at(x, y)[1] - bare.at(x, y)[1]));
+        return strongest;
+    };
+    const int visible = effect_at(kSphereCenter + kSphereRadius * towards_eye);
+    const int hidden = effect_at(kSphereCenter - kSphereRadius * towards_eye);
+    EXPECT_GT(hidden, 15);
+    EXPECT_GT(visible, 2 * hidden);
+    viewer.set_role(topics::Viewer::OPERATOR);
+    EXPECT_EQ(effect_at(kSphereCenter + kSphereRadius * towards_eye), 0);
+}
+
+}  // namespace
+}  // namespace bonemill::test
