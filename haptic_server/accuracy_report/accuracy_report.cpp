@@ -10,7 +10,7 @@
 #include "common/user_error.h"
 #include "haptic_server/accuracy_report/plot.h"
 #include "haptic_server/accuracy_report/sweep_settings.h"
-#include "haptic_server/app/scene_setup.h"
+#include "haptic_server/setup/scene_setup.h"
 
 namespace bonemill {
 namespace {

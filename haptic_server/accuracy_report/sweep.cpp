@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "haptic_server/accuracy_report/sweep_settings.h"
-#include "haptic_server/app/scene_setup.h"
+#include "haptic_server/setup/scene_setup.h"
 
 namespace bonemill {
 namespace {

@@ -6,9 +6,9 @@
 #include "common/log/log.h"
 #include "common/user_error.h"
 #include "haptic_server/accuracy_report/accuracy_report.h"
-#include "haptic_server/app/describe_scene.h"
-#include "haptic_server/app/server.h"
-#include "haptic_server/app/simulate.h"
+#include "haptic_server/offline/describe_scene.h"
+#include "haptic_server/offline/simulate.h"
+#include "haptic_server/session/server.h"
 
 namespace {
 

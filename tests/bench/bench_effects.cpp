@@ -4,8 +4,8 @@
 #include <cstdio>
 
 #include "common/units.h"
-#include "haptic_server/app/effect_cost.h"
-#include "haptic_server/app/scene_setup.h"
+#include "haptic_server/offline/effect_cost.h"
+#include "haptic_server/setup/scene_setup.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/half_block.h"
 #include "tests/support/every_effect_scene.h"

@@ -9,7 +9,7 @@
 
 #include "common/rt/clock.h"
 #include "common/user_error.h"
-#include "haptic_server/app/bone_files.h"
+#include "haptic_server/record/bone_files.h"
 
 namespace bonemill::bench {
 namespace {

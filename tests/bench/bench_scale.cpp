@@ -5,7 +5,7 @@
 
 #include "common/units.h"
 #include "haptic_server/accuracy_report/plot.h"
-#include "haptic_server/app/bone_files.h"
+#include "haptic_server/record/bone_files.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/bench_tick.h"
 

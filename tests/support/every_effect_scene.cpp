@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include "common/units.h"
-#include "haptic_server/app/scene_effects.h"
+#include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/volume/import/nrrd_writer.h"
 
 namespace bonemill::test {

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "common/units.h"
-#include "haptic_server/app/effect_cost.h"
-#include "haptic_server/app/scene_setup.h"
-#include "haptic_server/app/state_hash.h"
+#include "haptic_server/offline/effect_cost.h"
+#include "haptic_server/offline/state_hash.h"
+#include "haptic_server/setup/scene_setup.h"
 #include "tests/support/every_effect_scene.h"
 #include "tests/support/temporary_folder.h"
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "haptic_server/app/scene_setup.h"
+#include "haptic_server/setup/scene_setup.h"
 #include "tests/support/every_effect_scene.h"
 #include "tests/support/temporary_folder.h"
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 
 #include "common/units.h"
-#include "haptic_server/app/bone_files.h"
-#include "haptic_server/app/effect_cost.h"
-#include "haptic_server/app/scene_setup.h"
+#include "haptic_server/offline/effect_cost.h"
+#include "haptic_server/record/bone_files.h"
 #include "haptic_server/record/fault_names.h"
+#include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/phantom/tooth_phantom.h"
 #include "tests/support/process.h"

@@ -2,9 +2,9 @@
 // device_daemon and render_client as processes, the test itself as a viewer.
 #include <gtest/gtest.h>
 
-#include "haptic_server/app/scene_setup.h"
-#include "haptic_server/app/state_hash.h"
 #include "haptic_server/mesh/mesher.h"
+#include "haptic_server/offline/state_hash.h"
+#include "haptic_server/setup/scene_setup.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/node_meshes.h"
 #include "tests/support/ply_reader.h"

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "common/units.h"
-#include "haptic_server/app/scene_setup.h"
 #include "haptic_server/kernels/kernels.h"
+#include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "tests/support/ply_reader.h"
 #include "tests/support/process.h"

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "common/user_error.h"
-#include "haptic_server/app/accuracy_figures.h"
+#include "haptic_server/session/accuracy_figures.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/accuracy_report/report_data.h"
 

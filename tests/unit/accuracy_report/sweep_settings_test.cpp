@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "haptic_server/app/scene_accuracy.h"
+#include "haptic_server/setup/scene_accuracy.h"
 
 namespace bonemill {
 namespace {

@@ -1,0 +1,15 @@
+// What a scene's effects are and cost, for people.
+#pragma once
+
+#include <string>
+
+#include "haptic_server/offline/effect_cost.h"
+#include "proto/scene.pb.h"
+
+namespace bonemill {
+
+// One line per effect that is listed: its parameters; for those of the tick what they add to it, for those of
+// the viewer that they are. `costs`: null if nothing was measured.
+std::string describeEffects(const scene::Scene& scene, const EffectCosts* costs);
+
+}  // namespace bonemill

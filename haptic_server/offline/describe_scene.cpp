@@ -1,0 +1,123 @@
+#include "haptic_server/offline/describe_scene.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "common/config/scene_table.h"
+#include "common/rt/clock.h"
+#include "common/units.h"
+#include "haptic_server/offline/describe_effects.h"
+#include "haptic_server/setup/scene_setup.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int kMeasuredTicks = 4000;
+constexpr int kRounds = 5;
+
+Pose waypointPose(const scene::SimulatedOperator::Waypoint& waypoint) {
+    const scene::Vec3& p = waypoint.p_wt_mm();
+    const scene::Quaternion& q = waypoint.q_wt();
+    return {Eigen::Vector3d(p.x(), p.y(), p.z()) * kMillimetre,
+            Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
+}
+
+// The device straight along the scenario's waypoints, spread over kMeasuredTicks.
+std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario) {
+    const int waypoints = scenario.waypoint_size();
+    std::vector<DeviceInput> path(waypoints > 0 ? kMeasuredTicks : 0);
+    for (int tick = 0; tick < int(path.size()); ++tick) {
+        const double at = double(tick) / kMeasuredTicks * std::max(1, waypoints - 1);
+        const int from = std::min(int(at), waypoints - 1);
+        const Pose a = waypointPose(scenario.waypoint(from));
+        const Pose b = waypointPose(scenario.waypoint(std::min(from + 1, waypoints - 1)));
+        DeviceInput& input = path[size_t(tick)];
+        input.X_WT_device = {a.position + (at - from) * (b.position - a.position),
+                             a.rotation.slerp(at - from, b.rotation)};
+        input.buttons = (scenario.waypoint(from).remove() ? kButtonRemove : 0u) |
+                        (scenario.waypoint(from).add() ? kButtonAdd : 0u);
+        input.t_s = tick * kMillisecond;
+    }
+    return path;
+}
+
+std::string percentilesUs(std::vector<int64_t> durations_ns) {
+    std::sort(durations_ns.begin(), durations_ns.end());
+    std::ostringstream text;
+    text << "p50 " << microsecondsOfNs(double(durations_ns[durations_ns.size() / 2])) << " us, p99 "
+         << microsecondsOfNs(double(durations_ns[durations_ns.size() * 99 / 100])) << " us";
+    return text.str();
+}
+
+std::string describeLevels(const PointShell& shell) {
+    std::string text;
+    for (int level = 0; level < shell.levelCount(); ++level)
+        text += (level > 0 ? "; " : "") + std::to_string(shell.pointCount(level)) +
+                " points, scaling factor " + std::to_string(shell.scalingFactor(level));
+    return text;
+}
+
+void describeTools(const Simulation& simulation, std::ostream& out) {
+    int number = 0;
+    for (const SceneTool& tool : simulation.tools) {
+        const SdfGrid& grid = tool.built.model.grid();
+        ++number;
+        out << "tool " << number << " '" << tool.name << "'" << (number == 1 ? ", in use at the start" : "")
+            << ": distance grid " << grid.nodes().transpose() << " nodes of "
+            << grid.spacing() * kPerMillimetre << " mm, burr radius " << tool.burr.radius * kPerMillimetre
+            << " mm, pull of the coupling at most " << tool.saturation_force << " N\n";
+    }
+}
+
+void describeBudget(const TickConfig& tick, std::ostream& out) {
+    out << "most point tests in a tick: " << tick.gradient.most_point_tests
+        << (tick.accuracy.law == ContactLaw::kThesis2012 ? ", without effect on the thesis' law\n" : "\n")
+        << "most milled cells in a tick: " << tick.most_milled_cells << '\n';
+}
+
+void describeCost(const std::vector<TickRecord>& records, std::ostream& out) {
+    if (records.empty()) {
+        out << "cost per tick: not measured, the scene has no simulated_operator.waypoint to follow\n";
+        return;
+    }
+    std::vector<int64_t> force, milling;
+    for (const TickRecord& record : records) {
+        force.push_back(record.force_ns);
+        if (record.buttons) milling.push_back(record.compute_ns - record.force_ns);
+    }
+    out << "cost per tick on this machine, along the scenario's waypoints (" << records.size() << " ticks):\n"
+        << "  contact, coupling, equilibrium: " << percentilesUs(force) << '\n';
+    if (!milling.empty()) out << "  removal, addition and shell refresh: " << percentilesUs(milling) << '\n';
+}
+
+}  // namespace
+
+std::string describeScene(const std::string& scene_file) {
+    const LoadedScene loaded = loadScene(scene_file);
+    Simulation simulation = makeSimulation(loaded);
+    const BoneModel& bone = *simulation.bone;
+    std::ostringstream out;
+    out << "scene '" << loaded.scene.name() << "', preset " << settingsName(simulation.tick.accuracy) << '\n';
+    for (const std::string& remark : simulation.remarks) out << "  " << remark << '\n';
+    for (const std::string& warning : simulation.warnings) out << "  warning: " << warning << '\n';
+    const Eigen::Vector3d mm = bone.volume.spacing() * kPerMillimetre;
+    out << "volume: " << bone.volume.dims().transpose() << " voxels of " << mm.transpose()
+        << " mm, iso-value " << simulation.mapping.iso_value << ", window " << simulation.mapping.low
+        << " .. " << simulation.mapping.high << '\n'
+        << "octree: " << bone.lattice.leavesPerAxis().transpose() << " leaves of "
+        << bone.lattice.leafCells().transpose() << " cells, " << bone.lattice.levelCount() << " levels\n"
+        << "point-shell: " << describeLevels(bone.shell) << '\n';
+    describeTools(simulation, out);
+    describeBudget(simulation.tick, out);
+    const std::vector<DeviceInput> path = pathOf(loaded.scene.simulated_operator());
+    const EffectCosts costs =
+        measureEffectCosts(simulation.tick, *simulation.bone, simulation.firstTool(), path, kRounds);
+    out << describeEffects(loaded.scene, path.empty() ? nullptr : &costs);
+    describeCost(recordsOf(simulation.tick, *simulation.bone, simulation.firstTool(), path), out);
+    out << "\nwhat the scene file sets (all else has its default):\n"
+        << loaded.scene.DebugString() << "\nevery field, its unit, default and range:\n"
+        << describeDefaults();
+    return out.str();
+}
+
+}  // namespace bonemill

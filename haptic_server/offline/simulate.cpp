@@ -1,0 +1,144 @@
+#include "haptic_server/offline/simulate.h"
+
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "common/config/scene_tools.h"
+#include "common/rt/clock.h"
+#include "common/units.h"
+#include "common/user_error.h"
+#include "haptic_server/offline/state_hash.h"
+#include "haptic_server/record/fault_names.h"
+#include "haptic_server/record/hex_text.h"
+#include "haptic_server/record/run_statistics.h"
+#include "haptic_server/record/trace_writer.h"
+#include "haptic_server/record/trajectory_reader.h"
+#include "haptic_server/setup/scene_effects.h"
+#include "haptic_server/setup/scene_materials.h"
+#include "haptic_server/setup/scene_setup.h"
+#include "haptic_server/volume/import/nrrd_writer.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kTickSpacingTolerance = 0.1;  // times are often written with three decimals
+
+// Rows in, records out; time comes from the file, only tick_us is measured.
+class FileIo final : public TickIo {
+  public:
+    explicit FileIo(const std::vector<TrajectoryRow>& rows) : rows_(rows) {}
+
+    bool read(DeviceInput& input) noexcept override {
+        if (next_ == rows_.size()) return false;
+        const TrajectoryRow& row = rows_[next_++];
+        input = {};
+        input.X_WT_device = row.X_WT;
+        input.buttons = row.buttons;
+        input.t_s = row.t_s;
+        input.start_ns = monotonicNowNs();
+        return true;
+    }
+    int64_t write(const Wrench&) noexcept override { return monotonicNowNs(); }
+    int64_t now() noexcept override { return monotonicNowNs(); }
+    void push(const TickRecord& record) noexcept override { record_ = record; }
+    const TickRecord& lastRecord() const noexcept { return record_; }
+
+  private:
+    const std::vector<TrajectoryRow>& rows_;
+    size_t next_ = 0;
+    TickRecord record_{};
+};
+
+// One row is one tick: a file sampled at another rate would silently mean another speed.
+void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::string& file) {
+    for (size_t n = 1; n < rows.size(); ++n) {
+        const double spacing = rows[n].t_s - rows[n - 1].t_s;
+        if (std::abs(spacing / dt - 1) < kTickSpacingTolerance) continue;
+        throw UserError(file + ":" + std::to_string(n + 2) + ": this row is " +
+                        std::to_string(spacing * kPerMillisecond) +
+                        " ms after the one before, but the scene's loop has " +
+                        std::to_string(dt * kPerMillisecond) +
+                        " ms per tick; resample the trajectory or set loop.rate_hz");
+    }
+}
+
+nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
+    const auto us = microsecondsOfNs;
+    const LatencyHistogram& compute = statistics.tickCompute();
+    return {{"ticks", statistics.ticks()},
+            {"removed_voxels", statistics.removedVoxels()},
+            {"removed_mm3", statistics.removed() * kPerCubicMillimetre},
+            {"added_voxels", statistics.addedVoxels()},
+            {"added_mm3", statistics.added() * kPerCubicMillimetre},
+            {"max_contacts", statistics.maxContacts()},
+            {"max_penetration_m", statistics.maxPenetration()},
+            {"max_force_n", statistics.maxForce()},
+            {"max_torque_nm", statistics.maxTorque()},
+            {"faults", statistics.faults()},
+            {"fault_names", faultNames(statistics.faults())},
+            {"tick_us",
+             {{"mean", us(compute.meanNs())},
+              {"p50", us(double(compute.percentileNs(50)))},
+              {"p99", us(double(compute.percentileNs(99)))},
+              {"p99_9", us(double(compute.percentileNs(99.9)))},
+              {"max", us(double(compute.maxNs()))}}},
+            {"state_hash", hexText(hash.value())}};
+}
+
+}  // namespace
+
+std::string simulate(const SimulateOptions& options) {
+    const LoadedScene loaded = loadScene(options.scene);
+    const std::vector<TrajectoryRow> rows = readTrajectory(options.trajectory);
+    checkSpacing(rows, 1 / loaded.scene.loop().rate_hz(), options.trajectory);
+    const size_t tool = options.tool.empty() ? 0 : toolIndexOf(toolNamesOf(loaded.scene), options.tool);
+    requireWritable(options.save);
+    std::optional<TraceWriter> trace;
+    const RecordedEffects recorded = recordedEffectsOf(loaded.scene.effects());
+    if (!options.trace.empty()) trace.emplace(options.trace, recorded);
+    Simulation simulation = makeSimulation(loaded);
+    for (const std::string& warning : simulation.warnings) spdlog::warn("{}", warning);
+    BoneModel& bone = *simulation.bone;
+    const MeshGrid grid(bone.volume, bone.lattice);
+    const double volume_before = meshVolume(meshWholeBone(bone.volume, bone.lattice), grid);
+    std::optional<VoxelVolume> before;
+    if (!options.save.difference.empty()) before = bone.volume.withoutSpareBricks();
+
+    const ToolSwitch tools(simulation.spoTools(), tool);
+    HapticTick tick(simulation.tick, bone, simulation.firstTool(), nullptr, nullptr, &tools);
+    RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * double(kNsPerSecond))), recorded);
+    StateHash hash;
+    FileIo io(rows);
+    while (tick.tick(io)) {
+        hash.addRecord(io.lastRecord(), recorded);
+        statistics.add(io.lastRecord());
+        if (trace) trace->write(io.lastRecord());
+    }
+    hash.addVolume(bone.volume);
+    if (trace && !trace->close())
+        throw UserError(options.trace + ": the trace could not be written to its end (disk full?)");
+
+    const std::vector<NodeMesh> meshes = meshWholeBone(bone.volume, bone.lattice);
+    const MeshCheck mesh = checkMesh(meshes, grid);
+    if (!options.save.volume.empty()) writeNrrd(options.save.volume, bone.volume);
+    if (!options.save.mesh.empty()) saveMesh(options.save.mesh, bone.volume, bone.lattice, meshes);
+    if (before) saveDifference(options.save.difference, *before, bone.volume);
+    nlohmann::json json = totals(statistics, hash);
+    for (const auto& [key, value] : statistics.effects().figures()) json[key] = value;
+    if (recorded.any()) json["warnings"] = statistics.effects().warnings(materialNamesOf(loaded.scene));
+    json["scene"] = loaded.scene.name();
+    json["tool"] = simulation.tools[tool].name;
+    json["preset"] = settingsName(simulation.tick.accuracy);
+    json["iso_value"] = simulation.mapping.iso_value;
+    json["shell_points"] = bone.shell.pointCount(bone.shell.followed());
+    json["bone_mm3"] = mesh.volume * kPerCubicMillimetre;
+    json["bone_before_mm3"] = volume_before * kPerCubicMillimetre;
+    json["mesh"] = {
+        {"triangles", mesh.triangles}, {"vertices", mesh.vertices}, {"is_closed", mesh.isClosed()}};
+    return json.dump();
+}
+
+}  // namespace bonemill

@@ -1,0 +1,30 @@
+#include "haptic_server/session/accuracy_figures.h"
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "common/user_error.h"
+
+namespace bonemill {
+
+AccuracyFigures readAccuracyFigures(const std::string& file) {
+    std::ifstream stream(file);
+    if (!stream) throw UserError(file + ": cannot be read");
+    try {
+        AccuracyFigures figures;
+        const nlohmann::json json = nlohmann::json::parse(stream);
+        for (const auto& [name, figure] : json.at("settings").items())
+            figures[name] = {figure.at("force_error_percent").get<double>(),
+                             figure.at("direction_error_deg").get<double>()};
+        return figures;
+    } catch (const nlohmann::json::exception& error) {
+        throw UserError(file + ": is no accuracy.json of accuracy-report: " + error.what());
+    }
+}
+
+std::string accuracyFiguresOf(const std::string& scene_file) {
+    return std::filesystem::path(scene_file).replace_extension(".accuracy.json").string();
+}
+
+}  // namespace bonemill

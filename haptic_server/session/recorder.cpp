@@ -1,0 +1,81 @@
+#include "haptic_server/session/recorder.h"
+
+#include <utility>
+
+#include "common/rt/clock.h"
+
+namespace bonemill {
+
+Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const std::string& trace_path,
+                   const RecordedEffects& recorded)
+    : ring_(ring), statistics_(period_ns, recorded), effects_(recorded) {
+    if (!trace_path.empty()) trace_.emplace(trace_path, recorded);
+}
+
+void Recorder::drain() {
+    TickRecord record;
+    bool any = false;
+    EventSum events;
+    double removed = 0;
+    while (ring_.tryPop(record)) {
+        any = true;
+        statistics_.add(record);
+        if (trace_) trace_->write(record);
+        addToWindow(record);
+        events.add(record.effects);
+        removed += record.removed;
+    }
+    if (!any) return;
+    const std::lock_guard lock(mutex_);
+    latest_ = record;
+    new_events_.add(events);
+    new_removed_ += removed;
+    if (effects_.recorded().any()) effects_ = statistics_.effects();
+    health_.ticks = statistics_.ticks();
+    health_.dropped_ticks = statistics_.droppedTicks();
+    health_.faults = statistics_.faults();
+}
+
+void Recorder::addToWindow(const TickRecord& record) {
+    if (window_start_ns_ == 0) window_start_ns_ = record.start_ns;
+    const int64_t elapsed = record.start_ns - window_start_ns_;
+    if (elapsed >= kNsPerSecond) {
+        const std::lock_guard lock(mutex_);
+        health_.rate_hz = double(window_.count()) / secondsOfNs(elapsed);
+        health_.tick_p50_us = microsecondsOfNs(double(window_.percentileNs(50)));
+        health_.tick_p99_us = microsecondsOfNs(double(window_.percentileNs(99)));
+        health_.tick_max_us = microsecondsOfNs(double(window_.maxNs()));
+        window_ = {};
+        window_start_ns_ = record.start_ns;
+    }
+    window_.record(record.compute_ns);
+}
+
+bool Recorder::finish() {
+    drain();
+    statistics_.setLostRecords(ring_.dropped());
+    return !trace_ || trace_->close();
+}
+
+std::optional<TickRecord> Recorder::latest() const {
+    const std::lock_guard lock(mutex_);
+    return latest_;
+}
+
+std::optional<Recorder::Since> Recorder::takeSince() {
+    const std::lock_guard lock(mutex_);
+    if (!latest_) return std::nullopt;
+    return Since{*latest_, std::exchange(new_events_, {}), std::exchange(new_removed_, 0)};
+}
+
+EffectStatistics Recorder::effects() const {
+    const std::lock_guard lock(mutex_);
+    return effects_;
+}
+
+LoopHealth Recorder::health() const {
+    const std::lock_guard lock(mutex_);
+    return health_;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,284 @@
+#include "haptic_server/session/server.h"
+
+#include <signal.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <future>
+#include <thread>
+
+#include "common/rt/clock.h"
+#include "common/rt/realtime.h"
+#include "common/units.h"
+#include "common/user_error.h"
+#include "haptic_server/mesh/mesh_rounds.h"
+#include "haptic_server/record/fault_names.h"
+#include "haptic_server/session/device_link_io.h"
+#include "haptic_server/session/show_session.h"
+#include "haptic_server/setup/scene_effects.h"
+#include "haptic_server/setup/scene_materials.h"
+#include "haptic_server/volume/import/nrrd_writer.h"
+
+namespace bonemill {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr size_t kRingRecords = 8192;  // 8 s at 1 kHz: a stalled disk loses nothing
+constexpr size_t kRingCuts = 8192;
+constexpr int kTickPriority = 80;
+constexpr auto kPublishPeriod = 5ms;
+constexpr auto kRecordPeriod = 4ms;
+constexpr int64_t kWarmUpNs = kNsPerSecond;
+
+DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& loop,
+                              const Simulation& simulation) {
+    DeviceLinkIoConfig config;
+    config.ends_with_device = options.until_device_leaves;
+    config.period_ns = int64_t(std::llround(double(kNsPerSecond) / loop.rate_hz()));
+    config.ramp.stale_after_ns = int64_t(loop.stale_after_ms() * double(kNsPerMillisecond));
+    config.ramp.ramp_down_ns = int64_t(loop.ramp_ms() * double(kNsPerMillisecond));
+    config.X_WD = simulation.X_WD;
+    return config;
+}
+
+AccuracyFigures figuresOf(const ServerOptions& options) {
+    if (!options.accuracy.empty()) return readAccuracyFigures(options.accuracy);
+    const std::string beside = accuracyFiguresOf(options.scene);
+    return std::filesystem::exists(beside) ? readAccuracyFigures(beside) : AccuracyFigures{};
+}
+
+int coreOf(int option) {
+    return option == kLastCore ? int(std::thread::hardware_concurrency()) - 1 : option;
+}
+
+// SIGINT and SIGTERM are taken by the main thread alone, with sigtimedwait; all threads inherit this mask.
+sigset_t blockStopSignals() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    return signals;
+}
+
+class Server {
+  public:
+    explicit Server(const ServerOptions& options)
+        : options_(options),
+          loaded_(loadScene(options.scene)),
+          simulation_(makeSimulation(loaded_)),  // forks to read the volume: before signals, link and threads
+          stop_signals_(blockStopSignals()),
+          link_(DeviceLink::create(DeviceLink::nameOfSession(options.session), LinkSide::kServer)),
+          history_(*simulation_.bone),
+          accuracy_(simulation_.tick.accuracy),
+          tools_(simulation_.spoTools()),
+          ring_(kRingRecords),
+          cuts_(kRingCuts),
+          io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), link_, ring_, cuts_),
+          tick_(simulation_.tick, *simulation_.bone, simulation_.firstTool(), &history_, &accuracy_, &tools_),
+          recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace,
+                    recordedEffectsOf(loaded_.scene.effects())),
+          publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
+          bone_export_(history_, *simulation_.bone, options.export_dir),
+          commands_(loaded_.scene, *simulation_.bone, recorder_,
+                    {history_, accuracy_, tools_, stop_requested_, bone_export_}, options.instructor_only),
+          show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, commands_,
+                options.stream_mbit_per_s * kMega / 8) {
+        for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
+        for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
+    }
+
+    ~Server() { io_.stop(); }  // whatever happened: the tick thread must be able to end before it is joined
+
+    int run() {
+        startTick();
+        std::jthread recorder(
+            [this](std::stop_token stop) { loop(stop, kRecordPeriod, [this] { recorder_.drain(); }); });
+        std::jthread mesher([this](std::stop_token stop) { meshUntil(stop); });
+        std::jthread publisher(
+            [this](std::stop_token stop) { loop(stop, kPublishPeriod, [this] { publishRound(); }); });
+        waitForTheEnd();
+        io_.stop();
+        tick_thread_.join();
+        recorder = {};
+        mesher = {};
+        publisher = {};
+        published_.writes = publisher_.writeTimes();
+        published_.nodes = publisher_.digest().count();
+        published_.digest = publisher_.digest().value();
+        recorder_.setPublished(published_);
+        return finish();
+    }
+
+  private:
+    // Starts the tick thread. It makes no tick before memory is locked and the permissions are accepted.
+    void startTick() {
+        RealtimeReport report = lockMemory();
+        std::promise<RealtimeReport> thread_report;
+        std::promise<bool> permission;
+        std::future<RealtimeReport> granted = thread_report.get_future();
+        tick_thread_ = std::jthread([this, &thread_report, may_run = permission.get_future()]() mutable {
+            tick_thread_id_ = gettid();
+            thread_report.set_value(makeThreadRealtime({kTickPriority, coreOf(options_.rt_core)}));
+            if (!may_run.get()) return;
+            while (tick_.tick(io_)) {
+            }
+        });
+        report.append(granted.get());
+        for (const std::string& advice : report.advice) spdlog::info("real time: {}", advice);
+        for (const std::string& missing : report.missing) spdlog::warn("real time: {}", missing);
+        const bool is_accepted = report.missing.empty() || options_.best_effort_rt;
+        permission.set_value(is_accepted);
+        if (is_accepted) return;
+        std::string message = "this machine does not grant real time:";
+        for (const std::string& missing : report.missing) message += " " + missing;
+        throw UserError(message +
+                        " Read docs/realtime.md, or go on without guarantees with --best-effort-rt.");
+    }
+
+    // A thread's work until it is told to stop; a failure ends the session in order, with its files.
+    template <class Work>
+    void loop(const std::stop_token& stop, std::chrono::microseconds period, Work work) {
+        try {
+            while (!stop.stop_requested()) {
+                work();
+                std::this_thread::sleep_for(period);
+            }
+        } catch (const std::exception& error) {
+            spdlog::error("{}: the session ends", error.what());
+            has_failed_ = true;
+            stop_requested_ = true;
+        }
+    }
+
+    void publishRound() {
+        const int64_t start_ns = monotonicNowNs();
+        show_.round();
+        published_.rounds.record(monotonicNowNs() - start_ns);
+    }
+
+    void meshUntil(const std::stop_token& stop) {
+        const bool are_wanted = wantsVertexMaterials(loaded_.scene);
+        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_,
+                          are_wanted ? simulation_.tick.effects.properties.get() : nullptr);
+        const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
+        loop(stop, MeshRounds::kPeriod, [&] {
+            for (bool is_more = true; is_more && !stop.stop_requested();) {
+                is_more = rounds.round(put);
+                if (rounds.hasMeshedAll()) outbox_.markWhole(monotonicNowNs());
+            }
+        });
+        recorder_.setCutToPublisher(rounds.cutToSink());
+    }
+
+    // Again and again: the tick thread, and its numbers with it, may be gone at the end.
+    void countPageFaults(int64_t first_tick_ns) {
+        const std::optional<PageFaults> now = pageFaultsOf(tick_thread_id_);
+        if (!now || monotonicNowNs() - first_tick_ns < kWarmUpNs) return;
+        if (!warm_) warm_ = now;
+        recorder_.setPageFaults({now->minor - warm_->minor, now->major - warm_->major});
+    }
+
+    void waitForTheEnd() {
+        spdlog::info("session {} of scene '{}' waits for a device", options_.session, loaded_.scene.name());
+        int64_t first_tick_ns = 0;
+        while (!stop_requested_) {
+            constexpr timespec kPoll{0, 50'000'000};
+            if (const int signal = sigtimedwait(&stop_signals_, nullptr, &kPoll); signal > 0) {
+                spdlog::info("{} received: shutting down", signal == SIGINT ? "SIGINT" : "SIGTERM");
+                return;
+            }
+            if (io_.hasDeviceLeft()) {
+                spdlog::info("the device has left: session ends");
+                return;
+            }
+            if (!first_tick_ns && recorder_.health().ticks > 0) {
+                first_tick_ns = monotonicNowNs();
+                spdlog::info("the device is there: the loop runs");
+            }
+            if (first_tick_ns) countPageFaults(first_tick_ns);
+            if (first_tick_ns && options_.seconds > 0 &&
+                secondsOfNs(monotonicNowNs() - first_tick_ns) > options_.seconds)
+                return;
+        }
+        if (!has_failed_) spdlog::info("shut down by a client's command");
+    }
+
+    // The tick thread has ended: what it was putting back is in the files, too.
+    void putBackTheRest() {
+        for (bool shell_is_complete = true; history_.restoreSome(*simulation_.bone, shell_is_complete);) {
+        }
+    }
+
+    int finish() {
+        putBackTheRest();
+        const bool trace_is_whole = recorder_.finish();
+        if (!trace_is_whole)
+            spdlog::error("{}: part of the trace could not be written (disk full?)", options_.trace);
+        const RunStatistics& statistics = recorder_.statistics();
+        spdlog::info("{} ticks, {:.1f} Hz, tick p99 {:.1f} us, {} dropped, faults: {}", statistics.ticks(),
+                     statistics.meanRateHz(),
+                     microsecondsOfNs(double(statistics.tickCompute().percentileNs(99))),
+                     statistics.droppedTicks(), faultNames(statistics.faults()));
+        for (const std::string& warning : statistics.effects().warnings(materialNamesOf(loaded_.scene)))
+            spdlog::warn("effects warned: {}", warning);
+        // Each on its own: one that fails must not cost the others.
+        bool all_written = trace_is_whole;
+        const auto write = [&all_written](const std::string& path, auto&& action) {
+            try {
+                if (!path.empty()) action();
+            } catch (const std::exception& error) {
+                spdlog::error("{}", error.what());
+                all_written = false;
+            }
+        };
+        const VoxelVolume& volume = simulation_.bone->volume;
+        const LeafLattice& lattice = simulation_.bone->lattice;
+        const SavePaths& save = options_.save;
+        write(save.volume, [&] { writeNrrd(save.volume, volume); });
+        write(save.mesh, [&] { saveMesh(save.mesh, volume, lattice, meshWholeBone(volume, lattice)); });
+        write(save.difference, [&] { saveDifference(save.difference, history_.scanned(), volume); });
+        write(options_.report,
+              [&] { statistics.writeJson(options_.report, materialNamesOf(loaded_.scene)); });
+        return all_written && !has_failed_ ? 0 : 1;
+    }
+
+    ServerOptions options_;
+    LoadedScene loaded_;
+    Simulation simulation_;
+    sigset_t stop_signals_;
+    DeviceLink link_;
+    BoneHistory history_;
+    AccuracySwitch accuracy_;
+    ToolSwitch tools_;
+    SpscRing<TickRecord> ring_;
+    SpscRing<Cut> cuts_;
+    DeviceLinkIo io_;
+    HapticTick tick_;
+    Recorder recorder_;
+    MeshOutbox outbox_;
+    std::atomic<bool> stop_requested_{false};
+    std::atomic<bool> has_failed_{false};
+    Publisher publisher_;
+    SessionExport bone_export_;
+    SessionCommands commands_;
+    ShowSession show_;
+    PublishFigures published_;  // publisher thread's until it is joined
+    pid_t tick_thread_id_ = -1;
+    std::optional<PageFaults> warm_;  // of the tick thread, when it had run for kWarmUpNs
+    std::jthread tick_thread_;
+};
+
+}  // namespace
+
+int runServer(const ServerOptions& options) {
+    requireWritable(options.report);
+    requireWritable(options.save);
+    dds::setNetwork(options.network);
+    return Server(options).run();
+}
+
+}  // namespace bonemill

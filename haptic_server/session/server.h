@@ -1,0 +1,36 @@
+// The live server: tick, mesher, publisher and recorder threads around one bone.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/dds/network.h"
+#include "haptic_server/record/bone_files.h"
+
+namespace bonemill {
+
+inline constexpr int kLastCore = -2;
+
+struct ServerOptions {
+    std::string scene;
+    uint32_t session = 1;
+    uint32_t domain = 0;
+    dds::NetworkOptions network;
+    double seconds = 0;              // after the first tick; 0: until a signal or a shut_down command
+    double stream_mbit_per_s = 200;  // of node meshes; nearest to the burr first
+    std::string accuracy;  // accuracy.json of accuracy-report; empty: beside the scene, if there is one
+    std::string trace;     // files to write; empty: none
+    std::string report;
+    SavePaths save;
+    std::string export_dir;   // where clients' export commands write; empty: they are refused
+    int rt_core = kLastCore;  // core of the tick thread; kAnyCore (-1) leaves the choice to the kernel
+    bool best_effort_rt = false;
+    bool instructor_only = false;      // others may look, not command
+    bool until_device_leaves = false;  // end when the daemon shuts down in order
+};
+
+// Runs until told to stop; returns the process' exit code. Throws UserError at start-up, also when real-time
+// permissions are missing and best_effort_rt is not set. Files are written also after SIGINT/SIGTERM.
+int runServer(const ServerOptions& options);
+
+}  // namespace bonemill

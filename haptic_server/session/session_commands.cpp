@@ -1,0 +1,106 @@
+#include "haptic_server/session/session_commands.h"
+
+#include "common/config/effect_check.h"
+#include "common/units.h"
+#include "haptic_server/session/repeated_text.h"
+
+namespace bonemill {
+
+SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bone, const Recorder& recorder,
+                                 const SessionControls& controls, bool only_instructors)
+    : controls_(controls),
+      recorder_(recorder),
+      checkpoints_(controls.history, bone),
+      voxel_mm3_(bone.volume.voxelVolume() * kPerCubicMillimetre),
+      is_switchable_(scene.accuracy().switchable()),
+      effect_of_gradient_law_(effectOfGradientLaw(scene.effects())),
+      only_instructors_(only_instructors) {}
+
+std::string SessionCommands::carryOut(const topics::Command& command) {
+    if (const std::string refusal = refusalOf(command); !refusal.empty()) return refusal;
+    switch (command.action_case()) {
+        case topics::Command::kResetVolume:
+            return restore(Checkpoints::kScannedBone);
+        case topics::Command::kPauseMilling:
+            controls_.history.pauseMilling(command.pause_milling());
+            return "done";
+        case topics::Command::kSetAccuracy:
+            return setAccuracy(command.set_accuracy());
+        case topics::Command::kSelectTool:
+            return selectTool(command.select_tool());
+        case topics::Command::kSaveCheckpoint:
+            checkpoints_.save(sessionS());
+            return "done";
+        case topics::Command::kRestoreCheckpoint:
+            return restore(command.restore_checkpoint());
+        case topics::Command::kShutDown:
+            controls_.stop_requested = true;
+            return "done";
+        case topics::Command::kExport:
+            return controls_.bone_export.begin(command.export_());
+        default:
+            return "refused: this server does not know the action";
+    }
+}
+
+// Empty: the role allows it.
+std::string SessionCommands::refusalOf(const topics::Command& command) const {
+    if (command.role() == topics::Viewer::INSTRUCTOR) return "";
+    if (only_instructors_)
+        return "refused: only instructors command this session (--instructor-only); start with --role "
+               "instructor";
+    if (command.role() != topics::Viewer::OPERATOR)
+        return "refused: a viewer only looks; start with --role operator";
+    if (command.action_case() == topics::Command::kShutDown)
+        return "refused: only an instructor ends the session; start with --role instructor";
+    return "";
+}
+
+std::string SessionCommands::setAccuracy(const std::string& name) {
+    const auto preset = presetOfName(name);
+    if (name != "scene" && !preset)
+        return "refused: no preset is called '" + repeatedText(name) +
+               "'; thesis_2012, fast, balanced, exact or scene";
+    if (!is_switchable_ && preset) return "refused: the scene says accuracy.switchable: false";
+    if (preset == Preset::kThesis2012 && effect_of_gradient_law_)
+        return std::string("refused: effects.") + effect_of_gradient_law_ +
+               " of the scene needs the gradient contact law, which thesis_2012 is not";
+    controls_.accuracy.choose(preset ? AccuracySwitch::choiceOf(*preset) : AccuracySwitch::kSceneChoice);
+    return "done";
+}
+
+std::string SessionCommands::selectTool(uint32_t index) {
+    if (index >= controls_.tools.count())
+        return "refused: there is no tool " + std::to_string(index + uint64_t{1}) + "; the scene has " +
+               std::to_string(controls_.tools.count());
+    controls_.tools.choose(index);
+    return "done";
+}
+
+std::string SessionCommands::restore(uint32_t checkpoint) {
+    if (checkpoints_.restore(checkpoint)) return "done";
+    return "refused: there is no checkpoint " + std::to_string(checkpoint) +
+           (checkpoints_.kept().empty()
+                ? "; none is saved"
+                : "; the oldest is " + std::to_string(checkpoints_.kept().front().id) + ", the newest " +
+                      std::to_string(checkpoints_.kept().back().id));
+}
+
+double SessionCommands::sessionS() const {
+    const auto latest = recorder_.latest();
+    return latest ? latest->t_s : 0;
+}
+
+void SessionCommands::describe(topics::Status& status) const {
+    status.set_session_s(sessionS());
+    status.set_is_milling_paused(controls_.history.isMillingPaused());
+    status.set_removed_mm3(double(controls_.history.missingVoxels()) * voxel_mm3_);
+    for (const Checkpoints::Checkpoint& kept : checkpoints_.kept()) {
+        topics::Checkpoint* checkpoint = status.add_checkpoints();
+        checkpoint->set_id(kept.id);
+        checkpoint->set_session_s(kept.session_s);
+        checkpoint->set_removed_mm3(double(kept.snapshot->missing_voxels) * voxel_mm3_);
+    }
+}
+
+}  // namespace bonemill

@@ -1,0 +1,186 @@
+#include "haptic_server/session/show_session.h"
+
+#include <cmath>
+
+#include "common/rt/clock.h"
+#include "common/units.h"
+#include "haptic_server/record/fault_names.h"
+#include "haptic_server/setup/scene_materials.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int64_t kToolStatePeriodNs = 9 * kNsPerMillisecond;
+constexpr int64_t kStatusPeriodNs = 250 * kNsPerMillisecond;
+constexpr int64_t kStatusAfterChangeNs = 20 * kNsPerMillisecond;
+
+template <class Repeated, class Vector>
+void assign(Repeated* out, const Vector& v) {
+    out->Clear();
+    for (Eigen::Index i = 0; i < v.size(); ++i) out->Add(v[i]);
+}
+
+void fillCamera(const scene::Camera& camera, topics::Camera* out) {
+    if (camera.has_target_mm()) {
+        out->set_has_target(true);
+        const scene::Vec3& t = camera.target_mm();
+        assign(out->mutable_target_m(), Eigen::Vector3d(t.x(), t.y(), t.z()) * kMillimetre);
+    }
+    out->set_distance_m(camera.has_distance_mm() ? camera.distance_mm() * kMillimetre : 0);
+    out->set_azimuth_rad(camera.azimuth_deg() * kDegree);
+    out->set_elevation_rad(camera.elevation_deg() * kDegree);
+    if (camera.has_up())
+        assign(out->mutable_up(), Eigen::Vector3d(camera.up().x(), camera.up().y(), camera.up().z()));
+}
+
+void fillTool(const TriangleSurface& surface, topics::TriangleMesh* out) {
+    out->Clear();
+    for (const Eigen::Vector3f& p : surface.positions)
+        for (int axis = 0; axis < 3; ++axis) out->add_vertices_m(p[axis]);
+    for (const Eigen::Vector3f& n : surface.normals)
+        for (int axis = 0; axis < 3; ++axis) out->add_normals(n[axis]);
+    for (const uint32_t index : surface.indices) out->add_indices(index);
+}
+
+// Box of all leaves with surface, V: what the camera has to show.
+Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
+    Eigen::AlignedBox3d box;
+    for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
+        bone.shell.forEachBlock(0, leaf, [&box](const ShellBlock& block, uint32_t count) {
+            for (uint32_t i = 0; i < count; ++i)
+                box.extend(Eigen::Vector3d(block.x[i], block.y[i], block.z[i]));
+        });
+    if (box.isEmpty()) box.extend(Eigen::Vector3d::Zero());
+    return box;
+}
+
+// But for the tool in use.
+topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulation) {
+    topics::SceneInfo info;
+    info.set_name(scene.name());
+    const Pose& X_WV = simulation.bone->volume.geometry().X_WV;
+    const Eigen::Quaterniond& q = X_WV.rotation;
+    assign(info.mutable_p_wv_m(), X_WV.position);
+    assign(info.mutable_q_wv(), Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()));
+    const Eigen::AlignedBox3d box = boneBox(*simulation.bone);
+    assign(info.mutable_bone_min_m(), box.min());
+    assign(info.mutable_bone_max_m(), box.max());
+    for (const SceneTool& tool : simulation.tools) info.add_tool_names(tool.name);
+    fillCamera(scene.camera(), info.mutable_camera());
+    describeToViewers(scene, info);
+    info.set_leaf_count(simulation.bone->lattice.leafCount());
+    return info;
+}
+
+}  // namespace
+
+ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
+                         const AccuracyFigures& figures, MeshOutbox& outbox, Recorder& recorder,
+                         SessionCommands& commands, double bytes_per_s)
+    : publisher_(publisher),
+      scene_name_(scene.name()),
+      outbox_(outbox),
+      budget_(bytes_per_s),
+      X_VW_(simulation.bone->volume.geometry().X_WV.inverse()),
+      recorder_(recorder),
+      commands_(commands),
+      figures_(figures),
+      effects_(scene.effects()),
+      material_names_(materialNamesOf(scene)),
+      tools_(simulation.tools),
+      scene_info_(sceneInfo(scene, simulation)) {
+    publishSceneInfo();
+}
+
+void ShowSession::publishSceneInfo() {
+    const size_t tool = commands_.tools().chosen();
+    scene_info_.set_revision(scene_info_.revision() + 1);
+    scene_info_.set_tool_index(uint32_t(tool));
+    scene_info_.set_burr_radius_m(tools_[tool].burr.radius);
+    fillTool(tools_[tool].surface, scene_info_.mutable_tool());
+    publisher_.publishSceneInfo(scene_info_);
+}
+
+void ShowSession::round() {
+    has_changed_ |= publishNodes();
+    const int64_t now_ns = monotonicNowNs();
+    if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
+    carryOutCommands();
+    if (now_ns - last_status_ns_ > (has_changed_ ? kStatusAfterChangeNs : kStatusPeriodNs)) publishStatus();
+}
+
+void ShowSession::publishToolState(int64_t now_ns) {
+    const auto since = recorder_.takeSince();
+    if (!since) return;
+    std::optional<topics::EffectState> effects;
+    if (effects_.areShown()) effects = effects_.at(since->latest.effects, since->events, since->removed);
+    publisher_.publishToolState(since->latest, std::move(effects));
+    last_tool_state_ns_ = now_ns;
+}
+
+// Those nearest to the burr first, as many as the budget allows.
+bool ShowSession::publishNodes() {
+    Eigen::Vector3d burr_V = Eigen::Vector3d::Zero();
+    if (const auto latest = recorder_.latest())
+        burr_V = X_VW_ * Eigen::Map<const Eigen::Vector3d>(latest->p_WT);
+    const int64_t now_ns = monotonicNowNs();
+    std::vector<NodeGroup> groups =
+        outbox_.takeNearest(burr_V.cast<float>(), budget_.available(now_ns), now_ns);
+    for (NodeGroup& group : groups) {
+        const Publisher::Written written = publisher_.publishNodes(group.meshes, group.oldest_cut_ns);
+        budget_.spend(written.bytes);
+        if (!written.is_whole) outbox_.put(std::move(group), now_ns);  // next round; a newer revision wins
+    }
+    is_whole_ = is_whole_ || outbox_.hasGivenWhole();
+    return !groups.empty();
+}
+
+// Who reads that a command is done finds what it did in the same status.
+void ShowSession::carryOutCommands() {
+    for (const topics::Command& command : publisher_.takeCommands()) {
+        const std::string result = commands_.carryOut(command);
+        if (commands_.tools().chosen() != scene_info_.tool_index()) publishSceneInfo();
+        if (result.empty())
+            under_way_ = command;
+        else
+            answer(command, result);
+    }
+    if (const auto result = commands_.takeResult()) answer(under_way_, *result);
+}
+
+void ShowSession::answer(const topics::Command& command, const std::string& result) {
+    publishStatus();
+    publisher_.acknowledge(command, result);
+}
+
+void ShowSession::publishStatus() {
+    last_status_ns_ = monotonicNowNs();
+    has_changed_ = false;
+    const LoopHealth health = recorder_.health();
+    topics::Status status;
+    status.set_scene(scene_name_);
+    status.set_is_model_partial(!is_whole_);
+    status.set_preset(settingsName(commands_.accuracy().chosen()));
+    // accuracy-report measures with the first tool.
+    const auto figure = commands_.tools().chosen() == 0 ? figures_.find(status.preset()) : figures_.end();
+    if (figure != figures_.end()) {
+        status.set_has_accuracy_error(true);
+        status.set_force_error_percent(figure->second.force_error_percent);
+        status.set_force_direction_error_deg(figure->second.direction_error_deg);
+    }
+    status.set_ticks(health.ticks);
+    status.set_rate_hz(health.rate_hz);
+    status.set_tick_p50_us(health.tick_p50_us);
+    status.set_tick_p99_us(health.tick_p99_us);
+    status.set_tick_max_us(health.tick_max_us);
+    status.set_dropped_ticks(health.dropped_ticks);
+    status.set_faults(health.faults);
+    status.set_fault_text(faultNames(health.faults));
+    commands_.describe(status);
+    effects_.describe(recorder_.effects(), material_names_, status);
+    const auto latest = recorder_.latest();
+    status.set_device_stale(!latest || (latest->faults & kFaultStaleDevice));
+    publisher_.publishStatus(std::move(status));
+}
+
+}  // namespace bonemill

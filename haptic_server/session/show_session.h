@@ -1,0 +1,53 @@
+// The publisher thread's work: scene, tool, status and node meshes to the clients, their commands to the
+// tick.
+#pragma once
+
+#include "haptic_server/mesh/mesh_outbox.h"
+#include "haptic_server/publish/byte_budget.h"
+#include "haptic_server/publish/publisher.h"
+#include "haptic_server/session/accuracy_figures.h"
+#include "haptic_server/session/recorder.h"
+#include "haptic_server/session/session_commands.h"
+#include "haptic_server/session/shown_effects.h"
+#include "haptic_server/setup/scene_setup.h"
+
+namespace bonemill {
+
+class ShowSession {
+  public:
+    // Publishes the scene at once. Node meshes take bytes_per_s at most. References must outlive this object.
+    ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
+                const AccuracyFigures& figures, MeshOutbox& outbox, Recorder& recorder,
+                SessionCommands& commands, double bytes_per_s);
+
+    // One round, about 200 times per second; publisher thread only.
+    void round();
+
+  private:
+    bool publishNodes();
+    void publishToolState(int64_t now_ns);
+    void publishStatus();
+    void publishSceneInfo();
+    void carryOutCommands();
+    void answer(const topics::Command& command, const std::string& result);
+
+    Publisher& publisher_;
+    std::string scene_name_;
+    MeshOutbox& outbox_;
+    ByteBudget budget_;
+    Pose X_VW_;
+    bool is_whole_ = false;  // all of the bone has been published
+    Recorder& recorder_;
+    SessionCommands& commands_;
+    AccuracyFigures figures_;
+    ShownEffects effects_;
+    std::vector<std::string> material_names_;
+    const std::vector<SceneTool>& tools_;
+    topics::SceneInfo scene_info_;  // as last published
+    topics::Command under_way_;     // that was begun and has not ended
+    int64_t last_tool_state_ns_ = 0;
+    int64_t last_status_ns_ = 0;
+    bool has_changed_ = false;  // since the last status
+};
+
+}  // namespace bonemill

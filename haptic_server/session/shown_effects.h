@@ -1,0 +1,35 @@
+// What viewers are told of a scene's effects and materials. Start-up and publisher thread; allocates.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "haptic_server/record/effect_statistics.h"
+#include "haptic_server/record/event_sum.h"
+#include "haptic_server/telemetry/recorded_effects.h"
+#include "proto/scene.pb.h"
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+// What viewers are to know of effects and materials, nothing if the scene lists none.
+void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info);
+
+// The effects part of the tool states of a session.
+class ShownEffects {
+  public:
+    explicit ShownEffects(const scene::Effects& effects);
+    // False: tool states have no such part.
+    bool areShown() const noexcept { return recorded_.any() || is_seen_; }
+    // Of the newest tick; events and removed (m³) since the tool state before.
+    topics::EffectState at(const EffectRecord& newest, const EventSum& events, double removed) const;
+    // Nothing without protected_structures and thermal.
+    void describe(const EffectStatistics& statistics, const std::vector<std::string>& materials,
+                  topics::Status& status) const;
+
+  private:
+    RecordedEffects recorded_;
+    bool is_seen_ = false;  // a viewer has effects that follow the burr
+};
+
+}  // namespace bonemill

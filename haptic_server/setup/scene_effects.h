@@ -1,0 +1,26 @@
+// What the scene's effects, materials and tools ask of the tick's effects. Start-up only.
+#pragma once
+
+#include "common/config/scene_file.h"
+#include "haptic_server/effects/effect_configs.h"
+#include "haptic_server/telemetry/recorded_effects.h"
+#include "haptic_server/tool/burr.h"
+#include "haptic_server/volume/import/densify.h"
+
+namespace bonemill {
+
+Burr burrOf(const scene::Tool& tool);
+
+// Fields of scene::Effects from this number on are the viewer's: they cost the tick nothing.
+inline constexpr int kFirstViewerEffect = 20;
+
+// But for what depends on the volume.
+EffectConfigs effectConfigsOf(const scene::Scene& scene);
+
+// What traces, reports and hashes hold of these effects.
+RecordedEffects recordedEffectsOf(const scene::Effects& effects);
+
+// Raw values of the scene become densities. Throws UserError for one that is none.
+void mapRawValues(EffectConfigs& configs, const LoadedScene& loaded, const DensityMapping& mapping);
+
+}  // namespace bonemill

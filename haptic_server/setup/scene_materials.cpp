@@ -1,0 +1,102 @@
+#include "haptic_server/setup/scene_materials.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "common/config/scene_tools.h"
+#include "common/units.h"
+#include "common/user_error.h"
+#include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/volume/import/material_ids.h"
+#include "haptic_server/volume/import/protected_distance.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kBeyondWarning = kMillimetre;  // m: so much farther a structure is still seen, and named
+
+MaterialRule ruleOf(const scene::Material& material) {
+    MaterialRule rule;
+    rule.has_range = material.has_from_value() || material.has_below_value();
+    if (material.has_from_value()) rule.from = material.from_value();
+    if (material.has_below_value()) rule.below = material.below_value();
+    rule.labels.assign(material.label().begin(), material.label().end());
+    return rule;
+}
+
+[[noreturn]] void refuse(const LoadedScene& loaded, const std::string& path, const std::string& why) {
+    throw UserError(placeOf(loaded.file.string(), loaded.lines, path) + "field `" + path + "`" + why);
+}
+
+double protectedReachOf(const scene::Scene& scene) {
+    const scene::Effects& effects = scene.effects();
+    double reach = 0;
+    if (effects.has_protected_structures())
+        reach = std::max(reach, effects.protected_structures().warning_distance_mm());
+    if (effects.has_virtual_fixture()) reach = std::max(reach, effects.virtual_fixture().distance_mm());
+    double burr = 0;
+    for (const scene::Tool* tool : toolsOf(scene))
+        burr = std::max({burr, tool->burr_radius_mm(), tool->burr_tip_radius_mm()});
+    return (reach + burr) * kMillimetre + kBeyondWarning;
+}
+
+}  // namespace
+
+MaterialTable materialTableOf(const scene::Scene& scene) {
+    MaterialTable table;
+    if (scene.material_size() > 0) table.emplace_back();
+    for (const scene::Material& material : scene.material())
+        table.push_back({.stiffness_factor = material.stiffness_factor(),
+                         .specific_energy = material.specific_energy_j_per_mm3() * kPerCubicMillimetre,
+                         .is_protected = material.is_protected()});
+    return table;
+}
+
+std::vector<std::string> materialNamesOf(const scene::Scene& scene) {
+    std::vector<std::string> names;
+    for (const scene::Material& material : scene.material()) names.push_back(material.name());
+    return names;
+}
+
+bool wantsVertexMaterials(const scene::Scene& scene) {
+    return scene.effects().bleeding().material_size() > 0 ||
+           std::ranges::any_of(scene.material(), [](const scene::Material& m) { return m.has_color(); });
+}
+
+bool wantsProperties(const scene::Scene& scene) {
+    const scene::Effects& effects = scene.effects();
+    return scene.material_size() > 0 ||
+           (effects.has_energy_removal() && effects.energy_removal().density_exponent() > 0);
+}
+
+std::vector<MaterialId> materialIdsOf(const LoadedScene& loaded, const RawVolume& raw) {
+    if (loaded.scene.material_size() == 0) return {};
+    std::vector<MaterialRule> rules;
+    for (const scene::Material& material : loaded.scene.material()) rules.push_back(ruleOf(material));
+    const std::string& label_path = loaded.scene.volume().label_path();
+    try {
+        std::optional<RawVolume> labels;
+        if (!label_path.empty()) labels = importVolume(resolvePath(loaded, label_path));
+        return materialIds(raw, rules, labels ? &*labels : nullptr, label_path);
+    } catch (const UserError& error) {
+        refuse(loaded, "volume.label_path", std::string(": ") + error.what());
+    }
+}
+
+std::shared_ptr<const DistanceField> protectedFieldOf(const LoadedScene& loaded,
+                                                      const BoneProperties& properties,
+                                                      const Eigen::Vector3d& spacing) {
+    const scene::Effects& effects = loaded.scene.effects();
+    if (!effects.has_protected_structures() && !effects.has_virtual_fixture()) return nullptr;
+    std::shared_ptr<const DistanceField> field =
+        protectedDistance(properties, materialTableOf(loaded.scene), spacing, protectedReachOf(loaded.scene));
+    if (!field)
+        refuse(
+            loaded,
+            effects.has_protected_structures() ? "effects.protected_structures" : "effects.virtual_fixture",
+            " finds nothing to protect: no voxel is of a material with is_protected; check its range or "
+            "labels");
+    return field;
+}
+
+}  // namespace bonemill

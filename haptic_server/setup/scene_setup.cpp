@@ -1,0 +1,248 @@
+#include "haptic_server/setup/scene_setup.h"
+
+#include <cmath>
+
+#include "common/config/scene_tools.h"
+#include "common/units.h"
+#include "common/user_error.h"
+#include "haptic_server/setup/scene_effects.h"
+#include "haptic_server/setup/scene_materials.h"
+#include "haptic_server/tick/tick_budget.h"
+#include "haptic_server/volume/import/far_air.h"
+#include "haptic_server/volume/import/import_volume.h"
+#include "haptic_server/volume/import/small_pieces.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int kDefaultLeafCells = 16;
+constexpr double kMostOverload =
+    3;  // a shaft of half the burr's radius is common, and leans more than it pokes
+
+Eigen::Vector3d metres(const scene::Vec3& mm) {
+    return kMillimetre * Eigen::Vector3d(mm.x(), mm.y(), mm.z());
+}
+
+ToolShape shapeOf(const scene::Tool::Shape& shape) {
+    switch (shape.kind_case()) {
+        case scene::Tool::Shape::kCapsule:
+            return CapsuleShape{metres(shape.capsule().from_mm()), metres(shape.capsule().to_mm()),
+                                shape.capsule().radius_mm() * kMillimetre};
+        case scene::Tool::Shape::kCylinder:
+            return CylinderShape{metres(shape.cylinder().from_mm()), metres(shape.cylinder().to_mm()),
+                                 shape.cylinder().radius_mm() * kMillimetre};
+        case scene::Tool::Shape::kCone:
+            return ConeShape{metres(shape.cone().from_mm()), metres(shape.cone().to_mm()),
+                             shape.cone().from_radius_mm() * kMillimetre,
+                             shape.cone().to_radius_mm() * kMillimetre};
+        default:
+            return SphereShape{metres(shape.sphere().center_mm()), shape.sphere().radius_mm() * kMillimetre};
+    }
+}
+
+DensityWindow windowOf(const scene::Volume& volume) {
+    DensityWindow window;
+    if (volume.has_window_low()) window.low = volume.window_low();
+    if (volume.has_window_high()) window.high = volume.window_high();
+    if (volume.has_iso_value()) window.iso = volume.iso_value();
+    window.smallest_piece_voxels = volume.smallest_piece_voxels();
+    return window;
+}
+
+// Milling rescans the leaves it touches in the tick, so that leaves must stay small.
+constexpr int kMostLeafCells = 128;
+constexpr int kSlowLeafCells = 40;
+
+Eigen::Vector3i leafCellsOf(const scene::Volume& volume, const VolumeGeometry& geometry) {
+    if (volume.has_octree_depth()) {
+        const Eigen::Vector3i cells = LeafLattice::leafCellsOfDepth(geometry, int(volume.octree_depth()));
+        if (cells.maxCoeff() > kMostLeafCells)
+            throw UserError("volume.octree_depth: " + std::to_string(volume.octree_depth()) +
+                            " cuts this volume into leaves of " + std::to_string(cells.maxCoeff()) +
+                            " cells, more than " + std::to_string(kMostLeafCells) +
+                            "; raise it, or set volume.leaf_voxels instead");
+        return cells;
+    }
+    return Eigen::Vector3i::Constant(volume.has_leaf_voxels() ? int(volume.leaf_voxels())
+                                                              : kDefaultLeafCells);
+}
+
+std::string textOf(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+void warnOfLargeLeaves(Simulation& simulation) {
+    const int cells = simulation.bone->lattice.leafCells().maxCoeff();
+    if (cells > kSlowLeafCells)
+        simulation.warnings.push_back(
+            "octree leaves of " + std::to_string(cells) +
+            " cells make milling ticks long; raise volume.octree_depth or use volume.leaf_voxels");
+}
+
+// Which tool, if there are several.
+std::string ofTool(const Simulation& simulation, const SceneTool& tool) {
+    return simulation.tools.size() > 1 ? tool.name + ": " : "";
+}
+
+void warnOfCoarseShell(Simulation& simulation, const SceneTool& tool) {
+    const AccuracySettings& settings = simulation.tick.accuracy;
+    if (settings.tool_distance == ToolDistance::kAnalytic && tool.built.model.hasShapes()) return;
+    const double shell_spacing = settings.shell_factor * simulation.bone->volume.spacing().maxCoeff();
+    const double sdf_spacing = tool.built.model.grid().spacing();
+    if (shell_spacing <= sdf_spacing * (1 + 1e-9)) return;
+    simulation.warnings.push_back(
+        ofTool(simulation, tool) + "point-shell spacing " + textOf(shell_spacing / kMillimetre) +
+        " mm is coarser than the tool's distance grid (" + textOf(sdf_spacing / kMillimetre) +
+        " mm): contact can miss thin features; lower accuracy.shell_factor");
+}
+
+// The coupling's pull is limited by what the burr carries.
+void warnOfThinTool(Simulation& simulation, const scene::Scene& scene, const SceneTool& tool) {
+    const GradientConfig& config = simulation.tick.gradient;
+    const double radius = tool.built.model.field(simulation.tick.accuracy).thinnestRadius();
+    if (simulation.tick.accuracy.law != ContactLaw::kGradient || radius >= tool.burr.radius) return;
+    const double wall = thinnestWall(scene, simulation.bone->volume.spacing().minCoeff());
+    const double carried = wallForce(config.contact, radius, wall);
+    if (tool.saturation_force <= kMostOverload * carried) return;
+    simulation.warnings.push_back(ofTool(simulation, tool) + "the tool's thinnest part has a radius of " +
+                                  textOf(radius / kMillimetre) + " mm: its tip goes through a wall of " +
+                                  textOf(wall / kMillimetre) + " mm at " + textOf(carried) +
+                                  " N, and the coupling pulls with up to " + textOf(tool.saturation_force) +
+                                  " N; lower coupling.max_force_n or contact.thinnest_wall_mm");
+}
+
+// But for what needs the volume.
+std::vector<SceneTool> buildTools(const LoadedScene& loaded) {
+    const std::vector<std::string> names = toolNamesOf(loaded.scene);
+    std::vector<SceneTool> tools;
+    for (const scene::Tool* tool : toolsOf(loaded.scene)) {
+        const ToolConfig config = toolConfigOf(loaded, *tool);
+        tools.push_back({.name = names[tools.size()],
+                         .built = buildTool(config, sdfRefinementsOf(loaded.scene, *tool)),
+                         .surface = toolSurface(config),
+                         .burr = burrOf(*tool),
+                         .saturation_force = 0});
+    }
+    return tools;
+}
+
+void fitToolsToBone(Simulation& simulation, const scene::Scene& scene) {
+    const std::vector<const scene::Tool*> of_scene = toolsOf(scene);
+    const double finest_spacing = simulation.bone->volume.spacing().minCoeff();
+    for (size_t n = 0; n < of_scene.size(); ++n) {
+        SceneTool& tool = simulation.tools[n];
+        tool.saturation_force = saturationForceOf(scene, *of_scene[n], finest_spacing);
+        for (const std::string& warning : tool.built.warnings)
+            simulation.warnings.push_back(ofTool(simulation, tool) + warning);
+        warnOfCoarseShell(simulation, tool);
+        warnOfThinTool(simulation, scene, tool);
+    }
+}
+
+// A range or label that nothing has is most often a slip.
+void warnOfMissingMaterials(Simulation& simulation, const scene::Scene& scene,
+                            const std::vector<MaterialId>& material_ids) {
+    std::vector<bool> is_there(size_t(scene.material_size()) + 1);
+    for (const MaterialId id : material_ids) is_there[id] = true;
+    for (int n = 0; n < scene.material_size(); ++n)
+        if (!is_there[size_t(n) + 1])
+            simulation.warnings.push_back("no voxel is of material '" + scene.material(n).name() +
+                                          "'; check its range or labels, and what materials after it take");
+}
+
+// What the scanned bone was made of, for the effects that ask for it.
+void addProperties(Simulation& simulation, const LoadedScene& loaded, const VoxelVolume& volume,
+                   const std::vector<MaterialId>& material_ids) {
+    if (!wantsProperties(loaded.scene)) return;
+    warnOfMissingMaterials(simulation, loaded.scene, material_ids);
+    const Eigen::Vector3i& dims = volume.dims();
+    EffectConfigs& effects = simulation.tick.effects;
+    effects.properties = std::make_shared<const BoneProperties>(volume, [&](const Eigen::Vector3i& v) {
+        const size_t at =
+            size_t(v.x()) + size_t(dims.x()) * (size_t(v.y()) + size_t(dims.y()) * size_t(v.z()));
+        return material_ids.empty() ? kNoMaterial : material_ids[at];
+    });
+    effects.protected_field = protectedFieldOf(loaded, *effects.properties, volume.spacing());
+}
+
+}  // namespace
+
+std::vector<SpoTool> Simulation::spoTools() const {
+    std::vector<SpoTool> all;
+    for (const SceneTool& tool : tools) all.push_back({&tool.built.model, tool.burr, tool.saturation_force});
+    return all;
+}
+
+TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing) {
+    TickConfig config;
+    config.accuracy = accuracyOf(scene);
+    config.gradient = gradientConfigOf(scene, finest_spacing);
+    config.dt = 1 / scene.loop().rate_hz();
+    config.burr = burrOf(*toolsOf(scene).front());
+    config.contact = {.point_stiffness = scene.contact().point_stiffness_n_per_mm() / kMillimetre,
+                      .full_stiffness_contacts = scene.contact().full_stiffness_contacts()};
+    const scene::Coupling& coupling = scene.coupling();
+    config.coupling = {.translation_stiffness = coupling.translation_stiffness_n_per_mm() / kMillimetre,
+                       .rotation_stiffness = coupling.rotation_stiffness_nmm_per_rad() * kMillimetre,
+                       .max_speed = coupling.max_speed_mm_per_s() * kMillimetre,
+                       .max_angular_speed = coupling.max_angular_speed_deg_per_s() * kDegree,
+                       .static_damping = coupling.static_damping(),
+                       .max_force = coupling.max_force_n(),
+                       .max_torque = coupling.max_torque_nmm() * kMillimetre};
+    config.effects = effectConfigsOf(scene);
+    TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
+    return config;
+}
+
+ToolConfig toolConfigOf(const LoadedScene& loaded, const scene::Tool& tool) {
+    ToolConfig config;
+    for (const scene::Tool::Shape& shape : tool.shape()) config.shapes.push_back(shapeOf(shape));
+    if (tool.has_mesh_path()) config.mesh_path = resolvePath(loaded, tool.mesh_path());
+    const Burr burr = burrOf(tool);
+    config.burr_kind = burr.kind;
+    config.burr_radius = burr.radius;
+    config.burr_length = burr.length;
+    config.burr_tip_radius = burr.tip_radius;
+    config.sdf_nodes = {int(tool.sdf_nodes_x()), int(tool.sdf_nodes_y()), int(tool.sdf_nodes_z())};
+    config.sdf_spacing = tool.sdf_spacing_mm() * kMillimetre;
+    if (tool.has_sdf_origin_mm()) config.sdf_origin_T = metres(tool.sdf_origin_mm());
+    return config;
+}
+
+Pose devicePoseOf(const scene::Device& device) {
+    const scene::Quaternion& q = device.q_wd();
+    return {metres(device.p_wd_mm()), Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
+}
+
+Simulation makeSimulation(const LoadedScene& loaded) {
+    const scene::Scene& scene = loaded.scene;
+    Simulation simulation{.tick = {},
+                          .bone = nullptr,
+                          .mapping = {},
+                          .tools = buildTools(loaded),
+                          .X_WD = devicePoseOf(scene.device()),
+                          .remarks = {},
+                          .warnings = {}};
+    RawVolume raw = importVolume(resolvePath(loaded, scene.volume().path()), {scene.volume().series_uid()});
+    simulation.remarks.push_back(raw.description);
+    simulation.mapping = chooseMapping(raw, windowOf(scene.volume()));
+    if (simulation.mapping.is_iso_proposed)
+        simulation.remarks.push_back("no volume.iso_value in the scene: " +
+                                     textOf(simulation.mapping.iso_value) + " proposed from the histogram");
+    const std::vector<MaterialId> material_ids = materialIdsOf(loaded, raw);
+    VoxelVolume volume = densify(std::move(raw), simulation.mapping);
+    removeSmallPieces(volume, scene.volume().smallest_piece_voxels());
+    clearFarFromBone(volume);
+    const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), volume.geometry());
+    simulation.tick = tickConfigOf(scene, volume.spacing().minCoeff());
+    mapRawValues(simulation.tick.effects, loaded, simulation.mapping);
+    addProperties(simulation, loaded, volume, material_ids);
+    simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells, shellConfigOf(scene));
+    warnOfLargeLeaves(simulation);
+    fitToolsToBone(simulation, scene);
+    return simulation;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,47 @@
+// Turns a scene file into the SI configuration and the objects that the tick works on. Start-up only.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/scene_file.h"
+#include "haptic_server/setup/scene_accuracy.h"
+#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tool/build/build_tool.h"
+#include "haptic_server/volume/import/densify.h"
+
+namespace bonemill {
+
+struct SceneTool {
+    std::string name;
+    BuiltTool built;
+    TriangleSurface surface;
+    Burr burr;
+    double saturation_force;  // N
+};
+
+struct Simulation {
+    TickConfig tick;  // with the first tool
+    std::unique_ptr<BoneModel> bone;
+    DensityMapping mapping;
+    std::vector<SceneTool> tools;       // at least one
+    Pose X_WD;                          // device base in the world
+    std::vector<std::string> remarks;   // for people: what was read or proposed
+    std::vector<std::string> warnings;  // what the user would better change in the scene
+
+    const ToolModel& firstTool() const { return tools.front().built.model; }
+    // For ToolSwitch; point into `tools`.
+    std::vector<SpoTool> spoTools() const;
+};
+
+// Imports the volume, builds tree, shell and tools. Throws UserError.
+Simulation makeSimulation(const LoadedScene& loaded);
+
+// `finest_spacing` as in gradientConfigOf().
+TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing);
+ToolConfig toolConfigOf(const LoadedScene& loaded, const scene::Tool& tool);
+Pose devicePoseOf(const scene::Device& device);
+
+}  // namespace bonemill

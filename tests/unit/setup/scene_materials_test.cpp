@@ -1,0 +1,119 @@
+// Materials of a scene file, from real files to what the effects get.
+#include "haptic_server/setup/scene_materials.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "haptic_server/setup/scene_setup.h"
+#include "haptic_server/volume/import/nrrd_writer.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/unit/volume_import/expect_user_error.h"
+
+namespace bonemill {
+namespace {
+
+class SceneMaterials : public testing::Test {
+  protected:
+    // 20 x 18 x 16 voxels: bone of 1000, in its upper half 2000; a nerve (label 5) along x in it, of 0.
+    SceneMaterials() {
+        geometry_.dims = {20, 18, 16};
+        geometry_.spacing.setConstant(0.5e-3);
+        std::vector<float> values;
+        std::vector<uint8_t> labels;
+        forEachIndex({Eigen::Vector3i::Zero(), geometry_.dims.array() - 1}, [&](const Eigen::Vector3i& v) {
+            values.push_back(isNerve(v) ? 0.0f : v.z() < 8 ? 1000.0f : 2000.0f);
+            labels.push_back(isNerve(v) ? 5 : 1);
+        });
+        writeNrrd(folder_ / "bone.nrrd", geometry_, values);
+        writeNrrd(folder_ / "labels.nrrd", geometry_, labels);
+        geometry_.dims.z() = 15;
+        labels.resize(geometry_.voxelCount());
+        writeNrrd(folder_ / "short.nrrd", geometry_, labels);
+    }
+    static bool isNerve(const Eigen::Vector3i& v) {
+        return v.y() >= 8 && v.y() < 10 && v.z() >= 5 && v.z() < 7;
+    }
+    LoadedScene sceneOf(const std::string& labels, const std::string& text) const {
+        std::ofstream(folder_ / "s.textproto")
+            << "volume { path: 'bone.nrrd' iso_value: 500 window_low: 0 window_high: 3000\n label_path: '"
+            << labels << "' }\n"
+            << text;
+        return loadScene(folder_ / "s.textproto");
+    }
+
+    test::TemporaryFolder folder_;
+    VolumeGeometry geometry_;
+};
+
+const std::string kMaterials =
+    "material { name: 'soft' below_value: 1500 stiffness_factor: 0.5 }\n"
+    "material { name: 'hard' from_value: 1500 specific_energy_j_per_mm3: 2 }\n"
+    "material { name: 'nerve' label: 5 is_protected: true }\n";
+
+TEST_F(SceneMaterials, ComeFromValuesAndLabels) {
+    const Simulation simulation = makeSimulation(
+        sceneOf("labels.nrrd", kMaterials + "effects { protected_structures { warning_distance_mm: 2 } }"));
+    EXPECT_TRUE(simulation.warnings.empty() ||
+                simulation.warnings.front().find("no voxel is of") == std::string::npos);
+    const EffectConfigs& effects = simulation.tick.effects;
+    ASSERT_EQ(effects.materials.size(), 4u);
+    EXPECT_EQ(effects.materials[1].stiffness_factor, 0.5);
+    EXPECT_TRUE(effects.material_stiffness);
+    EXPECT_EQ(effects.materials[1].specific_energy, 0);
+    EXPECT_EQ(effects.materials[2].specific_energy, 2e9);
+    EXPECT_TRUE(effects.materials[3].is_protected);
+    ASSERT_TRUE(effects.properties);
+    forEachIndex({Eigen::Vector3i::Zero(), {19, 17, 15}}, [&](const Eigen::Vector3i& v) {
+        ASSERT_EQ(effects.properties->material(v), isNerve(v) ? 3 : v.z() < 8 ? 1 : 2) << v.transpose();
+        ASSERT_EQ(effects.properties->original(v), simulation.bone->volume.at(v.x(), v.y(), v.z()));
+    });
+    ASSERT_TRUE(effects.protected_field);
+    EXPECT_EQ(effects.protected_field->reach(), 2e-3 + 1e-3 + 1e-3);
+    // Three voxels above the nerve's upper face.
+    EXPECT_NEAR(effects.protected_field->at({5e-3, 4e-3, 9 * 0.5e-3}).distance, 1.25e-3, 1e-6);
+}
+
+TEST_F(SceneMaterials, OfEqualStiffnessDoNotAskForTheEffect) {
+    const Simulation simulation = makeSimulation(
+        sceneOf("", "material { name: 'hard' from_value: 1500 specific_energy_j_per_mm3: 2 }"));
+    EXPECT_FALSE(simulation.tick.effects.material_stiffness);
+}
+
+TEST_F(SceneMaterials, WithoutThemNothingIsKept) {
+    const Simulation simulation = makeSimulation(sceneOf("", ""));
+    EXPECT_FALSE(simulation.tick.effects.properties);
+    EXPECT_FALSE(simulation.tick.effects.protected_field);
+    EXPECT_TRUE(simulation.tick.effects.materials.empty());
+}
+
+TEST_F(SceneMaterials, ThatNoVoxelHasAreSaidSo) {
+    const Simulation simulation =
+        makeSimulation(sceneOf("labels.nrrd", kMaterials + "material { name: 'vessel' label: 6 }"));
+    EXPECT_TRUE(std::ranges::any_of(simulation.warnings, [](const std::string& warning) {
+        return warning.find("no voxel is of material 'vessel'") != std::string::npos;
+    }));
+}
+
+TEST_F(SceneMaterials, LabelsOfAnotherSizeAreRefusedWithTheirLine) {
+    expectUserError(
+        [&] { makeSimulation(sceneOf("short.nrrd", kMaterials)); },
+        {"s.textproto:2: field `volume.label_path`: short.nrrd has 20 x 18 x 15 voxels, the volume "
+         "20 x 18 x 16: both must lie on the same grid"});
+    expectUserError([&] { makeSimulation(sceneOf("none.nrrd", kMaterials)); },
+                    {"s.textproto:2: field `volume.label_path`: ", "none.nrrd"});
+}
+
+TEST_F(SceneMaterials, ProtectionOfNothingIsRefused) {
+    expectUserError(
+        [&] {
+            makeSimulation(sceneOf("labels.nrrd",
+                                   "material { name: 'nerve' label: 77 is_protected: true }\n"
+                                   "effects {\n virtual_fixture { } }"));
+        },
+        {"s.textproto:5: field `effects.virtual_fixture` finds nothing to protect"});
+}
+
+}  // namespace
+}  // namespace bonemill
