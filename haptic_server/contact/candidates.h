@@ -3,12 +3,10 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
 #include <vector>
 
 #include "haptic_server/contact/shell_pool.h"
 #include "haptic_server/kernels/kernels.h"
-#include "haptic_server/volume/leaf_lattice.h"
 
 namespace bonemill {
 
@@ -19,8 +17,8 @@ struct Candidates {
     std::vector<float> weight;      // κ a λ, of one place
     std::vector<float> area;        // m², of the whole patch
     std::vector<float> nearest;     // m: no place of the patch was nearer to the tool at the gathering
-    std::vector<uint64_t> patch;    // leaf and key in the shell
-    size_t most;                    // at most so many, though there may be room for more
+    std::vector<PatchId> patch;
+    size_t most;  // at most so many, though there may be room for more
     size_t count = 0;
 
     explicit Candidates(size_t room) : patch(room), most(room) {
@@ -47,7 +45,7 @@ struct Candidates {
         put(area, [&](int i) { return block.area[i]; });
         put(weight, [&](int i) { return stiffness_per_area * block.area[i]; });
         put(nearest, [&](int i) { return nearest_place[i]; });
-        for (int i = 0; i < n; ++i) patch[count + size_t(i)] = uint64_t(leaf) << 32 | block.key[points[i]];
+        for (int i = 0; i < n; ++i) patch[count + size_t(i)] = {leaf, block.key[points[i]]};
         count += size_t(n);
         return n == point_count;
     }

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "haptic_server/contact/patch_id.h"
+
 namespace bonemill {
 
 class PatchMemory {
@@ -21,7 +23,7 @@ class PatchMemory {
     void forget() noexcept { gathering_ += 2; }
 
     // Places per side of this patch: what is written stays for the next gathering. 0: not known.
-    uint8_t& placesOf(uint64_t patch) noexcept {
+    uint8_t& placesOf(PatchId patch) noexcept {
         Slot* free = nullptr;
         for (size_t n = 0; n < kProbes; ++n) {
             Slot& slot = slots_[(home(patch) + n) & (slots_.size() - 1)];
@@ -39,12 +41,12 @@ class PatchMemory {
 
   private:
     struct Slot {
-        uint64_t patch = 0;
+        PatchId patch;
         uint64_t gathering = 0;  // the last that asked for it
         uint8_t places = 0;
     };
     static constexpr size_t kProbes = 8;
-    static size_t home(uint64_t patch) noexcept { return size_t(patch * 0x9E3779B97F4A7C15u >> 32); }
+    static size_t home(PatchId patch) noexcept { return size_t(patch.packed() * 0x9E3779B97F4A7C15u >> 32); }
 
     std::vector<Slot> slots_;
     uint64_t gathering_ = 2;

@@ -11,7 +11,7 @@ constexpr uint32_t kNoPatch = ~0u;
 
 size_t blocksPerLeaf(const LeafLattice& lattice, int factor) {
     const Eigen::Vector3i blocks = (lattice.leafCells().array() + (factor - 1)) / factor;
-    if (blocks.maxCoeff() > 1 << kShellKeyBits)
+    if (blocks.maxCoeff() > BlockKey::kMostPerAxis)
         throw std::invalid_argument("PointShell: leaves of more than 1024 blocks per axis");
     return size_t(blocks.x()) * size_t(blocks.y()) * size_t(blocks.z());
 }
@@ -162,7 +162,7 @@ void PointShell::pointsOfCells(const VoxelVolume& volume, const IndexBox& leaf_c
             point.position = projection_.position({cell, cells_.projected(n)});
             point.normal = cells_.normal(n);
             point.area = cells_.area(n);
-            point.key = packShellKey(local);
+            point.key = BlockKey::of(local);
             continue;
         }
         const SurfacePlace place = cells_.isFound(n)
@@ -230,7 +230,7 @@ SurfacePlace PointShell::nearestPatchPlace(const VoxelVolume& volume, const Inde
 
 void PointShell::addPoint(const SurfacePlace& place, const Eigen::Vector3f& normal, float area,
                           const Eigen::Vector3i& block) noexcept {
-    fresh_[fresh_size_++] = {projection_.position(place), normal, area, packShellKey(block)};
+    fresh_[fresh_size_++] = {projection_.position(place), normal, area, BlockKey::of(block)};
 }
 
 }  // namespace bonemill

@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "haptic_server/contact/cell_corners.h"
+#include "haptic_server/contact/patch_id.h"
 
 namespace bonemill {
 
@@ -22,7 +23,7 @@ struct ShellPoint {
     Eigen::Vector3f position;  // V, m
     Eigen::Vector3f normal;    // V, unit, out of the bone; zero where the density has no gradient
     float area;                // m² of iso-surface that the point stands for, > 0
-    uint32_t key;              // block coordinates inside the leaf, 10 bits each, z most significant
+    BlockKey key;              // of the point's block in the leaf
 };
 
 // Accuracy of the projection: density within this part of the largest |density - iso| at the cell's corners.

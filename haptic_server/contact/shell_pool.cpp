@@ -12,10 +12,8 @@ uint32_t blocksFor(uint32_t points) noexcept {
     return (points + kCapacity - 1) / kCapacity;
 }
 
-bool isInside(uint32_t key, const IndexBox& keys) noexcept {
-    constexpr uint32_t kMask = (1u << kShellKeyBits) - 1;
-    const Eigen::Vector3i at(int(key & kMask), int(key >> kShellKeyBits & kMask),
-                             int(key >> 2 * kShellKeyBits & kMask));
+bool isInside(BlockKey key, const IndexBox& keys) noexcept {
+    const Eigen::Vector3i at = key.index();
     return (at.array() >= keys.min.array()).all() && (at.array() <= keys.max.array()).all();
 }
 
@@ -63,7 +61,7 @@ void ShellPool::addBlocks(size_t count) {
 
 bool ShellPool::replace(List& list, const IndexBox& keys, std::span<const ShellPoint> fresh) noexcept {
     if (list.count == 0 && fresh.empty()) return true;
-    const Place place = firstAtOrAbove(list, packShellKey(keys.min));
+    const Place place = firstAtOrAbove(list, BlockKey::of(keys.min));
     if (hasSameKeys(list, place, keys, fresh)) {
         overwrite(list, place, fresh);
         return true;
@@ -79,7 +77,7 @@ bool ShellPool::replace(List& list, const IndexBox& keys, std::span<const ShellP
     return true;
 }
 
-ShellPool::Place ShellPool::firstAtOrAbove(const List& list, uint32_t key) const noexcept {
+ShellPool::Place ShellPool::firstAtOrAbove(const List& list, BlockKey key) const noexcept {
     Place place{list.first, kNoBlock, 0};
     while (list.count - place.before > kCapacity && blocks_[place.block].key[kCapacity - 1] < key)
         place = {blocks_[place.block].next, place.block, place.before + kCapacity};
@@ -89,7 +87,7 @@ ShellPool::Place ShellPool::firstAtOrAbove(const List& list, uint32_t key) const
 // Of the list's points from `from` on: are those with keys in the box the fresh ones' keys?
 bool ShellPool::hasSameKeys(const List& list, const Place& from, const IndexBox& keys,
                             std::span<const ShellPoint> fresh) const noexcept {
-    const uint32_t last_key = packShellKey(keys.max);
+    const BlockKey last_key = BlockKey::of(keys.max);
     size_t same = 0;
     uint32_t block = from.block;
     for (uint32_t before = from.before; before < list.count; before += kCapacity) {
@@ -126,7 +124,7 @@ void ShellPool::overwrite(const List& list, const Place& from, std::span<const S
 // after a block from which on all points stay and would keep their places.
 uint32_t ShellPool::merge(const List& list, const Place& from, const IndexBox& keys,
                           std::span<const ShellPoint> fresh) noexcept {
-    const uint32_t last_key = packShellKey(keys.max);
+    const BlockKey last_key = BlockKey::of(keys.max);
     merged_size_ = 0;
     size_t next = 0;
     uint32_t block = from.block, read = 0;

@@ -16,17 +16,11 @@ struct ShellBlock {
     float x[kCapacity], y[kCapacity], z[kCapacity];
     float nx[kCapacity], ny[kCapacity], nz[kCapacity];
     float area[kCapacity];  // m²
-    uint32_t key[kCapacity];
+    BlockKey key[kCapacity];
     uint32_t next;
     // Around the block's points: a sphere (V, m), and the largest of their areas (m²).
     float center[3], radius, largest_area;
 };
-
-inline constexpr int kShellKeyBits = 10;  // blocks per axis of a leaf: at most 1024
-
-inline uint32_t packShellKey(const Eigen::Vector3i& block) noexcept {
-    return uint32_t(block.x() | block.y() << kShellKeyBits | block.z() << 2 * kShellKeyBits);
-}
 
 class ShellPool {
   public:
@@ -65,7 +59,7 @@ class ShellPool {
         uint32_t previous;  // kNoBlock: the list's first
         uint32_t before;
     };
-    Place firstAtOrAbove(const List& list, uint32_t key) const noexcept;
+    Place firstAtOrAbove(const List& list, BlockKey key) const noexcept;
     bool hasSameKeys(const List& list, const Place& from, const IndexBox& keys,
                      std::span<const ShellPoint> fresh) const noexcept;
     void overwrite(const List& list, const Place& from, std::span<const ShellPoint> fresh) noexcept;

@@ -95,8 +95,8 @@ double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bon
         const double above = std::max(0.0, force - config_.threshold_pressure * area);
         const double of_contact = burr.friction * speed * above * tick.dt;
         energy += of_contact;
-        const uint64_t patch = tick.candidates->patch[contact.candidate];
-        if ((patch >> 32) % turns_ != turn_) continue;
+        const PatchId patch = tick.candidates->patch[contact.candidate];
+        if (patch.leaf % turns_ != turn_) continue;
         shift_.add(bone, patch, of_contact * double(turns_), double(contact.depth));
     }
     removal_power_ = energy / tick.dt;

@@ -114,12 +114,8 @@ bool SurfaceShift::isInScratch(const Vector3i& voxel) const noexcept {
     return (local.array() >= 0).all() && (local.array() < size_.array()).all();
 }
 
-void SurfaceShift::add(const BoneModel& bone, uint64_t patch, double energy, double depth) noexcept {
-    constexpr uint32_t kMask = (1u << kShellKeyBits) - 1;
-    const auto key = uint32_t(patch);
-    const Vector3i block(int(key & kMask), int(key >> kShellKeyBits & kMask),
-                         int(key >> 2 * kShellKeyBits & kMask));
-    const Vector3i cell = bone.lattice.cellsOf(LeafId(patch >> 32)).min + block * blockOf(bone);
+void SurfaceShift::add(const BoneModel& bone, PatchId patch, double energy, double depth) noexcept {
+    const Vector3i cell = bone.lattice.cellsOf(patch.leaf).min + patch.block.index() * blockOf(bone);
     if (!isInScratch(cell)) return;
     const size_t at = index(cell);
     if (nodes_[at].depth == 0) {
@@ -134,7 +130,6 @@ void SurfaceShift::add(const BoneModel& bone, uint64_t patch, double energy, dou
 // visit(point V, area, node of its block) for the shell's points around those with energy.
 template <class Visit>
 void SurfaceShift::forEachPatch(const BoneModel& bone, Visit&& visit) const noexcept {
-    constexpr uint32_t kMask = (1u << kShellKeyBits) - 1;
     const int factor = blockOf(bone);
     const IndexBox cells = patch_cells_.grown(2 * factor);
     const auto has_surface = [iso = bone.volume.iso()](const DensityRange& range, const IndexBox&) {
@@ -144,9 +139,7 @@ void SurfaceShift::forEachPatch(const BoneModel& bone, Visit&& visit) const noex
         const Vector3i first = bone.lattice.cellsOf(leaf).min;
         bone.shell.forEachBlock(bone.shell.followed(), leaf, [&](const ShellBlock& b, uint32_t count) {
             for (uint32_t n = 0; n < count; ++n) {
-                const Vector3i block(int(b.key[n] & kMask), int(b.key[n] >> kShellKeyBits & kMask),
-                                     int(b.key[n] >> 2 * kShellKeyBits & kMask));
-                const Vector3i cell = first + block * factor;
+                const Vector3i cell = first + b.key[n].index() * factor;
                 if ((cell.array() < cells.min.array()).any() || (cell.array() > cells.max.array()).any() ||
                     !isInScratch(cell))
                     continue;

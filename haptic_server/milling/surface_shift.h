@@ -36,9 +36,9 @@ class SurfaceShift {
 
     // A new tick with the burr's centre here.
     void begin(const BoneModel& bone, const Eigen::Vector3d& p_VB) noexcept;
-    // Energy to be spent at one contact of this patch (as Candidates::patch), J, and its depth, m: the patch
+    // Energy to be spent at one contact of this patch, J, and its depth, m: the patch
     // recedes no farther than its deepest contact reaches.
-    void add(const BoneModel& bone, uint64_t patch, double energy, double depth) noexcept;
+    void add(const BoneModel& bone, PatchId patch, double energy, double depth) noexcept;
     // Spends `share` of the energies. Returns what was spent, J.
     double apply(BoneModel& bone, const SpecificEnergy& u, double share, size_t ticks,
                  MillingResult& result) noexcept;

@@ -267,13 +267,13 @@ TEST(ShellPoints, KeepToTheirBlocks) {
         for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
             const IndexBox cells = lattice.cellsOf(leaf);
             const int s = shell.scalingFactor(level);
-            uint32_t last_key = 0;
+            BlockKey last_key;
             for (const ShellPoint& p : pointsOf(shell, level, leaf)) {
-                const Eigen::Vector3i block(int(p.key & 1023), int(p.key >> 10 & 1023), int(p.key >> 20));
+                const Eigen::Vector3i block = p.key.index();
                 const Eigen::Array3d at = p.position.cast<double>().cwiseQuotient(volume.spacing()).array() -
                                           (cells.min + s * block).cast<double>().array();
                 ASSERT_TRUE((at > -1e-4).all() && (at < s + 1e-4).all()) << at.transpose();
-                ASSERT_TRUE(p.key > last_key || p.key == 0);
+                ASSERT_TRUE(p.key > last_key || p.key == BlockKey{});
                 last_key = p.key;
             }
         }

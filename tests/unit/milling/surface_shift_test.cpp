@@ -35,7 +35,7 @@ void forEachPoint(const BoneModel& bone, Visit&& visit) {
     for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
         bone.shell.forEachBlock(0, leaf, [&](const ShellBlock& b, uint32_t count) {
             for (uint32_t n = 0; n < count; ++n)
-                visit(Vector3d(b.x[n], b.y[n], b.z[n]), double(b.area[n]), uint64_t(leaf) << 32 | b.key[n]);
+                visit(Vector3d(b.x[n], b.y[n], b.z[n]), double(b.area[n]), PatchId{leaf, b.key[n]});
         });
 }
 
@@ -63,7 +63,7 @@ double lower(BoneModel& bone, const Plane& plane, double recession, int ticks) {
     double spent = 0;
     for (int n = 0; n < ticks; ++n) {
         shift.begin(bone, plane.point);
-        forEachPoint(bone, [&](const Vector3d& p, double area, uint64_t patch) {
+        forEachPoint(bone, [&](const Vector3d& p, double area, PatchId patch) {
             if (plane.sideways(p) < kReach && isOfPlane(bone, p))
                 shift.add(bone, patch, kEnergy * area * recession / ticks, 1e-3);
         });
@@ -87,7 +87,7 @@ TEST_P(SurfaceShiftOf, APlaneKeepsItFlatAndLeavesTheRest) {
             EXPECT_NEAR(kEnergy * (before - boneVolume(bone)) / spent, 1, 2e-3);
             const double rim = (1 + GetParam()) * voxel;
             size_t inside = 0;
-            forEachPoint(bone, [&](const Vector3d& p, double, uint64_t) {
+            forEachPoint(bone, [&](const Vector3d& p, double, PatchId) {
                 if (!isOfPlane(bone, p)) return;
                 if (plane.sideways(p) < kReach - rim) {
                     EXPECT_NEAR(plane.heightOf(p), -kDepth, 0.06 * kDepth);
@@ -109,7 +109,7 @@ TEST(SurfaceShift, TakesSmallStepsAsWellAsLargeOnes) {
     constexpr double kStep = 2e-9;  // m: a quarter of a count
     constexpr int kTicks = 500;
     double area = 0;
-    forEachPoint(bone, [&](const Vector3d& p, double a, uint64_t) {
+    forEachPoint(bone, [&](const Vector3d& p, double a, PatchId) {
         if (plane.sideways(p) < kReach && isOfPlane(bone, p)) area += a;
     });
     EXPECT_NEAR(lower(bone, plane, kTicks * kStep, kTicks) / (kEnergy * area * kTicks * kStep), 1, 0.05);
@@ -121,13 +121,13 @@ TEST(SurfaceShift, MovesNoFartherThanAQuarterOfAVoxelOrTheDepth) {
         BoneModel bone = halfSpace(plane, Vector3d::Constant(0.125e-3), 1);
         SurfaceShift shift(bone, 1.5 * kReach, 65536, kMostCells);
         shift.begin(bone, plane.point);
-        forEachPoint(bone, [&](const Vector3d& p, double, uint64_t patch) {
+        forEachPoint(bone, [&](const Vector3d& p, double, PatchId patch) {
             if (plane.sideways(p) < kReach && isOfPlane(bone, p)) shift.add(bone, patch, 1, depth);
         });
         MillingResult result;
         shift.apply(bone, SpecificEnergy({}, nullptr, bone.volume.iso()), 1, 1, result);
         double lowest = 0;
-        forEachPoint(bone, [&](const Vector3d& p, double, uint64_t) {
+        forEachPoint(bone, [&](const Vector3d& p, double, PatchId) {
             if (plane.sideways(p) < kReach / 2 && isOfPlane(bone, p))
                 lowest = std::min(lowest, plane.heightOf(p));
         });
@@ -144,7 +144,7 @@ TEST(SurfaceShift, LeavesTheRestForTheNextTickWhereTimeIsShort) {
     int short_ticks = 0;
     for (int n = 0; n < 20; ++n) {
         shift.begin(bone, plane.point);
-        forEachPoint(bone, [&](const Vector3d& p, double area, uint64_t patch) {
+        forEachPoint(bone, [&](const Vector3d& p, double area, PatchId patch) {
             if (plane.sideways(p) < kReach && isOfPlane(bone, p))
                 shift.add(bone, patch, kEnergy * area * 1e-6, 1e-3);
         });
