@@ -13,7 +13,8 @@
 #include "haptic_server/contact/contact_weights.h"
 #include "haptic_server/contact/surface_contact.h"
 #include "haptic_server/coupling/energy_coupling.h"
-#include "haptic_server/milling/timed_milling.h"
+#include "haptic_server/milling/burr_limit.h"
+#include "haptic_server/milling/milling_result.h"
 #include "haptic_server/spo/spo_model.h"
 #include "haptic_server/telemetry/effect_record.h"
 

@@ -4,6 +4,7 @@
 
 #include "haptic_server/effects/effect_configs.h"
 #include "haptic_server/effects/haptic_effect.h"
+#include "haptic_server/milling/timed_milling.h"
 
 namespace bonemill {
 

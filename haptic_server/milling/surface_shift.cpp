@@ -63,15 +63,14 @@ float equalDrop(const CellCorners& corners, float iso, const Vector3f& t, float 
 
 SurfaceShift::SurfaceShift(const BoneModel& bone, double largest_reach, size_t most_contacts,
                            size_t most_cells)
-    : most_cells_(most_cells),
-      size_(scratchSize(bone, largest_reach)),
+    : size_(scratchSize(bone, largest_reach)),
       nodes_(size_t(size_.cast<int64_t>().prod())),
       row_words_((size_.x() + kRowBits - 1) / kRowBits),
       asked_(size_t(row_words_) * size_t(size_.y()) * size_t(size_.z())),
       patches_(most_contacts),
       old_(size_t(size_.x() + VoxelVolume::kReadSlack)),
       fresh_(size_t(size_.x())),
-      changes_(bone.lattice, size_) {}
+      collector_(bone.lattice, size_, most_cells) {}
 
 int SurfaceShift::blockOf(const BoneModel& bone) noexcept {
     return bone.shell.scalingFactor(bone.shell.followed());
@@ -279,8 +278,8 @@ double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double shar
         node.fill = float(fill_(readCorners(bone.volume, cell)));
     });
     collect(bone, result);
-    if (changes_.isEmpty()) return 0;
-    result.shell_is_complete &= changes_.write(bone.volume, bone.lattice, bone.shell, -1);
+    if (collector_.isEmpty()) return 0;
+    result.shell_is_complete &= collector_.write(bone.volume, bone.lattice, bone.shell, -1);
     double spent = 0;
     forEachCell(bone, [&](const Vector3i& cell, const Node& node) {
         const double gone = double(node.fill) - double(float(fill_(readCorners(bone.volume, cell))));
@@ -289,53 +288,31 @@ double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double shar
     return spent * bone.volume.voxelVolume();
 }
 
-// Leaf by leaf, from where the last tick was cut short to the last leaf, then the leaves before it.
 void SurfaceShift::collect(BoneModel& bone, MillingResult& result) noexcept {
-    changes_.clear();
-    cells_ = 0;
     const auto is_wanted = [](const DensityRange& range, const IndexBox&) { return range.max > 0; };
-    const LeafId first = std::exchange(next_leaf_, kNoLeaf);
-    for (const bool is_second_round : {false, true}) {
-        if (is_second_round && first == kNoLeaf) break;
-        bool is_later = first == kNoLeaf;
-        // A voxel is the first corner of its cell.
-        bone.lattice.forEachLeaf(touched_, is_wanted, [&](LeafId leaf) {
-            is_later |= leaf == first;
-            if (is_later == is_second_round || next_leaf_ != kNoLeaf) return;
-            const IndexBox voxels = bone.lattice.cellsOf(leaf).clamped(touched_.min, touched_.max);
-            if (collectLeaf(bone.volume, voxels, result)) return;
-            next_leaf_ = leaf;
-            result.is_cut_short = true;
-        });
-    }
+    collector_.collect(
+        bone.lattice, touched_, is_wanted,
+        [&](const IndexBox& voxels, int, MillingResult& of_leaf) {
+            return collectLeaf(bone.volume, voxels, of_leaf) ? ChangeCollector::kAllParts : 0;
+        },
+        result);
 }
 
-// False: it would take more than a tick's cells, and nothing of it is kept; nor without memory for its
-// bricks.
-bool SurfaceShift::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, MillingResult& result) noexcept {
-    const ChangedRuns::Mark before = changes_.mark();
-    MillingResult of_leaf;
+// The whole leaf is one part. As ChangeCollector::takePart().
+bool SurfaceShift::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, MillingResult& of_leaf) noexcept {
+    ChangedRuns& rows = collector_.beginPart();
+    MillingResult of_part;
     for (int k = voxels.min.z(); k <= voxels.max.z(); ++k)
         for (int j = voxels.min.y(); j <= voxels.max.y(); ++j) {
             const Span span = touchedIn(row(j, k), voxels.min.x(), voxels.max.x());
             if (span.low <= span.high)
-                collectRow(volume, {span.low, j, k}, span.high - span.low + 1, of_leaf);
+                collectRow(volume, {span.low, j, k}, span.high - span.low + 1, rows, of_part);
         }
-    if (of_leaf.changed.isEmpty()) return true;
-    const size_t cells_before = std::exchange(cells_, cells_ + size_t(of_leaf.changed.count()));
-    const bool has_time = cells_ <= most_cells_ || cells_before == 0;
-    if (!has_time || !volume.openBricksIn(of_leaf.changed)) {
-        changes_.backTo(before);
-        result.has_room &= !has_time;
-        return has_time;
-    }
-    changes_.closeLeaf(of_leaf.changed);
-    result.include(of_leaf);
-    return true;
+    return of_part.changed.isEmpty() || collector_.takePart(volume, 0, of_part, of_leaf);
 }
 
-void SurfaceShift::collectRow(const VoxelVolume& volume, const Vector3i& first, int count,
-                              MillingResult& of_leaf) noexcept {
+void SurfaceShift::collectRow(const VoxelVolume& volume, const Vector3i& first, int count, ChangedRuns& rows,
+                              MillingResult& of_part) noexcept {
     volume.readRow(first, count, old_.data());
     const Node* node = &nodes_[index(first)];
     bool is_changed = false;
@@ -347,9 +324,9 @@ void SurfaceShift::collectRow(const VoxelVolume& volume, const Vector3i& first, 
         const auto density = Density(std::floor(std::max(left, 0.0) + rounding_));
         fresh_[size_t(i)] = std::min(old, density);
         is_changed |= density < old;
-        of_leaf.removed_voxels += old >= volume.iso() && density < volume.iso();
+        of_part.removed_voxels += old >= volume.iso() && density < volume.iso();
     }
-    if (is_changed) changes_.add(first, count, old_.data(), fresh_.data(), of_leaf.changed);
+    if (is_changed) rows.add(first, count, old_.data(), fresh_.data(), of_part.changed);
 }
 
 }  // namespace bonemill

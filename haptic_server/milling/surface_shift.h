@@ -19,9 +19,8 @@
 
 #include "haptic_server/bone/bone_model.h"
 #include "haptic_server/milling/cell_fill.h"
-#include "haptic_server/milling/changed_runs.h"
+#include "haptic_server/milling/change_collector.h"
 #include "haptic_server/milling/specific_energy.h"
-#include "haptic_server/milling/timed_milling.h"
 
 namespace bonemill {
 
@@ -88,12 +87,11 @@ class SurfaceShift {
     template <class Visit>
     void forEachBit(int word, RowBits bits, Visit&& visit) const noexcept;
     void collect(BoneModel& bone, MillingResult& result) noexcept;
-    bool collectLeaf(VoxelVolume& volume, const IndexBox& voxels, MillingResult& result) noexcept;
-    void collectRow(const VoxelVolume& volume, const Eigen::Vector3i& first, int count,
-                    MillingResult& of_leaf) noexcept;
+    bool collectLeaf(VoxelVolume& volume, const IndexBox& voxels, MillingResult& of_leaf) noexcept;
+    void collectRow(const VoxelVolume& volume, const Eigen::Vector3i& first, int count, ChangedRuns& rows,
+                    MillingResult& of_part) noexcept;
     void forget() noexcept;
 
-    size_t most_cells_;
     CellFill fill_;
     Eigen::Vector3i size_;                             // of the scratch box
     Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // its first voxel
@@ -105,10 +103,7 @@ class SurfaceShift {
     size_t patch_count_ = 0;
     IndexBox patch_cells_;  // blocks of those begin in it
     std::vector<Density> old_, fresh_;
-    ChangedRuns changes_;
-    size_t cells_ = 0;  // of this tick
-    static constexpr LeafId kNoLeaf = ~LeafId(0);
-    LeafId next_leaf_ = kNoLeaf;  // where the last tick was cut short
+    ChangeCollector collector_;
     bool is_too_fast_ = false;
     double rounding_ = 0;  // 0 .. 1, another one each tick: what is less than a count is not lost
 };

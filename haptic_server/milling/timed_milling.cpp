@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace bonemill {
 namespace {
@@ -47,7 +46,7 @@ TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volum
     : config_(config),
       largest_burr_radius_(largest_burr_radius),
       burr_radius_(largest_burr_radius),
-      changes_(lattice, mostVoxels(volume, largest_burr_radius)) {}
+      collector_(lattice, mostVoxels(volume, largest_burr_radius), config.most_cells) {}
 
 MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
                                   const Eigen::Vector3d& p_VB, int direction, double dt) noexcept {
@@ -63,99 +62,67 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
     collectChanges(volume, lattice,
                    {p_VB, direction, amount, BurrLimit(volume, burr_radius_, config_.shape, direction)},
                    result);
-    if (!changes_.isEmpty()) result.shell_is_complete = changes_.write(volume, lattice, shell, direction);
+    if (!collector_.isEmpty()) result.shell_is_complete = collector_.write(volume, lattice, shell, direction);
     return result;
 }
 
-// Leaf by leaf and brick by brick, from where the last tick was cut short to the last leaf, then the leaves
-// before it.
 void TimedMilling::collectChanges(VoxelVolume& volume, const LeafLattice& lattice, const Stroke& stroke,
                                   MillingResult& result) noexcept {
-    changes_.clear();
-    cells_ = 0;
     const double reach_squared = stroke.limit.reach() * stroke.limit.reach();
-    const IndexBox box = boxAround(volume, stroke.p_VB, stroke.limit.reach());
     const auto is_wanted = [&](const DensityRange& range, const IndexBox& voxels) {
         return !isFinished(range, stroke.direction) &&
                squaredDistance(volume, voxels, stroke.p_VB) < reach_squared;
     };
-    const LeafId first = std::exchange(next_leaf_, kNoLeaf);
-    const int first_part = next_part_;
-    for (const bool is_second_round : {false, true}) {
-        if (is_second_round && first == kNoLeaf) break;
-        bool is_later = first == kNoLeaf;
-        // A voxel is the first corner of its cell.
-        lattice.forEachLeaf(box, is_wanted, [&](LeafId leaf) {
-            is_later |= leaf == first;
-            if (is_later == is_second_round || result.is_cut_short) return;
-            const IndexBox voxels = lattice.cellsOf(leaf).clamped(box.min, box.max);
-            next_part_ = collectLeaf(volume, voxels, leaf == first ? first_part : 0, stroke, result);
-            if (next_part_ == kAllParts) return;
-            next_leaf_ = leaf;
-            result.is_cut_short = true;
-        });
-    }
+    collector_.collect(
+        lattice, boxAround(volume, stroke.p_VB, stroke.limit.reach()), is_wanted,
+        [&](const IndexBox& voxels, int first_part, MillingResult& of_leaf) {
+            return collectLeaf(volume, voxels, first_part, stroke, of_leaf);
+        },
+        result);
 }
 
-// From one of its parts on. The part for which there was no time, or kAllParts.
+// The parts of a leaf are those of its bricks.
 int TimedMilling::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part,
-                              const Stroke& stroke, MillingResult& result) noexcept {
-    int n = 0, left = kAllParts;
-    MillingResult of_leaf;
+                              const Stroke& stroke, MillingResult& of_leaf) noexcept {
+    int n = 0, left = ChangeCollector::kAllParts;
     volume.forEachOwnedPart(voxels, [&](const IndexBox& part, size_t offset) {
         const int index = n++;
-        if (index < first_part || left != kAllParts) return;
+        if (index < first_part || left != ChangeCollector::kAllParts) return;
         if (!collectPart(volume, part, offset, stroke, of_leaf)) left = index;
     });
-    if (!of_leaf.changed.isEmpty()) changes_.closeLeaf(of_leaf.changed);
-    result.include(of_leaf);
     return left;
 }
 
-// False: it would take more than a tick's cells, and nothing of it is kept; nor without memory for its
-// bricks.
+// As ChangeCollector::takePart().
 bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset, const Stroke& stroke,
                                MillingResult& of_leaf) noexcept {
-    const ChangedRuns::Mark before = changes_.mark();
+    ChangedRuns& rows = collector_.beginPart();
     MillingResult of_part;
     IndexBox plane = part;
     const double reach_squared = stroke.limit.reach() * stroke.limit.reach();
     for (int k = part.min.z(); k <= part.max.z(); ++k, offset += VoxelVolume::kStrideZ) {
         plane.min.z() = plane.max.z() = k;
         if (squaredDistance(volume, plane, stroke.p_VB) >= reach_squared) continue;
-        collectPlane(volume, plane, offset, stroke, of_part);
+        collectPlane(volume, plane, offset, stroke, rows, of_part);
     }
-    const size_t cells_before = std::exchange(
-        cells_, cells_ + size_t(part.count() / kCellsLookedAtPerWorkedOn + of_part.changed.count()));
-    if (cells_ > config_.most_cells && cells_before > 0) {
-        changes_.backTo(before);
-        return false;
-    }
-    if (of_part.changed.isEmpty()) return true;
-    if (!volume.openBricksIn(of_part.changed)) {
-        changes_.backTo(before);
-        of_leaf.has_room = false;
-        return true;
-    }
-    of_leaf.include(of_part);
-    return true;
+    return collector_.takePart(volume, size_t(part.count() / kCellsLookedAtPerWorkedOn), of_part, of_leaf);
 }
 
 void TimedMilling::collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset,
-                                const Stroke& stroke, MillingResult& result) noexcept {
+                                const Stroke& stroke, ChangedRuns& rows, MillingResult& of_part) noexcept {
     const Eigen::Vector3d to_first = volume.spacing().cwiseProduct(plane.min.cast<double>()) - stroke.p_VB;
     const BurrPlane burr = stroke.limit.plane(to_first, volume.spacing(), stroke.amount);
     const Density* old = volume.ownerData() + offset;
     Density fresh[kBrickCells * kBrickCells];
-    const int count = plane.max.x() - plane.min.x() + 1, rows = plane.max.y() - plane.min.y() + 1;
+    const int count = plane.max.x() - plane.min.x() + 1, row_count = plane.max.y() - plane.min.y() + 1;
     const auto mill = stroke.direction < 0 ? kernels().remove_plane : kernels().add_plane;
-    const MilledPlane milled = mill(burr, old, count, rows, fresh);
-    for (int r = 0; r < rows; ++r)
+    const MilledPlane milled = mill(burr, old, count, row_count, fresh);
+    for (int r = 0; r < row_count; ++r)
         if (milled.is_changed >> r & 1)
-            changes_.add(plane.min + Eigen::Vector3i(0, r, 0), count, old + VoxelVolume::kStrideY * size_t(r),
-                         fresh + kBrickCells * r, result.changed);
-    result.removed_voxels += uint32_t(milled.removed);
-    result.added_voxels += uint32_t(milled.added);
+            rows.add(plane.min + Eigen::Vector3i(0, r, 0), count, old + VoxelVolume::kStrideY * size_t(r),
+                     fresh + kBrickCells * r, of_part.changed);
+    of_part.removed_voxels += uint32_t(milled.removed);
+    of_part.added_voxels += uint32_t(milled.added);
 }
 
 }  // namespace bonemill

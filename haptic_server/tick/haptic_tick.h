@@ -7,6 +7,7 @@
 #include "haptic_server/bone/bone_history.h"
 #include "haptic_server/bone/bone_model.h"
 #include "haptic_server/effects/make_effects.h"
+#include "haptic_server/milling/timed_milling.h"
 #include "haptic_server/spo/gradient_model.h"
 #include "haptic_server/spo/thesis_2012_model.h"
 #include "haptic_server/telemetry/tick_record.h"
