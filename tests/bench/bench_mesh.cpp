@@ -14,6 +14,7 @@
 #include "haptic_server/volume/import/densify.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "tests/bench/bench_output.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace bonemill::bench {
@@ -94,8 +95,8 @@ nlohmann::json runVtk(const BoneModel& bone, int runs) {
     const test::TemporaryFolder folder;
     const std::string raw = folder / "densities.raw";
     writeRaw(bone.volume, raw);
-    std::vector<std::string> arguments{
-        "/usr/bin/python3", std::string(BONEMILL_SOURCE_DIR) + "/tests/bench/vtk_flying_edges.py", raw};
+    std::vector<std::string> arguments{"/usr/bin/python3",
+                                       test::sourceDir() + "/tests/bench/vtk_flying_edges.py", raw};
     for (int axis = 0; axis < 3; ++axis) arguments.push_back(std::to_string(bone.volume.dims()[axis]));
     for (int axis = 0; axis < 3; ++axis)
         arguments.push_back(number(bone.volume.spacing()[axis] * kPerMillimetre, 9));

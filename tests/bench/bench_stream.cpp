@@ -22,6 +22,7 @@
 #include "tests/bench/bench_output.h"
 #include "tests/integration/dds/child_process.h"
 #include "tests/support/dds_session.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace bonemill::bench {
@@ -34,7 +35,7 @@ constexpr int kLeafCells = 16;
 constexpr auto kSteady = 8s;  // over which the server's processor time is taken
 
 struct Options {
-    std::string volume, json, scene = std::string(BONEMILL_SOURCE_DIR) + "/deploy/scenes/skull.textproto";
+    std::string volume, json, scene = test::sourceDir() + "/deploy/scenes/skull.textproto";
     double iso = 300;
     std::vector<int> viewers{1, 10, 30};
 };

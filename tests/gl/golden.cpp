@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "tests/support/places.h"
+
 namespace bonemill::test {
 namespace {
 
@@ -14,7 +16,7 @@ constexpr int kSoftness = 2;      // pixels: half the window of the soft focus
 constexpr int kVisibleStep = 12;  // of 255, in any colour
 
 std::filesystem::path goldenPath(const std::string& name) {
-    return std::filesystem::path(BONEMILL_SOURCE_DIR) / "tests/gl/golden" / (name + ".png");
+    return std::filesystem::path(test::sourceDir()) / "tests/gl/golden" / (name + ".png");
 }
 
 std::array<int, 3> softened(const Picture& picture, int x, int y) {

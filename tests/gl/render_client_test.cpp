@@ -13,11 +13,12 @@
 #include "haptic_server/publish/publisher.h"
 #include "tests/gl/synthetic_scene.h"
 #include "tests/support/dds_session.h"
+#include "tests/support/places.h"
 
 namespace bonemill {
 namespace {
 
-constexpr char kProgram[] = BONEMILL_BIN_DIR "/render_client";
+const std::string kProgram = test::binDir() + "/render_client";
 
 struct Outcome {
     int exit_code = -1;

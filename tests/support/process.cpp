@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/support/places.h"
+
 namespace bonemill::test {
 namespace {
 
@@ -29,7 +31,7 @@ std::filesystem::path programOf(const std::string& name) {
     if (const char* folder = getenv("BONEMILL_GUARDED_DIR"))
         if (const std::filesystem::path twin = std::filesystem::path(folder) / name; exists(twin))
             return twin;
-    return std::filesystem::path(BONEMILL_BIN_DIR) / name;
+    return std::filesystem::path(test::binDir()) / name;
 }
 
 }  // namespace

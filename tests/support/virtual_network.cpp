@@ -12,6 +12,8 @@
 #include <thread>
 #include <utility>
 
+#include "tests/support/places.h"
+
 namespace bonemill::test {
 namespace {
 
@@ -177,10 +179,10 @@ Host VirtualNetwork::addHost() {
 
 Host VirtualNetwork::addHost(const LineQuality& line) {
     Host host = newHost();
-    host.relay_ = std::make_unique<Process>(std::vector<std::string>{
-        std::string(BONEMILL_HELPER_DIR) + "/link_relay", host.port_, pathOf(host.namespace_), "eth0",
-        std::to_string(line.rate_kbit_per_s), std::to_string(line.delay_ms),
-        std::to_string(line.loss_per_mille), std::to_string(line.queue_kib)});
+    host.relay_ = std::make_unique<Process>(
+        std::vector<std::string>{test::helperDir() + "/link_relay", host.port_, pathOf(host.namespace_),
+                                 "eth0", std::to_string(line.rate_kbit_per_s), std::to_string(line.delay_ms),
+                                 std::to_string(line.loss_per_mille), std::to_string(line.queue_kib)});
     for (int i = 0; i < 500 && host.relay_->outSoFar().empty(); ++i) {
         if (!host.relay_->isRunning()) throw std::runtime_error(host.relay_->errSoFar());
         std::this_thread::sleep_for(10ms);

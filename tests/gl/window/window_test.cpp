@@ -12,6 +12,7 @@
 #include "tests/gl/golden.h"
 #include "tests/gl/window/shown_session.h"
 #include "tests/gl/window/virtual_display.h"
+#include "tests/support/places.h"
 
 namespace bonemill {
 namespace {
@@ -48,11 +49,11 @@ class WindowedViewer {
   public:
     explicit WindowedViewer(const std::string& name, const std::string& role)
         : process_({"/bin/sh", "-c",
-                    "cd " + folder_.path().string() +
-                        " && exec " BONEMILL_BIN_DIR "/render_client --quality full --size " +
-                        std::to_string(kWidth) + "x" + std::to_string(kHeight) + " --domain " +
-                        std::to_string(testDomain()) + " --session " + std::to_string(testSession()) +
-                        " --name " + name + " --role " + role}) {}
+                    "cd " + folder_.path().string() + " && exec " + test::binDir() +
+                        "/render_client --quality full --size " + std::to_string(kWidth) + "x" +
+                        std::to_string(kHeight) + " --domain " + std::to_string(testDomain()) +
+                        " --session " + std::to_string(testSession()) + " --name " + name + " --role " +
+                        role}) {}
 
     // The picture of the next F12.
     std::filesystem::path nextPicture() {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "tests/support/dds_session.h"
+#include "tests/support/places.h"
 
 namespace bonemill {
 
@@ -21,7 +22,7 @@ ChildProcess::ChildProcess(const std::string& name) {
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, input[0], STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, output[1], STDOUT_FILENO);
-    std::string path = std::string(BONEMILL_HELPER_DIR) + "/" + name;
+    std::string path = test::helperDir() + "/" + name;
     std::string domain = std::to_string(testDomain()), session = std::to_string(testSession());
     char* const arguments[] = {path.data(), domain.data(), session.data(), nullptr};
     const int failure = posix_spawn(&pid_, path.c_str(), &actions, nullptr, arguments, environ);

@@ -2,6 +2,7 @@
 // code.
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace bonemill {
@@ -30,9 +31,7 @@ class CheckDocs : public testing::Test {
             "`clock.h`; its results lie in `build/results.h`.\n\n```\ndocs/tool.md\n```\n\n" +
                 more);
     }
-    Finished check() {
-        return test::run({std::string(BONEMILL_SOURCE_DIR) + "/tests/support/check_docs", root_.path()});
-    }
+    Finished check() { return test::run({test::sourceDir() + "/tests/support/check_docs", root_.path()}); }
     // The document's first line behind the fixed ones is line 10.
     void expectFound(const std::string& more, const std::string& complaint) {
         readme(more);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <regex>
 
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace bonemill {
@@ -31,8 +32,8 @@ class CheckNetwork : public testing::Test {
         test::writeFile(path, content);
     }
     Finished check(const std::vector<std::string>& more = {"--interface", "eth3"}) {
-        std::vector<std::string> arguments{std::string(BONEMILL_SOURCE_DIR) + "/deploy/check-network",
-                                           "--root", root_.path()};
+        std::vector<std::string> arguments{test::sourceDir() + "/deploy/check-network", "--root",
+                                           root_.path()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return test::run(arguments);
     }

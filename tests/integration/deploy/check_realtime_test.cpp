@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <regex>
 
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace bonemill {
@@ -53,8 +54,8 @@ class CheckRealtime : public testing::Test {
                                     "\nCapPrm:\t000001ffffffffff\nCapEff:\t" + effective_capabilities + "\n");
     }
     Finished check(const std::vector<std::string>& more = {"--core", "3"}) {
-        std::vector<std::string> arguments{std::string(BONEMILL_SOURCE_DIR) + "/deploy/check-realtime",
-                                           "--root", root_.path()};
+        std::vector<std::string> arguments{test::sourceDir() + "/deploy/check-realtime", "--root",
+                                           root_.path()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return test::run(arguments);
     }
@@ -215,7 +216,7 @@ TEST_F(CheckRealtime, WrongUseIsRefused) {
 }
 
 TEST_F(CheckRealtime, LooksAtThisMachineWithoutARoot) {
-    const Finished finished = test::run({std::string(BONEMILL_SOURCE_DIR) + "/deploy/check-realtime"});
+    const Finished finished = test::run({test::sourceDir() + "/deploy/check-realtime"});
     EXPECT_TRUE(finished.exit_code == 0 || finished.exit_code == 1) << finished.err;
     EXPECT_NE(finished.out.find("to improve."), std::string::npos) << finished.out;
     EXPECT_EQ(finished.err, "");

@@ -3,13 +3,14 @@
 
 #include <algorithm>
 
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace bonemill {
 namespace {
 
 test::Finished installDeps(const std::vector<std::string>& options) {
-    std::vector<std::string> arguments{std::string(BONEMILL_SOURCE_DIR) + "/deploy/install-deps"};
+    std::vector<std::string> arguments{test::sourceDir() + "/deploy/install-deps"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return test::run(arguments);
 }

@@ -11,6 +11,7 @@
 #include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/phantom/tooth_phantom.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace bonemill {
@@ -61,10 +62,10 @@ class SceneRun : public testing::Test {
   protected:
     SceneRun() {
         fs::create_directory(folder_ / "deploy");
-        fs::copy(BONEMILL_SOURCE_DIR "/deploy/scenes", folder_ / "deploy/scenes");
+        fs::copy(test::sourceDir() + "/deploy/scenes", folder_ / "deploy/scenes");
     }
     void makePhantom(const std::string& name) const {
-        const auto made = test::run({BONEMILL_SOURCE_DIR "/deploy/make-phantoms", "--bin", BONEMILL_BIN_DIR,
+        const auto made = test::run({test::sourceDir() + "/deploy/make-phantoms", "--bin", test::binDir(),
                                      "--out", folder_ / "build/data", name});
         ASSERT_EQ(made.exit_code, 0) << made.err;
     }

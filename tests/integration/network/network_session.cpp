@@ -6,6 +6,8 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/support/places.h"
+
 namespace bonemill::test {
 
 using namespace std::chrono_literals;
@@ -62,8 +64,7 @@ void NetworkSession::waitForDevice() {
 }
 
 std::unique_ptr<Process> NetworkSession::probe(const Host& host, const Words& network) {
-    return host.start(
-        joined(Words{std::string(BONEMILL_HELPER_DIR) + "/probe_viewer", "--session", session_}, network));
+    return host.start(joined(Words{test::helperDir() + "/probe_viewer", "--session", session_}, network));
 }
 
 nlohmann::json NetworkSession::newest(const Process& probe) {

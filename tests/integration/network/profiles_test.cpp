@@ -1,5 +1,6 @@
 // Each profile as it is used: real programs on several PCs, and all viewers end with the server's model.
 #include "tests/integration/network/network_session.h"
+#include "tests/support/places.h"
 
 namespace bonemill {
 namespace {
@@ -80,8 +81,7 @@ TEST_F(Profiles, AWrongInterfaceEndsEveryProgramWithOneMessage) {
     for (const char* program : {"haptic_server", "render_client"}) {
         const Words command =
             program == std::string("haptic_server")
-                ? Words{program, "--scene",
-                        std::string(BONEMILL_SOURCE_DIR) + "/deploy/scenes/tooth_wall.textproto"}
+                ? Words{program, "--scene", test::sourceDir() + "/deploy/scenes/tooth_wall.textproto"}
                 : Words{program};
         const auto wrong =
             haptics_pc_->start(joined(command, {"--profile", "lab", "--interface", "eth7"}))->wait();

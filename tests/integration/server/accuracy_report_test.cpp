@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace bonemill {
@@ -87,7 +88,7 @@ TEST_F(AccuracyReport, WritesAllFilesAndProposesWithinTheBudget) {
 
 TEST_F(AccuracyReport, WithoutGnuplotTheFiguresAreWrittenAllTheSame) {
     std::vector<std::string> call = arguments("out");
-    call[0] = std::string(BONEMILL_BIN_DIR) + "/haptic_server";
+    call[0] = test::binDir() + "/haptic_server";
     call.insert(call.begin(), {"/usr/bin/env", "PATH=" + folder_.path().string()});
     const Finished finished = run(call);
     EXPECT_EQ(finished.exit_code, 2);

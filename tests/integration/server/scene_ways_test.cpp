@@ -9,6 +9,7 @@
 
 #include "common/config/scene_file.h"
 #include "device_daemon/app/device_setup.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace bonemill {
@@ -17,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kTicks = 600;
-const fs::path kScenes = fs::path(BONEMILL_SOURCE_DIR) / "deploy/scenes";
+const fs::path kScenes = fs::path(test::sourceDir()) / "deploy/scenes";
 
 std::vector<std::string> shippedScenes() {
     std::vector<std::string> names;
@@ -34,8 +35,8 @@ class SceneWays : public testing::Test {
         fs::create_directories(folder_.path() / "deploy");
         fs::create_directories(folder_.path() / "build/data");
         fs::copy(kScenes, folder_.path() / "deploy/scenes");
-        const auto made = test::run({std::string(BONEMILL_SOURCE_DIR) + "/deploy/make-phantoms", "--bin",
-                                     BONEMILL_BIN_DIR, "--out", folder_ / "build/data"});
+        const auto made = test::run({test::sourceDir() + "/deploy/make-phantoms", "--bin", test::binDir(),
+                                     "--out", folder_ / "build/data"});
         EXPECT_EQ(made.exit_code, 0) << made.err;
     }
     std::string fileOf(const std::string& name) const {

@@ -10,6 +10,7 @@
 
 #include "haptic_server/telemetry/tick_record.h"
 #include "tests/support/dds_session.h"
+#include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace bonemill {
@@ -196,10 +197,10 @@ TEST_F(Session, AKilledDaemonRampsTheForceDownAndANewOneGoesOn) {
 TEST_F(Session, WithoutPermissionTheServerSaysWhatIsMissing) {
     const std::string drop =
         geteuid() == 0 ? "setpriv --bounding-set=-sys_nice,-ipc_lock --inh-caps=-sys_nice,-ipc_lock " : "";
-    const auto finished = run({"/bin/sh", "-c",
-                               "ulimit -r 0; ulimit -l 64; exec " + drop + std::string(BONEMILL_BIN_DIR) +
-                                   "/haptic_server --scene " + (folder_ / "s.textproto") + " --session " +
-                                   session_ + " --domain " + domain_});
+    const auto finished =
+        run({"/bin/sh", "-c",
+             "ulimit -r 0; ulimit -l 64; exec " + drop + test::binDir() + "/haptic_server --scene " +
+                 (folder_ / "s.textproto") + " --session " + session_ + " --domain " + domain_});
     EXPECT_EQ(finished.exit_code, 2) << finished.err;
     const size_t error = finished.err.find("error: ");
     ASSERT_NE(error, std::string::npos) << finished.err;

@@ -12,6 +12,7 @@
 #include "common/config/scene_table.h"
 #include "common/config/scene_tools.h"
 #include "common/user_error.h"
+#include "tests/support/places.h"
 
 namespace bonemill {
 namespace {
@@ -309,7 +310,7 @@ TEST(SceneTable, schemaRowsHaveUnitDefaultAndRange) {
 
 // BONEMILL_WRITE_DOCS=1 writes the table instead of comparing it.
 TEST(SceneTable, docsHoldTheTableOfTheSchema) {
-    const fs::path page = fs::path(BONEMILL_SOURCE_DIR) / "docs" / "scene.md";
+    const fs::path page = fs::path(test::sourceDir()) / "docs" / "scene.md";
     std::ifstream stream(page);
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     const std::string heading = "## Every field\n\n";

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <set>
 
+#include "tests/support/places.h"
+
 namespace bonemill {
 namespace {
 
@@ -39,7 +41,7 @@ TEST(KeyTable, ReleasesControlAndForeignKeysDoNothing) {
 }
 
 TEST(KeyTable, TheManualListsEveryKey) {
-    std::ifstream file(BONEMILL_SOURCE_DIR "/docs/viewer.md");
+    std::ifstream file(test::sourceDir() + "/docs/viewer.md");
     const std::string manual{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     ASSERT_FALSE(manual.empty());
     const auto is_listed = [&](std::string_view label) {

@@ -12,6 +12,7 @@
 
 #include "common/ipc/device_link.h"
 #include "common/rt/clock.h"
+#include "tests/support/places.h"
 
 namespace bonemill {
 namespace {
@@ -22,7 +23,7 @@ struct Outcome {
 };
 
 Outcome runDaemon(const std::string& arguments) {
-    const std::string command = std::string(BONEMILL_BIN_DIR) + "/device_daemon " + arguments + " 2>&1";
+    const std::string command = test::binDir() + "/device_daemon " + arguments + " 2>&1";
     FILE* pipe = popen(command.c_str(), "r");
     Outcome outcome{-1, ""};
     std::array<char, 4096> part;

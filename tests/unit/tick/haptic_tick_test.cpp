@@ -62,6 +62,7 @@ TEST(HapticTick, FreeSpaceIsFree) {
     Bench bench;
     const Pose start = bench.atV(kStart);
     const auto records = bench.run(test::straightPath(start, start.position, 50, 0));
+    ASSERT_EQ(records.size(), 50u);
     for (const TickRecord& r : records) {
         EXPECT_EQ(r.contacts, 0u);
         EXPECT_LT(Eigen::Vector3d(r.f_hand_W).norm(), 1e-9);
@@ -106,6 +107,7 @@ TEST(HapticTick, BadDevicePosesAreRefusedAndNothingNonFiniteComesOut) {
     inputs[4].X_WT_device.position.x() = std::numeric_limits<double>::infinity();
     inputs[5].X_WT_device.position.x() = 1e160;  // finite, but its square is not
     const auto records = bench.run(inputs);
+    ASSERT_EQ(records.size(), inputs.size());
     for (size_t n = 0; n < records.size(); ++n) {
         EXPECT_EQ(bool(records[n].faults & kFaultBadDevicePose), n >= 2 && n <= 5) << n;
         for (const double v : records[n].f_hand_W) EXPECT_TRUE(std::isfinite(v));
@@ -152,6 +154,7 @@ TEST(HapticTick, PausedMillingTakesNothingButIsFelt) {
                                            400, kButtonRemove));
     while (tick.tick(io)) {
     }
+    ASSERT_EQ(io.records.size(), 400u);
     for (const TickRecord& r : io.records) EXPECT_EQ(r.removed_voxels, 0u);
     EXPECT_GT(io.records.back().contacts, 0u);
 }
@@ -255,7 +258,8 @@ TEST(HapticTick, TwoRunsAreBitIdentical) {
         return bench.run(test::straightPath(start, end, 1500, kButtonRemove));
     };
     const auto a = run_once(), b = run_once();
-    ASSERT_EQ(a.size(), b.size());
+    ASSERT_EQ(a.size(), 1500u);
+    ASSERT_EQ(b.size(), a.size());
     for (size_t n = 0; n < a.size(); ++n) {
         ASSERT_EQ(0, std::memcmp(a[n].p_WT, b[n].p_WT, sizeof a[n].p_WT)) << n;
         ASSERT_EQ(0, std::memcmp(a[n].f_hand_W, b[n].f_hand_W, sizeof a[n].f_hand_W)) << n;

@@ -8,6 +8,7 @@
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/phantom/analytic_body.h"
 #include "haptic_server/volume/import/phantom/vertebra_phantom.h"
+#include "tests/support/places.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {
@@ -20,7 +21,7 @@ struct Outcome {
 
 Outcome runMakePhantom(const std::string& arguments) {
     Outcome outcome;
-    FILE* pipe = popen((std::string(BONEMILL_BIN_DIR) + "/make_phantom " + arguments + " 2>&1").c_str(), "r");
+    FILE* pipe = popen((test::binDir() + "/make_phantom " + arguments + " 2>&1").c_str(), "r");
     if (!pipe) return outcome;
     char buffer[256];
     while (std::fgets(buffer, sizeof buffer, pipe)) outcome.output += buffer;
