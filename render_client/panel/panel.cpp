@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
-#include "common/user_error.h"
+#include "render_client/hud/font_files.h"
 #include "render_client/panel/panel_content.h"
 
 namespace bonemill {
@@ -70,15 +69,12 @@ Panel::~Panel() = default;
 
 void Panel::setScale(float scale) {
     if (scale == scale_) return;
-    constexpr char kFont[] = BONEMILL_FONT_DIR "/DejaVuSans.ttf";
-    if (!std::filesystem::exists(kFont))
-        throw UserError(std::string("cannot read the font ") + kFont +
-                        ": install the package fonts-dejavu-core");
+    const std::string font = fontFile(FontStyle::kPlain);
     scale_ = scale;
     ImGui::SetCurrentContext(context_.get());
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
     fonts.Clear();
-    fonts.AddFontFromFileTTF(kFont, std::round(kFontPixels * scale), nullptr, kSigns);
+    fonts.AddFontFromFileTTF(font.c_str(), std::round(kFontPixels * scale), nullptr, kSigns);
     fonts.Build();
     ImGui::GetStyle() = makeStyle(scale);
     ++font_version_;

@@ -6,7 +6,8 @@
 #include <iterator>
 
 #include "render_client/controls/accuracy_keys.h"
-#include "render_client/hud/effect_text.h"
+#include "render_client/hud/effect_lines.h"
+#include "render_client/hud/hud_colours.h"
 #include "render_client/hud/session_text.h"
 
 namespace bonemill {
@@ -15,18 +16,13 @@ namespace {
 constexpr float kWidth = 330;  // pixels at scale 1
 constexpr float kMargin = 14;  // to the picture's edge
 constexpr double kLeastOpacity = 0.05;
-const ImVec4 kQuiet{0.62f, 0.68f, 0.74f, 1};
-const ImVec4 kWarning{0.98f, 0.76f, 0.3f, 1};
-const ImVec4 kAlarm{1.0f, 0.42f, 0.38f, 1};
-const ImVec4 kGood{0.45f, 0.88f, 0.55f, 1};
-const ImVec4 kPlain{0.95f, 0.96f, 0.97f, 1};
 
-const ImVec4& colourOf(HudTone tone) {
-    return tone == HudTone::kAlarm     ? kAlarm
-           : tone == HudTone::kWarning ? kWarning
-           : tone == HudTone::kGood    ? kGood
-                                       : kPlain;
+ImVec4 imColour(const HudColour& colour) {
+    return {colour[0], colour[1], colour[2], colour[3]};
 }
+
+const ImVec4 kQuiet = imColour(kHudLabelColour);
+const ImVec4 kWarning = imColour(colourOf(HudTone::kWarning));
 
 bool isOpen(const char* title) {
     return ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
@@ -310,7 +306,7 @@ void PanelContent::buildTraining() {
             ImGui::TextColored(kQuiet, "%s", row.label.c_str());
             ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.55f);
         }
-        ImGui::TextColored(colourOf(row.tone), "%s", row.value.c_str());
+        ImGui::TextColored(imColour(colourOf(row.tone)), "%s", row.value.c_str());
     }
 }
 

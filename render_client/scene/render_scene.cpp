@@ -254,14 +254,14 @@ void RenderScene::drawAnaglyph(const FrameView& view, int width, int height, flo
 void RenderScene::paintHud(const Camera& camera, const PictureArea& area, float ui_scale) {
     if (!settings_.show_hud) {
         if (const auto alert = alertOf(hud_input_))
-            hud_painter_.paintAlert(*alert, area.width, area.height, ui_scale);
+            hud_painter_.paintAlert(*alert, {area.width, area.height}, ui_scale);
         return;
     }
     hud_input_.show_watchers = settings_.show_watchers;
     hud_input_.show_help = settings_.show_help;
     const double metres_per_pixel = camera.metresPerPixel(area.height);
     const ScaleBar bar = hasSceneInfo() ? makeScaleBar(metres_per_pixel, 0.2 * area.width) : ScaleBar{};
-    hud_painter_.paint(makeHud(hud_input_), bar, metres_per_pixel, area.width, area.height, ui_scale);
+    hud_painter_.paint(makeHud(hud_input_), bar, metres_per_pixel, {area.width, area.height}, ui_scale);
 }
 
 void RenderScene::paintNames(const FrameView& view, const PictureArea& area, float ui_scale) {
@@ -275,7 +275,7 @@ void RenderScene::paintNames(const FrameView& view, const PictureArea& area, flo
         const double right = area.width / 2.0 + (p_C.x() + view.camera.shift * p_C.z()) * pixels;
         labels.push_back({float(right), float(area.height / 2.0 - p_C.y() * pixels), watcher.name()});
     }
-    if (!labels.empty()) hud_painter_.paintLabels(labels, area.width, area.height, ui_scale);
+    if (!labels.empty()) hud_painter_.paintLabels(labels, {area.width, area.height}, ui_scale);
 }
 
 }  // namespace bonemill

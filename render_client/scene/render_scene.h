@@ -10,10 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "proto/topics.pb.h"
 #include "render_client/camera/orbit_camera.h"
 #include "render_client/camera/view_settings.h"
 #include "render_client/effects/visual_effects.h"
 #include "render_client/hud/event_latch.h"
+#include "render_client/hud/hud_lines.h"
 #include "render_client/paint/anaglyph.h"
 #include "render_client/paint/hud_painter.h"
 #include "render_client/paint/scene_renderer.h"

@@ -1,4 +1,4 @@
-#include "render_client/hud/effect_text.h"
+#include "render_client/hud/effect_lines.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "render_client/hud/hud.h"
+#include "render_client/hud/hud_lines.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/units.h"
-#include "render_client/hud/effect_text.h"
+#include "render_client/hud/effect_lines.h"
 #include "render_client/hud/figure_text.h"
 #include "render_client/hud/session_text.h"
 
@@ -168,17 +168,6 @@ Hud makeHud(const HudInput& input) {
     if (input.show_watchers) hud.watchers = watcherRows(input.watchers);
     if (input.show_help) hud.help = input.help;
     return hud;
-}
-
-ScaleBar makeScaleBar(double metres_per_pixel, double max_pixels) {
-    const double longest = metres_per_pixel * max_pixels;
-    if (!(longest > 0) || !std::isfinite(longest)) return {};
-    const double decade = std::pow(10.0, std::floor(std::log10(longest) + 1e-9));
-    const double length = decade * (longest >= 5 * decade ? 5 : longest >= 2 * decade ? 2 : 1);
-    const double length_mm = length * kPerMillimetre;
-    char text[32];
-    std::snprintf(text, sizeof text, "%g mm", length_mm);
-    return {length, text};
 }
 
 }  // namespace bonemill

@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
+#include "render_client/hud/utf8.h"
 
-#include "render_client/paint/font_atlas.h"
+#include <gtest/gtest.h>
 
 namespace bonemill {
 namespace {

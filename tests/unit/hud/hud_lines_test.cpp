@@ -1,4 +1,4 @@
-#include "render_client/hud/hud.h"
+#include "render_client/hud/hud_lines.h"
 
 #include <gtest/gtest.h>
 
@@ -226,15 +226,6 @@ TEST(Hud, NumbersThatAreNoneBecomeADash) {
     const Hud hud = makeHud(input);
     EXPECT_EQ(find(hud, "Loop")->value, "\u2013");
     EXPECT_EQ(find(hud, "Force")->value, "\u2013");
-}
-
-TEST(ScaleBar, IsTheLongestRoundLengthThatFits) {
-    EXPECT_DOUBLE_EQ(makeScaleBar(1e-5, 250).length, 2e-3);
-    EXPECT_EQ(makeScaleBar(1e-5, 250).label, "2 mm");
-    EXPECT_EQ(makeScaleBar(1e-5, 99).label, "0.5 mm");
-    EXPECT_EQ(makeScaleBar(1e-3, 60).label, "50 mm");
-    EXPECT_EQ(makeScaleBar(1e-5, 100).label, "1 mm");
-    EXPECT_EQ(makeScaleBar(0, 100).length, 0);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "proto/topics.pb.h"
 #include "render_client/hud/hud.h"
 
 namespace bonemill {

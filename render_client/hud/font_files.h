@@ -1,0 +1,13 @@
+// The font files that figures and panel are written in. Any thread.
+#pragma once
+
+#include <string>
+
+namespace bonemill {
+
+enum class FontStyle { kPlain, kBold };
+
+// The path of the installed file. Throws UserError when it is not installed.
+std::string fontFile(FontStyle style);
+
+}  // namespace bonemill

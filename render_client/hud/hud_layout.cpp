@@ -1,0 +1,146 @@
+#include "render_client/hud/hud_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace bonemill {
+namespace {
+
+constexpr std::string_view kWatchersTitle = "Watching";
+
+// What all lists share.
+struct Spacing {
+    explicit Spacing(float em)
+        : margin(em * 1.1f), padding(em * 0.9f), line(em * 1.55f), gap(em * 1.4f), rounding(em * 0.6f) {}
+    float margin, padding, line, gap, rounding;
+};
+
+float innerWidth(const HudCanvas& canvas, const Hud& hud) {
+    const float em = canvas.em();
+    float labels = 0, values = 0;
+    for (const HudRow& row : hud.rows) {
+        labels = std::max(labels, canvas.width(row.label, FontStyle::kPlain));
+        values = std::max(values, canvas.width(row.value, FontStyle::kBold));
+    }
+    const float head = std::max(canvas.width(hud.title, FontStyle::kBold),
+                                em * 0.9f + canvas.width(hud.state, FontStyle::kPlain));
+    // A floor keeps the figures from breathing with every digit.
+    return std::max({head, labels + Spacing(em).gap + values, em * 13});
+}
+
+// Title and state. Returns the base line of the state.
+float layOutHead(HudCanvas& canvas, const Hud& hud) {
+    const float em = canvas.em();
+    const Spacing space(em);
+    const float left = space.margin + space.padding, title = space.margin + space.padding * 0.7f + em;
+    canvas.text(left, title, hud.title, FontStyle::kBold, kHudTitleColour);
+    const float state = title + space.line, dot = em * 0.5f;
+    canvas.box(left, state - em * 0.55f, dot, dot, dot / 2, colourOf(hud.state_tone));
+    canvas.text(left + em * 0.9f, state, hud.state, FontStyle::kPlain, kHudLabelColour);
+    return state;
+}
+
+void layOutRows(HudCanvas& canvas, const std::vector<HudRow>& rows, float base, float inner) {
+    const float em = canvas.em();
+    const Spacing space(em);
+    const float left = space.margin + space.padding;
+    canvas.box(left, base + em * 0.65f, inner, 1, 0, kHudLineColour);
+    base += em * 0.6f;
+    for (const HudRow& row : rows) {
+        base += space.line;
+        canvas.text(left, base, row.label, FontStyle::kPlain, kHudLabelColour);
+        canvas.text(left + inner - canvas.width(row.value, FontStyle::kBold), base, row.value,
+                    FontStyle::kBold, colourOf(row.tone));
+    }
+}
+
+void layOutBanner(HudCanvas& canvas, const HudNotice& notice, float bottom, float picture_width) {
+    const float em = canvas.em(), padding = Spacing(em).padding, height = em * 2.2f;
+    const float text_width = canvas.width(notice.text, FontStyle::kBold);
+    const float left = std::round((picture_width - text_width) / 2), top = bottom - height;
+    canvas.box(left - padding, top, text_width + 2 * padding, height, Spacing(em).rounding, kHudPanelColour);
+    canvas.text(left, top + em * 1.45f, notice.text, FontStyle::kBold, colourOf(notice.tone));
+}
+
+}  // namespace
+
+HudCorner layOutFigures(HudCanvas& canvas, const Hud& hud) {
+    const float em = canvas.em();
+    const Spacing space(em);
+    const float inner = innerWidth(canvas, hud);
+    const float head = space.line * 2 + em * 0.35f;
+    const float body = hud.rows.empty() ? 0 : space.line * float(hud.rows.size()) + em * 0.5f;
+    const HudCorner corner{space.margin + inner + 2 * space.padding,
+                           space.margin + head + body + 1.4f * space.padding};
+    canvas.box(space.margin, space.margin, corner.right - space.margin, corner.bottom - space.margin,
+               space.rounding, kHudPanelColour);
+    const float base = layOutHead(canvas, hud);
+    if (!hud.rows.empty()) layOutRows(canvas, hud.rows, base, inner);
+    return corner;
+}
+
+void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, const HudCorner& figures,
+                    const PictureSize& picture) {
+    const float em = canvas.em(), picture_width = float(picture.width);
+    const Spacing space(em);
+    float names = canvas.width(kWatchersTitle, FontStyle::kBold), values = 0;
+    for (const HudRow& row : watchers) {
+        names = std::max(names, canvas.width(row.label, FontStyle::kPlain));
+        values = std::max(values, canvas.width(row.value, FontStyle::kPlain));
+    }
+    const float inner = names + space.gap + values;
+    const bool fits_beside = picture_width - 2 * space.margin - inner - 2 * space.padding > figures.right;
+    const float left =
+        fits_beside ? picture_width - space.margin - space.padding - inner : space.margin + space.padding;
+    const float right = left + inner, top = fits_beside ? space.margin : figures.bottom + em * 0.6f;
+    canvas.box(left - space.padding, top, inner + 2 * space.padding,
+               space.line * float(watchers.size() + 1) + space.padding, space.rounding, kHudPanelColour);
+    float base = top + space.padding * 0.7f + em;
+    canvas.text(left, base, kWatchersTitle, FontStyle::kBold, kHudTitleColour);
+    for (const HudRow& row : watchers) {
+        base += space.line;
+        canvas.text(left, base, row.label, FontStyle::kPlain, kHudTitleColour);
+        canvas.text(right - canvas.width(row.value, FontStyle::kPlain), base, row.value, FontStyle::kPlain,
+                    row.tone == HudTone::kPlain ? kHudLabelColour : colourOf(row.tone));
+    }
+}
+
+void layOutScaleBar(HudCanvas& canvas, const ScaleBar& bar, double metres_per_pixel,
+                    const PictureSize& picture) {
+    if (bar.length <= 0) return;
+    const float em = canvas.em(), pixels = float(bar.length / metres_per_pixel);
+    const float right = float(picture.width) - em * 1.6f, base = float(picture.height) - em * 1.6f;
+    const float thick = std::max(2.0f, em / 8), label_width = canvas.width(bar.label, FontStyle::kPlain);
+    canvas.box(right - pixels, base, pixels, thick, 0, kHudScaleColour);
+    canvas.box(right - pixels, base - em * 0.35f, thick, em * 0.35f, 0, kHudScaleColour);
+    canvas.box(right - thick, base - em * 0.35f, thick, em * 0.35f, 0, kHudScaleColour);
+    canvas.text(right - (pixels + label_width) / 2, base - em * 0.6f, bar.label, FontStyle::kPlain,
+                kHudScaleColour);
+}
+
+void layOutNotice(HudCanvas& canvas, const HudNotice& notice, const PictureSize& picture) {
+    layOutBanner(canvas, notice, float(picture.height) - canvas.em() * 1.1f, float(picture.width));
+}
+
+void layOutAlert(HudCanvas& canvas, const HudNotice& alert, const PictureSize& picture) {
+    const float em = canvas.em(), width = float(picture.width), height = float(picture.height);
+    const float thick = std::max(3.0f, em * 0.4f);
+    HudColour colour = colourOf(alert.tone);
+    colour[3] = 0.85f;
+    canvas.box(0, 0, width, thick, 0, colour);
+    canvas.box(0, height - thick, width, thick, 0, colour);
+    canvas.box(0, thick, thick, height - 2 * thick, 0, colour);
+    canvas.box(width - thick, thick, thick, height - 2 * thick, 0, colour);
+    layOutBanner(canvas, alert, height - em * 3.9f, width);
+}
+
+void layOutLabel(HudCanvas& canvas, const HudLabel& label) {
+    const float em = canvas.em(), text_width = canvas.width(label.text, FontStyle::kBold);
+    const float padding = em * 0.45f, left = std::round(label.x) + em * 1.7f;
+    const float top = std::round(label.y) - em * 0.75f;
+    canvas.box(left - padding, top, text_width + 2 * padding, em * 1.5f, em * 0.4f, kHudPanelColour);
+    canvas.text(left, top + em * 1.08f, label.text, FontStyle::kBold, kHudPointerNameColour);
+}
+
+}  // namespace bonemill

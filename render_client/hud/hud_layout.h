@@ -1,0 +1,42 @@
+// Where the parts of the head-up display stand in a picture, and how they look. Pure functions, any thread.
+//
+// Positions and sizes are pixels from the picture's upper left corner.
+#pragma once
+
+#include <vector>
+
+#include "render_client/hud/hud.h"
+#include "render_client/hud/hud_canvas.h"
+#include "render_client/hud/scale_bar.h"
+
+namespace bonemill {
+
+struct PictureSize {
+    int width = 0;
+    int height = 0;
+};
+
+struct HudCorner {
+    float right, bottom;
+};
+
+// The figures, in the upper left corner. Returns the lower right corner of what they take, margin included.
+HudCorner layOutFigures(HudCanvas& canvas, const Hud& hud);
+
+// The list of watchers, at the upper right, or below the figures when there is no room beside them.
+void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, const HudCorner& figures,
+                    const PictureSize& picture);
+
+// The scale bar, in the lower right corner.
+void layOutScaleBar(HudCanvas& canvas, const ScaleBar& bar, double metres_per_pixel,
+                    const PictureSize& picture);
+
+// A line in the middle of the lower edge, and above it the one with a border around the picture: neither
+// hides the other.
+void layOutNotice(HudCanvas& canvas, const HudNotice& notice, const PictureSize& picture);
+void layOutAlert(HudCanvas& canvas, const HudNotice& alert, const PictureSize& picture);
+
+// A name beside a point.
+void layOutLabel(HudCanvas& canvas, const HudLabel& label);
+
+}  // namespace bonemill

@@ -1,0 +1,42 @@
+// Every line of the head-up display, from top to bottom: what it says, and when it is there. Another line is
+// a function of hud_lines.cpp that makeHud() calls, or of effect_lines.cpp when it tells of an effect. Pure
+// functions, any thread.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "proto/topics.pb.h"
+#include "render_client/hud/hud.h"
+
+namespace bonemill {
+
+// How the viewer stands with its server.
+enum class Connection {
+    kNoServer,    // none found yet
+    kReceiving,   // the model is still arriving
+    kLive,        // the model is complete
+    kServerLost,  // there was one
+};
+
+struct HudInput {
+    std::optional<topics::SceneInfo> info;
+    std::optional<topics::Status> status;
+    std::optional<topics::ToolState> tool;
+    Connection connection = Connection::kNoServer;
+    size_t node_count = 0;     // nodes the viewer holds
+    double frame_rate_hz = 0;  // of this viewer; 0: not known
+    std::vector<topics::Viewer> watchers;
+    bool show_watchers = true;
+    std::vector<HudRow> help;
+    bool show_help = false;
+    std::optional<HudNotice> notice;
+    uint32_t events = 0;     // EffectState.Event bits that the trainee is to see now
+    uint32_t structure = 0;  // EffectState.event_id of those of protected structures
+};
+
+Hud makeHud(const HudInput& input);
+// Also for a picture without figures.
+std::optional<HudNotice> alertOf(const HudInput& input);
+
+}  // namespace bonemill

@@ -1,0 +1,13 @@
+// Text as code points. Pure functions, any thread.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace bonemill {
+
+// The code points of UTF-8 text; each broken byte becomes U+FFFD.
+std::vector<uint32_t> decodeUtf8(std::string_view text);
+
+}  // namespace bonemill

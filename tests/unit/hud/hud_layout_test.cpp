@@ -1,0 +1,71 @@
+// Where the parts of the head-up display stand, from the triangles alone.
+#include "render_client/hud/hud_layout.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "render_client/hud/help_page.h"
+
+namespace bonemill {
+namespace {
+
+constexpr float kEm = 15;
+
+class HudLayout : public testing::Test {
+  protected:
+    struct Extent {
+        float left, right;
+    };
+    Extent extentSince(size_t first) const {
+        const auto is_left = [](const auto& a, const auto& b) { return a.x < b.x; };
+        const auto [low, high] = std::minmax_element(canvas_.vertices().begin() + std::ptrdiff_t(first),
+                                                     canvas_.vertices().end(), is_left);
+        return {low->x, high->x};
+    }
+
+    FontAtlas font_{kEm};
+    HudCanvas canvas_{font_};
+    const std::vector<HudRow> watchers_{{"Anna", "operator, 60 Hz"}};
+};
+
+TEST_F(HudLayout, AnotherLineMakesTheFiguresTaller) {
+    Hud hud;
+    hud.title = "skull";
+    hud.rows = {{"Force", "5.00 N"}};
+    const HudCorner one = layOutFigures(canvas_, hud);
+    hud.rows.push_back({"Torque", "12.0 N\u00b7mm"});
+    const HudCorner two = layOutFigures(canvas_, hud);
+    EXPECT_NEAR(two.bottom - one.bottom, 1.55f * kEm, 1e-3f);
+    EXPECT_EQ(two.right, one.right) << "short lines keep the width";
+}
+
+TEST_F(HudLayout, WatchersStandBesideTheFiguresOrBelowThem) {
+    const HudCorner figures{220, 300};
+    layOutWatchers(canvas_, watchers_, figures, {800, 600});
+    EXPECT_GT(extentSince(0).left, figures.right);
+    EXPECT_LT(extentSince(0).right, 800);
+    const size_t first = canvas_.vertices().size();
+    layOutWatchers(canvas_, watchers_, figures, {300, 600});
+    EXPECT_LT(extentSince(first).left, figures.right);
+    EXPECT_GT(canvas_.vertices()[first].y, figures.bottom - 1);
+}
+
+TEST_F(HudLayout, TheHelpPageGetsSmallerTextWhereItWouldNotFit) {
+    std::vector<HudRow> rows;
+    for (int i = 0; i < 40; ++i) rows.push_back({"Shift+X", "cut away the other side"});
+    EXPECT_EQ(helpTextHeight(font_, rows, {1600, 1200}), kEm);
+    EXPECT_LT(helpTextHeight(font_, rows, {480, 360}), kEm);
+    layOutHelp(canvas_, rows, {1600, 1200});
+    EXPECT_GT(extentSince(0).left, 0);
+    EXPECT_LT(extentSince(0).right, 1600);
+}
+
+TEST(FontAtlas, AnUnknownSignIsAQuestionMark) {
+    const FontAtlas font(kEm);
+    EXPECT_EQ(font.glyph(0x1f600, FontStyle::kPlain).u0, font.glyph('?', FontStyle::kPlain).u0);
+    EXPECT_GT(font.width("Ww", FontStyle::kBold), font.width("il", FontStyle::kBold));
+}
+
+}  // namespace
+}  // namespace bonemill
