@@ -15,26 +15,27 @@ constexpr std::chrono::seconds kAnnouncePeriod{1};
 }  // namespace
 
 void SceneFeed::update() {
-    SceneModel::Changes changes = subscriber_.poll();
-    if (changes.is_cleared) scene_.clearNodes();
-    try {
-        for (SceneModel::Change& change : changes.nodes) {
-            scene_.setNode(std::move(change.mesh));
-            if (cuts_) cuts_->willShow(change.cut_stamp_ns);
-        }
-        const auto& info = subscriber_.sceneInfo();
-        if (info && std::pair(info->epoch(), info->revision()) != shown_info_) {
-            shown_info_ = {info->epoch(), info->revision()};
-            scene_.setSceneInfo(*info);
-        }
-    } catch (const std::invalid_argument& error) {
-        spdlog::warn("the server sent what cannot be drawn: {}", error.what());
-    }
+    const SceneModel::Changes changes = subscriber_.poll();
+    if (changes.is_cleared) nodes_.clear();
+    for (const SceneModel::Change& change : changes.nodes)
+        if (nodes_.set(change.mesh) && cuts_) cuts_->willShow(change.cut_stamp_ns);
+    showSceneInfo();
     if (subscriber_.toolState()) scene_.setToolState(*subscriber_.toolState());
     if (subscriber_.status()) scene_.setStatus(*subscriber_.status());
     advanceEffects();
     updateConnection();
     if (takes_part_) announce();
+}
+
+void SceneFeed::showSceneInfo() {
+    const auto& info = subscriber_.sceneInfo();
+    if (!info || std::pair(info->epoch(), info->revision()) == shown_info_) return;
+    shown_info_ = {info->epoch(), info->revision()};
+    try {
+        scene_.setSceneInfo(*info);
+    } catch (const std::invalid_argument& error) {
+        spdlog::warn("the server sent a scene that cannot be shown: {}", error.what());
+    }
 }
 
 void SceneFeed::advanceEffects() {
@@ -59,7 +60,7 @@ void SceneFeed::announce() {
 // Tool states are not kept for late clients: a loop that has ticked will send one soon.
 bool SceneFeed::isComplete() const {
     const bool has_ticked = subscriber_.status() && subscriber_.status()->ticks() > 0;
-    return subscriber_.hasServer() && subscriber_.isComplete() && scene_.hasSceneInfo() &&
+    return subscriber_.hasServer() && hasWholeModel() && scene_.hasSceneInfo() &&
            (!has_ticked || subscriber_.toolState());
 }
 
@@ -67,7 +68,7 @@ bool SceneFeed::isComplete() const {
 // complete once is called live from then on.
 void SceneFeed::updateConnection() {
     const bool has_server = subscriber_.hasServer();
-    if (has_server && subscriber_.isComplete()) complete_epoch_ = subscriber_.epoch();
+    if (has_server && hasWholeModel()) complete_epoch_ = subscriber_.epoch();
     had_server_ = had_server_ || has_server;
     scene_.setConnection(!has_server && had_server_ ? Connection::kServerLost
                          : !has_server              ? Connection::kNoServer

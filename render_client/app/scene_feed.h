@@ -6,7 +6,7 @@
 
 #include "render_client/app/cut_to_screen.h"
 #include "render_client/app/sound_feed.h"
-#include "render_client/scene/render_scene.h"
+#include "render_client/scene/node_intake.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
 namespace bonemill {
@@ -14,7 +14,8 @@ namespace bonemill {
 class SceneFeed {
   public:
     // Throws UserError when the DDS domain cannot be joined. The scene must outlive the feed.
-    SceneFeed(const SubscriberOptions& options, RenderScene& scene) : subscriber_(options), scene_(scene) {}
+    SceneFeed(const SubscriberOptions& options, RenderScene& scene)
+        : subscriber_(options), scene_(scene), nodes_(scene) {}
 
     // Takes everything that has arrived. Never waits.
     void update();
@@ -38,12 +39,15 @@ class SceneFeed {
     SceneSubscriber& subscriber() { return subscriber_; }
 
   private:
+    bool hasWholeModel() const { return subscriber_.isComplete() && nodes_.refusedCount() == 0; }
+    void showSceneInfo();
     void updateConnection();
     void announce();
     void advanceEffects();
 
     SceneSubscriber subscriber_;
     RenderScene& scene_;
+    NodeIntake nodes_;
     CutToScreen* cuts_ = nullptr;
     SoundFeed* sound_ = nullptr;
     std::chrono::steady_clock::time_point advanced_ = std::chrono::steady_clock::now();

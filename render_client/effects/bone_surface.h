@@ -19,7 +19,6 @@ class BoneSurface {
     static constexpr float kFocusRadius = 0.02f;  // m around the focus in which points are found
 
     void set(const NodeMesh& mesh);  // an empty one removes it
-    void remove(uint32_t leaf);
     void clear();
 
     // Points are found around this place from now on. Cheap while it hardly moves.
@@ -46,6 +45,7 @@ class BoneSurface {
         Eigen::Array3i bucketOf(const Eigen::Vector3f& p) const;
         void findNearer(const Eigen::Vector3f& p_V, float& reach, const PackedVertex*& found) const;
     };
+    void remove(uint32_t leaf);
     void noteFresh(const Leaf* before, const Leaf& after);
     void findLeaves();
 

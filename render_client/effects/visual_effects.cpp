@@ -58,10 +58,6 @@ void VisualEffects::setNode(const NodeMesh& mesh) {
     if (needsSurface()) surface_.set(mesh);
 }
 
-void VisualEffects::removeNode(uint32_t leaf) {
-    if (needsSurface()) surface_.remove(leaf);
-}
-
 void VisualEffects::clear() {
     surface_.clear();
     trail_.clear();

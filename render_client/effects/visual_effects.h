@@ -29,7 +29,6 @@ class VisualEffects {
     void take(const EffectInput& input);
     // A node's mesh came or changed. An empty one removes it.
     void setNode(const NodeMesh& mesh);
-    void removeNode(uint32_t leaf);
     // The bone is another one. Where it is put back, dust and blood stay for their time.
     void clear();
     void advance(double dt);

@@ -25,7 +25,7 @@ bool mayBeVisible(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_fr
 
 }  // namespace
 
-void NodeStore::set(NodeMesh mesh) {
+void NodeStore::set(const NodeMesh& mesh) {
     if (mesh.isEmpty()) return remove(mesh.leaf);
     if (*std::max_element(mesh.indices.begin(), mesh.indices.end()) >= mesh.vertices.size()) {
         throw std::invalid_argument("node " + std::to_string(mesh.leaf) + ": a triangle without its vertex");
@@ -59,9 +59,8 @@ void NodeStore::set(NodeMesh mesh) {
     if (!mesh.materials.empty()) uploadMaterials(mesh.materials, node);
     gl_.BindVertexArray(0);
     if (tracks_changes_) changed_.extend(changeTo(mesh, node.box));
-    const uint32_t leaf = mesh.leaf;
-    if (tracks_changes_) node.mesh = std::move(mesh);
-    nodes_.insert_or_assign(leaf, std::move(node));
+    if (tracks_changes_) node.mesh = mesh;
+    nodes_.insert_or_assign(mesh.leaf, std::move(node));
 }
 
 // Into the layout in use. Vertices of other nodes have the attribute's own value, 0: no material.

@@ -25,8 +25,7 @@ class NodeStore {
 
     // Replaces the leaf's mesh; an empty one removes it. Throws std::invalid_argument when an index has no
     // vertex or the materials are not as many as the vertices.
-    void set(NodeMesh mesh);
-    void remove(uint32_t leaf);
+    void set(const NodeMesh& mesh);
     void clear();
 
     size_t nodeCount() const { return nodes_.size(); }
@@ -54,6 +53,7 @@ class NodeStore {
         GLsizei index_count;
         std::optional<NodeMesh> mesh;  // what the buffers hold, while changes are tracked
     };
+    void remove(uint32_t leaf);
     void uploadMaterials(const std::vector<uint8_t>& materials, Node& node);
     Eigen::AlignedBox3f changeTo(const NodeMesh& mesh, const Eigen::AlignedBox3f& box) const;
 

@@ -68,16 +68,10 @@ void RenderScene::makeEffects(const topics::SceneInfo& info) {
     takeEffectInput();
 }
 
-void RenderScene::setNode(NodeMesh mesh) {
+void RenderScene::setNode(const NodeMesh& mesh) {
+    nodes_.set(mesh);  // throws when it contradicts itself: then nobody gets it
     if (effects_) effects_->setNode(mesh);
     if (has_effects_ && !hud_input_.info) early_nodes_.insert_or_assign(mesh.leaf, mesh);
-    nodes_.set(std::move(mesh));
-}
-
-void RenderScene::removeNode(uint32_t leaf) {
-    if (effects_) effects_->removeNode(leaf);
-    early_nodes_.erase(leaf);
-    nodes_.remove(leaf);
 }
 
 // Of another run of the server, of which nothing is known yet.

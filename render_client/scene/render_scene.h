@@ -38,8 +38,7 @@ class RenderScene {
 
     // Replaces the node's mesh; an empty one removes it. Throws std::invalid_argument on a mesh that
     // contradicts itself.
-    void setNode(NodeMesh mesh);
-    void removeNode(uint32_t leaf);
+    void setNode(const NodeMesh& mesh);
     void clearNodes();
 
     // The first scene, and every scene of another name, resets the view; a newer revision of the same one

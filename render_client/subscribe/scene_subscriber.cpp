@@ -11,6 +11,7 @@ namespace {
 
 // Few samples per session are kept, so more than this many at once is a flood of foreign sessions.
 constexpr size_t kMaxSmallSamples = 256;
+constexpr uint64_t kMostNamed = 16;  // malformed samples in the log: a hostile peer must not fill it
 constexpr size_t kMaxViewers = 256;  // bounds what invented senders can take
 
 uint64_t randomSender() {
@@ -110,7 +111,7 @@ void SceneSubscriber::takeViewers() {
     viewer_reader_.take(kMaxSmallSamples, [&](const dds::ViewerSample& sample, const dds::SampleInfo& info) {
         if (!info.has_data || sample.session != options_.session || sample.sender == outbox_.sender()) return;
         std::optional<topics::Viewer> viewer = parseViewer(dds::payloadOf(sample), sample.sender);
-        if (!viewer) return dropMalformed("viewer");
+        if (!viewer) return dropMalformed("viewer " + std::to_string(sample.sender));
         if (viewers_.size() < kMaxViewers || viewers_.contains(sample.sender))
             viewers_[sample.sender] = {std::move(*viewer), now};
     });
@@ -151,7 +152,7 @@ void SceneSubscriber::takeNodes(size_t max_nodes) {
         if (info.is_disposed) return model_.removeNode(sample.node, info.writer);
         if (!info.has_data) return;
         std::optional<DecodedNode> node = parseNode(dds::payloadOf(sample), sample.node, sample.revision);
-        if (!node) return dropMalformed("node mesh");
+        if (!node) return dropMalformed("node mesh " + std::to_string(sample.node));
         enterEpoch(node->tag.epoch);
         // Also of an older run: the model remembers its writer, whose late removals must not count.
         model_.applyNode(std::move(*node), info.writer, SceneModel::Clock::now());
@@ -170,8 +171,10 @@ bool SceneSubscriber::enterEpoch(uint64_t epoch) {
     return true;
 }
 
-void SceneSubscriber::dropMalformed(const char* what) {
-    if (malformed_count_++ == 0) spdlog::warn("dropped a malformed {}; more of them are only counted", what);
+void SceneSubscriber::dropMalformed(const std::string& what) {
+    if (++malformed_count_ > kMostNamed) return;
+    spdlog::warn("dropped a malformed {}{}", what,
+                 malformed_count_ == kMostNamed ? "; from now on they are only counted" : "");
 }
 
 bool SceneSubscriber::isComplete() const {

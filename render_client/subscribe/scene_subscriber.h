@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/dds/endpoint.h"
@@ -75,7 +76,7 @@ class SceneSubscriber {
     void takeToolState();
     void takeViewers();
     bool enterEpoch(uint64_t epoch);
-    void dropMalformed(const char* what);
+    void dropMalformed(const std::string& what);
 
     SubscriberOptions options_;
     SceneModel model_;

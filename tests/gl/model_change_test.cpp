@@ -41,9 +41,7 @@ TEST_F(ViewMode, OnlyWhatIsSetGoesToTheGpu) {
     EXPECT_EQ(scene_->uploads().nodes, nodes + 1);
     EXPECT_EQ(scene_->uploads().bytes - bytes,
               changed.vertices.size() * sizeof(PackedVertex) + changed.indices.size() * sizeof(uint32_t));
-    NodeMesh emptied;
-    emptied.leaf = changed.leaf;
-    scene_->setNode(emptied);
+    scene_->setNode(emptyNode(changed.leaf));
     EXPECT_EQ(scene_->uploads().nodes, nodes + 1);
 }
 

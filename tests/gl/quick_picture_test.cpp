@@ -59,7 +59,7 @@ class QuickPicture : public testing::Test {
     void changeNode() {
         const std::vector<NodeMesh>& nodes = random_() % 2 ? large_ : small_;
         const NodeMesh& node = nodes[random_() % nodes.size()];
-        random_() % 4 ? scene_.setNode(node) : scene_.removeNode(node.leaf);
+        scene_.setNode(random_() % 4 ? node : test::emptyNode(node.leaf));
     }
     Picture draw() {
         scene_.draw(kWidth, kHeight, 1);

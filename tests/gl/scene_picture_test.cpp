@@ -173,12 +173,10 @@ TEST_F(ScenePicture, ARemovedNodeIsGone) {
                                           [&](const NodeMesh& a, const NodeMesh& b) {
                                               return towards_eye.dot(a.origin) < towards_eye.dot(b.origin);
                                           });
-    NodeMesh emptied;
-    emptied.leaf = nearest->leaf;
-    scene_->setNode(emptied);
+    scene_->setNode(test::emptyNode(nearest->leaf));
     EXPECT_EQ(scene_->nodeCount(), sphereNodes().size() - 1);
     EXPECT_GT(countDifferent(draw(), whole), 100u);
-    for (const NodeMesh& node : sphereNodes()) scene_->removeNode(node.leaf);
+    for (const NodeMesh& node : sphereNodes()) scene_->setNode(test::emptyNode(node.leaf));
     EXPECT_EQ(draw(), empty);
     showSphere();
     scene_->clearNodes();

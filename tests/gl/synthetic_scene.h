@@ -42,6 +42,13 @@ inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const Distance
     return nodes;
 }
 
+// What removes the leaf.
+inline NodeMesh emptyNode(uint32_t leaf) {
+    NodeMesh mesh;
+    mesh.leaf = leaf;
+    return mesh;
+}
+
 inline void setVector(const Eigen::Vector3d& v, google::protobuf::RepeatedField<double>* field) {
     field->Assign(v.data(), v.data() + 3);
 }
