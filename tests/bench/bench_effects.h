@@ -1,4 +1,4 @@
-// `haptic_bench effects`: what each effect adds to a tick that mills a block, on this machine.
+// `haptic_bench effects` measures what each effect adds to a tick that mills a block, on this machine.
 #pragma once
 
 #include <CLI/CLI.hpp>

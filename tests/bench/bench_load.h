@@ -1,4 +1,4 @@
-// `haptic_bench load`: from a file to the first tick, and the memory that takes.
+// `haptic_bench load` measures the way from a file to the first tick, and the memory that it takes.
 #pragma once
 
 #include <CLI/CLI.hpp>

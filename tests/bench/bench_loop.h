@@ -1,5 +1,5 @@
-// `haptic_bench loop`: the tick in real time beside a bare timer, which shows what the machine itself is
-// late.
+// `haptic_bench loop` measures the tick in real time beside a bare timer, which shows how late the machine
+// itself is.
 #pragma once
 
 #include <CLI/CLI.hpp>

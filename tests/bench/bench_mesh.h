@@ -1,4 +1,4 @@
-// `haptic_bench mesh`: the whole surface beside VTK's flying edges, and single leaves after a cut.
+// `haptic_bench mesh` measures the whole surface beside VTK's flying edges, and single leaves after a cut.
 #pragma once
 
 #include <CLI/CLI.hpp>

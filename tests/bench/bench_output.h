@@ -1,4 +1,4 @@
-// What every sub-command of haptic_bench prints: a table for people, and on request the same as JSON.
+// Every sub-command of haptic_bench prints this: a table for people, and on request the same as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -30,16 +30,16 @@ class Table {
 
 std::string number(double value, int digits = 4);
 
-// Of every number in these alike objects, the median; of anything else, the first's.
+// Takes of every number in these alike objects the median, of anything else the first's.
 nlohmann::json medianOf(const std::vector<nlohmann::json>& runs);
 
-// Resident memory of this process, bytes: now, and the most there ever was.
+// They give the resident memory of this process in bytes: now, and the most there ever was.
 size_t residentBytes();
 size_t peakResidentBytes();
 size_t peakResidentBytesOfChildren();  // of the largest that has ended
 
-// --json. A file that cannot be written is a UserError when the command line is read, before anything is
-// measured.
+// This is for --json. A file that cannot be written is a UserError when the command line is read, before
+// anything is measured.
 void addJsonOption(CLI::App& command, std::string& path);
 
 // "" writes nothing, "-" goes to stdout. Throws UserError when the file cannot be written.

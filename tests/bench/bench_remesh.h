@@ -1,5 +1,5 @@
-// `haptic_bench remesh`: from the tick that cuts until the mesher has handed the cut's meshes to the
-// publisher.
+// `haptic_bench remesh` measures the time from the tick that cuts until the mesher has handed the cut's
+// meshes to the publisher.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// `haptic_bench scale`: how the tick grows with the volume and with the burr.
+// `haptic_bench scale` measures how the tick grows with the volume and with the burr.
 #pragma once
 
 #include <CLI/CLI.hpp>

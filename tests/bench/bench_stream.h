@@ -1,4 +1,5 @@
-// `haptic_bench stream`: bytes on the wire, and a session that mills with 1, 10, 30 viewers.
+// `haptic_bench stream` counts bytes on the wire, and measures a session that mills with 1, 10 and
+// 30 viewers.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// `haptic_bench tick`: whole ticks over a flat half-filled block.
+// `haptic_bench tick` measures whole ticks over a flat half-filled block.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,5 @@
-// Measures and asserts nothing. Each sub-command prints a table; docs/measurements.md says which ones to
-// quote.
+// Measures and asserts nothing. Each sub-command prints a table; docs/measurements.md says which ones
+// to quote.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 

@@ -1,4 +1,4 @@
-// What `haptic_bench tick` says of a run of ticks.
+// Says what `haptic_bench tick` prints of a run of ticks.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,7 +9,7 @@
 
 namespace bonemill::bench {
 
-// Of the ticks after the approach, unless it says otherwise.
+// They count the ticks after the approach, unless it says otherwise.
 struct TickFigures {
     LatencyHistogram whole, force, milling;
     double contacts_mean = 0;  // of the ticks in contact

@@ -31,7 +31,8 @@ std::string blockName(const std::string& panel, const std::string& variant) {
     return "$" + panel + "_" + variant;
 }
 
-// A row of panels: rendered stiffness by rate, one panel per place and hand, one line per variant.
+// Draws a row of panels with the rendered stiffness by rate: one panel per place and hand, one line
+// per variant.
 void writePanels(std::ostream& out, const std::vector<ZwidthRow>& all, const std::string& quantity,
                  const std::string& title) {
     std::vector<ZwidthRow> rows;

@@ -1,4 +1,4 @@
-// Results of the Z-width bench as CSV and as a gnuplot script with its picture.
+// Writes the results of the Z-width bench as CSV and as a gnuplot script with its picture.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,8 @@ struct ZwidthRow {
     double colgate_bound = 0;       // N/m: b / (T/2 + delay); what viscous damping alone can promise
 };
 
-// zwidth.csv, zwidth.gp and, if gnuplot is there, zwidth.png in `folder`. False: a file could not be written.
+// Writes zwidth.csv, zwidth.gp and, if gnuplot is there, zwidth.png into `folder`. False means that a file
+// could not be written.
 bool writeZwidth(const std::filesystem::path& folder, const std::vector<ZwidthRow>& rows);
 
 }  // namespace bonemill::test

@@ -1,5 +1,5 @@
-// An OpenGL whose shaders are altered on their way to the compiler: to prove that a test sees what is
-// missing.
+// This is an OpenGL whose shaders are altered on their way to the compiler, to prove that a test sees what
+// is missing.
 #pragma once
 
 #include <string>

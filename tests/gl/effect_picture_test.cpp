@@ -1,4 +1,4 @@
-// One picture per visual effect, compared with the ones in the repository, and what hiding them must do.
+// Compares one picture per visual effect with those in the repository, and checks what hiding them must do.
 #include <gtest/gtest.h>
 
 #include "render_client/offscreen/osmesa_context.h"

@@ -1,4 +1,4 @@
-// Pictures compared with those in the repository (tests/gl/golden).
+// Compares pictures with those in the repository (tests/gl/golden).
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// A block with a milled cavity, a closed hollow and an overhang, and a tool in the cavity: what the golden
-// pictures show.
+// The golden pictures show this: a block with a milled cavity, a closed hollow and an overhang, and a tool in
+// the cavity.
 #pragma once
 
 #include "render_client/scene/render_scene.h"
@@ -27,7 +27,7 @@ inline const std::vector<NodeMesh>& milledBlock() {
     return nodes;
 }
 
-// A shell of one material around a core of another, and a lump without one on the right.
+// It has a shell of one material around a core of another, and a lump without one on the right.
 inline const std::vector<NodeMesh>& layeredBlock() {
     static const std::vector<NodeMesh> nodes =
         meshBody(65, 2.5e-4, milledBlockDistance, [](const Eigen::Vector3d& p) {
@@ -60,7 +60,7 @@ inline topics::SceneInfo milledInfo() {
     return info;
 }
 
-// The burr in the cavity, its shaft out to the front (-y), to the right and up.
+// The burr is in the cavity, its shaft goes out to the front (-y), to the right and up.
 inline Pose toolInCavity() {
     Pose X_WT;
     X_WT.position = kCavityCenter + Eigen::Vector3d(0, -0.0004, 0);

@@ -1,5 +1,5 @@
-// A burr that mills a bone, as the messages a server would send: meshes of what changed and tool states, at
-// 60 per second. The cut is a ball's, finer than a voxel. No network, no clock.
+// A burr mills a bone, told by the messages that a server would send: meshes of what changed and tool states,
+// at 60 per second. The cut is a ball's, finer than a voxel. There is no network and no clock.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class MillingSession {
     static constexpr double kPeriod = 1.0 / 60;  // s
     static constexpr Density kIso = 32768;
 
-    // distance: of the bone's surface, m, negative inside; V = W.
+    // The distance is that of the bone's surface, m, negative inside; V = W.
     static VoxelVolume makeVolume(const VolumeGeometry& geometry, const DistanceFunction& distance) {
         VoxelVolume volume(geometry, kIso);
         const Eigen::Vector3d spacing = geometry.spacing;
@@ -112,7 +112,7 @@ class MillingSession {
     uint64_t tick_ = 0;
 };
 
-// Shaft along this direction from the burr (W).
+// The shaft goes along this direction from the burr (W).
 inline Pose toolAt(const Eigen::Vector3d& position, const Eigen::Vector3d& shaft) {
     return {position, rotationBetween(Eigen::Vector3d::UnitY(), shaft)};
 }

@@ -1,4 +1,4 @@
-// The program render_client off screen, fed by a real publisher over DDS.
+// Runs the program render_client off screen, fed by a real publisher over DDS.
 #include <gtest/gtest.h>
 #include <png.h>
 #include <sys/wait.h>

@@ -47,7 +47,7 @@ std::vector<float> play() {
     return samples;
 }
 
-// Rows "time frequency decibel", a blank line after each time.
+// Writes rows "time frequency decibel", with a blank line after each time.
 void writeSpectrogram(const std::vector<float>& samples, const std::filesystem::path& path) {
     std::ofstream file(path);
     const double bin = double(MillingSynth::kSampleRate) / kWindow;

@@ -1,4 +1,4 @@
-// The device daemon's emulated ARES with its kinematics, limits and delay in the loop with the real tick.
+// Closes the loop of the real tick with the device daemon's emulated ARES, its kinematics, limits and delay.
 #include "device_daemon/driver/ares_emulator.h"
 #include "device_daemon/loop/device_loop.h"
 #include "tests/stability/case_test.h"

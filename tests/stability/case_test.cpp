@@ -80,8 +80,8 @@ TEST_P(BaselineFails, Figure) {
     EXPECT_FALSE(std::isnan(figure));
     EXPECT_FALSE(isWithin(figure, GetParam().stability_case.bound));
 }
-// A limit that is known must not get worse: no more than three in ten settings buzz, no figure is twice its
-// bound.
+// A limit that is known must not get worse: no more than three in ten settings buzz, no figure is twice
+// its bound.
 TEST_P(KnownLimit, Figure) {
     const double figure = measureAndReport();
     EXPECT_FALSE(isWithin(figure, GetParam().stability_case.bound));

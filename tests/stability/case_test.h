@@ -2,10 +2,10 @@
 // holds if figure <= bound.
 //
 // A variant for which a case is known to fail, deterministically, is not left out: it runs in the suite
-// BaselineFails (thesis_2012) or KnownLimit (any other), which expects the figure beyond the bound, so that
-// the documentation's table stays true. Each run prints its figure and appends it to the CSV file named by
-// BONEMILL_STABILITY_REPORT (case, variant, measured, bound, unit, pass); docs/stability.md is filled from
-// it.
+// BaselineFails (thesis_2012) or KnownLimit (any other), which expects the figure beyond the bound, so
+// that the documentation's table stays true. Each run prints its figure and appends it to the CSV file
+// named by BONEMILL_STABILITY_REPORT (case, variant, measured, bound, unit, pass); docs/stability.md is
+// filled from it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 
 namespace bonemill::test {
 
-// The larger of two figures; a figure that is no number stays.
+// Returns the larger of two figures; a figure that is no number stays.
 inline double worseOf(double a, double b) {
     return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN() : std::max(a, b);
 }
@@ -56,7 +56,7 @@ std::string trialName(const testing::TestParamInfo<Trial>& info);
 
 }  // namespace bonemill::test
 
-// In the file of the cases, namespace bonemill::test.
+// Use it in the file of the cases, in namespace bonemill::test.
 #define BONEMILL_STABILITY_CASES(group, cases)                                                              \
     INSTANTIATE_TEST_SUITE_P(group, Holds, testing::ValuesIn(trials(cases, Expectation::kHolds)),           \
                              trialName);                                                                    \

@@ -1,4 +1,4 @@
-// Closed loop against a plane and in a hole over devices, hands, delays and encoders.
+// Closes the loop against a plane and in a hole, over devices, hands, delays and encoders.
 #include <cstdio>
 
 #include "common/units.h"
@@ -39,8 +39,8 @@ struct GridPoint {
     LoopConfig config;
     std::string name;
     // Colgate: viscous damping over K (T/2 + delay), with the amplifier's lag as delay; the worse of
-    // translation and rotation. Below 1 no virtual spring of the coupling's stiffness can be promised to be
-    // stable.
+    // translation and rotation. Below 1 no virtual spring of the coupling's stiffness can be promised to
+    // be stable.
     double damping_ratio = 0;
 };
 
@@ -99,7 +99,8 @@ double passivePoints(const Variant& variant, const GridScene& grid) {
     return worst;
 }
 
-// With this delay, every device, hand and encoder. Each point that buzzes or throws the tool off is printed.
+// With this delay it goes over every device, hand and encoder. Each point that buzzes or throws the tool off
+// is printed.
 struct DelayFigures {
     double worst = 0;            // N RMS
     double percent_buzzing = 0;  // of the points

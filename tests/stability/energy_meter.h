@@ -11,7 +11,7 @@
 
 namespace bonemill::test {
 
-// Trapezium rule: the energy of the algorithm itself, without the hold between two ticks.
+// By the trapezium rule this is the energy of the algorithm itself, without the hold between two ticks.
 class AlgorithmEnergy {
   public:
     void add(const Pose& pose, const Wrench& wrench_hand) noexcept {
@@ -37,10 +37,10 @@ class AlgorithmEnergy {
     double lowest_ = 0;
 };
 
-// What really flows through the handle: the wrench is held from one tick to the next.
+// This is what really flows through the handle: the wrench is held from one tick to the next.
 class PortEnergy {
   public:
-    // `held`: the wrench that acts on the hand from this pose until the next call.
+    // The wrench `held` acts on the hand from this pose until the next call.
     void add(const Pose& pose, const Wrench& held) noexcept {
         if (has_last_) {
             energy_ -= held_.force.dot(pose.position - pose_.position) +

@@ -1,4 +1,4 @@
-// The meters against a spring whose energies are known.
+// Compares the meters with a spring whose energies are known.
 #include "tests/stability/energy_meter.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ constexpr double kSpring = 2000;  // N/m
 constexpr double kDt = 1e-3, kSpeed = 0.05;
 constexpr int kSteps = 100;
 
-// There and back at constant speed.
+// The hand goes there and back at constant speed.
 std::vector<double> strokes() {
     std::vector<double> x;
     for (int n = 0; n <= kSteps; ++n) x.push_back(n * kSpeed * kDt);

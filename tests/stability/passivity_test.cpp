@@ -1,4 +1,4 @@
-// Energy on closed paths without milling: none comes from nowhere, with every tick run or with some dropped.
+// On closed paths without milling no energy comes from nowhere, with every tick run or with some dropped.
 #include "common/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"

@@ -1,12 +1,12 @@
 // Simulated haptic device with the user's hand on its handle, in Cartesian coordinates: what the loop must
 // stay stable with.
 //
-// One rigid body carries the device's and the hand's mass and inertia (isotropic, about the tool point). On
-// it act: the commanded wrench after the amplifiers' first-order pole, viscous and Coulomb friction of the
-// device, the hand's spring and damper towards its target, and a constant bias (a weight when nobody holds
-// the handle). Ranges of the defaults: docs/stability.md. Integrated by leapfrog at kRate_hz or finer;
-// friction implicit, so that the body truly sticks and Coulomb friction cannot chatter. Units SI; axes W.
-// Deterministic.
+// One rigid body carries the device's and the hand's mass and inertia (isotropic, about the tool point).
+// On it act: the commanded wrench after the amplifiers' first-order pole, viscous and Coulomb friction of
+// the device, the hand's spring and damper towards its target, and a constant bias (a weight when nobody
+// holds the handle). Ranges of the defaults: docs/stability.md. Integrated by leapfrog at kRate_hz or
+// finer; friction implicit, so that the body truly sticks and Coulomb friction cannot chatter. Units SI;
+// axes W. Deterministic.
 #pragma once
 
 #include "common/geometry/pose.h"
@@ -33,7 +33,7 @@ class Plant {
   public:
     static constexpr double kRate_hz = 40'000;
 
-    // At rest at `start`, which is also the hand's target. Total mass and inertia must be positive.
+    // It is at rest at `start`, which is also the hand's target. Total mass and inertia must be positive.
     Plant(const DevicePlant& device, const HandPlant& hand, const Pose& start)
         : device_(device), hand_(hand), pose_(start), target_(start), zero_(start) {}
 

@@ -1,4 +1,4 @@
-// The simulated plant against closed-form mechanics.
+// Compares the simulated plant with closed-form mechanics.
 #include "tests/stability/plant.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Force over a smooth motion stays smooth: sliding over the surface, milling it away under load.
+// The force over a smooth motion stays smooth: sliding over the surface, milling it away under load.
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"

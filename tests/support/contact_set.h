@@ -1,4 +1,4 @@
-// Contacts as an effect sees them, made by hand.
+// Makes contacts by hand, as an effect sees them.
 #pragma once
 
 #include <random>
@@ -10,7 +10,7 @@
 namespace bonemill::test {
 
 struct ContactSet {
-    // On the burr or the shaft, at r_V from the tool point; the bone pushes along push_V.
+    // The contact is on the burr or the shaft, at r_V from the tool point; the bone pushes along push_V.
     void add(const Eigen::Vector3d& r_V, const Eigen::Vector3d& push_V, double force, double area = 0,
              bool is_on_burr = true) {
         contacts.push_back(
@@ -18,7 +18,7 @@ struct ContactSet {
         on_burr.push_back(is_on_burr);
         areas.push_back(float(area));
     }
-    // Anywhere on a ball.
+    // The contacts are anywhere on a ball.
     void addOnBall(std::mt19937& random, double radius, int count) {
         std::uniform_real_distribution<double> uniform(0.1, 1);
         for (int n = 0; n < count; ++n) {
@@ -39,7 +39,7 @@ struct ContactSet {
     std::vector<float> areas;
 };
 
-// A tick of a spinning ball burr of 1 mm radius, friction 0.5, 40,000 rpm.
+// This is a tick of a spinning ball burr of 1 mm radius, with friction 0.5 at 40,000 rpm.
 struct BurrTick {
     BurrTick() {
         tool.burr.friction = 0.5;

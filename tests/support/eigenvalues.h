@@ -4,7 +4,8 @@
 
 namespace bonemill::test {
 
-// Of a symmetric matrix, ascending. Apart, because the compiler takes seconds for Eigen's solver.
+// Gives the eigenvalues of a symmetric matrix, ascending. They are apart because the compiler takes seconds
+// for Eigen's solver.
 Vector6d eigenvaluesOf(const Matrix6d& symmetric);
 
 }  // namespace bonemill::test

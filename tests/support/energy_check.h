@@ -1,4 +1,4 @@
-// An EnergyTerm's wrench against central differences of its energy.
+// Compares an EnergyTerm's wrench with central differences of its energy.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 namespace bonemill::test {
 
-// `energy(pose)`; `step` in m and, divided by `lever`, in rad.
+// Calls `energy(pose)`; `step` is in m and, divided by `lever`, in rad.
 template <class Energy>
 void expectWrenchIsGradient(const Energy& energy, const Pose& pose, double step, double lever, double slack) {
     const EnergyTerm at = energy(pose);

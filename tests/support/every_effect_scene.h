@@ -1,5 +1,5 @@
-// A scene that lists every effect of the tick, found in the schema itself: the lower half of a cube is bone,
-// with a protected layer in its depth. For tests and benchmarks.
+// Makes a scene that lists every effect of the tick, found in the schema itself: the lower half of a cube is
+// bone, with a protected layer in its depth. It is for tests and benchmarks.
 #pragma once
 
 #include <string>
@@ -23,17 +23,17 @@ void writeBlock(const std::string& folder, const EveryEffectBlock& block);
 inline constexpr const char* kByTime = "time_removal";
 inline constexpr const char* kByEnergy = "energy_removal";
 
-// Tool, materials, that volume, and every effect of the tick with its defaults, of the laws of removal this
-// one.
+// The scene has the tool, materials, that volume, and every effect of the tick with its defaults, of the laws
+// of removal this one.
 scene::Scene everyEffectScene(const EveryEffectBlock& block, const std::string& law);
 
-// As text, to this file.
+// Writes it as text to this file.
 void writeScene(const std::string& file, const scene::Scene& scene);
 
-// The one that is not a field of the scene's `effects`.
+// This is the one that is not a field of the scene's `effects`.
 inline constexpr const char* kMaterialStiffness = "material_stiffness";
 
-// As scene::Effects calls those of the tick.
+// They are as scene::Effects calls those of the tick.
 std::vector<std::string> tickEffectNames();
 scene::Scene withoutEffect(scene::Scene scene, const std::string& name);
 

@@ -1,4 +1,4 @@
-// Damage for fuzz tests.
+// Makes damage for fuzz tests.
 #pragma once
 
 #include <random>
@@ -6,7 +6,7 @@
 
 namespace bonemill::test {
 
-// Valid bytes with a few bits, bytes, or the length changed; now and then only noise.
+// Returns valid bytes with a few bits, bytes, or the length changed; now and then it returns only noise.
 inline std::string mutated(const std::string& valid, std::mt19937& random) {
     const auto below = [&](size_t n) { return std::uniform_int_distribution<size_t>(0, n - 1)(random); };
     std::string bytes = valid;

@@ -1,4 +1,5 @@
-// Node meshes for tests of what carries them, and their comparison up to the order of vertices and triangles.
+// Makes node meshes for tests of what carries them, and compares them up to the order of vertices
+// and triangles.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,8 @@
 
 namespace bonemill::test {
 
-// A wavy sheet of side × side squares with random normals: many shared vertices, as a real leaf has.
+// Makes a wavy sheet of side × side squares with random normals; it has many shared vertices, as a real
+// leaf has.
 inline NodeMesh sheetMesh(int side, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_int_distribution<int> height(1, 4000), normal(-127, 127);
@@ -33,7 +35,7 @@ inline NodeMesh sheetMesh(int side, unsigned seed) {
     return mesh;
 }
 
-// Like it, with patches of materials.
+// It is like that sheet, with patches of materials.
 inline NodeMesh colouredSheetMesh(int side, unsigned seed) {
     NodeMesh mesh = sheetMesh(side, seed);
     for (size_t n = 0; n < mesh.vertices.size(); ++n)
@@ -41,7 +43,7 @@ inline NodeMesh colouredSheetMesh(int side, unsigned seed) {
     return mesh;
 }
 
-// Triangles as their vertices' values, each begun at its smallest corner (winding kept), sorted.
+// Triangles are their vertices' values, each begun at its smallest corner (winding kept), sorted.
 using TriangleKey = std::array<std::array<int, 6>, 3>;
 inline std::vector<TriangleKey> triangleKeys(const NodeMesh& mesh) {
     std::vector<TriangleKey> keys;

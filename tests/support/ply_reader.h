@@ -1,4 +1,4 @@
-// A binary PLY file of triangles with normals, as any other program would read it.
+// Reads a binary PLY file of triangles with normals, as any other program would.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// Triangle soups for tests, and the mesh files they make: binary and text STL, OBJ. Coordinates are the
+// Makes triangle soups for tests, and mesh files of them: binary and text STL, OBJ. Coordinates are the
 // file's (mm).
 #pragma once
 
@@ -24,7 +24,7 @@ inline void addQuad(TriangleSoup& soup, const std::array<Eigen::Vector3f, 4>& q)
     soup.push_back({q[0], q[2], q[3]});
 }
 
-// Polygon (counter-clockwise in x, y; fanned from its first corner) pulled from low to high along z.
+// Pulls a polygon (counter-clockwise in x, y; fanned from its first corner) from low to high along z.
 inline TriangleSoup prism(const std::vector<Eigen::Vector2f>& polygon, float low, float high) {
     TriangleSoup soup;
     const auto at = [&](size_t i, float z) {
@@ -45,8 +45,8 @@ inline TriangleSoup boxSoup(const Eigen::Vector3f& low, const Eigen::Vector3f& h
                  low.z(), high.z());
 }
 
-// A ball around `center` whose radius depends on the direction (unit vector); 2·rings·(rings - 1)·2
-// triangles.
+// Makes a ball around `center` whose radius depends on the direction (unit vector), of 2·rings·(rings -
+// 1)·2 triangles.
 inline TriangleSoup ballSoup(int rings, const Eigen::Vector3f& center,
                              const std::function<double(const Eigen::Vector3d&)>& radius) {
     const int segments = 2 * rings;

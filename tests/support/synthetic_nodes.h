@@ -1,4 +1,4 @@
-// Small valid node meshes and messages for tests of the topics.
+// Makes small valid node meshes and messages for tests of the topics.
 #pragma once
 
 #include "common/geometry/node_mesh.h"

@@ -1,4 +1,4 @@
-// A folder of its own for each object, gone with it: tests run side by side.
+// Each object has a folder of its own, gone with it, because tests run side by side.
 #pragma once
 
 #include <stdlib.h>

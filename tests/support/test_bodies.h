@@ -1,4 +1,4 @@
-// Analytic bodies and tools for tests: the density is the linear ramp of an exact signed distance.
+// Makes analytic bodies and tools for tests; the density is the linear ramp of an exact signed distance.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ inline VolumeGeometry cubeGeometry(int voxels, double spacing) {
     return geometry;
 }
 
-// Iso-surface where distance(p_V) = 0; full density 2 voxels inside, air 2 voxels outside.
+// The iso-surface lies where distance(p_V) = 0; density is full 2 voxels inside, and air is 2 voxels outside.
 inline VoxelVolume bodyVolume(const VolumeGeometry& geometry, const DistanceFunction& distance) {
     VoxelVolume volume(geometry, kTestIso);
     const double ramp = 4 * geometry.spacing.maxCoeff();
@@ -39,12 +39,12 @@ inline DistanceFunction sphereAt(const Eigen::Vector3d& center, double radius) {
     return [=](const Eigen::Vector3d& p) { return (p - center).norm() - radius; };
 }
 
-// Bone below the plane through `point` with outward normal `normal`.
+// Bone is below the plane through `point` with outward normal `normal`.
 inline DistanceFunction halfSpace(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
     return [=](const Eigen::Vector3d& p) { return normal.dot(p - point); };
 }
 
-// Spherical tool around T's origin.
+// Makes a spherical tool around T's origin.
 inline SdfGrid sphereTool(double radius, double spacing) {
     const int half = int(std::ceil(radius / spacing)) + 3;
     const int nodes = 2 * half + 1;
@@ -57,7 +57,7 @@ inline SdfGrid sphereTool(double radius, double spacing) {
     return SdfGrid(Eigen::Vector3i::Constant(nodes), spacing, origin, std::move(values));
 }
 
-// The same tool with its grid and its exact shape.
+// Makes the same tool with its grid and its exact shape.
 inline ToolModel sphereToolModel(double radius, double spacing) {
     return {sphereTool(radius, spacing), {SphereShape{Eigen::Vector3d::Zero(), radius}}, radius};
 }

@@ -1,4 +1,4 @@
-// What is in a sound: its strength at a frequency (Hz), its loudest tone, its level.
+// Tells what is in a sound: its strength at a frequency (Hz), its loudest tone, its level.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace bonemill::test {
 
-// Of a Hann window over all samples at this frequency (Hz).
+// Takes a Hann window over all samples at this frequency (Hz).
 inline double amplitudeAt(std::span<const float> samples, double frequency, double sample_rate) {
     std::complex<double> sum = 0;
     const double n = double(samples.size());
@@ -18,7 +18,7 @@ inline double amplitudeAt(std::span<const float> samples, double frequency, doub
     return 2 * std::abs(sum) / n;
 }
 
-// The frequency (Hz) from low to high, in steps of 4, of the largest amplitude.
+// Returns the frequency (Hz) from low to high, in steps of 4, of the largest amplitude.
 inline double loudestTone(std::span<const float> samples, double low, double high, double sample_rate) {
     double best = low, most = 0;
     for (double f = low; f <= high; f += 4) {

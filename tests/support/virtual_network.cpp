@@ -26,7 +26,7 @@ std::string lastError(const std::string& what) {
     return what + " (" + std::strerror(errno) + ")";
 }
 
-// ip("link set lo up"), in this thread's namespace.
+// Runs for example ip("link set lo up"), in this thread's namespace.
 void ip(const std::string& words) {
     std::vector<std::string> arguments{kIp};
     std::istringstream stream(words);
@@ -41,7 +41,7 @@ Descriptor ownNamespace() {
     return descriptor;
 }
 
-// As programs started by this process see it.
+// Programs started by this process see it so.
 std::string pathOf(const Descriptor& descriptor) {
     return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(descriptor.number());
 }
@@ -68,7 +68,7 @@ Descriptor newNamespace() {
     return made;
 }
 
-// Without root: as root of a user namespace.
+// Without root it becomes root of a user namespace.
 bool becomeRootOfOwn() {
     const std::string user = std::to_string(geteuid()), group = std::to_string(getegid());
     if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return false;

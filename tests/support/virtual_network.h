@@ -1,5 +1,5 @@
-// PCs on a switch, made of Linux network namespaces: veth pairs, a bridge, TAP devices. Everything is gone
-// with the process. For tests with one thread: a namespace belongs to a thread.
+// Makes PCs on a switch of Linux network namespaces, with veth pairs, a bridge and TAP devices. Everything is
+// gone with the process. It is for tests with one thread, because a namespace belongs to a thread.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace bonemill::test {
 
-// Closes itself.
+// It closes itself.
 class Descriptor {
   public:
     explicit Descriptor(int number = -1) : number_(number) {}
@@ -32,7 +32,7 @@ struct LineQuality {
     int queue_kib = 256;  // waiting frames beyond it are lost
 };
 
-// A PC with the interface eth0 on the switch.
+// This is a PC with the interface eth0 on the switch.
 class Host {
   public:
     // Starts a program on this PC (tests/support/process.h).
@@ -43,10 +43,10 @@ class Host {
         uint64_t sent_bytes = 0;
         uint64_t received_bytes = 0;
     };
-    // Through its cable so far.
+    // So much went through its cable so far.
     Traffic traffic() const;
     const std::string& address() const { return address_; }
-    // The cable at the switch.
+    // Pulls the cable at the switch.
     void unplug() const;
     void plugIn() const;
 
@@ -60,18 +60,18 @@ class Host {
 
 class VirtualNetwork {
   public:
-    // Moves this process into a network of its own. Returns what is missing for that here, in one line; empty
-    // when nothing is. First call of a test.
+    // Moves this process into a network of its own. Returns what is missing for that here, in one line, or
+    // nothing. It is the first call of a test.
     static std::string enter();
     // What is missing for bad lines; also once this process has entered.
     static std::string missingForLines();
 
-    // The switch. Throws std::runtime_error as everything here does.
+    // Makes the switch. It throws std::runtime_error as everything here does.
     VirtualNetwork();
 
-    // 10.77.0.1 and up, in this order.
+    // Hosts get 10.77.0.1 and up, in this order.
     Host addHost();
-    // Through tests/support/link_relay.cpp, with frames lost in a fixed order.
+    // The host is behind tests/support/link_relay.cpp, which loses frames in a fixed order.
     Host addHost(const LineQuality& line);
 
   private:

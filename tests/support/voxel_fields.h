@@ -1,4 +1,4 @@
-// Random and special density fields, and the few moves that mesh and volume tests share.
+// Makes random and special density fields, and the few moves that mesh and volume tests share.
 #pragma once
 
 #include <cmath>
@@ -29,8 +29,8 @@ void forEachVoxel(const IndexBox& box, Visit&& visit) {
             for (int i = box.min.x(); i <= box.max.x(); ++i) visit(i, j, k);
 }
 
-// Independent voxels: every configuration of a cell turns up. Few distinct values, so that many equal iso
-// exactly.
+// The voxels are independent, so that every configuration of a cell turns up. Few values are distinct, so
+// that many equal iso exactly.
 inline void fillNoise(VoxelVolume& volume, std::mt19937& random) {
     std::uniform_int_distribution<int> offset(-3, 3);
     forEachVoxel(wholeBox(volume), [&](int i, int j, int k) {
@@ -38,7 +38,7 @@ inline void fillNoise(VoxelVolume& volume, std::mt19937& random) {
     });
 }
 
-// A sum of a few waves: smooth surfaces in all directions, cut by the volume's border.
+// Fills in a sum of a few waves: smooth surfaces in all directions, cut by the volume's border.
 inline void fillWaves(VoxelVolume& volume, std::mt19937& random) {
     std::uniform_real_distribution<double> uniform(-1, 1);
     struct Wave {
@@ -56,7 +56,7 @@ inline void fillWaves(VoxelVolume& volume, std::mt19937& random) {
     });
 }
 
-// Up to four materials in stripes, none in some of them.
+// Makes up to four materials in stripes, with none in some of them.
 inline BoneProperties stripedProperties(const VoxelVolume& volume) {
     return {volume,
             [](const Eigen::Vector3i& v) { return MaterialId((v.x() / 5 + v.y() / 7 + v.z() / 3) % 5); }};

@@ -1,4 +1,4 @@
-// Damaged scenes: every one is either accepted with all values in range, or refused with one UserError.
+// Every damaged scene is either accepted with all values in range, or refused with one UserError.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct Tally {
     int refused = 0;
 };
 
-// Anything but UserError fails the test.
+// Anything thrown but UserError fails the test.
 void load(const std::string& text, Tally& tally) {
     try {
         const ParsedScene parsed = parseSceneText(text, "fuzz");

@@ -1,5 +1,5 @@
-// Random and mutated bytes through every parser of the topics: no crash (nor a sanitizer report), and what is
-// accepted holds the promises that the renderer relies on.
+// Random and mutated bytes go through every parser of the topics: nothing crashes (nor makes a sanitizer
+// speak), and what is accepted holds the promises that the renderer relies on.
 #include <gtest/gtest.h>
 
 #include <functional>

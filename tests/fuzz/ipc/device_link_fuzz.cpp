@@ -1,5 +1,5 @@
-// Random bytes in the shared memory: a clear refusal at attach, or messages that isPlausible can judge; never
-// a crash.
+// Random bytes in the shared memory lead to a clear refusal at attach, or to messages that isPlausible can
+// judge, never to a crash.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Bytes that never were a mesh, and meshes with damaged bytes. Most telling with
-// -DBONEMILL_SANITIZE=address,undefined.
+// The decoder gets bytes that never were a mesh, and meshes with damaged bytes. It tells most
+// with -DBONEMILL_SANITIZE=address,undefined.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -81,7 +81,8 @@ TEST_F(MeshCodecFuzz, DamagedMessages) {
     EXPECT_GT(accepted_, 0) << "the damage never got past the outer checks";
 }
 
-// Straight at meshoptimizer's decoders: a well-formed message around damaged buffers and lying counts.
+// Aims straight at meshoptimizer's decoders: a well-formed message stands around damaged buffers and
+// lying counts.
 TEST_F(MeshCodecFuzz, DamagedBuffersInsideAWellFormedMessage) {
     for (int n = 0; n < 20000; ++n) {
         topics::NodeMesh message;

@@ -14,8 +14,8 @@
 #include "tests/support/stl_writer.h"
 #include "tests/support/temporary_folder.h"
 
-// Under AddressSanitizer: assimp 5.2 forgets what it had read of some damaged files. The program ends there
-// anyway.
+// Under AddressSanitizer this is needed: assimp 5.2 forgets what it had read of some damaged files. The
+// program ends there anyway.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() {
     return "leak:libassimp";
@@ -150,8 +150,8 @@ TEST_F(MeshFileFuzz, Obj) {
     corruptMany("mesh.obj", test::obj(ball_));
 }
 
-// The checks between the file and the library hide most damage to a binary STL from it: keep its length
-// right.
+// The checks between the file and the library hide most damage to a binary STL from it: keep its
+// length right.
 TEST_F(MeshFileFuzz, BinaryStlOfTheRightLength) {
     const std::string sound = test::binaryStl(ball_);
     const std::string path = folder_ / "length.stl";

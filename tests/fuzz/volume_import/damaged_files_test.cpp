@@ -1,4 +1,4 @@
-// Small valid files of every format with random damage: each is imported or refused with UserError; nothing
+// Small valid files of every format with random damage are imported or refused with UserError; nothing
 // crashes, hangs or takes absurd amounts of memory. BONEMILL_FUZZ_SEED and BONEMILL_FUZZ_ROUNDS change what
 // is tried.
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@
 #include "tests/unit/volume_import/volume_files.h"
 
 #ifdef __SANITIZE_ADDRESS__
-// ITK's readers lose what they hold when they refuse a file; the programs read in a child process that ends
-// then.
+// ITK's readers lose what they hold when they refuse a file; the programs read in a child process that
+// ends then.
 extern "C" const char* __lsan_default_suppressions() {
     return "leak:libITK\nleak:libz.so\n";
 }
@@ -131,7 +131,7 @@ class DamagedFiles : public ::testing::Test {
             ASSERT_NO_THROW(importOrRefuse(import, folder_ / entry));
         }
     }
-    // In this very process: a reader that crashes ends the test.
+    // The readers run in this very process, so that one that crashes ends the test.
     void fuzz(const std::string& name) { fuzz(importVolumeHere, name, name); }
 
     test::TemporaryFolder folder_;

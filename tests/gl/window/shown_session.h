@@ -1,4 +1,4 @@
-// A session for viewers to look at: the milled block, and answers to their commands.
+// Gives viewers a session to look at: the milled block, and answers to their commands.
 #pragma once
 
 #include <atomic>

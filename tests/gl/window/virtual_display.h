@@ -1,4 +1,4 @@
-// A display in memory (Xvfb) and hands for it (xdotool).
+// Starts a display in memory (Xvfb) and gives hands for it (xdotool).
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ class VirtualDisplay {
     // package that is missing.
     VirtualDisplay(int width, int height);
 
-    // xdotool with these words, such as {"key", "x"}: returns when the display has taken it.
+    // Runs xdotool with these words, such as {"key", "x"}, and returns when the display has taken it.
     void type(const std::vector<std::string>& words) const;
 
   private:

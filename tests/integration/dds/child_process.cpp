@@ -16,7 +16,7 @@ namespace bonemill {
 
 ChildProcess::ChildProcess(const std::string& name) {
     int input[2], output[2];
-    // Close-on-exec: a child that held another one's pipe would keep that one from ending.
+    // The pipes close on exec: a child that held another one's pipe would keep that one from ending.
     if (pipe2(input, O_CLOEXEC) != 0 || pipe2(output, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);

@@ -1,4 +1,4 @@
-// A helper program of the test with its stdin and stdout on pipes; killed when the object goes.
+// Runs a helper program of the test with its stdin and stdout on pipes, and kills it when the object goes.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace bonemill {
 
 class ChildProcess {
   public:
-    // `name` of a program beside the test; it gets the test's domain and session as arguments.
+    // Starts the program `name` beside the test; it gets the test's domain and session as arguments.
     explicit ChildProcess(const std::string& name);
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;

@@ -1,4 +1,4 @@
-// A SceneSubscriber of the test's session that remembers the model it was told, as a renderer would.
+// This SceneSubscriber of the test's session remembers the model that it was told, as a renderer would.
 #pragma once
 
 #include <chrono>
@@ -48,7 +48,7 @@ struct ClientProbe {
         return std::to_string(subscriber.digest().count()) + ' ' +
                std::to_string(subscriber.digest().value());
     }
-    // Complete, and in the state that the server answered with.
+    // It must be complete, and in the state that the server answered with.
     bool pollUntilComplete(const std::string& digest_line) {
         return pollUntil([&] { return subscriber.isComplete() && digestLine() == digest_line; });
     }

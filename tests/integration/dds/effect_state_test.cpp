@@ -1,4 +1,4 @@
-// What a scene's effects tell, from the publisher to a viewer that draws seldom.
+// Follows what a scene's effects tell, from the publisher to a viewer that draws seldom.
 #include <gtest/gtest.h>
 
 #include <thread>

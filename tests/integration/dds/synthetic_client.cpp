@@ -1,5 +1,5 @@
-// A client without a picture: prints "<node count> <node digest>" each time its model is complete and has
-// changed.
+// This client without a picture prints "<node count> <node digest>" each time its model is complete and
+// has changed.
 #include <iostream>
 
 #include "render_client/subscribe/scene_subscriber.h"

@@ -1,5 +1,5 @@
-// A server without a volume, steered line by line on stdin; answers "<node count> <node digest>" to each
-// line.
+// A server without a volume, steered line by line on stdin; answers "<node count> <node digest>" to
+// each line.
 //   nodes FIRST COUNT REVISION    publishes COUNT nodes
 //   empty LEAF REVISION           publishes that the node is empty
 // Between the lines it publishes status and tool state, and carries out commands. Leaves when stdin closes.

@@ -1,5 +1,5 @@
-// tests/support/check_docs against trees that are only a few files: what it finds wrong in each, and its exit
-// code.
+// Runs tests/support/check_docs on trees that are only a few files: what does it find wrong in each, and what
+// is its exit code?
 #include <gtest/gtest.h>
 
 #include "tests/support/places.h"

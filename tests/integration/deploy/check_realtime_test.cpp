@@ -1,4 +1,5 @@
-// deploy/check-realtime against machines that are only files: what it says of each lack, and its exit code.
+// Runs deploy/check-realtime on machines that are only files: what does it say of each lack, and what is its
+// exit code?
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// deploy/install-deps: what it says of wrong use. Installs nothing.
+// Asks what deploy/install-deps says of wrong use. It installs nothing.
 #include <gtest/gtest.h>
 
 #include <algorithm>

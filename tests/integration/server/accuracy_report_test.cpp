@@ -1,4 +1,4 @@
-// `haptic_server accuracy-report` from outside, on a tiny scene.
+// Runs `haptic_server accuracy-report` from outside, on a tiny scene.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ class AccuracyReport : public testing::Test {
         const auto made = run({"make_phantom", "body", "--kind", "sphere", "--radius-mm", "3", "--dims", "40",
                                "40", "40", "--out", folder_ / "ball.nrrd"});
         EXPECT_EQ(made.exit_code, 0) << made.err;
-        // Few ticks per second of path: this test is about files, not figures.
+        // There are few ticks per second of path: this test is about files, not figures.
         writeFile(folder_ / "s.textproto",
                   "name: \"tiny\" volume { path: \"ball.nrrd\" } loop { rate_hz: 250 }");
     }
@@ -63,7 +63,7 @@ TEST_F(AccuracyReport, WritesAllFilesAndProposesWithinTheBudget) {
     EXPECT_GT(settings["exact"]["tick_p50_us"].get<double>(), 0);
     EXPECT_GE(settings["exact"]["tick_max_us"].get<double>(),
               settings["exact"]["tick_p99_9_us"].get<double>());
-    // A ball of 0.25 mm voxels, some 3 voxels of contact: the exact preset is not far off.
+    // On a ball of 0.25 mm voxels, with some 3 voxels of contact, the exact preset is not far off.
     EXPECT_LT(settings["exact"]["force_error_percent"].get<double>(), 5);
     EXPECT_GT(json["truth"]["force_rms_n"].get<double>(), 0.5);
     EXPECT_LT(json["truth"]["force_max_n"].get<double>(), 5);
@@ -77,7 +77,7 @@ TEST_F(AccuracyReport, WritesAllFilesAndProposesWithinTheBudget) {
     EXPECT_GT(linesOf(readFile(folder_ / "deep/er/patch.csv")), 10);
     EXPECT_NE(readFile(folder_ / "deep/er/report.md").find("# Accuracy and time: tiny"), std::string::npos);
     EXPECT_EQ(readFile(folder_ / "deep/er/pareto.png").substr(0, 8), "\x89PNG\r\n\x1a\n");
-    // Progress: one line per setting.
+    // Progress is one line per setting.
     for (size_t n = 1; n <= settings.size(); ++n) {
         char mark[32];
         std::snprintf(mark, sizeof mark, "[%2zu/%zu] ", n, settings.size());

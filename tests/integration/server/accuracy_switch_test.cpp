@@ -1,5 +1,5 @@
-// The accuracy of a live session is switched by command: haptic_server, device_daemon and render_client as
-// processes, the test itself as a viewer.
+// The accuracy of a live session is switched by command: haptic_server, device_daemon and render_client are
+// processes, the test itself is a viewer.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -19,7 +19,7 @@ using test::run;
 using test::TemporaryFolder;
 using test::writeFile;
 
-// What a busy machine causes on its own.
+// A busy machine causes these on its own.
 constexpr uint32_t kFaultsOfTheMachine = kFaultOverrun | kFaultStaleDevice;
 
 // A slab (top at z = 2 mm) into which the simulated hand pushes the burr for as long as the test takes: 0.5
@@ -83,7 +83,7 @@ class AccuracySwitching : public testing::Test {
         EXPECT_TRUE(meetsBone()) << preset;
         EXPECT_EQ(status().preset(), preset);
     }
-    // Through every preset by command, and back to the scene's own settings.
+    // Goes through every preset by command, and back to the scene's own settings.
     void expectEveryPresetInContact(const std::string& of_scene) {
         Process server_process(server());
         Process daemon_process(daemon());

@@ -1,4 +1,4 @@
-// haptic_server --scene FILE --describe-scene.
+// Runs haptic_server --scene FILE --describe-scene.
 #include <gtest/gtest.h>
 
 #include "tests/support/process.h"

@@ -1,5 +1,5 @@
-// A live session under an instructor's commands: checkpoints, tools, pause, roles. haptic_server,
-// device_daemon and render_client as processes, the test itself as a viewer.
+// An instructor commands a live session: checkpoints, tools, pause, roles. haptic_server, device_daemon and
+// render_client are processes, the test itself is a viewer.
 #include <gtest/gtest.h>
 
 #include "haptic_server/mesh/mesher.h"
@@ -18,7 +18,7 @@ using test::Process;
 using test::run;
 using test::TemporaryFolder;
 
-// Of all triangles, however they are ordered in their nodes.
+// Takes in all triangles, however they are ordered in their nodes.
 uint64_t surfaceHash(const std::vector<NodeMesh>& nodes) {
     std::map<uint32_t, const NodeMesh*> by_leaf;
     for (const NodeMesh& node : nodes)
@@ -111,7 +111,7 @@ class Instructor : public testing::Test {
         }));
         return shownHash();
     }
-    // As the server would stream it.
+    // The hash is that of what the server would stream.
     uint64_t hashOfFile(const std::string& volume) {
         writeScene("saved.textproto", volume);
         const auto bone = makeSimulation(loadScene(folder_ / "saved.textproto")).bone;

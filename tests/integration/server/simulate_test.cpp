@@ -1,4 +1,4 @@
-// `haptic_server simulate` from outside, as someone who checks our physics would use it.
+// Runs `haptic_server simulate` from outside, as someone who checks our physics would use it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ using test::writeFile;
 // Tool's +y along W's +z, so that the shaft stands upright.
 const char* const kUpright = "0.70710678118654757,0.70710678118654757,0,0";
 
-// Device straight down from z_from to z_to in `ticks`, then resting for `dwell` ticks.
+// The device goes straight down from z_from to z_to in `ticks`, then rests for `dwell` ticks.
 std::string plunge(double x, double y, double z_from, double z_to, int ticks, int dwell, int buttons) {
     std::ostringstream csv;
     csv.precision(17);
@@ -225,7 +225,7 @@ TEST_P(SimulatePresets, CorridorInTheToothIsTheSweptBurr) {
               "effects { time_removal {} } volume { path: \"tooth\" iso_value: 600 octree_depth: 3 } "
               "accuracy { preset: " +
                   std::string(GetParam()) + " }");
-    // From above a cusp straight down into the middle of the tooth, at 1 mm/s.
+    // The burr goes from above a cusp straight down into the middle of the tooth, at 1 mm/s.
     writeFile(folder / "a.csv", plunge(2.7e-3, -2.45e-3, 21e-3, 12.2e-3, 8800, 400, 1));
     const auto json = simulateOnce({"haptic_server", "simulate", "--scene", folder / "s.textproto",
                                     "--trajectory", folder / "a.csv", "--trace", folder / "o.csv"});

@@ -1,4 +1,4 @@
-// Round trip over the whole specified workspace: 50 x 50 x 50 mm, 40 degrees about any axis.
+// Makes the round trip over the whole specified workspace: 50 x 50 x 50 mm, 40 degrees about any axis.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>

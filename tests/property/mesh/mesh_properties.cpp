@@ -1,5 +1,4 @@
-// Any densities, any volume size, any leaf size, any iso-value, any edits. rapidcheck prints the seed of the
-// run.
+// Takes any densities, volume size, leaf size, iso-value and edits. rapidcheck prints the seed of the run.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>

@@ -7,7 +7,8 @@
 
 namespace bonemill {
 
-// One at a time per thread. The counters stay readable after stop(), where a test may allocate again.
+// There is one at a time per thread. The counters stay readable after stop(), where a test may
+// allocate again.
 class RtProbe {
   public:
     RtProbe() noexcept;
@@ -19,10 +20,10 @@ class RtProbe {
 
     uint64_t heapCalls() const noexcept { return heap_calls_; }
     uint64_t lockCalls() const noexcept { return lock_calls_; }
-    // Name of the first function counted, for the failure message; "none".
+    // Names the first function counted, for the failure message, or "none".
     const char* firstCall() const noexcept { return first_call_; }
 
-    // For the interposed functions.
+    // The interposed functions call them.
     void countHeapCall(const char* function) noexcept;
     void countLockCall(const char* function) noexcept;
 

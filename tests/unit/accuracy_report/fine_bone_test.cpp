@@ -25,7 +25,7 @@ VoxelVolume noiseVolume() {
     return volume;
 }
 
-// Eight weighted corners, the slow way.
+// Weights eight corners, the slow way.
 double trilinear(const VoxelVolume& volume, const Vector3d& p_V) {
     const Vector3d index = p_V.cwiseQuotient(volume.spacing());
     const Eigen::Vector3i cell = index.array().floor().cast<int>();

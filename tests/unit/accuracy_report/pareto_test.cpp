@@ -5,7 +5,7 @@
 namespace bonemill {
 namespace {
 
-// error, time
+// The pairs are error and time.
 const std::vector<ParetoPoint> kPoints{
     {10, 20},         // 0: fastest
     {5, 30},          // 1

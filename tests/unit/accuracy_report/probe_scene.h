@@ -1,4 +1,4 @@
-// A burr on a short shaft over simple bone.
+// Puts a burr on a short shaft over simple bone.
 #pragma once
 
 #include "haptic_server/accuracy_report/probing_path.h"
@@ -13,7 +13,7 @@ inline ToolModel burrTool() {
     return std::move(buildTool({}).model);  // the thesis' tool, burr of 1 mm
 }
 
-// Shaft upwards.
+// The shaft points upwards.
 inline Eigen::Quaterniond upright() {
     return rotationBetween(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
 }
@@ -24,7 +24,7 @@ inline BoneModel boneOf(VoxelVolume volume, const std::vector<int>& factors = {1
     return BoneModel(std::move(volume), Eigen::Vector3i::Constant(16), config);
 }
 
-// Upper side at z = 3 mm; 6 mm wide.
+// Its upper side is at z = 3 mm, and it is 6 mm wide.
 inline BoneModel floorBone() {
     return boneOf(bodyVolume(cubeGeometry(49, 0.125e-3), halfSpace({0, 0, 3e-3}, Eigen::Vector3d::UnitZ())),
                   {1, 2, 3});

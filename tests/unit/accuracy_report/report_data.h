@@ -1,4 +1,4 @@
-// A small report with known figures.
+// Makes a small report with known figures.
 #pragma once
 
 #include "haptic_server/accuracy_report/report_files.h"
@@ -17,7 +17,7 @@ inline SettingFigures figuresOf(const AccuracySettings& settings, double error, 
     return f;
 }
 
-// balanced is in force; the front is fast, balanced, exact.
+// Here balanced is in force; the front is fast, balanced, exact.
 inline ReportData smallReport() {
     ReportData data;
     data.scene = "tiny";

@@ -1,4 +1,5 @@
-// What really leaves OpenAL: its "wave" backend writes a file in real time, as a sound card would play it.
+// Hears what really leaves OpenAL: its "wave" backend writes a file in real time, as a sound card would
+// play it.
 #include "render_client/audio/sound_player.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +41,7 @@ bool startsWithin(const SoundPlayer& player, milliseconds limit) {
     return false;
 }
 
-// Of the chunk "data" of a mono 16-bit file.
+// Reads those of the chunk "data" of a mono 16-bit file.
 std::vector<float> samplesOf(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(stream)), {});

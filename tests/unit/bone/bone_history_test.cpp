@@ -93,7 +93,7 @@ int aliveOf(const std::vector<std::weak_ptr<const BoneSnapshot>>& snapshots) {
     return int(std::count_if(snapshots.begin(), snapshots.end(), [](const auto& s) { return !s.expired(); }));
 }
 
-// As while the server waits for a device.
+// This is so while the server waits for a device.
 TEST(BoneHistory, WithoutATickOnlyTheNewestOrderIsKept) {
     MilledBall ball;
     ball.groove(7e-3);

@@ -1,4 +1,4 @@
-// A ball of bone that a burr can cut grooves into, with the history that puts it back.
+// Makes a ball of bone that a burr can cut grooves into, with the history that puts it back.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ struct MilledBall {
             history.endWrite(milled.removed_voxels, milled.added_voxels);
         }
     }
-    // One tick's part. False: nothing was on its way.
+    // Does one tick's part. False means that nothing was on its way.
     bool restoreSome() {
         EXPECT_TRUE(history.beginWrite());
         bool shell_is_complete = true;
@@ -39,7 +39,7 @@ struct MilledBall {
         history.endWrite(0, 0);
         return is_restoring;
     }
-    // Ticks that it took.
+    // Returns the ticks that it took.
     int restoreAll() {
         int ticks = 0;
         while (restoreSome() && ticks < 10'000) ++ticks;

@@ -17,7 +17,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const std::vector<ToolShape> kBurrAndShaft = {SphereShape{{0, 0, 0}, 1e-3},
                                               CapsuleShape{{0, 0, 0}, {0, 8e-3, 0}, 0.8e-3}};
 
-// A bumpy block: every direction of normal, edges and pits.
+// Makes a bumpy block with every direction of normal, edges and pits.
 DistanceFunction bumpyBody() {
     return [](const Vector3d& p) {
         const Vector3d q = 1e3 * p;

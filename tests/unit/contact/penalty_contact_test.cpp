@@ -122,8 +122,8 @@ TEST(PrintedDerivatives, EqualFiniteDifferencesButForTheTwoKnownErrors) {
     const Eigen::Vector3d n = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
     const Eigen::Vector3d r(2e-3, 5e-3, -1e-3);
     const double d = 0.3e-3;
-    // Contact wrench after the tool moved by x and turned by w about its point: depth of b below the turned
-    // face.
+    // The contact wrench after the tool moved by x and turned by w about its point comes from the depth of b
+    // below the turned face.
     const auto wrench_at = [&](const Eigen::Vector3d& x, const Eigen::Vector3d& w) {
         const Eigen::Quaterniond turn = expRotation(w);
         const Eigen::Vector3d r_now = r - x;

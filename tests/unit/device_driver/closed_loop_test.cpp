@@ -1,5 +1,5 @@
-// Device loop, emulated device and simulated hand against a virtual wall, in simulated time with the one tick
-// of delay of the real arrangement.
+// Runs device loop, emulated device and simulated hand against a virtual wall, in simulated time with the one
+// tick of delay of the real arrangement.
 #include <gtest/gtest.h>
 
 #include <cmath>

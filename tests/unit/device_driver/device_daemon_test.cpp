@@ -1,4 +1,4 @@
-// The program itself: exit codes, messages, and a whole scenario against a server made of one thread.
+// Runs the program itself: exit codes, messages, and a whole scenario against a server made of one thread.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// The link between real processes: start order, death and return.
+// Tries the link between real processes: start order, death and return.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>

@@ -1,4 +1,4 @@
-// Link names that no other test or session uses, removed at the end; raw access to the memory file.
+// Gives link names that no other test or session uses, removed at the end, and raw access to the memory file.
 #pragma once
 
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-// Against the long doubles of the C library, whose last bit is 2^-11 of a double's.
+// Compares with the long doubles of the C library, whose last bit is 2^-11 of a double's.
 #include "common/math/pinned_math.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ constexpr int kArguments = 100000;
 
 static_assert(std::numeric_limits<long double>::digits >= 64);
 
-// In units in the last place of the double next to the truth.
+// It counts units in the last place of the double next to the truth.
 double errorOf(double found, long double truth) {
     const double near = double(truth);
     if (std::isnan(found) && std::isnan(near)) return 0;
@@ -40,7 +40,7 @@ struct Worst {
     }
 };
 
-// From low to high, alike on the line.
+// The arguments go from low to high, alike on the line.
 template <class Function, class Truth>
 Worst worstOver(double low, double high, Function function, Truth truth) {
     std::mt19937_64 random(5);
@@ -53,8 +53,8 @@ Worst worstOver(double low, double high, Function function, Truth truth) {
     return worst;
 }
 
-// Of both signs, with exponents from low to high, alike on the scale of exponents; with the neighbours of
-// powers of two.
+// The arguments are of both signs, with exponents from low to high, alike on the scale of exponents, and with
+// the neighbours of powers of two.
 template <class Function, class Truth>
 Worst worstOverExponents(int low, int high, bool with_negative, Function function, Truth truth) {
     std::mt19937_64 random(6);
@@ -250,8 +250,8 @@ TEST(PinnedMath, TablesHoldMoreThanADouble) {
         EXPECT_NEAR(double((step.high + logl(step.factor)) + step.low), 0, 1e-19) << step.factor;
 }
 
-// The same with every compiler, every C library and every CPU. Whoever changes a function on purpose changes
-// this.
+// The same with every compiler, every C library and every CPU. Whoever changes a function on purpose
+// changes this.
 TEST(PinnedMath, BitsAreThese) {
     uint64_t hash = 14695981039346656037u;
     const auto add = [&](double x) {

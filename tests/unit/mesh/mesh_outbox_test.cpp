@@ -9,7 +9,7 @@ constexpr int64_t kSecond = 1'000'000'000;
 constexpr int64_t kAll = INT64_MAX;
 const Eigen::Vector3f kOrigin = Eigen::Vector3f::Zero();
 
-// One triangle at x metres from the origin.
+// Makes one triangle at x metres from the origin.
 NodeMesh meshOf(uint32_t leaf, uint32_t revision, float x = 0) {
     NodeMesh mesh;
     mesh.leaf = leaf;

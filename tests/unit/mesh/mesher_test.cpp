@@ -80,8 +80,8 @@ TEST(Mesher, ReadsOnlyLeavesNearTheChange) {
     Mesher mesher(bone.volume, *bone.lattice);
     Model model;
     mesher.pass(model.sink());
-    // Voxels 20 and 21 reach cells 18 to 22, all of leaf 2 (15 to 22); voxel 22 reaches cell 23 of leaf 3
-    // too.
+    // Voxels 20 and 21 reach cells 18 to 22, all of leaf 2 (15 to 22); voxel 22 reaches cell 23 of leaf
+    // 3 too.
     writeLikeTick(bone.volume, *bone.lattice, {{20, 20, 20}, {21, 21, 21}},
                   [](int, int, int) { return Density(0); });
     EXPECT_EQ(mesher.pass(model.sink()).read, 1u);
@@ -227,8 +227,8 @@ TEST(Mesher, RunsBesideATickThatWrites) {
     std::atomic<bool> is_milling{true};
     std::atomic<uint32_t> passes{0};
     std::thread tick([&] {
-        // At least so many ticks, and until the mesher had a few passes in between, whatever the scheduler
-        // does.
+        // There are at least so many ticks, and they go on until the mesher had a few passes in between,
+        // whatever the scheduler does.
         for (int n = 0; n < 2000 || passes.load() < 20; ++n) {
             const Density value = n % 3 == 0 ? kMaxDensity : Density(n % 7 * 4000);
             writeLikeTick(bone.volume, *bone.lattice, test::randomBox(bone.volume, 5, bone.random),
@@ -273,8 +273,8 @@ TEST(Mesher, NeverSendsALeafHalfWritten) {
         std::uniform_int_distribution<int> rest_us(0, 1000);
         for (bool is_large = false; !is_enough; is_large = !is_large) {
             writeLikeTick(volume, lattice, whole, body(is_large));
-            // Rests of any length, so that writes fall into every part of the mesher's work and some leave it
-            // alone.
+            // Rests of any length, so that writes fall into every part of the mesher's work and some leave
+            // it alone.
             std::this_thread::sleep_for(std::chrono::microseconds(rest_us(random)));
         }
     });

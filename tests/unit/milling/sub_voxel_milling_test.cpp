@@ -1,4 +1,4 @@
-// Milling below the voxel size: the surface that stays is the burr's own.
+// After milling below the voxel size the surface that stays is the burr's own.
 #include <gtest/gtest.h>
 
 #include "haptic_server/mesh/mesh_check.h"
@@ -22,7 +22,7 @@ BoneModel filled(const Eigen::Vector3i& dims, const Eigen::Vector3d& spacing, De
     return BoneModel(std::move(volume), Eigen::Vector3i(16, 12, 16), {.levels = {{1}, {2}, {3}}});
 }
 
-// Half a side of this length around the burr, whatever the spacing.
+// Half a side has this length around the burr, whatever the spacing.
 BoneModel cube(double side, const Eigen::Vector3d& spacing, Density iso, Density density) {
     return filled((side * spacing.cwiseInverse()).array().ceil().cast<int>() + 1, spacing, iso, density);
 }

@@ -7,7 +7,7 @@
 namespace bonemill {
 namespace {
 
-// A strip of squares along x, one step of 1 mm each.
+// Makes a strip of squares along x, one step of 1 mm each.
 NodeMesh strip(int squares) {
     NodeMesh mesh;
     mesh.origin = {0.1f, 0, 0};

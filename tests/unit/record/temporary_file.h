@@ -1,4 +1,4 @@
-// A file name that disappears with its owner.
+// The file of this name disappears with its owner.
 #pragma once
 
 #include <unistd.h>

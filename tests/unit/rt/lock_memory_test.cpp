@@ -1,4 +1,4 @@
-// Not in sanitizer builds: they turn mlockall into nothing.
+// This test is not in sanitizer builds: they turn mlockall into nothing.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// Materials of a scene file, from real files to what the effects get.
+// Follows the materials of a scene file from real files to what the effects get.
 #include "haptic_server/setup/scene_materials.h"
 
 #include <gtest/gtest.h>

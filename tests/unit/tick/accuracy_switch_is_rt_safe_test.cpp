@@ -1,4 +1,4 @@
-// A change of the accuracy is taken up inside the tick: no allocation, no lock.
+// A change of the accuracy is taken up inside the tick without allocation or lock.
 #include <gtest/gtest.h>
 
 #include <set>

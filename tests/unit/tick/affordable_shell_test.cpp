@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kSecond = 1000;  // ticks
 
-// The choice, tick by tick; each choice is in force at once.
+// Makes the choice tick by tick; each choice is in force at once.
 class Chooser {
   public:
     // The factor after `ticks` more with this load.

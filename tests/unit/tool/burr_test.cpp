@@ -20,7 +20,7 @@ constexpr Burr kWheel{.kind = BurrKind::kCylinder, .radius = 2e-3, .length = 0.5
 
 class BurrDistance : public testing::TestWithParam<Burr> {
   protected:
-    // Points in and around the burr.
+    // Gives points in and around the burr.
     template <class Visit>
     void forRandomPoints(int count, Visit&& visit) {
         std::mt19937 random(4);

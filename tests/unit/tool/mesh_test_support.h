@@ -1,4 +1,4 @@
-// Obvious and slow oracles for meshes.
+// These are obvious and slow oracles for meshes.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,7 +11,7 @@
 
 namespace bonemill::test {
 
-// As readMeshFile gives them: m.
+// They are as readMeshFile gives them, in m.
 inline std::vector<Eigen::Vector3d> cornersOf(const TriangleSoup& soup) {
     std::vector<Eigen::Vector3d> corners;
     for (const SoupTriangle& t : soup)
@@ -37,7 +37,7 @@ inline double windingNumber(const TriangleMesh& mesh, const Eigen::Vector3d& p) 
     return sum / (4 * std::numbers::pi);
 }
 
-// C. Ericson, Real-Time Collision Detection, 5.1.5, written as the minimum over face and edges.
+// This is C. Ericson, Real-Time Collision Detection, 5.1.5, written as the minimum over face and edges.
 inline double unsignedDistance(const TriangleMesh& mesh, const Eigen::Vector3d& p) {
     double nearest = INFINITY;
     for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {

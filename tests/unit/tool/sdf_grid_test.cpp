@@ -47,8 +47,8 @@ double worstError(const SdfGrid& grid, double& worst_over_bound) {
         const double least_radius = (p - kCenter).norm() - cell_diagonal;
         if (least_radius < kRadius / 2) return;
         const double error = std::abs(double(grid.distance(p)) - sphereDistance(p));
-        // Linear interpolation errs by h²/8 of the second derivative per axis; they sum up to 2/r for a
-        // sphere.
+        // Linear interpolation errs by h²/8 of the second derivative per axis; they sum up to 2/r for
+        // a sphere.
         const double bound = grid.spacing() * grid.spacing() / (4 * least_radius) + 1e-9;
         worst = std::max(worst, error);
         worst_over_bound = std::max(worst_over_bound, error / bound);

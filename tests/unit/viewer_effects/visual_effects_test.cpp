@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kRadius = 1e-3;
 
-// A level floor of bone at z = 0, 8 mm × 8 mm; `dent` lowers the vertices within 1 mm of the middle.
+// Makes a level floor of bone at z = 0, 8 mm × 8 mm; `dent` lowers the vertices within 1 mm of the middle.
 NodeMesh floorMesh(uint16_t dent = 0) {
     NodeMesh mesh;
     mesh.leaf = 3;

@@ -1,4 +1,4 @@
-// Bricks: what they cost, and that every copy of a voxel says the same.
+// Says what bricks cost, and that every copy of a voxel says the same.
 #include <gtest/gtest.h>
 
 #include <random>

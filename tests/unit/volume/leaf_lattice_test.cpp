@@ -153,8 +153,8 @@ TEST(LeafLattice, VersionsAreOddOnlyDuringTheWrite) {
         EXPECT_EQ(lattice.version(id), odd.contains(id) ? 2u : 0u);
 }
 
-// A single voxel's change moves the version of every leaf whose mesh it can change, and of no leaf farther
-// away.
+// A single voxel's change moves the version of every leaf whose mesh it can change, and of no leaf
+// farther away.
 TEST(LeafLattice, WriteReachesExactlyTheLeavesWithinItsInfluence) {
     const VoxelVolume volume = waves();
     for (const Eigen::Vector3i& leaf_cells : kLeafSizes) {

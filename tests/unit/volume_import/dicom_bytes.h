@@ -1,4 +1,4 @@
-// DICOM files byte by byte (explicit VR little endian), so that any mistake can be put into one.
+// Writes DICOM files byte by byte (explicit VR little endian), so that any mistake can be put into one.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct DicomImage {
     std::vector<std::string> frame_positions;  // not empty: an enhanced multi-frame file
 };
 
-// Preamble, meta header and data set.
+// Returns preamble, meta header and data set.
 std::string dicomBytes(const DicomImage& image);
 void writeDicomFile(const std::filesystem::path& path, const DicomImage& image);
 

@@ -1,4 +1,4 @@
-// Grouping and ordering from headers alone.
+// Groups and orders from headers alone.
 #include "haptic_server/volume/import/dicom_series.h"
 
 #include <gtest/gtest.h>

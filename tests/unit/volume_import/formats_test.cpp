@@ -1,4 +1,4 @@
-// NRRD, NIfTI and MetaImage: every sample must lie where the format's definition puts it.
+// Every sample of NRRD, NIfTI and MetaImage must lie where the format's definition puts it.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Bad input: each one clear message.
+// Each bad input gives one clear message.
 #include <gtest/gtest.h>
 
 #include "haptic_server/volume/import/import_volume.h"

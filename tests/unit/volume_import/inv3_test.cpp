@@ -49,8 +49,8 @@ TEST(Inv3, debianCraniumIsAHeadInLps) {
     EXPECT_NEAR(raw.geometry.spacing.z(), 1.5e-3, 1e-12);
     EXPECT_TRUE(raw.is_hounsfield);
     const auto at = [&](int i, int j, int k) { return raw.values[size_t(i + 256 * (j + 256 * k))]; };
-    // Outermost soft tissue along the middle of the face and of the back of the head, at the height of the
-    // nose.
+    // It is the outermost soft tissue along the middle of the face and of the back of the head, at the height
+    // of the nose.
     int front = 0, back = 255;
     while (at(128, front, 20) < -300) ++front;
     while (at(128, back, 20) < -300) --back;

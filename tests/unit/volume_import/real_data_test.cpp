@@ -1,5 +1,5 @@
-// Real scans, where BONEMILL_CT_DATA names a folder that holds them (docs/volumes.md); skipped elsewhere. The
-// same behaviour is proven with made data in the other files.
+// Reads real scans where BONEMILL_CT_DATA names a folder that holds them (docs/volumes.md), and is skipped
+// elsewhere. The other files prove the same behaviour with made data.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

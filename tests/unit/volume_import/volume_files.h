@@ -1,4 +1,4 @@
-// Small volumes in every file format, written byte by byte, so that the importer is checked against the
+// Writes small volumes in every file format byte by byte, so that the importer is checked against the
 // formats' definitions and not against its own library.
 #pragma once
 
@@ -44,7 +44,7 @@ struct Inv3Text {
     std::string modality = "CT";
     double missing_bytes = 0;  // cut off the matrix
 };
-// Rows back to front, as InVesalius stores them: the sample's second axis is reversed in the file.
+// Rows go from back to front, as InVesalius stores them: the sample's second axis is reversed in the file.
 void writeInv3File(const std::filesystem::path& path, const SampleVolume& sample, const Inv3Text& text);
 
 void writeBytes(const std::filesystem::path& path, const std::string& bytes);
