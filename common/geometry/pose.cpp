@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "common/math/pinned_math.h"
+
 namespace bonemill {
 namespace {
 // Below this angle sin and atan2 are replaced by their series: the error is below 1e-18.
@@ -17,9 +19,9 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) noexcept {
 
 Eigen::Quaterniond expRotation(const Eigen::Vector3d& theta) noexcept {
     const double angle = theta.norm();
-    const double scale = angle < kSmallAngle_rad ? 0.5 - angle * angle / 48 : std::sin(angle / 2) / angle;
+    const double scale = angle < kSmallAngle_rad ? 0.5 - angle * angle / 48 : pinned::sin(angle / 2) / angle;
     const Eigen::Vector3d v = scale * theta;
-    return {std::cos(angle / 2), v.x(), v.y(), v.z()};
+    return {pinned::cos(angle / 2), v.x(), v.y(), v.z()};
 }
 
 Eigen::Vector3d logRotation(const Eigen::Quaterniond& q) noexcept {
@@ -28,7 +30,7 @@ Eigen::Vector3d logRotation(const Eigen::Quaterniond& q) noexcept {
     const double sine = v.norm();
     const double cosine = sign * q.w();
     if (sine < kSmallAngle_rad) return 2 * v / cosine;
-    return 2 * std::atan2(sine, cosine) / sine * v;
+    return 2 * pinned::atan2(sine, cosine) / sine * v;
 }
 
 Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {

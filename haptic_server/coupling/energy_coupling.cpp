@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/math/pinned_math.h"
+
 namespace bonemill {
 namespace {
 
@@ -20,9 +22,9 @@ struct Spring {
 
 Spring springAt(double k, double most, double s) noexcept {
     const double t = k * s / most;
-    const double below = -std::expm1(-2 * t), e = 1 - below;  // e^(-2t)
+    const double below = -pinned::expm1(-2 * t), e = 1 - below;  // e^(-2t)
     const double tanh = below / (1 + e), sech_squared = 4 * e / ((1 + e) * (1 + e));
-    const double log_cosh = t + std::log1p(e) - M_LN2;
+    const double log_cosh = t + pinned::log1p(e) - M_LN2;
     const double pull = most * tanh;
     return {most * most / k * log_cosh, pull, k * sech_squared, s > kSmallest ? pull / s : k};
 }
@@ -41,7 +43,7 @@ Matrix3d directional(const Vector3d& vector, double along, double across, double
 double halfCotangent(double theta) noexcept {
     const double half = theta / 2;
     if (half < 1e-4) return 1 - half * half / 3;
-    return half / std::tan(half);
+    return half * pinned::cos(half) / pinned::sin(half);
 }
 
 Vector3d springVector(const Vector3d& stretch, const Spring& spring) noexcept {
@@ -72,7 +74,7 @@ Vector3d ContinuousRotation::log(const Eigen::Quaterniond& rotation) const noexc
     if (q.dot(last_.coeffs()) < 0) q = -q;
     const double sine = q.head<3>().norm();
     if (sine < 1e-9 && q.w() > 0) return 2 * q.head<3>();
-    double angle = 2 * std::atan2(sine, q.w());
+    double angle = 2 * pinned::atan2(sine, q.w());
     if (angle > kLongestWay) {
         q = -q;
         angle = 2 * M_PI - angle;
@@ -83,7 +85,7 @@ Vector3d ContinuousRotation::log(const Eigen::Quaterniond& rotation) const noexc
 void ContinuousRotation::remember(const Eigen::Quaterniond& rotation) noexcept {
     Eigen::Vector4d q = rotation.coeffs();
     if (q.dot(last_.coeffs()) < 0) q = -q;
-    if (2 * std::atan2(q.head<3>().norm(), q.w()) > kLongestWay) q = -q;
+    if (2 * pinned::atan2(q.head<3>().norm(), q.w()) > kLongestWay) q = -q;
     last_ = Eigen::Quaterniond(q);
 }
 

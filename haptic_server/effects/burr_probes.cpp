@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/math/pinned_math.h"
+
 namespace bonemill {
 
 BurrProbes::BurrProbes(const Burr& burr) noexcept {
@@ -25,7 +27,7 @@ BurrProbes::BurrProbes(const Burr& burr) noexcept {
 void BurrProbes::addRim(double y, double radius) noexcept {
     for (size_t n = 0; n < kRim; ++n) {
         const double angle = 2 * M_PI * double(n) / kRim;
-        add({Eigen::Vector3d(radius * std::cos(angle), y, radius * std::sin(angle)), 0});
+        add({Eigen::Vector3d(radius * pinned::cos(angle), y, radius * pinned::sin(angle)), 0});
     }
 }
 

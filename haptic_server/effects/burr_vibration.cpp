@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/math/pinned_math.h"
 #include "common/units.h"
 
 namespace bonemill {
@@ -33,7 +34,8 @@ void BurrVibration::begin(EffectTick& tick) noexcept {
 
 void BurrVibration::addToHand(const EffectTick& tick, Wrench& wrench_V) noexcept {
     if (amplitude_ == 0) return;
-    wrench_V.force += amplitude_ * std::sin(phase_) * (tick.X_VT_start.rotation * Eigen::Vector3d::UnitX());
+    wrench_V.force +=
+        amplitude_ * pinned::sin(phase_) * (tick.X_VT_start.rotation * Eigen::Vector3d::UnitX());
 }
 
 }  // namespace bonemill

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/math/pinned_math.h"
 #include "haptic_server/contact/into_tool.h"
 #include "haptic_server/effects/burr_speed.h"
 #include "haptic_server/effects/make_effects.h"
@@ -110,7 +111,7 @@ void EnergyRemoval::mill(EffectTick& tick, BoneModel& bone, MillingResult& resul
     const double factor = energyFactor(tick.tool->burr);
     if (turn_ == 0) to_repay_ = account_;
     const double of_turns = energy * double(turns_);
-    const double repaid = to_repay_ * (1 - std::exp(-tick.dt * double(turns_) / kRepayTime));
+    const double repaid = to_repay_ * (1 - pinned::exp(-tick.dt * double(turns_) / kRepayTime));
     const double share = std::clamp((of_turns + repaid) / of_turns, 0.0, kMostShare);
     removed_energy_ = factor * shift_.apply(bone, specific_energy_, share / factor,
                                             std::min(turns_, kMostTurnsAtOnce), result);

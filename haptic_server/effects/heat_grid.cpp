@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/math/pinned_math.h"
+
 namespace bonemill {
 namespace {
 
@@ -31,7 +33,7 @@ HeatGrid::HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt)
     : config_(config),
       bone_(bone),
       dt_(dt),
-      cell_capacity_(config.heat_capacity * std::pow(config.cell, 3)),
+      cell_capacity_(config.heat_capacity * pinned::cube(config.cell)),
       per_time_(config.conductivity / (config.heat_capacity * config.cell * config.cell)),
       longest_(kLongestShare / per_time_),
       turn_(std::min(kShortestTurn, longest_ / 2)),
@@ -269,11 +271,11 @@ void HeatGrid::conduct(Brick& brick, double elapsed) noexcept {
 void HeatGrid::cool(Brick& brick, double elapsed) noexcept {
     std::array<float, 7> wet, dry;  // what is left of a difference, by the number of open faces
     for (int faces = 0; faces < 7; ++faces) {
-        wet[size_t(faces)] = float(std::exp(-faces * wet_rate_ * elapsed));
-        dry[size_t(faces)] = float(std::exp(-faces * dry_rate_ * elapsed));
+        wet[size_t(faces)] = float(pinned::exp(-faces * wet_rate_ * elapsed));
+        dry[size_t(faces)] = float(pinned::exp(-faces * dry_rate_ * elapsed));
     }
     const float wet_excess = float(config_.irrigation_temperature - config_.body_temperature);
-    const float left_by_blood = float(std::exp(-config_.perfusion * elapsed));
+    const float left_by_blood = float(pinned::exp(-config_.perfusion * elapsed));
     const Eigen::Vector3d first =
         (brick.index * kEdge).cast<double>() * config_.cell - bone_.spacing() / 2 - wet_center_V_;
     brick.hottest = brick.coldest = 0;
@@ -355,7 +357,7 @@ double HeatGrid::hottest() const noexcept {
 }
 
 double HeatGrid::necroticVolume() const noexcept {
-    return double(dead_count_) * std::pow(config_.cell, 3);
+    return double(dead_count_) * pinned::cube(config_.cell);
 }
 
 double HeatGrid::storedHeat() const noexcept {

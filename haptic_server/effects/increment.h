@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/geometry/pose.h"
+#include "common/math/pinned_math.h"
 
 namespace bonemill {
 
@@ -29,7 +30,7 @@ struct Increment {
     double curvature() const noexcept {
         const double angle = rotation().norm(), half = angle / 2;
         if (angle < 1e-2) return (1 + angle * angle / 60) / 12;
-        return (1 - half / std::tan(half)) / (angle * angle);
+        return (1 - half * pinned::cos(half) / pinned::sin(half)) / (angle * angle);
     }
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/math/pinned_math.h"
+
 namespace bonemill {
 namespace {
 
@@ -34,7 +36,7 @@ EnergyTerm VirtualFixture::energy(const EffectTick&, const Pose& X_VT) const noe
         sample.distance -= probe.radius;
         least = std::min(least, sample.distance);
     }
-    const double margin = std::log(double(count)) / sharpness_;
+    const double margin = pinned::log(double(count)) / sharpness_;
     if (least - margin >= config_.distance) return {};
 
     double weights = 0;
@@ -42,13 +44,13 @@ EnergyTerm VirtualFixture::energy(const EffectTick&, const Pose& X_VT) const noe
     count = 0;
     for (const BurrProbe& probe : burr_) {
         const DistanceSample& sample = samples[count++];
-        const double weight = std::exp(-sharpness_ * (sample.distance - least));
+        const double weight = pinned::exp(-sharpness_ * (sample.distance - least));
         weights += weight;
         slope.head<3>() += weight * sample.gradient_V;
         slope.tail<3>() += weight * (X_VT.rotation * probe.center_T).cross(sample.gradient_V);
     }
     slope /= weights;
-    const double inside = config_.distance - (least - std::log(weights) / sharpness_);
+    const double inside = config_.distance - (least - pinned::log(weights) / sharpness_);
     if (inside <= 0) return {};
     const double soft = config_.max_force / config_.stiffness;
     const double force = std::min(config_.stiffness * inside, config_.max_force);

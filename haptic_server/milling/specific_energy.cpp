@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/math/pinned_math.h"
+
 namespace bonemill {
 
 SpecificEnergy::SpecificEnergy(const SpecificEnergyConfig& config,
@@ -13,7 +15,7 @@ SpecificEnergy::SpecificEnergy(const SpecificEnergyConfig& config,
       materials_(config.materials) {
     for (int density = 0; density <= kMaxDensity + 1; density += kStep) {
         const double bone = std::max(density, int(iso));
-        of_density_.push_back(reference_ * std::pow(bone / config.reference_density, config.exponent));
+        of_density_.push_back(reference_ * pinned::pow(bone / config.reference_density, config.exponent));
     }
 }
 

@@ -24,7 +24,8 @@ struct Burr {
 
     // Of the farthest point from T's origin, m.
     double reach() const noexcept {
-        return kind == BurrKind::kBall ? radius : std::hypot(std::max(radius, tip_radius), length / 2);
+        return kind == BurrKind::kBall ? radius
+                                       : Eigen::Vector2d(std::max(radius, tip_radius), length / 2).norm();
     }
     // Signed distance, m; negative inside. RT-safe.
     double signedDistance(const Eigen::Vector3d& p_T) const noexcept;
@@ -47,8 +48,8 @@ inline double Burr::signedDistance(const Eigen::Vector3d& p_T) const noexcept {
     const double far_radius = kind == BurrKind::kCone ? tip_radius : radius, half = length / 2;
     const Eigen::Vector2d p(std::sqrt(p_T.x() * p_T.x() + p_T.z() * p_T.z()), p_T.y());
     const double side = burr_profile::toSegment(p, {far_radius, -half}, {radius, half});
-    const double far_end = std::hypot(std::max(0.0, p.x() - far_radius), p.y() + half);
-    const double hand_end = std::hypot(std::max(0.0, p.x() - radius), p.y() - half);
+    const double far_end = Eigen::Vector2d(std::max(0.0, p.x() - far_radius), p.y() + half).norm();
+    const double hand_end = Eigen::Vector2d(std::max(0.0, p.x() - radius), p.y() - half).norm();
     const double nearest = std::min({side, far_end, hand_end});
     const double width = far_radius + (radius - far_radius) * (p.y() + half) / length;
     return std::abs(p.y()) < half && p.x() < width ? -nearest : nearest;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "common/math/pinned_math.h"
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/tool/build/check_shape.h"
@@ -201,10 +202,10 @@ double burrOutside(const Burr& burr, const SdfGrid& sdf) {
             if (burr.kind == BurrKind::kCone)
                 off_axis = burr.tip_radius + (burr.radius - burr.tip_radius) * (1 + along) / 2;
             if (burr.kind == BurrKind::kBall) {
-                y = burr.radius * std::sin(M_PI / 2 * along);
-                off_axis = burr.radius * std::cos(M_PI / 2 * along);
+                y = burr.radius * pinned::sin(M_PI / 2 * along);
+                off_axis = burr.radius * pinned::cos(M_PI / 2 * along);
             }
-            const Vector3d p(off_axis * std::cos(angle), y, off_axis * std::sin(angle));
+            const Vector3d p(off_axis * pinned::cos(angle), y, off_axis * pinned::sin(angle));
             if (sdf.gridBox().contains(p)) farthest = std::max(farthest, double(sdf.distance(p)));
         }
     return farthest;

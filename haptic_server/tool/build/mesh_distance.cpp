@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "common/math/pinned_math.h"
+
 namespace bonemill {
 namespace {
 
@@ -47,7 +49,7 @@ Closest closestOn(const std::array<Vector3d, 3>& v, const Vector3d& unit_normal,
 
 double angleAt(const Vector3d& corner, const Vector3d& a, const Vector3d& b) {
     const Vector3d u = a - corner, v = b - corner;
-    return std::atan2(u.cross(v).norm(), u.dot(v));
+    return pinned::atan2(u.cross(v).norm(), u.dot(v));
 }
 
 }  // namespace

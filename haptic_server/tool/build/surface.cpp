@@ -4,6 +4,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "common/math/pinned_math.h"
 #include "common/units.h"
 
 namespace bonemill {
@@ -35,7 +36,7 @@ void revolve(const Vector3d& origin, const Vector3d& axis, const std::vector<Rin
         const auto base = uint32_t(surface.positions.size());
         for (int s = 0; s < kSegments; ++s) {
             const double angle = kTurn * s / kSegments;
-            const Vector3d radial = std::cos(angle) * u + std::sin(angle) * v;
+            const Vector3d radial = pinned::cos(angle) * u + pinned::sin(angle) * v;
             const Ring& ring = rings[r];
             surface.positions.push_back((origin + ring.along * axis + ring.off * radial).cast<float>());
             surface.normals.push_back(
@@ -49,9 +50,9 @@ void revolve(const Vector3d& origin, const Vector3d& axis, const std::vector<Rin
 void appendQuarter(std::vector<Ring>& rings, double center, double radius, int from) {
     for (int i = 0; i <= kQuarterRings; ++i) {
         const double quarter_turns = from + double(i) / kQuarterRings;
-        const double sine = std::sin(quarter_turns * std::numbers::pi / 2);
+        const double sine = pinned::sin(quarter_turns * std::numbers::pi / 2);
         const double cosine =
-            std::sin((1 - std::abs(quarter_turns)) * std::numbers::pi / 2);  // exactly 0 at a pole
+            pinned::sin((1 - std::abs(quarter_turns)) * std::numbers::pi / 2);  // exactly 0 at a pole
         rings.push_back({center + radius * sine, radius * cosine, sine, cosine});
     }
 }
@@ -119,7 +120,7 @@ CornerGroups groupAcrossSmoothEdges(const TriangleMesh& mesh, const std::vector<
     for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
         for (int e = 0; e < 3; ++e) {
             const uint32_t neighbour = mesh.neighbours[t][e];
-            if (unit_normals[t].dot(unit_normals[neighbour]) < std::cos(kSmoothBend)) continue;
+            if (unit_normals[t].dot(unit_normals[neighbour]) < pinned::cos(kSmoothBend)) continue;
             for (const uint32_t vertex : {mesh.triangles[t][e], mesh.triangles[t][(e + 1) % 3]})
                 groups.join(cornerAt(mesh, t, vertex), cornerAt(mesh, neighbour, vertex));
         }

@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "common/math/pinned_math.h"
 #include "common/units.h"
 #include "common/user_error.h"
 
@@ -96,7 +97,7 @@ void checkDistances(const std::vector<DicomSlice>& slices, const std::vector<dou
 void checkTilt(const std::vector<DicomSlice>& slices, const Eigen::Vector3d& normal,
                const std::string& folder) {
     const Eigen::Vector3d along = slices.back().position_mm - slices.front().position_mm;
-    const double tilt_degrees = std::atan2(along.cross(normal).norm(), along.dot(normal)) / kDegree;
+    const double tilt_degrees = pinned::atan2(along.cross(normal).norm(), along.dot(normal)) / kDegree;
     const Eigen::Vector3d step = along / double(slices.size() - 1);
     for (size_t s = 1; s < slices.size(); ++s) {
         const Eigen::Vector3d off = slices[s].position_mm - slices[0].position_mm - step * double(s);

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <optional>
 
+#include "common/math/pinned_math.h"
 #include "common/user_error.h"
 
 namespace bonemill {
@@ -71,7 +72,7 @@ std::vector<double> smoothed(const std::vector<double>& count, double sigma_bins
         double weights = 0;
         for (int d = -reach; d <= reach; ++d) {
             if (b + d < 0 || b + d >= int(count.size())) continue;
-            const double w = std::exp(-0.5 * d * d / (sigma_bins * sigma_bins));
+            const double w = pinned::exp(-0.5 * d * d / (sigma_bins * sigma_bins));
             out[size_t(b)] += w * count[size_t(b + d)];
             weights += w;
         }
