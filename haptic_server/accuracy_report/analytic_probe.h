@@ -6,7 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/tick_config.h"
+#include "haptic_server/tool/tool_model.h"
 
 namespace bonemill {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/rt/clock.h"
+#include "haptic_server/tick/haptic_tick.h"
 
 namespace bonemill {
 namespace {

@@ -4,7 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/bone/bone_model.h"
+#include "haptic_server/telemetry/tick_record.h"
+#include "haptic_server/tick/tick_config.h"
+#include "haptic_server/tool/tool_model.h"
 
 namespace bonemill {
 

@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "haptic_server/contact/candidates.h"
+#include "haptic_server/contact/contact_configs.h"
 #include "haptic_server/contact/contact_weights.h"
 #include "haptic_server/contact/patch_memory.h"
 #include "haptic_server/contact/point_shell.h"
@@ -37,11 +38,6 @@
 #include "haptic_server/tool/tool_field.h"
 
 namespace bonemill {
-
-struct GradientContactConfig {
-    double stiffness_per_area = 1e12;  // κ, N/m³
-    double stiffness_cap = 1e7;        // N/m in any direction; infinity: none
-};
 
 // Whose points are gathered.
 struct ShellView {

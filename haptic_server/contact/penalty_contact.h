@@ -2,16 +2,11 @@
 #pragma once
 
 #include "common/geometry/pose.h"
+#include "haptic_server/contact/contact_configs.h"
 #include "haptic_server/contact/point_shell.h"
 #include "haptic_server/tool/sdf_grid.h"
 
 namespace bonemill {
-
-struct PenaltyContactConfig {
-    double point_stiffness = 1200;          // N/m per contact point (thesis k_c = 1.2 N/mm)
-    uint32_t full_stiffness_contacts = 10;  // eq 10: above it each stiffness becomes k·limit/N
-    int shell_level = 0;                    // of the PointShell: whose points are tested
-};
 
 // Contact wrench on the tool about the tool point (origin of T), axes V.
 struct ContactResult {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/rt/clock.h"
+#include "haptic_server/tick/haptic_tick.h"
 
 namespace bonemill {
 namespace {

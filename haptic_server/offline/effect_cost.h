@@ -6,7 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/bone/bone_model.h"
+#include "haptic_server/tick/tick_config.h"
+#include "haptic_server/tick/tick_io.h"
+#include "haptic_server/tool/tool_model.h"
 
 namespace bonemill {
 

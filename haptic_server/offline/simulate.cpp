@@ -19,6 +19,7 @@
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_materials.h"
 #include "haptic_server/setup/scene_setup.h"
+#include "haptic_server/tick/haptic_tick.h"
 #include "haptic_server/volume/import/nrrd_writer.h"
 
 namespace bonemill {

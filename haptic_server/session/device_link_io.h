@@ -7,7 +7,7 @@
 #include "common/ipc/device_link.h"
 #include "common/ipc/stale_ramp.h"
 #include "common/rt/spsc_ring.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/tick_io.h"
 
 namespace bonemill {
 

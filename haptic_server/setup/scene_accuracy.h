@@ -3,8 +3,9 @@
 
 #include <vector>
 
+#include "haptic_server/accuracy/accuracy_settings.h"
 #include "haptic_server/contact/point_shell.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/spo/gradient_config.h"
 #include "proto/scene.pb.h"
 
 namespace bonemill {

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "common/config/scene_file.h"
+#include "haptic_server/bone/bone_model.h"
 #include "haptic_server/setup/scene_accuracy.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/spo/spo_model.h"
+#include "haptic_server/tick/tick_config.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
 

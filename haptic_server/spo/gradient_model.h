@@ -4,21 +4,11 @@
 #pragma once
 
 #include "haptic_server/contact/gradient_contact.h"
+#include "haptic_server/spo/gradient_config.h"
 #include "haptic_server/spo/spo_model.h"
 #include "haptic_server/tool/growing_field.h"
 
 namespace bonemill {
-
-struct GradientConfig {
-    GradientContactConfig contact;
-    EnergyCouplingConfig coupling;
-    double max_speed = 0.5;            // m/s of the tool point
-    double max_angular_speed = 4.189;  // rad/s
-    double burr_radius = 1e-3;         // m; bounds the trust radius
-    // In a tick, about: one point's distance, energy and wrench at one pose. A quarter as many candidates
-    // have room.
-    size_t most_point_tests = 2'000'000;
-};
 
 class GradientModel final : public SpoModel {
   public:

@@ -14,47 +14,11 @@
 #include "haptic_server/tick/accuracy_switch.h"
 #include "haptic_server/tick/affordable_shell.h"
 #include "haptic_server/tick/sudden_change.h"
+#include "haptic_server/tick/tick_config.h"
+#include "haptic_server/tick/tick_io.h"
 #include "haptic_server/tick/tool_switch.h"
 
 namespace bonemill {
-
-struct DeviceInput {
-    Pose X_WT_device;                 // where the hand really holds the tool
-    uint32_t buttons = 0;             // Button bits
-    double force_factor = 1;          // 1 fresh device; ramps to 0 while it is stale
-    bool is_stale = false;            // no fresh sample: nothing is milled
-    double t_s = 0;                   // since the session's first tick, or the trajectory file's own time
-    int64_t start_ns = 0;             // when this tick began, CLOCK_MONOTONIC
-    int64_t deadline_ns = INT64_MAX;  // work that ends later is an overrun
-    int64_t wakeup_latency_ns = 0;
-};
-
-// What a tick talks to. Implementations are RT-safe: no allocation, lock or system call beyond the wait in
-// read().
-class TickIo {
-  public:
-    virtual ~TickIo() = default;
-    // Waits for the next tick. False: stop.
-    virtual bool read(DeviceInput& input) noexcept = 0;
-    // Sends the wrench on the hand (axes W, about the tool point that the hand holds) and returns the time
-    // then, ns.
-    virtual int64_t write(const Wrench& wrench_hand_W) noexcept = 0;
-    // End of the tick's work: now in ns.
-    virtual int64_t now() noexcept = 0;
-    // Never blocks: full means dropped and counted.
-    virtual void push(const TickRecord& record) noexcept = 0;
-};
-
-struct TickConfig {
-    double dt = 1e-3;  // s
-    AccuracySettings accuracy;
-    PenaltyContactConfig contact;  // thesis_2012
-    CouplingConfig coupling;       // thesis_2012, and the limits of what the hand may feel
-    GradientConfig gradient;
-    Burr burr;
-    EffectConfigs effects;
-    size_t most_milled_cells = MillingConfig{}.most_cells;  // in a tick
-};
 
 class HapticTick {
   public:

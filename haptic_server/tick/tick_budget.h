@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "haptic_server/milling/timed_milling.h"
-#include "haptic_server/spo/gradient_model.h"
+#include "haptic_server/spo/gradient_config.h"
 
 namespace bonemill {
 

@@ -9,6 +9,7 @@
 #include "common/rt/clock.h"
 #include "common/rt/page_faults.h"
 #include "haptic_server/record/fault_names.h"
+#include "haptic_server/tick/haptic_tick.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/corridor_run.h"

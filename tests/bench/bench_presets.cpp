@@ -12,6 +12,7 @@
 
 #include "common/rt/clock.h"
 #include "common/rt/latency_histogram.h"
+#include "haptic_server/tick/haptic_tick.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
 #include "haptic_server/volume/import/phantom/tooth_phantom.h"

@@ -6,6 +6,7 @@
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/record/fault_names.h"
+#include "haptic_server/tick/haptic_tick.h"
 #include "haptic_server/tick/tick_budget.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/bench/bench_output.h"

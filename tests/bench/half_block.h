@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/tick_io.h"
+#include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill::bench {
 

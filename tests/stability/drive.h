@@ -4,6 +4,7 @@
 #include <deque>
 #include <vector>
 
+#include "haptic_server/tick/haptic_tick.h"
 #include "tests/stability/plant.h"
 #include "tests/stability/scene.h"
 

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/tick_config.h"
+#include "haptic_server/tick/tick_io.h"
 
 namespace bonemill::test {
 

@@ -1,7 +1,7 @@
 // Settings of a tick that mills and adds by time, as most tests of the tick want it.
 #pragma once
 
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/tick_config.h"
 
 namespace bonemill::test {
 

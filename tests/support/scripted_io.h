@@ -5,7 +5,7 @@
 
 #include "common/rt/clock.h"
 #include "common/units.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/tick_io.h"
 
 namespace bonemill::test {
 

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "haptic_server/setup/scene_setup.h"
+#include "haptic_server/tick/haptic_tick.h"
 #include "tests/support/every_effect_scene.h"
 #include "tests/support/temporary_folder.h"
 

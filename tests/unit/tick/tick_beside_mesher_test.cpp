@@ -9,6 +9,7 @@
 #include "common/rt/spsc_ring.h"
 #include "haptic_server/mesh/mesh_rounds.h"
 #include "haptic_server/publish/publisher.h"
+#include "haptic_server/tick/haptic_tick.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"

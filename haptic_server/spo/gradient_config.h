@@ -1,0 +1,22 @@
+// What the gradient law is told at the start, apart from the model that works with it.
+#pragma once
+
+#include <cstddef>
+
+#include "haptic_server/contact/contact_configs.h"
+#include "haptic_server/coupling/energy_coupling.h"
+
+namespace bonemill {
+
+struct GradientConfig {
+    GradientContactConfig contact;
+    EnergyCouplingConfig coupling;
+    double max_speed = 0.5;            // m/s of the tool point
+    double max_angular_speed = 4.189;  // rad/s
+    double burr_radius = 1e-3;         // m; bounds the trust radius
+    // In a tick, about: one point's distance, energy and wrench at one pose. A quarter as many candidates
+    // have room.
+    size_t most_point_tests = 2'000'000;
+};
+
+}  // namespace bonemill
