@@ -82,14 +82,17 @@ class Progress {
 
 // Everything that is measured; the files come later.
 ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::ostream& progress) {
-    const auto settings = sweepSettings(simulation.tick.accuracy, simulation.firstTool().hasShapes());
+    const auto settings =
+        sweepSettings(simulation.accuracy, simulation.tools.front().built.model.hasShapes());
     const ToolConfig tool_config = toolConfigOf(loaded, *toolsOf(loaded.scene).front());
     const BuiltTool tool = buildTool(tool_config, refinementsOf(settings));
-    const TickConfig& tick = simulation.tick;
+    FixedTickConfig tick = simulation.fixedTick();
+    tick.tool.model = &tool.model;
 
     BoneModel bone = layoutBone(simulation);
     TouchProbe probe(bone, tool.model);
-    const auto places = findProbingPlaces(loaded.scene.simulated_operator(), bone, tick.burr.radius, probe);
+    const auto places =
+        findProbingPlaces(loaded.scene.simulated_operator(), bone, tick.tool.burr.radius, probe);
     if (places.empty())
         throw UserError(loaded.file.string() +
                         ": the tool touches no bone, neither on the way of simulated_operator nor "
@@ -102,7 +105,7 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
 
     progress << "truth along " << strokes.size() << " strokes" << std::endl;
     const int threads = std::clamp(int(std::thread::hardware_concurrency()), 1, kMostThreads);
-    const auto truth = computeTruth(strokes, tick, bone, tool.model, probe, threads);
+    const auto truth = computeTruth(strokes, tick, bone, probe, threads);
 
     AnalyticProbe plane({.tick = tick,
                          .spacing = bone.volume.spacing().minCoeff(),
@@ -110,7 +113,7 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
                          .refinements = refinementsOf(settings),
                          .shell_factors = shellFactorsOf(settings),
                          .has_analytic_tool = tool.model.hasShapes()});
-    const SweepInput input{loaded.scene, bone.volume, bone.lattice.leafCells(), tool.model, strokes, truth,
+    const SweepInput input{loaded.scene, bone.volume, bone.lattice.leafCells(), tick.tool, strokes, truth,
                            milling,      plane};
     ReportData data;
     data.settings = sweep(input, settings, Progress(progress, settings.size()));
@@ -121,10 +124,10 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
     data.scene_file = loaded.file.string();
     data.machine = machineName();
     data.spacing = bone.volume.spacing().minCoeff();
-    data.burr_radius = tick.burr.radius;
+    data.burr_radius = tick.tool.burr.radius;
     data.tick_period = tick.dt;
     data.contact_width =
-        contactWidth(tick.gradient.contact.stiffness_per_area, tick.burr.radius, data.truth.force_rms);
+        contactWidth(tick.gradient.contact.stiffness_per_area, tick.tool.burr.radius, data.truth.force_rms);
     return data;
 }
 

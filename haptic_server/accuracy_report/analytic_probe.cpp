@@ -32,7 +32,7 @@ double depthOfWidth(double radius, double width) {
 
 ToolModel buildBurr(const AnalyticProbeConfig& config) {
     ToolConfig tool;
-    tool.burr_radius = config.tick.burr.radius;
+    tool.burr_radius = config.tick.tool.burr.radius;
     tool.shapes = {SphereShape{Vector3d::Zero(), tool.burr_radius}};
     tool.sdf_spacing = config.sdf_spacing;
     const int half = int(std::ceil(tool.burr_radius / config.sdf_spacing)) + 3;
@@ -81,7 +81,7 @@ PosePath pressPath(const Eigen::Quaterniond& rotation, double radius, double dep
     return path;
 }
 
-double springForce(const EnergyCouplingConfig& coupling, double stretch) {
+double springForce(const EnergyCoupling& coupling, double stretch) {
     return coupling.saturation_force *
            std::tanh(coupling.translation_stiffness * stretch / coupling.saturation_force);
 }
@@ -119,12 +119,13 @@ double contactWidth(double kappa, double radius, double force) noexcept {
     return 2 * std::sqrt(low * (2 * radius - low));
 }
 
-double depthUnderSpring(const GradientConfig& config, double radius, double device_depth) noexcept {
+double depthUnderSpring(const FixedTickConfig& tick, double device_depth) noexcept {
+    const double radius = tick.tool.burr.radius;
     double low = 0, high = std::min(device_depth, 2 * radius / 3);  // the force rises up to there
     for (int n = 0; n < 100; ++n) {
         const double middle = (low + high) / 2;
-        const bool is_too_deep = forceOnSphere(config.contact.stiffness_per_area, radius, middle) >
-                                 springForce(config.coupling, device_depth - middle);
+        const bool is_too_deep = forceOnSphere(tick.gradient.contact.stiffness_per_area, radius, middle) >
+                                 springForce(tick.toolCoupling(), device_depth - middle);
         (is_too_deep ? high : low) = middle;
     }
     return (low + high) / 2;
@@ -134,7 +135,7 @@ AnalyticProbe::AnalyticProbe(const AnalyticProbeConfig& config) : config_(config
     std::mt19937 random(1);
     std::vector<ShellLevel> levels;
     for (const int factor : config.shell_factors) levels.push_back({factor});
-    const double radius = config.tick.burr.radius;
+    const double radius = config.tick.tool.burr.radius;
     const double widest =
         std::min(kWidestOfRadius * radius, kWidths[std::size(kWidths) - 1] * config.spacing);
     for (int n = 0; n < kGrids; ++n) {
@@ -149,23 +150,24 @@ AnalyticProbe::AnalyticProbe(const AnalyticProbeConfig& config) : config_(config
 AnalyticProbe::~AnalyticProbe() = default;
 
 PlaneErrors AnalyticProbe::measure(const AccuracySettings& settings) {
-    TickConfig tick = config_.tick;
+    FixedTickConfig tick = config_.tick;
+    tick.tool.model = &burr_;
     tick.accuracy = settings;
     if (!config_.has_analytic_tool) tick.accuracy.tool_distance = ToolDistance::kGrid;
-    const double radius = tick.burr.radius;
+    const double radius = tick.tool.burr.radius;
     PlaneErrors errors;
     int count = 0;
     for (const double load : kLoads) {
-        const double most = tick.gradient.coupling.saturation_force;
+        const double most = tick.tool.saturation_force;
         const double pull = std::min(load, kHeaviestShare * most);
         const double true_stretch =
             std::atanh(pull / most) * most / tick.gradient.coupling.translation_stiffness;
-        const double true_depth = depthUnderSpring(tick.gradient, radius, true_stretch);
-        const double true_force = springForce(tick.gradient.coupling, true_stretch - true_depth);
+        const double true_depth = depthUnderSpring(tick, true_stretch);
+        const double true_force = springForce(tick.toolCoupling(), true_stretch - true_depth);
         double low = INFINITY, high = 0, sum = 0;
         for (const auto& plane : planes_) {
-            const Rest rest = restOf(
-                runPath(tick, plane->bone, burr_, pressPath(plane->R_WT, radius, true_stretch)), radius);
+            const Rest rest =
+                restOf(runPath(tick, plane->bone, pressPath(plane->R_WT, radius, true_stretch)), radius);
             errors.force += std::pow(rest.force / true_force - 1, 2);
             errors.depth += std::pow(rest.depth - true_depth, 2);
             low = std::min(low, rest.force), high = std::max(high, rest.force), sum += rest.force;
@@ -179,7 +181,7 @@ PlaneErrors AnalyticProbe::measure(const AccuracySettings& settings) {
 }
 
 PatchErrors AnalyticProbe::patchAt(const AccuracySettings& settings, double width_voxels) const {
-    const double radius = config_.tick.burr.radius;
+    const double radius = config_.tick.tool.burr.radius;
     const double kappa = config_.tick.gradient.contact.stiffness_per_area;
     PatchErrors errors{.shell_factor = settings.shell_factor,
                        .tool_distance = settings.tool_distance,
@@ -227,7 +229,7 @@ std::vector<PatchErrors> AnalyticProbe::patchErrors() const {
     std::vector<PatchErrors> all;
     for (const int factor : config_.shell_factors)
         for (const double width : kWidths) {
-            if (width * config_.spacing > kWidestOfRadius * config_.tick.burr.radius) continue;
+            if (width * config_.spacing > kWidestOfRadius * config_.tick.tool.burr.radius) continue;
             for (AccuracySettings kind : kinds) {
                 kind.shell_factor = factor;
                 all.push_back(patchAt(kind, width));

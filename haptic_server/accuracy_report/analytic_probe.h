@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "haptic_server/tick/tick_config.h"
-#include "haptic_server/tool/tool_model.h"
 
 namespace bonemill {
 
@@ -18,7 +17,7 @@ double forceOnSphere(double kappa, double radius, double depth) noexcept;
 double contactWidth(double kappa, double radius, double force) noexcept;
 
 // Depth d at which that force balances the saturating spring to a device at depth `device_depth`; bisection.
-double depthUnderSpring(const GradientConfig& config, double radius, double device_depth) noexcept;
+double depthUnderSpring(const FixedTickConfig& tick, double device_depth) noexcept;
 
 // What the hand feels from the burr pressed on a plane with 0.5 to 4 N, against the closed form.
 struct PlaneErrors {
@@ -42,7 +41,7 @@ struct PatchErrors {
 };
 
 struct AnalyticProbeConfig {
-    TickConfig tick;
+    FixedTickConfig tick;
     double spacing = 0;                 // m, of the voxels
     double sdf_spacing = 0;             // m, of the burr's distance grid
     std::vector<int> refinements;       // of that grid, > 1, ascending: those that will be asked for

@@ -20,7 +20,7 @@ constexpr size_t kMostSamples = 4'000'000;
 constexpr double kPathStep =
     0.02;  // burr radii between the kept poses: ridges between their spheres are below 1e-4 R
 
-double vanishingTime(const TickConfig& tick) {
+double vanishingTime(const FixedTickConfig& tick) {
     return kMaxDensity / tick.effects.time_removal->rate;
 }
 
@@ -68,8 +68,8 @@ Eigen::AlignedBox3d boxOfPath(const PosePath& path, const Pose& X_VW) {
 
 }  // namespace
 
-PosePath millingPath(const ProbingPlace& place, const TickConfig& tick) {
-    const double radius = tick.burr.radius;
+PosePath millingPath(const ProbingPlace& place, const FixedTickConfig& tick) {
+    const double radius = tick.tool.burr.radius;
     const Vector3d start = place.X_WT.position + place.room * place.normal_W;
     const Vector3d bottom = place.X_WT.position - kDepth * radius * place.normal_W;
     const Vector3d end = bottom + kSideways * radius * tangentOf(place.normal_W);
@@ -87,16 +87,16 @@ PosePath millingPath(const ProbingPlace& place, const TickConfig& tick) {
     return path;
 }
 
-MillingRun millAndRestore(const TickConfig& tick, BoneModel& bone, const ToolModel& tool,
-                          BoneHistory& history, const PosePath& path) {
+MillingRun millAndRestore(const FixedTickConfig& tick, BoneModel& bone, BoneHistory& history,
+                          const PosePath& path) {
     const Pose X_WV = bone.volume.geometry().X_WV;
-    const double radius = tick.burr.radius;
+    const double radius = tick.tool.burr.radius;
     const double margin = radius + 2 * bone.volume.spacing().maxCoeff();
     const IndexBox part = voxelsAround(bone.volume, boxOfPath(path, X_WV.inverse()), margin);
     const int times = affordableRefinement(part, kRefinement, kMostSamples);
     const VoxelVolume before = refinedPart(bone.volume, part, times);
     MillingRun run;
-    run.records = runPath(tick, bone, tool, path, kButtonRemove);
+    run.records = runPath(tick, bone, path, kButtonRemove);
     const VoxelVolume after = refinedPart(bone.volume, part, times);
     run.removed = double(removedCount(before, after)) * before.voxelVolume();
     const auto sweptBy = [&](const std::vector<Vector3d>& path_W) {

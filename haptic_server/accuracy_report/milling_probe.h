@@ -11,7 +11,7 @@ namespace bonemill {
 
 // Into the bone at a place and sideways, slowly enough for the scene's removal rate, then a rest until all is
 // gone that the burr can reach.
-PosePath millingPath(const ProbingPlace& place, const TickConfig& tick);
+PosePath millingPath(const ProbingPlace& place, const FixedTickConfig& tick);
 
 struct MillingRun {
     RunRecords records;
@@ -21,7 +21,7 @@ struct MillingRun {
 };
 
 // Mills and puts the bone back with `history`, which must have been made from it.
-MillingRun millAndRestore(const TickConfig& tick, BoneModel& bone, const ToolModel& tool,
-                          BoneHistory& history, const PosePath& path);
+MillingRun millAndRestore(const FixedTickConfig& tick, BoneModel& bone, BoneHistory& history,
+                          const PosePath& path);
 
 }  // namespace bonemill

@@ -44,22 +44,21 @@ double surfaceHeight(const Loop& loop, double angle, double before, TouchProbe& 
 
 }  // namespace
 
-double stretchOf(const EnergyCouplingConfig& coupling, double force) {
+double stretchOf(const EnergyCoupling& coupling, double force) {
     const double most = coupling.saturation_force;
     return std::atanh(force / most) * most / coupling.translation_stiffness;
 }
 
-ProbingStroke makeStroke(const ProbingPlace& place, const StrokeConfig& stroke, const TickConfig& tick,
+ProbingStroke makeStroke(const ProbingPlace& place, const StrokeConfig& stroke, const FixedTickConfig& tick,
                          TouchProbe& probe) {
     const Vector3d t = tangentOf(place.normal_W);
-    const Loop loop{place, t, place.normal_W.cross(t), std::min(stroke.loop_radius, tick.burr.radius),
+    const Loop loop{place, t, place.normal_W.cross(t), std::min(stroke.loop_radius, tick.tool.burr.radius),
                     stroke.turning};
-    const double heaviest =
-        std::min(stroke.heaviest, kHeaviestShare * tick.gradient.coupling.saturation_force);
+    const double heaviest = std::min(stroke.heaviest, kHeaviestShare * tick.tool.saturation_force);
     const double lightest = std::min(stroke.lightest, heaviest / 2);
     const auto pressed = [&](double angle, double height) -> PathKnot {
         const double load = lightest + (heaviest - lightest) * 0.5 * (1 - std::cos(3 * angle));
-        const double depth = stretchOf(tick.gradient.coupling, load);
+        const double depth = stretchOf(tick.toolCoupling(), load);
         return {place.X_WT.position + loop.offset(angle) + (height - depth) * place.normal_W,
                 loop.rotation(angle)};
     };
@@ -81,7 +80,7 @@ ProbingStroke makeStroke(const ProbingPlace& place, const StrokeConfig& stroke, 
 
     ProbingStroke made{place.name,
                        smoothPath(place.X_WT.rotation, knots, int(std::lround(stroke.duration / tick.dt))),
-                       stretchOf(tick.gradient.coupling, heaviest)};
+                       stretchOf(tick.toolCoupling(), heaviest)};
     made.device.resize(made.device.size() + size_t(std::lround(kRestTime / tick.dt)), made.device.back());
     return made;
 }

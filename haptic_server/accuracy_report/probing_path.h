@@ -23,11 +23,11 @@ struct StrokeConfig {
     double turning = 0.05;      // rad
 };
 
-ProbingStroke makeStroke(const ProbingPlace& place, const StrokeConfig& stroke, const TickConfig& tick,
+ProbingStroke makeStroke(const ProbingPlace& place, const StrokeConfig& stroke, const FixedTickConfig& tick,
                          TouchProbe& probe);
 
 // Device distance beyond the tool at which the gradient model's coupling pulls with `force` (less than its
 // saturation).
-double stretchOf(const EnergyCouplingConfig& coupling, double force);
+double stretchOf(const EnergyCoupling& coupling, double force);
 
 }  // namespace bonemill

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "common/rt/clock.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 
 namespace bonemill {
 namespace {
@@ -38,19 +38,16 @@ class PathIo final : public TickIo {
 
 }  // namespace
 
-RunRecords runPath(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
-                   std::span<const Pose> path, uint32_t buttons) {
-    HapticTick tick(config, bone, tool, nullptr);
+RunRecords runPath(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path,
+                   uint32_t buttons) {
     PathIo io(path, config.dt, buttons);
-    while (tick.tick(io)) {
-    }
+    FixedTick(config, bone).run(io);
     return std::move(io.records);
 }
 
-RunRecords runPathTimed(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
-                        std::span<const Pose> path) {
-    RunRecords records = runPath(config, bone, tool, path);
-    for (int pass = 1; pass < kPasses; ++pass) keepShorterTimes(records, runPath(config, bone, tool, path));
+RunRecords runPathTimed(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path) {
+    RunRecords records = runPath(config, bone, path);
+    for (int pass = 1; pass < kPasses; ++pass) keepShorterTimes(records, runPath(config, bone, path));
     return records;
 }
 

@@ -7,7 +7,6 @@
 #include "haptic_server/bone/bone_model.h"
 #include "haptic_server/telemetry/tick_record.h"
 #include "haptic_server/tick/tick_config.h"
-#include "haptic_server/tool/tool_model.h"
 
 namespace bonemill {
 
@@ -16,13 +15,12 @@ using RunRecords = std::vector<TickRecord>;
 
 // A tick of its own, so that the simulated tool starts where the path starts. With kButtonRemove it changes
 // `bone`. Not RT-safe.
-RunRecords runPath(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
-                   std::span<const Pose> path, uint32_t buttons = 0);
+RunRecords runPath(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path,
+                   uint32_t buttons = 0);
 
 // The same work kPasses times: the first run's records with the shortest time of each tick, so that what
 // other programs took of the processor does not count. Nothing is milled.
-RunRecords runPathTimed(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
-                        std::span<const Pose> path);
+RunRecords runPathTimed(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path);
 inline constexpr int kPasses = 3;
 
 // compute_ns of each tick becomes the smaller one of both runs of the same work.

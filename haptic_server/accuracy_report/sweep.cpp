@@ -23,13 +23,13 @@ void addTimes(const RunRecords& records, std::vector<int64_t>& durations) {
     for (const TickRecord& record : records) durations.push_back(record.compute_ns);
 }
 
-void probe(const SweepInput& input, const TickConfig& tick, BoneModel& bone, SettingFigures& figures,
+void probe(const SweepInput& input, const FixedTickConfig& tick, BoneModel& bone, SettingFigures& figures,
            std::vector<int64_t>& durations) {
     ErrorSum errors;
     NoiseSum noise;
     figures.closed_energy = INFINITY;
     for (size_t n = 0; n < input.strokes.size(); ++n) {
-        const RunRecords records = runPathTimed(tick, bone, input.tool, input.strokes[n].device);
+        const RunRecords records = runPathTimed(tick, bone, input.strokes[n].device);
         const std::vector<Answer> answers = answersOf(records);
         errors.add(answers, input.truth[n].answers);
         noise.add(answers);
@@ -46,20 +46,19 @@ void probe(const SweepInput& input, const TickConfig& tick, BoneModel& bone, Set
     figures.noise = noise.noise();
 }
 
-void mill(const SweepInput& input, const TickConfig& tick, SharedBone& shared, SettingFigures& figures,
+void mill(const SweepInput& input, const FixedTickConfig& tick, SharedBone& shared, SettingFigures& figures,
           std::vector<int64_t>& durations) {
-    MillingRun run = millAndRestore(tick, shared.bone, input.tool, shared.history, input.milling);
+    MillingRun run = millAndRestore(tick, shared.bone, shared.history, input.milling);
     for (int pass = 1; pass < kPasses; ++pass)
-        keepShorterTimes(
-            run.records,
-            millAndRestore(tick, shared.bone, input.tool, shared.history, input.milling).records);
+        keepShorterTimes(run.records,
+                         millAndRestore(tick, shared.bone, shared.history, input.milling).records);
     figures.removal = {run.removed, run.swept, run.wanted};
     for (const TickRecord& record : run.records) figures.faults |= record.faults;
     addTimes(run.records, durations);
 }
 
 SettingFigures measure(const SweepInput& input, const AccuracySettings& settings, SharedBone& shared) {
-    TickConfig tick = tickConfigOf(sceneWith(input.scene, settings), input.volume.spacing().minCoeff());
+    FixedTickConfig tick{tickConfigOf(input.scene), input.tool, settings};
     EffectConfigs by_time;  // contact is measured, and what goes by time
     by_time.time_removal = tick.effects.time_removal;
     tick.effects = by_time;

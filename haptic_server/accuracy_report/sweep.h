@@ -40,7 +40,7 @@ struct SweepInput {
     const scene::Scene& scene;
     const VoxelVolume& volume;  // the scanned bone
     Eigen::Vector3i leaf_cells;
-    const ToolModel& tool;  // with the refined grids that the settings ask for
+    const SpoTool& tool;  // its model with the refined grids that the settings ask for
     const std::vector<ProbingStroke>& strokes;
     const std::vector<Truth>& truth;  // of the strokes
     const PosePath& milling;          // empty: the scene does not mill

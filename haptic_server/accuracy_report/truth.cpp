@@ -33,14 +33,14 @@ IndexBox partFor(const ProbingStroke& stroke, const BoneModel& bone, const Touch
     return voxelsAround(bone.volume, near, kMargin);
 }
 
-RunRecords runRefined(const ProbingStroke& stroke, const TickConfig& tick, const BoneModel& bone,
-                      const IndexBox& part, int times, const ToolModel& tool) {
-    TickConfig config = tick;
+RunRecords runRefined(const ProbingStroke& stroke, const FixedTickConfig& tick, const BoneModel& bone,
+                      const IndexBox& part, int times) {
+    FixedTickConfig config = tick;
     config.accuracy = truthSettings();
     config.gradient.most_point_tests = GradientConfig{}.most_point_tests;  // there is no hurry
     BoneModel fine(refinedPart(bone.volume, part, times), Eigen::Vector3i::Constant(kLeafCells),
                    {.spare_points = 1});
-    return runPath(config, fine, tool, stroke.device);
+    return runPath(config, fine, stroke.device);
 }
 
 bool hasOverflow(const RunRecords& records) {
@@ -48,29 +48,29 @@ bool hasOverflow(const RunRecords& records) {
                        [](const auto& r) { return r.faults & kFaultContactOverflow; });
 }
 
-Truth computeOne(const ProbingStroke& stroke, const TickConfig& tick, const BoneModel& bone,
-                 const ToolModel& tool, const TouchProbe& probe) {
+Truth computeOne(const ProbingStroke& stroke, const FixedTickConfig& tick, const BoneModel& bone,
+                 const TouchProbe& probe) {
     const IndexBox part = partFor(stroke, bone, probe);
     Truth truth;
     if (part.isEmpty()) return truth;
     truth.refinement =
         affordableRefinement(part, wantedRefinement(bone.volume.spacing().maxCoeff(), tick), kMostVoxels);
-    RunRecords records = runRefined(stroke, tick, bone, part, truth.refinement, tool);
+    RunRecords records = runRefined(stroke, tick, bone, part, truth.refinement);
     while (hasOverflow(records) && truth.refinement > 1)
-        records = runRefined(stroke, tick, bone, part, --truth.refinement, tool);
+        records = runRefined(stroke, tick, bone, part, --truth.refinement);
     truth.answers = answersOf(records);
     for (const TickRecord& r : records)
         truth.max_penetration = std::max(truth.max_penetration, r.max_penetration);
     if (truth.refinement > 1)
-        truth.coarser = answersOf(runRefined(stroke, tick, bone, part, truth.refinement / 2, tool));
+        truth.coarser = answersOf(runRefined(stroke, tick, bone, part, truth.refinement / 2));
     return truth;
 }
 
 }  // namespace
 
-int wantedRefinement(double spacing, const TickConfig& tick) noexcept {
+int wantedRefinement(double spacing, const FixedTickConfig& tick) noexcept {
     const double width =
-        contactWidth(tick.gradient.contact.stiffness_per_area, tick.burr.radius, kLightForce);
+        contactWidth(tick.gradient.contact.stiffness_per_area, tick.tool.burr.radius, kLightForce);
     return int(std::clamp(std::ceil(kVoxelsAcross * spacing / width), double(kLeastRefinement),
                           double(kMostRefinement)));
 }
@@ -87,9 +87,8 @@ AccuracySettings truthSettings() noexcept {
             .continuous_collision = true};
 }
 
-std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const TickConfig& tick,
-                                const BoneModel& bone, const ToolModel& tool, const TouchProbe& probe,
-                                int threads) {
+std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const FixedTickConfig& tick,
+                                const BoneModel& bone, const TouchProbe& probe, int threads) {
     std::vector<Truth> truth(strokes.size());
     std::vector<std::exception_ptr> failures(strokes.size());
     std::atomic<size_t> next{0};
@@ -98,7 +97,7 @@ std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const
         for (int n = 0; n < threads; ++n)
             workers.emplace_back([&] {
                 for (size_t i = next++; i < strokes.size(); i = next++) try {
-                        truth[i] = computeOne(strokes[i], tick, bone, tool, probe);
+                        truth[i] = computeOne(strokes[i], tick, bone, probe);
                     } catch (...) {
                         failures[i] = std::current_exception();
                     }

@@ -17,15 +17,14 @@ inline constexpr int kLeastRefinement = 4, kMostRefinement = 16;
 
 // So many times denser voxels that the burr on a plane touches some 8 of them across already with 1 N: then
 // the sums over the contact points are good to 0.1 % (patch.csv).
-int wantedRefinement(double spacing, const TickConfig& tick) noexcept;
+int wantedRefinement(double spacing, const FixedTickConfig& tick) noexcept;
 
 // The settings of the truth: 2 × 2 contact points in each (refined) cell, analytic tool or its grid refined 4
 // times, double precision, the most iterations.
 AccuracySettings truthSettings() noexcept;
 
 // For each stroke. `tick` gives the rest of the configuration. Uses `threads` at a time.
-std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const TickConfig& tick,
-                                const BoneModel& bone, const ToolModel& tool, const TouchProbe& probe,
-                                int threads);
+std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const FixedTickConfig& tick,
+                                const BoneModel& bone, const TouchProbe& probe, int threads);
 
 }  // namespace bonemill

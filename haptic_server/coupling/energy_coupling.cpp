@@ -89,54 +89,54 @@ void ContinuousRotation::remember(const Eigen::Quaterniond& rotation) noexcept {
     last_ = Eigen::Quaterniond(q);
 }
 
-EnergyTerm couplingEnergy(const EnergyCouplingConfig& config, const Pose& spo, const Pose& device,
+EnergyTerm couplingEnergy(const EnergyCoupling& coupling, const Pose& spo, const Pose& device,
                           const ContinuousRotation& way) noexcept {
-    const Vector3d r = spo.rotation * config.p_TG;
-    const Vector3d stretch = device * config.p_TG - spo.position - r;
-    const Spring force = springAt(config.translation_stiffness, config.saturation_force, stretch.norm());
+    const Vector3d r = spo.rotation * coupling.p_TG;
+    const Vector3d stretch = device * coupling.p_TG - spo.position - r;
+    const Spring force = springAt(coupling.translation_stiffness, coupling.saturation_force, stretch.norm());
 
     const Vector3d theta = way.log(fromSpoToDevice(spo, device));
     const double angle = theta.norm();
-    const Spring torque = springAt(config.rotation_stiffness, config.saturation_torque, angle);
+    const Spring torque = springAt(coupling.rotation_stiffness, coupling.saturation_torque, angle);
 
     EnergyTerm term;
     addSpring(term, r, springVector(stretch, force), force.energy,
-              directional(stretch, force.slope, force.secant, config.translation_stiffness));
+              directional(stretch, force.slope, force.secant, coupling.translation_stiffness));
     term.energy += torque.energy;
     term.wrench.torque += springVector(theta, torque);
     term.stiffness.bottomRightCorner<3, 3>() +=
-        directional(theta, torque.slope, torque.secant * halfCotangent(angle), config.rotation_stiffness);
+        directional(theta, torque.slope, torque.secant * halfCotangent(angle), coupling.rotation_stiffness);
     return term;
 }
 
-Wrench couplingWrenchOnDevice(const EnergyCouplingConfig& config, const Pose& spo, const Pose& device,
+Wrench couplingWrenchOnDevice(const EnergyCoupling& coupling, const Pose& spo, const Pose& device,
                               const ContinuousRotation& way) noexcept {
-    const Vector3d r = device.rotation * config.p_TG;
-    const Vector3d stretch = device.position + r - spo * config.p_TG;
-    const Spring force = springAt(config.translation_stiffness, config.saturation_force, stretch.norm());
+    const Vector3d r = device.rotation * coupling.p_TG;
+    const Vector3d stretch = device.position + r - spo * coupling.p_TG;
+    const Spring force = springAt(coupling.translation_stiffness, coupling.saturation_force, stretch.norm());
     const Vector3d theta = way.log(fromSpoToDevice(spo, device));
-    const Spring torque = springAt(config.rotation_stiffness, config.saturation_torque, theta.norm());
+    const Spring torque = springAt(coupling.rotation_stiffness, coupling.saturation_torque, theta.norm());
     Wrench wrench;
     wrench.force = -springVector(stretch, force);
     wrench.torque = r.cross(wrench.force) - springVector(theta, torque);
     return wrench;
 }
 
-RelaxingSpring::RelaxingSpring(const EnergyCouplingConfig& config, double dt) noexcept
-    : config_(config),
-      share_(dt / (config.relaxing_time + dt)),
-      stiffness_(config.relaxing_share * config.translation_stiffness * (1 - share_)) {}
+RelaxingSpring::RelaxingSpring(const EnergyCoupling& coupling, double dt) noexcept
+    : coupling_(coupling),
+      share_(dt / (coupling.relaxing_time + dt)),
+      stiffness_(coupling.relaxing_share * coupling.translation_stiffness * (1 - share_)) {}
 
 Vector3d RelaxingSpring::stretchOf(const Pose& spo, const Pose& device) const noexcept {
-    return device * config_.p_TG - spo * config_.p_TG;
+    return device * coupling_.p_TG - spo * coupling_.p_TG;
 }
 
 EnergyTerm RelaxingSpring::energy(const Pose& spo, const Pose& device) const noexcept {
     EnergyTerm term;
     if (!has_memory_ || stiffness_ == 0) return term;
-    const Vector3d r = spo.rotation * config_.p_TG;
+    const Vector3d r = spo.rotation * coupling_.p_TG;
     const Vector3d stretch = stretchOf(spo, device) - followed_;
-    const Spring spring = springAt(stiffness_, config_.saturation_force, stretch.norm());
+    const Spring spring = springAt(stiffness_, coupling_.saturation_force, stretch.norm());
     addSpring(term, r, springVector(stretch, spring), spring.energy,
               directional(stretch, spring.slope, spring.secant, stiffness_));
     return term;
@@ -146,8 +146,8 @@ Wrench RelaxingSpring::wrenchOnDevice(const Pose& spo, const Pose& device) const
     if (!has_memory_ || stiffness_ == 0) return {};
     const Vector3d stretch = stretchOf(spo, device) - followed_;
     const Vector3d force =
-        -springVector(stretch, springAt(stiffness_, config_.saturation_force, stretch.norm()));
-    return {force, (device.rotation * config_.p_TG).cross(force)};
+        -springVector(stretch, springAt(stiffness_, coupling_.saturation_force, stretch.norm()));
+    return {force, (device.rotation * coupling_.p_TG).cross(force)};
 }
 
 void RelaxingSpring::follow(const Pose& spo, const Pose& device) noexcept {

@@ -19,12 +19,16 @@ namespace bonemill {
 struct EnergyCouplingConfig {
     double translation_stiffness = 3000;  // k_t, N/m
     double rotation_stiffness = 0.5;      // k_θ, N·m/rad; the thesis' k_vcr is twice that at small angles
-    double saturation_force = 50;         // F_m, N
     double saturation_torque = 0.6;       // T_m, N·m
     double damping_time = 1e-3;           // τ, s: how long the free tool takes to follow the hand
     double relaxing_share = 1;            // k_2 / k_t
     double relaxing_time = 4e-3;          // τ_2, s
     Eigen::Vector3d p_TG = Eigen::Vector3d::Zero();  // grip point G, where the force acts, in T
+};
+
+// The coupling of one tool: each may pull with another force at most.
+struct EnergyCoupling : EnergyCouplingConfig {
+    double saturation_force = 50;  // F_m, N
 };
 
 // An energy with its derivatives by the tool's world increment (x, ω); torques about the tool point.
@@ -58,18 +62,18 @@ class ContinuousRotation {
 };
 
 // From the SPO to the device. Frame: that of the poses.
-EnergyTerm couplingEnergy(const EnergyCouplingConfig& config, const Pose& spo, const Pose& device,
+EnergyTerm couplingEnergy(const EnergyCoupling& coupling, const Pose& spo, const Pose& device,
                           const ContinuousRotation& way) noexcept;
 
 // On the device, about the device's own tool point: minus the same energy's gradient by the device's pose, so
 // that a closed path of the device costs no energy that the tool does not get.
-Wrench couplingWrenchOnDevice(const EnergyCouplingConfig& config, const Pose& spo, const Pose& device,
+Wrench couplingWrenchOnDevice(const EnergyCoupling& coupling, const Pose& spo, const Pose& device,
                               const ContinuousRotation& way) noexcept;
 
 // The spring of k_2. One object per tool.
 class RelaxingSpring {
   public:
-    RelaxingSpring(const EnergyCouplingConfig& config, double dt) noexcept;
+    RelaxingSpring(const EnergyCoupling& coupling, double dt) noexcept;
 
     // As couplingEnergy() and couplingWrenchOnDevice(), for this spring alone. Before the first follow() it
     // is slack.
@@ -78,12 +82,12 @@ class RelaxingSpring {
     // End of a tick: d_f goes its way towards d.
     void follow(const Pose& spo, const Pose& device) noexcept;
     void forget() noexcept { has_memory_ = false; }
-    void setSaturationForce(double force) noexcept { config_.saturation_force = force; }  // N
+    void setSaturationForce(double force) noexcept { coupling_.saturation_force = force; }  // N
 
   private:
     Eigen::Vector3d stretchOf(const Pose& spo, const Pose& device) const noexcept;
 
-    EnergyCouplingConfig config_;
+    EnergyCoupling coupling_;
     double share_;                                        // of the way that d_f goes in a tick
     double stiffness_;                                    // N/m against d_f before it follows
     Eigen::Vector3d followed_ = Eigen::Vector3d::Zero();  // d_f

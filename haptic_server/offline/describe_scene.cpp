@@ -69,9 +69,11 @@ void describeTools(const Simulation& simulation, std::ostream& out) {
     }
 }
 
-void describeBudget(const TickConfig& tick, std::ostream& out) {
+void describeBudget(const Simulation& simulation, std::ostream& out) {
+    const TickConfig& tick = simulation.tick;
     out << "most point tests in a tick: " << tick.gradient.most_point_tests
-        << (tick.accuracy.law == ContactLaw::kThesis2012 ? ", without effect on the thesis' law\n" : "\n")
+        << (simulation.accuracy.law == ContactLaw::kThesis2012 ? ", without effect on the thesis' law\n"
+                                                               : "\n")
         << "most milled cells in a tick: " << tick.most_milled_cells << '\n';
 }
 
@@ -97,7 +99,7 @@ std::string describeScene(const std::string& scene_file) {
     Simulation simulation = makeSimulation(loaded);
     const BoneModel& bone = *simulation.bone;
     std::ostringstream out;
-    out << "scene '" << loaded.scene.name() << "', preset " << settingsName(simulation.tick.accuracy) << '\n';
+    out << "scene '" << loaded.scene.name() << "', preset " << settingsName(simulation.accuracy) << '\n';
     for (const std::string& remark : simulation.remarks) out << "  " << remark << '\n';
     for (const std::string& warning : simulation.warnings) out << "  warning: " << warning << '\n';
     const Eigen::Vector3d mm = bone.volume.spacing() * kPerMillimetre;
@@ -108,12 +110,11 @@ std::string describeScene(const std::string& scene_file) {
         << bone.lattice.leafCells().transpose() << " cells, " << bone.lattice.levelCount() << " levels\n"
         << "point-shell: " << describeLevels(bone.shell) << '\n';
     describeTools(simulation, out);
-    describeBudget(simulation.tick, out);
+    describeBudget(simulation, out);
     const std::vector<DeviceInput> path = pathOf(loaded.scene.simulated_operator());
-    const EffectCosts costs =
-        measureEffectCosts(simulation.tick, *simulation.bone, simulation.firstTool(), path, kRounds);
+    const EffectCosts costs = measureEffectCosts(simulation.fixedTick(), *simulation.bone, path, kRounds);
     out << describeEffects(loaded.scene, path.empty() ? nullptr : &costs);
-    describeCost(recordsOf(simulation.tick, *simulation.bone, simulation.firstTool(), path), out);
+    describeCost(recordsOf(simulation.fixedTick(), *simulation.bone, path), out);
     out << "\nwhat the scene file sets (all else has its default):\n"
         << loaded.scene.DebugString() << "\nevery field, its unit, default and range:\n"
         << describeDefaults();

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/rt/clock.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 
 namespace bonemill {
 namespace {
@@ -82,8 +82,8 @@ double largest(const std::vector<double>& values) {
 // One path on one bone, which is put back before each run.
 class Bench {
   public:
-    Bench(const TickConfig& config, BoneModel& bone, const ToolModel& tool, std::span<const DeviceInput> path)
-        : config_(config), bone_(bone), tool_(tool), path_(path), history_(bone) {
+    Bench(const FixedTickConfig& config, BoneModel& bone, std::span<const DeviceInput> path)
+        : config_(config), bone_(bone), path_(path), history_(bone) {
         busy_ = busyTicks(run(config.effects));  // and opens the bricks that milling needs
     }
     TickTimes times(const EffectConfigs& effects) { return timesOf(run(effects), busy_); }
@@ -97,14 +97,13 @@ class Bench {
   private:
     std::vector<TickRecord> run(const EffectConfigs& effects) {
         putBack();
-        TickConfig config = config_;
+        FixedTickConfig config = config_;
         config.effects = effects;
-        return recordsOf(config, bone_, tool_, path_);
+        return recordsOf(config, bone_, path_);
     }
 
-    const TickConfig& config_;
+    const FixedTickConfig& config_;
     BoneModel& bone_;
-    const ToolModel& tool_;
     std::span<const DeviceInput> path_;
     BoneHistory history_;
     std::vector<size_t> busy_;
@@ -112,16 +111,14 @@ class Bench {
 
 }  // namespace
 
-std::vector<TickRecord> recordsOf(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
+std::vector<TickRecord> recordsOf(const FixedTickConfig& config, BoneModel& bone,
                                   std::span<const DeviceInput> path) {
     PathIo io(path);
-    HapticTick tick(config, bone, tool, nullptr);
-    while (tick.tick(io)) {
-    }
+    FixedTick(config, bone).run(io);
     return std::move(io.records);
 }
 
-EffectCosts measureEffectCosts(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
+EffectCosts measureEffectCosts(const FixedTickConfig& config, BoneModel& bone,
                                std::span<const DeviceInput> path, int rounds) {
     EffectCosts costs;
     if (path.empty()) return costs;
@@ -130,7 +127,7 @@ EffectCosts measureEffectCosts(const TickConfig& config, BoneModel& bone, const 
     std::vector<EffectConfigs> variants{config.effects, config.effects, EffectConfigs{}};
     for (const std::string& name : names) variants.push_back(withoutEffect(config.effects, name));
     std::vector<Rounds> times(variants.size());
-    Bench bench(config, bone, tool, path);
+    Bench bench(config, bone, path);
     for (int round = 0; round < rounds; ++round)
         for (size_t n = 0; n < variants.size(); ++n) {
             const size_t variant = (n + size_t(round)) % variants.size();  // none is always the first

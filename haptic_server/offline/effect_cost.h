@@ -9,7 +9,6 @@
 #include "haptic_server/bone/bone_model.h"
 #include "haptic_server/tick/tick_config.h"
 #include "haptic_server/tick/tick_io.h"
-#include "haptic_server/tool/tool_model.h"
 
 namespace bonemill {
 
@@ -34,11 +33,11 @@ struct EffectCosts {
 
 // Times the ticks in contact or with a button pressed, if there are any. The bone is as it was afterwards,
 // but for the order of its contact points.
-EffectCosts measureEffectCosts(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
+EffectCosts measureEffectCosts(const FixedTickConfig& config, BoneModel& bone,
                                std::span<const DeviceInput> path, int rounds);
 
 // All ticks of a path.
-std::vector<TickRecord> recordsOf(const TickConfig& config, BoneModel& bone, const ToolModel& tool,
+std::vector<TickRecord> recordsOf(const FixedTickConfig& config, BoneModel& bone,
                                   std::span<const DeviceInput> path);
 
 }  // namespace bonemill

@@ -109,7 +109,8 @@ std::string simulate(const SimulateOptions& options) {
     if (!options.save.difference.empty()) before = bone.volume.withoutSpareBricks();
 
     const ToolSwitch tools(simulation.spoTools(), tool);
-    HapticTick tick(simulation.tick, bone, simulation.firstTool(), nullptr, nullptr, &tools);
+    const AccuracySwitch accuracy(simulation.accuracy);
+    HapticTick tick(simulation.tick, {bone}, {tools, accuracy});
     RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * double(kNsPerSecond))), recorded);
     StateHash hash;
     FileIo io(rows);
@@ -132,7 +133,7 @@ std::string simulate(const SimulateOptions& options) {
     if (recorded.any()) json["warnings"] = statistics.effects().warnings(materialNamesOf(loaded.scene));
     json["scene"] = loaded.scene.name();
     json["tool"] = simulation.tools[tool].name;
-    json["preset"] = settingsName(simulation.tick.accuracy);
+    json["preset"] = settingsName(simulation.accuracy);
     json["iso_value"] = simulation.mapping.iso_value;
     json["shell_points"] = bone.shell.pointCount(bone.shell.followed());
     json["bone_mm3"] = mesh.volume * kPerCubicMillimetre;

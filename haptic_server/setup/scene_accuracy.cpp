@@ -108,18 +108,15 @@ double saturationForceOf(const scene::Scene& scene, const scene::Tool& tool, dou
                               thinnestWall(scene, finest_spacing)));
 }
 
-GradientConfig gradientConfigOf(const scene::Scene& scene, double finest_spacing) {
+GradientConfig gradientConfigOf(const scene::Scene& scene) {
     const scene::Coupling& coupling = scene.coupling();
-    const scene::Tool& tool = *toolsOf(scene).front();
     GradientConfig config;
-    config.burr_radius = tool.burr_radius_mm() * kMillimetre;
     config.max_speed = coupling.max_speed_mm_per_s() * kMillimetre;
     config.max_angular_speed = coupling.max_angular_speed_deg_per_s() * kDegree;
     config.contact = contactConfigOf(scene.contact());
     const double stiffness = coupling.rotation_stiffness_nmm_per_rad() * kMillimetre / 2;
     config.coupling = {.translation_stiffness = coupling.translation_stiffness_n_per_mm() / kMillimetre,
                        .rotation_stiffness = stiffness,
-                       .saturation_force = saturationForceOf(scene, tool, finest_spacing),
                        .saturation_torque = std::min(coupling.max_torque_nmm() * kMillimetre,
                                                      stiffness * coupling.saturation_angle_deg() * kDegree),
                        .damping_time = coupling.damping_time_ms() * kMillisecond,

@@ -29,11 +29,11 @@ double thinnestWall(const scene::Scene& scene, double finest_spacing);
 // saturates there for the burr, so that no push goes through a wall of that thickness.
 double wallForce(const GradientContactConfig& contact, double radius, double wall);
 
-// What the coupling pulls with at most while this tool is in use, N.
+// What the coupling pulls with at most while this tool is in use, N. `finest_spacing`: the volume's smallest
+// voxel spacing, m.
 double saturationForceOf(const scene::Scene& scene, const scene::Tool& tool, double finest_spacing);
 
-// Contact and coupling of the gradient law, with the scene's first tool. `finest_spacing`: the volume's
-// smallest voxel spacing, m.
-GradientConfig gradientConfigOf(const scene::Scene& scene, double finest_spacing);
+// Contact and coupling of the gradient law.
+GradientConfig gradientConfigOf(const scene::Scene& scene);
 
 }  // namespace bonemill

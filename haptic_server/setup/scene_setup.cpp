@@ -87,7 +87,7 @@ std::string ofTool(const Simulation& simulation, const SceneTool& tool) {
 }
 
 void warnOfCoarseShell(Simulation& simulation, const SceneTool& tool) {
-    const AccuracySettings& settings = simulation.tick.accuracy;
+    const AccuracySettings& settings = simulation.accuracy;
     if (settings.tool_distance == ToolDistance::kAnalytic && tool.built.model.hasShapes()) return;
     const double shell_spacing = settings.shell_factor * simulation.bone->volume.spacing().maxCoeff();
     const double sdf_spacing = tool.built.model.grid().spacing();
@@ -101,8 +101,8 @@ void warnOfCoarseShell(Simulation& simulation, const SceneTool& tool) {
 // The coupling's pull is limited by what the burr carries.
 void warnOfThinTool(Simulation& simulation, const scene::Scene& scene, const SceneTool& tool) {
     const GradientConfig& config = simulation.tick.gradient;
-    const double radius = tool.built.model.field(simulation.tick.accuracy).thinnestRadius();
-    if (simulation.tick.accuracy.law != ContactLaw::kGradient || radius >= tool.burr.radius) return;
+    const double radius = tool.built.model.field(simulation.accuracy).thinnestRadius();
+    if (simulation.accuracy.law != ContactLaw::kGradient || radius >= tool.burr.radius) return;
     const double wall = thinnestWall(scene, simulation.bone->volume.spacing().minCoeff());
     const double carried = wallForce(config.contact, radius, wall);
     if (tool.saturation_force <= kMostOverload * carried) return;
@@ -175,12 +175,10 @@ std::vector<SpoTool> Simulation::spoTools() const {
     return all;
 }
 
-TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing) {
+TickConfig tickConfigOf(const scene::Scene& scene) {
     TickConfig config;
-    config.accuracy = accuracyOf(scene);
-    config.gradient = gradientConfigOf(scene, finest_spacing);
+    config.gradient = gradientConfigOf(scene);
     config.dt = 1 / scene.loop().rate_hz();
-    config.burr = burrOf(*toolsOf(scene).front());
     config.contact = {.point_stiffness = scene.contact().point_stiffness_n_per_mm() / kMillimetre,
                       .full_stiffness_contacts = scene.contact().full_stiffness_contacts()};
     const scene::Coupling& coupling = scene.coupling();
@@ -219,6 +217,7 @@ Pose devicePoseOf(const scene::Device& device) {
 Simulation makeSimulation(const LoadedScene& loaded) {
     const scene::Scene& scene = loaded.scene;
     Simulation simulation{.tick = {},
+                          .accuracy = accuracyOf(scene),
                           .bone = nullptr,
                           .mapping = {},
                           .tools = buildTools(loaded),
@@ -236,7 +235,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     removeSmallPieces(volume, scene.volume().smallest_piece_voxels());
     clearFarFromBone(volume);
     const Eigen::Vector3i leaf_cells = leafCellsOf(scene.volume(), volume.geometry());
-    simulation.tick = tickConfigOf(scene, volume.spacing().minCoeff());
+    simulation.tick = tickConfigOf(scene);
     mapRawValues(simulation.tick.effects, loaded, simulation.mapping);
     addProperties(simulation, loaded, volume, material_ids);
     simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells, shellConfigOf(scene));

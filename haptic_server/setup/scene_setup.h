@@ -9,7 +9,6 @@
 #include "common/config/scene_file.h"
 #include "haptic_server/bone/bone_model.h"
 #include "haptic_server/setup/scene_accuracy.h"
-#include "haptic_server/spo/spo_model.h"
 #include "haptic_server/tick/tick_config.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
@@ -25,7 +24,8 @@ struct SceneTool {
 };
 
 struct Simulation {
-    TickConfig tick;  // with the first tool
+    TickConfig tick;
+    AccuracySettings accuracy;
     std::unique_ptr<BoneModel> bone;
     DensityMapping mapping;
     std::vector<SceneTool> tools;       // at least one
@@ -33,16 +33,16 @@ struct Simulation {
     std::vector<std::string> remarks;   // for people: what was read or proposed
     std::vector<std::string> warnings;  // what the user would better change in the scene
 
-    const ToolModel& firstTool() const { return tools.front().built.model; }
-    // For ToolSwitch; point into `tools`.
+    // For ToolSwitch; they point into `tools`.
     std::vector<SpoTool> spoTools() const;
+    // With the first tool and the scene's accuracy from beginning to end.
+    FixedTickConfig fixedTick() const { return {tick, spoTools().front(), accuracy}; }
 };
 
 // Imports the volume, builds tree, shell and tools. Throws UserError.
 Simulation makeSimulation(const LoadedScene& loaded);
 
-// `finest_spacing` as in gradientConfigOf().
-TickConfig tickConfigOf(const scene::Scene& scene, double finest_spacing);
+TickConfig tickConfigOf(const scene::Scene& scene);
 ToolConfig toolConfigOf(const LoadedScene& loaded, const scene::Tool& tool);
 Pose devicePoseOf(const scene::Device& device);
 

@@ -71,15 +71,17 @@ bool GradientModel::State::isFinite() const noexcept {
            X_VT.isFinite();
 }
 
-GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world, double dt)
+GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world, const SpoTool& tool,
+                             double dt)
     : config_(config),
       world_(world),
-      tool_(&world.tool),
+      tool_(tool),
+      coupling_{config.coupling, tool.saturation_force},
       dt_(dt),
       X_VW_(world.volume.geometry().X_WV.inverse()),
-      field_(&tool_->field(settings_)),
+      field_(&tool_.model->field(settings_)),
       contact_(config.contact, std::min(kMostCandidates, config.most_point_tests / 4)),
-      relaxing_(config.coupling, dt) {
+      relaxing_(coupling_, dt) {
     setAccuracy(settings_);
 }
 
@@ -93,9 +95,8 @@ void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
 }
 
 void GradientModel::setTool(const SpoTool& tool) noexcept {
-    tool_ = tool.model;
-    config_.burr_radius = tool.burr.radius;
-    config_.coupling.saturation_force = tool.saturation_force;
+    tool_ = tool;
+    coupling_.saturation_force = tool.saturation_force;
     relaxing_.setSaturationForce(tool.saturation_force);
     lambda_ = 0;
     is_new_tool_ = true;
@@ -112,7 +113,7 @@ size_t GradientModel::listContacts(std::span<SurfaceContact> out) noexcept {
 }
 
 void GradientModel::useTool() noexcept {
-    const ToolField& whole = tool_->field(settings_);
+    const ToolField& whole = tool_.model->field(settings_);
     growing_.setWhole(whole);
     field_ = growing_.offset() > 0 ? static_cast<const ToolField*>(&growing_) : &whole;
 }
@@ -161,7 +162,7 @@ void GradientModel::dropTraces(SpoStep& step) noexcept {
 }
 
 double GradientModel::trustRadius() const noexcept {
-    return 0.5 * std::min(config_.burr_radius, field_->thinnestRadius());
+    return 0.5 * std::min(tool_.burr.radius, field_->thinnestRadius());
 }
 
 double GradientModel::reachOf(const Vector6d& step) const noexcept {
@@ -184,9 +185,9 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
                                               : contact_.evaluate<float>(*field_, X_VT);
     point_tests_ += contact_.candidateCount();
     State state{X_VT, contact.term, contact.contacts, contact.max_depth};
-    state.total += couplingEnergy(config_.coupling, X_VT, tick.device, way_);
+    state.total += couplingEnergy(coupling_, X_VT, tick.device, way_);
     state.total += relaxing_.energy(X_VT, tick.device);
-    state.total += dampingEnergy(config_.coupling, X_VT, tick.start, dt_);
+    state.total += dampingEnergy(coupling_, X_VT, tick.start, dt_);
     if (effects_) state.total += effects_->at(X_VT);
     return state;
 }
@@ -195,9 +196,9 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
 Vector6d GradientModel::newtonStep(const State& state) const noexcept {
     const Vector6d scale = rotationScale();
     Matrix6d K = scale.asDiagonal() * state.total.stiffness * scale.asDiagonal();
-    K.diagonal().head<3>().array() += lambda_ * config_.coupling.translation_stiffness;
+    K.diagonal().head<3>().array() += lambda_ * coupling_.translation_stiffness;
     K.diagonal().tail<3>().array() +=
-        lambda_ * config_.coupling.rotation_stiffness / (kRotationLength * kRotationLength);
+        lambda_ * coupling_.rotation_stiffness / (kRotationLength * kRotationLength);
     const Eigen::LLT<Matrix6d> factors(K);
     if (factors.info() != Eigen::Success) return Vector6d::Zero();
     const Vector6d scaled_wrench = scale.cwiseProduct(stacked(state.total.wrench));
@@ -332,7 +333,7 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
 void GradientModel::feel(const Pose& X_VT, const Tick& tick) noexcept {
     const Pose X_WV = X_VW_.inverse();
     tick.out->spo = X_WV * X_VT;
-    const Wrench wrench_hand = (couplingWrenchOnDevice(config_.coupling, X_VT, tick.device, way_) +
+    const Wrench wrench_hand = (couplingWrenchOnDevice(coupling_, X_VT, tick.device, way_) +
                                 relaxing_.wrenchOnDevice(X_VT, tick.device))
                                    .rotatedBy(X_WV.rotation);
     if (wrench_hand.isFinite() && tick.out->is_solved) last_wrench_hand_ = wrench_hand;

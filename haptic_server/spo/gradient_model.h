@@ -13,7 +13,7 @@ namespace bonemill {
 class GradientModel final : public SpoModel {
   public:
     // Allocates the room for contact points.
-    GradientModel(const GradientConfig& config, const SpoWorld& world, double dt);
+    GradientModel(const GradientConfig& config, const SpoWorld& world, const SpoTool& tool, double dt);
 
     SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept override;
     void restart() noexcept override;
@@ -64,7 +64,8 @@ class GradientModel final : public SpoModel {
 
     GradientConfig config_;
     SpoWorld world_;
-    const ToolModel* tool_;
+    SpoTool tool_;
+    EnergyCoupling coupling_;  // of tool_
     double dt_;
     Pose X_VW_;
     AccuracySettings settings_;

@@ -10,24 +10,15 @@
 #include "haptic_server/contact/point_shell.h"
 #include "haptic_server/contact/surface_contact.h"
 #include "haptic_server/spo/solve_energy.h"
-#include "haptic_server/tool/burr.h"
-#include "haptic_server/tool/tool_model.h"
+#include "haptic_server/spo/spo_tool.h"
 
 namespace bonemill {
 
-// What the tool meets; references to what lives at least as long as the model.
+// The bone that the tool meets; references to what lives at least as long as the model.
 struct SpoWorld {
     const VoxelVolume& volume;
     const LeafLattice& lattice;
     const PointShell& shell;
-    const ToolModel& tool;
-};
-
-// What a model needs to know of the tool in use.
-struct SpoTool {
-    const ToolModel* model;
-    Burr burr;
-    double saturation_force;  // N: of the coupling, gradient law only
 };
 
 struct SpoStep {

@@ -3,11 +3,11 @@
 namespace bonemill {
 
 Thesis2012Model::Thesis2012Model(const PenaltyContactConfig& contact, const CouplingConfig& coupling,
-                                 const SpoWorld& world, double dt)
+                                 const SpoWorld& world, const SpoTool& tool, double dt)
     : contact_(contact),
       coupling_(coupling),
       world_(world),
-      tool_(&world.tool),
+      tool_(tool.model),
       dt_(dt),
       X_VW_(world.volume.geometry().X_WV.inverse()) {}
 

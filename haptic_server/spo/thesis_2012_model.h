@@ -11,7 +11,7 @@ namespace bonemill {
 class Thesis2012Model final : public SpoModel {
   public:
     Thesis2012Model(const PenaltyContactConfig& contact, const CouplingConfig& coupling,
-                    const SpoWorld& world, double dt);
+                    const SpoWorld& world, const SpoTool& tool, double dt);
 
     SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept override;
     void restart() noexcept override {}

@@ -33,42 +33,40 @@ SuddenChange suddenChangeOf(const TickConfig& config) noexcept {
             gradient.p_TG.norm()};
 }
 
+SpoWorld worldOf(const BoneModel& bone) noexcept {
+    return {bone.volume, bone.lattice, bone.shell};
+}
+
 }  // namespace
 
-HapticTick::HapticTick(const TickConfig& config, BoneModel& bone, const ToolModel& tool, BoneHistory* history,
-                       const AccuracySwitch* accuracy, const ToolSwitch* tools)
+HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const TickChoices& choices)
     : config_(config),
-      bone_(bone),
-      history_(history),
-      accuracy_(accuracy),
-      tools_(tools),
-      thesis_(config.contact, config.coupling, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
-      gradient_(config.gradient, {bone.volume, bone.lattice, bone.shell, tool}, config.dt),
+      bone_(bone.model),
+      history_(bone.history),
+      tools_(choices.tools),
+      accuracy_(choices.accuracy),
+      tool_(tools_.chosen()),
+      thesis_(config.contact, config.coupling, worldOf(bone_), tools_[tool_], config.dt),
+      gradient_(config.gradient, worldOf(bone_), tools_[tool_], config.dt),
       model_(&gradient_),
-      tool_in_use_{&tool, config.burr, config.gradient.coupling.saturation_force},
       affordable_(config.dt),
-      effects_(makeEffects(config.effects, bone,
-                           {config.dt, tools ? tools->largestBurrRadius() : config.burr.radius,
-                            tools ? tools->largestBurrReach() : config.burr.reach(),
+      effects_(makeEffects(config.effects, bone_,
+                           {config.dt, tools_.largestBurrRadius(), tools_.largestBurrReach(),
                             gradient_.mostCandidates(), config.most_milled_cells}),
                gradient_.mostCandidates(), config.gradient.contact.stiffness_per_area),
       sudden_change_(suddenChangeOf(config)),
-      X_VW_(bone.volume.geometry().X_WV.inverse()) {
-    const AccuracySettings& settings = accuracy ? accuracy->chosen() : config.accuracy;
-    bone.shell.prepare(bone.volume, bone.lattice, levelOf(bone.shell, settings),
-                       int(bone.lattice.leafCount()));
+      X_VW_(bone_.volume.geometry().X_WV.inverse()) {
+    const AccuracySettings& settings = accuracy_.chosen();
+    bone_.shell.prepare(bone_.volume, bone_.lattice, levelOf(bone_.shell, settings),
+                        int(bone_.lattice.leafCount()));
     gradient_.setEffects(effects_.weights(), effects_.energy());
     takeUp(settings);
-    if (!tools) return;
-    tool_ = tools->chosen();
-    takeUp((*tools)[tool_]);
-    model_->restart();
 }
 
 // A choice is taken up when its contact points are up to date; until then the old one stays in force.
 void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept {
     PointShell& shell = bone_.shell;
-    AccuracySettings chosen = accuracy_ ? accuracy_->chosen() : config_.accuracy;
+    AccuracySettings chosen = accuracy_.chosen();
     const int asked_for = chosen.shell_factor;
     chosen.shell_factor = affordable_.factor(shell, asked_for, settings_.shell_factor, step);
     if (chosen.shell_factor > asked_for) faults |= kFaultCoarserShell;
@@ -94,19 +92,13 @@ void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     model_ = model;
 }
 
-void HapticTick::takeUp(const SpoTool& tool) noexcept {
-    thesis_.setTool(tool);
-    gradient_.setTool(tool);
-    tool_in_use_ = tool;
-    effects_.restart(Restart::kOtherTool);
-}
-
 void HapticTick::chooseTool() noexcept {
-    if (!tools_) return;
-    const size_t chosen = tools_->chosen();
+    const size_t chosen = tools_.chosen();
     if (chosen == tool_) return;
     tool_ = chosen;
-    takeUp((*tools_)[tool_]);
+    thesis_.setTool(tools_[tool_]);
+    gradient_.setTool(tools_[tool_]);
+    effects_.restart(Restart::kOtherTool);
     sudden_change_.begin();
 }
 
@@ -166,7 +158,7 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     start.may_mill = !input.is_stale && !(history_ && history_->isMillingPaused());
     start.is_pedal_down = start.may_mill && remove && !add;
     start.is_add_wanted = start.may_mill && add && !remove;
-    start.tool = &tool_in_use_;
+    start.tool = &tools_[tool_];
     start.shape = model_ == &thesis_ ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
     start.X_VT_start = X_VW_ * spo_;
     start.X_VT_device = X_VW_ * device_;

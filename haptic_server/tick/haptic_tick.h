@@ -20,16 +20,25 @@
 
 namespace bonemill {
 
+// The bone that a tick changes.
+struct TickBone {
+    BoneModel& model;
+    BoneHistory* history = nullptr;  // null: nothing is ever put back or paused
+};
+
+// What others choose while ticks go on.
+struct TickChoices {
+    const ToolSwitch& tools;
+    const AccuracySwitch& accuracy;
+};
+
 class HapticTick {
   public:
     HapticTick(const HapticTick&) = delete;
     HapticTick& operator=(const HapticTick&) = delete;
-    // Keeps references; allocates the scratch memory of contact and milling; from now on the bone's shell
-    // follows the level of the settings in force. May be null: `history` (then nothing is put back or
-    // paused), `accuracy` (the settings are those of config then) and `tools` (`tool` with the burr of config
-    // is used then; else the chosen one).
-    HapticTick(const TickConfig& config, BoneModel& bone, const ToolModel& tool, BoneHistory* history,
-               const AccuracySwitch* accuracy = nullptr, const ToolSwitch* tools = nullptr);
+    // Keeps the references; allocates the scratch memory of contact and milling; from now on the bone's shell
+    // follows the level of the settings in force.
+    HapticTick(const TickConfig& config, const TickBone& bone, const TickChoices& choices);
 
     // One tick; RT-safe. False when io.read() said stop. Sets the RtScope guard around its work.
     bool tick(TickIo& io) noexcept;
@@ -42,7 +51,6 @@ class HapticTick {
     Pose acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
-    void takeUp(const SpoTool& tool) noexcept;
     void chooseTool() noexcept;
     void beginEffects(const DeviceInput& input) noexcept;
     SpoStep moveAndFeel(double force_factor, uint32_t& faults) noexcept;
@@ -54,13 +62,12 @@ class HapticTick {
     TickConfig config_;
     BoneModel& bone_;
     BoneHistory* history_;
-    const AccuracySwitch* accuracy_;
-    const ToolSwitch* tools_;
-    size_t tool_ = 0;  // of tools_
+    const ToolSwitch& tools_;
+    const AccuracySwitch& accuracy_;
+    size_t tool_;  // of tools_
     Thesis2012Model thesis_;
     GradientModel gradient_;
     SpoModel* model_;  // thesis_ or gradient_
-    SpoTool tool_in_use_;
     AccuracySettings settings_;
     AffordableShell affordable_;
     EffectHost effects_;

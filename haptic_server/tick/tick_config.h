@@ -7,19 +7,26 @@
 #include "haptic_server/effects/effect_configs.h"
 #include "haptic_server/milling/timed_milling.h"
 #include "haptic_server/spo/gradient_config.h"
-#include "haptic_server/tool/burr.h"
+#include "haptic_server/spo/spo_tool.h"
 
 namespace bonemill {
 
 struct TickConfig {
-    double dt = 1e-3;  // s
-    AccuracySettings accuracy;
+    double dt = 1e-3;              // s
     PenaltyContactConfig contact;  // thesis_2012
     CouplingConfig coupling;       // thesis_2012, and the limits of what the hand may feel
     GradientConfig gradient;
-    Burr burr;
     EffectConfigs effects;
     size_t most_milled_cells = MillingConfig{}.most_cells;  // in a tick
+};
+
+// A tick whose tool and accuracy stay the same for a whole run, as in reports, benchmarks and most tests.
+struct FixedTickConfig : TickConfig {
+    SpoTool tool;
+    AccuracySettings accuracy;
+
+    // Of that tool in the gradient law.
+    EnergyCoupling toolCoupling() const noexcept { return {gradient.coupling, tool.saturation_force}; }
 };
 
 }  // namespace bonemill

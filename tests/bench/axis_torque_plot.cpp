@@ -30,8 +30,8 @@ double pressAt(double t) {
 }
 
 std::vector<Row> run(bool has_cutting_force) {
-    Scene scene(planeBone(), burr(), {"balanced", Preset::kBalanced}, kMilli, [=](TickConfig& config) {
-        config.burr.speed = kSpin;
+    Scene scene(planeBone(), burr(), {"balanced", Preset::kBalanced}, kMilli, [=](FixedTickConfig& config) {
+        config.tool.burr.speed = kSpin;
         config.effects = {};
         config.effects.spindle.emplace();
         if (has_cutting_force) config.effects.cutting_force.emplace();

@@ -73,7 +73,7 @@ EffectCosts costsOf(const Options& o, const char* law) {
     const std::vector<DeviceInput> path =
         weave(simulation.bone->volume,
               {.burr_radius = o.block.burr_radius_mm * kMillimetre, .depth = 0.5e-3, .ticks = o.ticks});
-    return measureEffectCosts(simulation.tick, *simulation.bone, simulation.firstTool(), path, o.rounds);
+    return measureEffectCosts(simulation.fixedTick(), *simulation.bone, path, o.rounds);
 }
 
 void measure(const Options& o) {

@@ -5,7 +5,7 @@
 
 #include "common/rt/clock.h"
 #include "haptic_server/mesh/mesher.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
 #include "haptic_server/volume/import/far_air.h"
@@ -72,7 +72,7 @@ void run(const std::string& path, std::optional<double> iso, const std::string& 
     nlohmann::json json;
     const auto bone = makeBone(path, iso, json);
     const ToolModel tool = buildTool({}).model;
-    HapticTick tick({}, *bone, tool, nullptr);
+    FixedTick tick({{}, {&tool}, {}}, *bone);
     test::ScriptedIo io(test::straightPath(Pose{}, Eigen::Vector3d::Zero(), 1, 0));
     tick.tick(io);
     json["to_first_tick_ms"] = msSince(start);

@@ -9,7 +9,7 @@
 #include "common/rt/clock.h"
 #include "common/rt/page_faults.h"
 #include "haptic_server/record/fault_names.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/corridor_run.h"
@@ -23,7 +23,7 @@ void run(double rate_hz, double seconds, const std::string& json_path) {
     const int64_t period_ns = std::llround(double(kNsPerSecond) / rate_hz);
     BoneModel bone = corridorBone(kLeafCells);
     const ToolModel tool = buildTool({}).model;
-    HapticTick tick(corridorTick(rate_hz), bone, tool, nullptr);
+    FixedTick tick({corridorTick(rate_hz), {&tool}, {}}, bone);
     RealtimeReport report = lockMemory();
     Waits bare, loop;
     report.append(inRealTime([&] {
@@ -39,8 +39,7 @@ void run(double rate_hz, double seconds, const std::string& json_path) {
     inRealTime([&] {
         CorridorIo io(period_ns, seconds, loop);
         before = pageFaultsOf(gettid()).value_or(PageFaults{});
-        while (tick.tick(io)) {
-        }
+        tick.run(io);
         after = pageFaultsOf(gettid()).value_or(PageFaults{});
     });
     for (const std::string& missing : report.missing) std::printf("not granted: %s\n", missing.c_str());

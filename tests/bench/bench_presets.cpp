@@ -12,7 +12,7 @@
 
 #include "common/rt/clock.h"
 #include "common/rt/latency_histogram.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
 #include "haptic_server/volume/import/phantom/tooth_phantom.h"
@@ -53,14 +53,13 @@ void measure(const Setting& setting, const RawVolume& scan, const ToolModel& too
                                            : Eigen::Vector3i::Constant(16);
     BoneModel bone(densify(scan, DensityWindow{-1000, 3000, 600, 0}), leaf_cells,
                    {.levels = {{setting.scaling_factor}}});
-    TickConfig config;
+    FixedTickConfig config;
+    config.tool.model = &tool;
     config.effects.time_removal.emplace();
     config.accuracy = presetSettings(setting.preset);
     config.accuracy.shell_factor = setting.scaling_factor;
-    HapticTick tick(config, bone, tool, nullptr);
     test::ScriptedIo io(test::straightPath(kStart, kEnd, kTicks, kButtonRemove));
-    while (tick.tick(io)) {
-    }
+    FixedTick(config, bone).run(io);
     for (const TickRecord& record : io.records) {
         cost.force.record(record.force_ns);
         cost.milling.record(record.compute_ns - record.force_ns);

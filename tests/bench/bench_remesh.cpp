@@ -10,7 +10,7 @@
 #include "common/rt/clock.h"
 #include "haptic_server/mesh/mesh_rounds.h"
 #include "haptic_server/record/fault_names.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/corridor_run.h"
@@ -73,7 +73,7 @@ Remeshing millBesideMesher(const Options& o) {
     Remeshing result;
     BoneModel bone = corridorBone(o.leaf_cells);
     const ToolModel tool = buildTool({}).model;
-    HapticTick tick(corridorTick(o.rate_hz), bone, tool, nullptr);
+    FixedTick tick({corridorTick(o.rate_hz), {&tool}, {}}, bone);
     SpscRing<Cut> cuts(kRingCuts);
     MeshOutbox outbox;
     MeshRounds rounds(bone.volume, bone.lattice, cuts);
@@ -88,8 +88,7 @@ Remeshing millBesideMesher(const Options& o) {
     std::jthread publisher([&] { publishWhile(is_running, outbox, result.published); });
     result.report.append(inRealTime([&] {
         CorridorIo io(std::llround(double(kNsPerSecond) / o.rate_hz), o.seconds, result.tick, &cuts);
-        while (tick.tick(io)) {
-        }
+        tick.run(io);
     }));
     is_running = false;
     mesher.join();

@@ -6,7 +6,7 @@
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/record/fault_names.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "haptic_server/tick/tick_budget.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/bench/bench_output.h"
@@ -19,11 +19,11 @@ namespace {
 constexpr double kCouplingStiffness = 1000;  // N/m
 constexpr int kLeafCells = 16;
 
-TickConfig configOf(const TickCase& c) {
-    TickConfig config;
+FixedTickConfig configOf(const TickCase& c, const ToolModel& tool) {
+    FixedTickConfig config;
+    config.tool.model = &tool;
+    config.tool.burr.radius = c.burr_radius;
     config.accuracy = presetSettings(c.preset);
-    config.burr.radius = c.burr_radius;
-    config.gradient.burr_radius = c.burr_radius;
     config.gradient.coupling.translation_stiffness = kCouplingStiffness;
     config.coupling.translation_stiffness = kCouplingStiffness;
     if (c.mills) config.effects.time_removal.emplace();
@@ -40,10 +40,8 @@ TickFigures measureTicks(const TickCase& c) {
     tool_config.burr_radius = c.burr_radius;
     const ToolModel tool = buildTool(tool_config).model;
     const WeaveConfig way{.burr_radius = c.burr_radius, .ticks = c.ticks, .mills = c.mills};
-    HapticTick tick(configOf(c), bone, tool, nullptr);
     test::ScriptedIo io(weave(bone.volume, way));
-    while (tick.tick(io)) {
-    }
+    FixedTick(configOf(c, tool), bone).run(io);
     return figuresOf(io.records, size_t(way.approach_ticks));
 }
 

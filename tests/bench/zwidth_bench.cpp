@@ -147,7 +147,7 @@ struct Setup {
     // Factors on the defaults; `drag` > 0 sets the damping, of thesis_2012 only if tunes_baseline.
     std::unique_ptr<Scene> scene(double coupling, double contact, double drag) const {
         return std::make_unique<Scene>(place.bone(), place.tool(), variant, 1 / rate_hz,
-                                       [&](TickConfig& config) {
+                                       [&](FixedTickConfig& config) {
                                            couplingStiffness(config) *= coupling;
                                            contactStiffness(config) *= contact;
                                            if (drag > 0 && (tunes_baseline || !variant.isBaseline()))

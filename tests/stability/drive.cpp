@@ -34,7 +34,9 @@ std::vector<Eigen::Vector3d> averaged(const std::vector<Eigen::Vector3d>& values
 
 Stepper::Stepper(Scene& scene, const ToolSwitch* tools, BoneHistory* history)
     : held_buttons_(scene.held_buttons),
-      tick_(scene.config, scene.bone, scene.tool, history, nullptr, tools) {}
+      own_tool_({scene.spoTool()}),
+      accuracy_(scene.config.accuracy),
+      tick_(scene.config, {scene.bone, history}, {tools ? *tools : own_tool_, accuracy_}) {}
 
 const TickRecord& Stepper::step(const Pose& X_WT_device, uint32_t buttons) {
     input_.X_WT_device = X_WT_device;

@@ -37,6 +37,8 @@ class Stepper : private TickIo {
 
     uint32_t faults_ = 0;
     uint32_t held_buttons_;
+    ToolSwitch own_tool_;
+    AccuracySwitch accuracy_;
     HapticTick tick_;
     DeviceInput input_;
     Wrench wrench_;

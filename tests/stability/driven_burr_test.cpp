@@ -24,7 +24,7 @@ VoxelVolume pitBone() {
 const Eigen::Quaterniond kLying = Eigen::Quaterniond::Identity();  // the burr's axis along y
 const Eigen::Quaterniond kStanding = expRotation({M_PI / 2, 0, 0});
 
-using Edit = std::function<void(TickConfig&)>;
+using Edit = std::function<void(FixedTickConfig&)>;
 
 // In the pit, in the hand that pushes down; the pedal is up.
 struct Pit {
@@ -67,7 +67,7 @@ double largestStep(Pit& pit, double seconds) {
 }
 
 // Where steps of the force are measured the wanted ones are left out.
-void withoutVibration(TickConfig& config) {
+void withoutVibration(FixedTickConfig& config) {
     config.effects.burr_vibration.reset();
 }
 
@@ -104,7 +104,7 @@ double runUpRest(const Variant& variant) {
 }
 
 // So weak a motor that the full push stops it.
-void weakMotor(TickConfig& config) {
+void weakMotor(FixedTickConfig& config) {
     if (config.effects.spindle)
         config.effects.spindle->max_torque = 0.5 * kCuttingFriction * kPush * kBurrRadius;
 }
@@ -125,7 +125,7 @@ double stallAndRestart(const Variant& variant) {
     return isStalled(pit) ? kLost : worst;
 }
 double stallStep(const Variant& variant) {
-    Pit pit(variant, kLying, [](TickConfig& config) {
+    Pit pit(variant, kLying, [](FixedTickConfig& config) {
         weakMotor(config);
         withoutVibration(config);
     });

@@ -53,7 +53,7 @@ double pinThroughWall(const Variant& variant) {
     constexpr double kPin = 0.2e-3;
     const DistanceFunction one_voxel = wall(kMiddle, Eigen::Vector3d::UnitZ(), kVoxel);
     Scene scene(bodyVolume(boxOf(Eigen::Vector3d::Constant(5e-3)), one_voxel), pegTool(kPin, 1.5e-3), variant,
-                1e-3, [](TickConfig& config) { config.burr.radius = config.gradient.burr_radius = kPin; });
+                1e-3, [](FixedTickConfig& config) { config.tool.burr.radius = kPin; });
     return centreBelow(scene, upright(kMiddle + Eigen::Vector3d(0, 0, kPin + 1.37e-3)), kTop, kFastSpeed);
 }
 

@@ -6,11 +6,11 @@
 namespace bonemill::test {
 namespace {
 
-TickConfig configOf(const Variant& variant, double dt, const std::function<void(TickConfig&)>& edit) {
-    TickConfig config = millingConfig();
+FixedTickConfig configOf(const Variant& variant, double dt,
+                         const std::function<void(FixedTickConfig&)>& edit) {
+    FixedTickConfig config = millingConfig();
     config.dt = dt;
-    config.burr.radius = kBurrRadius;
-    config.gradient.burr_radius = kBurrRadius;
+    config.tool.burr.radius = kBurrRadius;
     applyVariant(variant, config);
     if (edit) edit(config);
     return config;
@@ -21,7 +21,7 @@ constexpr double kSlab = 0.5e-3;  // m
 constexpr double kSoft = 0.7;
 constexpr MaterialId kSoftBone = 1;
 
-void layOut(TickConfig& config, const BoneModel& bone) {
+void layOut(FixedTickConfig& config, const BoneModel& bone) {
     EffectConfigs& effects = config.effects;
     const VoxelVolume& volume = bone.volume;
     const int slab = int(std::ceil(kSlab / volume.spacing().x()));
@@ -32,16 +32,16 @@ void layOut(TickConfig& config, const BoneModel& bone) {
         return is_bone && v.x() / slab % 2 == 1 ? kSoftBone : kNoMaterial;
     });
     effects.protected_field = protectedDistance(*effects.properties, effects.materials, volume.spacing(),
-                                                config.burr.radius + 1e-3);
+                                                config.tool.burr.radius + 1e-3);
     if (!effects.protected_field) effects.virtual_fixture.reset();  // no bone in this scene
     // What soft bone carries.
-    config.gradient.coupling.saturation_force *= kSoft;
+    config.tool.saturation_force *= kSoft;
 }
 
 }  // namespace
 
 Scene::Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, double dt,
-             const std::function<void(TickConfig&)>& edit)
+             const std::function<void(FixedTickConfig&)>& edit)
     : config(configOf(variant, dt, edit)),
       held_buttons(variant.held_buttons),
       averaged_ticks(config.effects.burr_vibration ? kVibrationTicks : 1),

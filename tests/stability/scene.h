@@ -24,13 +24,16 @@ struct TestTool {
 struct Scene {
     // `edit` has the last word over the variant's settings.
     Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, double dt = 1e-3,
-          const std::function<void(TickConfig&)>& edit = {});
+          const std::function<void(FixedTickConfig&)>& edit = {});
 
-    TickConfig config;
+    // Its tool is without a model; that is `tool`.
+    FixedTickConfig config;
     uint32_t held_buttons;
     size_t averaged_ticks;  // of what is called a residual: so that it leaves the wanted vibration out
     BoneModel bone;
     ToolModel tool;
+
+    SpoTool spoTool() const { return {&tool, config.tool.burr, config.tool.saturation_force}; }
 };
 
 VolumeGeometry boxOf(const Eigen::Vector3d& size, double spacing = kVoxel);  // smallest that holds `size`

@@ -68,7 +68,7 @@ double apartByIterations(const Variant& variant, int from) {
     for (const double angle : kGrooveAngles_deg) {
         const Groove groove(angle);
         const auto limitTo = [](int iterations) {
-            return [=](TickConfig& config) {
+            return [=](FixedTickConfig& config) {
                 config.accuracy.iterations = iterations;
                 // Room for all: else the way into the groove decides which patch is sampled how finely.
                 config.accuracy.refined_points = presetSettings(Preset::kExact).refined_points;

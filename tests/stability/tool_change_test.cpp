@@ -31,7 +31,7 @@ struct Bench {
     }
     void change(size_t tool) { tools.choose(tool); }
     Burr burrOf(double radius) const {
-        Burr burr = scene.config.burr;
+        Burr burr = scene.config.tool.burr;
         burr.radius = radius;
         return burr;
     }

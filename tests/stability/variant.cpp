@@ -36,7 +36,7 @@ void addAll(EffectConfigs& configs) {
     for (const NamedEffect& effect : kEffects) effect.add(configs);
 }
 
-bool isThesis(const TickConfig& config) {
+bool isThesis(const FixedTickConfig& config) {
     return config.accuracy.law == ContactLaw::kThesis2012;
 }
 
@@ -86,16 +86,16 @@ Names feltEffectsBut(const Names& left_out) {
     return names;
 }
 
-void applyVariant(const Variant& variant, TickConfig& config) {
+void applyVariant(const Variant& variant, FixedTickConfig& config) {
     config.accuracy = presetSettings(variant.preset);
     if (!variant.add_effects) return;
-    config.burr.speed = kSpinSpeed;
-    config.burr.friction = kCuttingFriction;
+    config.tool.burr.speed = kSpinSpeed;
+    config.tool.burr.friction = kCuttingFriction;
     config.effects = {};
     variant.add_effects(config.effects);
 }
 
-CouplingFigures couplingFigures(const TickConfig& config) {
+CouplingFigures couplingFigures(const FixedTickConfig& config) {
     if (isThesis(config)) {
         const CouplingConfig& c = config.coupling;
         return {c.translation_stiffness, c.translation_stiffness, c.rotation_stiffness / 2, c.max_speed,
@@ -107,16 +107,16 @@ CouplingFigures couplingFigures(const TickConfig& config) {
             g.max_speed, g.max_angular_speed};
 }
 
-double& couplingStiffness(TickConfig& config) {
+double& couplingStiffness(FixedTickConfig& config) {
     return isThesis(config) ? config.coupling.translation_stiffness
                             : config.gradient.coupling.translation_stiffness;
 }
 
-double& contactStiffness(TickConfig& config) {
+double& contactStiffness(FixedTickConfig& config) {
     return isThesis(config) ? config.contact.point_stiffness : config.gradient.contact.stiffness_per_area;
 }
 
-void setDragInAir(TickConfig& config, double drag) {
+void setDragInAir(FixedTickConfig& config, double drag) {
     const double stiffness = couplingStiffness(config);
     config.gradient.coupling.damping_time = drag / stiffness;
     config.coupling.static_damping = drag / (drag + stiffness * config.dt);

@@ -33,7 +33,7 @@ inline constexpr double kSpinSpeed = 4000, kCuttingFriction = 0.7;  // rad/s; μ
 // The vibration is of 400 Hz then: over so many ticks it sums to nothing.
 inline constexpr size_t kVibrationTicks = 5;
 
-void applyVariant(const Variant& variant, TickConfig& config);
+void applyVariant(const Variant& variant, FixedTickConfig& config);
 
 // What the coupling in force is like, whichever model the settings choose. N/m, N·m/rad (small angles), m/s,
 // rad/s.
@@ -41,14 +41,14 @@ struct CouplingFigures {
     double translation_stiffness, quick_stiffness;  // N/m: held, and for what changes from tick to tick
     double rotation_stiffness, max_speed, max_angular_speed;
 };
-CouplingFigures couplingFigures(const TickConfig& config);
+CouplingFigures couplingFigures(const FixedTickConfig& config);
 
 // Of the model in force: k_t; N/m per point (thesis) or N/m³ (gradient).
-double& couplingStiffness(TickConfig& config);
-double& contactStiffness(TickConfig& config);
+double& couplingStiffness(FixedTickConfig& config);
+double& contactStiffness(FixedTickConfig& config);
 
 // Makes free air feel like this (N·s/m) at the coupling's stiffness: gradient by its damping time,
 // thesis_2012 by its static damping, which as printed is 0.5 whatever the stiffness.
-void setDragInAir(TickConfig& config, double drag);
+void setDragInAir(FixedTickConfig& config, double drag);
 
 }  // namespace bonemill::test

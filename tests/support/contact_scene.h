@@ -86,7 +86,7 @@ struct ContactScene {
         : bone(bodyVolume(geometry, body), Eigen::Vector3i::Constant(16), shell),
           tool(gridOf(shapes), shapes, 1e-3) {}
 
-    SpoWorld world() const { return {bone.volume, bone.lattice, bone.shell, tool}; }
+    SpoWorld world() const { return {bone.volume, bone.lattice, bone.shell}; }
 
     ShellView view(const AccuracySettings& settings = {}) const {
         return {bone.volume,           bone.lattice,           bone.shell, levelOf(bone.shell, settings),

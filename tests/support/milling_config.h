@@ -5,8 +5,8 @@
 
 namespace bonemill::test {
 
-inline TickConfig millingConfig() {
-    TickConfig config;
+inline FixedTickConfig millingConfig() {
+    FixedTickConfig config;
     config.effects.time_removal.emplace();
     config.effects.add_material.emplace();
     return config;

@@ -74,8 +74,8 @@ class EffectIdentity : public testing::TestWithParam<const char*> {
         if (effects) simulation.tick.effects = *effects;
         BoneModel& bone = *simulation.bone;
         Outcome outcome;
-        for (const TickRecord& record : recordsOf(simulation.tick, bone, simulation.firstTool(),
-                                                  pathOver(bone, block_.burr_radius_mm * kMillimetre))) {
+        for (const TickRecord& record :
+             recordsOf(simulation.fixedTick(), bone, pathOver(bone, block_.burr_radius_mm * kMillimetre))) {
             StateHash hash;
             hash.addRecord(record);
             hash.addBytes(&record.effects, sizeof record.effects);

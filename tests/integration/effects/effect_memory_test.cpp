@@ -5,7 +5,7 @@
 #include <new>
 
 #include "haptic_server/setup/scene_setup.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "tests/support/every_effect_scene.h"
 #include "tests/support/temporary_folder.h"
 
@@ -70,9 +70,9 @@ class EffectMemory : public testing::Test {
     }
     // Of a whole tick with these effects.
     size_t bytesOfTick(const EffectConfigs& configs) {
-        TickConfig config = simulation_.tick;
+        FixedTickConfig config = simulation_.fixedTick();
         config.effects = configs;
-        return bytesOf([&] { HapticTick(config, *simulation_.bone, simulation_.firstTool(), nullptr); });
+        return bytesOf([&] { FixedTick(config, *simulation_.bone); });
     }
 
     test::TemporaryFolder folder_;

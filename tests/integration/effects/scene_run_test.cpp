@@ -79,7 +79,7 @@ class SceneRun : public testing::Test {
         result.effects = effectNames(simulation.tick.effects);
         const double before = meshVolume(meshWholeBone(bone.volume, bone.lattice), grid);
         for (const TickRecord& record :
-             recordsOf(simulation.tick, bone, simulation.firstTool(),
+             recordsOf(simulation.fixedTick(), bone,
                        pathOf(loaded.scene.simulated_operator(), simulation.tick.dt))) {
             result.removed_mm3 += record.removed * kPerCubicMillimetre;
             result.added_mm3 += record.added * kPerCubicMillimetre;

@@ -115,11 +115,10 @@ struct PathEnergy {
 
 PathEnergy run(const ContactScene& scene, Preset preset, const Path& path) {
     GradientConfig config;
-    config.coupling.saturation_force = 12;
     config.coupling.damping_time = 0;
     config.coupling.relaxing_share = 0;
     config.max_angular_speed = 50;
-    GradientModel model(config, scene.world(), 1e-3);
+    GradientModel model(config, scene.world(), {&scene.tool, {}, 12}, 1e-3);
     model.setAccuracy(converged(preset));
     Pose spo = path.at(0);
     EnergyPutIn every_tick(spo), every_other_tick(spo);

@@ -31,13 +31,13 @@ TEST(ContactWidth, IsThatOfTheForcesDepth) {
 }
 
 TEST(DepthUnderSpring, BalancesTheSaturatingSpring) {
-    GradientConfig config;
-    config.coupling.saturation_force = 6;
+    FixedTickConfig tick;
+    tick.tool.saturation_force = 6;
     for (const double device_depth : {0.05e-3, 0.5e-3, 2e-3, 10e-3}) {
-        const double depth = depthUnderSpring(config, 1e-3, device_depth);
+        const double depth = depthUnderSpring(tick, device_depth);
         const double spring =
-            6 * std::tanh(config.coupling.translation_stiffness * (device_depth - depth) / 6);
-        EXPECT_NEAR(forceOnSphere(config.contact.stiffness_per_area, 1e-3, depth) / spring, 1, 1e-6)
+            6 * std::tanh(tick.gradient.coupling.translation_stiffness * (device_depth - depth) / 6);
+        EXPECT_NEAR(forceOnSphere(tick.gradient.contact.stiffness_per_area, 1e-3, depth) / spring, 1, 1e-6)
             << device_depth;
     }
 }

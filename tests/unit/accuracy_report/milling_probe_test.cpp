@@ -26,13 +26,14 @@ TEST(MillingProbe, SweptVolumeIsThatOfTheCapsuleAndTheBoneComesBack) {
     const auto before = densitiesOf(bone.volume);
     const ToolModel tool = test::burrTool();
     BoneHistory history(bone);
-    TickConfig tick = test::millingConfig();
+    FixedTickConfig tick = test::millingConfig();
+    tick.tool.model = &tool;
     tick.accuracy = presetSettings(Preset::kThesis2012);  // never held up by what it has just laid open
     tick.contact.point_stiffness = 1e-3;
     PosePath path;
     for (int n = 0; n < 900; ++n)
         path.push_back({{2e-3 + 2e-3 * std::min(1.0, n / 600.0), 3e-3, 3e-3}, upright()});
-    const MillingRun run = millAndRestore(tick, bone, tool, history, path);
+    const MillingRun run = millAndRestore(tick, bone, history, path);
     const double capsule = M_PI * 1e-9 * (4.0 / 3) + M_PI * 1e-6 * 2e-3;
     EXPECT_NEAR(run.wanted / capsule, 1, 0.01);
     EXPECT_NEAR(run.swept / capsule, 1, 0.01);
@@ -43,7 +44,7 @@ TEST(MillingProbe, SweptVolumeIsThatOfTheCapsuleAndTheBoneComesBack) {
 
 TEST(MillingProbe, PathGoesInAndSidewaysAtAFeedThatTheRemovalKeepsUpWith) {
     const ProbingPlace place{"", {{3e-3, 3e-3, 4e-3}, upright()}, Vector3d::UnitZ(), 0.5e-3};
-    TickConfig tick = test::millingConfig();
+    FixedTickConfig tick = test::millingConfig();
     const PosePath path = millingPath(place, tick);
     EXPECT_GE(path.size(), 3000u);
     double lowest = 1, fastest = 0;

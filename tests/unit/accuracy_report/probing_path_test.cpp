@@ -130,7 +130,7 @@ TEST(ProbingStroke, IsClosedStartsFreeAndPresses) {
     const ToolModel tool = test::burrTool();
     TouchProbe probe(bone, tool);
     const ProbingPlace place{"floor", {{3e-3, 3e-3, 4e-3}, upright()}, Vector3d::UnitZ(), 0.5e-3};
-    TickConfig tick;
+    FixedTickConfig tick;
     const ProbingStroke stroke = makeStroke(place, {}, tick, probe);
     EXPECT_NEAR((stroke.device.front().position - stroke.device.back().position).norm(), 0, 1e-12);
     EXPECT_FALSE(probe.touches(stroke.device.front()));
@@ -140,13 +140,13 @@ TEST(ProbingStroke, IsClosedStartsFreeAndPresses) {
         widest = std::max(widest, (pose.position - place.X_WT.position).head<2>().norm());
     }
     // 4 N at 3 N/mm; the spline cuts the corners of its knots.
-    EXPECT_NEAR(stroke.deepest, stretchOf(tick.gradient.coupling, 4), 1e-9);
+    EXPECT_NEAR(stroke.deepest, stretchOf(tick.toolCoupling(), 4), 1e-9);
     EXPECT_NEAR(deepest, stroke.deepest, 0.15e-3);
     EXPECT_NEAR(widest, 1.1e-3, 0.2e-3);
 }
 
 TEST(Stretch, IsTheInverseOfTheSaturatingSpring) {
-    EnergyCouplingConfig coupling;
+    EnergyCoupling coupling;
     coupling.saturation_force = 8;
     const double stretch = stretchOf(coupling, 5);
     EXPECT_NEAR(8 * std::tanh(coupling.translation_stiffness * stretch / 8), 5, 1e-12);

@@ -26,14 +26,14 @@ TEST(Truth, RestingBurrOnAPlaneHasTheForceAndDepthOfTheClosedForm) {
     const BoneModel bone = test::floorBone();
     const ToolModel tool = test::burrTool();
     const TouchProbe probe(bone, tool);
-    const TickConfig tick;
+    const FixedTickConfig tick{{}, {&tool}, {}};
     const std::vector<ProbingStroke> strokes{press(0.4e-3), press(1.2e-3)};
-    const auto truth = computeTruth(strokes, tick, bone, tool, probe, 2);
+    const auto truth = computeTruth(strokes, tick, bone, probe, 2);
     ASSERT_EQ(truth.size(), 2u);
     for (size_t n = 0; n < truth.size(); ++n) {
         EXPECT_EQ(truth[n].refinement, kLeastRefinement);
         ASSERT_EQ(truth[n].answers.size(), strokes[n].device.size());
-        const double depth = depthUnderSpring(tick.gradient, test::kBurr, strokes[n].deepest);
+        const double depth = depthUnderSpring(tick, strokes[n].deepest);
         const double force = forceOnSphere(tick.gradient.contact.stiffness_per_area, test::kBurr, depth);
         const Answer& rest = truth[n].answers.back();
         EXPECT_NEAR(rest.hand.force.z() / force, 1, 1e-3);
@@ -44,7 +44,7 @@ TEST(Truth, RestingBurrOnAPlaneHasTheForceAndDepthOfTheClosedForm) {
 }
 
 TEST(Truth, CoarserVoxelsAreRefinedMore) {
-    TickConfig tick;
+    const FixedTickConfig tick;
     EXPECT_EQ(wantedRefinement(0.1e-3, tick), kLeastRefinement);
     EXPECT_EQ(wantedRefinement(5e-3, tick), kMostRefinement);
     const int refinement = wantedRefinement(0.5e-3, tick);
@@ -61,18 +61,18 @@ TEST(Truth, IsThatOfTheWholeBone) {
         test::boneOf(test::bodyVolume(test::cubeGeometry(49, 0.125e-3), test::sphereAt(middle, 1.8e-3)));
     const ToolModel tool = test::burrTool();
     TouchProbe probe(bone, tool);
-    TickConfig tick;
+    FixedTickConfig tick{{}, {&tool}, {}};
     const auto places = findProbingPlaces({}, bone, test::kBurr, probe);
     std::vector<ProbingStroke> strokes;
     for (const ProbingPlace& place : places)
         strokes.push_back(makeStroke(place, {.duration = 0.3}, tick, probe));
-    const auto truth = computeTruth(strokes, tick, bone, tool, probe, 2);
+    const auto truth = computeTruth(strokes, tick, bone, probe, 2);
 
     BoneModel whole =
         test::boneOf(refinedPart(bone.volume, {{-1, -1, -1}, bone.volume.dims()}, kLeastRefinement));
     tick.accuracy = truthSettings();
     for (size_t n = 0; n < strokes.size(); ++n) {
-        const auto oracle = answersOf(runPath(tick, whole, tool, strokes[n].device));
+        const auto oracle = answersOf(runPath(tick, whole, strokes[n].device));
         ASSERT_EQ(truth[n].answers.size(), oracle.size());
         double most_apart = 0, most_force = 0;
         for (size_t i = 0; i < oracle.size(); ++i) {
@@ -89,7 +89,7 @@ TEST(Truth, AStrokeThatTouchesNothingHasNone) {
     const ToolModel tool = test::burrTool();
     const TouchProbe probe(bone, tool);
     ProbingStroke stroke{"air", PosePath(10, Pose{{3e-3, 3e-3, 9e-3}, upright()}), 0};
-    EXPECT_TRUE(computeTruth({stroke}, TickConfig{}, bone, tool, probe, 1)[0].answers.empty());
+    EXPECT_TRUE(computeTruth({stroke}, {{}, {&tool}, {}}, bone, probe, 1)[0].answers.empty());
 }
 
 }  // namespace

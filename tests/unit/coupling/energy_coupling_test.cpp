@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-EnergyCouplingConfig configWithGrip() {
-    EnergyCouplingConfig config;
+EnergyCoupling couplingWithGrip() {
+    EnergyCoupling config;
     config.saturation_force = 9;
     config.saturation_torque = 0.4;
     config.p_TG = Vector3d(0.01, 0.06, -0.02);
@@ -46,7 +46,7 @@ Vector6d stacked(const Wrench& wrench) {
 }
 
 TEST(EnergyCoupling, WrenchesOnToolAndDeviceAreTheEnergysGradients) {
-    const EnergyCouplingConfig config = configWithGrip();
+    const EnergyCoupling config = couplingWithGrip();
     const ContinuousRotation way;
     std::mt19937 random(5);
     for (int n = 0; n < 200; ++n) {
@@ -66,7 +66,7 @@ TEST(EnergyCoupling, WrenchesOnToolAndDeviceAreTheEnergysGradients) {
 }
 
 TEST(EnergyCoupling, DampingIsTheGradientOfItsEnergy) {
-    const EnergyCouplingConfig config = configWithGrip();
+    const EnergyCoupling config = couplingWithGrip();
     std::mt19937 random(6);
     for (int n = 0; n < 100; ++n) {
         const Pose before = randomPose(random, 0.01, 2), spo = randomPose(random, 0.01, 2);
@@ -79,7 +79,7 @@ TEST(EnergyCoupling, DampingIsTheGradientOfItsEnergy) {
 }
 
 TEST(EnergyCoupling, StiffnessIsExactForSmallStretchAndAlwaysPositive) {
-    EnergyCouplingConfig config = configWithGrip();
+    EnergyCoupling config = couplingWithGrip();
     const ContinuousRotation way;
     const Pose rest{{0.1, 0.2, 0.3}, expRotation({0.3, -0.8, 0.5})};
     const EnergyTerm at_rest = couplingEnergy(config, rest, rest, way);
@@ -100,7 +100,7 @@ TEST(EnergyCoupling, StiffnessIsExactForSmallStretchAndAlwaysPositive) {
 }
 
 TEST(EnergyCoupling, ForceAndTorqueSaturate) {
-    const EnergyCouplingConfig config{.saturation_force = 9, .saturation_torque = 0.3};
+    const EnergyCoupling config{{.saturation_torque = 0.3}, 9};
     const Pose spo, far{{1, 0, 0}, expRotation({0, 2.5, 0})};
     const Wrench wrench = couplingEnergy(config, spo, far, {}).wrench;
     EXPECT_NEAR(wrench.force.x(), 9, 1e-9);

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "tests/support/rt_guard/rt_probe.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
@@ -16,16 +16,15 @@ void expectQuiet(const std::function<void(EffectConfigs&)>& choose) {
                                     test::halfSpace({0, 0, 4e-3}, Eigen::Vector3d::UnitZ())),
                    Eigen::Vector3i::Constant(16), ShellConfig{});
     const ToolModel tool = test::sphereToolModel(1e-3, 0.125e-3);
-    TickConfig config;
-    config.burr.speed = 4000;
+    FixedTickConfig config;
+    config.tool = {&tool, {.speed = 4000}};
     choose(config.effects);
-    HapticTick tick(config, bone, tool, nullptr);
+    FixedTick tick(config, bone);
     const Pose above{{3e-3, 3e-3, 5.1e-3}, Eigen::Quaterniond::Identity()};
     for (const uint32_t buttons : {0u, uint32_t(kButtonRemove), 0u}) {
         test::ScriptedIo io(test::straightPath(above, {3.3e-3, 2.8e-3, 3.5e-3}, 300, buttons));
         RtProbe probe;
-        while (tick.tick(io)) {
-        }
+        tick.run(io);
         probe.stop();
         EXPECT_EQ(probe.heapCalls(), 0u) << probe.firstCall();
         EXPECT_EQ(probe.lockCalls(), 0u) << probe.firstCall();

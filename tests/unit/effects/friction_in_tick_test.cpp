@@ -11,11 +11,11 @@ using Eigen::Vector3d;
 
 constexpr double kFriction = 0.3;
 
-TickConfig& withoutMilling(TickConfig& config) {
+FixedTickConfig& withoutMilling(FixedTickConfig& config) {
     config.effects = {};
     return config;
 }
-void stick(TickConfig& config) {
+void stick(FixedTickConfig& config) {
     withoutMilling(config).effects.surface_friction = {kFriction, 5e4};
 }
 const Variant& balanced() {
@@ -97,8 +97,8 @@ TEST(FrictionInTick, SlidingCostsFrictionTimesForceWithoutChatter) {
 // Sidewards on the plane: the torque about the shaft is M = μ F R, and no force but the cutting force's lies
 // across.
 Wrench pressedWhileSpinning(bool cutting, TickRecord& record) {
-    Scene scene(planeBone(), burr(), balanced(), 1e-3, [=](TickConfig& config) {
-        withoutMilling(config).burr.speed = 4000;
+    Scene scene(planeBone(), burr(), balanced(), 1e-3, [=](FixedTickConfig& config) {
+        withoutMilling(config).tool.burr.speed = 4000;
         if (cutting) config.effects.cutting_force.emplace();
     });
     Stepper stepper(scene);
@@ -128,8 +128,8 @@ TEST(CuttingForceInTick, GivesTheHandTheSixthDegreeOfFreedom) {
 // Too weak a motor: the burr stands, and the hand holds the whole torque of the motor.
 TEST(CuttingForceInTick, AStalledBurrHoldsTheMotorsTorque) {
     constexpr double kWeak = 0.2e-3;  // N·m
-    Scene scene(planeBone(), burr(), balanced(), 1e-3, [](TickConfig& config) {
-        withoutMilling(config).burr.speed = 4000;
+    Scene scene(planeBone(), burr(), balanced(), 1e-3, [](FixedTickConfig& config) {
+        withoutMilling(config).tool.burr.speed = 4000;
         config.effects.cutting_force.emplace();
         config.effects.spindle.emplace().max_torque = kWeak;
     });

@@ -15,12 +15,11 @@ TissueBench benchOf(double factor) {
     TissueBench bench(halfSpace({4e-3, 0, 0}, -Vector3d::UnitX()));
     bench.config.effects.materials[kNerve].stiffness_factor = factor;
     bench.config.effects.material_stiffness.emplace();
-    bench.config.gradient.coupling.saturation_force = 50;
     return bench;
 }
 
 double depthAt(TissueBench& bench, double x) {
-    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    FixedTick tick = bench.makeTick();
     const Vector3d end(x, 4e-3, kTop + kBurr - 0.4e-3);
     auto inputs = straightPath(TissueBench::at({x, 4e-3, kTop + kBurr + 0.2e-3}), end, 200, 0);
     inputs.insert(inputs.end(), 100, inputs.back());

@@ -26,7 +26,7 @@ struct ProtectedBench : TissueBench {
 
 TEST(ProtectedStructures, DistanceIsThatOfTheBurrsSurface) {
     ProtectedBench bench(layer(0, 3e-3 + kVoxel / 2));  // its last voxels' faces lie at 3.0625 mm
-    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    FixedTick tick = bench.makeTick();
     bool was_far = false, was_near = false;
     for (const TickRecord& record : bench.run(tick, straightPath(TissueBench::at({kMiddle, kMiddle, 9e-3}),
                                                                  {kMiddle, kMiddle, 6e-3}, 500, 0))) {
@@ -49,7 +49,7 @@ TEST(ProtectedStructures, DistanceIsThatOfTheBurrsSurface) {
 // Straight down through the layer: a hole of the burr's section.
 TEST(ProtectedStructures, DamageIsTheVolumeThatTheBurrSwept) {
     ProtectedBench bench(layer(2.5e-3 - kVoxel / 2, 3.5e-3 - kVoxel / 2));
-    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    FixedTick tick = bench.makeTick();
     const Vector3d end(kMiddle, kMiddle, 1.2e-3);
     auto inputs = straightPath(TissueBench::at({kMiddle, kMiddle, 6.2e-3}), end, 4000, kButtonRemove);
     inputs.insert(inputs.end(), 500, inputs.back());
@@ -73,7 +73,7 @@ TEST(ProtectedStructures, DamageIsTheVolumeThatTheBurrSwept) {
 
 TEST(ProtectedStructures, ABurrThatStandsStillHarmsNothing) {
     ProtectedBench bench(layer(3.5e-3, 7e-3));  // up into the air above the bone
-    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    FixedTick tick = bench.makeTick();
     const Vector3d place(kMiddle, kMiddle, kTop + kBurr + 0.2e-3);
     EXPECT_EQ(
         bench.run(tick, straightPath(TissueBench::at(place), place, 50, 0)).back().effects.damaged_volume, 0);
@@ -87,7 +87,7 @@ TEST(ProtectedStructures, ABurrThatStandsStillHarmsNothing) {
 TEST(ProtectedStructures, ForceIsThatOfTheContactsOnThem) {
     for (const bool is_nerve_on_top : {true, false}) {
         ProtectedBench bench(is_nerve_on_top ? layer(3e-3, 7e-3) : layer(0, 3e-3));
-        HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+        FixedTick tick = bench.makeTick();
         const Vector3d end(kMiddle, kMiddle, kTop + kBurr - 0.5e-3);
         auto inputs = straightPath(TissueBench::at({kMiddle, kMiddle, 6.2e-3}), end, 200, 0);
         inputs.insert(inputs.end(), 200, inputs.back());
@@ -104,9 +104,9 @@ TEST(ProtectedStructures, ForceIsThatOfTheContactsOnThem) {
 // The spindle's burr that stands removes nothing, and covers nothing.
 TEST(ProtectedStructures, AStalledBurrHarmsNothing) {
     ProtectedBench bench(layer(2.5e-3, 7e-3));
-    bench.config.burr.speed = 4000;
+    bench.config.tool.burr.speed = 4000;
     bench.config.effects.spindle.emplace().max_torque = 0.2e-3;
-    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    FixedTick tick = bench.makeTick();
     const Vector3d end(kMiddle, kMiddle, kTop + kBurr - 0.8e-3);
     auto inputs = straightPath(TissueBench::at({kMiddle, kMiddle, 6.2e-3}), end, 200, 0);
     DeviceInput pressed = inputs.back();
@@ -128,9 +128,10 @@ TEST(ProtectedStructures, ALargeBurrMissesNothingOnItsWay) {
         return std::hypot(p.y() - kMiddle, p.z() - 7.5e-3) - 0.3e-3;
     };
     ProtectedBench bench(nerve);
-    bench.config.burr.radius = kLarge;
+    bench.config.tool.burr.radius = kLarge;
     const ToolModel large = sphereToolModel(kLarge, 2 * kVoxel);
-    HapticTick tick(bench.config, bench.bone, large, nullptr);
+    bench.config.tool.model = &large;
+    FixedTick tick(bench.config, bench.bone);
     const Vector3d start(kMiddle, kMiddle - 8e-3, 7.6e-3), end(kMiddle, kMiddle + 8e-3, 7.6e-3);
     const auto records =
         bench.run(tick, straightPath(TissueBench::at(start), end, int(16e-3 / kSpeed * 1e3), kButtonRemove));

@@ -13,13 +13,13 @@ using Eigen::Vector3d;
 // Time removal at rate 0 in the configuration: the burr only rubs.
 struct HotBench : TissueBench {
     HotBench() : TissueBench(halfSpace({-1, 0, 0}, Vector3d::UnitX())) {
-        config.burr.speed = 1000;  // rad/s
-        config.burr.friction = 0.5;
+        config.tool.burr.speed = 1000;  // rad/s
+        config.tool.burr.friction = 0.5;
         config.effects.thermal.emplace();
     }
     // Leaning over by 45°, so that the burr's side rubs, pressed onto the bone.
     std::vector<TickRecord> press(uint32_t buttons, int ticks) {
-        HapticTick tick(config, bone, tool, nullptr);
+        FixedTick tick = makeTick();
         const Pose start{{4e-3, 4e-3, kTop + kBurr + 0.1e-3}, expRotation({M_PI / 4, 0, 0})};
         auto inputs = straightPath(start, start.position - Vector3d(0, 0, 0.6e-3), 100, buttons);
         inputs.insert(inputs.end(), size_t(ticks), inputs.back());

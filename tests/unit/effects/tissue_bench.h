@@ -1,7 +1,7 @@
 // A block of bone with protected voxels in it, and a tick over it.
 #pragma once
 
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "haptic_server/volume/import/protected_distance.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
@@ -26,7 +26,7 @@ struct TissueBench {
         : bone(bodyVolume(cubeGeometry(64, kVoxel), halfSpace({0, 0, kTop}, Eigen::Vector3d::UnitZ())),
                Eigen::Vector3i::Constant(16), ShellConfig{}),
           tool(sphereToolModel(kBurr, kVoxel)) {
-        config.burr.radius = kBurr;
+        config.tool.burr.radius = kBurr;
         EffectConfigs& effects = config.effects;
         effects.materials = tissueTable();
         effects.properties =
@@ -37,14 +37,17 @@ struct TissueBench {
             protectedDistance(*effects.properties, effects.materials, bone.volume.spacing(), reach);
     }
     static Pose at(const Eigen::Vector3d& p_V) { return {p_V, Eigen::Quaterniond::Identity()}; }
-    std::vector<TickRecord> run(HapticTick& tick, const std::vector<DeviceInput>& inputs) {
+    FixedTick makeTick() {
+        config.tool.model = &tool;
+        return {config, bone};
+    }
+    std::vector<TickRecord> run(FixedTick& tick, const std::vector<DeviceInput>& inputs) {
         ScriptedIo io(inputs);
-        while (tick.tick(io)) {
-        }
+        tick.run(io);
         return io.records;
     }
 
-    TickConfig config;
+    FixedTickConfig config;
     BoneModel bone;
     ToolModel tool;
 };

@@ -18,13 +18,12 @@ TEST(TissueEffectsAreRtSafe, WhileMillingThroughAllOfThem) {
     effects.thermal.emplace();
     effects.virtual_fixture = {.stiffness = 500, .hand_force_scale = 0.5};
     effects.protected_structures.emplace();
-    bench.config.burr.speed = 3000;
-    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    bench.config.tool.burr.speed = 3000;
+    FixedTick tick = bench.makeTick();
     ScriptedIo io(
         straightPath(TissueBench::at({4e-3, 4e-3, 6.2e-3}), {4e-3, 4e-3, 2e-3}, 1500, kButtonRemove));
     RtProbe probe;
-    while (tick.tick(io)) {
-    }
+    tick.run(io);
     probe.stop();
     EXPECT_EQ(probe.heapCalls(), 0u) << probe.firstCall();
     EXPECT_EQ(probe.lockCalls(), 0u) << probe.firstCall();

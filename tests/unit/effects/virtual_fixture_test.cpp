@@ -174,13 +174,12 @@ TEST(VirtualFixture, ClosedPathsOfTheHandGainNoEnergy) {
         GradientConfig config;
         config.coupling.damping_time = 0;
         config.coupling.relaxing_share = 0;
-        GradientModel model(config, {scene.bone.volume, scene.bone.lattice, scene.bone.shell, scene.tool},
-                            1e-3);
+        const SpoTool tool{&scene.tool, burrOf(BurrKind::kBall), 50};
+        GradientModel model(config, {scene.bone.volume, scene.bone.lattice, scene.bone.shell}, tool, 1e-3);
         AccuracySettings settings = presetSettings(Preset::kBalanced);
         settings.iterations = AccuracySettings::kMostIterations;
         model.setAccuracy(settings);
         model.setEffects(host.weights(), host.energy());
-        const SpoTool tool{&scene.tool, burrOf(BurrKind::kBall), 50};
         constexpr int kTicks = 8000;
         const auto device = [&](int n) {
             const double turn = 2 * M_PI * n / kTicks;
@@ -219,7 +218,7 @@ TEST(VirtualFixture, ClosedPathsOfTheHandGainNoEnergy) {
 TEST(VirtualFixture, HoldsThePressedToolStill) {
     TissueBench air(sphereAt({4e-3, 4e-3, 6.5e-3}, kNerveRadius));
     air.config.effects.virtual_fixture = {.distance = 0.5e-3, .stiffness = 4000};
-    HapticTick tick(air.config, air.bone, air.tool, nullptr);
+    FixedTick tick = air.makeTick();
     const Vector3d start(5e-3, 4.3e-3, 9e-3), end(4.3e-3, 4.1e-3, 8.2e-3);
     auto inputs = straightPath(TissueBench::at(start), end, 300, 0);
     inputs.insert(inputs.end(), 700, inputs.back());

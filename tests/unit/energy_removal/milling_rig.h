@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "haptic_server/mesh/mesh_check.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "tests/support/test_bodies.h"
 #include "tests/support/voxel_fields.h"
 
@@ -63,7 +63,7 @@ class MillingRig final : private TickIo {
           bone(blockOf(config), Eigen::Vector3i::Constant(16), {.levels = {{config.shell_factor}}}),
           tool_(gridOf(shapesOf(config.burr), config.burr.radius / 8), shapesOf(config.burr),
                 config.burr.radius),
-          tick_(tickConfigOf(config, bone.volume), bone, tool_, nullptr),
+          tick_(tickConfigOf(config, bone.volume, tool_), bone),
           volume_before_(boneVolume()) {}
 
     // From `start` on.
@@ -73,8 +73,7 @@ class MillingRig final : private TickIo {
         buttons_ = buttons;
         left_ = int(std::lround(seconds * config.rate));
         records.reserve(records.size() + size_t(left_));
-        while (tick_.tick(*this)) {
-        }
+        tick_.run(*this);
     }
     // Along `direction` (unit) with this force, which comes up within kRise, ahead of the tool by what it
     // moved in the last tick; across it the hand stays where it starts.
@@ -148,11 +147,11 @@ class MillingRig final : private TickIo {
         });
         return volume;
     }
-    static TickConfig tickConfigOf(const RigConfig& config, const VoxelVolume& volume) {
-        TickConfig tick;
+    static FixedTickConfig tickConfigOf(const RigConfig& config, const VoxelVolume& volume,
+                                        const ToolModel& tool) {
+        FixedTickConfig tick;
         tick.dt = 1 / config.rate;
-        tick.burr = config.burr;
-        tick.gradient.burr_radius = config.burr.radius;
+        tick.tool = {&tool, config.burr};
         tick.accuracy = presetSettings(config.preset);
         tick.accuracy.shell_factor = config.shell_factor;
         tick.gradient.coupling.translation_stiffness = config.hand_stiffness;
@@ -185,7 +184,7 @@ class MillingRig final : private TickIo {
     }
 
     ToolModel tool_;
-    HapticTick tick_;
+    FixedTick tick_;
     double volume_before_;
     Hand hand_;
     uint32_t buttons_ = 0;

@@ -21,11 +21,10 @@ ContactScene flatScene(const Vector3d& normal = Vector3d::UnitZ()) {
             {.levels = {{1}, {2}}}};
 }
 
-GradientConfig stiff() {
-    GradientConfig config;
-    config.burr_radius = kRadius;
-    config.coupling.saturation_force = 12;
-    return config;
+constexpr double kMostForce = 12;  // N, of the coupling
+
+SpoTool toolOf(const ContactScene& scene, double radius = kRadius) {
+    return {&scene.tool, {.radius = radius}, kMostForce};
 }
 
 // Runs until the tool rests.
@@ -44,12 +43,12 @@ TEST(AccuracySettings, DefaultsAreBalanced) {
 
 TEST(GradientModel, SettlesWhereCouplingAndContactBalance) {
     const ContactScene scene = flatScene();
-    const GradientConfig config = stiff();
+    const GradientConfig config{};
     const double kappa = config.contact.stiffness_per_area, k = config.coupling.translation_stiffness;
-    const double most = config.coupling.saturation_force;
+    const double most = kMostForce;
     for (const Preset preset : {Preset::kBalanced, Preset::kExact})
         for (const double depth : {0.2e-3, 1e-3, 3e-3}) {
-            GradientModel model(config, scene.world(), 1e-3);
+            GradientModel model(config, scene.world(), toolOf(scene), 1e-3);
             model.setAccuracy(presetSettings(preset));
             const SpoStep step =
                 settle(model, {kAbove, kUpright}, {kAbove - depth * Vector3d::UnitZ(), kUpright});
@@ -73,10 +72,10 @@ TEST(GradientModel, SettlesWhereCouplingAndContactBalance) {
 TEST(GradientModel, SaysSoWhenItFindsNoWayToBalance) {
     const ContactScene scene = flatScene();
     for (const bool is_hard : {false, true}) {
-        GradientConfig config = stiff();
+        GradientConfig config;
         config.contact.stiffness_cap = INFINITY;
         if (is_hard) config.contact.stiffness_per_area = 1e24;
-        GradientModel model(config, scene.world(), 1e-3);
+        GradientModel model(config, scene.world(), toolOf(scene), 1e-3);
         Pose spo{kAbove + Vector3d(0, 0, 1e-9), kUpright};
         int stalled = 0;
         for (int n = 0; n < 40; ++n) {
@@ -91,13 +90,13 @@ TEST(GradientModel, SaysSoWhenItFindsNoWayToBalance) {
 
 TEST(GradientModel, FreeToolFollowsAtThePaceOfTheDampingTimeWhateverTheRate) {
     const ContactScene scene = flatScene();
-    GradientConfig config = stiff();
+    GradientConfig config;
     config.coupling.relaxing_share = 0;
     const Pose start{kAbove + Vector3d(0, 0, 1e-3), kUpright};
     const Pose device = start.incremented({0.1e-3, 0, 0.05e-3}, {0.001, 0.002, 0});
     double left_of_first = 0;
     for (const double rate : {1000.0, 4000.0}) {
-        GradientModel model(config, scene.world(), 1 / rate);
+        GradientModel model(config, scene.world(), toolOf(scene), 1 / rate);
         const SpoStep step = settle(model, start, device, int(5e-3 * rate));
         const double left = (step.spo.position - device.position).norm() / 0.1118e-3;
         EXPECT_LT(left, 0.05);
@@ -114,7 +113,7 @@ TEST(GradientModel, AHandThatTurnsTooQuicklyKeepsTheToolsPlace) {
     for (const double speed : {5.0, 8.0})
         for (const bool moves_on : {false, true})
             for (const Preset preset : {Preset::kFast, Preset::kBalanced, Preset::kExact}) {
-                GradientModel model(stiff(), scene.world(), 1e-3);
+                GradientModel model(GradientConfig{}, scene.world(), toolOf(scene), 1e-3);
                 model.setAccuracy(presetSettings(preset));
                 Pose device{kAbove + Vector3d(0, 0, 5e-3), kUpright}, spo = device;
                 double farthest = 0, most = 0;
@@ -134,9 +133,9 @@ TEST(GradientModel, AHandThatTurnsTooQuicklyKeepsTheToolsPlace) {
 
 TEST(GradientModel, RelaxingSpringStiffensAHeldToolForAShortTimeAndDoesNotHoldBackAFreeOne) {
     const ContactScene scene = flatScene();
-    const GradientConfig config = stiff();
+    const GradientConfig config{};
     const EnergyCouplingConfig& coupling = config.coupling;
-    GradientModel model(config, scene.world(), 1e-3);
+    GradientModel model(config, scene.world(), toolOf(scene), 1e-3);
     // Pressed into the bone, then a sudden small step further.
     const Pose device{kAbove - Vector3d(0, 0, 0.5e-3), kUpright},
         further = device.incremented({0, 0, -0.02e-3}, {0, 0, 0});
@@ -153,7 +152,7 @@ TEST(GradientModel, RelaxingSpringStiffensAHeldToolForAShortTimeAndDoesNotHoldBa
     without.coupling.relaxing_share = 0;
     double drag[2];
     for (int with = 0; with < 2; ++with) {
-        GradientModel free_model(with ? config : without, scene.world(), 1e-3);
+        GradientModel free_model(with ? config : without, scene.world(), toolOf(scene), 1e-3);
         Pose spo{kAbove + Vector3d(0, 0, 1e-3), kUpright};
         for (int n = 0; n < 100; ++n) {
             const SpoStep step = free_model.advance(spo, spo.incremented({0, 0, 0}, {0, 0, 0}));
@@ -171,7 +170,7 @@ TEST(GradientModel, RelaxingSpringStiffensAHeldToolForAShortTimeAndDoesNotHoldBa
 TEST(GradientModel, EveryPresetSettlesAndTellsItsIterations) {
     const ContactScene scene = flatScene(Vector3d(0.2, 0.1, 1).normalized());
     for (const Preset preset : {Preset::kFast, Preset::kBalanced, Preset::kExact}) {
-        GradientModel model(stiff(), scene.world(), 1e-3);
+        GradientModel model(GradientConfig{}, scene.world(), toolOf(scene), 1e-3);
         model.setAccuracy(presetSettings(preset));
         Pose spo{kAbove, kUpright};
         const Pose device{kAbove - Vector3d(0, 0, 1e-3), kUpright};
@@ -187,12 +186,13 @@ TEST(GradientModel, EveryPresetSettlesAndTellsItsIterations) {
 // Sweeps bound how deep a step may go, not whether the tool may move: also with a coarse grid of distances.
 TEST(GradientModel, AToolOfAGridPressesAndLeavesLikeOneOfShapes) {
     const ContactScene scene = flatScene();
-    GradientConfig config = stiff();
-    config.burr_radius = kRadius / 2;  // halves the trust radius
+    GradientConfig config;
+    SpoTool tool = toolOf(scene);
+    tool.burr.radius = kRadius / 2;  // halves the trust radius
     constexpr int kTicks = 200;
     double force[2] = {};
     for (const ToolDistance distance : {ToolDistance::kAnalytic, ToolDistance::kGrid}) {
-        GradientModel model(config, scene.world(), 1e-3);
+        GradientModel model(config, scene.world(), tool, 1e-3);
         model.setAccuracy({.tool_distance = distance, .sdf_refinement = 1, .iterations = 8});
         Pose spo{kAbove + Vector3d(0, 0, 0.5e-3), kUpright};
         SpoStep step;
@@ -216,11 +216,10 @@ TEST(GradientModel, NoSpeedTunnelsThroughAWallOfOneVoxel) {
                              {SphereShape{{0, 0, 0}, 1e-3}, CapsuleShape{{0, 0, 0}, {0, 9e-3, 0}, 0.8e-3}});
     for (const bool has_ccd : {true, false})
         for (const double speed : {0.5, 10.0, 500.0}) {
-            GradientConfig config = stiff();
-            config.burr_radius = 1e-3;
+            GradientConfig config;
             config.max_speed = speed;
             config.max_angular_speed = 1e3;
-            GradientModel model(config, scene.world(), 1e-3);
+            GradientModel model(config, scene.world(), toolOf(scene, 1e-3), 1e-3);
             AccuracySettings settings;
             settings.continuous_collision = has_ccd;
             model.setAccuracy(settings);
@@ -238,7 +237,7 @@ TEST(GradientModel, NoSpeedTunnelsThroughAWallOfOneVoxel) {
 
 TEST(GradientModel, NeverGivesANonFiniteResult) {
     const ContactScene scene = flatScene();
-    GradientModel model(stiff(), scene.world(), 1e-3);
+    GradientModel model(GradientConfig{}, scene.world(), toolOf(scene), 1e-3);
     std::mt19937 random(2);
     std::uniform_real_distribution<double> uniform(-1, 1);
     Pose spo{kAbove, kUpright};
@@ -261,9 +260,9 @@ TEST(GradientModel, ATickEndsSoonAfterItsBudgetWhateverItMeets) {
     std::mt19937 random(4);
     std::uniform_real_distribution<double> uniform(-1, 1);
     for (const size_t most_point_tests : {2'000u, 20'000u}) {
-        GradientConfig config = stiff();
+        GradientConfig config;
         config.most_point_tests = most_point_tests;
-        GradientModel model(config, scene.world(), 1e-3);
+        GradientModel model(config, scene.world(), toolOf(scene), 1e-3);
         Pose spo{kAbove, kUpright};
         double most = 0;
         int overflows = 0;
@@ -283,7 +282,7 @@ TEST(GradientModel, ATickEndsSoonAfterItsBudgetWhateverItMeets) {
 
 TEST(GradientModel, EnergyNeverRisesUnderAHandAtRest) {
     const ContactScene scene = flatScene(Vector3d(0.4, -0.2, 1).normalized());
-    GradientModel model(stiff(), scene.world(), 1e-3);
+    GradientModel model(GradientConfig{}, scene.world(), toolOf(scene), 1e-3);
     Pose spo{kAbove + Vector3d(0, 0, 2e-3), kUpright};
     const Pose device = Pose{kAbove - Vector3d(0, 0, 2e-3), kUpright}.incremented({0, 0, 0}, {0.3, 0.1, 0.2});
     double before = 1e9;
@@ -302,10 +301,9 @@ TEST(GradientModel, SlidingOverAFlatFaceIsSmooth) {
             const Vector3d middle(4.83e-3, 4.79e-3, 4.81e-3);
             const ContactScene scene(cubeGeometry(33, kVoxel), halfSpace(middle, n),
                                      {SphereShape{{0, 0, 0}, radius}});
-            GradientConfig config = stiff();
-            config.burr_radius = radius;
+            GradientConfig config;
             config.coupling.translation_stiffness = 1000;
-            GradientModel model(config, scene.world(), 1e-3);
+            GradientModel model(config, scene.world(), toolOf(scene, radius), 1e-3);
             Pose spo{middle + radius * n - 1.2e-3 * along, kUpright};
             const auto device = [&](int tick) {
                 return Pose{middle + (radius - 1e-3) * n + (-1.2e-3 + 5e-6 * std::max(0, tick - 50)) * along,
@@ -326,9 +324,9 @@ TEST(GradientModel, SlidingOverAFlatFaceIsSmooth) {
 
 TEST(GradientModel, TorqueGoesOnSmoothlyBeyondHalfATurn) {
     const ContactScene scene = flatScene();
-    GradientConfig config = stiff();
+    GradientConfig config;
     config.max_angular_speed = 1e-9;  // a tool that cannot turn: the hand turns alone
-    GradientModel model(config, scene.world(), 1e-3);
+    GradientModel model(config, scene.world(), toolOf(scene), 1e-3);
     const Pose spo{kAbove + Vector3d(0, 0, 3e-3), kUpright};
     Vector3d before = Vector3d::Zero();
     for (double degrees = 0; degrees < 200; degrees += 0.1) {

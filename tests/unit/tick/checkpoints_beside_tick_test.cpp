@@ -6,7 +6,7 @@
 #include <set>
 #include <thread>
 
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "tests/support/milling_config.h"
 #include "tests/unit/bone/milled_ball.h"
 
@@ -60,16 +60,13 @@ class MillingIo final : public TickIo {
 
 struct Threads {
     Threads() : io(ball.bone, stop), tool(test::sphereToolModel(1.5e-3, 0.2e-3)) {
-        config.burr.radius = config.gradient.burr_radius = 1.5e-3;
+        config.tool = {&tool, {.radius = 1.5e-3}};
         config.accuracy.iterations = 1;  // ThreadSanitizer slows each a hundred times
-        tick = std::make_unique<HapticTick>(config, ball.bone, tool, &ball.history);
+        tick = std::make_unique<FixedTick>(config, ball.bone, &ball.history);
     }
     // Calls keeper(n), n = 0 .. kSaved - 1, with some ticks between; the tick goes on meanwhile.
     void run(const std::function<void(int)>& keeper) {
-        std::thread tick_thread([&] {
-            while (tick->tick(io)) {
-            }
-        });
+        std::thread tick_thread([&] { tick->run(io); });
         for (int n = 0; n < kSaved; ++n) {
             waitForTicks();
             keeper(n);
@@ -97,8 +94,8 @@ struct Threads {
     std::atomic<bool> stop{false};
     MillingIo io;
     ToolModel tool;
-    TickConfig config = test::millingConfig();
-    std::unique_ptr<HapticTick> tick;
+    FixedTickConfig config = test::millingConfig();
+    std::unique_ptr<FixedTick> tick;
 };
 
 TEST(CheckpointsBesideTick, EachIsTheBoneBetweenTwoTicks) {

@@ -6,6 +6,7 @@
 
 #include "haptic_server/mesh/mesh_check.h"
 #include "haptic_server/mesh/mesher.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "tests/support/milling_config.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
@@ -23,7 +24,7 @@ struct Bench {
     explicit Bench(const Pose& X_WV = {{0.1, -0.2, 0.3}, expRotation({0.4, -0.9, 0.2})})
         : bone(slab(X_WV), Eigen::Vector3i::Constant(16), ShellConfig{}),
           tool(test::sphereToolModel(kBurr, kVoxel)) {
-        config.burr.radius = kBurr;
+        config.tool = {&tool, {.radius = kBurr}};
         config.accuracy = presetSettings(Preset::kThesis2012);
     }
     static VoxelVolume slab(const Pose& X_WV) {
@@ -38,10 +39,8 @@ struct Bench {
         return bone.volume.geometry().X_WV.inverse() * Eigen::Vector3d(p_W[0], p_W[1], p_W[2]);
     }
     std::vector<TickRecord> run(const std::vector<DeviceInput>& inputs) {
-        HapticTick tick(config, bone, tool, nullptr);
         test::ScriptedIo io(inputs);
-        while (tick.tick(io)) {
-        }
+        FixedTick(config, bone).run(io);
         return io.records;
     }
     double boneVolume() const {
@@ -51,7 +50,7 @@ struct Bench {
         return meshVolume(meshes, MeshGrid(bone.volume, bone.lattice));
     }
 
-    TickConfig config = test::millingConfig();
+    FixedTickConfig config = test::millingConfig();
     BoneModel bone;
     ToolModel tool;
 };
@@ -148,12 +147,11 @@ TEST(HapticTick, PausedMillingTakesNothingButIsFelt) {
     Bench bench;
     BoneHistory history(bench.bone);
     history.pauseMilling(true);
-    HapticTick tick(bench.config, bench.bone, bench.tool, &history);
+    FixedTick tick(bench.config, bench.bone, &history);
     const Pose start = bench.atV(kStart);
     test::ScriptedIo io(test::straightPath(start, bench.atV(kStart - Eigen::Vector3d(0, 0, 1e-3)).position,
                                            400, kButtonRemove));
-    while (tick.tick(io)) {
-    }
+    tick.run(io);
     ASSERT_EQ(io.records.size(), 400u);
     for (const TickRecord& r : io.records) EXPECT_EQ(r.removed_voxels, 0u);
     EXPECT_GT(io.records.back().contacts, 0u);
@@ -165,7 +163,7 @@ TEST(HapticTick, TheRecordHoldsTheBoxOfTheMilledVoxels) {
     const Pose start = bench.atV(kStart - Eigen::Vector3d(0, 0, 1e-3));
     auto inputs = test::straightPath(start, start.position, 60, 0);
     for (size_t n = 30; n < 60; ++n) inputs[n].buttons = kButtonRemove;
-    HapticTick tick(bench.config, bench.bone, bench.tool, nullptr);
+    FixedTick tick(bench.config, bench.bone);
     test::ScriptedIo io(inputs);
     const VoxelVolume& volume = bench.bone.volume;
     const auto densities = [&] {
@@ -226,7 +224,8 @@ TEST(HapticTick, ChangedSettingsAreTakenUpWhenTheirPointsAreReady) {
     AccuracySettings coarse = presetSettings(Preset::kBalanced);
     coarse.shell_factor = 2;
     AccuracySwitch accuracy(coarse);
-    HapticTick tick(bench.config, bone, bench.tool, nullptr, &accuracy);
+    const ToolSwitch tools({bench.config.tool});
+    HapticTick tick(bench.config, {bone}, {tools, accuracy});
     const auto factor = [&] { return bone.shell.scalingFactor(bone.shell.followed()); };
     const Pose start{kStart, Eigen::Quaterniond::Identity()};
     const auto mill = [&](int ticks) {

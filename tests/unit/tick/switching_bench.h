@@ -21,8 +21,9 @@ struct SwitchingBench {
         : bone(bodyVolume(cubeGeometry(64, 0.125e-3), halfSpace({0, 0, kBenchTop}, Eigen::Vector3d::UnitZ())),
                Eigen::Vector3i::Constant(16), shellLevels()),
           tool(sphereToolModel(kBenchBurr, 0.125e-3)),
+          tools({{&tool}}),
           accuracy(start),
-          tick(millingConfig(), bone, tool, nullptr, &accuracy) {}
+          tick(millingConfig(), {bone}, {tools, accuracy}) {}
 
     static ShellConfig shellLevels() {
         ShellConfig config;
@@ -49,6 +50,7 @@ struct SwitchingBench {
 
     BoneModel bone;
     ToolModel tool;
+    ToolSwitch tools;
     AccuracySwitch accuracy;
     HapticTick tick;
 };

@@ -9,7 +9,7 @@
 #include "common/rt/spsc_ring.h"
 #include "haptic_server/mesh/mesh_rounds.h"
 #include "haptic_server/publish/publisher.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
@@ -36,12 +36,13 @@ class RingIo final : public TickIo {
     SpscRing<Cut>& cuts_;
 };
 
-void expectStreamedAsRemeshed(const TickConfig& config) {
+void expectStreamedAsRemeshed(FixedTickConfig config) {
     BoneModel bone(test::bodyVolume(test::cubeGeometry(44, 0.125e-3),
                                     test::halfSpace({0, 0, 4e-3}, Eigen::Vector3d::UnitZ())),
                    Eigen::Vector3i::Constant(8), ShellConfig{});
     const ToolModel tool = test::sphereToolModel(1e-3, 0.125e-3);
-    HapticTick tick(config, bone, tool, nullptr);
+    config.tool.model = &tool;
+    FixedTick tick(config, bone);
     SpscRing<TickRecord> ring(1024);
     SpscRing<Cut> cuts(1024);
     RingIo io(test::straightPath({{2e-3, 3e-3, 4.8e-3}, Eigen::Quaterniond::Identity()}, {4.2e-3, 3e-3, 2e-3},
@@ -69,8 +70,7 @@ void expectStreamedAsRemeshed(const TickConfig& config) {
         publisher.publishStatus({});
     };
     std::thread tick_thread([&] {
-        while (tick.tick(io)) {
-        }
+        tick.run(io);
         is_milling = false;
     });
     std::thread mesher_thread([&] {
@@ -106,14 +106,14 @@ void expectStreamedAsRemeshed(const TickConfig& config) {
 
 // Few ticks move much: ThreadSanitizer slows each a hundred times.
 TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
-    TickConfig config;
+    FixedTickConfig config;
     config.effects.time_removal = {.rate = 1e9};
     expectStreamedAsRemeshed(config);
 }
 
 TEST(TickBesideMesherAndPublisher, AlsoWhenEnergyRemoves) {
-    TickConfig config;
-    config.burr.speed = 6000;
+    FixedTickConfig config;
+    config.tool.burr.speed = 6000;
     config.effects.energy_removal = {.specific_energy = 0.02e9};
     expectStreamedAsRemeshed(config);
 }

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
 
@@ -13,23 +13,22 @@ namespace {
 constexpr double kTop = 5e-3, kBurr = 3e-3;
 
 struct Bench {
-    explicit Bench(const TickConfig& config)
+    explicit Bench(FixedTickConfig config)
         : bone(test::bodyVolume(test::cubeGeometry(64, 0.125e-3),
                                 test::halfSpace({0, 0, kTop}, Eigen::Vector3d::UnitZ())),
                Eigen::Vector3i::Constant(16), {.levels = {{1}, {2}, {3}}}),
           tool(test::sphereToolModel(kBurr, 0.125e-3)),
-          tick(config, bone, tool, nullptr) {}
+          tick((config.tool.model = &tool, config), bone) {}
 
     std::vector<TickRecord> run(const std::vector<DeviceInput>& inputs) {
         test::ScriptedIo io(inputs);
-        while (tick.tick(io)) {
-        }
+        tick.run(io);
         return io.records;
     }
 
     BoneModel bone;
     ToolModel tool;
-    HapticTick tick;
+    FixedTick tick;
 };
 
 Pose at(double z) {
@@ -47,7 +46,7 @@ std::vector<DeviceInput> dip(int rest, int away, uint32_t buttons = 0) {
 }
 
 TEST(TickBudget, TooManyPointsForATickMeanACoarserShellAndSaySo) {
-    TickConfig config;
+    FixedTickConfig config;
     config.accuracy.patch_points = 1;
     config.gradient.contact.stiffness_per_area = 1e10;  // a wide contact
     const auto unlimited = Bench(config).run(dip(1000, 0));
@@ -72,7 +71,7 @@ TEST(TickBudget, TooManyPointsForATickMeanACoarserShellAndSaySo) {
 }
 
 TEST(TickBudget, PlentyOfTimeChangesNothing) {
-    TickConfig config;
+    FixedTickConfig config;
     const auto free = Bench(config).run(dip(300, 0, kButtonRemove));
     config.effects.time_removal.emplace();
     TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
@@ -85,9 +84,9 @@ TEST(TickBudget, PlentyOfTimeChangesNothing) {
 }
 
 TEST(TickBudget, MillingThatIsCutShortIsAFault) {
-    TickConfig config;
+    FixedTickConfig config;
     config.effects.time_removal.emplace();
-    config.burr.radius = kBurr;
+    config.tool.burr.radius = kBurr;
     config.most_milled_cells = 200;
     Bench bench(config);
     uint32_t faults = 0;

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "haptic_server/bone/checkpoints.h"
-#include "haptic_server/tick/haptic_tick.h"
+#include "haptic_server/tick/fixed_tick.h"
 #include "tests/support/milling_config.h"
 #include "tests/support/rt_guard/rt_probe.h"
 #include "tests/support/scripted_io.h"
@@ -23,11 +23,14 @@ class TickIsRtSafe : public testing::Test {
                 Eigen::Vector3i::Constant(16), ShellConfig{}),
           tool_(test::sphereToolModel(1e-3, 0.125e-3)),
           history_(bone_),
-          tick_(test::millingConfig(), bone_, tool_, &history_) {}
+          tools_({{&tool_}}),
+          accuracy_(AccuracySettings{}),
+          tick_(test::millingConfig(), {bone_, &history_}, {tools_, accuracy_}) {}
 
     // Runs the inputs under the probe; what the test itself keeps is allocated before.
     void expectQuiet(const std::vector<DeviceInput>& inputs) { expectQuiet(tick_, inputs); }
-    void expectQuiet(HapticTick& tick, const std::vector<DeviceInput>& inputs) {
+    template <class Tick>
+    void expectQuiet(Tick& tick, const std::vector<DeviceInput>& inputs) {
         test::ScriptedIo io(inputs);
         RtProbe probe;
         while (tick.tick(io)) {
@@ -47,6 +50,8 @@ class TickIsRtSafe : public testing::Test {
     BoneModel bone_;
     ToolModel tool_;
     BoneHistory history_;
+    ToolSwitch tools_;
+    AccuracySwitch accuracy_;
     HapticTick tick_;
     std::vector<TickRecord> records_;
 };
@@ -61,13 +66,13 @@ TEST_F(TickIsRtSafe, WhileMillingAndAddingAndResetting) {
 }
 
 TEST_F(TickIsRtSafe, WhileEnergyRemovesBoneOfSeveralKinds) {
-    TickConfig config;
-    config.burr.speed = 6000;
+    FixedTickConfig config;
+    config.tool = {&tool_, {.speed = 6000}};
     config.effects.energy_removal = {.specific_energy = 0.05e9, .density_exponent = 1.5};
     config.effects.properties = std::make_shared<const BoneProperties>(
         bone_.volume, [](const Eigen::Vector3i& v) { return MaterialId(v.x() % 2); });
     config.effects.materials = {{}, {.specific_energy = 0.03e9}};
-    HapticTick tick(config, bone_, tool_, &history_);
+    FixedTick tick(config, bone_, &history_);
     expectQuiet(tick, test::straightPath(at(6.2e-3), {4e-3, 4e-3, 3e-3}, 1000, kButtonRemove));
     EXPECT_GT(removedVoxels(), 1000u);
     history_.restore();
@@ -76,9 +81,10 @@ TEST_F(TickIsRtSafe, WhileEnergyRemovesBoneOfSeveralKinds) {
 }
 
 TEST_F(TickIsRtSafe, AsThesis2012) {
-    TickConfig config = test::millingConfig();
+    FixedTickConfig config = test::millingConfig();
+    config.tool.model = &tool_;
     config.accuracy = presetSettings(Preset::kThesis2012);
-    HapticTick tick(config, bone_, tool_, &history_);
+    FixedTick tick(config, bone_, &history_);
     expectQuiet(tick, test::straightPath(at(6.2e-3), {4e-3, 4e-3, 3e-3}, 1000, kButtonRemove));
     EXPECT_GT(removedVoxels(), 1000u);
     expectQuiet(tick, test::straightPath(at(3e-3), {4e-3, 4e-3, 6e-3}, 300, kButtonAdd));
@@ -89,7 +95,7 @@ TEST_F(TickIsRtSafe, WhileLevelsArePreparedAndTakenUp) {
                                     test::halfSpace({0, 0, 5e-3}, Eigen::Vector3d::UnitZ())),
                    Eigen::Vector3i::Constant(16), {.levels = {{1}, {2}, {3}}});
     AccuracySwitch accuracy(presetSettings(Preset::kBalanced));
-    HapticTick tick(test::millingConfig(), bone, tool_, nullptr, &accuracy);
+    HapticTick tick(test::millingConfig(), {bone}, {tools_, accuracy});
     for (const Preset preset : {Preset::kFast, Preset::kThesis2012, Preset::kExact}) {
         accuracy.choose(AccuracySwitch::choiceOf(preset));
         expectQuiet(tick, test::straightPath(at(6.2e-3), {4e-3, 4e-3, 3e-3}, 300, kButtonRemove));

@@ -13,7 +13,7 @@ inline constexpr double kBurrs[] = {0.5e-3, 1e-3, 1.5e-3};  // radius, m
 struct ToolBench {
     static constexpr size_t kTicksPerTool = 120;
 
-    explicit ToolBench(size_t first = 0, const AccuracySettings& accuracy = presetSettings(Preset::kBalanced))
+    explicit ToolBench(size_t first = 0, const AccuracySettings& settings = presetSettings(Preset::kBalanced))
         : bone(bodyVolume(cubeGeometry(64, 0.125e-3), halfSpace({0, 0, kBenchTop}, Eigen::Vector3d::UnitZ())),
                Eigen::Vector3i::Constant(16), SwitchingBench::shellLevels()),
           models{sphereToolModel(kBurrs[0], 0.125e-3), sphereToolModel(kBurrs[1], 0.125e-3),
@@ -23,13 +23,9 @@ struct ToolBench {
                  {&models[1], {.radius = kBurrs[1]}, 10},
                  {&models[2], {.radius = kBurrs[2]}, 15}},
                 first),
-          tick(configOf(accuracy), bone, models[0], &history, nullptr, &tools) {}
+          accuracy(settings),
+          tick(millingConfig(), {bone, &history}, {tools, accuracy}) {}
 
-    static TickConfig configOf(const AccuracySettings& accuracy) {
-        TickConfig config = millingConfig();
-        config.accuracy = accuracy;
-        return config;
-    }
     void run(ScriptedIo& io) noexcept {
         while (tick.tick(io)) {
         }
@@ -46,6 +42,7 @@ struct ToolBench {
     std::array<ToolModel, 3> models;
     BoneHistory history;
     ToolSwitch tools;
+    AccuracySwitch accuracy;
     HapticTick tick;
 };
 

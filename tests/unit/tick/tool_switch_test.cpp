@@ -40,9 +40,9 @@ TEST(ToolSwitch, EachToolRestsOnItsOwnBurr) {
 // What the change starts from is what the hand feels, not what was computed beyond the limit.
 TEST(ToolSwitch, AForceAtItsLimitFallsAtOnce) {
     ToolBench bench(2);
-    TickConfig config = ToolBench::configOf(presetSettings(Preset::kBalanced));
+    TickConfig config = test::millingConfig();
     config.coupling.max_force = 0.5;
-    HapticTick tick(config, bench.bone, bench.models[2], &bench.history, nullptr, &bench.tools);
+    HapticTick tick(config, {bench.bone, &bench.history}, {bench.tools, bench.accuracy});
     // Deep in the slab for the largest burr, above it for the smallest.
     const auto hand = test::SwitchingBench::at(test::kBenchTop + 0.7e-3);
     const auto feltAfter = [&](int ticks) {
@@ -87,21 +87,17 @@ TEST(SuddenBone, ThatIsPutBackAroundTheToolPushesAtALimitedRate) {
 // A burr that has no room stays small when another law was in force for a while.
 TEST(SuddenLaw, ChangesTheForceAtALimitedRateAndLeavesAToolSmall) {
     ToolBench bench(0);
-    AccuracySwitch accuracy(presetSettings(Preset::kBalanced));
-    HapticTick tick(ToolBench::configOf(presetSettings(Preset::kBalanced)), bench.bone, bench.models[0],
-                    &bench.history, &accuracy, &bench.tools);
     const auto hand = test::SwitchingBench::at(test::kBenchTop + 0.1e-3);
     std::vector<TickRecord> records;
     const auto rest = [&](int ticks) {
         test::ScriptedIo io(test::straightPath(hand, hand.position, ticks, 0));
-        while (tick.tick(io)) {
-        }
+        bench.run(io);
         records.insert(records.end(), io.records.begin(), io.records.end());
     };
     rest(300);
     records.clear();
     for (const Preset preset : {Preset::kThesis2012, Preset::kBalanced, Preset::kThesis2012, Preset::kFast}) {
-        accuracy.choose(AccuracySwitch::choiceOf(preset));
+        bench.accuracy.choose(AccuracySwitch::choiceOf(preset));
         rest(300);
     }
     EXPECT_LE(largestStep(records), 1.001 * SuddenChange::kForceRate * 1e-3);
