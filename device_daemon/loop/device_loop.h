@@ -1,5 +1,5 @@
 // One period of the device loop, without processes, threads or clocks: joints -> pose -> DeviceSample, and
-// WrenchCommand -> stale ramp -> limits -> actuator forces.
+// WrenchCommand -> limits -> actuator forces. The limits, and their order, stand in safety/force_limiter.h.
 //
 // Order per period: read() first and the sample out at once, then write() with the newest command. The
 // command then answers an earlier sample, so the loop has the one tick of delay that a real device has. Time
@@ -7,7 +7,6 @@
 #pragma once
 
 #include "common/device_messages/device_messages.h"
-#include "common/ipc/stale_ramp.h"
 #include "device_daemon/driver/joint_device.h"
 #include "device_daemon/safety/force_limiter.h"
 
@@ -34,30 +33,28 @@ class DeviceLoop {
 
     // From now on every command is ignored and the force ramps to zero; isReleased() says that it arrived
     // there.
-    void release() noexcept { is_releasing_ = true; }
-    bool isReleased() const noexcept { return is_releasing_ && ramp_.factor() == 0; }
+    void release() noexcept { limiter_.release(); }
+    bool isReleased() const noexcept { return limiter_.isReleased(); }
 
-    bool isPeerStale() const noexcept { return ramp_.isStale(); }
-    const Pose& pose() const noexcept { return X_DT_; }                           // last solved handle pose
-    const Vector6d& actuatorForces() const noexcept { return actuator_forces_; }  // last applied
-    const Wrench& appliedWrench() const noexcept {
-        return applied_wrench_;
-    }  // what those forces make, on the hand, D
-    uint32_t limitEvents() const noexcept { return limiter_.events(); }  // ForceLimitEvent, last write()
-    uint64_t failedPoses() const noexcept { return failed_poses_; }      // read() that returned false
+    bool isPeerStale() const noexcept { return limiter_.isStale(); }
+    // The handle's pose that was last found.
+    const Pose& pose() const noexcept { return X_DT_; }
+    // Those last applied, and the wrench on the hand that they make, in D.
+    const Vector6d& actuatorForces() const noexcept { return actuator_forces_; }
+    const Wrench& appliedWrench() const noexcept { return applied_wrench_; }
+    // ForceLimitEvent bits of the last write().
+    uint32_t limitEvents() const noexcept { return limiter_.events(); }
+    // How often read() returned false.
+    uint64_t failedPoses() const noexcept { return failed_poses_; }
 
   private:
     AresKinematics kinematics_;
     JointDevice& device_;
-    DeviceLoopConfig config_;
-    StaleRamp ramp_;
+    uint32_t sample_flags_;
     ForceLimiter limiter_;
     Pose X_DT_;
-    bool has_pose_ = false;    // the last read() succeeded
-    double elapsed_ = 0;       // s, of the last read()
-    WrenchCommand command_{};  // last plausible one
-    bool has_command_ = false;
-    bool is_releasing_ = false;
+    bool has_pose_ = false;  // the last read() succeeded
+    double elapsed_ = 0;     // s, of the last read()
     Vector6d actuator_forces_ = Vector6d::Zero();
     Wrench applied_wrench_;
     uint64_t failed_poses_ = 0;

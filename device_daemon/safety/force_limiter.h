@@ -1,9 +1,21 @@
-// The last stop before the motors: finite -> rate -> clamp, in actuator forces.
+// The last stop before the motors: all limits on what the hand feels of a command, in this order.
 //
-// Scaling is by one factor over all six actuators, so that a limit never turns the wrench's direction: the
-// hand then feels too little, not something else. RT-safe, one thread. Units N, N·m, s.
+// 1. Finite. A wrench or a Jacobian that is not usable makes no force: the wanted forces are zero. This comes
+//    first, because what is not a number can be compared with no limit.
+// 2. The clamp: no actuator is asked for more than max_actuator_force. This comes before the rate: where the
+//    forces come from and where they go to are then both within the clamp, and with them all that lies
+//    between; and from a demand far beyond the clamp they fall from what the motors gave, at once.
+// 3. The rate: no actuator's force changes by more than max_actuator_force_rate.
+// 4. The stale ramp: a factor that falls to 0 when the server falls silent or the loop is released. It comes
+//    last, so that no other limit can undo it: a demand beyond the clamp fades like any other, and at 0 no
+//    motor gives anything. The rate does not see it. In all a force changes by no more than the rate and
+//    max_actuator_force over the ramp's time (1000 N/s as shipped) together.
+//
+// Each scales by one factor over all six actuators, so that no limit but the rate turns the wrench's
+// direction: the hand then feels too little, not something else. RT-safe, one thread. Units N, N·m, s.
 #pragma once
 
+#include "common/ipc/stale_ramp.h"
 #include "device_daemon/kinematics/ares_kinematics.h"
 
 namespace bonemill {
@@ -19,30 +31,42 @@ struct ForceLimits {
 // What the limiter did (bit mask).
 enum ForceLimitEvent : uint32_t {
     kForceNotLimited = 0,
-    kForceNotFinite =
-        1u << 0,  // wrench or Jacobian unusable: the force goes to zero as fast as the rate allows
+    kForceNotFinite = 1u << 0,  // the forces go to zero as fast as the rate allows
     kForceRateLimited = 1u << 1,
     kForceClamped = 1u << 2,
 };
 
 class ForceLimiter {
   public:
-    explicit ForceLimiter(const ForceLimits& limits = {}) noexcept : limits_(limits) {}
+    explicit ForceLimiter(const ForceLimits& limits = {}, const StaleRampConfig& stale = {}) noexcept
+        : limits_(limits), stale_(stale), ramp_(stale) {}
 
-    // Actuator forces for `wrench` (on the hand, in D about T's origin), dt after the last call. Always
-    // finite, never beyond max_actuator_force.
-    Vector6d limit(const Wrench& wrench, const Matrix6d& J_inv, double dt) noexcept;
+    // The newest command: a wrench on the hand, in D about T's origin, and when it was computed.
+    void take(const Wrench& wrench_hand_D, int64_t stamp_ns) noexcept;
+    // From now on every command counts as silence, and the forces ramp to zero.
+    void release() noexcept { is_releasing_ = true; }
 
-    // The same without a usable pose: forces go to zero as fast as the rate allows.
-    Vector6d fadeOut(double dt) noexcept;
+    // Once per period: actuator forces for the newest command, dt after the last call. Null: there is no
+    // usable pose. The result is always finite, and never beyond max_actuator_force.
+    Vector6d forces(const Matrix6d* J_inv, int64_t now_ns, double dt) noexcept;
 
+    bool isStale() const noexcept { return ramp_.isStale(); }
+    bool isReleased() const noexcept { return is_releasing_ && ramp_.factor() == 0; }
     uint32_t events() const noexcept { return events_; }  // ForceLimitEvent bits of the last call
 
   private:
-    Vector6d approach(const Vector6d& wanted, double dt) noexcept;
+    double staleFactor(int64_t now_ns) noexcept;
+    Vector6d wantedForces(const Matrix6d* J_inv) noexcept;
+    void clamp(Vector6d& forces) noexcept;
+    void approach(const Vector6d& wanted, double dt) noexcept;
 
     ForceLimits limits_;
-    Vector6d actuator_forces_ = Vector6d::Zero();
+    StaleRampConfig stale_;
+    StaleRamp ramp_;
+    Wrench wrench_hand_D_;  // of the newest command
+    int64_t stamp_ns_ = 0;
+    bool has_command_ = false, is_releasing_ = false;
+    Vector6d before_ramp_ = Vector6d::Zero();  // what the motors gave, but for the stale ramp
     uint32_t events_ = kForceNotLimited;
 };
 

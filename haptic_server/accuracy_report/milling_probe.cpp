@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/device_messages/device_messages.h"
 #include "haptic_server/accuracy_report/fine_bone.h"
 #include "haptic_server/accuracy_report/smooth_path.h"
 

@@ -63,8 +63,8 @@ void addSpring(EnergyTerm& term, const Vector3d& r, const Vector3d& force, doubl
     term.stiffness.bottomRightCorner<3, 3>() -= r_skew * K * r_skew;
 }
 
-Eigen::Quaterniond fromSpoToDevice(const Pose& spo, const Pose& device) noexcept {
-    return device.rotation * spo.rotation.conjugate();
+Eigen::Quaterniond fromSpoToDevice(const Pose& X_VT, const Pose& X_VT_device) noexcept {
+    return X_VT_device.rotation * X_VT.rotation.conjugate();
 }
 
 }  // namespace
@@ -89,13 +89,13 @@ void ContinuousRotation::remember(const Eigen::Quaterniond& rotation) noexcept {
     last_ = Eigen::Quaterniond(q);
 }
 
-EnergyTerm couplingEnergy(const EnergyCoupling& coupling, const Pose& spo, const Pose& device,
+EnergyTerm couplingEnergy(const EnergyCoupling& coupling, const Pose& X_VT, const Pose& X_VT_device,
                           const ContinuousRotation& way) noexcept {
-    const Vector3d r = spo.rotation * coupling.p_TG;
-    const Vector3d stretch = device * coupling.p_TG - spo.position - r;
+    const Vector3d r = X_VT.rotation * coupling.p_TG;
+    const Vector3d stretch = X_VT_device * coupling.p_TG - X_VT.position - r;
     const Spring force = springAt(coupling.translation_stiffness, coupling.saturation_force, stretch.norm());
 
-    const Vector3d theta = way.log(fromSpoToDevice(spo, device));
+    const Vector3d theta = way.log(fromSpoToDevice(X_VT, X_VT_device));
     const double angle = theta.norm();
     const Spring torque = springAt(coupling.rotation_stiffness, coupling.saturation_torque, angle);
 
@@ -109,12 +109,12 @@ EnergyTerm couplingEnergy(const EnergyCoupling& coupling, const Pose& spo, const
     return term;
 }
 
-Wrench couplingWrenchOnDevice(const EnergyCoupling& coupling, const Pose& spo, const Pose& device,
+Wrench couplingWrenchOnDevice(const EnergyCoupling& coupling, const Pose& X_VT, const Pose& X_VT_device,
                               const ContinuousRotation& way) noexcept {
-    const Vector3d r = device.rotation * coupling.p_TG;
-    const Vector3d stretch = device.position + r - spo * coupling.p_TG;
+    const Vector3d r = X_VT_device.rotation * coupling.p_TG;
+    const Vector3d stretch = X_VT_device.position + r - X_VT * coupling.p_TG;
     const Spring force = springAt(coupling.translation_stiffness, coupling.saturation_force, stretch.norm());
-    const Vector3d theta = way.log(fromSpoToDevice(spo, device));
+    const Vector3d theta = way.log(fromSpoToDevice(X_VT, X_VT_device));
     const Spring torque = springAt(coupling.rotation_stiffness, coupling.saturation_torque, theta.norm());
     Wrench wrench;
     wrench.force = -springVector(stretch, force);
@@ -127,41 +127,41 @@ RelaxingSpring::RelaxingSpring(const EnergyCoupling& coupling, double dt) noexce
       share_(dt / (coupling.relaxing_time + dt)),
       stiffness_(coupling.relaxing_share * coupling.translation_stiffness * (1 - share_)) {}
 
-Vector3d RelaxingSpring::stretchOf(const Pose& spo, const Pose& device) const noexcept {
-    return device * coupling_.p_TG - spo * coupling_.p_TG;
+Vector3d RelaxingSpring::stretchOf(const Pose& X_VT, const Pose& X_VT_device) const noexcept {
+    return X_VT_device * coupling_.p_TG - X_VT * coupling_.p_TG;
 }
 
-EnergyTerm RelaxingSpring::energy(const Pose& spo, const Pose& device) const noexcept {
+EnergyTerm RelaxingSpring::energy(const Pose& X_VT, const Pose& X_VT_device) const noexcept {
     EnergyTerm term;
     if (!has_memory_ || stiffness_ == 0) return term;
-    const Vector3d r = spo.rotation * coupling_.p_TG;
-    const Vector3d stretch = stretchOf(spo, device) - followed_;
+    const Vector3d r = X_VT.rotation * coupling_.p_TG;
+    const Vector3d stretch = stretchOf(X_VT, X_VT_device) - followed_;
     const Spring spring = springAt(stiffness_, coupling_.saturation_force, stretch.norm());
     addSpring(term, r, springVector(stretch, spring), spring.energy,
               directional(stretch, spring.slope, spring.secant, stiffness_));
     return term;
 }
 
-Wrench RelaxingSpring::wrenchOnDevice(const Pose& spo, const Pose& device) const noexcept {
+Wrench RelaxingSpring::wrenchOnDevice(const Pose& X_VT, const Pose& X_VT_device) const noexcept {
     if (!has_memory_ || stiffness_ == 0) return {};
-    const Vector3d stretch = stretchOf(spo, device) - followed_;
+    const Vector3d stretch = stretchOf(X_VT, X_VT_device) - followed_;
     const Vector3d force =
         -springVector(stretch, springAt(stiffness_, coupling_.saturation_force, stretch.norm()));
-    return {force, (device.rotation * coupling_.p_TG).cross(force)};
+    return {force, (X_VT_device.rotation * coupling_.p_TG).cross(force)};
 }
 
-void RelaxingSpring::follow(const Pose& spo, const Pose& device) noexcept {
-    const Vector3d stretch = stretchOf(spo, device);
+void RelaxingSpring::follow(const Pose& X_VT, const Pose& X_VT_device) noexcept {
+    const Vector3d stretch = stretchOf(X_VT, X_VT_device);
     followed_ = has_memory_ ? Vector3d(followed_ + share_ * (stretch - followed_)) : stretch;
     has_memory_ = true;
 }
 
-EnergyTerm dampingEnergy(const EnergyCouplingConfig& config, const Pose& spo, const Pose& spo_before,
+EnergyTerm dampingEnergy(const EnergyCouplingConfig& config, const Pose& X_VT, const Pose& X_VT_before,
                          double dt) noexcept {
     const double share = config.damping_time / dt;
     const double k = share * config.translation_stiffness, k_rotation = share * config.rotation_stiffness;
-    const Vector3d x = spo.position - spo_before.position;
-    const Vector3d theta = logRotation(spo.rotation * spo_before.rotation.conjugate());
+    const Vector3d x = X_VT.position - X_VT_before.position;
+    const Vector3d theta = logRotation(X_VT.rotation * X_VT_before.rotation.conjugate());
     EnergyTerm term;
     term.energy = 0.5 * (k * x.squaredNorm() + k_rotation * theta.squaredNorm());
     term.wrench = {-k * x, -k_rotation * theta};

@@ -61,13 +61,13 @@ class ContinuousRotation {
     Eigen::Quaterniond last_ = Eigen::Quaterniond::Identity();
 };
 
-// From the SPO to the device. Frame: that of the poses.
-EnergyTerm couplingEnergy(const EnergyCoupling& coupling, const Pose& spo, const Pose& device,
+// From the SPO to the device. Energies, wrenches and poses are in V here, as all in the tick.
+EnergyTerm couplingEnergy(const EnergyCoupling& coupling, const Pose& X_VT, const Pose& X_VT_device,
                           const ContinuousRotation& way) noexcept;
 
 // On the device, about the device's own tool point: minus the same energy's gradient by the device's pose, so
 // that a closed path of the device costs no energy that the tool does not get.
-Wrench couplingWrenchOnDevice(const EnergyCoupling& coupling, const Pose& spo, const Pose& device,
+Wrench couplingWrenchOnDevice(const EnergyCoupling& coupling, const Pose& X_VT, const Pose& X_VT_device,
                               const ContinuousRotation& way) noexcept;
 
 // The spring of k_2. One object per tool.
@@ -77,15 +77,15 @@ class RelaxingSpring {
 
     // As couplingEnergy() and couplingWrenchOnDevice(), for this spring alone. Before the first follow() it
     // is slack.
-    EnergyTerm energy(const Pose& spo, const Pose& device) const noexcept;
-    Wrench wrenchOnDevice(const Pose& spo, const Pose& device) const noexcept;
+    EnergyTerm energy(const Pose& X_VT, const Pose& X_VT_device) const noexcept;
+    Wrench wrenchOnDevice(const Pose& X_VT, const Pose& X_VT_device) const noexcept;
     // End of a tick: d_f goes its way towards d.
-    void follow(const Pose& spo, const Pose& device) noexcept;
+    void follow(const Pose& X_VT, const Pose& X_VT_device) noexcept;
     void forget() noexcept { has_memory_ = false; }
     void setSaturationForce(double force) noexcept { coupling_.saturation_force = force; }  // N
 
   private:
-    Eigen::Vector3d stretchOf(const Pose& spo, const Pose& device) const noexcept;
+    Eigen::Vector3d stretchOf(const Pose& X_VT, const Pose& X_VT_device) const noexcept;
 
     EnergyCoupling coupling_;
     double share_;                                        // of the way that d_f goes in a tick
@@ -95,7 +95,7 @@ class RelaxingSpring {
 };
 
 // Against motion from the pose at the tick's start: D/dt with D = τ diag(k_t, k_θ).
-EnergyTerm dampingEnergy(const EnergyCouplingConfig& config, const Pose& spo, const Pose& spo_before,
+EnergyTerm dampingEnergy(const EnergyCouplingConfig& config, const Pose& X_VT, const Pose& X_VT_before,
                          double dt) noexcept;
 
 }  // namespace bonemill

@@ -7,8 +7,8 @@ namespace bonemill {
 namespace {
 
 // Rotation from the SPO to the device, scalar part >= 0.
-Eigen::Quaterniond rotationError(const Pose& spo, const Pose& device) noexcept {
-    Eigen::Quaterniond error = device.rotation * spo.rotation.conjugate();
+Eigen::Quaterniond rotationError(const Pose& X_VT, const Pose& X_VT_device) noexcept {
+    Eigen::Quaterniond error = X_VT_device.rotation * X_VT.rotation.conjugate();
     if (error.w() < 0) error.coeffs() = -error.coeffs();
     return error;
 }
@@ -35,13 +35,14 @@ bool limitNorm(Eigen::Ref<Eigen::Vector3d> v, double most) noexcept {
 
 }  // namespace
 
-Wrench couplingWrench(const CouplingConfig& config, const Pose& spo, const Pose& device) noexcept {
-    return {config.translation_stiffness * (device.position - spo.position),
-            config.rotation_stiffness * rotationError(spo, device).vec()};
+Wrench couplingWrench(const CouplingConfig& config, const Pose& X_VT, const Pose& X_VT_device) noexcept {
+    return {config.translation_stiffness * (X_VT_device.position - X_VT.position),
+            config.rotation_stiffness * rotationError(X_VT, X_VT_device).vec()};
 }
 
-Matrix6d couplingDerivative(const CouplingConfig& config, const Pose& spo, const Pose& device) noexcept {
-    const Eigen::Quaterniond error = rotationError(spo, device);
+Matrix6d couplingDerivative(const CouplingConfig& config, const Pose& X_VT,
+                            const Pose& X_VT_device) noexcept {
+    const Eigen::Quaterniond error = rotationError(X_VT, X_VT_device);
     Matrix6d derivative = Matrix6d::Zero();
     derivative.topLeftCorner<3, 3>().diagonal().setConstant(-config.translation_stiffness);
     derivative.bottomRightCorner<3, 3>() =
@@ -68,23 +69,11 @@ EquilibriumStep solveEquilibrium(const CouplingConfig& config, const Wrench& wre
     const Vector6d negative_scaled_wrench = -scale.cwiseProduct(w);
     result.step = scale.cwiseProduct(lu.solve(negative_scaled_wrench));
     if (!result.step.allFinite()) return {};
+    result.is_found = true;
     const bool translation_clamped = limitNorm(result.step.head<3>(), config.max_speed * dt);
     const bool rotation_clamped = limitNorm(result.step.tail<3>(), config.max_angular_speed * dt);
     result.is_clamped = translation_clamped || rotation_clamped;
     return result;
-}
-
-bool limitWrench(const CouplingConfig& config, Wrench& wrench) noexcept {
-    if (!wrench.isFinite()) {
-        wrench = {};
-        return true;
-    }
-    const double excess =
-        std::max(wrench.force.norm() / config.max_force, wrench.torque.norm() / config.max_torque);
-    if (excess <= 1) return false;
-    wrench.force /= excess;
-    wrench.torque /= excess;
-    return true;
 }
 
 }  // namespace bonemill

@@ -15,20 +15,19 @@ struct CouplingConfig {
     double max_angular_speed =
         4.18879;  // rad/s = 240 °/s, before damping; the thesis' "0.073 rad per ms" is a slip (0.00419)
     double static_damping = 0.5;  // α: the tool moves by (1 - α) of the step
-    double max_force = 50;        // N on the hand
-    double max_torque = 1;        // N·m on the hand
 };
 
 // Coupling wrench on the tool about the tool point (eq 17-18, 32-33): springs from the SPO to the device
 // pose. The quaternion's sign is chosen for the shorter way round.
-Wrench couplingWrench(const CouplingConfig& config, const Pose& spo, const Pose& device) noexcept;
+Wrench couplingWrench(const CouplingConfig& config, const Pose& X_VT, const Pose& X_VT_device) noexcept;
 
 // ∂(force, torque)/∂(x, ω) of couplingWrench (eq 19-22).
-Matrix6d couplingDerivative(const CouplingConfig& config, const Pose& spo, const Pose& device) noexcept;
+Matrix6d couplingDerivative(const CouplingConfig& config, const Pose& X_VT, const Pose& X_VT_device) noexcept;
 
 struct EquilibriumStep {
     Vector6d step = Vector6d::Zero();  // (Δx, Δω) before damping; zero if nothing finite could be found
     bool is_regular = false;           // false: the matrix was singular or something was not finite
+    bool is_found = false;             // false: nothing finite was found, also not with a regularised matrix
     bool is_clamped = false;           // a speed limit acted
 };
 
@@ -37,9 +36,5 @@ struct EquilibriumStep {
 // moves on.
 EquilibriumStep solveEquilibrium(const CouplingConfig& config, const Wrench& wrench,
                                  const Matrix6d& derivative, double dt) noexcept;
-
-// What the hand may feel: non-finite → zero; above a limit → the whole wrench scaled by one factor.
-// Returns true if it changed the wrench.
-bool limitWrench(const CouplingConfig& config, Wrench& wrench) noexcept;
 
 }  // namespace bonemill

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "haptic_server/effects/burr_speed.h"
+#include "haptic_server/spo/spo_model.h"
 
 namespace bonemill {
 

@@ -9,6 +9,8 @@
 
 namespace bonemill {
 
+class SpoModel;
+
 using EffectList = std::vector<std::unique_ptr<HapticEffect>>;
 
 class EffectHost final : private ContactWeights, private SolveEnergy {

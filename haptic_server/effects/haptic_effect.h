@@ -15,7 +15,7 @@
 #include "haptic_server/coupling/energy_coupling.h"
 #include "haptic_server/milling/burr_limit.h"
 #include "haptic_server/milling/milling_result.h"
-#include "haptic_server/spo/spo_model.h"
+#include "haptic_server/spo/spo_tool.h"
 #include "haptic_server/telemetry/effect_record.h"
 
 namespace bonemill {

@@ -27,7 +27,7 @@ bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     const bool is_first = first_start_ns_ == 0;
     const int64_t due = is_first ? 0 : waitForDue();
     const int64_t start = monotonicNowNs();
-    input.force_factor = ramp_.update(start, sample_stamp_ns_);
+    input.stale_factor = ramp_.update(start, sample_stamp_ns_);
     is_stale_ = ramp_.isStale();
     input.is_stale = is_stale_;
     input.X_WT_device = X_WT_device_;

@@ -186,9 +186,9 @@ TickConfig tickConfigOf(const scene::Scene& scene) {
                        .rotation_stiffness = coupling.rotation_stiffness_nmm_per_rad() * kMillimetre,
                        .max_speed = coupling.max_speed_mm_per_s() * kMillimetre,
                        .max_angular_speed = coupling.max_angular_speed_deg_per_s() * kDegree,
-                       .static_damping = coupling.static_damping(),
-                       .max_force = coupling.max_force_n(),
-                       .max_torque = coupling.max_torque_nmm() * kMillimetre};
+                       .static_damping = coupling.static_damping()};
+    config.hand = {.max_force = coupling.max_force_n(),
+                   .max_torque = coupling.max_torque_nmm() * kMillimetre};
     config.effects = effectConfigsOf(scene);
     TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     return config;

@@ -144,7 +144,6 @@ void GradientModel::restart() noexcept {
     lambda_ = 0;
     last_motion_.setZero();
     last_reach_ = 0;
-    last_wrench_hand_ = {};
     is_new_tool_ = false;
     last_depth_ = 0;
     useTool();
@@ -329,15 +328,14 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
     return out;
 }
 
-// The pose and what the hand gets of it; an unsolved tick repeats the last wrench.
+// The pose and what the hand gets of it.
 void GradientModel::feel(const Pose& X_VT, const Tick& tick) noexcept {
     const Pose X_WV = X_VW_.inverse();
     tick.out->spo = X_WV * X_VT;
     const Wrench wrench_hand = (couplingWrenchOnDevice(coupling_, X_VT, tick.device, way_) +
                                 relaxing_.wrenchOnDevice(X_VT, tick.device))
                                    .rotatedBy(X_WV.rotation);
-    if (wrench_hand.isFinite() && tick.out->is_solved) last_wrench_hand_ = wrench_hand;
-    tick.out->wrench_hand = last_wrench_hand_;
+    tick.out->wrench_hand = wrench_hand;
     dropTraces(*tick.out);
     relaxing_.follow(X_VT, tick.device);
     way_.remember(tick.device.rotation * X_VT.rotation.conjugate());

@@ -87,7 +87,6 @@ class GradientModel final : public SpoModel {
     Vector6d last_motion_ = Vector6d::Zero();  // of the last tick, V
     double last_reach_ = 0;                    // m, of that
     double energy_ = 0;
-    Wrench last_wrench_hand_;
 };
 
 }  // namespace bonemill

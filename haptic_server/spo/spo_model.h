@@ -23,13 +23,14 @@ struct SpoWorld {
 
 struct SpoStep {
     Pose spo;            // after the tick, W
-    Wrench wrench_hand;  // on the hand, axes W, about the tool point; not yet limited
+    Wrench wrench_hand;  // on the hand, axes W, about the tool point; not yet limited; of an unsolved tick
+                         // nothing
     uint32_t contacts = 0;
     uint32_t candidates = 0;  // points that were tested in each iteration
     uint32_t iterations = 0;
     double budget_share = 0;         // of the point tests that a tick may make
     double max_penetration = 0;      // m
-    bool is_solved = true;           // false: singular or not finite; the tool is at its last good pose
+    bool is_solved = true;           // false: no finite equilibrium; the tool is at its last good pose
     bool is_motion_clamped = false;  // a speed limit or the trust radius acted
     bool has_stalled = false;  // forces that can be felt are out of balance, and no step was found that helps
     bool has_contact_overflow =

@@ -40,7 +40,7 @@ SpoStep Thesis2012Model::advance(const Pose& spo_W, const Pose& device_W) noexce
     step.contacts = contact.contacts;
     step.iterations = 1;
     step.max_penetration = contact.max_penetration;
-    step.is_solved = solved.is_regular;
+    step.is_solved = solved.is_found;
     step.is_motion_clamped = solved.is_clamped;
     return step;
 }

@@ -15,8 +15,7 @@ enum TickFault : uint32_t {
     kFaultOverrun = 1u << 0,        // the tick's own work took longer than its period
     kFaultStaleDevice = 1u << 1,    // no fresh device sample: force ramps to zero
     kFaultBadDevicePose = 1u << 2,  // non-finite or unnormalisable pose: the last good one is kept
-    kFaultSolve =
-        1u << 3,  // singular or non-finite equilibrium: the tool keeps its pose, the hand the last force
+    kFaultSolve = 1u << 3,          // no finite equilibrium: the tool keeps its pose, and the force fades
     kFaultMotionClamped = 1u << 4,  // a speed limit or the trust radius acted
     kFaultForceClamped = 1u << 5,   // the wrench limit acted
     kFaultShellOverflow = 1u << 6,  // the point-shell pool is full: some milled surface has no contact points

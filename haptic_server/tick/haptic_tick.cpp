@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/rt/rt_guard.h"
+#include "haptic_server/effects/make_effects.h"
 
 namespace bonemill {
 namespace {
@@ -24,13 +25,13 @@ constexpr double kFarthest = 1e3;  // m from W's origin: beyond any scan, and sq
 constexpr int kLeavesPreparedPerTick = 1;
 
 // As stiff as the quicker of the two laws.
-SuddenChange suddenChangeOf(const TickConfig& config) noexcept {
+HandSpring handSpringOf(const TickConfig& config) noexcept {
     const EnergyCouplingConfig& gradient = config.gradient.coupling;
-    return {config.coupling, config.dt,
-            std::max(config.coupling.translation_stiffness,
-                     gradient.translation_stiffness * (1 + gradient.relaxing_share)),
-            std::max(config.coupling.rotation_stiffness / 2, gradient.rotation_stiffness),
-            gradient.p_TG.norm()};
+    return {
+        .stiffness = std::max(config.coupling.translation_stiffness,
+                              gradient.translation_stiffness * (1 + gradient.relaxing_share)),
+        .rotation_stiffness = std::max(config.coupling.rotation_stiffness / 2, gradient.rotation_stiffness),
+        .lever = gradient.p_TG.norm()};
 }
 
 SpoWorld worldOf(const BoneModel& bone) noexcept {
@@ -54,7 +55,7 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
                            {config.dt, tools_.largestBurrRadius(), tools_.largestBurrReach(),
                             gradient_.mostCandidates(), config.most_milled_cells}),
                gradient_.mostCandidates(), config.gradient.contact.stiffness_per_area),
-      sudden_change_(suddenChangeOf(config)),
+      hand_limits_(config.hand, handSpringOf(config), config.dt),
       X_VW_(bone_.volume.geometry().X_WV.inverse()) {
     const AccuracySettings& settings = accuracy_.chosen();
     bone_.shell.prepare(bone_.volume, bone_.lattice, levelOf(bone_.shell, settings),
@@ -75,7 +76,7 @@ void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept 
         shell.prepare(bone_.volume, bone_.lattice, levelOf(shell, chosen), kLeavesPreparedPerTick);
     if (!is_complete) faults |= kFaultShellOverflow;
     if (!is_ready) return;
-    if (chosen.law != settings_.law) sudden_change_.begin();
+    if (chosen.law != settings_.law) hand_limits_.beginSuddenChange();
     takeUp(chosen);
 }
 
@@ -99,7 +100,7 @@ void HapticTick::chooseTool() noexcept {
     thesis_.setTool(tools_[tool_]);
     gradient_.setTool(tools_[tool_]);
     effects_.restart(Restart::kOtherTool);
-    sudden_change_.begin();
+    hand_limits_.beginSuddenChange();
 }
 
 bool HapticTick::tick(TickIo& io) noexcept {
@@ -110,7 +111,7 @@ bool HapticTick::tick(TickIo& io) noexcept {
     device_ = acceptPose(input, faults);
     chooseTool();
     beginEffects(input);
-    const SpoStep step = moveAndFeel(input.force_factor, faults);
+    const SpoStep step = moveAndFeel(input.stale_factor, faults);
     const int64_t force_at_ns = io.write(step.wrench_hand);
 
     effects_.afterSolve(X_VW_ * spo_, *model_);
@@ -175,18 +176,17 @@ void HapticTick::addEffectsToHand(Wrench& wrench_hand_W) noexcept {
     wrench_hand_W = wrench_hand_W + (after_V + -before_V).rotatedBy(R_WV);
 }
 
-SpoStep HapticTick::moveAndFeel(double force_factor, uint32_t& faults) noexcept {
+SpoStep HapticTick::moveAndFeel(double stale_factor, uint32_t& faults) noexcept {
     SpoStep step = model_->advance(spo_, device_);
     spo_ = step.spo;
     if (!step.is_solved) faults |= kFaultSolve;
     if (step.is_motion_clamped) faults |= kFaultMotionClamped;
     if (step.has_stalled) faults |= kFaultStalled;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
-    if (gradient_.isToolGrowing()) sudden_change_.begin();
+    if (gradient_.isToolGrowing()) hand_limits_.beginSuddenChange();
     addEffectsToHand(step.wrench_hand);
-    if (sudden_change_.limit(step.wrench_hand, device_)) faults |= kFaultForceClamped;
-    step.wrench_hand.force *= force_factor;
-    step.wrench_hand.torque *= force_factor;
+    step.wrench_hand = hand_limits_.limit({step.wrench_hand, step.is_solved, device_, stale_factor});
+    if (hand_limits_.wasLimited()) faults |= kFaultForceClamped;
     return step;
 }
 
@@ -196,7 +196,7 @@ MillingResult HapticTick::mill(uint32_t& faults) noexcept {
     MillingResult milled;
     bool shell_is_complete = true;
     if (history_->restoreSome(bone_, shell_is_complete)) {
-        sudden_change_.begin();
+        hand_limits_.beginSuddenChange();
         effects_.restart(Restart::kBonePutBack);
     } else {
         milled = millWithEffects(faults);

@@ -3,17 +3,16 @@
 // device link in real time and in `simulate` without it.
 #pragma once
 
-#include "common/device_messages/device_messages.h"  // Button
 #include "haptic_server/bone/bone_history.h"
 #include "haptic_server/bone/bone_model.h"
-#include "haptic_server/effects/make_effects.h"
-#include "haptic_server/milling/timed_milling.h"
+#include "haptic_server/effects/effect_host.h"
+#include "haptic_server/milling/milling_result.h"
 #include "haptic_server/spo/gradient_model.h"
 #include "haptic_server/spo/thesis_2012_model.h"
 #include "haptic_server/telemetry/tick_record.h"
 #include "haptic_server/tick/accuracy_switch.h"
 #include "haptic_server/tick/affordable_shell.h"
-#include "haptic_server/tick/sudden_change.h"
+#include "haptic_server/tick/hand_limits.h"
 #include "haptic_server/tick/tick_config.h"
 #include "haptic_server/tick/tick_io.h"
 #include "haptic_server/tick/tool_switch.h"
@@ -53,7 +52,7 @@ class HapticTick {
     void takeUp(const AccuracySettings& settings) noexcept;
     void chooseTool() noexcept;
     void beginEffects(const DeviceInput& input) noexcept;
-    SpoStep moveAndFeel(double force_factor, uint32_t& faults) noexcept;
+    SpoStep moveAndFeel(double stale_factor, uint32_t& faults) noexcept;
     void addEffectsToHand(Wrench& wrench_hand_W) noexcept;
     MillingResult mill(uint32_t& faults) noexcept;
     MillingResult millWithEffects(uint32_t& faults) noexcept;
@@ -71,7 +70,7 @@ class HapticTick {
     AccuracySettings settings_;
     AffordableShell affordable_;
     EffectHost effects_;
-    SuddenChange sudden_change_;
+    HandLimits hand_limits_;
     Pose X_VW_;
     Pose device_;
     Pose spo_;

@@ -8,13 +8,15 @@
 #include "haptic_server/milling/timed_milling.h"
 #include "haptic_server/spo/gradient_config.h"
 #include "haptic_server/spo/spo_tool.h"
+#include "haptic_server/tick/hand_limits.h"
 
 namespace bonemill {
 
 struct TickConfig {
     double dt = 1e-3;              // s
     PenaltyContactConfig contact;  // thesis_2012
-    CouplingConfig coupling;       // thesis_2012, and the limits of what the hand may feel
+    CouplingConfig coupling;       // thesis_2012
+    HandLimitsConfig hand;
     GradientConfig gradient;
     EffectConfigs effects;
     size_t most_milled_cells = MillingConfig{}.most_cells;  // in a tick

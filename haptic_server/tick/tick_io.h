@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "common/device_messages/device_messages.h"  // Button
 #include "common/geometry/pose.h"
 #include "haptic_server/telemetry/tick_record.h"
 
@@ -11,7 +12,7 @@ namespace bonemill {
 struct DeviceInput {
     Pose X_WT_device;                 // where the hand really holds the tool
     uint32_t buttons = 0;             // Button bits
-    double force_factor = 1;          // 1 fresh device; ramps to 0 while it is stale
+    double stale_factor = 1;          // of the force: 1 fresh device; ramps to 0 while it is stale
     bool is_stale = false;            // no fresh sample: nothing is milled
     double t_s = 0;                   // since the session's first tick, or the trajectory file's own time
     int64_t start_ns = 0;             // when this tick began, CLOCK_MONOTONIC

@@ -25,7 +25,7 @@ VoxelVolume filled(DensityOf&& density_of) {
 // not finite.
 double drag(VoxelVolume volume, const Variant& variant) {
     Scene scene(std::move(volume), burr(), variant);
-    const CouplingConfig& coupling = scene.config.coupling;
+    const HandLimitsConfig& most = scene.config.hand;
     Stepper stepper(scene);
     double worst = 0;
     uint32_t contacts = 0;
@@ -36,8 +36,8 @@ double drag(VoxelVolume volume, const Variant& variant) {
         stepper.step({p, expRotation({1.5 * s, -2.5 * s, 1 * s})});
         if (!stepper.isFinite()) return kNan;
         const Wrench& wrench = stepper.wrenchOnHand();
-        worst = std::max(
-            {worst, wrench.force.norm() / coupling.max_force, wrench.torque.norm() / coupling.max_torque});
+        worst =
+            std::max({worst, wrench.force.norm() / most.max_force, wrench.torque.norm() / most.max_torque});
         contacts = std::max(contacts, stepper.record().contacts);
     }
     return contacts > 0 ? worst : kNan;  // it must have met something
@@ -102,7 +102,7 @@ double manyContacts(const Variant& variant) {
         stepper.step(upright(middle + Eigen::Vector3d(0, 0, kThick + 0.05e-3 - n * 5e-6)));
         if (!stepper.isFinite()) return kNan;
         contacts = std::max(contacts, stepper.record().contacts);
-        worst = worseOf(worst, stepper.wrenchOnHand().force.norm() / scene.config.coupling.max_force);
+        worst = worseOf(worst, stepper.wrenchOnHand().force.norm() / scene.config.hand.max_force);
     }
     const uint32_t s = uint32_t(scene.config.accuracy.shell_factor);
     const double wanted = 1e4 / (s * s);

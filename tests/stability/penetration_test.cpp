@@ -70,7 +70,7 @@ double deepPushForce(const Variant& variant) {
         const double force = stepper.isFinite() ? stepper.wrenchOnHand().force.norm() : kNan;
         worst = worseOf(worst, force);
     });
-    return worst / scene.config.coupling.max_force;
+    return worst / scene.config.hand.max_force;
 }
 
 // Right side: under full push the force points out of the bone.

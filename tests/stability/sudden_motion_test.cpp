@@ -9,7 +9,7 @@ namespace {
 // Worst of force, torque and the tool's step over their limits, while the device jumps there and back.
 double deviceJump(const Variant& variant) {
     Scene scene(planeBone(), burr(), variant);
-    const CouplingConfig& coupling = scene.config.coupling;
+    const HandLimitsConfig& most = scene.config.hand;
     const CouplingFigures figures = couplingFigures(scene.config);
     Stepper stepper(scene);
     const Pose start = abovePlane(-0.2e-3);
@@ -22,7 +22,7 @@ double deviceJump(const Variant& variant) {
         const Wrench& wrench = stepper.wrenchOnHand();
         const double step = (stepper.spo().position - last.position).norm();
         const double figure =
-            std::max({wrench.force.norm() / coupling.max_force, wrench.torque.norm() / coupling.max_torque,
+            std::max({wrench.force.norm() / most.max_force, wrench.torque.norm() / most.max_torque,
                       step / (figures.max_speed * scene.config.dt)});
         if (!stepper.isFinite()) return kNan;
         worst = worseOf(worst, figure);
@@ -47,7 +47,7 @@ double nearAntipodal(const Variant& variant) {
         if (n > 0) worst = worseOf(worst, (torque - before).norm());
         before = torque;
     }
-    return 100 * worst / scene.config.coupling.max_torque;
+    return 100 * worst / scene.config.hand.max_torque;
 }
 
 double startInside(const Variant& variant, double depth, double (*figure_of)(ClosedLoop&, const Scene&)) {

@@ -75,7 +75,7 @@ double largestJump(Bench bench, uint32_t buttons) {
             if (!bench.loop.stepper.isFinite()) return kNan;
             const Eigen::Vector3d force_now = bench.loop.stepper.wrenchOnHand().force;
             const double allowed =
-                SuddenChange::kForceRate * bench.scene.config.dt + stiffness * (hand_now - hand).norm();
+                HandLimits::kForceRate * bench.scene.config.dt + stiffness * (hand_now - hand).norm();
             worst = worseOf(worst, (force_now - force).norm() / allowed);
             force = force_now, hand = hand_now;
         }

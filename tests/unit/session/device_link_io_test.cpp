@@ -65,7 +65,7 @@ TEST_F(DeviceLinkIoTest, SilenceTicksOnAndBecomesStale) {
         ASSERT_TRUE(io.read(input));
         ASSERT_LT(monotonicNowNs() - start, 10 * kNsPerSecond);
     }
-    while (input.force_factor > 0) {
+    while (input.stale_factor > 0) {
         ASSERT_TRUE(io.read(input));
         ASSERT_LT(monotonicNowNs() - start, 10 * kNsPerSecond);
     }
@@ -74,7 +74,7 @@ TEST_F(DeviceLinkIoTest, SilenceTicksOnAndBecomesStale) {
         daemon_.writeSample(sampleAt(0.001));
         ASSERT_TRUE(io.read(input));
     }
-    EXPECT_LT(input.force_factor, 1);  // it fades in
+    EXPECT_LT(input.stale_factor, 1);  // it fades in
 }
 
 TEST_F(DeviceLinkIoTest, ImplausibleSamplesAndStampsAreNotBelieved) {

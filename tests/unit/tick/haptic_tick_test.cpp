@@ -55,6 +55,10 @@ struct Bench {
     ToolModel tool;
 };
 
+double forceOf(const TickRecord& record) {
+    return Eigen::Map<const Eigen::Vector3d>(record.f_hand_W).norm();
+}
+
 const Eigen::Vector3d kStart(3.95e-3, 4.05e-3, kTop + kBurr + 0.3e-3);
 
 TEST(HapticTick, FreeSpaceIsFree) {
@@ -121,16 +125,51 @@ TEST(HapticTick, StaleDeviceMillsNothingAndForceFollowsTheRamp) {
     for (size_t n = 200; n < 300; ++n) {
         inputs[n].buttons = kButtonRemove;
         inputs[n].is_stale = true;
-        inputs[n].force_factor = 0.25;
+        inputs[n].stale_factor = 0.25;
     }
     const auto records = bench.run(inputs);
-    const auto force = [](const TickRecord& r) {
-        return Eigen::Vector3d(r.f_hand_W[0], r.f_hand_W[1], r.f_hand_W[2]).norm();
-    };
-    EXPECT_GT(force(records[199]), 0.1);
-    EXPECT_NEAR(force(records[299]), 0.25 * force(records[199]), 0.05 * force(records[199]));
+    EXPECT_GT(forceOf(records[199]), 0.1);
+    EXPECT_NEAR(forceOf(records[299]), 0.25 * forceOf(records[199]), 0.05 * forceOf(records[199]));
     EXPECT_TRUE(records[250].faults & kFaultStaleDevice);
     for (const TickRecord& r : records) EXPECT_EQ(r.removed_voxels, 0u);
+}
+
+// Bone as hard as no number can say: thesis_2012 finds no equilibrium in it.
+TEST(HapticTick, WithoutAnEquilibriumTheForceFadesAndComesBackAlongTheRamp) {
+    Bench bench;
+    bench.config.contact.point_stiffness = 1e308;
+    AccuracySwitch accuracy(presetSettings(Preset::kBalanced));
+    const ToolSwitch tools({bench.config.tool});
+    HapticTick tick(bench.config, {bench.bone}, {tools, accuracy});
+    const Pose start = bench.atV(kStart), pressed = bench.atV(kStart - Eigen::Vector3d(0, 0, 1.3e-3));
+    const auto lead = [&](const Pose& from, int ticks) {
+        test::ScriptedIo io(test::straightPath(from, pressed.position, ticks, 0));
+        while (tick.tick(io)) {
+        }
+        return io.records;
+    };
+    lead(start, 200);
+    const double held = forceOf(lead(pressed, 200).back());
+    EXPECT_GT(held, 2);
+
+    accuracy.choose(AccuracySwitch::choiceOf(Preset::kThesis2012));
+    lead(pressed, 1);
+    const int ticks = int(std::lround(HandLimits::kFade / bench.config.dt));
+    double last = held;
+    for (const TickRecord& r : lead(pressed, ticks)) {
+        EXPECT_TRUE(r.faults & kFaultSolve);
+        EXPECT_NEAR(last - forceOf(r), held / ticks, 1e-3 * held);
+        last = forceOf(r);
+    }
+    EXPECT_LT(last, 1e-9);
+    for (const TickRecord& r : lead(pressed, 100)) EXPECT_LT(forceOf(r), 1e-9);
+
+    accuracy.choose(AccuracySwitch::choiceOf(Preset::kBalanced));
+    for (const TickRecord& r : lead(pressed, 200)) {
+        EXPECT_LE(forceOf(r) - last, 1.001 * HandLimits::kForceRate * bench.config.dt);
+        last = forceOf(r);
+    }
+    EXPECT_NEAR(last, held, 0.01 * held);
 }
 
 TEST(HapticTick, WorkBeyondTheDeadlineIsAnOverrun) {

@@ -41,7 +41,7 @@ TEST(ToolSwitch, EachToolRestsOnItsOwnBurr) {
 TEST(ToolSwitch, AForceAtItsLimitFallsAtOnce) {
     ToolBench bench(2);
     TickConfig config = test::millingConfig();
-    config.coupling.max_force = 0.5;
+    config.hand.max_force = 0.5;
     HapticTick tick(config, {bench.bone, &bench.history}, {bench.tools, bench.accuracy});
     // Deep in the slab for the largest burr, above it for the smallest.
     const auto hand = test::SwitchingBench::at(test::kBenchTop + 0.7e-3);
@@ -81,7 +81,7 @@ TEST(SuddenBone, ThatIsPutBackAroundTheToolPushesAtALimitedRate) {
     bench.run(back);
     const Eigen::Map<const Eigen::Vector3d> force(back.records.back().f_hand_W);
     EXPECT_GT(force.z(), 2);
-    EXPECT_LE(largestStep(back.records), 1.001 * SuddenChange::kForceRate * 1e-3);
+    EXPECT_LE(largestStep(back.records), 1.001 * HandLimits::kForceRate * 1e-3);
 }
 
 // A burr that has no room stays small when another law was in force for a while.
@@ -100,7 +100,7 @@ TEST(SuddenLaw, ChangesTheForceAtALimitedRateAndLeavesAToolSmall) {
         bench.accuracy.choose(AccuracySwitch::choiceOf(preset));
         rest(300);
     }
-    EXPECT_LE(largestStep(records), 1.001 * SuddenChange::kForceRate * 1e-3);
+    EXPECT_LE(largestStep(records), 1.001 * HandLimits::kForceRate * 1e-3);
 }
 
 // The groove of a tool that was changed to is as that of the same tool from the start.

@@ -1,0 +1,136 @@
+// What the hand may feel: all limits between the computed wrench and the one that is sent, in this order.
+//
+// 1. Something to send. A tick without an equilibrium, or with a wrench that is not finite, has nothing to
+//    say. The hand then gets the last wrench that it got, faded to nothing within kFade. This comes first,
+//    because what is not a number can be compared with no limit.
+// 2. The norms. Force and torque are scaled by one factor, so that the wrench keeps its direction. This comes
+//    before the rate: where the hand comes from and where it goes to are then both within the norms, and with
+//    them all that lies between, so that the norms hold whatever the rate does. A wrench that was computed
+//    far beyond the norms falls from what was sent, at once.
+// 3. The rate, when what the hand feels has changed at one stroke. A larger burr may find bone where the
+//    smaller one had room, restored bone may be where the tool is, an equilibrium may be found again after
+//    ticks without one. The wrench then goes from the old one to the new one at kForceRate and kTorqueRate.
+// 4. The factor of the stale ramp, 0 to 1. It comes last, so that no other limit can undo it: at 0 nothing is
+//    sent, whatever was computed. The rate does not see it, for it would take the ramp for a change of the
+//    wrench.
+//
+// All wrenches and poses are in one frame, torques about the tool point that the hand holds. RT-safe; tick
+// thread only.
+#pragma once
+
+#include <algorithm>
+
+#include "common/geometry/pose.h"
+
+namespace bonemill {
+
+struct HandLimitsConfig {
+    double max_force = 50;  // N
+    double max_torque = 1;  // N·m
+};
+
+// What a motion of the hand makes of the wrench from one tick to the next, when nothing else changes.
+struct HandSpring {
+    double stiffness = 0;           // N/m
+    double rotation_stiffness = 0;  // N·m/rad
+    double lever = 0;               // m: of the force about the tool point
+};
+
+// What a tick has to say before the limits.
+struct FeltStep {
+    Wrench wrench;
+    bool is_solved = true;  // false: there is no equilibrium, and the wrench says nothing
+    Pose device;
+    double stale_factor = 1;
+};
+
+class HandLimits {
+  public:
+    static constexpr double kForceRate = 100;  // N/s: from nothing to 10 N in 0.1 s
+    static constexpr double kTorqueRate = 3;   // N·m/s: that force at 30 mm
+    static constexpr double kQuiet = 0.05;     // s without a limit by the rate: the change is over
+    // s. One tick without an equilibrium takes 2 % of the force, which no hand feels. Many must not hold it:
+    // the last force stays where it points while the hand moves on, so that it would drive the hand without
+    // end. Over this time it falls by 1000 N/s at the most, as steeply as when the device falls silent, which
+    // does not kick; and at the coupling's highest speed, 0.5 m/s, the hand is not driven farther than 25 mm.
+    static constexpr double kFade = 0.05;
+
+    // The rate comes on top of what the hand's own motion makes by `spring`.
+    HandLimits(const HandLimitsConfig& config, const HandSpring& spring, double dt) noexcept
+        : config_(config), spring_(spring), dt_(dt) {}
+
+    // What is felt changes at one stroke from now on.
+    void beginSuddenChange() noexcept { quiet_for_ = 0; }
+    bool isChangeOver() const noexcept { return quiet_for_ > kQuiet; }
+
+    // Once per tick: the wrench to send.
+    Wrench limit(const FeltStep& step) noexcept {
+        was_limited_ = false;
+        Wrench wrench = step.is_solved && step.wrench.isFinite() ? allowed(step) : faded(step);
+        last_ = wrench;
+        device_ = step.device;
+        const double factor = step.stale_factor > 0 ? std::min(step.stale_factor, 1.0) : 0;
+        wrench.force *= factor;
+        wrench.torque *= factor;
+        return wrench;
+    }
+    // The last wrench was beyond the norms, or not finite.
+    bool wasLimited() const noexcept { return was_limited_; }
+
+  private:
+    Wrench faded(const FeltStep& step) noexcept {
+        was_limited_ = !step.wrench.isFinite();
+        beginSuddenChange();
+        faded_for_ += dt_;
+        const double share = std::max(0.0, 1 - faded_for_ / kFade);
+        return {share * before_fading_.force, share * before_fading_.torque};
+    }
+
+    Wrench allowed(const FeltStep& step) noexcept {
+        Wrench wrench = step.wrench;
+        was_limited_ = limitNorms(wrench);
+        if (!isChangeOver()) slowDown(wrench, step.device);
+        faded_for_ = 0;
+        before_fading_ = wrench;
+        return wrench;
+    }
+
+    bool limitNorms(Wrench& wrench) const noexcept {
+        const double excess =
+            std::max(wrench.force.norm() / config_.max_force, wrench.torque.norm() / config_.max_torque);
+        if (excess <= 1) return false;
+        wrench.force /= excess;
+        wrench.torque /= excess;
+        return true;
+    }
+
+    void slowDown(Wrench& wrench, const Pose& device) noexcept {
+        const double moved = spring_.stiffness * (device.position - device_.position).norm();
+        const double turned =
+            spring_.rotation_stiffness * logRotation(device.rotation * device_.rotation.conjugate()).norm();
+        const bool is_whole =
+            approach(last_.force, kForceRate * dt_ + moved, wrench.force) &
+            approach(last_.torque, kTorqueRate * dt_ + turned + spring_.lever * moved, wrench.torque);
+        quiet_for_ = is_whole ? quiet_for_ + dt_ : 0;
+    }
+    // No farther from `last` than `most`. False: that cut it short.
+    static bool approach(const Eigen::Vector3d& last, double most, Eigen::Vector3d& value) noexcept {
+        const Eigen::Vector3d change = value - last;
+        const double size = change.norm();
+        if (size <= most) return true;
+        value = last + change * (most / size);
+        return false;
+    }
+
+    HandLimitsConfig config_;
+    HandSpring spring_;
+    double dt_;
+    double quiet_for_ = 2 * kQuiet;  // s
+    double faded_for_ = 0;           // s
+    Wrench before_fading_;           // of the last tick that had something to say, but for the stale factor
+    Wrench last_;                    // what was sent last, but for the stale factor
+    Pose device_;
+    bool was_limited_ = false;
+};
+
+}  // namespace bonemill
