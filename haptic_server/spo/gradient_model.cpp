@@ -33,8 +33,8 @@ Vector6d rotationScale() noexcept {
     return scale;
 }
 
-Pose moved(const Pose& pose, const Vector6d& step) noexcept {
-    return pose.incremented(step.head<3>(), step.tail<3>());
+Pose moved(const Pose& X_VT, const Vector6d& step) noexcept {
+    return X_VT.incremented(step.head<3>(), step.tail<3>());
 }
 
 Vector6d stacked(const Wrench& wrench) noexcept {
@@ -58,9 +58,10 @@ double shareAtMinimum(double slope, double share, double rise, double deeper) no
     return std::clamp(std::max(at, contact), kShortestCut * share, kLongestCut * share);
 }
 
-Vector6d between(const Pose& from, const Pose& to) noexcept {
+Vector6d between(const Pose& X_VT_from, const Pose& X_VT_to) noexcept {
     Vector6d step;
-    step << to.position - from.position, logRotation(to.rotation * from.rotation.conjugate());
+    step << X_VT_to.position - X_VT_from.position,
+        logRotation(X_VT_to.rotation * X_VT_from.rotation.conjugate());
     return step;
 }
 
@@ -78,7 +79,6 @@ GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world
       tool_(tool),
       coupling_{config.coupling, tool.saturation_force},
       dt_(dt),
-      X_VW_(world.volume.geometry().X_WV.inverse()),
       field_(&tool_.model->field(settings_)),
       contact_(config.contact, std::min(kMostCandidates, config.most_point_tests / 4)),
       relaxing_(coupling_, dt) {
@@ -125,8 +125,8 @@ void GradientModel::fitTool(const Tick& tick) noexcept {
     is_new_tool_ = false;
     growing_.setOffset(0);
     useTool();
-    gather(tick.start, kLeastMargin, *tick.out);
-    growing_.setOffset(evaluate(tick.start, tick).max_depth - last_depth_);
+    gather(tick.X_VT_start, kLeastMargin, *tick.out);
+    growing_.setOffset(evaluate(tick.X_VT_start, tick).max_depth - last_depth_);
     useTool();
     contact_.forget();
 }
@@ -155,9 +155,9 @@ void GradientModel::dropTraces(SpoStep& step) noexcept {
     const auto drop = [](auto&& values, double trace) {
         values = (values.array().abs() < trace).select(0, values.array()).matrix().eval();
     };
-    drop(step.wrench_hand.force, kTraceOfForce);
-    drop(step.wrench_hand.torque, kTraceOfTorque);
-    drop(step.spo.rotation.coeffs(), kTraceOfRotation);
+    drop(step.wrench_hand_V.force, kTraceOfForce);
+    drop(step.wrench_hand_V.torque, kTraceOfTorque);
+    drop(step.X_VT.rotation.coeffs(), kTraceOfRotation);
 }
 
 double GradientModel::trustRadius() const noexcept {
@@ -170,7 +170,7 @@ double GradientModel::reachOf(const Vector6d& step) const noexcept {
 
 void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexcept {
     ++gatherings_;
-    gathered_at_ = X_VT;
+    X_VT_gathered_ = X_VT;
     const ShellView bone{world_.volume, world_.lattice,         world_.shell,
                          level_,        settings_.patch_points, settings_.refined_points};
     out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin, pointTestsLeft());
@@ -184,9 +184,9 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
                                               : contact_.evaluate<float>(*field_, X_VT);
     point_tests_ += contact_.candidateCount();
     State state{X_VT, contact.term, contact.contacts, contact.max_depth};
-    state.total += couplingEnergy(coupling_, X_VT, tick.device, way_);
-    state.total += relaxing_.energy(X_VT, tick.device);
-    state.total += dampingEnergy(coupling_, X_VT, tick.start, dt_);
+    state.total += couplingEnergy(coupling_, X_VT, tick.X_VT_device, way_);
+    state.total += relaxing_.energy(X_VT, tick.X_VT_device);
+    state.total += dampingEnergy(coupling_, X_VT, tick.X_VT_start, dt_);
     if (effects_) state.total += effects_->at(X_VT);
     return state;
 }
@@ -209,7 +209,7 @@ Vector6d GradientModel::newtonStep(const State& state) const noexcept {
 // what is best with that turn: a hand that turns too quickly does not hold the tool's place back.
 Vector6d GradientModel::withinSpeed(const State& state, const Vector6d& newton,
                                     const Tick& tick) const noexcept {
-    const Vector6d so_far = between(tick.start, state.X_VT);
+    const Vector6d so_far = between(tick.X_VT_start, state.X_VT);
     const double turn = shareOf(config_.max_angular_speed * dt_, so_far.tail<3>(), newton.tail<3>());
     Vector6d step = newton;
     if (turn < 1) {
@@ -229,7 +229,7 @@ Vector6d GradientModel::withinSpeed(const State& state, const Vector6d& newton,
 // where the candidates were gathered. There the whole twist is scaled by one factor.
 Vector6d GradientModel::limited(const State& state, const Vector6d& newton, const Tick& tick) noexcept {
     const Vector6d step = withinSpeed(state, newton, tick);
-    const auto room = [&] { return contact_.margin() - reachOf(between(gathered_at_, state.X_VT)); };
+    const auto room = [&] { return contact_.margin() - reachOf(between(X_VT_gathered_, state.X_VT)); };
     if (reachOf(step) <= room()) return step;
     if (settings_.continuous_collision && pointTestsLeft() > 0) {
         gather(state.X_VT, reachOf(step) * (1 + 1e-9), *tick.out);
@@ -306,18 +306,19 @@ bool GradientModel::descend(State& state, const Tick& tick) noexcept {
     return true;
 }
 
-SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept {
+SpoStep GradientModel::advance(const Pose& X_VT, const Pose& X_VT_device) noexcept {
     SpoStep out;
-    const Tick tick{X_VW_ * spo_W, X_VW_ * device_W, &out};
+    const Tick tick{X_VT, X_VT_device, &out};
     point_tests_ = 0;
     is_new_tool_ ? fitTool(tick) : growTool();
     // What the last tick moved is a good guess of what this one will; a longer step gathers anew.
-    gather(tick.start, std::min(trustRadius(), std::max(kLeastMargin, kMotionGrowth * last_reach_)), out);
-    State state = evaluate(tick.start, tick);
+    gather(tick.X_VT_start, std::min(trustRadius(), std::max(kLeastMargin, kMotionGrowth * last_reach_)),
+           out);
+    State state = evaluate(tick.X_VT_start, tick);
     goOn(state, tick);
     out.is_solved = descend(state, tick);
     X_VT_end_ = state.X_VT;
-    last_motion_ = between(tick.start, state.X_VT);
+    last_motion_ = between(tick.X_VT_start, state.X_VT);
     last_reach_ = reachOf(last_motion_);
     energy_ = state.total.energy;
     out.contacts = state.contacts;
@@ -330,15 +331,12 @@ SpoStep GradientModel::advance(const Pose& spo_W, const Pose& device_W) noexcept
 
 // The pose and what the hand gets of it.
 void GradientModel::feel(const Pose& X_VT, const Tick& tick) noexcept {
-    const Pose X_WV = X_VW_.inverse();
-    tick.out->spo = X_WV * X_VT;
-    const Wrench wrench_hand = (couplingWrenchOnDevice(coupling_, X_VT, tick.device, way_) +
-                                relaxing_.wrenchOnDevice(X_VT, tick.device))
-                                   .rotatedBy(X_WV.rotation);
-    tick.out->wrench_hand = wrench_hand;
+    tick.out->X_VT = X_VT;
+    tick.out->wrench_hand_V = couplingWrenchOnDevice(coupling_, X_VT, tick.X_VT_device, way_) +
+                              relaxing_.wrenchOnDevice(X_VT, tick.X_VT_device);
     dropTraces(*tick.out);
-    relaxing_.follow(X_VT, tick.device);
-    way_.remember(tick.device.rotation * X_VT.rotation.conjugate());
+    relaxing_.follow(X_VT, tick.X_VT_device);
+    way_.remember(tick.X_VT_device.rotation * X_VT.rotation.conjugate());
 }
 
 }  // namespace bonemill

@@ -15,7 +15,7 @@ class GradientModel final : public SpoModel {
     // Allocates the room for contact points.
     GradientModel(const GradientConfig& config, const SpoWorld& world, const SpoTool& tool, double dt);
 
-    SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept override;
+    SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override;
     void restart() noexcept override;
     // A tool that was chosen where it had no room is still felt smaller than it is.
     bool isToolGrowing() const noexcept { return growing_.offset() > 0; }
@@ -30,7 +30,7 @@ class GradientModel final : public SpoModel {
     double energy() const noexcept { return energy_; }
 
   private:
-    // Everything at one pose. V.
+    // Everything at one pose.
     struct State {
         Pose X_VT;
         EnergyTerm total;
@@ -38,9 +38,9 @@ class GradientModel final : public SpoModel {
         double max_depth = 0;
         bool isFinite() const noexcept;
     };
-    // The tick's fixed part. V.
+    // What stays the same during a tick.
     struct Tick {
-        Pose start, device;
+        Pose X_VT_start, X_VT_device;
         SpoStep* out;
     };
     void useTool() noexcept;
@@ -67,7 +67,6 @@ class GradientModel final : public SpoModel {
     SpoTool tool_;
     EnergyCoupling coupling_;  // of tool_
     double dt_;
-    Pose X_VW_;
     AccuracySettings settings_;
     int level_ = 0;
     const ToolField* field_;  // of tool_, or growing_
@@ -77,14 +76,14 @@ class GradientModel final : public SpoModel {
     GradientContact contact_;
     SolveEnergy* effects_ = nullptr;
     Pose X_VT_end_;  // of the last advance()
-    Pose gathered_at_;
+    Pose X_VT_gathered_;
     uint32_t gatherings_ = 0;
     size_t most_point_tests_ = 0;  // with this field
     size_t point_tests_ = 0;       // in this tick
     ContinuousRotation way_;
     RelaxingSpring relaxing_;
     double lambda_ = 0;                        // Levenberg, share of the damping matrix
-    Vector6d last_motion_ = Vector6d::Zero();  // of the last tick, V
+    Vector6d last_motion_ = Vector6d::Zero();  // of the last tick
     double last_reach_ = 0;                    // m, of that
     double energy_ = 0;
 };

@@ -1,5 +1,5 @@
 // How the simulated tool (SPO) follows the hand and meets the bone: one interface, two models. The scene
-// chooses.
+// chooses. All poses and wrenches are in V.
 #pragma once
 
 #include <cstdint>
@@ -21,27 +21,31 @@ struct SpoWorld {
     const PointShell& shell;
 };
 
+// Of one tick, in V.
 struct SpoStep {
-    Pose spo;            // after the tick, W
-    Wrench wrench_hand;  // on the hand, axes W, about the tool point; not yet limited; of an unsolved tick
-                         // nothing
+    Pose X_VT;             // of the simulated tool after the tick
+    Wrench wrench_hand_V;  // on the hand about the tool point that it holds, before the limits of what it may
+                           // feel
     uint32_t contacts = 0;
     uint32_t candidates = 0;  // points that were tested in each iteration
     uint32_t iterations = 0;
-    double budget_share = 0;         // of the point tests that a tick may make
-    double max_penetration = 0;      // m
-    bool is_solved = true;           // false: no finite equilibrium; the tool is at its last good pose
+    double budget_share = 0;     // of the point tests that a tick may make
+    double max_penetration = 0;  // m
+    // False: no finite equilibrium was found. The tool is at its last good pose, and the wrench says nothing.
+    bool is_solved = true;
     bool is_motion_clamped = false;  // a speed limit or the trust radius acted
-    bool has_stalled = false;  // forces that can be felt are out of balance, and no step was found that helps
-    bool has_contact_overflow =
-        false;  // more points near the tool than there is room or time for: the solve was cut short
+    // Forces that can be felt are out of balance, and no step was found that helps.
+    bool has_stalled = false;
+    // There were more points near the tool than there is room or time for: the solve was cut short.
+    bool has_contact_overflow = false;
 };
 
 class SpoModel {
   public:
     virtual ~SpoModel() = default;
-    // One tick of length dt from `spo`. RT-safe; tick thread only.
-    virtual SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept = 0;
+    // One tick of length dt: the tool is at X_VT, and the hand holds it at X_VT_device. RT-safe; tick thread
+    // only.
+    virtual SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept = 0;
     // Forgets what it remembers of earlier ticks; called when the tool is placed anew or the model becomes
     // active.
     virtual void restart() noexcept = 0;

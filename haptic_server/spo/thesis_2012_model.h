@@ -13,20 +13,17 @@ class Thesis2012Model final : public SpoModel {
     Thesis2012Model(const PenaltyContactConfig& contact, const CouplingConfig& coupling,
                     const SpoWorld& world, const SpoTool& tool, double dt);
 
-    SpoStep advance(const Pose& spo_W, const Pose& device_W) noexcept override;
+    SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override;
     void restart() noexcept override {}
     void setAccuracy(const AccuracySettings& settings) noexcept override;
     void setTool(const SpoTool& tool) noexcept override { tool_ = tool.model; }
 
   private:
-    ContactResult contactInWorld(const Pose& spo_W) const noexcept;
-
     PenaltyContactConfig contact_;
     CouplingConfig coupling_;
     SpoWorld world_;
     const ToolModel* tool_;
     double dt_;
-    Pose X_VW_;
 };
 
 }  // namespace bonemill

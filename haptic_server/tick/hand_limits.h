@@ -14,8 +14,8 @@
 //    sent, whatever was computed. The rate does not see it, for it would take the ramp for a change of the
 //    wrench.
 //
-// All wrenches and poses are in one frame, torques about the tool point that the hand holds. RT-safe; tick
-// thread only.
+// All wrenches and poses are in V, torques about the tool point that the hand holds. RT-safe; tick thread
+// only.
 #pragma once
 
 #include <algorithm>
@@ -38,9 +38,9 @@ struct HandSpring {
 
 // What a tick has to say before the limits.
 struct FeltStep {
-    Wrench wrench;
+    Wrench wrench_V;
     bool is_solved = true;  // false: there is no equilibrium, and the wrench says nothing
-    Pose device;
+    Pose X_VT_device;
     double stale_factor = 1;
 };
 
@@ -66,9 +66,9 @@ class HandLimits {
     // Once per tick: the wrench to send.
     Wrench limit(const FeltStep& step) noexcept {
         was_limited_ = false;
-        Wrench wrench = step.is_solved && step.wrench.isFinite() ? allowed(step) : faded(step);
+        Wrench wrench = step.is_solved && step.wrench_V.isFinite() ? allowed(step) : faded(step);
         last_ = wrench;
-        device_ = step.device;
+        X_VT_device_ = step.X_VT_device;
         const double factor = step.stale_factor > 0 ? std::min(step.stale_factor, 1.0) : 0;
         wrench.force *= factor;
         wrench.torque *= factor;
@@ -79,7 +79,7 @@ class HandLimits {
 
   private:
     Wrench faded(const FeltStep& step) noexcept {
-        was_limited_ = !step.wrench.isFinite();
+        was_limited_ = !step.wrench_V.isFinite();
         beginSuddenChange();
         faded_for_ += dt_;
         const double share = std::max(0.0, 1 - faded_for_ / kFade);
@@ -87,9 +87,9 @@ class HandLimits {
     }
 
     Wrench allowed(const FeltStep& step) noexcept {
-        Wrench wrench = step.wrench;
+        Wrench wrench = step.wrench_V;
         was_limited_ = limitNorms(wrench);
-        if (!isChangeOver()) slowDown(wrench, step.device);
+        if (!isChangeOver()) slowDown(wrench, step.X_VT_device);
         faded_for_ = 0;
         before_fading_ = wrench;
         return wrench;
@@ -104,10 +104,10 @@ class HandLimits {
         return true;
     }
 
-    void slowDown(Wrench& wrench, const Pose& device) noexcept {
-        const double moved = spring_.stiffness * (device.position - device_.position).norm();
-        const double turned =
-            spring_.rotation_stiffness * logRotation(device.rotation * device_.rotation.conjugate()).norm();
+    void slowDown(Wrench& wrench, const Pose& X_VT_device) noexcept {
+        const double moved = spring_.stiffness * (X_VT_device.position - X_VT_device_.position).norm();
+        const double turned = spring_.rotation_stiffness *
+                              logRotation(X_VT_device.rotation * X_VT_device_.rotation.conjugate()).norm();
         const bool is_whole =
             approach(last_.force, kForceRate * dt_ + moved, wrench.force) &
             approach(last_.torque, kTorqueRate * dt_ + turned + spring_.lever * moved, wrench.torque);
@@ -129,7 +129,7 @@ class HandLimits {
     double faded_for_ = 0;           // s
     Wrench before_fading_;           // of the last tick that had something to say, but for the stale factor
     Wrench last_;                    // what was sent last, but for the stale factor
-    Pose device_;
+    Pose X_VT_device_;
     bool was_limited_ = false;
 };
 

@@ -56,7 +56,8 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
                             gradient_.mostCandidates(), config.most_milled_cells}),
                gradient_.mostCandidates(), config.gradient.contact.stiffness_per_area),
       hand_limits_(config.hand, handSpringOf(config), config.dt),
-      X_VW_(bone_.volume.geometry().X_WV.inverse()) {
+      X_WV_(bone_.volume.geometry().X_WV),
+      X_VW_(X_WV_.inverse()) {
     const AccuracySettings& settings = accuracy_.chosen();
     bone_.shell.prepare(bone_.volume, bone_.lattice, levelOf(bone_.shell, settings),
                         int(bone_.lattice.leafCount()));
@@ -108,13 +109,13 @@ bool HapticTick::tick(TickIo& io) noexcept {
     if (!io.read(input)) return false;
     const RtScope scope;
     uint32_t faults = input.is_stale ? kFaultStaleDevice : kFaultNone;
-    device_ = acceptPose(input, faults);
+    acceptPose(input, faults);
     chooseTool();
     beginEffects(input);
     const SpoStep step = moveAndFeel(input.stale_factor, faults);
-    const int64_t force_at_ns = io.write(step.wrench_hand);
+    const int64_t force_at_ns = io.write(inWorld(step.wrench_hand_V));
 
-    effects_.afterSolve(X_VW_ * spo_, *model_);
+    effects_.afterSolve(X_VT_, *model_);
     const MillingResult milled = mill(faults);
     const EffectRecord& effects = effects_.finish();
     chooseSettings(step, faults);
@@ -136,18 +137,18 @@ bool HapticTick::tick(TickIo& io) noexcept {
     return true;
 }
 
-Pose HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept {
-    Pose pose = input.X_WT_device;
-    const double norm = pose.rotation.norm();
-    if (!pose.isFinite() || !(std::abs(norm - 1) < kQuaternionNormSlack) ||
-        !(pose.position.cwiseAbs().maxCoeff() < kFarthest)) {
+void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept {
+    Pose X_WT_device = input.X_WT_device;
+    const double norm = X_WT_device.rotation.norm();
+    if (!X_WT_device.isFinite() || !(std::abs(norm - 1) < kQuaternionNormSlack) ||
+        !(X_WT_device.position.cwiseAbs().maxCoeff() < kFarthest)) {
         faults |= kFaultBadDevicePose;
-        return device_;
+        return;  // the last good one stays
     }
-    pose.rotation.coeffs() /= norm;
-    if (!has_pose_) spo_ = pose;  // the simulated tool starts where the hand is
+    X_WT_device.rotation.coeffs() /= norm;
+    X_VT_device_ = X_VW_ * X_WT_device;
+    if (!has_pose_) X_VT_ = X_VT_device_;  // the simulated tool starts where the hand is
     has_pose_ = true;
-    return pose;
 }
 
 void HapticTick::beginEffects(const DeviceInput& input) noexcept {
@@ -161,31 +162,21 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     start.is_add_wanted = start.may_mill && add && !remove;
     start.tool = &tools_[tool_];
     start.shape = model_ == &thesis_ ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
-    start.X_VT_start = X_VW_ * spo_;
-    start.X_VT_device = X_VW_ * device_;
+    start.X_VT_start = X_VT_;
+    start.X_VT_device = X_VT_device_;
     effects_.begin(start);
 }
 
-// What they add is at home in V.
-void HapticTick::addEffectsToHand(Wrench& wrench_hand_W) noexcept {
-    if (effects_.isEmpty()) return;
-    const Eigen::Quaterniond R_WV = X_VW_.rotation.conjugate();
-    const Wrench before_V = wrench_hand_W.rotatedBy(X_VW_.rotation);
-    Wrench after_V = before_V;
-    effects_.addToHand(after_V);
-    wrench_hand_W = wrench_hand_W + (after_V + -before_V).rotatedBy(R_WV);
-}
-
 SpoStep HapticTick::moveAndFeel(double stale_factor, uint32_t& faults) noexcept {
-    SpoStep step = model_->advance(spo_, device_);
-    spo_ = step.spo;
+    SpoStep step = model_->advance(X_VT_, X_VT_device_);
+    X_VT_ = step.X_VT;
     if (!step.is_solved) faults |= kFaultSolve;
     if (step.is_motion_clamped) faults |= kFaultMotionClamped;
     if (step.has_stalled) faults |= kFaultStalled;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
     if (gradient_.isToolGrowing()) hand_limits_.beginSuddenChange();
-    addEffectsToHand(step.wrench_hand);
-    step.wrench_hand = hand_limits_.limit({step.wrench_hand, step.is_solved, device_, stale_factor});
+    effects_.addToHand(step.wrench_hand_V);
+    step.wrench_hand_V = hand_limits_.limit({step.wrench_hand_V, step.is_solved, X_VT_device_, stale_factor});
     if (hand_limits_.wasLimited()) faults |= kFaultForceClamped;
     return step;
 }
@@ -215,18 +206,24 @@ MillingResult HapticTick::millWithEffects(uint32_t& faults) noexcept {
     return milled;
 }
 
+Wrench HapticTick::inWorld(const Wrench& wrench_V) const noexcept {
+    return wrench_V.rotatedBy(X_WV_.rotation);
+}
+
 TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept {
     TickRecord record{};
     record.tick = tick_;
     record.start_ns = input.start_ns;
     record.wakeup_latency_ns = input.wakeup_latency_ns;
     record.t_s = input.t_s;
-    copyTo(record.p_WT, spo_.position);
-    copyTo(record.q_WT, wxyz(spo_.rotation));
-    copyTo(record.p_WT_device, device_.position);
-    copyTo(record.q_WT_device, wxyz(device_.rotation));
-    copyTo(record.f_hand_W, step.wrench_hand.force);
-    copyTo(record.t_hand_W, step.wrench_hand.torque);
+    const Pose X_WT = X_WV_ * X_VT_, X_WT_device = X_WV_ * X_VT_device_;
+    const Wrench wrench_hand_W = inWorld(step.wrench_hand_V);
+    copyTo(record.p_WT, X_WT.position);
+    copyTo(record.q_WT, wxyz(X_WT.rotation));
+    copyTo(record.p_WT_device, X_WT_device.position);
+    copyTo(record.q_WT_device, wxyz(X_WT_device.rotation));
+    copyTo(record.f_hand_W, wrench_hand_W.force);
+    copyTo(record.t_hand_W, wrench_hand_W.torque);
     record.contacts = step.contacts;
     record.candidates = step.candidates;
     record.iterations = step.iterations;

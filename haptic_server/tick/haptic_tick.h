@@ -1,6 +1,9 @@
 // One cycle of the haptic loop: read → pose → contact → solve → limit → write → mill → refresh shell → push
 // telemetry; the effects of the scene act in between (effects/haptic_effect.h). The same tick runs behind the
 // device link in real time and in `simulate` without it.
+//
+// Inside there is one frame, V. What comes in is converted in acceptPose(), what goes out in write and
+// record; SPO models, effects and limits know no other frame.
 #pragma once
 
 #include "haptic_server/bone/bone_history.h"
@@ -44,18 +47,19 @@ class HapticTick {
 
     // Latched faults of all ticks so far (any bits of TickFault). Tick thread only.
     uint32_t latchedFaults() const noexcept { return latched_faults_; }
-    const Pose& spo() const noexcept { return spo_; }
+    // Of the simulated tool after the last tick.
+    Pose X_WT() const noexcept { return X_WV_ * X_VT_; }
 
   private:
-    Pose acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
+    void acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
     void chooseTool() noexcept;
     void beginEffects(const DeviceInput& input) noexcept;
     SpoStep moveAndFeel(double stale_factor, uint32_t& faults) noexcept;
-    void addEffectsToHand(Wrench& wrench_hand_W) noexcept;
     MillingResult mill(uint32_t& faults) noexcept;
     MillingResult millWithEffects(uint32_t& faults) noexcept;
+    Wrench inWorld(const Wrench& wrench_V) const noexcept;
     TickRecord makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept;
 
     TickConfig config_;
@@ -71,9 +75,9 @@ class HapticTick {
     AffordableShell affordable_;
     EffectHost effects_;
     HandLimits hand_limits_;
-    Pose X_VW_;
-    Pose device_;
-    Pose spo_;
+    Pose X_WV_, X_VW_;
+    Pose X_VT_device_;
+    Pose X_VT_;
     bool has_pose_ = false;
     uint64_t tick_ = 0;
     uint32_t latched_faults_ = 0;

@@ -19,7 +19,7 @@ class Stepper : private TickIo {
     const TickRecord& step(const Pose& X_WT_device, uint32_t buttons = 0);
     void holdButtons(uint32_t buttons) noexcept { held_buttons_ = buttons; }
     const Wrench& wrenchOnHand() const noexcept { return wrench_; }
-    const Pose& spo() const noexcept { return tick_.spo(); }
+    Pose spo() const noexcept { return tick_.X_WT(); }
     const TickRecord& record() const noexcept { return record_; }
     // Also false where the tick hid what was not: it kept its pose, or left contact points out.
     bool isFinite() const noexcept {

@@ -126,10 +126,10 @@ PathEnergy run(const ContactScene& scene, Preset preset, const Path& path) {
     for (int tick = 0; tick < path.ticks(); ++tick) {
         const Pose device = path.at(tick);
         const SpoStep step = model.advance(spo, device);
-        spo = step.spo;
+        spo = step.X_VT;
         has_touched = has_touched || step.contacts > 0;
-        every_tick.add(device, step.wrench_hand);
-        if (tick % 2 == 0) every_other_tick.add(device, step.wrench_hand);
+        every_tick.add(device, step.wrench_hand_V);
+        if (tick % 2 == 0) every_other_tick.add(device, step.wrench_hand_V);
     }
     return {every_tick.energy(), every_other_tick.energy(), has_touched};
 }

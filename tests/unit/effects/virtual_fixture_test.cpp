@@ -200,8 +200,8 @@ TEST(VirtualFixture, ClosedPathsOfTheHandGainNoEnergy) {
             start.X_VT_device = hand;
             host.begin(start);
             const SpoStep step = model.advance(spo, hand);
-            spo = step.spo;
-            Wrench felt = step.wrench_hand;
+            spo = step.X_VT;
+            Wrench felt = step.wrench_hand_V;
             host.addToHand(felt);
             const Vector3d moved = hand.position - before.position;
             const Vector3d turned = logRotation(hand.rotation * before.rotation.conjugate());

@@ -32,7 +32,7 @@ SpoStep settle(GradientModel& model, Pose spo, const Pose& device, int ticks = 6
     SpoStep step;
     for (int n = 0; n < ticks; ++n) {
         step = model.advance(spo, device);
-        spo = step.spo;
+        spo = step.X_VT;
     }
     return step;
 }
@@ -60,10 +60,10 @@ TEST(GradientModel, SettlesWhereCouplingAndContactBalance) {
             }
             const double force = most * std::tanh(k * (depth - low) / most);
             const double bound = preset == Preset::kExact ? 0.01 : 0.03;
-            EXPECT_NEAR(step.wrench_hand.force.z() / force, 1, bound) << presetName(preset) << " " << depth;
-            EXPECT_LT(step.wrench_hand.force.head<2>().norm(),
+            EXPECT_NEAR(step.wrench_hand_V.force.z() / force, 1, bound) << presetName(preset) << " " << depth;
+            EXPECT_LT(step.wrench_hand_V.force.head<2>().norm(),
                       std::tan(bound == 0.01 ? 0.0175 : 0.035) * force);
-            EXPECT_NEAR(step.spo.position.z() - kAbove.z(), -low, 2e-6);
+            EXPECT_NEAR(step.X_VT.position.z() - kAbove.z(), -low, 2e-6);
             EXPECT_TRUE(step.is_solved);
         }
 }
@@ -82,7 +82,7 @@ TEST(GradientModel, SaysSoWhenItFindsNoWayToBalance) {
             const SpoStep step = model.advance(spo, {kAbove - Vector3d(0, 0, 1e-3), kUpright});
             EXPECT_TRUE(step.is_solved);
             stalled += step.has_stalled;
-            spo = step.spo;
+            spo = step.X_VT;
         }
         EXPECT_EQ(stalled, is_hard ? 40 : 0);
     }
@@ -98,7 +98,7 @@ TEST(GradientModel, FreeToolFollowsAtThePaceOfTheDampingTimeWhateverTheRate) {
     for (const double rate : {1000.0, 4000.0}) {
         GradientModel model(config, scene.world(), toolOf(scene), 1 / rate);
         const SpoStep step = settle(model, start, device, int(5e-3 * rate));
-        const double left = (step.spo.position - device.position).norm() / 0.1118e-3;
+        const double left = (step.X_VT.position - device.position).norm() / 0.1118e-3;
         EXPECT_LT(left, 0.05);
         if (left_of_first == 0) left_of_first = left;
         EXPECT_EQ(step.contacts, 0u);
@@ -121,10 +121,10 @@ TEST(GradientModel, AHandThatTurnsTooQuicklyKeepsTheToolsPlace) {
                     const bool moves = n < 100 || moves_on, turns = n >= 100 && n < 100 + 2000 / speed;
                     device = device.incremented({moves ? 50e-6 : 0, 0, 0}, {0, turns ? speed * 1e-3 : 0, 0});
                     const SpoStep step = model.advance(spo, device);
-                    spo = step.spo;
+                    spo = step.X_VT;
                     ASSERT_EQ(step.contacts, 0u);
                     farthest = std::max(farthest, (spo.position - device.position).norm());
-                    most = std::max(most, step.wrench_hand.force.norm());
+                    most = std::max(most, step.wrench_hand_V.force.norm());
                 }
                 EXPECT_LT(farthest, 0.06e-3) << presetName(preset) << ' ' << speed << ' ' << moves_on;
                 EXPECT_LT(most, 0.3) << presetName(preset) << ' ' << speed << ' ' << moves_on;
@@ -140,10 +140,10 @@ TEST(GradientModel, RelaxingSpringStiffensAHeldToolForAShortTimeAndDoesNotHoldBa
     const Pose device{kAbove - Vector3d(0, 0, 0.5e-3), kUpright},
         further = device.incremented({0, 0, -0.02e-3}, {0, 0, 0});
     const SpoStep rest = settle(model, {kAbove, kUpright}, device);
-    const SpoStep at_once = model.advance(rest.spo, further);
-    const double first = at_once.wrench_hand.force.z() - rest.wrench_hand.force.z();
+    const SpoStep at_once = model.advance(rest.X_VT, further);
+    const double first = at_once.wrench_hand_V.force.z() - rest.wrench_hand_V.force.z();
     const double later =
-        settle(model, at_once.spo, further).wrench_hand.force.z() - rest.wrench_hand.force.z();
+        settle(model, at_once.X_VT, further).wrench_hand_V.force.z() - rest.wrench_hand_V.force.z();
     const double quick = coupling.relaxing_share * coupling.translation_stiffness * coupling.relaxing_time /
                          (coupling.relaxing_time + 1e-3);
     EXPECT_NEAR((first - later) / (quick * 0.02e-3), 1, 0.1);
@@ -156,12 +156,12 @@ TEST(GradientModel, RelaxingSpringStiffensAHeldToolForAShortTimeAndDoesNotHoldBa
         Pose spo{kAbove + Vector3d(0, 0, 1e-3), kUpright};
         for (int n = 0; n < 100; ++n) {
             const SpoStep step = free_model.advance(spo, spo.incremented({0, 0, 0}, {0, 0, 0}));
-            spo = step.spo;
+            spo = step.X_VT;
         }
         for (int n = 1; n <= 100; ++n) {
             const SpoStep step = free_model.advance(spo, {kAbove + Vector3d(n * 10e-6, 0, 1e-3), kUpright});
-            spo = step.spo;
-            drag[with] = step.wrench_hand.force.norm();
+            spo = step.X_VT;
+            drag[with] = step.wrench_hand_V.force.norm();
         }
     }
     EXPECT_NEAR(drag[1], drag[0], 0.02 * drag[0]);
@@ -177,8 +177,8 @@ TEST(GradientModel, EveryPresetSettlesAndTellsItsIterations) {
         const SpoStep first = model.advance(spo, device);
         EXPECT_GE(first.iterations, 1u);
         EXPECT_LE(first.iterations, uint32_t(presetSettings(preset).iterations));
-        const SpoStep step = settle(model, first.spo, device);
-        EXPECT_NEAR(step.wrench_hand.force.norm(), 2.8, 0.4);
+        const SpoStep step = settle(model, first.X_VT, device);
+        EXPECT_NEAR(step.wrench_hand_V.force.norm(), 2.8, 0.4);
         EXPECT_GT(step.candidates, 0u);
     }
 }
@@ -199,8 +199,8 @@ TEST(GradientModel, AToolOfAGridPressesAndLeavesLikeOneOfShapes) {
         for (int n = 0; n < 2 * kTicks; ++n) {  // 0.1 m/s, which is swept, down and up again
             const double way = std::min(2e-3, 1e-4 * (n < kTicks ? n : 2 * kTicks - n));
             step = model.advance(spo, {kAbove + Vector3d(0, 0, 0.5e-3 - way), kUpright});
-            spo = step.spo;
-            if (n == kTicks - 1) force[int(distance)] = step.wrench_hand.force.z();
+            spo = step.X_VT;
+            if (n == kTicks - 1) force[int(distance)] = step.wrench_hand_V.force.z();
         }
         EXPECT_NEAR(spo.position.z(), kAbove.z() + 0.5e-3, 0.3e-3);
         EXPECT_EQ(step.contacts, 0u);
@@ -227,9 +227,9 @@ TEST(GradientModel, NoSpeedTunnelsThroughAWallOfOneVoxel) {
             const Pose device{{4e-3, 4e-3, -50e-3}, kUpright};
             for (int n = 0; n < 300; ++n) {
                 const SpoStep step = model.advance(spo, device);
-                spo = step.spo;
+                spo = step.X_VT;
                 ASSERT_GT(spo.position.z(), top) << speed;
-                ASSERT_TRUE(step.wrench_hand.isFinite());
+                ASSERT_TRUE(step.wrench_hand_V.isFinite());
             }
             EXPECT_LT(spo.position.z(), top + 1e-3);  // it did arrive
         }
@@ -246,10 +246,10 @@ TEST(GradientModel, NeverGivesANonFiniteResult) {
         const Pose device{kAbove + far * Vector3d(uniform(random), uniform(random), uniform(random)),
                           randomRotation(random)};
         const SpoStep step = model.advance(spo, device);
-        ASSERT_TRUE(step.spo.isFinite());
-        ASSERT_TRUE(step.wrench_hand.isFinite());
-        ASSERT_LE(step.wrench_hand.force.norm(), 24 * (1 + 1e-9));  // F_m of either spring
-        spo = step.spo;
+        ASSERT_TRUE(step.X_VT.isFinite());
+        ASSERT_TRUE(step.wrench_hand_V.isFinite());
+        ASSERT_LE(step.wrench_hand_V.force.norm(), 24 * (1 + 1e-9));  // F_m of either spring
+        spo = step.X_VT;
     }
 }
 
@@ -272,7 +272,7 @@ TEST(GradientModel, ATickEndsSoonAfterItsBudgetWhateverItMeets) {
             const SpoStep step = model.advance(spo, device);
             most = std::max(most, step.budget_share);
             overflows += step.has_contact_overflow;
-            spo = step.spo;
+            spo = step.X_VT;
         }
         EXPECT_LT(most * double(most_point_tests), 1.5 * double(most_point_tests) + 64 * 64);
         EXPECT_EQ(overflows > 0, most_point_tests == 2'000);
@@ -287,7 +287,7 @@ TEST(GradientModel, EnergyNeverRisesUnderAHandAtRest) {
     const Pose device = Pose{kAbove - Vector3d(0, 0, 2e-3), kUpright}.incremented({0, 0, 0}, {0.3, 0.1, 0.2});
     double before = 1e9;
     for (int n = 0; n < 100; ++n) {
-        spo = model.advance(spo, device).spo;
+        spo = model.advance(spo, device).X_VT;
         EXPECT_LE(model.energy(), before * (1 + 1e-5));
         before = model.energy();
     }
@@ -313,9 +313,9 @@ TEST(GradientModel, SlidingOverAFlatFaceIsSmooth) {
             double largest = 0;
             for (int tick = 0; tick < 530; ++tick) {
                 const SpoStep step = model.advance(spo, device(tick));
-                spo = step.spo;
-                if (tick > 60) largest = std::max(largest, (step.wrench_hand.force - force_before).norm());
-                force_before = step.wrench_hand.force;
+                spo = step.X_VT;
+                if (tick > 60) largest = std::max(largest, (step.wrench_hand_V.force - force_before).norm());
+                force_before = step.wrench_hand_V.force;
             }
             EXPECT_LE(largest, 0.02) << radius << " " << normal.transpose();
             EXPECT_GT(force_before.norm(), 0.5);
@@ -331,7 +331,7 @@ TEST(GradientModel, TorqueGoesOnSmoothlyBeyondHalfATurn) {
     Vector3d before = Vector3d::Zero();
     for (double degrees = 0; degrees < 200; degrees += 0.1) {
         const Pose device{spo.position, expRotation({0, 0, degrees * M_PI / 180}) * kUpright};
-        const Vector3d torque = model.advance(spo, device).wrench_hand.torque;
+        const Vector3d torque = model.advance(spo, device).wrench_hand_V.torque;
         if (degrees > 179) {
             EXPECT_LT((torque - before).norm(), 0.01 * before.norm()) << degrees;
         }

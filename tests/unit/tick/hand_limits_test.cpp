@@ -22,10 +22,10 @@ Wrench upwards(double newton) {
 }
 // The hand at rest.
 Wrench sentBy(HandLimits& limits, const Wrench& computed) {
-    return limits.limit({.wrench = computed});
+    return limits.limit({.wrench_V = computed});
 }
 Wrench sentUnsolved(HandLimits& limits, const Wrench& computed) {
-    return limits.limit({.wrench = computed, .is_solved = false});
+    return limits.limit({.wrench_V = computed, .is_solved = false});
 }
 
 TEST(HandLimits, WithoutAChangeEveryWrenchPasses) {
@@ -76,8 +76,8 @@ TEST(HandLimits, WhatTheHandsMotionMakesIsNotHeldBack) {
     limits.beginSuddenChange();
     const double way = 1e-4;  // m in one tick
     const Pose device{{0, 0, -way}, Eigen::Quaterniond::Identity()};
-    EXPECT_NEAR(limits.limit({.wrench = upwards(50), .device = device}).force.z(), kStiffness * way + kStep,
-                1e-9);
+    EXPECT_NEAR(limits.limit({.wrench_V = upwards(50), .X_VT_device = device}).force.z(),
+                kStiffness * way + kStep, 1e-9);
 }
 
 // What was computed beyond the limit is not what the hand comes from.
@@ -103,7 +103,7 @@ TEST(HandLimits, AfterAWrenchThatIsNotFiniteTheForceComesBackAlongTheRamp) {
     for (const bool is_solved : {true, false}) {
         HandLimits limits = make();
         sentBy(limits, upwards(20));
-        const Wrench bad = limits.limit({.wrench = upwards(kNan), .is_solved = is_solved});
+        const Wrench bad = limits.limit({.wrench_V = upwards(kNan), .is_solved = is_solved});
         EXPECT_NEAR(bad.force.z(), 20 * (1 - kDt / HandLimits::kFade), 1e-9);
         EXPECT_TRUE(limits.wasLimited());
         EXPECT_LE(sentBy(limits, upwards(80)).force.z() - bad.force.z(), kStep * 1.0001);
@@ -147,8 +147,8 @@ TEST(HandLimits, TheStaleFactorIsTheLastWord) {
     std::uniform_real_distribution<double> uniform(-1, 1);
     HandLimits limits = make(10), whole = make(10);
     for (int tick = 0; tick < 3000; ++tick) {
-        FeltStep step{.wrench = upwards(40 * uniform(random)), .is_solved = uniform(random) < 0.9};
-        if (uniform(random) > 0.95) step.wrench.force.x() = kNan;
+        FeltStep step{.wrench_V = upwards(40 * uniform(random)), .is_solved = uniform(random) < 0.9};
+        if (uniform(random) > 0.95) step.wrench_V.force.x() = kNan;
         if (uniform(random) > 0.95) {
             limits.beginSuddenChange();
             whole.beginSuddenChange();
@@ -160,8 +160,8 @@ TEST(HandLimits, TheStaleFactorIsTheLastWord) {
         EXPECT_EQ(sent.torque, step.stale_factor * all.torque);
     }
     for (const double nothing : {0.0, -1.0, kNan})
-        EXPECT_EQ(limits.limit({.wrench = upwards(5), .stale_factor = nothing}).force.norm(), 0);
-    EXPECT_LE(limits.limit({.wrench = upwards(50), .stale_factor = 7}).force.norm(), 10 + 1e-9);
+        EXPECT_EQ(limits.limit({.wrench_V = upwards(5), .stale_factor = nothing}).force.norm(), 0);
+    EXPECT_LE(limits.limit({.wrench_V = upwards(50), .stale_factor = 7}).force.norm(), 10 + 1e-9);
 }
 
 TEST(HandLimits, NoOrderOfTicksPassesTheNorms) {
@@ -174,10 +174,10 @@ TEST(HandLimits, NoOrderOfTicksPassesTheNorms) {
     double most_force = 0, most_torque = 0;
     for (int tick = 0; tick < 20'000; ++tick) {
         const double size = std::pow(10, 3 * uniform(random)) * 10;
-        FeltStep step{.wrench = {vector(size), vector(0.1 * size)},
+        FeltStep step{.wrench_V = {vector(size), vector(0.1 * size)},
                       .is_solved = uniform(random) < 0.95,
-                      .device = {vector(1e-3), expRotation(vector(0.1))}};
-        if (uniform(random) > 0.98) step.wrench.torque.z() = std::numeric_limits<double>::infinity();
+                      .X_VT_device = {vector(1e-3), expRotation(vector(0.1))}};
+        if (uniform(random) > 0.98) step.wrench_V.torque.z() = std::numeric_limits<double>::infinity();
         if (uniform(random) > 0.9) limits.beginSuddenChange();
         const Wrench sent = limits.limit(step);
         ASSERT_TRUE(sent.isFinite());
