@@ -3,7 +3,7 @@
 
 #include "haptic_server/tick/fixed_tick.h"
 #include "haptic_server/volume/import/protected_distance.h"
-#include "tests/support/scripted_io.h"
+#include "tests/support/led_tick.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill::test {
@@ -42,9 +42,7 @@ struct TissueBench {
         return {config, bone};
     }
     std::vector<TickRecord> run(FixedTick& tick, const std::vector<DeviceInput>& inputs) {
-        ScriptedIo io(inputs);
-        tick.run(io);
-        return io.records;
+        return lead(tick, inputs);
     }
 
     FixedTickConfig config;

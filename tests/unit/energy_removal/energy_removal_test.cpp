@@ -259,6 +259,7 @@ TEST(EnergyRemoval, SurvivesWhatNoHandDoes) {
     MillingRig rig(config);
     rig.feed(0.05, onTop(rig), {0, 0, -60e-3});
     rig.feed(0.1, rig.position(), {30e-3, 5e-3, 15e-3});
+    ASSERT_EQ(rig.records.size(), 150u);
     for (const TickRecord& r : rig.records) {
         EXPECT_TRUE(std::isfinite(r.effects.burr_force));
         EXPECT_FALSE(r.faults & (kFaultSolve | kFaultShellOverflow | kFaultVolumeFull)) << r.tick;

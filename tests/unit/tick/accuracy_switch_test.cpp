@@ -43,6 +43,7 @@ Records withOnePreset(const std::vector<DeviceInput>& inputs, Preset preset) {
     SwitchingBench bench(presetSettings(preset));
     test::ScriptedIo io(inputs);
     bench.run(io);
+    EXPECT_EQ(io.records.size(), inputs.size());
     return io.records;
 }
 
@@ -50,6 +51,7 @@ Records withSwitching(const std::vector<DeviceInput>& inputs) {
     SwitchingBench bench;
     test::ScriptedIo io(inputs);
     bench.runSwitching(io);
+    EXPECT_EQ(io.records.size(), inputs.size());
     return io.records;
 }
 

@@ -7,8 +7,8 @@
 #include "haptic_server/mesh/mesh_check.h"
 #include "haptic_server/mesh/mesher.h"
 #include "haptic_server/tick/fixed_tick.h"
+#include "tests/support/led_tick.h"
 #include "tests/support/milling_config.h"
-#include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
 #include "tests/support/voxel_fields.h"
 
@@ -39,9 +39,8 @@ struct Bench {
         return bone.volume.geometry().X_WV.inverse() * Eigen::Vector3d(p_W[0], p_W[1], p_W[2]);
     }
     std::vector<TickRecord> run(const std::vector<DeviceInput>& inputs) {
-        test::ScriptedIo io(inputs);
-        FixedTick(config, bone).run(io);
-        return io.records;
+        FixedTick tick(config, bone);
+        return test::lead(tick, inputs);
     }
     double boneVolume() const {
         std::vector<NodeMesh> meshes;
@@ -143,10 +142,7 @@ TEST(HapticTick, WithoutAnEquilibriumTheForceFadesAndComesBackAlongTheRamp) {
     HapticTick tick(bench.config, {bench.bone}, {tools, accuracy});
     const Pose start = bench.atV(kStart), pressed = bench.atV(kStart - Eigen::Vector3d(0, 0, 1.3e-3));
     const auto lead = [&](const Pose& from, int ticks) {
-        test::ScriptedIo io(test::straightPath(from, pressed.position, ticks, 0));
-        while (tick.tick(io)) {
-        }
-        return io.records;
+        return test::lead(tick, test::straightPath(from, pressed.position, ticks, 0));
     };
     lead(start, 200);
     const double held = forceOf(lead(pressed, 200).back());
@@ -188,12 +184,10 @@ TEST(HapticTick, PausedMillingTakesNothingButIsFelt) {
     history.pauseMilling(true);
     FixedTick tick(bench.config, bench.bone, &history);
     const Pose start = bench.atV(kStart);
-    test::ScriptedIo io(test::straightPath(start, bench.atV(kStart - Eigen::Vector3d(0, 0, 1e-3)).position,
-                                           400, kButtonRemove));
-    tick.run(io);
-    ASSERT_EQ(io.records.size(), 400u);
-    for (const TickRecord& r : io.records) EXPECT_EQ(r.removed_voxels, 0u);
-    EXPECT_GT(io.records.back().contacts, 0u);
+    const Eigen::Vector3d end = bench.atV(kStart - Eigen::Vector3d(0, 0, 1e-3)).position;
+    const auto records = test::lead(tick, test::straightPath(start, end, 400, kButtonRemove));
+    for (const TickRecord& r : records) EXPECT_EQ(r.removed_voxels, 0u);
+    EXPECT_GT(records.back().contacts, 0u);
 }
 
 // What the mesher is told is where the bone really changed, no more and no less.
@@ -268,10 +262,8 @@ TEST(HapticTick, ChangedSettingsAreTakenUpWhenTheirPointsAreReady) {
     const auto factor = [&] { return bone.shell.scalingFactor(bone.shell.followed()); };
     const Pose start{kStart, Eigen::Quaterniond::Identity()};
     const auto mill = [&](int ticks) {
-        test::ScriptedIo io(
-            test::straightPath(start, kStart - Eigen::Vector3d(0, 0, 2e-3), ticks, kButtonRemove));
-        while (tick.tick(io)) {
-        }
+        test::lead(tick,
+                   test::straightPath(start, kStart - Eigen::Vector3d(0, 0, 2e-3), ticks, kButtonRemove));
     };
     mill(400);
     EXPECT_EQ(factor(), 2);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "haptic_server/tick/fixed_tick.h"
-#include "tests/support/scripted_io.h"
+#include "tests/support/led_tick.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill {
@@ -20,11 +20,7 @@ struct Bench {
           tool(test::sphereToolModel(kBurr, 0.125e-3)),
           tick((config.tool.model = &tool, config), bone) {}
 
-    std::vector<TickRecord> run(const std::vector<DeviceInput>& inputs) {
-        test::ScriptedIo io(inputs);
-        tick.run(io);
-        return io.records;
-    }
+    std::vector<TickRecord> run(const std::vector<DeviceInput>& inputs) { return test::lead(tick, inputs); }
 
     BoneModel bone;
     ToolModel tool;

@@ -39,6 +39,7 @@ class TickIsRtSafe : public testing::Test {
         EXPECT_EQ(probe.heapCalls(), 0u) << probe.firstCall();
         EXPECT_EQ(probe.lockCalls(), 0u) << probe.firstCall();
         records_ = io.records;
+        EXPECT_EQ(records_.size(), inputs.size());
     }
     size_t removedVoxels() const {
         size_t sum = 0;

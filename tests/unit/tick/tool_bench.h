@@ -2,8 +2,8 @@
 #pragma once
 
 #include "haptic_server/tick/haptic_tick.h"
+#include "tests/support/led_tick.h"
 #include "tests/support/milling_config.h"
-#include "tests/support/scripted_io.h"
 #include "tests/unit/tick/switching_bench.h"
 
 namespace bonemill::test {
@@ -26,10 +26,7 @@ struct ToolBench {
           accuracy(settings),
           tick(millingConfig(), {bone, &history}, {tools, accuracy}) {}
 
-    void run(ScriptedIo& io) noexcept {
-        while (tick.tick(io)) {
-        }
-    }
+    std::vector<TickRecord> run(const std::vector<DeviceInput>& inputs) { return lead(tick, inputs); }
     void runChanging(ScriptedIo& io) noexcept {
         constexpr std::array<size_t, 6> kOrder{0, 1, 2, 0, 2, 1};
         size_t n = 0;

@@ -25,9 +25,7 @@ TEST(ToolSwitch, EachToolRestsOnItsOwnBurr) {
         const auto down = test::SwitchingBench::at(test::kBenchTop + 0.1e-3);
         for (const size_t index : {0u, 2u, 1u, 0u}) {
             bench.tools.choose(index);
-            test::ScriptedIo io(test::straightPath(down, down.position, 400, 0));
-            bench.run(io);
-            const TickRecord& last = io.records.back();
+            const TickRecord last = bench.run(test::straightPath(down, down.position, 400, 0)).back();
             EXPECT_GT(last.contacts, 0u);
             // The thesis' springs give way.
             const double slack = preset == Preset::kThesis2012 ? 0.4 * kBurrs[index] : 0.06e-3;
@@ -46,10 +44,9 @@ TEST(ToolSwitch, AForceAtItsLimitFallsAtOnce) {
     // Deep in the slab for the largest burr, above it for the smallest.
     const auto hand = test::SwitchingBench::at(test::kBenchTop + 0.7e-3);
     const auto feltAfter = [&](int ticks) {
-        test::ScriptedIo io(test::straightPath(hand, hand.position, ticks, 0));
-        while (tick.tick(io)) {
-        }
-        return io.last_wrench.force.norm();
+        return Eigen::Map<const Eigen::Vector3d>(
+                   test::lead(tick, test::straightPath(hand, hand.position, ticks, 0)).back().f_hand_W)
+            .norm();
     };
     EXPECT_NEAR(feltAfter(200), 0.5, 1e-9);
     bench.tools.choose(0);
@@ -72,16 +69,12 @@ TEST(SuddenBone, ThatIsPutBackAroundTheToolPushesAtALimitedRate) {
     ToolBench bench(1);
     const auto above = test::SwitchingBench::at(test::kBenchTop + 1.2e-3);
     const auto bottom = test::SwitchingBench::at(test::kBenchTop - 0.2e-3);
-    test::ScriptedIo down(test::straightPath(above, bottom.position, 600, kButtonRemove));
-    bench.run(down);
-    test::ScriptedIo rest(test::straightPath(bottom, bottom.position, 200, 0));
-    bench.run(rest);
+    bench.run(test::straightPath(above, bottom.position, 600, kButtonRemove));
+    bench.run(test::straightPath(bottom, bottom.position, 200, 0));
     bench.history.restore();
-    test::ScriptedIo back(test::straightPath(bottom, bottom.position, 400, 0));
-    bench.run(back);
-    const Eigen::Map<const Eigen::Vector3d> force(back.records.back().f_hand_W);
-    EXPECT_GT(force.z(), 2);
-    EXPECT_LE(largestStep(back.records), 1.001 * HandLimits::kForceRate * 1e-3);
+    const auto back = bench.run(test::straightPath(bottom, bottom.position, 400, 0));
+    EXPECT_GT(back.back().f_hand_W[2], 2);
+    EXPECT_LE(largestStep(back), 1.001 * HandLimits::kForceRate * 1e-3);
 }
 
 // A burr that has no room stays small when another law was in force for a while.
@@ -90,9 +83,8 @@ TEST(SuddenLaw, ChangesTheForceAtALimitedRateAndLeavesAToolSmall) {
     const auto hand = test::SwitchingBench::at(test::kBenchTop + 0.1e-3);
     std::vector<TickRecord> records;
     const auto rest = [&](int ticks) {
-        test::ScriptedIo io(test::straightPath(hand, hand.position, ticks, 0));
-        bench.run(io);
-        records.insert(records.end(), io.records.begin(), io.records.end());
+        const auto more = bench.run(test::straightPath(hand, hand.position, ticks, 0));
+        records.insert(records.end(), more.begin(), more.end());
     };
     rest(300);
     records.clear();
@@ -108,12 +100,9 @@ TEST(ToolSwitch, EachToolMillsWithItsOwnBurr) {
     const auto removedBy = [](size_t first, size_t then) {
         ToolBench bench(first);
         const auto above = test::SwitchingBench::at(test::kBenchTop + 2e-3);
-        test::ScriptedIo wait(test::straightPath(above, above.position, 10, 0));
-        bench.run(wait);
+        bench.run(test::straightPath(above, above.position, 10, 0));
         bench.tools.choose(then);
-        test::ScriptedIo mill(
-            test::straightPath(above, {4.05e-3, 3.95e-3, test::kBenchTop}, 400, kButtonRemove));
-        bench.run(mill);
+        bench.run(test::straightPath(above, {4.05e-3, 3.95e-3, test::kBenchTop}, 400, kButtonRemove));
         return bench.history.missingVoxels();
     };
     EXPECT_EQ(removedBy(0, 2), removedBy(2, 2));
