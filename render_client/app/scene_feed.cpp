@@ -8,12 +8,6 @@
 #include "render_client/app/stop_signal.h"
 
 namespace bonemill {
-namespace {
-
-constexpr std::chrono::seconds kAnnouncePeriod{1};
-
-}  // namespace
-
 void SceneFeed::update() {
     const SceneModel::Changes changes = subscriber_.poll();
     if (changes.is_cleared) nodes_.clear();
@@ -51,10 +45,7 @@ void SceneFeed::advanceEffects() {
 
 void SceneFeed::announce() {
     scene_.setWatchers(subscriber_.viewers());
-    const auto now = std::chrono::steady_clock::now();
-    if (now - announced_ < kAnnouncePeriod) return;
-    announced_ = now;
-    subscriber_.announce(0, std::nullopt);
+    if (announce_clock_.isDue(std::chrono::steady_clock::now(), false)) subscriber_.announce(0, std::nullopt);
 }
 
 // Tool states are not kept for late clients: a loop that has ticked will send one soon.

@@ -6,6 +6,7 @@
 
 #include "render_client/app/cut_to_screen.h"
 #include "render_client/app/sound_feed.h"
+#include "render_client/controls/announce_clock.h"
 #include "render_client/scene/node_intake.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
@@ -52,7 +53,7 @@ class SceneFeed {
     SoundFeed* sound_ = nullptr;
     std::chrono::steady_clock::time_point advanced_ = std::chrono::steady_clock::now();
     bool takes_part_ = false;
-    std::chrono::steady_clock::time_point announced_;
+    AnnounceClock announce_clock_;
     std::pair<uint64_t, uint32_t> shown_info_;  // epoch and revision of the scene info that was passed on
     uint64_t complete_epoch_ = 0;               // server run whose model was complete once; 0: none
     bool had_server_ = false;

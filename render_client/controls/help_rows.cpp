@@ -16,14 +16,15 @@ const HudRow kMouse[] = {{"Left drag", "orbit"},
 
 template <class Bindings>
 void addKeys(const Bindings& bindings, std::vector<HudRow>& rows) {
-    std::string_view last;
+    std::string last;
     for (const auto& binding : bindings) {
-        if (binding.meaning == last) {
+        const std::string meaning = meaningOf(binding);
+        if (meaning == last) {
             rows.back().label += " " + std::string(binding.label);
         } else {
-            rows.push_back({std::string(binding.label), std::string(binding.meaning)});
+            rows.push_back({std::string(binding.label), meaning});
         }
-        last = binding.meaning;
+        last = meaning;
     }
 }
 

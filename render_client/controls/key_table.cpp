@@ -1,5 +1,8 @@
 #include "render_client/controls/key_table.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace bonemill {
 namespace {
 
@@ -22,10 +25,10 @@ constexpr KeyBinding kKeys[] = {
     {"U", keyOf('U'), false, Action::kLastCheckpoint, "back to the last checkpoint"},
     {"N", keyOf('N'), false, Action::kNextTool, "next tool"},
     {"0", keyOf('0'), false, Action::kAccuracyScene, "accuracy of the scene file"},
-    {"1", keyOf('1'), false, Action::kAccuracy1, "accuracy thesis_2012"},
-    {"2", keyOf('2'), false, Action::kAccuracy2, "accuracy fast"},
-    {"3", keyOf('3'), false, Action::kAccuracy3, "accuracy balanced"},
-    {"4", keyOf('4'), false, Action::kAccuracy4, "accuracy exact"},
+    {"1", keyOf('1'), false, Action::kAccuracy1, "accuracy"},
+    {"2", keyOf('2'), false, Action::kAccuracy2, "accuracy"},
+    {"3", keyOf('3'), false, Action::kAccuracy3, "accuracy"},
+    {"4", keyOf('4'), false, Action::kAccuracy4, "accuracy"},
     {"W", keyOf('W'), false, Action::kWatchers, "who is watching"},
     {"M", keyOf('M'), false, Action::kPanel, "control panel"},
     {"Tab", Key::kTab, false, Action::kHud, "all figures"},
@@ -55,6 +58,36 @@ std::span<const KeyBinding> keyTable() {
 
 std::span<const SignBinding> signTable() {
     return kSigns;
+}
+
+std::string_view accuracyOf(Action action) {
+    const size_t first = size_t(Action::kAccuracyScene), n = size_t(action) - first;
+    return size_t(action) >= first && n < std::size(kAccuracyOfKey) ? kAccuracyOfKey[n] : std::string_view();
+}
+
+std::string meaningOf(const KeyBinding& binding) {
+    const std::string_view accuracy = accuracyOf(binding.action);
+    const bool is_preset = !accuracy.empty() && binding.action != Action::kAccuracyScene;
+    return std::string(binding.meaning) + (is_preset ? " " + std::string(accuracy) : "");
+}
+
+std::string meaningOf(const SignBinding& binding) {
+    return std::string(binding.meaning);
+}
+
+std::string keyLabelOf(Action action) {
+    const auto binding = std::ranges::find(kKeys, action, &KeyBinding::action);
+    return binding == std::end(kKeys) ? "" : std::string(binding->label);
+}
+
+std::string withKey(std::string_view text, Action action) {
+    return std::string(text) + " (" + keyLabelOf(action) + ")";
+}
+
+bool isKeyOf(Action action, const KeyEvent& event) {
+    return std::ranges::any_of(kKeys, [&](const KeyBinding& binding) {
+        return binding.action == action && binding.key == event.key;
+    });
 }
 
 std::optional<Action> actionOf(const KeyEvent& event) {

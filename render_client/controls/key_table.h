@@ -1,8 +1,9 @@
-// Which key does what, and how the help page says it: the one place. Any thread.
+// Which key does what, and what people call it: help page, panel and notices take both from here. Any thread.
 #pragma once
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "render_client/controls/window_event.h"
@@ -50,12 +51,12 @@ enum class Action {
 };
 
 struct KeyBinding {
-    std::string_view label;  // what people call it: "Shift+X"
+    std::string_view label;  // what people call the key: "Shift+X"
     Key key;
     bool with_shift;
     Action action;
-    std::string_view meaning;  // for the help page; neighbours with the same one share a row
-    bool repeats = false;      // acts again while the key is held
+    std::string_view meaning;  // neighbours with the same one share a row of the help page
+    bool repeats = false;      // it acts again while the key is held
 };
 
 // Signs such as [ and + are bound by the text they make: where they lie differs from layout to layout.
@@ -69,7 +70,26 @@ struct SignBinding {
 std::span<const KeyBinding> keyTable();
 std::span<const SignBinding> signTable();
 
-// Of a key going down; also those held with Ctrl have none.
+// Which accuracy settings a key asks the server for: the n-th digit means the n-th, as the argument of
+// Command.set_accuracy. The first one stands for what the scene file says.
+inline constexpr std::string_view kAccuracyOfKey[] = {"scene", "thesis_2012", "fast", "balanced", "exact"};
+
+// The accuracy that an action asks for; empty for actions that ask for none.
+std::string_view accuracyOf(Action action);
+
+// What the help page says of a key or a sign.
+std::string meaningOf(const KeyBinding& binding);
+std::string meaningOf(const SignBinding& binding);
+
+// What people call the key of an action that has one: the first in the table where several do the same.
+std::string keyLabelOf(Action action);
+// The text with its key behind it: "Endoscope (E)".
+std::string withKey(std::string_view text, Action action);
+
+// Does the event come from the key of this action, whether it goes down or up?
+bool isKeyOf(Action action, const KeyEvent& event);
+
+// The action of a key that goes down; a key that is held with Ctrl has none.
 std::optional<Action> actionOf(const KeyEvent& event);
 std::optional<Action> actionOf(const TextEvent& event);
 

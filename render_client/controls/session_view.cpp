@@ -1,11 +1,7 @@
 #include "render_client/controls/session_view.h"
 
-#include "render_client/controls/accuracy_keys.h"
-
 namespace bonemill {
 namespace {
-
-constexpr int kFirstAccuracy = int(Action::kAccuracyScene);
 
 CommandOrReason refuse(std::string why_not) {
     return {std::nullopt, std::move(why_not)};
@@ -19,7 +15,7 @@ CommandOrReason pauseOrGoOn(const SessionView& session) {
 
 CommandOrReason backToLastCheckpoint(const SessionView& session) {
     if (!session.status || session.status->checkpoints().empty())
-        return refuse("there is no checkpoint yet: K saves one");
+        return refuse("there is no checkpoint yet: " + keyLabelOf(Action::kSaveCheckpoint) + " saves one");
     topics::Command command;
     command.set_restore_checkpoint(session.status->checkpoints().rbegin()->id());
     return {command, ""};
@@ -78,7 +74,7 @@ CommandOrReason commandOf(Action action, const SessionView& session) {
         case Action::kAccuracy2:
         case Action::kAccuracy3:
         case Action::kAccuracy4:
-            command.set_set_accuracy(std::string(kAccuracyOfKey[int(action) - kFirstAccuracy]));
+            command.set_set_accuracy(std::string(accuracyOf(action)));
             asked = {command, ""};
             break;
         default:

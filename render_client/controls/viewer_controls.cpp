@@ -74,7 +74,7 @@ void ViewerControls::handle(const WindowEvent& event, int picture_height, const 
 }
 
 void ViewerControls::onKey(const KeyEvent& event, const SessionView& session, Wishes& wishes) {
-    if (!event.is_down && event.key == keyOf('L')) is_point_key_down_ = false;
+    if (!event.is_down && isKeyOf(Action::kPoint, event)) is_point_key_down_ = false;
     if (const auto action = actionOf(event)) act(*action, session, wishes);
 }
 
@@ -132,7 +132,8 @@ bool ViewerControls::mayPoint(const SessionView& session, Wishes& wishes) const 
 
 // A pixel of a stereo picture stands for no one place (RenderScene::pick).
 std::string ViewerControls::whyNoPlace() const {
-    return settings_.stereo == StereoMode::kOff ? "" : "No place can be shown in stereo: S switches it off";
+    if (settings_.stereo == StereoMode::kOff) return "";
+    return "No place can be shown in stereo: " + keyLabelOf(Action::kStereo) + " switches it off";
 }
 
 void ViewerControls::act(Action action, const SessionView& session, Wishes& wishes) {

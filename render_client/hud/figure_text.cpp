@@ -21,7 +21,7 @@ std::vector<std::string> splitSigns(const std::string& utf8) {
 }  // namespace
 
 std::string figureText(double value, int decimals, const char* unit) {
-    if (!std::isfinite(value)) return "\u2013";
+    if (!std::isfinite(value)) return kNoNumber;
     char text[64];
     std::snprintf(text, sizeof text, "%.*f%s", decimals, value, unit);
     return text;

@@ -5,7 +5,10 @@
 
 namespace bonemill {
 
-// A dash for what is no number.
+// What stands for a value that is no number: a dash.
+inline constexpr char kNoNumber[] = "\u2013";
+
+// The number with so many decimals, and its unit.
 std::string figureText(double value, int decimals, const char* unit);
 // Three significant digits or so, whatever the size.
 std::string readableText(double value, const char* unit);

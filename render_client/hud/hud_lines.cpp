@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/units.h"
+#include "render_client/hud/burr_work.h"
 #include "render_client/hud/effect_lines.h"
 #include "render_client/hud/figure_text.h"
 #include "render_client/hud/session_text.h"
@@ -44,12 +45,9 @@ void addToolNameRow(const topics::SceneInfo& info, std::vector<HudRow>& rows) {
 }
 
 HudRow watcherRow(const topics::Viewer& watcher) {
-    const std::string name =
-        watcher.name().empty() ? "(no name)" : shortenedText(watcher.name(), kLongestName);
-    std::string value = roleName(watcher.role());
-    value += ", " + figureText(watcher.frame_rate_hz(), 0, " Hz");
-    if (!watcher.is_complete()) value += ", incomplete";
-    return {name, value, watcher.is_complete() ? HudTone::kPlain : HudTone::kWarning};
+    const std::string name = shortenedText(watcherName(watcher.name()), kLongestName);
+    return {name, watcherText(watcher.role(), watcher.frame_rate_hz(), watcher.is_complete()),
+            watcher.is_complete() ? HudTone::kPlain : HudTone::kWarning};
 }
 
 std::vector<HudRow> watcherRows(const std::vector<topics::Viewer>& watchers) {
@@ -79,17 +77,23 @@ void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
                                        : "not measured"});
 }
 
+HudRow burrRow(BurrWork work) {
+    switch (work) {
+        case BurrWork::kRemoving:
+            return {"Burr", "removing", HudTone::kWarning};
+        case BurrWork::kAdding:
+            return {"Burr", "adding", HudTone::kWarning};
+        case BurrWork::kIdle:
+            break;
+    }
+    return {"Burr", "idle"};
+}
+
 void addToolRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
     rows.push_back({"Force", readableText(norm(tool.force_n()), " N")});
     rows.push_back({"Torque", readableText(norm(tool.torque_nm()) * kPerMilli, " N\u00b7mm")});
     rows.push_back({"Contacts", std::to_string(tool.contacts())});
-    const bool removes = tool.buttons() & 1u;
-    const bool adds = tool.buttons() & 2u;
-    rows.push_back({"Burr",
-                    removes ? "removing"
-                    : adds  ? "adding"
-                            : "idle",
-                    removes || adds ? HudTone::kWarning : HudTone::kPlain});
+    rows.push_back(burrRow(burrWorkOf(tool)));
 }
 
 void addEffectRows(const HudInput& input, std::vector<HudRow>& rows) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "render_client/hud/figure_text.h"
+
 namespace bonemill {
 
 std::string roleName(topics::Viewer::Role role) {
@@ -19,8 +21,16 @@ std::string roleName(topics::Viewer::Role role) {
     }
 }
 
+std::string watcherName(const std::string& name) {
+    return name.empty() ? "(no name)" : name;
+}
+
+std::string watcherText(topics::Viewer::Role role, double frame_rate_hz, bool is_complete) {
+    return roleName(role) + ", " + figureText(frame_rate_hz, 0, " Hz") + (is_complete ? "" : ", incomplete");
+}
+
 std::string clockText(double seconds) {
-    if (!(seconds >= 0) || !std::isfinite(seconds)) return "\u2013";
+    if (!(seconds >= 0) || !std::isfinite(seconds)) return kNoNumber;
     const auto whole = static_cast<unsigned long long>(std::min(seconds, 1e9));
     char text[32];
     std::snprintf(text, sizeof text, "%llu:%02llu:%02llu", whole / 3600, whole / 60 % 60, whole % 60);

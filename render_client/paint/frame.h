@@ -11,11 +11,10 @@
 #include "render_client/camera/cut_planes.h"
 #include "render_client/camera/view_settings.h"
 #include "render_client/gl/program.h"
+#include "render_client/hud/burr_work.h"
 #include "render_client/paint/effect_picture.h"
 
 namespace bonemill {
-
-enum class BurrWork { kIdle, kRemoving, kAdding };
 
 struct FrameView {
     Camera camera;

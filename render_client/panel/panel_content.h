@@ -6,6 +6,7 @@
 #include <string>
 
 #include "render_client/controls/viewer_controls.h"
+#include "render_client/hud/hud_colours.h"
 
 namespace bonemill {
 
@@ -27,11 +28,17 @@ class PanelContent {
     void build();
 
   private:
+    // What is seen (panel_view.cpp).
     void buildView();
     void buildSides();
+    void buildTransparency();
     void buildCuts();
     void buildStereo();
+    void buildSigns();
+    bool hasEffects() const;
+    bool isListed(ViewerEffect effect) const;
     void buildEffects();
+    // The session (panel_session.cpp).
     void buildSession();
     void buildCheckpoints();
     void buildTools();
@@ -41,12 +48,19 @@ class PanelContent {
     void buildWatchers();
 
     // Controls: a label, and what it does in words while the mouse rests on it.
-    bool button(const char* label, const char* what);
-    bool box(const char* label, bool is_on, const char* what);
-    bool choice(const char* label, bool is_chosen, const char* what);
-    // The fraction that it was moved to, at least `least`.
+    bool button(const std::string& label, const char* what);
+    bool box(const std::string& label, bool is_on, const char* what);
+    bool choice(const std::string& label, bool is_chosen, const char* what);
+    // Returns the fraction that it was moved to, at least `least`.
     std::optional<double> slider(const char* label, double fraction, double least, const char* what);
-    void note(const char* label, const char* what);
+    // Controls that do what a key does; the key stands beside the text.
+    void button(const char* text, Action action, const char* what);
+    void box(const char* text, Action action, bool is_on, const char* what);
+    void note(const std::string& label, const char* what);
+
+    void gap();
+    void sayQuietly(const std::string& text);
+    void say(const std::string& text, HudTone tone);
     void send(topics::Command command) { wishes_.commands.push_back(std::move(command)); }
     void act(Action action) { controls_.act(action, session_, wishes_); }
 

@@ -173,9 +173,7 @@ void RenderScene::showTool(FrameView& view) const {
     const topics::ToolState& tool = *hud_input_.tool;
     view.X_WT = readPose(tool.p_wt_m(), tool.q_wt());
     view.X_WT_device = readPose(tool.p_wt_device_m(), tool.q_wt_device());
-    view.burr_work = tool.buttons() & 1u   ? BurrWork::kRemoving
-                     : tool.buttons() & 2u ? BurrWork::kAdding
-                                           : BurrWork::kIdle;
+    view.burr_work = burrWorkOf(tool);
     if (settings_.show_force) view.f_T_W = readVector(tool.force_n());
     if (!followsTool()) return;
     view.camera = endoscopeCamera(*view.X_WT, view.burr_radius);

@@ -6,7 +6,6 @@
 #include <iterator>
 #include <sstream>
 
-#include "render_client/controls/accuracy_keys.h"
 #include "render_client/controls/key_table.h"
 
 namespace bonemill {
@@ -30,7 +29,7 @@ std::vector<std::string> meaningsOf(std::string_view key) {
 TEST(HelpRows, NameEveryKeyOfTheTableOnceWithItsMeaning) {
     const auto expect_named = [](const auto& binding) {
         EXPECT_FALSE(binding.meaning.empty()) << binding.label;
-        EXPECT_EQ(meaningsOf(binding.label), std::vector{std::string(binding.meaning)}) << binding.label;
+        EXPECT_EQ(meaningsOf(binding.label), std::vector{meaningOf(binding)}) << binding.label;
     };
     for (const KeyBinding& binding : keyTable()) expect_named(binding);
     for (const SignBinding& binding : signTable()) expect_named(binding);

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <set>
 
+#include "haptic_server/accuracy/accuracy_settings.h"
 #include "tests/support/places.h"
 
 namespace bonemill {
@@ -49,6 +50,23 @@ TEST(KeyTable, TheManualListsEveryKey) {
     };
     for (const KeyBinding& binding : keyTable()) EXPECT_TRUE(is_listed(binding.label)) << binding.label;
     for (const SignBinding& binding : signTable()) EXPECT_TRUE(is_listed(binding.label)) << binding.label;
+}
+
+TEST(KeyTable, TheDigitsAskForTheSceneAndForEveryPresetOfTheServer) {
+    ASSERT_EQ(std::size(kAccuracyOfKey), 1 + std::size(kPresets));
+    EXPECT_EQ(accuracyOf(Action::kAccuracyScene), "scene");
+    EXPECT_EQ(accuracyOf(Action::kAccuracy4), "exact");
+    EXPECT_EQ(accuracyOf(Action::kWatchers), "");
+    EXPECT_EQ(accuracyOf(Action::kNextTool), "");
+    for (size_t n = 0; n < std::size(kPresets); ++n)
+        EXPECT_EQ(kAccuracyOfKey[1 + n], presetName(kPresets[n]));
+}
+
+TEST(KeyTable, ControlsAndNoticesNameTheKey) {
+    EXPECT_EQ(withKey("Figures", Action::kHud), "Figures (Tab)");
+    EXPECT_EQ(keyLabelOf(Action::kFlipY), "Shift+Y");
+    EXPECT_TRUE(isKeyOf(Action::kPoint, KeyEvent{keyOf('L'), false, false, {}}));
+    EXPECT_FALSE(isKeyOf(Action::kPoint, KeyEvent{keyOf('K'), false, false, {}}));
 }
 
 }  // namespace

@@ -1,0 +1,148 @@
+// The panel's parts about what is seen: view and effects.
+#include <imgui.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "render_client/panel/panel_content.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kLeastOpacity = 0.05;
+
+constexpr struct {
+    const char* label;
+    ViewerEffect effect;
+    const char* what;
+} kEffects[] = {{"Bone dust", ViewerEffect::kBoneDust, "Grains that leave the burr"},
+                {"Bleeding", ViewerEffect::kBleeding, "Blood on fresh cuts"},
+                {"Irrigation", ViewerEffect::kIrrigation, "Water, while the pedal is down"},
+                {"Burr spin", ViewerEffect::kBurrSpin, "Flutes that turn"},
+                {"Milling sound", ViewerEffect::kMillingSound, "Motor and cutting, heard here"}};
+
+}  // namespace
+
+void PanelContent::buildView() {
+    button("First view", Action::kFirstView, "Back to the view that the scene starts with");
+    buildSides();
+    box("Endoscope", Action::kEndoscope, settings_.camera == CameraMode::kEndoscope,
+        "Looks along the tool past its burr, instead of from around the bone");
+    gap();
+    buildTransparency();
+    gap();
+    buildCuts();
+    gap();
+    buildStereo();
+    gap();
+    buildSigns();
+}
+
+void PanelContent::buildTransparency() {
+    box("Transparent", Action::kTransparency, settings_.is_transparent,
+        "Bone lets the tool and inner walls through");
+    ImGui::SameLine();
+    ImGui::PushItemWidth(-1);
+    if (const auto opacity =
+            slider("##opacity", settings_.opacity, kLeastOpacity, "How dense the transparent bone is"))
+        controls_.setOpacity(*opacity);
+    ImGui::PopItemWidth();
+}
+
+void PanelContent::buildSigns() {
+    box("Force arrow", Action::kForceArrow, settings_.show_force,
+        "The contact force on the hand, at the burr");
+    ImGui::SameLine();
+    box("Quick drawing", Action::kQuickDrawing, settings_.quality == Quality::kQuick,
+        "Without shadows and smooth edges: for PCs without a graphics card");
+    box("Figures", Action::kHud, settings_.show_hud, "What is written over the picture");
+    ImGui::SameLine();
+    box("Watchers", Action::kWatchers, settings_.show_watchers, "Who is watching, over the picture");
+    ImGui::SameLine();
+    box("Help", Action::kHelp, settings_.show_help, "All keys, over the picture");
+}
+
+void PanelContent::buildSides() {
+    constexpr struct {
+        const char* label;
+        Side side;
+        const char* what;
+    } kSides[] = {{"Front", Side::kFront, "From the patient's front"},
+                  {"Back", Side::kBack, "From the patient's back"},
+                  {"Left", Side::kLeft, "From the patient's left"},
+                  {"Right", Side::kRight, "From the patient's right"},
+                  {"Top", Side::kTop, "From above the patient's head"},
+                  {"Below", Side::kBottom, "From the patient's feet"}};
+    for (const auto& side : kSides) {
+        if (side.side != Side::kFront) ImGui::SameLine();
+        if (button(side.label, side.what)) controls_.lookFrom(side.side);
+    }
+}
+
+void PanelContent::buildCuts() {
+    constexpr struct {
+        const char* label;
+        const char* flip;
+        const char* position;
+        const char* what;
+    } kCuts[] = {{"Cut X", "Flip##x", "##cut x", "Sagittal plane: hides the bone on the patient's left"},
+                 {"Cut Y", "Flip##y", "##cut y", "Coronal plane: hides the bone at the back"},
+                 {"Cut Z", "Flip##z", "##cut z", "Axial plane: hides the bone above"}};
+    for (size_t axis = 0; axis < std::size(kCuts); ++axis) {
+        const auto& cut = kCuts[axis];
+        const CutPlane& plane = settings_.cuts[axis];
+        if (box(cut.label, plane.is_on, cut.what)) act(Action(int(Action::kCutX) + int(axis)));
+        ImGui::SameLine();
+        if (box(cut.flip, plane.is_flipped, "Hides the other side"))
+            act(Action(int(Action::kFlipX) + int(axis)));
+        ImGui::SameLine();
+        ImGui::PushItemWidth(-1);
+        if (const auto position =
+                slider(cut.position, plane.position, 0, "Where the plane is, across the bone"))
+            controls_.moveCutTo(axis, *position);
+        ImGui::PopItemWidth();
+    }
+}
+
+void PanelContent::buildStereo() {
+    const auto offer = [this](const char* label, StereoMode mode, const char* what) {
+        if (choice(label, settings_.stereo == mode, what)) controls_.setStereo(mode);
+    };
+    sayQuietly(withKey("Stereo", Action::kStereo));
+    offer("Off", StereoMode::kOff, "One picture");
+    ImGui::SameLine();
+    offer("Side by side", StereoMode::kSideBySide, "The left eye's picture beside the right eye's");
+    ImGui::SameLine();
+    offer("Red/cyan", StereoMode::kAnaglyph, "For glasses with a red and a cyan lens");
+}
+
+bool PanelContent::hasEffects() const {
+    return std::ranges::any_of(kEffects, [this](const auto& e) { return isListed(e.effect); });
+}
+
+bool PanelContent::isListed(ViewerEffect effect) const {
+    if (!session_.info) return false;
+    const scene::Effects& listed = session_.info->viewer_effects();
+    switch (effect) {
+        case ViewerEffect::kBoneDust:
+            return listed.has_bone_dust();
+        case ViewerEffect::kBleeding:
+            return listed.has_bleeding();
+        case ViewerEffect::kIrrigation:
+            return listed.has_irrigation();
+        case ViewerEffect::kBurrSpin:
+            return listed.has_burr_spin();
+        case ViewerEffect::kMillingSound:
+            return listed.has_milling_sound();
+    }
+    return false;
+}
+
+void PanelContent::buildEffects() {
+    for (const auto& e : kEffects) {
+        const bool is_shown = settings_.shows(e.effect);
+        if (isListed(e.effect) && box(e.label, is_shown, e.what)) controls_.showEffect(e.effect, !is_shown);
+    }
+}
+
+}  // namespace bonemill
