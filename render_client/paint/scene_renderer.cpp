@@ -1,7 +1,5 @@
 #include "render_client/paint/scene_renderer.h"
 
-#include <cmath>
-#include <string>
 #include <utility>
 
 #include "render_client/paint/clip_planes.h"
@@ -10,24 +8,17 @@
 namespace bonemill {
 namespace {
 
-constexpr GLenum kEyePlane = 3;             // number of the clip plane after those of the cuts
-constexpr double kOcclusionRadius = 0.10;   // of the bone's radius
-constexpr float kOcclusionPicture = 0.06f;  // at most this part of the picture's height
-constexpr int kFilterReach = 8;             // pixels that the composite's filter looks beyond
+constexpr GLenum kEyePlane = 3;  // number of the clip plane after those of the cuts
 
 }  // namespace
 
 SceneRenderer::SceneRenderer(const GlApi& gl)
     : gl_(gl),
       bone_(gl),
+      tool_(gl),
       markers_(gl),
-      tool_(gl, "tool", shaders::kToolVertex, std::string(shaders::kLighting) + shaders::kToolFragment),
-      ghost_(gl, "ghost", shaders::kToolVertex, shaders::kGhostFragment),
-      shadow_(gl, "shadow", shaders::kShadowVertex, shaders::kDepthFragment),
-      background_(gl, "background", shaders::kFullScreenVertex, shaders::kBackgroundFragment),
-      occlusion_(gl, "occlusion", shaders::kFullScreenVertex, shaders::kOcclusionFragment),
-      composite_(gl, "composite", shaders::kFullScreenVertex, shaders::kCompositeFragment),
-      no_attributes_(gl) {}
+      passes_(gl),
+      shadow_(gl, "shadow", shaders::kShadowVertex, shaders::kDepthFragment) {}
 
 void SceneRenderer::setPalette(const std::vector<Eigen::Vector4f>& colours) {
     bone_.setPalette(colours);
@@ -40,10 +31,7 @@ void SceneRenderer::prepare(const EffectNeeds& needs) {
     bone_.setFilm(nullptr);
     film_ = needs.film ? std::make_unique<FilmPainter>(gl_, has_materials_) : nullptr;
     particles_ = needs.particles ? std::make_unique<ParticlePainter>(gl_) : nullptr;
-    spinning_tool_ = needs.spin ? std::make_unique<Program>(gl_, "turning tool", shaders::kToolVertex,
-                                                            std::string("#define SPIN\n") +
-                                                                shaders::kLighting + shaders::kToolFragment)
-                                : nullptr;
+    tool_.prepareSpin(needs.spin);
     changes_.forget();
 }
 
@@ -78,14 +66,19 @@ void SceneRenderer::drawFull(const Frame& frame, const FrameView& view, const No
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->scene());
     gl_.Viewport(0, 0, area.width, area.height);
     gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-    drawBackground();
+    passes_.drawBackground();
     drawSolids(frame, view, nodes, tool);
-    drawParticles(frame, view);
-    drawGhost(frame, tool);
-    markers_.draw(frame, view);
+    drawOver(frame, view, tool);
     targets_->resolve();
-    drawOcclusion(frame);
-    compose(frame, area.x, target);
+    passes_.drawOcclusion(frame, *targets_);
+    passes_.compose(frame, *targets_, area.x, target);
+}
+
+// What is drawn over bone and tool; the depth stays as it is.
+void SceneRenderer::drawOver(const Frame& frame, const FrameView& view, const ToolMesh& tool) {
+    drawParticles(frame, view);
+    tool_.drawGhost(frame, tool);
+    markers_.draw(frame, view);
 }
 
 // The bone of the last picture is kept: where it has changed it is drawn anew, where something moves before
@@ -93,41 +86,54 @@ void SceneRenderer::drawFull(const Frame& frame, const FrameView& view, const No
 void SceneRenderer::drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes,
                               const ToolMesh& tool, const PictureArea& area, GLuint target) {
     const PixelBox whole = PixelBox::whole(area.width, area.height);
-    PictureChanges::Dirty dirty = changes_.next(frame, area.width, area.height,
-                                                nodes.takeChanged().merged(std::exchange(film_changed_, {})),
-                                                movingPixels(frame, view, tool));
-    if (view.bone_opacity) {  // the tool is seen through it: nothing can be kept
-        dirty = {whole, whole};
-        changes_.forget();
-    }
-    const int reach = int(std::ceil(kOcclusionPicture * float(area.height))) + kFilterReach;
-    const PixelBox part = dirty.all.isEmpty() ? dirty.all : dirty.all.grown(reach).within(whole);
+    const PictureChanges::Dirty dirty = changes_.next(
+        frame, area.width, area.height, nodes.takeChanged().merged(std::exchange(film_changed_, {})),
+        movingPixels(frame, view, tool));
+    PixelBox part =
+        dirty.all.isEmpty() ? dirty.all : dirty.all.grown(FramePasses::reach(area.height)).within(whole);
     gl_.Viewport(0, 0, area.width, area.height);
     gl_.Enable(GL_SCISSOR_TEST);
-    if (view.bone_opacity) {
-        scissor(whole);
-        gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->scene());
-        gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-        drawBackground();
-        drawSolids(frame, view, nodes, tool);
+    if (view.bone_opacity) {  // the tool is seen through it: nothing can be kept
+        changes_.forget();
+        part = whole;
+        drawAllSolids(frame, view, nodes, tool);
     } else if (!part.isEmpty()) {
         drawKeptBone(frame, nodes, dirty.bone);
-        scissor(part);
-        targets_->copy(targets_->bone(), targets_->scene(), part, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->scene());
-        gl_.Enable(GL_DEPTH_TEST);
-        drawTool(frame, view, tool);
+        drawToolOverKeptBone(frame, view, tool, part);
     }
-    if (!part.isEmpty()) {
-        drawParticles(frame, view);
-        drawGhost(frame, tool);
-        markers_.draw(frame, view);
-        scissor({part.x0 / 2 - 1, part.y0 / 2 - 1, part.x1 / 2 + 2, part.y1 / 2 + 2});
-        drawOcclusion(frame);
-        scissor(part);
-        compose(frame, 0, targets_->finished());
-    }
+    if (!part.isEmpty()) finishQuick(frame, view, tool, part);
     gl_.Disable(GL_SCISSOR_TEST);
+    showFinished(area, target);
+}
+
+void SceneRenderer::drawAllSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes,
+                                  const ToolMesh& tool) {
+    scissor(PixelBox::whole(targets_->width(), targets_->height()));
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->scene());
+    gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+    passes_.drawBackground();
+    drawSolids(frame, view, nodes, tool);
+}
+
+void SceneRenderer::drawToolOverKeptBone(const Frame& frame, const FrameView& view, const ToolMesh& tool,
+                                         const PixelBox& part) {
+    scissor(part);
+    targets_->copy(targets_->bone(), targets_->scene(), part, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->scene());
+    gl_.Enable(GL_DEPTH_TEST);
+    tool_.drawTool(frame, view, tool, targets_->shadowTexture());
+}
+
+void SceneRenderer::finishQuick(const Frame& frame, const FrameView& view, const ToolMesh& tool,
+                                const PixelBox& part) {
+    drawOver(frame, view, tool);
+    scissor({part.x0 / 2 - 1, part.y0 / 2 - 1, part.x1 / 2 + 2, part.y1 / 2 + 2});  // half the size
+    passes_.drawOcclusion(frame, *targets_);
+    scissor(part);
+    passes_.compose(frame, *targets_, 0, targets_->finished());
+}
+
+void SceneRenderer::showFinished(const PictureArea& area, GLuint target) const {
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, targets_->finished());
     gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
     gl_.BlitFramebuffer(0, 0, area.width, area.height, area.x, 0, area.x + area.width, area.height,
@@ -141,7 +147,7 @@ void SceneRenderer::drawKeptBone(Frame frame, const NodeStore& nodes, const Pixe
     scissor(part);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->bone());
     gl_.Clear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-    drawBackground();
+    passes_.drawBackground();
     frame.cull_from_V = part.zoom(targets_->width(), targets_->height()) * frame.cull_from_V;
     bone_.drawOpaque(frame, nodes, targets_->shadowTexture());
 }
@@ -216,107 +222,13 @@ void SceneRenderer::drawShadowMap(const Frame& frame, const FrameView& view, con
     gl_.Disable(GL_DEPTH_CLAMP);
 }
 
-void SceneRenderer::drawBackground() const {
-    gl_.Disable(GL_DEPTH_TEST);
-    background_.use();
-    drawFullScreen();
-    gl_.Enable(GL_DEPTH_TEST);
-}
-
 void SceneRenderer::drawSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes,
                                const ToolMesh& tool) {
-    const auto draw_tool = [&] { drawTool(frame, view, tool); };
+    const auto draw_tool = [&] { tool_.drawTool(frame, view, tool, targets_->shadowTexture()); };
     if (view.bone_opacity)
         return bone_.drawTransparent(frame, nodes, targets_->shadowTexture(), *view.bone_opacity, draw_tool);
     bone_.drawOpaque(frame, nodes, targets_->shadowTexture());
     draw_tool();
-}
-
-void SceneRenderer::drawTool(const Frame& frame, const FrameView& view, const ToolMesh& tool) const {
-    if (!frame.camera_from_T) return;
-    const Eigen::Vector3f glow = view.burr_work == BurrWork::kRemoving ? Eigen::Vector3f(1.9f, 0.30f, 0.02f)
-                                 : view.burr_work == BurrWork::kAdding ? Eigen::Vector3f(0.05f, 0.75f, 1.1f)
-                                                                       : Eigen::Vector3f(0, 0, 0);
-    const bool spins = spinning_tool_ && view.effects->turn;
-    const Program& program = spins ? *spinning_tool_ : tool_;
-    program.use();
-    frame.setLight(gl_, program, targets_->shadowTexture());
-    program.set("camera_from_model", *frame.camera_from_T);
-    program.set("burr_radius", float(view.burr_radius));
-    program.set("milling_glow", glow);
-    if (spins) {
-        program.set("spin_angle", view.effects->turn->angle);
-        program.set("spin_sweep", view.effects->turn->sweep);
-        program.set("flutes", view.effects->turn->flutes);
-    }
-    tool.draw();
-}
-
-// Seen through the bone too, but fainter there: the hand usually is inside when the tool is stopped at the
-// surface.
-void SceneRenderer::drawGhost(const Frame& frame, const ToolMesh& tool) const {
-    if (!frame.camera_from_ghost) return;
-    gl_.Enable(GL_BLEND);
-    gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    gl_.Enable(GL_CULL_FACE);
-    gl_.DepthMask(GL_FALSE);
-    ghost_.use();
-    ghost_.set("camera_from_model", *frame.camera_from_ghost);
-    ghost_.set("clip_from_camera", frame.clip_from_camera);
-    constexpr struct {
-        GLenum depth_test;
-        float strength;
-    } kPasses[] = {{GL_GREATER, 0.6f}, {GL_LEQUAL, 0.8f}};
-    for (const auto& pass : kPasses) {
-        gl_.DepthFunc(pass.depth_test);
-        ghost_.set("strength", pass.strength);
-        tool.draw();
-    }
-    gl_.DepthFunc(GL_LESS);
-    gl_.DepthMask(GL_TRUE);
-    gl_.Disable(GL_CULL_FACE);
-    gl_.Disable(GL_BLEND);
-}
-
-void SceneRenderer::drawOcclusion(const Frame& frame) const {
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->occlusion());
-    gl_.Viewport(0, 0, targets_->occlusionWidth(), targets_->occlusionHeight());
-    gl_.Disable(GL_DEPTH_TEST);
-    gl_.ActiveTexture(GL_TEXTURE0);
-    gl_.BindTexture(GL_TEXTURE_2D, targets_->depthTexture());
-    occlusion_.use();
-    occlusion_.set("depth_map", 0);
-    occlusion_.set("near_far", frame.near_far);
-    occlusion_.set("tangents", frame.tangents);
-    occlusion_.set("shift", frame.shift);
-    occlusion_.set("radius", float(kOcclusionRadius) * frame.bone_radius);
-    occlusion_.set("max_radius", kOcclusionPicture);
-    drawFullScreen();
-}
-
-void SceneRenderer::compose(const Frame& frame, int x, GLuint target) const {
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
-    gl_.Viewport(x, 0, targets_->width(), targets_->height());
-    const GLuint textures[] = {targets_->colourTexture(), targets_->depthTexture(),
-                               targets_->occlusionTexture()};
-    for (GLenum unit = 0; unit < 3; ++unit) {
-        gl_.ActiveTexture(GL_TEXTURE0 + unit);
-        gl_.BindTexture(GL_TEXTURE_2D, textures[unit]);
-    }
-    composite_.use();
-    composite_.set("colour_map", 0);
-    composite_.set("depth_map", 1);
-    composite_.set("occlusion_map", 2);
-    composite_.set("near_far", frame.near_far);
-    composite_.set("depth_tolerance", 0.5f * float(kOcclusionRadius) * frame.bone_radius);
-    drawFullScreen();
-    gl_.ActiveTexture(GL_TEXTURE0);
-}
-
-void SceneRenderer::drawFullScreen() const {
-    gl_.BindVertexArray(no_attributes_.name());
-    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
-    gl_.BindVertexArray(0);
 }
 
 }  // namespace bonemill

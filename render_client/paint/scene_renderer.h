@@ -11,10 +11,12 @@
 #include "render_client/model/tool_mesh.h"
 #include "render_client/paint/bone_painter.h"
 #include "render_client/paint/frame.h"
+#include "render_client/paint/frame_passes.h"
 #include "render_client/paint/marker_painter.h"
 #include "render_client/paint/particle_painter.h"
 #include "render_client/paint/picture_changes.h"
 #include "render_client/paint/render_targets.h"
+#include "render_client/paint/tool_painter.h"
 
 namespace bonemill {
 
@@ -57,29 +59,30 @@ class SceneRenderer {
                   const PictureArea& area, GLuint target);
     void drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes, const ToolMesh& tool,
                    const PictureArea& area, GLuint target);
+    void drawAllSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes,
+                       const ToolMesh& tool);
     void drawKeptBone(Frame frame, const NodeStore& nodes, const PixelBox& part);
-    void drawParticles(const Frame& frame, const FrameView& view);
+    void drawToolOverKeptBone(const Frame& frame, const FrameView& view, const ToolMesh& tool,
+                              const PixelBox& part);
+    void finishQuick(const Frame& frame, const FrameView& view, const ToolMesh& tool, const PixelBox& part);
+    void showFinished(const PictureArea& area, GLuint target) const;
     PixelBox movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool);
     void scissor(const PixelBox& part) const;
     void drawShadowMap(const Frame& frame, const FrameView& view, const NodeStore& nodes,
                        const ToolMesh& tool) const;
-    void drawBackground() const;
     void drawSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes, const ToolMesh& tool);
-    void drawTool(const Frame& frame, const FrameView& view, const ToolMesh& tool) const;
-    void drawGhost(const Frame& frame, const ToolMesh& tool) const;
-    void drawOcclusion(const Frame& frame) const;
-    void compose(const Frame& frame, int x, GLuint target) const;
-    void drawFullScreen() const;
+    void drawOver(const Frame& frame, const FrameView& view, const ToolMesh& tool);
+    void drawParticles(const Frame& frame, const FrameView& view);
 
     const GlApi& gl_;
     BonePainter bone_;
+    ToolPainter tool_;
     MarkerPainter markers_;
-    Program tool_, ghost_, shadow_, background_, occlusion_, composite_;
+    FramePasses passes_;
+    Program shadow_;
     bool has_materials_ = false;
     std::unique_ptr<FilmPainter> film_;
     std::unique_ptr<ParticlePainter> particles_;
-    std::unique_ptr<Program> spinning_tool_;
-    GlVertexArray no_attributes_;
     std::unique_ptr<RenderTargets> targets_;
     PictureChanges changes_;            // quick quality
     Eigen::AlignedBox3f film_changed_;  // since the last quick picture

@@ -1,0 +1,74 @@
+#include "render_client/paint/frame_passes.h"
+
+#include <cmath>
+
+#include "render_client/paint/shaders.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kOcclusionRadius = 0.10;   // of the bone's radius
+constexpr float kOcclusionPicture = 0.06f;  // the radius is at most this part of the picture's height
+constexpr int kFilterReach = 8;             // pixels that the composite's filter looks beyond
+
+}  // namespace
+
+FramePasses::FramePasses(const GlApi& gl)
+    : gl_(gl),
+      background_(gl, "background", shaders::kFullScreenVertex, shaders::kBackgroundFragment),
+      occlusion_(gl, "occlusion", shaders::kFullScreenVertex, shaders::kOcclusionFragment),
+      composite_(gl, "composite", shaders::kFullScreenVertex, shaders::kCompositeFragment),
+      no_attributes_(gl) {}
+
+int FramePasses::reach(int height) {
+    return int(std::ceil(kOcclusionPicture * float(height))) + kFilterReach;
+}
+
+void FramePasses::drawBackground() const {
+    gl_.Disable(GL_DEPTH_TEST);
+    background_.use();
+    drawFullScreen();
+    gl_.Enable(GL_DEPTH_TEST);
+}
+
+void FramePasses::drawOcclusion(const Frame& frame, const RenderTargets& targets) const {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, targets.occlusion());
+    gl_.Viewport(0, 0, targets.occlusionWidth(), targets.occlusionHeight());
+    gl_.Disable(GL_DEPTH_TEST);
+    gl_.ActiveTexture(GL_TEXTURE0);
+    gl_.BindTexture(GL_TEXTURE_2D, targets.depthTexture());
+    occlusion_.use();
+    occlusion_.set("depth_map", 0);
+    occlusion_.set("near_far", frame.near_far);
+    occlusion_.set("tangents", frame.tangents);
+    occlusion_.set("shift", frame.shift);
+    occlusion_.set("radius", float(kOcclusionRadius) * frame.bone_radius);
+    occlusion_.set("max_radius", kOcclusionPicture);
+    drawFullScreen();
+}
+
+void FramePasses::compose(const Frame& frame, const RenderTargets& targets, int x, GLuint target) const {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
+    gl_.Viewport(x, 0, targets.width(), targets.height());
+    const GLuint textures[] = {targets.colourTexture(), targets.depthTexture(), targets.occlusionTexture()};
+    for (GLenum unit = 0; unit < 3; ++unit) {
+        gl_.ActiveTexture(GL_TEXTURE0 + unit);
+        gl_.BindTexture(GL_TEXTURE_2D, textures[unit]);
+    }
+    composite_.use();
+    composite_.set("colour_map", 0);
+    composite_.set("depth_map", 1);
+    composite_.set("occlusion_map", 2);
+    composite_.set("near_far", frame.near_far);
+    composite_.set("depth_tolerance", 0.5f * float(kOcclusionRadius) * frame.bone_radius);
+    drawFullScreen();
+    gl_.ActiveTexture(GL_TEXTURE0);
+}
+
+void FramePasses::drawFullScreen() const {
+    gl_.BindVertexArray(no_attributes_.name());
+    gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl_.BindVertexArray(0);
+}
+
+}  // namespace bonemill

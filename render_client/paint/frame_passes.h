@@ -1,0 +1,37 @@
+// What is drawn over the whole frame: the background before bone and tool, ambient occlusion and the
+// composite after them.
+//
+// Thread: the one of the context.
+#pragma once
+
+#include "render_client/gl/gl_object.h"
+#include "render_client/gl/program.h"
+#include "render_client/paint/frame.h"
+#include "render_client/paint/render_targets.h"
+
+namespace bonemill {
+
+class FramePasses {
+  public:
+    // Throws GlError with the compiler's log when the driver refuses a shader.
+    explicit FramePasses(const GlApi& gl);
+
+    // Into the bound framebuffer; leaves the depth test on.
+    void drawBackground() const;
+    // From the resolved depth into the half-size occlusion.
+    void drawOcclusion(const Frame& frame, const RenderTargets& targets) const;
+    // The finished picture (without figures) into `target`, from column x on.
+    void compose(const Frame& frame, const RenderTargets& targets, int x, GLuint target) const;
+
+    // How many pixels beyond a changed one these passes may look different, in a picture of this height.
+    static int reach(int height);
+
+  private:
+    void drawFullScreen() const;
+
+    const GlApi& gl_;
+    Program background_, occlusion_, composite_;
+    GlVertexArray no_attributes_;
+};
+
+}  // namespace bonemill
