@@ -75,7 +75,7 @@ void runMeasurement(const ClientOptions& options) {
     const OsmesaContext context(options.width, options.height);
     spdlog::info("off screen, {}", context.gl().describe());
     RenderScene scene(context.gl(), options.has_effects);
-    scene.setViewOverrides(options.view);
+    scene.setViewWish(options.view);
     scene.settings() = options.settings;
     if (options.chooses_quality && context.gl().isSoftware()) scene.settings().quality = Quality::kQuick;
     SceneFeed feed(options.subscriber, scene);

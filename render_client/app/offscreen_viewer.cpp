@@ -62,7 +62,7 @@ void runOffscreen(const ClientOptions& options) {
     const OsmesaContext context(options.width, options.height);
     spdlog::info("off screen, {}", context.gl().describe());
     RenderScene scene(context.gl(), options.has_effects);
-    scene.setViewOverrides(options.view);
+    scene.setViewWish(options.view);
     scene.settings() = options.settings;
     SceneFeed feed(options.subscriber, scene);
     feed.takePart();

@@ -142,7 +142,7 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegree;
     if (raw.distance_mm) options.view.distance = *raw.distance_mm * kMillimetre;
     if (!raw.target_mm.empty()) {
-        options.view.target =
+        options.view.target_W =
             kMillimetre * Eigen::Vector3d(raw.target_mm[0], raw.target_mm[1], raw.target_mm[2]);
     }
     if (raw.timeout_s && !raw.offscreen && raw.command.empty() && !raw.measure_s)

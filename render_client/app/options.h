@@ -7,8 +7,8 @@
 #include <string>
 
 #include "common/dds/network.h"
+#include "render_client/camera/first_view.h"
 #include "render_client/camera/view_settings.h"
-#include "render_client/scene/render_scene.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
 namespace bonemill {
@@ -36,7 +36,7 @@ struct MeasureOptions {
 struct ClientOptions {
     SubscriberOptions subscriber;
     dds::NetworkOptions network;
-    ViewOverrides view;
+    ViewWish view;
     ViewSettings settings;            // what is shown at the start
     bool has_effects = true;          // of the scene, seen and heard
     std::filesystem::path sound_wav;  // empty: none

@@ -98,7 +98,7 @@ class WindowViewer {
           painter_(window_.gl()),
           notices_(scene_) {
         spdlog::info("window, {}", window_.gl().describe());
-        scene_.setViewOverrides(options.view);
+        scene_.setViewWish(options.view);
         scene_.settings() = options.settings;
         if (options.has_effects) feed_.sound(&sound_);
         scene_.setHelp(helpRows());
@@ -168,7 +168,7 @@ class WindowViewer {
         for (const topics::Command& command : wishes.commands) feed_.subscriber().sendCommand(command);
         if (wishes.reset_view) scene_.resetView();
         if (wishes.centre_at)
-            if (const auto p_W = pick(*wishes.centre_at)) scene_.camera().target = *p_W;
+            if (const auto p_W = pick(*wishes.centre_at)) scene_.camera().target_W = *p_W;
         if (wishes.notice) notices_.show(*wishes.notice);
         has_quit_ = has_quit_ || wishes.quit;
     }

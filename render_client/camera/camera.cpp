@@ -12,7 +12,7 @@ constexpr double kNearestFar = 1e-3;  // m
 constexpr double kEyesApart = 1.0 / 30;  // of the distance to the focus: comfortable on a desk
 
 Camera movedRight(Camera camera, double distance) {
-    camera.eye += distance * camera.R_WC.col(0);
+    camera.eye_W += distance * camera.R_WC.col(0);
     camera.shift -= distance / camera.focus;
     return camera;
 }
@@ -27,7 +27,7 @@ Eigen::Matrix4f Camera::X_CW() const {
     const Eigen::Matrix3d R_CW = R_WC.transpose();
     Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
     matrix.topLeftCorner<3, 3>() = R_CW;
-    matrix.topRightCorner<3, 1>() = -R_CW * eye;
+    matrix.topRightCorner<3, 1>() = -R_CW * eye_W;
     return matrix.cast<float>();
 }
 
@@ -43,8 +43,8 @@ Eigen::Matrix4f Camera::clipFromCamera(double aspect, const DepthRange& range) c
     return matrix.cast<float>();
 }
 
-DepthRange Camera::depthRange(const Eigen::Vector3d& center, double radius) const {
-    const double depth = (center - eye).dot(forward());
+DepthRange Camera::depthRange(const Eigen::Vector3d& center_W, double radius) const {
+    const double depth = (center_W - eye_W).dot(forward_W());
     const double far = std::max(depth + radius, kNearestFar);
     return {std::max(depth - radius, far / kMaxDepthRatio), far};
 }

@@ -14,21 +14,21 @@ struct DepthRange {
 };
 
 struct Camera {
-    Eigen::Vector3d eye = Eigen::Vector3d::Zero();       // W, m
+    Eigen::Vector3d eye_W = Eigen::Vector3d::Zero();     // m
     Eigen::Matrix3d R_WC = Eigen::Matrix3d::Identity();  // columns: the camera's axes in W
     double field_of_view = 0.52;                         // rad, vertical
     double focus = 0.3;  // m in front of the eye: what is looked at; no parallax there in stereo
     double shift = 0;    // x / depth of the picture's middle: not 0 for the off-axis eyes of stereo
 
-    Eigen::Vector3d forward() const { return -R_WC.col(2); }
-    Eigen::Vector3d target() const { return eye + focus * forward(); }
+    Eigen::Vector3d forward_W() const { return -R_WC.col(2); }
+    Eigen::Vector3d target_W() const { return eye_W + focus * forward_W(); }
     double halfTangent() const;  // of half the field of view, vertical
 
     Eigen::Matrix4f X_CW() const;
     Eigen::Matrix4f clipFromCamera(double aspect, const DepthRange& range) const;
 
     // Near and far planes that hold the sphere (W, m) as well as the depth buffer's resolution allows.
-    DepthRange depthRange(const Eigen::Vector3d& center, double radius) const;
+    DepthRange depthRange(const Eigen::Vector3d& center_W, double radius) const;
 
     // Metres that one pixel spans at the focus.
     double metresPerPixel(int height) const;

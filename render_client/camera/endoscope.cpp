@@ -24,7 +24,7 @@ Camera endoscopeCamera(const Pose& X_WT, double burr_radius) {
     R_TC.col(2) = Eigen::Vector3d::UnitY();
     Camera camera;
     camera.R_WC = R_WT * R_TC * Eigen::AngleAxisd(-kTilt, Eigen::Vector3d::UnitX()).toRotationMatrix();
-    camera.eye = X_WT * Eigen::Vector3d(0, kBehind * radius, kBeside * radius);
+    camera.eye_W = X_WT * Eigen::Vector3d(0, kBehind * radius, kBeside * radius);
     camera.field_of_view = kFieldOfView;
     camera.focus = kBehind * radius;
     return camera;

@@ -10,9 +10,10 @@ constexpr double kFitMargin = 1.06;
 
 }  // namespace
 
-void OrbitCamera::setUp(const Eigen::Vector3d& up) {
-    const double length = up.norm();
-    up_ = std::isfinite(length) && length > 1e-9 ? Eigen::Vector3d(up / length) : Eigen::Vector3d::UnitZ();
+void OrbitCamera::setUp(const Eigen::Vector3d& up_W) {
+    const double length = up_W.norm();
+    up_W_ =
+        std::isfinite(length) && length > 1e-9 ? Eigen::Vector3d(up_W / length) : Eigen::Vector3d::UnitZ();
 }
 
 void OrbitCamera::orbit(double delta_azimuth, double delta_elevation) {
@@ -26,47 +27,47 @@ void OrbitCamera::zoom(double factor) {
 
 void OrbitCamera::pan(double right, double up) {
     const double picture_height = 2 * distance * std::tan(kFieldOfView / 2);
-    target -= picture_height * (R_WC().col(0) * right + R_WC().col(1) * up);
+    target_W -= picture_height * (R_WC().col(0) * right + R_WC().col(1) * up);
 }
 
-Eigen::Vector3d OrbitCamera::towardsEye() const {
+Eigen::Vector3d OrbitCamera::towardsEye_W() const {
     const Eigen::Vector3d anterior = -Eigen::Vector3d::UnitY();
-    const bool up_is_anterior = std::abs(up_.dot(anterior)) > 0.99;
+    const bool up_is_anterior = std::abs(up_W_.dot(anterior)) > 0.99;
     const Eigen::Vector3d reference = up_is_anterior ? Eigen::Vector3d::UnitZ() : anterior;
-    const Eigen::Vector3d front = (reference - up_ * up_.dot(reference)).normalized();
-    const Eigen::Vector3d left = up_.cross(front);
+    const Eigen::Vector3d front = (reference - up_W_ * up_W_.dot(reference)).normalized();
+    const Eigen::Vector3d left = up_W_.cross(front);
     const double bounded = std::clamp(elevation, -kMaxElevation, kMaxElevation);
     return std::cos(bounded) * (std::cos(azimuth) * front + std::sin(azimuth) * left) +
-           std::sin(bounded) * up_;
+           std::sin(bounded) * up_W_;
 }
 
 Eigen::Matrix3d OrbitCamera::R_WC() const {
     Eigen::Matrix3d axes;
-    axes.col(2) = towardsEye();
-    axes.col(0) = up_.cross(axes.col(2)).normalized();
+    axes.col(2) = towardsEye_W();
+    axes.col(0) = up_W_.cross(axes.col(2)).normalized();
     axes.col(1) = axes.col(2).cross(axes.col(0));
     return axes;
 }
 
 Camera OrbitCamera::view() const {
     Camera camera;
-    camera.eye = eye();
+    camera.eye_W = eye_W();
     camera.R_WC = R_WC();
     camera.field_of_view = kFieldOfView;
     camera.focus = distance;
     return camera;
 }
 
-void OrbitCamera::fit(std::span<const Eigen::Vector3d> corners, double aspect) {
-    if (corners.empty()) return;
+void OrbitCamera::fit(std::span<const Eigen::Vector3d> corners_W, double aspect) {
+    if (corners_W.empty()) return;
     Eigen::AlignedBox3d box;
-    for (const auto& corner : corners) box.extend(corner);
-    target = box.center();
+    for (const auto& corner : corners_W) box.extend(corner);
+    target_W = box.center();
     const double tangent_y = std::tan(kFieldOfView / 2) / kFitMargin;
     const double tangent_x = tangent_y * aspect;
     double needed = kMinDistance;
-    for (const auto& corner : corners) {
-        const Eigen::Vector3d p_C = R_WC().transpose() * (corner - target);
+    for (const auto& corner : corners_W) {
+        const Eigen::Vector3d p_C = R_WC().transpose() * (corner - target_W);
         needed = std::max(
             {needed, p_C.z() + std::abs(p_C.x()) / tangent_x, p_C.z() + std::abs(p_C.y()) / tangent_y});
     }

@@ -20,14 +20,14 @@ class OrbitCamera {
     static constexpr double kMinDistance = 5e-4;    // m
     static constexpr double kMaxDistance = 100.0;   // m
 
-    Eigen::Vector3d target = Eigen::Vector3d::Zero();  // W, m
-    double distance = 0.3;                             // m, eye to target
-    double azimuth = 0.61;                             // rad
-    double elevation = 0.44;                           // rad
+    Eigen::Vector3d target_W = Eigen::Vector3d::Zero();  // m
+    double distance = 0.3;                               // m, eye to target
+    double azimuth = 0.61;                               // rad
+    double elevation = 0.44;                             // rad
 
-    // Unit vector, W. A null or non-finite vector means +z.
-    void setUp(const Eigen::Vector3d& up);
-    const Eigen::Vector3d& up() const { return up_; }
+    // A null or non-finite vector means +z. What is kept has unit length.
+    void setUp(const Eigen::Vector3d& up_W);
+    const Eigen::Vector3d& up_W() const { return up_W_; }
 
     void orbit(double delta_azimuth, double delta_elevation);
     // factor < 1 comes nearer.
@@ -35,17 +35,17 @@ class OrbitCamera {
     // The picture follows by these fractions of the picture's height (right and up positive).
     void pan(double right, double up);
 
-    Eigen::Vector3d eye() const { return target + distance * towardsEye(); }
-    Eigen::Vector3d towardsEye() const;
+    Eigen::Vector3d eye_W() const { return target_W + distance * towardsEye_W(); }
+    Eigen::Vector3d towardsEye_W() const;  // of unit length
     // Columns are the camera's axes in W.
     Eigen::Matrix3d R_WC() const;
     Camera view() const;
 
-    // Centres on the box and goes as near as every corner (W, m) allows with a margin. Keeps the angles.
-    void fit(std::span<const Eigen::Vector3d> corners, double aspect);
+    // Centres on the box and goes as near as every corner (m) allows with a margin. Keeps the angles.
+    void fit(std::span<const Eigen::Vector3d> corners_W, double aspect);
 
   private:
-    Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();
+    Eigen::Vector3d up_W_ = Eigen::Vector3d::UnitZ();
 };
 
 }  // namespace bonemill

@@ -56,7 +56,7 @@ Eigen::Vector3d directionOf(Side side) {
 Eigen::Vector3d towardsEyeAt(OrbitCamera camera, double azimuth) {
     camera.azimuth = azimuth;
     camera.elevation = 0;
-    return camera.towardsEye();
+    return camera.towardsEye_W();
 }
 
 }  // namespace
@@ -245,7 +245,7 @@ void ViewerControls::setOpacity(double opacity) {
 void ViewerControls::lookFrom(Side side) {
     const Eigen::Vector3d direction = directionOf(side);
     const Eigen::Vector3d front = towardsEyeAt(camera_, 0), left = towardsEyeAt(camera_, M_PI / 2);
-    camera_.elevation = std::asin(std::clamp(direction.dot(camera_.up()), -1.0, 1.0));
+    camera_.elevation = std::asin(std::clamp(direction.dot(camera_.up_W()), -1.0, 1.0));
     const Eigen::Vector2d level(direction.dot(front), direction.dot(left));
     camera_.azimuth = level.norm() > 1e-6 ? std::atan2(level.y(), level.x()) : 0;
     camera_.orbit(0, 0);  // into range

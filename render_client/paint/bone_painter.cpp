@@ -81,7 +81,7 @@ void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint
     surface.use();
     frame.setLight(gl_, surface, shadow_texture);
     setCutPlanes(surface, frame.cuts_V);
-    surface.set("camera_from_model", frame.camera_from_V);
+    surface.set("camera_from_model", frame.X_CV);
     surface.set("grain_size", float(kGrain) * frame.bone_radius);
     surface.set("opacity", look.opacity);
     surface.set("inside_colour", look.inside);
@@ -94,7 +94,7 @@ void BonePainter::drawDepth(const Frame& frame, const NodeStore& nodes) const {
     const ClipPlanes clip(gl_, frame.cuts_V);
     depth_.use();
     setCutPlanes(depth_, frame.cuts_V);
-    depth_.set("camera_from_model", frame.camera_from_V);
+    depth_.set("camera_from_model", frame.X_CV);
     depth_.set("clip_from_camera", frame.clip_from_camera);
     gl_.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     nodes.draw(depth_, frame.cull_from_V);
@@ -184,7 +184,7 @@ void BonePainter::drawCap(const Frame& frame, GLuint shadow_texture, float opaci
     cap_.set("near_far", frame.near_far);
     cap_.set("tangents", frame.tangents);
     cap_.set("shift", frame.shift);
-    cap_.set("model_from_camera", Eigen::Matrix4f(frame.camera_from_V.inverse()));
+    cap_.set("model_from_camera", Eigen::Matrix4f(frame.X_CV.inverse()));
     const Eigen::Vector3f margin = Eigen::Vector3f::Constant(kBoxMargin * frame.bone_radius);
     cap_.set("bone_low", Eigen::Vector3f(frame.bone_V.min() - margin));
     cap_.set("bone_high", Eigen::Vector3f(frame.bone_V.max() + margin));

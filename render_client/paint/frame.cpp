@@ -44,7 +44,7 @@ KeyLight aimKeyLight(const Camera& camera, bool is_lit_from_eye, const Sphere& l
     R_LC.row(2) = -key_C;  // depth grows away from the light
     R_LC.row(0) = Eigen::Vector3d::UnitY().cross(key_C).normalized();
     R_LC.row(1) = key_C.cross(Eigen::Vector3d(R_LC.row(0)));
-    const Eigen::Vector3d center_C = camera.R_WC.transpose() * (lit_W.center - camera.eye);
+    const Eigen::Vector3d center_C = camera.R_WC.transpose() * (lit_W.center - camera.eye_W);
     Eigen::Matrix4d shadow_from_camera = Eigen::Matrix4d::Identity();
     shadow_from_camera.topLeftCorner<3, 3>() = R_LC / half_size;
     shadow_from_camera.topRightCorner<3, 1>() = -(R_LC * center_C) / half_size;
@@ -97,12 +97,12 @@ Frame Frame::make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, doub
     const Sphere bone = around(boneIn(view));
     Frame frame;
     const Eigen::Matrix4f X_CW = camera.X_CW();
-    frame.camera_from_V = X_CW * matrixOf(view.X_WV);
+    frame.X_CV = X_CW * matrixOf(view.X_WV);
     frame.clip_from_camera = camera.clipFromCamera(aspect, range);
-    frame.cull_from_V = frame.clip_from_camera * frame.camera_from_V;
+    frame.cull_from_V = frame.clip_from_camera * frame.X_CV;
     frame.has_shadow = view.quality == Quality::kFull;
-    if (showsTool(view, tool_T)) frame.camera_from_T = X_CW * matrixOf(*view.X_WT);
-    if (showsGhost(view, tool_T)) frame.camera_from_ghost = X_CW * matrixOf(*view.X_WT_device);
+    if (showsTool(view, tool_T)) frame.X_CT = X_CW * matrixOf(*view.X_WT);
+    if (showsGhost(view, tool_T)) frame.X_CT_device = X_CW * matrixOf(*view.X_WT_device);
     frame.near_far = Eigen::Vector2d(range.near, range.far).cast<float>();
     const double tangent = camera.halfTangent();
     frame.tangents = Eigen::Vector2d(tangent * aspect, tangent).cast<float>();
@@ -114,7 +114,7 @@ Frame Frame::make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, doub
 
     const double shown = kShownBeyondView * camera.focus * tangent * std::hypot(1.0, aspect);
     frame.key = aimKeyLight(camera, view.is_lit_from_eye,
-                            shown < bone.radius ? Sphere{camera.target(), shown} : bone);
+                            shown < bone.radius ? Sphere{camera.target_W(), shown} : bone);
     return frame;
 }
 

@@ -44,10 +44,10 @@ struct KeyLight {
 };
 
 struct Frame {
-    Eigen::Matrix4f camera_from_V;
+    Eigen::Matrix4f X_CV;
     Eigen::Matrix4f clip_from_camera;
-    std::optional<Eigen::Matrix4f> camera_from_T;
-    std::optional<Eigen::Matrix4f> camera_from_ghost;
+    std::optional<Eigen::Matrix4f> X_CT;
+    std::optional<Eigen::Matrix4f> X_CT_device;
     KeyLight key;
     Eigen::Vector2f near_far;
     Eigen::Vector2f tangents;  // of half the field of view

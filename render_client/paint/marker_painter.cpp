@@ -96,10 +96,10 @@ void MarkerPainter::addPointers(const Frame& frame, const FrameView& view) {
 
 // From the burr's surface, the way the force pushes the hand; with a head of constant size.
 void MarkerPainter::addArrow(const Frame& frame, const FrameView& view) {
-    if (!frame.camera_from_T || !view.f_T_W) return;
+    if (!frame.X_CT || !view.f_T_W) return;
     const double newtons = view.f_T_W->norm();
     const ForceLook look = forceLook(newtons);
-    const Eigen::Vector3f burr = frame.camera_from_T->topRightCorner<3, 1>();
+    const Eigen::Vector3f burr = frame.X_CT->topRightCorner<3, 1>();
     if (look.length <= 0 || -burr.z() <= frame.near_far.x()) return;
     const float height = 2 * frame.tangents.y() * -burr.z();
     const Eigen::Vector3f axis = (view.camera.R_WC.transpose() * *view.f_T_W / newtons).cast<float>();

@@ -23,8 +23,8 @@ struct Placed {
 };
 
 Placed place(const Frame& frame, const Particle& particle, int height) {
-    const auto X = frame.camera_from_V.topLeftCorner<3, 3>();
-    const Eigen::Vector3f from = X * particle.p_V + frame.camera_from_V.topRightCorner<3, 1>();
+    const auto X = frame.X_CV.topLeftCorner<3, 3>();
+    const Eigen::Vector3f from = X * particle.p_V + frame.X_CV.topRightCorner<3, 1>();
     const float least = kSmallest * pixelAt(frame, std::max(-from.z(), 0.0f), height);
     return {from, from + X * particle.streak_V, std::max(particle.radius, least)};
 }

@@ -10,8 +10,8 @@ constexpr double kLoosest = 2;        // a range that is so many times too wide 
 constexpr double kRangeMargin = 0.1;  // of the near and far distance: room for the tool to move
 
 bool isSame(const Camera& a, const Camera& b) {
-    return a.eye == b.eye && a.R_WC == b.R_WC && a.field_of_view == b.field_of_view && a.focus == b.focus &&
-           a.shift == b.shift;
+    return a.eye_W == b.eye_W && a.R_WC == b.R_WC && a.field_of_view == b.field_of_view &&
+           a.focus == b.focus && a.shift == b.shift;
 }
 
 template <class Matrix>
@@ -22,7 +22,7 @@ void append(std::vector<float>& signature, const Matrix& matrix) {
 std::vector<float> signatureOf(const Frame& frame, int width, int height) {
     std::vector<float> signature{float(width), float(height), frame.bone_radius, frame.key.reach};
     append(signature, frame.clip_from_camera);
-    append(signature, frame.camera_from_V);
+    append(signature, frame.X_CV);
     append(signature, frame.key.direction);
     for (const Eigen::Vector4f& plane : frame.cuts_V.planes) append(signature, plane);
     append(signature, frame.bone_V.min());
@@ -52,8 +52,7 @@ PictureChanges::Dirty PictureChanges::next(const Frame& frame, int width, int he
         signature_ = std::move(signature);
         return {whole, whole};
     }
-    const PixelBox bone =
-        PixelBox::around(changed_V, frame.clip_from_camera * frame.camera_from_V, width, height);
+    const PixelBox bone = PixelBox::around(changed_V, frame.clip_from_camera * frame.X_CV, width, height);
     return {bone, bone.joined(moved).joined(moving)};
 }
 

@@ -153,17 +153,16 @@ void SceneRenderer::drawKeptBone(Frame frame, const NodeStore& nodes, const Pixe
 }
 
 PixelBox SceneRenderer::movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool) {
-    const auto pixels = [&](const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& camera_from_box) {
-        return PixelBox::around(box, frame.clip_from_camera * camera_from_box, targets_->width(),
-                                targets_->height());
+    const auto pixels = [&](const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& X_CB) {
+        return PixelBox::around(box, frame.clip_from_camera * X_CB, targets_->width(), targets_->height());
     };
     PixelBox moving = pixels(markers_.box(frame, view), Eigen::Matrix4f::Identity());
     if (particles_ && !view.effects->particles.empty())
         moving =
             moving.joined(pixels(ParticlePainter::box(frame, view.effects->particles, targets_->height()),
                                  Eigen::Matrix4f::Identity()));
-    if (frame.camera_from_T) moving = moving.joined(pixels(tool.box(), *frame.camera_from_T));
-    if (frame.camera_from_ghost) moving = moving.joined(pixels(tool.box(), *frame.camera_from_ghost));
+    if (frame.X_CT) moving = moving.joined(pixels(tool.box(), *frame.X_CT));
+    if (frame.X_CT_device) moving = moving.joined(pixels(tool.box(), *frame.X_CT_device));
     return moving;
 }
 
@@ -186,7 +185,7 @@ std::optional<Eigen::Vector3d> SceneRenderer::pick(int x, int y) const {
     const double aspect = double(targets_->width()) / targets_->height();
     const double right = (2 * (x + 0.5) / targets_->width() - 1) * tangent * aspect + last_camera_.shift;
     const double up = (1 - 2 * (y + 0.5) / targets_->height()) * tangent;
-    return last_camera_.eye + last_camera_.R_WC * (depth * Eigen::Vector3d(right, up, -1));
+    return last_camera_.eye_W + last_camera_.R_WC * (depth * Eigen::Vector3d(right, up, -1));
 }
 
 // Transparent bone casts no shadow: what is seen through it would be dark.
@@ -210,10 +209,10 @@ void SceneRenderer::drawShadowMap(const Frame& frame, const FrameView& view, con
     if (!view.bone_opacity) {
         const ClipPlanes clip(gl_, frame.cuts_V);
         setCutPlanes(shadow_, frame.cuts_V);
-        nodes.draw(shadow_, aim(frame.camera_from_V));
+        nodes.draw(shadow_, aim(frame.X_CV));
     }
-    if (frame.camera_from_T) {
-        aim(*frame.camera_from_T);
+    if (frame.X_CT) {
+        aim(*frame.X_CT);
         shadow_.set("origin", Eigen::Vector3f(Eigen::Vector3f::Zero()));
         shadow_.set("step", Eigen::Vector3f(Eigen::Vector3f::Ones()));
         tool.draw();

@@ -36,12 +36,12 @@ void ToolPainter::prepareSpin(bool is_needed) {
 
 void ToolPainter::drawTool(const Frame& frame, const FrameView& view, const ToolMesh& tool,
                            GLuint shadow_texture) const {
-    if (!frame.camera_from_T) return;
+    if (!frame.X_CT) return;
     const bool spins = spinning_tool_ && view.effects->turn;
     const Program& program = spins ? *spinning_tool_ : tool_;
     program.use();
     frame.setLight(gl_, program, shadow_texture);
-    program.set("camera_from_model", *frame.camera_from_T);
+    program.set("camera_from_model", *frame.X_CT);
     program.set("burr_radius", float(view.burr_radius));
     program.set("milling_glow", glowOf(view.burr_work));
     if (spins) {
@@ -55,13 +55,13 @@ void ToolPainter::drawTool(const Frame& frame, const FrameView& view, const Tool
 // Seen through the bone too, but fainter there: the hand usually is inside when the tool is stopped at the
 // surface.
 void ToolPainter::drawGhost(const Frame& frame, const ToolMesh& tool) const {
-    if (!frame.camera_from_ghost) return;
+    if (!frame.X_CT_device) return;
     gl_.Enable(GL_BLEND);
     gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     gl_.Enable(GL_CULL_FACE);
     gl_.DepthMask(GL_FALSE);
     ghost_.use();
-    ghost_.set("camera_from_model", *frame.camera_from_ghost);
+    ghost_.set("camera_from_model", *frame.X_CT_device);
     ghost_.set("clip_from_camera", frame.clip_from_camera);
     constexpr struct {
         GLenum depth_test;

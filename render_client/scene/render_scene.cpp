@@ -1,7 +1,6 @@
 #include "render_client/scene/render_scene.h"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 
 #include "render_client/camera/endoscope.h"
@@ -10,11 +9,27 @@
 namespace bonemill {
 namespace {
 
+// Of an empty box: none.
+std::vector<Eigen::Vector3d> cornersIn(const Pose& X_WV, const Eigen::AlignedBox3d& box_V) {
+    std::vector<Eigen::Vector3d> corners_W;
+    for (int i = 0; i < 8 && !box_V.isEmpty(); ++i)
+        corners_W.push_back(X_WV * box_V.corner(Eigen::AlignedBox3d::CornerType(i)));
+    return corners_W;
+}
+
 Eigen::AlignedBox3d boxIn(const Pose& X_WV, const Eigen::AlignedBox3d& box_V) {
     Eigen::AlignedBox3d box_W;
-    for (int i = 0; i < 8 && !box_V.isEmpty(); ++i)
-        box_W.extend(X_WV * box_V.corner(Eigen::AlignedBox3d::CornerType(i)));
+    for (const Eigen::Vector3d& corner : cornersIn(X_WV, box_V)) box_W.extend(corner);
     return box_W;
+}
+
+ViewWish wishOf(const topics::Camera& camera) {
+    ViewWish wish;
+    if (camera.has_target()) wish.target_W = readVector(camera.target_m());
+    if (camera.distance_m() > 0) wish.distance = camera.distance_m();
+    wish.azimuth = camera.azimuth_rad();
+    wish.elevation = camera.elevation_rad();
+    return wish;
 }
 
 std::optional<Eigen::Vector3d> pointerOf(const topics::Viewer& watcher) {
@@ -116,36 +131,20 @@ const EffectPicture* RenderScene::effectPicture() {
     return &picture;
 }
 
-void RenderScene::setViewOverrides(const ViewOverrides& overrides) {
-    overrides_ = overrides;
+void RenderScene::setViewWish(const ViewWish& wish) {
+    view_wish_ = wish;
     view_pending_ = true;
 }
 
 void RenderScene::applyFirstView(double aspect) {
-    camera_ = OrbitCamera();
-    topics::Camera wish;
+    ViewWish scene_wish;
+    Eigen::Vector3d up_W = Eigen::Vector3d::UnitZ();
     if (hud_input_.info && hud_input_.info->has_camera()) {
-        wish = hud_input_.info->camera();
-        camera_.azimuth = wish.azimuth_rad();
-        camera_.elevation = wish.elevation_rad();
-        if (const auto up = readVector(wish.up())) camera_.setUp(*up);
+        const topics::Camera& camera = hud_input_.info->camera();
+        scene_wish = wishOf(camera);
+        up_W = readVector(camera.up()).value_or(up_W);
     }
-    camera_.azimuth = overrides_.azimuth.value_or(camera_.azimuth);
-    camera_.elevation = overrides_.elevation.value_or(camera_.elevation);
-    camera_.orbit(0, 0);  // into range
-
-    if (!bone_V_.isEmpty()) {
-        std::array<Eigen::Vector3d, 8> corners_W;
-        for (int i = 0; i < 8; ++i)
-            corners_W[size_t(i)] = X_WV_ * bone_V_.corner(Eigen::AlignedBox3d::CornerType(i));
-        camera_.fit(corners_W, aspect);
-    }
-    const auto wished_target = readVector(wish.target_m());
-    if (wish.has_target() && wished_target) camera_.target = *wished_target;
-    if (wish.distance_m() > 0) camera_.distance = wish.distance_m();
-    camera_.target = overrides_.target.value_or(camera_.target);
-    camera_.distance = overrides_.distance.value_or(camera_.distance);
-    camera_.zoom(1);  // into range
+    camera_ = firstView(view_wish_.orElse(scene_wish), up_W, cornersIn(X_WV_, bone_V_), aspect);
     view_pending_ = false;
 }
 
@@ -261,7 +260,7 @@ void RenderScene::paintNames(const FrameView& view, const PictureArea& area, flo
     for (const topics::Viewer& watcher : hud_input_.watchers) {
         const auto pointer = pointerOf(watcher);
         if (!pointer || watcher.name().empty()) continue;
-        const Eigen::Vector3d p_C = view.camera.R_WC.transpose() * (*pointer - view.camera.eye);
+        const Eigen::Vector3d p_C = view.camera.R_WC.transpose() * (*pointer - view.camera.eye_W);
         if (p_C.z() >= 0) continue;
         const double pixels = area.height / (2 * view.camera.halfTangent() * -p_C.z());
         const double right = area.width / 2.0 + (p_C.x() + view.camera.shift * p_C.z()) * pixels;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "proto/topics.pb.h"
-#include "render_client/camera/orbit_camera.h"
+#include "render_client/camera/first_view.h"
 #include "render_client/camera/view_settings.h"
 #include "render_client/effects/visual_effects.h"
 #include "render_client/hud/event_latch.h"
@@ -21,14 +21,6 @@
 #include "render_client/paint/scene_renderer.h"
 
 namespace bonemill {
-
-// Replaces parts of the scene file's first view. W, m, rad.
-struct ViewOverrides {
-    std::optional<Eigen::Vector3d> target;
-    std::optional<double> distance;
-    std::optional<double> azimuth;
-    std::optional<double> elevation;
-};
 
 class RenderScene {
   public:
@@ -60,7 +52,8 @@ class RenderScene {
     void setFrameRate(double frame_rate_hz) { hud_input_.frame_rate_hz = frame_rate_hz; }
 
     OrbitCamera& camera() { return camera_; }
-    void setViewOverrides(const ViewOverrides& overrides);
+    // Goes before what the scene file asks of the first view.
+    void setViewWish(const ViewWish& wish);
     // Back to the first view, at the next draw().
     void resetView() { view_pending_ = true; }
     ViewSettings& settings() { return settings_; }
@@ -122,7 +115,7 @@ class RenderScene {
     Pose X_WV_;
     Eigen::AlignedBox3d bone_V_;
     OrbitCamera camera_;
-    ViewOverrides overrides_;
+    ViewWish view_wish_;
     bool view_pending_ = true;
     ViewSettings settings_;
     bool can_pick_ = false;

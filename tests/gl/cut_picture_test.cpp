@@ -53,7 +53,7 @@ TEST_F(ViewMode, AFlippedCutHidesTheOtherSide) {
     const auto near_part = scene_->pick(kWidth / 2, kHeight / 2);
     ASSERT_TRUE(near_part);
     EXPECT_NEAR(near_part->x(), kSphereCenter.x() + kSphereRadius, 5e-6);
-    scene_->setViewOverrides({.target = {}, .distance = {}, .azimuth = -M_PI / 2, .elevation = 0.0});
+    scene_->setViewWish({.target_W = {}, .distance = {}, .azimuth = -M_PI / 2, .elevation = 0.0});
     draw();
     const auto cap = scene_->pick(kWidth / 2, kHeight / 2);
     ASSERT_TRUE(cap);
@@ -80,7 +80,7 @@ TEST_F(ViewMode, CutsAreAcrossTheWorldsAxes) {
 
 TEST_F(ViewMode, ThreeCutsLeaveOneCorner) {
     showSphere();
-    scene_->setViewOverrides({.target = {}, .distance = {}, .azimuth = M_PI * 3 / 4, .elevation = 0.6});
+    scene_->setViewWish({.target_W = {}, .distance = {}, .azimuth = M_PI * 3 / 4, .elevation = 0.6});
     for (CutPlane& cut : scene_->settings().cuts) cut = {true, 0.5, false};
     draw();
     size_t on_planes = 0;
@@ -101,7 +101,7 @@ TEST_F(ViewMode, AnOpenBorderGetsNoCap) {
         65, 2.5e-4, [](const Vector3d& p) { return std::hypot(p.x() - 0.008, p.y() - 0.008) - 0.003; });
     scene_->setSceneInfo(makeSceneInfo("open rod", {0.005, 0.005, 0}, {0.011, 0.011, 0.016}));
     for (const NodeMesh& node : nodes) scene_->setNode(node);
-    scene_->setViewOverrides({.target = {}, .distance = {}, .azimuth = 0.2, .elevation = 1.2});
+    scene_->setViewWish({.target_W = {}, .distance = {}, .azimuth = 0.2, .elevation = 1.2});
     const Picture open = draw();
     const auto inside = scene_->pick(kWidth / 2, kHeight / 2);
     ASSERT_TRUE(inside);

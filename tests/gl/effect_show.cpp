@@ -147,8 +147,8 @@ void drawSpin(const std::filesystem::path& folder) {
         stage.context_height = kHeight;
         stage.last = test::toolAt({8.0e-3, 3.2e-3, 13.0e-3}, kShaft);
         stage.session.wait(stage.scene, stage.last, 0.2, {.spin_speed = speed, .is_pedal_down = false});
-        stage.scene.setViewOverrides(
-            {.target = stage.last.position, .distance = 0.0075, .azimuth = -0.5, .elevation = 0.3});
+        stage.scene.setViewWish(
+            {.target_W = stage.last.position, .distance = 0.0075, .azimuth = -0.5, .elevation = 0.3});
         stage.draw();
         stage.session.wait(stage.scene, stage.last, 1.0 / 60, {.spin_speed = speed, .is_pedal_down = false});
         const Picture drawn = stage.draw();

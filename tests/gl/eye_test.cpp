@@ -15,10 +15,10 @@ TEST_F(ViewMode, TheHalvesOfSideBySideAreTheEyesPictures) {
     scene_->settings().stereo = StereoMode::kSideBySide;
     draw();
     const StereoPair eyes = stereoPair(scene_->camera().view());
-    const double apart = (eyes.right.eye - eyes.left.eye).norm();
+    const double apart = (eyes.right.eye_W - eyes.left.eye_W).norm();
     EXPECT_NEAR(apart, scene_->camera().distance / 30, 1e-9);
-    const Vector3d target = scene_->camera().target;
-    const Vector3d nearer = target + 0.3 * (eyes.left.eye - target);
+    const Vector3d target = scene_->camera().target_W;
+    const Vector3d nearer = target + 0.3 * (eyes.left.eye_W - target);
     const int half = kWidth / 2;
     EXPECT_NEAR(project(eyes.left, target, half, kHeight).x, half / 2.0, 1e-9) << "no parallax at the target";
     EXPECT_NEAR(project(eyes.right, target, half, kHeight).x, half / 2.0, 1e-9);

@@ -43,7 +43,7 @@ class Golden : public testing::Test {
     }
     void lookThroughTheCut() {
         cut(0, 0.45, false);
-        scene_->setViewOverrides({.target = {}, .distance = {}, .azimuth = 0.9, .elevation = {}});
+        scene_->setViewWish({.target_W = {}, .distance = {}, .azimuth = 0.9, .elevation = {}});
     }
 
     // Draws what `prepare` sets up with altered shaders, and expects the comparison to see it.

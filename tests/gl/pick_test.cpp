@@ -35,15 +35,15 @@ TEST_F(ViewMode, PickHitsTheSphereWhereTheLineOfSightMeetsIt) {
     for (int y = 5; y < kHeight; y += 20)
         for (int x = 5; x < kWidth; x += 20) {
             const Vector3d direction = sight(camera, x, y);
-            const auto distance = hitSphere(camera.eye, direction);
+            const auto distance = hitSphere(camera.eye_W, direction);
             if (!distance) continue;
             const auto picked = scene_->pick(x, y);
             ASSERT_TRUE(picked) << x << " " << y;
-            ASSERT_LT((*picked - camera.eye).normalized().cross(direction).norm(), 1e-6);
+            ASSERT_LT((*picked - camera.eye_W).normalized().cross(direction).norm(), 1e-6);
             // A multisampled depth is that of one sample, up to half a pixel off.
             ASSERT_NEAR((*picked - kSphereCenter).norm(), kSphereRadius, camera.metresPerPixel(kHeight) / 2)
                 << x << " " << y;
-            ASSERT_NEAR((*picked - camera.eye).norm(), *distance, 0.04 * kSphereRadius) << x << " " << y;
+            ASSERT_NEAR((*picked - camera.eye_W).norm(), *distance, 0.04 * kSphereRadius) << x << " " << y;
             ++hits;
         }
     EXPECT_GT(hits, 40u);

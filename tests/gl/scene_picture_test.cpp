@@ -168,7 +168,7 @@ TEST_F(ScenePicture, ARemovedNodeIsGone) {
     const Picture empty = draw();
     showSphere();
     const Picture whole = draw();
-    const Eigen::Vector3f towards_eye = scene_->camera().towardsEye().cast<float>();
+    const Eigen::Vector3f towards_eye = scene_->camera().towardsEye_W().cast<float>();
     const auto nearest = std::max_element(sphereNodes().begin(), sphereNodes().end(),
                                           [&](const NodeMesh& a, const NodeMesh& b) {
                                               return towards_eye.dot(a.origin) < towards_eye.dot(b.origin);
@@ -193,9 +193,9 @@ TEST_F(ScenePicture, TheVolumesPoseMovesTheBone) {
     scene_->setSceneInfo(moved);
     const Eigen::Vector3d old_target = kCenter;
     const Picture followed = draw();
-    EXPECT_TRUE(scene_->camera().target.isApprox(old_target + shift, 1e-6));
+    EXPECT_TRUE(scene_->camera().target_W.isApprox(old_target + shift, 1e-6));
     EXPECT_LT(countDifferent(picture, followed), 50u) << "the first view follows the bone";
-    scene_->camera().target = old_target;
+    scene_->camera().target_W = old_target;
     EXPECT_GT(countDifferent(picture, draw()), 10000u);
 }
 
@@ -305,13 +305,13 @@ TEST_F(ScenePicture, ViewOverridesWinOverTheScene) {
     draw();
     EXPECT_DOUBLE_EQ(scene_->camera().azimuth, 0.3);
     EXPECT_DOUBLE_EQ(scene_->camera().distance, 0.07);
-    EXPECT_TRUE(scene_->camera().target.isApprox(kCenter, 1e-9));
-    scene_->setViewOverrides(
-        {.target = Eigen::Vector3d(1, 2, 3), .distance = {}, .azimuth = 1.0, .elevation = {}});
+    EXPECT_TRUE(scene_->camera().target_W.isApprox(kCenter, 1e-9));
+    scene_->setViewWish(
+        {.target_W = Eigen::Vector3d(1, 2, 3), .distance = {}, .azimuth = 1.0, .elevation = {}});
     draw();
     EXPECT_DOUBLE_EQ(scene_->camera().azimuth, 1.0);
     EXPECT_DOUBLE_EQ(scene_->camera().elevation, 0.2);
-    EXPECT_EQ(scene_->camera().target, Eigen::Vector3d(1, 2, 3));
+    EXPECT_EQ(scene_->camera().target_W, Eigen::Vector3d(1, 2, 3));
     scene_->camera().orbit(0.5, 0.5);
     scene_->resetView();
     draw();

@@ -34,7 +34,7 @@ TEST_F(ViewMode, OnlyInstructorsPointAndAlsoFromBehindBone) {
     showSphere();
     const Picture bare = draw();
     topics::Viewer viewer = makeWatcher("", topics::Viewer::INSTRUCTOR, 60);
-    const Vector3d towards_eye = scene_->camera().towardsEye();
+    const Vector3d towards_eye = scene_->camera().towardsEye_W();
     const auto effect_at = [&](const Vector3d& p) {
         setVector(p, viewer.mutable_pointer_m());
         scene_->setWatchers({viewer});

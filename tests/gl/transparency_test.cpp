@@ -11,7 +11,7 @@ namespace {
 TEST_F(ViewMode, TransparentBoneShowsTheToolInside) {
     showMilledBlock(*scene_);
     // From behind: the whole block lies between the eye and the burr.
-    scene_->setViewOverrides({.target = {}, .distance = {}, .azimuth = M_PI, .elevation = 0.0});
+    scene_->setViewWish({.target_W = {}, .distance = {}, .azimuth = M_PI, .elevation = 0.0});
     const auto effect_of_the_glow = [&] {
         scene_->setToolState(makeToolState(toolInCavity(), toolInCavity(), 0));
         const Picture idle = draw();

@@ -28,7 +28,7 @@ struct Pixel {
 
 // Where a point (W) appears.
 inline Pixel project(const Camera& camera, const Eigen::Vector3d& p_W, int width, int height) {
-    const Eigen::Vector3d p_C = camera.R_WC.transpose() * (p_W - camera.eye);
+    const Eigen::Vector3d p_C = camera.R_WC.transpose() * (p_W - camera.eye_W);
     const double pixels = height / (2 * camera.halfTangent() * -p_C.z());
     return {width / 2.0 + (p_C.x() + camera.shift * p_C.z()) * pixels, height / 2.0 - p_C.y() * pixels};
 }
@@ -51,7 +51,7 @@ class ViewMode : public testing::Test {
         for (const NodeMesh& node : nodes) scene_->setNode(node);
     }
     void lookFromTheLeft() {
-        scene_->setViewOverrides({.target = {}, .distance = {}, .azimuth = M_PI / 2, .elevation = 0.0});
+        scene_->setViewWish({.target_W = {}, .distance = {}, .azimuth = M_PI / 2, .elevation = 0.0});
     }
 
     OsmesaContext context_;

@@ -23,11 +23,11 @@ TEST(OrbitCamera, AzimuthZeroLooksFromTheFrontAndNinetyFromTheLeft) {
     OrbitCamera camera;
     camera.elevation = 0;
     camera.azimuth = 0;
-    EXPECT_TRUE(camera.towardsEye().isApprox(-Vector3d::UnitY()));
+    EXPECT_TRUE(camera.towardsEye_W().isApprox(-Vector3d::UnitY()));
     camera.azimuth = M_PI / 2;
-    EXPECT_TRUE(camera.towardsEye().isApprox(Vector3d::UnitX()));
+    EXPECT_TRUE(camera.towardsEye_W().isApprox(Vector3d::UnitX()));
     camera.elevation = M_PI / 4;
-    EXPECT_TRUE(camera.towardsEye().isApprox(Vector3d(1, 0, 1).normalized()));
+    EXPECT_TRUE(camera.towardsEye_W().isApprox(Vector3d(1, 0, 1).normalized()));
 }
 
 TEST(OrbitCamera, AxesAreRightHandedAndUpPointsUp) {
@@ -39,32 +39,32 @@ TEST(OrbitCamera, AxesAreRightHandedAndUpPointsUp) {
             const Eigen::Matrix3d R_WC = camera.R_WC();
             EXPECT_TRUE((R_WC.transpose() * R_WC).isIdentity(1e-9));
             EXPECT_NEAR(R_WC.determinant(), 1, 1e-9);
-            EXPECT_GT(R_WC.col(1).dot(camera.up()), 0);
+            EXPECT_GT(R_WC.col(1).dot(camera.up_W()), 0);
         }
 }
 
 TEST(OrbitCamera, TheTargetIsInTheMiddleAndAboveIsAbove) {
     OrbitCamera camera;
-    camera.target = {0.01, -0.2, 0.03};
+    camera.target_W = {0.01, -0.2, 0.03};
     const DepthRange range{0.01, 2};
-    EXPECT_LT(project(camera, 1.6, range, camera.target).head<2>().norm(), 1e-5);
-    EXPECT_GT(project(camera, 1.6, range, camera.target + Vector3d(0, 0, 0.01)).y(), 0.01);
+    EXPECT_LT(project(camera, 1.6, range, camera.target_W).head<2>().norm(), 1e-5);
+    EXPECT_GT(project(camera, 1.6, range, camera.target_W + Vector3d(0, 0, 0.01)).y(), 0.01);
 }
 
 TEST(OrbitCamera, AnotherUpTurnsThePicture) {
     OrbitCamera camera;
     camera.setUp({0, -2, 0});
     camera.elevation = 0.3;
-    EXPECT_GT(project(camera, 1, {0.01, 2}, camera.target + Vector3d(0, -0.01, 0)).y(), 0.01);
+    EXPECT_GT(project(camera, 1, {0.01, 2}, camera.target_W + Vector3d(0, -0.01, 0)).y(), 0.01);
     camera.setUp(Vector3d::Zero());
-    EXPECT_EQ(camera.up(), Vector3d(Vector3d::UnitZ()));
+    EXPECT_EQ(camera.up_W(), Vector3d(Vector3d::UnitZ()));
 }
 
 TEST(OrbitCamera, OrbitKeepsTheDistanceAndStopsBelowThePole) {
     OrbitCamera camera;
     camera.distance = 0.2;
     camera.orbit(1.0, 10.0);
-    EXPECT_NEAR((camera.eye() - camera.target).norm(), 0.2, 1e-12);
+    EXPECT_NEAR((camera.eye_W() - camera.target_W).norm(), 0.2, 1e-12);
     EXPECT_DOUBLE_EQ(camera.elevation, OrbitCamera::kMaxElevation);
     camera.orbit(100.0, 0);
     EXPECT_LE(std::abs(camera.azimuth), M_PI);
@@ -83,7 +83,7 @@ TEST(OrbitCamera, ZoomScalesTheDistanceWithinLimits) {
 
 TEST(OrbitCamera, PanMovesThePictureByThatPartOfItsHeight) {
     OrbitCamera camera;
-    const Vector3d point = camera.target;
+    const Vector3d point = camera.target_W;
     camera.pan(0.25, -0.1);
     const Eigen::Vector3f seen = project(camera, 1.5, {0.01, 2}, point);
     EXPECT_NEAR(seen.x() * 1.5 / 2, 0.25, 1e-4);
@@ -112,13 +112,13 @@ TEST(OrbitCamera, FitShowsEveryCornerAndNearlyFillsThePicture) {
 TEST(OrbitCamera, DepthRangeHoldsTheSphereOrStaysInFrontOfTheEye) {
     OrbitCamera camera;
     camera.distance = 0.5;
-    const DepthRange outside = camera.view().depthRange(camera.target, 0.1);
+    const DepthRange outside = camera.view().depthRange(camera.target_W, 0.1);
     EXPECT_NEAR(outside.near, 0.4, 1e-12);
     EXPECT_NEAR(outside.far, 0.6, 1e-12);
-    const DepthRange within = camera.view().depthRange(camera.target, 3);
+    const DepthRange within = camera.view().depthRange(camera.target_W, 3);
     EXPECT_GT(within.near, 0);
     EXPECT_NEAR(within.far, 3.5, 1e-12);
-    const DepthRange behind = camera.view().depthRange(camera.eye() + camera.towardsEye(), 0.1);
+    const DepthRange behind = camera.view().depthRange(camera.eye_W() + camera.towardsEye_W(), 0.1);
     EXPECT_GT(behind.near, 0);
     EXPECT_GT(behind.far, behind.near);
 }
@@ -126,7 +126,7 @@ TEST(OrbitCamera, DepthRangeHoldsTheSphereOrStaysInFrontOfTheEye) {
 TEST(OrbitCamera, MetresPerPixelAgreesWithTheProjection) {
     OrbitCamera camera;
     constexpr int kHeight = 600;
-    const Vector3d point = camera.target + camera.R_WC().col(1) * camera.view().metresPerPixel(kHeight);
+    const Vector3d point = camera.target_W + camera.R_WC().col(1) * camera.view().metresPerPixel(kHeight);
     EXPECT_NEAR(project(camera, 1, {0.01, 2}, point).y(), 2.0 / kHeight, 1e-6);
 }
 

@@ -44,7 +44,7 @@ TEST_F(PictureChangesTest, OnlyWhatChangedAndWhatMovesOfARestingView) {
 
 TEST_F(PictureChangesTest, AllAfterAChangeOfTheView) {
     next({}, {});
-    view_.camera.eye.x() += 0.001;
+    view_.camera.eye_W.x() += 0.001;
     EXPECT_EQ(next({}, {}).bone, whole_);
     EXPECT_TRUE(next({}, {}).bone.isEmpty());
     view_.cuts_W.planes[0] = {1, 0, 0, 0.01f};

@@ -46,14 +46,14 @@ TEST_F(PixelBoxTest, HoldsEveryPointOfTheBox) {
 }
 
 TEST_F(PixelBoxTest, IsTheWholePictureForABoxAtTheEye) {
-    const Eigen::Vector3f eye = camera_.eye().cast<float>();
+    const Eigen::Vector3f eye = camera_.eye_W().cast<float>();
     const Eigen::AlignedBox3f box(eye - Eigen::Vector3f::Constant(0.01f),
                                   eye + Eigen::Vector3f::Constant(0.01f));
     EXPECT_EQ(PixelBox::around(box, clip_from_W_, kWidth, kHeight), PixelBox::whole(kWidth, kHeight));
 }
 
 TEST_F(PixelBoxTest, IsEmptyBesideThePicture) {
-    const Eigen::Vector3f far_right = (camera_.target + camera_.view().R_WC.col(0)).cast<float>();
+    const Eigen::Vector3f far_right = (camera_.target_W + camera_.view().R_WC.col(0)).cast<float>();
     const Eigen::AlignedBox3f box(far_right, far_right + Eigen::Vector3f::Constant(0.001f));
     EXPECT_TRUE(PixelBox::around(box, clip_from_W_, kWidth, kHeight).isEmpty());
     EXPECT_TRUE(PixelBox::around({}, clip_from_W_, kWidth, kHeight).isEmpty());

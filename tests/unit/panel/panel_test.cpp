@@ -156,9 +156,9 @@ TEST_F(PanelClicks, ASlidersValueCanBeTyped) {
 
 TEST_F(PanelClicks, ViewButtonsTurnTheCamera) {
     click("Left");
-    EXPECT_GT(camera_.towardsEye().x(), 0.99);
+    EXPECT_GT(camera_.towardsEye_W().x(), 0.99);
     click("Top");
-    EXPECT_GT(camera_.towardsEye().z(), 0.99);
+    EXPECT_GT(camera_.towardsEye_W().z(), 0.99);
     click("First view (R)");
     EXPECT_TRUE(wishes_.reset_view);
 }

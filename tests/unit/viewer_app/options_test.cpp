@@ -21,7 +21,7 @@ TEST(Options, AWindowByDefault) {
     EXPECT_FALSE(options->offscreen);
     EXPECT_EQ(options->width, 1280);
     EXPECT_EQ(options->height, 800);
-    EXPECT_FALSE(options->view.target);
+    EXPECT_FALSE(options->view.target_W);
 }
 
 TEST(Options, ANameOfOnesOwnAndTheRoleOfAnOperator) {
@@ -82,7 +82,7 @@ TEST(Options, OffscreenWithUnitsConverted) {
     EXPECT_NEAR(options->view.azimuth.value(), -M_PI / 2, 1e-12);
     EXPECT_NEAR(options->view.elevation.value(), M_PI / 4, 1e-12);
     EXPECT_NEAR(options->view.distance.value(), 0.12, 1e-12);
-    EXPECT_TRUE(options->view.target.value().isApprox(Eigen::Vector3d(-0.001, 0.0025, -0.03)));
+    EXPECT_TRUE(options->view.target_W.value().isApprox(Eigen::Vector3d(-0.001, 0.0025, -0.03)));
 }
 
 TEST(Options, TheNetwork) {
