@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "proto/topics.pb.h"
+#include "render_client/camera/view_settings.h"
 #include "render_client/controls/viewer_controls.h"
 #include "render_client/hud/hud_colours.h"
 

@@ -10,12 +10,16 @@
 #include <utility>
 #include <vector>
 
+#include "common/geometry/node_mesh.h"
 #include "proto/topics.pb.h"
 #include "render_client/camera/first_view.h"
 #include "render_client/camera/view_settings.h"
 #include "render_client/effects/visual_effects.h"
+#include "render_client/gl/gl_api.h"
 #include "render_client/hud/event_latch.h"
 #include "render_client/hud/hud_lines.h"
+#include "render_client/model/node_store.h"
+#include "render_client/model/tool_mesh.h"
 #include "render_client/paint/anaglyph.h"
 #include "render_client/paint/hud_painter.h"
 #include "render_client/paint/scene_renderer.h"
