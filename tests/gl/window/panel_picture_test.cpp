@@ -5,38 +5,26 @@
 
 #include "render_client/offscreen/osmesa_context.h"
 #include "render_client/panel/panel_painter.h"
+#include "tests/support/controlled_panel.h"
 
 namespace bonemill {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 480;
 
-class PanelPicture : public testing::Test {
+class PanelPicture : public testing::Test, protected test::ControlledPanel {
   protected:
-    PanelPicture() {
-        session_.has_server = true;
-        session_.status = &status_;
-    }
     // Over a mid-grey picture.
     Picture draw() {
-        panel_.setPicture(kWidth, kHeight, 1, 0.02);
-        panel_.layOut(controls_, session_, wishes_);
+        layOut(kWidth, kHeight);
         const GlApi& gl = context_.gl();
         gl.ClearColor(0.5f, 0.5f, 0.5f, 1);
         gl.Clear(GL_COLOR_BUFFER_BIT);
         painter_.paint(panel_, kWidth, kHeight);
         return context_.read();
     }
-    void open() { controls_.act(Action::kPanel, session_, wishes_); }
 
     OsmesaContext context_{kWidth, kHeight};
-    topics::Status status_;
-    SessionView session_;
-    Wishes wishes_;
-    ViewSettings settings_;
-    OrbitCamera camera_;
-    ViewerControls controls_{settings_, camera_};
-    Panel panel_;
     PanelPainter painter_{context_.gl()};
 };
 
@@ -55,7 +43,7 @@ TEST_F(PanelPicture, AClosedPanelLeavesThePictureAlone) {
 
 TEST_F(PanelPicture, AnOpenOneCoversTheRightSideAndNoMore) {
     const Picture closed = draw();
-    open();
+    switchPanel();
     const Picture picture = draw();
     EXPECT_EQ(countDifferent(picture, closed, 0, 290), 0u);
     EXPECT_GT(countDifferent(picture, closed, 300, kWidth), 300u * 440u);
@@ -66,7 +54,7 @@ TEST_F(PanelPicture, AnOpenOneCoversTheRightSideAndNoMore) {
 }
 
 TEST_F(PanelPicture, TrainingIsShownWhereTheSceneTeachesCare) {
-    open();
+    switchPanel();
     const Picture without = draw();
     status_.mutable_training()->set_damaged_mm3(0.3);
     status_.mutable_training()->add_warnings("damaged facial nerve");
@@ -75,7 +63,7 @@ TEST_F(PanelPicture, TrainingIsShownWhereTheSceneTeachesCare) {
 }
 
 TEST_F(PanelPicture, ABoxShowsWhatIsSet) {
-    open();
+    switchPanel();
     const Picture before = draw();
     const PixelPoint box = panel_.find("Cut X").value();
     settings_.cuts[0].is_on = true;

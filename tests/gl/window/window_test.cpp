@@ -7,11 +7,11 @@
 #include <functional>
 #include <thread>
 
-#include "render_client/panel/panel.h"
 #include "render_client/subscribe/scene_subscriber.h"
 #include "tests/gl/golden.h"
 #include "tests/gl/window/shown_session.h"
 #include "tests/gl/window/virtual_display.h"
+#include "tests/support/controlled_panel.h"
 #include "tests/support/places.h"
 
 namespace bonemill {
@@ -134,13 +134,12 @@ class Window : public testing::Test {
 };
 
 // Knows where the controls of the viewer's panel are: a panel of its own with the same state.
-class PanelTwin {
+class PanelTwin : test::ControlledPanel {
   public:
     PanelTwin(const VirtualDisplay& display, test::ShownSession& shown, Viewer::Role role)
         : display_(display), shown_(shown) {
         session_.role = role;
-        session_.has_server = true;
-        controls_.act(Action::kPanel, session_, wishes_);
+        switchPanel();
         lookAtSession();
     }
 
@@ -150,51 +149,37 @@ class PanelTwin {
         rest();
         for (int i = 0; i < 40 && !panel_.find(label); ++i) {
             display_.type({"click", "5"});
-            send(ScrollEvent{-1});
+            sendAndLayOut(ScrollEvent{-1});
         }
         const auto place = panel_.find(label);
         if (!place) throw std::runtime_error("the panel has no control '" + label + "'");
         const PixelPoint pixel{std::floor(place->x), std::floor(place->y)};
         display_.type({"mousemove", number(pixel.x), number(pixel.y), "click", "1"});
-        send(MouseMoveEvent{pixel});
+        sendAndLayOut(MouseMoveEvent{pixel});
         for (const bool is_down : {true, false})
-            send(MouseButtonEvent{MouseButton::kLeft, is_down, pixel, {}, 0});
+            sendAndLayOut(MouseButtonEvent{MouseButton::kLeft, is_down, pixel, {}, 0});
         rest();
     }
     // The mouse on the panel, where it touches no control.
     void rest() {
         constexpr PixelPoint kTitle{kWidth - 40, 24};
         display_.type({"mousemove", number(kTitle.x), number(kTitle.y)});
-        send(MouseMoveEvent{kTitle});
+        sendAndLayOut(MouseMoveEvent{kTitle});
     }
 
   private:
-    void send(const WindowEvent& event) {
-        panel_.handle(event, controls_, session_, wishes_);
-        layOut();
-    }
-    void layOut() {
-        panel_.setPicture(kWidth, kHeight, 1, 0.02);
-        panel_.layOut(controls_, session_, wishes_);
+    void sendAndLayOut(const WindowEvent& event) {
+        send(event);
+        layOut(kWidth, kHeight);
     }
     void lookAtSession() {
         info_ = shown_.info();
         status_ = shown_.status();
-        session_.info = &info_;
-        session_.status = &status_;
-        layOut();
+        layOut(kWidth, kHeight);
     }
 
     const VirtualDisplay& display_;
     test::ShownSession& shown_;
-    topics::SceneInfo info_;
-    topics::Status status_;
-    SessionView session_;
-    Wishes wishes_;
-    ViewSettings settings_;
-    OrbitCamera camera_;
-    ViewerControls controls_{settings_, camera_};
-    Panel panel_;
 };
 
 TEST_F(Window, EveryModeByKeyLooksAsItDid) {

@@ -4,15 +4,15 @@
 
 #include <cmath>
 
+#include "tests/support/controlled_viewer.h"
+
 namespace bonemill {
 namespace {
 
 constexpr int kHeight = 500;
 
-class Controls : public testing::Test {
+class Controls : public testing::Test, protected test::ControlledViewer {
   protected:
-    Controls() { session_.has_server = true; }
-
     void type(char letter, bool with_shift = false) {
         send(KeyEvent{keyOf(letter), true, false, {with_shift, false}});
         send(KeyEvent{keyOf(letter), false, false, {with_shift, false}});
@@ -30,12 +30,6 @@ class Controls : public testing::Test {
         send(MouseMoveEvent{{150, 80}});
         release(150, 80, button);
     }
-
-    ViewSettings settings_;
-    OrbitCamera camera_;
-    SessionView session_;
-    Wishes wishes_;
-    ViewerControls controls_{settings_, camera_};
 };
 
 TEST_F(Controls, KeysSwitchWhatIsSeenAndBack) {

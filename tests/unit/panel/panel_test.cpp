@@ -6,32 +6,27 @@
 #include <algorithm>
 #include <limits>
 
+#include "tests/support/controlled_panel.h"
+
 namespace bonemill {
 namespace {
 
 constexpr int kWidth = 900, kHeight = 1200;
 
-class PanelClicks : public testing::Test {
+class PanelClicks : public testing::Test, protected test::ControlledPanel {
   protected:
     PanelClicks() {
         session_.role = topics::Viewer::INSTRUCTOR;
-        session_.has_server = true;
         session_.name = "me";
-        session_.info = &info_;
-        session_.status = &status_;
         info_.add_tool_names("6 mm");
         info_.add_tool_names("3 mm");
         status_.set_preset("balanced");
         for (const uint32_t id : {3u, 5u}) status_.add_checkpoints()->set_id(id);
-        controls_.act(Action::kPanel, session_, wishes_);
+        switchPanel();
         layOut();
     }
 
-    void layOut() {
-        panel_.setPicture(kWidth, height_, 1, 0.02);
-        panel_.layOut(controls_, session_, wishes_);
-    }
-    bool send(const WindowEvent& event) { return panel_.handle(event, controls_, session_, wishes_); }
+    void layOut() { ControlledPanel::layOut(kWidth, height_); }
     PixelPoint at(const std::string& label) {
         layOut();
         const auto place = panel_.find(label);
@@ -54,14 +49,6 @@ class PanelClicks : public testing::Test {
     }
 
     int height_ = kHeight;
-    topics::SceneInfo info_;
-    topics::Status status_;
-    SessionView session_;
-    Wishes wishes_;
-    ViewSettings settings_;
-    OrbitCamera camera_;
-    ViewerControls controls_{settings_, camera_};
-    Panel panel_;
 };
 
 // Below it everything still works, and nothing is there without it.
@@ -238,7 +225,7 @@ TEST_F(PanelClicks, TheMouseBesideThePanelIsNotThePanels) {
 
 TEST_F(PanelClicks, AClosedPanelTakesNothing) {
     const PixelPoint place = at("Cut X");
-    controls_.act(Action::kPanel, session_, wishes_);
+    switchPanel();
     layOut();
     EXPECT_FALSE(panel_.drawData());
     EXPECT_FALSE(panel_.find("Cut X"));
@@ -263,9 +250,7 @@ TEST_F(PanelClicks, InALowPictureItScrolls) {
 TEST_F(PanelClicks, ItGrowsWithTheDisplaysScale) {
     const double before = at("Cut Z").y - at("Cut X").y;
     const int version = panel_.fontPixels().version;
-    panel_.setPicture(2 * kWidth, 2 * kHeight, 2, 0.02);
-    panel_.layOut(controls_, session_, wishes_);
-    panel_.layOut(controls_, session_, wishes_);
+    for (int n = 0; n < 2; ++n) ControlledPanel::layOut(2 * kWidth, 2 * kHeight, 2);
     EXPECT_NEAR(panel_.find("Cut Z")->y - panel_.find("Cut X")->y, 2 * before, 3);
     EXPECT_NE(panel_.fontPixels().version, version);
 }
