@@ -22,7 +22,7 @@ void makeFolder(const std::filesystem::path& folder) {
     if (failure) throw UserError("--out " + folder.string() + ": " + failure.message());
 }
 
-// The training's warnings as a JSON array; they are printable UTF-8 already.
+// Returns the training's warnings as a JSON array; they are printable UTF-8 already.
 std::string warningsOf(const topics::Training& training) {
     std::string list;
     for (const std::string& warning : training.warnings()) {
@@ -36,7 +36,8 @@ std::string warningsOf(const topics::Training& training) {
     return "[" + list + "]";
 }
 
-// What the picture shows; to be taken before the drawing, which may take longer than the server's time-out.
+// Describes what the picture shows. It is called before the drawing, which may take longer than
+// the server's time-out.
 std::string describe(uint32_t frame, const std::string& file, const RenderScene& scene, SceneFeed& feed) {
     const SceneSubscriber& subscriber = feed.subscriber();
     const uint64_t tick = subscriber.toolState() ? subscriber.toolState()->tick() : 0;

@@ -21,7 +21,7 @@ constexpr int kMinSize = 64;
 constexpr uint32_t kDefaultTimeoutS = 60;
 constexpr int kMaxSize = 8192;  // pixels; every OpenGL 3.3 driver in use can do it
 
-// What the command line holds before units are converted.
+// Here is what the command line holds before units are converted.
 struct RawOptions {
     bool offscreen = false;
     OffscreenOptions offscreen_options;

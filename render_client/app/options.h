@@ -1,4 +1,4 @@
-// Command line of render_client.
+// The command line of render_client. What is shown at the start has its options in view_options.h.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,13 @@ struct OffscreenOptions {
     std::chrono::seconds timeout{60};  // of wait_complete
 };
 
-// Instead of a viewer: this is asked for, once there is a server.
+// Instead of a viewer, this is asked for, once there is a server.
 struct CommandOptions {
     std::string text;                  // subscribe/command_words.h
     std::chrono::seconds timeout{60};  // of waiting for the server
 };
 
-// Instead of a viewer: what drawing costs.
+// Instead of a viewer, the program measures what drawing costs.
 struct MeasureOptions {
     std::chrono::seconds time{10};
     std::chrono::seconds timeout{60};  // of waiting for the whole model
@@ -49,13 +49,13 @@ struct ClientOptions {
     std::string log_level = "info";
 };
 
-// Size of text in a picture of this height, 1 at 800 pixels.
+// Returns the size of text in a picture of this height; it is 1 at 800 pixels.
 float textScale(int height);
 
-// What to ask a user to whom no server answers.
+// Returns what to ask a user to whom no server answers.
 std::string serverQuestion(const SubscriberOptions& subscriber);
 
-// Empty after --help (already printed). Throws UserError.
+// Returns nothing after --help (already printed). Throws UserError.
 std::optional<ClientOptions> parseOptions(int argc, const char* const* argv);
 
 }  // namespace bonemill

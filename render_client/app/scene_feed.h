@@ -24,17 +24,17 @@ class SceneFeed {
     template <class Stop>
     void updateUntil(std::chrono::steady_clock::time_point end, Stop&& stop);
 
-    // The scene shows exactly the server's model, and the tool if the server has one to show.
+    // True when the scene shows exactly the server's model, and the tool if the server has one to show.
     bool isComplete() const;
 
-    // From now on the others' lists show this viewer, and the scene shows the others. (A window does both
-    // itself: it points, and measures its rate.)
+    // From now on the others' lists show this viewer, and the scene shows the others. A window does both
+    // itself: it points, and measures its rate.
     void takePart() { takes_part_ = true; }
 
-    // From now on it hears what the scene sounds like. It must outlive the feed.
+    // From now on `sound` hears what the scene sounds like. It must outlive the feed.
     void sound(SoundFeed* sound) { sound_ = sound; }
 
-    // Tells it of every cut that the next picture will show first.
+    // Tells `cuts` of every cut that the next picture will show first.
     void watchCuts(CutToScreen* cuts) { cuts_ = cuts; }
 
     SceneSubscriber& subscriber() { return subscriber_; }

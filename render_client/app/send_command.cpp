@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// True when `condition` held in time; false after `end` or a stop signal.
+// Returns true when `condition` held in time, false after `end` or a stop signal.
 template <class Condition>
 bool pollUntil(SceneSubscriber& subscriber, Clock::time_point end, Condition&& condition) {
     constexpr std::chrono::milliseconds kSlice{20};  // also how often a command that waits is looked after

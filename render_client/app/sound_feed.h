@@ -1,5 +1,5 @@
-// What the milling sound hears of the session: to the loudspeakers, into a WAV file, or both. A scene that
-// does not list milling_sound makes no synth, no thread and no sound device; its WAV file is silent.
+// Lets the milling sound hear the session: from the loudspeakers, into a WAV file, or both. A scene that does
+// not list milling_sound makes no synth, no thread and no sound device; its WAV file is silent.
 //
 // Thread: the one of the viewer.
 #pragma once
@@ -25,10 +25,11 @@ class SoundFeed {
     // Throws UserError when the file cannot be made.
     explicit SoundFeed(const SoundOutputs& outputs);
 
-    // The newest scene info and tool state, and how long ago (s) the call before was: as much is written.
+    // Takes the newest scene info and tool state, and how long ago (s) the call before
+    // was: as much is written.
     void update(const std::optional<topics::SceneInfo>& info, const std::optional<topics::ToolState>& tool,
                 bool is_heard, double seconds);
-    // The file is whole. Throws UserError when it could not be written.
+    // Completes the file. Throws UserError when it could not be written.
     void finish();
 
   private:

@@ -1,4 +1,4 @@
-// The part of render_client's command line that says what is shown at the start.
+// The options that say what is shown at the start.
 #pragma once
 
 #include <array>

@@ -70,7 +70,7 @@ class Attendance {
     std::map<uint64_t, std::string> here_;  // names by sender
 };
 
-// The first free name in the current folder.
+// Returns the first free name in the current folder.
 std::filesystem::path nextPictureName() {
     for (int number = 1;; ++number) {
         char name[32];
@@ -182,7 +182,7 @@ class WindowViewer {
         feed_.subscriber().announce(frame_rate_.perSecond(), pointer_W_);
     }
 
-    // The others, and the user while it points: the laser is seen where it is held, too.
+    // Returns the others, and the user while it points: the laser is seen where it is held, too.
     std::vector<topics::Viewer> watchers(const SessionView& session) const {
         std::vector<topics::Viewer> watchers = session.others;
         if (!pointer_W_) return watchers;

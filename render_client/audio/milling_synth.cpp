@@ -20,8 +20,8 @@ constexpr double kNoiseMiddle = 2600, kNoiseWidth = 0.9;  // Hz, and 1/Q of the 
 constexpr double kToothDepth = 0.7;
 constexpr int kToneBlock = 32;  // samples between two looks at the tones' levels
 
-// Multiples of the rotation frequency and their strength: the rotor, its harmonics, and the whine of the
-// gear.
+// These are multiples of the rotation frequency and their strength: the rotor, its harmonics, and
+// the whine of the gear.
 constexpr struct {
     double multiple, strength;
 } kPartials[] = {{1, 1.0}, {2, 0.45}, {3, 0.30}, {4, 0.14}, {5, 0.10}, {6, 0.07}, {11, 0.10}, {13, 0.06}};
@@ -30,7 +30,7 @@ double bounded(double value, double low, double high) {
     return std::isfinite(value) ? std::clamp(value, low, high) : 0;
 }
 
-// One-pole weight of one step of this many samples.
+// Returns the one-pole weight of one step of this many samples.
 double weightOf(double time, int samples) {
     return 1 - std::exp(-samples / (time * MillingSynth::kSampleRate));
 }
@@ -91,7 +91,7 @@ float MillingSynth::nextSample() noexcept {
     }
     tooth_phase_ += turn * flutes_;
     tooth_phase_ -= std::floor(tooth_phase_);
-    // Chamberlin's state variable filter (Dodge, Jerse: Computer Music, 1997).
+    // This is Chamberlin's state variable filter (Dodge, Jerse: Computer Music, 1997).
     low_ += kPitch * band_;
     band_ += kPitch * (noise() - low_ - kNoiseWidth * band_);
     const double tooth = 1 - kToothDepth * 0.5 * (1 + std::cos(kTurn * tooth_phase_));

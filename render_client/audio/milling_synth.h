@@ -17,7 +17,8 @@
 
 namespace bonemill {
 
-// What the sound follows. Whatever is not a number counts as 0; bounds as in effect_input.h.
+// The sound follows these loads. Whatever is not a number counts as 0; the bounds are
+// those of effect_input.h.
 struct SoundLoad {
     double spin_speed = 0;     // rad/s, either way
     double burr_force = 0;     // N
@@ -32,7 +33,7 @@ class MillingSynth {
 
     explicit MillingSynth(const scene::MillingSound& wish);
 
-    // From the next sample on. is_heard false: fades out.
+    // The load counts from the next sample on. Without is_heard the sound fades out.
     void setLoad(const SoundLoad& load, bool is_heard = true) noexcept;
     void render(std::span<float> samples) noexcept;
 

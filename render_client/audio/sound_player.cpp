@@ -22,7 +22,7 @@ constexpr int kFadeLooks = 40;                 // until the end has been played
 
 }  // namespace
 
-// The device, its context and a source that plays buffers one after the other.
+// OpenAL's device, its context and a source that plays buffers one after the other.
 class SoundPlayer::Output {
   public:
     // Throws std::runtime_error.
@@ -41,7 +41,7 @@ class SoundPlayer::Output {
         alDeleteBuffers(kBuffers, buffers_.data());
         alcMakeContextCurrent(nullptr);
     }
-    // Fills all buffers that have been played; false when the device is gone.
+    // Fills all buffers that have been played. Returns false when the device is gone.
     bool fill(MillingSynth& synth) {
         ALint played = 0, state = 0;
         alGetSourcei(source_, AL_BUFFERS_PROCESSED, &played);

@@ -28,7 +28,7 @@ WavFile::~WavFile() {
     try {
         finish();
     } catch (const UserError&) {
-        // Who wants to know calls finish().
+        // Whoever wants to know whether it failed calls finish().
     }
 }
 

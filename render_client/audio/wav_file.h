@@ -18,7 +18,7 @@ class WavFile {
     WavFile(const WavFile&) = delete;
     WavFile& operator=(const WavFile&) = delete;
 
-    // -1 .. 1; louder samples are cut. After 4 GiB nothing is added.
+    // Samples go from -1 to 1; louder ones are cut. After 4 GiB nothing is added.
     void write(std::span<const float> samples);
     // Throws UserError when something could not be written.
     void finish();

@@ -27,14 +27,15 @@ struct Camera {
     Eigen::Matrix4f X_CW() const;
     Eigen::Matrix4f clipFromCamera(double aspect, const DepthRange& range) const;
 
-    // Near and far planes that hold the sphere (W, m) as well as the depth buffer's resolution allows.
+    // Returns the near and far planes that hold the sphere (W, m) as well as the resolution of
+    // the depth buffer allows.
     DepthRange depthRange(const Eigen::Vector3d& center_W, double radius) const;
 
-    // Metres that one pixel spans at the focus.
+    // Returns the metres that one pixel spans at the focus, in a picture of this height (pixels).
     double metresPerPixel(int height) const;
 };
 
-// The two eyes beside this camera, right-handed screens with no parallax at its focus.
+// The two eyes stand beside this camera. Their screens have no parallax at its focus.
 struct StereoPair {
     Camera left, right;
 };

@@ -8,7 +8,7 @@
 
 namespace bonemill {
 
-// Its picture's up is T's +z; the burr stands below the middle of the picture.
+// The picture's up is T's +z; the burr stands below the middle of the picture.
 Camera endoscopeCamera(const Pose& X_WT, double burr_radius);
 
 }  // namespace bonemill

@@ -17,12 +17,12 @@ struct ViewWish {
     std::optional<double> azimuth;
     std::optional<double> elevation;
 
-    // This wish, and the other one where this one asks for nothing.
+    // Returns this wish, and what the other one asks for where this one asks for nothing.
     ViewWish orElse(const ViewWish& other) const;
 };
 
-// up_W: as OrbitCamera::setUp(). corners_W: of the bone's box; empty: nothing is known of it. aspect: the
-// picture's width over its height.
+// up_W is taken as by OrbitCamera::setUp(). corners_W are those of the bone's box; there are none while
+// nothing is known of it. aspect is the picture's width over its height.
 OrbitCamera firstView(const ViewWish& wish, const Eigen::Vector3d& up_W,
                       std::span<const Eigen::Vector3d> corners_W, double aspect);
 

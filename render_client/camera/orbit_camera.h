@@ -30,18 +30,18 @@ class OrbitCamera {
     const Eigen::Vector3d& up_W() const { return up_W_; }
 
     void orbit(double delta_azimuth, double delta_elevation);
-    // factor < 1 comes nearer.
+    // A factor below 1 comes nearer.
     void zoom(double factor);
-    // The picture follows by these fractions of the picture's height (right and up positive).
+    // The picture follows by these fractions of its height; right and up are positive.
     void pan(double right, double up);
 
     Eigen::Vector3d eye_W() const { return target_W + distance * towardsEye_W(); }
     Eigen::Vector3d towardsEye_W() const;  // of unit length
-    // Columns are the camera's axes in W.
+    // The columns are the camera's axes in W.
     Eigen::Matrix3d R_WC() const;
     Camera view() const;
 
-    // Centres on the box and goes as near as every corner (m) allows with a margin. Keeps the angles.
+    // Centres on the box and goes as near as every corner (m) allows with a margin. The angles stay.
     void fit(std::span<const Eigen::Vector3d> corners_W, double aspect);
 
   private:

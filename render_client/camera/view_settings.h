@@ -7,8 +7,8 @@
 namespace bonemill {
 
 enum class CameraMode { kOrbit, kEndoscope };
-// kQuick: without shadow and antialiasing; while the view rests, only what changed is drawn anew. For
-// software OpenGL.
+// kQuick leaves out shadow and antialiasing, and draws only what changed while the view rests. It is meant
+// for OpenGL in software.
 enum class Quality { kFull, kQuick };
 enum class StereoMode { kOff, kSideBySide, kAnaglyph };
 
@@ -19,7 +19,7 @@ struct CutPlane {
     bool is_flipped = false;  // false: the side above is hidden
 };
 
-// In the order of the scene's message Effects.
+// The effects stand in the order of the scene's message Effects.
 enum class ViewerEffect : uint8_t { kBoneDust, kBleeding, kIrrigation, kBurrSpin, kMillingSound };
 
 struct ViewSettings {
@@ -32,8 +32,8 @@ struct ViewSettings {
     double opacity = kDefaultOpacity;  // of the transparent bone
     std::array<CutPlane, 3> cuts;      // across W's x (sagittal), y (coronal), z (axial)
     bool show_force = true;
-    std::array<bool, 5> show_effects{true, true, true, true,
-                                     true};  // by ViewerEffect; only those that the scene lists
+    // By ViewerEffect; only those that the scene lists are seen.
+    std::array<bool, 5> show_effects{true, true, true, true, true};
     bool shows(ViewerEffect effect) const { return show_effects[size_t(effect)]; }
     bool show_hud = true;
     bool show_watchers = true;

@@ -1,5 +1,5 @@
-// When a viewer has to tell the others of itself: once per second, 30 times per second while it points, and
-// at once when it starts or stops pointing. Plain value; any one thread.
+// Says when a viewer has to tell the others of itself: once per second, 30 times per second while it points,
+// and at once when it starts or stops pointing. Plain value; any one thread.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@ class AnnounceClock {
     static constexpr std::chrono::nanoseconds kPeriod = std::chrono::seconds(1);
     static constexpr std::chrono::nanoseconds kPointingPeriod = kPeriod / 30;
 
-    // True when it is time now; counts as done then.
+    // Returns true when it is time now, which then counts as done.
     bool isDue(Clock::time_point now, bool is_pointing) {
         const auto period = is_pointing ? kPointingPeriod : kPeriod;
         if (last_ && is_pointing == was_pointing_ && now - *last_ < period) return false;

@@ -1,4 +1,4 @@
-// Pictures per second, measured over the last second. Plain value; any one thread.
+// Counts pictures per second over the last second. Plain value; any one thread.
 #pragma once
 
 #include <chrono>
@@ -13,10 +13,10 @@ class FrameRate {
 
     void countPicture(Clock::time_point now) {
         pictures_.push_back(now);
-        // The one before the window began marks where the first interval starts.
+        // The picture before the window began marks where the first interval starts.
         while (pictures_.size() > 2 && now - pictures_[1] >= kWindow) pictures_.pop_front();
     }
-    // 0 before the second picture.
+    // It is 0 before the second picture.
     double perSecond() const {
         if (pictures_.size() < 2) return 0;
         const std::chrono::duration<double> span = pictures_.back() - pictures_.front();

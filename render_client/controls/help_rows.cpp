@@ -7,7 +7,7 @@
 namespace bonemill {
 namespace {
 
-// What ViewerControls makes of the mouse.
+// This is what ViewerControls makes of the mouse.
 const HudRow kMouse[] = {{"Left drag", "orbit"},
                          {"Right drag, Shift+left drag", "pan"},
                          {"Wheel", "zoom"},

@@ -7,7 +7,8 @@
 
 namespace bonemill {
 
-// The mouse, then every key and sign of the table. Keys that do the same are one row, parted by spaces.
+// Returns the mouse, then every key and sign of the table. Keys that do the same are one
+// row, parted by spaces.
 std::vector<HudRow> helpRows();
 
 }  // namespace bonemill

@@ -70,26 +70,27 @@ struct SignBinding {
 std::span<const KeyBinding> keyTable();
 std::span<const SignBinding> signTable();
 
-// Which accuracy settings a key asks the server for: the n-th digit means the n-th, as the argument of
-// Command.set_accuracy. The first one stands for what the scene file says.
+// This says which accuracy settings a digit key asks the server for, as the argument of Command.set_accuracy.
+// The first one stands for what the scene file says.
 inline constexpr std::string_view kAccuracyOfKey[] = {"scene", "thesis_2012", "fast", "balanced", "exact"};
 
-// The accuracy that an action asks for; empty for actions that ask for none.
+// Returns the accuracy that an action asks for; empty for actions that ask for none.
 std::string_view accuracyOf(Action action);
 
-// What the help page says of a key or a sign.
+// Returns what the help page says of a key or a sign.
 std::string meaningOf(const KeyBinding& binding);
 std::string meaningOf(const SignBinding& binding);
 
-// What people call the key of an action that has one: the first in the table where several do the same.
+// Returns what people call the key of an action that has one: the first in the table
+// where several do the same.
 std::string keyLabelOf(Action action);
-// The text with its key behind it: "Endoscope (E)".
+// Returns the text with its key behind it: "Endoscope (E)".
 std::string withKey(std::string_view text, Action action);
 
-// Does the event come from the key of this action, whether it goes down or up?
+// True when the event comes from the key of this action, whether it goes down or up.
 bool isKeyOf(Action action, const KeyEvent& event);
 
-// The action of a key that goes down; a key that is held with Ctrl has none.
+// Returns the action of a key that goes down; a key that is held with Ctrl has none.
 std::optional<Action> actionOf(const KeyEvent& event);
 std::optional<Action> actionOf(const TextEvent& event);
 

@@ -1,6 +1,6 @@
 // What a viewer knows about its session, for those who show it, and who may ask the server for what.
 //
-// Plain values; any thread. The pointers are the owner's and may be null: nothing has come yet.
+// Plain values; any thread. The pointers are the owner's; they are null while nothing has come yet.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ struct SessionView {
     std::vector<topics::Viewer> others = {};
 };
 
-// Empty when it is allowed; else a sentence for the user.
+// Returns why this viewer may not do it, a sentence for the user; empty when it may.
 std::string whyNotCommand(const SessionView& session);
 std::string whyNotPoint(const SessionView& session);
 std::string whyNotEndSession(const SessionView& session);

@@ -52,7 +52,7 @@ Eigen::Vector3d directionOf(Side side) {
     return -Eigen::Vector3d::UnitY();
 }
 
-// The camera's own axes for its `up`, read off the camera.
+// The camera's own axes for its `up` are read off the camera.
 Eigen::Vector3d towardsEyeAt(OrbitCamera camera, double azimuth) {
     camera.azimuth = azimuth;
     camera.elevation = 0;

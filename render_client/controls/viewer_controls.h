@@ -1,4 +1,4 @@
-// What keys, mouse and panel do to a viewer: one meaning of each action, whoever asked for it.
+// What keys, mouse and panel do to a viewer. Each action means the same, whoever asked for it.
 //
 // View settings and camera are changed at once; what others have to do is left in the wishes. Thread: the
 // render thread. Never throws.
@@ -32,10 +32,10 @@ enum class Side { kFront, kBack, kLeft, kRight, kTop, kBottom };
 
 class ViewerControls {
   public:
-    // Both must outlive the controls.
+    // Settings and camera must outlive the controls.
     ViewerControls(ViewSettings& settings, OrbitCamera& camera) : settings_(settings), camera_(camera) {}
 
-    // An event of the window, over a picture of this height (pixels).
+    // Takes an event of the window, over a picture of this height (pixels).
     void handle(const WindowEvent& event, int picture_height, const SessionView& session, Wishes& wishes);
     void act(Action action, const SessionView& session, Wishes& wishes);
     // Turns around the target; the distance stays.
@@ -43,16 +43,16 @@ class ViewerControls {
 
     void showEffect(ViewerEffect effect, bool is_shown) { settings_.show_effects[size_t(effect)] = is_shown; }
     void setStereo(StereoMode mode) { settings_.stereo = mode; }
-    // 0 to 1; bone becomes transparent.
+    // Makes bone transparent, of this opacity from 0 to 1.
     void setOpacity(double opacity);
-    // From the low (0) to the high end (1) of the bone's box along W's axis (0 to 2). The cut is switched on
-    // and becomes the one that [ and ] move.
+    // Moves the cut to this place, from the low (0) to the high end (1) of the bone's box along W's axis (0
+    // to 2). The cut is switched on and becomes the one that [ and ] move.
     void moveCutTo(size_t axis, double position);
 
     const ViewSettings& settings() const { return settings_; }
     const OrbitCamera& camera() const { return camera_; }
     bool isPanelOpen() const { return is_panel_open_; }
-    // Where the user points with the laser now.
+    // Returns where the user points with the laser now.
     std::optional<PixelPoint> pointing() const;
 
   private:

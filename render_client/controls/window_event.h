@@ -7,7 +7,7 @@
 
 namespace bonemill {
 
-// A key by what is printed on it: letters and digits are their upper-case ASCII signs.
+// A key goes by what is printed on it: letters and digits are their upper-case ASCII signs.
 enum class Key : int {
     kNone = 0,
     kEnter = 256,
@@ -45,7 +45,7 @@ struct KeyEvent {
     Modifiers held = {};
 };
 
-// A sign as the keyboard's layout makes it, again while its key is held.
+// A sign comes as the keyboard's layout makes it, again while its key is held.
 struct TextEvent {
     char32_t sign = 0;
 };
@@ -64,7 +64,7 @@ struct MouseMoveEvent {
     PixelPoint to = {};
 };
 
-// Notches of the wheel, positive away from the user.
+// Counts notches of the wheel, positive away from the user.
 struct ScrollEvent {
     double steps = 0;
 };

@@ -59,7 +59,7 @@ void Bleeding::seep(double dt, SurfaceFilm& film) {
     std::erase_if(wounds_, [&](const Wound& w) { return w.age > end || !film.holds(w.at.p_V); });
 }
 
-// Returns how many cells it looked at.
+// Returns how many cells it has looked at.
 double Bleeding::feed(Wound& wound, SurfaceFilm& film) {
     const auto waited = std::exchange(wound.waited, 0.0f);
     if (!film.holds(wound.at.p_V)) return 0;

@@ -18,12 +18,12 @@ using MaterialSet = std::bitset<256>;
 
 class Bleeding {
   public:
-    // bleeds: by SurfacePoint::material.
+    // `bleeds` is indexed by SurfacePoint::material.
     Bleeding(const scene::Bleeding& wish, const MaterialSet& bleeds) : wish_(wish), bleeds_(bleeds) {}
 
-    // Bone was cut here; only that of the materials that bleed does.
+    // Bone was cut here; only that of materials that bleed does.
     void open(std::span<const SurfacePoint> cut, const SurfaceFilm& film);
-    // The burr has cut all within: what bled there is gone.
+    // The burr has cut all within this ball: what bled there is gone.
     void cutAway(const Eigen::Vector3f& p_V, float radius);
     void advance(double dt, const Eigen::Vector3f& up_V, const BoneSurface& surface, SurfaceFilm& film);
     void clear();

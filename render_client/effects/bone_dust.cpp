@@ -31,7 +31,7 @@ void BoneDust::take(const EffectInput& input) {
     due_ = std::min(due_ + input.removed * kPerCubicMillimetre * wish_.grains_per_mm3(),
                     double(wish_.most_grains()));
     if (!input.is_pedal_down) return;
-    // Where the burr sweeps nothing lies.
+    // No grain lies where the burr sweeps.
     const Eigen::Vector3f centre = input.X_VT->position.cast<float>();
     for (Grain& grain : grains_)
         if (grain.is_resting && (grain.p - centre).norm() < float(input.burr_radius))

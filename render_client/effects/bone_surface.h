@@ -1,6 +1,6 @@
 // The bone as what flies and flows meets it: the vertices of the node meshes, found by place.
 //
-// Only exists while an effect needs it. Frame V, m. One thread; allocates.
+// The surface only exists while an effect needs it. Frame V, m. One thread; allocates.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,15 +21,15 @@ class BoneSurface {
     void set(const NodeMesh& mesh);  // an empty one removes it
     void clear();
 
-    // Points are found around this place from now on. Cheap while it hardly moves.
+    // Points are found around this place from now on. The call is cheap while the place hardly moves.
     void focusOn(const Eigen::Vector3f& p_V);
     bool isInFocus(const Eigen::Vector3f& p_V) const { return (p_V - focus_).norm() < kFocusRadius; }
-    // The nearest vertex within `reach` (m); nothing out of focus.
+    // Returns the nearest vertex within `reach` (m); nothing out of focus.
     std::optional<SurfacePoint> nearest(const Eigen::Vector3f& p_V, float reach) const;
 
-    // From now on it knows which vertices are new; that takes time.
+    // From now on the surface knows which vertices are new; that takes time.
     void trackFresh() { tracks_fresh_ = true; }
-    // The vertices since the last call that no earlier mesh of their leaf had, at most kMostFresh.
+    // Returns the vertices since the last call that no earlier mesh of their leaf had, at most kMostFresh.
     std::vector<SurfacePoint> takeFresh() { return std::exchange(fresh_, {}); }
     static constexpr size_t kMostFresh = 20000;
 

@@ -16,7 +16,7 @@ class BurrSpin {
     explicit BurrSpin(const scene::BurrSpin& wish) { turn_.flutes = float(wish.flutes()); }
 
     void advance(double dt, double spin_speed);
-    // For the next picture. While no time passes it stays the same.
+    // Returns the turn for the next picture. While no time passes it stays the same.
     BurrTurn takeTurn();
 
   private:

@@ -1,4 +1,4 @@
-// The same numbers from the same seed everywhere. Plain value.
+// Gives the same numbers from the same seed everywhere. Plain value.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,8 @@ class EffectRandom {
 
     float unit() { return float(engine_() >> 8) * 0x1p-24f; }  // 0 .. below 1
     float between(float low, float high) { return low + (high - low) * unit(); }
-    // In the cube of half edge 1; each coordinate by itself: the order of arguments is nobody's.
+    // Returns a point in the cube of half edge 1. Each coordinate is drawn by itself, since the order of
+    // arguments is nobody's.
     Eigen::Vector3f inCube() {
         const float x = between(-1, 1), y = between(-1, 1), z = between(-1, 1);
         return {x, y, z};

@@ -25,7 +25,7 @@ constexpr float kStep = 5e-4f;  // m
 
 }  // namespace
 
-// Continuity: a round stream of this flow and speed.
+// By continuity this is a round stream of this flow and speed.
 float Irrigation::streamRadius() const {
     const double speed = wish_.stream_speed_mm_per_s() * kMillimetre;
     return float(

@@ -18,13 +18,13 @@ class Irrigation {
     explicit Irrigation(const scene::Irrigation& wish) : wish_(wish) {}
 
     void take(const EffectInput& input) { input_ = input; }
-    // Leaves where water met bone in landed().
+    // Leaves the places where water met bone in landed().
     void advance(double dt, const BoneSurface& surface, SurfaceFilm& film);
     void dry(double dt, SurfaceFilm& film) const;
     void clear() { drops_.clear(); }
 
     const std::vector<Eigen::Vector3f>& landed() const { return landed_; }
-    // Part of the blood that stays where water flowed for so long (s).
+    // Returns the part of the blood that stays where water flowed for so long (s).
     float washFactor(double dt) const;
 
     void appendTo(Particles& particles) const;
@@ -40,7 +40,7 @@ class Irrigation {
         State state = State::kStream;
     };
     void pour(double dt);
-    // False when it is gone.
+    // Returns false when the drop is gone.
     bool move(Drop& drop, float dt, const BoneSurface& surface, SurfaceFilm& film);
     bool run(Drop& drop, float dt, const BoneSurface& surface, SurfaceFilm& film);
     bool meetBurr(Drop& drop, SurfaceFilm& film);

@@ -1,4 +1,4 @@
-// What the particle painter draws: a small ball, or a streak from p to p + streak. V, m.
+// The particle painter draws this as a small ball, or as a streak from p to p + streak. V, m.
 #pragma once
 
 #include <Eigen/Core>

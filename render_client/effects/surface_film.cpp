@@ -84,7 +84,7 @@ void SurfaceFilm::write(Layer layer, const Eigen::Array3i& c, float value) {
     if (shown == byte) return;
     shown = byte;
     changed_slices_.set(texel / (size_t(kCells) * kCells));
-    // Linear interpolation reaches one cell further.
+    // The linear interpolation reaches one cell further.
     changed_.extend((c - 1).cast<float>().matrix() * cell_);
     changed_.extend((c + 2).cast<float>().matrix() * cell_);
 }

@@ -24,26 +24,28 @@ class SurfaceFilm {
 
     float cell() const { return cell_; }
     float extent() const { return cell_ * kCells; }
-    // Where the shown part begins and ends; one cell is left at the border, where the torus meets itself.
+    // These say where the shown part begins and ends; one cell is left at the border, where
+    // the torus meets itself.
     Eigen::AlignedBox3f shownBox() const;
 
     void centreOn(const Eigen::Vector3f& p_V);
     bool holds(const Eigen::Vector3f& p_V) const { return isInside(cellOf(p_V)); }
     float at(Layer layer, const Eigen::Vector3f& p_V) const;
-    // Adds to the cells within `radius` (at least the nearest one), less at its rim; 0 and 1 bound them.
+    // Adds to the cells within `radius` (at least the nearest one), less at its rim.
+    // Cells stay between 0 and 1.
     void add(Layer layer, const Eigen::Vector3f& p_V, float amount, float radius);
     void scale(Layer layer, const Eigen::Vector3f& p_V, float factor, float radius);
     void scaleAll(Layer layer, float factor);
     void clear();
 
-    // Blood and water of each texel, 0 to 255, x fastest; of slice z.
+    // Returns blood and water of each texel of slice z, 0 to 255, x fastest.
     std::span<const uint8_t> slice(int z) const {
         return {texels_.data() + size_t(z) * kSliceBytes, kSliceBytes};
     }
-    // It changes all over in each step; pictures follow when it is due.
+    // The film changes all over in each step; pictures follow when it is due.
     void markDue() { is_due_ = true; }
     bool takeDue() { return std::exchange(is_due_, false); }
-    // Slices whose texels changed, and around the changed cells, since the last call.
+    // Returns the slices whose texels changed since the last call, and the box around the changed cells.
     std::bitset<kCells> takeChangedSlices() { return std::exchange(changed_slices_, {}); }
     Eigen::AlignedBox3f takeChanged() { return std::exchange(changed_, {}); }
 

@@ -12,7 +12,7 @@ struct SurfacePoint {
 
     uint8_t material = 0;  // as NodeMesh::materials
 
-    // Of p above the tangent plane, m; negative: in the bone.
+    // Returns the height (m) of p above the tangent plane; it is negative in the bone.
     float heightOf(const Eigen::Vector3f& p) const { return n_V.dot(p - p_V); }
 };
 

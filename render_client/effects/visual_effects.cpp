@@ -99,7 +99,7 @@ void VisualEffects::stepFilm(double dt) {
     if (irrigation_) irrigation_->dry(dt, *film_);
 }
 
-// Of the vertices that are new, those beside which the burr was while it cut.
+// Of the vertices that are new, the cuts are those beside which the burr was while it cut.
 void VisualEffects::openCuts() {
     std::vector<SurfacePoint> fresh = surface_.takeFresh();
     std::erase_if(trail_, [&](const Trail& t) { return time_ - t.time > kTrailTime; });

@@ -1,5 +1,5 @@
-// The visual effects that a scene lists: what they do between two pictures. No OpenGL here; the painters are
-// in render_client/paint.
+// The visual effects that a scene lists, and what they do between two pictures. There is no OpenGL here; the
+// painters are in render_client/paint.
 //
 // An effect that is not listed is not constructed. Time goes on in steps of kStep whatever the calls, so the
 // same tool states at the same times give the same picture. Frame V, m, s. One thread.
@@ -21,13 +21,13 @@ class VisualEffects {
     static constexpr double kStep = 1.0 / 120;       // s
     static constexpr double kLongestAdvance = 0.25;  // s of one call; what is beyond is left out
 
-    // materials: the scene's, by name those that bleed are found.
+    // `materials` are the scene's; by name those that bleed are found.
     VisualEffects(const scene::Effects& wish, double burr_radius, const Materials& materials = {});
     static bool anyIn(const scene::Effects& wish);
 
-    // A new tool state: what was removed since the one before leaves the burr now.
+    // Takes a new tool state: what was removed since the one before leaves the burr now.
     void take(const EffectInput& input);
-    // A node's mesh came or changed. An empty one removes it.
+    // A node's mesh came or changed; an empty one removes it.
     void setNode(const NodeMesh& mesh);
     // The bone is another one. Where it is put back, dust and blood stay for their time.
     void clear();

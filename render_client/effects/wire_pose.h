@@ -10,7 +10,7 @@ namespace bonemill {
 
 using WireVector = google::protobuf::RepeatedField<double>;
 
-// Three finite numbers, or nothing.
+// Returns three finite numbers, or nothing.
 inline std::optional<Eigen::Vector3d> readVector(const WireVector& v) {
     if (v.size() != 3) return std::nullopt;
     const Eigen::Vector3d vector(v[0], v[1], v[2]);
@@ -18,7 +18,7 @@ inline std::optional<Eigen::Vector3d> readVector(const WireVector& v) {
     return vector;
 }
 
-// Position (m) and quaternion (w, x, y, z; normalised here), or nothing.
+// Returns position (m) and quaternion (w, x, y, z; normalised here), or nothing.
 inline std::optional<Pose> readPose(const WireVector& position, const WireVector& quaternion) {
     const auto p = readVector(position);
     if (!p || quaternion.size() != 4) return std::nullopt;

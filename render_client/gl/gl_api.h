@@ -99,14 +99,14 @@ struct GlApi {
     BONEMILL_GL_FUNCTIONS(BONEMILL_GL_MEMBER)
 #undef BONEMILL_GL_MEMBER
 
-    // `address_of("glClear")` comes from the current context. Throws GlError naming the first missing
-    // function.
+    // Takes each function from address_of, such as address_of("glClear"), for the current context. Throws
+    // GlError that names the first missing one.
     static GlApi load(const std::function<void*(const char*)>& address_of);
 
-    // The processor draws, not a graphics card.
+    // True when the processor draws, and not a graphics card.
     bool isSoftware() const;
 
-    // For people: renderer and version of the current context.
+    // Names renderer and version of the current context, for people.
     std::string describe() const;
 
     // Throws GlError with the code and `where` when an earlier call failed.

@@ -1,4 +1,4 @@
-// A linked vertex + fragment shader pair. Same thread and lifetime rules as gl_object.h.
+// A vertex and a fragment shader, linked. The rules of gl_object.h for thread and lifetime hold here too.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +20,8 @@ class Program {
 
     void use() const { gl_.UseProgram(program_); }
 
-    // Location for the setters below; -1 (silently ignored by OpenGL) when the linker dropped the uniform.
+    // Returns the location for the setters below; it is -1, which OpenGL ignores, when the
+    // linker dropped the uniform.
     GLint uniform(const char* uniform_name) const { return gl_.GetUniformLocation(program_, uniform_name); }
 
     // The program must be in use.

@@ -11,8 +11,8 @@ namespace {
 using topics::EffectState;
 
 constexpr size_t kLongestName = 16;
-// Above it bone is warm to worry about: 42 °C is where heat stress of cells is seen; 47 °C for a minute kills
-// bone (Eriksson and Albrektsson 1983).
+// Above this temperature bone is warm to worry about: 42 °C is where heat stress of cells is seen; 47 °C for
+// a minute kills bone (Eriksson and Albrektsson 1983).
 constexpr double kWarm_c = 42;
 constexpr uint32_t kHarm = EffectState::PROTECTED_TOUCHED | EffectState::PROTECTED_DAMAGED;
 
@@ -36,7 +36,7 @@ HudRow temperatureRow(double celsius, uint32_t events) {
     return {"Hottest bone", figureText(celsius, 1, " \u00b0C"), tone};
 }
 
-// Negative: the burr is in it.
+// A negative distance means that the burr is in the structure.
 HudRow structureRow(const EffectState& state, const topics::SceneInfo* info, uint32_t events) {
     const double distance_mm = state.protected_distance_m() * kPerMillimetre;
     const HudTone tone = events & kHarm || distance_mm <= 0     ? HudTone::kAlarm

@@ -1,4 +1,4 @@
-// What the effects of a scene tell, in words. Pure functions, any thread.
+// The lines, alerts and figures of training that tell of a scene's effects. Pure functions, any thread.
 #pragma once
 
 #include <optional>
@@ -9,18 +9,19 @@
 
 namespace bonemill {
 
-// Only what the scene's effects say. events: EffectState.Event bits that are shown now; info: names of
-// materials.
+// Returns only what the scene's effects say. `events` are the EffectState.Event bits that are shown now;
+// `info` has the names of materials.
 std::vector<HudRow> effectRows(const topics::EffectState& state, const topics::SceneInfo* info,
                                uint32_t events);
 
-// What must not be overseen: protected structures and heat. structure: as EffectState.event_id.
+// Returns what must not be overseen: protected structures and heat. `structure` is
+// numbered as EffectState.event_id.
 std::optional<HudNotice> effectAlert(uint32_t events, uint32_t structure, const topics::SceneInfo* info);
 
-// How careful the session was so far; warnings last.
+// Returns how careful the session was so far; the warnings come last.
 std::vector<HudRow> trainingRows(const topics::Training& training);
 
-// "facial nerve"; what has no name by its number.
+// Returns a name such as "facial nerve", or the number of what has no name.
 std::string structureName(uint32_t protected_id, const topics::SceneInfo* info);
 
 }  // namespace bonemill

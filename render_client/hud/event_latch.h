@@ -14,8 +14,8 @@ class EventLatch {
 
     void note(uint32_t events) { pending_ |= events; }
 
-    // For a picture drawn at `now`: what was noted since the picture before, and what was shown first less
-    // than kShown ago.
+    // Returns the events for a picture drawn at `now`: what was noted since the picture before, and what was
+    // shown first less than kShown ago.
     uint32_t show(Clock::time_point now) {
         uint32_t shown = 0;
         for (size_t bit = 0; bit < until_.size(); ++bit) {

@@ -32,7 +32,7 @@ std::string readableText(double value, const char* unit) {
     return figureText(value, magnitude < 10 ? 2 : magnitude < 1000 ? 1 : 0, unit);
 }
 
-// Cut between code points.
+// The text is cut between code points.
 std::string shortenedText(const std::string& text, size_t most) {
     const std::vector<std::string> signs = splitSigns(text);
     if (signs.size() <= most) return text;

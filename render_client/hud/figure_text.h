@@ -5,14 +5,14 @@
 
 namespace bonemill {
 
-// What stands for a value that is no number: a dash.
+// This dash stands for a value that is no number.
 inline constexpr char kNoNumber[] = "\u2013";
 
-// The number with so many decimals, and its unit.
+// Returns the number with so many decimals, and its unit.
 std::string figureText(double value, int decimals, const char* unit);
-// Three significant digits or so, whatever the size.
+// Returns the number with three significant digits or so, whatever its size, and its unit.
 std::string readableText(double value, const char* unit);
-// At most that many signs (UTF-8), the last one an ellipsis if some are left out.
+// Returns at most so many signs (UTF-8), the last one an ellipsis if some are left out.
 std::string shortenedText(const std::string& text, size_t most);
 
 }  // namespace bonemill

@@ -75,7 +75,7 @@ std::vector<Glyph> packStyle(stbtt_pack_context& context, const unsigned char* f
 
 FontAtlas::FontAtlas(float pixel_height)
     : pixel_height_(pixel_height),
-      // Room for 400 glyphs, oversampled 2 x 2, of about pixel_height x 0.7 pixel_height each.
+      // There is room for 400 glyphs, oversampled 2 x 2, of about pixel_height x 0.7 pixel_height each.
       size_(pixel_height <= 24   ? 1024
             : pixel_height <= 48 ? 2048
                                  : 4096),

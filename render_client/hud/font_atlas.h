@@ -19,7 +19,7 @@ struct Glyph {
 
 class FontAtlas {
   public:
-    // Latin-1 and a few signs at this height (pixels). Throws UserError when the font files are not
+    // Takes Latin-1 and a few signs at this height (pixels). Throws UserError when the font files are not
     // installed, and std::runtime_error when they cannot be used.
     explicit FontAtlas(float pixel_height);
 
@@ -27,7 +27,7 @@ class FontAtlas {
     float width(std::string_view utf8, FontStyle style) const;       // pixels
     float pixelHeight() const { return pixel_height_; }
 
-    // The picture: size() rows of size() bytes, 255 where a glyph is.
+    // The picture has size() rows of size() bytes, 255 where a glyph is.
     const std::vector<uint8_t>& pixels() const { return pixels_; }
     int size() const { return size_; }
 

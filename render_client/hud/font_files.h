@@ -7,7 +7,7 @@ namespace bonemill {
 
 enum class FontStyle { kPlain, kBold };
 
-// The path of the installed file. Throws UserError when it is not installed.
+// Returns the path of the installed file. Throws UserError when it is not installed.
 std::string fontFile(FontStyle style);
 
 }  // namespace bonemill

@@ -41,7 +41,7 @@ float pageWidth(const std::vector<Column>& columns, float em) {
 
 }  // namespace
 
-// Widths grow with the height of the text, near enough.
+// Widths grow with the height of the text; that is near enough.
 float helpTextHeight(const FontAtlas& font, const std::vector<HudRow>& rows, const PictureSize& picture) {
     const float usual = font.pixelHeight();
     float em = usual;

@@ -1,4 +1,4 @@
-// The help page over the picture: in as many columns as the picture's height needs, in smaller text where
+// The help page over the picture. It has as many columns as the picture's height needs, in smaller text where
 // they are too wide. Pure functions, any thread.
 #pragma once
 
@@ -8,10 +8,10 @@
 
 namespace bonemill {
 
-// The height (pixels) of the font that the page needs: that of `font`, or less.
+// Returns the height (pixels) of the font that the page needs: that of `font`, or less.
 float helpTextHeight(const FontAtlas& font, const std::vector<HudRow>& rows, const PictureSize& picture);
 
-// In the middle of the picture.
+// The page stands in the middle of the picture.
 void layOutHelp(HudCanvas& canvas, const std::vector<HudRow>& rows, const PictureSize& picture);
 
 }  // namespace bonemill

@@ -32,7 +32,7 @@ struct Hud {
     std::optional<HudNotice> alert;  // with a border around the picture
 };
 
-// A name beside a point of the picture, pixels from the upper left.
+// A name beside a point of the picture; x and y are pixels from the upper left.
 struct HudLabel {
     float x = 0;
     float y = 0;

@@ -21,16 +21,16 @@ class HudCanvas {
         float half_width, half_height, radius;
     };
 
-    // An empty canvas to be written on in this font, which must outlive it.
+    // Begins an empty canvas to be written on in this font, which must outlive it.
     explicit HudCanvas(const FontAtlas& font) : font_(font) {}
 
-    // The height of the font (pixels): the unit of the layout.
+    // The height of the font (pixels) is the unit of the layout.
     float em() const { return font_.pixelHeight(); }
     float width(std::string_view utf8, FontStyle style) const { return font_.width(utf8, style); }
 
-    // A box with rounded corners; a radius of 0 leaves them sharp.
+    // Adds a box with rounded corners; a radius of 0 leaves them sharp.
     void box(float x, float y, float width, float height, float radius, const HudColour& colour);
-    // The text from x on; y is the base line.
+    // Adds the text from x on; y is the base line.
     void text(float x, float y, std::string_view utf8, FontStyle style, const HudColour& colour);
 
     const FontAtlas& font() const { return font_; }

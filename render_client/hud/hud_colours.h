@@ -1,4 +1,4 @@
-// The colours of figures and panel: red, green, blue, opacity, 0 to 1. Plain values, any thread.
+// The colours of figures and panel: red, green, blue and opacity, each from 0 to 1. Plain values, any thread.
 #pragma once
 
 #include <array>

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::string_view kWatchersTitle = "Watching";
 
-// What all lists share.
+// These distances are shared by all lists.
 struct Spacing {
     explicit Spacing(float em)
         : margin(em * 1.1f), padding(em * 0.9f), line(em * 1.55f), gap(em * 1.4f), rounding(em * 0.6f) {}
@@ -29,7 +29,7 @@ float innerWidth(const HudCanvas& canvas, const Hud& hud) {
     return std::max({head, labels + Spacing(em).gap + values, em * 13});
 }
 
-// Title and state. Returns the base line of the state.
+// Lays out title and state. Returns the base line of the state.
 float layOutHead(HudCanvas& canvas, const Hud& hud) {
     const float em = canvas.em();
     const Spacing space(em);

@@ -20,23 +20,24 @@ struct HudCorner {
     float right, bottom;
 };
 
-// The figures, in the upper left corner. Returns the lower right corner of what they take, margin included.
+// Puts the figures into the upper left corner. Returns the lower right corner of what they
+// take, margin included.
 HudCorner layOutFigures(HudCanvas& canvas, const Hud& hud);
 
-// The list of watchers, at the upper right, or below the figures when there is no room beside them.
+// Puts the list of watchers at the upper right, or below the figures when there is no room beside them.
 void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, const HudCorner& figures,
                     const PictureSize& picture);
 
-// The scale bar, in the lower right corner.
+// Puts the scale bar into the lower right corner.
 void layOutScaleBar(HudCanvas& canvas, const ScaleBar& bar, double metres_per_pixel,
                     const PictureSize& picture);
 
-// A line in the middle of the lower edge, and above it the one with a border around the picture: neither
-// hides the other.
+// A notice is a line in the middle of the lower edge. An alert is a line above it, with a border around the
+// picture: neither hides the other.
 void layOutNotice(HudCanvas& canvas, const HudNotice& notice, const PictureSize& picture);
 void layOutAlert(HudCanvas& canvas, const HudNotice& alert, const PictureSize& picture);
 
-// A name beside a point.
+// Puts a name beside its point.
 void layOutLabel(HudCanvas& canvas, const HudLabel& label);
 
 }  // namespace bonemill

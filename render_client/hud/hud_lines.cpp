@@ -23,7 +23,7 @@ double norm(const google::protobuf::RepeatedField<double>& v) {
     return v.size() == 3 ? std::hypot(v[0], v[1], v[2]) : std::nan("");
 }
 
-// Lines of at most `most` bytes, cut at spaces; a longer word stays whole.
+// Returns lines of at most `most` bytes, cut at spaces; a longer word stays whole.
 std::vector<std::string> wrapped(const std::string& text, size_t most) {
     std::vector<std::string> lines(1);
     std::istringstream words(text);

@@ -36,7 +36,7 @@ struct HudInput {
 };
 
 Hud makeHud(const HudInput& input);
-// Also for a picture without figures.
+// The alert is also shown over a picture without figures.
 std::optional<HudNotice> alertOf(const HudInput& input);
 
 }  // namespace bonemill

@@ -10,7 +10,7 @@ struct ScaleBar {
     std::string label;
 };
 
-// The longest length of 1, 2 or 5 times a power of ten that spans at most max_pixels.
+// Returns the longest length of 1, 2 or 5 times a power of ten that spans at most max_pixels.
 ScaleBar makeScaleBar(double metres_per_pixel, double max_pixels);
 
 }  // namespace bonemill

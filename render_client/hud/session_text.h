@@ -1,5 +1,5 @@
-// How the session is put into words, the same in the figures, the panel and the log. Pure functions, any
-// thread.
+// How the session is put into words, the same in the figures, the panel and the log. Pure
+// functions, any thread.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace bonemill {
 
-// "?" for a role that this version does not know.
+// A role that this version does not know is "?".
 std::string roleName(topics::Viewer::Role role);
 
-// The name of a watcher; something to read also when there is none.
+// Returns the name of a watcher, or something to read when there is none.
 std::string watcherName(const std::string& name);
 
-// What a list of watchers says of one: "operator, 60 Hz", "viewer, 12 Hz, incomplete".
+// Returns what a list of watchers says of one: "operator, 60 Hz", "viewer, 12 Hz, incomplete".
 std::string watcherText(topics::Viewer::Role role, double frame_rate_hz, bool is_complete);
 
-// A time of the session (s) as h:mm:ss, whole seconds; a dash for what is no time. Bounded at 1e9 s.
+// Returns a time of the session (s) as h:mm:ss in whole seconds, at most 1e9 s; a dash for what is no time.
 std::string clockText(double seconds);
 
 }  // namespace bonemill

@@ -7,7 +7,7 @@
 
 namespace bonemill {
 
-// The code points of UTF-8 text; each broken byte becomes U+FFFD.
+// Returns the code points of UTF-8 text; each broken byte becomes U+FFFD.
 std::vector<uint32_t> decodeUtf8(std::string_view text);
 
 }  // namespace bonemill

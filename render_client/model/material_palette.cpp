@@ -25,7 +25,7 @@ std::vector<Eigen::Vector4f> paletteOf(const topics::SceneInfo& info) {
     return colours;
 }
 
-// All 256 texels: a vertex may name a material that the scene does not have.
+// All 256 texels are filled: a vertex may name a material that the scene does not have.
 MaterialPalette::MaterialPalette(const GlApi& gl, const std::vector<Eigen::Vector4f>& colours)
     : gl_(gl), texture_(gl) {
     std::vector<Eigen::Vector4f> texels = colours;

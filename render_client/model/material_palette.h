@@ -1,5 +1,5 @@
-// The colours of a scene's materials, as the bone's shader looks them up. Only exists where a material has
-// one.
+// The colours of a scene's materials, as the bone's shader looks them up. The palette only exists where a
+// material has a colour.
 //
 // Thread: the one of the context.
 #pragma once
@@ -12,15 +12,16 @@
 
 namespace bonemill {
 
-// By material (0: none): linear colour times alpha, alpha; 0 where it has no colour. Empty: none has.
+// Returns, by material (0 is none), linear colour times alpha, and alpha; all 0 where it has no colour. The
+// list is empty where no material has one.
 std::vector<Eigen::Vector4f> paletteOf(const topics::SceneInfo& info);
 
 class MaterialPalette {
   public:
-    // What goes before both shaders of a program that uses the palette.
+    // This goes before both shaders of a program that uses the palette.
     static constexpr char kDefine[] = "#define MATERIALS\n";
 
-    // At most 256 colours, not empty.
+    // Takes at least one colour and at most 256.
     MaterialPalette(const GlApi& gl, const std::vector<Eigen::Vector4f>& colours);
 
     // The program must be in use.

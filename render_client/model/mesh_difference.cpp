@@ -28,7 +28,7 @@ bool isBefore(const Triangle& a, const Triangle& b) {
     return false;
 }
 
-// Each begins with its smallest corner: the same triangle is the same, however it was numbered.
+// Each triangle begins with its smallest corner: the same one is the same, however it was numbered.
 std::vector<Triangle> sortedTriangles(const NodeMesh& mesh) {
     std::vector<Triangle> triangles(mesh.indices.size() / 3);
     for (size_t n = 0; n < triangles.size(); ++n) {

@@ -7,10 +7,10 @@
 
 namespace bonemill {
 
-// Around the triangles that only one of them has, V, m; empty when both show the same.
+// Returns the box (V, m) around the triangles that only one of them has; it is empty when both show the same.
 Eigen::AlignedBox3f differenceBox(const NodeMesh& before, const NodeMesh& after);
 
-// Around all its triangles, V, m.
+// Returns the box (V, m) around all triangles.
 Eigen::AlignedBox3f boxOf(const NodeMesh& mesh);
 
 }  // namespace bonemill

@@ -63,7 +63,8 @@ void NodeStore::set(const NodeMesh& mesh) {
     nodes_.insert_or_assign(mesh.leaf, std::move(node));
 }
 
-// Into the layout in use. Vertices of other nodes have the attribute's own value, 0: no material.
+// The materials belong to the layout in use. Vertices of other nodes have the attribute's own value,
+// 0, which is no material.
 void NodeStore::uploadMaterials(const std::vector<uint8_t>& materials, Node& node) {
     node.materials.emplace(gl_);
     gl_.BindBuffer(GL_ARRAY_BUFFER, node.materials->name());

@@ -1,4 +1,5 @@
-// The bone on the GPU: one vertex and one index buffer per octree leaf, drawn in ascending order of the leaf.
+// The bone on the graphics card: one vertex and one index buffer per octree leaf, drawn in
+// ascending order of the leaf.
 //
 // Thread: the one of the context. The same nodes give the same picture in whatever order they arrived.
 #pragma once
@@ -13,7 +14,7 @@
 
 namespace bonemill {
 
-// What went to the GPU since the start.
+// What went to the graphics card since the start.
 struct UploadCount {
     uint64_t nodes = 0;
     uint64_t bytes = 0;
@@ -34,7 +35,7 @@ class NodeStore {
 
     // From now on, or no longer, the store knows where it changes; that takes memory and time.
     void trackChanges(bool wants_changes) { tracks_changes_ = wants_changes; }
-    // Around the triangles that came or went since the last call; V, m.
+    // Returns the box (V, m) around the triangles that came or went since the last call.
     Eigen::AlignedBox3f takeChanged() { return std::exchange(changed_, {}); }
 
     // Draws what may be inside the view volume of clip_from_V with the program in use (uniforms origin and

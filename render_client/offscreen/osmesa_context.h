@@ -1,6 +1,6 @@
-// An OpenGL 3.3 core context in memory: no display, no graphics card (Mesa's software renderer).
+// An OpenGL 3.3 core context in memory: it needs no display and no graphics card (Mesa's software renderer).
 //
-// Thread: belongs to the thread that made it. One at a time per thread.
+// Thread: it belongs to the thread that made it. One at a time per thread.
 #pragma once
 
 #include <cstdint>

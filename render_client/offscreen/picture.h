@@ -15,7 +15,7 @@ class Picture {
 
     int width() const { return width_; }
     int height() const { return height_; }
-    // Rows count from the top; 3 bytes per pixel, sRGB.
+    // Rows count from the top; each pixel has 3 bytes, sRGB.
     uint8_t* row(int y) { return rgb_.data() + size_t(y) * size_t(width_) * 3; }
     const uint8_t* row(int y) const { return rgb_.data() + size_t(y) * size_t(width_) * 3; }
     std::array<int, 3> at(int x, int y) const {
@@ -30,7 +30,7 @@ class Picture {
     std::vector<uint8_t> rgb_;
 };
 
-// A reader of `path` sees the old file or the whole new one. Throws UserError naming the path.
+// Whoever reads `path` sees the old file or the whole new one. Throws UserError that names the path.
 void writePng(const Picture& picture, const std::filesystem::path& path);
 
 }  // namespace bonemill

@@ -17,7 +17,7 @@ class Anaglyph {
     // Makes room for pictures of this size (pixels).
     void resize(int width, int height);
 
-    // The framebuffers to draw the eyes into, then their combination into `target`.
+    // The eyes are drawn into left() and right(); then combine() puts them together into `target`.
     GLuint left() const { return eyes_->left.framebuffer.name(); }
     GLuint right() const { return eyes_->right.framebuffer.name(); }
     void combine(GLuint target) const;

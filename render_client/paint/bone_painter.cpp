@@ -101,8 +101,8 @@ void BonePainter::drawDepth(const Frame& frame, const NodeStore& nodes) const {
     gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-// The farthest front face, where there is another one before it: the far wall of a cavity, of the skull.
-// Leaves depth clear, and in the stencil how many layers there are.
+// Draws the farthest front face where there is another one before it: the far wall of a cavity, or of the
+// skull. Leaves the depth clear, and in the stencil how many layers there are.
 void BonePainter::drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
     gl_.ClearDepth(0);
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
@@ -127,7 +127,8 @@ void BonePainter::drawFarWall(const Frame& frame, const NodeStore& nodes, GLuint
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
 }
 
-// Strong where it belongs to a cavity, or something else is behind it: that is what one wants to see.
+// The wall is strong where it belongs to a cavity or something else is behind it: that is
+// what one wants to see.
 void BonePainter::drawInnerWall(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {
     findNearestLayer(frame, nodes, GL_FRONT);
     gl_.Enable(GL_STENCIL_TEST);
@@ -146,7 +147,7 @@ void BonePainter::findNearestLayer(const Frame& frame, const NodeStore& nodes, G
     drawDepth(frame, nodes);
 }
 
-// Culls as the layer was found, and then no more.
+// Culls as the layer was found, and switches culling off afterwards.
 void BonePainter::drawFoundLayer(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
                                  const Look& look) {
     gl_.DepthFunc(GL_EQUAL);

@@ -4,9 +4,9 @@
 // already when it came through the plane. This holds for a closed surface; where the scan's border leaves it
 // open, and where the eye itself is inside, the back face is shown in dark red.
 //
-// Transparent: the nearest layers from outside and from inside, and the farthest wall that can be looked at,
-// each found by depth and blended once: the same picture in whatever order the triangles come. The tool is
-// drawn between them.
+// Of transparent bone one sees the nearest layers from outside and from inside, and the farthest wall that
+// can be looked at. Each is found by depth and blended once, which gives the same picture in whatever order
+// the triangles come. The tool is drawn between them.
 //
 // Thread: the one of the context.
 #pragma once
@@ -32,12 +32,13 @@ class BonePainter {
     void drawTransparent(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture, double opacity,
                          const std::function<void()>& draw_tool);
 
-    // From now on bone has its materials' colours (paletteOf()); empty: bone's own. Throws GlError.
+    // From now on bone has its materials' colours (paletteOf()), or its own when there
+    // are none. Throws GlError.
     void setPalette(const std::vector<Eigen::Vector4f>& colours);
-    // From now on bone is drawn with this film; null: as it is. It must outlive its use.
+    // From now on bone is drawn with this film, or as it is when null. The film must outlive its use.
     void setFilm(const FilmPainter* film) { film_ = film; }
 
-    // Bone triangles inside the view volume of the last picture.
+    // How many bone triangles were inside the view volume of the last picture.
     size_t trianglesDrawn() const { return triangles_drawn_; }
 
   private:

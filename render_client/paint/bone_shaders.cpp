@@ -115,8 +115,8 @@ void main() {
 }
 )";
 
-// The cut face of bone, where the line of sight enters what the cut-planes leave. Hatch and mottling are
-// fixed to the bone.
+// The cut face of bone lies where the line of sight enters what the cut-planes leave. Hatch and mottling
+// are fixed to the bone.
 const char kCapFragment[] = R"(
 in vec2 uv;
 uniform vec4 cut_planes[3];  // C: shown where dot(plane, (p, 1)) >= 0

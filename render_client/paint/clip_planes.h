@@ -1,4 +1,4 @@
-// OpenGL's clip planes, on for as long as this lives.
+// Switches OpenGL's clip planes on for as long as it lives.
 //
 // Thread: the one of the context.
 #pragma once
@@ -28,7 +28,7 @@ class ClipPlanes {
     std::array<bool, CutPlanes::kMost> is_on_;
 };
 
-// Uniforms of the mesh shaders.
+// Sets the uniforms of the mesh shaders.
 inline void setCutPlanes(const Program& program, const CutPlanes& cuts_model) {
     program.set("cut_planes[0]", cuts_model.planes[0]);
     program.set("cut_planes[1]", cuts_model.planes[1]);

@@ -14,14 +14,15 @@ namespace bonemill {
 
 class FilmPainter {
   public:
-    // has_materials: bone has its materials' colours (MaterialPalette). Throws GlError with the compiler's
-    // log when the driver refuses the shader.
+    // has_materials says whether bone has its materials' colours (MaterialPalette). Throws GlError with the
+    // compiler's log when the driver refuses the shader.
     FilmPainter(const GlApi& gl, bool has_materials);
     void setMaterials(bool has_materials);
 
-    // Uploads the slices that changed. Returns around where the bone looks different now (V).
+    // Uploads the slices that changed. Returns the box (V) in which the bone looks different now.
     Eigen::AlignedBox3f update(const EffectPicture& picture);
-    // Draws bone in place of the plain surface's program. In use: sets the film's uniforms; texture unit 1.
+    // surface() draws bone in place of the plain surface's program. While it is in use setUniforms() sets the
+    // film's uniforms; the film takes texture unit 1.
     const Program& surface() const { return *surface_; }
     void setUniforms() const;
 

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kGhostDistance = 1.5e-4;  // m
 constexpr double kGhostAngle = 0.03;       // rad
-constexpr double kShownBeyondView =
-    2.0;  // half picture diagonals at the target that the shadow map covers when one is close
+// So many half picture diagonals at the target does the shadow map cover when one is close.
+constexpr double kShownBeyondView = 2.0;
 constexpr double kReach = 1.7;           // of the distance to the focus
 constexpr double kSmallestScene = 1e-3;  // m, radius
 constexpr double kSmallestBone = 1e-4;   // m, radius
@@ -34,7 +34,7 @@ void extendBy(Eigen::AlignedBox3d& box_W, const Pose& X_WA, const Box& box_A) {
     }
 }
 
-// Its shadow map covers the sphere.
+// The light's shadow map covers the sphere.
 KeyLight aimKeyLight(const Camera& camera, bool is_lit_from_eye, const Sphere& lit_W) {
     const Eigen::Vector3d key_C =
         (is_lit_from_eye ? Eigen::Vector3d(-0.22, 0.32, 1.0) : Eigen::Vector3d(-0.55, 0.70, 0.62))

@@ -33,7 +33,7 @@ struct FrameView {
     const EffectPicture* effects = nullptr;  // null: the scene lists none
 };
 
-// Does the device pose lie visibly off the simulated tool?
+// True when the device pose lies visibly off the simulated tool.
 bool isGhostVisible(const Pose& X_WT, const Pose& X_WT_device);
 
 struct KeyLight {
@@ -59,12 +59,12 @@ struct Frame {
     bool has_shadow;
     Eigen::Matrix4f cull_from_V;  // bone outside of this clip space need not be drawn
 
-    // tool_T: the tool's box; empty without one. The range must hold neededRange().
+    // tool_T is the tool's box, empty without one. The range must hold neededRange().
     static Frame make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, double aspect,
                       const DepthRange& range);
     static DepthRange neededRange(const FrameView& view, const Eigen::AlignedBox3f& tool_T);
 
-    // Uniforms of the lighting and of the projection; the shadow map goes to unit 0.
+    // Sets the uniforms of the lighting and of the projection; the shadow map goes to unit 0.
     void setLight(const GlApi& gl, const Program& program, GLuint shadow_texture) const;
 };
 

@@ -16,14 +16,15 @@ class FramePasses {
     // Throws GlError with the compiler's log when the driver refuses a shader.
     explicit FramePasses(const GlApi& gl);
 
-    // Into the bound framebuffer; leaves the depth test on.
+    // Fills the bound framebuffer; leaves the depth test on.
     void drawBackground() const;
-    // From the resolved depth into the half-size occlusion.
+    // Makes the half-size occlusion from the resolved depth.
     void drawOcclusion(const Frame& frame, const RenderTargets& targets) const;
-    // The finished picture (without figures) into `target`, from column x on.
+    // Puts the finished picture (without figures) into `target`, from column x on.
     void compose(const Frame& frame, const RenderTargets& targets, int x, GLuint target) const;
 
-    // How many pixels beyond a changed one these passes may look different, in a picture of this height.
+    // Returns how many pixels beyond a changed one these passes may look different, in a
+    // picture of this height.
     static int reach(int height);
 
   private:

@@ -40,9 +40,9 @@ void main() {
 }
 )";
 
-// Scalable ambient obscurance (McGuire, Mara, Luebke: High Performance Graphics 2012), from the depth buffer
-// alone, at half resolution. The 4 x 4 rotation pattern is averaged out exactly by the 4 x 4 gather of the
-// composite.
+// This is scalable ambient obscurance (McGuire, Mara, Luebke: High Performance Graphics 2012), from the
+// depth buffer alone, at half resolution. The 4 x 4 rotation pattern is averaged out exactly by the 4 x 4
+// gather of the composite.
 const char kOcclusionFragment[] = R"(
 in vec2 uv;
 uniform sampler2D depth_map;
@@ -131,7 +131,8 @@ void main() {
 }
 )";
 
-// Half-colour: red from the left eye's brightness, green and blue from the right eye. Ivory keeps a hue.
+// A half-colour anaglyph takes red from the left eye's brightness, green and blue from the right
+// eye. Ivory keeps a hue.
 const char kAnaglyphFragment[] = R"(
 in vec2 uv;
 uniform sampler2D left_eye;

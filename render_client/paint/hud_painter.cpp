@@ -53,7 +53,7 @@ const HudPainter::Font& HudPainter::fontOf(float pixel_height) {
     return fonts_.try_emplace(pixel_height, gl_, pixel_height).first->second;
 }
 
-// Each part is drawn over the one before: the notices over the help page.
+// Each part is drawn over the one before: the notices stand over the help page.
 void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel,
                        const PictureSize& picture, float ui_scale) {
     const FontAtlas& font = usualFont(ui_scale);

@@ -16,15 +16,15 @@ class HudPainter {
   public:
     explicit HudPainter(const GlApi& gl);
 
-    // Figures, lists, scale bar and help page, into the bound framebuffer. ui_scale 1 suits a picture 800
-    // pixels high.
+    // Draws figures, lists, scale bar and help page into the bound framebuffer. ui_scale 1 suits a
+    // picture 800 pixels high.
     void paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel, const PictureSize& picture,
                float ui_scale);
 
-    // The alert alone, over a picture without figures.
+    // Draws the alert alone, over a picture without figures.
     void paintAlert(const HudNotice& alert, const PictureSize& picture, float ui_scale);
 
-    // Names beside points of the picture.
+    // Draws names beside points of the picture.
     void paintLabels(const std::vector<HudLabel>& labels, const PictureSize& picture, float ui_scale);
 
   private:

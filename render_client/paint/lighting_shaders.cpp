@@ -20,7 +20,7 @@ const vec3 kGround = vec3(0.17, 0.12, 0.09);
 const vec3 kFillDirection = normalize(vec3(0.85, -0.15, 0.45));
 
 vec3 toneMap(vec3 linear) {
-    // Narkowicz' fit of the ACES film curve, then the display's gamma.
+    // The tone curve is Narkowicz' fit of the ACES film curve; then comes the display's gamma.
     vec3 film = (linear * (2.51 * linear + 0.03)) / (linear * (2.43 * linear + 0.59) + 0.14);
     return pow(clamp(film, 0.0, 1.0), vec3(1.0 / 2.2));
 }

@@ -94,7 +94,8 @@ void MarkerPainter::addPointers(const Frame& frame, const FrameView& view) {
     }
 }
 
-// From the burr's surface, the way the force pushes the hand; with a head of constant size.
+// The arrow starts at the burr's surface and points the way in which the force pushes the hand. Its
+// head has a constant size.
 void MarkerPainter::addArrow(const Frame& frame, const FrameView& view) {
     if (!frame.X_CT || !view.f_T_W) return;
     const double newtons = view.f_T_W->norm();
@@ -115,7 +116,7 @@ void MarkerPainter::addArrow(const Frame& frame, const FrameView& view) {
         addDisc(neck, -axis, kHead * height, look.colour);
         addCone(neck, head * axis, kHead * height, 0, look.colour);
     };
-    // Both are convex: with the farther one first, no depth has to be written.
+    // Both are convex: with the farther one drawn first, no depth has to be written.
     const bool head_is_nearer = axis.dot(neck) < 0;
     head_is_nearer ? addShaft() : addHead();
     head_is_nearer ? addHead() : addShaft();
@@ -149,7 +150,8 @@ void MarkerPainter::addDisc(const Eigen::Vector3f& base, const Eigen::Vector3f& 
             vertices_.push_back({p, axis, opaque});
 }
 
-// A little nearer than the surface it marks, so that the surface's bends do not swallow it.
+// The sign stands a little nearer than the surface that it marks, so that the surface's
+// bends do not swallow it.
 void MarkerPainter::addPointer(const Eigen::Vector3f& p_C, float metres_per_height) {
     const float m = metres_per_height;
     const Eigen::Vector3f p = p_C * (1 - kRing * m / p_C.norm());

@@ -11,8 +11,8 @@
 
 namespace bonemill {
 
-// How the arrow shows a force, N: its length as a part of the picture's height, logarithmic between the
-// smallest that is shown and 20 N, 0 below; its colour from green through yellow to red.
+// How the arrow shows a force (N). Its length is a part of the picture's height, logarithmic between the
+// smallest force that is shown and 20 N, and 0 below; its colour goes from green through yellow to red.
 struct ForceLook {
     double length = 0;
     Eigen::Vector3f colour = Eigen::Vector3f::Zero();
@@ -23,10 +23,10 @@ class MarkerPainter {
   public:
     explicit MarkerPainter(const GlApi& gl);
 
-    // Into the bound framebuffer, whose depth it reads and leaves as it is.
+    // Draws into the bound framebuffer, whose depth it reads and leaves as it is.
     void draw(const Frame& frame, const FrameView& view);
 
-    // Around all of it (C, m).
+    // Returns the box (C, m) around all that is drawn.
     Eigen::AlignedBox3f box(const Frame& frame, const FrameView& view);
 
   private:
@@ -36,13 +36,13 @@ class MarkerPainter {
         Eigen::Vector4f colour;
     };
     void addArrow(const Frame& frame, const FrameView& view);
-    // The part of a cone between two radii, with its lower end at `base` (C).
+    // Adds the part of a cone between two radii, with its lower end at `base` (C).
     void addCone(const Eigen::Vector3f& base, const Eigen::Vector3f& axis, float low, float high,
                  const Eigen::Vector3f& colour);
     void addDisc(const Eigen::Vector3f& base, const Eigen::Vector3f& axis, float radius,
                  const Eigen::Vector3f& colour);
     void addPointer(const Eigen::Vector3f& p_C, float metres_per_height);
-    // Faces the eye; the colour runs from the inner to the outer radius.
+    // Adds a ring that faces the eye; the colour runs from the inner to the outer radius.
     void addRing(const Eigen::Vector3f& p_C, float inner, float outer, const Eigen::Vector4f& inner_colour,
                  const Eigen::Vector4f& outer_colour);
     void flush(const Frame& frame, GLenum culling);

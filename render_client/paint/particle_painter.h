@@ -1,5 +1,5 @@
-// Draws grains and drops as lit discs and streaks that face the eye; they read the depth and leave it as it
-// is.
+// Draws grains and drops as lit discs and streaks that face the eye. They read the depth
+// and leave it as it is.
 //
 // Thread: the one of the context.
 #pragma once
@@ -17,9 +17,9 @@ class ParticlePainter {
     // Throws GlError with the compiler's log when the driver refuses the shader.
     explicit ParticlePainter(const GlApi& gl);
 
-    // Into the bound framebuffer, a picture of this height (pixels).
+    // Draws into the bound framebuffer, a picture of this height (pixels).
     void draw(const Frame& frame, const Particles& particles, int height, GLuint shadow_texture);
-    // Around all that is drawn (C, m): the smallest are drawn larger than they are.
+    // Returns the box (C, m) around all that is drawn: the smallest are drawn larger than they are.
     static Eigen::AlignedBox3f box(const Frame& frame, const Particles& particles, int height);
 
   private:

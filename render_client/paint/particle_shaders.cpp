@@ -24,7 +24,7 @@ void main() {
 }
 )";
 
-// A ball, or a capsule along the streak, as it would be seen from the front.
+// A particle looks like a ball, or like a capsule along its streak, seen from the front.
 const char kParticleFragment[] = R"(
 in vec3 p_C;
 in vec2 f_place;

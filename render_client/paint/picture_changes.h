@@ -15,11 +15,12 @@ class PictureChanges {
         PixelBox all;   // and what moves before them
     };
 
-    // A range that holds the needed one, and stays the same as long as it can while the camera rests.
+    // Returns a range that holds the needed one, and stays the same as long as it can while the camera rests.
     DepthRange range(const Camera& camera, const DepthRange& needed);
 
-    // What the next picture of this size must draw: all of it when anything but nodes and moving things has
-    // changed. changed_V: around the nodes that changed; moving: pixels of what moves now.
+    // Returns what the next picture of this size must draw: all of it when anything but nodes and
+    // moving things has changed. changed_V is the box around the nodes that changed, `moving` are the
+    // pixels of what moves now.
     Dirty next(const Frame& frame, int width, int height, const Eigen::AlignedBox3f& changed_V,
                const PixelBox& moving);
 

@@ -1,4 +1,4 @@
-// A rectangle of pixels, counted from the picture's lower left corner as OpenGL does; half open.
+// A rectangle of pixels, half open, counted from the picture's lower left corner as OpenGL does.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,17 +16,18 @@ struct PixelBox {
     int height() const { return y1 - y0; }
     bool operator==(const PixelBox&) const = default;
 
-    // Smallest box around both; within the picture; wider by that many pixels on each side.
+    // joined() is the smallest box around both, within() the part in the other one, grown() wider by so
+    // many pixels on each side.
     PixelBox joined(const PixelBox& other) const;
     PixelBox within(const PixelBox& other) const;
     PixelBox grown(int pixels) const { return {x0 - pixels, y0 - pixels, x1 + pixels, y1 + pixels}; }
 
-    // Every pixel that the box (in the frame that clip_from_model takes) may touch in a picture of this size;
-    // the whole picture when part of the box is at or behind the eye.
+    // Returns every pixel that the box (in the frame that clip_from_model takes) may touch in a picture of
+    // this size; this is the whole picture when part of the box is at or behind the eye.
     static PixelBox around(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_from_model, int width,
                            int height);
 
-    // What scales clip space so that this box fills it: for leaving out what lies beside it.
+    // Returns what scales clip space so that this box fills it, to leave out what lies beside it.
     Eigen::Matrix4f zoom(int picture_width, int picture_height) const;
 };
 

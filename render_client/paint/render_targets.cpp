@@ -59,7 +59,7 @@ void RenderTargets::makeResolved() {
     makeLayer(resolved_, colour_texture_, depth_texture_, "resolved scene");
 }
 
-// Colour and depth of the picture's size. A depth buffer is resolved only into one of the same format.
+// Makes colour and depth of the picture's size. A depth buffer is resolved only into one of the same format.
 void RenderTargets::makeLayer(const GlFramebuffer& layer, const GlTexture& colour, const GlTexture& depth,
                               const char* what) const {
     makeTexture(colour, GL_RGBA8, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);

@@ -1,5 +1,5 @@
-// The buffers a frame passes through: multisampled scene, its resolved copy, half-size occlusion, shadow map.
-// In quick quality the scene is not multisampled and has no shadow, and the bone alone and the finished
+// The buffers that a frame passes through: multisampled scene, its resolved copy, half-size occlusion, shadow
+// map. In quick quality the scene is not multisampled and has no shadow; the bone alone and the finished
 // picture are kept for the next frame.
 //
 // Thread: the one of the context.
@@ -40,11 +40,12 @@ class RenderTargets {
     GLuint bone() const { return bone_.name(); }          // quick only
     GLuint finished() const { return finished_.name(); }  // quick only
 
-    // Colour and depth of that part from one framebuffer to the other.
+    // Copies colour or depth, or both, of that part from one framebuffer to the other.
     void copy(GLuint from, GLuint to, const PixelBox& part, GLbitfield what) const;
-    // Scene -> colourTexture and depthTexture.
+    // Resolves the scene into colourTexture() and depthTexture().
     void resolve() const;
-    // 0 .. 1 of the resolved picture at a pixel from the upper left; nothing outside and on the background.
+    // Returns the depth (0 to 1) of the resolved picture at a pixel counted from the upper left; nothing
+    // outside and on the background.
     std::optional<float> depthAt(int x, int y) const;
 
   private:

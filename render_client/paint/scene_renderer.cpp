@@ -74,15 +74,15 @@ void SceneRenderer::drawFull(const Frame& frame, const FrameView& view, const No
     passes_.compose(frame, *targets_, area.x, target);
 }
 
-// What is drawn over bone and tool; the depth stays as it is.
+// Draws what comes over bone and tool; the depth stays as it is.
 void SceneRenderer::drawOver(const Frame& frame, const FrameView& view, const ToolMesh& tool) {
     drawParticles(frame, view);
     tool_.drawGhost(frame, tool);
     markers_.draw(frame, view);
 }
 
-// The bone of the last picture is kept: where it has changed it is drawn anew, where something moves before
-// it it is copied back.
+// The bone of the last picture is kept. Where it has changed it is drawn anew, and where something moves
+// before it, it is copied back.
 void SceneRenderer::drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes,
                               const ToolMesh& tool, const PictureArea& area, GLuint target) {
     const PixelBox whole = PixelBox::whole(area.width, area.height);

@@ -20,7 +20,7 @@
 
 namespace bonemill {
 
-// Part of a framebuffer, pixels; x from its left edge, over its whole height.
+// A part of a framebuffer, in pixels: x counts from its left edge, the part takes its whole height.
 struct PictureArea {
     int x = 0;
     int width = 0;
@@ -37,21 +37,21 @@ class SceneRenderer {
     // Throws GlError with the compiler's log when the driver refuses a shader.
     explicit SceneRenderer(const GlApi& gl);
 
-    // Leaves the picture (without HUD) in that part of `target`, a framebuffer. Takes the nodes' changes.
+    // Leaves the picture (without figures) in that part of `target`, a framebuffer. Takes the nodes' changes.
     void draw(const FrameView& view, NodeStore& nodes, const ToolMesh& tool, const PictureArea& area,
               GLuint target);
-    // As BonePainter.
+    // Passes the colours on to the bone, as BonePainter::setPalette().
     void setPalette(const std::vector<Eigen::Vector4f>& colours);
     // Makes what a scene's effects need to be drawn, and nothing else. Throws GlError.
     void prepare(const EffectNeeds& needs);
     // The next picture is drawn whole, also in quick quality.
     void drawWholeNext() { changes_.forget(); }
 
-    // The nearest surface of bone or tool (W, m) under a pixel of the last picture, counted from its upper
-    // left corner; nothing over the background.
+    // Returns the nearest surface of bone or tool (W, m) under a pixel of the last picture, counted from its
+    // upper left corner; nothing over the background.
     std::optional<Eigen::Vector3d> pick(int x, int y) const;
 
-    // Bone triangles inside the view volume of the last frame.
+    // How many bone triangles were inside the view volume of the last picture.
     size_t trianglesDrawn() const { return bone_.trianglesDrawn(); }
 
   private:

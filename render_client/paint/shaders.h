@@ -4,22 +4,23 @@
 
 namespace bonemill::shaders {
 
-// lighting_shaders.cpp: what goes before other sources.
+// lighting_shaders.cpp has what goes before other sources.
 extern const char kLighting[];  // before the fragment shaders of bone, cap, tool and particles
 extern const char kNoise[];     // after kLighting, before those of bone and cap
 
-// bone_shaders.cpp. Vertex attributes of meshes: 0 is the position (quantisation steps), 1 the normal
-// (octahedral, ±127), 2 the material. With `#define MATERIALS` before both, bone has its materials' colours.
+// bone_shaders.cpp draws bone and cap. Vertex attribute 0 of a mesh is the position (quantisation steps),
+// 1 the normal (octahedral, ±127), 2 the material. With `#define MATERIALS` before both shaders, bone has
+// its materials' colours.
 extern const char kMeshVertex[];
 extern const char kBoneFragment[];  // with `#define FILM`: blood and water lie on it
 extern const char kCapFragment[];   // the face of a cut
 
-// tool_shaders.cpp. Vertex attributes: 0 is the position (T, m), 1 the normal.
+// tool_shaders.cpp draws tool and ghost. Vertex attribute 0 is the position (T, m), 1 the normal.
 extern const char kToolVertex[];
 extern const char kToolFragment[];  // with `#define SPIN`: flutes turn
 extern const char kGhostFragment[];
 
-// frame_shaders.cpp: passes over the whole frame.
+// frame_shaders.cpp has the passes over the whole frame.
 extern const char kShadowVertex[];   // what casts a shadow, bone or tool
 extern const char kDepthFragment[];  // writes no colour
 extern const char
@@ -29,15 +30,15 @@ extern const char kOcclusionFragment[];
 extern const char kCompositeFragment[];
 extern const char kAnaglyphFragment[];
 
-// particle_shaders.cpp
+// particle_shaders.cpp draws grains and drops.
 extern const char kParticleVertex[];
 extern const char kParticleFragment[];
 
-// marker_shaders.cpp
+// marker_shaders.cpp draws the force arrow and the pointers.
 extern const char kMarkerVertex[];
 extern const char kMarkerFragment[];
 
-// hud_shaders.cpp
+// hud_shaders.cpp draws boxes and glyphs over the picture.
 extern const char kHudVertex[];
 extern const char kHudFragment[];
 

@@ -7,7 +7,7 @@
 namespace bonemill {
 namespace {
 
-// The burr's own light while it works: orange where it removes, blue where it adds.
+// The burr has a light of its own while it works: orange where it removes, blue where it adds.
 Eigen::Vector3f glowOf(BurrWork work) {
     switch (work) {
         case BurrWork::kRemoving:
@@ -52,8 +52,8 @@ void ToolPainter::drawTool(const Frame& frame, const FrameView& view, const Tool
     tool.draw();
 }
 
-// Seen through the bone too, but fainter there: the hand usually is inside when the tool is stopped at the
-// surface.
+// The ghost is seen through the bone too, but fainter there: the hand usually is inside when the tool is
+// stopped at the surface.
 void ToolPainter::drawGhost(const Frame& frame, const ToolMesh& tool) const {
     if (!frame.X_CT_device) return;
     gl_.Enable(GL_BLEND);

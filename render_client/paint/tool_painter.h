@@ -1,4 +1,4 @@
-// Draws the tool, solid, and the ghost of where the hand holds it.
+// Draws the tool, and the ghost of where the hand holds it.
 //
 // Thread: the one of the context.
 #pragma once
@@ -19,10 +19,10 @@ class ToolPainter {
     // From now on the burr's flutes can turn, or no longer. Throws GlError.
     void prepareSpin(bool is_needed);
 
-    // Into the bound framebuffer, with depth test and depth writes on.
+    // Draws into the bound framebuffer, with depth test and depth writes on.
     void drawTool(const Frame& frame, const FrameView& view, const ToolMesh& tool,
                   GLuint shadow_texture) const;
-    // Leaves the depth as it is.
+    // Draws over what is there and leaves the depth as it is.
     void drawGhost(const Frame& frame, const ToolMesh& tool) const;
 
   private:

@@ -37,8 +37,8 @@ uniform mat4 camera_from_model;
 
 const float kMeanGroove = 0.285;
 
-// The flutes as a shutter that is open between two pictures sees them: groove, and its slope over the phase. From
-// half a period per picture on they could seem to turn backwards: nothing of them is left there.
+// A shutter that is open between two pictures sees the flutes so: as groove, and its slope over the phase.
+// From half a period per picture on they could seem to turn backwards, so nothing of them is left there.
 vec2 sweptGroove(float phase) {
     float sweep = flutes * spin_sweep;
     float blur = smoothstep(0.5, 1.0, abs(sweep) / 3.14159265);
@@ -51,7 +51,7 @@ vec2 sweptGroove(float phase) {
 }
 #endif
 
-// A photographer's tent: bright panels over a dark studio, seen in the mirror of the metal.
+// The metal mirrors a photographer's tent: bright panels over a dark studio.
 vec3 studio(vec3 direction) {
     float panel = smoothstep(0.35, 0.75, dot(direction, key_direction));
     float strip = smoothstep(0.80, 0.93, dot(direction, kFillDirection));
@@ -68,7 +68,7 @@ void main() {
     float radial = length(p_M) / max(burr_radius, 1e-6);
     float burr = 1.0 - smoothstep(1.03, 1.08, radial);
     float shaft_cut = 1.0 - smoothstep(0.0, 0.25, radial - 1.02);
-    // Spiral flutes of a round burr: ridges over the angle about the shaft (+y of T), twisted along it.
+    // A round burr has spiral flutes: ridges over the angle about the shaft (+y of T), twisted along it.
     float angle = atan(p_M.z, p_M.x);
     float around = length(p_M.xz) / max(burr_radius, 1e-6);
     float twist = 2.2 * p_M.y / max(burr_radius, 1e-6);

@@ -115,8 +115,8 @@ void Panel::feed(const WindowEvent& event) {
     }
 }
 
-// A frame of ImGui per event: none of two clicks within one picture is lost, and who is meant by an event is
-// known before the next one.
+// Each event gets a frame of ImGui: none of two clicks within one picture is lost, and who is meant by an
+// event is known before the next one.
 bool Panel::handle(const WindowEvent& event, ViewerControls& controls, const SessionView& session,
                    Wishes& wishes) {
     feed(event);

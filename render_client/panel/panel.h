@@ -1,9 +1,9 @@
 // The control panel: every setting of the view, the session's commands and who is watching, for the mouse.
 //
-// A function of what is set and what the server says: it keeps nothing but what is folded, scrolled, half
-// typed or half confirmed (the end of the session), so it follows whoever changed something. It needs no
-// OpenGL; PanelPainter draws it. Positions in pixels from the picture's upper left corner. Thread: the render
-// thread.
+// The panel is a function of what is set and what the server says. It keeps nothing but what is folded,
+// scrolled, half typed or half confirmed (the end of the session), so it follows whoever changed something.
+// It needs no OpenGL; PanelPainter draws it. Positions are pixels from the picture's upper left corner.
+// Thread: the render thread.
 #pragma once
 
 #include <map>
@@ -26,22 +26,23 @@ class Panel {
     Panel& operator=(const Panel&) = delete;
     ~Panel();
 
-    // Size (pixels) of the picture to come, how much larger than usual its text is, and the time (s) since
-    // the picture before. Call it before the events of the picture.
+    // Takes the size (pixels) of the picture to come, how much larger than usual its text is, and the time
+    // (s) since the picture before. It is called before the events of the picture.
     void setPicture(int width, int height, float scale, double seconds);
-    // Passes an event on to the panel, which changes settings and wishes. True: it was meant for the panel
-    // and nobody else is to act on it.
+    // Passes an event on to the panel, which changes settings and wishes. Returns true when the event was
+    // meant for the panel and nobody else is to act on it.
     bool handle(const WindowEvent& event, ViewerControls& controls, const SessionView& session,
                 Wishes& wishes);
     // Brings the panel up to date with the settings and the session, to be drawn.
     void layOut(ViewerControls& controls, const SessionView& session, Wishes& wishes);
 
-    // Where to click on the button, box or slider with this label, if it can be seen.
+    // Returns where to click on the button, box or slider with this label, if it can be seen.
     std::optional<PixelPoint> find(const std::string& label) const;
 
-    // What to draw; null while the panel is closed. Valid until the next call of setPicture() or handle().
+    // Returns what to draw; null while the panel is closed. It is valid until the next call of
+    // setPicture() or handle().
     const ImDrawData* drawData() const;
-    // The font's pixels, 8 bits each, and a number that changes with them.
+    // The font's pixels have 8 bits each; the number changes with them.
     struct FontPixels {
         const unsigned char* pixels;
         int width;

@@ -26,11 +26,11 @@ class PanelContent {
           is_ending_(is_ending),
           scale_(scale) {}
 
-    // Between ImGui::NewFrame() and ImGui::Render().
+    // Is called between ImGui::NewFrame() and ImGui::Render().
     void build();
 
   private:
-    // What is seen (panel_view.cpp).
+    // These say what is seen (panel_view.cpp).
     void buildView();
     void buildSides();
     void buildTransparency();
@@ -40,7 +40,7 @@ class PanelContent {
     bool hasEffects() const;
     bool isListed(ViewerEffect effect) const;
     void buildEffects();
-    // The session (panel_session.cpp).
+    // These say how the session goes (panel_session.cpp).
     void buildSession();
     void buildCheckpoints();
     void buildTools();
@@ -49,13 +49,13 @@ class PanelContent {
     void buildTraining();
     void buildWatchers();
 
-    // Controls: a label, and what it does in words while the mouse rests on it.
+    // Each control has a label, and says what it does in words while the mouse rests on it.
     bool button(const std::string& label, const char* what);
     bool box(const std::string& label, bool is_on, const char* what);
     bool choice(const std::string& label, bool is_chosen, const char* what);
     // Returns the fraction that it was moved to, at least `least`.
     std::optional<double> slider(const char* label, double fraction, double least, const char* what);
-    // Controls that do what a key does; the key stands beside the text.
+    // These controls do what a key does; the key stands beside the text.
     void button(const char* text, Action action, const char* what);
     void box(const char* text, Action action, bool is_on, const char* what);
     void note(const std::string& label, const char* what);

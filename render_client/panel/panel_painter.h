@@ -14,7 +14,7 @@ class PanelPainter {
     // Throws GlError.
     explicit PanelPainter(const GlApi& gl);
 
-    // Into the bound framebuffer of this size (pixels). A closed panel draws nothing.
+    // Draws into the bound framebuffer of this size (pixels). A closed panel draws nothing.
     void paint(const Panel& panel, int width, int height);
 
   private:

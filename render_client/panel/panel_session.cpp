@@ -1,4 +1,4 @@
-// The panel's parts about the session: commands, training and who is watching.
+// Here are the panel's parts about the session: commands, training and who is watching.
 #include <imgui.h>
 
 #include <iterator>

@@ -1,4 +1,4 @@
-// The panel's parts about what is seen: view and effects.
+// Here are the panel's parts about what is seen: view and effects.
 #include <imgui.h>
 
 #include <algorithm>

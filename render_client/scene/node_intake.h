@@ -16,7 +16,7 @@ class NodeIntake {
     // The scene must outlive the intake.
     explicit NodeIntake(RenderScene& scene) : scene_(scene) {}
 
-    // As RenderScene::setNode(). Returns false when the mesh contradicts itself and is not shown.
+    // Does what RenderScene::setNode() does. Returns false when the mesh contradicts itself and is not shown.
     bool set(const NodeMesh& mesh);
     // Forgets every node, shown or not.
     void clear();

@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-// Of an empty box: none.
+// An empty box has no corners.
 std::vector<Eigen::Vector3d> cornersIn(const Pose& X_WV, const Eigen::AlignedBox3d& box_V) {
     std::vector<Eigen::Vector3d> corners_W;
     for (int i = 0; i < 8 && !box_V.isEmpty(); ++i)
@@ -66,7 +66,7 @@ void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     makeEffects(info);
 }
 
-// Those of the same scene go on, also with another tool.
+// The effects of the same scene go on, also with another tool.
 void RenderScene::makeEffects(const topics::SceneInfo& info) {
     const scene::Effects& wish = info.viewer_effects();
     const std::string text = std::to_string(info.epoch()) + wish.SerializeAsString();
@@ -89,7 +89,7 @@ void RenderScene::setNode(const NodeMesh& mesh) {
     if (has_effects_ && !hud_input_.info) early_nodes_.insert_or_assign(mesh.leaf, mesh);
 }
 
-// Of another run of the server, of which nothing is known yet.
+// Another run of the server has begun, of which nothing is known yet.
 void RenderScene::clearNodes() {
     if (effects_) effects_->clear();
     early_nodes_.clear();
@@ -241,7 +241,7 @@ void RenderScene::drawAnaglyph(const FrameView& view, int width, int height, flo
     paintHud(view.camera, whole, ui_scale);
 }
 
-// The renderer has bound the framebuffer and set the viewport.
+// Needs the framebuffer bound and the viewport set, as the renderer leaves them.
 void RenderScene::paintHud(const Camera& camera, const PictureArea& area, float ui_scale) {
     if (!settings_.show_hud) {
         if (const auto alert = alertOf(hud_input_))

@@ -28,8 +28,8 @@ namespace bonemill {
 
 class RenderScene {
   public:
-    // Throws GlError (driver) or UserError (font).
-    // has_effects false: those that scenes list are not made.
+    // With has_effects false, the effects that scenes list are not made. Throws GlError
+    // (driver) or UserError (font).
     explicit RenderScene(const GlApi& gl, bool has_effects = true);
 
     // Replaces the node's mesh; an empty one removes it. Throws std::invalid_argument on a mesh that
@@ -41,39 +41,39 @@ class RenderScene {
     // brings another tool. An older revision of the same epoch changes nothing. Throws std::invalid_argument
     // on a bad message.
     void setSceneInfo(const topics::SceneInfo& info);
-    // May be the same one again. What its effects tell of events stays on the screen for a while; visual
-    // effects take what was removed from each new one.
+    // The state may be the same one again. What its effects tell of events stays on the screen for a while;
+    // visual effects take what was removed from each new one.
     void setToolState(const topics::ToolState& tool);
     void setStatus(const topics::Status& status) { hud_input_.status = status; }
     void setConnection(Connection connection) { hud_input_.connection = connection; }
-    // Shown until it is replaced; nullopt: nothing is shown.
+    // The notice is shown until it is replaced; nullopt takes it away.
     void setNotice(std::optional<HudNotice> notice) { hud_input_.notice = std::move(notice); }
 
-    // The help page: keys and what they do. None before the first call.
+    // Takes the rows of the help page: keys and what they do. There is no page before the first call.
     void setHelp(std::vector<HudRow> rows) { hud_input_.help = std::move(rows); }
 
-    // Of this viewer, pictures per second over the last second; 0: not known.
+    // Takes the pictures per second of this viewer over the last second; 0 means not known.
     void setFrameRate(double frame_rate_hz) { hud_input_.frame_rate_hz = frame_rate_hz; }
 
     OrbitCamera& camera() { return camera_; }
-    // Goes before what the scene file asks of the first view.
+    // This wish goes before what the scene file asks of the first view.
     void setViewWish(const ViewWish& wish);
-    // Back to the first view, at the next draw().
+    // Goes back to the first view, at the next draw().
     void resetView() { view_pending_ = true; }
     ViewSettings& settings() { return settings_; }
-    // Who is watching, and where instructors point.
+    // Takes who is watching, and where instructors point.
     void setWatchers(std::vector<topics::Viewer> watchers) { hud_input_.watchers = std::move(watchers); }
 
-    // The point of bone or tool (W, m) in the last drawn picture under that pixel, counted from the upper
-    // left: of transparent bone the outer surface, of cut bone also the cut. Nothing over the background,
-    // outside the picture, in stereo and before the first picture.
+    // Returns the point of bone or tool (W, m) under that pixel of the last picture, counted from the upper
+    // left: of transparent bone the outer surface, of cut bone also the cut. There is none over the
+    // background, outside the picture, in stereo and before the first picture.
     std::optional<Eigen::Vector3d> pick(int x, int y) const;
 
-    // Visual effects go on by this time (s); nothing without effects.
+    // Lets the visual effects go on by this time (s).
     void advance(double seconds) {
         if (effects_) effects_->advance(seconds);
     }
-    // Null: the scene lists none, or nothing is known of it yet.
+    // Null while the scene lists none, or nothing is known of it yet.
     const VisualEffects* effects() const { return effects_.get(); }
 
     size_t nodeCount() const { return nodes_.nodeCount(); }
@@ -82,10 +82,10 @@ class RenderScene {
     const UploadCount& uploads() const { return nodes_.uploads(); }
     bool hasSceneInfo() const { return hud_input_.info.has_value(); }
 
-    // In quick quality too, the next draw() draws everything: the same picture, only slower.
+    // The next draw() draws everything, in quick quality too: the same picture, only slower.
     void drawWholeNext() { renderer_.drawWholeNext(); }
 
-    // Into `target`, a framebuffer of this size (pixels). ui_scale 1 suits 800 pixels of height.
+    // Draws into `target`, a framebuffer of this size (pixels). ui_scale 1 suits 800 pixels of height.
     void draw(int width, int height, float ui_scale, GLuint target = 0);
 
   private:
@@ -110,8 +110,8 @@ class RenderScene {
     Anaglyph anaglyph_;
     HudPainter hud_painter_;
     HudInput hud_input_;
-    std::map<uint32_t, NodeMesh>
-        early_nodes_;  // what came before the scene info said whether effects need it
+    // What came before the scene info said whether effects need it.
+    std::map<uint32_t, NodeMesh> early_nodes_;
     std::unique_ptr<VisualEffects> effects_;
     EffectPicture effect_picture_;
     std::string effects_text_;                   // the message they were made from

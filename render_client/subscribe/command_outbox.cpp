@@ -9,8 +9,8 @@ using namespace std::chrono_literals;
 
 constexpr auto kTimeout = 5s;
 constexpr auto kExportTimeout = 300s;  // a large scan on a slow disk
-// A first command can be lost while the two sides discover each other; the server carries a repeated one out
-// once.
+// A first command can be lost while the two sides discover each other; the server carries a
+// repeated one out once.
 constexpr auto kRepeatAfter = 500ms;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Commands on their way to the server: one after the other, repeated until acknowledged or timed out. One
-// thread.
+// Commands on their way to the server: one after the other, repeated until acknowledged or
+// timed out. One thread.
 #pragma once
 
 #include <chrono>
@@ -20,7 +20,7 @@ struct CommandOutcome {
     bool is_acknowledged = false;  // false: no answer in time
     std::string result;            // what the server said, or why there is no answer
 
-    // The server did what it was asked for.
+    // True when the server did what it was asked for.
     bool isDone() const { return is_acknowledged && result == "done"; }
 };
 
@@ -28,16 +28,16 @@ class CommandOutbox {
   public:
     using Clock = std::chrono::steady_clock;
 
-    // `sender` must differ between clients; not 0.
+    // `sender` must not be 0, and must differ between clients.
     explicit CommandOutbox(uint64_t sender) : sender_(sender) {}
 
     // Fills in sender and sequence; returns the sequence.
     uint32_t enqueue(topics::Command command);
-    // The server's last acknowledgement; those of other senders are ignored.
+    // Takes the server's last acknowledgement; those of other senders are ignored.
     void acknowledge(const topics::Status& status);
     // Gives up on the command under way after its timeout; else passes it to `write` when it is due. A
-    // timeout runs from the first step() that finds the command at the head. `is_connected`: a server
-    // listens.
+    // timeout runs from the first step() that finds the command at the head. `is_connected` says
+    // whether a server listens.
     void step(Clock::time_point now, bool is_connected,
               const std::function<void(const topics::Command&)>& write);
 

@@ -1,4 +1,4 @@
-// A command and how it ended in words, for logs and people. Any thread.
+// Puts a command, and how it ended, into words for logs and people. Any thread.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace bonemill {
 
-// "accuracy balanced", "put the bone back", ...
+// Returns "accuracy balanced", "put the bone back", ...
 std::string commandText(const topics::Command& command);
 
-// "accuracy balanced: done", "accuracy best: refused: ...", "shut down: the server did not answer".
+// Returns "accuracy balanced: done", "accuracy best: refused: ...", "shut down: the server did not answer".
 std::string outcomeText(const CommandOutcome& outcome);
 
 }  // namespace bonemill

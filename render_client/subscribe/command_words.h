@@ -8,11 +8,11 @@
 
 namespace bonemill {
 
-// Why this is none, as far as can be said without a server; empty: it may be one.
+// Returns why this is no command, as far as can be said without a server; empty when it may be one.
 std::string commandProblem(const std::string& text);
 
-// What it means in the session that shows these. Throws UserError for what is no command, and for names and
-// checkpoints that this session does not have.
+// Returns what it means in the session that shows these. Throws UserError for what is no command, and for
+// names and checkpoints that this session does not have.
 topics::Command commandOf(const std::string& text, const topics::SceneInfo& scene,
                           const topics::Status& status);
 

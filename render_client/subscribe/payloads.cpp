@@ -30,7 +30,7 @@ bool isTime(double seconds) {
     return seconds >= 0 && seconds <= kLongestSession;
 }
 
-// Finite, and small enough that what is computed from it stays so.
+// The value is finite, and small enough that what is computed from it stays so.
 bool isSane(double value) {
     return std::abs(value) <= kLargestNumber;
 }
@@ -112,7 +112,8 @@ bool isUsable(const topics::Viewer& viewer) {
            topics::Viewer::Role_IsValid(viewer.role());
 }
 
-// What stands on a screen: no control signs, no broken UTF-8 (cut off with all that follows), not too long.
+// Returns what stands on a screen: no control signs, no broken UTF-8 (cut off with all that
+// follows), not too long.
 std::string shownText(const std::string& name, size_t longest) {
     std::string shown;
     for (size_t i = 0; i < name.size() && shown.size() < longest;) {
@@ -128,7 +129,7 @@ std::string shownName(const std::string& name) {
     return shownText(name, kLongestName);
 }
 
-// Bytes; what sane messages need many times over.
+// These are bytes, what sane messages need many times over.
 constexpr size_t mostBytes(const topics::SceneInfo*) {
     return 64u << 20;
 }

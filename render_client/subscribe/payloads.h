@@ -1,5 +1,5 @@
-// What comes off the wire, checked: nothing when the bytes are not what the rest of the client may rely on.
-// Thread-safe; never throws on any bytes (other than std::bad_alloc).
+// Checks what comes off the wire: there is nothing when the bytes are not what the rest of the client may
+// rely on. Thread-safe; never throws on any bytes (other than std::bad_alloc).
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace bonemill {
 
-// At least one triangle. `leaf` and `revision` are those of the sample's envelope.
+// The node has at least one triangle. `leaf` and `revision` are those of the sample's envelope.
 std::optional<DecodedNode> parseNode(std::span<const uint8_t> payload, uint32_t leaf, uint32_t revision);
 
 // Vectors have their length, numbers are finite, quaternions are of unit length, the tool's triangles name

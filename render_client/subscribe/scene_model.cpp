@@ -6,7 +6,7 @@
 namespace bonemill {
 namespace {
 
-// Far more than any bone has; bounds what invented ones can take.
+// This is far more than any bone has; it bounds what invented ones can take.
 constexpr size_t kMostNodes = size_t(1) << 20;
 
 }  // namespace

@@ -31,7 +31,8 @@ class SceneModel {
         std::vector<Change> nodes;  // then, in this order: replace the leaf's mesh
     };
 
-    // To be told the epoch of everything that arrives. False: it comes from an older run and must be ignored.
+    // Is told the epoch of everything that arrives. Returns false when it comes from an older
+    // run and must be ignored.
     bool enterEpoch(uint64_t epoch);
 
     // `writer` identifies who sent it (dds::SampleInfo::writer).
@@ -39,11 +40,11 @@ class SceneModel {
     // A removal does not name its epoch: that of its writer's meshes counts, when some are known.
     void removeNode(uint32_t leaf, uint64_t writer);
 
-    // What changed since the last call.
+    // Returns what changed since the last call.
     Changes takeChanges(Clock::time_point now);
 
     uint64_t epoch() const noexcept { return epoch_; }  // 0: nothing arrived yet
-    // Of what takeChanges() has given out or is about to.
+    // The digest is of what takeChanges() has given out or is about to.
     const NodeDigest& digest() const noexcept { return digest_; }
 
   private:

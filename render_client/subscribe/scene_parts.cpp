@@ -11,7 +11,7 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-// Nothing for what is no number.
+// Returns nothing for what is no number.
 std::optional<double> numberOf(const Message& message, const FieldDescriptor& field, int index) {
     const auto& r = *message.GetReflection();
     const bool repeated = field.is_repeated();

@@ -6,10 +6,10 @@
 
 namespace bonemill {
 
-// As many as a scene may have: a vertex names one of them in one byte.
+// This is as many as a scene may have: a vertex names one of them in one byte.
 inline constexpr int kMostShownMaterials = 255;
 
-// Every number in it, however deep, is finite and in its (range) of scene.proto.
+// True when every number in it, however deep, is finite and in its (range) of scene.proto.
 bool isWithinRanges(const google::protobuf::Message& message);
 
 // Forgets what is no viewer's business, so that nobody relies on it.

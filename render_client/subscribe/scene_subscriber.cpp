@@ -21,7 +21,7 @@ uint64_t randomSender() {
     return sender;
 }
 
-// What happened between two pictures: none of the states in between is shown.
+// None of the states between two pictures is shown, so what happened in them is added up.
 void addCounts(const topics::EffectState& before, topics::EffectState& now) {
     now.set_events(now.events() | before.events());
     now.set_removed_mm3(now.removed_mm3() + before.removed_mm3());
@@ -154,7 +154,8 @@ void SceneSubscriber::takeNodes(size_t max_nodes) {
         std::optional<DecodedNode> node = parseNode(dds::payloadOf(sample), sample.node, sample.revision);
         if (!node) return dropMalformed("node mesh " + std::to_string(sample.node));
         enterEpoch(node->tag.epoch);
-        // Also of an older run: the model remembers its writer, whose late removals must not count.
+        // The model takes nodes of an older run too: it remembers their writer, whose late
+        // removals must not count.
         model_.applyNode(std::move(*node), info.writer, SceneModel::Clock::now());
     });
 }

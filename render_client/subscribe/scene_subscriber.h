@@ -1,7 +1,8 @@
 // The client's end of a session: what the server shows, kept up to date, and the way to send it commands.
 //
 // One thread (the render thread): poll() takes what has arrived and never waits. Bytes that do not make sense
-// are counted and dropped. A server that leaves changes nothing in the model; one that restarts replaces it.
+// are dropped, counted, and at first named in the log; what comes with them arrives. A server that leaves
+// changes nothing in the model; one that restarts replaces it.
 #pragma once
 
 #include <chrono>
@@ -40,28 +41,29 @@ class SceneSubscriber {
     // True when poll() has something to take, false when `timeout` passed before.
     bool waitForData(std::chrono::nanoseconds timeout) const { return wait_set_.wait(timeout); }
 
-    // The newest ones of the current server run; nothing before the first.
+    // These are the newest ones of the current server run; there is nothing before the first.
     const std::optional<topics::SceneInfo>& sceneInfo() const noexcept { return scene_info_; }
-    // What its effects count since the state before, they count since the poll() before.
+    // What its effects count since the state before, they count here since the poll() before.
     const std::optional<topics::ToolState>& toolState() const noexcept { return tool_state_; }
     const std::optional<topics::Status>& status() const noexcept { return status_; }
 
-    // Every node of the newest status is here, and no other. False in the short while between a changed node
-    // and the status that counts it.
+    // True when every node of the newest status is here, and no other. It is false in the short while between
+    // a changed node and the status that counts it.
     bool isComplete() const;
-    // A server of this session is there: it is matched, and something came from it within kServerTimeout.
+    // True when a server of this session is there: it is matched, and something came from
+    // it within kServerTimeout.
     bool hasServer() const;
     static constexpr std::chrono::seconds kServerTimeout{3};
 
     // Queues a command (sender, role and sequence are filled in) and returns its sequence; poll() sends it.
     uint32_t sendCommand(topics::Command command);
-    // How commands ended since the last call, acknowledged by the server or given up 5 s after their turn
-    // came.
+    // Returns how commands ended since the last call, acknowledged by the server or given up 5 s
+    // after their turn came.
     std::vector<CommandOutcome> takeOutcomes() { return outbox_.takeOutcomes(); }
 
     // Tells all others who is watching here and where it points (W, m): once per second at least.
     void announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer);
-    // The other viewers of the session, heard within kViewerTimeout, by sender.
+    // Returns the other viewers of the session, heard within kViewerTimeout, by sender.
     std::vector<topics::Viewer> viewers() const;
     static constexpr std::chrono::seconds kViewerTimeout{4};
 

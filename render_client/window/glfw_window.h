@@ -1,6 +1,6 @@
 // A window with an OpenGL 3.3 core context, and what happens at it.
 //
-// Thread: the main thread, one window per process.
+// Thread: the main thread. There is one window per process.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ namespace bonemill {
 
 class GlfwWindow {
   public:
-    // Size in screen coordinates. Throws UserError, naming --offscreen, when there is no display or no
-    // OpenGL 3.3.
+    // The size counts in screen coordinates. Throws UserError, naming --offscreen, when there is no
+    // display or no OpenGL 3.3.
     GlfwWindow(int width, int height, const std::string& title);
     GlfwWindow(const GlfwWindow&) = delete;
     GlfwWindow& operator=(const GlfwWindow&) = delete;
@@ -24,14 +24,14 @@ class GlfwWindow {
 
     const GlApi& gl() const { return gl_; }
 
-    // What happened since the last call, oldest first. Never waits.
+    // Returns what happened since the last call, oldest first. Never waits.
     std::vector<WindowEvent> takeEvents();
     bool shouldClose() const;
 
-    // Pixels; 0 x 0 while the window is minimised.
+    // The picture has so many pixels, 0 x 0 while the window is minimised.
     int pixelWidth() const;
     int pixelHeight() const;
-    // How much larger than usual the display wants its text.
+    // Returns how much larger than usual the display wants its text.
     float contentScale() const;
 
     // Shows the picture; waits for the display's next refresh.
