@@ -12,20 +12,20 @@
 #include "common/units.h"
 #include "common/user_error.h"
 #include "render_client/app/view_options.h"
+#include "render_client/hud/session_text.h"
 #include "render_client/subscribe/command_words.h"
 
 namespace bonemill {
 namespace {
 
 constexpr int kMinSize = 64;
-constexpr uint32_t kDefaultTimeoutS = 60;
 constexpr int kMaxSize = 8192;  // pixels; every OpenGL 3.3 driver in use can do it
 
 // Here is what the command line holds before units are converted.
 struct RawOptions {
     bool offscreen = false;
     OffscreenOptions offscreen_options;
-    uint32_t interval_ms = 500;
+    uint32_t interval_ms = uint32_t(OffscreenOptions().interval.count());
     std::optional<uint32_t> timeout_s;
     std::optional<uint32_t> measure_s;
     std::optional<std::string> role;
@@ -36,9 +36,24 @@ struct RawOptions {
     RawView view;
 };
 
+std::vector<std::string> roleNames() {
+    std::vector<std::string> names;
+    for (const topics::Viewer::Role role : kRoles) names.push_back(roleName(role));
+    return names;
+}
+
+// The name is one of roleNames().
+topics::Viewer::Role roleOf(const std::string& name) {
+    return *std::ranges::find(kRoles, name, roleName);
+}
+
 std::string loginName() {
     const passwd* user = getpwuid(getuid());
     return user ? user->pw_name : "";
+}
+
+std::string sizeText(const ClientOptions& options) {
+    return std::to_string(options.width) + "x" + std::to_string(options.height);
 }
 
 void parseSize(const std::string& text, ClientOptions& options) {
@@ -47,14 +62,13 @@ void parseSize(const std::string& text, ClientOptions& options) {
     const auto in_range = [](int size) { return size >= kMinSize && size <= kMaxSize; };
     if (fields != 2 || size_t(used) != text.size() || !in_range(width) || !in_range(height)) {
         throw UserError("--size " + text + ": expected WxH, each " + std::to_string(kMinSize) + " to " +
-                        std::to_string(kMaxSize) + " pixels, such as 1280x800");
+                        std::to_string(kMaxSize) + " pixels, such as " + sizeText(options));
     }
     options.width = width;
     options.height = height;
 }
 
-void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
-    const std::vector<CLI::Option*> view_options = addViewOptions(app, raw.view);
+void addSessionOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     app.add_option("--domain", options.subscriber.domain, "DDS domain of the server")
         ->check(CLI::Range(uint32_t{0}, dds::kMaxDomain))
         ->capture_default_str();
@@ -67,8 +81,22 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
            "--role", raw.role,
            "viewer: only looks; operator: also commands; instructor: also points and ends the session "
            "(default operator; viewer under the profiles lab and classroom)")
-        ->check(CLI::IsMember({"viewer", "operator", "instructor"}));
-    app.add_option("--size", raw.size, "Picture or window, pixels (default 1280x800)")->type_name("WxH");
+        ->check(CLI::IsMember(roleNames()));
+    app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
+        ->capture_default_str();
+}
+
+void addPictureOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
+    app.add_option("--size", raw.size, "Picture or window, pixels (default " + sizeText(options) + ")")
+        ->type_name("WxH");
+    app.add_flag_callback(
+        "--no-effects", [&options] { options.has_effects = false; },
+        "None of the effects that the scene lists, neither seen nor heard");
+    app.add_option("--sound-wav", options.sound_wav, "Write the scene's milling sound into this WAV file too")
+        ->type_name("FILE");
+}
+
+void addCameraOptions(CLI::App& app, RawOptions& raw) {
     app.add_option("--camera-azimuth-deg", raw.azimuth_deg, "Eye: 0 in front of the patient, 90 at the left")
         ->check(CLI::Range(-360.0, 360.0));
     app.add_option("--camera-elevation-deg", raw.elevation_deg, "Eye above the horizon")
@@ -79,14 +107,10 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
         ->expected(3)
         ->check(CLI::Range(-1e6, 1e6))
         ->type_name("X Y Z");
-    app.add_flag_callback(
-        "--no-effects", [&options] { options.has_effects = false; },
-        "None of the effects that the scene lists, neither seen nor heard");
-    app.add_option("--sound-wav", options.sound_wav, "Write the scene's milling sound into this WAV file too")
-        ->type_name("FILE");
-    app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
-        ->capture_default_str();
+}
 
+// Returns the option that switches the window off, for those that exclude it.
+CLI::Option* addOffscreenOptions(CLI::App& app, RawOptions& raw) {
     auto* offscreen =
         app.add_flag("--offscreen", raw.offscreen, "Write PNG pictures instead of opening a window");
     app.add_option("--frames", raw.offscreen_options.frames, "How many pictures")
@@ -104,6 +128,11 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     app.add_flag("--wait-complete", raw.offscreen_options.wait_complete,
                  "Take the first picture when the whole model has arrived")
         ->needs(offscreen);
+    return offscreen;
+}
+
+void addCommandOptions(CLI::App& app, RawOptions& raw, CLI::Option* offscreen,
+                       const std::vector<CLI::Option*>& view_options) {
     auto* command =
         app.add_option(
                "--command", raw.command,
@@ -122,21 +151,26 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
         ->excludes(command);
     app.add_option("--timeout-s", raw.timeout_s,
                    "Give up --wait-complete, or --command and --measure-s without a server, after this "
-                   "(default 60)")
+                   "(default " +
+                       std::to_string(kDefaultTimeout.count()) + ")")
         ->check(CLI::Range(1u, 86400u));
 }
 
-topics::Viewer::Role roleOf(const std::string& name) {
-    return name == "viewer"       ? topics::Viewer::VIEWER
-           : name == "instructor" ? topics::Viewer::INSTRUCTOR
-                                  : topics::Viewer::OPERATOR;
+void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
+    const std::vector<CLI::Option*> view_options = addViewOptions(app, raw.view);
+    addSessionOptions(app, raw, options);
+    addPictureOptions(app, raw, options);
+    addCameraOptions(app, raw);
+    addCommandOptions(app, raw, addOffscreenOptions(app, raw), view_options);
 }
 
 ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     options.settings = viewSettings(raw.view);
     options.chooses_quality = raw.view.quality == "auto";
     const bool only_looks = raw.command.empty() && dds::isLanProfile(options.network.profile);
-    options.subscriber.role = roleOf(raw.role.value_or(only_looks ? "viewer" : "operator"));
+    options.subscriber.role = raw.role     ? roleOf(*raw.role)
+                              : only_looks ? topics::Viewer::VIEWER
+                                           : topics::Viewer::OPERATOR;
     if (!raw.size.empty()) parseSize(raw.size, options);
     if (raw.azimuth_deg) options.view.azimuth = *raw.azimuth_deg * kDegree;
     if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegree;
@@ -147,7 +181,8 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     }
     if (raw.timeout_s && !raw.offscreen && raw.command.empty() && !raw.measure_s)
         throw UserError("--timeout-s needs --offscreen, --command or --measure-s");
-    const std::chrono::seconds timeout(raw.timeout_s.value_or(kDefaultTimeoutS));
+    const std::chrono::seconds timeout =
+        raw.timeout_s ? std::chrono::seconds(*raw.timeout_s) : kDefaultTimeout;
     if (raw.offscreen) {
         options.offscreen = raw.offscreen_options;
         options.offscreen->interval = std::chrono::milliseconds(raw.interval_ms);

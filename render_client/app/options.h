@@ -1,6 +1,7 @@
 // The command line of render_client. What is shown at the start has its options in view_options.h.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -13,24 +14,27 @@
 
 namespace bonemill {
 
+// How long the program waits for a server or its whole model, unless it is told.
+inline constexpr std::chrono::seconds kDefaultTimeout{60};
+
 struct OffscreenOptions {
     uint32_t frames = 1;
     std::filesystem::path directory;
     std::chrono::milliseconds interval{500};
     bool wait_complete = false;
-    std::chrono::seconds timeout{60};  // of wait_complete
+    std::chrono::seconds timeout = kDefaultTimeout;  // of wait_complete
 };
 
 // Instead of a viewer, this is asked for, once there is a server.
 struct CommandOptions {
-    std::string text;                  // subscribe/command_words.h
-    std::chrono::seconds timeout{60};  // of waiting for the server
+    std::string text;                                // subscribe/command_words.h
+    std::chrono::seconds timeout = kDefaultTimeout;  // of waiting for the server
 };
 
 // Instead of a viewer, the program measures what drawing costs.
 struct MeasureOptions {
     std::chrono::seconds time{10};
-    std::chrono::seconds timeout{60};  // of waiting for the whole model
+    std::chrono::seconds timeout = kDefaultTimeout;  // of waiting for the whole model
 };
 
 struct ClientOptions {

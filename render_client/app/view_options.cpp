@@ -1,6 +1,7 @@
 #include "render_client/app/view_options.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 
 namespace bonemill {
 namespace {
@@ -22,6 +23,12 @@ void addCutOptions(CLI::App& app, RawView& raw, std::vector<CLI::Option*>& view_
     }
 }
 
+std::string opacityText() {
+    char text[16];
+    std::snprintf(text, sizeof text, "%g", ViewSettings::kDefaultOpacity);
+    return text;
+}
+
 }  // namespace
 
 std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
@@ -33,7 +40,7 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
                                    raw.is_transparent = true;
                                    if (!opacity.empty()) raw.opacity = std::stod(opacity);
                                },
-                               "Transparent bone, of this opacity, 0 to 1 (default 0.35)")
+                               "Transparent bone, of this opacity, 0 to 1 (default " + opacityText() + ")")
                             ->expected(0, 1)
                             ->check(CLI::Range(0.0, 1.0))
                             ->type_name("[OPACITY]");

@@ -8,6 +8,8 @@
 
 namespace bonemill {
 
+inline constexpr topics::Viewer::Role kRoles[] = {topics::Viewer::VIEWER, topics::Viewer::OPERATOR,
+                                                  topics::Viewer::INSTRUCTOR};
 // A role that this version does not know is "?".
 std::string roleName(topics::Viewer::Role role);
 
