@@ -118,14 +118,14 @@ void SceneSubscriber::takeViewers() {
     std::erase_if(viewers_, [now](const auto& v) { return now - v.second.heard > kViewerTimeout; });
 }
 
-void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer) {
+void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W) {
     topics::Viewer viewer;
     viewer.set_sender(outbox_.sender());
     viewer.set_name(options_.name);
     viewer.set_role(options_.role);
     viewer.set_frame_rate_hz(frame_rate_hz);
     viewer.set_is_complete(isComplete());
-    if (pointer) viewer.mutable_pointer_m()->Assign(pointer->begin(), pointer->end());
+    if (pointer_W) viewer.mutable_pointer_m()->Assign(pointer_W->begin(), pointer_W->end());
     const std::string bytes = viewer.SerializeAsString();
     dds::ViewerSample sample{};
     sample.session = options_.session;

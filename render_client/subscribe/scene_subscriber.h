@@ -61,8 +61,8 @@ class SceneSubscriber {
     // after their turn came.
     std::vector<CommandOutcome> takeOutcomes() { return outbox_.takeOutcomes(); }
 
-    // Tells all others who is watching here and where it points (W, m): once per second at least.
-    void announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer);
+    // Tells all others who is watching here and where it points (m): once per second at least.
+    void announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W);
     // Returns the other viewers of the session, heard within kViewerTimeout, by sender.
     std::vector<topics::Viewer> viewers() const;
     static constexpr std::chrono::seconds kViewerTimeout{4};
