@@ -20,7 +20,7 @@
 namespace bonemill {
 namespace {
 
-// An open memory file until DeviceLink takes it over.
+// Holds an open memory file until DeviceLink takes it over.
 class File {
   public:
     explicit File(int descriptor) noexcept : descriptor_(descriptor) {}
@@ -60,7 +60,7 @@ bool tryLock(int file, LinkLockByte byte) noexcept {
     return fcntl(file, F_OFD_SETLK, &lock) == 0;
 }
 
-// Held by others for the microseconds of a set-up only.
+// Others hold it for the microseconds of a set-up only.
 void lockSetup(int file) noexcept {
     struct flock lock = lockOf(kLockSetup, F_WRLCK);
     while (fcntl(file, F_OFD_SETLKW, &lock) != 0 && errno == EINTR) {
@@ -72,7 +72,7 @@ void unlockSetup(int file) noexcept {
     fcntl(file, F_OFD_SETLK, &lock);
 }
 
-// Does another open file, that is a living process, hold the byte?
+// Tells whether another open file, that is a living process, holds the byte.
 bool isHeldByOther(int file, LinkLockByte byte) noexcept {
     struct flock lock = lockOf(byte, F_WRLCK);
     return fcntl(file, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
@@ -91,7 +91,7 @@ int openMemory(const std::string& name) {
     fail(name, "cannot be opened: " + reason);
 }
 
-// The peer removed the file after we opened it: what we hold has no name any more.
+// Tells whether the peer removed the file after we opened it: what we hold has no name any more.
 bool isUnlinked(int file) noexcept {
     struct stat status {};
     return fstat(file, &status) != 0 || status.st_nlink == 0;
@@ -111,8 +111,8 @@ LinkHeader readHeader(const std::string& name, int file) {
     return header;
 }
 
-// Nobody lives behind this memory: start it anew, unless it is not ours to erase. Magic 0: new, or its maker
-// died early.
+// Starts memory anew behind which nobody lives, unless it is not ours to erase. Magic 0 says that it is new,
+// or that its maker died early.
 void takeOver(const std::string& name, int file) {
     const LinkHeader header = readHeader(name, file);
     if (header.magic != kLinkMagic && header.magic != 0) {
@@ -171,7 +171,7 @@ LinkPeer& slotOf(LinkMemory& memory, LinkSide side) noexcept {
     return side == LinkSide::kServer ? memory.server : memory.daemon;
 }
 
-// False: the deadline passed. Returns at once when the word is no longer `expected`.
+// Returns false when the deadline passed, and at once when the word is no longer `expected`.
 bool futexWait(const std::atomic<uint32_t>& word, uint32_t expected, int64_t deadline_ns) noexcept {
     const timespec deadline = timespecOfNs(std::max<int64_t>(deadline_ns, 0));
     const long result =

@@ -1,9 +1,10 @@
-// The link between device_daemon (writes DeviceSample) and haptic_server (writes WrenchCommand): POSIX shared
-// memory with one seqlock per direction and a futex for whoever waits.
+// This is the link between device_daemon, which writes DeviceSample, and haptic_server, which writes
+// WrenchCommand: POSIX shared memory with one seqlock per direction and a futex for whoever waits.
 //
-// Whoever starts first makes the memory; each side may die and come back. The newest value is all that
-// counts: nothing queues. Reading and writing are RT-safe (bounded; a wake is one system call, made only when
-// the peer waits); open, peerIsAlive and the destructor are not. One thread per DeviceLink.
+// Whoever starts first makes the memory, and each side may die and come back. The newest value is all
+// that counts: nothing queues. Reading and writing are RT-safe: they are bounded, and a wake is one
+// system call, made only when the peer waits. Opening, peerIsAlive() and the destructor are not. One
+// thread uses a DeviceLink.
 #pragma once
 
 #include <cstddef>
@@ -20,12 +21,12 @@ struct LinkMemory;
 
 class DeviceLink {
   public:
-    // "/bonemill_<session>", a name for shm_open.
+    // Returns "/bonemill_<session>", a name for shm_open.
     static std::string nameOfSession(uint32_t session);
 
-    // Creates or attaches. The memory of dead processes is taken over (a living peer's content is kept, else
-    // it starts empty). Throws UserError: memory that is not ours, a peer built with another layout, this
-    // side already taken by a living process, no permission.
+    // Creates the memory or attaches to it. The memory of dead processes is taken over: a living peer's
+    // content is kept, else it starts empty. Throws UserError when the memory is not ours, the peer was built
+    // with another layout, a living process has taken this side, or there is no permission.
     static DeviceLink create(const std::string& name, LinkSide side);
 
     DeviceLink(DeviceLink&& other) noexcept;
@@ -33,13 +34,14 @@ class DeviceLink {
     // Removes the memory if the peer is gone too.
     ~DeviceLink();
 
-    // Daemon. Publishes and wakes; `sequence` is filled in and returned.
+    // For the daemon: publishes and wakes; `sequence` is filled in and returned.
     uint64_t writeSample(DeviceSample sample) noexcept;
-    // Server. The newest sample, also if it was read before (compare `sequence`). False: none yet, or the
-    // writer died in the middle of one; `sample` is untouched then. Not validated: see isPlausible.
+    // For the server: reads the newest sample, also if it was read before (compare `sequence`). False says
+    // that there is none yet, or that the writer died in the middle of one; `sample` is untouched then.
+    // Nothing is validated here: see isPlausible().
     bool readSample(DeviceSample& sample) noexcept;
-    // Server. Sleeps until there is a sample newer than the last one read (true) or deadline_ns
-    // (CLOCK_MONOTONIC).
+    // For the server: sleeps until there is a sample newer than the last one read (true) or
+    // until deadline_ns (CLOCK_MONOTONIC).
     bool waitForSample(int64_t deadline_ns) noexcept;
 
     // The same in the other direction: the server writes, the daemon reads and waits.
@@ -49,7 +51,7 @@ class DeviceLink {
 
     // Says "this process runs" where there is nothing to write. Every write beats, too.
     void beat(int64_t now_ns) noexcept;
-    // The peer's last beat, CLOCK_MONOTONIC; 0: never.
+    // Returns the peer's last beat, CLOCK_MONOTONIC; 0 if there was none.
     int64_t peerHeartbeatNs() const noexcept;
     int32_t peerPid() const noexcept;  // 0: not attached
     // Asks the kernel whether the peer's process holds its side of the link. Not RT-safe.

@@ -1,4 +1,4 @@
-// Byte layout of the shared memory behind DeviceLink. Only the link and its tests need it.
+// This is the byte layout of the shared memory behind DeviceLink. Only the link and its tests need it.
 //
 // The fields up to `size` and the lock bytes never change, so that programs of different versions can
 // recognise each other. Any other change of this file raises kLinkLayoutVersion.
@@ -17,8 +17,8 @@ namespace bonemill {
 inline constexpr uint64_t kLinkMagic = 0x4b4e494c4c494d42;  // "BMILLINK" in memory
 inline constexpr uint32_t kLinkLayoutVersion = 1;
 
-// Advisory locks (fcntl, per open file) on single bytes of the memory file. The kernel drops them when a
-// process dies, so a held byte means a living process: no pid can be mistaken.
+// These are advisory locks (fcntl, per open file) on single bytes of the memory file. The kernel drops them
+// when a process dies, so that a held byte means a living process: no pid can be mistaken.
 enum LinkLockByte : int64_t { kLockSetup = 0, kLockServer = 1, kLockDaemon = 2 };
 
 struct LinkPeer {

@@ -17,14 +17,14 @@ double progress(int64_t now_ns, int64_t start_ns, int64_t duration_ns) noexcept 
 }  // namespace
 
 double StaleRamp::update(int64_t now_ns, int64_t newest_stamp_ns) noexcept {
-    // Compared without a difference of stamps, which garbage could make overflow.
+    // The stamps are compared without their difference, which garbage could make overflow.
     const bool is_too_old = newest_stamp_ns <= now_ns - config_.stale_after_ns;
     const bool is_stale = is_too_old || newest_stamp_ns > now_ns + config_.stale_after_ns;
     if (is_stale != is_stale_) {
         is_stale_ = is_stale;
         factor_at_start_ = factor_;
-        // Silence began when the stamp grew too old, which may be some time before this call, but after the
-        // last one.
+        // Silence began when the stamp grew too old: maybe some time before this call, but after
+        // the last one.
         const int64_t too_old_at_ns = is_too_old ? newest_stamp_ns + config_.stale_after_ns : now_ns;
         ramp_start_ns_ = is_stale ? std::clamp(too_old_at_ns, std::min(updated_ns_, now_ns), now_ns) : now_ns;
     }

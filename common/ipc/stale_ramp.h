@@ -1,8 +1,8 @@
-// Factor on the force when the peer falls silent: 1 -> 0 linearly once its newest stamp is too old, and
-// smoothly back to 1 when it returns. Continuous in time, whatever interrupts whatever. Starts at 0: force
-// fades in, never jumps in.
+// This is the factor on the force when the peer falls silent. It goes from 1 to 0 linearly once the newest
+// stamp is too old, and smoothly back to 1 when the peer returns. It is continuous in time, whatever
+// interrupts whatever. It starts at 0: force fades in, it never jumps in.
 //
-// RT-safe, one thread. Pure: time comes in as a parameter (CLOCK_MONOTONIC or simulated).
+// It is RT-safe, for one thread, and pure: time comes in as a parameter (CLOCK_MONOTONIC or simulated).
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,9 @@ class StaleRamp {
   public:
     explicit StaleRamp(const StaleRampConfig& config = {}) noexcept : config_(config) {}
 
-    // Once per tick: the factor for this instant. newest_stamp_ns: of the last plausible message; any value
-    // if none ever came (a stamp further ahead than stale_after counts as stale).
+    // Called once per tick, it returns the factor for this instant. newest_stamp_ns is that of the
+    // last plausible message, or any value if none ever came; a stamp farther ahead than stale_after
+    // counts as stale.
     double update(int64_t now_ns, int64_t newest_stamp_ns) noexcept;
 
     double factor() const noexcept { return factor_; }

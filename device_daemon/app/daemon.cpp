@@ -24,7 +24,7 @@ double endTimeOf(const DeviceSetup& setup, const DaemonOptions& options) {
     return std::min(path_end, options.seconds.value_or(kForEver));
 }
 
-// Waits for SIGINT or SIGTERM; false after kWatchPeriodNs without one.
+// Waits for SIGINT or SIGTERM, and returns false after kWatchPeriodNs without one.
 bool waitForSignal() {
     sigset_t signals;
     sigemptyset(&signals);

@@ -1,4 +1,4 @@
-// The device loop in its own real-time thread, and the thread that looks after it.
+// Runs the device loop in its own real-time thread, and looks after it in another.
 #pragma once
 
 #include <atomic>
@@ -14,19 +14,19 @@ namespace bonemill {
 
 class Daemon {
   public:
-    // Throws UserError (session taken, no permission, ...).
+    // Throws UserError when the session is taken or a permission is missing, among others.
     Daemon(const DeviceSetup& setup, const DaemonOptions& options);
 
     // Blocks until the scenario, --seconds or a signal ends it and the force has ramped to zero. SIGINT and
-    // SIGTERM must be blocked in the calling thread. Throws UserError: no real-time scheduling without
-    // --best-effort-rt, nobody answered within --wait-seconds.
+    // SIGTERM must be blocked in the calling thread. Throws UserError when there is no real-time scheduling
+    // and no --best-effort-rt, or when nobody answered within --wait-seconds.
     void run();
 
     const LoopStatistics& statistics() const noexcept { return statistics_; }
 
   private:
-    // Written by the loop, read by the watcher: single values, each complete in itself, so relaxed order is
-    // enough.
+    // The loop writes it and the watcher reads it. Each value is complete in itself, so relaxed
+    // order is enough.
     struct Progress {
         std::atomic<bool> is_attached = false;  // haptic_server has answered a sample of this run
         std::atomic<bool> is_stale = false;

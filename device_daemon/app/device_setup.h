@@ -1,5 +1,5 @@
-// From the scene file to the RT-safe parts of the device: the one place where units and frames change.
-// Start-up only.
+// Makes the RT-safe parts of the device of the scene file, at start-up: the one place where units
+// and frames change.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ struct DeviceSetup {
     DeviceLoopConfig loop;
 };
 
-// Throws UserError: a geometry that cannot be built, a path that leaves the device's workspace.
+// Throws UserError when the geometry cannot be built or the path leaves the device's workspace.
 DeviceSetup deviceSetupOf(const scene::Scene& scene);
 
 }  // namespace bonemill

@@ -1,4 +1,4 @@
-// What the device loop counted, and its one line of JSON.
+// Holds what the device loop counted, and writes it as one line of JSON.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct LoopStatistics {
     std::string final_phase;
 };
 
-// One JSON object on one line, units in the names.
+// Returns one JSON object on one line, with the units in the names.
 std::string jsonLineOf(const LoopStatistics& statistics);
 
 }  // namespace bonemill

@@ -1,4 +1,4 @@
-// Command line of device_daemon.
+// Reads the command line of device_daemon.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace bonemill {
 
-// The core beside the one that haptic_server takes for its tick (the last one); -1 (any) on a single-core
-// machine.
+// Returns the core beside the last one, which haptic_server takes for its tick; -1 (any) on
+// a single-core machine.
 int defaultCore() noexcept;
 
 struct DaemonOptions {
@@ -22,7 +22,7 @@ struct DaemonOptions {
     std::string log_level = "info";
 };
 
-// Empty after --help (already printed). Throws UserError.
+// Returns nothing after --help, which is already printed. Throws UserError.
 std::optional<DaemonOptions> parseOptions(int argc, char** argv);
 
 }  // namespace bonemill

@@ -60,7 +60,7 @@ void AresEmulator::pushBody(double h, const Wrench& drive) noexcept {
     const Eigen::Vector3d pull = hand_.stiffness * (target.X_DT.position - state_.X_DT.position);
     const double damping = plant_.viscous_friction + hand_.damping;
     Eigen::Vector3d momentum = mass * state_.v_DT + h * (drive.force + pull + hand_.damping * target.v_DT);
-    // Implicit Coulomb friction: it takes momentum, at most all of it.
+    // Coulomb friction is implicit: it takes momentum, at most all of it.
     const double friction = h * plant_.coulomb_friction;
     const double size = momentum.norm();
     momentum *= size > friction ? 1 - friction / size : 0.0;

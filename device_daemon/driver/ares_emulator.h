@@ -1,15 +1,15 @@
-// The simulated ARES with a simulated hand on its handle: one coupled dynamic system driven by actuator
-// forces.
+// The simulated ARES with a simulated hand on its handle is one coupled dynamic system driven
+// by actuator forces.
 //
-// Plant: the six amplifiers (first-order pole each) push the sliders; the handle with everything that moves
-// along is one rigid body of isotropic mass and inertia with viscous friction and Coulomb friction against
-// translation; the hand's mass rides on it and its spring and damper pull towards the OperatorPath. Gravity
-// is balanced, as on a counterweighted device. The encoders report slider positions in whole steps.
-// Integrated at 25 kHz or finer (semi-implicit Euler, damping and Coulomb friction implicit, so that the body
-// truly sticks). Leaving the workspace is stopped dead, like running into a mechanical stop.
+// The six amplifiers, each with a first-order pole, push the sliders. The handle with everything that moves
+// along is one rigid body of isotropic mass and inertia, with viscous friction, and with Coulomb friction
+// against translation. The hand's mass rides on it, and its spring and damper pull towards the OperatorPath.
+// Gravity is balanced, as on a counterweighted device. The encoders report slider positions in whole steps.
+// All is integrated at 25 kHz or finer (semi-implicit Euler; damping and Coulomb friction implicit, so that
+// the body truly sticks). Leaving the workspace is stopped dead, like running into a mechanical stop.
 //
-// Deterministic: the same forces give the same motion bit for bit. Not thread-safe; RT-safe after
-// construction.
+// It is deterministic: the same forces give the same motion bit for bit. It is not thread-safe, and
+// RT-safe after construction.
 #pragma once
 
 #include "device_daemon/driver/joint_device.h"
@@ -18,7 +18,7 @@
 
 namespace bonemill {
 
-// Defaults: middle of the ranges of ALGORITHMS (simulated plant).
+// The defaults lie in the middle of what such devices have.
 struct AresPlant {
     double moving_mass = 0.25;        // kg
     double moving_inertia = 1e-4;     // kg·m², about every axis
@@ -29,7 +29,7 @@ struct AresPlant {
     double encoder_step = 5e-6;  // m; 0 is an ideal encoder
 };
 
-// All zero: nobody holds the handle.
+// If all is zero, nobody holds the handle.
 struct HandImpedance {
     double mass = 0.1;               // kg
     double damping = 8;              // N·s/m
@@ -65,12 +65,12 @@ class AresEmulator final : public JointDevice {
     // Moves the plant by dt with these amplifier inputs.
     void advance(double dt, const Vector6d& actuator_forces) noexcept;
 
-    // advance() under the forces applied last, at most kLongestElapsed, then the quantised joints.
+    // Advances under the forces applied last, by kLongestElapsed at most, and returns the quantised joints.
     JointReading readJoints(double elapsed) noexcept override;
     void applyForces(const Vector6d& actuator_forces) noexcept override { held_forces_ = actuator_forces; }
 
-    // Bounds the work of one call after a long pause of the loop; the emulated world stands still for the
-    // rest.
+    // This bounds the work of one call after a long pause of the loop; for the rest the emulated
+    // world stands still.
     static constexpr double kLongestElapsed = 0.05;  // s
 
     const EmulatorState& state() const noexcept { return state_; }

@@ -1,4 +1,4 @@
-// What the device loop needs from a device with six actuators, real or emulated.
+// This is what the device loop needs from a device with six actuators, real or emulated.
 //
 // One thread (the device loop) calls both functions, readJoints() first, once per loop period each. RT-safe.
 #pragma once
@@ -17,10 +17,10 @@ struct JointReading {
 class JointDevice {
   public:
     virtual ~JointDevice() = default;
-    // The joints now. `elapsed`: s since the last call by the loop's own clock; an emulated device lives
-    // through it under the forces applied last.
+    // Returns the joints now. `elapsed` is the time (s) since the last call by the loop's own clock; an
+    // emulated device lives through it under the forces applied last.
     virtual JointReading readJoints(double elapsed) noexcept = 0;
-    // Forces on the sliders (N, positive along +q), held from now until the next call.
+    // Puts these forces on the sliders (N, positive along +q), from now until the next call.
     virtual void applyForces(const Vector6d& actuator_forces) noexcept = 0;
 };
 

@@ -8,8 +8,8 @@
 namespace bonemill {
 namespace {
 
-// Physiological tremor: 8-12 Hz (ALGORITHMS: hand). Incommensurable, so that the axes never move in step for
-// long.
+// Physiological tremor has 8 to 12 Hz. The frequencies are incommensurable, so that the axes never move in
+// step for long.
 constexpr double kTremorFrequencies_hz[3][3] = {{8.3, 9.7, 11.9}, {8.9, 10.3, 11.3}, {8.1, 9.1, 10.9}};
 constexpr double kTremorPhases_rad[3][3] = {{0.3, 1.9, 4.1}, {2.7, 5.3, 0.9}, {4.7, 3.1, 1.3}};
 

@@ -1,9 +1,9 @@
-// Where the simulated hand wants the handle, as a function of the scenario's time.
+// Says where the simulated hand wants the handle, as a function of the scenario's time.
 //
-// Waypoints in frame D; each segment runs along a straight line and one rotation axis with a smoothstep in
-// time (3s² - 2s³: starts and stops at rest). Before the first and after the last waypoint the hand rests
-// there. Optional tremor: three sines per axis between 8 and 12 Hz with fixed phases, so that a run can be
-// repeated. Building allocates; at() is const, RT-safe and thread-safe. Units m, rad, s.
+// Waypoints are in frame D. Each segment runs along a straight line and one rotation axis with a smoothstep
+// in time (3s² - 2s³), which starts and stops at rest. Before the first and after the last waypoint the hand
+// rests there. Tremor, if wanted, is three sines per axis between 8 and 12 Hz with fixed phases, so that a
+// run can be repeated. Building allocates; at() is const, RT-safe and thread-safe. Units are m, rad, s.
 #pragma once
 
 #include <cstdint>
@@ -29,11 +29,11 @@ struct HandTarget {
 
 class OperatorPath {
   public:
-    // No waypoint: the hand rests at D's origin for ever. `tremor` is the largest deflection per axis.
+    // Without a waypoint the hand rests at D's origin for ever. `tremor` is the largest deflection per axis.
     explicit OperatorPath(std::vector<Waypoint> waypoints = {}, double tremor = 0);
 
     HandTarget at(double t) const noexcept;
-    // Time of the last waypoint; 0 without waypoints.
+    // Returns the time of the last waypoint; 0 without waypoints.
     double duration() const noexcept { return waypoints_.empty() ? 0 : waypoints_.back().time; }
 
   private:

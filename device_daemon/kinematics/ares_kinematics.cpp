@@ -115,7 +115,7 @@ Wrench wrenchOf(const Matrix6d& J_inv, const Vector6d& actuator_forces) noexcept
 double singularityIndex(const Matrix6d& J_inv) noexcept {
     Matrix6d scaled = J_inv;
     scaled.rightCols<3>() /= kConditioningLength;
-    // Singular values as roots of the Gram matrix' eigenvalues: exact enough above an index of 1e-7.
+    // The singular values are roots of the Gram matrix' eigenvalues: exact enough above an index of 1e-7.
     const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled.transpose() * scaled, Eigen::EigenvaluesOnly);
     const double smallest = std::max(0.0, solver.eigenvalues()[0]);
     return std::sqrt(smallest / solver.eigenvalues()[5]);

@@ -1,8 +1,9 @@
-// One period of the device loop, without processes, threads or clocks: joints -> pose -> DeviceSample, and
-// WrenchCommand -> limits -> actuator forces. The limits, and their order, stand in safety/force_limiter.h.
+// This is one period of the device loop, without processes, threads or clocks: joints -> pose ->
+// DeviceSample, and WrenchCommand -> limits -> actuator forces. The limits, and their order,
+// stand in safety/force_limiter.h.
 //
-// Order per period: read() first and the sample out at once, then write() with the newest command. The
-// command then answers an earlier sample, so the loop has the one tick of delay that a real device has. Time
+// In a period read() comes first, and the sample goes out at once; then write() takes the newest command. The
+// command so answers an earlier sample, and the loop has the one tick of delay that a real device has. Time
 // comes in as a parameter: the same class runs in device_daemon and in simulated time. RT-safe, one thread.
 #pragma once
 
@@ -24,27 +25,27 @@ class DeviceLoop {
     DeviceLoop(const AresKinematics& kinematics, JointDevice& device, const DeviceLoopConfig& config,
                const Pose& start) noexcept;
 
-    // Reads the joints, `elapsed` s after the last period; the stamp is left to the caller. False: no pose
-    // fits the joints, and there is nothing to publish.
+    // Reads the joints, `elapsed` s after the last period; the stamp is left to the caller. False says that
+    // no pose fits the joints, and there is nothing to publish.
     bool read(double elapsed, DeviceSample& sample) noexcept;
 
-    // Applies the newest command (null: none yet). Commands that are not plausible count as silence.
+    // Applies the newest command, or null if there is none yet. What is not plausible counts as silence.
     void write(const WrenchCommand* newest, int64_t now_ns) noexcept;
 
-    // From now on every command is ignored and the force ramps to zero; isReleased() says that it arrived
-    // there.
+    // From now on every command is ignored and the force ramps to zero; isReleased() says that
+    // it arrived there.
     void release() noexcept { limiter_.release(); }
     bool isReleased() const noexcept { return limiter_.isReleased(); }
 
     bool isPeerStale() const noexcept { return limiter_.isStale(); }
-    // The handle's pose that was last found.
+    // Returns the handle's pose that was last found.
     const Pose& pose() const noexcept { return X_DT_; }
-    // Those last applied, and the wrench on the hand that they make, in D.
+    // Return the forces last applied, and the wrench on the hand that they make, in D.
     const Vector6d& actuatorForces() const noexcept { return actuator_forces_; }
     const Wrench& appliedWrench() const noexcept { return applied_wrench_; }
-    // ForceLimitEvent bits of the last write().
+    // Returns the ForceLimitEvent bits of the last write().
     uint32_t limitEvents() const noexcept { return limiter_.events(); }
-    // How often read() returned false.
+    // Tells how often read() returned false.
     uint64_t failedPoses() const noexcept { return failed_poses_; }
 
   private:

@@ -1,4 +1,4 @@
-// The last stop before the motors: all limits on what the hand feels of a command, in this order.
+// The last stop before the motors has all limits on what the hand feels of a command, in this order.
 //
 // 1. Finite. A wrench or a Jacobian that is not usable makes no force: the wanted forces are zero. This comes
 //    first, because what is not a number can be compared with no limit.
@@ -12,7 +12,7 @@
 //    max_actuator_force over the ramp's time (1000 N/s as shipped) together.
 //
 // Each scales by one factor over all six actuators, so that no limit but the rate turns the wrench's
-// direction: the hand then feels too little, not something else. RT-safe, one thread. Units N, N·m, s.
+// direction: the hand then feels too little, not something else. RT-safe, one thread. Units are N, N·m, s.
 #pragma once
 
 #include "common/ipc/stale_ramp.h"
@@ -22,13 +22,13 @@ namespace bonemill {
 
 struct ForceLimits {
     double max_actuator_force = 50;  // N per actuator
-    // N/s per actuator. The steepest honest demand is the coupling's: 3 N/mm at its speed limit of 0.5 m/s is
-    // 1500 N/s on the handle, about as much per actuator; this is several times more, and still takes 5 ms to
-    // full force.
+    // N/s per actuator. The steepest honest demand is the coupling's: 3 N/mm at its speed limit of 0.5 m/s
+    // is 1500 N/s on the handle, about as much per actuator; this is several times more, and still takes 5
+    // ms to full force.
     double max_actuator_force_rate = 10000;
 };
 
-// What the limiter did (bit mask).
+// Says what the limiter did (bit mask).
 enum ForceLimitEvent : uint32_t {
     kForceNotLimited = 0,
     kForceNotFinite = 1u << 0,  // the forces go to zero as fast as the rate allows
@@ -41,13 +41,13 @@ class ForceLimiter {
     explicit ForceLimiter(const ForceLimits& limits = {}, const StaleRampConfig& stale = {}) noexcept
         : limits_(limits), stale_(stale), ramp_(stale) {}
 
-    // The newest command: a wrench on the hand, in D about T's origin, and when it was computed.
+    // Takes the newest command: a wrench on the hand, in D about T's origin, and when it was computed.
     void take(const Wrench& wrench_hand_D, int64_t stamp_ns) noexcept;
     // From now on every command counts as silence, and the forces ramp to zero.
     void release() noexcept { is_releasing_ = true; }
 
-    // Once per period: actuator forces for the newest command, dt after the last call. Null: there is no
-    // usable pose. The result is always finite, and never beyond max_actuator_force.
+    // Called once per period, dt after the last call, it returns the actuator forces for the newest command.
+    // J_inv is null without a usable pose. The result is always finite, and never beyond max_actuator_force.
     Vector6d forces(const Matrix6d* J_inv, int64_t now_ns, double dt) noexcept;
 
     bool isStale() const noexcept { return ramp_.isStale(); }

@@ -13,8 +13,8 @@ struct GradientConfig {
     EnergyCouplingConfig coupling;
     double max_speed = 0.5;            // m/s of the tool point
     double max_angular_speed = 4.189;  // rad/s
-    // In a tick, about: one point's distance, energy and wrench at one pose. A quarter as many candidates
-    // have room.
+    // So many points may be tested in a tick, about; a test is one point's distance, energy and wrench at one
+    // pose. A quarter as many candidates have room.
     size_t most_point_tests = 2'000'000;
 };
 

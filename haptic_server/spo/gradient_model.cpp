@@ -7,17 +7,17 @@
 namespace bonemill {
 namespace {
 
-// Rotations are measured in this length so that the matrix's rows have one unit; the handle's and the tool's
-// size.
+// Rotations are measured in this length, the size of handle and tool, so that the matrix's rows
+// have one unit.
 constexpr double kRotationLength = 0.03;  // m
 constexpr double kSmallestReach = 1e-9;   // m: a shorter step is no step
 constexpr double kLeastMargin = 20e-6;    // m: what a hand moves in a millisecond when it works
 constexpr double kMotionGrowth = 2;       // of the reach from tick to tick
 constexpr int kMostCuts = 4;              // of a step that goes uphill
-// Of its length what is left by one cut: a step that goes deep into a hard wall needs short ones.
+// One cut leaves so much of a step's length: one that goes deep into a hard wall must become short.
 constexpr double kLongestCut = 0.5, kShortestCut = 0.05;
 constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;
-// Rounding of the depths must not refuse a step: their share of the energy, some 10 roundings each.
+// Rounding of the depths must not refuse a step. It makes this share of the energy, some 10 roundings each.
 constexpr double kFloatNoise = 1e-6, kDoubleNoise = 1e-13;
 // A new tool grows by this much per time, m/s, which the hand feels as less than its coupling times that,
 // and only while it is not deeper in the bone than this share of its thinnest radius: squeezed more than that
@@ -43,14 +43,14 @@ Vector6d stacked(const Wrench& wrench) noexcept {
     return w;
 }
 
-// Share of `step` that keeps so_far + step within `most`.
+// Returns the share of `step` that keeps so_far + step within `most`.
 double shareOf(double most, const Eigen::Vector3d& so_far, const Eigen::Vector3d& step) noexcept {
     if ((so_far + step).norm() <= most) return 1;
     return std::max(0.0, most - so_far.norm()) / step.norm();
 }
 
-// Of a step along which the energy first falls by `slope` per share, and after `share` of it has risen by
-// `rise`: where the parabola through all that is lowest, but not before the deepest contact of then, which is
+// Along a step the energy first falls by `slope` per share, and after `share` of it has risen by `rise`. This
+// returns where the parabola through all that is lowest, but not before the deepest contact of then, which is
 // deeper by `deeper` of the way, must have begun.
 double shareAtMinimum(double slope, double share, double rise, double deeper) noexcept {
     const double at = slope * share * share / (2 * (rise + slope * share));
@@ -118,9 +118,9 @@ void GradientModel::useTool() noexcept {
     field_ = growing_.offset() > 0 ? static_cast<const ToolField*>(&growing_) : &whole;
 }
 
-// So much smaller that it is not deeper in the bone than the last tool was. A tool whose surroundings are
-// inside of it would otherwise find its way on into the solid bone, where there is no surface to push it
-// back.
+// Makes the new tool so much smaller that it is not deeper in the bone than the last one was. A tool whose
+// surroundings are inside of it would otherwise find its way on into the solid bone, where there is no
+// surface to push it back.
 void GradientModel::fitTool(const Tick& tick) noexcept {
     is_new_tool_ = false;
     growing_.setOffset(0);
@@ -191,7 +191,7 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
     return state;
 }
 
-// Gauss-Newton: (K + λ D) step = wrench in scaled rotations; zero if the matrix cannot be factored.
+// Solves (K + λ D) step = wrench (Gauss-Newton) in scaled rotations; zero if the matrix cannot be factored.
 Vector6d GradientModel::newtonStep(const State& state) const noexcept {
     const Vector6d scale = rotationScale();
     Matrix6d K = scale.asDiagonal() * state.total.stiffness * scale.asDiagonal();
@@ -205,8 +205,8 @@ Vector6d GradientModel::newtonStep(const State& state) const noexcept {
     return step.allFinite() ? step : Vector6d::Zero();
 }
 
-// The step within the speed limits over the whole tick. A turn that has to be shorter leaves the translation
-// what is best with that turn: a hand that turns too quickly does not hold the tool's place back.
+// Returns the step within the speed limits over the whole tick. A turn that has to be shorter leaves the
+// translation what is best with that turn: a hand that turns too quickly does not hold the tool's place back.
 Vector6d GradientModel::withinSpeed(const State& state, const Vector6d& newton,
                                     const Tick& tick) const noexcept {
     const Vector6d so_far = between(tick.X_VT_start, state.X_VT);
@@ -225,8 +225,8 @@ Vector6d GradientModel::withinSpeed(const State& state, const Vector6d& newton,
     return is_downhill ? step : Vector6d(std::min(turn, move) * newton);
 }
 
-// Within the speed limits, then either the sweep (continuous collision) or the trust radius around the place
-// where the candidates were gathered. There the whole twist is scaled by one factor.
+// Limits the step to the speeds, then either to the sweep (continuous collision) or to the trust radius
+// around the place where the candidates were gathered. There one factor scales the whole twist.
 Vector6d GradientModel::limited(const State& state, const Vector6d& newton, const Tick& tick) noexcept {
     const Vector6d step = withinSpeed(state, newton, tick);
     const auto room = [&] { return contact_.margin() - reachOf(between(X_VT_gathered_, state.X_VT)); };
@@ -243,7 +243,7 @@ Vector6d GradientModel::limited(const State& state, const Vector6d& newton, cons
     return step * std::max(0.0, room() / reachOf(step));
 }
 
-// Takes the step, or a part of it for which the energy falls. False: no such share; the state stays.
+// Takes the step, or a part of it for which the energy falls. False: there is no such part, the state stays.
 bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept {
     const double noise = settings_.precision == Precision::kDouble ? kDoubleNoise : kFloatNoise;
     const double slope = stacked(state.total.wrench).dot(step);
@@ -274,8 +274,8 @@ void GradientModel::goOn(State& state, const Tick& tick) noexcept {
     if (!motion.isZero(0) && reachOf(motion) < reachOf(newtonStep(state))) moveDown(state, motion, tick);
 }
 
-// Gauss-Newton steps as long as they help and there is time. False: not finite, or a matrix without factors;
-// the state is the last good one.
+// Makes Gauss-Newton steps as long as they help and there is time. False: something is not finite, or a
+// matrix has no factors; the state is the last good one.
 bool GradientModel::descend(State& state, const Tick& tick) noexcept {
     if (!state.isFinite()) return false;
     for (int n = 0; n < settings_.iterations; ++n) {
@@ -329,7 +329,7 @@ SpoStep GradientModel::advance(const Pose& X_VT, const Pose& X_VT_device) noexce
     return out;
 }
 
-// The pose and what the hand gets of it.
+// Tells the pose, and what the hand gets of it.
 void GradientModel::feel(const Pose& X_VT, const Tick& tick) noexcept {
     tick.out->X_VT = X_VT;
     tick.out->wrench_hand_V = couplingWrenchOnDevice(coupling_, X_VT, tick.X_VT_device, way_) +

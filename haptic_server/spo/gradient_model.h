@@ -1,6 +1,7 @@
-// The default: the tool's pose minimises contact energy + coupling energy + damping against the last pose, by
-// a few Gauss-Newton steps with Cholesky factors, Levenberg damping, a trust radius and a line search.
-// The energy never rises inside a tick, so no contact situation can make the tool diverge; docs/stability.md.
+// The default law: the tool's pose minimises contact energy + coupling energy + damping against
+// the last pose, by a few Gauss-Newton steps with Cholesky factors, Levenberg damping, a trust
+// radius and a line search. The energy never rises inside a tick, so that no contact can make the
+// tool diverge (docs/stability.md).
 #pragma once
 
 #include "haptic_server/contact/gradient_contact.h"
@@ -25,12 +26,12 @@ class GradientModel final : public SpoModel {
     size_t listContacts(std::span<SurfaceContact> out) noexcept override;
 
     size_t mostCandidates() const noexcept { return contact_.room(); }
-    // J of the last advance(): all energy of the solve, damping included, at its final pose. For tests and
-    // reports.
+    // Returns all energy (J) of the last advance() at its final pose, damping included, for
+    // tests and reports.
     double energy() const noexcept { return energy_; }
 
   private:
-    // Everything at one pose.
+    // All that is computed at one pose.
     struct State {
         Pose X_VT;
         EnergyTerm total;

@@ -8,8 +8,8 @@ namespace bonemill {
 class SolveEnergy {
   public:
     virtual ~SolveEnergy() = default;
-    // At this pose of the tool. Within a tick one fixed function, bounded from below; its stiffness positive
-    // semi-definite. RT-safe; tick thread only.
+    // Returns the energy at this pose of the tool. Within a tick it is one fixed function, bounded from
+    // below, with a positive semi-definite stiffness. RT-safe; tick thread only.
     virtual EnergyTerm at(const Pose& X_VT) const noexcept = 0;
 };
 

@@ -14,24 +14,25 @@
 
 namespace bonemill {
 
-// The bone that the tool meets; references to what lives at least as long as the model.
+// The bone that the tool meets. All of it lives at least as long as the model.
 struct SpoWorld {
     const VoxelVolume& volume;
     const LeafLattice& lattice;
     const PointShell& shell;
 };
 
-// Of one tick, in V.
+// The outcome of one tick, in V.
 struct SpoStep {
-    Pose X_VT;             // of the simulated tool after the tick
-    Wrench wrench_hand_V;  // on the hand about the tool point that it holds, before the limits of what it may
-                           // feel
+    Pose X_VT;  // of the simulated tool after the tick
+    // On the hand about the tool point that it holds, before the limits of what it may feel.
+    Wrench wrench_hand_V;
     uint32_t contacts = 0;
     uint32_t candidates = 0;  // points that were tested in each iteration
     uint32_t iterations = 0;
     double budget_share = 0;     // of the point tests that a tick may make
     double max_penetration = 0;  // m
-    // False: no finite equilibrium was found. The tool is at its last good pose, and the wrench says nothing.
+    // False says that no finite equilibrium was found: the tool is at its last good pose, the
+    // wrench says nothing.
     bool is_solved = true;
     bool is_motion_clamped = false;  // a speed limit or the trust radius acted
     // Forces that can be felt are out of balance, and no step was found that helps.
@@ -43,24 +44,23 @@ struct SpoStep {
 class SpoModel {
   public:
     virtual ~SpoModel() = default;
-    // One tick of length dt: the tool is at X_VT, and the hand holds it at X_VT_device. RT-safe; tick thread
-    // only.
+    // Does one tick of length dt: the tool is at X_VT, and the hand holds it at X_VT_device. RT-safe;
+    // tick thread only.
     virtual SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept = 0;
-    // Forgets what it remembers of earlier ticks; called when the tool is placed anew or the model becomes
-    // active.
+    // Forgets earlier ticks. It is called when the tool is placed anew and when the model becomes active.
     virtual void restart() noexcept = 0;
     // Takes effect with the next advance(). RT-safe; tick thread only.
     virtual void setAccuracy(const AccuracySettings& settings) noexcept = 0;
-    // Another tool at the same pose; takes effect with the next advance(). RT-safe; tick thread only.
+    // Gives another tool at the same pose; takes effect with the next advance(). RT-safe; tick thread only.
     virtual void setTool(const SpoTool& tool) noexcept = 0;
-    // What effects add; null: nothing. Only the gradient law has room for them.
+    // Takes what effects add; null adds nothing. Only the gradient law has room for them.
     virtual void setEffects(ContactWeights*, SolveEnergy*) noexcept {}
-    // Where the tool at the last advance()'s end touches the bone, as many as `out` has room for; returns how
-    // many. RT-safe; tick thread only.
+    // Lists where the tool touches the bone at the end of the last advance(), as many as `out` has room for,
+    // and returns how many. RT-safe; tick thread only.
     virtual size_t listContacts(std::span<SurfaceContact>) noexcept { return 0; }
 };
 
-// The shell level of these settings: their factor's, or the first level if that was not built.
+// Returns the shell level of these settings: their factor's, or the first level if that was not built.
 inline int levelOf(const PointShell& shell, const AccuracySettings& settings) noexcept {
     const int level = shell.levelOf(settings.shell_factor);
     return level < 0 ? 0 : level;

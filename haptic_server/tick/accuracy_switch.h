@@ -1,4 +1,4 @@
-// From other threads to the tick: compute with these accuracy settings from now on.
+// With this other threads tell the tick to compute with other accuracy settings from now on.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace bonemill {
 
-// A fixed choice: what the scene says, and the presets.
+// The choice is fixed: what the scene says, and the presets.
 class AccuracySwitch {
   public:
     static constexpr size_t kSceneChoice = 0;
@@ -20,7 +20,7 @@ class AccuracySwitch {
 
     static constexpr size_t choiceOf(Preset preset) noexcept { return 1 + size_t(preset); }
 
-    // Any thread. Relaxed is enough: the choices themselves never change.
+    // Any thread may call both. Relaxed is enough, for the choices themselves never change.
     void choose(size_t choice) noexcept { choice_.store(choice, std::memory_order_relaxed); }
     const AccuracySettings& chosen() const noexcept {
         return choices_[choice_.load(std::memory_order_relaxed)];

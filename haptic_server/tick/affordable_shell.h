@@ -1,5 +1,5 @@
-// Which of the shell's levels there is time for: the one asked for, or a coarser one when the points near the
-// tool are too many for a tick. RT-safe; tick thread only.
+// Finds the level of the shell that there is time for: the one asked for, or a coarser one when the points
+// near the tool are too many for a tick. RT-safe; tick thread only.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@ namespace bonemill {
 
 class AffordableShell {
   public:
-    // Ticks of dt seconds.
+    // A tick takes dt seconds.
     explicit AffordableShell(double dt) noexcept : ticks_of_quiet_(int(kQuiet / dt)) {}
 
-    // After a tick at the factor `in_force`: the one to compute with, or to prepare. From a coarser level
-    // than asked for it goes on to the next finer one when that could have been afforded twice over for a
-    // second.
+    // After a tick at the factor `in_force`, returns the one to compute with, or to prepare. From a coarser
+    // level than asked for it goes on to the next finer one when that could have been afforded twice over
+    // for a second.
     int factor(const PointShell& shell, int asked_for, int in_force, const SpoStep& step) noexcept {
         if (step.has_contact_overflow) finest_ = nextCoarser(shell, in_force);
         if (finest_ <= asked_for) finest_ = 1;
@@ -35,7 +35,7 @@ class AffordableShell {
   private:
     static constexpr double kQuiet = 1;  // s
 
-    // The same if there is none.
+    // Both return the same factor if there is none.
     static int nextCoarser(const PointShell& shell, int factor) noexcept {
         int next = INT_MAX;
         for (int level = 0; level < shell.levelCount(); ++level)

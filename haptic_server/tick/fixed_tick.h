@@ -1,4 +1,4 @@
-// A tick with one tool and one accuracy: nobody chooses others.
+// This tick has one tool and one accuracy; nobody chooses others.
 #pragma once
 
 #include "haptic_server/tick/haptic_tick.h"
@@ -7,14 +7,14 @@ namespace bonemill {
 
 class FixedTick {
   public:
-    // As HapticTick's; config.tool.model must outlive this object.
+    // Does as HapticTick's constructor. The tool's model must outlive this object.
     FixedTick(const FixedTickConfig& config, BoneModel& bone, BoneHistory* history = nullptr)
         : tools_({config.tool}),
           accuracy_(config.accuracy),
           tick_(config, {bone, history}, {tools_, accuracy_}) {}
 
     bool tick(TickIo& io) noexcept { return tick_.tick(io); }
-    // To the end of the input.
+    // Goes on to the end of the input.
     void run(TickIo& io) noexcept {
         while (tick_.tick(io)) {
         }

@@ -1,4 +1,4 @@
-// What the hand may feel: all limits between the computed wrench and the one that is sent, in this order.
+// Here are all limits between the computed wrench and the one that the hand feels, in this order.
 //
 // 1. Something to send. A tick without an equilibrium, or with a wrench that is not finite, has nothing to
 //    say. The hand then gets the last wrench that it got, faded to nothing within kFade. This comes first,
@@ -14,8 +14,8 @@
 //    sent, whatever was computed. The rate does not see it, for it would take the ramp for a change of the
 //    wrench.
 //
-// All wrenches and poses are in V, torques about the tool point that the hand holds. RT-safe; tick thread
-// only.
+// All wrenches and poses are in V, torques about the tool point that the hand holds. RT-safe;
+// tick thread only.
 #pragma once
 
 #include <algorithm>
@@ -59,11 +59,11 @@ class HandLimits {
     HandLimits(const HandLimitsConfig& config, const HandSpring& spring, double dt) noexcept
         : config_(config), spring_(spring), dt_(dt) {}
 
-    // What is felt changes at one stroke from now on.
+    // Says that what is felt changes at one stroke from now on.
     void beginSuddenChange() noexcept { quiet_for_ = 0; }
     bool isChangeOver() const noexcept { return quiet_for_ > kQuiet; }
 
-    // Once per tick: the wrench to send.
+    // Called once per tick, it returns the wrench to send.
     Wrench limit(const FeltStep& step) noexcept {
         was_limited_ = false;
         Wrench wrench = step.is_solved && step.wrench_V.isFinite() ? allowed(step) : faded(step);
@@ -74,7 +74,7 @@ class HandLimits {
         wrench.torque *= factor;
         return wrench;
     }
-    // The last wrench was beyond the norms, or not finite.
+    // Tells whether the last wrench was beyond the norms, or not finite.
     bool wasLimited() const noexcept { return was_limited_; }
 
   private:
@@ -113,7 +113,7 @@ class HandLimits {
             approach(last_.torque, kTorqueRate * dt_ + turned + spring_.lever * moved, wrench.torque);
         quiet_for_ = is_whole ? quiet_for_ + dt_ : 0;
     }
-    // No farther from `last` than `most`. False: that cut it short.
+    // Brings the value no farther from `last` than `most`. False says that this cut it short.
     static bool approach(const Eigen::Vector3d& last, double most, Eigen::Vector3d& value) noexcept {
         const Eigen::Vector3d change = value - last;
         const double size = change.norm();

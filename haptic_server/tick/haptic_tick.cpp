@@ -20,11 +20,12 @@ Eigen::Vector4d wxyz(const Eigen::Quaterniond& q) noexcept {
 
 constexpr double kQuaternionNormSlack = 1e-2;
 constexpr double kFarthest = 1e3;  // m from W's origin: beyond any scan, and squares stay finite
-// Beside the old settings' own work, after the force: full of surface, a leaf of 16³ cells takes some 0.1 ms,
-// a thesis' leaf of 32³ up to 0.4 ms. Only leaves that were milled or restored since are stale.
+// New settings are prepared beside the old ones' work, after the force went out. A leaf of 16³ cells that is
+// full of surface takes some 0.1 ms, a thesis' leaf of 32³ up to 0.4 ms. Only leaves that were milled or
+// restored since are stale.
 constexpr int kLeavesPreparedPerTick = 1;
 
-// As stiff as the quicker of the two laws.
+// It is as stiff as the quicker of the two laws.
 HandSpring handSpringOf(const TickConfig& config) noexcept {
     const EnergyCouplingConfig& gradient = config.gradient.coupling;
     return {

@@ -1,6 +1,6 @@
-// One cycle of the haptic loop: read → pose → contact → solve → limit → write → mill → refresh shell → push
-// telemetry; the effects of the scene act in between (effects/haptic_effect.h). The same tick runs behind the
-// device link in real time and in `simulate` without it.
+// A tick is one cycle of the haptic loop: read → pose → contact → solve → limit → write → mill → refresh
+// shell → push telemetry. The effects of the scene act in between (effects/haptic_effect.h). The same tick
+// runs behind the device link in real time, and in `simulate` without it.
 //
 // Inside there is one frame, V. What comes in is converted in acceptPose(), what goes out in write and
 // record; SPO models, effects and limits know no other frame.
@@ -38,16 +38,16 @@ class HapticTick {
   public:
     HapticTick(const HapticTick&) = delete;
     HapticTick& operator=(const HapticTick&) = delete;
-    // Keeps the references; allocates the scratch memory of contact and milling; from now on the bone's shell
-    // follows the level of the settings in force.
+    // Keeps the references and allocates the scratch memory of contact and milling. From now on the bone's
+    // shell follows the level of the settings in force.
     HapticTick(const TickConfig& config, const TickBone& bone, const TickChoices& choices);
 
-    // One tick; RT-safe. False when io.read() said stop. Sets the RtScope guard around its work.
+    // Does one tick; false when io.read() said stop. RT-safe; sets the RtScope guard around its work.
     bool tick(TickIo& io) noexcept;
 
-    // Latched faults of all ticks so far (any bits of TickFault). Tick thread only.
+    // Returns the faults of all ticks so far (bits of TickFault). Tick thread only.
     uint32_t latchedFaults() const noexcept { return latched_faults_; }
-    // Of the simulated tool after the last tick.
+    // Returns the pose of the simulated tool after the last tick.
     Pose X_WT() const noexcept { return X_WV_ * X_VT_; }
 
   private:

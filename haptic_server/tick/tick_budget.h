@@ -1,5 +1,5 @@
-// How much a tick may do: fixed at the start, in things counted and not in time, so that a replay does the
-// same.
+// How much a tick may do is fixed at the start, in things counted and not in time, so that a replay
+// does the same.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace bonemill {
 
-// Of the gradient law and of milling, at what they cost on a plain PC (docs/measurements.md). The thesis' law
-// has only its room for contact points.
+// The budget of the gradient law and of milling, by what they cost on a plain PC (docs/measurements.md). The
+// thesis' law has only its room for contact points.
 struct TickBudget {
     static constexpr double kPointTest = 5e-9, kMilledCell = 4e-9;   // s
     static constexpr double kForceShare = 0.5, kMillingShare = 0.3;  // the rest is for all else

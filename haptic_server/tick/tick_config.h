@@ -27,7 +27,7 @@ struct FixedTickConfig : TickConfig {
     SpoTool tool;
     AccuracySettings accuracy;
 
-    // Of that tool in the gradient law.
+    // Returns what couples that tool in the gradient law.
     EnergyCoupling toolCoupling() const noexcept { return {gradient.coupling, tool.saturation_force}; }
 };
 

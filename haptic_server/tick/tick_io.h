@@ -1,4 +1,4 @@
-// Where a tick's input comes from and where its output goes: all that who drives a tick has to know of it.
+// Says where a tick's input comes from and where its output goes: all that who drives a tick must know of it.
 #pragma once
 
 #include <cstdint>
@@ -20,19 +20,19 @@ struct DeviceInput {
     int64_t wakeup_latency_ns = 0;
 };
 
-// What a tick talks to. Implementations are RT-safe: no allocation, lock or system call beyond the wait in
-// read().
+// A tick talks to this. Implementations are RT-safe: they make no allocation, lock or system call beyond the
+// wait in read().
 class TickIo {
   public:
     virtual ~TickIo() = default;
-    // Waits for the next tick. False: stop.
+    // Waits for the next tick. False says stop.
     virtual bool read(DeviceInput& input) noexcept = 0;
-    // Sends the wrench on the hand (axes W, about the tool point that the hand holds) and returns the time
-    // then, ns.
+    // Sends the wrench on the hand, in axes W about the tool point that the hand holds, and returns the
+    // time then (ns).
     virtual int64_t write(const Wrench& wrench_hand_W) noexcept = 0;
-    // End of the tick's work: now in ns.
+    // Is called at the end of the tick's work, and returns the time (ns).
     virtual int64_t now() noexcept = 0;
-    // Never blocks: full means dropped and counted.
+    // Never blocks; what finds no room is dropped and counted.
     virtual void push(const TickRecord& record) noexcept = 0;
 };
 

@@ -1,4 +1,4 @@
-// From other threads to the tick: work with this tool from now on.
+// With this other threads tell the tick to work with another tool from now on.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 
 namespace bonemill {
 
-// Fixed tools, all built at the start; at least one. Their models must outlive the switch.
+// The tools, at least one, are all built at the start. Their models must outlive the switch.
 class ToolSwitch {
   public:
     explicit ToolSwitch(std::vector<SpoTool> tools, size_t first = 0)
         : tools_(std::move(tools)), choice_(first) {}
 
-    // Any thread; index < count(). Relaxed is enough: the tools themselves never change.
+    // Any thread may call both; index < count(). Relaxed is enough, for the tools themselves never change.
     void choose(size_t index) noexcept { choice_.store(index, std::memory_order_relaxed); }
     size_t chosen() const noexcept { return choice_.load(std::memory_order_relaxed); }
 
