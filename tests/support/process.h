@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,5 +44,9 @@ Finished run(const std::vector<std::string>& arguments);
 
 void writeFile(const std::string& path, const std::string& content);
 std::string readFile(const std::string& path);
+
+// Looks again and again until the condition holds. False when it never did: the limit only ends a test that
+// hangs.
+bool waitFor(const std::function<bool()>& condition, std::chrono::seconds limit = std::chrono::seconds(100));
 
 }  // namespace bonemill::test

@@ -4,13 +4,10 @@
 #include <unistd.h>
 
 #include <sstream>
-#include <thread>
 
 #include "tests/support/places.h"
 
 namespace bonemill::test {
-
-using namespace std::chrono_literals;
 
 Words joined(Words words, const Words& more) {
     words.insert(words.end(), more.begin(), more.end());
@@ -92,15 +89,6 @@ nlohmann::json NetworkSession::stopServer() {
     const Finished finished = server_->wait();
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
     return nlohmann::json::parse(readFile(folder_ / "report.json"));
-}
-
-bool NetworkSession::waitFor(const std::function<bool()>& condition, std::chrono::seconds limit) {
-    const auto deadline = std::chrono::steady_clock::now() + limit;
-    while (!condition()) {
-        if (std::chrono::steady_clock::now() > deadline) return false;
-        std::this_thread::sleep_for(20ms);
-    }
-    return true;
 }
 
 bool NetworkSession::isWhole(const Process& probe) {

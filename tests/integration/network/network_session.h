@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -35,8 +34,6 @@ class NetworkSession : public testing::Test {
     // Stops the server; its report.
     nlohmann::json stopServer();
 
-    static bool waitFor(const std::function<bool()>& condition,
-                        std::chrono::seconds limit = std::chrono::seconds(30));
     static bool isWhole(const Process& probe);
     // All of them show the same whole model.
     static bool agree(const std::vector<const Process*>& probes);

@@ -1,8 +1,5 @@
-// A viewer without a picture. Prints one JSON line every 100 ms: what it shows, and how old that ever was.
+// A viewer without a picture. Prints one JSON line every 100 ms: what it shows.
 //   probe_viewer --session N [--domain D] [--profile ...] [--interface ...] [--peer ...]
-// longest_age_ms: of the tool state, since the first one; the server's clock and this one's are the same (one
-// PC). longest_behind_ms: without the whole model of the newest status, since it was whole for the first
-// time.
 #include <cinttypes>
 #include <cstdio>
 #include <iostream>
@@ -24,9 +21,7 @@ class Probe {
     void run() {
         for (Clock::time_point due = Clock::now();;) {
             subscriber_.waitForData(10ms);
-            measure();  // what was shown until now
             changes_ += subscriber_.poll().nodes.size();
-            if (subscriber_.isComplete()) whole_since_ = Clock::now();
             if (Clock::now() < due) continue;
             due = Clock::now() + 100ms;
             print();
@@ -34,31 +29,16 @@ class Probe {
     }
 
   private:
-    void measure() {
-        using std::chrono::milliseconds;
-        if (subscriber_.toolState()) {
-            const auto now = std::chrono::system_clock::now().time_since_epoch();
-            const auto age = now - std::chrono::nanoseconds(subscriber_.toolState()->stamp_ns());
-            longest_age_ = std::max(longest_age_, std::chrono::round<milliseconds>(age));
-        }
-        if (whole_since_)
-            longest_behind_ =
-                std::max(longest_behind_, std::chrono::round<milliseconds>(Clock::now() - *whole_since_));
-    }
     void print() const {
         std::printf("{\"complete\":%s,\"server\":%s,\"nodes\":%u,\"digest\":\"%016" PRIx64
-                    "\",\"changes\":%zu,\"longest_age_ms\":%lld,\"longest_behind_ms\":%lld}\n",
+                    "\",\"changes\":%zu}\n",
                     subscriber_.isComplete() ? "true" : "false", subscriber_.hasServer() ? "true" : "false",
-                    subscriber_.digest().count(), subscriber_.digest().value(), changes_,
-                    static_cast<long long>(longest_age_.count()),
-                    static_cast<long long>(longest_behind_.count()));
+                    subscriber_.digest().count(), subscriber_.digest().value(), changes_);
         std::fflush(stdout);
     }
 
     SceneSubscriber subscriber_;
     size_t changes_ = 0;
-    std::optional<Clock::time_point> whole_since_;
-    std::chrono::milliseconds longest_age_{0}, longest_behind_{0};
 };
 
 }  // namespace

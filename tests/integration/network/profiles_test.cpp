@@ -8,6 +8,7 @@ namespace {
 using test::Host;
 using test::joined;
 using test::Process;
+using test::waitFor;
 using test::Words;
 
 class Profiles : public test::NetworkSession {
