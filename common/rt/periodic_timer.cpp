@@ -2,12 +2,15 @@
 
 #include <cerrno>
 
+#include "common/assert.h"
 #include "common/rt/clock.h"
 
 namespace bonemill {
 
 PeriodicTimer::PeriodicTimer(int64_t period_ns, int64_t start_ns) noexcept
-    : period_ns_(period_ns), next_ns_(start_ns + period_ns) {}
+    : period_ns_(period_ns), next_ns_(start_ns + period_ns) {
+    BONEMILL_ASSERT(period_ns > 0);
+}
 
 int64_t PeriodicTimer::advance(int64_t now_ns) noexcept {
     const int64_t late_ns = now_ns - next_ns_;

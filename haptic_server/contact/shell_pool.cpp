@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/assert.h"
+
 namespace bonemill {
 namespace {
 
@@ -203,6 +205,7 @@ void ShellPool::freeFrom(uint32_t block) noexcept {
 }
 
 uint32_t ShellPool::takeBlock() noexcept {
+    BONEMILL_ASSERT(free_count_ > 0 && free_blocks_ != kNoBlock);
     const uint32_t block = free_blocks_;
     free_blocks_ = blocks_[block].next;
     blocks_[block].next = kNoBlock;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/assert.h"
+
 namespace bonemill {
 namespace {
 
@@ -37,6 +39,7 @@ BrickStore BrickStore::withoutSpare() const {
 }
 
 void BrickStore::open(BrickId brick) noexcept {
+    BONEMILL_ASSERT(sharedDensity(brick) && spareCount() > 0);
     const Density density = *sharedDensity(brick);
     Density* contents = pool_.data() + used_ * kBrickSize;
     std::fill_n(contents, kBrickSize, density);
@@ -44,6 +47,7 @@ void BrickStore::open(BrickId brick) noexcept {
 }
 
 void BrickStore::adoptNextSpare(BrickId brick) noexcept {
+    BONEMILL_ASSERT(spareCount() > 0);
     const Density* contents = nextSpare();
     const bool is_shared = isUniform(contents);
     slots_[brick] = !is_shared ? uint32_t(used_++) : contents[0] == 0 ? kAirSlot : kSolidSlot;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "common/assert.h"
 #include "haptic_server/kernels/kernels.h"
 
 namespace bonemill {
@@ -70,6 +71,7 @@ LeafLattice::LeafLattice(const VoxelVolume& volume, const Eigen::Vector3i& leaf_
 }
 
 IndexBox LeafLattice::cellsOf(LeafId id) const noexcept {
+    BONEMILL_ASSERT(id < leafCount());
     const Eigen::Vector3i low = leafIndex(id).cwiseProduct(leaf_cells_).array() - 1;
     const Eigen::Vector3i high = (low + leaf_cells_).array() - 1;
     return {low, high.cwiseMin((dims_.array() - 1).matrix())};
