@@ -46,7 +46,7 @@ std::unique_ptr<BoneModel> makeBone(const std::string& path, std::optional<doubl
     return bone;
 }
 
-// The whole surface, and half a second of a burr somewhere on it.
+// Meshes the whole surface, and mills half a second somewhere on it.
 void meshAndMill(BoneModel& bone, nlohmann::json& json) {
     constexpr int kTicks = 500;
     size_t triangles = 0;

@@ -46,7 +46,7 @@ double threadCpuSeconds() {
     return double(used.tv_sec) + secondsOfNs(used.tv_nsec);
 }
 
-// The mesher thread of the server. Returns the processor time that it took, s.
+// Does what the mesher thread of the server does. Returns the processor time that it took, s.
 double meshWhile(const std::atomic<bool>& is_running, MeshRounds& rounds, const MeshRounds::Sink& put) {
     while (is_running) {
         while (rounds.round(put)) {
@@ -56,7 +56,7 @@ double meshWhile(const std::atomic<bool>& is_running, MeshRounds& rounds, const 
     return threadCpuSeconds();
 }
 
-// The publisher thread of the server without the network.
+// Does what the publisher thread of the server does, without the network.
 void publishWhile(const std::atomic<bool>& is_running, MeshOutbox& outbox, uint64_t& published) {
     while (is_running) {
         for (const NodeGroup& group :

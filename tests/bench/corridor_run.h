@@ -1,4 +1,4 @@
-// The tooth's corridor, milled in real time for as long as one likes: what `loop` and `remesh` measure.
+// Mills the tooth's corridor in real time for as long as one likes; `loop` and `remesh` measure that.
 #pragma once
 
 #include <functional>
@@ -24,13 +24,13 @@ struct Waits {
 nlohmann::json toJson(const Waits& waits);
 
 BoneModel corridorBone(int leaf_cells);
-// With the default tool, and the budget of a tick of haptic_server.
+// It has the default tool, and the budget of a tick of haptic_server.
 TickConfig corridorTick(double rate_hz);
 
 // Makes the device go up and down the corridor by the clock, a little farther beside each time.
 class CorridorIo final : public TickIo {
   public:
-    // cuts may be null.
+    // `cuts` may be null.
     CorridorIo(int64_t period_ns, double seconds, Waits& waits, SpscRing<Cut>* cuts = nullptr);
 
     bool read(DeviceInput& input) noexcept override;
@@ -45,7 +45,7 @@ class CorridorIo final : public TickIo {
     SpscRing<Cut>* cuts_;
 };
 
-// On a thread of its own with the tick's priority. Says what the machine does not grant.
+// Works on a thread of its own with the tick's priority, and says what the machine does not grant.
 RealtimeReport inRealTime(const std::function<void()>& work);
 
 }  // namespace bonemill::bench

@@ -1,4 +1,5 @@
-// A block of bone that fills the lower half of a volume, and the ways over its face that the benchmarks take.
+// Makes a block of bone that fills the lower half of a volume, and the ways over its face that the
+// benchmarks take.
 #pragma once
 
 #include <vector>
@@ -8,11 +9,11 @@
 
 namespace bonemill::bench {
 
-// edge³ voxels; bone where z is below the middle, with a ramp of one voxel so that the face is smooth and
-// flat.
+// The volume has edge³ voxels. Bone is where z is below the middle, with a ramp of one voxel so that the face
+// is smooth and flat.
 VoxelVolume halfBlock(int edge, double spacing);
 
-// Middle of the face, V.
+// Returns the middle of the face, in V.
 Eigen::Vector3d middleOfFace(const VoxelVolume& volume);
 
 struct WeaveConfig {
@@ -25,7 +26,7 @@ struct WeaveConfig {
     bool mills = true;
 };
 
-// Upright tool: straight down to `depth` below the face, then winding over it.
+// The upright tool goes straight down to `depth` below the face, then winds over it.
 std::vector<DeviceInput> weave(const VoxelVolume& volume, const WeaveConfig& config);
 
 }  // namespace bonemill::bench

@@ -7,9 +7,9 @@
 // over 0.5 s after 0.5 s the force's RMS about its mean stays below 0.05 N and the handle's below 10 µm, and
 // the motion does not grow.
 //
-// Wall: rendered stiffness, the static change of force over a change of the device's place of ±20 µm about
-// where the run came to rest, along the push. Free air: drag, force over speed at 50 mm/s. Both measured.
-// Quantities:
+// Wall: rendered stiffness, the static change of force over a change of the device's place of ±20 µm
+// about where the run came to rest, along the push. Free air: drag, force over speed at 50 mm/s. Both
+// measured. Quantities:
 //   zwidth    largest rendered stiffness with at most 3 N·s/m of drag, over k_t and the contact's stiffness
 //   (default × 1,
 //             4, 16, 64); the gradient presets take damping time 3 N·s/m / k_t, thesis_2012 is as printed
@@ -59,11 +59,11 @@ struct Hand {
 };
 const Hand kHands[] = {{"typical", {}}, {"none", kNoHand}};
 
-// At rest against the bone, or not.
+// Tells whether the tool is at rest against the bone.
 struct Pressed {
     Pressed(Scene& scene, const Place& place, const HandPlant& hand);
     bool isStable();
-    // After isStable(): static stiffness at the hand, N/m.
+    // Call it after isStable(). It returns the static stiffness at the hand, N/m.
     double rendered();
 
     const Place& place;
@@ -144,7 +144,7 @@ struct Setup {
     double rate_hz;
     bool tunes_baseline = false;
 
-    // Factors on the defaults; `drag` > 0 sets the damping, of thesis_2012 only if tunes_baseline.
+    // Takes factors on the defaults; `drag` > 0 sets the damping, of thesis_2012 only if tunes_baseline.
     std::unique_ptr<Scene> scene(double coupling, double contact, double drag) const {
         return std::make_unique<Scene>(place.bone(), place.tool(), variant, 1 / rate_hz,
                                        [&](FixedTickConfig& config) {
@@ -231,7 +231,7 @@ std::vector<Job> jobs(const char* only_variant) {
     return all;
 }
 
-// On every core; the figures do not depend on time.
+// It uses every core; the figures do not depend on time.
 std::vector<ZwidthRow> measureAll(const char* only_variant) {
     const std::vector<Job> all = jobs(only_variant);
     std::vector<ZwidthRow> rows(all.size());

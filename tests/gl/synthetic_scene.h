@@ -1,4 +1,4 @@
-// A bone of analytic shape and a tool, as the messages a server would send.
+// Makes a bone of analytic shape and a tool, as the messages that a server would send.
 #pragma once
 
 #include <cmath>
@@ -58,7 +58,7 @@ inline void setQuaternion(const Eigen::Quaterniond& q, google::protobuf::Repeate
     field->Assign(wxyz, wxyz + 4);
 }
 
-// Sphere at T's origin and a shaft along +y, as one surface of revolution.
+// Makes a sphere at T's origin and a shaft along +y, as one surface of revolution.
 inline topics::TriangleMesh makeToolMesh(double burr_radius, double shaft_radius, double length) {
     struct Ring {
         double y, radius, normal_y, normal_radial;

@@ -1,4 +1,4 @@
-// Volumes that no scanner should deliver: whatever comes out is finite and within the limits.
+// Takes volumes that no scanner should deliver: whatever comes out is finite and within the limits.
 #include <random>
 
 #include "haptic_server/volume/import/densify.h"

@@ -19,7 +19,7 @@ double spread(const std::vector<Eigen::Vector3d>& values) {
     return spread(values, 0, values.size());
 }
 
-// Means over `window` values in a row.
+// Takes means over `window` values in a row.
 std::vector<Eigen::Vector3d> averaged(const std::vector<Eigen::Vector3d>& values, size_t window) {
     std::vector<Eigen::Vector3d> means;
     for (size_t n = 0; n + window <= values.size(); ++n) {

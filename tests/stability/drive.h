@@ -13,7 +13,7 @@ namespace bonemill::test {
 // One tick at a time with whatever device pose the caller says.
 class Stepper : private TickIo {
   public:
-    // With `tools` instead of the scene's tool, if it is not null, and with a history if that is not null.
+    // It takes `tools` instead of the scene's tool, if it is not null, and a history if that is not null.
     explicit Stepper(Scene& scene, const ToolSwitch* tools = nullptr, BoneHistory* history = nullptr);
 
     const TickRecord& step(const Pose& X_WT_device, uint32_t buttons = 0);
@@ -21,7 +21,7 @@ class Stepper : private TickIo {
     const Wrench& wrenchOnHand() const noexcept { return wrench_; }
     Pose spo() const noexcept { return tick_.X_WT(); }
     const TickRecord& record() const noexcept { return record_; }
-    // Also false where the tick hid what was not: it kept its pose, or left contact points out.
+    // It is also false where the tick hid what was not finite: it kept its pose, or left contact points out.
     bool isFinite() const noexcept {
         return wrench_.isFinite() && spo().isFinite() && !(faults_ & (kFaultSolve | kFaultShellOverflow));
     }
@@ -56,7 +56,7 @@ class ClosedLoop {
     ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start, const ToolSwitch* tools = nullptr,
                BoneHistory* history = nullptr);
 
-    // With these buttons beside those that the scene holds.
+    // These buttons are pressed beside those that the scene holds.
     void step(uint32_t buttons = 0);
     // The controller misses a period: the device holds the last wrench.
     void dropTick();
@@ -72,7 +72,7 @@ class ClosedLoop {
     Wrench held_;
 };
 
-// Signal of a window: spread about its mean, and whether it grows.
+// It tells of a window's signal how far it spreads about its mean, and whether it grows.
 struct Residual {
     double rms = 0;           // of the force (mean over the scene's averaged_ticks) about its mean, N
     double torque_rms = 0;    // N·m
@@ -83,7 +83,7 @@ struct Residual {
 };
 Residual residual(ClosedLoop& loop, double seconds);
 
-// RMS of the force over `watch` s after `settle` s; kNan or kLost if that says nothing.
+// Returns the RMS of the force over `watch` s after `settle` s, or kNan or kLost if that says nothing.
 double forceBuzz(ClosedLoop& loop, double settle, double watch);
 
 }  // namespace bonemill::test

@@ -1,4 +1,4 @@
-// A burr that is driven, and what happens to it in contact: run-up, stall, pedal, pause, whirl, another tool.
+// Asks what happens in contact to a burr that is driven: run-up, stall, pedal, pause, whirl, another tool.
 #include "common/units.h"
 #include "haptic_server/bone/bone_history.h"
 #include "tests/stability/case_test.h"
@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kPush = 3;  // N, of the hand's springs
 
-// A round pit half as wide again as the burr: friction drives the burr along its floor to the wall, and
-// round.
+// A round pit half as wide again as the burr: friction drives the burr along its floor to the wall,
+// and round.
 const Eigen::Vector3d kPitFloor(2.52e-3, 2.48e-3, 1e-3);
 VoxelVolume pitBone() {
     const auto pit = [](const Eigen::Vector3d& p) {
@@ -26,7 +26,7 @@ const Eigen::Quaterniond kStanding = expRotation({M_PI / 2, 0, 0});
 
 using Edit = std::function<void(FixedTickConfig&)>;
 
-// In the pit, in the hand that pushes down; the pedal is up.
+// The burr is in the pit, in the hand that pushes down; the pedal is up.
 struct Pit {
     explicit Pit(const Variant& variant, const Eigen::Quaterniond& rotation = kLying, const Edit& edit = {},
                  const LoopConfig& config = {})

@@ -1,4 +1,4 @@
-// Maximum push: the tool stays on its side of the bone and the force within its limit.
+// At the maximum push the tool stays on its side of the bone and the force within its limit.
 #include "common/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"

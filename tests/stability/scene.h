@@ -43,7 +43,7 @@ TestTool pegTool(double radius, double half_length);  // round-ended, along y th
 
 // Block with a round hole along y through `center`.
 DistanceFunction holeAlongY(const Eigen::Vector3d& center, double radius);
-// Wall of this thickness about the plane through `point`.
+// Makes a wall of this thickness about the plane through `point`.
 DistanceFunction wall(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double thickness);
 // V-groove of full opening angle `angle` (rad) along y, its bottom edge through `edge`, open towards +z.
 DistanceFunction groove(const Eigen::Vector3d& edge, double angle);

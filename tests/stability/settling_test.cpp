@@ -1,4 +1,4 @@
-// Closed loop at rest under load: no limit cycle, no buzz.
+// The closed loop at rest under load has no limit cycle and no buzz.
 #include "common/units.h"
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
@@ -31,7 +31,7 @@ double pegFree(const Variant& variant) {
 
 constexpr double kGrooveAngles_deg[] = {10, 20, 30, 45, 60};
 
-// Tall enough for the burr to wedge between the walls, however steep.
+// They are tall enough for the burr to wedge between the walls, however steep.
 struct Groove {
     explicit Groove(double angle_deg)
         : wedged(kBurrRadius / std::sin(degrees(angle_deg) / 2)),
@@ -70,7 +70,8 @@ double apartByIterations(const Variant& variant, int from) {
         const auto limitTo = [](int iterations) {
             return [=](FixedTickConfig& config) {
                 config.accuracy.iterations = iterations;
-                // Room for all: else the way into the groove decides which patch is sampled how finely.
+                // There is room for all; else the way into the groove decides which patch is sampled
+                // how finely.
                 config.accuracy.refined_points = presetSettings(Preset::kExact).refined_points;
             };
         };

@@ -1,4 +1,4 @@
-// What no hand does but a link, a reset or a dropped sample can: jumps, half turns, starting inside bone.
+// Makes what no hand does but a link, a reset or a dropped sample can: jumps, half turns, starts inside bone.
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"

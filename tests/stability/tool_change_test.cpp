@@ -47,7 +47,8 @@ Bench onPlane(const Variant& variant) {
     return {planeBone(), variant, kMiddle + Eigen::Vector3d(0, 0, kSmall + 0.1e-3),
             kMiddle + Eigen::Vector3d(0.1e-3, 0, kSmall - 4e-3)};
 }
-// At the bottom of a hole that is just wider than the small burr: the large one is in bone all around.
+// This is at the bottom of a hole that is just wider than the small burr: the large one is in bone
+// all around.
 Bench inHole(const Variant& variant) {
     const Eigen::Vector3d bottom(3.05e-3, 2.95e-3, 4.5e-3);
     const auto drilled = [=](const Eigen::Vector3d& p) {
@@ -117,8 +118,8 @@ double leftInPlane(const Variant& variant) {
     return (kTop + kLarge - bench.loop.stepper.spo().position.z()) / kVoxel;
 }
 
-// The hand draws the large burr, which became it in the hole, out: ms until it is 5 mm up and touches
-// nothing.
+// The hand draws the large burr, which became it in the hole, out: ms until it is 5 mm up and
+// touches nothing.
 double drawnOut(const Variant& variant) {
     constexpr double kUp = 5e-3;
     Bench bench = inHole(variant);
@@ -135,7 +136,7 @@ double drawnOut(const Variant& variant) {
     return kLost;
 }
 
-// The hand's highest speed, mm/s, while the larger burr lifts it.
+// Returns the hand's highest speed, mm/s, while the larger burr lifts it.
 double liftSpeed(const Variant& variant) {
     Bench bench = onPlane(variant);
     bench.change(kLargeTool);

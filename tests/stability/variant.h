@@ -1,4 +1,5 @@
-// The settings under test. The only place that knows how a variant is built and where its figures stand.
+// These are the settings under test. Only this place knows how a variant is built and where its
+// figures stand.
 #pragma once
 
 #include <string>
@@ -12,7 +13,7 @@ namespace bonemill::test {
 struct Variant {
     std::string name;
     Preset preset;
-    // Effects in place of milling by time; null: milling by time.
+    // Adds effects in place of milling by time; null stands for milling by time.
     void (*add_effects)(EffectConfigs&) = nullptr;
     uint32_t held_buttons = 0;  // all the while: with effects of a burr that turns the pedal is down
 
@@ -35,15 +36,15 @@ inline constexpr size_t kVibrationTicks = 5;
 
 void applyVariant(const Variant& variant, FixedTickConfig& config);
 
-// What the coupling in force is like, whichever model the settings choose. N/m, N·m/rad (small angles), m/s,
-// rad/s.
+// What the coupling in force is like, whichever model the settings choose. N/m, N·m/rad (small angles),
+// m/s, rad/s.
 struct CouplingFigures {
     double translation_stiffness, quick_stiffness;  // N/m: held, and for what changes from tick to tick
     double rotation_stiffness, max_speed, max_angular_speed;
 };
 CouplingFigures couplingFigures(const FixedTickConfig& config);
 
-// Of the model in force: k_t; N/m per point (thesis) or N/m³ (gradient).
+// These are of the model in force: k_t, and N/m per point (thesis) or N/m³ (gradient).
 double& couplingStiffness(FixedTickConfig& config);
 double& contactStiffness(FixedTickConfig& config);
 

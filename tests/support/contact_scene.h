@@ -1,5 +1,5 @@
-// Analytic bone, analytic tool, and what their contact must be: sums over a fine sampling of the exact
-// surface.
+// Makes analytic bone and an analytic tool, and says what their contact must be by sums over a fine sampling
+// of the exact surface.
 #pragma once
 
 #include <random>
@@ -17,7 +17,7 @@ struct SurfaceElement {
     double area;               // m²
 };
 
-// Square of a plane around `center`, `half` to each side, in pieces of `step`.
+// Makes a square of a plane around `center`, `half` to each side, in pieces of `step`.
 inline std::vector<SurfaceElement> planeElements(const Eigen::Vector3d& center, const Eigen::Matrix3d& R,
                                                  double half, double step) {
     std::vector<SurfaceElement> elements;
@@ -45,7 +45,7 @@ inline std::vector<SurfaceElement> holeElements(const Eigen::Vector3d& center, c
     return elements;
 }
 
-// Gradient law without guard and caps, by quadrature.
+// This is the gradient law without guard and caps, by quadrature.
 inline Wrench quadrature(const std::vector<SurfaceElement>& surface, const ToolField& tool, double kappa,
                          const Pose& X_VT) {
     Wrench sum;
@@ -65,7 +65,7 @@ inline Eigen::Quaterniond randomRotation(std::mt19937& random) {
     return Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
 }
 
-// Distances of the shapes' union, eight nodes on the thinnest radius.
+// Holds the distances of the shapes' union, with eight nodes on the thinnest radius.
 inline SdfGrid gridOf(const std::vector<ToolShape>& shapes) {
     const ShapeField field(shapes);
     const double spacing = field.thinnestRadius() / 8;

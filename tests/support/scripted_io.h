@@ -36,7 +36,7 @@ class ScriptedIo final : public TickIo {
     size_t next_ = 0;
 };
 
-// Device moving straight from `from` to `to` with these buttons, one input per tick.
+// The device moves straight from `from` to `to` with these buttons, one input per tick.
 inline std::vector<DeviceInput> straightPath(const Pose& from, const Eigen::Vector3d& to, int ticks,
                                              uint32_t buttons) {
     std::vector<DeviceInput> inputs(size_t(ticks), DeviceInput{});

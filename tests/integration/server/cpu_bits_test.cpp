@@ -16,8 +16,8 @@ namespace {
 
 using test::TemporaryFolder;
 
-// glibc without fused multiply-add: the names of glibc 2.33 and later, and those from before, which know no
-// others.
+// glibc without fused multiply-add: the names of glibc 2.33 and later, and those from before, which know
+// no others.
 const char* const kWithoutFma = "glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4,-FMA_Usable,-AVX2_Usable,-FMA4_Usable";
 
 // Down into the block, to and fro with the pedal, then with added material, and out.

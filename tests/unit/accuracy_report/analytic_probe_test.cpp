@@ -104,7 +104,7 @@ TEST(AnalyticProbe, PatchErrorsFallWithThePatchsWidth) {
     EXPECT_LT(at(2, 1, 4, kAnalytic).force_rms, small.force_rms / 3);
     EXPECT_GT(at(10, 3, 1, kAnalytic).force_rms, large.force_rms);
     EXPECT_GT(at(10, 1, 4, kGrid).force_rms, at(10, 1, 4, kGrid, 4).force_rms);
-    // Depth of a circle of 10 voxels' diameter.
+    // Returns the depth of a circle of 10 voxels' diameter.
     EXPECT_NEAR(large.depth, 1e-3 - std::sqrt(1e-6 - 0.625e-3 * 0.625e-3), 1e-12);
 }
 

@@ -28,7 +28,7 @@ TEST(VirtualCoupling, TorqueIsTheQuaternionVectorPart) {
     for (const double angle : {0.01, 0.5, 2.0, 3.0}) {
         const Pose turned{kSpo.position, expRotation({0, 0, angle}) * kSpo.rotation};
         EXPECT_NEAR(couplingWrench(config, kSpo, turned).torque.z(), std::sin(angle / 2), 1e-12);
-        // -q is the same device orientation
+        // The quaternion -q is the same orientation of the device.
         const Pose negated{turned.position, Eigen::Quaterniond(-turned.rotation.coeffs())};
         EXPECT_NEAR(couplingWrench(config, kSpo, negated).torque.z(), std::sin(angle / 2), 1e-12);
     }

@@ -31,7 +31,7 @@ class ForceLimiterTest : public testing::Test {
         now_ns += kPeriodNs;
         return limiter.forces(&J_inv, now_ns, kPeriod);
     }
-    // Long enough to reach any target within the rate.
+    // It is long enough to reach any target within the rate.
     Vector6d settle(const Wrench& wrench) {
         Vector6d forces;
         for (int i = 0; i < 100; ++i) forces = feel(wrench);

@@ -10,7 +10,7 @@ namespace {
 using namespace test;
 using Eigen::Vector3d;
 
-// Nerve, in this scene, where x > 4 mm.
+// In this scene the nerve is where x > 4 mm.
 TissueBench benchOf(double factor) {
     TissueBench bench(halfSpace({4e-3, 0, 0}, -Vector3d::UnitX()));
     bench.config.effects.materials[kNerve].stiffness_factor = factor;
@@ -26,8 +26,8 @@ double depthAt(TissueBench& bench, double x) {
     return bench.run(tick, inputs).back().max_penetration;
 }
 
-// Of a ball on a plane the force goes with κ depth²: a quarter of κ, twice the depth at nearly the same
-// force.
+// The force of a ball on a plane goes with κ depth²: a quarter of κ gives twice the depth at nearly the
+// same force.
 TEST(MaterialStiffness, ContactYieldsByTheMaterialsFactor) {
     TissueBench bench = benchOf(0.25);
     EXPECT_NEAR(depthAt(bench, 6e-3) / depthAt(bench, 2e-3), 2, 0.1);

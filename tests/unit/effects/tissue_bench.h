@@ -1,4 +1,4 @@
-// A block of bone with protected voxels in it, and a tick over it.
+// Makes a block of bone with protected voxels in it, and a tick over it.
 #pragma once
 
 #include "haptic_server/tick/fixed_tick.h"
@@ -21,7 +21,7 @@ inline MaterialTable tissueTable() {
 }
 
 struct TissueBench {
-    // nerve: negative where voxels are of the protected material.
+    // The distance `nerve` is negative where voxels are of the protected material.
     explicit TissueBench(const DistanceFunction& nerve, double reach = 4e-3)
         : bone(bodyVolume(cubeGeometry(64, kVoxel), halfSpace({0, 0, kTop}, Eigen::Vector3d::UnitZ())),
                Eigen::Vector3i::Constant(16), ShellConfig{}),

@@ -10,7 +10,7 @@
 namespace bonemill {
 namespace {
 
-// Both sides of the link in one process.
+// Runs both sides of the link in one process.
 class DeviceLinkIoTest : public testing::Test {
   protected:
     DeviceLinkIoTest()

@@ -128,8 +128,8 @@ TEST(AccuracySwitch, WhileMillingTheForceFollowsTheToolAndHasNoPeaks) {
         const double tool = (toolOf(now) - toolOf(before)).norm(),
                      device = (deviceOf(now) - deviceOf(before)).norm();
         EXPECT_LE(tool, kMostMotion * (1 + 1e-9)) << n;
-        // The thesis' spring k s and the saturating one, F_m tanh(k s / F_m), differ by (k s)³ / (3 F_m²) at
-        // most.
+        // The thesis' spring k s and the saturating one, F_m tanh(k s / F_m), differ by (k s)³ / (3 F_m²)
+        // at most.
         const double between_laws =
             std::pow(forceOf(before).norm(), 3) / (3 * kSaturationForce * kSaturationForce);
         EXPECT_LE((forceOf(now) - forceOf(before)).norm(),

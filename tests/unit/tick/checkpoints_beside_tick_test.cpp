@@ -1,5 +1,5 @@
-// Checkpoints are saved and restored while the tick mills: clean under ThreadSanitizer, and each is the bone
-// between two ticks.
+// Checkpoints are saved and restored while the tick mills: ThreadSanitizer finds nothing, and each is the
+// bone between two ticks.
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -249,8 +249,8 @@ TEST(HapticTick, CorridorHasTheVolumeOfTheSweptBurr) {
     EXPECT_NEAR((volume_before - bench.boneVolume()) / swept, 1, slack);
 }
 
-// Ticks go on with the old settings until the new ones' contact points are up to date, whatever is milled
-// meanwhile.
+// Ticks go on with the old settings until the new ones' contact points are up to date, whatever is
+// milled meanwhile.
 TEST(HapticTick, ChangedSettingsAreTakenUpWhenTheirPointsAreReady) {
     Bench bench;
     BoneModel bone(Bench::slab({}), Eigen::Vector3i::Constant(8), {.levels = {{1}, {2}, {3}}});

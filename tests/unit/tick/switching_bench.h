@@ -1,4 +1,4 @@
-// A slab under a burr, and a tick whose accuracy is switched to the next preset every 50 ticks.
+// Puts a slab under a burr, with a tick whose accuracy is switched to the next preset every 50 ticks.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace bonemill::test {
 inline constexpr double kBenchTop = 5e-3;  // bone fills z < kBenchTop (V = W)
 inline constexpr double kBenchBurr = 1e-3;
 
-// Shell levels for every preset.
+// The bone has shell levels for every preset.
 struct SwitchingBench {
     static constexpr size_t kTicksPerPreset = 50;
 

@@ -1,4 +1,4 @@
-// A slab under three burrs, and a tick whose tool is changed.
+// Puts a slab under three burrs, with a tick whose tool is changed.
 #pragma once
 
 #include "haptic_server/tick/haptic_tick.h"

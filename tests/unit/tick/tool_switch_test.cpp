@@ -41,7 +41,7 @@ TEST(ToolSwitch, AForceAtItsLimitFallsAtOnce) {
     TickConfig config = test::millingConfig();
     config.hand.max_force = 0.5;
     HapticTick tick(config, {bench.bone, &bench.history}, {bench.tools, bench.accuracy});
-    // Deep in the slab for the largest burr, above it for the smallest.
+    // It is deep in the slab for the largest burr, and above it for the smallest.
     const auto hand = test::SwitchingBench::at(test::kBenchTop + 0.7e-3);
     const auto feltAfter = [&](int ticks) {
         return Eigen::Map<const Eigen::Vector3d>(
