@@ -4,8 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "haptic_server/accuracy_report/run_path.h"
+#include "haptic_server/accuracy_report/timed_run.h"
 #include "haptic_server/contact/gradient_contact.h"
+#include "haptic_server/offline/run_path.h"
 #include "haptic_server/spo/spo_model.h"
 #include "haptic_server/tool/build/build_tool.h"
 
@@ -166,8 +167,9 @@ PlaneErrors AnalyticProbe::measure(const AccuracySettings& settings) {
         const double true_force = springForce(tick.toolCoupling(), true_stretch - true_depth);
         double low = INFINITY, high = 0, sum = 0;
         for (const auto& plane : planes_) {
-            const Rest rest =
-                restOf(runPath(tick, plane->bone, pressPath(plane->R_WT, radius, true_stretch)), radius);
+            const Rest rest = restOf(
+                runPath(tick, plane->bone, inputsOf(pressPath(plane->R_WT, radius, true_stretch), tick.dt)),
+                radius);
             errors.force += std::pow(rest.force / true_force - 1, 2);
             errors.depth += std::pow(rest.depth - true_depth, 2);
             low = std::min(low, rest.force), high = std::max(high, rest.force), sum += rest.force;

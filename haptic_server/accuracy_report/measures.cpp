@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/rt/clock.h"
-
 namespace bonemill {
 namespace {
 
@@ -79,16 +77,6 @@ PathEnergy energyOf(const std::vector<Answer>& answers, std::span<const Pose> de
         energy.lowest = std::min(energy.lowest, energy.at_end);
     }
     return energy;
-}
-
-TickTimes timesOf(std::vector<int64_t> durations_ns) {
-    if (durations_ns.empty()) return {};
-    std::sort(durations_ns.begin(), durations_ns.end());
-    const auto us = [&](double percent) {
-        const auto rank = size_t(std::ceil(percent / 100 * double(durations_ns.size()) - 1e-9));
-        return microsecondsOfNs(double(durations_ns[std::max<size_t>(rank, 1) - 1]));
-    };
-    return {us(50), us(99), us(99.9), us(100)};
 }
 
 }  // namespace bonemill

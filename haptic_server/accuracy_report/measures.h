@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/geometry/pose.h"
-#include "haptic_server/accuracy_report/run_path.h"
+#include "haptic_server/accuracy_report/timed_run.h"
 
 namespace bonemill {
 
@@ -64,10 +64,5 @@ struct PathEnergy {
     double at_end = 0;
 };
 PathEnergy energyOf(const std::vector<Answer>& answers, std::span<const Pose> device);
-
-struct TickTimes {
-    double p50 = 0, p99 = 0, p99_9 = 0, max = 0;  // µs
-};
-TickTimes timesOf(std::vector<int64_t> durations_ns);
 
 }  // namespace bonemill

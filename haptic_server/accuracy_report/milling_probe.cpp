@@ -6,6 +6,7 @@
 #include "common/device_messages/device_messages.h"
 #include "haptic_server/accuracy_report/fine_bone.h"
 #include "haptic_server/accuracy_report/smooth_path.h"
+#include "haptic_server/offline/run_path.h"
 
 namespace bonemill {
 namespace {
@@ -97,7 +98,7 @@ MillingRun millAndRestore(const FixedTickConfig& tick, BoneModel& bone, BoneHist
     const int times = affordableRefinement(part, kRefinement, kMostSamples);
     const VoxelVolume before = refinedPart(bone.volume, part, times);
     MillingRun run;
-    run.records = runPath(tick, bone, path, kButtonRemove);
+    run.records = runPath(tick, bone, inputsOf(path, tick.dt, kButtonRemove));
     const VoxelVolume after = refinedPart(bone.volume, part, times);
     run.removed = double(removedCount(before, after)) * before.voxelVolume();
     const auto sweptBy = [&](const std::vector<Vector3d>& path_W) {
@@ -110,8 +111,7 @@ MillingRun millAndRestore(const FixedTickConfig& tick, BoneModel& bone, BoneHist
     run.swept = sweptBy(tool_path);
     run.wanted = sweptBy(device_path);
     history.restore();
-    for (bool shell_is_complete = true; history.restoreSome(bone, shell_is_complete);) {
-    }
+    history.restoreAll(bone);
     return run;
 }
 

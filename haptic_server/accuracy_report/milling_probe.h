@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "haptic_server/accuracy_report/probing_places.h"
-#include "haptic_server/accuracy_report/run_path.h"
+#include "haptic_server/accuracy_report/timed_run.h"
 #include "haptic_server/bone/bone_history.h"
 
 namespace bonemill {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "haptic_server/accuracy_report/probing_places.h"
-#include "haptic_server/accuracy_report/run_path.h"
+#include "haptic_server/accuracy_report/timed_run.h"
 
 namespace bonemill {
 

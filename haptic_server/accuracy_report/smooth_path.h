@@ -1,7 +1,7 @@
 // A smooth way past a few poses.
 #pragma once
 
-#include "haptic_server/accuracy_report/run_path.h"
+#include "haptic_server/accuracy_report/timed_run.h"
 
 namespace bonemill {
 

@@ -8,6 +8,7 @@
 #include "haptic_server/accuracy_report/analytic_probe.h"
 #include "haptic_server/accuracy_report/milling_probe.h"
 #include "haptic_server/accuracy_report/truth.h"
+#include "haptic_server/record/tick_times.h"
 #include "proto/scene.pb.h"
 
 namespace bonemill {

@@ -8,6 +8,7 @@
 
 #include "haptic_server/accuracy_report/analytic_probe.h"
 #include "haptic_server/accuracy_report/fine_bone.h"
+#include "haptic_server/offline/run_path.h"
 
 namespace bonemill {
 namespace {
@@ -40,7 +41,7 @@ RunRecords runRefined(const ProbingStroke& stroke, const FixedTickConfig& tick, 
     config.gradient.most_point_tests = GradientConfig{}.most_point_tests;  // there is no hurry
     BoneModel fine(refinedPart(bone.volume, part, times), Eigen::Vector3i::Constant(kLeafCells),
                    {.spare_points = 1});
-    return runPath(config, fine, stroke.device);
+    return runPath(config, fine, inputsOf(stroke.device, config.dt));
 }
 
 bool hasOverflow(const RunRecords& records) {

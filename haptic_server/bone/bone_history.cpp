@@ -174,6 +174,11 @@ bool BoneHistory::restoreSome(BoneModel& bone, bool& shell_is_complete) noexcept
     return true;
 }
 
+void BoneHistory::restoreAll(BoneModel& bone) noexcept {
+    for (bool shell_is_complete = true; restoreSome(bone, shell_is_complete);) {
+    }
+}
+
 bool BoneHistory::restoreLeaf(BoneModel& bone, LeafId leaf, bool& shell_is_complete) noexcept {
     VoxelVolume& volume = bone.volume;
     const IndexBox cells = bone.lattice.cellsOf(leaf), voxels = voxelsOf(cells);

@@ -52,6 +52,8 @@ class BoneHistory {
     // False: there is nothing to restore. Otherwise `shell_is_complete` says whether the point-shell pool
     // had room.
     bool restoreSome(BoneModel& bone, bool& shell_is_complete) noexcept;
+    // Whoever runs no tick beside it: all of the last restore() that is still to do, at once.
+    void restoreAll(BoneModel& bone) noexcept;
 
   private:
     // Where the tick is to go. The number grows with each.

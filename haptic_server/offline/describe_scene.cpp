@@ -4,9 +4,11 @@
 #include <sstream>
 
 #include "common/config/scene_table.h"
-#include "common/rt/clock.h"
 #include "common/units.h"
 #include "haptic_server/offline/describe_effects.h"
+#include "haptic_server/offline/effect_cost.h"
+#include "haptic_server/offline/run_path.h"
+#include "haptic_server/record/tick_times.h"
 #include "haptic_server/setup/scene_setup.h"
 
 namespace bonemill {
@@ -42,10 +44,9 @@ std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario) {
 }
 
 std::string percentilesUs(std::vector<int64_t> durations_ns) {
-    std::sort(durations_ns.begin(), durations_ns.end());
+    const TickTimes times = timesOf(std::move(durations_ns));
     std::ostringstream text;
-    text << "p50 " << microsecondsOfNs(double(durations_ns[durations_ns.size() / 2])) << " us, p99 "
-         << microsecondsOfNs(double(durations_ns[durations_ns.size() * 99 / 100])) << " us";
+    text << "p50 " << times.p50 << " us, p99 " << times.p99 << " us";
     return text.str();
 }
 
@@ -114,7 +115,7 @@ std::string describeScene(const std::string& scene_file) {
     const std::vector<DeviceInput> path = pathOf(loaded.scene.simulated_operator());
     const EffectCosts costs = measureEffectCosts(simulation.fixedTick(), *simulation.bone, path, kRounds);
     out << describeEffects(loaded.scene, path.empty() ? nullptr : &costs);
-    describeCost(recordsOf(simulation.fixedTick(), *simulation.bone, path), out);
+    describeCost(runPath(simulation.fixedTick(), *simulation.bone, path), out);
     out << "\nwhat the scene file sets (all else has its default):\n"
         << loaded.scene.DebugString() << "\nevery field, its unit, default and range:\n"
         << describeDefaults();

@@ -3,46 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/rt/clock.h"
-#include "haptic_server/tick/fixed_tick.h"
+#include "haptic_server/bone/bone_history.h"
+#include "haptic_server/offline/run_path.h"
 
 namespace bonemill {
 namespace {
-
-class PathIo final : public TickIo {
-  public:
-    explicit PathIo(std::span<const DeviceInput> path) : path_(path) { records.reserve(path.size()); }
-
-    bool read(DeviceInput& input) noexcept override {
-        if (next_ == path_.size()) return false;
-        input = path_[next_++];
-        input.start_ns = monotonicNowNs();
-        return true;
-    }
-    int64_t write(const Wrench&) noexcept override { return monotonicNowNs(); }
-    int64_t now() noexcept override { return monotonicNowNs(); }
-    void push(const TickRecord& record) noexcept override { records.push_back(record); }  // reserved above
-
-    std::vector<TickRecord> records;
-
-  private:
-    std::span<const DeviceInput> path_;
-    size_t next_ = 0;
-};
 
 double medianOf(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     return values.empty() ? 0 : values[values.size() / 2];
 }
 
-TickTimes timesOf(const std::vector<TickRecord>& records, const std::vector<size_t>& which) {
-    std::vector<int64_t> ns;
-    for (const size_t n : which) ns.push_back(records[n].compute_ns);
-    std::sort(ns.begin(), ns.end());
-    const auto at = [&ns](double share) {
-        return microsecondsOfNs(double(ns[std::min(ns.size() - 1, size_t(share * double(ns.size())))]));
-    };
-    return {at(0.5), at(0.99), at(0.999), at(1)};
+TickTimes timesOfTicks(const std::vector<TickRecord>& records, const std::vector<size_t>& which) {
+    std::vector<int64_t> durations_ns;
+    for (const size_t n : which) durations_ns.push_back(records[n].compute_ns);
+    return timesOf(std::move(durations_ns));
 }
 
 std::vector<size_t> busyTicks(const std::vector<TickRecord>& records) {
@@ -64,7 +39,7 @@ double median(const Rounds& rounds, double TickTimes::*figure) {
 
 TickTimes median(const Rounds& rounds) {
     return {median(rounds, &TickTimes::p50), median(rounds, &TickTimes::p99),
-            median(rounds, &TickTimes::p999), median(rounds, &TickTimes::max)};
+            median(rounds, &TickTimes::p99_9), median(rounds, &TickTimes::max)};
 }
 
 std::vector<double> differences(const Rounds& a, const Rounds& b, double TickTimes::*figure) {
@@ -86,11 +61,10 @@ class Bench {
         : config_(config), bone_(bone), path_(path), history_(bone) {
         busy_ = busyTicks(run(config.effects));  // and opens the bricks that milling needs
     }
-    TickTimes times(const EffectConfigs& effects) { return timesOf(run(effects), busy_); }
+    TickTimes times(const EffectConfigs& effects) { return timesOfTicks(run(effects), busy_); }
     void putBack() {
         history_.restore();
-        for (bool shell_is_complete = true; history_.restoreSome(bone_, shell_is_complete);) {
-        }
+        history_.restoreAll(bone_);
     }
     size_t busyCount() const { return busy_.size(); }
 
@@ -99,7 +73,7 @@ class Bench {
         putBack();
         FixedTickConfig config = config_;
         config.effects = effects;
-        return recordsOf(config, bone_, path_);
+        return runPath(config, bone_, path_);
     }
 
     const FixedTickConfig& config_;
@@ -110,13 +84,6 @@ class Bench {
 };
 
 }  // namespace
-
-std::vector<TickRecord> recordsOf(const FixedTickConfig& config, BoneModel& bone,
-                                  std::span<const DeviceInput> path) {
-    PathIo io(path);
-    FixedTick(config, bone).run(io);
-    return std::move(io.records);
-}
 
 EffectCosts measureEffectCosts(const FixedTickConfig& config, BoneModel& bone,
                                std::span<const DeviceInput> path, int rounds) {

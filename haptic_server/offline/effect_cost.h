@@ -7,15 +7,11 @@
 #include <vector>
 
 #include "haptic_server/bone/bone_model.h"
+#include "haptic_server/record/tick_times.h"
 #include "haptic_server/tick/tick_config.h"
 #include "haptic_server/tick/tick_io.h"
 
 namespace bonemill {
-
-// Of whole ticks, µs.
-struct TickTimes {
-    double p50 = 0, p99 = 0, p999 = 0, max = 0;
-};
 
 struct EffectCost {
     std::string name;
@@ -35,9 +31,5 @@ struct EffectCosts {
 // but for the order of its contact points.
 EffectCosts measureEffectCosts(const FixedTickConfig& config, BoneModel& bone,
                                std::span<const DeviceInput> path, int rounds);
-
-// All ticks of a path.
-std::vector<TickRecord> recordsOf(const FixedTickConfig& config, BoneModel& bone,
-                                  std::span<const DeviceInput> path);
 
 }  // namespace bonemill

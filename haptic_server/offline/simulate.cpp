@@ -10,6 +10,7 @@
 #include "common/rt/clock.h"
 #include "common/units.h"
 #include "common/user_error.h"
+#include "haptic_server/offline/run_path.h"
 #include "haptic_server/offline/state_hash.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/record/hex_text.h"
@@ -27,31 +28,15 @@ namespace {
 
 constexpr double kTickSpacingTolerance = 0.1;  // times are often written with three decimals
 
-// Rows in, records out; time comes from the file, only tick_us is measured.
-class FileIo final : public TickIo {
-  public:
-    explicit FileIo(const std::vector<TrajectoryRow>& rows) : rows_(rows) {}
-
-    bool read(DeviceInput& input) noexcept override {
-        if (next_ == rows_.size()) return false;
-        const TrajectoryRow& row = rows_[next_++];
-        input = {};
-        input.X_WT_device = row.X_WT;
-        input.buttons = row.buttons;
-        input.t_s = row.t_s;
-        input.start_ns = monotonicNowNs();
-        return true;
+std::vector<DeviceInput> inputsOf(const std::vector<TrajectoryRow>& rows) {
+    std::vector<DeviceInput> inputs(rows.size(), DeviceInput{});
+    for (size_t n = 0; n < rows.size(); ++n) {
+        inputs[n].X_WT_device = rows[n].X_WT;
+        inputs[n].buttons = rows[n].buttons;
+        inputs[n].t_s = rows[n].t_s;
     }
-    int64_t write(const Wrench&) noexcept override { return monotonicNowNs(); }
-    int64_t now() noexcept override { return monotonicNowNs(); }
-    void push(const TickRecord& record) noexcept override { record_ = record; }
-    const TickRecord& lastRecord() const noexcept { return record_; }
-
-  private:
-    const std::vector<TrajectoryRow>& rows_;
-    size_t next_ = 0;
-    TickRecord record_{};
-};
+    return inputs;
+}
 
 // One row is one tick: a file sampled at another rate would silently mean another speed.
 void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::string& file) {
@@ -113,12 +98,11 @@ std::string simulate(const SimulateOptions& options) {
     HapticTick tick(simulation.tick, {bone}, {tools, accuracy});
     RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * double(kNsPerSecond))), recorded);
     StateHash hash;
-    FileIo io(rows);
-    while (tick.tick(io)) {
-        hash.addRecord(io.lastRecord(), recorded);
-        statistics.add(io.lastRecord());
-        if (trace) trace->write(io.lastRecord());
-    }
+    runPath(tick, inputsOf(rows), [&](const TickRecord& record) {
+        hash.addRecord(record, recorded);
+        statistics.add(record);
+        if (trace) trace->write(record);
+    });
     hash.addVolume(bone.volume);
     if (trace && !trace->close())
         throw UserError(options.trace + ": the trace could not be written to its end (disk full?)");

@@ -208,14 +208,9 @@ class Server {
         if (!has_failed_) spdlog::info("shut down by a client's command");
     }
 
-    // The tick thread has ended: what it was putting back is in the files, too.
-    void putBackTheRest() {
-        for (bool shell_is_complete = true; history_.restoreSome(*simulation_.bone, shell_is_complete);) {
-        }
-    }
-
     int finish() {
-        putBackTheRest();
+        // The tick thread has ended: what it was putting back is in the files, too.
+        history_.restoreAll(*simulation_.bone);
         const bool trace_is_whole = recorder_.finish();
         if (!trace_is_whole)
             spdlog::error("{}: part of the trace could not be written (disk full?)", options_.trace);

@@ -29,11 +29,11 @@ Simulation simulationOf(const Options& o, const char* law) {
 }
 
 nlohmann::json toJson(const TickTimes& us) {
-    return {{"p50", us.p50}, {"p99", us.p99}, {"p999", us.p999}, {"max", us.max}};
+    return {{"p50", us.p50}, {"p99", us.p99}, {"p999", us.p99_9}, {"max", us.max}};
 }
 
 void addRow(Table& table, const std::string& name, const TickTimes& us) {
-    table.add({name, number(us.p50), number(us.p99), number(us.p999), number(us.max)});
+    table.add({name, number(us.p50), number(us.p99), number(us.p99_9), number(us.max)});
 }
 
 std::string signedNumber(double value) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "common/units.h"
-#include "haptic_server/offline/effect_cost.h"
+#include "haptic_server/offline/run_path.h"
 #include "haptic_server/offline/state_hash.h"
 #include "haptic_server/setup/scene_setup.h"
 #include "tests/support/every_effect_scene.h"
@@ -75,7 +75,7 @@ class EffectIdentity : public testing::TestWithParam<const char*> {
         BoneModel& bone = *simulation.bone;
         Outcome outcome;
         for (const TickRecord& record :
-             recordsOf(simulation.fixedTick(), bone, pathOver(bone, block_.burr_radius_mm * kMillimetre))) {
+             runPath(simulation.fixedTick(), bone, pathOver(bone, block_.burr_radius_mm * kMillimetre))) {
             StateHash hash;
             hash.addRecord(record);
             hash.addBytes(&record.effects, sizeof record.effects);

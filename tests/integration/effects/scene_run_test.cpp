@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "common/units.h"
-#include "haptic_server/offline/effect_cost.h"
+#include "haptic_server/offline/run_path.h"
 #include "haptic_server/record/bone_files.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/setup/scene_setup.h"
@@ -79,8 +79,8 @@ class SceneRun : public testing::Test {
         result.effects = effectNames(simulation.tick.effects);
         const double before = meshVolume(meshWholeBone(bone.volume, bone.lattice), grid);
         for (const TickRecord& record :
-             recordsOf(simulation.fixedTick(), bone,
-                       pathOf(loaded.scene.simulated_operator(), simulation.tick.dt))) {
+             runPath(simulation.fixedTick(), bone,
+                     pathOf(loaded.scene.simulated_operator(), simulation.tick.dt))) {
             result.removed_mm3 += record.removed * kPerCubicMillimetre;
             result.added_mm3 += record.added * kPerCubicMillimetre;
             result.faults |= record.faults;

@@ -128,19 +128,7 @@ TEST(PathEnergy, ForceThatLagsTakesAndForceThatLeadsGives) {
     EXPECT_NEAR(energyOf(motor, device).lowest, -work, 1e-3 * work);
 }
 
-TEST(TickTimes, PercentilesOfAKnownList) {
-    std::vector<int64_t> durations;
-    for (int64_t us = 2000; us >= 1; --us) durations.push_back(us * 1000);
-    const TickTimes times = timesOf(durations);
-    EXPECT_EQ(times.p50, 1000);
-    EXPECT_EQ(times.p99, 1980);
-    EXPECT_EQ(times.p99_9, 1998);
-    EXPECT_EQ(times.max, 2000);
-    EXPECT_EQ(timesOf({7000}).p50, 7);
-    EXPECT_EQ(timesOf({}).max, 0);
-}
-
-TEST(TickTimes, TheShorterOfTwoRunsCounts) {
+TEST(TimedRun, TheShorterOfTwoRunsCounts) {
     RunRecords first(3), second(3);
     first[0].compute_ns = 10, first[1].compute_ns = 500, first[2].compute_ns = 12;
     second[0].compute_ns = 11, second[1].compute_ns = 9, second[2].compute_ns = 900;

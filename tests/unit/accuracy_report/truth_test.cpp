@@ -4,6 +4,7 @@
 
 #include "haptic_server/accuracy_report/analytic_probe.h"
 #include "haptic_server/accuracy_report/fine_bone.h"
+#include "haptic_server/offline/run_path.h"
 #include "tests/unit/accuracy_report/probe_scene.h"
 
 namespace bonemill {
@@ -72,7 +73,7 @@ TEST(Truth, IsThatOfTheWholeBone) {
         test::boneOf(refinedPart(bone.volume, {{-1, -1, -1}, bone.volume.dims()}, kLeastRefinement));
     tick.accuracy = truthSettings();
     for (size_t n = 0; n < strokes.size(); ++n) {
-        const auto oracle = answersOf(runPath(tick, whole, strokes[n].device));
+        const auto oracle = answersOf(runPath(tick, whole, inputsOf(strokes[n].device, tick.dt)));
         ASSERT_EQ(truth[n].answers.size(), oracle.size());
         double most_apart = 0, most_force = 0;
         for (size_t i = 0; i < oracle.size(); ++i) {

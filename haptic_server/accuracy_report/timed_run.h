@@ -1,4 +1,4 @@
-// Leads the haptic tick along device poses as fast as it goes and keeps what it says.
+// Ticks along a path of device poses, timed so that other programs of the machine do not count. Not RT-safe.
 #pragma once
 
 #include <span>
@@ -13,14 +13,9 @@ namespace bonemill {
 using PosePath = std::vector<Pose>;  // device poses X_WT, one per tick
 using RunRecords = std::vector<TickRecord>;
 
-// A tick of its own, so that the simulated tool starts where the path starts. With kButtonRemove it changes
-// `bone`. Not RT-safe.
-RunRecords runPath(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path,
-                   uint32_t buttons = 0);
-
 // The same work kPasses times: the first run's records with the shortest time of each tick, so that what
 // other programs took of the processor does not count. Nothing is milled.
-RunRecords runPathTimed(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path);
+RunRecords runPathTimed(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path_WT);
 inline constexpr int kPasses = 3;
 
 // compute_ns of each tick becomes the smaller one of both runs of the same work.
