@@ -38,11 +38,11 @@ CommandInbox::Decision CommandInbox::receive(uint64_t envelope_sender, std::span
     Sender& sender = senderState(envelope_sender);
     if (command.sequence() < sender.sequence) return {};
     if (command.sequence() == sender.sequence) {
-        if (sender.result.empty()) return {};
-        return {std::nullopt, CommandAcknowledgement{envelope_sender, sender.sequence, sender.result}};
+        if (!sender.result) return {};
+        return {std::nullopt, CommandAcknowledgement{envelope_sender, sender.sequence, *sender.result}};
     }
     sender.sequence = command.sequence();
-    sender.result.clear();
+    sender.result.reset();
     if (command.action_case() == topics::Command::ACTION_NOT_SET) {
         return {std::nullopt, finish(command, "refused: this server does not know the action")};
     }
@@ -53,7 +53,7 @@ CommandAcknowledgement CommandInbox::finish(const topics::Command& command, cons
     Sender& sender = senderState(command.sender());
     if (command.sequence() >= sender.sequence) {
         sender.sequence = command.sequence();
-        sender.result = result.empty() ? "done" : result;
+        sender.result = result;
     }
     return {command.sender(), command.sequence(), result};
 }

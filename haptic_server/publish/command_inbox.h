@@ -39,9 +39,9 @@ class CommandInbox {
 
   private:
     struct Sender {
-        uint32_t sequence = 0;    // the last one received
-        std::string result;       // of that one; empty: not finished
-        uint64_t last_heard = 0;  // receive counter, to forget the quietest
+        uint32_t sequence = 0;              // the last one received
+        std::optional<std::string> result;  // of that one; nothing: it is still being carried out
+        uint64_t last_heard = 0;            // receive counter, to forget the quietest
     };
     Sender& senderState(uint64_t id);
 

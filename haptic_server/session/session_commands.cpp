@@ -16,7 +16,7 @@ SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bon
       effect_of_gradient_law_(effectOfGradientLaw(scene.effects())),
       only_instructors_(only_instructors) {}
 
-std::string SessionCommands::carryOut(const topics::Command& command) {
+std::optional<std::string> SessionCommands::carryOut(const topics::Command& command) {
     if (const std::string refusal = refusalOf(command); !refusal.empty()) return refusal;
     switch (command.action_case()) {
         case topics::Command::kResetVolume:

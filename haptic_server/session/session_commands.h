@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,8 @@ class SessionCommands {
     SessionCommands(const scene::Scene& scene, const BoneModel& bone, const Recorder& recorder,
                     const SessionControls& controls, bool only_instructors);
 
-    // "done" or "refused: <why>"; empty: begun, its end comes with takeResult().
-    std::string carryOut(const topics::Command& command);
+    // "done" or "refused: <why>"; nothing: it has begun, and its end comes with takeResult().
+    std::optional<std::string> carryOut(const topics::Command& command);
     // Of the command that was begun, once it has ended: "done" or "failed: <why>".
     std::optional<std::string> takeResult() { return controls_.bone_export.takeResult(); }
     // Of the status: session clock, pause, checkpoints, what the bone has lost.

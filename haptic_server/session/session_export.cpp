@@ -93,7 +93,7 @@ SessionExport::SessionExport(BoneHistory& history, const BoneModel& bone, std::s
     requireWritable((fs::path(folder_) / kProbe).string());
 }
 
-std::string SessionExport::begin(const std::string& name) {
+std::optional<std::string> SessionExport::begin(const std::string& name) {
     if (folder_.empty()) return "refused: this server was started without --export-dir";
     if (!isName(name))
         return "refused: '" + repeatedText(name) +
@@ -120,7 +120,7 @@ std::string SessionExport::begin(const std::string& name) {
     } catch (const std::exception& error) {
         return std::string("refused: no memory or thread for it: ") + error.what();
     }
-    return "";
+    return std::nullopt;
 }
 
 std::optional<std::string> SessionExport::takeResult() {

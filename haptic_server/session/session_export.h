@@ -17,9 +17,9 @@ class SessionExport {
     // if files cannot be made there.
     SessionExport(BoneHistory& history, const BoneModel& bone, std::string folder);
 
-    // NAME.stl, NAME.ply, NAME.nrrd (densities) and NAME_difference.nrrd of the bone as it is now. Empty:
-    // begun; else "refused: <why>". Not RT-safe, but no tick waits for it.
-    std::string begin(const std::string& name);
+    // NAME.stl, NAME.ply, NAME.nrrd (densities) and NAME_difference.nrrd of the bone as it is now. Nothing:
+    // it has begun; else "refused: <why>". Not RT-safe, but no tick waits for it.
+    std::optional<std::string> begin(const std::string& name);
     // Once, when the export under way has ended: "done" or "failed: <why>". Failed: none of its files is
     // left.
     std::optional<std::string> takeResult();

@@ -138,12 +138,12 @@ bool ShowSession::publishNodes() {
 // Who reads that a command is done finds what it did in the same status.
 void ShowSession::carryOutCommands() {
     for (const topics::Command& command : publisher_.takeCommands()) {
-        const std::string result = commands_.carryOut(command);
+        const std::optional<std::string> result = commands_.carryOut(command);
         if (commands_.tools().chosen() != scene_info_.tool_index()) publishSceneInfo();
-        if (result.empty())
-            under_way_ = command;
+        if (result)
+            answer(command, *result);
         else
-            answer(command, result);
+            under_way_ = command;
     }
     if (const auto result = commands_.takeResult()) answer(under_way_, *result);
 }

@@ -26,7 +26,9 @@ void CommandOutbox::acknowledge(const topics::Status& status) {
     if (waiting_.empty() || status.last_command_sender() != sender_ ||
         status.last_command_sequence() != waiting_.front().sequence())
         return;
-    finish(true, status.last_command_result());
+    // "done" is said and never meant by saying nothing.
+    finish(true,
+           status.last_command_result().empty() ? "the server gave no result" : status.last_command_result());
 }
 
 void CommandOutbox::step(Clock::time_point now, bool is_connected,

@@ -44,6 +44,19 @@ TEST_F(CommandInboxTest, CarriesACommandOutOnceAndAcknowledgesRepetitions) {
     EXPECT_EQ(repeated.acknowledgement->result, "done");
 }
 
+// Who repeats a command reads what who did not repeat it has read.
+TEST_F(CommandInboxTest, ARepetitionIsAnsweredWithTheVeryResult) {
+    for (const std::string& result : {std::string("done"), std::string("refused: no"), std::string()}) {
+        inbox_ = CommandInbox();
+        const auto first = receive(7, resetCommand(7, 1));
+        ASSERT_TRUE(first.command);
+        EXPECT_EQ(inbox_.finish(*first.command, result).result, result);
+        const auto repeated = receive(7, resetCommand(7, 1));
+        ASSERT_TRUE(repeated.acknowledgement) << "'" << result << "'";
+        EXPECT_EQ(repeated.acknowledgement->result, result);
+    }
+}
+
 TEST_F(CommandInboxTest, IgnoresOlderSequences) {
     ASSERT_TRUE(receive(7, resetCommand(7, 5)).command);
     const auto older = receive(7, resetCommand(7, 4));

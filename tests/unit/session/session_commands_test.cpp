@@ -28,7 +28,7 @@ class SessionCommandsTest : public testing::Test {
         topics::Command command;
         command.set_role(topics::Viewer::OPERATOR);
         command.set_set_accuracy(name);
-        return commands_.carryOut(command);
+        return commands_.carryOut(command).value_or("nothing said");
     }
 
     test::MilledBall ball_;

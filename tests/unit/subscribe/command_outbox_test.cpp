@@ -81,6 +81,20 @@ TEST_F(CommandOutboxTest, AnOutcomeNamesItsCommand) {
     EXPECT_EQ(outcomeText(outcomes[1]), "put the bone back: the server did not answer");
 }
 
+TEST_F(CommandOutboxTest, AnEmptyResultIsNoSuccess) {
+    topics::Command reset;
+    reset.set_reset_volume(true);
+    outbox_.enqueue(reset);
+    stepAt(0ms);
+    topics::Status status = acknowledgement(kSender, 1);
+    status.clear_last_command_result();
+    outbox_.acknowledge(status);
+    const auto outcomes = outbox_.takeOutcomes();
+    ASSERT_EQ(outcomes.size(), 1u);
+    EXPECT_FALSE(outcomes[0].isDone());
+    EXPECT_EQ(outcomeText(outcomes[0]), "put the bone back: the server gave no result");
+}
+
 TEST_F(CommandOutboxTest, OtherAcknowledgementsDoNotCount) {
     outbox_.enqueue({});
     stepAt(0ms);
