@@ -10,6 +10,7 @@
 
 #include "common/dds/network_interfaces.h"
 #include "common/dds/participant.h"
+#include "common/require_file.h"
 #include "common/user_error.h"
 #include "profiles.h"
 
@@ -27,6 +28,7 @@ bool isSetInEnvironment() {
 }
 
 std::string readProfile(const std::string& path) {
+    requireFile(path);
     std::ifstream file(path);
     std::ostringstream content;
     if (!(content << file.rdbuf())) throw UserError("--profile " + path + ": this file cannot be read");

@@ -11,6 +11,7 @@
 #include <istream>
 #include <string_view>
 
+#include "common/require_file.h"
 #include "common/user_error.h"
 
 namespace bonemill {
@@ -151,6 +152,7 @@ std::vector<TrajectoryRow> readTrajectory(std::istream& input, const std::string
 std::vector<TrajectoryRow> readTrajectory(const std::string& path) {
     if (std::filesystem::is_directory(path))
         throw UserError("trajectory " + path + " is a folder, not a CSV file");
+    requireFile(path);
     std::ifstream file(path);
     if (!file) throw UserError("trajectory " + path + " cannot be opened (" + std::strerror(errno) + ")");
     return readTrajectory(file, path);

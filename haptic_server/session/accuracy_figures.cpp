@@ -4,11 +4,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "common/require_file.h"
 #include "common/user_error.h"
 
 namespace bonemill {
 
 AccuracyFigures readAccuracyFigures(const std::string& file) {
+    requireFile(file);
     std::ifstream stream(file);
     if (!stream) throw UserError(file + ": cannot be read");
     try {

@@ -1,6 +1,7 @@
 #include "haptic_server/volume/import/guarded_import.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -21,7 +22,7 @@
 namespace bonemill {
 namespace {
 
-constexpr rlim_t kMostCpuSeconds = 600;  // the largest volumes take seconds
+constexpr rlim_t kMostCpuSeconds = 600;  // The largest volumes take seconds.
 constexpr size_t kNameBytes = 4096;
 
 char* file_being_read = nullptr;  // shared with the child
@@ -62,24 +63,58 @@ class Pipe {
     int ends_[2];
 };
 
-// False at the end of the stream or on an error.
-bool transfer(ssize_t (*step)(int, char*, size_t), int file, void* bytes, size_t count) {
-    char* next = static_cast<char*>(bytes);
+// The parent's end of the pipe. It waits for the child until the clock on the wall says that it is too late.
+class Incoming {
+  public:
+    Incoming(int file, std::chrono::milliseconds most) : file_(file), end_(Clock::now() + most) {}
+
+    // False at the end of the stream, on an error, or when it is too late.
+    bool read(void* bytes, size_t count) {
+        char* next = static_cast<char*>(bytes);
+        while (count > 0) {
+            if (!waitForBytes()) return false;
+            const ssize_t done = ::read(file_, next, count);
+            if (done < 0 && errno == EINTR) continue;
+            if (done <= 0) return false;
+            next += done;
+            count -= size_t(done);
+        }
+        return true;
+    }
+    bool isLate() const noexcept { return is_late_; }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    bool waitForBytes() {
+        pollfd wanted{file_, POLLIN, 0};
+        for (;;) {
+            const auto left = std::chrono::ceil<std::chrono::milliseconds>(end_ - Clock::now()).count();
+            const int ready = poll(&wanted, 1, int(std::clamp<int64_t>(left, 0, kLongestPoll_ms)));
+            is_late_ = ready == 0 && left <= kLongestPoll_ms;
+            if (ready > 0 || is_late_) return !is_late_;
+            if (ready < 0 && errno != EINTR) return false;
+        }
+    }
+
+    static constexpr int64_t kLongestPoll_ms = 1'000'000;
+
+    int file_;
+    Clock::time_point end_;
+    bool is_late_ = false;
+};
+
+// False when the other end is gone.
+bool writeAll(int file, const void* bytes, size_t count) {
+    const char* next = static_cast<const char*>(bytes);
     while (count > 0) {
-        const ssize_t done = step(file, next, count);
+        const ssize_t done = ::write(file, next, count);
         if (done < 0 && errno == EINTR) continue;
         if (done <= 0) return false;
         next += done;
         count -= size_t(done);
     }
     return true;
-}
-bool readAll(int file, void* bytes, size_t count) {
-    return transfer([](int f, char* b, size_t n) { return ::read(f, b, n); }, file, bytes, count);
-}
-bool writeAll(int file, const void* bytes, size_t count) {
-    return transfer([](int f, char* b, size_t n) { return ::write(f, b, n); }, file, const_cast<void*>(bytes),
-                    count);
 }
 
 // What goes through the pipe first; then the text (description or error), then the values.
@@ -113,27 +148,27 @@ bool sendValues(int file, RawValues& values) {
 }
 
 template <class T>
-bool receiveValues(int file, size_t count, RawValues& values) {
+bool receiveValues(Incoming& from, size_t count, RawValues& values) {
     std::vector<T> chunk;
     values.reserve(count);
     while (values.size() < count) {
         chunk.resize(std::min(kChunk, count - values.size()));
-        if (!readAll(file, chunk.data(), chunk.size() * sizeof(T))) return false;
+        if (!from.read(chunk.data(), chunk.size() * sizeof(T))) return false;
         values.append(std::span<const T>(chunk));
     }
     return true;
 }
 
-bool receiveValues(int file, const Head& head, RawValues& values) {
+bool receiveValues(Incoming& from, const Head& head, RawValues& values) {
     switch (head.type) {  // order of RawValues::Samples
         case 0:
-            return receiveValues<uint8_t>(file, head.values, values);
+            return receiveValues<uint8_t>(from, head.values, values);
         case 1:
-            return receiveValues<int16_t>(file, head.values, values);
+            return receiveValues<int16_t>(from, head.values, values);
         case 2:
-            return receiveValues<uint16_t>(file, head.values, values);
+            return receiveValues<uint16_t>(from, head.values, values);
         default:
-            return receiveValues<float>(file, head.values, values);
+            return receiveValues<float>(from, head.values, values);
     }
 }
 
@@ -158,12 +193,12 @@ void sendError(int file, const std::string& message) {
     writeAll(file, &head, sizeof head) && writeAll(file, message.data(), message.size());
 }
 
-// False when the child died before it had handed over everything.
-bool receive(int file, RawVolume& raw, std::string& error) {
+// False when the child died, or it was too late, before everything was handed over.
+bool receive(Incoming& from, RawVolume& raw, std::string& error) {
     Head head;
-    if (!readAll(file, &head, sizeof head)) return false;
+    if (!from.read(&head, sizeof head)) return false;
     std::string text(head.text_bytes, '\0');
-    if (!readAll(file, text.data(), text.size())) return false;
+    if (!from.read(text.data(), text.size())) return false;
     if (!head.is_volume) {
         error = text;
         return true;
@@ -174,7 +209,7 @@ bool receive(int file, RawVolume& raw, std::string& error) {
     raw.geometry.spacing = Eigen::Map<const Eigen::Vector3d>(head.spacing);
     raw.geometry.X_WV.position = Eigen::Map<const Eigen::Vector3d>(head.position);
     raw.geometry.X_WV.rotation = Eigen::Quaterniond(head.rotation);
-    return receiveValues(file, head, raw.values);
+    return receiveValues(from, head, raw.values);
 }
 
 [[noreturn]] void runChild(int file, const std::filesystem::path& path,
@@ -203,6 +238,12 @@ bool receive(int file, RawVolume& raw, std::string& error) {
     _exit(0);  // no destructor of the parent's objects may run twice
 }
 
+std::string secondsText(std::chrono::milliseconds time) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", std::chrono::duration<double>(time).count());
+    return text;
+}
+
 std::string nameOr(const std::filesystem::path& path) {
     return file_being_read && file_being_read[0] ? std::string(file_being_read) : path.string();
 }
@@ -213,7 +254,8 @@ void noteFileBeingRead(const std::filesystem::path& file) noexcept {
     if (file_being_read) std::strncpy(file_being_read, file.c_str(), kNameBytes - 1);
 }
 
-RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read) {
+RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read,
+                        std::chrono::milliseconds most) {
     const SharedName name;
     Pipe pipe;
     std::fflush(nullptr);  // or the child might write what is still buffered a second time
@@ -221,14 +263,22 @@ RawVolume importGuarded(const std::filesystem::path& path, const std::function<R
     if (child < 0) throw UserError("cannot start a process to read " + path.string() + "; memory is short");
     if (child == 0) runChild(pipe.end(1), path, read);
     pipe.closeEnd(1);
+    Incoming incoming(pipe.end(0), most);
     RawVolume raw;
     std::string error;
     bool is_complete = false;
     try {
-        is_complete = receive(pipe.end(0), raw, error);
+        is_complete = receive(incoming, raw, error);
     } catch (const std::bad_alloc&) {
         error = path.string() + ": there is not enough memory to hold it; crop or resample it";
         kill(child, SIGKILL);
+    }
+    if (incoming.isLate()) {
+        kill(child, SIGKILL);
+        // Whoever waits for a disk that is gone cannot be ended, so nobody waits for its end either.
+        waitpid(child, nullptr, WNOHANG);
+        throw UserError(nameOr(path) + ": could not be read within " + secondsText(most) +
+                        " s; is its disk or network slow or gone, or does it lead to a pipe?");
     }
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {

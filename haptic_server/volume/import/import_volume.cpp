@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/require_file.h"
 #include "common/user_error.h"
 #include "haptic_server/volume/import/dicom_folder.h"
 #include "haptic_server/volume/import/guarded_import.h"
@@ -26,6 +27,7 @@ RawVolume importByType(const std::filesystem::path& path, const ImportOptions& o
     std::error_code error;
     if (!std::filesystem::exists(path, error))
         throw UserError(path.string() + ": no such file or folder; check the path of the volume");
+    requireFile(path);
     if (std::filesystem::is_directory(path, error)) return importDicomFolder(path, options.series_uid);
     const std::string name = lowerCase(path.filename().string());
     if (endsWith(name, ".nrrd") || endsWith(name, ".nhdr")) return importNrrd(path);

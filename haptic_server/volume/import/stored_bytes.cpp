@@ -6,6 +6,7 @@
 #include <fstream>
 #include <vector>
 
+#include "common/require_file.h"
 #include "common/user_error.h"
 #include "haptic_server/volume/import/import_limits.h"
 
@@ -65,6 +66,7 @@ class InflateCounter {
 }  // namespace
 
 uint64_t countStoredBytes(const StoredData& data, uint64_t needed) {
+    requireFile(data.file);
     std::error_code error;
     const auto size = std::filesystem::file_size(data.file, error);
     if (error) throw UserError(data.file.string() + ": no such file; it should hold the voxels");

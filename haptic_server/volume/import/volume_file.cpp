@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "common/require_file.h"
 #include "common/user_error.h"
 #include "haptic_server/volume/import/import_limits.h"
 #include "haptic_server/volume/import/itk_image_file.h"
@@ -39,6 +40,7 @@ FileFrame frameOf(const ItkImageHeader& header, double mm_per_unit) {
 
 RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const FileFacts& facts) {
     const std::string file = path.string();
+    if (facts.data) requireFile(facts.data->file);  // The library opens it with the header.
     ItkImageFile image(format, path);
     const ItkImageHeader& header = image.header();
     if (header.components != 1)

@@ -1,5 +1,6 @@
 // Bad input: each one clear message on one line, exit code 2, nothing else.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 
@@ -60,6 +61,29 @@ TEST_F(BadInput, MissingSceneFile) {
 
 TEST_F(BadInput, MissingVolumeFile) {
     expectSceneRefused("volume { path: \"gone.nrrd\" }", {"gone.nrrd"});
+}
+
+// Opening a pipe waits for its writer, and a device may never end.
+TEST_F(BadInput, PipesAndDevicesInsteadOfFiles) {
+    ASSERT_EQ(mkfifo((folder_ / "pipe.nrrd").c_str(), 0600), 0);
+    const std::string pipe = folder_ / "pipe.nrrd";
+    for (const std::string& path : {pipe, std::string("/dev/zero")}) {
+        const std::vector<std::string> words{path, "named pipe"};
+        expectSceneRefused("volume { path: \"" + path + "\" }", words);
+        expectSceneRefused("volume { path: \"ball.nrrd\" label_path: \"" + path +
+                               "\" }\nmaterial { name: \"bone\" label: 1 }",
+                           words);
+        expectRefused({"haptic_server", "simulate", "--scene", ball(), "--trajectory", path}, words);
+        expectRefused({"haptic_server", "--scene", ball(), "--session", "941", "--accuracy", path}, words);
+        expectRefused({"haptic_server", "--scene", path}, {path, "not a file"});
+    }
+    writeFile(folder_ / "detached.nhdr",
+              "NRRD0004\ntype: short\ndimension: 3\nsizes: 4 4 4\nspacings: 1 1 1\nencoding: raw\n"
+              "endian: little\ndata file: pipe.nrrd\n");
+    expectSceneRefused("volume { path: \"detached.nhdr\" }", {"pipe.nrrd", "named pipe"});
+    std::filesystem::rename(folder_ / "pipe.nrrd", folder_ / "pipe.stl");
+    expectSceneRefused("volume { path: \"ball.nrrd\" }\ntool { mesh_path: \"pipe.stl\" }",
+                       {"pipe.stl", "not a file"});
 }
 
 TEST_F(BadInput, EmptyFolder) {

@@ -58,6 +58,16 @@ TEST(GuardedImport, errorsComeThrough) {
                     {"file", "memory"});
 }
 
+// A reader that waits uses no processor time, so that no limit on that ends it.
+TEST(GuardedImport, aReaderThatWaitsForEverIsEndedAndTheFileNamed) {
+    const auto readAndWait = []() -> RawVolume {
+        noteFileBeingRead("folder/slice7");
+        for (;;) pause();
+    };
+    expectUserError([&] { importGuarded("folder", readAndWait, std::chrono::milliseconds(50)); },
+                    {"folder/slice7", "within 0.05 s"});
+}
+
 TEST(GuardedImport, deathOfTheReaderNamesTheFileItWasAt) {
     expectUserError([] { importGuarded("folder", []() -> RawVolume { std::abort(); }); },
                     {"folder", "gave up"});
