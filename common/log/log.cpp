@@ -3,6 +3,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "common/rt/realtime.h"
 #include "common/user_error.h"
 
 namespace bonemill {
@@ -19,6 +20,11 @@ void setUpLog(const std::string& program, const std::string& level) {
     spdlog::set_pattern("%H:%M:%S.%e %n %^%l%$ %v");
     spdlog::set_level(parsed);
     spdlog::flush_on(spdlog::level::warn);
+}
+
+void logRealtime(const RealtimeReport& report) {
+    for (const std::string& advice : report.advice) spdlog::info("real time: {}", advice);
+    for (const std::string& missing : report.missing) spdlog::warn("real time: {}", missing);
 }
 
 }  // namespace bonemill

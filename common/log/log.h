@@ -5,7 +5,12 @@
 
 namespace bonemill {
 
+struct RealtimeReport;
+
 // level: trace, debug, info, warn, error or off (as `--log-level`). Throws UserError on any other word.
 void setUpLog(const std::string& program, const std::string& level);
+
+// What this machine grants a thread that keeps deadlines: its lacks as warnings, advice as information.
+void logRealtime(const RealtimeReport& report);
 
 }  // namespace bonemill

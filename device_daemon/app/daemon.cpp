@@ -5,10 +5,11 @@
 
 #include <cmath>
 #include <limits>
-#include <thread>
 
+#include "common/log/log.h"
 #include "common/rt/clock.h"
 #include "common/rt/periodic_timer.h"
+#include "common/rt/realtime_thread.h"
 #include "common/rt/rt_guard.h"
 #include "common/user_error.h"
 
@@ -46,14 +47,12 @@ Daemon::Daemon(const DeviceSetup& setup, const DaemonOptions& options)
       link_(DeviceLink::create(DeviceLink::nameOfSession(options.session), LinkSide::kDaemon)) {}
 
 void Daemon::run() {
-    const RealtimeReport memory = lockMemory();
-    std::promise<RealtimeReport> readiness;
-    std::future<RealtimeReport> thread_report = readiness.get_future();
-    std::jthread loop_thread([this, &readiness] { runLoop(std::move(readiness)); });
+    RealtimeThread loop_thread(
+        {.request = {.core = options_.core},
+         .best_effort = options_.best_effort_realtime,
+         .what = "the device loop"},
+        [this] { runLoop(); }, logRealtime);
     try {
-        RealtimeReport report = thread_report.get();
-        report.append(memory);
-        acceptRealtime(report);
         watch();
     } catch (...) {
         should_stop_ = true;
@@ -63,20 +62,7 @@ void Daemon::run() {
     statistics_.final_phase = phaseOf(progress_.waypoint);
 }
 
-void Daemon::acceptRealtime(const RealtimeReport& report) const {
-    for (const std::string& advice : report.advice) spdlog::info("{}", advice);
-    if (report.missing.empty()) return;
-    if (options_.best_effort_realtime) {
-        for (const std::string& missing : report.missing) spdlog::warn("best effort: {}", missing);
-        return;
-    }
-    std::string message = "this machine does not let the device loop be real-time:";
-    for (const std::string& missing : report.missing) message += " " + missing;
-    throw UserError(message + " (or go on without: --best-effort-rt)");
-}
-
-void Daemon::runLoop(std::promise<RealtimeReport> readiness) {
-    readiness.set_value(makeThreadRealtime({.core = options_.core}));
+void Daemon::runLoop() {
     const int64_t period_ns = std::llround(kNsPerSecond / setup_.rate_hz);
     const int64_t start_ns = monotonicNowNs();
     PeriodicTimer timer(period_ns, start_ns);

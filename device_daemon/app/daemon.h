@@ -2,10 +2,8 @@
 #pragma once
 
 #include <atomic>
-#include <future>
 
 #include "common/ipc/device_link.h"
-#include "common/rt/realtime.h"
 #include "device_daemon/app/device_setup.h"
 #include "device_daemon/app/loop_statistics.h"
 #include "device_daemon/app/options.h"
@@ -35,14 +33,13 @@ class Daemon {
         std::atomic<bool> is_finished = false;
     };
 
-    void runLoop(std::promise<RealtimeReport> readiness);
+    void runLoop();
     void tick(int64_t instant_ns, double elapsed) noexcept;
     void sayGoodbye() noexcept;
     void attachToServer(const WrenchCommand& command, uint64_t sequence) noexcept;
     void recordTick(const WrenchCommand* command, uint64_t sequence) noexcept;
     bool shouldEnd() const noexcept;
 
-    void acceptRealtime(const RealtimeReport& report) const;
     void watch();
     void reportProgress(int& shown_waypoint, bool& shown_stale) const;
     std::string phaseOf(int waypoint) const;

@@ -6,11 +6,11 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <future>
 #include <thread>
 
+#include "common/log/log.h"
 #include "common/rt/clock.h"
-#include "common/rt/realtime.h"
+#include "common/rt/realtime_thread.h"
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/mesh/mesh_rounds.h"
@@ -115,29 +115,16 @@ class Server {
     }
 
   private:
-    // Starts the tick thread. It makes no tick before memory is locked and the permissions are accepted.
     void startTick() {
-        RealtimeReport report = lockMemory();
-        std::promise<RealtimeReport> thread_report;
-        std::promise<bool> permission;
-        std::future<RealtimeReport> granted = thread_report.get_future();
-        tick_thread_ = std::jthread([this, &thread_report, may_run = permission.get_future()]() mutable {
-            tick_thread_id_ = gettid();
-            thread_report.set_value(makeThreadRealtime({kTickPriority, coreOf(options_.rt_core)}));
-            if (!may_run.get()) return;
-            while (tick_.tick(io_)) {
-            }
-        });
-        report.append(granted.get());
-        for (const std::string& advice : report.advice) spdlog::info("real time: {}", advice);
-        for (const std::string& missing : report.missing) spdlog::warn("real time: {}", missing);
-        const bool is_accepted = report.missing.empty() || options_.best_effort_rt;
-        permission.set_value(is_accepted);
-        if (is_accepted) return;
-        std::string message = "this machine does not grant real time:";
-        for (const std::string& missing : report.missing) message += " " + missing;
-        throw UserError(message +
-                        " Read docs/realtime.md, or go on without guarantees with --best-effort-rt.");
+        tick_thread_ = RealtimeThread(
+            {.request = {kTickPriority, coreOf(options_.rt_core)},
+             .best_effort = options_.best_effort_rt,
+             .what = "the haptic loop"},
+            [this] {
+                while (tick_.tick(io_)) {
+                }
+            },
+            logRealtime);
     }
 
     // A thread's work until it is told to stop; a failure ends the session in order, with its files.
@@ -177,7 +164,7 @@ class Server {
 
     // Again and again: the tick thread, and its numbers with it, may be gone at the end.
     void countPageFaults(int64_t first_tick_ns) {
-        const std::optional<PageFaults> now = pageFaultsOf(tick_thread_id_);
+        const std::optional<PageFaults> now = pageFaultsOf(tick_thread_.id());
         if (!now || monotonicNowNs() - first_tick_ns < kWarmUpNs) return;
         if (!warm_) warm_ = now;
         recorder_.setPageFaults({now->minor - warm_->minor, now->major - warm_->major});
@@ -262,10 +249,9 @@ class Server {
     SessionExport bone_export_;
     SessionCommands commands_;
     ShowSession show_;
-    PublishFigures published_;  // publisher thread's until it is joined
-    pid_t tick_thread_id_ = -1;
+    PublishFigures published_;        // publisher thread's until it is joined
     std::optional<PageFaults> warm_;  // of the tick thread, when it had run for kWarmUpNs
-    std::jthread tick_thread_;
+    RealtimeThread tick_thread_;
 };
 
 }  // namespace
