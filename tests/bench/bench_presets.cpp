@@ -12,10 +12,10 @@
 
 #include "common/rt/clock.h"
 #include "common/rt/latency_histogram.h"
+#include "haptic_server/phantom/tooth_phantom.h"
 #include "haptic_server/tick/fixed_tick.h"
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
-#include "haptic_server/volume/import/phantom/tooth_phantom.h"
 #include "tests/support/scripted_io.h"
 
 namespace bonemill::bench {

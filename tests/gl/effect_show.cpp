@@ -10,7 +10,7 @@
 #include <numeric>
 #include <vector>
 
-#include "haptic_server/volume/import/phantom/tooth_phantom.h"
+#include "haptic_server/phantom/tooth_phantom.h"
 #include "render_client/offscreen/osmesa_context.h"
 #include "tests/gl/milling_session.h"
 

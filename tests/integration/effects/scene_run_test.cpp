@@ -6,11 +6,11 @@
 
 #include "common/units.h"
 #include "haptic_server/offline/run_path.h"
+#include "haptic_server/phantom/tooth_phantom.h"
 #include "haptic_server/record/bone_files.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/volume/import/import_volume.h"
-#include "haptic_server/volume/import/phantom/tooth_phantom.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "haptic_server/volume/import/phantom/analytic_body.h"
+#include "haptic_server/phantom/analytic_body.h"
 #include "tests/unit/volume_import/expect_user_error.h"
 
 namespace bonemill {

@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "common/units.h"
+#include "haptic_server/phantom/analytic_body.h"
+#include "haptic_server/phantom/vertebra_phantom.h"
 #include "haptic_server/volume/import/import_volume.h"
-#include "haptic_server/volume/import/phantom/analytic_body.h"
-#include "haptic_server/volume/import/phantom/vertebra_phantom.h"
 #include "tests/support/places.h"
 #include "tests/support/temporary_folder.h"
 

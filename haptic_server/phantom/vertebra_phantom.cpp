@@ -1,12 +1,12 @@
-#include "haptic_server/volume/import/phantom/vertebra_phantom.h"
+#include "haptic_server/phantom/vertebra_phantom.h"
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 
 #include "common/units.h"
-#include "haptic_server/volume/import/phantom/implicit_shapes.h"
-#include "haptic_server/volume/import/phantom/spline_shapes.h"
+#include "haptic_server/phantom/implicit_shapes.h"
+#include "haptic_server/phantom/spline_shapes.h"
 
 namespace bonemill {
 namespace {

@@ -8,13 +8,13 @@
 
 #include "common/units.h"
 #include "common/user_error.h"
+#include "haptic_server/phantom/analytic_body.h"
+#include "haptic_server/phantom/anatomy_commands.h"
+#include "haptic_server/phantom/block_phantom.h"
+#include "haptic_server/phantom/dicom_series_writer.h"
+#include "haptic_server/phantom/number_range.h"
+#include "haptic_server/phantom/tooth_phantom.h"
 #include "haptic_server/volume/import/nrrd_stream.h"
-#include "haptic_server/volume/import/phantom/analytic_body.h"
-#include "haptic_server/volume/import/phantom/anatomy_commands.h"
-#include "haptic_server/volume/import/phantom/block_phantom.h"
-#include "haptic_server/volume/import/phantom/dicom_series_writer.h"
-#include "haptic_server/volume/import/phantom/number_range.h"
-#include "haptic_server/volume/import/phantom/tooth_phantom.h"
 
 namespace bonemill {
 namespace {

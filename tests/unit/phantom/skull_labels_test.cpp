@@ -1,4 +1,4 @@
-#include "haptic_server/volume/import/phantom/skull_labels.h"
+#include "haptic_server/phantom/skull_labels.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "haptic_server/volume/import/phantom/vertebra_phantom.h"
+#include "haptic_server/phantom/vertebra_phantom.h"
 
 #include <gtest/gtest.h>
 

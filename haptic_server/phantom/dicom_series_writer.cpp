@@ -1,11 +1,11 @@
-#include "haptic_server/volume/import/phantom/dicom_series_writer.h"
+#include "haptic_server/phantom/dicom_series_writer.h"
 
 #include <cmath>
 #include <cstdio>
 
 #include "common/units.h"
 #include "common/user_error.h"
-#include "haptic_server/volume/import/phantom/dicom_slice_writer.h"
+#include "haptic_server/phantom/dicom_slice_writer.h"
 
 namespace bonemill {
 namespace {

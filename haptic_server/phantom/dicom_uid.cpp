@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "haptic_server/volume/import/phantom/dicom_series_writer.h"
+#include "haptic_server/phantom/dicom_series_writer.h"
 
 namespace bonemill {
 namespace {

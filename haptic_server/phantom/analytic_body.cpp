@@ -1,4 +1,4 @@
-#include "haptic_server/volume/import/phantom/analytic_body.h"
+#include "haptic_server/phantom/analytic_body.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
-#include "haptic_server/volume/import/phantom/tooth_phantom.h"
+#include "haptic_server/phantom/tooth_phantom.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
+#include "haptic_server/phantom/dicom_series_writer.h"
 #include "haptic_server/volume/import/import_volume.h"
-#include "haptic_server/volume/import/phantom/dicom_series_writer.h"
 #include "haptic_server/volume/import/propose_iso.h"
 #include "tests/support/temporary_folder.h"
 

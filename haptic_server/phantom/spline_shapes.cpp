@@ -1,4 +1,4 @@
-#include "haptic_server/volume/import/phantom/spline_shapes.h"
+#include "haptic_server/phantom/spline_shapes.h"
 
 #include <algorithm>
 #include <cmath>

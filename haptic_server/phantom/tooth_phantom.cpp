@@ -1,4 +1,4 @@
-#include "haptic_server/volume/import/phantom/tooth_phantom.h"
+#include "haptic_server/phantom/tooth_phantom.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/units.h"
-#include "haptic_server/volume/import/phantom/implicit_shapes.h"
+#include "haptic_server/phantom/implicit_shapes.h"
 
 namespace bonemill {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptic_server/volume/import/phantom/block_phantom.h"
+#include "haptic_server/phantom/block_phantom.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "haptic_server/volume/import/phantom/dicom_slice_writer.h"
+#include "haptic_server/phantom/dicom_slice_writer.h"
 
 #include <gdcmTrace.h>
 #include <itkGDCMImageIO.h>

@@ -1,7 +1,7 @@
-#include "haptic_server/volume/import/phantom/skull_labels.h"
+#include "haptic_server/phantom/skull_labels.h"
 
 #include "common/units.h"
-#include "haptic_server/volume/import/phantom/spline_shapes.h"
+#include "haptic_server/phantom/spline_shapes.h"
 
 namespace bonemill {
 namespace {

@@ -1,15 +1,15 @@
-#include "haptic_server/volume/import/phantom/anatomy_commands.h"
+#include "haptic_server/phantom/anatomy_commands.h"
 
 #include <iostream>
 #include <memory>
 
 #include "common/units.h"
 #include "common/user_error.h"
+#include "haptic_server/phantom/number_range.h"
+#include "haptic_server/phantom/skull_labels.h"
+#include "haptic_server/phantom/vertebra_phantom.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/nrrd_stream.h"
-#include "haptic_server/volume/import/phantom/number_range.h"
-#include "haptic_server/volume/import/phantom/skull_labels.h"
-#include "haptic_server/volume/import/phantom/vertebra_phantom.h"
 
 namespace bonemill {
 namespace {
