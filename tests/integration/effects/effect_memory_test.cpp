@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "haptic_server/effects/make_effects.h"
 #include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/tick/fixed_tick.h"
 #include "tests/support/every_effect_scene.h"
