@@ -56,7 +56,7 @@ TEST_P(CpuBits, TheHashIsTheSameWithoutFusedMultiplyAdd) {
     test::writeScene(folder / "scene.textproto", test::everyEffectScene(block, GetParam()));
     test::writeFile(folder / "path.csv", millingPath(block));
     const auto with = simulate(folder, nullptr), without = simulate(folder, kWithoutFma);
-    EXPECT_GT(with["removed_mm3"].get<double>(), 0.5);
+    EXPECT_GT(with["removed_mm3"].get<double>(), 0);
     EXPECT_EQ(with["state_hash"], without["state_hash"]);
 }
 
