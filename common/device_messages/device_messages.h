@@ -1,7 +1,7 @@
 // What device_daemon and haptic_server say to each other through shared memory.
 //
-// Frames: D device base, T tool frame of the handle. Units: m, N, N·m; stamps CLOCK_MONOTONIC ns of this
-// machine. Everything here is RT-safe.
+// The frames are D, the device's base, and T, the tool frame of the handle. Units are m, N, N·m; stamps are
+// CLOCK_MONOTONIC ns of this machine. Everything here is RT-safe.
 #pragma once
 
 #include <cstddef>
@@ -49,15 +49,15 @@ static_assert(sizeof(WrenchCommand) == 80 && offsetof(WrenchCommand, f_hand_D) =
               offsetof(WrenchCommand, t_hand_D) == 40 && offsetof(WrenchCommand, answers_sequence) == 64 &&
               offsetof(WrenchCommand, flags) == 72);
 
-// Accepted distance of |q| from 1: far above rounding, far below what a torn or random quaternion shows.
+// |q| may differ from 1 by so much: far above rounding, far below what a torn or random quaternion shows.
 inline constexpr double kQuaternionNormTolerance = 1e-3;
-// No device of this world reaches further from its base than this (m): refuses garbage that happens to be
-// finite.
+// No device of this world reaches farther from its base than this (m). It refuses garbage that is
+// finite by chance.
 inline constexpr double kLargestDeviceReach = 10.0;
 
-// May the server act on it? Finite, a rotation, within reach.
+// Tells whether the server may act on it: it is finite, a rotation, and within reach.
 bool isPlausible(const DeviceSample& sample) noexcept;
-// May the daemon act on it? Finite (limits are the business of the device's safety).
+// Tells whether the daemon may act on it: it is finite. Limits are the business of the device's safety.
 bool isPlausible(const WrenchCommand& command) noexcept;
 
 }  // namespace bonemill

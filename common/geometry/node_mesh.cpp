@@ -12,7 +12,7 @@ float signNotZero(float value) noexcept {
     return value < 0 ? -1.0f : 1.0f;
 }
 
-// The lower half of the octahedron, folded outwards over the diagonals; its own inverse.
+// Folds the lower half of the octahedron outwards over the diagonals; it is its own inverse.
 void fold(float& u, float& v) noexcept {
     const float folded_u = (1 - std::abs(v)) * signNotZero(u);
     v = (1 - std::abs(u)) * signNotZero(v);
@@ -26,7 +26,7 @@ OctahedralNormal encodeNormal(const Eigen::Vector3f& normal) noexcept {
     float u = normal.x() / sum;
     float v = normal.y() / sum;
     if (normal.z() < 0) fold(u, v);
-    // To nearest: the truncation of what is never negative.
+    // This rounds to nearest, because what is truncated is never negative.
     const auto rounded = [](float value) { return int8_t(int(value * kOctahedralScale + 128.5f) - 128); };
     return {rounded(u), rounded(v)};
 }

@@ -1,4 +1,4 @@
-// The surface of one octree leaf as it is stored, sent and drawn: indexed, quantised triangles.
+// This is the surface of one octree leaf as it is stored, sent and drawn: indexed, quantised triangles.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,9 @@
 
 namespace bonemill {
 
-// Position in quantisation steps from the leaf's origin; unit normal (out of the bone) in octahedral coding,
-// signed 8 bit per coordinate. 8 bytes, as meshoptimizer's vertex codec wants a multiple of 4.
+// The position counts quantisation steps from the leaf's origin. The unit normal points out of the bone, in
+// octahedral coding with signed 8 bit per coordinate. That makes 8 bytes, as meshoptimizer's vertex codec
+// wants a multiple of 4.
 struct PackedVertex {
     uint16_t x, y, z;
     int8_t octahedral_u, octahedral_v;
@@ -24,15 +25,17 @@ struct NodeMesh {
     Eigen::Vector3f step = Eigen::Vector3f::Zero();    // V, m
     std::vector<PackedVertex> vertices;
     std::vector<uint32_t> indices;  // 3 per triangle, counter-clockwise seen from outside
-    // Per vertex: 1 + index in the scene's list of materials, 0: none. Empty: none has one.
+    // Each vertex has 1 + the index of its material in the scene's list, or 0 for none; empty if
+    // none has one.
     std::vector<uint8_t> materials;
 
     bool isEmpty() const noexcept { return indices.empty(); }
 };
 
-// Octahedral coding of a unit vector n (Cigolle et al. 2014, "Survey of Efficient Representations for
-// Independent Unit Vectors"): (u, v) = (n.x, n.y) / (|n.x| + |n.y| + |n.z|), folded over the diagonals when
-// n.z < 0, times 127. Thread-safe, never throws. The worst error of a normal is below 1.5 degrees.
+// The octahedral coding of a unit vector n (Cigolle et al. 2014, "Survey of Efficient Representations for
+// Independent Unit Vectors") is (u, v) = (n.x, n.y) / (|n.x| + |n.y| + |n.z|), folded over the diagonals
+// when n.z < 0, times 127. The worst error of a normal is below 1.5 degrees. Both functions are thread-safe
+// and never throw.
 struct OctahedralNormal {
     int8_t u, v;
 };

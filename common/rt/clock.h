@@ -1,6 +1,6 @@
-// The one clock of the simulator: CLOCK_MONOTONIC, the same for all processes of one machine.
+// This is the one clock of the simulator: CLOCK_MONOTONIC, the same for all processes of one machine.
 //
-// RT-safe (vDSO, no system call), any thread.
+// It is RT-safe (vDSO, no system call), and any thread may read it.
 #pragma once
 
 #include <time.h>

@@ -1,7 +1,7 @@
-// Durations in fixed buckets, each at most 1 % wide from 100 ns to 10 s (log-linear, as HdrHistogram arranges
-// them).
+// Counts durations in fixed buckets, each at most 1 % wide from 100 ns to 10 s; they are log-linear, as
+// HdrHistogram arranges them.
 //
-// record is RT-safe; the object (28 KiB) allocates nothing. One thread at a time.
+// record() is RT-safe, and the object (28 KiB) allocates nothing. One thread at a time may use it.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ namespace bonemill {
 
 class LatencyHistogram {
   public:
-    // Negative durations count as 0; those above kLargestNs count in the last bucket (max and mean stay
-    // exact).
+    // Negative durations count as 0, and those above kLargestNs in the last bucket; maximum and
+    // mean stay exact.
     void record(int64_t duration_ns) noexcept;
     void merge(const LatencyHistogram& other) noexcept;
 
@@ -21,8 +21,8 @@ class LatencyHistogram {
     int64_t maxNs() const noexcept { return max_ns_; }
     double meanNs() const noexcept { return count_ ? double(sum_ns_) / double(count_) : 0.0; }
 
-    // Smallest duration that `percent` (0..100) of the records do not exceed, rounded up to its bucket's end
-    // and never above maxNs(); 0 without records.
+    // Returns the smallest duration that `percent` (0..100) of the records do not exceed, rounded up to its
+    // bucket's end but never above maxNs(); 0 without records.
     int64_t percentileNs(double percent) const noexcept;
 
     static constexpr int64_t kLargestNs = 10'000'000'000;

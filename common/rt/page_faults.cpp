@@ -10,8 +10,8 @@ std::optional<PageFaults> pageFaultsOf(pid_t thread) {
     std::ifstream file("/proc/self/task/" + std::to_string(thread) + "/stat");
     std::string line;
     if (!std::getline(file, line)) return std::nullopt;
-    // After the name, which may hold anything, in parentheses: state, six numbers, flags, minflt, cminflt,
-    // majflt.
+    // The name stands in parentheses and may hold anything. After it come the state, six numbers, flags,
+    // minflt, cminflt and majflt.
     std::istringstream rest(line.substr(line.rfind(')') + 1));
     std::string skipped;
     for (int n = 0; n < 7; ++n) rest >> skipped;

@@ -1,4 +1,5 @@
-// How often a thread of this process had to wait for a page of memory. Not RT-safe: reads /proc.
+// Tells how often a thread of this process had to wait for a page of memory. It reads /proc and
+// is not RT-safe.
 #pragma once
 
 #include <sys/types.h>
@@ -13,7 +14,7 @@ struct PageFaults {
     uint64_t major = 0;  // it came from a disk
 };
 
-// Since the thread's start; nothing when there is no such thread. `thread`: as gettid() says.
+// Counts since the thread's start; nothing when there is no such thread. `thread` is what gettid() says.
 std::optional<PageFaults> pageFaultsOf(pid_t thread);
 
 }  // namespace bonemill

@@ -1,7 +1,7 @@
-// Wakes a loop at fixed instants (absolute CLOCK_MONOTONIC sleep: no drift); periods that were slept through
-// or overrun are skipped and counted, never made up for in a burst.
+// Wakes a loop at fixed instants, by absolute sleep on CLOCK_MONOTONIC, so that nothing drifts. Periods that
+// were slept through or overrun are skipped and counted, never made up for in a burst.
 //
-// RT-safe except that it sleeps. One thread.
+// It is RT-safe except that it sleeps. One thread uses it.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,14 @@ namespace bonemill {
 
 class PeriodicTimer {
   public:
-    // period_ns > 0. The first instant is one period after start_ns (CLOCK_MONOTONIC).
+    // The period must be above 0. The first instant is one period after start_ns (CLOCK_MONOTONIC).
     PeriodicTimer(int64_t period_ns, int64_t start_ns) noexcept;
 
-    // Sleeps until the next instant and returns it: now - result is the wake-up latency.
+    // Sleeps until the next instant and returns it; now - result is the wake-up latency.
     int64_t waitNext() noexcept;
 
-    // The same arithmetic without the sleep: the instant to wait for when the clock shows now_ns.
+    // Does the same arithmetic without the sleep: returns the instant to wait for when the
+    // clock shows now_ns.
     int64_t advance(int64_t now_ns) noexcept;
 
     int64_t periodNs() const noexcept { return period_ns_; }

@@ -24,7 +24,7 @@ std::string firstLineOf(const std::string& path) {
     return line;
 }
 
-// Does a kernel list such as "2-3,6" hold this core?
+// Tells whether a kernel list such as "2-3,6" holds this core.
 bool listHoldsCore(const std::string& list, int core) {
     std::istringstream ranges(list);
     for (std::string range; std::getline(ranges, range, ',');) {
@@ -37,7 +37,7 @@ bool listHoldsCore(const std::string& list, int core) {
     return false;
 }
 
-// Advice, not a failure: the thread runs where it should, but not alone.
+// This is advice, not a failure: the thread runs where it should, but not alone.
 void checkCore(int core, RealtimeReport& report) {
     const std::string name = "core " + std::to_string(core);
     if (!listHoldsCore(firstLineOf("/sys/devices/system/cpu/isolated"), core)) {

@@ -1,7 +1,7 @@
 // Makes the calling thread as real-time as this machine allows, and says in plain sentences what is missing.
 //
-// Start-up only: system calls, allocation. Nothing throws: the caller decides what a missing permission means
-// (`--best-effort-rt`).
+// It is for start-up only, since it makes system calls and allocates. Nothing throws: the caller decides what
+// a missing permission means (`--best-effort-rt`).
 #pragma once
 
 #include <cstddef>
@@ -24,10 +24,10 @@ struct RealtimeReport {
     void append(const RealtimeReport& other);
 };
 
-// Calling thread: SCHED_FIFO, pinned, stack prefaulted.
+// Gives the calling thread SCHED_FIFO, pins it and prefaults its stack.
 RealtimeReport makeThreadRealtime(const RealtimeRequest& request);
 
-// Whole process: present and future pages stay in memory, and freed heap stays with the process.
+// Keeps all present and future pages of the process in memory, and freed heap with the process.
 RealtimeReport lockMemory();
 
 inline constexpr size_t kPrefaultedStackBytes = size_t(256) * 1024;

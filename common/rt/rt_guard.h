@@ -1,7 +1,7 @@
 // Marks the code that may neither allocate nor lock: the inside of a tick.
 //
-// An executable that links bonemill::rt_guard aborts with a message when heap or lock functions are called by
-// this thread inside an RtScope: tests, and the programs' guarded twins. In others a scope only counts.
+// An executable that links bonemill::rt_guard aborts with a message when this thread calls heap or lock
+// functions inside an RtScope. Tests do so, and the programs' guarded twins; in others a scope only counts.
 #pragma once
 
 #include <atomic>

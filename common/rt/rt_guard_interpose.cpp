@@ -10,7 +10,7 @@
 namespace bonemill::rt_guard {
 namespace {
 
-// write and abort only: stdio would allocate and lock.
+// It calls write and abort only, because stdio would allocate and lock.
 void refuse(const char* kind, const char* function) noexcept {
     if (scope_depth == 0) return;
     scope_depth = 0;

@@ -1,6 +1,6 @@
-// Own definitions of the C library's heap and lock functions: report, then do what the C library does.
-// operator new and Eigen's allocator end in malloc, std::mutex in pthread_mutex_lock, so these few cover
-// everything.
+// These own definitions of the C library's heap and lock functions report a call, then do what the C library
+// does. operator new and Eigen's allocator end in malloc, std::mutex in pthread_mutex_lock, so that these
+// few cover everything.
 #include "common/rt/rt_interpose.h"
 
 #include <dlfcn.h>
@@ -17,7 +17,7 @@ using bonemill::rt_guard::onLockCall;
 
 extern "C" {
 
-// glibc's own names of the functions hidden by ours.
+// These are glibc's own names of the functions hidden by ours.
 void* __libc_malloc(size_t size);
 void* __libc_calloc(size_t count, size_t size);
 void* __libc_realloc(void* memory, size_t size);
@@ -67,7 +67,7 @@ int posix_memalign(void** memory, size_t alignment, size_t size) {
 
 namespace {
 
-// The next definition of `name` behind ours, looked up once. dlsym takes none of the locks below.
+// Looks up the next definition of `name` behind ours, once. dlsym takes none of the locks below.
 template <class Function>
 Function* next(std::atomic<Function*>& known, const char* name) noexcept {
     Function* function = known.load(std::memory_order_relaxed);

@@ -1,4 +1,4 @@
-// What the interposed heap and lock functions call before they do their work. The program that links them
+// The interposed heap and lock functions call these before they do their work. The program that links them
 // (bonemill::rt_interpose) defines both; they may not allocate or lock.
 #pragma once
 

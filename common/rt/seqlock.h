@@ -1,10 +1,10 @@
-// Newest value from one writer to any number of readers, also across processes (the object may lie in shared
-// memory).
+// Carries the newest value from one writer to any number of readers, also across processes: the object may
+// lie in shared memory.
 //
-// write is wait-free; tryRead is bounded; both are RT-safe. All-zero memory is a valid, never written
-// Seqlock. Every byte travels in atomic words, so a concurrent read is no data race, and no fence is needed:
-// a reader that sees a word of an unfinished write (acquire, paired with the word's release) also sees the
-// odd counter before it.
+// write() is wait-free, tryRead() is bounded, and both are RT-safe. All-zero memory is a valid Seqlock that
+// was never written. Every byte travels in atomic words, so a concurrent read is no data race. No fence is
+// needed: a reader that sees a word of an unfinished write (acquire, paired with the word's release) also
+// sees the odd counter before it.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ class Seqlock {
     static constexpr int kDefaultAttempts =
         16;  // a write lasts some ten nanoseconds, so the second one succeeds
 
-    // The one writer only. Also repairs the counter that a writer left odd when it died.
+    // Only the one writer may call it. It also repairs the counter that a writer left odd when it died.
     void write(const T& value) noexcept {
         Words words{};
         std::memcpy(words.data(), &value, sizeof(T));
@@ -36,8 +36,9 @@ class Seqlock {
         counter_.store(done == kNeverWritten ? done + 2 : done, std::memory_order_release);
     }
 
-    // Any reader. False: nothing was written yet, or every attempt met a write; `value` is untouched then.
-    // `version`, if given, receives the counter of the value read: it differs between two writes.
+    // Any reader may call it. False says that nothing was written yet, or that every attempt met a write;
+    // `value` is untouched then. `version`, if given, receives the counter of the value read, which differs
+    // between two writes.
     bool tryRead(T& value, uint32_t* version = nullptr, int attempts = kDefaultAttempts) const noexcept {
         for (int attempt = 0; attempt < attempts; ++attempt) {
             const uint32_t before = counter_.load(std::memory_order_acquire);
@@ -53,7 +54,7 @@ class Seqlock {
         return false;
     }
 
-    // Odd while a write is under way, 0 before the first one. A futex may wait on it.
+    // The counter is odd while a write is under way, and 0 before the first one. A futex may wait on it.
     const std::atomic<uint32_t>& counter() const noexcept { return counter_; }
 
     static constexpr uint32_t kNeverWritten = 0;

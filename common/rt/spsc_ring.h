@@ -1,7 +1,7 @@
-// Bounded queue from one producer thread to one consumer thread. Full means: drop the new item and count it.
+// This is a bounded queue from one producer thread to one consumer thread. When it is full the new item is
+// dropped and counted.
 //
-// tryPush and tryPop are wait-free and RT-safe; the constructor allocates. `dropped` may be read by any
-// thread.
+// tryPush() and tryPop() are wait-free and RT-safe; the constructor allocates. Any thread may read `dropped`.
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,7 @@ class SpscRing {
     static_assert(std::is_trivially_copyable_v<T>, "a push must not be able to allocate or throw");
 
   public:
-    // Holds at least `capacity` items (the next power of two).
+    // It holds at least `capacity` items: as many as the next power of two.
     explicit SpscRing(size_t capacity)
         : mask_(std::bit_ceil(capacity < 1 ? size_t(1) : capacity) - 1), items_(new T[mask_ + 1]()) {}
 
@@ -27,7 +27,7 @@ class SpscRing {
 
     size_t capacity() const noexcept { return mask_ + 1; }
 
-    // Producer only. False: the ring was full, the item is dropped and counted.
+    // Only the producer may call it. False says that the ring was full; the item is dropped and counted.
     bool tryPush(const T& item) noexcept {
         const size_t tail = tail_.load(std::memory_order_relaxed);  // only this thread writes it
         if (tail - known_head_ > mask_) {
@@ -43,7 +43,7 @@ class SpscRing {
         return true;
     }
 
-    // Consumer only. False: nothing there, `item` is untouched.
+    // Only the consumer may call it. False says that nothing is there; `item` is untouched.
     bool tryPop(T& item) noexcept {
         const size_t head = head_.load(std::memory_order_relaxed);
         if (head == known_tail_) {
@@ -55,7 +55,7 @@ class SpscRing {
         return true;
     }
 
-    // Items refused since construction. A lone statistic: relaxed is enough.
+    // Counts the items refused since construction. It is a lone statistic, so that relaxed is enough.
     uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
   private:
@@ -63,8 +63,8 @@ class SpscRing {
 
     const size_t mask_;
     const std::unique_ptr<T[]> items_;
-    // Indices only ever grow; each side keeps its last view of the other's beside its own to spare the cache
-    // line.
+    // Indices only ever grow. Each side keeps its last view of the other's beside its own, which spares the
+    // other's cache line.
     alignas(kCacheLine) std::atomic<size_t> tail_{0};
     size_t known_head_ = 0;
     std::atomic<uint64_t> dropped_{0};
