@@ -8,7 +8,7 @@
 namespace bonemill {
 namespace {
 
-// What an effect needs beside being listed.
+// An effect needs this beside being listed.
 struct EffectRule {
     const char* name;
     bool needs_gradient_law;

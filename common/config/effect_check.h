@@ -7,7 +7,7 @@ namespace bonemill {
 
 void checkEffects(const scene::Scene& scene, const RefuseField& refuse);
 
-// The first listed effect, as in the scene, that only the gradient law has room for; null: none.
+// It is the first listed effect, in the scene's order, that only the gradient law has room for; null: none.
 const char* effectOfGradientLaw(const scene::Effects& effects);
 
 }  // namespace bonemill

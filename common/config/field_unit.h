@@ -1,4 +1,4 @@
-// The unit that a scene field carries as the suffix of its name.
+// Finds the unit that a scene field carries as the suffix of its name.
 #pragma once
 
 #include <string>
@@ -6,10 +6,10 @@
 
 namespace bonemill {
 
-// "mm/s" for max_speed_mm_per_s; empty for a plain number. Any thread; not RT-safe.
+// It is "mm/s" for max_speed_mm_per_s and empty for a plain number. Any thread; not RT-safe.
 std::string_view unitOfField(std::string_view field_name) noexcept;
 
-// A number as people write it (0.25, 100000, 1e+09): the shortest text that reads back as the same double.
+// Writes a number as people do (0.25, 100000, 1e+09): the shortest text that reads back as the same double.
 std::string numberText(double value);
 
 }  // namespace bonemill

@@ -8,7 +8,7 @@
 
 namespace bonemill {
 
-// Path of a field, and what is wrong with it; throws.
+// It takes the path of a field and what is wrong with it, and throws.
 using RefuseField = std::function<void(const std::string& path, const std::string& why)>;
 
 void checkMaterials(const scene::Scene& scene, const RefuseField& refuse);

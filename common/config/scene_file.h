@@ -19,8 +19,8 @@ struct LoadedScene {
 // file, bad syntax, an unknown field, a value outside its range and fields in conflict. Start-up only.
 LoadedScene loadScene(const std::filesystem::path& file);
 
-// Where a path written in the scene points: absolute paths stay, relative ones start at the scene file's
-// folder.
+// A path written in the scene points there: absolute paths stay, relative ones start at the
+// scene file's folder.
 std::filesystem::path resolvePath(const LoadedScene& loaded, const std::string& path_in_scene);
 
 }  // namespace bonemill

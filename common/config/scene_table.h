@@ -1,12 +1,12 @@
-// Every field of the scene with its unit, default and range, from the schema itself.
+// Lists every field of the scene with its unit, default and range, from the schema itself.
 #pragma once
 
 #include <string>
 
 namespace bonemill {
 
-// A Markdown table, one row per field, in the order of proto/scene.proto. For --describe-scene and
-// docs/scene.md.
+// Makes a Markdown table, one row per field, in the order of proto/scene.proto, for
+// --describe-scene and docs/scene.md.
 std::string describeDefaults();
 
 }  // namespace bonemill

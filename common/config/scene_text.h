@@ -1,4 +1,4 @@
-// Text format -> Scene message, with the line that every field stands on.
+// Reads a Scene message from its text format, with the line that every field stands on.
 #pragma once
 
 #include <map>
@@ -8,7 +8,8 @@
 
 namespace bonemill {
 
-// Path of a field ("coupling.max_speed_mm_per_s", "simulated_operator.waypoint[3].q_WT") -> its line, from 1.
+// The path of a field ("coupling.max_speed_mm_per_s", "simulated_operator.waypoint[3].q_WT") leads to its
+// line, counted from 1.
 using FieldLines = std::map<std::string, int>;
 
 struct ParsedScene {
@@ -20,8 +21,8 @@ struct ParsedScene {
 // fields (with the nearest known name). Ranges are not looked at. Start-up only.
 ParsedScene parseSceneText(const std::string& text, const std::string& name);
 
-// "name:line: ", with the line of the field or of the nearest enclosing one; "name: " when the text has
-// neither.
+// It is "name:line: " with the line of the field or of the nearest enclosing one, and "name: " when the
+// text has neither.
 std::string placeOf(const std::string& name, const FieldLines& lines, std::string field_path);
 
 }  // namespace bonemill

@@ -1,4 +1,4 @@
-// The tools of a scene. Start-up only.
+// Finds the tools of a scene. Start-up only.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@ namespace bonemill {
 
 inline constexpr int kMostTools = 16;
 
-// At least one: a scene without tools has the default one. Point into `scene`.
+// There is at least one: a scene without tools has the default one. The pointers lead into `scene`.
 std::vector<const scene::Tool*> toolsOf(const scene::Scene& scene);
 
-// What people call them, in the same order: their names, else "tool 1", "tool 2", ... by place.
+// People call them so, in the same order: their names, else "tool 1", "tool 2", ... by place.
 std::vector<std::string> toolNamesOf(const scene::Scene& scene);
 
-// Place of the tool that `text` means: its name, or its number from 1. None: throws UserError, which says
-// what there is.
+// Finds the place of the tool that `text` means: its name, or its number from 1. Throws UserError, which says
+// what there is, if there is none.
 size_t toolIndexOf(const std::vector<std::string>& names, const std::string& text);
 
 }  // namespace bonemill

@@ -1,5 +1,5 @@
-// Typed writer and reader of one topic. One thread per object; not for the tick. Constructors throw
-// UserError. Peers that do not match because of their QoS or type are logged.
+// Typed writer and reader of one topic belong to one thread per object; they are not for the tick.
+// Constructors throw UserError. Peers that do not match because of their QoS or type are logged.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ class AnyWriter {
   public:
     AnyWriter(const Participant& participant, const TopicDescription& description);
 
-    // False when DDS refused; the first refusal is logged.
+    // It is false when DDS refused; the first refusal is logged.
     bool write(const void* sample);
     bool dispose(const void* sample);
     int matchedReaders() const;
@@ -40,7 +40,7 @@ class AnyWriter {
 class AnyReader {
   public:
     static constexpr size_t kBatch = 64;
-    // Samples on loan from Cyclone, given back on destruction.
+    // Samples are on loan from Cyclone and given back on destruction.
     class Batch {
       public:
         Batch(int32_t reader, size_t max_samples);

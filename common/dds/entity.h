@@ -1,4 +1,4 @@
-// Owner of one Cyclone DDS entity. Not for the tick.
+// Owns one Cyclone DDS entity. Not for the tick.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,8 @@ class Entity {
     int32_t handle_ = 0;
 };
 
-// The entity of a create call's result; throws UserError "cannot create <what>: <reason>" when it failed.
+// Makes the entity of a create call's result; throws UserError "cannot create <what>: <reason>"
+// when it failed.
 Entity requireEntity(int32_t result, const std::string& what);
 
 }  // namespace bonemill::dds

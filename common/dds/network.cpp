@@ -17,7 +17,8 @@
 namespace bonemill::dds {
 namespace {
 
-// Places in a profile, in Cyclone's notation: a profile also works with CYCLONEDDS_URI and these variables.
+// These are places in a profile, in Cyclone's notation: a profile also works with CYCLONEDDS_URI
+// and these variables.
 constexpr char kAddressPlace[] = "${BONEMILL_ADDRESS}";
 constexpr char kPriorityPlace[] = "${BONEMILL_LAN_PRIORITY:-default}";
 constexpr char kAboveLoopback[] = "3";

@@ -1,5 +1,5 @@
-// Which network this process joins: a profile of deploy/dds, this PC's interface, peers (docs/network.md).
-// Not for the tick.
+// Chooses the network that this process joins: a profile of deploy/dds, this PC's interface, peers
+// (docs/network.md). Not for the tick.
 #pragma once
 
 #include <string>
@@ -13,14 +13,15 @@ struct NetworkOptions {
     std::vector<std::string> peers = {};  // PCs to look for, names or IPv4 addresses; given: no multicast
 };
 
-// This PC is one of several: profile lab or classroom.
+// This PC is one of several with the profile lab or classroom.
 bool isLanProfile(const std::string& profile);
 
-// Cyclone's configuration: one or more XML fragments. Empty: CYCLONEDDS_URI says it all. Throws UserError.
+// Makes Cyclone's configuration: one or more XML fragments. It is empty when CYCLONEDDS_URI says it
+// all. Throws UserError.
 std::string networkConfiguration(const NetworkOptions& options);
 
 // From now on every participant of this process joins this network; without a call, that of NetworkOptions().
-// Before the first participant, one thread. Throws UserError.
+// It is called before the first participant, by one thread. Throws UserError.
 void setNetwork(const NetworkOptions& options);
 
 }  // namespace bonemill::dds

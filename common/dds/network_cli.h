@@ -1,4 +1,4 @@
-// The options with which every program chooses its network.
+// Every program chooses its network with these options.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// The network interfaces of this PC. Any thread; not for the tick.
+// Lists the network interfaces of this PC. Any thread; not for the tick.
 #pragma once
 
 #include <string>
@@ -12,10 +12,10 @@ struct NetworkInterface {
     bool is_up = false;
 };
 
-// Those with an IPv4 address, without the loopback; one entry per address.
+// These are those with an IPv4 address, without the loopback; there is one entry per address.
 std::vector<NetworkInterface> networkInterfaces();
 
-// "eth0 (192.168.1.5), wlan0 (10.0.0.3, down)".
+// Writes them as "eth0 (192.168.1.5), wlan0 (10.0.0.3, down)".
 std::string textOf(const std::vector<NetworkInterface>& interfaces);
 
 }  // namespace bonemill::dds

@@ -5,15 +5,15 @@
 
 namespace bonemill {
 
-// Order-free: the sum modulo 2^64 of a mixed word per node. `content` tells what the node shows
-// (EncodedNode::content).
+// It is free of order: the sum modulo 2^64 of a mixed word per node. `content` tells what the
+// node shows (EncodedNode::content).
 class NodeDigest {
   public:
     void add(uint32_t node, uint64_t content) noexcept {
         ++count_;
         sum_ += mix(node, content);
     }
-    // Of a pair that was added.
+    // The pair must have been added.
     void remove(uint32_t node, uint64_t content) noexcept {
         --count_;
         sum_ -= mix(node, content);
@@ -24,7 +24,8 @@ class NodeDigest {
     bool operator==(const NodeDigest&) const = default;
 
   private:
-    // Finaliser of SplitMix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014).
+    // This is the finaliser of SplitMix64 (Steele, Lea, Flood: Fast splittable pseudorandom
+    // number generators, 2014).
     static uint64_t mix(uint32_t node, uint64_t content) noexcept {
         return finalise(finalise(node) + content);
     }

@@ -20,8 +20,8 @@ extern "C" const char* __tsan_default_suppressions() {
 
 namespace bonemill::dds {
 
-// The configured domain, shared by every participant of this process: Cyclone creates each domain id only
-// once.
+// This is the configured domain, shared by every participant of this process: Cyclone creates each domain
+// id only once.
 class Domain {
   public:
     Domain(uint32_t id, const std::string& configuration) {

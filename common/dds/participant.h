@@ -1,6 +1,7 @@
-// A program's membership in one DDS domain. Not for the tick.
+// This is a program's membership in one DDS domain. Not for the tick.
 //
-// Which network: common/dds/network.h. Endpoints that do not match because of their QoS or type are logged.
+// common/dds/network.h chooses the network. Endpoints that do not match because of their QoS or
+// type are logged.
 #pragma once
 
 #include <memory>
@@ -23,7 +24,7 @@ class Participant {
 
     ~Participant();
 
-    // For domains joined from now on; see setNetwork().
+    // It holds for domains joined from now on; see setNetwork().
     static void setConfiguration(std::string configuration);
 
     int32_t handle() const noexcept { return entity_.handle(); }

@@ -1,4 +1,5 @@
-// Quality of service, built step by step: Qos().reliable(...).transientLocal().keepLast(1). Not for the tick.
+// Quality of service is built step by step: Qos().reliable(...).transientLocal().keepLast(1). Not
+// for the tick.
 #pragma once
 
 #include <chrono>

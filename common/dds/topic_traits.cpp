@@ -6,20 +6,19 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kMaxBlocking = 1s;
-// Bounds what a flood of commands can take of the server's memory.
+// It bounds what a flood of commands can take of the server's memory.
 constexpr int kMaxQueuedCommands = 1024;
-// Tool states that a viewer finds when it has drawn: at 100 per second those of a third of a second.
+// A viewer finds so many tool states when it has drawn: at 100 per second those of a third of a second.
 constexpr int kQueuedToolStates = 32;
 
-// State that a late joiner must have: the newest sample per key. Measured: such a writer never waits for a
-// reader.
+// A late joiner must have this state: the newest sample per key. Such a writer never waits for a reader.
 Qos stateQos() {
     Qos qos;
     qos.reliable(kMaxBlocking).transientLocal().keepLast(1).disposeOnRequestOnly();
     return qos;
 }
 
-// Only the newest counts, but for what is counted since the sample before.
+// Only the newest sample counts, but for what is counted since the sample before.
 Qos streamQos(int depth) {
     Qos qos;
     qos.bestEffort().keepLast(depth);

@@ -1,4 +1,4 @@
-// The six topics: name, type descriptor and quality of service of each envelope of proto/topics.idl.
+// Lists the six topics: name, type descriptor and quality of service of each envelope of proto/topics.idl.
 #pragma once
 
 #include <topics.h>

@@ -1,4 +1,4 @@
-// Text log of a program: spdlog's default logger on stderr. Never in the tick.
+// The text log of a program is spdlog's default logger on stderr. Never in the tick.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@ namespace bonemill {
 
 struct RealtimeReport;
 
-// level: trace, debug, info, warn, error or off (as `--log-level`). Throws UserError on any other word.
+// `level` is trace, debug, info, warn, error or off (as `--log-level`). Throws UserError on any other word.
 void setUpLog(const std::string& program, const std::string& level);
 
-// What this machine grants a thread that keeps deadlines: its lacks as warnings, advice as information.
+// Says what this machine grants a thread that keeps deadlines: its lacks as warnings, advice as information.
 void logRealtime(const RealtimeReport& report);
 
 }  // namespace bonemill

@@ -24,7 +24,7 @@ double secondsSince(SteadyClock::time_point start) {
     return std::chrono::duration<double>(SteadyClock::now() - start).count();
 }
 
-// Before minutes of work: can the files be written?
+// Finds out whether the files can be written before minutes of work are spent.
 void makeFolder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -56,7 +56,7 @@ std::vector<int> shellFactorsOf(const std::vector<AccuracySettings>& settings) {
     return factors;
 }
 
-// Finest level only: what paths and truth are laid out with.
+// Has the finest level only: paths and truth are laid out with it.
 BoneModel layoutBone(const Simulation& simulation) {
     return BoneModel(VoxelVolume(simulation.bone->volume), simulation.bone->lattice.leafCells(),
                      ShellConfig{.spare_points = 1});
@@ -80,7 +80,7 @@ class Progress {
     SteadyClock::time_point start_ = SteadyClock::now();
 };
 
-// Everything that is measured; the files come later.
+// Measures everything; the files come later.
 ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::ostream& progress) {
     const auto settings =
         sweepSettings(simulation.accuracy, simulation.tools.front().built.model.hasShapes());

@@ -42,7 +42,7 @@ ToolModel buildBurr(const AnalyticProbeConfig& config) {
     return buildTool(tool, config.refinements).model;
 }
 
-// Half-space z_W < 0 where the density is a linear ramp, which trilinear interpolation keeps.
+// Fills the half-space z_W < 0, where the density is a linear ramp, which trilinear interpolation keeps.
 VoxelVolume halfSpace(double half_edge, double spacing, std::mt19937& random) {
     std::uniform_real_distribution<double> uniform(-1, 1);
     VolumeGeometry geometry;
@@ -72,7 +72,7 @@ Eigen::Quaterniond randomRotation(std::mt19937& random) {
     return expRotation({uniform(random), uniform(random), uniform(random)});
 }
 
-// Down to `depth` and a rest there.
+// Goes down to `depth` and rests there.
 PosePath pressPath(const Eigen::Quaterniond& rotation, double radius, double depth) {
     PosePath path;
     for (int n = 0; n < kPressTicks + kRestTicks; ++n) {
@@ -87,7 +87,7 @@ double springForce(const EnergyCoupling& coupling, double stretch) {
            std::tanh(coupling.translation_stiffness * stretch / coupling.saturation_force);
 }
 
-// The resting burr: means over the last ticks.
+// Describes the resting burr by means over the last ticks.
 struct Rest {
     double force = 0, depth = 0;
 };

@@ -1,6 +1,6 @@
-// The burr on a plane, where force and pose are known in closed form: the sphere of radius R at depth d is
-// pushed back by π κ (R - d) d² (gradient law with areas). Over many rotated and shifted voxel grids, so that
-// what remains is the accuracy of the sampling, and how it depends on the grid's direction.
+// Presses the burr on a plane, where force and pose are known in closed form: the sphere of radius R at depth
+// d is pushed back by π κ (R - d) d² (gradient law with areas). There are many rotated and shifted voxel
+// grids, so that what remains is the accuracy of the sampling, and how it depends on the grid's direction.
 #pragma once
 
 #include <memory>
@@ -10,16 +10,18 @@
 
 namespace bonemill {
 
-// N on a sphere at depth d < R in a half-space.
+// This is the force in N on a sphere at depth d < R in a half-space.
 double forceOnSphere(double kappa, double radius, double depth) noexcept;
 
-// Diameter, m, of the circle in which a sphere at the depth of this force touches a half-space; bisection.
+// This is the diameter in m of the circle in which a sphere at the depth of this force touches a half-space,
+// found by bisection.
 double contactWidth(double kappa, double radius, double force) noexcept;
 
-// Depth d at which that force balances the saturating spring to a device at depth `device_depth`; bisection.
+// At this depth d that force balances the saturating spring to a device at depth `device_depth`;
+// found by bisection.
 double depthUnderSpring(const FixedTickConfig& tick, double device_depth) noexcept;
 
-// What the hand feels from the burr pressed on a plane with 0.5 to 4 N, against the closed form.
+// The hand feels this from the burr pressed on a plane with 0.5 to 4 N, against the closed form.
 struct PlaneErrors {
     double force = 0;  // of 1, root mean square over grids and loads
     double depth = 0;  // m, root mean square
@@ -27,7 +29,7 @@ struct PlaneErrors {
         0;  // of 1: (largest - smallest) / mean force over the grids, at the load where it is largest
 };
 
-// The contact alone, burr at a prescribed depth in the plane.
+// Judges the contact alone, with the burr at a prescribed depth in the plane.
 struct PatchErrors {
     int shell_factor = 1;
     ToolDistance tool_distance = ToolDistance::kAnalytic;
@@ -57,8 +59,8 @@ class AnalyticProbe {
     ~AnalyticProbe();
 
     PlaneErrors measure(const AccuracySettings& settings);
-    // For all shell factors: with the analytic burr and 1 to 4 patch points per side, and with its grids and
-    // the most.
+    // There is one entry for each shell factor with the analytic burr and 1 to 4 patch points per side, and
+    // one with its grids and the most points.
     std::vector<PatchErrors> patchErrors() const;
 
   private:

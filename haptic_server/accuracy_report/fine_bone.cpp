@@ -9,7 +9,7 @@ Eigen::Vector3i refinedDims(const IndexBox& box, int times) {
     return (box.max - box.min) * times + Eigen::Vector3i::Ones();
 }
 
-// A row of voxels along x as numbers, interpolated between four rows.
+// Writes a row of voxels along x as numbers, interpolated between four rows.
 void interpolateRow(const VoxelVolume& volume, const IndexBox& box, int j, int k, double fy, double fz,
                     std::vector<double>& row) {
     for (int i = box.min.x(); i <= box.max.x(); ++i) {

@@ -21,7 +21,7 @@ struct Rectangle {
     }
 };
 
-// The text's middle when it lies `gap` outside of the point in this direction.
+// The text's middle lies there when it is `gap` outside of the point in this direction.
 Vector2d placeAt(const PlotLabel& label, int direction, double gap) {
     const double angle = M_PI / 4 + 2 * M_PI * direction / kDirections;  // first: right above
     const Vector2d unit(std::cos(angle), std::sin(angle));

@@ -1,4 +1,4 @@
-// Where the labels of points in a plot go so that they hide neither each other nor the points.
+// Finds places for the labels of points in a plot, so that they hide neither each other nor the points.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@ struct PlotLabel {
 // is free, beside the point all the same.
 void layOutLabels(std::vector<PlotLabel>& labels);
 
-// Half width and height of a label's text, pixels.
+// This is half of the width and height of a label's text, in pixels.
 Eigen::Vector2d labelHalfSize(const std::string& text);
 
 }  // namespace bonemill

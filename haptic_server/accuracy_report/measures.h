@@ -1,4 +1,4 @@
-// What is told apart between a run and the truth along the same device path. SI inside; no shared state.
+// Tells a run and the truth apart along the same device path. SI inside; no shared state.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace bonemill {
 
-// One tick's answer: the tool's pose in W, and what the hand feels (axes W).
+// One tick answers with the tool's pose in W, and with what the hand feels (axes W).
 struct Answer {
     Pose spo;
     Wrench hand;
 };
 std::vector<Answer> answersOf(const RunRecords& records);
 
-// Differences to the truth over the ticks in which the true force is at least kFeltForce: root mean squares.
-// Magnitudes are relative to the root mean square of the true ones, so that light touches do not count as
-// large errors.
+// These are root mean squares of the differences to the truth over the ticks in which the true force is at
+// least kFeltForce. Magnitudes are relative to the root mean square of the true ones, so that light touches
+// do not count as large errors.
 struct Errors {
     static constexpr double kFeltForce = 0.2;  // N
 
@@ -34,7 +34,7 @@ struct Errors {
 // Adds up over several paths.
 class ErrorSum {
   public:
-    // Both of the same path, same length.
+    // Both are of the same path and have the same length.
     void add(const std::vector<Answer>& answers, const std::vector<Answer>& truth);
     Errors errors() const;
 
@@ -44,8 +44,8 @@ class ErrorSum {
     size_t ticks_ = 0;
 };
 
-// Root mean square of the second differences of the force, N: what of it is not smooth from tick to tick, if
-// the path is smooth.
+// This is the root mean square of the second differences of the force, in N: what of it is not smooth from
+// tick to tick, if the path is smooth.
 class NoiseSum {
   public:
     void add(const std::vector<Answer>& answers);
@@ -56,9 +56,9 @@ class NoiseSum {
     size_t count_ = 0;
 };
 
-// Energy that the hand has put into the algorithm along a path of device poses that starts in the air, J
-// (trapezoidal rule, force and torque). Passive: never below zero. A closed path that ends in the air must
-// give `at_end` >= 0.
+// The hand has put this energy into the algorithm along a path of device poses that starts in the air, in J
+// (trapezoidal rule, force and torque). A passive algorithm never lets it fall below zero. A closed path that
+// ends in the air must give `at_end` >= 0.
 struct PathEnergy {
     double lowest = 0;  // anywhere on the path, its start included
     double at_end = 0;

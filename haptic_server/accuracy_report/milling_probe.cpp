@@ -26,7 +26,7 @@ double vanishingTime(const FixedTickConfig& tick) {
     return kMaxDensity / tick.effects.time_removal->rate;
 }
 
-// Positions in V, at least `step` apart, and the last one.
+// Keeps positions in V, at least `step` apart, and the last one.
 std::vector<Vector3d> thinned(const std::vector<Vector3d>& path_W, const Pose& X_VW, double step) {
     std::vector<Vector3d> kept;
     for (const Vector3d& p_W : path_W) {

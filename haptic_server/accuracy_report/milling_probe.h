@@ -1,4 +1,4 @@
-// How much bone the burr takes away, against the volume that it swept.
+// Measures how much bone the burr takes away, against the volume that it swept.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace bonemill {
 
-// Into the bone at a place and sideways, slowly enough for the scene's removal rate, then a rest until all is
-// gone that the burr can reach.
+// Goes into the bone at a place and sideways, slowly enough for the scene's removal rate, then rests until
+// all is gone that the burr can reach.
 PosePath millingPath(const ProbingPlace& place, const FixedTickConfig& tick);
 
 struct MillingRun {

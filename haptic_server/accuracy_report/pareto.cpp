@@ -11,7 +11,7 @@ bool isBetter(const ParetoPoint& a, const ParetoPoint& b) {
     return a.error <= b.error && a.time <= b.time && (a.error < b.error || a.time < b.time);
 }
 
-// Of candidates with error <= most_error and time <= most_time.
+// Looks among the candidates with error <= most_error and time <= most_time.
 std::optional<size_t> fastestBelow(std::span<const ParetoPoint> points, double most_error, double most_time) {
     std::optional<size_t> best;
     for (size_t n = 0; n < points.size(); ++n) {

@@ -1,4 +1,4 @@
-// Which settings are worth having: error against time.
+// Finds the settings that are worth having: error against time.
 #pragma once
 
 #include <optional>
@@ -14,17 +14,17 @@ struct ParetoPoint {
         true;  // false: its error is not one (thesis_2012); never on the front, never proposed
 };
 
-// For each point: no other candidate is at least as good in both and better in one. Equal points are both on
-// the front.
+// Says of each point whether no other candidate is at least as good in both and better in one. Equal points
+// are both on the front.
 std::vector<bool> paretoFront(std::span<const ParetoPoint> points);
 
 // Errors that differ by less than this part are the same for a choice: nobody pays for the difference.
 inline constexpr double kSameError = 0.02;
 
-// The most accurate candidate with time <= budget; of the same error the fastest one.
+// This is the most accurate candidate with time <= budget, and of those with the same error the fastest one.
 std::optional<size_t> bestWithin(std::span<const ParetoPoint> points, double budget);
 
-// The fastest candidate whose error is smaller than that of `from`, and not the same.
+// This is the fastest candidate whose error is smaller than that of `from`, and not the same.
 std::optional<size_t> nextBetter(std::span<const ParetoPoint> points, size_t from);
 
 }  // namespace bonemill

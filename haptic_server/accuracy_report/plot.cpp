@@ -40,7 +40,7 @@ std::string labelOf(const SettingFigures& f, size_t n) {
     return isPreset(f) ? f.name : std::to_string(n + 1);
 }
 
-// Logarithmic axes on the picture: pixels, origin at the lower left.
+// Lays logarithmic axes on the picture: pixels, with the origin at the lower left.
 struct Axes {
     static constexpr double kWidth = 1500, kHeight = 850;
     static constexpr double kLeft = 0.06, kRight = 0.65, kBottom = 0.09, kTop = 0.93;  // of the picture
@@ -84,7 +84,7 @@ std::string labels(const ReportData& data, const Axes& axes) {
     return text.str();
 }
 
-// One line per chosen setting: p99.9, error.
+// Writes one line per chosen setting: p99.9 and error.
 template <class Choose>
 std::string block(const char* name, const ReportData& data, Choose&& choose) {
     std::vector<std::pair<double, double>> points;
@@ -98,7 +98,7 @@ std::string block(const char* name, const ReportData& data, Choose&& choose) {
     return text.str();
 }
 
-// What the numbers stand for, beside the plot.
+// Says beside the plot what the numbers stand for.
 std::string legend(const ReportData& data) {
     std::ostringstream text;
     const double line = 0.84 / double(std::max<size_t>(24, data.settings.size()));

@@ -1,11 +1,11 @@
-// The picture: force error against tick time, drawn by gnuplot.
+// Makes the picture of force error against tick time, drawn by gnuplot.
 #pragma once
 
 #include "haptic_server/accuracy_report/report_files.h"
 
 namespace bonemill {
 
-// A whole gnuplot script that writes `png`.
+// This is a whole gnuplot script that writes `png`.
 std::string paretoScript(const ReportData& data, const std::filesystem::path& png);
 
 // Runs gnuplot on a script file as a child process. Throws UserError if there is no gnuplot or it fails.

@@ -15,7 +15,7 @@ constexpr int kPressKnots = 3;
 constexpr double kHeaviestShare = 0.6;  // of the coupling's saturation
 constexpr double kRestTime = 0.04;      // s at the end: the tool comes back to the device
 
-// The loop's frame at a place.
+// This is the loop's frame at a place.
 struct Loop {
     const ProbingPlace& place;
     Vector3d t, u;
@@ -30,14 +30,15 @@ struct Loop {
     }
 };
 
-// Height over the place, along its normal, at which the tool touches there; nearly `before` if it does not.
+// At this height over the place, along its normal, the tool touches there; it is nearly `before` if
+// it does not.
 double surfaceHeight(const Loop& loop, double angle, double before, TouchProbe& probe) {
     const ProbingPlace& place = loop.place;
     const Pose lifted{place.X_WT.position + place.room * place.normal_W + loop.offset(angle),
                       expRotation(loop.rotation(angle)) * place.X_WT.rotation};
     const auto way = probe.freeWay(lifted, -place.normal_W, place.room + 2 * loop.radius);
     if (!way) return before;
-    // No steeper than the loop is wide: the path must stay smooth.
+    // The path is no steeper than the loop is wide, for it must stay smooth.
     const double steepest = 2 * M_PI / kLoopKnots * loop.radius;
     return std::clamp(place.room - *way, before - steepest, before + steepest);
 }

@@ -1,4 +1,4 @@
-// What the device does at the probing places: smooth closed strokes with the forces of surgery.
+// Leads the device at the probing places: smooth closed strokes with the forces of surgery.
 #pragma once
 
 #include "haptic_server/accuracy_report/probing_places.h"
@@ -6,15 +6,15 @@
 
 namespace bonemill {
 
-// Starts and ends at rest in the same free pose: press, slide round a small closed loop on the surface with
-// changing load and a few degrees of turning, let go.
+// A stroke starts and ends at rest in the same free pose: press, slide round a small closed loop on the
+// surface with changing load and a few degrees of turning, let go.
 struct ProbingStroke {
     std::string name;
     PosePath device;
     double deepest = 0;  // m: how far the device goes beyond the surface, about
 };
 
-// How hard and how long.
+// Says how hard and how long a stroke presses.
 struct StrokeConfig {
     double lightest = 0.5;      // N that the coupling pulls with, about
     double heaviest = 4;        // N; less if the coupling saturates earlier
@@ -26,8 +26,8 @@ struct StrokeConfig {
 ProbingStroke makeStroke(const ProbingPlace& place, const StrokeConfig& stroke, const FixedTickConfig& tick,
                          TouchProbe& probe);
 
-// Device distance beyond the tool at which the gradient model's coupling pulls with `force` (less than its
-// saturation).
+// At this distance of the device beyond the tool the gradient model's coupling pulls with `force` (less
+// than its saturation).
 double stretchOf(const EnergyCoupling& coupling, double force);
 
 }  // namespace bonemill

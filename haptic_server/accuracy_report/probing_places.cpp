@@ -18,7 +18,7 @@ constexpr double kLyingHeight = 6;  // burr radii over the place: where the laid
 constexpr double kBeyond = 4;       // burr radii from the place to the laid tool's burr
 constexpr double kShaftArm = 2;     // burr radii from the tool point to the force: the shaft touches
 
-// Travels until it touches; there the place is.
+// The tool travels until it touches; there the place is.
 struct Approach {
     TouchProbe& probe;
     std::vector<ProbingPlace>& places;
@@ -90,8 +90,8 @@ void addPlacesBeside(const ProbingPlace& first, double burr_radius, Approach& ap
     }
 }
 
-// The tool laid down across the normal, its shaft over the place and the burr beyond it: of several
-// directions the one where the shaft touches farthest from the tool point.
+// The tool is laid down across the normal, its shaft over the place and the burr beyond it, in that of
+// several directions in which the shaft touches farthest from the tool point.
 void addLyingPlace(const ProbingPlace& first, double burr_radius, Approach& approach) {
     const Vector3d t = tangentOf(first.normal_W), u = first.normal_W.cross(t);
     const Vector3d shaft = first.X_WT.rotation * Vector3d::UnitY();

@@ -1,4 +1,4 @@
-// Where on the scene's bone the tool is tried.
+// Finds where on the scene's bone the tool is tried.
 #pragma once
 
 #include <string>
@@ -17,14 +17,15 @@ struct ProbingPlace {
     static constexpr double kMostRoom = 1e-3;
 };
 
-// Up to kMostPlaces: the first touch in each segment of the scene's scenario that starts in the air, beside
-// the first of these, and there with the tool laid down so that its shaft touches, where it can. Without a
-// touch on the scenario's way: from the volume's faces towards its middle. Empty if nothing can be touched.
+// There are up to kMostPlaces: the first touch in each segment of the scene's scenario that starts in the
+// air, beside the first of these, and there with the tool laid down so that its shaft touches, where it can.
+// Without a touch on the scenario's way the tool comes from the volume's faces towards its middle. There is
+// none if nothing can be touched.
 std::vector<ProbingPlace> findProbingPlaces(const scene::SimulatedOperator& scenario, const BoneModel& bone,
                                             double burr_radius, TouchProbe& probe);
 inline constexpr size_t kMostPlaces = 6;
 
-// Unit, across `normal`; the same for equal normals.
+// It is a unit vector across `normal`, the same for equal normals.
 Eigen::Vector3d tangentOf(const Eigen::Vector3d& normal);
 
 }  // namespace bonemill

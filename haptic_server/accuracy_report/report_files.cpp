@@ -66,7 +66,7 @@ Columns figuresOf(const SettingFigures& f, bool is_on_front) {
     return row;
 }
 
-// Numbers with 6 digits, nothing for null.
+// Numbers have 6 digits, and null is nothing.
 std::string cellOf(const Columns& value) {
     if (value.is_null()) return "";
     if (value.is_string()) return value.get<std::string>();

@@ -1,4 +1,4 @@
-// What the report knows, and the files it becomes.
+// Holds what the report knows, and writes the files that it becomes.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace bonemill {
 
-// The truth along the whole probing path.
+// Sums up the truth along the whole probing path.
 struct TruthSummary {
     int refinement = 0;  // of the voxels, the least of all strokes
     std::vector<std::string> strokes;
@@ -37,18 +37,19 @@ struct ReportData {
 };
 
 bool isThesis(const SettingFigures& figures) noexcept;
-// Force error against p99.9; thesis_2012 is no candidate, the truth is not that of its force.
+// Each point is a force error against p99.9; thesis_2012 is no candidate, for the truth is not that
+// of its force.
 std::vector<ParetoPoint> paretoPoints(const std::vector<SettingFigures>& settings);
 size_t indexInForce(const ReportData& data) noexcept;
 
-// Markdown; report_text.cpp.
+// Writes Markdown; its source is report_text.cpp.
 std::string reportText(const ReportData& data);
-// The few lines that matter: what is in force, what better costs, what fits.
+// These are the few lines that matter: what is in force, what better costs, what fits.
 std::vector<std::string> reportConclusions(const ReportData& data);
 
 std::string accuracyCsv(const ReportData& data);
 std::string patchCsv(const ReportData& data);
-// As readAccuracyFigures() wants it.
+// It is written as readAccuracyFigures() wants it.
 std::string accuracyJson(const ReportData& data);
 
 // Throws UserError.

@@ -50,7 +50,7 @@ std::string budgetText(const ReportData& data) {
     return "No setting fits " + budget + format(": the fastest one's p99.9 is %.3g µs here.", fastest);
 }
 
-// Settings that look faster than they are.
+// Names settings that look faster than they are.
 std::string stalledText(const ReportData& data) {
     std::string names;
     for (const SettingFigures& f : data.settings)

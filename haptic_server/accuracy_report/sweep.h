@@ -48,7 +48,8 @@ struct SweepInput {
     AnalyticProbe& plane;
 };
 
-// In the order of `settings`. Calls progress(figures, done) after each; the order of those calls may differ.
+// The figures come in the order of `settings`. Calls progress(figures, done) after each; the order of those
+// calls may differ.
 using SweepProgress = std::function<void(const SettingFigures& figures, size_t done)>;
 std::vector<SettingFigures> sweep(const SweepInput& input, const std::vector<AccuracySettings>& settings,
                                   const SweepProgress& progress);

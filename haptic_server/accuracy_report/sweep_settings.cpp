@@ -10,7 +10,7 @@ class Choices {
     void add(const AccuracySettings& settings) {
         if (std::find(list.begin(), list.end(), settings) == list.end()) list.push_back(settings);
     }
-    // `base` with one member changed.
+    // Makes `base` with one member changed.
     template <class Value>
     void vary(AccuracySettings base, Value AccuracySettings::*knob, std::initializer_list<Value> values) {
         for (const Value value : values) {
@@ -43,7 +43,7 @@ void addAroundBalanced(Choices& choices, bool has_shapes) {
     choices.add(dense);
 }
 
-// Down to the least that there is.
+// Goes down to the least that there is.
 void addCheap(Choices& choices, bool has_shapes) {
     AccuracySettings cheap;
     cheap.tool_distance = has_shapes ? ToolDistance::kAnalytic : ToolDistance::kGrid;

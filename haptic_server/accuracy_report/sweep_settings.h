@@ -1,4 +1,4 @@
-// Which accuracy settings the report compares.
+// Chooses the accuracy settings that the report compares.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace bonemill {
 
-// The presets; one knob at a time around balanced and thesis_2012; the cheapest there is; the scene's own.
-// Without `has_shapes` only grids. No two are equal.
+// These are the presets, one knob at a time around balanced and thesis_2012, the cheapest there is, and the
+// scene's own. Without `has_shapes` there are only grids. No two are equal.
 std::vector<AccuracySettings> sweepSettings(const AccuracySettings& of_scene, bool has_shapes);
 
-// The scene with every knob of its accuracy message at these settings; normals and switchable stay.
+// This is the scene with every knob of its accuracy message at these settings; normals and switchable stay.
 scene::Scene sceneWith(const scene::Scene& scene, const AccuracySettings& settings);
 
 }  // namespace bonemill

@@ -1,4 +1,5 @@
-// Ticks along a path of device poses, timed so that other programs of the machine do not count. Not RT-safe.
+// Runs ticks along a path of device poses, timed so that other programs of the machine do not
+// count. Not RT-safe.
 #pragma once
 
 #include <span>
@@ -13,7 +14,7 @@ namespace bonemill {
 using PosePath = std::vector<Pose>;  // device poses X_WT, one per tick
 using RunRecords = std::vector<TickRecord>;
 
-// The same work kPasses times: the first run's records with the shortest time of each tick, so that what
+// Does the same work kPasses times: the first run's records get the shortest time of each tick, so that what
 // other programs took of the processor does not count. Nothing is milled.
 RunRecords runPathTimed(const FixedTickConfig& config, BoneModel& bone, std::span<const Pose> path_WT);
 inline constexpr int kPasses = 3;

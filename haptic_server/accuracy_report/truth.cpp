@@ -20,12 +20,12 @@ constexpr int kUnlimitedPoints = 32768;  // contact is never that wide
 constexpr double kVoxelsAcross = 8;
 constexpr double kLightForce = 1;  // N
 constexpr double kReach = 0.5e-3;  // m: bone this near to the tool's way may be touched
-// Beyond it: the part's cut faces, which are no bone surface, are farther from the tool than any touchable
-// surface.
+// The part's cut faces, which are no bone surface, lie beyond it: farther from the tool than
+// any touchable surface.
 constexpr double kMargin = 1.5 * kReach;
 constexpr size_t kEveryPose = 8;
 
-// All bone that the tool can come near, which lags behind the device by as much as the hand presses.
+// This is all bone that the tool can come near, which lags behind the device by as much as the hand presses.
 IndexBox partFor(const ProbingStroke& stroke, const BoneModel& bone, const TouchProbe& probe) {
     std::vector<Pose> poses;
     for (size_t n = 0; n < stroke.device.size(); n += kEveryPose) poses.push_back(stroke.device[n]);

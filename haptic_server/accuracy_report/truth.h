@@ -1,4 +1,4 @@
-// What a stroke should feel like: the same contact law and coupling on the same trilinear surface, computed
+// Computes what a stroke should feel like: the same contact law and coupling on the same trilinear surface,
 // as finely as can be waited for.
 #pragma once
 
@@ -15,15 +15,15 @@ struct Truth {
 };
 inline constexpr int kLeastRefinement = 4, kMostRefinement = 16;
 
-// So many times denser voxels that the burr on a plane touches some 8 of them across already with 1 N: then
-// the sums over the contact points are good to 0.1 % (patch.csv).
+// The voxels are so many times denser that the burr on a plane touches some 8 of them across already with 1
+// N: then the sums over the contact points are good to 0.1 % (patch.csv).
 int wantedRefinement(double spacing, const FixedTickConfig& tick) noexcept;
 
-// The settings of the truth: 2 × 2 contact points in each (refined) cell, analytic tool or its grid refined 4
-// times, double precision, the most iterations.
+// The truth has these settings: 2 × 2 contact points in each (refined) cell, analytic tool or its grid
+// refined 4 times, double precision, the most iterations.
 AccuracySettings truthSettings() noexcept;
 
-// For each stroke. `tick` gives the rest of the configuration. Uses `threads` at a time.
+// There is one for each stroke. `tick` gives the rest of the configuration. It uses `threads` at a time.
 std::vector<Truth> computeTruth(const std::vector<ProbingStroke>& strokes, const FixedTickConfig& tick,
                                 const BoneModel& bone, const TouchProbe& probe, int threads);
 

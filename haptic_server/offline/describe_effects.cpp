@@ -33,7 +33,7 @@ std::string valuesText(const Message& message, const FieldDescriptor& field) {
     return text;
 }
 
-// "name value, name value": as given or by default.
+// It reads "name value, name value", as given or by default.
 std::string parametersOf(const Message& message) {
     std::string text;
     for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {

@@ -1,4 +1,4 @@
-// What a scene's effects are and cost, for people.
+// Tells people what a scene's effects are and cost.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace bonemill {
 
-// One line per effect that is listed: its parameters; for those of the tick what they add to it, for those of
-// the viewer that they are. `costs`: null if nothing was measured.
+// There is one line per effect that is listed: its parameters, and for those of the tick what they add to it,
+// for those of the viewer that they are. `costs` is null if nothing was measured.
 std::string describeEffects(const scene::Scene& scene, const EffectCosts* costs);
 
 }  // namespace bonemill

@@ -24,7 +24,7 @@ Pose waypointPose(const scene::SimulatedOperator::Waypoint& waypoint) {
             Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
 }
 
-// The device straight along the scenario's waypoints, spread over kMeasuredTicks.
+// The device goes straight along the scenario's waypoints, spread over kMeasuredTicks.
 std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario) {
     const int waypoints = scenario.waypoint_size();
     std::vector<DeviceInput> path(waypoints > 0 ? kMeasuredTicks : 0);

@@ -1,12 +1,12 @@
-// What a scene says, for people.
+// Tells people what a scene says.
 #pragma once
 
 #include <string>
 
 namespace bonemill {
 
-// Every field with value, unit and range; what was read; what runs in each tick and its measured cost here.
-// Throws UserError.
+// Lists every field with value, unit and range, what was read, and what runs in each tick with its measured
+// cost here. Throws UserError.
 std::string describeScene(const std::string& scene_file);
 
 }  // namespace bonemill

@@ -54,7 +54,7 @@ double largest(const std::vector<double>& values) {
     return most;
 }
 
-// One path on one bone, which is put back before each run.
+// Runs one path on one bone, which is put back before each run.
 class Bench {
   public:
     Bench(const FixedTickConfig& config, BoneModel& bone, std::span<const DeviceInput> path)

@@ -1,5 +1,5 @@
-// What each effect of a scene adds to a tick on this machine: the same path with all of them and without
-// each, in turn, again and again on the same bone. Not RT-safe; milliseconds to minutes.
+// Measures what each effect of a scene adds to a tick on this machine: the same path with all of them and
+// without each, in turn, again and again on the same bone. Not RT-safe; it takes milliseconds to minutes.
 #pragma once
 
 #include <span>
@@ -22,7 +22,8 @@ struct EffectCost {
 struct EffectCosts {
     std::vector<EffectCost> effects;  // that config lists
     TickTimes all, none;              // with all, with no effect; medians of the rounds
-    // Largest difference of a round between two runs with all: what is no more than that says nothing.
+    // This is the largest difference of a round between two runs with all: what is no more than
+    // that says nothing.
     double noise_p50_us = 0, noise_p99_us = 0;
     size_t ticks = 0;  // of each run, that were looked at
 };

@@ -6,7 +6,8 @@
 namespace bonemill {
 namespace {
 
-// Inputs in, the newest record out. Time comes from the path; the clock only tells how long a tick took.
+// Inputs go in and the newest record comes out. Time comes from the path; the clock only tells how long
+// a tick took.
 class PathIo final : public TickIo {
   public:
     explicit PathIo(std::span<const DeviceInput> path) : path_(path) {}

@@ -20,8 +20,8 @@ std::vector<DeviceInput> inputsOf(std::span<const Pose> path_WT, double dt, uint
 void runPath(HapticTick& tick, std::span<const DeviceInput> path,
              const std::function<void(const TickRecord&)>& see);
 
-// The records of a tick of its own, so that the simulated tool starts where the path starts. With a pressed
-// button it changes `bone`.
+// Returns the records of a tick of its own, so that the simulated tool starts where the path starts. With a
+// pressed button it changes `bone`.
 std::vector<TickRecord> runPath(const FixedTickConfig& config, BoneModel& bone,
                                 std::span<const DeviceInput> path);
 

@@ -1,5 +1,4 @@
-// `haptic_server simulate`: the very tick of a live session, driven by a file, without real time or
-// processes.
+// `haptic_server simulate` drives the very tick of a live session by a file, without real time or processes.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Digest of everything a run decided: FNV-1a, 64 bit, over bytes. Equal runs give equal digests on every
-// compiler.
+// Makes a digest of everything a run decided: FNV-1a, 64 bit, over bytes. Equal runs give equal digests
+// on every compiler.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@ namespace bonemill {
 class StateHash {
   public:
     void addBytes(const void* data, size_t size) noexcept;
-    // Poses, wrench, contacts, removal and faults of a tick, and what its effects told if that is recorded;
-    // not its measured times.
+    // Adds poses, wrench, contacts, removal and faults of a tick, and what its effects told if that is
+    // recorded, but not its measured times.
     void addRecord(const TickRecord& record, const RecordedEffects& recorded = {}) noexcept;
-    // All densities without the border of air.
+    // Adds all densities without the border of air.
     void addVolume(const VoxelVolume& volume);
     uint64_t value() const noexcept { return value_; }
 

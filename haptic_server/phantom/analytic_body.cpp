@@ -6,12 +6,12 @@
 namespace bonemill {
 namespace {
 
-// Solid u <= 0 and v <= 0 of two surfaces that meet at a right angle.
+// The solid is u <= 0 and v <= 0 of two surfaces that meet at a right angle.
 double rightAngledEdge(double u, double v) noexcept {
     return std::hypot(std::max(u, 0.0), std::max(v, 0.0)) + std::min(std::max(u, v), 0.0);
 }
 
-// In the plane across the edge; by symmetry only the face at +x matters.
+// Works in the plane across the edge; by symmetry only the face at +x matters.
 double wedgeDistance(double x, double z, double angle) noexcept {
     const double across = std::abs(x), s = std::sin(angle / 2), c = std::cos(angle / 2);
     const double along_face = across * s - z * c;

@@ -1,4 +1,4 @@
-// Test bodies whose surface is known exactly, and their densities on any grid.
+// Makes test bodies whose surface is known exactly, and their densities on any grid.
 //
 // Frames: W is the world (and the written file's LPS frame); B is the body's own frame. Lengths in m, angles
 // in rad. In B (definitions are repeated in docs/volumes.md):
@@ -26,24 +26,24 @@ struct AnalyticBody {
     Pose X_WB;
 };
 
-// Exact distance from a point in W to the surface, negative inside the solid.
+// This is the exact distance from a point in W to the surface, negative inside the solid.
 double signedDistance(const AnalyticBody& body, const Eigen::Vector3d& p_W) noexcept;
 
-// Density falls linearly from full to 0 while the signed distance goes from -kRampVoxels to +kRampVoxels
-// voxels (of the largest spacing): wide enough that no corner of a cell with a piece of the surface is
-// clamped.
+// The density falls linearly from full to 0 while the signed distance goes from -kRampVoxels to
+// +kRampVoxels voxels (of the largest spacing): wide enough that no corner of a cell with a piece of the
+// surface is clamped.
 inline constexpr double kRampVoxels = 2.0;
 
 double bodyDensity(const AnalyticBody& body, const VolumeGeometry& geometry, const Eigen::Vector3d& p_W,
                    double full) noexcept;
 
-// Values 0 .. full, iso-surface at full / 2, rounded to whole numbers as an integer file stores them: the
-// voxels of slice k, and all slices.
+// The values are 0 .. full, with the iso-surface at full / 2, rounded to whole numbers as an integer file
+// stores them: the voxels of slice k, and all slices.
 std::vector<float> sampleBodySlice(const AnalyticBody& body, const VolumeGeometry& geometry, double full,
                                    int k);
 RawVolume sampleBody(const AnalyticBody& body, const VolumeGeometry& geometry, double full);
 
-// A grid along the axes of W whose middle is the origin of W.
+// Makes a grid along the axes of W whose middle is the origin of W.
 VolumeGeometry centredGrid(const Eigen::Vector3i& dims, double voxel_size);
 
 }  // namespace bonemill

@@ -1,4 +1,4 @@
-// make_phantom's subcommands for whole anatomy: vertebra, skull_labels.
+// These are make_phantom's subcommands for whole anatomy: vertebra and skull_labels.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -23,7 +23,7 @@ double BlockPhantom::signedDistance(const Eigen::Vector3d& p_W) const noexcept {
     return beyond.cwiseMax(0).norm() + std::min(beyond.maxCoeff(), 0.0);
 }
 
-// Below what the layers follow.
+// This is the depth below what the layers follow.
 double BlockPhantom::depth(const Eigen::Vector3d& p_W) const noexcept {
     return is_shell ? -signedDistance(p_W) : -p_W.z();
 }

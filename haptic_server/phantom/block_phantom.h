@@ -1,8 +1,8 @@
-// A block of layers of known density: uniform, cortical shell over trabecular core, or whatever else.
+// Makes a block of layers of known density: uniform, cortical shell over trabecular core, or whatever else.
 // Start-up only; thread-safe.
 //
-// Lengths in m. W: the block fills |x| <= size.x/2, |y| <= size.y/2, -size.z <= z <= 0: its top face is z =
-// 0.
+// Lengths are in m. In W the block fills |x| <= size.x/2, |y| <= size.y/2 and -size.z <= z <= 0, so that its
+// top face is z = 0.
 #pragma once
 
 #include <cstdint>
@@ -25,12 +25,12 @@ struct BlockPhantom {
     double voxel = 0.125e-3;
     double margin = 1e-3;  // air around the block
 
-    // Around the block and its margin, in step with the block's middle axis.
+    // The grid lies around the block and its margin, in step with the block's middle axis.
     VolumeGeometry grid() const;
-    // Linear from air_hu to the first layer over a voxel on both sides of each face, so that the iso-surface
-    // half-way is the face exactly; between layers likewise.
+    // It is linear from air_hu to the first layer over a voxel on both sides of each face, so that the
+    // iso-surface half-way is the face exactly; between layers likewise.
     double hu(const Eigen::Vector3d& p_W) const noexcept;
-    // Layer of the point, from 1; 0 outside.
+    // It is the layer of the point, from 1, and 0 outside.
     uint8_t label(const Eigen::Vector3d& p_W) const noexcept;
 
   private:

@@ -12,7 +12,7 @@ namespace {
 
 using Tags = std::vector<std::pair<std::string, std::string>>;
 
-// What all files of the series share; a fixed date, so that equal phantoms are equal files.
+// All files of the series share this, with a fixed date, so that equal phantoms are equal files.
 Tags seriesTags(const CtSeriesText& text, double slice_spacing_mm) {
     char spacing[32];
     std::snprintf(spacing, sizeof spacing, "%.10g", slice_spacing_mm);

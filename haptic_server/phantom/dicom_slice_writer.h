@@ -1,4 +1,4 @@
-// One DICOM CT file through ITK. No Eigen in here (see itk_image_file.h).
+// Writes one DICOM CT file through ITK. There is no Eigen in here (see itk_image_file.h).
 #pragma once
 
 #include <array>

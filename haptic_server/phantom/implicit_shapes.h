@@ -1,4 +1,4 @@
-// How the phantoms' shapes are put together: functions that are negative inside, in any one length unit.
+// Puts the phantoms' shapes together: functions that are negative inside, in any one length unit.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ inline double smoothStep(double low, double high, double x) noexcept {
     return t * t * (3 - 2 * t);
 }
 
-// Smooth union of two implicit shapes with a fillet of about `fillet`.
+// Makes the smooth union of two implicit shapes with a fillet of about `fillet`.
 inline double blend(double a, double b, double fillet) noexcept {
     const double h = std::max(fillet - std::abs(a - b), 0.0) / fillet;
     return std::min(a, b) - h * h * fillet / 4;

@@ -47,7 +47,7 @@ struct BodyArguments {
     double angle_deg = 40;
 };
 
-// value_at(position in W) for each voxel.
+// Writes value_at(position in W) for each voxel.
 template <class T, class ValueAt>
 void writeGrid(const std::string& file, const VolumeGeometry& grid, ValueAt&& value_at) {
     NrrdStream<T> stream(file, grid, NrrdEncoding::kGzip);
@@ -73,7 +73,7 @@ void makeTooth(const ToothArguments& arguments) {
                            [](const Eigen::Vector3d& p_W) { return int(toothTissue(p_W)); });
 }
 
-// "THICKNESS_MM:HU", or "HU" for the last one.
+// It reads "THICKNESS_MM:HU", or "HU" for the last one.
 BlockLayer layerOf(const std::string& text, bool is_last) {
     const size_t colon = text.find(':');
     const std::string thickness = colon == std::string::npos ? "0" : text.substr(0, colon);
@@ -141,7 +141,7 @@ AnalyticBody bodyOf(const BodyArguments& arguments) {
     return body;
 }
 
-// T as wide as the file's samples.
+// T is as wide as the file's samples.
 template <class T>
 void writeBody(const BodyArguments& arguments) {
     const VolumeGeometry grid =

@@ -1,4 +1,4 @@
-// Bounds of a number on the command line. CLI::Range would let NaN pass.
+// Checks the bounds of a number on the command line. CLI::Range would let NaN pass.
 #pragma once
 
 #include <CLI/CLI.hpp>

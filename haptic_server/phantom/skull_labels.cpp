@@ -6,10 +6,10 @@
 namespace bonemill {
 namespace {
 
-// All in mm in W: x to the left, y to the back, z up.
+// All lengths are in mm in W: x to the left, y to the back, z up.
 
-// From the transverse sinus down the corner between petrous bone and skull, then under the labyrinth to the
-// jugular bulb.
+// Runs from the transverse sinus down the corner between petrous bone and skull, then under the labyrinth to
+// the jugular bulb.
 SplineTube sigmoidSinus() {
     return {{{176.5, 177, 48.5},
              {179.5, 170, 47},
@@ -25,7 +25,8 @@ SplineTube sigmoidSinus() {
             4.5};
 }
 
-// Tympanic segment, second genu below the lateral semicircular canal, mastoid segment, stylomastoid foramen.
+// Runs along tympanic segment, second genu below the lateral semicircular canal, mastoid segment
+// and stylomastoid foramen.
 SplineTube facialNerve() {
     return {{{160.5, 131.5, 38},
              {163.5, 135, 37},
@@ -37,7 +38,7 @@ SplineTube facialNerve() {
             1.0};
 }
 
-// Middle fossa: on the roof of tympanic cavity and mastoid cells, rising to the side.
+// The dura of the middle fossa lies on the roof of tympanic cavity and mastoid cells, rising to the side.
 SplineSheet duraOfMiddleFossa() {
     SplineSheet::Lattice lattice;
     lattice.low = {160, 128};

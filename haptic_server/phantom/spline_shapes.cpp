@@ -9,14 +9,14 @@ namespace {
 
 constexpr int kPiecesPerPoint = 8;
 
-// Uniform Catmull-Rom from b (t = 0) to c (t = 1).
+// It is a uniform Catmull-Rom spline from b (t = 0) to c (t = 1).
 template <class T>
 T catmullRom(const T& a, const T& b, const T& c, const T& d, double t) {
     return 0.5 *
            (2 * b + t * (c - a) + t * t * (2 * a - 5 * b + 4 * c - d) + t * t * t * (3 * b - a - 3 * c + d));
 }
 
-// Through points 0 .. n - 1 of point(i), which goes on straight beyond its ends.
+// Goes through the points 0 .. n - 1 of point(i), which goes on straight beyond its ends.
 template <class Point>
 auto splineAt(const Point& point, int n, double t) {
     const auto extended = [&](int i) -> decltype(point(0)) {

@@ -1,6 +1,7 @@
-// Soft structures of the phantoms: tubes and sheets about smooth curves through given points (Catmull-Rom).
+// Makes soft structures of the phantoms: tubes and sheets about smooth curves through
+// given points (Catmull-Rom).
 //
-// One length unit throughout (the phantoms use mm). Thread-safe; start-up only, allocates.
+// There is one length unit throughout (the phantoms use mm). Thread-safe; start-up only, allocates.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,14 +9,14 @@
 
 namespace bonemill {
 
-// Round tube; its ends are round too.
+// This is a round tube; its ends are round too.
 class SplineTube {
   public:
-    // At least two points.
+    // There must be at least two points.
     SplineTube(const std::vector<Eigen::Vector3d>& points, double radius);
 
-    // To the tube's surface, negative inside; exact but for the curve, which is followed in short straight
-    // pieces.
+    // It is the distance to the tube's surface, negative inside; exact but for the curve, which is followed
+    // in short straight pieces.
     double signedDistance(const Eigen::Vector3d& p) const noexcept;
     bool contains(const Eigen::Vector3d& p) const noexcept {
         return box_.contains(p) && signedDistance(p) < 0;
@@ -28,8 +29,8 @@ class SplineTube {
     Eigen::AlignedBox3d box_;
 };
 
-// Membrane over a rectangle of x and y: what lies 0 to `thickness` above a height that runs smoothly through
-// a lattice of points.
+// This is a membrane over a rectangle of x and y: what lies 0 to `thickness` above a height that runs
+// smoothly through a lattice of points.
 class SplineSheet {
   public:
     struct Lattice {
@@ -39,7 +40,7 @@ class SplineSheet {
     };
     SplineSheet(Lattice lattice, double thickness);
 
-    // Inside the rectangle.
+    // The place must lie inside the rectangle.
     double heightAt(double x, double y) const noexcept;
     bool contains(const Eigen::Vector3d& p) const noexcept;
 

@@ -11,8 +11,8 @@
 namespace bonemill {
 namespace {
 
-// All shapes in mm; sizes after textbook mean values of a lower molar (crown 11 x 10.5 mm, whole length about
-// 19 mm).
+// All shapes are in mm; sizes follow textbook mean values of a lower molar (crown 11 x 10.5 mm, whole length
+// about 19 mm).
 constexpr double kNeckZ = 11.5;      // cemento-enamel junction
 constexpr double kFurcationZ = 9.0;  // where the root trunk splits
 constexpr double kRootTipZ = 0.55;
@@ -27,7 +27,7 @@ double ellipsoid(const Eigen::Vector3d& p, const Eigen::Vector3d& centre, const 
     return ((p - centre).cwiseQuotient(half_axes).norm() - 1) * half_axes.minCoeff();
 }
 
-// Chewing surface: four cusps, a fissure along the row of teeth and one across.
+// The chewing surface has four cusps, a fissure along the row of teeth and one across.
 double occlusalHeight(double x, double y) {
     double z = 17.0;
     for (const double cx : {-2.5, 2.5})
@@ -54,7 +54,8 @@ double crown(const Eigen::Vector3d& p) {
     return -blend(-crownSide(p), -top, 0.8);
 }
 
-// Two roots in the row of teeth; side is -1 (mesial) or +1 (distal). They lean apart and bend at their ends.
+// There are two roots in the row of teeth; side is -1 (mesial) or +1 (distal). They lean apart and bend
+// at their ends.
 double rootAxisX(double side, double z) {
     const double down = std::max(kFurcationZ + 1.0 - z, 0.0);
     return side * (2.0 + 0.11 * down) - 0.012 * down * down;
@@ -83,7 +84,7 @@ double outerShape(const Eigen::Vector3d& p) {
     return blend(crown(p), rootPart(p), 0.6);
 }
 
-// Thickness grows from nothing at the neck to 1.9 mm under the cusps.
+// The thickness grows from nothing at the neck to 1.9 mm under the cusps.
 double enamelThickness(double z) {
     return 1.3 * smoothStep(kNeckZ - 0.2, kNeckZ + 4, z) + 0.6 * smoothStep(15, 18, z);
 }
@@ -107,7 +108,7 @@ double pulp(const Eigen::Vector3d& p) {
     return blend(shape, canal(p, 1, 0.0), 0.4);
 }
 
-// Starts in the fissure and undermines the enamel.
+// The caries starts in the fissure and undermines the enamel.
 double caries(const Eigen::Vector3d& p) {
     return ellipsoid(p, {0.9, 0.1, 15.9}, {1.6, 1.3, 1.5});
 }
@@ -134,7 +135,7 @@ double meanHu(const VolumeGeometry& geometry, const Eigen::Vector3d& index) {
     return sum / (kSamplesPerAxis * kSamplesPerAxis * kSamplesPerAxis);
 }
 
-// SplitMix64 of (seed, index): the same noise on every machine, whatever the order of evaluation.
+// It is SplitMix64 of (seed, index): the same noise on every machine, whatever the order of evaluation.
 uint64_t hashed(uint64_t seed, uint64_t index) {
     uint64_t z = seed * 0x9e3779b97f4a7c15u + index + 0x9e3779b97f4a7c15u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -142,7 +143,8 @@ uint64_t hashed(uint64_t seed, uint64_t index) {
     return z ^ (z >> 31);
 }
 
-// Sum of four uniform numbers, scaled to variance 1: close to Gaussian, bounded, and exact arithmetic only.
+// It is the sum of four uniform numbers, scaled to variance 1: close to Gaussian, bounded, and
+// exact arithmetic only.
 double noise(uint64_t seed, uint64_t index) {
     const uint64_t bits = hashed(seed, index);
     double sum = 0;
@@ -168,7 +170,7 @@ VolumeGeometry toothGrid() {
 
 namespace {
 
-// Tissue at the centres of all voxels and of one layer around them.
+// Holds the tissue at the centres of all voxels and of one layer around them.
 class TissueMap {
   public:
     explicit TissueMap(const VolumeGeometry& geometry) : size_(geometry.dims.array() + 2) {

@@ -1,9 +1,9 @@
-// A molar-like tooth in Hounsfield units: enamel shell, dentine, pulp chamber with root canals, caries in the
-// fissure.
+// Makes a molar-like tooth in Hounsfield units: enamel shell, dentine, pulp chamber with root canals, caries
+// in the fissure.
 //
-// Lengths in m. W: z along the tooth axis, crown towards +z, axis through x = y = 0. x runs along the row of
-// teeth (mesio-distal, crown 11 mm), y across it (10.5 mm); root tips near z = 0.55 mm, cusp tips near z
-// = 19.5 mm. Thread-safe; start-up only.
+// Lengths are in m. In W z runs along the tooth axis with the crown towards +z, and the axis goes through x =
+// y = 0. x runs along the row of teeth (mesio-distal, crown 11 mm), y across it (10.5 mm); root tips are near
+// z = 0.55 mm, cusp tips near z = 19.5 mm. Thread-safe; start-up only.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct ToothScan {
     uint64_t seed = 1;
 };
 
-// The thesis' tooth size: 256 x 256 x 161 voxels of 0.125 mm, z from 0 to 20 mm.
+// The grid has the thesis' tooth size: 256 x 256 x 161 voxels of 0.125 mm, z from 0 to 20 mm.
 VolumeGeometry toothGrid();
 
 // Each voxel is the mean of the tissues in the 1.5 voxels around it (the scanner's blur), rounded to whole

@@ -13,13 +13,14 @@ namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-// All shapes in mm; those on both sides are of the left side (x > 0).
+// All shapes are in mm; those on both sides are of the left side (x > 0).
 
 double roundedCut(double solid, double cut, double fillet) {
     return -blend(-solid, cut, fillet);
 }
 
-// First-order distance to an n-dimensional ellipsoid: (|p / r| - 1) over the length of its gradient.
+// This is the first-order distance to an n-dimensional ellipsoid: (|p / r| - 1) over the length
+// of its gradient.
 template <class V>
 double ellipsoidal(const V& p, const V& half_axes) {
     const V scaled = p.cwiseQuotient(half_axes);
@@ -28,7 +29,7 @@ double ellipsoidal(const V& p, const V& half_axes) {
     return (size - 1) * size / scaled.cwiseQuotient(half_axes).norm();
 }
 
-// Cross-section of the body: between ellipse and box.
+// The cross-section of the body lies between ellipse and box.
 double superellipse(const Vector2d& p, const Vector2d& half_axes) {
     constexpr double kExponent = 2.4;
     const Eigen::Array2d scaled = p.cwiseQuotient(half_axes).array().abs();
@@ -38,7 +39,7 @@ double superellipse(const Vector2d& p, const Vector2d& half_axes) {
     return (size - 1) / gradient.matrix().norm();
 }
 
-// Limb of elliptic cross-section from a to b: half axes (level, upright) at both ends, ends rounded.
+// A limb has an elliptic cross-section from a to b: half axes (level, upright) at both ends, ends rounded.
 struct Limb {
     Vector3d a, b;
     Vector2d half_axes_a, half_axes_b;
@@ -70,7 +71,7 @@ double canal(const Vector3d& p) {
     return ellipsoidal<Vector2d>(p.head<2>() - kCanalMiddle, kCanalHalfAxes);
 }
 
-// Both sides at once: the vertebra is symmetric about x = 0.
+// It makes both sides at once: the vertebra is symmetric about x = 0.
 double arch(const Vector3d& p) {
     static const Limb kPedicle{{14.4, 9, 4.5}, {18.4, 31, 4.5}, {5, 7.25}, {5, 7.25}};
     static const Limb kLamina{{18, 30, 2.5}, {1, 36.2, -5}, {3.2, 6.5}, {3.2, 10}};
@@ -91,7 +92,7 @@ double bone(const Vector3d& p) {
     return roundedCut(blend(body(p), arch(p), 3), canal(p), 1);
 }
 
-// Thin on the body, thick on the arch.
+// The shell is thin on the body and thick on the arch.
 double onArch(const Vector3d& p) {
     return smoothStep(12, 22, p.y());
 }
@@ -102,7 +103,7 @@ double corticalHu(const Vector3d& p) {
     return 1350 + 400 * onArch(p);
 }
 
-// Number in 0 .. 1 of a lattice point (SplitMix64): the same everywhere.
+// This is a number in 0 .. 1 of a lattice point (SplitMix64): the same everywhere.
 double latticeNoise(int i, int j, int k) {
     uint64_t z =
         (uint64_t(uint16_t(i)) << 32 | uint64_t(uint16_t(j)) << 16 | uint16_t(k)) + 0x9e3779b97f4a7c15u;
@@ -111,7 +112,7 @@ double latticeNoise(int i, int j, int k) {
     return double((z ^ (z >> 31)) >> 40) / double((1 << 24) - 1);
 }
 
-// Marrow spaces a little over a millimetre wide.
+// The marrow spaces are a little over a millimetre wide.
 double trabecularHu(const Vector3d& p) {
     constexpr double kLattice = 1.2;
     const Vector3d at = p / kLattice;
@@ -127,7 +128,7 @@ double trabecularHu(const Vector3d& p) {
     return kTrabecularLowHu + (kTrabecularHighHu - kTrabecularLowHu) * noise;
 }
 
-// What lies around the bone.
+// Makes what lies around the bone.
 class SoftParts {
   public:
     VertebraTissue at(const Vector3d& p) const {
@@ -140,16 +141,16 @@ class SoftParts {
     }
 
   private:
-    // Leaves the sac above, follows the pedicle's inner wall, leaves the canal under it.
+    // It leaves the sac above, follows the pedicle's inner wall, and leaves the canal under it.
     SplineTube left_root_{
         {{5.5, 24, 13}, {8.6, 23.6, 4}, {11, 22.5, -4}, {15, 20.5, -7.8}, {22, 17, -12}, {30, 11, -20}}, 2.0};
     SplineTube aorta_{{{9, -27, -40}, {9, -27.5, 0}, {9, -27, 40}}, 8.5};
-    // From the aorta round the body's waist.
+    // It runs from the aorta round the body's waist.
     SplineTube segmental_{{{8, -19.2, -1}, {14, -16.2, -1}, {20, -9.5, -1}, {22.7, 0, -1}, {21.5, 8, -1.5}},
                           1.2};
 };
 
-// Share of what begins at depth 0 (mm, growing inwards) where edges are soft over `blur`.
+// This is the share of what begins at depth 0 (mm, growing inwards) where edges are soft over `blur`.
 double softStep(double depth, double blur) {
     return smoothStep(-blur / 2, blur / 2, depth);
 }

@@ -1,11 +1,12 @@
-// A lumbar vertebra (L3) in Hounsfield units with the nerves and vessels around it: cortical shell over
-// trabecular core, dural sac in the canal, the third lumbar nerve roots under the pedicles, aorta and
-// segmental vessels.
+// Makes a lumbar vertebra (L3) in Hounsfield units with the nerves and vessels around it: cortical shell
+// over trabecular core, dural sac in the canal, the third lumbar nerve roots under the pedicles, aorta
+// and segmental vessels.
 //
-// Lengths in m. W: origin in the middle of the vertebral body, x to the patient's left, y to the back, z up
-// (LPS). Sizes rounded from morphometry of L3 (Panjabi et al., Spine 17:299, 1992; Zindrick et al., Spine
-// 12:160, 1987): body 45 x 33 x 28 mm, pedicles 10 mm wide and 14.5 mm high, canal 24 x 17 mm, 95 mm across
-// the transverse processes. Shell and densities: docs/volumes.md. Thread-safe; start-up only.
+// Lengths are in m. W has its origin in the middle of the vertebral body, x to the patient's left, y to
+// the back, z up (LPS). Sizes are rounded from morphometry of L3 (Panjabi et al., Spine 17:299, 1992;
+// Zindrick et al., Spine 12:160, 1987): body 45 x 33 x 28 mm, pedicles 10 mm wide and 14.5 mm high, canal
+// 24 x 17 mm, 95 mm across the transverse processes. docs/volumes.md describes shell and densities.
+// Thread-safe; start-up only.
 #pragma once
 
 #include <cstdint>
@@ -26,13 +27,13 @@ enum class VertebraTissue : uint8_t {
     kVessel
 };
 
-// Signed distance to the bone's surface, m, negative inside; exact to some 10 % near the surface, a bound
-// elsewhere.
+// This is the signed distance to the bone's surface in m, negative inside; it is exact to some 10 % near the
+// surface and a bound elsewhere.
 double vertebraDistance(const Eigen::Vector3d& p_W) noexcept;
-// Of the shell there, m.
+// It is the thickness of the shell there, in m.
 double corticalThickness(const Eigen::Vector3d& p_W) noexcept;
 
-// The whole vertebra and what lies around it.
+// The grid holds the whole vertebra and what lies around it.
 VolumeGeometry vertebraGrid(double voxel_size);
 
 inline constexpr double kFatHu = -100, kSoftHu = 40;  // around, and of nerves and vessels

@@ -1,4 +1,4 @@
-// How much may be written now, so that the mean stays below a rate. One thread.
+// Says how much may be written now, so that the mean stays below a rate. One thread.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ class ByteBudget {
 
     explicit ByteBudget(double bytes_per_s) : bytes_per_s_(bytes_per_s) {}
 
-    // Negative after more was spent than there was: a whole group may be larger than what is left.
+    // It is negative after more was spent than there was, for a whole group may be larger than what is left.
     int64_t available(int64_t now_ns) {
         if (last_ns_ != 0) allowance_ += bytes_per_s_ * secondsOfNs(now_ns - last_ns_);
         allowance_ = std::min(allowance_, bytes_per_s_ * kBurst_s);

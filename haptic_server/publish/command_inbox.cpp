@@ -5,9 +5,9 @@
 namespace bonemill {
 namespace {
 
-// Far more than a classroom; bounds what invented sender ids can take.
+// These are far more than a classroom has, and they bound what invented sender ids can take.
 constexpr size_t kMaxSenders = 1024;
-// Many times what any command needs.
+// It is many times what any command needs.
 constexpr size_t kLongestPayload = 4096;
 
 bool parse(std::span<const uint8_t> payload, topics::Command& command) {

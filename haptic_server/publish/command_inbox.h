@@ -12,7 +12,7 @@
 
 namespace bonemill {
 
-// What clients read in Status about the last command.
+// Clients read this in Status about the last command.
 struct CommandAcknowledgement {
     uint64_t sender = 0;
     uint32_t sequence = 0;
@@ -21,8 +21,8 @@ struct CommandAcknowledgement {
 
 class CommandInbox {
   public:
-    // What to do with one received payload: carry out `command`, or tell the sender `acknowledgement`, or
-    // (both empty: malformed, or a repetition of a command still being carried out) nothing.
+    // Says what to do with one received payload: carry out `command`, or tell the sender `acknowledgement`,
+    // or nothing (both are empty: it is malformed, or it repeats a command that is still being carried out).
     struct Decision {
         std::optional<topics::Command> command;
         std::optional<CommandAcknowledgement> acknowledgement;

@@ -66,7 +66,8 @@ bool Publisher::isNewer(const NodeMesh& mesh) const {
     return known == nodes_.end() || mesh.revision > known->second.revision;
 }
 
-// Removals come last: the surface that goes is hidden behind its neighbours' new one, a hole would not be.
+// Removals come last: the surface that goes is hidden behind its neighbours' new one, and a hole
+// would not be.
 Publisher::Written Publisher::publishNodes(std::span<const NodeMesh> meshes, int64_t oldest_cut_ns) {
     const auto has_surface = [this](const NodeMesh& mesh) { return !mesh.isEmpty() && isNewer(mesh); };
     NodeTag tag{epoch_, ++batch_, uint32_t(std::ranges::count_if(meshes, has_surface)), 0};

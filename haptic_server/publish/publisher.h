@@ -1,9 +1,10 @@
-// Everything haptic_server shows to the clients, and what they ask of it: the five topics of one session.
+// haptic_server shows its clients everything through this, and hears what they ask of it: the five topics
+// of one session.
 //
-// Owned by the publisher thread; every member from that thread, never from the tick (a write can take
-// milliseconds). No reader, however slow, gone or killed, blocks a write. Nothing is disposed when the
-// publisher goes: clients keep the last picture. A restarted server is a new Publisher with a later epoch and
-// replaces the model on every client.
+// The publisher thread owns it and alone calls its members, never the tick (a write can take milliseconds).
+// No reader, however slow, gone or killed, blocks a write. Nothing is disposed when the publisher goes:
+// clients keep the last picture. A restarted server is a new Publisher with a later epoch and replaces the
+// model on every client.
 #pragma once
 
 #include <cstdint>
@@ -39,36 +40,37 @@ class Publisher {
         size_t bytes = 0;      // payloads of the nodes
         bool is_whole = true;  // false: DDS refused some, and the clients keep those older meshes
     };
-    // Shows these nodes' surfaces, together: clients wait for the last one; an empty mesh removes the node. A
-    // mesh is written once: one that is not newer (revision) than the last one of its leaf is ignored.
-    // oldest_cut_ns: start of the oldest tick whose cut is new in them, CLOCK_MONOTONIC; 0: none.
+    // Shows these nodes' surfaces together: clients wait for the last one, and an empty mesh removes its
+    // node. A mesh is written once: one that is not newer (revision) than the last one of its leaf is
+    // ignored. `oldest_cut_ns` is the start (CLOCK_MONOTONIC) of the oldest tick whose cut is new in them, or
+    // 0 for none.
     Written publishNodes(std::span<const NodeMesh> meshes, int64_t oldest_cut_ns = 0);
     Written publishNode(const NodeMesh& mesh) { return publishNodes({&mesh, 1}); }
 
     // The epoch is filled in.
     bool publishSceneInfo(topics::SceneInfo info);
-    // Best effort, for 60 to 100 calls per second; the time stamp is that of the call. effects: of the scene,
-    // if it has such that say something.
+    // Tool states are best effort, for 60 to 100 calls per second; the time stamp is that of the call.
+    // `effects` are the scene's, if it has such that say something.
     bool publishToolState(const TickRecord& record, std::optional<topics::EffectState> effects = {});
     // Epoch, node count, node digest and last command are filled in. Clients take a server for lost that
     // publishes nothing for 3 s: call at least once per second, and right after the last of a group of
     // nodes.
     bool publishStatus(topics::Status status);
 
-    // Commands that arrived, each valid and new; carry each out and acknowledge() it. What is invalid is
-    // answered or counted here.
+    // These commands have arrived, each valid and new; carry each out and acknowledge() it. What is invalid
+    // is answered or counted here.
     std::vector<topics::Command> takeCommands();
     // Tells the sender, through Status at once, how the command ended: "done" or "refused: <why>".
     void acknowledge(const topics::Command& command, const std::string& result);
 
-    // How long the writes of nodes took.
+    // Says how long the writes of nodes took.
     const LatencyHistogram& writeTimes() const noexcept { return write_times_; }
     uint64_t nodeBytes() const noexcept { return node_bytes_; }
 
     uint64_t epoch() const noexcept { return epoch_; }
     const NodeDigest& digest() const noexcept { return digest_; }
     uint64_t malformedCommands() const noexcept { return inbox_.malformedCount(); }
-    // Clients that listen to the status now.
+    // So many clients listen to the status now.
     int clientCount() const { return status_writer_.matchedReaders(); }
 
   private:

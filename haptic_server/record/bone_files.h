@@ -1,5 +1,5 @@
-// The bone as files: its surface, its densities, and what was taken from it. For results, not for streaming.
-// Not RT-safe.
+// The bone becomes files: its surface, its densities, and what was taken from it. They are results, not for
+// streaming. Not RT-safe.
 #pragma once
 
 #include <string>
@@ -11,26 +11,27 @@
 
 namespace bonemill {
 
-// What a run leaves behind; empty: not written.
+// A run leaves these files behind; those with an empty name are not written.
 struct SavePaths {
     std::string volume;      // .nrrd
     std::string mesh;        // .stl or .ply
     std::string difference;  // .nrrd
 };
 
-// Before a run: throws UserError if the file could not be written after it; an empty path is fine. Leaves
-// things as they are.
+// Called before a run, it throws UserError if the file could not be written after it; an empty path is fine.
+// It leaves things as they are.
 void requireWritable(const std::string& path);
-// The same for all of them, also if a name says another format.
+// Does the same for all of them, and also throws if a name says another format.
 void requireWritable(const SavePaths& paths);
 
 std::vector<NodeMesh> meshWholeBone(const VoxelVolume& volume, const LeafLattice& lattice);
 
-// Throw UserError when a file cannot be written.
-// By its ending: binary STL, or binary PLY with welded vertices and normals; W, mm.
+// All of these throw UserError when a file cannot be written. The ending chooses binary STL, or binary PLY
+// with welded vertices and normals; both are in W and mm.
 void saveMesh(const std::string& path, const VoxelVolume& volume, const LeafLattice& lattice,
               const std::vector<NodeMesh>& meshes);
-// Density lost (negative: gained) as int16: kFullDifference is a voxel's full density. On one grid.
+// The file holds the density that was lost (negative: gained) as int16: kFullDifference is a voxel's full
+// density. Both volumes must have one grid.
 void saveDifference(const std::string& path, const VoxelVolume& before, const VoxelVolume& after);
 inline constexpr int kFullDifference = 32767;
 

@@ -1,7 +1,7 @@
-// What the effects of a run told, from its tick records: extremes, totals, and what the trainee was warned
-// of.
+// Keeps what the effects of a run told, from its tick records: extremes, totals, and what the trainee
+// was warned of.
 //
-// One normal thread; add() allocates nothing. SI but for temperatures, °C.
+// One normal thread calls it; add() allocates nothing. SI but for temperatures, which are in °C.
 #pragma once
 
 #include <array>
@@ -28,14 +28,14 @@ class EffectStatistics {
     double removedEnergy() const noexcept { return removed_energy_; }
     std::optional<double> maxTemperature() const noexcept { return max_temperature_; }
     double necrotic() const noexcept { return necrotic_; }
-    // Of the burr's surface; nothing while no structure was in reach.
+    // It is the distance of the burr's surface, and nothing while no structure was in reach.
     std::optional<double> leastProtectedDistance() const noexcept { return least_protected_distance_; }
     double maxProtectedForce() const noexcept { return max_protected_force_; }
     double damaged() const noexcept { return damaged_; }
 
-    // Keys with unit suffixes, of what is recorded.
+    // The keys have unit suffixes; only what is recorded is among them.
     std::vector<std::pair<std::string, double>> figures() const;
-    // Each once, in words; materials: their names, in the scene's order.
+    // Each warning comes once, in words; `materials` are the materials' names in the scene's order.
     std::vector<std::string> warnings(const std::vector<std::string>& materials) const;
 
   private:

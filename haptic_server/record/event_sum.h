@@ -1,4 +1,5 @@
-// The events of several ticks, and which protected structure the worst of them was about. Plain value.
+// Sums up the events of several ticks, and which protected structure the worst of them was about. It is
+// a plain value.
 #pragma once
 
 #include "haptic_server/telemetry/effect_record.h"

@@ -1,4 +1,4 @@
-// Words for the TickFault bits. Any thread; allocates.
+// Finds words for the TickFault bits. Any thread; allocates.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@
 
 namespace bonemill {
 
-// One short name per set bit, lowest bit first ("overrun", "stale_device", ...); "unknown_bit_N" for a bit
-// without one.
+// There is one short name per set bit, lowest bit first ("overrun", "stale_device", ...), and "unknown_bit_N"
+// for a bit without one.
 std::vector<std::string> faultList(uint32_t faults);
 
-// The same for people: "overrun, stale_device", or "none".
+// Says the same for people: "overrun, stale_device", or "none".
 std::string faultNames(uint32_t faults);
 
 }  // namespace bonemill

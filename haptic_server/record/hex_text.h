@@ -1,5 +1,5 @@
-// 64 bits as 16 hexadecimal digits, as render_client prints its digest: JSON readers do not keep 64 bits of a
-// number.
+// Writes 64 bits as 16 hexadecimal digits, as render_client prints its digest, for JSON readers do not keep
+// 64 bits of a number.
 #pragma once
 
 #include <cinttypes>

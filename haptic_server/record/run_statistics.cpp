@@ -16,7 +16,7 @@
 namespace bonemill {
 namespace {
 
-// The instant that should have woken the tick: late wake-ups are latency, not gaps in the schedule.
+// This instant should have woken the tick: late wake-ups are latency, not gaps in the schedule.
 int64_t dueNs(const TickRecord& record) {
     return record.start_ns - record.wakeup_latency_ns;
 }

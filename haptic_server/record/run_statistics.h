@@ -1,6 +1,6 @@
-// What a run was like, from its tick records: rates, latencies, contacts, forces, material, faults.
+// Tells what a run was like, from its tick records: rates, latencies, contacts, forces, material, faults.
 //
-// One normal thread; allocates once per second of run.
+// One normal thread calls it; it allocates once per second of run.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace bonemill {
 
-// What the clients were shown.
+// The clients were shown this.
 struct PublishFigures {
     LatencyHistogram rounds;  // each round of the publisher thread: encoding and all writes
     LatencyHistogram writes;  // of one node each
@@ -26,36 +26,37 @@ struct PublishFigures {
 
 class RunStatistics {
   public:
-    // period_ns: nominal time between ticks, > 0. recorded: what the records say of effects.
+    // `period_ns` is the nominal time between ticks, > 0. `recorded` says what the records hold of effects.
     explicit RunStatistics(int64_t period_ns, const RecordedEffects& recorded = {})
         : period_ns_(period_ns), effects_(recorded) {}
 
-    // Records in the order of their ticks; those the ring dropped may be missing.
+    // Records come in the order of their ticks; those the ring dropped may be missing.
     void add(const TickRecord& record);
-    // SpscRing::dropped(): ticks that ran but are not in these statistics (their number still counts in the
-    // rates).
+    // SpscRing::dropped() counts ticks that ran but are not in these statistics (their number still counts
+    // in the rates).
     void setLostRecords(uint64_t lost_records) { lost_records_ = lost_records; }
 
-    // Of the tick thread after its first second; not known if never set.
+    // These are the tick thread's after its first second; they are not known if never set.
     void setPageFaults(const PageFaults& faults) { page_faults_ = faults; }
 
-    // From the start of each tick that cut until its node meshes were with the publisher; not known if never
-    // set.
+    // It goes from the start of each tick that cut until its node meshes were with the publisher; it is not
+    // known if never set.
     void setCutToPublisher(const LatencyHistogram& cut_to_publisher) { cut_to_publisher_ = cut_to_publisher; }
 
-    // Of the publisher thread after its last round; not known if never set.
+    // These are the publisher thread's after its last round; they are not known if never set.
     void setPublished(const PublishFigures& published) { published_ = published; }
 
     uint64_t ticks() const { return has_records_ ? last_tick_ - first_tick_ + 1 : 0; }
     double durationS() const;   // from the first to the last tick's start
     double meanRateHz() const;  // ticks per elapsed time; 0 with fewer than two ticks
-    // Of every whole second since the first tick.
+    // There is one rate of every whole second since the first tick.
     const std::vector<double>& ratesHz() const { return rates_hz_; }
-    // Periods of the schedule in which no tick started.
+    // No tick started in so many periods of the schedule.
     uint64_t droppedTicks() const { return dropped_ticks_; }
     uint64_t lostRecords() const { return lost_records_; }
 
-    // forceReady: wake-up to wrench written; tickCompute: wake-up to the end of the tick's work.
+    // forceReady lasts from the wake-up to the written wrench, tickCompute from the wake-up to the end of
+    // the tick's work.
     const LatencyHistogram& wakeupLatency() const { return wakeup_latency_; }
     const LatencyHistogram& forceReady() const { return force_ready_; }
     const LatencyHistogram& tickCompute() const { return tick_compute_; }
@@ -72,7 +73,7 @@ class RunStatistics {
     const EffectStatistics& effects() const { return effects_; }
     uint32_t faults() const { return faults_; }  // every TickFault bit that was ever set
 
-    // One JSON object, keys with unit suffixes. materials: names of the scene's.
+    // Makes one JSON object whose keys have unit suffixes. `materials` are the names of the scene's.
     std::string toJson(const std::vector<std::string>& materials = {}) const;
     // Throws UserError when the file cannot be written.
     void writeJson(const std::string& path, const std::vector<std::string>& materials = {}) const;

@@ -1,5 +1,5 @@
-// One CSV line per tick: the same file from a live session and from `simulate`, so that plots and checks
-// compare.
+// Writes one CSV line per tick: the same file from a live session and from `simulate`, so that plots
+// and checks compare.
 //
 // W is the world frame (the volume file's physical frame); force and torque act on the hand; removed_* are of
 // that tick; faults is the TickFault mask as a decimal number. Where the scene has effects that say
@@ -21,7 +21,7 @@ inline constexpr char kTraceHeader[] =
     "qy,dev_qz,"
     "fx_n,fy_n,fz_n,tx_nm,ty_nm,tz_nm,contacts,max_penetration_m,removed_voxels,removed_mm3,faults,tick_us";
 
-// With all effects: what follows kTraceHeader for each part of RecordedEffects, and last of all.
+// With all effects these follow kTraceHeader, one for each part of RecordedEffects, and the last of all.
 inline constexpr char kBurrColumns[] =
     ",spin_rpm,burr_force_n,axis_torque_nm,cutting_power_w,removal_power_w,removed_energy_j";
 inline constexpr char kHeatColumns[] = ",temperature_c,necrotic_mm3";
@@ -34,7 +34,8 @@ class TraceWriter {
     // Creates or empties the file and writes the header. Throws UserError when it cannot be written.
     explicit TraceWriter(const std::string& path, const RecordedEffects& recorded = {});
 
-    // False, from then on, once the file could not be written (disk full): the session goes on without it.
+    // It is false from then on once the file could not be written (disk full): the session goes
+    // on without it.
     bool write(const TickRecord& record);
 
     // Flushes and closes; false if anything was lost. Without it the destructor closes silently.

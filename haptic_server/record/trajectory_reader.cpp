@@ -38,7 +38,7 @@ void split(std::string_view line, std::vector<std::string_view>& cells) {
     }
 }
 
-// One pass over the file; knows where it is for its messages.
+// Makes one pass over the file and knows where it is for its messages.
 class Reader {
   public:
     Reader(std::istream& input, const std::string& name) : input_(input), name_(name) {}
@@ -62,7 +62,7 @@ class Reader {
         throw UserError("trajectory " + name_ + ":" + std::to_string(line_number_) + ": " + what);
     }
 
-    // The next line that is not blank.
+    // Goes to the next line that is not blank.
     bool nextLine() {
         while (std::getline(input_, line_)) {
             ++line_number_;

@@ -17,11 +17,11 @@ struct TrajectoryRow {
     uint32_t buttons = 0;  // Button bits
 };
 
-// At least one row, t_s strictly increasing. Throws UserError with file:line for a missing column, a cell
-// that is no finite number, a quaternion whose norm is off by more than 1e-3 (else it is normalised), time
-// that does not increase.
+// There is at least one row, and t_s is strictly increasing. Throws UserError with file:line for a missing
+// column, a cell that is no finite number, a quaternion whose norm is off by more than 1e-3 (else it is
+// normalised) and a time that does not increase.
 std::vector<TrajectoryRow> readTrajectory(const std::string& path);
-// The same from a stream; `name` stands for the file in messages.
+// Reads the same from a stream; `name` stands for the file in messages.
 std::vector<TrajectoryRow> readTrajectory(std::istream& input, const std::string& name);
 
 }  // namespace bonemill

@@ -1,4 +1,4 @@
-// What accuracy-report measured for a scene: errors of each accuracy setting, by its name.
+// accuracy-report has measured this for a scene: the errors of each accuracy setting, by its name.
 #pragma once
 
 #include <map>
@@ -12,10 +12,10 @@ struct AccuracyFigure {
 };
 using AccuracyFigures = std::map<std::string, AccuracyFigure>;
 
-// `file` as accuracy-report writes it (accuracy.json). Throws UserError for a file that is not.
+// `file` is what accuracy-report writes (accuracy.json). Throws UserError for any other file.
 AccuracyFigures readAccuracyFigures(const std::string& file);
 
-// Where the figures of a scene lie if they were kept: beside it, X.textproto -> X.accuracy.json.
+// The figures of a scene lie there if they were kept: beside the scene, X.textproto -> X.accuracy.json.
 std::string accuracyFiguresOf(const std::string& scene_file);
 
 }  // namespace bonemill

@@ -1,5 +1,5 @@
-// The tick's view of the device in a live session: shared memory in, shared memory out, telemetry and cuts
-// into rings.
+// The tick sees the device of a live session through this: samples come from shared memory and wrenches go
+// there, telemetry and cuts go into rings.
 #pragma once
 
 #include <atomic>
@@ -33,14 +33,14 @@ class DeviceLinkIo final : public TickIo {
     int64_t now() noexcept override;
     void push(const TickRecord& record) noexcept override;
 
-    // Any thread, also a signal handler: read() returns false within kStopCheckNs.
+    // Any thread may call it, also a signal handler: read() returns false within kStopCheckNs.
     void stop() noexcept { is_stopping_.store(true, std::memory_order_relaxed); }
-    // Any thread: samples that no daemon of ours would send.
+    // Any thread may ask for the number of samples that no daemon of ours would send.
     uint64_t implausibleSamples() const noexcept { return implausible_.load(std::memory_order_relaxed); }
 
     static constexpr int64_t kStopCheckNs = 50'000'000;
 
-    // Any thread: the device said goodbye.
+    // Any thread may ask whether the device has said goodbye.
     bool hasDeviceLeft() const noexcept {
         return config_.ends_with_device && has_device_left_.load(std::memory_order_relaxed);
     }

@@ -1,5 +1,5 @@
-// The recorder thread's work: empties the tick's ring into trace and statistics and keeps the newest record
-// at hand.
+// The recorder thread works with this: it empties the tick's ring into trace and statistics and keeps the
+// newest record at hand.
 #pragma once
 
 #include <mutex>
@@ -13,7 +13,7 @@
 
 namespace bonemill {
 
-// What clients are shown of the loop's health.
+// Clients are shown this of the loop's health.
 struct LoopHealth {
     uint64_t ticks = 0;
     double rate_hz = 0;      // over the last full second
@@ -26,19 +26,19 @@ struct LoopHealth {
 
 class Recorder {
   public:
-    // trace_path empty: no trace. recorded: what the records say of effects. Throws UserError when the trace
-    // cannot be created.
+    // There is no trace if trace_path is empty. `recorded` says what the records hold of effects. Throws
+    // UserError when the trace cannot be created.
     Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const std::string& trace_path,
              const RecordedEffects& recorded = {});
 
-    // Recorder thread: takes what is in the ring. Call every few milliseconds.
+    // The recorder thread takes what is in the ring, every few milliseconds.
     void drain();
-    // After the tick has ended: takes the rest, closes the trace. False: some of the trace is lost.
+    // Once the tick has ended this takes the rest and closes the trace. False: some of the trace is lost.
     bool finish();
 
-    // Any normal thread.
+    // Any normal thread may ask.
     std::optional<TickRecord> latest() const;
-    // The newest, and what happened in all ticks since the call before.
+    // It is the newest record, with what happened in all ticks since the call before.
     struct Since {
         TickRecord latest;
         EventSum events;
@@ -47,15 +47,15 @@ class Recorder {
     std::optional<Since> takeSince();
     EffectStatistics effects() const;
     LoopHealth health() const;
-    // Before finish(): what the tick thread's page faults were after its first second.
+    // This is called before finish() and says what the tick thread's page faults were after its first second.
     void setPageFaults(const PageFaults& faults) { statistics_.setPageFaults(faults); }
-    // By the mesher thread at its end: how long the ticks' cuts waited for the publisher.
+    // The mesher thread says at its end how long the ticks' cuts waited for the publisher.
     void setCutToPublisher(const LatencyHistogram& cut_to_publisher) {
         statistics_.setCutToPublisher(cut_to_publisher);
     }
-    // By whoever has joined the publisher thread.
+    // Whoever has joined the publisher thread calls this.
     void setPublished(const PublishFigures& published) { statistics_.setPublished(published); }
-    // After finish() only.
+    // The statistics may be read after finish() only.
     const RunStatistics& statistics() const { return statistics_; }
 
   private:

@@ -1,4 +1,4 @@
-// Of what a client wrote, as far as an answer may repeat it: answers are kept and sent to all.
+// An answer may repeat only so much of what a client wrote, for answers are kept and sent to all.
 #pragma once
 
 #include <algorithm>

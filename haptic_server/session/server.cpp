@@ -127,7 +127,7 @@ class Server {
             logRealtime);
     }
 
-    // A thread's work until it is told to stop; a failure ends the session in order, with its files.
+    // A thread works until it is told to stop; a failure ends the session in order, with its files.
     template <class Work>
     void loop(const std::stop_token& stop, std::chrono::microseconds period, Work work) {
         try {
@@ -162,7 +162,8 @@ class Server {
         recorder_.setCutToPublisher(rounds.cutToSink());
     }
 
-    // Again and again: the tick thread, and its numbers with it, may be gone at the end.
+    // The faults are counted again and again, for the tick thread, and its numbers with it, may be gone
+    // at the end.
     void countPageFaults(int64_t first_tick_ns) {
         const std::optional<PageFaults> now = pageFaultsOf(tick_thread_.id());
         if (!now || monotonicNowNs() - first_tick_ns < kWarmUpNs) return;
@@ -208,7 +209,7 @@ class Server {
                      statistics.droppedTicks(), faultNames(statistics.faults()));
         for (const std::string& warning : statistics.effects().warnings(materialNamesOf(loaded_.scene)))
             spdlog::warn("effects warned: {}", warning);
-        // Each on its own: one that fails must not cost the others.
+        // Each is written on its own: one that fails must not cost the others.
         bool all_written = trace_is_whole;
         const auto write = [&all_written](const std::string& path, auto&& action) {
             try {

@@ -1,4 +1,4 @@
-// The live server: tick, mesher, publisher and recorder threads around one bone.
+// The live server runs tick, mesher, publisher and recorder threads around one bone.
 #pragma once
 
 #include <cstdint>

@@ -43,7 +43,7 @@ std::optional<std::string> SessionCommands::carryOut(const topics::Command& comm
     }
 }
 
-// Empty: the role allows it.
+// The refusal is empty if the role allows the command.
 std::string SessionCommands::refusalOf(const topics::Command& command) const {
     if (command.role() == topics::Viewer::INSTRUCTOR) return "";
     if (only_instructors_)

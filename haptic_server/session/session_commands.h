@@ -1,4 +1,5 @@
-// What clients may ask of a session, and what the session says of itself in return. Publisher thread only.
+// Clients may ask this of a session, and the session says this of itself in return. All members belong to
+// the publisher thread.
 #pragma once
 
 #include <atomic>
@@ -16,7 +17,7 @@
 
 namespace bonemill {
 
-// What the commands act on: the tick takes each up by itself.
+// The commands act on this; the tick takes each up by itself.
 struct SessionControls {
     BoneHistory& history;
     AccuracySwitch& accuracy;
@@ -27,15 +28,16 @@ struct SessionControls {
 
 class SessionCommands {
   public:
-    // References must outlive this object. `only_instructors`: others may only look.
+    // References must outlive this object. With `only_instructors` all others may only look.
     SessionCommands(const scene::Scene& scene, const BoneModel& bone, const Recorder& recorder,
                     const SessionControls& controls, bool only_instructors);
 
-    // "done" or "refused: <why>"; nothing: it has begun, and its end comes with takeResult().
+    // The answer is "done" or "refused: <why>"; nothing means that the command has begun, and its end
+    // comes with takeResult().
     std::optional<std::string> carryOut(const topics::Command& command);
-    // Of the command that was begun, once it has ended: "done" or "failed: <why>".
+    // This is how the command that was begun has ended, once it has: "done" or "failed: <why>".
     std::optional<std::string> takeResult() { return controls_.bone_export.takeResult(); }
-    // Of the status: session clock, pause, checkpoints, what the bone has lost.
+    // Fills in the session clock, the pause, the checkpoints and what the bone has lost.
     void describe(topics::Status& status) const;
     const ToolSwitch& tools() const noexcept { return controls_.tools; }
     const AccuracySwitch& accuracy() const noexcept { return controls_.accuracy; }

@@ -42,7 +42,7 @@ void fillTool(const TriangleSurface& surface, topics::TriangleMesh* out) {
     for (const uint32_t index : surface.indices) out->add_indices(index);
 }
 
-// Box of all leaves with surface, V: what the camera has to show.
+// The camera has to show this box of all leaves with surface, in V.
 Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
     Eigen::AlignedBox3d box;
     for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
@@ -54,7 +54,7 @@ Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
     return box;
 }
 
-// But for the tool in use.
+// The tool in use is still missing in it.
 topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulation) {
     topics::SceneInfo info;
     info.set_name(scene.name());
@@ -118,7 +118,7 @@ void ShowSession::publishToolState(int64_t now_ns) {
     last_tool_state_ns_ = now_ns;
 }
 
-// Those nearest to the burr first, as many as the budget allows.
+// Nodes nearest to the burr go first, as many as the budget allows.
 bool ShowSession::publishNodes() {
     Eigen::Vector3d burr_V = Eigen::Vector3d::Zero();
     if (const auto latest = recorder_.latest())

@@ -1,5 +1,5 @@
-// The publisher thread's work: scene, tool, status and node meshes to the clients, their commands to the
-// tick.
+// The publisher thread works with this: scene, tool, status and node meshes go to the clients, their commands
+// to the tick.
 #pragma once
 
 #include "haptic_server/mesh/mesh_outbox.h"
@@ -15,12 +15,13 @@ namespace bonemill {
 
 class ShowSession {
   public:
-    // Publishes the scene at once. Node meshes take bytes_per_s at most. References must outlive this object.
+    // Publishes the scene at once. Node meshes take at most `bytes_per_s`. References must
+    // outlive this object.
     ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                 const AccuracyFigures& figures, MeshOutbox& outbox, Recorder& recorder,
                 SessionCommands& commands, double bytes_per_s);
 
-    // One round, about 200 times per second; publisher thread only.
+    // The publisher thread makes one round about 200 times per second.
     void round();
 
   private:

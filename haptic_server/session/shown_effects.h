@@ -1,4 +1,5 @@
-// What viewers are told of a scene's effects and materials. Start-up and publisher thread; allocates.
+// Viewers are told this of a scene's effects and materials. Used at start-up and by the
+// publisher thread; allocates.
 #pragma once
 
 #include <string>
@@ -12,18 +13,18 @@
 
 namespace bonemill {
 
-// What viewers are to know of effects and materials, nothing if the scene lists none.
+// Says what viewers have to know of effects and materials, and nothing if the scene lists none.
 void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info);
 
-// The effects part of the tool states of a session.
+// This makes the effects part of the tool states of a session.
 class ShownEffects {
   public:
     explicit ShownEffects(const scene::Effects& effects);
     // False: tool states have no such part.
     bool areShown() const noexcept { return recorded_.any() || is_seen_; }
-    // Of the newest tick; events and removed (m³) since the tool state before.
+    // `newest` is the newest tick's; `events` and `removed` (m³) are those since the tool state before.
     topics::EffectState at(const EffectRecord& newest, const EventSum& events, double removed) const;
-    // Nothing without protected_structures and thermal.
+    // Says nothing without protected_structures and thermal.
     void describe(const EffectStatistics& statistics, const std::vector<std::string>& materials,
                   topics::Status& status) const;
 

@@ -10,30 +10,31 @@
 
 namespace bonemill {
 
-// The preset with the single knobs that the scene gives.
+// The settings are the preset's, with the single knobs that the scene gives.
 AccuracySettings accuracyOf(const scene::Scene& scene);
 
-// All that may be in force while the session runs: the scene's, and if it is switchable every preset's.
+// These are all settings that may be in force while the session runs: the scene's, and if it is
+// switchable every preset's.
 std::vector<AccuracySettings> accuracyChoices(const scene::Scene& scene);
 
 ShellConfig shellConfigOf(const scene::Scene& scene);
 
-// Grids beside the tool's own that any of the choices needs; ascending.
+// Any of the choices needs these grids beside the tool's own; they ascend.
 std::vector<int> sdfRefinementsOf(const scene::Scene& scene, const scene::Tool& tool);
 
-// What the tool must not be pushed through, m: the scene's, or one voxel.
+// The tool must not be pushed through a wall of this thickness, in m: the scene's, or one voxel.
 double thinnestWall(const scene::Scene& scene, double finest_spacing);
 
-// What a ball of this radius on a flat wall carries before it has passed through half of it, N: π κ (R - d)
-// d², at most its maximum over d, and what the stiffness cap leaves of it. The coupling's lasting pull
-// saturates there for the burr, so that no push goes through a wall of that thickness.
+// This is what a ball of this radius on a flat wall carries before it has passed through half of it, in N: π
+// κ (R - d) d², at most its maximum over d, and what the stiffness cap leaves of it. The coupling's lasting
+// pull saturates there for the burr, so that no push goes through a wall of that thickness.
 double wallForce(const GradientContactConfig& contact, double radius, double wall);
 
-// What the coupling pulls with at most while this tool is in use, N. `finest_spacing`: the volume's smallest
-// voxel spacing, m.
+// The coupling pulls with at most this force while the tool is in use, in N.
 double saturationForceOf(const scene::Scene& scene, const scene::Tool& tool, double finest_spacing);
 
-// Contact and coupling of the gradient law.
+// These are contact and coupling of the gradient law, with the scene's first tool. `finest_spacing` is the
+// volume's smallest voxel spacing, in m.
 GradientConfig gradientConfigOf(const scene::Scene& scene);
 
 }  // namespace bonemill

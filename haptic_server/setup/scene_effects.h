@@ -14,10 +14,10 @@ Burr burrOf(const scene::Tool& tool);
 // Fields of scene::Effects from this number on are the viewer's: they cost the tick nothing.
 inline constexpr int kFirstViewerEffect = 20;
 
-// But for what depends on the volume.
+// The configuration lacks what depends on the volume.
 EffectConfigs effectConfigsOf(const scene::Scene& scene);
 
-// What traces, reports and hashes hold of these effects.
+// This is what traces, reports and hashes hold of these effects.
 RecordedEffects recordedEffectsOf(const scene::Effects& effects);
 
 // Raw values of the scene become densities. Throws UserError for one that is none.

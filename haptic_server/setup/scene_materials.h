@@ -22,11 +22,11 @@ bool wantsVertexMaterials(const scene::Scene& scene);
 // Does anything in the scene ask what the scanned bone was made of?
 bool wantsProperties(const scene::Scene& scene);
 
-// Of each raw voxel, x fastest; empty if the scene has no materials. Imports volume.label_path. Throws
-// UserError.
+// There is one of each raw voxel, x fastest, or none if the scene has no materials. Imports
+// volume.label_path. Throws UserError.
 std::vector<MaterialId> materialIdsOf(const LoadedScene& loaded, const RawVolume& raw);
 
-// Null if no effect asks for it. Throws UserError if no voxel is of a protected material.
+// The field is null if no effect asks for it. Throws UserError if no voxel is of a protected material.
 std::shared_ptr<const DistanceField> protectedFieldOf(const LoadedScene& loaded,
                                                       const BoneProperties& properties,
                                                       const Eigen::Vector3d& spacing);

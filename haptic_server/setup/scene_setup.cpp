@@ -81,7 +81,7 @@ void warnOfLargeLeaves(Simulation& simulation) {
             " cells make milling ticks long; raise volume.octree_depth or use volume.leaf_voxels");
 }
 
-// Which tool, if there are several.
+// Says which tool is meant, if there are several.
 std::string ofTool(const Simulation& simulation, const SceneTool& tool) {
     return simulation.tools.size() > 1 ? tool.name + ": " : "";
 }
@@ -113,7 +113,7 @@ void warnOfThinTool(Simulation& simulation, const scene::Scene& scene, const Sce
                                   " N; lower coupling.max_force_n or contact.thinnest_wall_mm");
 }
 
-// But for what needs the volume.
+// The tools lack what needs the volume.
 std::vector<SceneTool> buildTools(const LoadedScene& loaded) {
     const std::vector<std::string> names = toolNamesOf(loaded.scene);
     std::vector<SceneTool> tools;
@@ -152,7 +152,7 @@ void warnOfMissingMaterials(Simulation& simulation, const scene::Scene& scene,
                                           "'; check its range or labels, and what materials after it take");
 }
 
-// What the scanned bone was made of, for the effects that ask for it.
+// The effects that ask for it learn what the scanned bone was made of.
 void addProperties(Simulation& simulation, const LoadedScene& loaded, const VoxelVolume& volume,
                    const std::vector<MaterialId>& material_ids) {
     if (!wantsProperties(loaded.scene)) return;

@@ -33,7 +33,7 @@ struct Simulation {
     std::vector<std::string> remarks;   // for people: what was read or proposed
     std::vector<std::string> warnings;  // what the user would better change in the scene
 
-    // For ToolSwitch; they point into `tools`.
+    // They are meant for ToolSwitch and point into `tools`.
     std::vector<SpoTool> spoTools() const;
     // With the first tool and the scene's accuracy from beginning to end.
     FixedTickConfig fixedTick() const { return {tick, spoTools().front(), accuracy}; }

@@ -1,4 +1,4 @@
-// From raw values to the bone's densities: window, iso-value, small pieces.
+// Turns raw values into the bone's densities: window, iso-value, small pieces.
 //
 // Not RT-safe (allocates); no shared state.
 #pragma once
@@ -10,7 +10,7 @@
 
 namespace bonemill {
 
-// What the scene asks for; raw values (HU for CT).
+// The scene asks for these raw values (HU for CT).
 struct DensityWindow {
     std::optional<double> low;           // becomes density 0; absent: lowest finite value of the data
     std::optional<double> high;          // becomes density 255; absent: highest finite value
@@ -18,7 +18,7 @@ struct DensityWindow {
     uint32_t smallest_piece_voxels = 0;  // pieces with fewer voxels are removed; 0 and 1 keep everything
 };
 
-// What was used in the end.
+// These were used in the end.
 struct DensityMapping {
     double low = 0;
     double high = 1;
@@ -26,7 +26,7 @@ struct DensityMapping {
     bool is_iso_proposed = false;
     Density iso = 0;  // density of iso_value, 0 < iso < kMaxDensity
 
-    // Linear, clamped to 0 .. kMaxDensity, rounded to nearest; NaN becomes 0 (air).
+    // It is linear, clamped to 0 .. kMaxDensity and rounded to nearest; NaN becomes 0 (air).
     Density density(double raw) const noexcept;
     double raw(double density_counts) const noexcept {
         return low + (high - low) * density_counts / kMaxDensity;
@@ -40,7 +40,7 @@ DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window);
 VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping);
 // Gives the raw values' memory back as their densities come: both are never there as a whole.
 VoxelVolume densify(RawVolume&& raw, const DensityMapping& mapping);
-// chooseMapping, densify and removeSmallPieces in one.
+// Does chooseMapping, densify and removeSmallPieces in one.
 VoxelVolume densify(const RawVolume& raw, const DensityWindow& window);
 
 }  // namespace bonemill

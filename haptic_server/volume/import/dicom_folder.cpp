@@ -16,7 +16,7 @@ namespace {
 
 constexpr size_t kMaxEdge = 16384;  // detectors of today have 4096; more is a damaged header
 
-// Files that are left out on purpose, by reason, with one example each.
+// Counts files that are left out on purpose, by reason, with one example each.
 class LeftOut {
   public:
     void add(const std::string& reason, const std::filesystem::path& file) {
@@ -40,7 +40,7 @@ class LeftOut {
     std::vector<Entry> entries_;
 };
 
-// What all images of one file have in common.
+// All images of one file have this in common.
 DicomSlice headerOf(const ItkImageFile& image, const std::filesystem::path& path) {
     const ItkImageHeader& header = image.header();
     DicomSlice slice;
@@ -59,7 +59,7 @@ DicomSlice headerOf(const ItkImageFile& image, const std::filesystem::path& path
     return slice;
 }
 
-// The slices of one file; none, and the reason: a file that cannot belong to a volume.
+// Reads the slices of one file, or none and the reason: the file cannot belong to a volume.
 std::vector<DicomSlice> readHeader(const std::filesystem::path& path, LeftOut& left_out) {
     const ItkImageFile image(ItkFormat::kDicom, path);
     const size_t frames = image.header().dims.size() > 2 ? size_t(image.header().dims[2]) : 1;

@@ -1,4 +1,4 @@
-// A DICOM series (folder) or one multi-frame DICOM file, through ITK's GDCMImageIO.
+// Reads a DICOM series (folder) or one multi-frame DICOM file, through ITK's GDCMImageIO.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace bonemill {
 
-// Throw UserError with one message naming the folder or file.
+// Both throw UserError with one message that names the folder or file.
 RawVolume importDicomFolder(const std::filesystem::path& folder, const std::string& series_uid);
 RawVolume importDicomFile(const std::filesystem::path& file);
 

@@ -23,7 +23,7 @@ Sequence sequence(const gdcm::DataSet& data, const gdcm::Tag& tag) {
     return data.GetDataElement(tag).GetValueAsSQ();
 }
 
-// Numbers of an attribute in the only item of a group, looked for in one place after the other.
+// Reads the numbers of an attribute in the only item of a group, looked for in one place after the other.
 template <uint16_t kGroup, uint16_t kElement>
 std::optional<gdcm::Attribute<kGroup, kElement>> find(const std::vector<const gdcm::DataSet*>& places,
                                                       const gdcm::Tag& group) {

@@ -67,7 +67,8 @@ class Scanner {
             position_ = kPreambleBytes + 4;
             return true;
         }
-        // Old exports have no preamble: a data set that starts with group 0002 or 0008, little endian.
+        // Old exports have no preamble: they are a data set that starts with group 0002 or
+        // 0008, little endian.
         const bool low_group = got >= 8 && (head[0] == 2 || head[0] == 8) && head[1] == 0 && head[3] == 0;
         explicit_vr_ = low_group && std::isupper(static_cast<unsigned char>(head[4])) &&
                        std::isupper(static_cast<unsigned char>(head[5]));
@@ -75,7 +76,7 @@ class Scanner {
         return low_group && (explicit_vr_ || head[0] == 8);
     }
 
-    // Group 0002, always explicit little endian. Returns false for a deflated data set.
+    // Reads group 0002, which is always explicit little endian. Returns false for a deflated data set.
     bool readMeta() {
         explicit_vr_ = true;
         std::string transfer_syntax;

@@ -1,6 +1,7 @@
-// Which files of a folder make one volume, in which order: decided from headers, never from file names.
+// Chooses the files of a folder that make one volume, and their order: from headers, never from file names.
 //
-// No DICOM library in here: tests feed it headers. Positions and spacings in mm, LPS, as in the files.
+// There is no DICOM library in here: tests feed it headers. Positions and spacings are in mm and LPS, as
+// in the files.
 #pragma once
 
 #include <Eigen/Core>

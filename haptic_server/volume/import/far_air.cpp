@@ -26,7 +26,7 @@ bool isFar(const BrickStore& bricks, const Bricks& has_bone, const Eigen::Vector
     return is_far;
 }
 
-// In every brick that holds them.
+// Clears them in every brick that holds them.
 void clearVoxels(VoxelVolume& volume, const Eigen::Vector3i& brick) {
     const Density air[kBrickCells] = {};
     const Eigen::Vector3i first = brick.array() * kBrickCells - 1;

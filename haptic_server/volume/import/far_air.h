@@ -1,4 +1,4 @@
-// What is no bone and not near any need not be kept.
+// Clears what is no bone and not near any, for it need not be kept.
 //
 // Not RT-safe (allocates); no shared state.
 #pragma once

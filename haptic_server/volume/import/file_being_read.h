@@ -6,7 +6,7 @@
 
 namespace bonemill {
 
-// For the message when the reader dies. No effect outside importGuarded.
+// The message names it when the reader dies. It has no effect outside importGuarded.
 void noteFileBeingRead(const std::filesystem::path& file) noexcept;
 
 }  // namespace bonemill

@@ -68,7 +68,7 @@ class Incoming {
   public:
     Incoming(int file, std::chrono::milliseconds most) : file_(file), end_(Clock::now() + most) {}
 
-    // False at the end of the stream, on an error, or when it is too late.
+    // It is false at the end of the stream, on an error, or when it is too late.
     bool read(void* bytes, size_t count) {
         char* next = static_cast<char*>(bytes);
         while (count > 0) {
@@ -104,7 +104,7 @@ class Incoming {
     bool is_late_ = false;
 };
 
-// False when the other end is gone.
+// It is false when the other end is gone.
 bool writeAll(int file, const void* bytes, size_t count) {
     const char* next = static_cast<const char*>(bytes);
     while (count > 0) {
@@ -117,7 +117,7 @@ bool writeAll(int file, const void* bytes, size_t count) {
     return true;
 }
 
-// What goes through the pipe first; then the text (description or error), then the values.
+// This goes through the pipe first; then the text (description or error), then the values.
 struct Head {
     bool is_volume;
     bool is_hounsfield;
@@ -193,7 +193,7 @@ void sendError(int file, const std::string& message) {
     writeAll(file, &head, sizeof head) && writeAll(file, message.data(), message.size());
 }
 
-// False when the child died, or it was too late, before everything was handed over.
+// It is false when the child died, or it was too late, before everything was handed over.
 bool receive(Incoming& from, RawVolume& raw, std::string& error) {
     Head head;
     if (!from.read(&head, sizeof head)) return false;

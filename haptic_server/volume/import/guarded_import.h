@@ -14,12 +14,12 @@
 
 namespace bonemill {
 
-// By the clock on the wall: a reader that waits for a disk or a network uses no processor time. The largest
-// volumes take a minute.
+// It is measured by the clock on the wall, for a reader that waits for a disk or a network uses no processor
+// time. The largest volumes take a minute.
 inline constexpr std::chrono::milliseconds kMostImportTime = std::chrono::minutes(10);
 
-// What `read` returns. Throws UserError: the one that `read` threw, or one that names the file it was reading
-// when it died or when `most` had gone by (file_being_read.h; `path`, if it did not say).
+// Returns what `read` returns. Throws UserError: the one that `read` threw, or one that names the file it was
+// reading when it died or when `most` had gone by (file_being_read.h; `path`, if it did not say).
 RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read,
                         std::chrono::milliseconds most = kMostImportTime);
 

@@ -14,7 +14,7 @@ std::string sizeText(const std::vector<uint64_t>& dims) {
     return text;
 }
 
-// Linux: MemAvailable. 0 when it cannot be read, which means no limit.
+// On Linux it is MemAvailable. It is 0 when it cannot be read, which means no limit.
 uint64_t availableMemory() {
     std::ifstream meminfo("/proc/meminfo");
     std::string key, unit;

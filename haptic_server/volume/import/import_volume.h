@@ -26,7 +26,7 @@ struct ImportOptions {
 // Throws UserError with one message: what is wrong, in which file, what to do.
 RawVolume importVolume(const std::filesystem::path& path, const ImportOptions& options = {});
 
-// The same in this process: for debuggers and sanitizers. A damaged DICOM file may abort it.
+// Does the same in this process: for debuggers and sanitizers. A damaged DICOM file may abort it.
 RawVolume importVolumeHere(const std::filesystem::path& path, const ImportOptions& options = {});
 
 }  // namespace bonemill

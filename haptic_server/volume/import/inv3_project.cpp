@@ -23,8 +23,8 @@ static_assert(std::endian::native == std::endian::little, "the matrix is stored 
 constexpr uint64_t kMaxPlistBytes = 1 << 20;
 constexpr int kMaxEntries = 10000;
 
-// The entry with this file name, in whatever folder of the archive; `accepts` is asked with the stated size
-// in bytes before anything is read.
+// Finds the entry with this file name, in whatever folder of the archive; `accepts` is asked with the stated
+// size in bytes before anything is read.
 template <class T>
 std::vector<T> readEntry(const std::filesystem::path& path, const std::string& name,
                          const std::function<void(uint64_t)>& accepts) {
@@ -55,7 +55,7 @@ std::vector<T> readEntry(const std::filesystem::path& path, const std::string& n
     throw UserError(path.string() + ": the archive holds too many files");
 }
 
-// Property lists: <dict> of <key> and a value each.
+// Property lists are a <dict> of a <key> and a value each.
 pugi::xml_node valueOf(const pugi::xml_node& dict, const char* key) {
     for (const pugi::xml_node& node : dict.children("key"))
         if (std::strcmp(node.child_value(), key) == 0) return node.next_sibling();

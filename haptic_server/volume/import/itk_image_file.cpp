@@ -33,7 +33,7 @@ itk::ImageIOBase::Pointer makeReader(ItkFormat format) {
     return itk::GDCMImageIO::New().GetPointer();
 }
 
-// The library's message on one line, without "ITK ERROR: NrrdImageIO(0x55...): ".
+// Puts the library's message on one line, without "ITK ERROR: NrrdImageIO(0x55...): ".
 std::string plainMessage(const itk::ExceptionObject& error) {
     std::istringstream words(error.GetDescription());
     std::string text, word;
@@ -73,7 +73,7 @@ template <class T>
 inline constexpr bool kIsHeldAsItIs =
     std::is_same_v<T, uint8_t> || std::is_same_v<T, int16_t> || std::is_same_v<T, uint16_t>;
 
-// Block by block, so that the samples and their copy are never there together.
+// Works block by block, so that the samples and their copy are never there together.
 template <class T>
 void appendConverted(std::span<T> samples, RawValues& values) {
     constexpr size_t kBlock = size_t(1) << 20;
@@ -96,7 +96,7 @@ void readSamples(itk::ImageIOBase& io, RawValues& values) {
         appendConverted(std::span(samples), values);
 }
 
-// False for a sample type that is no plain number.
+// It is false for a sample type that is no plain number.
 bool readAs(itk::IOComponentEnum type, itk::ImageIOBase& io, RawValues& values) {
     using Type = itk::IOComponentEnum;
     switch (type) {

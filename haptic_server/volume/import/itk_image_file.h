@@ -1,6 +1,8 @@
-// The only door to ITK's readers: one image file, header first, pixels when its size has been found sensible.
+// This is the only door to ITK's readers: one image file, header first, pixels when its size has
+// been found sensible.
 //
-// No Eigen and no ITK type in here: ITK brings an Eigen of its own that cannot share a source file with ours.
+// There is no Eigen and no ITK type in here: ITK brings an Eigen of its own that cannot share a source
+// file with ours.
 #pragma once
 
 #include <array>
@@ -20,8 +22,8 @@ struct ItkImageHeader {
     std::vector<uint64_t> dims;  // all axes of the file
     unsigned components = 1;     // values per voxel
     uint64_t bytes_per_voxel = 0;
-    // First three axes, LPS, in the file's unit of length (mm unless it says otherwise); unit axes where it
-    // has fewer.
+    // These are the first three axes in LPS and the file's unit of length (mm unless it says otherwise); axes
+    // are unit axes where it has fewer.
     std::array<double, 3> spacing{1, 1, 1};
     std::array<double, 3> origin{};
     std::array<std::array<double, 3>, 3> axis{};  // where each index axis points
@@ -38,7 +40,7 @@ class ItkImageFile {
 
     const ItkImageHeader& header() const { return header_; }
 
-    // Value of a DICOM tag as text without padding, such as "0020|0032"; empty when absent.
+    // This is the value of a DICOM tag as text without padding, such as "0020|0032"; it is empty when absent.
     std::string dicomTag(const char* tag) const;
 
     // Appends all samples, rescaled as the file says (HU for CT), first axis fastest.

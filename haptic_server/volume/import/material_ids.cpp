@@ -17,7 +17,7 @@ std::string sizeText(const Eigen::Vector3i& dims) {
     return std::to_string(dims.x()) + " x " + std::to_string(dims.y()) + " x " + std::to_string(dims.z());
 }
 
-// Index of the label of voxel (i, j, k) among all: first + stride · (i, j, k).
+// Gives the index of the label of voxel (i, j, k) among all: first + stride · (i, j, k).
 struct LabelOrder {
     ptrdiff_t first = 0;
     std::array<ptrdiff_t, 3> stride{};
@@ -27,7 +27,7 @@ struct LabelOrder {
     throw UserError(label_file + " " + what + ": both must lie on the same grid");
 }
 
-// The voxels' axes, each along one of the labels', there or back.
+// Lays the voxels' axes each along one of the labels', there or back.
 Eigen::Matrix3i axesBetween(const Eigen::Matrix3d& voxel_to_label, const std::string& label_file) {
     const Eigen::Matrix3i axes = voxel_to_label.array().round().cast<int>();
     const bool are_parallel = (axes.cwiseAbs().rowwise().sum().array() == 1).all() &&

@@ -1,4 +1,4 @@
-// Which material a scanned voxel is of: by its raw value or by a volume of labels on the same grid.
+// Finds the material that a scanned voxel is of: by its raw value or by a volume of labels on the same grid.
 //
 // Not RT-safe (allocates); no shared state.
 #pragma once
@@ -20,10 +20,10 @@ struct MaterialRule {
 };
 inline constexpr uint32_t kMostLabel = 65535;
 
-// Of each voxel, x fastest; of several rules that fit the last one wins. Values that are not finite fit no
-// range. `labels` may be null; its file may store the axes in another order or direction as long as the
-// voxels are the same. Throws UserError, beginning with the labels' `label_file`, when they are not, or are
-// no whole numbers.
+// There is one of each voxel, x fastest; of several rules that fit the last one wins. Values that are not
+// finite fit no range. `labels` may be null; its file may store the axes in another order or direction as
+// long as the voxels are the same. Throws UserError, beginning with the labels' `label_file`, when they are
+// not, or are no whole numbers.
 std::vector<MaterialId> materialIds(const RawVolume& raw, std::span<const MaterialRule> rules,
                                     const RawVolume* labels, const std::string& label_file);
 

@@ -15,7 +15,7 @@
 namespace bonemill {
 namespace {
 
-// Offsets of the fields in nifti1.h.
+// These are the offsets of the fields in nifti1.h.
 constexpr size_t kHeaderBytes = 348;
 constexpr size_t kDimOffset = 40;
 constexpr size_t kPixdimOffset = 76;

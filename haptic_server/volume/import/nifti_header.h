@@ -6,7 +6,7 @@
 
 namespace bonemill {
 
-// Where the voxels begin, in bytes of the unpacked file. Throws UserError naming the file when it is no
+// The voxels begin there, in bytes of the unpacked file. Throws UserError naming the file when it is no
 // single-file NIfTI-1 (.nii, .nii.gz) or its header cannot be right.
 uint64_t readNiftiDataOffset(const std::filesystem::path& path);
 

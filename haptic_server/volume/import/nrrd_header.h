@@ -1,4 +1,4 @@
-// What our own reading of a NRRD header adds to ITK's: units, where the data are, and our exact geometry.
+// Our own reading of a NRRD header adds this to ITK's: units, where the data are, and our exact geometry.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,11 @@ NrrdHeader readNrrdHeader(const std::filesystem::path& path);
 
 inline constexpr const char* kNrrdGeometryKey = "bonemill geometry";
 
-// "nx ny nz sx sy sz px py pz qw qx qy qz": voxels, then hexadecimal floats in m.
+// The text is "nx ny nz sx sy sz px py pz qw qx qy qz": voxels, then hexadecimal floats in m.
 std::string geometryToText(const VolumeGeometry& geometry);
 std::optional<VolumeGeometry> geometryFromText(const std::string& text);
 
-// Same voxels at the same places within rounding of decimal text?
+// Are these the same voxels at the same places, within the rounding of decimal text?
 bool isSameGeometry(const VolumeGeometry& a, const VolumeGeometry& b);
 
 }  // namespace bonemill

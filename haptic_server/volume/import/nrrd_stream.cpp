@@ -59,7 +59,7 @@ class Deflater {
     Deflater(const Deflater&) = delete;
     Deflater& operator=(const Deflater&) = delete;
 
-    // `flush`: Z_NO_FLUSH, or Z_FINISH for the last bytes.
+    // `flush` is Z_NO_FLUSH, or Z_FINISH for the last bytes.
     void write(std::span<const std::byte> bytes, int flush, std::ofstream& file) {
         stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));
         stream_.avail_in = uInt(bytes.size());

@@ -1,5 +1,5 @@
-// One attached NRRD file (NRRD0004, little endian) of T = uint8_t, int16_t, uint16_t or float, written as
-// the values come: no volume is too large for it. Not RT-safe.
+// Writes one attached NRRD file (NRRD0004, little endian) of T = uint8_t, int16_t, uint16_t or float as the
+// values come: no volume is too large for it. Not RT-safe.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,7 @@
 
 namespace bonemill {
 
-// `values`: x fastest, exactly geometry.voxelCount() of them.
+// `values` are x fastest, exactly geometry.voxelCount() of them.
 void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
                std::span<const uint8_t> values, NrrdEncoding encoding = NrrdEncoding::kGzip);
 void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
@@ -23,7 +23,7 @@ void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry
 void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry,
                std::span<const float> values, NrrdEncoding encoding = NrrdEncoding::kGzip);
 
-// The densities (counts, 16 bit) without the border of air.
+// Writes the densities (counts, 16 bit) without the border of air.
 void writeNrrd(const std::filesystem::path& path, const VoxelVolume& volume,
                NrrdEncoding encoding = NrrdEncoding::kGzip);
 

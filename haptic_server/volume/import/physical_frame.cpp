@@ -35,7 +35,7 @@ void checkPerpendicular(const Eigen::Matrix3d& unit_axes, const std::string& fil
     }
 }
 
-// The rotation nearest to three almost perpendicular unit axes (polar decomposition).
+// Finds the rotation nearest to three almost perpendicular unit axes (polar decomposition).
 Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& axes) {
     if ((axes.cwiseAbs() - axes.cwiseAbs2()).isZero(0))
         return axes;  // a permutation with signs is exact already

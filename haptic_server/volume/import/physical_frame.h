@@ -7,7 +7,7 @@
 
 namespace bonemill {
 
-// As files state it: column a of `directions` is where index axis a points in LPS.
+// Files state it so: column a of `directions` is where index axis a points in LPS.
 struct FileFrame {
     Eigen::Vector3i dims;
     Eigen::Vector3d spacing_mm;
@@ -18,8 +18,9 @@ struct FileFrame {
 // Axes may be this far (cosine between two of them) from perpendicular; text headers round to 4-6 digits.
 inline constexpr double kMaxAxisCosine = 1e-3;
 
-// The right-handed geometry of the same voxels. A left-handed file gets its last axis reversed, in `values`
-// too (returns true then). Throws UserError naming `file` for sheared, degenerate or non-finite axes.
+// Makes the right-handed geometry of the same voxels. A left-handed file gets its last axis
+// reversed, in `values` too (returns true then). Throws UserError naming `file` for sheared,
+// degenerate or non-finite axes.
 bool makeRightHanded(const FileFrame& frame, const std::string& file, VolumeGeometry& geometry,
                      RawValues& values);
 

@@ -91,7 +91,8 @@ struct Mode {
     double mass;    // share of all voxels between the valleys around it
 };
 
-// Peaks of the smoothed histogram that are separated by real valleys and hold a real share of the voxels.
+// Finds peaks of the smoothed histogram that are separated by real valleys and hold a real share
+// of the voxels.
 std::vector<Mode> modesOf(const Histogram& h) {
     const std::vector<double> s = smoothed(h.count, kSmoothingBins);
     std::vector<size_t> peaks;
@@ -136,7 +137,7 @@ double peakValue(const Histogram& h, const Mode& mode) {
     return weight > 0 ? sum / weight : h.centre(mode.bin);
 }
 
-// Otsu 1979: the threshold with the largest variance between the two classes.
+// Chooses the threshold with the largest variance between the two classes (Otsu 1979).
 double otsuThreshold(const Histogram& h) {
     double total = 0, total_moment = 0;
     for (size_t b = 0; b < h.count.size(); ++b) {
@@ -158,11 +159,11 @@ double otsuThreshold(const Histogram& h) {
     return threshold;
 }
 
-// Values that only CT in Hounsfield units has: air at -1000.
+// Only CT in Hounsfield units has such values: air is at -1000.
 constexpr double kSurelyAirHu = -500;
 constexpr double kExportShift = 1024;  // exports that store HU + 1024 and forget the intercept
 
-// Raw value of 0 HU when the values are Hounsfield units, shifted or not.
+// Finds the raw value of 0 HU when the values are Hounsfield units, shifted or not.
 std::optional<double> waterValue(const RawVolume& raw, const ValueRange& range, const Histogram& h,
                                  const std::vector<Mode>& modes) {
     if (raw.is_hounsfield || range.low <= kSurelyAirHu) return 0.0;
@@ -185,7 +186,8 @@ constexpr double kBoneLowHu = 200;   // noise and contrast agent below
 constexpr double kBoneHighHu = 300;  // thin cortical walls vanish above
 constexpr double kNoiseSigmas = 3;
 
-// Upper edge of the noise of soft tissue: its peak, and sigma from the half width on the side of bone.
+// Finds the upper edge of the noise of soft tissue: its peak, and sigma from the half width on the
+// side of bone.
 double noiseEdge(const Histogram& h, size_t peak) {
     constexpr double kHalfWidthOfSigma = 1.17741;  // sqrt(2 ln 2)
     size_t half = peak;
@@ -202,7 +204,7 @@ double medianAbove(const Histogram& h, double value) {
     return value;
 }
 
-// Half-way from soft tissue to bone, in HU; nothing when the scan holds no soft tissue.
+// Goes half-way from soft tissue to bone, in HU; there is nothing when the scan holds no soft tissue.
 std::optional<double> halfWayFromSoftTissue(const RawValues& values, double water) {
     const auto bins = size_t((kHighestHu - kSoftTissueLowHu) / kSoftTissueBinHu);
     Histogram h = countInto(values, water + kSoftTissueLowHu, kSoftTissueBinHu, bins);
@@ -219,7 +221,7 @@ std::optional<double> halfWayFromSoftTissue(const RawValues& values, double wate
 constexpr double kLeastMaterialShare =
     0.15;  // of all that is denser than the background; less is an edge or a cavity
 
-// Background is the material with the most voxels.
+// The background is the material with the most voxels.
 std::optional<double> halfWayAboveBackground(const Histogram& h, const std::vector<Mode>& modes) {
     const auto background = std::max_element(modes.begin(), modes.end(),
                                              [](const Mode& a, const Mode& b) { return a.mass < b.mass; });

@@ -14,7 +14,7 @@ struct NearestVoxel {
     MaterialId id = kNoMaterial;
 };
 
-// Of a box of voxels: squared distances to the marked ones among them.
+// Computes the squared distances of a box of voxels to the marked ones among them.
 class DistanceTransform {
   public:
     DistanceTransform(const IndexBox& box, const Eigen::Vector3d& spacing)
@@ -29,7 +29,7 @@ class DistanceTransform {
         from_.resize(longest + 1);
     }
 
-    // mark(voxel): its material, or kNoMaterial for a voxel that is not marked.
+    // mark(voxel) is its material, or kNoMaterial for a voxel that is not marked.
     template <class Mark>
     void run(Mark&& mark) {
         size_t at = 0;
@@ -41,7 +41,7 @@ class DistanceTransform {
         for (int axis = 0; axis < 3; ++axis) runAxis(axis);
     }
 
-    // Less half a voxel in the direction of the way, m.
+    // It is less by half a voxel in the direction of the way, in m.
     double distance(const Eigen::Vector3i& voxel) const {
         const size_t at = indexOf(voxel);
         const double squared = squared_[at];
@@ -71,7 +71,7 @@ class DistanceTransform {
                 runLine(indexOf(start), stride, size_[axis], spacing_[axis], axis == 2);
             }
     }
-    // Places where one parabola takes over from another: m of the line.
+    // One parabola takes over from another at this place, in m of the line.
     static double crossing(double p, double f_p, double q, double f_q) {
         return (f_q + q * q - f_p - p * p) / (2 * (q - p));
     }

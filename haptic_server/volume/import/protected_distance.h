@@ -1,6 +1,6 @@
-// The distance field of the protected structures of a scan. Exact Euclidean distances between voxels'
-// centres, by one pass of lower envelopes of parabolas per axis (Felzenszwalb and Huttenlocher 2012), less
-// half a voxel in the direction of the way, so that 0 lies on the voxels' faces.
+// Computes the distance field of the protected structures of a scan: exact Euclidean distances between
+// voxels' centres, by one pass of lower envelopes of parabolas per axis (Felzenszwalb and Huttenlocher 2012),
+// less half a voxel in the direction of the way, so that 0 lies on the voxels' faces.
 //
 // Start-up only; allocates at most some 300 MB at a time.
 #pragma once
@@ -12,10 +12,10 @@
 
 namespace bonemill {
 
-// In slabs of so many voxels, with what lies within reach of them.
+// The work goes on in slabs of so many voxels, with what lies within reach of them.
 inline constexpr int64_t kVoxelsAtOnce = 20 << 20;
 
-// Null: no voxel is of a protected material. reach in m, > 0.
+// The field is null if no voxel is of a protected material. `reach` is in m and > 0.
 std::unique_ptr<DistanceField> protectedDistance(const BoneProperties& properties,
                                                  const MaterialTable& materials,
                                                  const Eigen::Vector3d& spacing, double reach,

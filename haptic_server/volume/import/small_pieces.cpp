@@ -8,7 +8,7 @@ namespace {
 
 using RunId = uint32_t;  // no volume has 2^32 runs: kMaxVoxels is 2^31
 
-// Bone voxels begin .. end - 1 of a row along x.
+// A run is the bone voxels begin .. end - 1 of a row along x.
 struct Run {
     int32_t begin, end;
 
@@ -21,7 +21,7 @@ struct Row {
     RunId first, last;  // runs first .. last - 1
 };
 
-// All bone of a volume as runs, row by row.
+// Holds all bone of a volume as runs, row by row.
 class BoneRuns {
   public:
     explicit BoneRuns(const VoxelVolume& volume) : dims_(volume.dims()) {
@@ -61,7 +61,7 @@ class BoneRuns {
     std::vector<RunId> first_of_row_;
 };
 
-// Which runs are connected (union-find). A piece is named by the first of its runs.
+// Finds which runs are connected (union-find). A piece is named by the first of its runs.
 class Pieces {
   public:
     explicit Pieces(const BoneRuns& runs) : runs_(runs), parent_(runs.size()), voxels_(runs.size()) {
@@ -80,7 +80,7 @@ class Pieces {
     uint32_t voxelsOf(RunId piece) const noexcept { return voxels_[piece]; }
 
   private:
-    // Along both rows at once: the run that ends first can touch nothing further.
+    // Goes along both rows at once: the run that ends first can touch nothing further.
     void joinRows(Row a, Row b) {
         while (a.first < a.last && b.first < b.last) {
             if (runs_[a.first].touches(runs_[b.first])) join(a.first, b.first);

@@ -1,4 +1,4 @@
-// How many bytes of voxels a file really holds: some libraries take a short file for a whole one.
+// Counts how many bytes of voxels a file really holds: some libraries take a short file for a whole one.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct StoredData {
     uint64_t skip_unpacked = 0;  // bytes before the voxels once unpacked (NIfTI packs its header, too)
 };
 
-// Bytes of voxels that can be read, counted up to `needed`. Throws UserError when the packed data are
-// damaged.
+// These are the bytes of voxels that can be read, counted up to `needed`. Throws UserError when the packed
+// data are damaged.
 uint64_t countStoredBytes(const StoredData& data, uint64_t needed);
 
 }  // namespace bonemill

@@ -62,7 +62,7 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
 
 using Packing = StoredData::Packing;
 
-// A data file that is named, but no list or pattern of several files.
+// The name is that of one data file, and no list or pattern of several files.
 bool isOneFile(const std::string& name) {
     return name.rfind("LIST", 0) != 0 && name.find('%') == std::string::npos;
 }

@@ -1,4 +1,4 @@
-// NRRD, NIfTI and MetaImage through ITK.
+// Reads NRRD, NIfTI and MetaImage through ITK.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace bonemill {
 
-// Throw UserError with one message naming the file.
+// All throw UserError with one message that names the file.
 RawVolume importNrrd(const std::filesystem::path& path);
 RawVolume importNifti(const std::filesystem::path& path);
 RawVolume importMetaImage(const std::filesystem::path& path);
