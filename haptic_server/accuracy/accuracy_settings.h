@@ -1,5 +1,5 @@
-// The accuracy dial: what the haptic loop computes, and how finely. docs/accuracy.md says what each knob buys
-// and costs.
+// The accuracy dial says what the haptic loop computes, and how finely. docs/accuracy.md says what each knob
+// buys and costs.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 namespace bonemill {
 
 enum class ContactLaw : uint8_t { kThesis2012, kGradient };
-// Where the tool's distances come from: trilinear in its grid, or exact from its shapes (a mesh has only the
-// grid).
+// The tool's distances come from here: trilinear in its grid, or exact from its shapes (a mesh has only
+// the grid).
 enum class ToolDistance : uint8_t { kGrid, kAnalytic };
 enum class Precision : uint8_t { kFloat, kDouble };
 
 enum class Preset : uint8_t { kThesis2012, kFast, kBalanced, kExact };
 inline constexpr Preset kPresets[] = {Preset::kThesis2012, Preset::kFast, Preset::kBalanced, Preset::kExact};
 
-// Trivially copyable; may be changed between two ticks. The defaults are preset balanced.
+// The settings are trivially copyable and may be changed between two ticks. The defaults are preset balanced.
 struct AccuracySettings {
     ContactLaw law = ContactLaw::kGradient;
     int shell_factor = 1;  // s: one contact point per s×s×s cells

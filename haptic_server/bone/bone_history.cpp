@@ -15,7 +15,7 @@ IndexBox voxelsOf(const IndexBox& cells) noexcept {
     return {cells.min, cells.max.array() + 1};
 }
 
-// Of a voxel in a LeafCopy.
+// A voxel has this place in a LeafCopy.
 size_t placeOf(const IndexBox& cells, const Eigen::Vector3i& voxel) noexcept {
     const Eigen::Vector3i n = cells.max - cells.min + Eigen::Vector3i::Constant(2), at = voxel - cells.min;
     return size_t(at.x()) + size_t(n.x()) * (size_t(at.y()) + size_t(n.y()) * size_t(at.z()));
@@ -72,7 +72,7 @@ std::shared_ptr<const BoneSnapshot> BoneHistory::snapshot(const BoneModel& bone)
     return last_snapshot_ = snapshot;
 }
 
-// Leaves whose version is not the copied one, but for those that are written meanwhile.
+// Copies the leaves whose version is not the copied one, but for those that are written meanwhile.
 void BoneHistory::copyChanged(const BoneModel& bone, Copies& copies) const {
     for (LeafId leaf = 0; leaf < copies.size(); ++leaf) {
         const uint32_t version = bone.lattice.version(leaf);
@@ -206,7 +206,8 @@ bool BoneHistory::restoreLeaf(BoneModel& bone, LeafId leaf, bool& shell_is_compl
     return true;
 }
 
-// The row now and as it was, from the leaf's copy or (null) the scanned bone; false if they are the same.
+// Reads the row now and as it was, from the leaf's copy or (null) the scanned bone; false means that they are
+// the same.
 bool BoneHistory::readRows(const BoneModel& bone, const IndexBox& cells, const Density* copy,
                            const Eigen::Vector3i& first, int count) noexcept {
     bone.volume.readRow(first, count, now_.data());
@@ -217,7 +218,7 @@ bool BoneHistory::readRows(const BoneModel& bone, const IndexBox& cells, const D
     return std::memcmp(now_.data(), then_.data(), size_t(count) * sizeof(Density)) != 0;
 }
 
-// Voxels of the row in hand that go below the iso-value, less those that come up to it.
+// Counts the voxels of the row in hand that go below the iso-value, less those that come up to it.
 int64_t BoneHistory::lostVoxels(int count, Density iso) const noexcept {
     int64_t lost = 0;
     for (size_t i = 0; i < size_t(count); ++i) lost += int(now_[i] >= iso) - int(then_[i] >= iso);

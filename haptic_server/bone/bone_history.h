@@ -1,8 +1,9 @@
-// Copies of the bone as it was, and the way back to them, while the tick goes on: the tick gives back a few
-// leaves at a time, so that none becomes long. Also what pauses milling, and counts what the bone has lost.
+// This keeps copies of the bone as it was, and the way back to them, while the tick goes on: the tick gives
+// back a few leaves at a time, so that none becomes long. This is also what pauses milling, and counts what
+// the bone has lost.
 //
-// Three kinds of callers. *Tick*: the tick thread, RT-safe. *Any*: any thread. *Keeper*: one normal thread at
-// a time, the publisher's in a session; allocates, never RT-safe.
+// There are three kinds of callers. *Tick* is the tick thread, RT-safe. *Any* is any thread. *Keeper* is one
+// normal thread at a time, the publisher's in a session; it allocates and is never RT-safe.
 #pragma once
 
 #include <atomic>
@@ -17,46 +18,49 @@ namespace bonemill {
 
 class BoneHistory {
   public:
-    // Copies the densities: the scanned bone; allocates.
+    // Copies the densities of the scanned bone; allocates.
     explicit BoneHistory(const BoneModel& bone);
 
     // Any. Relaxed is enough: the tick only needs to see the flag at some later tick.
     void pauseMilling(bool pause) noexcept { is_paused_.store(pause, std::memory_order_relaxed); }
     bool isMillingPaused() const noexcept { return is_paused_.load(std::memory_order_relaxed); }
-    // Any: voxels at or above the iso-value, scanned bone minus bone now.
+    // Any: counts the voxels at or above the iso-value, those of the scanned bone minus those of the
+    // bone now.
     int64_t missingVoxels() const noexcept { return missing_voxels_.load(std::memory_order_relaxed); }
 
-    // Any: the bone as it was at the start; never changes.
+    // Any: this is the bone as it was at the start; it never changes.
     const VoxelVolume& scanned() const noexcept { return scanned_; }
-    // Any: the densities that a snapshot stands for; `lattice` as of its bone. Allocates, not RT-safe.
+    // Any: these are the densities that a snapshot stands for; `lattice` is that of its bone. Allocates,
+    // not RT-safe.
     VoxelVolume volumeOf(const BoneSnapshot& snapshot, const LeafLattice& lattice) const;
 
-    // Keeper: the bone between two ticks, whole: what one tick mills is in it or not. Most is copied while
-    // milling goes on; for the leaves that changed meanwhile milling is held (the force goes on), for as long
-    // as it takes to copy them. While the bone is being put back: the snapshot to which it is.
+    // Keeper: takes the bone between two ticks, whole: what one tick mills is in it or not. Most is copied
+    // while milling goes on; for the leaves that changed meanwhile milling is held (the force goes on),
+    // for as long as it takes to copy them. While the bone is being put back, this is the snapshot to
+    // which it is.
     std::shared_ptr<const BoneSnapshot> snapshot(const BoneModel& bone);
-    // Keeper: to this snapshot, or (null) to the scanned bone; instead of what is on its way, if anything is.
-    // Asked again for the one that is on its way: goes on with it.
+    // Keeper: puts the bone back to this snapshot, or (null) to the scanned bone, instead of to what is on
+    // its way, if anything is. Asked again for the one that is on its way, it goes on with that.
     void restore(std::shared_ptr<const BoneSnapshot> snapshot = nullptr);
     // Keeper: the tick is not yet done with the last restore().
     bool isRestoring() const noexcept {
         return finished_.load(std::memory_order_acquire) != orders_.back()->number;
     }
 
-    // Tick: opens the part of a tick that changes voxels. False: not now, a snapshot is being taken; then no
-    // endWrite().
+    // Tick: opens the part of a tick that changes voxels. False means not now: a snapshot is being taken, and
+    // there must be no endWrite().
     bool beginWrite() noexcept;
-    // Tick: what milling changed meanwhile.
+    // Tick: ends that part, and tells what milling changed meanwhile.
     void endWrite(uint32_t removed_voxels, uint32_t added_voxels) noexcept;
-    // Tick, within a write: looks at a bounded number of voxels and restores at most one changed leaf.
-    // False: there is nothing to restore. Otherwise `shell_is_complete` says whether the point-shell pool
+    // Tick, within a write: looks at a bounded number of voxels and restores at most one changed leaf. False
+    // means that there is nothing to restore. Otherwise `shell_is_complete` says whether the point-shell pool
     // had room.
     bool restoreSome(BoneModel& bone, bool& shell_is_complete) noexcept;
     // Whoever runs no tick beside it: all of the last restore() that is still to do, at once.
     void restoreAll(BoneModel& bone) noexcept;
 
   private:
-    // Where the tick is to go. The number grows with each.
+    // An order says where the tick is to go. Its number grows with each.
     struct Order {
         uint64_t number;
         std::shared_ptr<const BoneSnapshot> target;  // null: the scanned bone
@@ -74,13 +78,12 @@ class BoneHistory {
 
     VoxelVolume scanned_;
 
-    // Keeper.
-    // That the tick may look at, three at most: the one it is known to have taken up, one that it has taken
-    // up since, the newest.
+    // The keeper has these. The tick may look at three orders at most: the one it is known to have taken up,
+    // one that it has taken up since, and the newest.
     std::deque<std::unique_ptr<const Order>> orders_;
     std::shared_ptr<const BoneSnapshot> last_snapshot_;
 
-    // Tick.
+    // The tick has these.
     const Order* order_;  // the newest taken up
     bool is_restoring_ = false;
     LeafId next_leaf_ = 0;

@@ -1,5 +1,5 @@
-// The bone and all that is derived from it in the tick. Only the tick thread changes it; the mesher reads
-// voxels.
+// This is the bone with all that is derived from it in the tick. Only the tick thread changes it; the mesher
+// reads voxels.
 #pragma once
 
 #include "haptic_server/contact/point_shell.h"
@@ -7,10 +7,10 @@
 namespace bonemill {
 
 struct BoneModel {
-    // Bricks that milling can open in a session: 34 million voxels, 34 cm³ at 0.1 mm, in 110 MB.
+    // Milling can open so many bricks in a session: 34 million voxels, 34 cm³ at 0.1 mm, in 110 MB.
     static constexpr size_t kMostSpareBricks = 8192;
 
-    // leaf_cells per axis as LeafLattice. Allocates.
+    // leaf_cells is per axis, as for LeafLattice. Allocates.
     BoneModel(VoxelVolume bone, const Eigen::Vector3i& leaf_cells, const ShellConfig& shell_config)
         : volume(std::move(bone)), lattice(volume, leaf_cells), shell(volume, lattice, shell_config) {
         volume.makeSpareBricks(std::min(kMostSpareBricks, volume.bricks().sharedCount()));

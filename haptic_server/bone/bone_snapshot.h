@@ -1,5 +1,5 @@
-// The bone at one moment: what differs then from the scanned bone. Never changes once it is made; any thread
-// may read.
+// A snapshot is the bone at one moment, as what differs then from the scanned bone. It never changes once it
+// is made; any thread may read.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace bonemill {
 
-// All voxels of a leaf, x fastest: those of its cells and one more at the upper ends.
+// A copy has all voxels of a leaf, x fastest: those of its cells and one more at the upper ends.
 struct LeafCopy {
     LeafId leaf;
     uint32_t version;                // of the leaf, even
@@ -22,7 +22,7 @@ struct BoneSnapshot {
     std::vector<std::shared_ptr<const LeafCopy>> leaves;  // those that differ; ascending
     int64_t missing_voxels = 0;  // of the scanned bone's voxels at or above the iso-value, net
 
-    // The leaf's densities; null: as scanned. RT-safe.
+    // These are the leaf's densities; null means as scanned. RT-safe.
     const Density* densitiesOf(LeafId leaf) const noexcept {
         const auto found = std::lower_bound(leaves.begin(), leaves.end(), leaf,
                                             [](const auto& copy, LeafId id) { return copy->leaf < id; });

@@ -1,4 +1,5 @@
-// The moments of a session to which the bone can be put back. One normal thread, BoneHistory's keeper.
+// These are the moments of a session to which the bone can be put back. They belong to one normal thread,
+// BoneHistory's keeper.
 #pragma once
 
 #include <cstdint>
@@ -20,16 +21,16 @@ class Checkpoints {
         std::shared_ptr<const BoneSnapshot> snapshot;
     };
 
-    // Keep references, which must outlive this object.
+    // Keeps references, which must outlive this object.
     Checkpoints(BoneHistory& history, const BoneModel& bone) : history_(history), bone_(bone) {}
 
-    // The bone as it is now; the oldest one goes if there are too many. Returns its id.
+    // Saves the bone as it is now, and returns the id; the oldest one goes if there are too many.
     uint32_t save(double session_s) {
         kept_.push_back({++last_id_, session_s, history_.snapshot(bone_)});
         if (kept_.size() > kMost) kept_.pop_front();
         return last_id_;
     }
-    // False: there is none with this id (any more).
+    // False means that there is none with this id (any more).
     bool restore(uint32_t id) {
         if (id == kScannedBone) {
             history_.restore();

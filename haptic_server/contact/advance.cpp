@@ -38,7 +38,7 @@ void GradientContact::startSweep(const ToolField& tool, const Pose& X_VT, const 
     }
 }
 
-// Of the step, that can be gone from here without a look at the distances.
+// Returns the share of the step that can be gone from here without a look at the distances.
 double GradientContact::sweptShare(const ToolField& tool, const Pose& X_VT) const noexcept {
     constexpr int kBatch = PointBatch<float>::kCapacity;
     const IntoTool<float> into_tool(X_VT, origin_);

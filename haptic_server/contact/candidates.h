@@ -1,5 +1,5 @@
-// The contact points near the tool that one solve works on, as structure of arrays. RT-safe but for
-// construction.
+// These are the contact points near the tool that one solve works on, as structure of arrays. RT-safe but
+// for construction.
 #pragma once
 
 #include <algorithm>

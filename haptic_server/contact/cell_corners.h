@@ -1,4 +1,4 @@
-// Densities at the corners of one cell, and between them. RT-safe.
+// These are the densities at the corners of one cell, and between them. RT-safe.
 //
 // Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1) in cell steps; see marching_cubes_table.h.
 #pragma once
@@ -38,7 +38,7 @@ inline CellCorners readCorners(const VoxelVolume& volume, const Eigen::Vector3i&
              float(d[kZ + kY + 1] - iso)}};
 }
 
-// At `t` in cell steps from corner 0.
+// Samples the field at `t`, in cell steps from corner 0.
 inline FieldSample sampleField(const CellCorners& corners, const Eigen::Vector3f& t) noexcept {
     const auto& e = corners.excess;
     const float dx[4] = {e[1] - e[0], e[3] - e[2], e[5] - e[4], e[7] - e[6]};

@@ -1,4 +1,4 @@
-// What scales the candidates' energy for the length of one solve: far-side guard and stiffness cap.
+// Far-side guard and stiffness cap scale the candidates' energy for the length of one solve.
 #include <algorithm>
 #include <cmath>
 

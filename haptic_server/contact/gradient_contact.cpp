@@ -93,8 +93,8 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     return has_room;
 }
 
-// Points of the blocks that the tool may touch after a motion of at most the margin, or near it with their
-// patches.
+// Points of the blocks that the tool may touch after a motion of at most the margin, or near it with
+// their patches.
 bool GradientContact::collectFrom(const BlockBatch& blocks, const ToolField& tool,
                                   const Pose& X_VT) noexcept {
     const IntoTool<float> into_tool(X_VT, Vector3d::Zero());
@@ -127,14 +127,14 @@ NearTest GradientContact::nearTest(const ToolField& tool, const Pose& X_VT) cons
     const Matrix3d R_VT = X_VT.rotation.toRotationMatrix();
     for (int i = 0; i < 9; ++i) test.R_VT[i] = float(R_VT(i / 3, i % 3));
     test.reach_per_area = reach_per_area_;
-    // As much as the thinnest tool does.
+    // The bone may bend towards the tool as much as the thinnest tool does.
     test.bend_per_area = reach_per_area_ > 0 ? float(0.5 / tool.thinnestRadius()) : 0;
     test.margin = float(margin_);
     test.refine_within = refineWithin();
     return test;
 }
 
-// The near ones of the block's first `count` points. False: no room for all.
+// Adds the near ones of the block's first `count` points. False means that there is no room for all.
 bool GradientContact::addCandidates(const ShellBlock& block, LeafId leaf, int count,
                                     const SampleBatch<float>& at, const NearTest& test) noexcept {
     alignas(64) float nearest[kContactBatch];
@@ -154,7 +154,7 @@ bool GradientContact::addCandidates(const ShellBlock& block, LeafId leaf, int co
 
 namespace {
 
-// Of the candidates few touch: those are collected first, then summed.
+// Few of the candidates touch: those are collected first, then summed.
 template <class Scalar>
 class TouchingPoints {
   public:
@@ -183,7 +183,7 @@ class TouchingPoints {
     static constexpr int kBatch = PointBatch<Scalar>::kCapacity;
     static_assert(kBatch == kContactBatch);
 
-    // The first `count` of the points found.
+    // Returns the first `count` of the points found.
     void sum(int count) noexcept {
         for (int i = 0; i < count; ++i) {
             const size_t n = touching_[i];

@@ -1,9 +1,9 @@
-// The default contact model: every shell point near the tool stores energy, and force and torque are exactly
-// minus the gradient of the sum. No closed path gains energy, noisy bone normals do no harm, and the points'
-// areas make the result independent of how densely the surface is sampled.
+// This is the default contact model: every shell point near the tool stores energy, and force and torque are
+// exactly minus the gradient of the sum. No closed path gains energy, noisy bone normals do no harm, and the
+// points' areas make the result independent of how densely the surface is sampled.
 //
-// With φ the tool's distance at bone point b, δ = -φ, g = R∇φ, n the bone's outward normal, a the point's
-// area:
+// With φ the tool's distance at bone point b, δ = -φ, g = R∇φ, n the bone's outward normal and a the
+// point's area:
 //   E = Σ κ a λ Ψ(δ),   Ψ = ½δ² for δ > 0, going on linearly beyond the depth cap.
 // A point stands for a patch of the surface; with patch_points = q > 1 the patches near the tool are sampled
 // at q × q places: those of a square of the same area around the point, at right angles to n, moved onto the
@@ -11,12 +11,11 @@
 // not refined.
 //
 // λ <= 1 is frozen when the candidates are gathered, so that each solve has one energy. It is 1 unless
-// - the stiffness in the direction of g is above the cap (then the same total for a plane, a slot and a full
-// surround);
+// - the stiffness in the direction of g is above the cap (then the total is the same for a plane, a slot and
+//   a full surround);
 // - the tool is deep in the bone (kGuardFrom, or its point inside): then points that it reaches from their
-// far side
-//   (s = -n·g <= 0) are left out, so that no wall that the tool's medial axis has passed pulls it on or locks
-//   it in.
+//   far side (s = -n·g <= 0) are left out, so that no wall that the tool's medial axis has passed pulls it on
+//   or locks it in.
 // A λ that changes from tick to tick is not conservative; in ordinary contact none does.
 //
 // Frame V, m, N, torque about the tool point. Everything but construction is RT-safe; tick thread only.
@@ -60,8 +59,8 @@ class GradientContact {
     // Patches with a place nearer to the tool are refined, m. A patch that changes sides while it is in
     // contact changes the energy.
     static constexpr double kRefineWithin = 50e-6;
-    // Of the tool's thinnest radius: depth from which on the force of a
-    // point no longer grows, and between which the far-side guard sets in.
+    // In tool's thinnest radii, this is the depth from which on the force of a point no longer grows, and
+    // those between which the far-side guard sets in.
     static constexpr double kDepthCap = 0.75, kGuardFrom = 0.25, kGuardFull = 0.5;
     static constexpr double kGuardWidth = 0.25;  // of s, over which the guard fades a point out
 
@@ -74,13 +73,13 @@ class GradientContact {
     bool gather(const ShellView& bone, const ToolField& tool, const Pose& X_VT, double margin,
                 size_t most_tests = SIZE_MAX) noexcept;
 
-    // Not more candidates than this, however much room there is.
+    // From now on there are not more candidates than this, however much room there is.
     void limitCandidates(size_t most) noexcept {
         candidates_.most = std::min(most, candidates_.patch.size());
     }
 
-    // Of the last gatherings: how finely which patch was sampled. Called when the shell level or the sampling
-    // changes, or the tool is placed anew.
+    // Forgets of the last gatherings how finely which patch was sampled. This is called when the shell level
+    // or the sampling changes, or the tool is placed anew.
     void forget() noexcept { patch_memory_.forget(); }
 
     // Energy, wrench on the tool and stiffness at this pose, over the gathered points.
@@ -150,13 +149,13 @@ class GradientContact {
     GradientContactConfig config_;
     ContactWeights* weights_ = nullptr;
     Candidates candidates_;
-    // Of the refined places, from the first one on: the patch's own point (V, from origin_), how far a place
-    // may be from its start, m², and the patches that they stand for.
+    // For the refined places, from the first one on, these hold the patch's own point (V, from origin_), how
+    // far a place may be from its start, in m², and the patches that they stand for.
     std::vector<float> own_x_, own_y_, own_z_, reach_squared_;
     std::vector<uint32_t> split_;
     size_t split_count_ = 0;
-    // Of a sweep: how near each candidate may come, m, and 1/(the most that the whole step can bring it
-    // nearer).
+    // A sweep needs how near each candidate may come, in m, and 1/(the most that the whole step can bring
+    // it nearer).
     std::vector<float> lowest_, inverse_rate_;
     PatchMemory patch_memory_{4096};
     size_t point_tests_ = 0;

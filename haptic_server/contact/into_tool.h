@@ -1,4 +1,4 @@
-// From the bone's axes into the tool's. RT-safe.
+// This leads from the bone's axes into the tool's. RT-safe.
 #pragma once
 
 #include "common/geometry/pose.h"

@@ -1,5 +1,5 @@
-// The names of the shell's patches: each stands for the surface in one block of s×s×s cells (point_shell.h),
-// and is named by the leaf and by the block's place in the leaf. RT-safe, any thread.
+// These are the names of the shell's patches. A patch stands for the surface in one block of s×s×s cells
+// (point_shell.h), and is named by the leaf and by the block's place in the leaf. RT-safe, any thread.
 #pragma once
 
 #include <compare>

@@ -15,7 +15,7 @@ namespace bonemill {
 
 class PatchMemory {
   public:
-    // Good for about half of most_patches, a power of two. Allocates.
+    // The memory is good for about half of most_patches, which is a power of two. Allocates.
     explicit PatchMemory(size_t most_patches) : slots_(most_patches) {}
 
     // From now on only patches that were asked for since the last call are known.

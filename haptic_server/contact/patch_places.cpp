@@ -31,7 +31,7 @@ PatchFrame patchFrame(const Vector3f& n, const Vector3f& spacing, float step) no
 
 }  // namespace
 
-// As finely as asked for and as the number of near patches allows.
+// The patches near the tool are sampled as finely as asked for, and as the number of near patches allows.
 void GradientContact::refine(const ShellView& bone) noexcept {
     patch_memory_.nextGathering();
     if (bone.patch_points == 1) return;
@@ -49,7 +49,7 @@ void GradientContact::refine(const ShellView& bone) noexcept {
     fillHoles();
 }
 
-// Per side. Known patches keep theirs, so there may be twice as many places as asked for.
+// The number is per side. Known patches keep theirs, so there may be twice as many places as asked for.
 int GradientContact::placesOfNewPatches(const ShellView& bone, size_t coarse) noexcept {
     size_t near = 0, fresh = 0, known_places = 0;
     for (size_t i = 0; i < coarse; ++i) {

@@ -26,7 +26,7 @@ struct UnitSums {
     }
 };
 
-// Tool pose in single precision: points are tested in T relative to the tool point.
+// The tool's pose is in single precision: points are tested in T relative to the tool point.
 struct PointTest {
     const SdfGrid& sdf;
     Eigen::Matrix3f R_TV;
@@ -42,8 +42,7 @@ struct PointTest {
     }
 };
 
-// Conservative: does the leaf's bounding sphere reach the tool's box in T? Skips leaves that only its box in
-// V meets.
+// Does the leaf's bounding sphere reach the tool's box in T? Skips leaves that only its box in V meets.
 bool mayTouch(const IndexBox& cells, const Eigen::Vector3d& spacing, const Eigen::AlignedBox3d& box_T,
               const Pose& X_TV) noexcept {
     const Sphere around = sphereAround(cells, spacing);

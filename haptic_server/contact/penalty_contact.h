@@ -1,4 +1,5 @@
-// The thesis' penalty contact between the bone's point-shell and the tool's signed distance field (eq 4-16).
+// This is the thesis' penalty contact between the bone's point-shell and the tool's signed distance field
+// (eq 4-16).
 #pragma once
 
 #include "common/geometry/pose.h"
@@ -11,9 +12,9 @@ namespace bonemill {
 // Contact wrench on the tool about the tool point (origin of T), axes V.
 struct ContactResult {
     Wrench wrench;
-    // ∂(force, torque)/∂(x, ω) as printed in eq 6-9; kept wrong where the thesis is (docs/simulate.md): eq 7
-    // carries
-    // + k d n~ although the bone's normals do not turn with the tool, eq 8 lacks + F~.
+    // This is ∂(force, torque)/∂(x, ω) as printed in eq 6-9, and kept wrong where the thesis is
+    // (docs/simulate.md): eq 7 carries + k d n~ although the bone's normals do not turn with the tool, and
+    // eq 8 lacks + F~.
     Matrix6d derivative = Matrix6d::Zero();
     uint32_t contacts = 0;
     double max_penetration = 0;  // m

@@ -212,7 +212,7 @@ void PointShell::sumBlocks(const IndexBox& blocks, int factor) noexcept {
     }
 }
 
-// On the surface in the cell of the block whose patch is nearest to `center`.
+// The place lies on the surface in the cell of the block whose patch is nearest to `center`.
 SurfacePlace PointShell::nearestPatchPlace(const VoxelVolume& volume, const IndexBox& leaf_cells,
                                            const Eigen::Vector3i& block_first, const BlockSum& sum,
                                            const Eigen::Vector3f& center) const noexcept {

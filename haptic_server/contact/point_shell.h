@@ -1,4 +1,4 @@
-// The bone's contact points, at one or several levels of detail: one per s×s×s cells crossed by the
+// The bone has contact points at one or several levels of detail: one per s×s×s cells crossed by the
 // iso-surface (thesis §4.2.3, scaling factor s), for each level's s.
 //
 // The thesis leaves open where a point lies and what it stands for; ours: the surface in a block of cells is
@@ -10,9 +10,9 @@
 // How far a point is from the true surface of curvature radius R: the tolerance of shell_point.h, and the
 // trilinear field's own error, below h²/(4 R) for voxels h that sample a smooth density.
 //
-// Points live in fixed blocks of a pool sized at construction, in ascending order of their cells inside each
-// leaf, so that an incremental refresh gives the very bits of a full rebuild. Only the tick thread touches a
-// PointShell.
+// Points live in fixed blocks of a pool sized at construction, in ascending order of their cells inside
+// each leaf, so that an incremental refresh gives the very bits of a full rebuild. Only the tick thread
+// touches a PointShell.
 //
 // Only the level that is followed, and one that is being prepared to be followed next, are kept up to date;
 // in the others the leaves that changed are stale: they hold old points until prepare() rebuilds them.
@@ -37,8 +37,8 @@ struct ShellConfig {
     static constexpr size_t kDefaultSparePoints = 400'000;  // about 50 cm² of new surface at 0.125 mm
 
     std::vector<ShellLevel> levels{ShellLevel{}};  // of distinct factors >= 1
-    // Room for surface that milling will open, in points of one cell each; coarser levels get as much
-    // surface.
+    // There is room for surface that milling will open, in points of one cell each; coarser levels get as
+    // much surface.
     size_t spare_points = kDefaultSparePoints;
 };
 
@@ -104,7 +104,7 @@ class PointShell {
             if (!is_stale[leaf]) stale[stale_count++] = leaf;
             is_stale[leaf] = true;
         }
-        // Voxels beyond a cell's corners that its point depends on.
+        // A cell's point depends on so many voxels beyond the cell's corners.
         int reach() const noexcept { return config.normals == ShellNormals::kCentralDifference ? 1 : 0; }
     };
     // Sums over the patches of one block.
@@ -135,7 +135,7 @@ class PointShell {
     ShellProjection projection_;
     ShellPool pool_;
 
-    // Scratch for one leaf.
+    // These are scratch for one leaf.
     SurfaceCells cells_;
     std::vector<BlockSum> sums_;            // of the blocks being rebuilt, x fastest
     std::vector<uint32_t> previous_patch_;  // per patch: the one before it in the same block

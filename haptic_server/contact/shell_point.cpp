@@ -50,7 +50,7 @@ float centralSlope(const Density* first_corner, const size_t (&strides)[3],
     return slope / 2;
 }
 
-// Counts per m; also at the border.
+// The gradient is in counts per m, also at the border.
 Eigen::Vector3f cornerGradients(const VoxelVolume& volume, const SurfacePlace& place) noexcept {
     Eigen::Vector3f gradient = Eigen::Vector3f::Zero();
     for (int corner = 0; corner < 8; ++corner) {

@@ -1,4 +1,5 @@
-// Where one contact point lies and how the bone faces there. RT-safe; plain reads: tick thread only.
+// This says where one contact point lies and how the bone faces there. RT-safe; it reads plainly, so tick
+// thread only.
 //
 // The surface is the trilinear iso-surface: in each cell the density interpolated from the eight corners. The
 // point is the area centroid of its block's patches, moved onto that surface by Newton steps along the metric
@@ -26,7 +27,8 @@ struct ShellPoint {
     BlockKey key;              // of the point's block in the leaf
 };
 
-// Accuracy of the projection: density within this part of the largest |density - iso| at the cell's corners.
+// The projection is accurate when the density is within this part of the largest |density - iso| at the
+// cell's corners.
 inline constexpr float kProjectionTolerance = 1.0f / 4096;
 inline constexpr int kNewtonSteps = 6;  // smooth bone needs one to three
 
@@ -39,12 +41,13 @@ class ShellProjection {
   public:
     explicit ShellProjection(const VoxelVolume& volume) noexcept;
 
-    // From `start` (cell steps from the first corner of `block`, inside it) onto the surface without leaving
-    // the block. False: no success.
+    // Walks from `start` (cell steps from the first corner of `block`, inside it) onto the surface without
+    // leaving the block. False means that this had no success.
     bool walk(const VoxelVolume& volume, const IndexBox& block, const Eigen::Vector3f& start,
               SurfacePlace& place) const noexcept;
 
-    // From a point inside a cell that has corners on both sides; always ends on the surface in that cell.
+    // Starts from a point inside a cell that has corners on both sides, and always ends on the surface in
+    // that cell.
     SurfacePlace bracket(const VoxelVolume& volume, const SurfacePlace& start) const noexcept;
 
     Eigen::Vector3f position(const SurfacePlace& place) const noexcept {
@@ -54,7 +57,8 @@ class ShellProjection {
                            ShellNormals kind) const noexcept;
     const Eigen::Vector3f& spacing() const noexcept { return spacing_; }
     const Eigen::Vector3f& inverseSpacing() const noexcept { return inverse_spacing_; }
-    // Per axis, (unit / spacing)², unit = the largest spacing: makes a slope a way in equal units.
+    // This is (unit / spacing)² per axis, with the largest spacing as unit; it makes a slope a way in
+    // equal units.
     const Eigen::Vector3f& steepness() const noexcept { return steepness_; }
 
   private:

@@ -69,7 +69,7 @@ bool ShellPool::replace(List& list, const IndexBox& keys, std::span<const ShellP
         return true;
     }
     const uint32_t replaced = merge(list, place, keys, fresh);
-    // As many as before: what follows stays where it is.
+    // There may be as many points as before; then what follows stays where it is.
     const uint32_t count = list.count - replaced + merged_size_;
     const uint32_t have = blocksFor(list.count);
     const uint32_t want = blocksFor(count);
@@ -86,7 +86,7 @@ ShellPool::Place ShellPool::firstAtOrAbove(const List& list, BlockKey key) const
     return place;
 }
 
-// Of the list's points from `from` on: are those with keys in the box the fresh ones' keys?
+// Among the list's points from `from` on, are the keys in the box those of the fresh points?
 bool ShellPool::hasSameKeys(const List& list, const Place& from, const IndexBox& keys,
                             std::span<const ShellPoint> fresh) const noexcept {
     const BlockKey last_key = BlockKey::of(keys.max);

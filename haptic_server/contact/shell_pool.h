@@ -31,15 +31,15 @@ class ShellPool {
         uint32_t count = 0;  // points
     };
 
-    // `longest_list`: most points a list can have.
+    // A list can have at most `longest_list` points.
     explicit ShellPool(size_t longest_list) : merged_(longest_list / ShellBlock::kCapacity + 1) {}
 
     void addBlocks(size_t count);
     size_t blockCount() const noexcept { return blocks_.size(); }
     size_t freeCount() const noexcept { return free_count_; }
 
-    // Replaces the points whose keys lie in the box `keys` by `fresh` (ascending, keys in that box). False:
-    // the pool is empty and the list stays as it was.
+    // Replaces the points whose keys lie in the box `keys` by `fresh` (ascending, keys in that box). False
+    // means that the pool is empty and the list stays as it was.
     bool replace(List& list, const IndexBox& keys, std::span<const ShellPoint> fresh) noexcept;
 
     template <class Visit>
@@ -53,7 +53,8 @@ class ShellPool {
     }
 
   private:
-    // A place in a list at the start of a block: the block, what leads to it, and the points before it.
+    // A place lies in a list at the start of a block; it is the block, what leads to it, and the points
+    // before it.
     struct Place {
         uint32_t block;
         uint32_t previous;  // kNoBlock: the list's first

@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-// As the kernel wants them.
+// The triangles are packed as the kernel wants them.
 std::vector<int> packedTriangles() {
     static_assert(kMaxCubeTriangles == kTrianglesPerCell);
     std::vector<int> packed(256 * kTrianglesPerCell, 0);

@@ -24,20 +24,20 @@ class SurfaceCells {
                  const IndexBox& cells) noexcept;
     size_t count() const noexcept { return count_; }
 
-    // Counted from the leaf's first cell.
+    // The cell is counted from the leaf's first one.
     Eigen::Vector3i cell(size_t n) const noexcept { return {cell_[n][0], cell_[n][1], cell_[n][2]}; }
-    // m²; zero where the surface only touches a voxel.
+    // The area is in m², and zero where the surface only touches a voxel.
     float area(size_t n) const noexcept { return area_[n] * unit_area_; }
     // Cell steps from the cell's first corner; of patches with an area.
     Eigen::Vector3f centroid(size_t n) const noexcept { return {x_[n], y_[n], z_[n]}; }
 
-    // Finds a place of each cell's trilinear iso-surface, from the patch's centroid; see
-    // ShellProjection::walk().
+    // Finds a place of each cell's trilinear iso-surface, from the patch's centroid;
+    // see ShellProjection::walk().
     void project(const ShellProjection& projection) noexcept;
     bool isFound(size_t n) const noexcept { return is_found_[n] != 0; }
-    // That place, in cell steps.
+    // The place is in cell steps.
     Eigen::Vector3f projected(size_t n) const noexcept { return {to_x_[n], to_y_[n], to_z_[n]}; }
-    // Of the trilinear density there; V, unit or zero.
+    // The normal is that of the trilinear density there, in V, of unit length or zero.
     Eigen::Vector3f normal(size_t n) const noexcept { return {normal_x_[n], normal_y_[n], normal_z_[n]}; }
 
   private:

@@ -1,11 +1,11 @@
-// Which octree leaves a tool can reach. RT-safe.
+// These say which octree leaves a tool can reach. RT-safe.
 #pragma once
 
 #include "haptic_server/volume/leaf_lattice.h"
 
 namespace bonemill {
 
-// Box in V around a box in T.
+// This is the box in V around a box in T.
 inline Eigen::AlignedBox3d boxInV(const Eigen::AlignedBox3d& box_T, const Pose& X_VT) noexcept {
     const Eigen::Matrix3d spread = X_VT.rotation.toRotationMatrix().cwiseAbs();
     const Eigen::Vector3d center = X_VT * box_T.center();

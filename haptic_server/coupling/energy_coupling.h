@@ -1,15 +1,14 @@
-// The virtual coupling of the gradient model: springs between the simulated tool (SPO) and the device that
-// follow from an energy, saturate smoothly, and damping against the SPO's pose one tick ago. All functions
-// RT-safe.
+// The gradient model's virtual coupling consists of springs between the simulated tool (SPO) and the device
+// that follow from an energy, saturate smoothly, and damping against the SPO's pose one tick ago. All
+// functions RT-safe.
 //
 // With d from the SPO's grip point to the device's and θ = Log(q_dev q_spo⁻¹):
-//   force  F_m tanh(k_t |d| / F_m) along d,   torque  T_m tanh(k_θ |θ| / T_m) along θ      (Barbič and James
-//   2008 for the
-// saturation).
-// Beside it a spring of k_2 about d_f, which follows d with the time constant τ_2 (a standard linear solid):
-// it damps what is quicker than τ_2 and so makes up for the energy that sampling and delay give a stiff
-// spring; a free tool, whose d does not change, is not held back by it. docs/stability.md says how much that
-// is worth.
+//   force  F_m tanh(k_t |d| / F_m) along d,   torque  T_m tanh(k_θ |θ| / T_m) along θ
+// (Barbič and James 2008 for the saturation).
+// Beside it there is a spring of k_2 about d_f, which follows d with the time constant τ_2 (a standard linear
+// solid): it damps what is quicker than τ_2 and so makes up for the energy that sampling and delay give a
+// stiff spring; a free tool, whose d does not change, is not held back by it. docs/stability.md says how much
+// that is worth.
 #pragma once
 
 #include "common/geometry/pose.h"
@@ -51,7 +50,7 @@ class ContinuousRotation {
   public:
     static constexpr double kLongestWay = 4.5;  // rad, 258°
 
-    // Log of the unit quaternion, norm up to kLongestWay, without changing the memory.
+    // Returns the Log of the unit quaternion, of norm up to kLongestWay, without changing the memory.
     Eigen::Vector3d log(const Eigen::Quaterniond& rotation) const noexcept;
     // Remembers which way this one was taken.
     void remember(const Eigen::Quaterniond& rotation) noexcept;
@@ -70,7 +69,7 @@ EnergyTerm couplingEnergy(const EnergyCoupling& coupling, const Pose& X_VT, cons
 Wrench couplingWrenchOnDevice(const EnergyCoupling& coupling, const Pose& X_VT, const Pose& X_VT_device,
                               const ContinuousRotation& way) noexcept;
 
-// The spring of k_2. One object per tool.
+// This is the spring of k_2; there is one object per tool.
 class RelaxingSpring {
   public:
     RelaxingSpring(const EnergyCoupling& coupling, double dt) noexcept;

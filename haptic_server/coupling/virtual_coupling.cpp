@@ -13,8 +13,8 @@ Eigen::Quaterniond rotationError(const Pose& X_VT, const Pose& X_VT_device) noex
     return error;
 }
 
-// The equilibrium matrix mixes N/m with N·m/rad; measuring rotations in this length (m/rad) balances its
-// rows.
+// The equilibrium matrix mixes N/m with N·m/rad; measuring rotations in this length (m/rad) balances
+// its rows.
 constexpr double kRotationLength = 0.03;
 // Smallest ratio of LU pivots taken for a regular matrix.
 constexpr double kMinPivotRatio = 1e-12;

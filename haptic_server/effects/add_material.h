@@ -1,4 +1,4 @@
-// Free form: the burr lays down material at a rate of density per time where it is held.
+// The burr lays down material (free form) at a rate of density per time where it is held.
 #pragma once
 
 #include "haptic_server/effects/effect_configs.h"
@@ -9,7 +9,7 @@ namespace bonemill {
 
 class AddMaterial final : public HapticEffect {
   public:
-    // Room for burrs up to largest_burr_radius, m. most_cells as MillingConfig.
+    // There is room for burrs up to largest_burr_radius, in m. most_cells is that of MillingConfig.
     AddMaterial(const AddMaterialConfig& config, const BoneModel& bone, double largest_burr_radius,
                 size_t most_cells);
     const char* name() const noexcept override { return "add_material"; }

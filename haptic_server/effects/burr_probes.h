@@ -1,4 +1,4 @@
-// A burr as a few balls and points, whose distances to a structure stand for the burr's own. RT-safe.
+// A burr is a few balls and points here, whose distances to a structure stand for the burr's own. RT-safe.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// How burr and bone rub on each other where they touch. SI, axes V. RT-safe, thread-safe.
+// This says how burr and bone rub on each other where they touch, in SI and axes V. RT-safe, thread-safe.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,5 @@
-// What the turning burr shakes the hand with: A sin φ along T's x axis, which is at right angles to the spin.
-// Teeth pass at some kHz, which a loop of 1000 Hz cannot render; felt is the rotation, at a frequency that it
-// can:
+// The turning burr shakes the hand with A sin φ along T's x axis, which is at right angles to the spin. Teeth
+// pass at some kHz, which a loop of 1000 Hz cannot render; the rotation is felt, at a frequency that it can:
 //   dφ/dt = 2π f,   f = |Ω|/2π within 50 .. 400 Hz and at most 0.4/dt,
 //   A → min(max_amplitude, amplitude_per_force · μ_c Σ F) with a time constant of 10 ms,
 // less below 50 turns/s in proportion, and a diamond burr less by its factor. Exactly nothing in the air.

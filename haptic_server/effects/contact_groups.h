@@ -1,5 +1,5 @@
-// The tool's contacts merged into a few, for what is evaluated again and again in a solve. SI, axes V, about
-// the tool point. RT-safe; tick thread only.
+// The tool's contacts are merged into a few, for what is evaluated again and again in a solve. SI, axes V,
+// about the tool point. RT-safe; tick thread only.
 #pragma once
 
 #include <array>
@@ -23,7 +23,8 @@ class ContactGroups {
     static constexpr int kBoxesPerAxis = 4;
     static constexpr size_t kMost = kBoxesPerAxis * kBoxesPerAxis * kBoxesPerAxis;
 
-    // Of the last tick's contacts; each one's force times share(is_on_burr), 0 leaves it out.
+    // Gathers the last tick's contacts: one on the burr with burr_share of its force, any other with all of
+    // it. What has no force is left out.
     void gather(const EffectTick& tick, double burr_share) noexcept;
     void clear() noexcept { count_ = 0, force_ = 0; }
 

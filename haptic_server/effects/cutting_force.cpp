@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Adds D at r from the tool point: a force −D v against the motion v there.
+// Adds D at r from the tool point, which is a force −D v against the motion v there.
 void addDamper(Matrix6d& damping, const Matrix3d& D, const Vector3d& r) noexcept {
     const Matrix3d r_skew = skew(r);
     damping.topLeftCorner<3, 3>() += D;
@@ -60,7 +60,7 @@ void CuttingForce::begin(EffectTick& tick) noexcept {
     pull_.damping += way * (now.damping - pull_.damping);
 }
 
-// Bounded from below together with the solve's own damping.
+// It is bounded from below together with the solve's own damping.
 EnergyTerm CuttingForce::energy(const EffectTick& tick, const Pose& X_VT) const noexcept {
     const Increment step(tick.X_VT_start, X_VT);
     const Vector6d drag = pull_.damping * step.twist / tick.dt;

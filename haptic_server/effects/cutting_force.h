@@ -29,7 +29,7 @@ class CuttingForce final : public HapticEffect {
     void finish(EffectTick& tick) noexcept override;
 
   private:
-    // On the tool, about the tool point, V.
+    // The pull acts on the tool, about the tool point, in V.
     struct Pull {
         Wrench of_spin;
         Matrix6d damping = Matrix6d::Zero();  // N·s/m, N·s, N·m·s: against the tool's own motion

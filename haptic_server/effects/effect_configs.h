@@ -55,7 +55,7 @@ struct ProtectedStructuresConfig {
     double warning_distance = 2e-3;  // m
 };
 
-// Needs EffectConfigs::protected_field.
+// This needs EffectConfigs::protected_field.
 struct VirtualFixtureConfig {
     double distance = 1e-3;       // m, of the burr's surface
     double stiffness = 2000;      // N/m
@@ -105,7 +105,7 @@ void forEachEffect(Configs& configs, Visit&& visit) {
     visit("protected_structures", configs.protected_structures);
 }
 
-// Of those that are listed. Allocates; start-up only.
+// The names are those of the effects that are listed. Allocates; start-up only.
 inline std::vector<std::string> effectNames(const EffectConfigs& configs) {
     std::vector<std::string> names;
     forEachEffect(configs, [&](const char* name, const auto& config) {

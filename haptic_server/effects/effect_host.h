@@ -1,4 +1,5 @@
-// The effects of a scene, as the tick and the contact model call them. None listed: nothing is called.
+// The tick and the contact model call the effects of a scene through this. If none is listed, nothing
+// is called.
 #pragma once
 
 #include <memory>
@@ -15,10 +16,10 @@ using EffectList = std::vector<std::unique_ptr<HapticEffect>>;
 
 class EffectHost final : private ContactWeights, private SolveEnergy {
   public:
-    // Allocates. Room for the contacts of `most_candidates`; κ in N/m³.
+    // Allocates room for the contacts of `most_candidates`; κ is in N/m³.
     EffectHost(EffectList effects, size_t most_candidates, double stiffness_per_area);
 
-    // For the contact model; null if no effect needs it. Live as long as the host.
+    // The contact model takes these; null means that no effect needs it. They live as long as the host.
     ContactWeights* weights() noexcept {
         return any(HapticEffect::kScales | HapticEffect::kReadsContacts) ? this : nullptr;
     }
@@ -28,7 +29,7 @@ class EffectHost final : private ContactWeights, private SolveEnergy {
     void restart(Restart why) noexcept;
     void begin(const EffectTick& start) noexcept;  // takes from it what is known at the start
     void addToHand(Wrench& wrench_V) noexcept;
-    // After the force went out: where the solve ended, and its contacts.
+    // Tells, after the force went out, where the solve ended and what its contacts are.
     void afterSolve(const Pose& X_VT, SpoModel& model) noexcept;
     void mill(BoneModel& bone, MillingResult& result) noexcept;
     const EffectRecord& finish() noexcept;

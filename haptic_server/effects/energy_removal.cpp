@@ -63,7 +63,7 @@ double EnergyRemoval::scale(const EffectTick& tick, Candidates& candidates, cons
     return largest;
 }
 
-// 1/(1 + κ c dt) of a candidate on the burr.
+// This is 1/(1 + κ c dt) of a candidate on the burr.
 double EnergyRemoval::softness(const EffectTick& tick, const Candidates& candidates, size_t n,
                                const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T) noexcept {
     const Burr& burr = tick.tool->burr;

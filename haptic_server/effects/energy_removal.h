@@ -12,12 +12,12 @@
 // bone as soft as that, and sinks in by dt c p_th more. (A weight by the depth of the tick before swings: its
 // gain is κ c dt p_th/p.)
 //
-// v_c = |Ω| ρ with the mean of ρ over the point's patch (burr_speed.h), so that the pole of a burr cuts, if
-// hardly.
+// v_c = |Ω| ρ with the mean of ρ over the point's patch (burr_speed.h), so that the pole of a burr cuts,
+// if hardly.
 //
 // Bone under a large burr takes turns: with more contacts than a tick has time for, the leaves mill in
-// `turns` groups, each in every turns-th tick and for as many ticks at once (the weights, too, then know that
-// dt).
+// `turns` groups, each in every turns-th tick and for as many ticks at once (the weights, too, then know
+// that dt).
 //
 // mill() then spends the energy of the contacts on the surface (milling/surface_shift.h). What was spent too
 // much or too little is kept in an account and made good within kRepayTime, so that Σ u ΔV = ∫ P dt but for
@@ -41,7 +41,7 @@ class EnergyRemoval final : public HapticEffect {
     static constexpr size_t kMostTurnsAtOnce = 3;    // that a surface may make good in a tick
     static constexpr size_t kCellsPerContact = 250;  // one takes as long as so many milled cells
 
-    // Of `all`: the bone's properties and materials.
+    // The bone's properties and materials are taken from `all`.
     EnergyRemoval(const EnergyRemovalConfig& config, const EffectConfigs& all, const BoneModel& bone,
                   const EffectRoom& room);
     const char* name() const noexcept override { return "energy_removal"; }
@@ -73,7 +73,7 @@ class EnergyRemoval final : public HapticEffect {
     bool is_cutting_ = false;
     double account_ = 0;   // J not yet spent; negative: too much was
     double to_repay_ = 0;  // J: the account when the turns began
-    // Of this tick.
+    // These are of this tick.
     double removal_power_ = 0, removed_energy_ = 0;
 };
 

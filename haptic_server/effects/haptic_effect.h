@@ -1,10 +1,10 @@
-// What a scene adds to contact and coupling. Each effect is one small class; one that the scene does not list
-// is not constructed. The host (effect_host.h) calls the hooks, each effect's in the order of
-// effect_configs.h.
+// Effects are what a scene adds to contact and coupling. Each effect is one small class; one that the
+// scene does not list is not constructed. The host (effect_host.h) calls the hooks, each effect's in the
+// order of effect_configs.h.
 //
 // In a tick: begin() → scale() at each gathering → energy() at each pose of the solve → addToHand() → the
-// force goes out → mill() → finish(). All RT-safe, tick thread only; construction allocates all that is ever
-// needed.
+// force goes out → mill() → finish(). All RT-safe, tick thread only; construction allocates all that is
+// ever needed.
 #pragma once
 
 #include <span>
@@ -20,16 +20,16 @@
 
 namespace bonemill {
 
-// What presses on the burr.
+// This is what presses on the burr.
 struct BurrLoad {
     double force = 0;   // N: Σ F
     double moment = 0;  // N·m: Σ F ρ; times μ_c against the spin, times μ_c |Ω| the power
     size_t contacts = 0;
 };
 
-// What effects see of the tick, and tell each other. SI, axes V unless the name says otherwise.
+// This is what effects see of the tick and tell each other, in SI and axes V unless the name says otherwise.
 struct EffectTick {
-    // From the start of the tick on.
+    // These are known from the start of the tick on.
     double dt = 1e-3;
     bool may_mill = false;       // milling is neither paused nor stale
     bool is_pedal_down = false;  // and may mill
@@ -41,12 +41,13 @@ struct EffectTick {
         0;  // rad/s about T's +y; without a spindle the full speed as soon as the pedal is down
     double axis_load = 0;  // N·m about T's +y: what the bone takes of the torque of a spindle
 
-    // After the solve.
+    // These are known after the solve.
     Pose X_VT;
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          // of the tool point, m/s
     Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // rad/s
 
-    // After the force went out, for effects that read contacts; kept until the next tick's.
+    // These are known after the force went out, for effects that read contacts, and are kept until the
+    // next tick's.
     std::span<const SurfaceContact> contacts;  // of the whole tool
     std::span<const uint8_t> is_on_burr;       // per contact
     std::span<const float> place_area;         // per candidate: what it stands for, m²
@@ -59,7 +60,7 @@ struct EffectTick {
     Eigen::Vector3d axis() const noexcept { return X_VT_start.rotation * Eigen::Vector3d::UnitY(); }
 };
 
-// How far outside of the burr a contact of the tool still counts as the burr's, m.
+// A contact of the tool that lies no farther outside of the burr than this, in m, still counts as the burr's.
 inline double burrSlack(const ToolField& tool) noexcept {
     constexpr double kRim = 2e-6;  // m
     return kRim + 2 * tool.distanceError();
@@ -69,7 +70,7 @@ enum class Restart { kOtherTool, kOtherLaw, kBonePutBack };
 
 class HapticEffect {
   public:
-    // What an effect needs to be called for beside begin(), mill() and finish().
+    // These say for what an effect needs to be called beside begin(), mill() and finish().
     enum Need : uint32_t {
         kScales = 1,         // scale()
         kHasEnergy = 2,      // energy()
@@ -83,22 +84,22 @@ class HapticEffect {
     virtual const char* name() const noexcept = 0;  // as in the scene
     uint32_t needs() const noexcept { return needs_; }
 
-    // Forget what came before, the contacts above all.
+    // Forgets what came before, the contacts above all.
     virtual void restart(Restart) noexcept {}
     virtual void begin(EffectTick&) noexcept {}
-    // As ContactWeights::scale().
+    // This is ContactWeights::scale() for one effect.
     virtual double scale(const EffectTick&, Candidates&, const Eigen::Vector3d& /*origin_V*/,
                          const ToolField&, const Pose& /*X_VT*/) noexcept {
         return 1;
     }
-    // As SolveEnergy::at().
+    // This is SolveEnergy::at() for one effect.
     virtual EnergyTerm energy(const EffectTick&, const Pose& /*X_VT*/) const noexcept { return {}; }
     // Changes what is on the hand about the tool point that it holds (contact, coupling and the effects
     // before this one), before the limits of what the hand may feel.
     virtual void addToHand(const EffectTick&, Wrench& /*wrench_V*/) noexcept {}
-    // Changes the bone. Not called while a snapshot is taken or the bone is put back.
+    // Changes the bone. This is not called while a snapshot is taken or the bone is put back.
     virtual void mill(EffectTick&, BoneModel&, MillingResult&) noexcept {}
-    // At the end of every tick: what the record says.
+    // This is called at the end of every tick, to write what the record says.
     virtual void finish(EffectTick&) noexcept {}
 
   private:

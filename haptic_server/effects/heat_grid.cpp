@@ -18,8 +18,8 @@ constexpr size_t kMostBricks = 1024, kMostDeadBricks = 16384;
 constexpr size_t kLookupsPerStep = 4;  // of a brick's cubes in the volume
 constexpr int64_t kMostBricksToRevisit = 512;
 constexpr size_t kMostDeadSeen = 256;  // bricks with dead cells that a step looks through for stale ones
-// K: a brick whose border is warmer than that opens its neighbour; one that is cooler all over is closed when
-// it has been open for a while. Cold matters less.
+// In K: a brick whose border is warmer than that opens its neighbour; one that is cooler all over is closed
+// when it has been open for a while. Cold matters less.
 constexpr float kWarm = 0.01f, kCold = -2, kSettledCold = -0.5f;
 constexpr double kShortestLife = 1;        // s
 constexpr double kSpareForSources = 0.25;  // of the pool, that heat on its way does not take
@@ -39,7 +39,7 @@ HeatGrid::HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt)
       turn_(std::min(kShortestTurn, longest_ / 2)),
       most_turns_(size_t(std::max(1.0, std::round(kTurnsPerSecond * dt)))),
       necrosis_excess_(config.necrosis_temperature - config.body_temperature) {
-    // From a cube's middle to its face it is half a cube of bone.
+    // There is half a cube of bone between a cube's middle and its face.
     const auto rate = [&](double transfer) {
         if (transfer <= 0) return 0.0;
         return 1 / (1 / transfer + config.cell / (2 * config.conductivity)) /
@@ -224,7 +224,7 @@ void HeatGrid::step() noexcept {
     }
 }
 
-// Those that heat is about to come to.
+// Neighbours are opened where heat is about to come to them.
 void HeatGrid::openNeighbours(Brick& brick) noexcept {
     if (double(free_.size()) < kSpareForSources * double(pool_.size())) return;
     for (size_t side = 0; side < kSides.size(); ++side) {
@@ -243,8 +243,8 @@ void HeatGrid::openNeighbours(Brick& brick) noexcept {
     }
 }
 
-// Through the faces between the brick's cubes, and those to its neighbours upwards, whose own turns do the
-// others.
+// Heat goes through the faces between the brick's cubes, and through those to its neighbours upwards; the
+// neighbours' own turns do the others.
 void HeatGrid::conduct(Brick& brick, double elapsed) noexcept {
     const float share = float(per_time_ * elapsed);
     std::array<float, kCells> gain{};
@@ -297,7 +297,7 @@ void HeatGrid::cool(Brick& brick, double elapsed) noexcept {
     }
 }
 
-// What the brick's bone has gone through since its last turn.
+// Notes what the brick's bone has gone through since its last turn.
 void HeatGrid::harm(Brick& brick, double elapsed) noexcept {
     for (int n = 0; n < kCells; ++n) {
         if (!brick.is_bone[n] || double(brick.excess[n]) < necrosis_excess_) {

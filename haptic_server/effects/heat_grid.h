@@ -1,5 +1,5 @@
-// Heat in the bone: conduction on a grid of cubes of its own, coarser or finer than the voxels, with memory
-// only for bricks of cubes where it is warmer or colder than the body.
+// Heat spreads in the bone by conduction on a grid of cubes of its own, coarser or finer than the voxels,
+// with memory only for bricks of cubes where it is warmer or colder than the body.
 //
 // Explicit finite volumes: heat that goes through a face leaves one cube and comes to the other, so that none
 // is lost but at the bone's surface and to the blood. A cube is bone or it is not, by the voxel at its
@@ -18,15 +18,16 @@ namespace bonemill {
 
 class HeatGrid {
   public:
-    // Keeps a reference to the bone. dt: of a step, s.
+    // Keeps a reference to the bone. dt is the time of a step, in s.
     HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt);
 
-    // Into the bone at its surface, J; inward_V: unit, into the bone. What finds no bone there is gone.
+    // Puts heat (J) into the bone at its surface; inward_V is of unit length and points into the bone. What
+    // finds no bone there is gone.
     void addHeat(const Eigen::Vector3d& p_V, const Eigen::Vector3d& inward_V, double heat) noexcept;
     // Voxels in this box may have become bone or air. What is cut away takes its heat with it.
     void noteChange(const IndexBox& voxels) noexcept;
     void noteChangeEverywhere() noexcept;
-    // Where the bone's surface is irrigated from now on, m; radius 0: nowhere.
+    // From now on the bone's surface is irrigated within `radius` (m) of here; 0 means nowhere.
     void irrigate(const Eigen::Vector3d& center_V, double radius) noexcept;
     // Time goes on by dt.
     void step() noexcept;

@@ -1,5 +1,5 @@
-// The tool's way from one pose to another as effects' energies are functions of it: x of the tool point, and
-// the rotation vector θ. RT-safe.
+// The tool's way from one pose to another is what effects' energies are functions of: x of the tool point,
+// and the rotation vector θ. RT-safe.
 #pragma once
 
 #include <cmath>

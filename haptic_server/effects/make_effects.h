@@ -1,4 +1,4 @@
-// From what a scene lists to the effects themselves. Start-up only; allocates.
+// This makes the effects of what a scene lists. Start-up only; allocates.
 #pragma once
 
 #include "haptic_server/effects/effect_configs.h"
@@ -14,7 +14,7 @@ struct EffectRoom {
     size_t most_cells;  // as MillingConfig
 };
 
-// In the order in which they act.
+// The effects stand in the order in which they act.
 EffectList makeEffects(const EffectConfigs& configs, const BoneModel& bone, const EffectRoom& room);
 
 }  // namespace bonemill

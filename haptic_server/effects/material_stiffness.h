@@ -1,5 +1,5 @@
-// Contact stiffness by material: each contact point's energy is scaled by the factor of the voxel just inside
-// the bone. The factors do not change, so that contact stays the gradient of an energy.
+// Contact is as stiff as the material: each contact point's energy is scaled by the factor of the voxel just
+// inside the bone. The factors do not change, so that contact stays the gradient of an energy.
 #pragma once
 
 #include "haptic_server/effects/effect_configs.h"

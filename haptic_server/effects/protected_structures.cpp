@@ -8,7 +8,7 @@
 namespace bonemill {
 namespace {
 
-// That a tick looks at; the burr's other rows wait for the next ones.
+// A tick looks at so many; the burr's other rows wait for the next ones.
 constexpr int64_t kMostVoxels = 4096;
 constexpr int64_t kVoxelsPerFarRow = 4;  // a row without anything protected takes as long as so many
 
@@ -33,7 +33,7 @@ ProtectedStructures::ProtectedStructures(const ProtectedStructuresConfig& config
 void ProtectedStructures::finish(EffectTick& tick) noexcept {
     const NearestStructure nearest = nearestStructure(*field_, BurrProbes(tick.tool->burr), tick.X_VT);
     const Pressed pressed = pressedOn(tick);
-    // Near enough for voxels to be lost: the burr's limit in the bone lies a little outside of it.
+    // It is near enough for voxels to be lost: the burr's limit in the bone lies a little outside of it.
     const bool is_reached = nearest.distance < bone_.volume.spacing().norm();
     const Destroyed destroyed =
         is_reached && (isCutting(tick) || tick.is_pedal_down) ? countDamage(tick) : Destroyed{};
@@ -67,7 +67,7 @@ ProtectedStructures::Pressed ProtectedStructures::pressedOn(const EffectTick& ti
     return pressed;
 }
 
-// In the rows of voxels around the burr, from where the last tick ended.
+// Looks at the rows of voxels around the burr, from where the last tick ended.
 ProtectedStructures::Destroyed ProtectedStructures::countDamage(const EffectTick& tick) noexcept {
     const VoxelVolume& volume = bone_.volume;
     const Eigen::Array3d reach = tick.tool->burr.reach() + volume.spacing().array();
@@ -97,7 +97,7 @@ ProtectedStructures::Destroyed ProtectedStructures::countDamage(const EffectTick
     return destroyed;
 }
 
-// By the distance of the row's middle: less than half a row, and what the distance may be off.
+// The distance of the row's middle decides: it may be less than half a row, and what the distance may be off.
 bool ProtectedStructures::mayHaveProtected(const IndexBox& row) const noexcept {
     const Eigen::Vector3d spacing = bone_.volume.spacing();
     const Eigen::Vector3d middle = spacing.cwiseProduct((row.min + row.max).cast<double>() / 2);

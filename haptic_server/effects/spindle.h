@@ -1,8 +1,7 @@
-// The motor that turns the burr: it runs up when the pedal goes down and brakes when it comes up, droops
-// under load and stalls when that is too much:
-//   J dΩ/dt = clamp(k (Ω₀ − Ω), ±T) − M sgn(Ω) − c Ω,   M = μ_c Σ F ρ over the burr's contacts
-//   (burr_speed.h),
-// one implicit Euler step a tick: k may be as stiff as one likes. M is dry friction, from the last tick's
+// A motor turns the burr: it runs up when the pedal goes down and brakes when it comes up, droops under load
+// and stalls when that is too much:
+//   J dΩ/dt = clamp(k (Ω₀ − Ω), ±T) − M sgn(Ω) − c Ω,   M = μ_c Σ F ρ over contacts (burr_speed.h),
+// in one implicit Euler step a tick: k may be as stiff as one likes. M is dry friction, from the last tick's
 // contacts: it stops the burr, at exactly 0, and never drives it. A burr that stands under load takes
 // as much of M as the motor gives. Sets EffectTick::spin_speed and axis_load.
 //
@@ -23,10 +22,12 @@ class Spindle final : public HapticEffect {
     void begin(EffectTick& tick) noexcept override;
     void finish(EffectTick& tick) noexcept override;
 
-    // The pedal is down, and the burr has stood nearly still for longer than its run-up explains.
+    // The spindle is stalled when the pedal is down and the burr has stood nearly still for longer than its
+    // run-up explains.
     bool isStalled() const noexcept { return stands_for_ > longest_start_; }
 
-    // Speed after dt, rad/s: `speed` before, `wanted` Ω₀, dry friction of at most `load` N·m.
+    // Returns the speed after dt in rad/s, from the `speed` before, the `wanted` Ω₀ and dry friction of at
+    // most `load` N·m.
     static double advanced(const SpindleConfig& config, double speed, double wanted, double load,
                            double dt) noexcept;
 

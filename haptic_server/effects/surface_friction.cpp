@@ -17,8 +17,8 @@ namespace {
 // A spring about to slip counts as slipping in the stiffness: a tool that slides, at the width again after
 // each tick, would otherwise begin every solve with too short a step.
 constexpr double kAboutToSlip = 0.99;
-// Of the stiffest motion's stiffness, rotations measured at the farthest contact: what is softer than the
-// first is free, than the second partly.
+// These are shares of the stiffest motion's stiffness, rotations measured at the farthest contact: what is
+// softer than the first is free, what is softer than the second partly.
 constexpr double kFree = 3e-4, kHeld = 3e-3;
 
 double smoothstep(double t) noexcept {

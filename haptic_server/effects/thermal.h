@@ -1,6 +1,6 @@
-// Heat from cutting into the bone: a share of the friction power μ_c |Ω| Σ F ρ of the burr's contacts goes
-// into the bone where they touch, spreads (heat_grid.h), and leaves it to irrigation while the pedal is down,
-// to the dry surroundings and to the blood. The rest of the power goes with the chips.
+// Cutting heats the bone: a share of the friction power μ_c |Ω| Σ F ρ of the burr's contacts goes into the
+// bone where they touch, spreads (heat_grid.h), and leaves it to irrigation while the pedal is down, to the
+// dry surroundings and to the blood. The rest of the power goes with the chips.
 #pragma once
 
 #include "haptic_server/effects/effect_configs.h"
@@ -11,7 +11,7 @@ namespace bonemill {
 
 class Thermal final : public HapticEffect {
   public:
-    // Keeps a reference to the bone. dt: of a tick, s.
+    // Keeps a reference to the bone. dt is the time of a tick, in s.
     Thermal(const ThermalConfig& config, const BoneModel& bone, double dt);
     const char* name() const noexcept override { return "thermal"; }
     void restart(Restart why) noexcept override {

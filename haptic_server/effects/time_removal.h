@@ -1,5 +1,5 @@
-// The thesis' removal: what is inside the burr goes at a rate of density per time, however hard it is
-// pressed.
+// This is the thesis' removal: what is inside the burr goes at a rate of density per time, however hard it
+// is pressed.
 #pragma once
 
 #include "haptic_server/effects/effect_configs.h"
@@ -10,7 +10,7 @@ namespace bonemill {
 
 class TimeRemoval final : public HapticEffect {
   public:
-    // Room for burrs up to largest_burr_radius, m. most_cells as MillingConfig.
+    // There is room for burrs up to largest_burr_radius, in m. most_cells is that of MillingConfig.
     TimeRemoval(const TimeRemovalConfig& config, const BoneModel& bone, double largest_burr_radius,
                 size_t most_cells);
     const char* name() const noexcept override { return "time_removal"; }

@@ -8,9 +8,10 @@
 namespace bonemill {
 namespace {
 
-// Of the burr's radius: the smooth minimum of n equal distances is log(n) times this less than they are.
+// This is a share of the burr's radius: the smooth minimum of n equal distances is log(n) times this less
+// than they are.
 constexpr double kSmoothing = 0.05;
-// What a hand does not feel: energy that a spring of 1 N/mm holds then is 1.25 µJ.
+// A hand does not feel these; the energy that a spring of 1 N/mm holds then is 1.25 µJ.
 constexpr double kUnfeltForce = 0.05;   // N
 constexpr double kUnfeltTorque = 1e-3;  // N·m
 constexpr double kScaleTime = 0.02;     // s in which the scale goes from 1 to 0

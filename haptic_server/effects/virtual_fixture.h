@@ -1,4 +1,4 @@
-// Prohibited region around protected structures: an energy that pushes the simulated tool out of it.
+// Protected structures have a prohibited region around them: an energy pushes the simulated tool out of it.
 //
 // With d_i the distances of the burr's probes, d their smooth minimum -log(Σ exp(-β d_i)) / β (for a ball:
 // its own distance) and x = d₀ - d > 0:

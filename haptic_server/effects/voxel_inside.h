@@ -1,4 +1,4 @@
-// The voxel of the bone that a point on its surface belongs to. RT-safe.
+// A point on the bone's surface belongs to this voxel. RT-safe.
 #pragma once
 
 #include <Eigen/Core>

@@ -31,8 +31,8 @@ inline void gather(const T* table, const Ints& index, Vector& out) {
 }
 #endif
 
-// Where the density, linear along each edge, equals iso, for kWidth cells: [edge][lane], share of the edge.
-// Edges that are not crossed hold anything.
+// Finds where the density, linear along each edge, equals iso, for kWidth cells: [edge][lane], as a share of
+// the edge. Edges that are not crossed hold anything.
 void crossings(const CellArrays& cells, int first, float (&at)[12 * kWidth]) {
     for (int edge = 0; edge < 12; ++edge) {
         const int low_corner = kEdgeLow[edge];
@@ -60,7 +60,7 @@ inline void crossingOnAxis(const Ints& edge, const Floats& share, Floats& out) {
     out = (edge >> 2) == kAxis ? share : __builtin_convertvector(low, Floats);
 }
 
-// In cell steps.
+// The crossing is in cell steps.
 inline void crossingOn(const float (&at)[12 * kWidth], const Ints& edge, const Ints& lane, Points& p) {
     Floats share;
     gather(at, edge * kWidth + lane, share);
@@ -109,7 +109,7 @@ void cellPatches(const CellArrays& cells, const int* triangles, const float step
     }
 }
 
-// Excess and slope of the trilinear density at `p`.
+// Computes excess and slope of the trilinear density at `p`.
 inline void sampleCells(const Floats (&e)[8], const Points& p, Floats& excess, Points& slope) {
     const Floats dx0 = e[1] - e[0], dx1 = e[3] - e[2], dx2 = e[5] - e[4], dx3 = e[7] - e[6];
     const Floats a0 = e[0] + p.x * dx0, a1 = e[2] + p.x * dx1, a2 = e[4] + p.x * dx2, a3 = e[6] + p.x * dx3;
@@ -184,7 +184,7 @@ inline void cellUnder(const Floats& u, int dim, Ints& cell, Floats& in_cell) {
     in_cell = u - __builtin_convertvector(cell, Floats);
 }
 
-// Densities minus iso at the corners of each lane's cell.
+// Reads the densities minus iso at the corners of each lane's cell.
 void readCells(const DensityView& d, const Ints& i, const Ints& j, const Ints& k, Floats (&e)[8]) {
     alignas(64) float corner[8][kWidth];
     constexpr int kInBrick = kBrickCells - 1;

@@ -1,6 +1,6 @@
-// The loops of kernels.h, for the compiler to make vector instructions of. Included once per instruction set,
-// with BONEMILL_CPU_LEVEL_NAMESPACE set; includes nothing with inline functions, whose copies the linker
-// would mix up between instruction sets (those of immintrin.h have none).
+// These are the loops of kernels.h, for the compiler to make vector instructions of. The file is included
+// once per instruction set, with BONEMILL_CPU_LEVEL_NAMESPACE set; includes nothing with inline functions,
+// whose copies the linker would mix up between instruction sets (those of immintrin.h have none).
 #if defined(__AVX2__)
 #include <immintrin.h>
 #endif

@@ -28,7 +28,7 @@ CpuLevel bestLevel() noexcept {
     return best;
 }
 
-// Not inside a function: the lock of its first call has no place in a tick.
+// This does not stand inside a function: the lock of its first call has no place in a tick.
 const Kernels& best_kernels = kernelsOf(bestLevel());
 
 }  // namespace

@@ -18,15 +18,15 @@ inline constexpr CpuLevel kCpuLevels[] = {CpuLevel::kBaseline, CpuLevel::kAvx2, 
 const char* cpuLevelName(CpuLevel level) noexcept;
 bool isSupported(CpuLevel level) noexcept;
 
-// Rows of a rotation and a translation: out = R (p - origin).
+// These are the rows of a rotation, and a translation: out = R (p - origin).
 template <class Scalar>
 struct FrameChange {
     Scalar R[9];
     Scalar origin[3];
 };
 
-// All points within `radius` of the segment that starts at `from` and goes `length` along the unit vector
-// `axis`.
+// The solid is all points within `radius` of the segment that starts at `from` and goes `length` along the
+// unit vector `axis`.
 template <class Scalar>
 struct RoundSolid {
     Scalar from[3], axis[3];
@@ -44,7 +44,8 @@ struct ConeSolid {
     Scalar side[2];    // unit, from the first rim to the second: along and off the axis
 };
 
-// From the tool's axes to the bone's, and where the tool point lies among the contact points.
+// The frame leads from the tool's axes to the bone's, and says where the tool point lies among the
+// contact points.
 struct ContactFrame {
     double R_VT[9];    // rows
     double p_OT[3];    // m
@@ -75,21 +76,22 @@ template <class Scalar>
 struct PointKernels {
     void (*into_frame)(const FrameChange<Scalar>& frame, const float* x, const float* y, const float* z,
                        int count, Scalar* out_x, Scalar* out_y, Scalar* out_z);
-    // out = min(out, distance).
+    // This makes out = min(out, distance).
     void (*nearer_round)(const RoundSolid<Scalar>& solid, const Scalar* x, const Scalar* y, const Scalar* z,
                          int count, Scalar* out);
-    // Where the solid is nearer than `distance`: its distance and gradient; on the axis the gradient is zero.
+    // Writes the solid's distance and gradient where it is nearer than `distance`; on the axis the gradient
+    // is zero.
     void (*sample_nearer_round)(const RoundSolid<Scalar>& solid, const Scalar* x, const Scalar* y,
                                 const Scalar* z, int count, Scalar* distance, Scalar* gx, Scalar* gy,
                                 Scalar* gz);
-    // The same; on the axis the gradient is of length 1 too.
+    // This does the same; on the axis the gradient is of length 1 too.
     void (*nearer_cone)(const ConeSolid<Scalar>& solid, const Scalar* x, const Scalar* y, const Scalar* z,
                         int count, Scalar* out);
     void (*sample_nearer_cone)(const ConeSolid<Scalar>& solid, const Scalar* x, const Scalar* y,
                                const Scalar* z, int count, Scalar* distance, Scalar* gx, Scalar* gy,
                                Scalar* gz);
-    // At most kContactBatch points inside the tool (distance < 0), from the frame's origin, with their
-    // stiffness `weight` (N/m); gradients in the tool's axes.
+    // Adds at most kContactBatch points inside the tool (distance < 0), from the frame's origin, with their
+    // stiffness `weight` (N/m); gradients are in the tool's axes.
     void (*add_contacts)(const ContactFrame& frame, const float* x, const float* y, const float* z,
                          const float* weight, const Scalar* distance, const Scalar* gx, const Scalar* gy,
                          const Scalar* gz, int count, ContactSums& sums);
@@ -123,7 +125,8 @@ struct CellArrays {
     const int* inside;       // which corners are inside, bit by corner
     int count;
 };
-// Of the triangles in each cell; the centroid, in cell steps, is not set where there is no area.
+// The patches are those of the triangles in each cell; the centroid, in cell steps, is not set where there is
+// no area.
 struct CellPatches {
     float* area;  // in squares of the unit of `steps`
     float *x, *y, *z;
@@ -136,7 +139,7 @@ struct CellProjections {
     int* is_found;  // 0: it left the cell or found no way
 };
 
-// Voxels in memory, x fastest and side by side.
+// These are voxels in memory, x fastest and side by side.
 struct VoxelBox {
     const uint16_t* first;
     size_t stride_y, stride_z;
@@ -144,8 +147,8 @@ struct VoxelBox {
 // Cells whose sides are looked at together: the bytes of a word.
 inline constexpr int kCellsAtOnce = 8;
 
-// The voxels in their bricks (brick_layout.h), for kernels that look at any of them. Readable: -1 .. dims on
-// each axis.
+// These are the voxels in their bricks (brick_layout.h), for kernels that look at any of them; -1 .. dims is
+// readable on each axis.
 struct DensityView {
     const uint16_t* bricks;
     const uint32_t* slots;  // per brick, x fastest: which of `bricks`
@@ -155,7 +158,8 @@ struct DensityView {
     float inverse_spacing[3];  // 1/m
     float origin[3];           // m: of the points' coordinates
 };
-// Points that move onto the surface, m; structure of arrays that go on to the next multiple of kCellLanes.
+// These points move onto the surface, in m, as structure of arrays that go on to the next multiple
+// of kCellLanes.
 struct SurfacePoints {
     float *x, *y, *z;                    // in: where they start; out: where they ended
     const float *own_x, *own_y, *own_z;  // where they end instead if that is too far off, or there is no way
@@ -166,8 +170,9 @@ struct SurfacePoints {
 struct Kernels {
     PointKernels<float> single;
     PointKernels<double> twice;
-    // The near ones of at most kContactBatch points: their indices, and of all points how near a place comes.
-    // Distances and gradients (T), normals (V) and areas; the arrays go on to a multiple of kCellLanes.
+    // Selects the near ones of at most kContactBatch points: writes their indices, and of all points how
+    // near a place comes. Distances and gradients (T), normals (V) and areas; the arrays go on to a multiple
+    // of kCellLanes.
     int (*select_near)(const NearTest& test, const float* distance, const float* gx, const float* gy,
                        const float* gz, const float* nx, const float* ny, const float* nz, const float* area,
                        int count, float* nearest, int* selected);
@@ -182,23 +187,23 @@ struct Kernels {
     // zero; zero beyond the last triangle.
     void (*cell_patches)(const CellArrays& cells, const int* triangles, const float steps[3],
                          const CellPatches& out);
-    // At most `most_steps` Newton steps along the slope times `steepness`, until the density is within
+    // Makes at most `most_steps` Newton steps along the slope times `steepness`, until the density is within
     // `tolerance` times the largest excess at the corners.
     void (*project_into_cells)(const CellArrays& cells, const float steepness[3],
                                const float inverse_spacing[3], float tolerance, int most_steps,
                                const CellProjections& out);
     // Newton steps up or down the density's gradient, from cell to cell.
     void (*move_onto_surface)(const DensityView& density, int steps, const SurfacePoints& points);
-    // The least of (value - lowest) * scale over the elements; never above `most`.
+    // Returns the least of (value - lowest) * scale over the elements, but never more than `most`.
     float (*least_scaled)(const float* value, const float* lowest, const float* scale, int count, float most);
     // Least and largest of `rows` rows that lie `stride` voxels apart, joined with what is there.
     void (*range_of_rows)(const uint16_t* row, int count, size_t stride, int rows, uint16_t& least,
                           uint16_t& largest);
 
-    // Of each column of a layer of cells: which of its four voxels are iso or more, bits 0, 2, 4 and 6 for
-    // (y, z), (y + 1, z), (y, z + 1) and (y + 1, z + 1). `rows` rows, row_size bytes apart; the kCellsAtOnce
-    // bytes after the last column repeat it, and after kCellLanes more than the columns nothing is written.
-    // Reads up to kCellLanes - 1 voxels beyond each row.
+    // Says of each column of a layer of cells which of its four voxels are iso or more, in bits 0, 2, 4 and 6
+    // for (y, z), (y + 1, z), (y, z + 1) and (y + 1, z + 1). There are `rows` rows, row_size bytes apart; the
+    // kCellsAtOnce bytes after the last column repeat it, and after kCellLanes more than the columns nothing
+    // is written. Reads up to kCellLanes - 1 voxels beyond each row.
     void (*cell_sides)(const VoxelBox& box, int columns, int rows, uint16_t iso, size_t row_size,
                        uint8_t* out);
 
@@ -211,10 +216,10 @@ struct Kernels {
     }
 };
 
-// Those of the best level. The environment variable BONEMILL_CPU_LEVEL (x86-64, avx2, avx512), read once at
-// the start, chooses a lower one.
+// These are the kernels of the best level. The environment variable BONEMILL_CPU_LEVEL (x86-64, avx2,
+// avx512), read once at the start, chooses a lower one.
 const Kernels& kernels() noexcept;
-// Of a level that this CPU supports; for tests.
+// These are the kernels of a level that this CPU supports; for tests.
 const Kernels& kernelsOf(CpuLevel level) noexcept;
 
 }  // namespace bonemill

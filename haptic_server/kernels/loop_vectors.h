@@ -2,8 +2,8 @@
 namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
 namespace {
 
-// Of single precision, in one register: GCC 12 takes wider vectors apart into scalars where it must choose
-// lanes.
+// The lanes are of single precision, in one register: GCC 12 takes wider vectors apart into scalars where it
+// must choose lanes.
 #if defined(__AVX512F__)
 constexpr int kWidth = 16;
 #elif defined(__AVX2__)
@@ -55,9 +55,9 @@ inline void rootOf(const Floats& v, Floats& out) {
     load(result, out);
 }
 
-// As many densities as there are single precision lanes.
+// There are as many densities as there are single precision lanes.
 using Words = uint16_t __attribute__((vector_size(2 * kWidth)));
-// For rows that are only looked at.
+// These are for rows that are only looked at.
 constexpr int kWideWords = kWidth == 4 ? 8 : 16;
 using WideWords = uint16_t __attribute__((vector_size(2 * kWideWords)));
 

@@ -16,7 +16,7 @@ void intoFrame(const FrameChange<Scalar>& f, const float* __restrict x, const fl
     }
 }
 
-// From the nearest place of the solid's axis to the point; its length.
+// Leads from the nearest place of the solid's axis to the point; returns the length of that way.
 template <class Scalar>
 inline Scalar fromAxis(const RoundSolid<Scalar>& s, Scalar px, Scalar py, Scalar pz, Scalar& dx, Scalar& dy,
                        Scalar& dz) {
@@ -57,7 +57,7 @@ void sampleNearerRound(const RoundSolid<Scalar>& solid, const Scalar* __restrict
     }
 }
 
-// A point as the cone's axis sees it.
+// This is a point as the cone's axis sees it.
 template <class Scalar>
 struct FromConeAxis {
     Scalar along, off;
@@ -69,7 +69,7 @@ inline FromConeAxis<Scalar> fromAxis(const ConeSolid<Scalar>& s, Scalar px, Scal
     const Scalar x = px - s.from[0], y = py - s.from[1], z = pz - s.from[2];
     const Scalar along = x * s.axis[0] + y * s.axis[1] + z * s.axis[2];
     const Scalar dx = x - along * s.axis[0], dy = y - along * s.axis[1], dz = z - along * s.axis[2];
-    // Near the axis, what rounding left along it would show.
+    // Near the axis it would show what rounding left along it.
     const Scalar rest = dx * s.axis[0] + dy * s.axis[1] + dz * s.axis[2];
     const Scalar ox = dx - rest * s.axis[0], oy = dy - rest * s.axis[1], oz = dz - rest * s.axis[2];
     return {along, root(ox * ox + oy * oy + oz * oz), ox, oy, oz};

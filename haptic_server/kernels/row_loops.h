@@ -2,7 +2,7 @@
 namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
 namespace {
 
-// Anything to mill: a row of air has nothing to remove, a solid one no room to add.
+// Is there anything to mill? A row of air has nothing to remove, a solid one no room to add.
 template <int kDirection>
 bool isFinished(const uint16_t* row) {
     constexpr uint16_t kFinished = kDirection < 0 ? 0 : 65535;
@@ -17,12 +17,12 @@ bool isFinished(const uint16_t* row) {
     return left == 0;
 }
 
-// Voxels below zero: a true comparison is -1.
+// A true comparison is -1, so this counts voxels below zero.
 struct MilledLanes {
     Ints changed{}, removed{}, added{};
 };
 
-// kDirection: -1 removes, +1 adds. Without branches; lanes beyond the burr's reach or the row keep their
+// kDirection -1 removes, +1 adds. There are no branches; lanes beyond the burr's reach or the row keep their
 // density. off_row_squared: m², of the row from the burr's centre.
 template <int kDirection>
 void millRow(const BurrPlane& b, float off_row_squared, const uint16_t* row, int count, uint16_t* out,

@@ -53,8 +53,8 @@ std::optional<NodeMesh> LeafMesher::mesh(LeafId leaf) {
     return mesh;
 }
 
-// Copies all voxels that the mesh depends on: those around the cells, and one more on each side for the
-// gradients.
+// Copies all voxels that the mesh depends on: those around the cells, and one more on each side for
+// the gradients.
 void LeafMesher::readVoxels(const IndexBox& cells) {
     first_voxel_ = cells.min;
     cells_ = cells.max - cells.min + Eigen::Vector3i::Ones();

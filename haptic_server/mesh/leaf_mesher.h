@@ -1,4 +1,5 @@
-// Iso-surface of one octree leaf: marching cubes over the leaf's cells, vertices on the grid edges.
+// This makes the iso-surface of one octree leaf by marching cubes over the leaf's cells, with vertices on the
+// grid edges.
 //
 // A vertex lies where the density, interpolated linearly along its edge, equals the iso-value, rounded to the
 // steps of MeshGrid and kept one step away from both voxels, so that vertices of different edges never
@@ -27,14 +28,14 @@ namespace bonemill {
 // One leaf after another with reused memory; one thread at a time. Volume and lattice must outlive it.
 class LeafMesher {
   public:
-    // most_steps_per_cell as for MeshGrid. Without `properties` (which must outlive it) no vertex has a
-    // material.
+    // most_steps_per_cell as for MeshGrid. Without `properties` (which must outlive it) no vertex has
+    // a material.
     LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice,
                int most_steps_per_cell = MeshGrid::kMostStepsPerCell,
                const BoneProperties* properties = nullptr);
 
-    // revision = the leaf's version. Empty without surface. Nothing if the voxels were written while they
-    // were copied, which is the shorter part of the work.
+    // The revision is the leaf's version; the mesh is empty without surface. There is none if the voxels were
+    // written while they were copied, which is the shorter part of the work.
     std::optional<NodeMesh> mesh(LeafId leaf);
 
   private:
@@ -70,7 +71,7 @@ class LeafMesher {
     std::vector<uint32_t> edge_vertex_;  // per corner and axis: vertex on the edge that starts there
 };
 
-// Of a volume at rest.
+// The mesh is that of a volume at rest.
 NodeMesh meshLeaf(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf);
 
 }  // namespace bonemill

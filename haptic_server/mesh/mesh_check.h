@@ -23,7 +23,8 @@ struct MeshCheck {
 
 MeshCheck checkMesh(std::span<const NodeMesh> meshes, const MeshGrid& grid);
 
-// Signed volume only, m³: divergence theorem over the triangles. Meaningful for a closed surface.
+// Returns the signed volume only, in m³, by the divergence theorem over the triangles; it has a meaning for a
+// closed surface.
 double meshVolume(std::span<const NodeMesh> meshes, const MeshGrid& grid);
 
 }  // namespace bonemill

@@ -12,7 +12,7 @@
 
 namespace bonemill {
 
-// Leaves that changed together. Shown apart, a crack would be seen between them.
+// These are leaves that changed together; shown apart, a crack would be seen between them.
 struct NodeGroup {
     std::vector<NodeMesh> meshes;
     std::vector<uint32_t>

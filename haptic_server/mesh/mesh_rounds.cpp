@@ -49,7 +49,8 @@ void MeshRounds::closeCuts(const Sink& sink) {
     open_leaves_ = {};
 }
 
-// At first every leaf on its own, so that the model grows; later what one pass finds changed together.
+// At first every leaf goes on its own, so that the model grows; later what one pass finds changed
+// goes together.
 bool MeshRounds::passOverOthers(const Sink& sink) {
     const int64_t now_ns = monotonicNowNs();
     if (now_ns < next_pass_ns_) return false;

@@ -1,5 +1,6 @@
-// The mesher thread's work: after each cut the leaves that it changed, at once; beside that, little by
-// little, all others that changed (at first: the whole bone). Measures how long a cut waits for its meshes.
+// The mesher thread works like this: after each cut it meshes the leaves that it changed, at once; beside
+// that, little by little, all others that changed (at first: the whole bone). Measures how long a cut waits
+// for its meshes.
 //
 // One normal thread, beside the tick; not RT-safe.
 #pragma once
@@ -24,15 +25,15 @@ class MeshRounds {
 
     using Sink = std::function<void(NodeGroup&&)>;
 
-    // One round; the meshes as those of Mesher::pass, what changed together in one group. True: more is
-    // waiting, call again at once; else after kPeriod.
+    // Makes one round; the meshes are as those of Mesher::pass, what changed together in one group. True
+    // means that more is waiting: call again at once, else after kPeriod.
     bool round(const Sink& sink);
     static constexpr std::chrono::microseconds kPeriod{500};
 
     bool hasMeshedAll() const noexcept { return mesher_.hasMeshedAll(); }
 
-    // Of each cut from the start of its tick until the sink had the meshes of all leaves that were due with
-    // it: no less than until the last mesh with the cut in it.
+    // The time of each cut goes from the start of its tick until the sink had the meshes of all leaves that
+    // were due with it: no less than until the last mesh with the cut in it.
     const LatencyHistogram& cutToSink() const noexcept { return cut_to_sink_; }
 
   private:

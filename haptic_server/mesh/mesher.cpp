@@ -7,8 +7,8 @@ namespace {
 
 constexpr uint32_t kNeverMeshed = 1;  // odd: no version at rest equals it
 
-// Once the tick has written, there is its whole period before it writes again: mostly the second try
-// succeeds.
+// Once the tick has written, there is its whole period before it writes again: mostly the second
+// try succeeds.
 constexpr int kTries = 4;
 
 bool isBeingWritten(uint32_t version) noexcept {
@@ -62,7 +62,7 @@ bool Mesher::catchUp(LeafId leaf, const Sink& sink) {
     return false;
 }
 
-// False when a write got in between: the leaf stays due.
+// False means that a write got in between: the leaf stays due.
 bool Mesher::tryMesh(LeafId leaf, const Sink& sink) {
     std::optional<NodeMesh> mesh = leaf_mesher_.mesh(leaf);
     if (!mesh) return false;

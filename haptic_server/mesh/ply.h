@@ -8,8 +8,8 @@
 
 namespace bonemill {
 
-// Binary little endian: welded vertices (x, y, z in mm, normal; float) and triangles, frame W. Throws
-// UserError when the file cannot be written. Not RT-safe.
+// The file is binary little endian: welded vertices (x, y, z in mm, normal; float) and triangles, frame W.
+// Throws UserError when the file cannot be written. Not RT-safe.
 void savePly(const std::string& path, std::span<const NodeMesh> meshes, const MeshGrid& grid,
              const Pose& X_WV);
 

@@ -1,5 +1,5 @@
-// The node meshes as one indexed surface. Vertices of different leaves are the same when they lie on the same
-// integer point of the grid: exact, no tolerance. Not RT-safe; thread-safe.
+// The node meshes become one indexed surface. Vertices of different leaves are the same when they lie on the
+// same integer point of the grid, which is exact and needs no tolerance. Not RT-safe; thread-safe.
 #pragma once
 
 #include <array>

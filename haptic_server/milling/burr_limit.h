@@ -1,4 +1,4 @@
-// How much density a burr leaves: the limit of a voxel by its distance from the burr's centre. RT-safe.
+// A burr leaves so much density: the limit of a voxel by its distance from the burr's centre. All is RT-safe.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ enum class MillingShape : uint8_t {
     kSubVoxel,
 };
 
-// Limit for one burr, one direction (-1 removes, +1 adds) and one shape.
+// This is the limit for one burr, one direction (-1 removes, +1 adds) and one shape.
 //
 // Between voxels the distance from a sphere of radius R is less than its linear interpolation, by
 // Σ h_i² t_i (1 - t_i) (1 - n_i²) / (2 R) along normal n at place t in a cell with edges h_i: at most h²/(8
@@ -49,7 +49,7 @@ class BurrLimit {
         core_squared_ = core * core;
     }
 
-    // Of burrs under two voxels in radius no more than of one of two.
+    // Burrs under two voxels in radius have no more of it than one of two.
     static double ampleSag(const VoxelVolume& volume, double burr_radius) noexcept {
         const double radius = std::max(burr_radius, 2 * volume.spacing().maxCoeff());
         return volume.spacing().squaredNorm() / (8 * radius);
@@ -58,7 +58,8 @@ class BurrLimit {
     // Voxels at this distance from the burr's centre or farther have no limit; m.
     double reach() const noexcept { return reach_; }
 
-    // For the kernels: the limit in a plane of voxels. From the burr's centre to the plane's first voxel: m.
+    // This is the limit in a plane of voxels, as the kernels want it. to_first leads from the burr's centre
+    // to the plane's first voxel, in m.
     BurrPlane plane(const Eigen::Vector3d& to_first, const Eigen::Vector3d& spacing,
                     int amount) const noexcept {
         return {.first_x = float(to_first.x()),

@@ -15,7 +15,7 @@ class CellFill {
   public:
     CellFill() : triangles_(cubeTriangles()) {}
 
-    // Share of the cell, 0 .. 1.
+    // This share of the cell is bone, 0 .. 1.
     double operator()(const CellCorners& corners) const noexcept {
         unsigned inside = 0;
         for (unsigned c = 0; c < 8; ++c) inside |= unsigned(corners.excess[c] >= 0) << c;
@@ -34,7 +34,7 @@ class CellFill {
     }
 
   private:
-    // Share of the way from one density to the other, of which one is inside.
+    // The surface lies at this share of the way from one density to the other, of which one is inside.
     static double share(double from, double to) noexcept { return from / (from - to); }
     static Eigen::Vector3d crossing(const CellCorners& corners, int edge) noexcept {
         const unsigned low = kCubeEdges[size_t(edge)].low_corner, axis = kCubeEdges[size_t(edge)].axis;
@@ -42,7 +42,7 @@ class CellFill {
         place[axis] = share(double(corners.excess[low]), double(corners.excess[low | 1u << axis]));
         return place;
     }
-    // Area of bone on the face z = 1: each inside corner or run of such cut off by itself.
+    // So much of the face z = 1 is bone; each inside corner, or run of such, is cut off by itself.
     static double topFace(const CellCorners& corners, unsigned inside) noexcept {
         constexpr unsigned kAround[4] = {0, 1, 3, 2};
         if (inside == 0xf) return 1;

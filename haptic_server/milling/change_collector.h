@@ -16,8 +16,8 @@ class ChangeCollector {
   public:
     static constexpr int kAllParts = -1;
 
-    // Room for changes in any box of so many voxels. A tick makes the surface of at most `most_cells` anew,
-    // but for the first part that it changes, however large that is.
+    // There is room for changes in any box of so many voxels. A tick makes the surface of at most
+    // `most_cells` anew, but for the first part that it changes, however large that is.
     ChangeCollector(const LeafLattice& lattice, const Eigen::Vector3i& most_voxels, size_t most_cells)
         : changes_(lattice, most_voxels), most_cells_(most_cells) {}
 
@@ -29,8 +29,8 @@ class ChangeCollector {
     void collect(const LeafLattice& lattice, const IndexBox& box, IsWanted&& is_wanted,
                  CollectLeaf&& collect_leaf, MillingResult& result) noexcept;
 
-    // The rows of one part: first beginPart(), then ChangedRuns::add() for each row that changes, and
-    // takePart().
+    // The rows of one part are collected by beginPart(), ChangedRuns::add() for each row that changes,
+    // and takePart().
     ChangedRuns& beginPart() noexcept {
         part_begin_ = changes_.mark();
         return changes_;
@@ -42,12 +42,12 @@ class ChangeCollector {
                   MillingResult& of_leaf) noexcept;
 
     bool isEmpty() const noexcept { return changes_.isEmpty(); }
-    // As ChangedRuns::write().
+    // This does what ChangedRuns::write() does.
     bool write(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell, int direction) noexcept {
         return changes_.write(volume, lattice, shell, direction);
     }
 
-    // What waits is given up.
+    // Gives up what waits.
     void forgetTurn() noexcept { next_leaf_ = kNoLeaf; }
 
   private:

@@ -1,4 +1,4 @@
-// What one tick's milling did to the bone.
+// This is what one tick's milling did to the bone.
 #pragma once
 
 #include <cstdint>

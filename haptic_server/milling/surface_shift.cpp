@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-// Of the slope of a ramp from air, or from full density, to the iso-value in one voxel: flatter ones count as
-// this, so that a surface on a plateau moves on.
+// Slopes flatter than this share of that of a ramp from air, or from full density, to the iso-value in one
+// voxel count as this, so that a surface on a plateau moves on.
 constexpr double kLeastSlope = 0.02;
 constexpr double kGoldenRatio = 0.6180339887498949;  // spreads the roundings evenly
 constexpr int kUnclampedRounds = 3;                  // of corners that come to rest at zero
@@ -27,7 +27,7 @@ int coarsestFactor(const PointShell& shell) noexcept {
     return factor;
 }
 
-// Beyond the burr: a block, its kernel, the cells around.
+// Beyond the burr there is room for a block, its kernel and the cells around.
 int paddingOf(int factor) noexcept {
     return 2 * factor + 2;
 }
@@ -38,7 +38,7 @@ Vector3i scratchSize(const BoneModel& bone, double reach) noexcept {
     return voxels.min((bone.volume.dims().array() + 2).cast<double>()).cast<int>().matrix();
 }
 
-// That all corners of a cell must fall by, so that the density at `t` falls by `excess`: those that come to
+// All corners of a cell must fall by this, so that the density at `t` falls by `excess`. Those that come to
 // rest at zero leave the rest to the others.
 float equalDrop(const CellCorners& corners, float iso, const Vector3f& t, float excess) noexcept {
     float drop = excess;
@@ -198,7 +198,7 @@ void SurfaceShift::touch(const Vector3i& voxel) noexcept {
     touched_.include(voxel);
 }
 
-// From the first to the last of the row's touched voxels within low .. high.
+// The span reaches from the first to the last of the row's touched voxels within low .. high.
 SurfaceShift::Span SurfaceShift::touchedIn(size_t row, int low, int high) const noexcept {
     const auto isTouched = [&](int voxel) {
         const int i = voxel - first_.x();
@@ -298,7 +298,7 @@ void SurfaceShift::collect(BoneModel& bone, MillingResult& result) noexcept {
         result);
 }
 
-// The whole leaf is one part. As ChangeCollector::takePart().
+// The whole leaf is one part. Returns what ChangeCollector::takePart() says.
 bool SurfaceShift::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, MillingResult& of_leaf) noexcept {
     ChangedRuns& rows = collector_.beginPart();
     MillingResult of_part;

@@ -1,5 +1,5 @@
-// Moves the bone's surface into the bone by a given energy at each contact: a level-set shift of the
-// densities.
+// Moves the bone's surface into the bone by a given energy at each contact: a level-set shift of
+// the densities.
 //
 // The energies of all contacts on one patch of the shell (point b, area a) make its recession s = E / (u a).
 // To bring the iso-surface from b to b' = b - s n, the densities around b' must fall by the excess over the
@@ -26,14 +26,14 @@ namespace bonemill {
 
 class SurfaceShift {
   public:
-    // Of the thinnest voxel: the surface moves no farther in a tick, times `ticks` of apply().
+    // The surface moves no farther than this share of the thinnest voxel in a tick, times `ticks` of apply().
     static constexpr double kMostShift = 0.25;
 
-    // Room for contacts no farther from the burr's centre than `largest_reach`, m. most_cells as
-    // MillingConfig.
+    // There is room for contacts no farther from the burr's centre than `largest_reach`, in m. most_cells is
+    // that of MillingConfig.
     SurfaceShift(const BoneModel& bone, double largest_reach, size_t most_contacts, size_t most_cells);
 
-    // A new tick with the burr's centre here.
+    // Begins a new tick with the burr's centre here.
     void begin(const BoneModel& bone, const Eigen::Vector3d& p_VB) noexcept;
     // Energy to be spent at one contact of this patch, J, and its depth, m: the patch
     // recedes no farther than its deepest contact reaches.
@@ -49,7 +49,7 @@ class SurfaceShift {
         float energy = 0, depth = 0;  // of the patch whose block begins at the cell
         float fill = 0;               // of the cell, before
     };
-    // Of one patch: by how much the densities around a place shall fall.
+    // A patch wishes that the densities around a place fall by so much.
     struct Wish {
         Eigen::Vector3f at;  // voxel steps
         float drop;          // counts
@@ -66,7 +66,7 @@ class SurfaceShift {
         return size_t(local.x()) +
                size_t(size_.x()) * (size_t(local.y()) + size_t(size_.y()) * size_t(local.z()));
     }
-    // Of row_words_ words.
+    // The row begins at this word; it has row_words_ words.
     size_t row(int j, int k) const noexcept {
         return size_t(row_words_) * (size_t(j - first_.y()) + size_t(size_.y()) * size_t(k - first_.z()));
     }

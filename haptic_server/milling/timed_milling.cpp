@@ -8,7 +8,7 @@ namespace {
 
 constexpr int64_t kCellsLookedAtPerWorkedOn = 8;  // so much quicker
 
-// Voxels of the box around a sphere, writable ones only; empty if the sphere is elsewhere.
+// These are the writable voxels of the box around a sphere; the box is empty if the sphere is elsewhere.
 IndexBox boxAround(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, double radius) noexcept {
     const Eigen::Array3d spacing = volume.spacing().array();
     const Eigen::Array3d dims = volume.dims().cast<double>().array();
@@ -17,7 +17,7 @@ IndexBox boxAround(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, doubl
     return {low.ceil().cast<int>().matrix(), high.floor().cast<int>().matrix()};
 }
 
-// Of the nearest point of a box of voxels.
+// The nearest point of a box of voxels has this squared distance.
 double squaredDistance(const VoxelVolume& volume, const IndexBox& voxels,
                        const Eigen::Vector3d& p_VB) noexcept {
     const Eigen::Array3d low = volume.spacing().array() * voxels.min.cast<double>().array() - p_VB.array();
@@ -25,7 +25,7 @@ double squaredDistance(const VoxelVolume& volume, const IndexBox& voxels,
     return low.max(high).max(0.0).matrix().squaredNorm();
 }
 
-// That a burr of this radius can change.
+// A burr of this radius can change so many voxels per axis.
 Eigen::Vector3i mostVoxels(const VoxelVolume& volume, double burr_radius) noexcept {
     const auto reach = [&](int direction) {
         return BurrLimit(volume, burr_radius, MillingShape::kSubVoxel, direction).reach();
@@ -93,7 +93,7 @@ int TimedMilling::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int f
     return left;
 }
 
-// As ChangeCollector::takePart().
+// Returns what ChangeCollector::takePart() says.
 bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t offset, const Stroke& stroke,
                                MillingResult& of_leaf) noexcept {
     ChangedRuns& rows = collector_.beginPart();

@@ -17,14 +17,15 @@ struct MillingConfig {
         12750 * kDensityCountsPerUnit;  // density counts/s; default: from full to nothing in 20 ms
     double addition_rate = 12750 * kDensityCountsPerUnit;  // density counts/s
     MillingShape shape = MillingShape::kVoxelCentres;
-    // In a tick; bricks for which there is no time wait for the next one, in turn.
+    // A tick makes the surface of so many cells anew; bricks for which there is no time wait for the next
+    // one, in turn.
     size_t most_cells = 50'000'000;  // whose surface is made anew; eight that are only looked at count as one
 };
 
 // Owns the scratch memory of the burr in use. Construction allocates; apply() is RT-safe (tick thread only).
 class TimedMilling {
   public:
-    // Room for burrs up to `largest_burr_radius`, which is the one in use at first.
+    // There is room for burrs up to `largest_burr_radius`, which is the one in use at first.
     TimedMilling(const MillingConfig& config, const VoxelVolume& volume, const LeafLattice& lattice,
                  double largest_burr_radius);
 
@@ -33,7 +34,7 @@ class TimedMilling {
     MillingResult apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
                         const Eigen::Vector3d& p_VB, int direction, double dt) noexcept;
 
-    // From the next apply() on.
+    // These take effect with the next apply().
     void setShape(MillingShape shape) noexcept { config_.shape = shape; }
     void setBurrRadius(double burr_radius) noexcept {
         const double radius = std::min(burr_radius, largest_burr_radius_);
@@ -43,7 +44,7 @@ class TimedMilling {
     }
 
   private:
-    // What one tick mills.
+    // A stroke is what one tick mills.
     struct Stroke {
         Eigen::Vector3d p_VB;
         int direction, amount;

@@ -1,5 +1,5 @@
-// Where a tick removed or added material, on its way to the mesher: trivially copyable, goes through a
-// bounded ring.
+// A cut says where a tick removed or added material. It is trivially copyable and goes to the mesher through
+// a bounded ring.
 #pragma once
 
 #include <cstdint>

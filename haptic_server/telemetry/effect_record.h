@@ -1,5 +1,5 @@
-// What the effects of one tick tell the rest of the server; part of TickRecord. Zero without an effect that
-// says so; the burr's force and power without one that reads contacts.
+// This is what the effects of one tick tell the rest of the server, as a part of TickRecord. It is zero
+// without an effect that says so; the burr's force and power are zero without one that reads contacts.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace bonemill {
 
-// Bit mask: what the trainee should know of a tick.
+// These bits are what the trainee should know of a tick.
 enum TickEvent : uint32_t {
     kEventNone = 0,
     kEventSpindleStalled = 1u << 0,

@@ -1,5 +1,5 @@
-// Which parts of the effect record a scene's effects have something to say in. What is not recorded is
-// neither written, hashed, counted nor published.
+// These are the parts of the effect record in which a scene's effects have something to say. What is not
+// recorded is neither written, hashed, counted nor published.
 #pragma once
 
 namespace bonemill {

@@ -1,4 +1,5 @@
-// What one tick tells the rest of the server: trivially copyable, goes through a bounded ring.
+// This is what one tick tells the rest of the server. It is trivially copyable and goes through a
+// bounded ring.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 
 namespace bonemill {
 
-// Latched reasons why a tick was not what it should be (bit mask).
+// These bits are the reasons why a tick was not what it should be; they are latched.
 enum TickFault : uint32_t {
     kFaultNone = 0,
     kFaultOverrun = 1u << 0,        // the tick's own work took longer than its period

@@ -1,5 +1,5 @@
-// The part of the tool that cuts: a solid of revolution about the tool's axis (frame T: centre at the origin,
-// +y to the hand), and how it is driven.
+// The burr is the part of the tool that cuts: a solid of revolution about the tool's axis (frame T: centre at
+// the origin, +y to the hand), and how it is driven.
 #pragma once
 
 #include <algorithm>
@@ -22,18 +22,18 @@ struct Burr {
     double friction = 0.5;  // μ_c: tangential force per normal force while it cuts
     double speed = 0;       // rad/s about T's +y, of a full pedal; negative: reversed
 
-    // Of the farthest point from T's origin, m.
+    // The farthest point of the burr is so far from T's origin, in m.
     double reach() const noexcept {
         return kind == BurrKind::kBall ? radius
                                        : Eigen::Vector2d(std::max(radius, tip_radius), length / 2).norm();
     }
-    // Signed distance, m; negative inside. RT-safe.
+    // The signed distance is in m, negative inside. RT-safe.
     double signedDistance(const Eigen::Vector3d& p_T) const noexcept;
 };
 
 namespace burr_profile {
 
-// In the half-plane through the axis: off it and along it.
+// The points lie in the half-plane through the axis: off it and along it.
 inline double toSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
                         const Eigen::Vector2d& b) noexcept {
     const Eigen::Vector2d way = b - a;

@@ -3,7 +3,7 @@
 namespace bonemill {
 namespace {
 
-// Far from the grid: at least the way to the box outside of which nothing is inside the tool.
+// Far from the grid the bound is at least the way to the box outside of which nothing is inside the tool.
 double boundOutside(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& p_T) noexcept {
     return box.isEmpty() ? double(SdfGrid::kOutsideDistance) : box.exteriorDistance(p_T);
 }

@@ -10,7 +10,7 @@ namespace bonemill {
 // differs from 1 by the grid's error.
 class GridField final : public ToolField {
   public:
-    // `thinnest_radius`: m, of the tool's thinnest part.
+    // `thinnest_radius` is that of the tool's thinnest part, in m.
     GridField(SdfGrid grid, double thinnest_radius)
         : ToolField(grid.box(), thinnest_radius), grid_(std::move(grid)) {}
 

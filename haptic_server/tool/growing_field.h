@@ -1,5 +1,5 @@
-// A tool that is smaller all around than it will be: its distances raised by an offset. Tick thread only,
-// RT-safe.
+// This is a tool that is smaller all around than it will be: its distances are raised by an offset. Tick
+// thread only, RT-safe.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class GrowingField final : public ToolField {
         whole_ = &whole;
         makeThinner();
     }
-    // m, at least 0: how much smaller than the whole.
+    // The tool is so much smaller than the whole, in m; at least 0.
     void setOffset(double offset) noexcept {
         offset_ = std::max(0.0, offset);
         makeThinner();

@@ -1,5 +1,5 @@
-// The tool as the contact loop sees it: signed distances at the nodes of a regular grid, interpolated between
-// them.
+// The contact loop sees the tool as signed distances at the nodes of a regular grid, interpolated
+// between them.
 //
 // Frame T (docs/frames.md): origin at the burr centre, +y along the shaft towards the hand. Units m; negative
 // inside. Node (i, j, k) lies at origin + spacing·(i, j, k). Outside of the grid there is no tool and hence
@@ -17,12 +17,12 @@ namespace bonemill {
 
 class SdfGrid {
   public:
-    // What a query outside of the grid returns: farther than any contact distance (m).
+    // A query outside of the grid returns this, which is farther than any contact distance (m).
     static constexpr float kOutsideDistance = 1e9f;
 
-    // `values`: one distance per node, x fastest. Throws std::invalid_argument unless there are at least 2
-    // nodes per axis, one finite value for each, a positive spacing and a finite origin. Allocates; not
-    // RT-safe.
+    // `values`: one distance per node, x fastest. Throws std::invalid_argument unless there are at least
+    // 2 nodes per axis, one finite value for each, a positive spacing and a finite origin. Allocates;
+    // not RT-safe.
     SdfGrid(const Eigen::Vector3i& nodes, double spacing, const Eigen::Vector3d& origin_T,
             std::vector<float> values);
 
@@ -35,7 +35,7 @@ class SdfGrid {
         return origin_T_ + spacing_ * Eigen::Vector3d(i, j, k);
     }
 
-    // From the first node to the last.
+    // The box reaches from the first node to the last.
     const Eigen::AlignedBox3d& gridBox() const noexcept { return grid_box_; }
     // distance() is nowhere negative outside of this box: the nodes inside the tool, grown by one spacing and
     // cut at the grid's end. Empty if no node is inside.
@@ -43,17 +43,17 @@ class SdfGrid {
 
     bool contains(const Eigen::Vector3d& p_T) const noexcept;
 
-    // Trilinear distance; kOutsideDistance outside of the grid.
+    // The distance is trilinear, and kOutsideDistance outside of the grid.
     float distance(const Eigen::Vector3d& p_T) const noexcept;
 
-    // The same without rounding; p_T inside of the grid.
+    // This is the same without rounding; p_T is inside of the grid.
     double distanceExactly(const Eigen::Vector3d& p_T) const noexcept;
 
-    // Exact gradient of distance(), one-sided (from the higher cell) on a cell's face; zero outside of the
-    // grid.
+    // Exact gradient of distance(), one-sided (from the higher cell) on a cell's face; zero outside of
+    // the grid.
     Eigen::Vector3d gradient(const Eigen::Vector3d& p_T) const noexcept;
 
-    // The contact loop's distance(): single precision throughout.
+    // This is the contact loop's distance(), in single precision throughout.
     float distanceAt(const Eigen::Vector3f& p_T) const noexcept {
         Eigen::Vector3f unused;
         return sampleAt(p_T, unused);

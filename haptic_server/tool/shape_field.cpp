@@ -19,7 +19,7 @@ Eigen::AlignedBox3d boxOf(const std::vector<ToolShape>& shapes) {
     return box;
 }
 
-// Of a flat disc half of its height.
+// A flat disc counts by half of its height.
 double radiusOf(const ToolShape& shape) {
     if (const auto* cone = std::get_if<ConeShape>(&shape))
         return std::min(std::max(cone->from_radius, cone->to_radius), (cone->to - cone->from).norm() / 2);
@@ -36,7 +36,8 @@ double thinnestOf(const std::vector<ToolShape>& shapes) {
     return thinnest;
 }
 
-// Nearest point of one profile segment: how far, and the outward direction in the half-plane.
+// This is the nearest point of one profile segment: how far it is, and the outward direction in
+// the half-plane.
 struct ProfileHit {
     double distance;
     Vector2d gradient;
@@ -102,7 +103,7 @@ void ShapeField::distances(const PointBatch<double>& points_T, double* out) cons
     nearest(points_T, out);
 }
 
-// Where the solid is nearer than what `out` holds, it replaces it.
+// The solid replaces what `out` holds where it is nearer.
 template <class Scalar>
 void ShapeField::sampleNearest(const PointBatch<Scalar>& points_T, SampleBatch<Scalar>& out) const noexcept {
     std::fill_n(out.distance, points_T.count, std::numeric_limits<Scalar>::max());

@@ -9,11 +9,11 @@
 
 namespace bonemill {
 
-// Outside of the tool the distance is exact; inside a union it is the depth below the nearest shape's own
-// surface.
+// Outside of the tool the distance is exact; inside a union it is the depth below the nearest shape's
+// own surface.
 class ShapeField final : public ToolField {
   public:
-    // At least one checked shape; throws std::invalid_argument otherwise. Allocates.
+    // There must be at least one checked shape; throws std::invalid_argument otherwise. Allocates.
     explicit ShapeField(const std::vector<ToolShape>& shapes);
 
     void distances(const PointBatch<float>& points_T, float* out) const noexcept override;
@@ -26,7 +26,7 @@ class ShapeField final : public ToolField {
     double testCost() const noexcept override;
 
   private:
-    // Round: all points within `radius[0]` of the segment. Else a truncated cone with flat ends.
+    // A round one is all points within `radius[0]` of the segment, any other a truncated cone with flat ends.
     struct Solid {
         bool is_round;
         Eigen::Vector3d from, axis, normal;  // axis: unit; normal: unit, any to the axis

@@ -1,12 +1,13 @@
-// The tool as the contact models see it: signed distances φ in frame T (m, negative inside), with their
-// gradient where a point touches. All queries are const, noexcept and RT-safe; any thread.
+// The contact models see the tool as signed distances φ in frame T (m, negative inside), with their gradient
+// where a point touches. All queries are const, noexcept and RT-safe; any thread.
 #pragma once
 
 #include "common/geometry/pose.h"
 
 namespace bonemill {
 
-// Points of one evaluation, in T. Structure of arrays, so that the compiler can use vector instructions.
+// These are the points of one evaluation, in T, as structure of arrays, so that the compiler can use
+// vector instructions.
 template <class Scalar>
 struct PointBatch {
     static constexpr int kCapacity = 64;
@@ -35,19 +36,19 @@ class ToolField {
   public:
     virtual ~ToolField() = default;
 
-    // out[0 .. count-1]: the distance, or where it is not known (far from the tool) a lower bound of it,
-    // positive.
+    // Writes to out[0 .. count-1] the distance, or where it is not known (far from the tool) a positive lower
+    // bound of it.
     virtual void distances(const PointBatch<float>& points_T, float* out) const noexcept = 0;
     virtual void distances(const PointBatch<double>& points_T, double* out) const noexcept = 0;
-    // The same distances with their gradients.
+    // Writes the same distances with their gradients.
     virtual void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept = 0;
     virtual void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept = 0;
-    // Distance and gradient at one point, double precision.
+    // Returns distance and gradient at one point, in double precision.
     virtual ToolSample sample(const Eigen::Vector3d& p_T) const noexcept = 0;
-    // m: distances() and sample() of a batch are nowhere farther from the distance than this, but for lower
-    // bounds.
+    // In m: distances() and sample() of a batch are nowhere farther from the distance than this, but for
+    // lower bounds.
     virtual double distanceError() const noexcept = 0;
-    // Never above the distance; anywhere.
+    // The bound is nowhere above the distance.
     virtual double distanceBound(const Eigen::Vector3d& p_T) const noexcept = 0;
 
     // How long a point's distance takes, in those of a tool of two round solids.
@@ -55,10 +56,10 @@ class ToolField {
 
     // The distance is nowhere negative outside.
     const Eigen::AlignedBox3d& box() const noexcept { return box_; }
-    // Radius of the thinnest part as far as known, m: deeper than that a point may lie nearer to the far
-    // side.
+    // Radius of the thinnest part as far as known, m: deeper than that a point may lie nearer to the
+    // far side.
     double thinnestRadius() const noexcept { return thinnest_radius_; }
-    // Largest distance of box() from T's origin.
+    // This is the largest distance of box() from T's origin.
     double reach() const noexcept { return reach_; }
 
   protected:

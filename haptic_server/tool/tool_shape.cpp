@@ -27,7 +27,7 @@ double distanceTo(const CapsuleShape& s, const Vector3d& p) {
     return (p - s.from - t * axis).norm() - s.radius;
 }
 
-// Profile: the trapezoid between the axis, the two ends and the side.
+// The profile is the trapezoid between the axis, the two ends and the side.
 double distanceTo(const ConeShape& s, const Vector3d& p) {
     const double length = (s.to - s.from).norm();
     const Vector3d axis = (s.to - s.from) / length;

@@ -36,7 +36,7 @@ using ToolShape = std::variant<SphereShape, CapsuleShape, CylinderShape, ConeSha
 
 double signedDistance(const ToolShape& shape, const Eigen::Vector3d& p_T);
 
-// The tight axis-parallel box.
+// This is the tight axis-parallel box.
 Eigen::AlignedBox3d boundingBox(const ToolShape& shape);
 
 }  // namespace bonemill

@@ -13,7 +13,8 @@ namespace bonemill {
 
 class BoneProperties {
   public:
-    // Of the volume as it is now. material(voxel) is asked for once per voxel. Allocates; start-up only.
+    // The properties are those of the volume as it is now. material(voxel) is asked for once per voxel.
+    // Allocates; start-up only.
     template <class MaterialOf>
     BoneProperties(const VoxelVolume& scanned, MaterialOf&& material);
 
@@ -34,8 +35,8 @@ class BoneProperties {
         map_.forEachCorner(cell, [&](size_t place) { visit(density_[place], material_[place]); });
     }
 
-    // For those who keep something of their own per voxel: its place among placeCount(), or
-    // BrickMap::kNowhere.
+    // Those who keep something of their own per voxel find its place among placeCount() here,
+    // or BrickMap::kNowhere.
     size_t placeOf(const Eigen::Vector3i& voxel) const noexcept { return map_.find(voxel); }
     size_t placeCount() const noexcept { return map_.placeCount(); }
     Density originalAt(size_t place) const noexcept { return density_[place]; }

@@ -1,5 +1,5 @@
-// Where in a pool the bricks of a sparse box of voxels lie. Reading is RT-safe, any thread; addBrick()
-// allocates nothing but must not be called beside readers.
+// This map says where in a pool the bricks of a sparse box of voxels lie. Reading is RT-safe, from any
+// thread; addBrick() allocates nothing but must not be called beside readers.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ class BrickMap {
     static constexpr size_t kBrick = size_t(kEdge) * kEdge * kEdge;  // places of a brick
     static constexpr size_t kNowhere = ~size_t(0);
 
-    // Of voxels 0 .. dims-1, none of which has a place. Allocates.
+    // The map is of voxels 0 .. dims-1, none of which has a place. Allocates.
     explicit BrickMap(const Eigen::Vector3i& dims)
         : dims_(dims), bricks_((dims.array() + kEdge - 1) / kEdge), slots_(size_t(bricks_.prod()), kNone) {}
 

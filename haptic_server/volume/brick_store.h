@@ -34,8 +34,9 @@ class BrickStore {
     }
     IndexBox allBricks() const noexcept { return {Eigen::Vector3i::Zero(), bricks_.array() - 1}; }
 
-    // In data(); the voxels from -kBrickLow to +kBrickHigh of the brick's first and last one lie around it.
-    // RT-safe, any thread; the brick that it leads to stays where it is until it is opened.
+    // The offset is one in data(); the voxels from -kBrickLow to +kBrickHigh of the brick's first and
+    // last one lie around it. RT-safe, any thread; the brick that it leads to stays where it is until it
+    // is opened.
     size_t offset(int u, int v, int w) const noexcept {
         constexpr int kInBrick = kBrickCells - 1;
         return slot(brickOf(u, v, w)) * kBrickSize + size_t((u & kInBrick) + kBrickLow) +
@@ -46,7 +47,7 @@ class BrickStore {
     Density* data() noexcept { return pool_.data(); }
     const uint32_t* slots() const noexcept { return slots_.data(); }
 
-    // Of the first voxel that the brick holds, not of its first cell.
+    // The contents begin with the first voxel that the brick holds, not with that of its first cell.
     Density* contents(BrickId brick) noexcept { return pool_.data() + size_t(slot(brick)) * kBrickSize; }
     const Density* contents(BrickId brick) const noexcept {
         return pool_.data() + size_t(slot(brick)) * kBrickSize;
@@ -62,7 +63,7 @@ class BrickStore {
     size_t spareCount() const noexcept { return pool_.size() / kBrickSize - used_; }
     size_t ownCount() const noexcept { return used_ - kSharedSlots; }
     size_t sharedCount() const noexcept { return brickCount() - ownCount(); }
-    // At least so many spare ones, all their pages touched. Allocates; moves the data.
+    // Makes at least so many spare ones, all their pages touched. Allocates and moves the data.
     void makeSpare(size_t count);
     void dropSpare();
     BrickStore withoutSpare() const;
@@ -71,7 +72,7 @@ class BrickStore {
     // look meanwhile.
     void open(BrickId brick) noexcept;
 
-    // To fill brick after brick: what was written to nextSpare(), which needs a spare one, becomes the
+    // This fills brick after brick: what was written to nextSpare(), which needs a spare one, becomes the
     // brick's; it is shared if it can be.
     Density* nextSpare() noexcept { return pool_.data() + used_ * kBrickSize; }
     void adoptNextSpare(BrickId brick) noexcept;

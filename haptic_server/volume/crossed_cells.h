@@ -14,7 +14,7 @@ namespace bonemill {
 // RT-safe but for the construction, as far as the callers' functions are; one thread at a time.
 class CrossedCells {
   public:
-    // For boxes of up to `most_cells` per axis.
+    // There is room for boxes of up to `most_cells` per axis.
     explicit CrossedCells(const Eigen::Vector3i& most_cells)
         : sides_(rowSize(most_cells.x()) * size_t(most_cells.y())) {}
 

@@ -29,8 +29,8 @@ class DistanceField {
 
     double reach() const noexcept { return reach_; }
     DistanceSample at(const Eigen::Vector3d& p_V) const noexcept;
-    // By quadratic B-splines: with a gradient that has no jumps. Exact beside a plane; beside a ball of
-    // radius R it is h²/4R farther, h a voxel's size.
+    // Interpolates by quadratic B-splines, with a gradient that has no jumps. This is exact beside a plane;
+    // beside a ball of radius R the distance is h²/4R farther, h a voxel's size.
     DistanceSample smoothAt(const Eigen::Vector3d& p_V) const noexcept;
     size_t bytes() const noexcept { return distance_.size() * (sizeof(float) + sizeof(MaterialId)); }
 

@@ -1,4 +1,4 @@
-// The octree over the volume: a lattice of leaves, min/max densities above them, and a version per leaf.
+// The octree over the volume is a lattice of leaves, min/max densities above them, and a version per leaf.
 //
 // Cells: cell (i, j, k) is the cube between voxels (i, j, k) and (i+1, j+1, k+1), for indices -1 .. dims-1.
 // Each leaf owns leaf_cells cells per axis (fewer at the far border); a leaf's voxels are the corners of its
@@ -23,10 +23,10 @@ struct DensityRange {
 
 class LeafLattice {
   public:
-    // leaf_cells: cells per axis of one leaf, each >= 1. Reads the volume once; allocates.
+    // A leaf has leaf_cells cells per axis, each >= 1. Reads the volume once; allocates.
     LeafLattice(const VoxelVolume& volume, const Eigen::Vector3i& leaf_cells);
 
-    // The thesis' way: 2^depth leaves per axis.
+    // The thesis' way gives 2^depth leaves per axis.
     static Eigen::Vector3i leafCellsOfDepth(const VolumeGeometry& geometry, int depth);
 
     const Eigen::Vector3i& leafCells() const noexcept { return leaf_cells_; }
@@ -53,8 +53,8 @@ class LeafLattice {
     // fell; that is quicker.
     void refreshRanges(const VoxelVolume& volume, const IndexBox& changed_voxels, int direction = 0) noexcept;
 
-    // Leaves whose mesh or point-shell can change when these voxels do: those within kInfluence of their
-    // cells.
+    // Leaves whose mesh or point-shell can change when these voxels do: those within kInfluence of
+    // their cells.
     IndexBox leavesOfWrite(const IndexBox& changed_voxels) const noexcept {
         return leavesOfCells(
             {changed_voxels.min.array() - kInfluence, changed_voxels.max.array() + (kInfluence - 1)});
@@ -69,8 +69,8 @@ class LeafLattice {
     // Any thread. acquire: pairs with endWrite's release, so voxels read after it are at least that new.
     uint32_t version(LeafId id) const noexcept { return versions_[id].load(std::memory_order_acquire); }
 
-    // Tick thread only (the mesher computes its own from the voxels). Does the density range hold the
-    // iso-value?
+    // Tick thread only (the mesher computes its own from the voxels). Does the density range hold
+    // the iso-value?
     bool mayHoldSurface(LeafId id, Density iso) const noexcept {
         const DensityRange& r = levels_[0].range[id];
         return r.min < iso && r.max >= iso;

@@ -22,7 +22,7 @@ int edgeBetween(int corner_a, int corner_b) {
     throw std::logic_error("corners without a common edge");
 }
 
-// Corners of a face, counter-clockwise seen from outside the cell.
+// These are the corners of a face, counter-clockwise as seen from outside the cell.
 std::array<int, 4> faceCorners(int axis, int side) {
     const int u = 1 << (axis + 1) % 3;
     const int v = 1 << (axis + 2) % 3;

@@ -4,10 +4,9 @@
 // cell the crossed edges are joined by segments; the segments of a cell form closed loops; each loop is
 // triangulated.
 // - A face with two diagonal inside corners is ambiguous: its inside corners are always cut off one by one.
-// The rule
-//   sees only the face, so two cells that share it agree and the surface has no holes.
+//   The rule sees only the face, so two cells that share it agree and the surface has no holes.
 // - No diagonal of a triangulation lies in a face, so an edge of the surface never has more than two
-// triangles.
+//   triangles.
 //
 // Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1). Edge e runs along axis e / 4; see kCubeEdges.
 #pragma once

@@ -16,7 +16,8 @@ struct MaterialProperties {
     bool is_protected = false;
 };
 
-// By MaterialId: the first is for bone of no material. Empty: the scene has no materials.
+// The table is indexed by MaterialId; the first entry is for bone of no material. It is empty if the scene
+// has no materials.
 using MaterialTable = std::vector<MaterialProperties>;
 
 }  // namespace bonemill

@@ -31,7 +31,7 @@ class RawValues {
     const ValueRange& range() const noexcept { return range_; }
     bool operator==(const RawValues& other) const noexcept;  // of the values, not of their type
 
-    // Before the first append: this many will come, so that the first ones need not be moved.
+    // Says before the first append how many will come, so that the first ones need not be moved.
     void reserve(size_t count) { reserved_ = count; }
     // T is any type of Samples. Integers keep their type and floats that are whole numbers become integers,
     // until a sample comes that needs more.
@@ -40,7 +40,7 @@ class RawValues {
     // Takes integers over without a copy if they are the first.
     template <class T>
     void append(std::vector<T> samples);
-    // In every group of `count` blocks of `stride` values, the last block becomes the first.
+    // Makes the last block the first in every group of `count` blocks of `stride` values.
     void reverseBlocks(size_t stride, size_t count) noexcept;
     // Gives back the memory of the values begin .. end - 1, which nobody may read any more.
     void forget(size_t begin, size_t end) noexcept;

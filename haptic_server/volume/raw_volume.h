@@ -1,4 +1,4 @@
-// A scanned volume as it came from the file: values and where they lie in the patient.
+// This is a scanned volume as it came from the file: the values, and where they lie in the patient.
 #pragma once
 
 #include <cstddef>

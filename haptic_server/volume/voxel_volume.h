@@ -1,14 +1,14 @@
-// The bone: densities of all voxels, shared between the tick (only writer) and the mesher (reader).
+// The bone is the densities of all voxels, shared between the tick (only writer) and the mesher (reader).
 //
 // Voxel (i, j, k) of frame I lies at V-position spacing ∘ (i, j, k) and W-position X_WV * that
 // (docs/frames.md). A border of one voxel of air surrounds the data: indices -1 .. dims are readable, 0 ..
 // dims-1 writable, so every surface is closed. Density 0..255 of the thesis is stored as 16 bit, 257 counts
 // per unit.
 //
-// Cell (i, j, k) is the cube between voxels (i, j, k) and (i+1, j+1, k+1). The voxels are stored in bricks of
-// 16³ cells (brick_store.h): memory goes to what is neither all air nor all of the highest density. Each
-// brick has copies of its neighbours' nearest voxels, so that whatever is computed for a cell reads one brick
-// only.
+// Cell (i, j, k) is the cube between voxels (i, j, k) and (i+1, j+1, k+1). The voxels are stored in bricks
+// of 16³ cells (brick_store.h): memory goes to what is neither all air nor all of the highest density. Each
+// brick has copies of its neighbours' nearest voxels, so that whatever is computed for a cell reads one
+// brick only.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,8 @@ inline constexpr int kDensityCountsPerUnit = 257;  // 255 units = 65535 counts
 
 class VoxelVolume {
   public:
-    // Air everywhere. Allocates; not RT-safe. `iso` is the density of the bone surface (counts, > 0).
+    // The volume begins as air everywhere. Allocates; not RT-safe. `iso` is the density of the bone surface
+    // (counts, > 0).
     VoxelVolume(const VolumeGeometry& geometry, Density iso);
 
     const VolumeGeometry& geometry() const noexcept { return geometry_; }
@@ -33,8 +34,8 @@ class VoxelVolume {
     double voxelVolume() const noexcept { return geometry_.spacing.prod(); }  // m³
     const BrickStore& bricks() const noexcept { return bricks_; }
 
-    // Where a voxel lies in the memory; any index in -1 .. dims. From there, -kBrickLow .. kBrickHigh steps
-    // of 1, kStrideY and kStrideZ lead to the neighbours of the cell that starts at the voxel.
+    // A voxel lies here in the memory; any index in -1 .. dims is right. From there, -kBrickLow .. kBrickHigh
+    // steps of 1, kStrideY and kStrideZ lead to the neighbours of the cell that starts at the voxel.
     size_t offset(int i, int j, int k) const noexcept { return bricks_.offset(i + 1, j + 1, k + 1); }
     static constexpr size_t kStrideY = kBrickStrideY;
     static constexpr size_t kStrideZ = kBrickStrideZ;
@@ -63,10 +64,11 @@ class VoxelVolume {
     // its voxels lie at `offset` and the strides from there. RT-safe, any thread.
     template <class Visit>
     void forEachPart(const IndexBox& voxels, Visit&& visit) const noexcept;
-    // The same without copies: each part is what the brick itself owns of the box.
+    // This does the same without copies: each part is what the brick itself owns of the box.
     template <class Visit>
     void forEachOwnedPart(const IndexBox& voxels, Visit&& visit) const noexcept;
-    // Of all that is stored around this cell, if its brick has no memory of its own. RT-safe, any thread.
+    // This is the density of all that is stored around this cell, if its brick has no memory of its own.
+    // RT-safe, any thread.
     std::optional<Density> uniformDensity(const Eigen::Vector3i& cell) const noexcept;
 
     // `count` voxels along x. Owner only, RT-safe. There must be spare bricks for those that it opens: none
