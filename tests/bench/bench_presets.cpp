@@ -1,5 +1,5 @@
-// Cost of a tick on the thesis' tooth while milling a corridor, by preset, scaling factor and octree leaf
-// size.
+// Measures the cost of a tick on the thesis' tooth while milling a corridor, by preset, scaling factor and
+// octree leaf size.
 //
 // `haptic_bench presets`.
 //
@@ -37,7 +37,7 @@ constexpr Setting kSettings[] = {
 };
 constexpr int kRounds = 3;
 constexpr int kTicks = 6000;
-// Above a cusp of the phantom, and the middle of the tooth below it; upright tool.
+// The first is above a cusp of the phantom, the second the middle of the tooth below it; the tool is upright.
 const Pose kStart{{2.7e-3, -2.45e-3, 20.8e-3}, Eigen::Quaterniond(M_SQRT1_2, M_SQRT1_2, 0, 0)};
 const Eigen::Vector3d kEnd(2.7e-3, -2.45e-3, 12.2e-3);
 

@@ -33,7 +33,7 @@ VolumeGeometry toothGeometry() {
 // V is the phantom's frame, moved so that the crown lies in the grid.
 const Eigen::Vector3d kOrigin_W(-8.3e-3, -8.3e-3, 6e-3);
 
-// From the phantom's tissues around: an estimate of the distance that is right near the surface.
+// Estimates the distance from the phantom's tissues around; the estimate is right near the surface.
 double toothDistance(const Eigen::Vector3d& p_V) {
     constexpr double kStep = 1.6e-4;
     int inside = 0, all = 0;
@@ -45,7 +45,7 @@ double toothDistance(const Eigen::Vector3d& p_V) {
     return (0.5 - double(inside) / all) * 3 * kStep;
 }
 
-// Made once: the phantom is slow.
+// It is made once, because the phantom is slow.
 const VoxelVolume& tooth() {
     static const VoxelVolume kTooth = MillingSession::makeVolume(toothGeometry(), toothDistance);
     return kTooth;
@@ -70,7 +70,7 @@ struct Stage {
         scene.settings().show_force = false;
         session.show(scene);
     }
-    // A groove over the front of the crown.
+    // Mills a groove over the front of the crown.
     void mill(const BurrRun& run) {
         const Pose start = test::toolAt({6.2e-3, 3.3e-3, 10.6e-3}, kShaft);
         Pose from = start, to = start;
@@ -134,7 +134,7 @@ void drawIrrigation(const std::filesystem::path& folder) {
     save(stage, folder / "effect_irrigation.png");
 }
 
-// At rest, slow, and too fast for the picture, side by side.
+// Draws a burr at rest, a slow one, and one too fast for the picture, side by side.
 void drawSpin(const std::filesystem::path& folder) {
     constexpr int kPart = 320, kHeight = 400;
     Picture picture(3 * kPart, kHeight);

@@ -26,7 +26,7 @@ TEST_F(ViewMode, TheHalvesOfSideBySideAreTheEyesPictures) {
         << "what is nearer comes out of the screen";
 }
 
-// A red picture's worth of brightness from the left eye, green and blue from the right one.
+// The brightness of the left eye's picture gives the red, the right eye's picture green and blue.
 TEST_F(ViewMode, TheAnaglyphTakesRedFromTheLeftAndTheRestFromTheRight) {
     showMilledBlock(*scene_);
     scene_->settings().stereo = StereoMode::kAnaglyph;

@@ -1,5 +1,5 @@
-// One picture per way of looking, compared with the ones in the repository; and proof that the comparison
-// sees what matters.
+// Compares one picture per way of looking with those in the repository, and proves that the comparison sees
+// what matters.
 #include "tests/gl/golden.h"
 
 #include <gtest/gtest.h>
@@ -147,7 +147,7 @@ TEST_F(Golden, Materials) {
     EXPECT_EQ(test::goldenProblem(draw(), "materials"), "");
 }
 
-// No colours in the scene: the same vertices are plain bone.
+// Without colours in the scene the same vertices are plain bone.
 TEST_F(Golden, MaterialsWithoutColoursArePlainBone) {
     topics::SceneInfo info = test::milledInfo();
     info.add_materials()->set_name("enamel");

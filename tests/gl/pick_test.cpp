@@ -11,14 +11,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The line of sight through a pixel's centre (W).
+// Returns the line of sight through a pixel's centre (W).
 Vector3d sight(const Camera& camera, int x, int y) {
     const double right = (2 * (x + 0.5) / kWidth - 1) * camera.halfTangent() * kWidth / kHeight;
     const double up = (1 - 2 * (y + 0.5) / kHeight) * camera.halfTangent();
     return (camera.R_WC * Vector3d(right, up, -1)).normalized();
 }
 
-// Distance along the line of sight to the sphere; nothing when it misses, or only grazes it.
+// Returns the distance along the line of sight to the sphere, or nothing when it misses or only grazes it.
 std::optional<double> hitSphere(const Vector3d& eye, const Vector3d& direction) {
     const double along = direction.dot(kSphereCenter - eye);
     const double squared =

@@ -1,4 +1,4 @@
-// Pixels of the scene, drawn off screen by the very code of the window.
+// Looks at pixels of the scene, drawn off screen by the very code of the window.
 #include <gtest/gtest.h>
 
 #include <algorithm>

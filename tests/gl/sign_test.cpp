@@ -1,4 +1,4 @@
-// Signs in the scene: the force arrow and the pointers of instructors.
+// Looks at the signs in the scene: the force arrow and the pointers of instructors.
 #include <gtest/gtest.h>
 
 #include <algorithm>

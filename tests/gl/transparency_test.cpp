@@ -1,4 +1,4 @@
-// Transparent bone.
+// Looks through transparent bone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace {
 
 TEST_F(ViewMode, TransparentBoneShowsTheToolInside) {
     showMilledBlock(*scene_);
-    // From behind: the whole block lies between the eye and the burr.
+    // Seen from behind, the whole block lies between the eye and the burr.
     scene_->setViewWish({.target_W = {}, .distance = {}, .azimuth = M_PI, .elevation = 0.0});
     const auto effect_of_the_glow = [&] {
         scene_->setToolState(makeToolState(toolInCavity(), toolInCavity(), 0));

@@ -14,7 +14,7 @@ struct NamedEffect {
     void (*add)(EffectConfigs&);
 };
 
-// One line per effect.
+// There is one line per effect.
 constexpr NamedEffect kEffects[] = {
     {"spindle", false, true, [](EffectConfigs& e) { e.spindle.emplace(); }},
     {"cutting_force", false, true, [](EffectConfigs& e) { e.cutting_force.emplace(); }},

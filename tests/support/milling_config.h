@@ -1,4 +1,4 @@
-// Settings of a tick that mills and adds by time, as most tests of the tick want it.
+// Gives the settings of a tick that mills and adds by time, as most tests of the tick want it.
 #pragma once
 
 #include "haptic_server/tick/tick_config.h"

@@ -1,4 +1,4 @@
-// Runs our programs as a user would: whole processes, exit codes, what they print.
+// Runs our programs as a user would, as whole processes with exit codes and what they print.
 #pragma once
 
 #include <chrono>
@@ -16,10 +16,11 @@ struct Finished {
     std::string err;
 };
 
-// A child process; its output goes to files in its own temporary folder. Killed when the object goes.
+// Runs a child process; its output goes to files in its own temporary folder. It is killed when the
+// object goes.
 class Process {
   public:
-    // arguments[0]: program name in the build's bin folder, or a path.
+    // The first argument is a program's name in the build's bin folder, or a path.
     explicit Process(const std::vector<std::string>& arguments);
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
@@ -45,8 +46,8 @@ Finished run(const std::vector<std::string>& arguments);
 void writeFile(const std::string& path, const std::string& content);
 std::string readFile(const std::string& path);
 
-// Looks again and again until the condition holds. False when it never did: the limit only ends a test that
-// hangs.
+// Looks again and again until the condition holds. False when it never did: the limit only ends a test
+// that hangs.
 bool waitFor(const std::function<bool()>& condition, std::chrono::seconds limit = std::chrono::seconds(100));
 
 }  // namespace bonemill::test

@@ -1,4 +1,4 @@
-// The control panel's pixels, drawn off screen by the very code of the window.
+// Looks at the control panel's pixels, drawn off screen by the very code of the window.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -14,7 +14,7 @@ constexpr int kWidth = 640, kHeight = 480;
 
 class PanelPicture : public testing::Test, protected test::ControlledPanel {
   protected:
-    // Over a mid-grey picture.
+    // Draws it over a mid-grey picture.
     Picture draw() {
         layOut(kWidth, kHeight);
         const GlApi& gl = context_.gl();

@@ -1,5 +1,5 @@
-// The viewer's real window on a display in memory, with keys and mouse of xdotool, a real publisher behind
-// it.
+// Runs the viewer's real window on a display in memory, with keys and mouse of xdotool and a real publisher
+// behind it.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -55,7 +55,7 @@ class WindowedViewer {
                         " --session " + std::to_string(testSession()) + " --name " + name + " --role " +
                         role}) {}
 
-    // The picture of the next F12.
+    // Returns the picture of the next F12.
     std::filesystem::path nextPicture() {
         char name[32];
         std::snprintf(name, sizeof name, "bonemill_%04d.png", ++pictures_);

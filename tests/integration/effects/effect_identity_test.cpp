@@ -60,7 +60,7 @@ class EffectIdentity : public testing::TestWithParam<const char*> {
     EffectIdentity() {
         test::writeBlock(folder_.path().string(), block_);
         scene_ = test::everyEffectScene(block_, GetParam());
-        // As slow as to leave something to the others.
+        // It is slow enough to leave something to the others.
         if (scene_.effects().has_time_removal())
             scene_.mutable_effects()->mutable_time_removal()->set_rate_density_per_s(2500);
     }

@@ -1,4 +1,5 @@
-// The scenes of deploy/scenes that need phantoms only, headless along their own waypoints in simulated time.
+// Runs the scenes of deploy/scenes that need phantoms only, headless along their own waypoints in
+// simulated time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +58,7 @@ std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario, double
     return path;
 }
 
-// Scene and phantoms as they lie to each other in the repository.
+// Scene and phantoms lie to each other as in the repository.
 class SceneRun : public testing::Test {
   protected:
     SceneRun() {

@@ -17,7 +17,7 @@ constexpr int kSomeChanges = 10;  // of meshes, as a viewer counts them
 
 class Harmless : public test::NetworkSession {
   protected:
-    // The server, and a viewer beside the bad ones.
+    // Starts the server, and a viewer beside the bad ones.
     void startWithGoodViewerOn(const Host& pc) {
         startServer(kLab);
         good_ = probe(pc, kLab);
@@ -81,7 +81,7 @@ TEST_F(Harmless, ViewersBehindSlowAndLossyLines) {
     EXPECT_LT(newest(*slow)["changes"], newest(*good_)["changes"]);
 }
 
-// For longer than the lease of 4 s: server and viewer have given each other up in between.
+// It is cut off for longer than the lease of 4 s: server and viewer have given each other up in between.
 TEST_F(Harmless, AViewerThatIsCutOffComesBack) {
     const Host good_pc = network_->addHost(), bad_pc = network_->addHost();
     startWithGoodViewerOn(good_pc);
@@ -98,7 +98,7 @@ TEST_F(Harmless, AViewerThatIsCutOffComesBack) {
     expectNoHarm({cut_off.get()});
 }
 
-// The cable of the haptics PC: all others are cut off, its own viewer goes on.
+// The cable is that of the haptics PC: all others are cut off, its own viewer goes on.
 TEST_F(Harmless, TheHapticsPcCutOffKeepsItsOwnViewer) {
     const Host other_pc = network_->addHost();
     startWithGoodViewerOn(*haptics_pc_);

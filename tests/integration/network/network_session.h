@@ -1,5 +1,5 @@
-// A session on a virtual network: haptic_server and device_daemon on one PC, viewers on others. The simulated
-// hand mills a slab.
+// Runs a session on a virtual network: haptic_server and device_daemon on one PC, viewers on others. The
+// simulated hand mills a slab.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,17 +21,17 @@ class NetworkSession : public testing::Test {
     // Skips the test where no network can be made.
     void SetUp() override;
 
-    // On the haptics PC, the first host; `network`: options of its network, here and below.
+    // It runs on the haptics PC, the first host; `network` has the options of its network, here and below.
     void startServer(const Words& network);
     // Mills for that long; returns at once. waitForDevice() returns when it has withdrawn.
     void startMilling(int seconds);
     void waitForDevice();
-    // A probe_viewer; its newest line.
+    // Starts a probe_viewer; the other one returns its newest line.
     std::unique_ptr<Process> probe(const Host& host, const Words& network);
     static nlohmann::json newest(const Process& probe);
-    // One picture of the whole model: render_client's line.
+    // Takes one picture of the whole model, and returns render_client's line.
     nlohmann::json picture(const Host& host, const Words& network);
-    // Stops the server; its report.
+    // Stops the server, and returns its report.
     nlohmann::json stopServer();
 
     static bool isWhole(const Process& probe);

@@ -1,4 +1,4 @@
-// Each profile as it is used: real programs on several PCs, and all viewers end with the server's model.
+// Uses each profile with real programs on several PCs; all viewers end with the server's model.
 #include "tests/integration/network/network_session.h"
 #include "tests/support/places.h"
 

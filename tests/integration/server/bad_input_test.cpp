@@ -1,4 +1,4 @@
-// Bad input: each one clear message on one line, exit code 2, nothing else.
+// Each bad input gives one clear message on one line, exit code 2, and nothing else.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 

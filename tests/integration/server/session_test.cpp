@@ -1,4 +1,4 @@
-// Whole sessions: haptic_server, device_daemon and render_client as processes.
+// Runs whole sessions, with haptic_server, device_daemon and render_client as processes.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>

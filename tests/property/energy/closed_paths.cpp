@@ -34,7 +34,7 @@ double slot(const Vector3d& p) {  // barely wider than the burr
     const Vector3d q = p - kMiddle;
     return std::max(q.z(), 1.05e-3 - std::abs(q.x()));
 }
-// Rough: a different density in every voxel of a layer around the bumps.
+// The rough bone has a different density in every voxel of a layer around the bumps.
 double rough(const Vector3d& p) {
     const Eigen::Vector3i voxel = (p / kVoxel).array().round().cast<int>();
     const uint32_t hash =
@@ -56,7 +56,7 @@ double fraction() {
     return *rc::gen::inRange(-kSteps, kSteps + 1) / double(kSteps);
 }
 
-// Out of the air into the bone, through a few random places and back, smoothly.
+// It goes out of the air into the bone, through a few random places and back, smoothly.
 struct Path {
     static constexpr int kPlaces = 2, kRest = 5;
     static constexpr int kCoarse = 120, kFine = 960;  // ticks per leg of some mm

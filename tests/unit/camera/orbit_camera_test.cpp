@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Normalised device coordinates of a point in W.
+// Returns the normalised device coordinates of a point in W.
 Eigen::Vector3f project(const OrbitCamera& orbit, double aspect, const DepthRange& range,
                         const Vector3d& p_W) {
     const Camera camera = orbit.view();

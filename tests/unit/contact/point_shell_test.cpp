@@ -30,7 +30,7 @@ void expectSameBits(const PointShell& a, const PointShell& b, int level, uint32_
     for (LeafId leaf = 0; leaf < leaves; ++leaf) expectSameLeaf(a, b, level, leaf);
 }
 
-// leaf cells, normals
+// The pairs are leaf cells and normals.
 class ShellRefresh : public testing::TestWithParam<std::tuple<int, ShellNormals>> {};
 
 // A bone that is edited at random, and what its shell must then be.

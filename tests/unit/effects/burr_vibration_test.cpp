@@ -16,7 +16,7 @@ constexpr int kWindow = 1000;  // ticks: bins of 1 Hz
 struct VibrationTest : testing::Test {
     VibrationTest() { bench.tick.X_VT_start.rotation = expRotation({0.4, -0.2, 0.9}); }
 
-    // Pressed with this force, at turns_per_s.
+    // The burr is pressed with this force, at turns_per_s.
     void run(int ticks, double force, double turns_per_s) {
         test::ContactSet contacts;
         if (force > 0) contacts.add({0, -1e-3, 0}, {0, 1, 0}, force);
@@ -32,7 +32,7 @@ struct VibrationTest : testing::Test {
     double sample(size_t n) const {
         return felt[n].force.dot(bench.tick.X_VT_start.rotation * Vector3d::UnitX());
     }
-    // Of the last kWindow samples: amplitude, N, of the frequency in Hz.
+    // Returns of the last kWindow samples the amplitude, N, of the frequency in Hz.
     double amplitudeAt(int hz) const {
         std::complex<double> sum = 0;
         for (int n = 0; n < kWindow; ++n)

@@ -1,4 +1,4 @@
-// Friction and cutting force as the hand feels them through the whole tick.
+// Feels friction and cutting force as the hand does, through the whole tick.
 #include <gtest/gtest.h>
 
 #include "tests/stability/drive.h"
@@ -62,7 +62,7 @@ TEST(FrictionInTick, SlidesAboveIt) {
 struct Drag {
     double mean, spread, normal;
 };
-// Of the force along the way while the tool is drawn over the plane.
+// Measures the force along the way while the tool is drawn over the plane.
 Drag dragAt(double speed, const Variant& variant) {
     Scene scene(planeBone(), burr(), variant, 1e-3, stick);
     Stepper stepper(scene);
@@ -94,8 +94,8 @@ TEST(FrictionInTick, SlidingCostsFrictionTimesForceWithoutChatter) {
         }
 }
 
-// Sidewards on the plane: the torque about the shaft is M = μ F R, and no force but the cutting force's lies
-// across.
+// Sidewards on the plane: the torque about the shaft is M = μ F R, and no force but the cutting force's
+// lies across.
 Wrench pressedWhileSpinning(bool cutting, TickRecord& record) {
     Scene scene(planeBone(), burr(), balanced(), 1e-3, [=](FixedTickConfig& config) {
         withoutMilling(config).tool.burr.speed = 4000;

@@ -42,7 +42,7 @@ void run(HeatGrid& heat, double seconds, double dt = kDt) {
 }
 
 const Vector3d kUp = Vector3d::UnitZ();
-// Of a cube: its voxel's middle.
+// Returns the middle of a cube's voxel.
 Vector3d cubeAt(int i, int j, int k) {
     return kSpacing * Vector3d(i, j, k);
 }
@@ -95,7 +95,8 @@ TEST(HeatGrid, PointSourceSpreadsAsInTheInfiniteMedium) {
     }
 }
 
-// q √(4ατ/π) / k beneath a surface heated by q W/m², falling off with depth as ierfc (Carslaw and Jaeger).
+// A surface heated by q W/m² is warmer by q √(4ατ/π) / k, which falls off with depth as ierfc (Carslaw
+// and Jaeger).
 TEST(HeatGrid, SurfaceHeatedEvenlyWarmsAsAHalfSpace) {
     const VoxelVolume bone = boneOf({8, 8, 64});
     const HeatConfig config = insulated();
@@ -222,7 +223,7 @@ TEST(HeatGrid, NecrosisCanNeedItsTime) {
     HeatConfig config = insulated();
     config.necrosis_time = 2;
     HeatGrid heat(config, bone, kDt);
-    // All of the bone 15 K warmer.
+    // All of the bone is 15 K warmer.
     for (int k = 0; k < 32; ++k)
         for (int j = 0; j < 32; ++j)
             for (int i = 0; i < 32; ++i) {

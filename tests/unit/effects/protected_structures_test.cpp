@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double kMiddle = 4e-3;
 
-// A layer of nerve, across the whole block, from z = low to high.
+// Makes a layer of nerve across the whole block, from z = low to high.
 DistanceFunction layer(double low, double high) {
     return [=](const Vector3d& p) { return std::max(low - p.z(), p.z() - high); };
 }
@@ -139,7 +139,8 @@ TEST(ProtectedStructures, ALargeBurrMissesNothingOnItsWay) {
     EXPECT_NEAR(records.back().effects.damaged_volume / covered, 1, 0.15);
 }
 
-// Of a long thin burr beside a ball as thin: never farther than it is by more than a tenth of the radius.
+// A long thin burr beside a ball as thin is never told to be farther than it is by more than a tenth of
+// the radius.
 TEST(BurrProbes, SeeAThinStructureBesideALongBurr) {
     const Vector3d nerve(kMiddle, kMiddle, 4e-3);
     const TissueBench bench(sphereAt(nerve, 0.3e-3), 4e-3);
@@ -162,7 +163,7 @@ TEST(BurrProbes, ReachAsFarAsTheBurr) {
         const double tip = kind == BurrKind::kCone ? burr.tip_radius : burr.radius;
         for (const double lean : {0.0, 0.3, 1.0, M_PI / 2}) {
             const Pose pose{{kMiddle, kMiddle, 7e-3}, expRotation({M_PI / 2 - lean, 0, 0})};
-            // Of both rims of a body of revolution, its axis at this angle from the vertical.
+            // These are of both rims of a body of revolution, its axis at this angle from the vertical.
             const double up = std::cos(lean), across = std::sin(lean);
             const double lowest =
                 std::max(burr.length / 2 * up + tip * across, -burr.length / 2 * up + burr.radius * across);

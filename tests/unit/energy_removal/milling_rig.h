@@ -1,4 +1,4 @@
-// A block of bone under a burr that a hand presses with a constant force, or leads along a path.
+// Puts a block of bone under a burr that a hand presses with a constant force, or leads along a path.
 #pragma once
 
 #include <functional>
@@ -17,8 +17,8 @@ inline constexpr double kKrpm = 1000 * 2 * M_PI / 60;  // rad/s
 struct RigConfig {
     Eigen::Vector3d size{4e-3, 4e-3, 3e-3};  // of the volume
     double surface = 2e-3;                   // of the bone: the plane z = this
-    // The bone is a wall of these thicknesses along x and y around the middle; zero: a block as large as the
-    // volume.
+    // The bone is a wall of these thicknesses along x and y around the middle; zero: a block as large as
+    // the volume.
     Eigen::Vector2d wall = Eigen::Vector2d::Zero();
     Eigen::Vector3d spacing = Eigen::Vector3d::Constant(0.125e-3);
     double ramp = 2;  // voxels from the surface to full density
@@ -66,7 +66,7 @@ class MillingRig final : private TickIo {
           tick_(tickConfigOf(config, bone.volume, tool_), bone),
           volume_before_(boneVolume()) {}
 
-    // From `start` on.
+    // It runs from `start` on.
     void run(double seconds, const Eigen::Vector3d& start, Hand hand, uint32_t buttons = kButtonRemove) {
         if (records.empty()) spo_ = start;
         hand_ = std::move(hand);
@@ -90,7 +90,7 @@ class MillingRig final : private TickIo {
             buttons);
     }
     static constexpr double kRise = 0.02;  // s
-    // At a steady speed.
+    // The hand moves at a steady speed.
     void feed(double seconds, const Eigen::Vector3d& start, const Eigen::Vector3d& velocity) {
         const double from = t_;
         run(seconds, start, [=](double t, const Eigen::Vector3d&) { return start + velocity * (t - from); });
@@ -114,7 +114,7 @@ class MillingRig final : private TickIo {
     }
     Eigen::Vector3d position() const { return spo_; }
     Eigen::Vector3d center() const { return {config.size.x() / 2, config.size.y() / 2, config.surface}; }
-    // Mean of a figure over the last so many seconds.
+    // Returns the mean of a figure over the last so many seconds.
     template <class Figure>
     double mean(double seconds, Figure&& figure) const {
         const size_t count = size_t(std::lround(seconds * config.rate));

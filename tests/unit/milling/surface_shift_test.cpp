@@ -50,7 +50,7 @@ SpecificEnergyConfig uniform() {
     return config;
 }
 
-// Not on the faces of the volume.
+// It is not on the faces of the volume.
 bool isOfPlane(const BoneModel& bone, const Vector3d& p) {
     const double border = 3 * bone.volume.spacing().maxCoeff();
     return p.minCoeff() > border && p.maxCoeff() < 5e-3 - border;

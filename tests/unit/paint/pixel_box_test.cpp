@@ -17,7 +17,7 @@ class PixelBoxTest : public testing::Test {
         const auto view = camera_.view();
         clip_from_W_ = view.clipFromCamera(double(kWidth) / kHeight, {0.01, 1}) * view.X_CW();
     }
-    // x, y in pixels; w > 0 in front of the eye.
+    // Here x and y are pixels, and w > 0 is in front of the eye.
     Eigen::Vector2f pixelOf(const Eigen::Vector3f& p_W) const {
         const Eigen::Vector4f clip = clip_from_W_ * p_W.homogeneous();
         return {(clip.x() / clip.w() + 1) / 2 * kWidth, (clip.y() / clip.w() + 1) / 2 * kHeight};

@@ -1,4 +1,4 @@
-// The control panel, clicked with a simulated mouse; no OpenGL.
+// Clicks the control panel with a simulated mouse, without OpenGL.
 #include "render_client/panel/panel.h"
 
 #include <gtest/gtest.h>

@@ -28,8 +28,8 @@ Eigen::Vector3d randomPoint(std::mt19937& random) {
     return {number(random), number(random), number(random)};
 }
 
-// A distance never changes faster than the point moves, and reaches zero within its own length along its
-// gradient.
+// A distance never changes faster than the point moves, and reaches zero within its own length along
+// its gradient.
 TEST(AnalyticBody, isADistance) {
     std::mt19937 random(5);
     for (const BodyKind kind : kKinds) {

@@ -13,7 +13,7 @@ namespace {
 
 const char* const kCranium = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3";
 
-// Finer than the scan, around the left mastoid.
+// The grid is finer than the scan, around the left mastoid.
 VolumeGeometry mastoidGrid() {
     VolumeGeometry geometry;
     geometry.dims = {60, 100, 64};

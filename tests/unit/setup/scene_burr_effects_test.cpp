@@ -1,4 +1,4 @@
-// What a scene says of a driven burr, in SI.
+// Reads what a scene says of a driven burr, in SI.
 #include <gtest/gtest.h>
 
 #include "haptic_server/setup/scene_effects.h"

@@ -1,5 +1,5 @@
-// Tick, mesher and publisher threads at once, as in the live server: clean under ThreadSanitizer, and what
-// the mesher streamed is a full remesh.
+// Tick, mesher and publisher threads run at once, as in the live server: ThreadSanitizer finds nothing, and
+// what the mesher streamed is a full remesh.
 #include <gtest/gtest.h>
 
 #include <atomic>

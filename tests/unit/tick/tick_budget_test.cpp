@@ -1,4 +1,4 @@
-// A tick that has no time for all contact points near the tool, or for all that the burr could mill.
+// Gives a tick no time for all contact points near the tool, or for all that the burr could mill.
 #include "haptic_server/tick/tick_budget.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// tick() allocates nothing and takes no lock: counted by replaced heap and lock functions, over everything a
+// A tick allocates nothing and takes no lock: replaced heap and lock functions count that over everything a
 // tick does.
 #include <gtest/gtest.h>
 

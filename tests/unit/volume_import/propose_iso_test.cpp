@@ -1,4 +1,4 @@
-// Histograms made here, of the shapes that real scans have.
+// The histograms are made here, in the shapes that real scans have.
 #include "haptic_server/volume/import/propose_iso.h"
 
 #include <gtest/gtest.h>
