@@ -8,16 +8,25 @@
 namespace bonemill {
 namespace {
 
-// An effect needs this beside being listed.
+// An effect of the tick needs this beside being listed, and others need this of it.
 struct EffectRule {
     const char* name;
-    bool needs_gradient_law;
-    bool needs_speed;
+    bool needs_gradient_law = false;
+    bool needs_speed = false;
+    bool needs_ball = false;         // knows no other burr
+    bool says_burrs_effort = false;  // how hard the burr works, which milling_sound makes heard
 };
-constexpr EffectRule kRules[] = {{"energy_removal", true, true},    {"cutting_force", true, true},
-                                 {"spindle", true, true},           {"burr_vibration", true, true},
-                                 {"surface_friction", true, false}, {"thermal", true, true},
-                                 {"virtual_fixture", true, false},  {"protected_structures", true, false}};
+constexpr EffectRule kRules[] = {
+    {.name = "energy_removal", .needs_gradient_law = true, .needs_speed = true, .says_burrs_effort = true},
+    {.name = "cutting_force", .needs_gradient_law = true, .needs_speed = true, .says_burrs_effort = true},
+    {.name = "spindle", .needs_gradient_law = true, .needs_speed = true, .says_burrs_effort = true},
+    {.name = "burr_vibration", .needs_gradient_law = true, .needs_speed = true, .says_burrs_effort = true},
+    {.name = "surface_friction", .needs_gradient_law = true},
+    {.name = "thermal", .needs_gradient_law = true, .needs_speed = true, .says_burrs_effort = true},
+    {.name = "virtual_fixture", .needs_gradient_law = true},
+    {.name = "protected_structures", .needs_gradient_law = true},
+    {.name = "time_removal", .needs_ball = true},
+    {.name = "add_material", .needs_ball = true}};
 
 bool isListed(const scene::Effects& effects, const std::string& name) {
     const auto* field = effects.GetDescriptor()->FindFieldByName(name);
@@ -54,13 +63,13 @@ void checkSpeed(const scene::Scene& scene, const RefuseField& refuse) {
 }
 
 void checkBallOnly(const scene::Scene& scene, const RefuseField& refuse) {
-    for (const char* effect : {"time_removal", "add_material"}) {
-        if (!isListed(scene.effects(), effect)) continue;
+    for (const EffectRule& rule : kRules) {
+        if (!rule.needs_ball || !isListed(scene.effects(), rule.name)) continue;
         for (int i = 0; i < scene.tool_size(); ++i)
             if (scene.tool(i).burr_kind() != scene::Tool::BALL)
                 refuse("tool[" + std::to_string(i) + "].burr_kind",
                        "= " + scene::Tool::BurrKind_Name(scene.tool(i).burr_kind()) + " does not go with " +
-                           pathOf(effect) + ", which knows only a BALL");
+                           pathOf(rule.name) + ", which knows only a BALL");
     }
 }
 
@@ -82,11 +91,10 @@ void checkThermal(const scene::Scene& scene, const RefuseField& refuse) {
                    "a tick of " + numberText(scene.loop().rate_hz()) + " Hz; take larger ones");
 }
 
-// Only these say how hard the burr works.
 void checkSound(const scene::Scene& scene, const RefuseField& refuse) {
     if (!scene.effects().has_milling_sound()) return;
-    for (const char* effect : {"energy_removal", "cutting_force", "spindle", "burr_vibration", "thermal"})
-        if (isListed(scene.effects(), effect)) return;
+    for (const EffectRule& rule : kRules)
+        if (rule.says_burrs_effort && isListed(scene.effects(), rule.name)) return;
     refuse(pathOf("milling_sound"),
            "would never hear the burr in bone: list spindle, cutting_force or energy_removal as well");
 }

@@ -12,7 +12,6 @@ class AddMaterial final : public HapticEffect {
     // There is room for burrs up to largest_burr_radius, in m. most_cells is that of MillingConfig.
     AddMaterial(const AddMaterialConfig& config, const BoneModel& bone, double largest_burr_radius,
                 size_t most_cells);
-    const char* name() const noexcept override { return "add_material"; }
     void mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept override;
 
   private:

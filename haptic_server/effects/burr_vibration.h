@@ -20,7 +20,6 @@ class BurrVibration final : public HapticEffect {
     explicit BurrVibration(const BurrVibrationConfig& config) noexcept
         : HapticEffect(kReadsContacts), config_(config) {}
 
-    const char* name() const noexcept override { return "burr_vibration"; }
     void restart(Restart) noexcept override { amplitude_ = 0; }
     void begin(EffectTick& tick) noexcept override;
     void addToHand(const EffectTick& tick, Wrench& wrench_V) noexcept override;

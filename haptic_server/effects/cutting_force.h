@@ -22,7 +22,6 @@ class CuttingForce final : public HapticEffect {
     explicit CuttingForce(const CuttingForceConfig& config) noexcept
         : HapticEffect(kReadsContacts | kHasEnergy), config_(config) {}
 
-    const char* name() const noexcept override { return "cutting_force"; }
     void restart(Restart) noexcept override;
     void begin(EffectTick& tick) noexcept override;
     EnergyTerm energy(const EffectTick& tick, const Pose& X_VT) const noexcept override;

@@ -1,4 +1,7 @@
-// What a scene asks of the tick's effects, in SI. Not listed: std::nullopt, and not constructed.
+// What a scene asks of the tick's effects, in SI. This is where each effect is declared: its name, what it
+// writes into the record of a tick, its parameters, and its place in the order in which the effects act.
+// Defaults and ranges stand in proto/scene.proto alone; setup/scene_effects.cpp makes a config of a scene's
+// message, make_effects.cpp an effect of a config.
 #pragma once
 
 #include <memory>
@@ -7,74 +10,107 @@
 #include <vector>
 
 #include "haptic_server/effects/heat_config.h"
+#include "haptic_server/telemetry/recorded_effects.h"
 #include "haptic_server/volume/bone_properties.h"
 #include "haptic_server/volume/distance_field.h"
 #include "haptic_server/volume/material_properties.h"
 
 namespace bonemill {
 
-// A rate of density: the thesis' law.
-struct TimeRemovalConfig {
-    double rate = 12750 * kDensityCountsPerUnit;  // density counts/s; default: from full to nothing in 20 ms
+// Every config has kName, as in the scene's `effects` (but for material_stiffness, which follows from the
+// scene's materials), and kRecords.
+
+struct SpindleConfig {
+    static constexpr const char* kName = "spindle";
+    static constexpr RecordedEffects kRecords{.burr = true};
+    double inertia;     // J, kg·m²
+    double max_torque;  // T, N·m
+    double droop;       // k, N·m·s/rad: torque per speed that is missing
+    double drag;        // c, N·m·s/rad
 };
-struct AddMaterialConfig {
-    double rate = 12750 * kDensityCountsPerUnit;  // density counts/s
+
+// By the materials' stiffness_factor; needs EffectConfigs::properties.
+struct MaterialStiffnessConfig {
+    static constexpr const char* kName = "material_stiffness";
+    static constexpr RecordedEffects kRecords{};
 };
 
 struct EnergyRemovalConfig {
-    double specific_energy = 0.5e9;          // u_ref, J/m³: of bone of the reference density
-    double reference_density = kMaxDensity;  // counts
-    double density_exponent = 0;             // needs EffectConfigs::properties
-    double threshold_pressure = 0;           // p_th, Pa
-    double diamond_energy_factor = 2.5;      // of u, for burrs of diamond grit
+    static constexpr const char* kName = "energy_removal";
+    static constexpr RecordedEffects kRecords{.burr = true};
+    double specific_energy;        // u_ref, J/m³: of bone of the reference density
+    double reference_density;      // counts
+    double density_exponent;       // other than 0 it needs EffectConfigs::properties
+    double threshold_pressure;     // p_th, Pa
+    double diamond_energy_factor;  // of u, for burrs of diamond grit
 };
-struct SpindleConfig {
-    double inertia = 5e-7;     // J, kg·m²
-    double max_torque = 0.02;  // T, N·m
-    double droop = 4.8e-5;     // k, N·m·s/rad: torque per speed that is missing
-    double drag = 1.9e-7;      // c, N·m·s/rad
-};
-struct CuttingForceConfig {
-    double slow_speed = 0.01;      // v_ε, m/s
-    double smoothing_time = 2e-3;  // s
-};
-struct BurrVibrationConfig {
-    double amplitude_per_force = 0.05;  // N per N of cutting force μ_c Σ F
-    double max_amplitude = 0.5;         // N
-    double diamond_factor = 0.3;        // of both, for burrs of diamond grit
-};
-struct SurfaceFrictionConfig {
-    double coefficient = 0.2;           // μ
-    double presliding_stiffness = 5e4;  // N/m
-};
-// By the materials' stiffness_factor; needs EffectConfigs::properties.
-struct MaterialStiffnessConfig {};
 
-// Needs materials with is_protected, and EffectConfigs::protected_field.
-struct ProtectedStructuresConfig {
-    double warning_distance = 2e-3;  // m
+struct CuttingForceConfig {
+    static constexpr const char* kName = "cutting_force";
+    static constexpr RecordedEffects kRecords{.burr = true};
+    double slow_speed;      // v_ε, m/s
+    double smoothing_time;  // s
+};
+
+struct SurfaceFrictionConfig {
+    static constexpr const char* kName = "surface_friction";
+    static constexpr RecordedEffects kRecords{};
+    double coefficient;           // μ
+    double presliding_stiffness;  // N/m
+};
+
+struct BurrVibrationConfig {
+    static constexpr const char* kName = "burr_vibration";
+    static constexpr RecordedEffects kRecords{.burr = true};
+    double amplitude_per_force;  // N per N of cutting force μ_c Σ F
+    double max_amplitude;        // N
+    double diamond_factor;       // of both, for burrs of diamond grit
 };
 
 // This needs EffectConfigs::protected_field.
 struct VirtualFixtureConfig {
-    double distance = 1e-3;       // m, of the burr's surface
-    double stiffness = 2000;      // N/m
-    double max_force = 10;        // N
-    double hand_force_scale = 1;  // 0 .. 1
+    static constexpr const char* kName = "virtual_fixture";
+    static constexpr RecordedEffects kRecords{};
+    double distance;          // m, of the burr's surface
+    double stiffness;         // N/m
+    double max_force;         // N
+    double hand_force_scale;  // 0 .. 1
+};
+
+// A rate of density: the thesis' law.
+struct TimeRemovalConfig {
+    static constexpr const char* kName = "time_removal";
+    static constexpr RecordedEffects kRecords{};
+    double rate;  // density counts/s
+};
+
+struct AddMaterialConfig {
+    static constexpr const char* kName = "add_material";
+    static constexpr RecordedEffects kRecords{};
+    double rate;  // density counts/s
 };
 
 struct ThermalConfig {
-    double heat_share = 0.5;           // of the cutting power
-    double irrigation_radius = 10e-3;  // m
+    static constexpr const char* kName = "thermal";
+    static constexpr RecordedEffects kRecords{.burr = true, .heat = true};
+    double heat_share;         // of the cutting power
+    double irrigation_radius;  // m
     HeatConfig heat;
 };
 
+// Needs materials with is_protected, and EffectConfigs::protected_field.
+struct ProtectedStructuresConfig {
+    static constexpr const char* kName = "protected_structures";
+    static constexpr RecordedEffects kRecords{.protection = true};
+    double warning_distance;  // m
+};
+
+// The effects of a scene; one that is not listed is std::nullopt, and is not constructed.
 struct EffectConfigs {
     std::shared_ptr<const BoneProperties> properties;  // null: no effect asks for it
     MaterialTable materials;
     std::shared_ptr<const DistanceField> protected_field;  // null: no effect asks for it
 
-    // In the order in which they act.
     std::optional<SpindleConfig> spindle;
     std::optional<MaterialStiffnessConfig> material_stiffness;  // where a material has a factor
     std::optional<EnergyRemovalConfig> energy_removal;
@@ -88,36 +124,50 @@ struct EffectConfigs {
     std::optional<ProtectedStructuresConfig> protected_structures;
 };
 
-// Calls visit(name as in the scene's `effects` but for material_stiffness, std::optional<Config>&) for each
-// effect, in the order in which they act. Configs: EffectConfigs, const or not.
+// Calls visit(std::optional<Config>&) for each effect, in the order in which they act. Configs:
+// EffectConfigs, const or not.
 template <class Configs, class Visit>
 void forEachEffect(Configs& configs, Visit&& visit) {
-    visit("spindle", configs.spindle);
-    visit("material_stiffness", configs.material_stiffness);
-    visit("energy_removal", configs.energy_removal);
-    visit("cutting_force", configs.cutting_force);
-    visit("surface_friction", configs.surface_friction);
-    visit("burr_vibration", configs.burr_vibration);
-    visit("virtual_fixture", configs.virtual_fixture);
-    visit("time_removal", configs.time_removal);
-    visit("add_material", configs.add_material);
-    visit("thermal", configs.thermal);
-    visit("protected_structures", configs.protected_structures);
+    visit(configs.spindle);
+    visit(configs.material_stiffness);
+    visit(configs.energy_removal);
+    visit(configs.cutting_force);
+    visit(configs.surface_friction);
+    visit(configs.burr_vibration);
+    visit(configs.virtual_fixture);
+    visit(configs.time_removal);
+    visit(configs.add_material);
+    visit(configs.thermal);
+    visit(configs.protected_structures);
+}
+
+template <class Config>
+constexpr const char* nameOf(const std::optional<Config>&) noexcept {
+    return Config::kName;
 }
 
 // The names are those of the effects that are listed. Allocates; start-up only.
 inline std::vector<std::string> effectNames(const EffectConfigs& configs) {
     std::vector<std::string> names;
-    forEachEffect(configs, [&](const char* name, const auto& config) {
-        if (config) names.push_back(name);
+    forEachEffect(configs, [&](const auto& config) {
+        if (config) names.push_back(nameOf(config));
     });
     return names;
 }
 inline EffectConfigs withoutEffect(EffectConfigs configs, const std::string& which) {
-    forEachEffect(configs, [&](const char* name, auto& config) {
-        if (name == which) config.reset();
+    forEachEffect(configs, [&](auto& config) {
+        if (nameOf(config) == which) config.reset();
     });
     return configs;
+}
+
+// What the effects that are listed write into the record of a tick.
+inline RecordedEffects recordedBy(const EffectConfigs& configs) noexcept {
+    RecordedEffects recorded;
+    forEachEffect(configs, [&]<class Config>(const std::optional<Config>& config) {
+        if (config) recorded.include(Config::kRecords);
+    });
+    return recorded;
 }
 
 }  // namespace bonemill

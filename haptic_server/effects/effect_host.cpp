@@ -32,7 +32,6 @@ void EffectHost::begin(const EffectTick& start) noexcept {
     tick_.tool = start.tool;
     tick_.shape = start.shape;
     tick_.X_VT_start = start.X_VT_start;
-    tick_.X_VT_device = start.X_VT_device;
     tick_.spin_speed = start.is_pedal_down ? start.tool->burr.speed : 0;
     tick_.axis_load = 0;
     for (const auto& effect : effects_) effect->begin(tick_);

@@ -35,7 +35,6 @@ class EffectHost final : private ContactWeights, private SolveEnergy {
     const EffectRecord& finish() noexcept;
 
     bool isEmpty() const noexcept { return effects_.empty(); }
-    const EffectTick& tick() const noexcept { return tick_; }
 
   private:
     bool any(uint32_t needs) const noexcept { return needs_ & needs; }

@@ -44,7 +44,6 @@ class EnergyRemoval final : public HapticEffect {
     // The bone's properties and materials are taken from `all`.
     EnergyRemoval(const EnergyRemovalConfig& config, const EffectConfigs& all, const BoneModel& bone,
                   const EffectRoom& room);
-    const char* name() const noexcept override { return "energy_removal"; }
     void restart(Restart) noexcept override { account_ = to_repay_ = 0, turn_ = 0, turns_ = 1; }
     void begin(EffectTick& tick) noexcept override;
     double scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,

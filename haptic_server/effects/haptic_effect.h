@@ -36,7 +36,7 @@ struct EffectTick {
     bool is_add_wanted = false;  // the add button alone, likewise
     const SpoTool* tool = nullptr;
     MillingShape shape = MillingShape::kSubVoxel;  // that the contact law calls for
-    Pose X_VT_start, X_VT_device;
+    Pose X_VT_start;
     double spin_speed =
         0;  // rad/s about T's +y; without a spindle the full speed as soon as the pedal is down
     double axis_load = 0;  // N·m about T's +y: what the bone takes of the torque of a spindle
@@ -81,7 +81,6 @@ class HapticEffect {
     HapticEffect(const HapticEffect&) = delete;
     HapticEffect& operator=(const HapticEffect&) = delete;
 
-    virtual const char* name() const noexcept = 0;  // as in the scene
     uint32_t needs() const noexcept { return needs_; }
 
     // Forgets what came before, the contacts above all.

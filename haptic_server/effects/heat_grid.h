@@ -39,7 +39,6 @@ class HeatGrid {
     double storedHeat() const noexcept;  // J above body temperature
     double time() const noexcept { return now_; }
     size_t activeBricks() const noexcept { return active_.size(); }
-    size_t mostBricks() const noexcept { return pool_.size(); }
 
   private:
     static constexpr int kShift = 3, kEdge = 1 << kShift, kCells = kEdge * kEdge * kEdge;
@@ -75,7 +74,6 @@ class HeatGrid {
     bool putInto(const Eigen::Vector3i& cell, double heat) noexcept;
     void lookUpBone(Brick& brick) noexcept;
     void conduct(Brick& brick, double elapsed) noexcept;
-    void conductAcross(Brick& brick, int axis, double share) noexcept;
     void openNeighbours(Brick& brick) noexcept;
     void cool(Brick& brick, double elapsed) noexcept;
     void harm(Brick& brick, double elapsed) noexcept;

@@ -14,31 +14,61 @@
 
 namespace bonemill {
 
+namespace {
+
+using Made = std::unique_ptr<HapticEffect>;
+
+// What an effect may need beside its own config.
+struct Needs {
+    const EffectConfigs& all;
+    const BoneModel& bone;
+    const EffectRoom& room;
+};
+
+Made make(const SpindleConfig& config, const Needs&) {
+    return std::make_unique<Spindle>(config);
+}
+Made make(const MaterialStiffnessConfig&, const Needs& needs) {
+    return std::make_unique<MaterialStiffness>(needs.all.properties, needs.all.materials,
+                                               needs.bone.volume.spacing());
+}
+Made make(const EnergyRemovalConfig& config, const Needs& needs) {
+    return std::make_unique<EnergyRemoval>(config, needs.all, needs.bone, needs.room);
+}
+Made make(const CuttingForceConfig& config, const Needs&) {
+    return std::make_unique<CuttingForce>(config);
+}
+Made make(const SurfaceFrictionConfig& config, const Needs&) {
+    return std::make_unique<SurfaceFriction>(config);
+}
+Made make(const BurrVibrationConfig& config, const Needs&) {
+    return std::make_unique<BurrVibration>(config);
+}
+Made make(const VirtualFixtureConfig& config, const Needs& needs) {
+    return std::make_unique<VirtualFixture>(config, needs.all.protected_field);
+}
+Made make(const TimeRemovalConfig& config, const Needs& needs) {
+    return std::make_unique<TimeRemoval>(config, needs.bone, needs.room.largest_burr_radius,
+                                         needs.room.most_cells);
+}
+Made make(const AddMaterialConfig& config, const Needs& needs) {
+    return std::make_unique<AddMaterial>(config, needs.bone, needs.room.largest_burr_radius,
+                                         needs.room.most_cells);
+}
+Made make(const ThermalConfig& config, const Needs& needs) {
+    return std::make_unique<Thermal>(config, needs.bone, needs.room.dt);
+}
+Made make(const ProtectedStructuresConfig& config, const Needs& needs) {
+    return std::make_unique<ProtectedStructures>(config, needs.all, needs.bone);
+}
+
+}  // namespace
+
 EffectList makeEffects(const EffectConfigs& configs, const BoneModel& bone, const EffectRoom& room) {
     EffectList effects;
-    if (configs.spindle) effects.push_back(std::make_unique<Spindle>(*configs.spindle));
-    if (configs.material_stiffness)
-        effects.push_back(std::make_unique<MaterialStiffness>(configs.properties, configs.materials,
-                                                              bone.volume.spacing()));
-    if (configs.energy_removal)
-        effects.push_back(std::make_unique<EnergyRemoval>(*configs.energy_removal, configs, bone, room));
-    if (configs.cutting_force) effects.push_back(std::make_unique<CuttingForce>(*configs.cutting_force));
-    if (configs.surface_friction)
-        effects.push_back(std::make_unique<SurfaceFriction>(*configs.surface_friction));
-    if (configs.burr_vibration) effects.push_back(std::make_unique<BurrVibration>(*configs.burr_vibration));
-    if (configs.virtual_fixture)
-        effects.push_back(
-            std::make_unique<VirtualFixture>(*configs.virtual_fixture, configs.protected_field));
-    if (configs.time_removal)
-        effects.push_back(std::make_unique<TimeRemoval>(*configs.time_removal, bone, room.largest_burr_radius,
-                                                        room.most_cells));
-    if (configs.add_material)
-        effects.push_back(std::make_unique<AddMaterial>(*configs.add_material, bone, room.largest_burr_radius,
-                                                        room.most_cells));
-    if (configs.thermal) effects.push_back(std::make_unique<Thermal>(*configs.thermal, bone, room.dt));
-    if (configs.protected_structures)
-        effects.push_back(
-            std::make_unique<ProtectedStructures>(*configs.protected_structures, configs, bone));
+    forEachEffect(configs, [&](const auto& config) {
+        if (config) effects.push_back(make(*config, {configs, bone, room}));
+    });
     return effects;
 }
 

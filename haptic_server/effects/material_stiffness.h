@@ -11,7 +11,6 @@ class MaterialStiffness final : public HapticEffect {
   public:
     MaterialStiffness(std::shared_ptr<const BoneProperties> properties, const MaterialTable& materials,
                       const Eigen::Vector3d& spacing);
-    const char* name() const noexcept override { return "material_stiffness"; }
     double scale(const EffectTick& tick, Candidates& candidates, const Eigen::Vector3d& origin_V,
                  const ToolField& tool, const Pose& X_VT) noexcept override;
 

@@ -17,7 +17,6 @@ class ProtectedStructures final : public HapticEffect {
     // Keeps a reference to the bone.
     ProtectedStructures(const ProtectedStructuresConfig& config, const EffectConfigs& all,
                         const BoneModel& bone);
-    const char* name() const noexcept override { return "protected_structures"; }
     void finish(EffectTick& tick) noexcept override;
 
   private:

@@ -17,7 +17,6 @@ class Spindle final : public HapticEffect {
   public:
     explicit Spindle(const SpindleConfig& config) noexcept : HapticEffect(kReadsContacts), config_(config) {}
 
-    const char* name() const noexcept override { return "spindle"; }
     void restart(Restart why) noexcept override;
     void begin(EffectTick& tick) noexcept override;
     void finish(EffectTick& tick) noexcept override;

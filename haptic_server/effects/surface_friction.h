@@ -25,7 +25,6 @@ class SurfaceFriction final : public HapticEffect {
     explicit SurfaceFriction(const SurfaceFrictionConfig& config) noexcept
         : HapticEffect(kReadsContacts | kHasEnergy), config_(config) {}
 
-    const char* name() const noexcept override { return "surface_friction"; }
     void restart(Restart) noexcept override { forget(); }
     void begin(EffectTick& tick) noexcept override;
     EnergyTerm energy(const EffectTick& tick, const Pose& X_VT) const noexcept override;

@@ -13,7 +13,6 @@ class Thermal final : public HapticEffect {
   public:
     // Keeps a reference to the bone. dt is the time of a tick, in s.
     Thermal(const ThermalConfig& config, const BoneModel& bone, double dt);
-    const char* name() const noexcept override { return "thermal"; }
     void restart(Restart why) noexcept override {
         if (why == Restart::kBonePutBack) heat_.noteChangeEverywhere();
     }

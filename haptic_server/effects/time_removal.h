@@ -13,7 +13,6 @@ class TimeRemoval final : public HapticEffect {
     // There is room for burrs up to largest_burr_radius, in m. most_cells is that of MillingConfig.
     TimeRemoval(const TimeRemovalConfig& config, const BoneModel& bone, double largest_burr_radius,
                 size_t most_cells);
-    const char* name() const noexcept override { return "time_removal"; }
     void mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept override;
 
   private:

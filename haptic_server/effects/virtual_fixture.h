@@ -20,7 +20,6 @@ namespace bonemill {
 class VirtualFixture final : public HapticEffect {
   public:
     VirtualFixture(const VirtualFixtureConfig& config, std::shared_ptr<const DistanceField> field);
-    const char* name() const noexcept override { return "virtual_fixture"; }
     void begin(EffectTick& tick) noexcept override;
     EnergyTerm energy(const EffectTick& tick, const Pose& X_VT) const noexcept override;
     void addToHand(const EffectTick& tick, Wrench& wrench_V) noexcept override;

@@ -11,9 +11,9 @@
 namespace bonemill {
 
 struct SpecificEnergyConfig {
-    double reference = 0.5e9;                // u_ref, J/m³
-    double reference_density = kMaxDensity;  // ρ_ref, counts
-    double exponent = 0;
+    double reference;          // u_ref, J/m³
+    double reference_density;  // ρ_ref, counts
+    double exponent;
     MaterialTable materials;  // those with a specific_energy of their own have it at any density
 };
 

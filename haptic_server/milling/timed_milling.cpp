@@ -51,7 +51,7 @@ TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volum
 MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
                                   const Eigen::Vector3d& p_VB, int direction, double dt) noexcept {
     MillingResult result;
-    if (!config_.enabled || direction == 0) return result;
+    if (direction == 0) return result;
     if (direction != carry_direction_) carry_ = 0;
     carry_direction_ = direction;
     carry_ += (direction < 0 ? config_.removal_rate : config_.addition_rate) * dt;

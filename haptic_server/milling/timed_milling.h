@@ -12,10 +12,8 @@
 namespace bonemill {
 
 struct MillingConfig {
-    bool enabled = true;
-    double removal_rate =
-        12750 * kDensityCountsPerUnit;  // density counts/s; default: from full to nothing in 20 ms
-    double addition_rate = 12750 * kDensityCountsPerUnit;  // density counts/s
+    double removal_rate = 0;   // density counts/s
+    double addition_rate = 0;  // density counts/s
     MillingShape shape = MillingShape::kVoxelCentres;
     // A tick makes the surface of so many cells anew; bricks for which there is no time wait for the next
     // one, in turn.

@@ -23,23 +23,25 @@ double finite(float value) {
     return std::isfinite(value) ? double(value) : 0;
 }
 
-bool hasViewerEffects(const scene::Effects& e) {
-    return e.has_bone_dust() || e.has_bleeding() || e.has_irrigation() || e.has_burr_spin() ||
-           e.has_milling_sound();
+// Those that are the viewer's alone.
+scene::Effects viewerEffectsOf(scene::Effects effects) {
+    const google::protobuf::Reflection& reflection = *effects.GetReflection();
+    std::vector<const google::protobuf::FieldDescriptor*> listed;
+    reflection.ListFields(effects, &listed);
+    for (const auto* field : listed)
+        if (field->number() < kFirstViewerEffect) reflection.ClearField(&effects, field);
+    return effects;
+}
+
+bool isAnyListed(const scene::Effects& effects) {
+    return effects.ByteSizeLong() > 0;
 }
 
 }  // namespace
 
 void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info) {
-    const scene::Effects& effects = scene.effects();
-    if (hasViewerEffects(effects)) {
-        scene::Effects& shown = *info.mutable_viewer_effects();
-        if (effects.has_bone_dust()) *shown.mutable_bone_dust() = effects.bone_dust();
-        if (effects.has_bleeding()) *shown.mutable_bleeding() = effects.bleeding();
-        if (effects.has_irrigation()) *shown.mutable_irrigation() = effects.irrigation();
-        if (effects.has_burr_spin()) *shown.mutable_burr_spin() = effects.burr_spin();
-        if (effects.has_milling_sound()) *shown.mutable_milling_sound() = effects.milling_sound();
-    }
+    const scene::Effects effects = viewerEffectsOf(scene.effects());
+    if (isAnyListed(effects)) *info.mutable_viewer_effects() = effects;
     for (const scene::Material& material : scene.material()) {
         scene::Material& shown = *info.add_materials();
         shown.set_name(material.name());
@@ -49,7 +51,7 @@ void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info) {
 }
 
 ShownEffects::ShownEffects(const scene::Effects& effects)
-    : recorded_(recordedEffectsOf(effects)), is_seen_(hasViewerEffects(effects)) {}
+    : recorded_(recordedEffectsOf(effects)), is_seen_(isAnyListed(viewerEffectsOf(effects))) {}
 
 topics::EffectState ShownEffects::at(const EffectRecord& newest, const EventSum& events,
                                      double removed) const {

@@ -11,36 +11,95 @@
 namespace bonemill {
 namespace {
 
-EnergyRemovalConfig energyRemovalOf(const scene::EnergyRemoval& removal) {
-    return {.specific_energy = removal.specific_energy_j_per_mm3() * kPerCubicMillimetre,
-            .density_exponent = removal.density_exponent(),
-            .threshold_pressure = removal.threshold_pressure_mpa() * kMega,
-            .diamond_energy_factor = removal.diamond_energy_factor()};
-}
+// Each reads what the scene says of one effect, if it lists it.
 
-SpindleConfig spindleConfigOf(const scene::Spindle& spindle) {
+void read(const scene::Effects& effects, std::optional<SpindleConfig>& config) {
     constexpr double kTorquePerKrpm = kMillimetre / (1000 * kRpm);  // N·m·s/rad
-    return {.inertia = spindle.inertia_kg_mm2() * kMillimetre * kMillimetre,
-            .max_torque = spindle.max_torque_nmm() * kMillimetre,
-            .droop = spindle.droop_nmm_per_krpm() * kTorquePerKrpm,
-            .drag = spindle.drag_nmm_per_krpm() * kTorquePerKrpm};
+    if (!effects.has_spindle()) return;
+    const scene::Spindle& spindle = effects.spindle();
+    config = {.inertia = spindle.inertia_kg_mm2() * kMillimetre * kMillimetre,
+              .max_torque = spindle.max_torque_nmm() * kMillimetre,
+              .droop = spindle.droop_nmm_per_krpm() * kTorquePerKrpm,
+              .drag = spindle.drag_nmm_per_krpm() * kTorquePerKrpm};
 }
 
-ThermalConfig thermalConfigOf(const scene::Thermal& thermal) {
-    ThermalConfig config;
-    config.heat_share = thermal.heat_share();
-    config.irrigation_radius = thermal.irrigation_radius_mm() * kMillimetre;
-    config.heat = {.cell = thermal.cell_mm() * kMillimetre,
-                   .conductivity = thermal.conductivity_w_per_m_k(),
-                   .heat_capacity = thermal.heat_capacity_j_per_cm3_k() * kPerCubicCentimetre,
-                   .perfusion = thermal.perfusion_per_s(),
-                   .body_temperature = thermal.body_temperature_c(),
-                   .wet_transfer = thermal.irrigation_w_per_m2_k(),
-                   .irrigation_temperature = thermal.irrigation_temperature_c(),
-                   .dry_transfer = thermal.dry_w_per_m2_k(),
-                   .necrosis_temperature = thermal.necrosis_temperature_c(),
-                   .necrosis_time = thermal.necrosis_time_s()};
-    return config;
+void read(const scene::Effects&, std::optional<MaterialStiffnessConfig>&) {}  // The materials say it.
+
+void read(const scene::Effects& effects, std::optional<EnergyRemovalConfig>& config) {
+    if (!effects.has_energy_removal()) return;
+    const scene::EnergyRemoval& removal = effects.energy_removal();
+    config = {.specific_energy = removal.specific_energy_j_per_mm3() * kPerCubicMillimetre,
+              .reference_density = kMaxDensity,
+              .density_exponent = removal.density_exponent(),
+              .threshold_pressure = removal.threshold_pressure_mpa() * kMega,
+              .diamond_energy_factor = removal.diamond_energy_factor()};
+}
+
+void read(const scene::Effects& effects, std::optional<CuttingForceConfig>& config) {
+    if (!effects.has_cutting_force()) return;
+    config = {.slow_speed = effects.cutting_force().slow_speed_mm_per_s() * kMillimetre,
+              .smoothing_time = effects.cutting_force().smoothing_time_ms() * kMillisecond};
+}
+
+void read(const scene::Effects& effects, std::optional<SurfaceFrictionConfig>& config) {
+    if (!effects.has_surface_friction()) return;
+    const scene::SurfaceFriction& friction = effects.surface_friction();
+    config = {.coefficient = friction.coefficient(),
+              .presliding_stiffness = friction.presliding_stiffness_n_per_mm() / kMillimetre};
+}
+
+void read(const scene::Effects& effects, std::optional<BurrVibrationConfig>& config) {
+    if (!effects.has_burr_vibration()) return;
+    config = {.amplitude_per_force = effects.burr_vibration().amplitude_per_force(),
+              .max_amplitude = effects.burr_vibration().max_amplitude_n(),
+              .diamond_factor = effects.burr_vibration().diamond_factor()};
+}
+
+void read(const scene::Effects& effects, std::optional<VirtualFixtureConfig>& config) {
+    if (!effects.has_virtual_fixture()) return;
+    const scene::VirtualFixture& fixture = effects.virtual_fixture();
+    config = {.distance = fixture.distance_mm() * kMillimetre,
+              .stiffness = fixture.stiffness_n_per_mm() / kMillimetre,
+              .max_force = fixture.max_force_n(),
+              .hand_force_scale = fixture.hand_force_scale()};
+}
+
+void read(const scene::Effects& effects, std::optional<TimeRemovalConfig>& config) {
+    if (effects.has_time_removal())
+        config = {.rate = effects.time_removal().rate_density_per_s() * kDensityCountsPerUnit};
+}
+
+void read(const scene::Effects& effects, std::optional<AddMaterialConfig>& config) {
+    if (effects.has_add_material())
+        config = {.rate = effects.add_material().rate_density_per_s() * kDensityCountsPerUnit};
+}
+
+void read(const scene::Effects& effects, std::optional<ThermalConfig>& config) {
+    if (!effects.has_thermal()) return;
+    const scene::Thermal& thermal = effects.thermal();
+    config = {.heat_share = thermal.heat_share(),
+              .irrigation_radius = thermal.irrigation_radius_mm() * kMillimetre,
+              .heat = {.cell = thermal.cell_mm() * kMillimetre,
+                       .conductivity = thermal.conductivity_w_per_m_k(),
+                       .heat_capacity = thermal.heat_capacity_j_per_cm3_k() * kPerCubicCentimetre,
+                       .perfusion = thermal.perfusion_per_s(),
+                       .body_temperature = thermal.body_temperature_c(),
+                       .wet_transfer = thermal.irrigation_w_per_m2_k(),
+                       .irrigation_temperature = thermal.irrigation_temperature_c(),
+                       .dry_transfer = thermal.dry_w_per_m2_k(),
+                       .necrosis_temperature = thermal.necrosis_temperature_c(),
+                       .necrosis_time = thermal.necrosis_time_s()}};
+}
+
+void read(const scene::Effects& effects, std::optional<ProtectedStructuresConfig>& config) {
+    if (effects.has_protected_structures())
+        config = {.warning_distance = effects.protected_structures().warning_distance_mm() * kMillimetre};
+}
+
+EffectConfigs configsOf(const scene::Effects& effects) {
+    EffectConfigs configs;
+    forEachEffect(configs, [&](auto& config) { read(effects, config); });
+    return configs;
 }
 
 }  // namespace
@@ -58,45 +117,15 @@ Burr burrOf(const scene::Tool& tool) {
 }
 
 EffectConfigs effectConfigsOf(const scene::Scene& scene) {
-    const scene::Effects& effects = scene.effects();
-    EffectConfigs configs;
+    EffectConfigs configs = configsOf(scene.effects());
     configs.materials = materialTableOf(scene);
     if (std::ranges::any_of(configs.materials, [](const auto& m) { return m.stiffness_factor != 1; }))
         configs.material_stiffness.emplace();
-    if (effects.has_energy_removal()) configs.energy_removal = energyRemovalOf(effects.energy_removal());
-    if (effects.has_time_removal())
-        configs.time_removal = {effects.time_removal().rate_density_per_s() * kDensityCountsPerUnit};
-    if (effects.has_add_material())
-        configs.add_material = {effects.add_material().rate_density_per_s() * kDensityCountsPerUnit};
-    if (effects.has_spindle()) configs.spindle = spindleConfigOf(effects.spindle());
-    if (effects.has_cutting_force())
-        configs.cutting_force = {effects.cutting_force().slow_speed_mm_per_s() * kMillimetre,
-                                 effects.cutting_force().smoothing_time_ms() * kMillisecond};
-    if (effects.has_surface_friction())
-        configs.surface_friction = {effects.surface_friction().coefficient(),
-                                    effects.surface_friction().presliding_stiffness_n_per_mm() / kMillimetre};
-    if (effects.has_burr_vibration())
-        configs.burr_vibration = {effects.burr_vibration().amplitude_per_force(),
-                                  effects.burr_vibration().max_amplitude_n(),
-                                  effects.burr_vibration().diamond_factor()};
-    if (effects.has_virtual_fixture()) {
-        const scene::VirtualFixture& fixture = effects.virtual_fixture();
-        configs.virtual_fixture = {.distance = fixture.distance_mm() * kMillimetre,
-                                   .stiffness = fixture.stiffness_n_per_mm() / kMillimetre,
-                                   .max_force = fixture.max_force_n(),
-                                   .hand_force_scale = fixture.hand_force_scale()};
-    }
-    if (effects.has_thermal()) configs.thermal = thermalConfigOf(effects.thermal());
-    if (effects.has_protected_structures())
-        configs.protected_structures = {effects.protected_structures().warning_distance_mm() * kMillimetre};
     return configs;
 }
 
-RecordedEffects recordedEffectsOf(const scene::Effects& e) {
-    return {.burr = e.has_energy_removal() || e.has_cutting_force() || e.has_spindle() ||
-                    e.has_burr_vibration() || e.has_thermal(),
-            .heat = e.has_thermal(),
-            .protection = e.has_protected_structures()};
+RecordedEffects recordedEffectsOf(const scene::Effects& effects) {
+    return recordedBy(configsOf(effects));
 }
 
 void mapRawValues(EffectConfigs& configs, const LoadedScene& loaded, const DensityMapping& mapping) {

@@ -5,12 +5,16 @@
 namespace bonemill {
 
 struct RecordedEffects {
-    bool burr = false;        // speed, force, torque, power: energy_removal, cutting_force, spindle,
-                              // burr_vibration, thermal
-    bool heat = false;        // thermal
-    bool protection = false;  // protected_structures
+    bool burr = false;        // the burr's speed, force, torque and power
+    bool heat = false;        // temperature and necrosis
+    bool protection = false;  // what the tool does to protected structures
 
     bool any() const noexcept { return burr || heat || protection; }
+    void include(const RecordedEffects& other) noexcept {
+        burr |= other.burr;
+        heat |= other.heat;
+        protection |= other.protection;
+    }
 };
 
 }  // namespace bonemill

@@ -164,7 +164,6 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     start.tool = &tools_[tool_];
     start.shape = model_ == &thesis_ ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
     start.X_VT_start = X_VT_;
-    start.X_VT_device = X_VT_device_;
     effects_.begin(start);
 }
 

@@ -12,6 +12,7 @@
 #include "common/units.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill::test {
 namespace {
@@ -33,8 +34,8 @@ std::vector<Row> run(bool has_cutting_force) {
     Scene scene(planeBone(), burr(), {"balanced", Preset::kBalanced}, kMilli, [=](FixedTickConfig& config) {
         config.tool.burr.speed = kSpin;
         config.effects = {};
-        config.effects.spindle.emplace();
-        if (has_cutting_force) config.effects.cutting_force.emplace();
+        config.effects.spindle = test::kSpindle;
+        if (has_cutting_force) config.effects.cutting_force = test::kCuttingForce;
     });
     Stepper stepper(scene);
     std::vector<Row> rows;

@@ -17,6 +17,7 @@
 #include "haptic_server/tool/build/build_tool.h"
 #include "haptic_server/volume/import/densify.h"
 #include "tests/support/scripted_io.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill::bench {
 namespace {
@@ -55,7 +56,7 @@ void measure(const Setting& setting, const RawVolume& scan, const ToolModel& too
                    {.levels = {{setting.scaling_factor}}});
     FixedTickConfig config;
     config.tool.model = &tool;
-    config.effects.time_removal.emplace();
+    config.effects.time_removal = test::kTimeRemoval;
     config.accuracy = presetSettings(setting.preset);
     config.accuracy.shell_factor = setting.scaling_factor;
     test::ScriptedIo io(test::straightPath(kStart, kEnd, kTicks, kButtonRemove));

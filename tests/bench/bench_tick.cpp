@@ -12,6 +12,7 @@
 #include "tests/bench/bench_output.h"
 #include "tests/bench/half_block.h"
 #include "tests/support/scripted_io.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill::bench {
 namespace {
@@ -26,7 +27,7 @@ FixedTickConfig configOf(const TickCase& c, const ToolModel& tool) {
     config.accuracy = presetSettings(c.preset);
     config.gradient.coupling.translation_stiffness = kCouplingStiffness;
     config.coupling.translation_stiffness = kCouplingStiffness;
-    if (c.mills) config.effects.time_removal.emplace();
+    if (c.mills) config.effects.time_removal = test::kTimeRemoval;
     TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     return config;
 }

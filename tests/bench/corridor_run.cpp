@@ -10,6 +10,7 @@
 #include "haptic_server/volume/import/densify.h"
 #include "haptic_server/volume/import/far_air.h"
 #include "tests/bench/bench_output.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill::bench {
 namespace {
@@ -48,7 +49,7 @@ BoneModel corridorBone(int leaf_cells) {
 TickConfig corridorTick(double rate_hz) {
     TickConfig config;
     config.dt = 1 / rate_hz;
-    config.effects.time_removal.emplace();
+    config.effects.time_removal = test::kTimeRemoval;
     TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     return config;
 }

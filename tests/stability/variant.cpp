@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "tests/support/typical_effects.h"
+
 namespace bonemill::test {
 namespace {
 
@@ -16,16 +18,18 @@ struct NamedEffect {
 
 // There is one line per effect.
 constexpr NamedEffect kEffects[] = {
-    {"spindle", false, true, [](EffectConfigs& e) { e.spindle.emplace(); }},
-    {"cutting_force", false, true, [](EffectConfigs& e) { e.cutting_force.emplace(); }},
-    {"surface_friction", false, false, [](EffectConfigs& e) { e.surface_friction.emplace(); }},
-    {"burr_vibration", false, true, [](EffectConfigs& e) { e.burr_vibration.emplace(); }},
-    {"thermal", false, true, [](EffectConfigs& e) { e.thermal.emplace(); }},
+    {"spindle", false, true, [](EffectConfigs& e) { e.spindle = test::kSpindle; }},
+    {"cutting_force", false, true, [](EffectConfigs& e) { e.cutting_force = test::kCuttingForce; }},
+    {"surface_friction", false, false, [](EffectConfigs& e) { e.surface_friction = test::kSurfaceFriction; }},
+    {"burr_vibration", false, true, [](EffectConfigs& e) { e.burr_vibration = test::kBurrVibration; }},
+    {"thermal", false, true, [](EffectConfigs& e) { e.thermal = test::kThermal; }},
     {"material_stiffness", false, false, [](EffectConfigs& e) { e.material_stiffness.emplace(); }},
     // So weak that the bone has the last word.
     {"virtual_fixture", false, false,
-     [](EffectConfigs& e) { e.virtual_fixture = {.distance = 0.3e-3, .stiffness = 1000, .max_force = 0.1}; }},
-    {"energy_removal", true, true, [](EffectConfigs& e) { e.energy_removal.emplace(); }},
+     [](EffectConfigs& e) {
+         e.virtual_fixture = {.distance = 0.3e-3, .stiffness = 1000, .max_force = 0.1, .hand_force_scale = 1};
+     }},
+    {"energy_removal", true, true, [](EffectConfigs& e) { e.energy_removal = test::kEnergyRemoval; }},
 };
 
 void addFelt(EffectConfigs& configs) {

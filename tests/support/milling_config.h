@@ -2,13 +2,14 @@
 #pragma once
 
 #include "haptic_server/tick/tick_config.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill::test {
 
 inline FixedTickConfig millingConfig() {
     FixedTickConfig config;
-    config.effects.time_removal.emplace();
-    config.effects.add_material.emplace();
+    config.effects.time_removal = test::kTimeRemoval;
+    config.effects.add_material = test::kAddMaterial;
     return config;
 }
 

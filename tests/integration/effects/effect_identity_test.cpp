@@ -129,7 +129,8 @@ TEST(EffectConfigs, EveryEffectOfTheTickIsAFieldOfTheScene) {
     std::vector<std::string> fields = test::tickEffectNames();
     fields.push_back(test::kMaterialStiffness);
     const EffectConfigs configs;
-    forEachEffect(configs, [&](const char* name, const auto& config) {
+    forEachEffect(configs, [&](const auto& config) {
+        const std::string name = nameOf(config);
         EXPECT_FALSE(config) << name << ": what is not listed must not be there";
         EXPECT_NE(std::find(fields.begin(), fields.end(), name), fields.end()) << name;
     });

@@ -7,6 +7,7 @@
 #include "tests/support/rt_guard/rt_probe.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill {
 namespace {
@@ -33,24 +34,24 @@ void expectQuiet(const std::function<void(EffectConfigs&)>& choose) {
 }
 
 TEST(BurrEffectsAreRtSafe, Spindle) {
-    expectQuiet([](EffectConfigs& effects) { effects.spindle.emplace(); });
+    expectQuiet([](EffectConfigs& effects) { effects.spindle = test::kSpindle; });
 }
 TEST(BurrEffectsAreRtSafe, CuttingForce) {
-    expectQuiet([](EffectConfigs& effects) { effects.cutting_force.emplace(); });
+    expectQuiet([](EffectConfigs& effects) { effects.cutting_force = test::kCuttingForce; });
 }
 TEST(BurrEffectsAreRtSafe, BurrVibration) {
-    expectQuiet([](EffectConfigs& effects) { effects.burr_vibration.emplace(); });
+    expectQuiet([](EffectConfigs& effects) { effects.burr_vibration = test::kBurrVibration; });
 }
 TEST(BurrEffectsAreRtSafe, SurfaceFriction) {
-    expectQuiet([](EffectConfigs& effects) { effects.surface_friction.emplace(); });
+    expectQuiet([](EffectConfigs& effects) { effects.surface_friction = test::kSurfaceFriction; });
 }
 TEST(BurrEffectsAreRtSafe, AllTogether) {
     expectQuiet([](EffectConfigs& effects) {
-        effects.spindle.emplace();
-        effects.cutting_force.emplace();
-        effects.burr_vibration.emplace();
-        effects.surface_friction.emplace();
-        effects.time_removal.emplace();
+        effects.spindle = test::kSpindle;
+        effects.cutting_force = test::kCuttingForce;
+        effects.burr_vibration = test::kBurrVibration;
+        effects.surface_friction = test::kSurfaceFriction;
+        effects.time_removal = test::kTimeRemoval;
     });
 }
 

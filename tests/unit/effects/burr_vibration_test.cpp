@@ -5,6 +5,7 @@
 #include <complex>
 
 #include "tests/support/contact_set.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill {
 namespace {
@@ -41,7 +42,7 @@ struct VibrationTest : testing::Test {
     }
 
     test::BurrTick bench;
-    BurrVibration vibration{BurrVibrationConfig{}};
+    BurrVibration vibration{test::kBurrVibration};
     std::vector<Wrench> felt;
 };
 
@@ -68,7 +69,7 @@ TEST_F(VibrationTest, IsAtRightAnglesToTheAxisAndWithoutTorque) {
 
 TEST_F(VibrationTest, GrowsNoLargerThanItsLimit) {
     run(300 + kWindow, 100, 170);
-    EXPECT_NEAR(amplitudeAt(170), BurrVibrationConfig{}.max_amplitude, 1e-6);
+    EXPECT_NEAR(amplitudeAt(170), test::kBurrVibration.max_amplitude, 1e-6);
 }
 
 TEST_F(VibrationTest, IsLessWithDiamondAndBelowTheSlowestTurns) {
@@ -96,8 +97,7 @@ TEST_F(VibrationTest, PhaseAndAmplitudeHaveNoJumps) {
     const double longest = 2 * std::sin(M_PI * BurrVibration::kHighest * bench.tick.dt);
     const double ramp = bench.tick.dt / BurrVibration::kSmoothing;
     for (size_t n = 1; n < felt.size(); ++n)
-        ASSERT_LE(std::abs(sample(n) - sample(n - 1)),
-                  (longest + ramp) * BurrVibrationConfig{}.max_amplitude);
+        ASSERT_LE(std::abs(sample(n) - sample(n - 1)), (longest + ramp) * test::kBurrVibration.max_amplitude);
 }
 
 TEST(Vibration, StaysBelowWhatTheLoopRateCarries) {

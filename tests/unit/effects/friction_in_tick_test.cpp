@@ -3,6 +3,7 @@
 
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill::test {
 namespace {
@@ -99,7 +100,7 @@ TEST(FrictionInTick, SlidingCostsFrictionTimesForceWithoutChatter) {
 Wrench pressedWhileSpinning(bool cutting, TickRecord& record) {
     Scene scene(planeBone(), burr(), balanced(), 1e-3, [=](FixedTickConfig& config) {
         withoutMilling(config).tool.burr.speed = 4000;
-        if (cutting) config.effects.cutting_force.emplace();
+        if (cutting) config.effects.cutting_force = test::kCuttingForce;
     });
     Stepper stepper(scene);
     for (int n = 0; n < 1000; ++n)
@@ -130,8 +131,9 @@ TEST(CuttingForceInTick, AStalledBurrHoldsTheMotorsTorque) {
     constexpr double kWeak = 0.2e-3;  // N·m
     Scene scene(planeBone(), burr(), balanced(), 1e-3, [](FixedTickConfig& config) {
         withoutMilling(config).tool.burr.speed = 4000;
-        config.effects.cutting_force.emplace();
-        config.effects.spindle.emplace().max_torque = kWeak;
+        config.effects.cutting_force = test::kCuttingForce;
+        config.effects.spindle = test::kSpindle;
+        config.effects.spindle->max_torque = kWeak;
     });
     Stepper stepper(scene);
     for (int n = 0; n < 1500; ++n)

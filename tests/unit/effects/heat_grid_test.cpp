@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/support/test_bodies.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kBody = 37;
 
 // Neither surface nor blood takes heat.
 HeatConfig insulated() {
-    HeatConfig config;
+    HeatConfig config = test::kHeat;
     config.wet_transfer = config.dry_transfer = 0;
     return config;
 }
@@ -49,7 +50,7 @@ Vector3d cubeAt(int i, int j, int k) {
 
 TEST(HeatGrid, NothingIsThereBeforeTheFirstHeat) {
     const VoxelVolume bone = boneOf({40, 40, 40});
-    HeatGrid heat(HeatConfig{}, bone, kDt);
+    HeatGrid heat(test::kHeat, bone, kDt);
     run(heat, 0.1);
     EXPECT_EQ(heat.activeBricks(), 0u);
     EXPECT_EQ(heat.hottest(), kBody);
@@ -124,7 +125,7 @@ TEST(HeatGrid, TheResultDoesNotDependOnTheTickRate) {
     const VoxelVolume bone = boneOf({40, 40, 40});
     std::vector<double> excess;
     for (const double dt : {4e-3, 1e-3, 0.25e-3}) {
-        HeatConfig config;
+        HeatConfig config = test::kHeat;
         HeatGrid heat(config, bone, dt);
         heat.irrigate(cubeAt(20, 20, 39), 5e-3);
         for (int n = 0; n < int(std::lround(2 / dt)); ++n) {
@@ -191,8 +192,8 @@ TEST(HeatGrid, WhatIsCutAwayIsNeitherHotNorDeadBone) {
 // Its brick was closed long ago when the whole bone becomes another one.
 TEST(HeatGrid, DeadBoneThatIsGoneDoesNotCountThoughItIsCold) {
     VoxelVolume bone = boneOf({32, 32, 32});
-    HeatGrid heat(HeatConfig{}, bone, kDt);
-    heat.addHeat(cubeAt(10, 10, 10), -kUp, HeatConfig{}.heat_capacity * std::pow(kSpacing, 3) * 10.5);
+    HeatGrid heat(test::kHeat, bone, kDt);
+    heat.addHeat(cubeAt(10, 10, 10), -kUp, test::kHeat.heat_capacity * std::pow(kSpacing, 3) * 10.5);
     run(heat, 20);
     EXPECT_EQ(heat.activeBricks(), 0u);
     EXPECT_GT(heat.necroticVolume(), 0);
@@ -207,9 +208,9 @@ TEST(HeatGrid, DeadBoneThatIsGoneDoesNotCountThoughItIsCold) {
 // Cubes count once however often they are heated, also after their brick was given up meanwhile.
 TEST(HeatGrid, NecrosisIsCountedOnce) {
     const VoxelVolume bone = boneOf({32, 32, 32});
-    HeatGrid heat(HeatConfig{}, bone, kDt);
+    HeatGrid heat(test::kHeat, bone, kDt);
     const double cube = std::pow(kSpacing, 3);
-    const double ten_kelvin = HeatConfig{}.heat_capacity * cube * 10.5;
+    const double ten_kelvin = test::kHeat.heat_capacity * cube * 10.5;
     for (int n = 0; n < 3; ++n) {
         heat.addHeat(cubeAt(10, 10, 10), -kUp, ten_kelvin);
         run(heat, 20);
@@ -245,8 +246,8 @@ TEST(HeatGrid, BricksAreBounded) {
         heat.addHeat(cubeAt(8 * (n % 16), 8 * (n / 16 % 16), 8 * (n / 256)), Vector3d::Zero(), 0.1);
         heat.step();
     }
-    EXPECT_LE(heat.activeBricks(), heat.mostBricks());
     EXPECT_GT(heat.activeBricks(), 500u);
+    EXPECT_LE(heat.activeBricks(), 1024u);  // of the 2000 that were heated
     EXPECT_TRUE(std::isfinite(heat.hottest()));
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/typical_effects.h"
 #include "tests/unit/effects/tissue_bench.h"
 
 namespace bonemill {
@@ -19,7 +20,7 @@ DistanceFunction layer(double low, double high) {
 
 struct ProtectedBench : TissueBench {
     explicit ProtectedBench(const DistanceFunction& nerve) : TissueBench(nerve) {
-        config.effects.time_removal.emplace();
+        config.effects.time_removal = test::kTimeRemoval;
         config.effects.protected_structures = {.warning_distance = 1e-3};
     }
 };
@@ -105,7 +106,8 @@ TEST(ProtectedStructures, ForceIsThatOfTheContactsOnThem) {
 TEST(ProtectedStructures, AStalledBurrHarmsNothing) {
     ProtectedBench bench(layer(2.5e-3, 7e-3));
     bench.config.tool.burr.speed = 4000;
-    bench.config.effects.spindle.emplace().max_torque = 0.2e-3;
+    bench.config.effects.spindle = test::kSpindle;
+    bench.config.effects.spindle->max_torque = 0.2e-3;
     FixedTick tick = bench.makeTick();
     const Vector3d end(kMiddle, kMiddle, kTop + kBurr - 0.8e-3);
     auto inputs = straightPath(TissueBench::at({kMiddle, kMiddle, 6.2e-3}), end, 200, 0);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/contact_set.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill {
 namespace {
@@ -25,7 +26,7 @@ double runUp(const SpindleConfig& c, double t) {
 }
 
 TEST(Spindle, RunsUpAsTheClosedFormSays) {
-    SpindleConfig config;
+    SpindleConfig config = test::kSpindle;
     config.drag = 0;
     for (const double t : {0.02, 0.05, 0.085, 0.1, 0.11, 0.15}) {
         EXPECT_NEAR(speedAfter(config, t, 1e-3), runUp(config, t), 0.005 * kFullSpeed) << t;
@@ -34,21 +35,21 @@ TEST(Spindle, RunsUpAsTheClosedFormSays) {
 }
 
 TEST(Spindle, DroopsUnderLoad) {
-    const SpindleConfig config;
+    const SpindleConfig config = test::kSpindle;
     for (const double load : {0.0, 2e-3, 10e-3})
         EXPECT_NEAR(speedAfter(config, 2, 1e-3, load),
                     (config.droop * kFullSpeed - load) / (config.droop + config.drag), 1e-6 * kFullSpeed);
 }
 
 TEST(Spindle, StandsExactlyStillAboveTheStallTorqueAndOnlyThere) {
-    const SpindleConfig config;
+    const SpindleConfig config = test::kSpindle;
     EXPECT_EQ(speedAfter(config, 3, 1e-3, 1.1 * config.max_torque, kFullSpeed), 0);
     EXPECT_EQ(speedAfter(config, 3, 1e-3, 1.001 * config.max_torque), 0);
     EXPECT_GT(speedAfter(config, 3, 1e-3, 0.9 * config.max_torque), 0.5 * kFullSpeed);
 }
 
 TEST(Spindle, StopsInTheTimeThatTheMissingTorqueTakes) {
-    SpindleConfig config;
+    SpindleConfig config = test::kSpindle;
     config.drag = 0;
     config.droop = 1;  // at its limit all the while
     const double load = 2 * config.max_torque, stop = config.inertia * kFullSpeed / config.max_torque;
@@ -59,7 +60,7 @@ TEST(Spindle, StopsInTheTimeThatTheMissingTorqueTakes) {
 TEST(Spindle, LoadNeverDrivesNorReverses) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(-1, 1);
-    const SpindleConfig config;
+    const SpindleConfig config = test::kSpindle;
     for (int n = 0; n < 100'000; ++n) {
         const double speed = kFullSpeed * uniform(random), wanted = n % 3 ? kFullSpeed * uniform(random) : 0;
         const double load = 5 * config.max_torque * std::abs(uniform(random));
@@ -71,7 +72,7 @@ TEST(Spindle, LoadNeverDrivesNorReverses) {
 }
 
 TEST(Spindle, TakesAnyStiffnessOfTheMotor) {
-    SpindleConfig config;
+    SpindleConfig config = test::kSpindle;
     config.droop = 1e3;
     double last = 0;
     for (int n = 0; n < 300; ++n) {
@@ -84,7 +85,7 @@ TEST(Spindle, TakesAnyStiffnessOfTheMotor) {
 }
 
 TEST(Spindle, TurnsBackwardsForANegativeSpeed) {
-    const SpindleConfig config;
+    const SpindleConfig config = test::kSpindle;
     EXPECT_DOUBLE_EQ(speedAfter(config, 0.1, 1e-3, 1e-3, 0, -kFullSpeed),
                      -speedAfter(config, 0.1, 1e-3, 1e-3));
 }
@@ -108,23 +109,23 @@ struct PressedSpindle : testing::Test {
     bool isStalled() const { return bench.tick.record.events & kEventSpindleStalled; }
 
     test::BurrTick bench;
-    Spindle spindle{SpindleConfig{}};
+    Spindle spindle{test::kSpindle};
     bool was_stalled = false;
 };
 
 TEST_F(PressedSpindle, StallsSaysSoAndStartsAgain) {
     const Burr& burr = bench.tool.burr;
-    const double stall_force = SpindleConfig{}.max_torque / (burr.friction * burr.radius);
+    const double stall_force = test::kSpindle.max_torque / (burr.friction * burr.radius);
     run(0.5, 0, true);
     run(0.5, 0.8 * stall_force, true);
     EXPECT_FALSE(was_stalled);
     EXPECT_GT(bench.tick.spin_speed, 0.8 * burr.speed);
-    EXPECT_NEAR(bench.tick.record.axis_torque, 0.8 * SpindleConfig{}.max_torque, 1e-6);
+    EXPECT_NEAR(bench.tick.record.axis_torque, 0.8 * test::kSpindle.max_torque, 1e-6);
     run(1, 1.1 * stall_force, true);
     EXPECT_TRUE(isStalled());
     EXPECT_EQ(bench.tick.spin_speed, 0);
-    EXPECT_NEAR(bench.tick.record.axis_torque, SpindleConfig{}.max_torque, 1e-6);
-    EXPECT_NEAR(bench.tick.axis_load, SpindleConfig{}.max_torque, 1e-6);
+    EXPECT_NEAR(bench.tick.record.axis_torque, test::kSpindle.max_torque, 1e-6);
+    EXPECT_NEAR(bench.tick.axis_load, test::kSpindle.max_torque, 1e-6);
     run(0.5, 0.8 * stall_force, true);
     EXPECT_FALSE(isStalled());
     EXPECT_GT(bench.tick.spin_speed, 0.8 * burr.speed);
@@ -140,7 +141,7 @@ TEST_F(PressedSpindle, IsNotStalledWhileItRunsUpOrStands) {
 
 // However slowly it runs up.
 TEST_F(PressedSpindle, NeverStallsInTheAir) {
-    Spindle slow{SpindleConfig{.inertia = 5e-6, .droop = 1e-7, .drag = 1e-6}};
+    Spindle slow{SpindleConfig{.inertia = 5e-6, .max_torque = 0.02, .droop = 1e-7, .drag = 1e-6}};
     bench.tick.is_pedal_down = true;
     for (int n = 0; n < 5000; ++n) {
         slow.begin(bench.tick);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/typical_effects.h"
 #include "tests/unit/effects/tissue_bench.h"
 
 namespace bonemill {
@@ -15,7 +16,7 @@ struct HotBench : TissueBench {
     HotBench() : TissueBench(halfSpace({-1, 0, 0}, Vector3d::UnitX())) {
         config.tool.burr.speed = 1000;  // rad/s
         config.tool.burr.friction = 0.5;
-        config.effects.thermal.emplace();
+        config.effects.thermal = test::kThermal;
     }
     // Leaning over by 45°, so that the burr's side rubs, pressed onto the bone.
     std::vector<TickRecord> press(uint32_t buttons, int ticks) {

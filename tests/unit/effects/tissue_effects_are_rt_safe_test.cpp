@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/rt_guard/rt_probe.h"
+#include "tests/support/typical_effects.h"
 #include "tests/unit/effects/tissue_bench.h"
 
 namespace bonemill {
@@ -14,10 +15,12 @@ TEST(TissueEffectsAreRtSafe, WhileMillingThroughAllOfThem) {
     EffectConfigs& effects = bench.config.effects;
     effects.materials[kNerve].stiffness_factor = 0.5;
     effects.material_stiffness.emplace();
-    effects.time_removal.emplace();
-    effects.thermal.emplace();
-    effects.virtual_fixture = {.stiffness = 500, .hand_force_scale = 0.5};
-    effects.protected_structures.emplace();
+    effects.time_removal = test::kTimeRemoval;
+    effects.thermal = test::kThermal;
+    effects.virtual_fixture = test::kVirtualFixture;
+    effects.virtual_fixture->stiffness = 500;
+    effects.virtual_fixture->hand_force_scale = 0.5;
+    effects.protected_structures = test::kProtectedStructures;
     bench.config.tool.burr.speed = 3000;
     FixedTick tick = bench.makeTick();
     ScriptedIo io(

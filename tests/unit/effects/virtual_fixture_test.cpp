@@ -50,7 +50,8 @@ Pose randomPose(std::mt19937& random) {
 }
 
 TEST(VirtualFixture, PushesBackByDepthInTheRegion) {
-    const VirtualFixtureConfig config{.distance = 1e-3, .stiffness = 2000, .max_force = 10};
+    const VirtualFixtureConfig config{
+        .distance = 1e-3, .stiffness = 2000, .max_force = 10, .hand_force_scale = 1};
     const Fixture fixture(config);
     EXPECT_EQ(fixture.at({kNervePlace + Vector3d(0, 0, kNerveRadius + kBurr + 1.2e-3), {}}).energy, 0);
     const EnergyTerm term = fixture.at(
@@ -63,7 +64,8 @@ TEST(VirtualFixture, PushesBackByDepthInTheRegion) {
 
 // Round a ball: no jumps from voxel to voxel, and the same force everywhere but for the stairs of the labels.
 TEST(VirtualFixture, ForceHasNoJumpsRoundABall) {
-    const VirtualFixtureConfig config{.distance = 1e-3, .stiffness = 2000, .max_force = 10};
+    const VirtualFixtureConfig config{
+        .distance = 1e-3, .stiffness = 2000, .max_force = 10, .hand_force_scale = 1};
     const Fixture fixture(config);
     constexpr int kSteps = 20'000;
     const double radius = kNerveRadius + kBurr + 0.5e-3, step = 2 * M_PI * radius / kSteps;
@@ -127,7 +129,8 @@ TEST(VirtualFixture, StiffnessIsPositiveSemiDefiniteAndBounded) {
 // The smooth minimum of a burr with edges is never more than a few hundredths of its radius too careful.
 TEST(VirtualFixture, EdgesReachAsFarAsTheBall) {
     const Burr burr = burrOf(BurrKind::kCylinder);
-    const VirtualFixtureConfig config{.distance = 1e-3, .stiffness = 2000, .max_force = 100};
+    const VirtualFixtureConfig config{
+        .distance = 1e-3, .stiffness = 2000, .max_force = 100, .hand_force_scale = 1};
     const Fixture fixture(config, burr);
     // Its flat end above the nerve.
     const double height = kNerveRadius + burr.length / 2 + 0.6e-3;
@@ -166,7 +169,7 @@ TEST(VirtualFixture, ClosedPathsOfTheHandGainNoEnergy) {
     const TissueBench& scene = bench();
     for (const double scale : {1.0, 0.5}) {
         const VirtualFixtureConfig fixture_config{
-            .distance = 1e-3, .stiffness = 2500, .hand_force_scale = scale};
+            .distance = 1e-3, .stiffness = 2500, .max_force = 10, .hand_force_scale = scale};
         EffectList effects;
         effects.push_back(
             std::make_unique<VirtualFixture>(fixture_config, scene.config.effects.protected_field));
@@ -197,7 +200,6 @@ TEST(VirtualFixture, ClosedPathsOfTheHandGainNoEnergy) {
             start.dt = 1e-3;
             start.tool = &tool;
             start.X_VT_start = spo;
-            start.X_VT_device = hand;
             host.begin(start);
             const SpoStep step = model.advance(spo, hand);
             spo = step.X_VT;
@@ -217,7 +219,8 @@ TEST(VirtualFixture, ClosedPathsOfTheHandGainNoEnergy) {
 // Pressed into the region in the air, at the loop's rate: it comes to rest where coupling and fixture agree.
 TEST(VirtualFixture, HoldsThePressedToolStill) {
     TissueBench air(sphereAt({4e-3, 4e-3, 6.5e-3}, kNerveRadius));
-    air.config.effects.virtual_fixture = {.distance = 0.5e-3, .stiffness = 4000};
+    air.config.effects.virtual_fixture = {
+        .distance = 0.5e-3, .stiffness = 4000, .max_force = 10, .hand_force_scale = 1};
     FixedTick tick = air.makeTick();
     const Vector3d start(5e-3, 4.3e-3, 9e-3), end(4.3e-3, 4.1e-3, 8.2e-3);
     auto inputs = straightPath(TissueBench::at(start), end, 300, 0);

@@ -8,6 +8,7 @@
 #include "haptic_server/mesh/mesh_check.h"
 #include "haptic_server/tick/fixed_tick.h"
 #include "tests/support/test_bodies.h"
+#include "tests/support/typical_effects.h"
 #include "tests/support/voxel_fields.h"
 
 namespace bonemill::test {
@@ -28,7 +29,7 @@ struct RigConfig {
     double rate = 1000;  // Hz
     Burr burr{.radius = 1e-3, .speed = 40 * kKrpm};
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // of the tool
-    EnergyRemovalConfig removal;
+    EnergyRemovalConfig removal = kEnergyRemoval;
     Preset preset = Preset::kBalanced;
     int shell_factor = 1;
     size_t most_milled_cells = TickConfig{}.most_milled_cells;

@@ -45,9 +45,7 @@ double boneVolume(const BoneModel& bone) {
 }
 
 SpecificEnergyConfig uniform() {
-    SpecificEnergyConfig config;
-    config.reference = kEnergy;
-    return config;
+    return {.reference = kEnergy, .reference_density = kMaxDensity, .exponent = 0, .materials = {}};
 }
 
 // It is not on the faces of the volume.
@@ -125,7 +123,7 @@ TEST(SurfaceShift, MovesNoFartherThanAQuarterOfAVoxelOrTheDepth) {
             if (plane.sideways(p) < kReach && isOfPlane(bone, p)) shift.add(bone, patch, 1, depth);
         });
         MillingResult result;
-        shift.apply(bone, SpecificEnergy({}, nullptr, bone.volume.iso()), 1, 1, result);
+        shift.apply(bone, SpecificEnergy(uniform(), nullptr, bone.volume.iso()), 1, 1, result);
         double lowest = 0;
         forEachPoint(bone, [&](const Vector3d& p, double, PatchId) {
             if (plane.sideways(p) < kReach / 2 && isOfPlane(bone, p))

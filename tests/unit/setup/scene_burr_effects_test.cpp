@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "haptic_server/setup/scene_effects.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill {
 namespace {
@@ -12,25 +13,49 @@ TEST(SceneEffects, AreNotConfiguredUnlessListed) {
                  configs.burr_vibration);
 }
 
-TEST(SceneEffects, DefaultsAreThoseOfTheEffects) {
+// The tests of the effects count on figures of their own; they are to be those that people get.
+TEST(SceneEffects, DefaultsAreWhatTheEffectsAreTestedWith) {
     scene::Scene scene;
     scene.mutable_effects()->mutable_spindle();
     scene.mutable_effects()->mutable_cutting_force();
     scene.mutable_effects()->mutable_surface_friction();
     scene.mutable_effects()->mutable_burr_vibration();
     const EffectConfigs configs = effectConfigsOf(scene);
-    EXPECT_DOUBLE_EQ(configs.spindle->inertia, SpindleConfig{}.inertia);
-    EXPECT_DOUBLE_EQ(configs.spindle->max_torque, SpindleConfig{}.max_torque);
-    EXPECT_NEAR(configs.spindle->droop, SpindleConfig{}.droop, 0.01 * SpindleConfig{}.droop);
-    EXPECT_NEAR(configs.spindle->drag, SpindleConfig{}.drag, 0.01 * SpindleConfig{}.drag);
-    EXPECT_DOUBLE_EQ(configs.cutting_force->slow_speed, CuttingForceConfig{}.slow_speed);
-    EXPECT_DOUBLE_EQ(configs.cutting_force->smoothing_time, CuttingForceConfig{}.smoothing_time);
-    EXPECT_DOUBLE_EQ(configs.surface_friction->coefficient, SurfaceFrictionConfig{}.coefficient);
+    EXPECT_DOUBLE_EQ(configs.spindle->inertia, test::kSpindle.inertia);
+    EXPECT_DOUBLE_EQ(configs.spindle->max_torque, test::kSpindle.max_torque);
+    EXPECT_NEAR(configs.spindle->droop, test::kSpindle.droop, 0.01 * test::kSpindle.droop);
+    EXPECT_NEAR(configs.spindle->drag, test::kSpindle.drag, 0.01 * test::kSpindle.drag);
+    EXPECT_DOUBLE_EQ(configs.cutting_force->slow_speed, test::kCuttingForce.slow_speed);
+    EXPECT_DOUBLE_EQ(configs.cutting_force->smoothing_time, test::kCuttingForce.smoothing_time);
+    EXPECT_DOUBLE_EQ(configs.surface_friction->coefficient, test::kSurfaceFriction.coefficient);
     EXPECT_DOUBLE_EQ(configs.surface_friction->presliding_stiffness,
-                     SurfaceFrictionConfig{}.presliding_stiffness);
-    EXPECT_DOUBLE_EQ(configs.burr_vibration->amplitude_per_force, BurrVibrationConfig{}.amplitude_per_force);
-    EXPECT_DOUBLE_EQ(configs.burr_vibration->max_amplitude, BurrVibrationConfig{}.max_amplitude);
-    EXPECT_DOUBLE_EQ(configs.burr_vibration->diamond_factor, BurrVibrationConfig{}.diamond_factor);
+                     test::kSurfaceFriction.presliding_stiffness);
+    EXPECT_DOUBLE_EQ(configs.burr_vibration->amplitude_per_force, test::kBurrVibration.amplitude_per_force);
+    EXPECT_DOUBLE_EQ(configs.burr_vibration->max_amplitude, test::kBurrVibration.max_amplitude);
+    EXPECT_DOUBLE_EQ(configs.burr_vibration->diamond_factor, test::kBurrVibration.diamond_factor);
+}
+
+TEST(SceneEffects, EnergyOfBoneRisesWithItsDensityUnlessTheSceneSaysOtherwise) {
+    scene::Scene scene;
+    scene.mutable_effects()->mutable_energy_removal();
+    const EnergyRemovalConfig removal = *effectConfigsOf(scene).energy_removal;
+    EXPECT_DOUBLE_EQ(removal.specific_energy, test::kEnergyRemoval.specific_energy);
+    EXPECT_EQ(removal.reference_density, test::kEnergyRemoval.reference_density);
+    EXPECT_EQ(removal.density_exponent, 1.5);
+    EXPECT_EQ(removal.diamond_energy_factor, test::kEnergyRemoval.diamond_energy_factor);
+}
+
+TEST(SceneEffects, RecordWhatTheyDeclare) {
+    scene::Effects effects;
+    effects.mutable_time_removal();
+    effects.mutable_surface_friction();
+    EXPECT_FALSE(recordedEffectsOf(effects).any());
+    effects.mutable_spindle();
+    EXPECT_TRUE(recordedEffectsOf(effects).burr);
+    EXPECT_FALSE(recordedEffectsOf(effects).heat || recordedEffectsOf(effects).protection);
+    effects.mutable_thermal();
+    effects.mutable_protected_structures();
+    EXPECT_TRUE(recordedEffectsOf(effects).heat && recordedEffectsOf(effects).protection);
 }
 
 // 5 N·mm missing at 1000 turns a minute less than wanted.

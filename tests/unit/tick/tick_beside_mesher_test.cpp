@@ -13,6 +13,7 @@
 #include "tests/support/dds_session.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill {
 namespace {
@@ -114,7 +115,8 @@ TEST(TickBesideMesherAndPublisher, StreamedNodesEndAsTheFullRemesh) {
 TEST(TickBesideMesherAndPublisher, AlsoWhenEnergyRemoves) {
     FixedTickConfig config;
     config.tool.burr.speed = 6000;
-    config.effects.energy_removal = {.specific_energy = 0.02e9};
+    config.effects.energy_removal = test::kEnergyRemoval;
+    config.effects.energy_removal->specific_energy = 0.02e9;
     expectStreamedAsRemeshed(config);
 }
 

@@ -6,6 +6,7 @@
 #include "haptic_server/tick/fixed_tick.h"
 #include "tests/support/led_tick.h"
 #include "tests/support/test_bodies.h"
+#include "tests/support/typical_effects.h"
 
 namespace bonemill {
 namespace {
@@ -69,7 +70,7 @@ TEST(TickBudget, TooManyPointsForATickMeanACoarserShellAndSaySo) {
 TEST(TickBudget, PlentyOfTimeChangesNothing) {
     FixedTickConfig config;
     const auto free = Bench(config).run(dip(300, 0, kButtonRemove));
-    config.effects.time_removal.emplace();
+    config.effects.time_removal = test::kTimeRemoval;
     TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     const auto budgeted = Bench(config).run(dip(300, 0, kButtonRemove));
     for (size_t n = 0; n < free.size(); ++n) {
@@ -81,7 +82,7 @@ TEST(TickBudget, PlentyOfTimeChangesNothing) {
 
 TEST(TickBudget, MillingThatIsCutShortIsAFault) {
     FixedTickConfig config;
-    config.effects.time_removal.emplace();
+    config.effects.time_removal = test::kTimeRemoval;
     config.tool.burr.radius = kBurr;
     config.most_milled_cells = 200;
     Bench bench(config);

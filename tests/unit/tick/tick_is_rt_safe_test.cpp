@@ -10,6 +10,7 @@
 #include "tests/support/rt_guard/rt_probe.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/test_bodies.h"
+#include "tests/support/typical_effects.h"
 #include "tests/unit/tick/tool_bench.h"
 
 namespace bonemill {
@@ -69,7 +70,9 @@ TEST_F(TickIsRtSafe, WhileMillingAndAddingAndResetting) {
 TEST_F(TickIsRtSafe, WhileEnergyRemovesBoneOfSeveralKinds) {
     FixedTickConfig config;
     config.tool = {&tool_, {.speed = 6000}};
-    config.effects.energy_removal = {.specific_energy = 0.05e9, .density_exponent = 1.5};
+    config.effects.energy_removal = test::kEnergyRemoval;
+    config.effects.energy_removal->specific_energy = 0.05e9;
+    config.effects.energy_removal->density_exponent = 1.5;
     config.effects.properties = std::make_shared<const BoneProperties>(
         bone_.volume, [](const Eigen::Vector3i& v) { return MaterialId(v.x() % 2); });
     config.effects.materials = {{}, {.specific_energy = 0.03e9}};
