@@ -59,8 +59,9 @@ void meshAndMill(BoneModel& bone, nlohmann::json& json) {
         bone.shell.forEachBlock(0, leaf, [&](const ShellBlock& block, uint32_t) {
             on_surface = {block.x[0], block.y[0], block.z[0]};
         });
-    TimedMilling milling({.shape = MillingShape::kSubVoxel}, bone.volume, bone.lattice,
-                         8 * bone.volume.spacing().maxCoeff());
+    constexpr double kInTwentyTicks = 12750 * kDensityCountsPerUnit;  // counts/s: from full to nothing
+    TimedMilling milling({.removal_rate = kInTwentyTicks, .shape = MillingShape::kSubVoxel}, bone.volume,
+                         bone.lattice, 8 * bone.volume.spacing().maxCoeff());
     uint64_t removed = 0;
     for (int n = 0; n < kTicks; ++n)
         removed += milling.apply(bone.volume, bone.lattice, bone.shell, on_surface, -1, 1e-3).removed_voxels;

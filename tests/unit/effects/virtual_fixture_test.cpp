@@ -7,6 +7,7 @@
 #include "haptic_server/effects/effect_host.h"
 #include "tests/support/contact_scene.h"
 #include "tests/support/eigenvalues.h"
+#include "tests/support/typical_effects.h"
 #include "tests/unit/effects/tissue_bench.h"
 
 namespace bonemill {
@@ -28,6 +29,12 @@ Burr burrOf(BurrKind kind) {
     if (kind != BurrKind::kBall) burr.length = 3e-3;
     if (kind == BurrKind::kCone) burr.tip_radius = 0.4e-3;
     return burr;
+}
+
+VirtualFixtureConfig typicalBut(double VirtualFixtureConfig::*field, double value) {
+    VirtualFixtureConfig config = test::kVirtualFixture;
+    config.*field = value;
+    return config;
 }
 
 // One fixture with a tool, asked as the tick does.
@@ -87,7 +94,7 @@ TEST(VirtualFixture, ForceHasNoJumpsRoundABall) {
 TEST(VirtualFixture, WrenchIsMinusTheGradientOfTheEnergy) {
     std::mt19937 random(7);
     for (const BurrKind kind : {BurrKind::kBall, BurrKind::kCylinder, BurrKind::kCone}) {
-        const Fixture fixture({.max_force = 1.5}, burrOf(kind));
+        const Fixture fixture(typicalBut(&VirtualFixtureConfig::max_force, 1.5), burrOf(kind));
         int felt = 0;
         for (int n = 0; n < 400; ++n) {
             const Pose pose = randomPose(random);
@@ -116,7 +123,7 @@ TEST(VirtualFixture, WrenchIsMinusTheGradientOfTheEnergy) {
 
 TEST(VirtualFixture, StiffnessIsPositiveSemiDefiniteAndBounded) {
     std::mt19937 random(8);
-    const Fixture fixture({.stiffness = 3000}, burrOf(BurrKind::kCylinder));
+    const Fixture fixture(typicalBut(&VirtualFixtureConfig::stiffness, 3000), burrOf(BurrKind::kCylinder));
     for (int n = 0; n < 300; ++n) {
         const EnergyTerm term = fixture.at(randomPose(random));
         const Vector6d values = test::eigenvaluesOf(term.stiffness);
@@ -149,7 +156,7 @@ double handForce(Fixture& fixture, bool is_near, double force) {
 }
 
 TEST(VirtualFixture, HandForceScaleFallsNearbyAndRisesOnlyWhenTheHandIsFree) {
-    Fixture fixture({.hand_force_scale = 0.4});
+    Fixture fixture(typicalBut(&VirtualFixtureConfig::hand_force_scale, 0.4));
     EXPECT_EQ(handForce(fixture, false, 2), 2);
     double last = 2;
     for (int n = 0; n < 30; ++n) {

@@ -12,6 +12,7 @@ namespace {
 constexpr double kVoxel = 0.125e-3;
 constexpr double kDt = 1e-3;
 constexpr double kAtOnce = 1e9;  // counts/s: all that may go goes in one tick
+constexpr double kInTwentyTicks = 12750 * kDensityCountsPerUnit;  // counts/s: from full to nothing in 20 ms
 const std::vector<Eigen::Vector3d> kSpacings = {{kVoxel, kVoxel, kVoxel},
                                                 {0.6 * kVoxel, kVoxel, 0.8 * kVoxel}};
 constexpr Density kIsos[] = {32768, 26214, 45000, 9000};
@@ -187,7 +188,8 @@ TEST(SubVoxelMilling, ABurrSunkByMicrometresGoesOnCutting) {
         VoxelVolume volume = test::bodyVolume(test::cubeGeometry(33, kVoxel),
                                               test::halfSpace({0, 0, 2.03e-3}, Eigen::Vector3d::UnitZ()));
         BoneModel bone(std::move(volume), Eigen::Vector3i::Constant(16), ShellConfig{});
-        TimedMilling milling({.shape = shape}, bone.volume, bone.lattice, radius);
+        TimedMilling milling({.removal_rate = kInTwentyTicks, .shape = shape}, bone.volume, bone.lattice,
+                             radius);
         const Eigen::Vector2d xy(2.02e-3, 2.05e-3);
         const double start = heightOnBone(bone, xy, radius, sunk);
         double height = start;
@@ -210,7 +212,8 @@ TEST(SubVoxelMilling, APassLeavesTheSweptCapsule) {
         const double radius = 1e-3;
         const Eigen::Vector3d start(1.52e-3, 1.61e-3, 1.57e-3);
         const Eigen::Vector3d end(3.41e-3, 3.12e-3, 3.44e-3);
-        TimedMilling milling({.shape = MillingShape::kSubVoxel}, bone.volume, bone.lattice, radius);
+        TimedMilling milling({.removal_rate = kInTwentyTicks, .shape = MillingShape::kSubVoxel}, bone.volume,
+                             bone.lattice, radius);
         constexpr int kSteps = 600;
         constexpr int kDwell = 30;  // at both ends, longer than a full voxel takes to go
         for (int n = 0; n < kSteps + 2 * kDwell; ++n) {
