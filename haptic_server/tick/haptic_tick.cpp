@@ -174,7 +174,7 @@ SpoStep HapticTick::moveAndFeel(double stale_factor, uint32_t& faults) noexcept 
     if (step.is_motion_clamped) faults |= kFaultMotionClamped;
     if (step.has_stalled) faults |= kFaultStalled;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
-    if (gradient_.isToolGrowing()) hand_limits_.beginSuddenChange();
+    if (model_ == &gradient_ && gradient_.isToolGrowing()) hand_limits_.beginSuddenChange();
     effects_.addToHand(step.wrench_hand_V);
     step.wrench_hand_V = hand_limits_.limit({step.wrench_hand_V, step.is_solved, X_VT_device_, stale_factor});
     if (hand_limits_.wasLimited()) faults |= kFaultForceClamped;

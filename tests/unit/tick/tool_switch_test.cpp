@@ -95,6 +95,26 @@ TEST(SuddenLaw, ChangesTheForceAtALimitedRateAndLeavesAToolSmall) {
     EXPECT_LE(largestStep(records), 1.001 * HandLimits::kForceRate * 1e-3);
 }
 
+// A tool that had not grown to its size when the thesis' law took over is whole for that law: what it makes
+// of a jump of the hand is not slowed down.
+TEST(SuddenTool, ThatWasStillGrowingDoesNotLimitTheThesisLaw) {
+    const auto hand = test::SwitchingBench::at(test::kBenchTop + 0.1e-3);
+    const auto up = test::SwitchingBench::at(test::kBenchTop + 2.5e-3);
+    const auto jumped = test::SwitchingBench::at(test::kBenchTop + 4.5e-3);
+    ToolBench changed(0);
+    changed.run(test::straightPath(hand, hand.position, 300, 0));
+    changed.tools.choose(2);
+    changed.run(test::straightPath(hand, hand.position, 1, 0));
+    changed.accuracy.choose(AccuracySwitch::choiceOf(Preset::kThesis2012));
+    changed.run(test::straightPath(hand, up.position, 600, 0));
+    ToolBench alone(2, presetSettings(Preset::kThesis2012));
+    for (ToolBench* bench : {&changed, &alone}) bench->run(test::straightPath(up, up.position, 600, 0));
+    const auto jump = test::straightPath(jumped, jumped.position, 20, 0);
+    const auto felt = changed.run(jump), wanted = alone.run(jump);
+    EXPECT_GT(largestStep(wanted), 2 * HandLimits::kForceRate * 1e-3) << "the jump shows no limit";
+    for (size_t n = 0; n < felt.size(); ++n) EXPECT_NEAR(felt[n].f_hand_W[2], wanted[n].f_hand_W[2], 1e-3) << n;
+}
+
 // The groove of a tool that was changed to is as that of the same tool from the start.
 TEST(ToolSwitch, EachToolMillsWithItsOwnBurr) {
     const auto removedBy = [](size_t first, size_t then) {
