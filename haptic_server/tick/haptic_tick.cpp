@@ -158,7 +158,7 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     const bool add = input.buttons & kButtonAdd;
     EffectTick start;
     start.dt = config_.dt;
-    start.may_mill = !input.is_stale && !(history_ && history_->isMillingPaused());
+    start.may_mill = has_pose_ && !input.is_stale && !(history_ && history_->isMillingPaused());
     start.is_pedal_down = start.may_mill && remove && !add;
     start.is_add_wanted = start.may_mill && add && !remove;
     start.tool = &tools_[tool_];
@@ -176,7 +176,8 @@ SpoStep HapticTick::moveAndFeel(double stale_factor, uint32_t& faults) noexcept 
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
     if (model_ == &gradient_ && gradient_.isToolGrowing()) hand_limits_.beginSuddenChange();
     effects_.addToHand(step.wrench_hand_V);
-    step.wrench_hand_V = hand_limits_.limit({step.wrench_hand_V, step.is_solved, X_VT_device_, stale_factor});
+    const bool is_felt = step.is_solved && has_pose_;  // before a pose nobody knows where the hand is
+    step.wrench_hand_V = hand_limits_.limit({step.wrench_hand_V, is_felt, X_VT_device_, stale_factor});
     if (hand_limits_.wasLimited()) faults |= kFaultForceClamped;
     return step;
 }

@@ -117,6 +117,23 @@ TEST(HapticTick, BadDevicePosesAreRefusedAndNothingNonFiniteComesOut) {
     }
 }
 
+// V's origin, where the tool stands until then, is inside the bone.
+TEST(HapticTick, BeforeTheFirstGoodPoseNothingIsMilledOrFelt) {
+    for (const Preset preset : {Preset::kThesis2012, Preset::kBalanced}) {
+        Bench bench;
+        bench.config.accuracy = presetSettings(preset);
+        const Pose start = bench.atV(kStart);
+        auto inputs = test::straightPath(start, start.position, 60, kButtonRemove);
+        for (size_t n = 0; n < 50; ++n)
+            inputs[n].X_WT_device.position.x() = std::numeric_limits<double>::quiet_NaN();
+        for (const TickRecord& r : bench.run(inputs)) {
+            EXPECT_EQ(bool(r.faults & kFaultBadDevicePose), r.tick < 50) << r.tick;
+            EXPECT_EQ(r.removed_voxels, 0u) << presetName(preset) << " " << r.tick;
+            if (r.tick < 50) EXPECT_EQ(forceOf(r), 0) << presetName(preset) << " " << r.tick;
+        }
+    }
+}
+
 TEST(HapticTick, StaleDeviceMillsNothingAndForceFollowsTheRamp) {
     Bench bench;
     const Pose start = bench.atV(kStart - Eigen::Vector3d(0, 0, 1e-3));
