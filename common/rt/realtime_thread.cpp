@@ -39,8 +39,13 @@ RealtimeThread::RealtimeThread(const RealtimeThreadConfig& config, std::function
     id_ = thread.id;
     report.append(thread.report);
     const bool is_accepted = report.missing.empty() || config.best_effort;
+    try {
+        tell(report);
+    } catch (...) {
+        permission.set_value(false);  // or nobody could stop the thread that is left
+        throw;
+    }
     permission.set_value(is_accepted);
-    tell(report);
     if (!is_accepted) throw UserError(refusalOf(config.what, report));
 }
 

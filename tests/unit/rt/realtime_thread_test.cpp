@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <stdexcept>
+
 #include "common/user_error.h"
 
 namespace bonemill {
@@ -28,6 +30,17 @@ TEST(RealtimeThread, withoutBestEffortNoWorkBeginsWhereSomethingIsMissing) {
     }
     EXPECT_FALSE(has_begun);
     EXPECT_TRUE(was_told);
+}
+
+TEST(RealtimeThread, whereTellingFailsNoWorkBegins) {
+    bool has_begun = false;
+    const auto start = [&] {
+        RealtimeThread({.request = {.priority = 10, .core = kNoSuchCore}, .best_effort = true},
+                       [&] { has_begun = true; },
+                       [](const RealtimeReport&) { throw std::runtime_error("no paper"); });
+    };
+    EXPECT_THROW(start(), std::runtime_error);
+    EXPECT_FALSE(has_begun);
 }
 
 TEST(RealtimeThread, withBestEffortItWorksAndSaysWhatIsMissing) {
