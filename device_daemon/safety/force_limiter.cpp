@@ -15,7 +15,9 @@ Vector6d ForceLimiter::forces(const Matrix6d* J_inv, int64_t now_ns, double dt) 
     Vector6d wanted = wantedForces(J_inv);
     clamp(wanted);
     approach(wanted, dt);
-    return staleFactor(now_ns) * before_ramp_;
+    const double factor = staleFactor(now_ns);
+    if (factor == 0) events_ &= ~uint32_t(kForceClamped | kForceRateLimited);  // the motors give nothing
+    return factor * before_ramp_;
 }
 
 double ForceLimiter::staleFactor(int64_t now_ns) noexcept {

@@ -138,6 +138,16 @@ TEST_F(ForceLimiterTest, NothingComesAfterTheRampHowSlowTheRateEver) {
     EXPECT_EQ(feel({{0, 0, 5}, {0, 0, 0}}), Vector6d::Zero());
 }
 
+TEST_F(ForceLimiterTest, WhereTheMotorsGiveNothingNothingWasLimited) {
+    settle({{0, 0, 1000}, {0, 0, 0}});
+    limiter.release();
+    while (!limiter.isReleased()) feel({{0, 0, 1000}, {0, 0, 0}});
+    for (const double size : {1000.0, -1000.0}) {
+        EXPECT_EQ(feel({{0, 0, size}, {0, 0, 0}}), Vector6d::Zero());
+        EXPECT_EQ(limiter.events(), kForceNotLimited);
+    }
+}
+
 TEST_F(ForceLimiterTest, NoDemandAndNoOrderOfDemandsPassesTheClamp) {
     for (const double size : {1e3, -1e3, 1e9, -1e300, 30.0}) {
         for (int n = 0; n < 8; ++n) {
