@@ -93,6 +93,7 @@ double exp(double x) noexcept {
 double expm1(double x) noexcept {
     if (!(x > -40)) return x == x ? -1 : x;
     if (x > 40) return expOfSum(x, 0);
+    if (x == 0) return x;  // with its sign
     if (std::abs(x) < 1.0 / 16) {
         const double square = x * x, fourth = square * square;
         const double first = 1.0 / 2 + x * (1.0 / 6), second = 1.0 / 24 + x * (1.0 / 120);

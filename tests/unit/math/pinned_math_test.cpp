@@ -107,6 +107,8 @@ TEST(PinnedMath, Expm1IsExactToTheLastPlace) {
     expectBelow(0.8, worstOver(30, 709.78, pinned::expm1, kExpm1l));
     expectBelow(0.8, worstOverExponents(-1021, 8, true, pinned::expm1, kExpm1l));
     EXPECT_EQ(pinned::expm1(0), 0);
+    EXPECT_FALSE(std::signbit(pinned::expm1(0.0)));
+    EXPECT_TRUE(std::signbit(pinned::expm1(-0.0)));
     EXPECT_EQ(pinned::expm1(kSubnormal), kSubnormal);
     EXPECT_EQ(pinned::expm1(kInfinity), kInfinity);
     EXPECT_EQ(pinned::expm1(-kInfinity), -1);
