@@ -18,4 +18,13 @@ inline void requireFile(const std::filesystem::path& path) {
     throw UserError(path.string() + ": is a named pipe, a socket or a device; name a file");
 }
 
+// Refuses what would let a writer wait for whoever reads it. Devices pass: they take what is written, or say
+// that they are full. Throws UserError.
+inline void requireNoPipe(const std::filesystem::path& path) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (std::filesystem::is_fifo(status) || std::filesystem::is_socket(status))
+        throw UserError(path.string() + ": is a named pipe or a socket; name a file");
+}
+
 }  // namespace bonemill

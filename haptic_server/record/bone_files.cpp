@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "common/require_file.h"
 #include "common/user_error.h"
 #include "haptic_server/mesh/mesher.h"
 #include "haptic_server/mesh/ply.h"
@@ -32,6 +33,7 @@ void requireEnding(const std::string& path, std::initializer_list<const char*> e
 
 void requireWritable(const std::string& path) {
     if (path.empty()) return;
+    requireNoPipe(path);
     const bool is_new = !std::filesystem::exists(path);
     if (!std::ofstream(path, std::ios::app))
         throw UserError(path + ": cannot be written; check that its folder exists and is yours");

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <span>
 
+#include "common/require_file.h"
 #include "common/rt/clock.h"
 #include "common/units.h"
 #include "common/user_error.h"
@@ -33,10 +34,15 @@ void appendAll(std::string& line, std::span<const double> values) {
     for (const double value : values) append(line, value);
 }
 
+std::FILE* openForWriting(const std::string& path) {
+    requireNoPipe(path);
+    return std::fopen(path.c_str(), "w");
+}
+
 }  // namespace
 
 TraceWriter::TraceWriter(const std::string& path, const RecordedEffects& recorded)
-    : recorded_(recorded), file_(std::fopen(path.c_str(), "w")) {
+    : recorded_(recorded), file_(openForWriting(path)) {
     if (!file_) {
         throw UserError("trace " + path + " cannot be written (" + std::strerror(errno) +
                         "): does its folder exist, and may you write there?");

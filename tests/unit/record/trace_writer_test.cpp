@@ -1,6 +1,7 @@
 #include "haptic_server/record/trace_writer.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "common/user_error.h"
+#include "haptic_server/record/bone_files.h"
 #include "tests/unit/record/temporary_file.h"
 
 namespace bonemill {
@@ -134,6 +136,14 @@ TEST(TraceWriter, onlyListedEffectsHaveColumns) {
 
 TEST(TraceWriter, unwritablePathIsAUserError) {
     EXPECT_THROW(TraceWriter("/no/such/folder/trace.csv"), UserError);
+}
+
+// Opening a pipe would wait for its reader.
+TEST(TraceWriter, aPipeIsRefused) {
+    const TemporaryFile pipe("pipe.csv");
+    ASSERT_EQ(mkfifo(pipe.path().c_str(), 0600), 0);
+    EXPECT_THROW(TraceWriter(pipe.path()), UserError);
+    EXPECT_THROW(requireWritable(pipe.path()), UserError);
 }
 
 TEST(TraceWriter, aFullDiskIsReported) {
