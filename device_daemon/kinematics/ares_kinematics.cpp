@@ -21,7 +21,8 @@ Eigen::Vector3d onCircle(double radius, double angle) {
 
 AresKinematics::AresKinematics(const AresGeometry& geometry) noexcept : geometry_(geometry) {
     for (int i = 0; i < kLegCount; ++i) {
-        const double pair_angle = 2 * std::numbers::pi / 3 * (i / 2);
+        const int pair = i / 2;
+        const double pair_angle = 2 * std::numbers::pi / 3 * pair;
         const double side = i % 2 == 0 ? -1.0 : 1.0;
         legs_[i].base = onCircle(geometry.base_radius, pair_angle + side * geometry.base_half_angle);
         legs_[i].platform =

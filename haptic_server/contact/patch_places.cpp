@@ -74,7 +74,8 @@ void GradientContact::splitPatch(const Vector3f& spacing, size_t index, int q) n
     const float reach = side / 2 * std::sqrt(spacing.maxCoeff() / spacing.minCoeff());
     c.weight[index] /= float(q * q);
     for (int place = 0; place < q * q; ++place) {
-        const float u = float(place % q) - 0.5f * float(q - 1), v = float(place / q) - 0.5f * float(q - 1);
+        const int column = place % q, row = place / q;
+        const float u = float(column) - 0.5f * float(q - 1), v = float(row) - 0.5f * float(q - 1);
         const Vector3f start = own_point + u * frame.step_u + v * frame.step_v;
         const size_t to = c.count++;
         c.copy(index, to);

@@ -127,9 +127,10 @@ constexpr int kSamplesPerAxis = 4;
 double meanHu(const VolumeGeometry& geometry, const Eigen::Vector3d& index) {
     double sum = 0;
     for (int s = 0; s < kSamplesPerAxis * kSamplesPerAxis * kSamplesPerAxis; ++s) {
-        const Eigen::Vector3d cell(s % kSamplesPerAxis, s / kSamplesPerAxis % kSamplesPerAxis,
+        const Eigen::Vector3i cell(s % kSamplesPerAxis, s / kSamplesPerAxis % kSamplesPerAxis,
                                    s / (kSamplesPerAxis * kSamplesPerAxis));
-        const Eigen::Vector3d offset = ((cell.array() + 0.5) / kSamplesPerAxis - 0.5).matrix() * kBlurVoxels;
+        const Eigen::Vector3d offset =
+            ((cell.cast<double>().array() + 0.5) / kSamplesPerAxis - 0.5).matrix() * kBlurVoxels;
         sum += kToothHu[int(toothTissue(geometry.X_WV * geometry.spacing.cwiseProduct(index + offset)))];
     }
     return sum / (kSamplesPerAxis * kSamplesPerAxis * kSamplesPerAxis);

@@ -96,11 +96,12 @@ class Server {
 
     int run() {
         startTick();
-        std::jthread recorder(
-            [this](std::stop_token stop) { loop(stop, kRecordPeriod, [this] { recorder_.drain(); }); });
-        std::jthread mesher([this](std::stop_token stop) { meshUntil(stop); });
+        std::jthread recorder([this](const std::stop_token& stop) {
+            loop(stop, kRecordPeriod, [this] { recorder_.drain(); });
+        });
+        std::jthread mesher([this](const std::stop_token& stop) { meshUntil(stop); });
         std::jthread publisher(
-            [this](std::stop_token stop) { loop(stop, kPublishPeriod, [this] { publishRound(); }); });
+            [this](const std::stop_token& stop) { loop(stop, kPublishPeriod, [this] { publishRound(); }); });
         waitForTheEnd();
         io_.stop();
         tick_thread_.join();

@@ -132,7 +132,6 @@ HudTone stateTone(Connection connection) {
         case Connection::kLive:
             return HudTone::kGood;
         case Connection::kReceiving:
-            return HudTone::kWarning;
         case Connection::kNoServer:
             return HudTone::kWarning;
         case Connection::kServerLost:

@@ -31,7 +31,7 @@ void writeNrrd(const std::filesystem::path& path, const VolumeGeometry& geometry
 }
 
 void writeNrrd(const std::filesystem::path& path, const VoxelVolume& volume, NrrdEncoding encoding) {
-    const Eigen::Vector3i n = volume.dims();
+    const Eigen::Vector3i& n = volume.dims();
     NrrdStream<Density> file(path, volume.geometry(), encoding);
     std::vector<Density> row(size_t(n.x()));
     for (int k = 0; k < n.z(); ++k)
