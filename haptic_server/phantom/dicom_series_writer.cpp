@@ -6,6 +6,7 @@
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/phantom/dicom_slice_writer.h"
+#include "haptic_server/phantom/dicom_uid.h"
 
 namespace bonemill {
 namespace {

@@ -1,7 +1,7 @@
+#include "haptic_server/phantom/dicom_uid.h"
+
 #include <algorithm>
 #include <cstdint>
-
-#include "haptic_server/phantom/dicom_series_writer.h"
 
 namespace bonemill {
 namespace {

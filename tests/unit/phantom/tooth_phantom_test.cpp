@@ -6,6 +6,7 @@
 #include <set>
 
 #include "haptic_server/phantom/dicom_series_writer.h"
+#include "haptic_server/phantom/dicom_uid.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "haptic_server/volume/import/propose_iso.h"
 #include "tests/support/temporary_folder.h"
