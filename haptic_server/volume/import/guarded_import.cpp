@@ -14,10 +14,12 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <stdexcept>
 #include <type_traits>
 
 #include "common/user_error.h"
 #include "haptic_server/volume/import/file_being_read.h"
+#include "haptic_server/volume/import/import_limits.h"
 
 namespace bonemill {
 namespace {
@@ -131,6 +133,20 @@ struct Head {
 };
 static_assert(std::is_trivially_copyable_v<Head>);
 
+constexpr uint64_t kMostTextBytes = uint64_t(1) << 20;
+
+// The child may have been damaged by what it read, and what it says is checked before memory is asked for.
+// Throws std::length_error.
+void checkHead(const Head& head) {
+    if (head.text_bytes > kMostTextBytes) throw std::length_error("text");
+    if (!head.is_volume) return;
+    uint64_t voxels = 1;
+    for (const int32_t n : head.dims) {
+        if (n < 0 || (voxels *= uint64_t(n)) > kMaxVoxels) throw std::length_error("dims");
+    }
+    if (head.values != voxels) throw std::length_error("values");
+}
+
 constexpr size_t kChunk = size_t(1) << 20;  // values
 
 // Each chunk leaves this process once it is in the pipe, or both would hold the whole scan.
@@ -193,10 +209,12 @@ void sendError(int file, const std::string& message) {
     writeAll(file, &head, sizeof head) && writeAll(file, message.data(), message.size());
 }
 
-// It is false when the child died, or it was too late, before everything was handed over.
+// It is false when the child died, or it was too late, before everything was handed over. Throws
+// std::length_error when what comes does not fit together.
 bool receive(Incoming& from, RawVolume& raw, std::string& error) {
     Head head;
     if (!from.read(&head, sizeof head)) return false;
+    checkHead(head);
     std::string text(head.text_bytes, '\0');
     if (!from.read(text.data(), text.size())) return false;
     if (!head.is_volume) {
@@ -271,6 +289,9 @@ RawVolume importGuarded(const std::filesystem::path& path, const std::function<R
         is_complete = receive(incoming, raw, error);
     } catch (const std::bad_alloc&) {
         error = path.string() + ": there is not enough memory to hold it; crop or resample it";
+        kill(child, SIGKILL);
+    } catch (const std::length_error&) {
+        error = nameOr(path) + ": what its reader handed over does not fit together; the file is damaged";
         kill(child, SIGKILL);
     }
     if (incoming.isLate()) {

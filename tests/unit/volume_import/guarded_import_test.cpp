@@ -36,6 +36,7 @@ void expectSamplesComeThrough(float first) {
     std::vector<T> samples;
     for (int n = 0; n < 1500000; ++n) samples.push_back(T(first + float(n % 251)));
     RawVolume sent;
+    sent.geometry.dims = {1500, 1000, 1};
     sent.values.append(samples);
     const RawVolume got = importGuarded("file", [&] { return sent; });
     EXPECT_EQ(got.values.type(), sent.values.type());
@@ -56,6 +57,20 @@ TEST(GuardedImport, errorsComeThrough) {
                     {"file", "odd"});
     expectUserError([] { importGuarded("file", []() -> RawVolume { throw std::bad_alloc(); }); },
                     {"file", "memory"});
+}
+
+// They are more than a pipe holds, so that the reader must be ended, too.
+TEST(GuardedImport, whatDoesNotFitTogetherIsRefused) {
+    using Dims = Eigen::Vector3i;
+    for (const Dims& dims : {Dims(100, 100, 99), Dims(100, 100, 101), Dims(-100, -100, 100)}) {
+        RawVolume sent;
+        sent.geometry.dims = dims;
+        sent.values.append(std::vector<int16_t>(1000000, -7));
+        expectUserError([&] { importGuarded("file", [&] { return sent; }); }, {"file", "fit together"});
+    }
+    RawVolume talkative;
+    talkative.description.assign(2 << 20, 'a');
+    expectUserError([&] { importGuarded("file", [&] { return talkative; }); }, {"file", "fit together"});
 }
 
 // A reader that waits uses no processor time, so that no limit on that ends it.
