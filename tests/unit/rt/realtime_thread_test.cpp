@@ -35,9 +35,9 @@ TEST(RealtimeThread, withoutBestEffortNoWorkBeginsWhereSomethingIsMissing) {
 TEST(RealtimeThread, whereTellingFailsNoWorkBegins) {
     bool has_begun = false;
     const auto start = [&] {
-        RealtimeThread({.request = {.priority = 10, .core = kNoSuchCore}, .best_effort = true},
-                       [&] { has_begun = true; },
-                       [](const RealtimeReport&) { throw std::runtime_error("no paper"); });
+        RealtimeThread(
+            {.request = {.priority = 10, .core = kNoSuchCore}, .best_effort = true},
+            [&] { has_begun = true; }, [](const RealtimeReport&) { throw std::runtime_error("no paper"); });
     };
     EXPECT_THROW(start(), std::runtime_error);
     EXPECT_FALSE(has_begun);

@@ -112,7 +112,8 @@ TEST(SuddenTool, ThatWasStillGrowingDoesNotLimitTheThesisLaw) {
     const auto jump = test::straightPath(jumped, jumped.position, 20, 0);
     const auto felt = changed.run(jump), wanted = alone.run(jump);
     EXPECT_GT(largestStep(wanted), 2 * HandLimits::kForceRate * 1e-3) << "the jump shows no limit";
-    for (size_t n = 0; n < felt.size(); ++n) EXPECT_NEAR(felt[n].f_hand_W[2], wanted[n].f_hand_W[2], 1e-3) << n;
+    for (size_t n = 0; n < felt.size(); ++n)
+        EXPECT_NEAR(felt[n].f_hand_W[2], wanted[n].f_hand_W[2], 1e-3) << n;
 }
 
 // The groove of a tool that was changed to is as that of the same tool from the start.
