@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "common/math/pinned_math.h"
+#include "common/math/special_values.h"
 #include "common/math/tables.h"
 
 #ifdef __FAST_MATH__
@@ -12,9 +13,6 @@
 
 namespace bonemill::pinned {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 constexpr uint64_t bitsOf(double x) noexcept {
     return std::bit_cast<uint64_t>(x);

@@ -2,17 +2,15 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include "common/math/pinned_math.h"
+#include "common/math/special_values.h"
 #include "common/math/tables.h"
 
 namespace bonemill::pinned {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kQuarterPi = kHalfPiHigh / 2;
 
 // An angle from -π/4 to π/4 or little more, as a sum, and by how many right angles it was turned back.

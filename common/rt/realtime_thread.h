@@ -15,7 +15,7 @@ namespace bonemill {
 struct RealtimeThreadConfig {
     RealtimeRequest request;
     bool best_effort = false;  // go on without what the machine does not grant
-    std::string what;          // of messages: "the haptic loop"
+    std::string what = {};     // of messages: "the haptic loop"
 };
 
 class RealtimeThread {

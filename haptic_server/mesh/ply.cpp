@@ -6,6 +6,7 @@
 
 #include "common/units.h"
 #include "common/user_error.h"
+#include "haptic_server/mesh/append_bytes.h"
 #include "haptic_server/mesh/welded_mesh.h"
 
 namespace bonemill {
@@ -27,11 +28,6 @@ std::string headerText(const WeldedMesh& mesh) {
            "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
-void append(std::vector<char>& out, const void* data, size_t size) {
-    const char* bytes = static_cast<const char*>(data);
-    out.insert(out.end(), bytes, bytes + size);
-}
-
 std::vector<char> contentOf(const WeldedMesh& mesh, const MeshGrid& grid, const Pose& X_WV) {
     std::vector<char> out;
     out.reserve(mesh.vertices.size() * kVertexBytes + mesh.triangles.size() * kTriangleBytes);
@@ -39,12 +35,12 @@ std::vector<char> contentOf(const WeldedMesh& mesh, const MeshGrid& grid, const 
     for (size_t n = 0; n < mesh.vertices.size(); ++n) {
         const Eigen::Vector3f p_mm = (X_WV * grid.position(mesh.vertices[n]) * kPerMillimetre).cast<float>();
         const Eigen::Vector3f normal = R_WV * mesh.normals[n];
-        append(out, p_mm.data(), 3 * sizeof(float));
-        append(out, normal.data(), 3 * sizeof(float));
+        appendBytes(out, p_mm.data(), 3 * sizeof(float));
+        appendBytes(out, normal.data(), 3 * sizeof(float));
     }
     for (const auto& triangle : mesh.triangles) {
-        append(out, &kCorners, sizeof kCorners);
-        append(out, triangle.data(), sizeof triangle);
+        appendBytes(out, &kCorners, sizeof kCorners);
+        appendBytes(out, triangle.data(), sizeof triangle);
     }
     return out;
 }

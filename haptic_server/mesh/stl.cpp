@@ -8,6 +8,7 @@
 
 #include "common/units.h"
 #include "common/user_error.h"
+#include "haptic_server/mesh/append_bytes.h"
 
 namespace bonemill {
 namespace {
@@ -15,19 +16,14 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "STL is little-endian");
 
 constexpr size_t kHeaderBytes = 80;
-constexpr size_t kTriangleBytes = 50;  // normal and 3 points as float, 2 unused bytes
-
-void append(std::vector<char>& out, const void* data, size_t size) {
-    const char* bytes = static_cast<const char*>(data);
-    out.insert(out.end(), bytes, bytes + size);
-}
+constexpr size_t kRecordBytes = 50;  // normal and 3 points as float, 2 unused bytes
 
 void appendTriangle(std::vector<char>& out, const std::array<Eigen::Vector3f, 3>& p_mm) {
     const Eigen::Vector3d side_a = (p_mm[1] - p_mm[0]).cast<double>();
     const Eigen::Vector3d side_b = (p_mm[2] - p_mm[0]).cast<double>();
     const Eigen::Vector3f normal = side_a.cross(side_b).normalized().cast<float>();
-    append(out, normal.data(), sizeof(float) * 3);
-    for (const Eigen::Vector3f& p : p_mm) append(out, p.data(), sizeof(float) * 3);
+    appendBytes(out, normal.data(), sizeof(float) * 3);
+    for (const Eigen::Vector3f& p : p_mm) appendBytes(out, p.data(), sizeof(float) * 3);
     out.insert(out.end(), 2, 0);
 }
 
@@ -49,13 +45,13 @@ void saveStl(const std::string& path, std::span<const NodeMesh> meshes, const Me
     for (const NodeMesh& mesh : meshes) triangles += mesh.indices.size() / 3;
 
     std::vector<char> out;
-    out.reserve(kHeaderBytes + sizeof(uint32_t) + triangles * kTriangleBytes);
+    out.reserve(kHeaderBytes + sizeof(uint32_t) + triangles * kRecordBytes);
     out.resize(kHeaderBytes, 0);
     constexpr char kTitle[] =
         "bonemill surface, mm, frame W (LPS)";  // must not begin with "solid": that is text STL
     std::memcpy(out.data(), kTitle, sizeof kTitle - 1);
     const auto count = uint32_t(triangles);
-    append(out, &count, sizeof count);
+    appendBytes(out, &count, sizeof count);
     for (const NodeMesh& mesh : meshes) {
         const std::vector<Eigen::Vector3f> p = pointsInMm(mesh, grid, X_WV);
         for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)

@@ -121,7 +121,7 @@ ToothTissue tissueAt(const Eigen::Vector3d& p_mm) {
     return -outer < enamelThickness(p_mm.z()) ? ToothTissue::kEnamel : ToothTissue::kDentine;
 }
 
-constexpr double kBlurVoxels = 1.5;
+constexpr double kToothBlurVoxels = 1.5;
 constexpr int kSamplesPerAxis = 4;
 
 double meanHu(const VolumeGeometry& geometry, const Eigen::Vector3d& index) {
@@ -130,7 +130,7 @@ double meanHu(const VolumeGeometry& geometry, const Eigen::Vector3d& index) {
         const Eigen::Vector3i cell(s % kSamplesPerAxis, s / kSamplesPerAxis % kSamplesPerAxis,
                                    s / (kSamplesPerAxis * kSamplesPerAxis));
         const Eigen::Vector3d offset =
-            ((cell.cast<double>().array() + 0.5) / kSamplesPerAxis - 0.5).matrix() * kBlurVoxels;
+            ((cell.cast<double>().array() + 0.5) / kSamplesPerAxis - 0.5).matrix() * kToothBlurVoxels;
         sum += kToothHu[int(toothTissue(geometry.X_WV * geometry.spacing.cwiseProduct(index + offset)))];
     }
     return sum / (kSamplesPerAxis * kSamplesPerAxis * kSamplesPerAxis);

@@ -155,7 +155,7 @@ double softStep(double depth, double blur) {
     return smoothStep(-blur / 2, blur / 2, depth);
 }
 
-constexpr double kBlurVoxels = 2.5;
+constexpr double kVertebraBlurVoxels = 2.5;
 
 struct Voxel {
     float hu;
@@ -235,7 +235,7 @@ VertebraScan scanVertebra(const VolumeGeometry& geometry) {
     scan.labels.reserve(geometry.voxelCount());
     const DepthMap map(geometry);
     const SoftParts soft;
-    const double blur = kBlurVoxels * geometry.spacing.maxCoeff() * kPerMillimetre;
+    const double blur = kVertebraBlurVoxels * geometry.spacing.maxCoeff() * kPerMillimetre;
     std::vector<float> row;
     for (int k = 0; k < geometry.dims.z(); ++k)
         for (int j = 0; j < geometry.dims.y(); ++j) {

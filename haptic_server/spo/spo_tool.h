@@ -8,7 +8,7 @@ namespace bonemill {
 
 struct SpoTool {
     const ToolModel* model = nullptr;  // must outlive whoever uses the tool
-    Burr burr;
+    Burr burr = {};
     double saturation_force = 50;  // N: what the gradient law's coupling pulls this tool with at most
 };
 

@@ -40,7 +40,7 @@ struct HandSpring {
 struct FeltStep {
     Wrench wrench_V;
     bool is_solved = true;  // false: there is no equilibrium, and the wrench says nothing
-    Pose X_VT_device;
+    Pose X_VT_device = {};
     double stale_factor = 1;
 };
 

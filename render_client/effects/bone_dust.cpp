@@ -8,7 +8,6 @@
 namespace bonemill {
 namespace {
 
-constexpr float kGravity = 9.81f;                // m/s²
 constexpr float kFastest = 2, kSlowest = 0.06f;  // m/s at the start
 constexpr float kStep = 4e-4f;                   // m that a grain flies between two looks for bone
 constexpr int kMostSteps = 8;

@@ -10,7 +10,7 @@
 namespace bonemill {
 namespace {
 
-constexpr double kFastest = 25000;                           // rad/s: a turbine of 240,000 rpm
+constexpr double kFastestSpin = 25000;                       // rad/s: a turbine of 240,000 rpm
 constexpr double kMostForce = 1000;                          // N
 constexpr double kMostPower = 1e4;                           // W
 constexpr double kMostRemoved = 1e-7;                        // m³
@@ -38,7 +38,7 @@ EffectInput effectInputOf(const topics::ToolState& tool, const topics::SceneInfo
     const auto force_W = readVector(tool.force_n());
     if (force_W && force_W->norm() > kTouch) input.towards_bone_V = X_VW.rotation * -force_W->normalized();
     const topics::EffectState& effects = tool.effects();
-    input.spin_speed = bounded(effects.spin_speed(), -kFastest, kFastest);
+    input.spin_speed = bounded(effects.spin_speed(), -kFastestSpin, kFastestSpin);
     input.burr_force = bounded(effects.burr_force_n(), 0, kMostForce);
     input.cutting_power = bounded(effects.cutting_power_w(), 0, kMostPower);
     input.removed = bounded(effects.removed_mm3() * kCubicMillimetre, 0, kMostRemoved);

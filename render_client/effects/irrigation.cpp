@@ -10,18 +10,17 @@ namespace bonemill {
 namespace {
 
 constexpr double kPiecesPerSecond = 240;  // of the stream
-constexpr float kGravity = 9.81f;         // m/s²
-constexpr float kFound = 6e-4f;           // m
+constexpr float kDropFound = 6e-4f;       // m
 constexpr float kLife = 1.5f;             // s of a drop
 constexpr float kRunSpeed = 0.012f;       // m/s down a vertical wall
 constexpr float kRunsOn = 0.22f;          // part of the pieces that run on as drops
 constexpr float kSpray = 0.35f;           // part that the burr throws off where they are seen
-constexpr float kExposure = 0.006f;       // s of flight that a drop's streak shows
+constexpr float kDropExposure = 0.006f;   // s of flight that a drop's streak shows
 constexpr float kWetting = 0.5f;          // of a full film, per piece
 constexpr float kSplash = 0.08f;          // of a full film on the bone around the burr, per piece
 constexpr float kSplashReach = 2.2f;      // in burr radii
-constexpr int kMostSteps = 6;
-constexpr float kStep = 5e-4f;  // m
+constexpr int kMostDropSteps = 6;
+constexpr float kDropStep = 5e-4f;  // m
 
 }  // namespace
 
@@ -70,7 +69,7 @@ bool Irrigation::move(Drop& drop, float dt, const BoneSurface& surface, SurfaceF
     drop.age += dt;
     if (drop.age > drop.life || !surface.isInFocus(drop.at.p_V)) return false;
     if (drop.state == State::kRunning) return run(drop, dt, surface, film);
-    const int steps = std::clamp(int(std::ceil(drop.v.norm() * dt / kStep)), 1, kMostSteps);
+    const int steps = std::clamp(int(std::ceil(drop.v.norm() * dt / kDropStep)), 1, kMostDropSteps);
     const float h = dt / float(steps);
     for (int n = 0; n < steps && drop.state != State::kRunning; ++n) {
         drop.v -= h * kGravity * input_.up_V.cast<float>();
@@ -100,7 +99,7 @@ bool Irrigation::meetBurr(Drop& drop, SurfaceFilm& film) {
 }
 
 bool Irrigation::meetBone(Drop& drop, const BoneSurface& surface, SurfaceFilm& film) {
-    const auto found = surface.nearest(drop.at.p_V, kFound);
+    const auto found = surface.nearest(drop.at.p_V, kDropFound);
     if (!found || found->heightOf(drop.at.p_V) > drop.radius) return true;
     film.add(SurfaceFilm::kWater, found->p_V, kWetting, 4 * drop.radius);
     landed_.push_back(found->p_V);
@@ -136,7 +135,7 @@ void Irrigation::appendTo(Particles& particles) const {
     for (const Drop& drop : drops_) {
         const bool is_stream = drop.state == State::kStream;
         const float trace = is_stream                     ? float(2.5 / kPiecesPerSecond)
-                            : drop.state == State::kSpray ? kExposure
+                            : drop.state == State::kSpray ? kDropExposure
                                                           : 0;
         const float fade = std::min(1.0f, 4 * (1 - drop.age / drop.life));
         particles.push_back({drop.at.p_V, trace * drop.v, drop.radius * (is_stream ? 1 : 0.8f),

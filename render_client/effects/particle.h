@@ -6,6 +6,8 @@
 
 namespace bonemill {
 
+constexpr float kGravity = 9.81f;  // m/s²
+
 struct Particle {
     Eigen::Vector3f p_V, streak_V;
     float radius;

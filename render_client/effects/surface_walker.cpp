@@ -5,9 +5,9 @@
 namespace bonemill {
 namespace {
 
-constexpr float kFound = 0.6e-3f;    // m: farther off there is no surface
-constexpr float kLevel = 0.06f;      // sine of the slope on which a drop rests
-constexpr float kOverhang = -0.85f;  // cosine to `up` of a surface that holds no drop
+constexpr float kSurfaceFound = 0.6e-3f;  // m: farther off there is no surface
+constexpr float kLevel = 0.06f;           // sine of the slope on which a drop rests
+constexpr float kOverhang = -0.85f;       // cosine to `up` of a surface that holds no drop
 
 }  // namespace
 
@@ -17,7 +17,7 @@ Walk walkDown(const BoneSurface& surface, const Eigen::Vector3f& up_V, float dis
     const float slope = along.norm();
     if (slope < kLevel) return Walk::kRests;
     const Eigen::Vector3f moved = at.p_V + along * distance;  // slower where it is less steep
-    const auto found = surface.nearest(moved, kFound + distance);
+    const auto found = surface.nearest(moved, kSurfaceFound + distance);
     if (!found) return Walk::kFallsOff;
     at.n_V = (at.n_V + found->n_V).normalized();
     if (!at.n_V.allFinite()) return Walk::kFallsOff;

@@ -10,7 +10,7 @@ namespace {
 
 using topics::EffectState;
 
-constexpr size_t kLongestName = 16;
+constexpr size_t kLongestStructureName = 16;
 // Above this temperature bone is warm to worry about: 42 °C is where heat stress of cells is seen; 47 °C for
 // a minute kills bone (Eriksson and Albrektsson 1983).
 constexpr double kWarm_c = 42;
@@ -42,7 +42,7 @@ HudRow structureRow(const EffectState& state, const topics::SceneInfo* info, uin
     const HudTone tone = events & kHarm || distance_mm <= 0     ? HudTone::kAlarm
                          : events & EffectState::NEAR_PROTECTED ? HudTone::kWarning
                                                                 : HudTone::kPlain;
-    return {shortenedText(structureName(state.protected_id(), info), kLongestName),
+    return {shortenedText(structureName(state.protected_id(), info), kLongestStructureName),
             distance_mm <= 0 ? "touched" : readableText(distance_mm, " mm"), tone};
 }
 

@@ -14,14 +14,14 @@
 namespace bonemill::bench {
 namespace {
 
-struct Options {
+struct EffectsOptions {
     test::EveryEffectBlock block{
         .edge = 160, .voxel_mm = 0.125, .burr_radius_mm = 1.5, .protected_depth_mm = 3};
     int ticks = 4000, rounds = 9;
     std::string json;
 };
 
-Simulation simulationOf(const Options& o, const char* law) {
+Simulation simulationOf(const EffectsOptions& o, const char* law) {
     const test::TemporaryFolder folder;
     test::writeBlock(folder.path().string(), o.block);
     test::writeScene(folder / "scene.textproto", test::everyEffectScene(o.block, law));
@@ -68,7 +68,7 @@ nlohmann::json print(const EffectCosts& costs, const std::string& title) {
     return json;
 }
 
-EffectCosts costsOf(const Options& o, const char* law) {
+EffectCosts costsOf(const EffectsOptions& o, const char* law) {
     Simulation simulation = simulationOf(o, law);
     const std::vector<DeviceInput> path =
         weave(simulation.bone->volume,
@@ -76,7 +76,7 @@ EffectCosts costsOf(const Options& o, const char* law) {
     return measureEffectCosts(simulation.fixedTick(), *simulation.bone, path, o.rounds);
 }
 
-void measure(const Options& o) {
+void measure(const EffectsOptions& o) {
     std::printf("block of %d^3 voxels of %g mm, ball of %g mm radius\n", o.block.edge, o.block.voxel_mm,
                 o.block.burr_radius_mm);
     nlohmann::json json;
@@ -88,7 +88,7 @@ void measure(const Options& o) {
 }  // namespace
 
 void addEffectsCommand(CLI::App& app) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<EffectsOptions>();
     CLI::App* command =
         app.add_subcommand("effects", "what each effect adds to a tick that mills a flat block");
     command->add_option("--volume", o->block.edge, "voxels per edge")->check(CLI::Range(64, 512));

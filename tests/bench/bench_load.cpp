@@ -11,12 +11,11 @@
 #include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "tests/bench/bench_output.h"
+#include "tests/bench/leaf_cells.h"
 #include "tests/support/scripted_io.h"
 
 namespace bonemill::bench {
 namespace {
-
-constexpr int kLeafCells = 16;
 
 double msSince(int64_t start_ns) {
     return millisecondsOfNs(double(monotonicNowNs() - start_ns));

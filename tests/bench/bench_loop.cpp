@@ -13,11 +13,10 @@
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/corridor_run.h"
+#include "tests/bench/leaf_cells.h"
 
 namespace bonemill::bench {
 namespace {
-
-constexpr int kLeafCells = 16;
 
 void run(double rate_hz, double seconds, const std::string& json_path) {
     const int64_t period_ns = std::llround(double(kNsPerSecond) / rate_hz);

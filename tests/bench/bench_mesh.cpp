@@ -14,17 +14,17 @@
 #include "haptic_server/volume/import/densify.h"
 #include "haptic_server/volume/import/import_volume.h"
 #include "tests/bench/bench_output.h"
+#include "tests/bench/leaf_cells.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 
 namespace bonemill::bench {
 namespace {
 
-constexpr int kLeafCells = 16;
 constexpr int kCuts = 400;
 constexpr double kBurrRadius = 1e-3;  // m
 
-struct Options {
+struct MeshOptions {
     std::string volume, json;
     double iso = 0;
     int runs = 5;
@@ -107,7 +107,7 @@ nlohmann::json runVtk(const BoneModel& bone, int runs) {
     return nlohmann::json::parse(finished.out);
 }
 
-void run(const Options& o) {
+void run(const MeshOptions& o) {
     const RawVolume raw = importVolume(o.volume);
     BoneModel bone(densify(raw, DensityWindow{.low = {}, .high = {}, .iso = o.iso}),
                    Eigen::Vector3i::Constant(kLeafCells), {});
@@ -143,7 +143,7 @@ void run(const Options& o) {
 }  // namespace
 
 void addMeshCommand(CLI::App& app) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<MeshOptions>();
     CLI::App* command =
         app.add_subcommand("mesh", "the whole surface beside VTK's, and leaf by leaf after cuts");
     command->add_option("--volume", o->volume, "any volume that a scene can name")->required();

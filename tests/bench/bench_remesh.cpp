@@ -24,7 +24,7 @@ constexpr size_t kRingCuts = 8192;
 constexpr auto kPublishPeriod = 10ms;
 constexpr int64_t kAllBytes = INT64_MAX;
 
-struct Options {
+struct RemeshOptions {
     double rate_hz = 1000, seconds = 30;
     int leaf_cells = 16;
     std::string json;
@@ -69,7 +69,7 @@ void publishWhile(const std::atomic<bool>& is_running, MeshOutbox& outbox, uint6
     }
 }
 
-Remeshing millBesideMesher(const Options& o) {
+Remeshing millBesideMesher(const RemeshOptions& o) {
     Remeshing result;
     BoneModel bone = corridorBone(o.leaf_cells);
     const ToolModel tool = buildTool({}).model;
@@ -98,7 +98,7 @@ Remeshing millBesideMesher(const Options& o) {
     return result;
 }
 
-void run(const Options& o) {
+void run(const RemeshOptions& o) {
     const Remeshing result = millBesideMesher(o);
     for (const std::string& missing : result.report.missing)
         std::printf("not granted: %s\n", missing.c_str());
@@ -124,7 +124,7 @@ void run(const Options& o) {
 }  // namespace
 
 void addRemeshCommand(CLI::App& app) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<RemeshOptions>();
     CLI::App* command = app.add_subcommand(
         "remesh", "the tooth's corridor in real time beside the mesher: from cut to publisher");
     command->add_option("--rate-hz", o->rate_hz)->check(CLI::Range(100.0, 20000.0));

@@ -20,6 +20,7 @@
 #include "haptic_server/volume/import/import_volume.h"
 #include "render_client/subscribe/scene_subscriber.h"
 #include "tests/bench/bench_output.h"
+#include "tests/bench/leaf_cells.h"
 #include "tests/integration/dds/child_process.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/places.h"
@@ -31,10 +32,9 @@ namespace {
 using namespace std::chrono_literals;
 using test::Process;
 
-constexpr int kLeafCells = 16;
 constexpr auto kSteady = 8s;  // over which the server's processor time is taken
 
-struct Options {
+struct StreamOptions {
     std::string volume, json, scene = test::sourceDir() + "/deploy/scenes/skull.textproto";
     double iso = 300;
     std::vector<int> viewers{1, 10, 30};
@@ -60,7 +60,7 @@ double bytesPerTriangle(const VoxelVolume& volume, const LeafLattice& lattice,
     return double(bytes) / double(triangles);
 }
 
-nlohmann::json wire(const Options& o, Table& table) {
+nlohmann::json wire(const StreamOptions& o, Table& table) {
     const VoxelVolume volume =
         densify(importVolume(o.volume), DensityWindow{.low = {}, .high = {}, .iso = o.iso});
     const LeafLattice lattice(volume, Eigen::Vector3i::Constant(kLeafCells));
@@ -217,7 +217,7 @@ nlohmann::json live(const test::TemporaryFolder& folder, int viewers, Table& tab
             {"states_agree", agree}};
 }
 
-void run(const Options& o) {
+void run(const StreamOptions& o) {
     nlohmann::json json;
     if (!o.volume.empty()) {
         Table table({"us", "mean", "p50", "p99", "p99.9", "max"});
@@ -237,7 +237,7 @@ void run(const Options& o) {
 }  // namespace
 
 void addStreamCommand(CLI::App& app) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<StreamOptions>();
     CLI::App* command = app.add_subcommand(
         "stream", "a bone's bytes on the wire, and a session that mills with viewers that join at once");
     command->add_option("--volume", o->volume, "of the bytes: any volume that a scene can name");

@@ -11,6 +11,7 @@
 #include "haptic_server/tool/build/build_tool.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/half_block.h"
+#include "tests/bench/leaf_cells.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/typical_effects.h"
 
@@ -18,7 +19,6 @@ namespace bonemill::bench {
 namespace {
 
 constexpr double kCouplingStiffness = 1000;  // N/m
-constexpr int kLeafCells = 16;
 
 FixedTickConfig configOf(const TickCase& c, const ToolModel& tool) {
     FixedTickConfig config;

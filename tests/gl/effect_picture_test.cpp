@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 240;
+constexpr int kEffectWidth = 320, kEffectHeight = 240;
 
 const VoxelVolume& ball() {
     static const VoxelVolume kBall = [] {
@@ -25,7 +25,7 @@ const VoxelVolume& ball() {
 
 class EffectPictures : public testing::Test {
   protected:
-    EffectPictures() : context_(kWidth, kHeight) {}
+    EffectPictures() : context_(kEffectWidth, kEffectHeight) {}
 
     // The burr has just cut a groove into the front of the ball.
     void mill(const scene::Effects& wish, Quality quality = Quality::kFull, bool has_effects = true) {
@@ -52,7 +52,7 @@ class EffectPictures : public testing::Test {
         session_->wait(*scene_, at_, seconds, {.is_pedal_down = false});
     }
     Picture draw() {
-        scene_->draw(kWidth, kHeight, 1);
+        scene_->draw(kEffectWidth, kEffectHeight, 1);
         return context_.read();
     }
 

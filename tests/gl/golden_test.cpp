@@ -16,13 +16,13 @@ namespace {
 
 using test::Alteration;
 
-constexpr int kWidth = 480;
-constexpr int kHeight = 300;
+constexpr int kGoldenWidth = 480;
+constexpr int kGoldenHeight = 300;
 constexpr float kUiScale = 0.75f;
 
 class Golden : public testing::Test {
   protected:
-    Golden() : context_(kWidth, kHeight) { begin(context_.gl()); }
+    Golden() : context_(kGoldenWidth, kGoldenHeight) { begin(context_.gl()); }
 
     void begin(const GlApi& gl) {
         scene_.reset();
@@ -31,7 +31,7 @@ class Golden : public testing::Test {
         scene_->settings().show_force = false;
     }
     Picture draw() {
-        scene_->draw(kWidth, kHeight, kUiScale);
+        scene_->draw(kGoldenWidth, kGoldenHeight, kUiScale);
         return context_.read();
     }
     Picture drawMilledBlock() {
@@ -193,8 +193,8 @@ TEST_F(Golden, AnAlertIsShownWithoutFiguresToo) {
     scene_->setToolState(tool);
     const Picture picture = draw();
     EXPECT_TRUE(test::compare(picture, test::readGolden("plain")).isVisible());
-    EXPECT_GT(picture.at(1, kHeight / 2)[0], 150) << "a red border";
-    EXPECT_LT(picture.at(1, kHeight / 2)[2], 120);
+    EXPECT_GT(picture.at(1, kGoldenHeight / 2)[0], 150) << "a red border";
+    EXPECT_LT(picture.at(1, kGoldenHeight / 2)[2], 120);
 }
 
 TEST_F(Golden, TheComparisonSeesAMissingColour) {

@@ -10,20 +10,20 @@
 namespace bonemill {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 240;
-constexpr double kRadius = 0.005;
-const Eigen::Vector3d kCenter(0.008, 0.008, 0.008);
+constexpr int kQuickWidth = 320, kQuickHeight = 240;
+constexpr double kBallRadius = 0.005;
+const Eigen::Vector3d kBallCenter(0.008, 0.008, 0.008);
 
 std::vector<NodeMesh> ball(double radius) {
     return test::meshBody(65, 2.5e-4,
-                          [=](const Eigen::Vector3d& p) { return (p - kCenter).norm() - radius; });
+                          [=](const Eigen::Vector3d& p) { return (p - kBallCenter).norm() - radius; });
 }
 
 class QuickPicture : public testing::Test {
   protected:
-    QuickPicture() : context_(kWidth, kHeight), scene_(context_.gl()) {
-        const Eigen::Vector3d half = Eigen::Vector3d::Constant(kRadius);
-        topics::SceneInfo info = test::makeSceneInfo("ball", kCenter - half, kCenter + half);
+    QuickPicture() : context_(kQuickWidth, kQuickHeight), scene_(context_.gl()) {
+        const Eigen::Vector3d half = Eigen::Vector3d::Constant(kBallRadius);
+        topics::SceneInfo info = test::makeSceneInfo("ball", kBallCenter - half, kBallCenter + half);
         *info.mutable_tool() = test::makeToolMesh(1e-3, 4e-4, 0.006);
         info.set_burr_radius_m(1e-3);
         scene_.setSceneInfo(info);
@@ -38,7 +38,7 @@ class QuickPicture : public testing::Test {
             return Eigen::Vector3d(place(random_), place(random_), place(random_));
         };
         Pose X_WT;
-        X_WT.position = kCenter + somewhere();
+        X_WT.position = kBallCenter + somewhere();
         X_WT.rotation = expRotation(300 * somewhere());
         Pose device = X_WT;
         if (random_() % 2) device.position += 0.2 * somewhere();
@@ -49,7 +49,8 @@ class QuickPicture : public testing::Test {
     void point() {
         topics::Viewer instructor;
         instructor.set_role(topics::Viewer::INSTRUCTOR);
-        for (int axis = 0; axis < 3; ++axis) instructor.add_pointer_m(kCenter[axis] + 1e-3 * (random_() % 7));
+        for (int axis = 0; axis < 3; ++axis)
+            instructor.add_pointer_m(kBallCenter[axis] + 1e-3 * (random_() % 7));
         scene_.setWatchers({instructor});
     }
     // Some nodes become those of the smaller ball, some those of the larger one, some go.
@@ -62,7 +63,7 @@ class QuickPicture : public testing::Test {
         scene_.setNode(random_() % 4 ? node : test::emptyNode(node.leaf));
     }
     Picture draw() {
-        scene_.draw(kWidth, kHeight, 1);
+        scene_.draw(kQuickWidth, kQuickHeight, 1);
         return context_.read();
     }
     void expectWhole(const std::string& when) {
@@ -75,7 +76,7 @@ class QuickPicture : public testing::Test {
     OsmesaContext context_;
     RenderScene scene_;
     std::mt19937 random_{7};
-    const std::vector<NodeMesh> large_ = ball(kRadius), small_ = ball(0.9 * kRadius);
+    const std::vector<NodeMesh> large_ = ball(kBallRadius), small_ = ball(0.9 * kBallRadius);
 };
 
 TEST_F(QuickPicture, IsTheOneThatIsDrawnWhole) {
@@ -118,7 +119,7 @@ TEST_F(QuickPicture, FollowsTheViewToo) {
 
 TEST_F(QuickPicture, SeesThatOnlyAMaterialChanged) {
     topics::SceneInfo info =
-        test::makeSceneInfo("ball", kCenter.array() - kRadius, kCenter.array() + kRadius);
+        test::makeSceneInfo("ball", kBallCenter.array() - kBallRadius, kBallCenter.array() + kBallRadius);
     for (int n = 0; n < 3; ++n) info.add_materials()->mutable_color()->set_red(0.3 * n);
     scene_.setSceneInfo(info);
     draw();
@@ -148,13 +149,13 @@ TEST_F(QuickPicture, LooksLikeTheFullOneButForShadowAndEdges) {
     scene_.settings().quality = Quality::kFull;
     const Picture full = draw();
     size_t far_off = 0;
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kQuickHeight; ++y)
+        for (int x = 0; x < kQuickWidth; ++x) {
             const auto a = quick.at(x, y), b = full.at(x, y);
             far_off += std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]) > 60;
         }
     EXPECT_GT(far_off, 0u);
-    EXPECT_LT(far_off, size_t(kWidth * kHeight / 8));
+    EXPECT_LT(far_off, size_t(kQuickWidth * kQuickHeight / 8));
 }
 
 }  // namespace

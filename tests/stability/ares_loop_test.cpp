@@ -74,11 +74,11 @@ double pegInHole(const Variant& variant) {
     return forceResidual(bench);
 }
 
-const std::vector<StabilityCase> kCases{
+const std::vector<StabilityCase> kAresLoopCases{
     {"ares_presses_on_plane", "N_rms", 0.05, plane, {}},
     {"ares_peg_in_hole", "N_rms", 0.05, pegInHole, {}, feltEffects()},
 };
-BONEMILL_STABILITY_CASES(Ares, kCases);
+BONEMILL_STABILITY_CASES(Ares, kAresLoopCases);
 
 }  // namespace
 }  // namespace bonemill::test

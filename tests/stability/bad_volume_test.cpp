@@ -109,7 +109,7 @@ double manyContacts(const Variant& variant) {
     return contacts >= wanted ? worst : kNan;
 }
 
-const std::vector<StabilityCase> kCases{
+const std::vector<StabilityCase> kBadVolumeCases{
     {"random_noise_ct", "of_limit", 1 + 1e-9, noise, {}, {"all_felt", "all_effects"}},
     {"single_voxel_dust", "of_limit", 1 + 1e-9, dust, {}, {"all_felt", "all_effects"}},
     {"zero_gradient_chessboard", "of_limit", 1 + 1e-9, chessboard, {}},
@@ -117,7 +117,7 @@ const std::vector<StabilityCase> kCases{
     {"nan_in_ct", "of_limit", 1 + 1e-9, notANumber, {}, {"all_felt", "all_effects"}},
     {"ten_thousand_contacts", "of_limit", 1 + 1e-9, manyContacts, {}, {"all_felt", "all_effects"}},
 };
-BONEMILL_STABILITY_CASES(BadVolume, kCases);
+BONEMILL_STABILITY_CASES(BadVolume, kBadVolumeCases);
 
 }  // namespace
 }  // namespace bonemill::test

@@ -145,7 +145,7 @@ double holeThreeTicks(const Variant& variant) {
 // Three ticks of delay on a device too lightly damped for them: shown, not promised.
 const std::vector<std::string> kEveryVariant{"thesis_2012", "fast", "balanced", "exact"};
 
-const std::vector<StabilityCase> kCases{
+const std::vector<StabilityCase> kClosedLoopGridCases{
     {"loop_grid_plane_passive", "N_rms_worst", kLargestBuzz, planePassive, {}},
     {"loop_grid_plane_one_tick", "N_rms_worst", kLargestBuzz, planeOneTick, {}},
     {"loop_grid_plane_three_ticks", "percent_buzzing", 0, planeThreeTicks, kEveryVariant},
@@ -158,7 +158,7 @@ const std::vector<StabilityCase> kCases{
      {"cutting_force", "surface_friction", "all_felt"}},
     {"loop_grid_hole_three_ticks", "percent_buzzing", 0, holeThreeTicks, kEveryVariant},
 };
-BONEMILL_STABILITY_CASES(ClosedLoopGrid, kCases);
+BONEMILL_STABILITY_CASES(ClosedLoopGrid, kClosedLoopGridCases);
 
 }  // namespace
 }  // namespace bonemill::test

@@ -9,7 +9,7 @@
 namespace bonemill::test {
 namespace {
 
-constexpr double kPush = 3;  // N, of the hand's springs
+constexpr double kHandPush = 3;  // N, of the hand's springs
 
 // A round pit half as wide again as the burr: friction drives the burr along its floor to the wall,
 // and round.
@@ -35,7 +35,7 @@ struct Pit {
           start{kPitFloor + Eigen::Vector3d(0, 0, kBurrRadius + 0.1e-3), rotation},
           loop(config, scene, start, nullptr, &history),
           hand(config.hand) {
-        press(kPush);
+        press(kHandPush);
         hold(false);
     }
     void press(double force) {
@@ -106,21 +106,21 @@ double runUpRest(const Variant& variant) {
 // So weak a motor that the full push stops it.
 void weakMotor(FixedTickConfig& config) {
     if (config.effects.spindle)
-        config.effects.spindle->max_torque = 0.5 * kCuttingFriction * kPush * kBurrRadius;
+        config.effects.spindle->max_torque = 0.5 * kCuttingFriction * kHandPush * kBurrRadius;
 }
 bool isStalled(const Pit& pit) {
     return pit.loop.stepper.record().effects.events & kEventSpindleStalled;
 }
 double stallAndRestart(const Variant& variant) {
     Pit pit(variant, kLying, weakMotor);
-    pit.press(0.2 * kPush);
+    pit.press(0.2 * kHandPush);
     pit.hold(true);
     pit.loop.run(1);
     if (isStalled(pit)) return kLost;
-    pit.press(kPush);
+    pit.press(kHandPush);
     double worst = forceBuzz(pit.loop, 2, 0.3);
     if (!isStalled(pit)) return kLost;
-    pit.press(0.2 * kPush);
+    pit.press(0.2 * kHandPush);
     worst = worseOf(worst, forceBuzz(pit.loop, 2, 0.3));
     return isStalled(pit) ? kLost : worst;
 }
@@ -129,10 +129,10 @@ double stallStep(const Variant& variant) {
         weakMotor(config);
         withoutVibration(config);
     });
-    pit.press(0.2 * kPush);
+    pit.press(0.2 * kHandPush);
     pit.hold(true);
     pit.loop.run(1);
-    pit.press(kPush);
+    pit.press(kHandPush);
     const double worst = largestStep(pit, 2);
     return isStalled(pit) ? worst : kLost;
 }
@@ -217,7 +217,7 @@ double drillingStep(const Variant& variant) {
     pit.loop.run(0.2);
     double worst = 0;
     for (int n = 0; n < 20; ++n) {
-        pit.press(kPush * (1 + 0.1 * n));
+        pit.press(kHandPush * (1 + 0.1 * n));
         worst = worseOf(worst, largestStep(pit, 0.1));
     }
     return pit.history.missingVoxels() > 500 ? worst : kLost;
@@ -229,7 +229,7 @@ constexpr double kStep = 0.3;  // N per tick
 const Names kPulling{"cutting_force", "all_felt"}, kDriven{"spindle", "all_felt"},
     kStepping{"spindle", "cutting_force", "surface_friction", "all_felt"};
 
-const std::vector<StabilityCase> kCases{
+const std::vector<StabilityCase> kDrivenBurrCases{
     {"spinning_burr_lying_in_pit", "N_rms", 0.05, lyingInPit, {}, feltEffects(), true},
     {"spinning_burr_standing_in_pit", "N_rms", 0.05, standingInPit, {}, feltEffects(), true},
     {"spinning_burr_in_pit_no_hand", "N_rms", 0.05, standingInPitNoHand, {}, kPulling, true},
@@ -244,7 +244,7 @@ const std::vector<StabilityCase> kCases{
     {"drilling_step", "N_per_tick", kStep, drillingStep, {}, {"energy_removal", "all_effects"}, true},
     {"energy_beyond_the_motor", "uJ_gained", 1, beyondTheMotor, {}, kPulling, true},
 };
-BONEMILL_STABILITY_CASES(DrivenBurr, kCases);
+BONEMILL_STABILITY_CASES(DrivenBurr, kDrivenBurrCases);
 
 }  // namespace
 }  // namespace bonemill::test

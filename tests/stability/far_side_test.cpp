@@ -92,12 +92,12 @@ double handOutsideForce(const Variant& variant) {
     return worstOf(variant, handOutside, [](const Course& course) { return course.most_force; });
 }
 
-const std::vector<StabilityCase> kCases{
+const std::vector<StabilityCase> kFarSideCases{
     {"inside_thin_wall_device_outside", "ms", 20, deviceOutsideTime, {}, feltEffects()},
     {"inside_thin_wall_hand_pulls", "ms", 100, handOutsideTime, {"thesis_2012"}, feltEffects()},
     {"inside_thin_wall_force", "N", 10, handOutsideForce, {}},
 };
-BONEMILL_STABILITY_CASES(FarSide, kCases);
+BONEMILL_STABILITY_CASES(FarSide, kFarSideCases);
 
 }  // namespace
 }  // namespace bonemill::test

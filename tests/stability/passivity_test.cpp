@@ -168,7 +168,7 @@ double droppedTicksAtThePort(const Variant& variant) {
     return worst;
 }
 
-const std::vector<StabilityCase> kCases{
+const std::vector<StabilityCase> kPassivityCases{
     {"energy_loop_over_plane", "uJ_gained", kEnergySlack_uJ, loopOverPlane, {}, {"surface_friction"}},
     {"energy_round_the_hole", "uJ_gained", kEnergySlack_uJ, pegMoving, {}, {"surface_friction"}},
     {"energy_over_edge_at_rest", "uJ_gained", kEnergySlack_uJ, overTheEdge, {"thesis_2012"}},
@@ -176,7 +176,7 @@ const std::vector<StabilityCase> kCases{
     {"energy_dropped_ticks", "uJ_gained", kEnergySlack_uJ, worstDroppedTicks, {}, {"surface_friction"}},
     {"port_energy_dropped_ticks", "of_hold_bound", 1, droppedTicksAtThePort, {}},
 };
-BONEMILL_STABILITY_CASES(Passivity, kCases);
+BONEMILL_STABILITY_CASES(Passivity, kPassivityCases);
 
 }  // namespace
 }  // namespace bonemill::test

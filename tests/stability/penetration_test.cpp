@@ -83,7 +83,7 @@ double deepPushDirection(const Variant& variant) {
     return std::acos(force.z() / force.norm()) / kDegree;
 }
 
-const std::vector<StabilityCase> kCases{
+const std::vector<StabilityCase> kPenetrationCases{
     {"one_voxel_wall", "mm_past_wall", 0, oneVoxelWall, {"thesis_2012"}, feltEffectsBut({"cutting_force"})},
     {"one_voxel_wall_fast_hand",
      "mm_past_wall",
@@ -96,7 +96,7 @@ const std::vector<StabilityCase> kCases{
     {"deep_push_force", "of_max_force", 1 + 1e-9, deepPushForce, {}, feltEffects()},
     {"deep_push_direction", "degrees", 10, deepPushDirection, {"thesis_2012"}},
 };
-BONEMILL_STABILITY_CASES(Penetration, kCases);
+BONEMILL_STABILITY_CASES(Penetration, kPenetrationCases);
 
 }  // namespace
 }  // namespace bonemill::test

@@ -124,7 +124,7 @@ double flickeringEncoder(const Variant& variant) {
     return (high - low) / (couplingFigures(scene.config).quick_stiffness * step);
 }
 
-const std::vector<StabilityCase> kCases{
+const std::vector<StabilityCase> kSettlingCases{
     {"peg_in_hole_held", "N_rms", 0.05, pegHeld, {}, feltEffects()},
     {"peg_in_hole_no_hand", "N_rms", 0.05, pegFree, {}, feltEffects()},
     {"wedge_10_to_60_degrees", "N_rms", 0.05, grooveWorst, {"thesis_2012"}, feltEffects()},
@@ -138,7 +138,7 @@ const std::vector<StabilityCase> kCases{
     // A flicker of one step may be felt as the coupling's quick stiffness times the step, and no more.
     {"encoder_flicker", "of_quick_step", 1, flickeringEncoder, {}, feltEffectsBut({"burr_vibration"})},
 };
-BONEMILL_STABILITY_CASES(Settling, kCases);
+BONEMILL_STABILITY_CASES(Settling, kSettlingCases);
 
 }  // namespace
 }  // namespace bonemill::test

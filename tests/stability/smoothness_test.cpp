@@ -49,7 +49,7 @@ double removalUnderLoad(const Variant& variant) {
 constexpr double kRecession = 4 * kVoxel / 20;
 constexpr double kCouplingStiffness = CouplingConfig{}.translation_stiffness;
 
-const std::vector<StabilityCase> kCases{
+const std::vector<StabilityCase> kSmoothnessCases{
     {"grazing_slide",
      "percent",
      2,
@@ -58,7 +58,7 @@ const std::vector<StabilityCase> kCases{
      feltEffectsBut({"burr_vibration", "material_stiffness", "virtual_fixture"})},
     {"removal_under_load", "N_per_tick", 2 * kCouplingStiffness* kRecession, removalUnderLoad, {}},
 };
-BONEMILL_STABILITY_CASES(Smoothness, kCases);
+BONEMILL_STABILITY_CASES(Smoothness, kSmoothnessCases);
 
 }  // namespace
 }  // namespace bonemill::test

@@ -90,7 +90,7 @@ double buriedSettles(const Variant& v) {
     return startInside(v, 2.2 * kBurrRadius, settled);
 }
 
-const std::vector<StabilityCase> kCases{
+const std::vector<StabilityCase> kSuddenMotionCases{
     {"device_jump_50mm_180deg", "of_limit", 1 + 1e-9, deviceJump, {}, feltEffects()},
     {"near_antipodal", "percent_of_max", 1, nearAntipodal, {"thesis_2012"}, feltEffects()},
     {"start_half_inside_fades_in", "of_speed_limit", 1.1, halfInsideFadeIn, {}, feltEffects()},
@@ -98,7 +98,7 @@ const std::vector<StabilityCase> kCases{
     {"start_buried_fades_in", "of_speed_limit", 1.1, buriedFadeIn, {}},
     {"start_buried_settles", "N_rms", 0.05, buriedSettles, {}},
 };
-BONEMILL_STABILITY_CASES(SuddenMotion, kCases);
+BONEMILL_STABILITY_CASES(SuddenMotion, kSuddenMotionCases);
 
 }  // namespace
 }  // namespace bonemill::test

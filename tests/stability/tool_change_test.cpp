@@ -166,7 +166,7 @@ double growthOverRounds(const Variant& variant) {
     return last / first;
 }
 
-const std::vector<StabilityCase> kCases{
+const std::vector<StabilityCase> kToolChangeCases{
     {"tool_change_jump_on_plane", "of_allowed", 1 + 1e-6, jumpOnPlane, {}, feltEffects()},
     {"tool_change_jump_in_hole", "of_allowed", 1 + 1e-6, jumpInHole, {}, feltEffects()},
     {"tool_change_jump_while_milling", "of_allowed", 1 + 1e-6, jumpWhileMilling, {}},
@@ -182,7 +182,7 @@ const std::vector<StabilityCase> kCases{
     {"tool_change_lift", "mm/s", 100, liftSpeed, {}, feltEffects()},
     {"tool_change_growth", "ratio", 1.05, growthOverRounds, {}, feltEffects()},
 };
-BONEMILL_STABILITY_CASES(ToolChange, kCases);
+BONEMILL_STABILITY_CASES(ToolChange, kToolChangeCases);
 
 }  // namespace
 }  // namespace bonemill::test

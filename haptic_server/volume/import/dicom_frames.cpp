@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-const gdcm::Tag kPixelData(0x7fe0, 0x0010);
+const gdcm::Tag kPixelDataElement(0x7fe0, 0x0010);
 const gdcm::Tag kSharedGroups(0x5200, 0x9229);
 const gdcm::Tag kPerFrameGroups(0x5200, 0x9230);
 const gdcm::Tag kPlanePosition(0x0020, 0x9113);
@@ -59,7 +59,7 @@ std::optional<DicomFrame> readFrame(const std::vector<const gdcm::DataSet*>& pla
 std::vector<DicomFrame> readFrames(const std::filesystem::path& path) {
     gdcm::Reader reader;
     reader.SetFileName(path.c_str());
-    if (!reader.ReadUpToTag(kPixelData)) return {};
+    if (!reader.ReadUpToTag(kPixelDataElement)) return {};
     const gdcm::DataSet& data = reader.GetFile().GetDataSet();
     const Sequence per_frame = sequence(data, kPerFrameGroups), shared = sequence(data, kSharedGroups);
     if (!per_frame) return {};

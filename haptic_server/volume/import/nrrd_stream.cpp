@@ -1,17 +1,15 @@
 #include "haptic_server/volume/import/nrrd_stream.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstdio>
 #include <fstream>
-#include <new>
 #include <type_traits>
 #include <vector>
 
 #include "common/units.h"
 #include "common/user_error.h"
+#include "haptic_server/volume/import/deflater.h"
 #include "haptic_server/volume/import/nrrd_header.h"
 
 namespace bonemill {
@@ -47,35 +45,6 @@ constexpr const char* typeName() {
     if (std::is_same_v<T, int16_t>) return "int16";
     return std::is_same_v<T, uint16_t> ? "uint16" : "float";
 }
-
-class Deflater {
-  public:
-    Deflater() {
-        constexpr int kGzipWindow = 15 + 16;  // zlib: 16 added asks for a gzip wrapper, without a time stamp
-        if (deflateInit2(&stream_, Z_BEST_SPEED, Z_DEFLATED, kGzipWindow, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-            throw std::bad_alloc();
-    }
-    ~Deflater() { deflateEnd(&stream_); }
-    Deflater(const Deflater&) = delete;
-    Deflater& operator=(const Deflater&) = delete;
-
-    // `flush` is Z_NO_FLUSH, or Z_FINISH for the last bytes.
-    void write(std::span<const std::byte> bytes, int flush, std::ofstream& file) {
-        stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));
-        stream_.avail_in = uInt(bytes.size());
-        do {
-            stream_.next_out = out_.data();
-            stream_.avail_out = uInt(out_.size());
-            deflate(&stream_, flush);
-            file.write(reinterpret_cast<const char*>(out_.data()),
-                       std::streamsize(out_.size() - stream_.avail_out));
-        } while (stream_.avail_out == 0);  // zlib: room left means that all input is used
-    }
-
-  private:
-    z_stream stream_{};
-    std::vector<Bytef> out_ = std::vector<Bytef>(size_t(1) << 18);
-};
 
 }  // namespace
 

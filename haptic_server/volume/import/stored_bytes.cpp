@@ -14,7 +14,7 @@ namespace bonemill {
 namespace {
 
 constexpr int kAnyWrapper = 15 + 32;  // zlib: 32 added accepts a zlib or a gzip head
-constexpr size_t kChunk = size_t(1) << 18;
+constexpr size_t kBufferBytes = size_t(1) << 18;
 
 // Unpacks and throws away; gzip files may consist of several members.
 class InflateCounter {
@@ -30,7 +30,7 @@ class InflateCounter {
 
     // Reads on behind `needed` to the end of the member, so that its checksum counts, but no further.
     uint64_t count(uint64_t needed) {
-        const uint64_t at_most = needed + kChunk;
+        const uint64_t at_most = needed + kBufferBytes;
         uint64_t bytes = 0;
         while (bytes <= at_most) {
             if (stream_.avail_in == 0 && !refill()) break;
@@ -59,8 +59,8 @@ class InflateCounter {
     std::ifstream file_;
     std::string name_;
     z_stream stream_{};
-    std::vector<Bytef> in_ = std::vector<Bytef>(kChunk);
-    std::vector<Bytef> out_ = std::vector<Bytef>(kChunk);
+    std::vector<Bytef> in_ = std::vector<Bytef>(kBufferBytes);
+    std::vector<Bytef> out_ = std::vector<Bytef>(kBufferBytes);
 };
 
 }  // namespace

@@ -10,6 +10,9 @@
 #include "tests/support/every_effect_scene.h"
 #include "tests/support/temporary_folder.h"
 
+// GCC 12 sees the aligned_alloc in operator new below, not that the operators belong together.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+
 namespace {
 
 thread_local size_t given_bytes = 0;

@@ -25,7 +25,7 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kRate = MillingSynth::kSampleRate;
+constexpr int kPlayedRate = MillingSynth::kSampleRate;
 
 // OpenAL reads its settings once per process: before any test's first call.
 void useWaveBackend(const std::string& settings_path, const std::string& settings) {
@@ -56,8 +56,8 @@ std::vector<float> samplesOf(const std::string& path) {
     return samples;
 }
 
-double amplitudeAt(const std::vector<float>& samples, double frequency) {
-    return test::amplitudeAt(samples, frequency, kRate);
+double playedAmplitude(const std::vector<float>& samples, double frequency) {
+    return test::amplitudeAt(samples, frequency, kPlayedRate);
 }
 
 TEST(SoundPlayer, playsTheSpeedsThatItIsToldAndFadesAtItsEnd) {
@@ -75,11 +75,11 @@ TEST(SoundPlayer, playsTheSpeedsThatItIsToldAndFadesAtItsEnd) {
         std::this_thread::sleep_for(milliseconds(500));
     }
     const std::vector<float> samples = samplesOf(path);
-    ASSERT_GT(samples.size(), size_t(kRate));
-    const double between = amplitudeAt(samples, 540);
-    EXPECT_GT(amplitudeAt(samples, 400), 10 * between);
-    EXPECT_GT(amplitudeAt(samples, 640), 10 * between);
-    const size_t end_size = kRate / 100;
+    ASSERT_GT(samples.size(), size_t(kPlayedRate));
+    const double between = playedAmplitude(samples, 540);
+    EXPECT_GT(playedAmplitude(samples, 400), 10 * between);
+    EXPECT_GT(playedAmplitude(samples, 640), 10 * between);
+    const size_t end_size = kPlayedRate / 100;
     EXPECT_LT(test::rms(std::span(samples).last(end_size)), 0.1 * test::rms(samples));
 }
 

@@ -11,7 +11,7 @@
 namespace bonemill {
 namespace {
 
-constexpr double kPeriod = 1e-3;  // s
+constexpr double kLoopPeriod = 1e-3;  // s
 constexpr int64_t kPeriodNs = 1'000'000;
 constexpr double kSoftWall = 1200;        // N/m, resists z < 0 of the handle
 constexpr double kThesisCoupling = 3000;  // N/m: what a rigid bone feels like through k_t = 3 N/mm
@@ -27,7 +27,7 @@ class ClosedLoop {
     void step(bool server_answers = true) {
         now_ns += kPeriodNs;
         DeviceSample sample;
-        ASSERT_TRUE(loop.read(kPeriod, sample));
+        ASSERT_TRUE(loop.read(kLoopPeriod, sample));
         loop.write(&command, now_ns);
         if (!server_answers) return;
         command = {};
@@ -36,7 +36,7 @@ class ClosedLoop {
         if (force_override) std::copy_n(force_override, 3, command.f_hand_D);
     }
     void run(double seconds) {
-        for (int i = 0; i < std::lround(seconds / kPeriod); ++i) step();
+        for (int i = 0; i < std::lround(seconds / kLoopPeriod); ++i) step();
     }
 
     AresEmulator emulator;
@@ -138,7 +138,7 @@ TEST(ClosedLoop, AnExcessiveForceIsLimitedAndSaidSo) {
     }
     EXPECT_TRUE(loop.loop.limitEvents() & kForceClamped);
     DeviceSample sample;
-    ASSERT_TRUE(loop.loop.read(kPeriod, sample));
+    ASSERT_TRUE(loop.loop.read(kLoopPeriod, sample));
     EXPECT_TRUE(sample.flags & kDeviceFlagForceLimited);
 }
 

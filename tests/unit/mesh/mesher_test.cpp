@@ -18,7 +18,7 @@ namespace {
 using test::boxGeometry;
 using test::writeLikeTick;
 
-constexpr Density kIso = 30000;
+constexpr Density kMesherIso = 30000;
 
 // What a client keeps: the newest mesh of each leaf, an empty one removes it.
 struct Model {
@@ -53,7 +53,7 @@ void expectEqualsFullRemesh(const Model& model, const VoxelVolume& volume, const
 
 struct Bone {
     explicit Bone(const Eigen::Vector3i& dims, const Eigen::Vector3i& leaf_cells, unsigned seed = 1)
-        : random(seed), volume(boxGeometry(dims), kIso) {
+        : random(seed), volume(boxGeometry(dims), kMesherIso) {
         test::fillWaves(volume, random);
         lattice.emplace(volume, leaf_cells);
     }
@@ -123,7 +123,7 @@ TEST(Mesher, CatchUpSaysWhenALeafIsBeingWritten) {
 }
 
 TEST(Mesher, LeafWithoutSurfaceIsNeverSentAndAnEmptiedOneOnce) {
-    VoxelVolume volume(boxGeometry({30, 30, 30}), kIso);
+    VoxelVolume volume(boxGeometry({30, 30, 30}), kMesherIso);
     volume.set(5, 5, 5, kMaxDensity);
     LeafLattice lattice(volume, {10, 10, 10});
     Mesher mesher(volume, lattice);
@@ -202,11 +202,12 @@ TEST(Mesher, IncrementalEqualsFullAfterRandomEdits) {
         mesher.pass(model.sink());
         std::uniform_int_distribution<int> density(0, 1);
         for (int edit = 0; edit < 40; ++edit) {
-            const Density value = density(bone.random) == 0 ? Density(0) : Density(kIso + 1000);
+            const Density value = density(bone.random) == 0 ? Density(0) : Density(kMesherIso + 1000);
             const bool is_noise = edit % 3 == 0;
-            writeLikeTick(
-                bone.volume, *bone.lattice, test::randomBox(bone.volume, 6, bone.random),
-                [&](int, int, int) { return is_noise ? Density(kIso - 1 + density(bone.random)) : value; });
+            writeLikeTick(bone.volume, *bone.lattice, test::randomBox(bone.volume, 6, bone.random),
+                          [&](int, int, int) {
+                              return is_noise ? Density(kMesherIso - 1 + density(bone.random)) : value;
+                          });
             if (edit % 4 == 0) mesher.pass(model.sink(), 20);
         }
         while (mesher.pass(model.sink()).pending > 0) {
@@ -250,12 +251,12 @@ TEST(Mesher, RunsBesideATickThatWrites) {
 // The tick rewrites a whole leaf with one of two bodies; whatever the mesher sends must be one of them, never
 // a mixture.
 TEST(Mesher, NeverSendsALeafHalfWritten) {
-    VoxelVolume volume(boxGeometry({16, 16, 16}), kIso);
+    VoxelVolume volume(boxGeometry({16, 16, 16}), kMesherIso);
     LeafLattice lattice(volume, {32, 32, 32});
     const auto body = [](bool is_large) {
         return [is_large](int i, int j, int k) {
             const double distance = (Eigen::Vector3d(i, j, k).array() - 7.5).matrix().norm();
-            return Density(std::clamp(kIso + 4000 * ((is_large ? 7 : 4) - distance), 0.0, 65535.0));
+            return Density(std::clamp(kMesherIso + 4000 * ((is_large ? 7 : 4) - distance), 0.0, 65535.0));
         };
     };
     const IndexBox whole = test::wholeBox(volume);

@@ -3,18 +3,19 @@
 
 #include "haptic_server/mesh/mesh_check.h"
 #include "haptic_server/milling/timed_milling.h"
+#include "tests/support/bone_volume.h"
 #include "tests/support/test_bodies.h"
 #include "tests/support/voxel_fields.h"
 
 namespace bonemill {
 namespace {
 
-constexpr double kVoxel = 0.125e-3;
-constexpr double kDt = 1e-3;
+constexpr double kFineVoxel = 0.125e-3;
+constexpr double kTickTime = 1e-3;
 constexpr double kAtOnce = 1e9;  // counts/s: all that may go goes in one tick
 constexpr double kInTwentyTicks = 12750 * kDensityCountsPerUnit;  // counts/s: from full to nothing in 20 ms
-const std::vector<Eigen::Vector3d> kSpacings = {{kVoxel, kVoxel, kVoxel},
-                                                {0.6 * kVoxel, kVoxel, 0.8 * kVoxel}};
+const std::vector<Eigen::Vector3d> kSpacings = {{kFineVoxel, kFineVoxel, kFineVoxel},
+                                                {0.6 * kFineVoxel, kFineVoxel, 0.8 * kFineVoxel}};
 constexpr Density kIsos[] = {32768, 26214, 45000, 9000};
 
 BoneModel filled(const Eigen::Vector3i& dims, const Eigen::Vector3d& spacing, Density iso, Density density) {
@@ -52,11 +53,6 @@ double limitAt(const VoxelVolume& volume, double d, int direction) {
     return std::clamp(volume.iso() - direction * slopeOf(volume) * d, 0.0, double(kMaxDensity));
 }
 
-double boneVolume(const BoneModel& bone) {
-    const auto meshes = test::meshAll(bone.volume, bone.lattice);
-    return meshVolume(meshes, MeshGrid(bone.volume, bone.lattice));
-}
-
 // Largest distance of the drawn surface's vertices from the sphere, among those nearer to it than a voxel or
 // two; and of the shell's points.
 struct Offset {
@@ -91,23 +87,23 @@ class SubVoxelSphere : public testing::TestWithParam<int> {};  // radius in voxe
 // ramp ends inside a cell half a percent of a voxel comes on top. For the usual burr, 8 voxels in radius: 5 %
 // of a voxel.
 TEST_P(SubVoxelSphere, DwellingLeavesTheSphere) {
-    const double radius = GetParam() * kVoxel;
+    const double radius = GetParam() * kFineVoxel;
     for (const Eigen::Vector3d& spacing : kSpacings)
         for (const Density iso : kIsos)
             for (const int direction : {-1, +1}) {
-                const double side = 2 * radius + 9 * kVoxel;
+                const double side = 2 * radius + 9 * kFineVoxel;
                 BoneModel bone = cube(side, spacing, iso, direction < 0 ? kMaxDensity : 0);
                 TimedMilling milling(atOnce(), bone.volume, bone.lattice, radius);
                 const Eigen::Vector3d center =
-                    Eigen::Vector3d::Constant(side / 2) + Eigen::Vector3d(0.31, -0.17, 0.44) * kVoxel;
+                    Eigen::Vector3d::Constant(side / 2) + Eigen::Vector3d(0.31, -0.17, 0.44) * kFineVoxel;
                 for (int n = 0; n < 2; ++n)
-                    milling.apply(bone.volume, bone.lattice, bone.shell, center, direction, kDt);
+                    milling.apply(bone.volume, bone.lattice, bone.shell, center, direction, kTickTime);
                 const Offset offset = offsetFromSphere(bone, center, radius);
                 EXPECT_GT(offset.vertices, 500u);
                 EXPECT_GT(offset.points, 500u);
                 const double bound = 3 / (8.0 * GetParam());
-                EXPECT_LT(offset.mesh / kVoxel, bound + 1e-3) << "iso " << iso;
-                EXPECT_LT(offset.shell / kVoxel, bound + 5e-3) << "iso " << iso;
+                EXPECT_LT(offset.mesh / kFineVoxel, bound + 1e-3) << "iso " << iso;
+                EXPECT_LT(offset.shell / kFineVoxel, bound + 5e-3) << "iso " << iso;
             }
 }
 
@@ -125,11 +121,12 @@ TEST(SubVoxelMilling, EveryVoxelEndsAtItsLimitAndNoneElsewhereChanges) {
                                     [&](int, int, int) { return Density(density(random)); });
                 bone.shell.refresh(bone.volume, bone.lattice, {&all, 1});
                 const VoxelVolume before = bone.volume;
-                const double radius = 6.3 * kVoxel;
-                const Eigen::Vector3d center(12.2173 * kVoxel, 14.7391 * kVoxel, 11.4257 * kVoxel);
+                const double radius = 6.3 * kFineVoxel;
+                const Eigen::Vector3d center(12.2173 * kFineVoxel, 14.7391 * kFineVoxel,
+                                             11.4257 * kFineVoxel);
                 TimedMilling milling(atOnce(), bone.volume, bone.lattice, radius);
                 const MillingResult result =
-                    milling.apply(bone.volume, bone.lattice, bone.shell, center, direction, kDt);
+                    milling.apply(bone.volume, bone.lattice, bone.shell, center, direction, kTickTime);
                 uint32_t crossed = 0;
                 test::forEachVoxel(all, [&](int i, int j, int k) {
                     const double old = before.at(i, j, k);
@@ -153,8 +150,8 @@ TEST(SubVoxelMilling, NoVoxelLosesMoreThanTheRate) {
     const Eigen::Vector3d center(2e-3, 2.01e-3, 1.97e-3);
     TimedMilling milling(config, bone.volume, bone.lattice, radius);
     for (int n = 1; n <= 100; ++n) {
-        milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
-        const double lost = config.removal_rate * n * kDt;
+        milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kTickTime);
+        const double lost = config.removal_rate * n * kTickTime;
         test::forEachVoxel(test::wholeBox(bone.volume), [&](int i, int j, int k) {
             const double limit =
                 limitAt(bone.volume, signedDistance(bone.volume, i, j, k, center, radius), -1);
@@ -185,7 +182,7 @@ TEST(SubVoxelMilling, ABurrSunkByMicrometresGoesOnCutting) {
     const double sunk = 3e-6;
     constexpr int kTicks = 150;
     const auto feed_with = [&](MillingShape shape) {
-        VoxelVolume volume = test::bodyVolume(test::cubeGeometry(33, kVoxel),
+        VoxelVolume volume = test::bodyVolume(test::cubeGeometry(33, kFineVoxel),
                                               test::halfSpace({0, 0, 2.03e-3}, Eigen::Vector3d::UnitZ()));
         BoneModel bone(std::move(volume), Eigen::Vector3i::Constant(16), ShellConfig{});
         TimedMilling milling({.removal_rate = kInTwentyTicks, .shape = shape}, bone.volume, bone.lattice,
@@ -194,12 +191,12 @@ TEST(SubVoxelMilling, ABurrSunkByMicrometresGoesOnCutting) {
         const double start = heightOnBone(bone, xy, radius, sunk);
         double height = start;
         for (int n = 0; n < kTicks; ++n) {
-            milling.apply(bone.volume, bone.lattice, bone.shell, {xy.x(), xy.y(), height}, -1, kDt);
+            milling.apply(bone.volume, bone.lattice, bone.shell, {xy.x(), xy.y(), height}, -1, kTickTime);
             height = heightOnBone(bone, xy, radius, sunk);
         }
         return start - height;
     };
-    EXPECT_LT(feed_with(MillingShape::kVoxelCentres), kVoxel);
+    EXPECT_LT(feed_with(MillingShape::kVoxelCentres), kFineVoxel);
     const double feed = feed_with(MillingShape::kSubVoxel);
     EXPECT_GT(feed, 0.5 * kTicks * sunk);
     EXPECT_LT(feed, 2 * kTicks * sunk);  // each tick also clears the ample sag's few µm
@@ -208,7 +205,7 @@ TEST(SubVoxelMilling, ABurrSunkByMicrometresGoesOnCutting) {
 TEST(SubVoxelMilling, APassLeavesTheSweptCapsule) {
     for (const Eigen::Vector3d& spacing : kSpacings) {
         BoneModel bone = cube(5e-3, spacing, 26214, kMaxDensity);
-        const double before = boneVolume(bone);
+        const double before = test::boneVolume(bone);
         const double radius = 1e-3;
         const Eigen::Vector3d start(1.52e-3, 1.61e-3, 1.57e-3);
         const Eigen::Vector3d end(3.41e-3, 3.12e-3, 3.44e-3);
@@ -218,11 +215,11 @@ TEST(SubVoxelMilling, APassLeavesTheSweptCapsule) {
         constexpr int kDwell = 30;  // at both ends, longer than a full voxel takes to go
         for (int n = 0; n < kSteps + 2 * kDwell; ++n) {
             const double way = std::clamp((n - kDwell) / double(kSteps), 0.0, 1.0);
-            milling.apply(bone.volume, bone.lattice, bone.shell, start + way * (end - start), -1, kDt);
+            milling.apply(bone.volume, bone.lattice, bone.shell, start + way * (end - start), -1, kTickTime);
         }
         const double swept =
             M_PI * radius * radius * (end - start).norm() + 4.0 / 3 * M_PI * std::pow(radius, 3);
-        EXPECT_NEAR((before - boneVolume(bone)) / swept, 1, 0.01) << spacing.transpose();
+        EXPECT_NEAR((before - test::boneVolume(bone)) / swept, 1, 0.01) << spacing.transpose();
     }
 }
 
@@ -230,11 +227,12 @@ TEST(SubVoxelMilling, ABurrAwayFromTheBoneTouchesNothing) {
     BoneModel bone = cube(4e-3, kSpacings[1], 26214, kMaxDensity);
     const double radius = 1e-3;
     TimedMilling milling(atOnce(), bone.volume, bone.lattice, radius);
-    const double away = radius + (1 + (65535 - 26214) / 26214.0) * kVoxel;
+    const double away = radius + (1 + (65535 - 26214) / 26214.0) * kFineVoxel;
     for (const Eigen::Vector3d& center :
          {Eigen::Vector3d(-away, 2e-3, 2e-3), Eigen::Vector3d(2e-3, 4.2e-3 + away, 2e-3),
           Eigen::Vector3d(1e6, -1e6, 0), Eigen::Vector3d(-5e8, 5e8, 5e8)}) {
-        const MillingResult result = milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt);
+        const MillingResult result =
+            milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kTickTime);
         EXPECT_TRUE(result.changed.isEmpty());
     }
     for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf) EXPECT_EQ(bone.lattice.version(leaf), 0u);
@@ -244,8 +242,10 @@ TEST(SubVoxelMilling, WhatIsAtItsLimitMarksNoLeaf) {
     BoneModel bone = cube(4e-3, kSpacings[1], 26214, kMaxDensity);
     TimedMilling milling(atOnce(), bone.volume, bone.lattice, 1e-3);
     const Eigen::Vector3d center(2e-3, 2e-3, 2e-3);
-    EXPECT_FALSE(milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt).changed.isEmpty());
-    EXPECT_TRUE(milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kDt).changed.isEmpty());
+    EXPECT_FALSE(
+        milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kTickTime).changed.isEmpty());
+    EXPECT_TRUE(
+        milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kTickTime).changed.isEmpty());
 }
 
 // Switched between ticks, in both directions, also at the volume's border.
@@ -260,7 +260,8 @@ TEST(SubVoxelMilling, ShellAndRangesFollowWhateverTheShape) {
         for (int n = 0; n < 8; ++n)
             EXPECT_TRUE(milling
                             .apply(bone.volume, bone.lattice, bone.shell,
-                                   center + n * 13e-6 * Eigen::Vector3d::UnitX(), stroke % 4 ? -1 : +1, kDt)
+                                   center + n * 13e-6 * Eigen::Vector3d::UnitX(), stroke % 4 ? -1 : +1,
+                                   kTickTime)
                             .shell_is_complete);
         const LeafLattice lattice(bone.volume, bone.lattice.leafCells());
         const PointShell shell(bone.volume, lattice, {.levels = {{1}, {2}, {3}}, .spare_points = 0});

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "haptic_server/mesh/mesh_check.h"
+#include "tests/support/bone_volume.h"
 #include "tests/support/test_bodies.h"
 #include "tests/support/voxel_fields.h"
 
@@ -37,11 +38,6 @@ void forEachPoint(const BoneModel& bone, Visit&& visit) {
             for (uint32_t n = 0; n < count; ++n)
                 visit(Vector3d(b.x[n], b.y[n], b.z[n]), double(b.area[n]), PatchId{leaf, b.key[n]});
         });
-}
-
-double boneVolume(const BoneModel& bone) {
-    const auto meshes = test::meshAll(bone.volume, bone.lattice);
-    return meshVolume(meshes, MeshGrid(bone.volume, bone.lattice));
 }
 
 SpecificEnergyConfig uniform() {
@@ -79,10 +75,10 @@ TEST_P(SurfaceShiftOf, APlaneKeepsItFlatAndLeavesTheRest) {
         for (const Vector3d& spacing_mm : {Vector3d(0.125, 0.125, 0.125), Vector3d(0.1, 0.15, 0.2)}) {
             const Plane plane{.normal = normal.normalized()};
             BoneModel bone = halfSpace(plane, 1e-3 * spacing_mm, GetParam());
-            const double before = boneVolume(bone), voxel = 1e-3 * spacing_mm.maxCoeff();
+            const double before = test::boneVolume(bone), voxel = 1e-3 * spacing_mm.maxCoeff();
             constexpr double kDepth = 0.2e-3;
             const double spent = lower(bone, plane, kDepth, 40);
-            EXPECT_NEAR(kEnergy * (before - boneVolume(bone)) / spent, 1, 2e-3);
+            EXPECT_NEAR(kEnergy * (before - test::boneVolume(bone)) / spent, 1, 2e-3);
             const double rim = (1 + GetParam()) * voxel;
             size_t inside = 0;
             forEachPoint(bone, [&](const Vector3d& p, double, PatchId) {

@@ -7,7 +7,7 @@
 namespace bonemill {
 namespace {
 
-constexpr int kWidth = 400, kHeight = 300;
+constexpr int kChangesWidth = 400, kChangesHeight = 300;
 
 class PictureChangesTest : public testing::Test {
   protected:
@@ -17,11 +17,11 @@ class PictureChangesTest : public testing::Test {
     }
     PictureChanges::Dirty next(const Eigen::AlignedBox3f& changed_V, const PixelBox& moving) {
         const DepthRange range = changes_.range(view_.camera, Frame::neededRange(view_, {}));
-        const Frame frame = Frame::make(view_, {}, double(kWidth) / kHeight, range);
-        return changes_.next(frame, kWidth, kHeight, changed_V, moving);
+        const Frame frame = Frame::make(view_, {}, double(kChangesWidth) / kChangesHeight, range);
+        return changes_.next(frame, kChangesWidth, kChangesHeight, changed_V, moving);
     }
 
-    const PixelBox whole_ = PixelBox::whole(kWidth, kHeight);
+    const PixelBox whole_ = PixelBox::whole(kChangesWidth, kChangesHeight);
     FrameView view_;
     PictureChanges changes_;
 };
@@ -37,7 +37,7 @@ TEST_F(PictureChangesTest, OnlyWhatChangedAndWhatMovesOfARestingView) {
     const Eigen::AlignedBox3f node(Eigen::Vector3f::Constant(-0.005f), Eigen::Vector3f::Constant(0.005f));
     dirty = next(node, {});
     EXPECT_FALSE(dirty.bone.isEmpty());
-    EXPECT_LT(dirty.bone.width(), kWidth / 4);
+    EXPECT_LT(dirty.bone.width(), kChangesWidth / 4);
     EXPECT_EQ(dirty.all, dirty.bone.joined(there));
     EXPECT_TRUE(next({}, {}).all.isEmpty());
 }

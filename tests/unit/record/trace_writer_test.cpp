@@ -94,6 +94,8 @@ TEST(TraceWriter, effectsAddTheirColumns) {
     TickRecord record{};
     record.effects = {.events = kEventTooHot,
                       .protected_id = 3,
+                      .touched_id = 0,
+                      .damaged_id = 0,
                       .spin_speed = float(1000 * 2 * M_PI / 60),
                       .burr_force = 1,
                       .axis_torque = 2,

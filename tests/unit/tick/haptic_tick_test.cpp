@@ -54,7 +54,7 @@ struct Bench {
     ToolModel tool;
 };
 
-double forceOf(const TickRecord& record) {
+double forceSizeOf(const TickRecord& record) {
     return Eigen::Map<const Eigen::Vector3d>(record.f_hand_W).norm();
 }
 
@@ -129,7 +129,9 @@ TEST(HapticTick, BeforeTheFirstGoodPoseNothingIsMilledOrFelt) {
         for (const TickRecord& r : bench.run(inputs)) {
             EXPECT_EQ(bool(r.faults & kFaultBadDevicePose), r.tick < 50) << r.tick;
             EXPECT_EQ(r.removed_voxels, 0u) << presetName(preset) << " " << r.tick;
-            if (r.tick < 50) EXPECT_EQ(forceOf(r), 0) << presetName(preset) << " " << r.tick;
+            if (r.tick < 50) {
+                EXPECT_EQ(forceSizeOf(r), 0) << presetName(preset) << " " << r.tick;
+            }
         }
     }
 }
@@ -144,8 +146,9 @@ TEST(HapticTick, StaleDeviceMillsNothingAndForceFollowsTheRamp) {
         inputs[n].stale_factor = 0.25;
     }
     const auto records = bench.run(inputs);
-    EXPECT_GT(forceOf(records[199]), 0.1);
-    EXPECT_NEAR(forceOf(records[299]), 0.25 * forceOf(records[199]), 0.05 * forceOf(records[199]));
+    EXPECT_GT(forceSizeOf(records[199]), 0.1);
+    EXPECT_NEAR(forceSizeOf(records[299]), 0.25 * forceSizeOf(records[199]),
+                0.05 * forceSizeOf(records[199]));
     EXPECT_TRUE(records[250].faults & kFaultStaleDevice);
     for (const TickRecord& r : records) EXPECT_EQ(r.removed_voxels, 0u);
 }
@@ -162,7 +165,7 @@ TEST(HapticTick, WithoutAnEquilibriumTheForceFadesAndComesBackAlongTheRamp) {
         return test::lead(tick, test::straightPath(from, pressed.position, ticks, 0));
     };
     lead(start, 200);
-    const double held = forceOf(lead(pressed, 200).back());
+    const double held = forceSizeOf(lead(pressed, 200).back());
     EXPECT_GT(held, 2);
 
     accuracy.choose(AccuracySwitch::choiceOf(Preset::kThesis2012));
@@ -171,16 +174,16 @@ TEST(HapticTick, WithoutAnEquilibriumTheForceFadesAndComesBackAlongTheRamp) {
     double last = held;
     for (const TickRecord& r : lead(pressed, ticks)) {
         EXPECT_TRUE(r.faults & kFaultSolve);
-        EXPECT_NEAR(last - forceOf(r), held / ticks, 1e-3 * held);
-        last = forceOf(r);
+        EXPECT_NEAR(last - forceSizeOf(r), held / ticks, 1e-3 * held);
+        last = forceSizeOf(r);
     }
     EXPECT_LT(last, 1e-9);
-    for (const TickRecord& r : lead(pressed, 100)) EXPECT_LT(forceOf(r), 1e-9);
+    for (const TickRecord& r : lead(pressed, 100)) EXPECT_LT(forceSizeOf(r), 1e-9);
 
     accuracy.choose(AccuracySwitch::choiceOf(Preset::kBalanced));
     for (const TickRecord& r : lead(pressed, 200)) {
-        EXPECT_LE(forceOf(r) - last, 1.001 * HandLimits::kForceRate * bench.config.dt);
-        last = forceOf(r);
+        EXPECT_LE(forceSizeOf(r) - last, 1.001 * HandLimits::kForceRate * bench.config.dt);
+        last = forceSizeOf(r);
     }
     EXPECT_NEAR(last, held, 0.01 * held);
 }

@@ -11,14 +11,14 @@
 namespace bonemill {
 namespace {
 
-constexpr double kTop = 5e-3, kBurr = 3e-3;
+constexpr double kSlabTop = 5e-3, kLargeBurr = 3e-3;
 
-struct Bench {
-    explicit Bench(FixedTickConfig config)
+struct BudgetBench {
+    explicit BudgetBench(FixedTickConfig config)
         : bone(test::bodyVolume(test::cubeGeometry(64, 0.125e-3),
-                                test::halfSpace({0, 0, kTop}, Eigen::Vector3d::UnitZ())),
+                                test::halfSpace({0, 0, kSlabTop}, Eigen::Vector3d::UnitZ())),
                Eigen::Vector3i::Constant(16), {.levels = {{1}, {2}, {3}}}),
-          tool(test::sphereToolModel(kBurr, 0.125e-3)),
+          tool(test::sphereToolModel(kLargeBurr, 0.125e-3)),
           tick((config.tool.model = &tool, config), bone) {}
 
     std::vector<TickRecord> run(const std::vector<DeviceInput>& inputs) { return test::lead(tick, inputs); }
@@ -46,13 +46,13 @@ TEST(TickBudget, TooManyPointsForATickMeanACoarserShellAndSaySo) {
     FixedTickConfig config;
     config.accuracy.patch_points = 1;
     config.gradient.contact.stiffness_per_area = 1e10;  // a wide contact
-    const auto unlimited = Bench(config).run(dip(1000, 0));
+    const auto unlimited = BudgetBench(config).run(dip(1000, 0));
     uint32_t most = 0;
     for (const TickRecord& r : unlimited) most = std::max(most, r.candidates);
     ASSERT_GT(most, 60u);
 
     config.gradient.most_point_tests = 3 * most;  // less than one evaluation per iteration
-    Bench bench(config);
+    BudgetBench bench(config);
     const auto records = bench.run(dip(1000, 2500));
     const TickRecord& pressed = records[1699];
     EXPECT_TRUE(pressed.faults & kFaultCoarserShell);
@@ -69,10 +69,10 @@ TEST(TickBudget, TooManyPointsForATickMeanACoarserShellAndSaySo) {
 
 TEST(TickBudget, PlentyOfTimeChangesNothing) {
     FixedTickConfig config;
-    const auto free = Bench(config).run(dip(300, 0, kButtonRemove));
+    const auto free = BudgetBench(config).run(dip(300, 0, kButtonRemove));
     config.effects.time_removal = test::kTimeRemoval;
     TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
-    const auto budgeted = Bench(config).run(dip(300, 0, kButtonRemove));
+    const auto budgeted = BudgetBench(config).run(dip(300, 0, kButtonRemove));
     for (size_t n = 0; n < free.size(); ++n) {
         ASSERT_EQ(budgeted[n].f_hand_W[2], free[n].f_hand_W[2]) << n;
         ASSERT_EQ(budgeted[n].removed_voxels, free[n].removed_voxels) << n;
@@ -83,9 +83,9 @@ TEST(TickBudget, PlentyOfTimeChangesNothing) {
 TEST(TickBudget, MillingThatIsCutShortIsAFault) {
     FixedTickConfig config;
     config.effects.time_removal = test::kTimeRemoval;
-    config.tool.burr.radius = kBurr;
+    config.tool.burr.radius = kLargeBurr;
     config.most_milled_cells = 200;
-    Bench bench(config);
+    BudgetBench bench(config);
     uint32_t faults = 0;
     for (const TickRecord& r : bench.run(dip(300, 0, kButtonRemove))) faults |= r.faults;
     EXPECT_TRUE(faults & kFaultMillingCutShort);

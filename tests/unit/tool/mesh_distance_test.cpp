@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 using test::cornersOf;
 
 template <class Visit>
-void forRandomPoints(const TriangleMesh& mesh, int count, Visit&& visit) {
+void forRandomPointsAround(const TriangleMesh& mesh, int count, Visit&& visit) {
     const Eigen::AlignedBox3d box = mesh.box();
     std::mt19937 random(5);
     std::uniform_real_distribution<double> wide(-0.3, 1.3);
@@ -27,7 +27,7 @@ TEST(MeshDistance, BoxIsExact) {
     const Vector3d half(1e-3, 2e-3, 3e-3);
     const TriangleMesh mesh = closedMesh(cornersOf(test::boxSoup({-1, -2, -3}, {1, 2, 3})), "box.stl");
     const MeshDistance distance(mesh);
-    forRandomPoints(mesh, 20000, [&](const Vector3d& p) {
+    forRandomPointsAround(mesh, 20000, [&](const Vector3d& p) {
         const Vector3d beyond = p.cwiseAbs() - half;
         const double expected = beyond.cwiseMax(0).norm() + std::min(beyond.maxCoeff(), 0.0);
         ASSERT_NEAR(distance.query(p).distance, expected, 1e-14) << p.transpose();
@@ -43,7 +43,7 @@ TEST(MeshDistance, SphereLiesWithinItsFacets) {
     // No facet is wider than pi/kRings both ways, so none lies deeper than this below the sphere.
     const double half_diagonal = std::sqrt(2.0) * std::numbers::pi / kRings / 2;
     const double sagitta = radius * (1 - std::cos(half_diagonal));
-    forRandomPoints(mesh, 5000, [&](const Vector3d& p) {
+    forRandomPointsAround(mesh, 5000, [&](const Vector3d& p) {
         const double sphere = (p - Vector3d(1e-3, 0, -1e-3)).norm() - radius;
         const double d = distance.query(p).distance;
         ASSERT_GE(d, sphere - 1e-9);
@@ -56,7 +56,7 @@ void expectAsOracles(const TriangleMesh& mesh, int points) {
     std::mt19937 random(9);
     std::uniform_int_distribution<uint32_t> triangle(0, uint32_t(mesh.triangles.size() - 1));
     int inside = 0;
-    forRandomPoints(mesh, points, [&](const Vector3d& p) {
+    forRandomPointsAround(mesh, points, [&](const Vector3d& p) {
         const bool is_inside = test::windingNumber(mesh, p) > 0.5;
         const double expected = (is_inside ? -1 : 1) * test::unsignedDistance(mesh, p);
         inside += is_inside;

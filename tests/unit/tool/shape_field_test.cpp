@@ -17,7 +17,7 @@ const std::vector<ToolShape> kShapes = {
 };
 
 template <class Visit>
-void forRandomPoints(int count, Visit&& visit) {
+void forPointsInside(int count, Visit&& visit) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> coordinate(-3e-3, 3e-3);
     for (int n = 0; n < count; ++n)
@@ -36,7 +36,7 @@ TEST(ShapeField, DistancesAreThoseOfTheShapesAloneAndTogether) {
     tools.push_back(kShapes);
     for (const auto& shapes : tools) {
         const ShapeField field(shapes);
-        forRandomPoints(2000, [&](const Vector3d& p) {
+        forPointsInside(2000, [&](const Vector3d& p) {
             PointBatch<float> floats;
             PointBatch<double> doubles;
             floats.count = doubles.count = 1;
@@ -60,7 +60,7 @@ TEST(ShapeField, GradientIsTheDistancesDerivative) {
     for (const ToolShape& shape : kShapes) {
         const ShapeField field({shape});
         int smooth = 0;
-        forRandomPoints(3000, [&](const Vector3d& p) {
+        forPointsInside(3000, [&](const Vector3d& p) {
             const ToolSample here = field.sample(p);
             Vector3d gradient;
             bool is_smooth = std::abs(here.distance) > 1e-5;
@@ -112,7 +112,7 @@ TEST(ShapeField, BatchesAreSampledLikeTheirPoints) {
     for (const auto& shapes : tools) {
         const ShapeField field(shapes);
         int alike[2] = {};
-        forRandomPoints(2000, [&](const Vector3d& p) {
+        forPointsInside(2000, [&](const Vector3d& p) {
             alike[0] += check.operator()<float>(field, p, 2e-9);
             alike[1] += check.operator()<double>(field, p, 1e-15);
         });

@@ -14,7 +14,7 @@ using test::boxSoup;
 using test::cornersOf;
 using test::TriangleSoup;
 
-const TriangleSoup kBox = boxSoup({-1, -2, -3}, {1, 2, 3});
+const TriangleSoup kPlainBox = boxSoup({-1, -2, -3}, {1, 2, 3});
 
 double volumeOf(const TriangleMesh& mesh) {
     double volume = 0;
@@ -46,7 +46,7 @@ void expectRefused(const TriangleSoup& soup, const std::string& words) {
 }
 
 TEST(ClosedMesh, WeldsABox) {
-    const TriangleMesh mesh = closedMesh(cornersOf(kBox), "box.stl");
+    const TriangleMesh mesh = closedMesh(cornersOf(kPlainBox), "box.stl");
     EXPECT_EQ(mesh.vertices.size(), 8u);
     EXPECT_EQ(mesh.triangles.size(), 12u);
     EXPECT_NEAR(volumeOf(mesh), 48e-9, 1e-15);
@@ -54,7 +54,7 @@ TEST(ClosedMesh, WeldsABox) {
 }
 
 TEST(ClosedMesh, TurnsAnInsideOutBox) {
-    const TriangleMesh mesh = closedMesh(cornersOf(test::insideOut(kBox)), "box.stl");
+    const TriangleMesh mesh = closedMesh(cornersOf(test::insideOut(kPlainBox)), "box.stl");
     EXPECT_NEAR(volumeOf(mesh), 48e-9, 1e-15);
     expectNeighboursShareTheEdge(mesh);
 }
@@ -68,33 +68,33 @@ TEST(ClosedMesh, WeldsBothZeros) {
 }
 
 TEST(ClosedMesh, DropsTrianglesThatCollapse) {
-    TriangleSoup soup = kBox;
+    TriangleSoup soup = kPlainBox;
     soup.push_back({soup[0][0], soup[0][1], soup[0][1]});
     EXPECT_EQ(closedMesh(cornersOf(soup), "box.stl").triangles.size(), 12u);
     expectRefused({soup.back()}, "two equal corners");
 }
 
 TEST(ClosedMesh, RefusesAHole) {
-    TriangleSoup soup = kBox;
+    TriangleSoup soup = kPlainBox;
     soup.pop_back();
     expectRefused(soup, "not closed: 3 edges have one triangle only and 0 more than two");
 }
 
 TEST(ClosedMesh, RefusesAnInnerWall) {
-    TriangleSoup soup = kBox;
+    TriangleSoup soup = kPlainBox;
     const Eigen::Vector3f a = soup[0][0], b = soup[0][1];
     soup.push_back({a, b, Eigen::Vector3f(0, 0, 0)});
     expectRefused(soup, "2 edges have one triangle only and 1 more than two");
 }
 
 TEST(ClosedMesh, RefusesMixedOrientation) {
-    TriangleSoup soup = kBox;
+    TriangleSoup soup = kPlainBox;
     std::swap(soup[5][0], soup[5][1]);
     expectRefused(soup, "face different ways: 3 edges");
 }
 
 TEST(ClosedMesh, RefusesNumbersThatAreNone) {
-    TriangleSoup soup = kBox;
+    TriangleSoup soup = kPlainBox;
     soup[4][1].y() = std::numeric_limits<float>::quiet_NaN();
     soup[7][2].x() = std::numeric_limits<float>::infinity();
     expectRefused(soup, "2 of 36 triangle corners are not finite");
@@ -107,7 +107,7 @@ TEST(ClosedMesh, RefusesWhatIsNotInMillimetres) {
 
 TEST(ClosedMesh, RefusesNothing) {
     expectRefused({}, "holds no triangles");
-    const TriangleSoup sheet{kBox[0], {kBox[0][1], kBox[0][0], kBox[0][2]}};
+    const TriangleSoup sheet{kPlainBox[0], {kPlainBox[0][1], kPlainBox[0][0], kPlainBox[0][2]}};
     expectRefused(sheet, "encloses no volume");
 }
 

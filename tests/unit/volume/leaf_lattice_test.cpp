@@ -14,11 +14,11 @@ namespace {
 using test::boxGeometry;
 using test::forEachVoxel;
 
-constexpr Density kIso = 30000;
+constexpr Density kLatticeIso = 30000;
 const std::vector<Eigen::Vector3i> kLeafSizes = {{4, 4, 4}, {5, 3, 7}, {1, 1, 1}, {16, 16, 16}, {100, 2, 9}};
 
 VoxelVolume waves(unsigned seed = 1, const Eigen::Vector3i& dims = {17, 22, 13}) {
-    VoxelVolume volume(boxGeometry(dims), kIso);
+    VoxelVolume volume(boxGeometry(dims), kLatticeIso);
     std::mt19937 random(seed);
     test::fillWaves(volume, random);
     return volume;
@@ -86,7 +86,8 @@ TEST(LeafLattice, LeafRangesHoldTheirVoxelsAndParentsTheirChildren) {
             const DensityRange expected = extremesOf(lattice.cellsOf(id));
             EXPECT_EQ(lattice.range(0, id).min, expected.min);
             EXPECT_EQ(lattice.range(0, id).max, expected.max);
-            EXPECT_EQ(lattice.mayHoldSurface(id, kIso), expected.min < kIso && expected.max >= kIso);
+            EXPECT_EQ(lattice.mayHoldSurface(id, kLatticeIso),
+                      expected.min < kLatticeIso && expected.max >= kLatticeIso);
         }
         const DensityRange all =
             extremesOf({Eigen::Vector3i::Constant(-1), volume.dims() - Eigen::Vector3i::Ones()});
@@ -117,7 +118,7 @@ TEST(LeafLattice, RefreshedRangesEqualAFullScanWithTies) {
     for (const Eigen::Vector3i& leaf_cells : kLeafSizes) {
         std::mt19937 random(6);
         std::uniform_int_distribution<int> lowest(0, 5);
-        VoxelVolume volume(boxGeometry({17, 12, 13}), kIso);
+        VoxelVolume volume(boxGeometry({17, 12, 13}), kLatticeIso);
         LeafLattice lattice(volume, leaf_cells);
         for (int edit = 0; edit < 150; ++edit) {
             std::uniform_int_distribution<int> value(lowest(random), 5);
@@ -129,7 +130,7 @@ TEST(LeafLattice, RefreshedRangesEqualAFullScanWithTies) {
 }
 
 TEST(LeafLattice, RefreshNarrowsRangesAgain) {
-    VoxelVolume volume(boxGeometry({20, 20, 20}), kIso);
+    VoxelVolume volume(boxGeometry({20, 20, 20}), kLatticeIso);
     LeafLattice lattice(volume, {4, 4, 4});
     const IndexBox box{{7, 7, 7}, {7, 7, 7}};
     test::writeLikeTick(volume, lattice, box, [](int, int, int) { return kMaxDensity; });
@@ -202,7 +203,7 @@ std::vector<LeafId> surfaceLeavesByBruteForce(const LeafLattice& lattice, const 
             (cells.max + Eigen::Vector3i::Ones()).cast<double>().cwiseProduct(volume.spacing()).array();
         // Half-open cells: a box that only touches a leaf's high side belongs to the next leaf.
         const bool meets = (box.min().array() < high).all() && (box.max().array() >= low).all();
-        if (meets && lattice.mayHoldSurface(id, kIso)) wanted.push_back(id);
+        if (meets && lattice.mayHoldSurface(id, kLatticeIso)) wanted.push_back(id);
     }
     return wanted;
 }
@@ -220,7 +221,8 @@ TEST(LeafLattice, SurfaceLeavesInABoxEqualBruteForce) {
                                       inside(random) * extent.z());
             const Eigen::AlignedBox3d box(low, low + size(random) * extent);
             std::vector<LeafId> found;
-            lattice.forEachSurfaceLeaf(box, volume.spacing(), kIso, [&](LeafId id) { found.push_back(id); });
+            lattice.forEachSurfaceLeaf(box, volume.spacing(), kLatticeIso,
+                                       [&](LeafId id) { found.push_back(id); });
             std::sort(found.begin(), found.end());
             EXPECT_EQ(found, surfaceLeavesByBruteForce(lattice, volume, box));
             found_in_all += found.size();
@@ -234,13 +236,14 @@ TEST(LeafLattice, BoxesFarAwayOrHugeAreSafe) {
     const LeafLattice lattice(volume, {4, 4, 4});
     const auto countIn = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
         size_t count = 0;
-        lattice.forEachSurfaceLeaf({low, high}, volume.spacing(), kIso, [&](LeafId) { ++count; });
+        lattice.forEachSurfaceLeaf({low, high}, volume.spacing(), kLatticeIso, [&](LeafId) { ++count; });
         return count;
     };
     EXPECT_EQ(countIn(Eigen::Vector3d::Constant(1e9), Eigen::Vector3d::Constant(1e9 + 1)), 0u);
     EXPECT_EQ(countIn(Eigen::Vector3d::Constant(-1e9), Eigen::Vector3d::Constant(-1e9 + 1)), 0u);
     size_t all = 0;
-    for (LeafId id = 0; id < lattice.leafCount(); ++id) all += lattice.mayHoldSurface(id, kIso) ? 1 : 0;
+    for (LeafId id = 0; id < lattice.leafCount(); ++id)
+        all += lattice.mayHoldSurface(id, kLatticeIso) ? 1 : 0;
     EXPECT_EQ(countIn(Eigen::Vector3d::Constant(-1e9), Eigen::Vector3d::Constant(1e9)), all);
 }
 

@@ -8,18 +8,18 @@
 namespace bonemill {
 namespace {
 
-constexpr Density kIso = 1000;
+constexpr Density kPiecesIso = 1000;
 
 VoxelVolume airOf(const Eigen::Vector3i& dims) {
     VolumeGeometry geometry;
     geometry.dims = dims;
-    return VoxelVolume(geometry, kIso);
+    return VoxelVolume(geometry, kPiecesIso);
 }
 
 // Pieces of 1, 2 and 3 voxels; the last touches another only across an edge, which does not connect.
 TEST(SmallPieces, goBelowTheSurface) {
     VoxelVolume volume = airOf({6, 5, 4});
-    const auto set = [&](int i, int j, int k) { volume.set(i, j, k, kIso); };
+    const auto set = [&](int i, int j, int k) { volume.set(i, j, k, kPiecesIso); };
     set(0, 0, 0);
     set(2, 2, 1), set(2, 2, 2);
     set(4, 0, 3), set(5, 0, 3), set(5, 1, 3);
@@ -28,18 +28,18 @@ TEST(SmallPieces, goBelowTheSurface) {
     EXPECT_EQ(count.pieces_kept, 1u);
     EXPECT_EQ(count.pieces_removed, 3u);
     EXPECT_EQ(count.voxels_removed, 4u);
-    EXPECT_EQ(volume.at(0, 0, 0), kIso - 1);
-    EXPECT_EQ(volume.at(2, 2, 2), kIso - 1);
-    EXPECT_EQ(volume.at(4, 2, 3), kIso - 1);
-    EXPECT_EQ(volume.at(5, 0, 3), kIso);
+    EXPECT_EQ(volume.at(0, 0, 0), kPiecesIso - 1);
+    EXPECT_EQ(volume.at(2, 2, 2), kPiecesIso - 1);
+    EXPECT_EQ(volume.at(4, 2, 3), kPiecesIso - 1);
+    EXPECT_EQ(volume.at(5, 0, 3), kPiecesIso);
     EXPECT_EQ(volume.at(1, 1, 1), 0);
 }
 
 TEST(SmallPieces, nothingIsTooSmallForSizesOfZeroAndOne) {
     VoxelVolume volume = airOf({3, 3, 3});
-    volume.set(1, 1, 1, kIso);
+    volume.set(1, 1, 1, kPiecesIso);
     for (const uint32_t size : {0u, 1u}) EXPECT_EQ(removeSmallPieces(volume, size).pieces_removed, 0u);
-    EXPECT_EQ(volume.at(1, 1, 1), kIso);
+    EXPECT_EQ(volume.at(1, 1, 1), kPiecesIso);
 }
 
 // The slow and obvious way: voxel by voxel, one piece after the other.
@@ -92,7 +92,8 @@ VoxelVolume noise(const Eigen::Vector3i& dims, double share_of_bone, unsigned se
     for (int k = 0; k < dims.z(); ++k)
         for (int j = 0; j < dims.y(); ++j)
             for (int i = 0; i < dims.x(); ++i)
-                volume.set(i, j, k, Density(is_bone(random) ? kIso + random() % 2 : random() % kIso));
+                volume.set(i, j, k,
+                           Density(is_bone(random) ? kPiecesIso + random() % 2 : random() % kPiecesIso));
     return volume;
 }
 

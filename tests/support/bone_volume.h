@@ -1,0 +1,14 @@
+#pragma once
+
+#include "haptic_server/bone/bone_model.h"
+#include "haptic_server/mesh/mesh_check.h"
+#include "tests/support/voxel_fields.h"
+
+namespace bonemill::test {
+
+/// m³ inside the drawn surface.
+inline double boneVolume(const BoneModel& bone) {
+    return meshVolume(meshAll(bone.volume, bone.lattice), MeshGrid(bone.volume, bone.lattice));
+}
+
+}  // namespace bonemill::test
