@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/assert.h"
 #include "common/math/pinned_math.h"
 
 namespace bonemill {
@@ -25,6 +26,8 @@ Eigen::Quaterniond expRotation(const Eigen::Vector3d& theta) noexcept {
 }
 
 Eigen::Vector3d logRotation(const Eigen::Quaterniond& q) noexcept {
+    BONEMILL_ASSERT(
+        !(std::abs(q.squaredNorm() - 1) > 1e-6));  // of what is not finite comes what is not finite
     const double sign = q.w() < 0 ? -1.0 : 1.0;
     const Eigen::Vector3d v = sign * q.vec();
     const double sine = v.norm();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/assert.h"
 #include "common/math/pinned_math.h"
 
 namespace bonemill {
@@ -131,6 +132,7 @@ bool HeatGrid::putInto(const Eigen::Vector3i& cell, double heat) noexcept {
 }
 
 void HeatGrid::addHeat(const Eigen::Vector3d& p_V, const Eigen::Vector3d& inward_V, double heat) noexcept {
+    BONEMILL_ASSERT(heat >= 0 && std::abs(inward_V.squaredNorm() - 1) < 1e-6);
     // Cubes that are half bone count as bone or as none: the next one inwards may be the first.
     for (const double depth : {0.25, 0.75, 1.25})
         if (putInto(cellAt(p_V + depth * config_.cell * inward_V), heat)) return;

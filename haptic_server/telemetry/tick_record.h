@@ -26,6 +26,7 @@ enum TickFault : uint32_t {
     kFaultCoarserShell = 1u << 10,    // fewer contact points than asked for: more are too many for a tick
     kFaultStalled = 1u << 11,  // forces are out of balance, but no step towards it was found in this tick
 };
+constexpr uint32_t kLastFault = kFaultStalled;
 
 struct TickRecord {
     uint64_t tick;

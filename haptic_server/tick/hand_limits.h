@@ -20,6 +20,7 @@
 
 #include <algorithm>
 
+#include "common/assert.h"
 #include "common/geometry/pose.h"
 
 namespace bonemill {
@@ -57,7 +58,9 @@ class HandLimits {
 
     // The rate comes on top of what the hand's own motion makes by `spring`.
     HandLimits(const HandLimitsConfig& config, const HandSpring& spring, double dt) noexcept
-        : config_(config), spring_(spring), dt_(dt) {}
+        : config_(config), spring_(spring), dt_(dt) {
+        BONEMILL_ASSERT(dt > 0);
+    }
 
     // Says that what is felt changes at one stroke from now on.
     void beginSuddenChange() noexcept { quiet_for_ = 0; }

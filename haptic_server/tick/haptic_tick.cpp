@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/assert.h"
 #include "common/rt/rt_guard.h"
 #include "haptic_server/effects/make_effects.h"
 
@@ -59,6 +60,7 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
       hand_limits_(config.hand, handSpringOf(config), config.dt),
       X_WV_(bone_.volume.geometry().X_WV),
       X_VW_(X_WV_.inverse()) {
+    BONEMILL_ASSERT(config.dt > 0 && config.most_milled_cells > 0);
     const AccuracySettings& settings = accuracy_.chosen();
     bone_.shell.prepare(bone_.volume, bone_.lattice, levelOf(bone_.shell, settings),
                         int(bone_.lattice.leafCount()));

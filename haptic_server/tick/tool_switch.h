@@ -5,6 +5,7 @@
 #include <atomic>
 #include <vector>
 
+#include "common/assert.h"
 #include "haptic_server/spo/spo_model.h"
 
 namespace bonemill {
@@ -13,14 +14,22 @@ namespace bonemill {
 class ToolSwitch {
   public:
     explicit ToolSwitch(std::vector<SpoTool> tools, size_t first = 0)
-        : tools_(std::move(tools)), choice_(first) {}
+        : tools_(std::move(tools)), choice_(first) {
+        BONEMILL_ASSERT(first < tools_.size());
+    }
 
     // Any thread may call both; index < count(). Relaxed is enough, for the tools themselves never change.
-    void choose(size_t index) noexcept { choice_.store(index, std::memory_order_relaxed); }
+    void choose(size_t index) noexcept {
+        BONEMILL_ASSERT(index < count());
+        choice_.store(index, std::memory_order_relaxed);
+    }
     size_t chosen() const noexcept { return choice_.load(std::memory_order_relaxed); }
 
     size_t count() const noexcept { return tools_.size(); }
-    const SpoTool& operator[](size_t index) const noexcept { return tools_[index]; }
+    const SpoTool& operator[](size_t index) const noexcept {
+        BONEMILL_ASSERT(index < count());
+        return tools_[index];
+    }
     double largestBurrRadius() const noexcept {
         return std::max_element(
                    tools_.begin(), tools_.end(),

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/assert.h"
 #include "haptic_server/kernels/brick_layout.h"
 #include "haptic_server/volume/index_box.h"
 
@@ -30,6 +31,7 @@ class BrickStore {
         return brickAt(u >> kBrickShift, v >> kBrickShift, w >> kBrickShift);
     }
     BrickId brickAt(int x, int y, int z) const noexcept {
+        BONEMILL_ASSERT(x >= 0 && x < bricks_.x() && y >= 0 && y < bricks_.y() && z >= 0 && z < bricks_.z());
         return BrickId(x + bricks_.x() * (y + bricks_.y() * z));
     }
     IndexBox allBricks() const noexcept { return {Eigen::Vector3i::Zero(), bricks_.array() - 1}; }

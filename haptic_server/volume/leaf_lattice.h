@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "common/assert.h"
 #include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill {
@@ -36,6 +37,7 @@ class LeafLattice {
 
     LeafId leafId(const Eigen::Vector3i& leaf) const noexcept {
         const auto& n = levels_[0].nodes;
+        BONEMILL_ASSERT((leaf.array() >= 0).all() && (leaf.array() < n.array()).all());
         return LeafId(leaf.x() + n.x() * (leaf.y() + n.y() * leaf.z()));
     }
     Eigen::Vector3i leafIndex(LeafId id) const noexcept {

@@ -21,6 +21,7 @@ struct CutPlane {
 
 // The effects stand in the order of the scene's message Effects.
 enum class ViewerEffect : uint8_t { kBoneDust, kBleeding, kIrrigation, kBurrSpin, kMillingSound };
+constexpr size_t kViewerEffects = size_t(ViewerEffect::kMillingSound) + 1;
 
 struct ViewSettings {
     static constexpr double kDefaultOpacity = 0.35;
@@ -33,8 +34,8 @@ struct ViewSettings {
     std::array<CutPlane, 3> cuts;      // across W's x (sagittal), y (coronal), z (axial)
     bool show_force = true;
     // By ViewerEffect; only those that the scene lists are seen.
-    std::array<bool, 5> show_effects{true, true, true, true, true};
-    bool shows(ViewerEffect effect) const { return show_effects[size_t(effect)]; }
+    std::array<bool, kViewerEffects> hides_effects{};
+    bool shows(ViewerEffect effect) const { return !hides_effects[size_t(effect)]; }
     bool show_hud = true;
     bool show_watchers = true;
     bool show_help = false;

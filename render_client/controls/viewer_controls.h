@@ -41,7 +41,9 @@ class ViewerControls {
     // Turns around the target; the distance stays.
     void lookFrom(Side side);
 
-    void showEffect(ViewerEffect effect, bool is_shown) { settings_.show_effects[size_t(effect)] = is_shown; }
+    void showEffect(ViewerEffect effect, bool is_shown) {
+        settings_.hides_effects[size_t(effect)] = !is_shown;
+    }
     void setStereo(StereoMode mode) { settings_.stereo = mode; }
     // Makes bone transparent, of this opacity from 0 to 1.
     void setOpacity(double opacity);

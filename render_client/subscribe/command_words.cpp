@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -10,10 +11,6 @@
 
 namespace bonemill {
 namespace {
-
-constexpr const char* kKnown =
-    "reset, pause, resume, tool NAME-or-number, checkpoint, restore NUMBER-or-last, accuracy NAME, export "
-    "NAME, shutdown";
 
 struct Words {
     std::string action, argument;  // the rest of the text: a tool's name may be several words
@@ -26,10 +23,6 @@ Words split(const std::string& text) {
     const size_t end = std::min(text.find(' ', from), to);
     const size_t rest = std::min(text.find_first_not_of(' ', end), to);
     return {text.substr(from, end - from), text.substr(rest, to - rest)};
-}
-
-bool isOneOf(const std::string& word, std::initializer_list<const char*> words) {
-    return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 std::optional<uint32_t> numberOf(const std::string& text) {
@@ -49,14 +42,61 @@ uint32_t checkpointOf(const std::string& text, const topics::Status& status) {
     return status.checkpoints().rbegin()->id();
 }
 
+struct Session {
+    const topics::SceneInfo& scene;
+    const topics::Status& status;
+};
+
+// A command's word, what follows it ("" when nothing does), and what it means.
+struct CommandWord {
+    const char* word;
+    const char* argument;
+    void (*mean)(topics::Command& command, const std::string& argument, const Session& session);
+};
+
+using topics::Command;
+constexpr CommandWord kWords[] = {
+    {"reset", "", [](Command& c, const std::string&, const Session&) { c.set_reset_volume(true); }},
+    {"pause", "", [](Command& c, const std::string&, const Session&) { c.set_pause_milling(true); }},
+    {"resume", "", [](Command& c, const std::string&, const Session&) { c.set_pause_milling(false); }},
+    {"tool", "NAME-or-number",
+     [](Command& c, const std::string& name, const Session& s) { c.set_select_tool(toolOf(name, s.scene)); }},
+    {"checkpoint", "", [](Command& c, const std::string&, const Session&) { c.set_save_checkpoint(true); }},
+    {"restore", "NUMBER-or-last",
+     [](Command& c, const std::string& which, const Session& s) {
+         c.set_restore_checkpoint(checkpointOf(which, s.status));
+     }},
+    {"accuracy", "NAME",
+     [](Command& c, const std::string& name, const Session&) { c.set_set_accuracy(name); }},
+    {"export", "NAME", [](Command& c, const std::string& name, const Session&) { c.set_export_(name); }},
+    {"shutdown", "", [](Command& c, const std::string&, const Session&) { c.set_shut_down(true); }},
+};
+
+const CommandWord* find(const std::string& word) {
+    const auto found = std::find_if(std::begin(kWords), std::end(kWords),
+                                    [&](const CommandWord& known) { return known.word == word; });
+    return found == std::end(kWords) ? nullptr : found;
+}
+
+std::string knownCommands() {
+    std::string text;
+    for (const CommandWord& known : kWords) {
+        text += text.empty() ? "" : ", ";
+        text += known.word;
+        if (*known.argument) text += std::string(" ") + known.argument;
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string commandProblem(const std::string& text) {
     const auto [action, argument] = split(text);
-    const bool needs_argument = isOneOf(action, {"tool", "restore", "accuracy", "export"});
-    if (!needs_argument && !isOneOf(action, {"reset", "pause", "resume", "checkpoint", "shutdown"}))
-        return "'" + text + "' is no command; there are: " + kKnown;
-    if (needs_argument && argument.empty()) return "'" + text + "' says not which; there are: " + kKnown;
+    const CommandWord* const known = find(action);
+    if (!known) return "'" + text + "' is no command; there are: " + knownCommands();
+    const bool needs_argument = *known->argument != 0;
+    if (needs_argument && argument.empty())
+        return "'" + text + "' says not which; there are: " + knownCommands();
     if (!needs_argument && !argument.empty()) return "'" + action + "' takes no '" + argument + "'";
     if (action == "restore" && argument != "last" && !numberOf(argument))
         return "'" + argument + "' is no checkpoint's number, nor last";
@@ -68,14 +108,7 @@ topics::Command commandOf(const std::string& text, const topics::SceneInfo& scen
     if (const std::string problem = commandProblem(text); !problem.empty()) throw UserError(problem);
     const auto [action, argument] = split(text);
     topics::Command command;
-    if (action == "reset") command.set_reset_volume(true);
-    if (isOneOf(action, {"pause", "resume"})) command.set_pause_milling(action == "pause");
-    if (action == "tool") command.set_select_tool(toolOf(argument, scene));
-    if (action == "checkpoint") command.set_save_checkpoint(true);
-    if (action == "restore") command.set_restore_checkpoint(checkpointOf(argument, status));
-    if (action == "accuracy") command.set_set_accuracy(argument);
-    if (action == "export") command.set_export_(argument);
-    if (action == "shutdown") command.set_shut_down(true);
+    find(action)->mean(command, argument, {scene, status});
     return command;
 }
 

@@ -109,7 +109,7 @@ TEST_F(EffectPictures, WhatIsLeftOutOrHiddenLeavesNoTrace) {
     at_ = start;
     mill(all.viewer_effects());
     EXPECT_FALSE(draw() == without);
-    scene_->settings().show_effects.fill(false);
+    scene_->settings().hides_effects.fill(true);
     EXPECT_TRUE(draw() == without) << "hidden";
 }
 
@@ -121,7 +121,7 @@ TEST_F(EffectPictures, QuickIsTheOneThatIsDrawnWhole) {
     draw();
     for (int n = 0; n < 12; ++n) {
         n < 7 ? stroke(1.0 / 30) : leave(n == 7 ? 0.5 : 0.1);
-        if (n > 8) scene_->settings().show_effects[size_t(n % 4)] ^= true;
+        if (n > 8) scene_->settings().hides_effects[size_t(n % 4)] ^= true;
         const Picture kept = draw();
         scene_->drawWholeNext();
         EXPECT_TRUE(kept == draw()) << "picture " << n;

@@ -17,9 +17,10 @@ TEST(FaultNames, everyBitHasItsOwnName) {
 }
 
 TEST(FaultNames, everyDefinedFaultIsKnown) {
-    for (uint32_t fault = kFaultOverrun; fault <= kFaultShellOverflow; fault <<= 1) {
+    for (uint32_t fault = kFaultOverrun; fault <= kLastFault; fault <<= 1) {
         EXPECT_EQ(faultNames(fault).find("unknown"), std::string::npos) << fault;
     }
+    EXPECT_NE(faultNames(kLastFault << 1).find("unknown"), std::string::npos) << "kLastFault is not the last";
     EXPECT_EQ(faultNames(1u << 31), "unknown_bit_31");
 }
 
