@@ -1,4 +1,4 @@
-// Sleeps until one of several readers has samples. Not for the tick.
+// Sleeps until one of several readers has samples. It is not for the tick.
 #pragma once
 
 #include <chrono>
