@@ -12,7 +12,8 @@
 //    max_actuator_force over the ramp's time (1000 N/s as shipped) together.
 //
 // Each scales by one factor over all six actuators, so that no limit but the rate turns the wrench's
-// direction: the hand then feels too little, not something else. RT-safe, one thread. Units are N, N·m, s.
+// direction: the hand then feels too little, not something else. It is RT-safe, for one thread. Units are
+// N, N·m, s.
 #pragma once
 
 #include "common/ipc/stale_ramp.h"
