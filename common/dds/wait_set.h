@@ -13,7 +13,7 @@ class WaitSet {
     explicit WaitSet(const Participant& participant);
 
     void add(int32_t reader);
-    // True when a reader has samples to take, false when `timeout` passed before.
+    // Returns true when a reader has samples to take, false when `timeout` passed before.
     bool wait(std::chrono::nanoseconds timeout) const;
 
   private:
