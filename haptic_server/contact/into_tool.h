@@ -1,4 +1,4 @@
-// This leads from the bone's axes into the tool's. RT-safe.
+// This leads from the bone's axes into the tool's. It is RT-safe.
 #pragma once
 
 #include "common/geometry/pose.h"

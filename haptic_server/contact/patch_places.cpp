@@ -1,4 +1,4 @@
-// Finer sampling of the patches near the tool.
+// Samples the patches near the tool more finely.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// A point on the bone's surface belongs to this voxel. RT-safe.
+// A point on the bone's surface belongs to this voxel. It is RT-safe.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// Cells that the surface crosses, and points that move onto it. Part of kernel_loops.h.
+// These loops find cells that the surface crosses, and move points onto it. They are part of kernel_loops.h.
 namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
 namespace {
 

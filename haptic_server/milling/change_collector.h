@@ -1,7 +1,7 @@
 // Collects what a tick changes of the bone, leaf by leaf, within a budget of cells. What there is no time for
 // waits: the next tick goes on from there to the last leaf, and then comes to the leaves before it.
 //
-// Construction allocates; all else is RT-safe (tick thread only).
+// Construction allocates; all else is RT-safe, for the tick thread only.
 #pragma once
 
 #include <cstddef>

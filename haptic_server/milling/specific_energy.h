@@ -1,6 +1,6 @@
-// How much energy a volume of bone takes to be cut: by the density that it had in the scan, or by its
+// Says how much energy a volume of bone takes to be cut: by the density that it had in the scan, or by its
 // material. u = u_ref (ρ/ρ_ref)^exponent (ALGORITHMS: 1.5 .. 2), ρ above the window's lower end. Construction
-// allocates; ofCell() is RT-safe, any thread.
+// allocates; ofCell() is RT-safe, for any thread.
 #pragma once
 
 #include <memory>

@@ -21,7 +21,7 @@ using BrickId = uint32_t;  // x fastest
 
 class BrickStore {
   public:
-    // Air everywhere, for voxels u < `voxels` on each axis. Allocates.
+    // It begins as air everywhere, for voxels u < `voxels` on each axis. It allocates.
     explicit BrickStore(const Eigen::Vector3i& voxels);
 
     const Eigen::Vector3i& bricksPerAxis() const noexcept { return bricks_; }

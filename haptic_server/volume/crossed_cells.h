@@ -34,7 +34,7 @@ class CrossedCells {
     }
 
   private:
-    // One column more than cells, and what the kernel writes behind them.
+    // A row has one column more than cells, and what the kernel writes behind them.
     static size_t rowSize(int cells) noexcept { return size_t(cells) + 1 + kCellLanes; }
     static constexpr uint64_t kAllInside = 0x5555555555555555;  // columns of four inside voxels
 

@@ -66,19 +66,20 @@ class LeafLattice {
     void beginWrite(const IndexBox& changed_voxels) noexcept;
     void endWrite(const IndexBox& changed_voxels) noexcept;
 
-    // Any thread. acquire: pairs with endWrite's release, so voxels read after it are at least that new.
+    // It is for any thread. acquire: pairs with endWrite's release, so voxels read after it are at
+    // least that new.
     uint32_t version(LeafId id) const noexcept { return versions_[id].load(std::memory_order_acquire); }
 
-    // Tick thread only (the mesher computes its own from the voxels). Does the density range hold
-    // the iso-value?
+    // It is for the tick thread only (the mesher computes its own from the voxels). Does the density range
+    // hold the iso-value?
     bool mayHoldSurface(LeafId id, Density iso) const noexcept {
         const DensityRange& r = levels_[0].range[id];
         return r.min < iso && r.max >= iso;
     }
 
-    // Top-down search, RT-safe, tick thread only: calls visit(LeafId) for every leaf that owns any of these
-    // cells, unless is_wanted(const DensityRange&, const IndexBox& cells) is false for it or a node above it.
-    // In ascending order of the lattice within each node.
+    // It searches from the top down, RT-safe, for the tick thread only: calls visit(LeafId) for every leaf
+    // that owns any of these cells, unless is_wanted(const DensityRange&, const IndexBox& cells) is false for
+    // it or a node above it. Leaves come in ascending order of the lattice within each node.
     template <class IsWanted, class Visit>
     void forEachLeaf(const IndexBox& cells, IsWanted&& is_wanted, Visit&& visit) const noexcept;
 

@@ -1,4 +1,5 @@
-// Which triangles separate the corners of one cell that are inside the bone from those outside.
+// The table says which triangles separate the corners of one cell that are inside the bone
+// from those outside.
 //
 // Method: marching cubes (Lorensen and Cline 1987) with tables traced by our own code. On each face of the
 // cell the crossed edges are joined by segments; the segments of a cell form closed loops; each loop is

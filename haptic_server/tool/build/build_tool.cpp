@@ -161,7 +161,7 @@ Sampled sampleTool(const ToolConfig& config) {
     return config.mesh_path.empty() ? sampleShapes(config) : sampleMesh(config);
 }
 
-// The same tool and the same space, with more nodes.
+// Makes the same tool in the same space with more nodes.
 ToolConfig refined(const ToolConfig& config, const SdfGrid& coarse, int refinement) {
     ToolConfig fine = config;
     if (fine.mesh_path.empty()) fine.shapes = toolShapes(config);
@@ -189,7 +189,7 @@ std::vector<std::string> cutWarnings(const SdfGrid& sdf, const Eigen::AlignedBox
     return warnings;
 }
 
-// Farthest that the burr reaches out of the tool, m; at places all over its surface.
+// Returns how far at most the burr reaches out of the tool, m, at places all over its surface.
 double burrOutside(const Burr& burr, const SdfGrid& sdf) {
     constexpr int kAround = 24, kAlong = 24;
     double farthest = 0;
@@ -258,7 +258,7 @@ std::vector<ToolShape> toolShapes(const ToolConfig& config) {
         return {SphereShape{Vector3d::Zero(), config.burr_radius},
                 CapsuleShape{Vector3d::Zero(), last, radius}};
     const Vector3d half = config.burr_length / 2 * Vector3d::UnitY();
-    // Inside a cone, which is as wide as the shaft only there.
+    // The shaft begins inside a cone, which is as wide as the shaft only there.
     const CylinderShape shaft{(1 - kShaftOverlap) * half, last + radius * Vector3d::UnitY(), radius};
     if (config.burr_kind == BurrKind::kCylinder)
         return {CylinderShape{-half, half, config.burr_radius}, shaft};

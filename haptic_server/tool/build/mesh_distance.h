@@ -1,4 +1,4 @@
-// Exact signed distance to a closed triangle mesh.
+// It is the exact signed distance to a closed triangle mesh.
 //
 // Distance: the nearest point of the nearest triangle, found in a tree of axis-parallel boxes. Sign: against
 // the angle-weighted pseudonormal of the feature (face, edge or vertex) that holds the nearest point; J. A.

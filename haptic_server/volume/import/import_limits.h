@@ -10,8 +10,8 @@ namespace bonemill {
 
 inline constexpr uint64_t kMaxVoxels = uint64_t(1) << 31;
 
-// deflate shrinks at most 1032 : 1 (zlib technical details); a header that promises more than that is
-// damaged.
+// deflate shrinks at most 1032 : 1 (zlib technical details); a header that promises more than
+// that is damaged.
 inline constexpr uint64_t kMaxDeflateRatio = 1040;
 
 // Throws UserError naming `file` unless `dims` are three axes of >= 2 voxels (one slice is no volume), at
