@@ -23,9 +23,9 @@ namespace bonemill {
 
 struct ForceLimits {
     double max_actuator_force = 50;  // N per actuator
-    // N/s per actuator. The steepest honest demand is the coupling's: 3 N/mm at its speed limit of 0.5 m/s
-    // is 1500 N/s on the handle, about as much per actuator; this is several times more, and still takes 5
-    // ms to full force.
+    // It is in N/s per actuator. The steepest honest demand is the coupling's: 3 N/mm at its speed limit of
+    // 0.5 m/s is 1500 N/s on the handle, about as much per actuator; this is several times more, and still
+    // takes 5 ms to full force.
     double max_actuator_force_rate = 10000;
 };
 

@@ -39,7 +39,7 @@
 
 namespace bonemill {
 
-// Whose points are gathered.
+// Its points are gathered.
 struct ShellView {
     const VoxelVolume& volume;
     const LeafLattice& lattice;
@@ -116,7 +116,7 @@ class GradientContact {
     Eigen::Vector3d positionOf(size_t candidate) const noexcept {  // V
         return origin_ + candidates_.position(candidate).cast<double>();
     }
-    // Blocks of points whose spheres are tested together.
+    // The spheres of these blocks of points are tested together.
     struct BlockBatch {
         static constexpr int kCapacity = PointBatch<float>::kCapacity;
         const ShellBlock* block[kCapacity];

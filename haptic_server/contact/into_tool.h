@@ -7,7 +7,7 @@
 
 namespace bonemill {
 
-// Points with V's axes, measured from `origin`, to T.
+// Takes points with V's axes, measured from `origin`, to T.
 template <class Scalar>
 class IntoTool {
   public:

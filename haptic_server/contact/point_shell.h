@@ -7,7 +7,7 @@
 // Blocks without area (surface that only touches a voxel) give no point. Blocks start at each leaf's first
 // cell and are cut at its border.
 //
-// How far a point is from the true surface of curvature radius R: the tolerance of shell_point.h, and the
+// A point is off the true surface of curvature radius R by the tolerance of shell_point.h, and by the
 // trilinear field's own error, below h²/(4 R) for voxels h that sample a smooth density.
 //
 // Points live in fixed blocks of a pool sized at construction, in ascending order of their cells inside
@@ -49,7 +49,7 @@ class PointShell {
     PointShell(const VoxelVolume& volume, const LeafLattice& lattice, const ShellConfig& config);
 
     // Rebuilds the points that the voxels in these boxes can influence, but for stale leaves. It is RT-safe.
-    // False: the pool is full and some leaves kept their old points.
+    // False says that the pool is full and some leaves kept their old points.
     bool refresh(const VoxelVolume& volume, const LeafLattice& lattice,
                  std::span<const IndexBox> changed_voxels) noexcept;
 
@@ -107,7 +107,7 @@ class PointShell {
         // A cell's point depends on so many voxels beyond the cell's corners.
         int reach() const noexcept { return config.normals == ShellNormals::kCentralDifference ? 1 : 0; }
     };
-    // Sums over the patches of one block.
+    // These are sums over the patches of one block.
     struct BlockSum {
         float area = 0;                                    // m²
         Eigen::Vector3f moment = Eigen::Vector3f::Zero();  // m² × cell steps from the block's first corner

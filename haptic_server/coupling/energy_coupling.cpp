@@ -39,7 +39,7 @@ Matrix3d directional(const Vector3d& vector, double along, double across, double
     return b * Matrix3d::Identity() + (a - b) * u * u.transpose();
 }
 
-// (θ/2) cot(θ/2): how a turn across the rotation vector changes it.
+// Returns (θ/2) cot(θ/2), which says how a turn across the rotation vector changes it.
 double halfCotangent(double theta) noexcept {
     const double half = theta / 2;
     if (half < 1e-4) return 1 - half * half / 3;

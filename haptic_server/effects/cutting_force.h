@@ -7,9 +7,9 @@
 // cannot turn passes the motor's torque on, by forces in the direction of the spin in proportion to F:
 //   F_t = −(1 − s) (L/Σ F ρ) F (a × r)/ρ,   L the spindle's axis_load.
 //
-// From the last tick's contacts, smoothed with smoothing_time. In the solve it is a constant wrench for the
-// spin, and for the tool's own motion a damper: force that follows a velocity of the last tick would shake a
-// tool in a narrow place. It is RT-safe, for the tick thread only.
+// It comes from the last tick's contacts, smoothed with smoothing_time. In the solve it is a constant wrench
+// for the spin, and for the tool's own motion a damper: force that follows a velocity of the last tick would
+// shake a tool in a narrow place. It is RT-safe, for the tick thread only.
 #pragma once
 
 #include "haptic_server/effects/effect_configs.h"

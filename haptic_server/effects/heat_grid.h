@@ -34,7 +34,8 @@ class HeatGrid {
 
     double temperatureAt(const Eigen::Vector3d& p_V) const noexcept;  // °C
     double hottest() const noexcept;                                  // °C, of bone that is there
-    // m³ of bone, not cut away since, that was above the necrosis temperature for the necrosis time.
+    // Returns the m³ of bone, not cut away since, that was above the necrosis temperature for
+    // the necrosis time.
     double necroticVolume() const noexcept;
     double storedHeat() const noexcept;  // J above body temperature
     double time() const noexcept { return now_; }

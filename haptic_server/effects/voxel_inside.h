@@ -5,8 +5,8 @@
 
 namespace bonemill {
 
-// The voxel whose centre is nearest to a place half a voxel inside of the surface at p_V (m) with outward
-// normal n_V (unit, or zero where it is not known).
+// Returns the voxel whose centre is nearest to a place half a voxel inside of the surface at p_V (m) with
+// outward normal n_V (unit, or zero where it is not known).
 inline Eigen::Vector3i voxelInside(const Eigen::Vector3f& p_V, const Eigen::Vector3f& n_V,
                                    const Eigen::Vector3f& spacing) noexcept {
     const Eigen::Array3f place = p_V.array() / spacing.array() - 0.5f * n_V.array();

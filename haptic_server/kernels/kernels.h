@@ -52,7 +52,8 @@ struct ContactFrame {
     double depth_cap;  // m: deeper contact pulls no stronger
 };
 
-// Sums over contact points: energy, wrench on the tool and Gauss-Newton stiffness, about the tool point, V.
+// These are sums over contact points: energy, wrench on the tool and Gauss-Newton stiffness, about the
+// tool point, V.
 struct ContactSums {
     double energy = 0;          // J
     double force[3] = {};       // N
@@ -145,7 +146,7 @@ struct VoxelBox {
     const uint16_t* first;
     size_t stride_y, stride_z;
 };
-// Cells whose sides are looked at together: the bytes of a word.
+// The sides of so many cells are looked at together: the bytes of a word.
 inline constexpr int kCellsAtOnce = 8;
 
 // These are the voxels in their bricks (brick_layout.h), for kernels that look at any of them; -1 .. dims is

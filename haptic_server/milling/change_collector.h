@@ -36,8 +36,8 @@ class ChangeCollector {
         return changes_;
     }
     // Keeps the part's rows, which change what `of_part` says; looking for them counts as `looked_at` cells.
-    // False: that is more than a tick's cells, and nothing of the part is kept; nor is anything without
-    // memory for its bricks.
+    // False says that this is more than a tick's cells, and nothing of the part is kept; nor is anything
+    // without memory for its bricks.
     bool takePart(VoxelVolume& volume, size_t looked_at, const MillingResult& of_part,
                   MillingResult& of_leaf) noexcept;
 

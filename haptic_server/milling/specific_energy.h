@@ -24,7 +24,7 @@ class SpecificEnergy {
     SpecificEnergy(const SpecificEnergyConfig& config, std::shared_ptr<const BoneProperties> properties,
                    Density iso);
 
-    // The densest of the cell's corners decides; J/m³.
+    // The densest of the cell's corners decides; the unit is J/m³.
     double ofCell(const Eigen::Vector3i& cell) const noexcept {
         return properties_ ? ofScannedCell(cell) : reference_;
     }

@@ -240,7 +240,7 @@ void SurfaceShift::spreadRest(const BoneModel& bone) noexcept {
     });
 }
 
-// visit(cell, node) for the cells that have a touched voxel.
+// Calls visit(cell, node) for the cells that have a touched voxel.
 template <class Visit>
 void SurfaceShift::forEachCell(const BoneModel& bone, Visit&& visit) noexcept {
     const Vector3i last = bone.volume.dims().array() - 1;

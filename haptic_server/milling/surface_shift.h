@@ -54,7 +54,7 @@ class SurfaceShift {
         Eigen::Vector3f at;  // voxel steps
         float drop;          // counts
     };
-    // Voxels of a row that something was asked of, one bit each from the scratch box on.
+    // Something was asked of these voxels of a row, one bit each from the scratch box on.
     using RowBits = uint64_t;
     static constexpr int kRowBits = 64;
     struct Span {  // of voxels along x; empty: low > high

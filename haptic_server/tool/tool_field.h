@@ -17,7 +17,7 @@ struct PointBatch {
     int count = 0;
 };
 
-// Distances and gradients of one batch.
+// These are distances and gradients of one batch.
 template <class Scalar>
 struct SampleBatch {
     alignas(64) Scalar distance[PointBatch<Scalar>::kCapacity];

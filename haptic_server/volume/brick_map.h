@@ -30,7 +30,7 @@ class BrickMap {
         const uint32_t slot = slots_[brickIndex(brick)];
         return slot == kNone ? kNowhere : slot * kBrick + inBrick(voxel);
     }
-    // visit(place) for those of a cell's eight corners that have one.
+    // Calls visit(place) for those of a cell's eight corners that have one.
     template <class Visit>
     void forEachCorner(const Eigen::Vector3i& cell, Visit&& visit) const noexcept {
         constexpr size_t kStep[3] = {1, kEdge, size_t(kEdge) * kEdge};

@@ -11,7 +11,7 @@
 
 namespace bonemill {
 
-// RT-safe but for the construction, as far as the callers' functions are; one thread at a time.
+// It is RT-safe but for the construction, as far as the callers' functions are, and for one thread at a time.
 class CrossedCells {
   public:
     // There is room for boxes of up to `most_cells` per axis.

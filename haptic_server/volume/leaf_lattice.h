@@ -1,7 +1,7 @@
 // The octree over the volume is a lattice of leaves, min/max densities above them, and a version per leaf.
 //
-// Cells: cell (i, j, k) is the cube between voxels (i, j, k) and (i+1, j+1, k+1), for indices -1 .. dims-1.
-// Each leaf owns leaf_cells cells per axis (fewer at the far border); a leaf's voxels are the corners of its
+// Cell (i, j, k) is the cube between voxels (i, j, k) and (i+1, j+1, k+1), for indices -1 .. dims-1. Each
+// leaf owns leaf_cells cells per axis (fewer at the far border); a leaf's voxels are the corners of its
 // cells. A node of level l covers 2^l leaves per axis; level 0 are the leaves, the top level is the root.
 #pragma once
 
@@ -83,7 +83,7 @@ class LeafLattice {
     template <class IsWanted, class Visit>
     void forEachLeaf(const IndexBox& cells, IsWanted&& is_wanted, Visit&& visit) const noexcept;
 
-    // The same for every leaf whose cells meet `box` (V, m) and whose range holds iso.
+    // It does the same for every leaf whose cells meet `box` (V, m) and whose range holds iso.
     template <class Visit>
     void forEachSurfaceLeaf(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& spacing, Density iso,
                             Visit&& visit) const noexcept;

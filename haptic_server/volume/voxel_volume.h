@@ -103,7 +103,7 @@ class VoxelVolume {
     void forEachPiece(const IndexBox& voxels, Visit&& visit) const noexcept;
     // Bricks that hold any of these voxels, copies included.
     IndexBox bricksHolding(const IndexBox& voxels) const noexcept;
-    // Voxels that a brick holds: indices, border and beyond included.
+    // Returns the voxels that a brick holds: indices, border and beyond included.
     static IndexBox voxelsIn(const Eigen::Vector3i& brick) noexcept {
         const Eigen::Vector3i low = brick.array() * kBrickCells - 1 - kBrickLow;
         return {low, low.array() + (kBrickEdge - 1)};

@@ -66,7 +66,7 @@ double marginedBurrEnd(const ToolConfig& config, double burr_end_y) {
     return burr_end_y - kBurrMarginSpacings * config.sdf_spacing;
 }
 
-// Its farthest place from the hand, along y.
+// Returns the burr's farthest place from the hand, along y.
 double burrEnd(const ToolConfig& config) {
     return config.burr_kind == BurrKind::kBall ? -config.burr_radius : -config.burr_length / 2;
 }
@@ -78,7 +78,8 @@ Vector3d gridOrigin(const ToolConfig& config, const Eigen::AlignedBox3d& tool_bo
     return origin;
 }
 
-// `distance`: Vector3d -> double, negative inside; called for neighbours along x in turn.
+// `distance` takes a Vector3d, returns a double, negative inside, and is called for neighbours along
+// x in turn.
 template <class Distance>
 SdfGrid sample(const ToolConfig& config, const Vector3d& origin, Distance&& distance) {
     const Eigen::Vector3i& n = config.sdf_nodes;

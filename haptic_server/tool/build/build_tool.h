@@ -25,8 +25,8 @@ struct BuiltTool {
 BuiltTool buildTool(const ToolConfig& config, const std::vector<int>& refinements = {});
 inline constexpr double kBurrMarginSpacings = 3;
 
-// config.shapes, or if there are none (and no mesh) the thesis' tool: the burr, and a shaft of 0.8 times its
-// radius that leaves the grid at the far end.
+// Returns config.shapes, or if there are none (and no mesh) the thesis' tool: the burr, and a shaft of 0.8
+// times its radius that leaves the grid at the far end.
 std::vector<ToolShape> toolShapes(const ToolConfig& config);
 
 // Returns what to draw; throws as buildTool does for a bad config or mesh.
