@@ -1,5 +1,5 @@
 // Refuses what is no file, before it is opened: opening a named pipe waits for whoever writes into it, and a
-// device may never end. Start-up only.
+// device may never end. It is for start-up only.
 #pragma once
 
 #include <filesystem>

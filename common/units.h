@@ -1,4 +1,4 @@
-// The factors between SI, in which the code computes, and the units that people read and write.
+// These are the factors between SI, in which the code computes, and the units that people read and write.
 //
 // A constant named after a unit is that unit in SI: 3 * kMillimetre is a length in m. One that begins with
 // kPer is its inverse, and a quantity times it is a number of such units: length * kPerMillimetre is a number

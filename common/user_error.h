@@ -1,5 +1,4 @@
-// What is thrown at start-up when the user's input is wrong: one message that says what, where and what to
-// do.
+// It is thrown at start-up when the user's input is wrong: one message says what, where and what to do.
 #pragma once
 
 #include <stdexcept>
@@ -7,8 +6,8 @@
 
 namespace bonemill {
 
-// Programs print "error: " + what() on stderr and leave with kUserErrorExitCode. Never thrown from a running
-// tick.
+// Programs print "error: " + what() on stderr and leave with kUserErrorExitCode. A running tick
+// never throws it.
 class UserError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;

@@ -8,7 +8,7 @@
 namespace bonemill {
 
 // Throws UserError "name:line: field `path` = value ..." for the first value that is not finite, outside its
-// (range), or in conflict with another field. Start-up only.
+// (range), or in conflict with another field. It is for start-up only.
 void checkScene(const ParsedScene& parsed, const std::string& name);
 
 }  // namespace bonemill

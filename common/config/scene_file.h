@@ -15,8 +15,9 @@ struct LoadedScene {
     FieldLines lines;                 // for messages: placeOf()
 };
 
-// Reads and checks a scene. Throws UserError with "file:line: ..." for a missing, unreadable or too large
-// file, bad syntax, an unknown field, a value outside its range and fields in conflict. Start-up only.
+// Reads and checks a scene. Throws UserError with "file:line: ..." for a missing, unreadable or too
+// large file, bad syntax, an unknown field, a value outside its range and fields in conflict. It is
+// for start-up only.
 LoadedScene loadScene(const std::filesystem::path& file);
 
 // A path written in the scene points there: absolute paths stay, relative ones start at the

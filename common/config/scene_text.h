@@ -18,7 +18,7 @@ struct ParsedScene {
 };
 
 // `name` is the file's name for messages. Throws UserError "name:line: ..." for bad syntax and for unknown
-// fields (with the nearest known name). Ranges are not looked at. Start-up only.
+// fields (with the nearest known name). Ranges are not looked at. It is for start-up only.
 ParsedScene parseSceneText(const std::string& text, const std::string& name);
 
 // It is "name:line: " with the line of the field or of the nearest enclosing one, and "name: " when the

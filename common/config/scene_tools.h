@@ -1,4 +1,4 @@
-// Finds the tools of a scene. Start-up only.
+// Finds the tools of a scene. It is for start-up only.
 #pragma once
 
 #include <string>

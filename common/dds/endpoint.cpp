@@ -33,7 +33,7 @@ struct DeleteListener {
     void operator()(dds_listener_t* listener) const { dds_delete_listener(listener); }
 };
 
-// Without it, programs of different versions ignore each other in silence. Called on Cyclone's threads.
+// Without it, programs of different versions ignore each other in silence. It is called on Cyclone's threads.
 std::unique_ptr<dds_listener_t, DeleteListener> mismatchListener(const char* topic) {
     std::unique_ptr<dds_listener_t, DeleteListener> listener(dds_create_listener(const_cast<char*>(topic)));
     dds_lset_offered_incompatible_qos(listener.get(), logOffered);

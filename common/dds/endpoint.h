@@ -112,7 +112,7 @@ class Reader {
     AnyReader reader_;
 };
 
-// Lets the sample's payload point at `bytes`, which must outlive the write: no copy.
+// Lets the sample's payload point at `bytes`, which must outlive the write; nothing is copied.
 template <class Sample>
 void setPayload(Sample& sample, const std::string& bytes) {
     sample.payload._length = sample.payload._maximum = static_cast<uint32_t>(bytes.size());

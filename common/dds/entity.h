@@ -1,4 +1,4 @@
-// Owns one Cyclone DDS entity. Not for the tick.
+// Owns one Cyclone DDS entity. It is not for the tick.
 #pragma once
 
 #include <cstdint>

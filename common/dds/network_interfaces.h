@@ -1,4 +1,4 @@
-// Lists the network interfaces of this PC. Any thread; not for the tick.
+// Lists the network interfaces of this PC. Any thread may call it, but not the tick.
 #pragma once
 
 #include <string>

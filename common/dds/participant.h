@@ -1,4 +1,4 @@
-// This is a program's membership in one DDS domain. Not for the tick.
+// This is a program's membership in one DDS domain. It is not for the tick.
 //
 // common/dds/network.h chooses the network. Endpoints that do not match because of their QoS or
 // type are logged.

@@ -1,4 +1,4 @@
-// Quality of service is built step by step: Qos().reliable(...).transientLocal().keepLast(1). Not
+// Quality of service is built step by step: Qos().reliable(...).transientLocal().keepLast(1). It is not
 // for the tick.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Sleeps until one of several readers has samples. Not for the tick.
+// Sleeps until one of several readers has samples. It is not for the tick.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@ class WaitSet {
     explicit WaitSet(const Participant& participant);
 
     void add(int32_t reader);
-    // True when a reader has samples to take, false when `timeout` passed before.
+    // Returns true when a reader has samples to take, false when `timeout` passed before.
     bool wait(std::chrono::nanoseconds timeout) const;
 
   private:

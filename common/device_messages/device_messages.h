@@ -1,4 +1,4 @@
-// What device_daemon and haptic_server say to each other through shared memory.
+// device_daemon and haptic_server say this to each other through shared memory.
 //
 // The frames are D, the device's base, and T, the tool frame of the handle. Units are m, N, N·m; stamps are
 // CLOCK_MONOTONIC ns of this machine. Everything here is RT-safe.
@@ -49,7 +49,8 @@ static_assert(sizeof(WrenchCommand) == 80 && offsetof(WrenchCommand, f_hand_D) =
               offsetof(WrenchCommand, t_hand_D) == 40 && offsetof(WrenchCommand, answers_sequence) == 64 &&
               offsetof(WrenchCommand, flags) == 72);
 
-// |q| may differ from 1 by so much: far above rounding, far below what a torn or random quaternion shows.
+// |q| may differ from 1 by so much, which is far above rounding and far below what a torn or
+// random quaternion shows.
 inline constexpr double kQuaternionNormTolerance = 1e-3;
 // No device of this world reaches farther from its base than this (m). It refuses garbage that is
 // finite by chance.

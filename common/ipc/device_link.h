@@ -54,7 +54,7 @@ class DeviceLink {
     // Returns the peer's last beat, CLOCK_MONOTONIC; 0 if there was none.
     int64_t peerHeartbeatNs() const noexcept;
     int32_t peerPid() const noexcept;  // 0: not attached
-    // Asks the kernel whether the peer's process holds its side of the link. Not RT-safe.
+    // Asks the kernel whether the peer's process holds its side of the link. It is not RT-safe.
     bool peerIsAlive() const noexcept;
 
     const std::string& name() const noexcept { return name_; }

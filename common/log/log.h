@@ -1,4 +1,4 @@
-// The text log of a program is spdlog's default logger on stderr. Never in the tick.
+// The text log of a program is spdlog's default logger on stderr. It is never used in the tick.
 #pragma once
 
 #include <string>

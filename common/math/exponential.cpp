@@ -21,19 +21,19 @@ double powerOfTwo(int k) noexcept {
     return std::bit_cast<double>(uint64_t(k + 1023) << 52);
 }  // |k| < 1023
 
-// The upper 26 bits: the product of two such numbers is exact.
+// Returns the upper 26 bits: the product of two such numbers is exact.
 double upperHalf(double x) noexcept {
     return std::bit_cast<double>(bitsOf(x) & ~((uint64_t(1) << 27) - 1));
 }
 
-// e^(x + x_low) = 2^k · (step.high + step.low) · (1 + part), with |part| < 0.006.
+// e^(x + x_low) is 2^k · (step.high + step.low) · (1 + part), with |part| < 0.006.
 struct Exponential {
     int k;
     Pair step;
     double part;
 };
 
-// |x| < 800, and x_low less than the last place of x.
+// It wants |x| < 800, and x_low less than the last place of x.
 Exponential exponentialOf(double x, double x_low) noexcept {
     constexpr double kToInteger = 0x1.8p52;  // added: the sum has no places after the point
     const double steps = (x * k64ByLn2 + kToInteger) - kToInteger;
@@ -45,7 +45,7 @@ Exponential exponentialOf(double x, double x_low) noexcept {
     return {n >> 6, kExp[n & 63], r + square * (even + r * odd)};
 }
 
-// In two steps, as the power itself may be no number; rounded once.
+// It takes two steps, as the power itself may be no number, and rounds once.
 double scaled(double x, int k) noexcept {
     return x * powerOfTwo(k / 2) * powerOfTwo(k - k / 2);
 }
@@ -57,8 +57,8 @@ double expOfSum(double x, double x_low) noexcept {
     return scaled(e.step.high + (e.step.low + e.step.high * e.part), e.k);
 }
 
-// ln((1 + share) x) of a positive, finite, normal x as a sum whose rest is below the last place of its first
-// part; share is tiny.
+// Returns ln((1 + share) x) of a positive, finite, normal x as a sum whose rest is below the last place of
+// its first part; share is tiny.
 Pair logOf(double x, double share) noexcept {
     const bool is_normal = x >= std::numeric_limits<double>::min();
     if (!is_normal) x *= 0x1p54;

@@ -13,19 +13,20 @@ namespace {
 
 constexpr double kQuarterPi = kHalfPiHigh / 2;
 
-// An angle from -π/4 to π/4 or little more, as a sum, and by how many right angles it was turned back.
+// It holds an angle from -π/4 to π/4 or little more, as a sum, and by how many right angles it
+// was turned back.
 struct Turned {
     int quarter;
     Pair angle;
 };
 
-// a + b and what the sum lost.
+// Returns a + b and what the sum lost.
 Pair sumOf(double a, double b) noexcept {
     const double sum = a + b, b_part = sum - a;
     return {sum, (a - (sum - b_part)) + (b - b_part)};
 }
 
-// a · b and what the product lost.
+// Returns a · b and what the product lost.
 Pair productOf(double a, double b) noexcept {
     const auto upper = [](double x) {
         return std::bit_cast<double>(std::bit_cast<uint64_t>(x) & ~((uint64_t(1) << 27) - 1));
@@ -46,7 +47,8 @@ Turned turnedByFew(double x) noexcept {
     return {int(quarters), {high, (first.high - high) + rest}};
 }
 
-// Three words of the places of 2/π, from the place `first` on, where place 0 is the first after 64 zeros.
+// Returns three words of the places of 2/π, from the place `first` on, where place 0 is the first
+// after 64 zeros.
 std::array<uint64_t, 3> placesFrom(int first) noexcept {
     const int word = (first + 64) / 64, shift = (first + 64) % 64;
     std::array<uint64_t, 3> found{};
@@ -57,8 +59,8 @@ std::array<uint64_t, 3> placesFrom(int first) noexcept {
     return found;
 }
 
-// The product of x's digits with the places of 2/π that matter: two bits of whole right angles and 190 of the
-// rest (Payne and Hanek 1983).
+// Takes the product of x's digits with the places of 2/π that matter: two bits of whole right angles and 190
+// of the rest (Payne and Hanek 1983).
 Turned turnedByMany(double x) noexcept {
     __extension__ using Wide = unsigned __int128;
     const uint64_t bits = std::bit_cast<uint64_t>(x);
@@ -70,7 +72,7 @@ Turned turnedByMany(double x) noexcept {
     std::array<uint64_t, 3> product{digits * places[0] + uint64_t(middle >> 64), uint64_t(middle),
                                     uint64_t(low)};
 
-    // To the nearest right angle: what is beyond half of one is missing to the next.
+    // It is rounded to the nearest right angle: what is beyond half of one is missing to the next.
     int quarter = int(product[0] >> 62);
     const bool is_beyond = (product[0] >> 61 & 1) != 0;
     quarter += is_beyond;
@@ -117,7 +119,7 @@ double cosineOf(const Pair& x) noexcept {
     return main + (((1 - main) - half) + (s2 * series - (square.low / 2 + x.high * x.low)));
 }
 
-// atan(num / den) for 0 <= num <= den, den neither 0 nor near the ends of the range.
+// Returns atan(num / den) for 0 <= num <= den, where den is neither 0 nor near the ends of the range.
 Pair atanOfShare(double num, double den) noexcept {
     const int n = int(16 * (num / den));
     const double near = n / 16.0;

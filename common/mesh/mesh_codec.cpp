@@ -14,7 +14,7 @@ namespace {
 
 // meshoptimizer spends at least one byte on each triangle.
 constexpr uint64_t kMaxIndicesPerByte = 3;
-// m: no bone is there; what is computed from it stays finite.
+// No bone is farther away than this, m; what is computed from it stays finite.
 constexpr float kFarthest = 1e6f;
 constexpr float kLargestStep = 1;
 
@@ -54,7 +54,7 @@ std::string codedMaterials(const std::vector<uint8_t>& materials) {
     return out;
 }
 
-// As many as there are vertices, or false.
+// Decodes as many as there are vertices, or returns false.
 bool decodeMaterials(std::string_view coded, size_t vertices, std::vector<uint8_t>& materials) {
     constexpr int kMostShift = 28;  // a length has 32 bits
     for (size_t at = 0; at < coded.size();) {
@@ -86,7 +86,7 @@ std::string codedIndices(const Buffers& b) {
     return out;
 }
 
-// FNV-1a, 64 bits (Fowler, Noll, Vo).
+// This is FNV-1a, 64 bits (Fowler, Noll, Vo).
 void hashInto(uint64_t& hash, const void* bytes, size_t size) {
     const auto* byte = static_cast<const unsigned char*>(bytes);
     for (size_t i = 0; i < size; ++i) hash = (hash ^ byte[i]) * 0x100000001b3u;

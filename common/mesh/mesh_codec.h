@@ -1,5 +1,5 @@
-// Node meshes to and from the bytes on the wire: the NodeMesh message of proto/topics.proto, whose vertex and
-// index buffers are in meshoptimizer's coding. Not RT-safe (allocates); thread-safe.
+// Turns node meshes into the bytes on the wire and back: the NodeMesh message of proto/topics.proto, whose
+// vertex and index buffers are in meshoptimizer's coding. It is not RT-safe (it allocates), but thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace bonemill {
 
-// What goes with a node mesh over the wire (proto/topics.proto, NodeMesh).
+// It goes with a node mesh over the wire (proto/topics.proto, NodeMesh).
 struct NodeTag {
     uint64_t epoch = 0;
     uint64_t batch = 0;
@@ -24,10 +24,10 @@ struct EncodedNode {
     uint64_t content = 0;  // hash of the revision and of the coded surface: equal on both sides of the wire
 };
 
-// Serialized NodeMesh message. Vertices and triangles are put in an order that the vertex cache likes and
-// that codes well (the same surface, the same winding), vertices that no triangle names are dropped; equal
-// meshes give equal bytes. `mesh.indices` must be a multiple of 3 long and smaller than vertices.size() each,
-// `mesh.materials` empty or as many as the vertices.
+// Returns the serialized NodeMesh message. Vertices and triangles are put in an order that the vertex cache
+// likes and that codes well (the same surface, the same winding), vertices that no triangle names are
+// dropped; equal meshes give equal bytes. `mesh.indices` must be a multiple of 3 long and smaller than
+// vertices.size() each, `mesh.materials` empty or as many as the vertices.
 EncodedNode encodeNodeMesh(const NodeMesh& mesh, const NodeTag& tag);
 
 struct DecodedNode {
@@ -36,9 +36,9 @@ struct DecodedNode {
     uint64_t content = 0;
 };
 
-// What encodeNodeMesh made, or nothing for any bytes that do not hold a whole and valid
-// mesh: never throws on them, never allocates more than a small multiple of their size. The leaf is the
-// topic's key.
+// Returns what encodeNodeMesh made, or nothing for any bytes that do not hold a whole and valid mesh:
+// it never throws on them, and never allocates more than a small multiple of their size. The leaf is
+// the topic's key.
 std::optional<DecodedNode> decodeNodeMesh(std::string_view bytes, uint32_t leaf);
 
 }  // namespace bonemill

@@ -25,7 +25,7 @@ inline constexpr double secondsOfNs(int64_t ns) noexcept {
     return double(ns) / double(kNsPerSecond);
 }
 
-// Of a mean or a difference too, hence no whole ns.
+// It takes a mean or a difference too, hence no whole ns.
 inline constexpr double millisecondsOfNs(double ns) noexcept {
     return ns / double(kNsPerMillisecond);
 }

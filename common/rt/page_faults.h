@@ -14,7 +14,8 @@ struct PageFaults {
     uint64_t major = 0;  // it came from a disk
 };
 
-// Counts since the thread's start; nothing when there is no such thread. `thread` is what gettid() says.
+// Counts since the thread's start; it returns nothing when there is no such thread. `thread` is
+// what gettid() says.
 std::optional<PageFaults> pageFaultsOf(pid_t thread);
 
 }  // namespace bonemill

@@ -1,6 +1,6 @@
-// A thread that keeps deadlines, started the same way by every program that has one.
+// It is a thread that keeps deadlines, started the same way by every program that has one.
 //
-// Start-up only: system calls, allocation.
+// It is for start-up only, since it makes system calls and allocates.
 #pragma once
 
 #include <sys/types.h>
@@ -22,15 +22,15 @@ class RealtimeThread {
   public:
     RealtimeThread() = default;
 
-    // Locks the memory of the process, starts the thread, makes it real-time, and lets `work` begin when all
-    // of that is granted or best effort is enough. `tell` is called once with what the machine says, in the
-    // calling thread. Throws UserError, before `work` has begun, when something is missing without best
-    // effort.
+    // Locks the memory of the process, starts the thread, makes it real-time, and lets `work` begin when
+    // all of that is granted or best effort is enough. `tell` is called once with what the machine says,
+    // in the calling thread. Throws UserError, before `work` has begun, when something is missing
+    // without best effort.
     RealtimeThread(const RealtimeThreadConfig& config, std::function<void()> work,
                    const std::function<void(const RealtimeReport&)>& tell);
 
     void join() { thread_.join(); }
-    // The kernel's number of the thread, as pageFaultsOf takes it; -1 before it has started.
+    // Returns the kernel's number of the thread, as pageFaultsOf takes it; -1 before it has started.
     pid_t id() const noexcept { return id_; }
 
   private:

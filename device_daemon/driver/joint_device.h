@@ -1,6 +1,7 @@
 // This is what the device loop needs from a device with six actuators, real or emulated.
 //
-// One thread (the device loop) calls both functions, readJoints() first, once per loop period each. RT-safe.
+// One thread (the device loop) calls both functions, readJoints() first, once per loop period each.
+// It is RT-safe.
 #pragma once
 
 #include <cstdint>

@@ -2,9 +2,10 @@
 // DeviceSample, and WrenchCommand -> limits -> actuator forces. The limits, and their order,
 // stand in safety/force_limiter.h.
 //
-// In a period read() comes first, and the sample goes out at once; then write() takes the newest command. The
-// command so answers an earlier sample, and the loop has the one tick of delay that a real device has. Time
-// comes in as a parameter: the same class runs in device_daemon and in simulated time. RT-safe, one thread.
+// In a period read() comes first, and the sample goes out at once; then write() takes the newest command.
+// The command so answers an earlier sample, and the loop has the one tick of delay that a real device has.
+// Time comes in as a parameter: the same class runs in device_daemon and in simulated time. It is RT-safe,
+// for one thread.
 #pragma once
 
 #include "common/device_messages/device_messages.h"

@@ -12,7 +12,8 @@
 //    max_actuator_force over the ramp's time (1000 N/s as shipped) together.
 //
 // Each scales by one factor over all six actuators, so that no limit but the rate turns the wrench's
-// direction: the hand then feels too little, not something else. RT-safe, one thread. Units are N, N·m, s.
+// direction: the hand then feels too little, not something else. It is RT-safe, for one thread. Units are
+// N, N·m, s.
 #pragma once
 
 #include "common/ipc/stale_ramp.h"
@@ -22,9 +23,9 @@ namespace bonemill {
 
 struct ForceLimits {
     double max_actuator_force = 50;  // N per actuator
-    // N/s per actuator. The steepest honest demand is the coupling's: 3 N/mm at its speed limit of 0.5 m/s
-    // is 1500 N/s on the handle, about as much per actuator; this is several times more, and still takes 5
-    // ms to full force.
+    // It is in N/s per actuator. The steepest honest demand is the coupling's: 3 N/mm at its speed limit of
+    // 0.5 m/s is 1500 N/s on the handle, about as much per actuator; this is several times more, and still
+    // takes 5 ms to full force.
     double max_actuator_force_rate = 10000;
 };
 

@@ -36,12 +36,12 @@ struct AccuracySettings {
 
 AccuracySettings presetSettings(Preset preset) noexcept;
 
-// "thesis_2012", "fast", "balanced", "exact".
+// The names are "thesis_2012", "fast", "balanced", "exact".
 std::string_view presetName(Preset preset) noexcept;
 std::optional<Preset> presetOfName(std::string_view name) noexcept;
 
-// The preset's name, or for settings that no preset has, every knob: "gradient s=2 grid×1 float 2 iterations
-// ccd". Allocates.
+// Returns the preset's name, or for settings that no preset has, every knob: "gradient s=2 grid×1 float 2
+// iterations ccd". It allocates.
 std::string settingsName(const AccuracySettings& settings);
 
 }  // namespace bonemill

@@ -18,7 +18,7 @@ double forceOnSphere(double kappa, double radius, double depth) noexcept;
 double contactWidth(double kappa, double radius, double force) noexcept;
 
 // At this depth d that force balances the saturating spring to a device at depth `device_depth`;
-// found by bisection.
+// bisection finds it.
 double depthUnderSpring(const FixedTickConfig& tick, double device_depth) noexcept;
 
 // The hand feels this from the burr pressed on a plane with 0.5 to 4 N, against the closed form.

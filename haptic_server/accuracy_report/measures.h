@@ -1,4 +1,4 @@
-// Tells a run and the truth apart along the same device path. SI inside; no shared state.
+// Tells a run and the truth apart along the same device path. It computes in SI and has no shared state.
 #pragma once
 
 #include <cstdint>

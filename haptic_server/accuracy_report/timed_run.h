@@ -1,5 +1,5 @@
-// Runs ticks along a path of device poses, timed so that other programs of the machine do not
-// count. Not RT-safe.
+// Runs ticks along a path of device poses, timed so that other programs of the machine do not count. It
+// is not RT-safe.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// haptic_server: owns the bone, runs the haptic loop, shows the result to all clients.
+// haptic_server owns the bone, runs the haptic loop, shows the result to all clients.
 #include <CLI/CLI.hpp>
 #include <iostream>
 

@@ -30,8 +30,8 @@ class BoneHistory {
 
     // Any: this is the bone as it was at the start; it never changes.
     const VoxelVolume& scanned() const noexcept { return scanned_; }
-    // Any: these are the densities that a snapshot stands for; `lattice` is that of its bone. Allocates,
-    // not RT-safe.
+    // Any: these are the densities that a snapshot stands for; `lattice` is that of its bone. It allocates,
+    // so it is not RT-safe.
     VoxelVolume volumeOf(const BoneSnapshot& snapshot, const LeafLattice& lattice) const;
 
     // Keeper: takes the bone between two ticks, whole: what one tick mills is in it or not. Most is copied

@@ -22,7 +22,7 @@ struct BoneSnapshot {
     std::vector<std::shared_ptr<const LeafCopy>> leaves;  // those that differ; ascending
     int64_t missing_voxels = 0;  // of the scanned bone's voxels at or above the iso-value, net
 
-    // These are the leaf's densities; null means as scanned. RT-safe.
+    // These are the leaf's densities; null means as scanned. It is RT-safe.
     const Density* densitiesOf(LeafId leaf) const noexcept {
         const auto found = std::lower_bound(leaves.begin(), leaves.end(), leaf,
                                             [](const auto& copy, LeafId id) { return copy->leaf < id; });

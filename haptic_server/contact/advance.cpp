@@ -1,4 +1,4 @@
-// Conservative advancement along one step: no point tunnels through the tool.
+// Along one step the advancement is conservative: no point tunnels through the tool.
 #include <algorithm>
 #include <cmath>
 
@@ -14,8 +14,8 @@ constexpr double kRounding = 2e-7;  // m, of two distances in single precision s
 
 }  // namespace
 
-// What is the same for the whole sweep. A point at r from the tool point comes nearer by at most
-// |x| + |ω| (r + |x|), r at the start.
+// This is the same for the whole sweep. A point at r from the tool point comes nearer by at most |x| + |ω| (r
+// + |x|), r at the start.
 void GradientContact::startSweep(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
                                  double allowed_depth) noexcept {
     constexpr int kBatch = PointBatch<float>::kCapacity;

@@ -1,5 +1,5 @@
-// These are the contact points near the tool that one solve works on, as structure of arrays. RT-safe but
-// for construction.
+// These are the contact points near the tool that one solve works on, as structure of arrays. They are
+// RT-safe but for construction.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,8 @@ struct Candidates {
 
     size_t capacity() const noexcept { return most; }
 
-    // These points of a block, as many as there is room for. False: not all. Weight κ a.
+    // Adds these points of a block with weight κ a, as many as there is room for. False says that not
+    // all were added.
     bool add(const ShellBlock& block, const int* points, int point_count, LeafId leaf,
              const Eigen::Vector3d& origin, float stiffness_per_area, const float* nearest_place) noexcept {
         const int n = int(std::min(size_t(point_count), capacity() - count));

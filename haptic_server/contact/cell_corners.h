@@ -1,4 +1,4 @@
-// These are the densities at the corners of one cell, and between them. RT-safe.
+// These are the densities at the corners of one cell, and between them. They are RT-safe.
 //
 // Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1) in cell steps; see marching_cubes_table.h.
 #pragma once
@@ -11,7 +11,8 @@
 
 namespace bonemill {
 
-// Density minus iso-value at the corners, counts: >= 0 inside the bone. Whole numbers, so exact.
+// It is the density minus the iso-value at the corners, in counts, and >= 0 inside the bone. These are whole
+// numbers, so it is exact.
 struct CellCorners {
     std::array<float, 8> excess;
 
@@ -22,7 +23,7 @@ struct CellCorners {
     }
 };
 
-// Density minus iso-value by trilinear interpolation, and its derivative per cell step.
+// It is the density minus the iso-value by trilinear interpolation, and its derivative per cell step.
 struct FieldSample {
     float excess;
     Eigen::Vector3f slope;

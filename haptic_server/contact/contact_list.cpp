@@ -1,4 +1,4 @@
-// The contacts of a pose one by one, for those who ask what the solve ended with.
+// Lists the contacts of a pose one by one, for those who ask what the solve ended with.
 #include <algorithm>
 
 #include "haptic_server/contact/gradient_contact.h"

@@ -9,10 +9,10 @@ namespace bonemill {
 class ContactWeights {
   public:
     virtual ~ContactWeights() = default;
-    // Multiplies weights of the candidates just gathered, before the far-side guard and the stiffness cap
-    // see them. `origin` is that of the candidates' positions, X_VT the tool's pose at the gathering.
-    // Returns the largest factor. Called once or more often in a tick, for each gathering anew. RT-safe;
-    // tick thread only.
+    // Multiplies weights of the candidates just gathered, before the far-side guard and the stiffness cap see
+    // them. `origin` is that of the candidates' positions, X_VT the tool's pose at the gathering. Returns the
+    // largest factor. It is called once or more often in a tick, for each gathering anew. It is RT-safe, for
+    // the tick thread only.
     virtual double scale(Candidates& candidates, const Eigen::Vector3d& origin_V, const ToolField& tool,
                          const Pose& X_VT) noexcept = 0;
 };

@@ -93,8 +93,8 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     return has_room;
 }
 
-// Points of the blocks that the tool may touch after a motion of at most the margin, or near it with
-// their patches.
+// Collects points of the blocks that the tool may touch after a motion of at most the margin, or near it
+// with their patches.
 bool GradientContact::collectFrom(const BlockBatch& blocks, const ToolField& tool,
                                   const Pose& X_VT) noexcept {
     const IntoTool<float> into_tool(X_VT, Vector3d::Zero());

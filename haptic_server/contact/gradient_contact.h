@@ -18,7 +18,8 @@
 //   or locks it in.
 // A λ that changes from tick to tick is not conservative; in ordinary contact none does.
 //
-// Frame V, m, N, torque about the tool point. Everything but construction is RT-safe; tick thread only.
+// The frame is V, the units are m and N; torques are about the tool point. Everything but construction is
+// RT-safe, for the tick thread only.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +39,7 @@
 
 namespace bonemill {
 
-// Whose points are gathered.
+// Its points are gathered.
 struct ShellView {
     const VoxelVolume& volume;
     const LeafLattice& lattice;
@@ -64,7 +65,7 @@ class GradientContact {
     static constexpr double kDepthCap = 0.75, kGuardFrom = 0.25, kGuardFull = 0.5;
     static constexpr double kGuardWidth = 0.25;  // of s, over which the guard fades a point out
 
-    // Room for this many candidate points; allocates.
+    // It has room for this many candidate points, and allocates.
     explicit GradientContact(const GradientContactConfig& config, size_t most_candidates = 65536);
 
     // Collects the points of a shell level that can touch the tool after a motion of at most `margin` (m, of
@@ -82,7 +83,7 @@ class GradientContact {
     // or the sampling changes, or the tool is placed anew.
     void forget() noexcept { patch_memory_.forget(); }
 
-    // Energy, wrench on the tool and stiffness at this pose, over the gathered points.
+    // Returns energy, wrench on the tool and stiffness at this pose, over the gathered points.
     template <class Scalar>
     GradientContactResult evaluate(const ToolField& tool, const Pose& X_VT) const noexcept;
 
@@ -92,10 +93,10 @@ class GradientContact {
     // Scales the weights at each gathering from now on; null: nothing does.
     void setWeights(ContactWeights* weights) noexcept { weights_ = weights; }
 
-    // Largest share t of the motion `step` (world increment x, ω) for which no gathered point that is free at
-    // X_VT comes deeper than `allowed_depth`, and none in contact gets deeper by more than that: conservative
-    // advancement. The share may be smaller than the largest, never larger. In 0 .. 1. Ends early after about
-    // `most_tests` point tests.
+    // Returns the largest share t of the motion `step` (world increment x, ω) for which no gathered point
+    // that is free at X_VT comes deeper than `allowed_depth`, and none in contact gets deeper by more than
+    // that: conservative advancement. The share may be smaller than the largest, never larger. It lies in 0
+    // .. 1. Ends early after about `most_tests` point tests.
     double advance(const ToolField& tool, const Pose& X_VT, const Vector6d& step, double allowed_depth,
                    size_t most_tests = SIZE_MAX) noexcept;
 
@@ -115,7 +116,7 @@ class GradientContact {
     Eigen::Vector3d positionOf(size_t candidate) const noexcept {  // V
         return origin_ + candidates_.position(candidate).cast<double>();
     }
-    // Blocks of points whose spheres are tested together.
+    // The spheres of these blocks of points are tested together.
     struct BlockBatch {
         static constexpr int kCapacity = PointBatch<float>::kCapacity;
         const ShellBlock* block[kCapacity];
@@ -162,8 +163,8 @@ class GradientContact {
     double touching_stiffness_ = 0;  // N/m: of the candidates in contact, all directions together
     double deepest_ = 0;             // m
     double margin_ = 0;
-    // Half a patch's diagonal, squared, per area: of a square, or of one with the proportions of the longest
-    // cell face; 0 without patches.
+    // It is half a patch's diagonal, squared, per area: of a square, or of one with the proportions of the
+    // longest cell face; 0 without patches.
     float reach_per_area_ = 0;
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // V: the tool point at the gathering
 };

@@ -1,4 +1,4 @@
-// This leads from the bone's axes into the tool's. RT-safe.
+// This leads from the bone's axes into the tool's. It is RT-safe.
 #pragma once
 
 #include "common/geometry/pose.h"
@@ -7,7 +7,7 @@
 
 namespace bonemill {
 
-// Points with V's axes, measured from `origin`, to T.
+// Takes points with V's axes, measured from `origin`, to T.
 template <class Scalar>
 class IntoTool {
   public:

@@ -1,5 +1,6 @@
-// These are the names of the shell's patches. A patch stands for the surface in one block of s×s×s cells
-// (point_shell.h), and is named by the leaf and by the block's place in the leaf. RT-safe, any thread.
+// These are the names of the shell's patches. A patch stands for the surface in one block of s×s×s
+// cells (point_shell.h), and is named by the leaf and by the block's place in the leaf. They are
+// RT-safe, for any thread.
 #pragma once
 
 #include <compare>
@@ -9,7 +10,8 @@
 
 namespace bonemill {
 
-// A block's index per axis, counted from the leaf's first block. The order is that of the blocks: x fastest.
+// It is a block's index per axis, counted from the leaf's first block. The order is that of the
+// blocks: x fastest.
 struct BlockKey {
     static constexpr int kAxisBits = 10;
     static constexpr int kMostPerAxis = 1 << kAxisBits;  // blocks of a leaf

@@ -1,8 +1,8 @@
-// How finely each patch near the tool is sampled. A patch that changed it while in contact would change the
-// energy, so it keeps it until it is no longer near.
+// It remembers how finely each patch near the tool is sampled. A patch that changed it while in contact would
+// change the energy, so it keeps it until it is no longer near.
 //
-// A table of fixed size, searched in a few slots per patch; a patch that finds no slot is new every time.
-// RT-safe but for construction.
+// It is a table of fixed size, searched in a few slots per patch; a patch that finds no slot is new every
+// time. It is RT-safe but for construction.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace bonemill {
 
 class PatchMemory {
   public:
-    // The memory is good for about half of most_patches, which is a power of two. Allocates.
+    // The memory is good for about half of most_patches, which is a power of two. It allocates.
     explicit PatchMemory(size_t most_patches) : slots_(most_patches) {}
 
     // From now on only patches that were asked for since the last call are known.

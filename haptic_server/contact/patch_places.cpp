@@ -1,4 +1,4 @@
-// Finer sampling of the patches near the tool.
+// Samples the patches near the tool more finely.
 #include <algorithm>
 #include <cmath>
 
@@ -11,8 +11,8 @@ using Eigen::Vector3f;
 
 constexpr int kPlaceSteps = 2;  // from a place on the tangent plane, at most half a patch away
 
-// Steps between neighbouring places of a square patch, at right angles to n; along the grid's axes where the
-// surface is.
+// It has the steps between neighbouring places of a square patch, at right angles to n, and along the grid's
+// axes where the surface is.
 struct PatchFrame {
     Vector3f step_u, step_v;
 };
@@ -65,7 +65,7 @@ int GradientContact::placesOfNewPatches(const ShellView& bone, size_t coarse) no
     return q;
 }
 
-// Its q × q places, still on the tangent plane, at the end of the candidates.
+// Puts its q × q places, still on the tangent plane, at the end of the candidates.
 void GradientContact::splitPatch(const Vector3f& spacing, size_t index, int q) noexcept {
     Candidates& c = candidates_;
     const Vector3f own_point = c.position(index), n = c.normal(index);

@@ -7,7 +7,8 @@
 namespace bonemill {
 namespace {
 
-// Sums over the colliding points at unit stiffness; the stiffness of all points depends on their number.
+// These are sums over the colliding points at unit stiffness; the stiffness of all points depends
+// on their number.
 struct UnitSums {
     Vector6d depth_direction = Vector6d::Zero();          // Σ d [n; r × n]
     Matrix6d outer = Matrix6d::Zero();                    // Σ J Jᵀ, J = [n; r × n]

@@ -9,7 +9,7 @@
 
 namespace bonemill {
 
-// Contact wrench on the tool about the tool point (origin of T), axes V.
+// It is the contact wrench on the tool about the tool point (origin of T), axes V.
 struct ContactResult {
     Wrench wrench;
     // This is ∂(force, torque)/∂(x, ω) as printed in eq 6-9, and kept wrong where the thesis is

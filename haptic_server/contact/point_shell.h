@@ -7,7 +7,7 @@
 // Blocks without area (surface that only touches a voxel) give no point. Blocks start at each leaf's first
 // cell and are cut at its border.
 //
-// How far a point is from the true surface of curvature radius R: the tolerance of shell_point.h, and the
+// A point is off the true surface of curvature radius R by the tolerance of shell_point.h, and by the
 // trilinear field's own error, below h²/(4 R) for voxels h that sample a smooth density.
 //
 // Points live in fixed blocks of a pool sized at construction, in ascending order of their cells inside
@@ -44,17 +44,17 @@ struct ShellConfig {
 
 class PointShell {
   public:
-    // Builds every leaf at every level and follows level 0. Allocates. Throws std::invalid_argument for
+    // Builds every leaf at every level and follows level 0. It allocates. Throws std::invalid_argument for
     // factors that are not distinct and >= 1 and for leaves of more than 1024 blocks per axis.
     PointShell(const VoxelVolume& volume, const LeafLattice& lattice, const ShellConfig& config);
 
-    // Rebuilds the points that the voxels in these boxes can influence, but for stale leaves. RT-safe.
-    // False: the pool is full and some leaves kept their old points.
+    // Rebuilds the points that the voxels in these boxes can influence, but for stale leaves. It is RT-safe.
+    // False says that the pool is full and some leaves kept their old points.
     bool refresh(const VoxelVolume& volume, const LeafLattice& lattice,
                  std::span<const IndexBox> changed_voxels) noexcept;
 
     // From now on this level is kept up to date, and no other one. Its stale leaves stay stale: prepare() it
-    // first. RT-safe.
+    // first. It is RT-safe.
     void follow(int level) noexcept {
         followed_ = level;
         prepared_ = kNone;
@@ -67,17 +67,17 @@ class PointShell {
     };
     // Rebuilds at most `most_leaves` stale leaves of this level, beside the one that is followed. The level's
     // other leaves are kept up to date as long as no other level is prepared or followed, so that preparing
-    // comes to an end. RT-safe.
+    // comes to an end. It is RT-safe.
     Preparation prepare(const VoxelVolume& volume, const LeafLattice& lattice, int level,
                         int most_leaves) noexcept;
     size_t staleLeaves(int level) const noexcept { return levels_[size_t(level)].stale_count; }
 
     int levelCount() const noexcept { return int(levels_.size()); }
     int scalingFactor(int level) const noexcept { return levels_[size_t(level)].config.factor; }
-    // The level of this factor, -1 if there is none.
+    // Returns the level of this factor, -1 if there is none.
     int levelOf(int factor) const noexcept;
 
-    // Calls visit(const ShellBlock&, uint32_t count) for the leaf's points in order. RT-safe.
+    // Calls visit(const ShellBlock&, uint32_t count) for the leaf's points in order. It is RT-safe.
     template <class Visit>
     void forEachBlock(int level, LeafId leaf, Visit&& visit) const noexcept {
         pool_.forEachBlock(levels_[size_t(level)].leaves[leaf], visit);
@@ -107,7 +107,7 @@ class PointShell {
         // A cell's point depends on so many voxels beyond the cell's corners.
         int reach() const noexcept { return config.normals == ShellNormals::kCentralDifference ? 1 : 0; }
     };
-    // Sums over the patches of one block.
+    // These are sums over the patches of one block.
     struct BlockSum {
         float area = 0;                                    // m²
         Eigen::Vector3f moment = Eigen::Vector3f::Zero();  // m² × cell steps from the block's first corner

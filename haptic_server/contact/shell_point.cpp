@@ -16,7 +16,8 @@ Eigen::Vector3f cornerAt(int corner) noexcept {
     return {float(corner & 1), float(corner >> 1 & 1), float(corner >> 2 & 1)};
 }
 
-// Cell of the block that holds the point, `from_first` in cell steps from the block's first corner.
+// Returns the cell of the block that holds the point, `from_first` in cell steps from the
+// block's first corner.
 Eigen::Vector3i cellUnder(const Eigen::Vector3f& from_first, const Eigen::Vector3i& last) noexcept {
     return from_first.cast<int>().cwiseMin(last);  // never negative: truncation is floor
 }
@@ -89,7 +90,7 @@ int nearestOpposite(const CellCorners& corners, bool is_inside, const Eigen::Vec
     return nearest;
 }
 
-// Regula falsi, Illinois rule, between two points of the cell on different sides.
+// It is regula falsi by the Illinois rule, between two points of the cell on different sides.
 Eigen::Vector3f rootBetween(const CellCorners& corners, Eigen::Vector3f a, float at_a, Eigen::Vector3f b,
                             float at_b) noexcept {
     const float tolerance = toleranceIn(corners);

@@ -146,8 +146,8 @@ uint32_t ShellPool::merge(const List& list, const Place& from, const IndexBox& k
     return read;
 }
 
-// The block's points outside the box `keys`, and between them the fresh ones from fresh[next] on, as far as
-// they belong there.
+// Keeps the block's points outside the box `keys`, and between them the fresh ones from fresh[next] on, as
+// far as they belong there.
 void ShellPool::mergeBlock(const ShellBlock& b, uint32_t count, const IndexBox& keys,
                            std::span<const ShellPoint> fresh, size_t& next) noexcept {
     uint32_t first = 0;  // of the points that stay and are not yet appended

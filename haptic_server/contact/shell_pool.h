@@ -1,5 +1,5 @@
-// Storage of the contact points: lists of fixed blocks from one pool, each list in ascending order of keys.
-// Only growing the pool allocates; all else is RT-safe. Tick thread only.
+// Stores the contact points in lists of fixed blocks from one pool, each list in ascending order of keys.
+// Only growing the pool allocates; all else is RT-safe. It is for the tick thread only.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace bonemill {
 
-// Structure of arrays for the contact loop.
+// It is a structure of arrays for the contact loop.
 struct ShellBlock {
     static constexpr uint32_t kCapacity = 64;
     float x[kCapacity], y[kCapacity], z[kCapacity];
@@ -18,7 +18,7 @@ struct ShellBlock {
     float area[kCapacity];  // m²
     BlockKey key[kCapacity];
     uint32_t next;
-    // Around the block's points: a sphere (V, m), and the largest of their areas (m²).
+    // A sphere lies around the block's points (V, m); the area is the largest of theirs (m²).
     float center[3], radius, largest_area;
 };
 

@@ -1,5 +1,5 @@
-// One pass over the cells of a leaf: the patches of iso-surface in those that it crosses. RT-safe but for the
-// construction; tick thread only.
+// One pass over the cells of a leaf finds the patches of iso-surface in those that it crosses. It is RT-safe
+// but for the construction, and for the tick thread only.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ class SurfaceCells {
     // Memory for leaves of up to `leaf_cells` per axis.
     SurfaceCells(const VoxelVolume& volume, const Eigen::Vector3i& leaf_cells);
 
-    // The cells of `cells` that the surface crosses, in ascending order (x fastest), with their patches.
-    // `leaf_first` is the first cell of the leaf that holds them all.
+    // Collects the cells of `cells` that the surface crosses, in ascending order (x fastest), with their
+    // patches. `leaf_first` is the first cell of the leaf that holds them all.
     void collect(const VoxelVolume& volume, const Eigen::Vector3i& leaf_first,
                  const IndexBox& cells) noexcept;
     size_t count() const noexcept { return count_; }
@@ -28,7 +28,7 @@ class SurfaceCells {
     Eigen::Vector3i cell(size_t n) const noexcept { return {cell_[n][0], cell_[n][1], cell_[n][2]}; }
     // The area is in m², and zero where the surface only touches a voxel.
     float area(size_t n) const noexcept { return area_[n] * unit_area_; }
-    // Cell steps from the cell's first corner; of patches with an area.
+    // They are cell steps from the cell's first corner, of patches with an area.
     Eigen::Vector3f centroid(size_t n) const noexcept { return {x_[n], y_[n], z_[n]}; }
 
     // Finds a place of each cell's trilinear iso-surface, from the patch's centroid;

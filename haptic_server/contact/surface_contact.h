@@ -1,4 +1,4 @@
-// One contact point as effects see it after the solve.
+// It is one contact point as effects see it after the solve.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// These say which octree leaves a tool can reach. RT-safe.
+// These say which octree leaves a tool can reach. They are RT-safe.
 #pragma once
 
 #include "haptic_server/volume/leaf_lattice.h"
@@ -18,7 +18,7 @@ struct Sphere {
     double radius;
 };
 
-// Around all cells of a leaf, in V.
+// The sphere lies around all cells of a leaf, in V.
 inline Sphere sphereAround(const IndexBox& cells, const Eigen::Vector3d& spacing) noexcept {
     const Eigen::Vector3d low = cells.min.cast<double>().cwiseProduct(spacing);
     const Eigen::Vector3d high = (cells.max.array() + 1).matrix().cast<double>().cwiseProduct(spacing);

@@ -15,7 +15,7 @@ constexpr double kSmallest = 1e-12;  // m or rad: below it the spring is linear 
 constexpr double kStiffnessFloor =
     0.02;  // of k, in the matrix only: a saturated spring keeps the solve regular
 
-// tanh spring over the length s of a vector.
+// It is a tanh spring over the length s of a vector.
 struct Spring {
     double energy, pull, slope, secant;  // slope: d pull / ds; secant: pull / s
 };
@@ -29,7 +29,7 @@ Spring springAt(double k, double most, double s) noexcept {
     return {most * most / k * log_cosh, pull, k * sech_squared, s > kSmallest ? pull / s : k};
 }
 
-// along uuᵀ + across (I - uuᵀ), neither below the floor.
+// Returns along uuᵀ + across (I - uuᵀ), neither below the floor.
 Matrix3d directional(const Vector3d& vector, double along, double across, double k) noexcept {
     const double floor = kStiffnessFloor * k;
     const double norm = vector.norm();
@@ -39,7 +39,7 @@ Matrix3d directional(const Vector3d& vector, double along, double across, double
     return b * Matrix3d::Identity() + (a - b) * u * u.transpose();
 }
 
-// (θ/2) cot(θ/2): how a turn across the rotation vector changes it.
+// Returns (θ/2) cot(θ/2), which says how a turn across the rotation vector changes it.
 double halfCotangent(double theta) noexcept {
     const double half = theta / 2;
     if (half < 1e-4) return 1 - half * half / 3;
@@ -50,7 +50,7 @@ Vector3d springVector(const Vector3d& stretch, const Spring& spring) noexcept {
     return spring.secant * stretch;
 }
 
-// A spring force on the tool at r from its tool point, with stiffness K there.
+// Adds a spring force on the tool at r from its tool point, with stiffness K there.
 void addSpring(EnergyTerm& term, const Vector3d& r, const Vector3d& force, double energy,
                const Matrix3d& K) noexcept {
     const Matrix3d r_skew = skew(r);

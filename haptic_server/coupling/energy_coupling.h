@@ -1,6 +1,6 @@
 // The gradient model's virtual coupling consists of springs between the simulated tool (SPO) and the device
 // that follow from an energy, saturate smoothly, and damping against the SPO's pose one tick ago. All
-// functions RT-safe.
+// functions are RT-safe.
 //
 // With d from the SPO's grip point to the device's and θ = Log(q_dev q_spo⁻¹):
 //   force  F_m tanh(k_t |d| / F_m) along d,   torque  T_m tanh(k_θ |θ| / T_m) along θ
@@ -30,7 +30,8 @@ struct EnergyCoupling : EnergyCouplingConfig {
     double saturation_force = 50;  // F_m, N
 };
 
-// An energy with its derivatives by the tool's world increment (x, ω); torques about the tool point.
+// It is an energy with its derivatives by the tool's world increment (x, ω); torques are about
+// the tool point.
 struct EnergyTerm {
     double energy = 0;                      // J
     Wrench wrench;                          // on the tool: minus the gradient of the energy
@@ -60,12 +61,12 @@ class ContinuousRotation {
     Eigen::Quaterniond last_ = Eigen::Quaterniond::Identity();
 };
 
-// From the SPO to the device. Energies, wrenches and poses are in V here, as all in the tick.
+// The springs go from the SPO to the device. Energies, wrenches and poses are in V here, as all in the tick.
 EnergyTerm couplingEnergy(const EnergyCoupling& coupling, const Pose& X_VT, const Pose& X_VT_device,
                           const ContinuousRotation& way) noexcept;
 
-// On the device, about the device's own tool point: minus the same energy's gradient by the device's pose, so
-// that a closed path of the device costs no energy that the tool does not get.
+// On the device, about the device's own tool point, acts minus the same energy's gradient by the device's
+// pose, so that a closed path of the device costs no energy that the tool does not get.
 Wrench couplingWrenchOnDevice(const EnergyCoupling& coupling, const Pose& X_VT, const Pose& X_VT_device,
                               const ContinuousRotation& way) noexcept;
 
@@ -74,8 +75,8 @@ class RelaxingSpring {
   public:
     RelaxingSpring(const EnergyCoupling& coupling, double dt) noexcept;
 
-    // As couplingEnergy() and couplingWrenchOnDevice(), for this spring alone. Before the first follow() it
-    // is slack.
+    // They are as couplingEnergy() and couplingWrenchOnDevice(), for this spring alone. Before the first
+    // follow() it is slack.
     EnergyTerm energy(const Pose& X_VT, const Pose& X_VT_device) const noexcept;
     Wrench wrenchOnDevice(const Pose& X_VT, const Pose& X_VT_device) const noexcept;
     // End of a tick: d_f goes its way towards d.

@@ -6,7 +6,7 @@
 namespace bonemill {
 namespace {
 
-// Rotation from the SPO to the device, scalar part >= 0.
+// Returns the rotation from the SPO to the device, with a scalar part >= 0.
 Eigen::Quaterniond rotationError(const Pose& X_VT, const Pose& X_VT_device) noexcept {
     Eigen::Quaterniond error = X_VT_device.rotation * X_VT.rotation.conjugate();
     if (error.w() < 0) error.coeffs() = -error.coeffs();
@@ -16,9 +16,9 @@ Eigen::Quaterniond rotationError(const Pose& X_VT, const Pose& X_VT_device) noex
 // The equilibrium matrix mixes N/m with N·m/rad; measuring rotations in this length (m/rad) balances
 // its rows.
 constexpr double kRotationLength = 0.03;
-// Smallest ratio of LU pivots taken for a regular matrix.
+// It is the smallest ratio of LU pivots that is taken for a regular matrix.
 constexpr double kMinPivotRatio = 1e-12;
-// Share of the largest element that a singular matrix gets on its (negative) diagonal.
+// This is the share of the largest element that a singular matrix gets on its (negative) diagonal.
 constexpr double kRegularisation = 1e-6;
 
 bool isRegular(const Eigen::PartialPivLU<Matrix6d>& lu) noexcept {

@@ -1,4 +1,5 @@
-// The thesis' static virtual coupling, equilibrium step and feedback (§4.3.3-4.3.5). All RT-safe.
+// These are the thesis' static virtual coupling, equilibrium step and feedback (§4.3.3-4.3.5). All
+// functions are RT-safe.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +18,11 @@ struct CouplingConfig {
     double static_damping = 0.5;  // α: the tool moves by (1 - α) of the step
 };
 
-// Coupling wrench on the tool about the tool point (eq 17-18, 32-33): springs from the SPO to the device
-// pose. The quaternion's sign is chosen for the shorter way round.
+// Returns the coupling wrench on the tool about the tool point (eq 17-18, 32-33): springs from the SPO to the
+// device pose. The quaternion's sign is chosen for the shorter way round.
 Wrench couplingWrench(const CouplingConfig& config, const Pose& X_VT, const Pose& X_VT_device) noexcept;
 
-// ∂(force, torque)/∂(x, ω) of couplingWrench (eq 19-22).
+// Returns ∂(force, torque)/∂(x, ω) of couplingWrench (eq 19-22).
 Matrix6d couplingDerivative(const CouplingConfig& config, const Pose& X_VT, const Pose& X_VT_device) noexcept;
 
 struct EquilibriumStep {

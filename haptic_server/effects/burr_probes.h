@@ -1,4 +1,5 @@
-// A burr is a few balls and points here, whose distances to a structure stand for the burr's own. RT-safe.
+// A burr is a few balls and points here, whose distances to a structure stand for the burr's own.
+// It is RT-safe.
 #pragma once
 
 #include <array>
@@ -13,7 +14,7 @@ struct BurrProbe {
     double radius = 0;  // m; 0: a point
 };
 
-// A ball is one probe. Of a cylinder or cone: balls inside of it along the axis, a radius apart (more, if it
+// A ball is one probe. A cylinder or cone has balls inside of it along the axis, a radius apart (more, if it
 // is longer than kMostBalls radii), and points on both rims.
 class BurrProbes {
   public:

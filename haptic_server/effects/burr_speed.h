@@ -1,4 +1,5 @@
-// This says how burr and bone rub on each other where they touch, in SI and axes V. RT-safe, thread-safe.
+// This says how burr and bone rub on each other where they touch, in SI and axes V. It is
+// RT-safe and thread-safe.
 #pragma once
 
 #include <algorithm>
@@ -8,15 +9,15 @@
 
 namespace bonemill {
 
-// What a contact's patch adds to the square of its distance from the axis, m²: a disc of this area that turns
+// A contact's patch adds this to the square of its distance from the axis, m²: a disc of this area that turns
 // about its own middle rubs at 2/3 of its radius on average.
 inline double patchSpread(double area) noexcept {
     constexpr double kMeanRadiusSquared = 4.0 / 9;  // of a disc, per its radius squared
     return kMeanRadiusSquared / M_PI * area;
 }
 
-// ρ, m: at this times the spin speed a place of `area` (m²) at r from the tool point rubs, as the mean over
-// its patch.
+// It is ρ, m: at this times the spin speed a place of `area` (m²) at r from the tool point rubs, as the mean
+// over its patch.
 inline double rubbingRadius(const Eigen::Vector3d& r, const Eigen::Vector3d& axis, double area) noexcept {
     return std::sqrt(axis.cross(r).squaredNorm() + patchSpread(area));
 }

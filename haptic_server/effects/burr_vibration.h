@@ -2,8 +2,9 @@
 // pass at some kHz, which a loop of 1000 Hz cannot render; the rotation is felt, at a frequency that it can:
 //   dφ/dt = 2π f,   f = |Ω|/2π within 50 .. 400 Hz and at most 0.4/dt,
 //   A → min(max_amplitude, amplitude_per_force · μ_c Σ F) with a time constant of 10 ms,
-// less below 50 turns/s in proportion, and a diamond burr less by its factor. Exactly nothing in the air.
-// On the hand only: the simulated tool does not shake. Tick thread, RT-safe.
+// less below 50 turns/s in proportion, and a diamond burr less by its factor. In the air it is
+// exactly nothing. It acts on the hand only: the simulated tool does not shake. It is RT-safe, for
+// the tick thread only.
 #pragma once
 
 #include "haptic_server/effects/effect_configs.h"

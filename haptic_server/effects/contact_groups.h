@@ -1,5 +1,5 @@
-// The tool's contacts are merged into a few, for what is evaluated again and again in a solve. SI, axes V,
-// about the tool point. RT-safe; tick thread only.
+// The tool's contacts are merged into a few, for what is evaluated again and again in a solve. Units are SI,
+// axes V, torques about the tool point. It is RT-safe, for the tick thread only.
 #pragma once
 
 #include <array>

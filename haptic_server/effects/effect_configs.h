@@ -1,4 +1,4 @@
-// What a scene asks of the tick's effects, in SI. This is where each effect is declared: its name, what it
+// A scene asks this of the tick's effects, in SI. This is where each effect is declared: its name, what it
 // writes into the record of a tick, its parameters, and its place in the order in which the effects act.
 // Defaults and ranges stand in proto/scene.proto alone; setup/scene_effects.cpp makes a config of a scene's
 // message, make_effects.cpp an effect of a config.
@@ -77,7 +77,7 @@ struct VirtualFixtureConfig {
     double hand_force_scale;  // 0 .. 1
 };
 
-// A rate of density: the thesis' law.
+// It removes at a rate of density, by the thesis' law.
 struct TimeRemovalConfig {
     static constexpr const char* kName = "time_removal";
     static constexpr RecordedEffects kRecords{};
@@ -124,7 +124,7 @@ struct EffectConfigs {
     std::optional<ProtectedStructuresConfig> protected_structures;
 };
 
-// Calls visit(std::optional<Config>&) for each effect, in the order in which they act. Configs:
+// Calls visit(std::optional<Config>&) for each effect, in the order in which they act. Configs is
 // EffectConfigs, const or not.
 template <class Configs, class Visit>
 void forEachEffect(Configs& configs, Visit&& visit) {
@@ -161,7 +161,7 @@ inline EffectConfigs withoutEffect(EffectConfigs configs, const std::string& whi
     return configs;
 }
 
-// What the effects that are listed write into the record of a tick.
+// Returns what the effects that are listed write into the record of a tick.
 inline RecordedEffects recordedBy(const EffectConfigs& configs) noexcept {
     RecordedEffects recorded;
     forEachEffect(configs, [&]<class Config>(const std::optional<Config>& config) {

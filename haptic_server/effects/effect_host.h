@@ -25,7 +25,7 @@ class EffectHost final : private ContactWeights, private SolveEnergy {
     }
     SolveEnergy* energy() noexcept { return any(HapticEffect::kHasEnergy) ? this : nullptr; }
 
-    // The phases of a tick, in this order. Tick thread, RT-safe.
+    // The phases of a tick come in this order. Each is RT-safe, for the tick thread only.
     void restart(Restart why) noexcept;
     void begin(const EffectTick& start) noexcept;  // takes from it what is known at the start
     void addToHand(Wrench& wrench_V) noexcept;

@@ -29,7 +29,7 @@ void EnergyRemoval::begin(EffectTick& tick) noexcept {
     removal_power_ = removed_energy_ = 0;
 }
 
-// Another number of groups only when each has had its turn.
+// The number of groups changes only when each has had its turn.
 void EnergyRemoval::takeTurn(const EffectTick& tick) noexcept {
     if (++turn_ < turns_) return;
     turn_ = 0;

@@ -1,4 +1,4 @@
-// Removal by pressure times cutting speed against the bone's specific energy (ALGORITHMS §4).
+// Removes by pressure times cutting speed against the bone's specific energy (ALGORITHMS §4).
 //
 // Per area of the contact between burr and bone, with pressure p, friction μ_c and cutting speed v_c, the
 // power μ_c (p - p_th)₊ v_c goes into bone of specific energy u, whose surface recedes at v_n = μ_c v_c (p -

@@ -3,8 +3,8 @@
 // order of effect_configs.h.
 //
 // In a tick: begin() → scale() at each gathering → energy() at each pose of the solve → addToHand() → the
-// force goes out → mill() → finish(). All RT-safe, tick thread only; construction allocates all that is
-// ever needed.
+// force goes out → mill() → finish(). All are RT-safe, for the tick thread only; construction allocates all
+// that is ever needed.
 #pragma once
 
 #include <span>

@@ -1,4 +1,5 @@
-// How heat spreads in bone and leaves it, in SI; temperatures in °C. The defaults stand in proto/scene.proto.
+// It says how heat spreads in bone and leaves it, in SI; temperatures are in °C. The defaults
+// stand in proto/scene.proto.
 #pragma once
 
 namespace bonemill {

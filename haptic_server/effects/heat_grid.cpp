@@ -19,8 +19,8 @@ constexpr size_t kMostBricks = 1024, kMostDeadBricks = 16384;
 constexpr size_t kLookupsPerStep = 4;  // of a brick's cubes in the volume
 constexpr int64_t kMostBricksToRevisit = 512;
 constexpr size_t kMostDeadSeen = 256;  // bricks with dead cells that a step looks through for stale ones
-// In K: a brick whose border is warmer than that opens its neighbour; one that is cooler all over is closed
-// when it has been open for a while. Cold matters less.
+// They are in K: a brick whose border is warmer than that opens its neighbour; one that is cooler all over is
+// closed when it has been open for a while. Cold matters less.
 constexpr float kWarm = 0.01f, kCold = -2, kSettledCold = -0.5f;
 constexpr double kShortestLife = 1;        // s
 constexpr double kSpareForSources = 0.25;  // of the pool, that heat on its way does not take

@@ -1,11 +1,11 @@
 // Heat spreads in the bone by conduction on a grid of cubes of its own, coarser or finer than the voxels,
 // with memory only for bricks of cubes where it is warmer or colder than the body.
 //
-// Explicit finite volumes: heat that goes through a face leaves one cube and comes to the other, so that none
-// is lost but at the bone's surface and to the blood. A cube is bone or it is not, by the voxel at its
-// middle. Bricks take turns, each with the time that has gone by since its last turn, a few in each step.
+// The finite volumes are explicit: heat that goes through a face leaves one cube and comes to the other, so
+// that none is lost but at the bone's surface and to the blood. A cube is bone or it is not, by the voxel at
+// its middle. Bricks take turns, each with the time that has gone by since its last turn, a few in each step.
 //
-// Frame V. Construction allocates; all else is RT-safe, tick thread only.
+// The frame is V. Construction allocates; all else is RT-safe, for the tick thread only.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,8 @@ class HeatGrid {
 
     double temperatureAt(const Eigen::Vector3d& p_V) const noexcept;  // °C
     double hottest() const noexcept;                                  // °C, of bone that is there
-    // m³ of bone, not cut away since, that was above the necrosis temperature for the necrosis time.
+    // Returns the m³ of bone, not cut away since, that was above the necrosis temperature for
+    // the necrosis time.
     double necroticVolume() const noexcept;
     double storedHeat() const noexcept;  // J above body temperature
     double time() const noexcept { return now_; }
@@ -106,7 +107,7 @@ class HeatGrid {
     std::vector<uint32_t> free_;
     std::vector<uint32_t> active_;
     std::vector<uint32_t> directory_;  // per brick: in pool_
-    // Dead cells outlive their brick's memory: a bit each.
+    // Dead cells outlive their brick's memory with a bit each.
     struct DeadCells {
         uint64_t bits[kCells / 64];
         Eigen::Vector3i brick;

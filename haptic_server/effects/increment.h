@@ -1,5 +1,5 @@
 // The tool's way from one pose to another is what effects' energies are functions of: x of the tool point,
-// and the rotation vector θ. RT-safe.
+// and the rotation vector θ. It is RT-safe.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ struct Increment {
     Vector6d twist;
 
   private:
-    // 1/θ² − (1 + cos θ)/(2 θ sin θ); Barfoot, State Estimation for Robotics (2017), ch. 7.
+    // Returns 1/θ² − (1 + cos θ)/(2 θ sin θ); Barfoot, State Estimation for Robotics (2017), ch. 7.
     double curvature() const noexcept {
         const double angle = rotation().norm(), half = angle / 2;
         if (angle < 1e-2) return (1 + angle * angle / 60) / 12;

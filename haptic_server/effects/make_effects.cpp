@@ -18,7 +18,7 @@ namespace {
 
 using Made = std::unique_ptr<HapticEffect>;
 
-// What an effect may need beside its own config.
+// An effect may need this beside its own config.
 struct Needs {
     const EffectConfigs& all;
     const BoneModel& bone;

@@ -1,4 +1,4 @@
-// This makes the effects of what a scene lists. Start-up only; allocates.
+// This makes the effects of what a scene lists. It is for start-up only, since it allocates.
 #pragma once
 
 #include "haptic_server/effects/effect_configs.h"

@@ -5,7 +5,7 @@
 // contacts: it stops the burr, at exactly 0, and never drives it. A burr that stands under load takes
 // as much of M as the motor gives. Sets EffectTick::spin_speed and axis_load.
 //
-// Tick thread, RT-safe.
+// It is RT-safe, for the tick thread only.
 #pragma once
 
 #include "haptic_server/effects/effect_configs.h"

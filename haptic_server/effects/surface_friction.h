@@ -1,5 +1,5 @@
-// Dry friction where the tool does not cut: on the shaft, and on a burr that stands. The tool sticks by a
-// spring to where it touched, and slips when that pulls with more than μ F.
+// There is dry friction where the tool does not cut: on the shaft, and on a burr that stands. The tool sticks
+// by a spring to where it touched, and slips when that pulls with more than μ F.
 //
 // The spring's stretch is a twist u of the tool (x of the tool point, rotation vector θ). A contact group of
 // force F at r, tangential part P, is stretched by s = |P^½ (u_x + u_θ × r)|, and
@@ -11,7 +11,7 @@
 // same u would store more than friction has been given, it shrinks as well: friction never drives.
 //
 // Elastoplastic presliding: Dupont, Hayward, Armstrong, Altpeter, Single state elastoplastic friction models,
-// IEEE Trans. Automatic Control 2002; here with an energy. Tick thread, RT-safe.
+// IEEE Trans. Automatic Control 2002; here it has an energy. It is RT-safe, for the tick thread only.
 #pragma once
 
 #include "haptic_server/effects/contact_groups.h"

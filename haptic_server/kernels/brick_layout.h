@@ -1,5 +1,5 @@
-// Where a voxel lies in the memory of the bone's bricks (volume/voxel_volume.h); what the volume and the
-// kernels have in common.
+// Says where a voxel lies in the memory of the bone's bricks (volume/voxel_volume.h), which the volume and
+// the kernels have in common.
 //
 // A brick has 16³ cells: the cube of cells between voxel u = 16 b and u = 16 b + 16 on each axis, u =
 // index + 1 being counted from the border of air. It holds all voxels that the points and triangles in its

@@ -1,11 +1,11 @@
-// Cells that the surface crosses, and points that move onto it. Part of kernel_loops.h.
+// These loops find cells that the surface crosses, and move points onto it. They are part of kernel_loops.h.
 namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
 namespace {
 
 // Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2 & 1); edges 4 a .. 4 a + 3 run along axis a.
 constexpr int kEdgeLow[12] = {0, 2, 4, 6, 0, 1, 4, 5, 0, 1, 2, 3};
 
-// table[index], where the index is 0 or more.
+// Reads table[index], where the index is 0 or more.
 #if defined(__AVX512F__)
 inline void gather(const float* table, const Ints& index, Floats& out) {
     out = Floats(_mm512_mask_i32gather_ps(__m512{}, __mmask16(-1), __m512i(index), table, sizeof(float)));

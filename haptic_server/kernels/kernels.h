@@ -14,7 +14,7 @@ namespace bonemill {
 enum class CpuLevel : uint8_t { kBaseline, kAvx2, kAvx512 };
 inline constexpr CpuLevel kCpuLevels[] = {CpuLevel::kBaseline, CpuLevel::kAvx2, CpuLevel::kAvx512};
 
-// "x86-64", "avx2", "avx512".
+// The names are "x86-64", "avx2", "avx512".
 const char* cpuLevelName(CpuLevel level) noexcept;
 bool isSupported(CpuLevel level) noexcept;
 
@@ -52,7 +52,8 @@ struct ContactFrame {
     double depth_cap;  // m: deeper contact pulls no stronger
 };
 
-// Sums over contact points: energy, wrench on the tool and Gauss-Newton stiffness, about the tool point, V.
+// These are sums over contact points: energy, wrench on the tool and Gauss-Newton stiffness, about the
+// tool point, V.
 struct ContactSums {
     double energy = 0;          // J
     double force[3] = {};       // N
@@ -62,8 +63,9 @@ struct ContactSums {
 };
 inline constexpr int kContactBatch = 64;
 
-// What makes a contact point worth a closer look. A place of its patch is nearer to the tool than the point
-// by what lies in the patch's plane of the way to the tool, and by what the bone bends towards the tool.
+// It says what makes a contact point worth a closer look. A place of its patch is nearer to the tool
+// than the point by what lies in the patch's plane of the way to the tool, and by what the bone bends
+// towards the tool.
 struct NearTest {
     float R_VT[9];         // rows
     float reach_per_area;  // half a patch's diagonal, squared, per area
@@ -131,7 +133,7 @@ struct CellPatches {
     float* area;  // in squares of the unit of `steps`
     float *x, *y, *z;
 };
-// Projection of a point of each cell onto its trilinear iso-surface.
+// Projects a point of each cell onto its trilinear iso-surface.
 struct CellProjections {
     float *x, *y, *z;  // in: where it starts; out: where it ended
     float *normal_x, *normal_y,
@@ -144,7 +146,7 @@ struct VoxelBox {
     const uint16_t* first;
     size_t stride_y, stride_z;
 };
-// Cells whose sides are looked at together: the bytes of a word.
+// The sides of so many cells are looked at together: the bytes of a word.
 inline constexpr int kCellsAtOnce = 8;
 
 // These are the voxels in their bricks (brick_layout.h), for kernels that look at any of them; -1 .. dims is
@@ -183,8 +185,8 @@ struct Kernels {
                                 uint16_t* out);
     MilledPlane (*add_plane)(const BurrPlane& burr, const uint16_t* first, int count, int rows,
                              uint16_t* out);
-    // triangles[kTrianglesPerCell * inside + triangle]: crossed edges a + 16 b + 256 c of the cell, not all
-    // zero; zero beyond the last triangle.
+    // triangles[kTrianglesPerCell * inside + triangle] has the crossed edges a + 16 b + 256 c of the cell,
+    // not all zero; it is zero beyond the last triangle.
     void (*cell_patches)(const CellArrays& cells, const int* triangles, const float steps[3],
                          const CellPatches& out);
     // Makes at most `most_steps` Newton steps along the slope times `steepness`, until the density is within
@@ -192,11 +194,12 @@ struct Kernels {
     void (*project_into_cells)(const CellArrays& cells, const float steepness[3],
                                const float inverse_spacing[3], float tolerance, int most_steps,
                                const CellProjections& out);
-    // Newton steps up or down the density's gradient, from cell to cell.
+    // Takes Newton steps up or down the density's gradient, from cell to cell.
     void (*move_onto_surface)(const DensityView& density, int steps, const SurfacePoints& points);
     // Returns the least of (value - lowest) * scale over the elements, but never more than `most`.
     float (*least_scaled)(const float* value, const float* lowest, const float* scale, int count, float most);
-    // Least and largest of `rows` rows that lie `stride` voxels apart, joined with what is there.
+    // Finds the least and the largest of `rows` rows that lie `stride` voxels apart, joined with
+    // what is there.
     void (*range_of_rows)(const uint16_t* row, int count, size_t stride, int rows, uint16_t& least,
                           uint16_t& largest);
 

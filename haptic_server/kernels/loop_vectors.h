@@ -1,4 +1,4 @@
-// Vector types in the width of the registers. Part of kernel_loops.h.
+// The vector types have the width of the registers. They are part of kernel_loops.h.
 namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
 namespace {
 

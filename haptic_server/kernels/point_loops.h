@@ -1,4 +1,4 @@
-// Points, the tool's distances and the contact's sums. Part of kernel_loops.h.
+// These loops are for points, the tool's distances and the contact's sums. They are part of kernel_loops.h.
 namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
 namespace {
 
@@ -78,8 +78,8 @@ inline FromConeAxis<Scalar> fromAxis(const ConeSolid<Scalar>& s, Scalar px, Scal
 template <class Scalar>
 constexpr Scalar kNoDirection = Scalar(1e-12);  // m: below it a direction is taken by convention
 
-// Distance of the profile, and its gradient along and off the axis. The profile is convex: it is the largest
-// of the distances to its lines, but for points that are nearest to a rim.
+// Returns the distance of the profile, and its gradient along and off the axis. The profile is convex: it is
+// the largest of the distances to its lines, but for points that are nearest to a rim.
 template <class Scalar>
 struct ConeProfile {
     Scalar distance, along, off;
@@ -172,7 +172,7 @@ void addContacts(const ContactFrame& frame, const float* __restrict x, const flo
                  const Scalar* __restrict gx, const Scalar* __restrict gy, const Scalar* __restrict gz,
                  int count, ContactSums& sums) {
     const ContactFrame f = frame;
-    // J: of the depth by the tool's pose, negative: g, r x g.
+    // J is the negative derivative of the depth by the tool's pose: g, r x g.
     alignas(64) double J[6][kContactBatch], pull[kContactBatch], k[kContactBatch], energy[kContactBatch],
         depths[kContactBatch];
     for (int i = 0; i < count; ++i) {

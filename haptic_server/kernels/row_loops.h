@@ -1,4 +1,4 @@
-// Rows of voxels: milling and ranges. Part of kernel_loops.h.
+// These loops run over rows of voxels, for milling and ranges. They are part of kernel_loops.h.
 namespace bonemill::BONEMILL_CPU_LEVEL_NAMESPACE {
 namespace {
 

@@ -142,8 +142,8 @@ void LeafMesher::addVertex(const Eigen::Vector3i& local, int axis) {
     materials_.push_back(materialUnder(is_low_inside ? voxel : next, is_low_inside ? low : high, normal));
 }
 
-// Decided by the voxels around the edge alone, so that leaves agree. Outside the volume the original density
-// is 0.
+// The voxels around the edge alone decide it, so that leaves agree. Outside the volume the original
+// density is 0.
 MaterialId LeafMesher::materialUnder(const Eigen::Vector3i& inside, size_t corner,
                                      const Eigen::Vector3f& normal) const noexcept {
     const Eigen::Vector3f inwards = -normal.cwiseProduct(inverse_spacing_).normalized();

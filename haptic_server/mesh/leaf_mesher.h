@@ -12,7 +12,7 @@
 // as the next one below the surface if that is bone, too, and was denser: a voxel that bone fills only partly
 // looks like something less dense.
 //
-// Not RT-safe (allocates).
+// It is not RT-safe (it allocates).
 #pragma once
 
 #include <optional>
@@ -25,11 +25,12 @@
 
 namespace bonemill {
 
-// One leaf after another with reused memory; one thread at a time. Volume and lattice must outlive it.
+// It meshes one leaf after another with reused memory, for one thread at a time. Volume and lattice
+// must outlive it.
 class LeafMesher {
   public:
-    // most_steps_per_cell as for MeshGrid. Without `properties` (which must outlive it) no vertex has
-    // a material.
+    // most_steps_per_cell is as for MeshGrid. Without `properties` (which must outlive it) no vertex
+    // has a material.
     LeafMesher(const VoxelVolume& volume, const LeafLattice& lattice,
                int most_steps_per_cell = MeshGrid::kMostStepsPerCell,
                const BoneProperties* properties = nullptr);

@@ -12,7 +12,7 @@ namespace bonemill {
 class MeshGrid {
   public:
     static constexpr int kMostStepsPerCell = 16383;  // 32 bits hold a density times that
-    // What is streamed. The cell fills a high byte and the place in it a low one, which packs best.
+    // This is streamed. The cell fills a high byte and the place in it a low one, which packs best.
     static constexpr int kStreamedStepsPerCell = 256;
 
     // Throws std::invalid_argument when a leaf is so large (over 21845 cells) that 16 bits cannot hold

@@ -1,5 +1,5 @@
-// Node meshes on their way from the mesher thread to the publisher thread: of each leaf the newest, those
-// that changed together in one group. Any normal thread; never the tick.
+// Node meshes go this way from the mesher thread to the publisher thread: of each leaf the newest, those that
+// changed together in one group. It is for any normal thread, never the tick.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ class MeshOutbox {
 
     // Every leaf has been put once. (Later calls change nothing.)
     void markWhole(int64_t now_ns);
-    // All that was put until then has been taken: who has all nodes has the whole bone.
+    // It is true when all that was put until then has been taken: who has all nodes has the whole bone.
     bool hasGivenWhole() const;
 
   private:

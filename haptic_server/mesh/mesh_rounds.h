@@ -2,7 +2,7 @@
 // that, little by little, all others that changed (at first: the whole bone). Measures how long a cut waits
 // for its meshes.
 //
-// One normal thread, beside the tick; not RT-safe.
+// It belongs to one normal thread, beside the tick, and is not RT-safe.
 #pragma once
 
 #include <chrono>

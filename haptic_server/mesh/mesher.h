@@ -2,7 +2,7 @@
 //
 // Runs in its own normal thread beside the tick, which writes voxels between LeafLattice::beginWrite and
 // endWrite. Takes no lock: a leaf is read between two reads of its version, and read again in a later pass if
-// the version was odd or moved. Not RT-safe; all members from one thread.
+// the version was odd or moved. It is not RT-safe, and one thread calls all members.
 #pragma once
 
 #include <cstdint>

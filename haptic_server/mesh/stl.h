@@ -1,4 +1,4 @@
-// The bone's surface as a binary STL file, for anyone outside.
+// Writes the bone's surface as a binary STL file, for anyone outside.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@ namespace bonemill {
 
 // Writes all triangles in frame W, in mm. Points shared by several leaves become bit-identical coordinates,
 // so a reader that merges equal points gets a closed surface. Throws UserError when the file cannot be
-// written. Not RT-safe.
+// written. It is not RT-safe.
 void saveStl(const std::string& path, std::span<const NodeMesh> meshes, const MeshGrid& grid,
              const Pose& X_WV);
 

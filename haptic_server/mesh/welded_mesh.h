@@ -1,5 +1,5 @@
 // The node meshes become one indexed surface. Vertices of different leaves are the same when they lie on the
-// same integer point of the grid, which is exact and needs no tolerance. Not RT-safe; thread-safe.
+// same integer point of the grid, which is exact and needs no tolerance. It is not RT-safe, but thread-safe.
 #pragma once
 
 #include <array>

@@ -1,9 +1,9 @@
-// How much of a cell is bone: the volume behind the surface that is drawn (marching cubes). RT-safe, any
-// thread; but for the first construction, which makes the tables.
+// Says how much of a cell is bone: the volume behind the surface that is drawn (marching cubes). It is
+// RT-safe, for any thread, but for the first construction, which makes the tables.
 //
-// Divergence theorem with the field (0, 0, z): ∫ z n_z over the cell's triangles, plus the bone's part of the
-// face z = 1. What is bone on a face only depends on the face, as for the triangles: the cells' volumes add
-// up to that of the closed surface.
+// By the divergence theorem with the field (0, 0, z) it is ∫ z n_z over the cell's triangles, plus the bone's
+// part of the face z = 1. What is bone on a face only depends on the face, as for the triangles: the cells'
+// volumes add up to that of the closed surface.
 #pragma once
 
 #include "haptic_server/contact/cell_corners.h"

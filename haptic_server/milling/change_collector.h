@@ -1,7 +1,7 @@
 // Collects what a tick changes of the bone, leaf by leaf, within a budget of cells. What there is no time for
 // waits: the next tick goes on from there to the last leaf, and then comes to the leaves before it.
 //
-// Construction allocates; all else is RT-safe (tick thread only).
+// Construction allocates; all else is RT-safe, for the tick thread only.
 #pragma once
 
 #include <cstddef>
@@ -36,8 +36,8 @@ class ChangeCollector {
         return changes_;
     }
     // Keeps the part's rows, which change what `of_part` says; looking for them counts as `looked_at` cells.
-    // False: that is more than a tick's cells, and nothing of the part is kept; nor is anything without
-    // memory for its bricks.
+    // False says that this is more than a tick's cells, and nothing of the part is kept; nor is anything
+    // without memory for its bricks.
     bool takePart(VoxelVolume& volume, size_t looked_at, const MillingResult& of_part,
                   MillingResult& of_leaf) noexcept;
 

@@ -1,6 +1,6 @@
 // These are the voxels that one tick changes: they are collected leaf by leaf in runs along x, then written
 // with all that hangs on them (leaf versions, density ranges, point-shell). Construction allocates; all else
-// is RT-safe (tick thread only).
+// is RT-safe, for the tick thread only.
 #pragma once
 
 #include <cstddef>

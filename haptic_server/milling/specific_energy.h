@@ -1,6 +1,6 @@
-// How much energy a volume of bone takes to be cut: by the density that it had in the scan, or by its
+// Says how much energy a volume of bone takes to be cut: by the density that it had in the scan, or by its
 // material. u = u_ref (ρ/ρ_ref)^exponent (ALGORITHMS: 1.5 .. 2), ρ above the window's lower end. Construction
-// allocates; ofCell() is RT-safe, any thread.
+// allocates; ofCell() is RT-safe, for any thread.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ class SpecificEnergy {
     SpecificEnergy(const SpecificEnergyConfig& config, std::shared_ptr<const BoneProperties> properties,
                    Density iso);
 
-    // The densest of the cell's corners decides; J/m³.
+    // The densest of the cell's corners decides; the unit is J/m³.
     double ofCell(const Eigen::Vector3i& cell) const noexcept {
         return properties_ ? ofScannedCell(cell) : reference_;
     }

@@ -102,7 +102,7 @@ void SurfaceShift::forget() noexcept {
     touched_ = {};
 }
 
-// visit(voxels from the scratch box on) for the bits of this word of a row.
+// Calls visit(voxels from the scratch box on) for the bits of this word of a row.
 template <class Visit>
 void SurfaceShift::forEachBit(int word, RowBits bits, Visit&& visit) const noexcept {
     for (; bits != 0; bits &= bits - 1) visit(word * kRowBits + std::countr_zero(bits));
@@ -126,7 +126,7 @@ void SurfaceShift::add(const BoneModel& bone, PatchId patch, double energy, doub
     patch_cells_.include(cell);
 }
 
-// visit(point V, area, node of its block) for the shell's points around those with energy.
+// Calls visit(point V, area, node of its block) for the shell's points around those with energy.
 template <class Visit>
 void SurfaceShift::forEachPatch(const BoneModel& bone, Visit&& visit) const noexcept {
     const int factor = blockOf(bone);
@@ -148,7 +148,8 @@ void SurfaceShift::forEachPatch(const BoneModel& bone, Visit&& visit) const noex
     });
 }
 
-// visit(voxel, weight) with the hat's weights, > 0, of the voxels that can be written. `at` in voxel steps.
+// Calls visit(voxel, weight) with the hat's weights, > 0, of the voxels that can be written. `at` is
+// in voxel steps.
 template <class Visit>
 void SurfaceShift::forEachVoxelAround(const BoneModel& bone, const Vector3f& at,
                                       Visit&& visit) const noexcept {
@@ -239,7 +240,7 @@ void SurfaceShift::spreadRest(const BoneModel& bone) noexcept {
     });
 }
 
-// visit(cell, node) for the cells that have a touched voxel.
+// Calls visit(cell, node) for the cells that have a touched voxel.
 template <class Visit>
 void SurfaceShift::forEachCell(const BoneModel& bone, Visit&& visit) noexcept {
     const Vector3i last = bone.volume.dims().array() - 1;

@@ -11,7 +11,7 @@
 // What that removes is then measured: the sum over the cells of specific energy times the change of their
 // fill (cell_fill.h). The sum telescopes: over a session it is that of what is missing in the end.
 //
-// Frame V, SI. Construction allocates; all else is RT-safe (tick thread only).
+// The frame is V, the units are SI. Construction allocates; all else is RT-safe, for the tick thread only.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +43,7 @@ class SurfaceShift {
                  MillingResult& result) noexcept;
 
   private:
-    // One voxel, and the cell that begins there.
+    // It is one voxel, and the cell that begins there.
     struct Node {
         float drop = 0, weight = 0;   // voxel: weighted sum of what is asked for, and of the weights
         float energy = 0, depth = 0;  // of the patch whose block begins at the cell
@@ -54,7 +54,7 @@ class SurfaceShift {
         Eigen::Vector3f at;  // voxel steps
         float drop;          // counts
     };
-    // Voxels of a row that something was asked of, one bit each from the scratch box on.
+    // Something was asked of these voxels of a row, one bit each from the scratch box on.
     using RowBits = uint64_t;
     static constexpr int kRowBits = 64;
     struct Span {  // of voxels along x; empty: low > high

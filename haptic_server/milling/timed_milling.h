@@ -20,7 +20,8 @@ struct MillingConfig {
     size_t most_cells = 50'000'000;  // whose surface is made anew; eight that are only looked at count as one
 };
 
-// Owns the scratch memory of the burr in use. Construction allocates; apply() is RT-safe (tick thread only).
+// Owns the scratch memory of the burr in use. Construction allocates; apply() is RT-safe, for the
+// tick thread only.
 class TimedMilling {
   public:
     // There is room for burrs up to `largest_burr_radius`, which is the one in use at first.

@@ -1,5 +1,5 @@
 // Leads the haptic tick along a path of device inputs, as fast as it goes: the one replay of everything that
-// runs without a device. Not RT-safe.
+// runs without a device. It is not RT-safe.
 #pragma once
 
 #include <functional>

@@ -15,8 +15,8 @@ struct SimulateOptions {
     SavePaths save;
 };
 
-// Runs all rows and returns the JSON object with totals and `state_hash` (docs/simulate.md). Throws
-// UserError.
+// Runs all rows and returns the JSON object with totals and `state_hash`
+// (docs/simulate.md). Throws UserError.
 std::string simulate(const SimulateOptions& options);
 
 }  // namespace bonemill

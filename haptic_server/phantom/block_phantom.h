@@ -1,5 +1,5 @@
 // Makes a block of layers of known density: uniform, cortical shell over trabecular core, or whatever else.
-// Start-up only; thread-safe.
+// It is for start-up only, and thread-safe.
 //
 // Lengths are in m. In W the block fills |x| <= size.x/2, |y| <= size.y/2 and -size.z <= z <= 0, so that its
 // top face is z = 0.

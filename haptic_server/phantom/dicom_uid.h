@@ -1,4 +1,4 @@
-// Unique identifiers for DICOM files.
+// Makes unique identifiers for DICOM files.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Writes phantoms: a tooth as a DICOM CT series, blocks, a vertebra and analytic bodies as NRRD. See
-// docs/volumes.md.
+// Writes phantoms: a tooth as a DICOM CT series, blocks, a vertebra and analytic bodies as
+// NRRD. See docs/volumes.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>

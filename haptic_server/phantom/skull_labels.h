@@ -3,7 +3,7 @@
 //
 // They are placed by eye on slices of that scan, not segmented: tubes and a sheet about splines in its W
 // frame, where its bone leaves room for them. The sigmoid sinus is about 9 mm wide, the facial nerve 2 mm
-// with its sheath. Another scan has them elsewhere. Start-up only, allocates.
+// with its sheath. Another scan has them elsewhere. It is for start-up only, since it allocates.
 #pragma once
 
 #include <cstdint>

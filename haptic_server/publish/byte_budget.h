@@ -1,4 +1,4 @@
-// Says how much may be written now, so that the mean stays below a rate. One thread.
+// Says how much may be written now, so that the mean stays below a rate. It is for one thread.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Decides which received commands the server carries out: each (sender, sequence) once. One thread; not
-// RT-safe.
+// Decides which received commands the server carries out: each (sender, sequence) once. It is for one thread
+// and not RT-safe.
 #pragma once
 
 #include <cstdint>

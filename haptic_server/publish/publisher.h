@@ -53,8 +53,7 @@ class Publisher {
     // `effects` are the scene's, if it has such that say something.
     bool publishToolState(const TickRecord& record, std::optional<topics::EffectState> effects = {});
     // Epoch, node count, node digest and last command are filled in. Clients take a server for lost that
-    // publishes nothing for 3 s: call at least once per second, and right after the last of a group of
-    // nodes.
+    // publishes nothing for 3 s: call at least once per second, and right after the last of a group of nodes.
     bool publishStatus(topics::Status status);
 
     // These commands have arrived, each valid and new; carry each out and acknowledge() it. What is invalid

@@ -1,5 +1,5 @@
 // The bone becomes files: its surface, its densities, and what was taken from it. They are results, not for
-// streaming. Not RT-safe.
+// streaming. It is not RT-safe.
 #pragma once
 
 #include <string>

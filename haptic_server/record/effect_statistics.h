@@ -1,7 +1,7 @@
 // Keeps what the effects of a run told, from its tick records: extremes, totals, and what the trainee
 // was warned of.
 //
-// One normal thread calls it; add() allocates nothing. SI but for temperatures, which are in °C.
+// One normal thread calls it; add() allocates nothing. Units are SI but for temperatures, which are in °C.
 #pragma once
 
 #include <array>

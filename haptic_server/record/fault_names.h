@@ -1,4 +1,4 @@
-// Finds words for the TickFault bits. Any thread; allocates.
+// Finds words for the TickFault bits. Any thread may call it; it allocates.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Tells how long the ticks of a run took, in µs. Not RT-safe.
+// Tells how long the ticks of a run took, in µs. It is not RT-safe.
 #pragma once
 
 #include <cstdint>

@@ -3,8 +3,8 @@
 //
 // W is the world frame (the volume file's physical frame); force and torque act on the hand; removed_* are of
 // that tick; faults is the TickFault mask as a decimal number. Where the scene has effects that say
-// something, their columns follow, events as a decimal number (TickEvent mask). Doubles round-trip. One
-// normal thread.
+// something, their columns follow, events as a decimal number (TickEvent mask). Doubles round-trip. It
+// belongs to one normal thread.
 #pragma once
 
 #include <cstdio>

@@ -23,7 +23,7 @@ double finite(float value) {
     return std::isfinite(value) ? double(value) : 0;
 }
 
-// Those that are the viewer's alone.
+// Returns those that are the viewer's alone.
 scene::Effects viewerEffectsOf(scene::Effects effects) {
     const google::protobuf::Reflection& reflection = *effects.GetReflection();
     std::vector<const google::protobuf::FieldDescriptor*> listed;

@@ -20,7 +20,7 @@ void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info);
 class ShownEffects {
   public:
     explicit ShownEffects(const scene::Effects& effects);
-    // False: tool states have no such part.
+    // False says that tool states have no such part.
     bool areShown() const noexcept { return recorded_.any() || is_seen_; }
     // `newest` is the newest tick's; `events` and `removed` (m³) are those since the tool state before.
     topics::EffectState at(const EffectRecord& newest, const EventSum& events, double removed) const;

@@ -1,4 +1,4 @@
-// What the scene's accuracy message asks of shell, tool and tick. Start-up only.
+// Reads what the scene's accuracy message asks of shell, tool and tick. It is for start-up only.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// What the scene's effects, materials and tools ask of the tick's effects. Start-up only.
+// Reads what the scene's effects, materials and tools ask of the tick's effects. It is for start-up only.
 #pragma once
 
 #include "common/config/scene_file.h"

@@ -1,4 +1,4 @@
-// The materials of a scene: what they are, and which voxel is of which. Start-up only.
+// Reads the materials of a scene: what they are, and which voxel is of which. It is for start-up only.
 #pragma once
 
 #include <memory>

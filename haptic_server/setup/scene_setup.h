@@ -1,4 +1,5 @@
-// Turns a scene file into the SI configuration and the objects that the tick works on. Start-up only.
+// Turns a scene file into the SI configuration and the objects that the tick works on. It is
+// for start-up only.
 #pragma once
 
 #include <memory>
@@ -35,7 +36,7 @@ struct Simulation {
 
     // They are meant for ToolSwitch and point into `tools`.
     std::vector<SpoTool> spoTools() const;
-    // With the first tool and the scene's accuracy from beginning to end.
+    // It has the first tool and the scene's accuracy from beginning to end.
     FixedTickConfig fixedTick() const { return {tick, spoTools().front(), accuracy}; }
 };
 

@@ -1,4 +1,4 @@
-// What the gradient law is told at the start, apart from the model that works with it.
+// The gradient law is told this at the start, apart from the model that works with it.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The default law: the tool's pose minimises contact energy + coupling energy + damping against
+// By the default law the tool's pose minimises contact energy + coupling energy + damping against
 // the last pose, by a few Gauss-Newton steps with Cholesky factors, Levenberg damping, a trust
 // radius and a line search. The energy never rises inside a tick, so that no contact can make the
 // tool diverge (docs/stability.md).
@@ -31,7 +31,7 @@ class GradientModel final : public SpoModel {
     double energy() const noexcept { return energy_; }
 
   private:
-    // All that is computed at one pose.
+    // All of this is computed at one pose.
     struct State {
         Pose X_VT;
         EnergyTerm total;
@@ -39,7 +39,7 @@ class GradientModel final : public SpoModel {
         double max_depth = 0;
         bool isFinite() const noexcept;
     };
-    // What stays the same during a tick.
+    // It stays the same during a tick.
     struct Tick {
         Pose X_VT_start, X_VT_device;
         SpoStep* out;

@@ -9,7 +9,7 @@ class SolveEnergy {
   public:
     virtual ~SolveEnergy() = default;
     // Returns the energy at this pose of the tool. Within a tick it is one fixed function, bounded from
-    // below, with a positive semi-definite stiffness. RT-safe; tick thread only.
+    // below, with a positive semi-definite stiffness. It is RT-safe, for the tick thread only.
     virtual EnergyTerm at(const Pose& X_VT) const noexcept = 0;
 };
 

@@ -1,5 +1,5 @@
-// How the simulated tool (SPO) follows the hand and meets the bone: one interface, two models. The scene
-// chooses. All poses and wrenches are in V.
+// Decides how the simulated tool (SPO) follows the hand and meets the bone: there is one interface for two
+// models. The scene chooses. All poses and wrenches are in V.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,17 @@
 
 namespace bonemill {
 
-// The bone that the tool meets. All of it lives at least as long as the model.
+// The tool meets this bone. All of it lives at least as long as the model.
 struct SpoWorld {
     const VoxelVolume& volume;
     const LeafLattice& lattice;
     const PointShell& shell;
 };
 
-// The outcome of one tick, in V.
+// It is the outcome of one tick, in V.
 struct SpoStep {
     Pose X_VT;  // of the simulated tool after the tick
-    // On the hand about the tool point that it holds, before the limits of what it may feel.
+    // It acts on the hand about the tool point that it holds, before the limits of what it may feel.
     Wrench wrench_hand_V;
     uint32_t contacts = 0;
     uint32_t candidates = 0;  // points that were tested in each iteration
@@ -44,19 +44,20 @@ struct SpoStep {
 class SpoModel {
   public:
     virtual ~SpoModel() = default;
-    // Does one tick of length dt: the tool is at X_VT, and the hand holds it at X_VT_device. RT-safe;
-    // tick thread only.
+    // Does one tick of length dt: the tool is at X_VT, and the hand holds it at X_VT_device. It is RT-safe,
+    // for the tick thread only.
     virtual SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept = 0;
     // Forgets earlier ticks. It is called when the tool is placed anew and when the model becomes active.
     virtual void restart() noexcept = 0;
-    // Takes effect with the next advance(). RT-safe; tick thread only.
+    // Takes effect with the next advance(). It is RT-safe, for the tick thread only.
     virtual void setAccuracy(const AccuracySettings& settings) noexcept = 0;
-    // Gives another tool at the same pose; takes effect with the next advance(). RT-safe; tick thread only.
+    // Gives another tool at the same pose; takes effect with the next advance(). It is RT-safe, for the
+    // tick thread only.
     virtual void setTool(const SpoTool& tool) noexcept = 0;
     // Takes what effects add; null adds nothing. Only the gradient law has room for them.
     virtual void setEffects(ContactWeights*, SolveEnergy*) noexcept {}
     // Lists where the tool touches the bone at the end of the last advance(), as many as `out` has room for,
-    // and returns how many. RT-safe; tick thread only.
+    // and returns how many. It is RT-safe, for the tick thread only.
     virtual size_t listContacts(std::span<SurfaceContact>) noexcept { return 0; }
 };
 

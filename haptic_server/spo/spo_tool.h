@@ -1,4 +1,4 @@
-// What an SPO model needs to know of the tool in use.
+// An SPO model needs to know this of the tool in use.
 #pragma once
 
 #include "haptic_server/tool/burr.h"

@@ -1,5 +1,5 @@
 // Finds the level of the shell that there is time for: the one asked for, or a coarser one when the points
-// near the tool are too many for a tick. RT-safe; tick thread only.
+// near the tool are too many for a tick. It is RT-safe, for the tick thread only.
 #pragma once
 
 #include <algorithm>

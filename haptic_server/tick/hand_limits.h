@@ -14,7 +14,7 @@
 //    sent, whatever was computed. The rate does not see it, for it would take the ramp for a change of the
 //    wrench.
 //
-// All wrenches and poses are in V, torques about the tool point that the hand holds. RT-safe;
+// All wrenches and poses are in V, torques about the tool point that the hand holds. It is RT-safe, for the
 // tick thread only.
 #pragma once
 
@@ -30,14 +30,14 @@ struct HandLimitsConfig {
     double max_torque = 1;  // N·m
 };
 
-// What a motion of the hand makes of the wrench from one tick to the next, when nothing else changes.
+// A motion of the hand makes this of the wrench from one tick to the next, when nothing else changes.
 struct HandSpring {
     double stiffness = 0;           // N/m
     double rotation_stiffness = 0;  // N·m/rad
     double lever = 0;               // m: of the force about the tool point
 };
 
-// What a tick has to say before the limits.
+// A tick says this before the limits.
 struct FeltStep {
     Wrench wrench_V;
     bool is_solved = true;  // false: there is no equilibrium, and the wrench says nothing
@@ -50,10 +50,11 @@ class HandLimits {
     static constexpr double kForceRate = 100;  // N/s: from nothing to 10 N in 0.1 s
     static constexpr double kTorqueRate = 3;   // N·m/s: that force at 30 mm
     static constexpr double kQuiet = 0.05;     // s without a limit by the rate: the change is over
-    // s. One tick without an equilibrium takes 2 % of the force, which no hand feels. Many must not hold it:
-    // the last force stays where it points while the hand moves on, so that it would drive the hand without
-    // end. Over this time it falls by 1000 N/s at the most, as steeply as when the device falls silent, which
-    // does not kick; and at the coupling's highest speed, 0.5 m/s, the hand is not driven farther than 25 mm.
+    // It is in s. One tick without an equilibrium takes 2 % of the force, which no hand feels. Many must not
+    // hold it: the last force stays where it points while the hand moves on, so that it would drive the hand
+    // without end. Over this time it falls by 1000 N/s at the most, as steeply as when the device falls
+    // silent, which does not kick; and at the coupling's highest speed, 0.5 m/s, the hand is not driven
+    // farther than 25 mm.
     static constexpr double kFade = 0.05;
 
     // The rate comes on top of what the hand's own motion makes by `spring`.

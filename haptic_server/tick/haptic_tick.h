@@ -22,13 +22,13 @@
 
 namespace bonemill {
 
-// The bone that a tick changes.
+// A tick changes this bone.
 struct TickBone {
     BoneModel& model;
     BoneHistory* history = nullptr;  // null: nothing is ever put back or paused
 };
 
-// What others choose while ticks go on.
+// Others choose this while ticks go on.
 struct TickChoices {
     const ToolSwitch& tools;
     const AccuracySwitch& accuracy;
@@ -45,7 +45,7 @@ class HapticTick {
     // Does one tick; false when io.read() said stop. RT-safe; sets the RtScope guard around its work.
     bool tick(TickIo& io) noexcept;
 
-    // Returns the faults of all ticks so far (bits of TickFault). Tick thread only.
+    // Returns the faults of all ticks so far (bits of TickFault). It is for the tick thread only.
     uint32_t latchedFaults() const noexcept { return latched_faults_; }
     // Returns the pose of the simulated tool after the last tick.
     Pose X_WT() const noexcept { return X_WV_ * X_VT_; }

@@ -9,8 +9,8 @@
 
 namespace bonemill {
 
-// The budget of the gradient law and of milling, by what they cost on a plain PC (docs/measurements.md). The
-// thesis' law has only its room for contact points.
+// It is the budget of the gradient law and of milling, by what they cost on a plain PC
+// (docs/measurements.md). The thesis' law has only its room for contact points.
 struct TickBudget {
     static constexpr double kPointTest = 5e-9, kMilledCell = 4e-9;   // s
     static constexpr double kForceShare = 0.5, kMillingShare = 0.3;  // the rest is for all else

@@ -1,4 +1,4 @@
-// What a tick is told at the start.
+// A tick is told this at the start.
 #pragma once
 
 #include "haptic_server/accuracy/accuracy_settings.h"

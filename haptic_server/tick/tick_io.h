@@ -32,7 +32,7 @@ class TickIo {
     virtual int64_t write(const Wrench& wrench_hand_W) noexcept = 0;
     // Is called at the end of the tick's work, and returns the time (ns).
     virtual int64_t now() noexcept = 0;
-    // Never blocks; what finds no room is dropped and counted.
+    // It never blocks; what finds no room is dropped and counted.
     virtual void push(const TickRecord& record) noexcept = 0;
 };
 

@@ -27,7 +27,7 @@ struct Burr {
         return kind == BurrKind::kBall ? radius
                                        : Eigen::Vector2d(std::max(radius, tip_radius), length / 2).norm();
     }
-    // The signed distance is in m, negative inside. RT-safe.
+    // The signed distance is in m, negative inside. It is RT-safe.
     double signedDistance(const Eigen::Vector3d& p_T) const noexcept;
 };
 

@@ -1,4 +1,4 @@
-// Tool distances interpolated trilinearly in a grid.
+// The tool's distances are interpolated trilinearly in a grid.
 #pragma once
 
 #include "haptic_server/tool/sdf_grid.h"

@@ -1,5 +1,5 @@
-// This is a tool that is smaller all around than it will be: its distances are raised by an offset. Tick
-// thread only, RT-safe.
+// This is a tool that is smaller all around than it will be: its distances are raised by an offset. It is
+// RT-safe, for the tick thread only.
 #pragma once
 
 #include <algorithm>

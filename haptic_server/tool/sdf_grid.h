@@ -1,10 +1,11 @@
 // The contact loop sees the tool as signed distances at the nodes of a regular grid, interpolated
 // between them.
 //
-// Frame T (docs/frames.md): origin at the burr centre, +y along the shaft towards the hand. Units m; negative
-// inside. Node (i, j, k) lies at origin + spacing·(i, j, k). Outside of the grid there is no tool and hence
-// no contact. Queries are const, noexcept and RT-safe: any thread; a NaN point counts as outside. Thesis:
-// "Haptic Milling Simulation in Six Degrees-of-Freedom", KTH 2012, a grid of 22×128×22 nodes.
+// The frame is T (docs/frames.md), with its origin at the burr centre and +y along the shaft towards the
+// hand. The unit is m; distances are negative inside. Node (i, j, k) lies at origin + spacing·(i, j, k).
+// Outside of the grid there is no tool and hence no contact. Queries are const, noexcept and RT-safe, for any
+// thread; a NaN point counts as outside. The thesis ("Haptic Milling Simulation in Six Degrees-of-Freedom",
+// KTH 2012) has a grid of 22×128×22 nodes.
 #pragma once
 
 #include <algorithm>
@@ -20,9 +21,9 @@ class SdfGrid {
     // A query outside of the grid returns this, which is farther than any contact distance (m).
     static constexpr float kOutsideDistance = 1e9f;
 
-    // `values`: one distance per node, x fastest. Throws std::invalid_argument unless there are at least
-    // 2 nodes per axis, one finite value for each, a positive spacing and a finite origin. Allocates;
-    // not RT-safe.
+    // `values` has one distance per node, x fastest. Throws std::invalid_argument unless there are at least 2
+    // nodes per axis, one finite value for each, a positive spacing and a finite origin. It allocates, so it
+    // is not RT-safe.
     SdfGrid(const Eigen::Vector3i& nodes, double spacing, const Eigen::Vector3d& origin_T,
             std::vector<float> values);
 
@@ -38,7 +39,7 @@ class SdfGrid {
     // The box reaches from the first node to the last.
     const Eigen::AlignedBox3d& gridBox() const noexcept { return grid_box_; }
     // distance() is nowhere negative outside of this box: the nodes inside the tool, grown by one spacing and
-    // cut at the grid's end. Empty if no node is inside.
+    // cut at the grid's end. It is empty if no node is inside.
     const Eigen::AlignedBox3d& box() const noexcept { return box_; }
 
     bool contains(const Eigen::Vector3d& p_T) const noexcept;
@@ -49,8 +50,8 @@ class SdfGrid {
     // This is the same without rounding; p_T is inside of the grid.
     double distanceExactly(const Eigen::Vector3d& p_T) const noexcept;
 
-    // Exact gradient of distance(), one-sided (from the higher cell) on a cell's face; zero outside of
-    // the grid.
+    // Returns the exact gradient of distance(), one-sided (from the higher cell) on a cell's face; it is zero
+    // outside of the grid.
     Eigen::Vector3d gradient(const Eigen::Vector3d& p_T) const noexcept;
 
     // This is the contact loop's distance(), in single precision throughout.
@@ -59,7 +60,7 @@ class SdfGrid {
         return sampleAt(p_T, unused);
     }
 
-    // The same with its gradient, which is left alone outside of the grid.
+    // It is the same with its gradient, which is left alone outside of the grid.
     float sampleAt(const Eigen::Vector3f& p_T, Eigen::Vector3f& gradient) const noexcept {
         const Eigen::Array3f u = (p_T - origin_f_).array() * inverse_spacing_f_;
         if (!((u >= 0.0f).all() && (u <= last_f_).all())) return kOutsideDistance;  // this way round for NaN

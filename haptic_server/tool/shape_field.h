@@ -1,4 +1,4 @@
-// Exact tool distances from its shapes: solids of revolution about a segment, and their union.
+// The tool's distances are exact, from its shapes: solids of revolution about a segment, and their union.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace bonemill {
 // own surface.
 class ShapeField final : public ToolField {
   public:
-    // There must be at least one checked shape; throws std::invalid_argument otherwise. Allocates.
+    // There must be at least one checked shape; throws std::invalid_argument otherwise. It allocates.
     explicit ShapeField(const std::vector<ToolShape>& shapes);
 
     void distances(const PointBatch<float>& points_T, float* out) const noexcept override;

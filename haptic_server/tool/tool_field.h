@@ -17,7 +17,7 @@ struct PointBatch {
     int count = 0;
 };
 
-// Distances and gradients of one batch.
+// These are distances and gradients of one batch.
 template <class Scalar>
 struct SampleBatch {
     alignas(64) Scalar distance[PointBatch<Scalar>::kCapacity];
@@ -51,7 +51,7 @@ class ToolField {
     // The bound is nowhere above the distance.
     virtual double distanceBound(const Eigen::Vector3d& p_T) const noexcept = 0;
 
-    // How long a point's distance takes, in those of a tool of two round solids.
+    // It says how long a point's distance takes, in those of a tool of two round solids.
     virtual double testCost() const noexcept = 0;
 
     // The distance is nowhere negative outside.

@@ -1,4 +1,5 @@
-// One tool in all the ways that the accuracy settings can ask for. Start-up builds it; then it never changes.
+// It is one tool in all the ways that the accuracy settings can ask for. Start-up builds it; then
+// it never changes.
 #pragma once
 
 #include <memory>
@@ -13,15 +14,15 @@ namespace bonemill {
 
 class ToolModel {
   public:
-    // The scene's distance grid, and the shapes if the tool is made of shapes. `thinnest_radius` in m is used
-    // for a tool without shapes: its burr's. Allocates.
+    // Takes the scene's distance grid, and the shapes if the tool is made of shapes. `thinnest_radius` in m
+    // is used for a tool without shapes: its burr's. It allocates.
     ToolModel(SdfGrid grid, const std::vector<ToolShape>& shapes, double thinnest_radius);
 
-    // Adds the grid of a refinement > 1 so that settings with it find it. Allocates.
+    // Adds the grid of a refinement > 1 so that settings with it find it. It allocates.
     void addRefinedGrid(int refinement, SdfGrid grid);
 
     // What these settings ask for, or the nearest thing there is: a tool without shapes has only grids, the
-    // finest one not above the wanted refinement. RT-safe.
+    // finest one not above the wanted refinement. It is RT-safe.
     const ToolField& field(const AccuracySettings& settings) const noexcept;
     const SdfGrid& grid() const noexcept { return grids_.front()->grid(); }
     bool hasShapes() const noexcept { return shapes_ != nullptr; }

@@ -1,8 +1,8 @@
 // Solid shapes a tool is made of, and their exact signed distances.
 //
-// Frame T, m; negative inside. Checked shapes (build/check_shape.h) only, for the other functions. Not for
-// the tick. Formulas: a solid of revolution's distance is that of its profile in the half-plane (along the
-// axis, off the axis).
+// The frame is T, the unit m; it is negative inside. The other functions take checked shapes
+// (build/check_shape.h) only. It is not for the tick. Formulas: a solid of revolution's distance is that of
+// its profile in the half-plane (along the axis, off the axis).
 #pragma once
 
 #include <variant>

@@ -1,4 +1,4 @@
-// What the scanned bone was made of, voxel by voxel: the density that it had (how hard it is) and its
+// The scanned bone was made of this, voxel by voxel: the density that it had (how hard it is) and its
 // material. What is left of a voxel is the volume's; these never change. Memory goes to bricks that hold bone
 // or a material.
 #pragma once
@@ -18,7 +18,7 @@ class BoneProperties {
     template <class MaterialOf>
     BoneProperties(const VoxelVolume& scanned, MaterialOf&& material);
 
-    // RT-safe, any thread. 0 and kNoMaterial outside.
+    // It is RT-safe, for any thread. Outside it is 0 and kNoMaterial.
     Density original(const Eigen::Vector3i& voxel) const noexcept {
         const size_t at = map_.find(voxel);
         return at == BrickMap::kNowhere ? Density(0) : density_[at];

@@ -16,7 +16,7 @@ class BrickMap {
     static constexpr size_t kBrick = size_t(kEdge) * kEdge * kEdge;  // places of a brick
     static constexpr size_t kNowhere = ~size_t(0);
 
-    // The map is of voxels 0 .. dims-1, none of which has a place. Allocates.
+    // The map is of voxels 0 .. dims-1, none of which has a place. It allocates.
     explicit BrickMap(const Eigen::Vector3i& dims)
         : dims_(dims), bricks_((dims.array() + kEdge - 1) / kEdge), slots_(size_t(bricks_.prod()), kNone) {}
 
@@ -30,7 +30,7 @@ class BrickMap {
         const uint32_t slot = slots_[brickIndex(brick)];
         return slot == kNone ? kNowhere : slot * kBrick + inBrick(voxel);
     }
-    // visit(place) for those of a cell's eight corners that have one.
+    // Calls visit(place) for those of a cell's eight corners that have one.
     template <class Visit>
     void forEachCorner(const Eigen::Vector3i& cell, Visit&& visit) const noexcept {
         constexpr size_t kStep[3] = {1, kEdge, size_t(kEdge) * kEdge};

@@ -22,7 +22,7 @@ using BrickId = uint32_t;  // x fastest
 
 class BrickStore {
   public:
-    // Air everywhere, for voxels u < `voxels` on each axis. Allocates.
+    // It begins as air everywhere, for voxels u < `voxels` on each axis. It allocates.
     explicit BrickStore(const Eigen::Vector3i& voxels);
 
     const Eigen::Vector3i& bricksPerAxis() const noexcept { return bricks_; }
@@ -36,9 +36,9 @@ class BrickStore {
     }
     IndexBox allBricks() const noexcept { return {Eigen::Vector3i::Zero(), bricks_.array() - 1}; }
 
-    // The offset is one in data(); the voxels from -kBrickLow to +kBrickHigh of the brick's first and
-    // last one lie around it. RT-safe, any thread; the brick that it leads to stays where it is until it
-    // is opened.
+    // The offset is one in data(); the voxels from -kBrickLow to +kBrickHigh of the brick's first and last
+    // one lie around it. It is RT-safe, for any thread; the brick that it leads to stays where it is until
+    // it is opened.
     size_t offset(int u, int v, int w) const noexcept {
         constexpr int kInBrick = kBrickCells - 1;
         return slot(brickOf(u, v, w)) * kBrickSize + size_t((u & kInBrick) + kBrickLow) +
@@ -54,7 +54,7 @@ class BrickStore {
     const Density* contents(BrickId brick) const noexcept {
         return pool_.data() + size_t(slot(brick)) * kBrickSize;
     }
-    // Every density in the brick, if it is a shared one.
+    // Returns the density of all in the brick, if it is a shared one.
     std::optional<Density> sharedDensity(BrickId brick) const noexcept {
         const uint32_t s = slot(brick);
         if (s >= kSharedSlots) return std::nullopt;

@@ -11,7 +11,7 @@
 
 namespace bonemill {
 
-// RT-safe but for the construction, as far as the callers' functions are; one thread at a time.
+// It is RT-safe but for the construction, as far as the callers' functions are, and for one thread at a time.
 class CrossedCells {
   public:
     // There is room for boxes of up to `most_cells` per axis.
@@ -34,7 +34,7 @@ class CrossedCells {
     }
 
   private:
-    // One column more than cells, and what the kernel writes behind them.
+    // A row has one column more than cells, and what the kernel writes behind them.
     static size_t rowSize(int cells) noexcept { return size_t(cells) + 1 + kCellLanes; }
     static constexpr uint64_t kAllInside = 0x5555555555555555;  // columns of four inside voxels
 

@@ -1,4 +1,4 @@
-// The density's gradient at a voxel, wherever the voxels are kept. RT-safe.
+// Returns the density's gradient at a voxel, wherever the voxels are kept. It is RT-safe.
 #pragma once
 
 #include <Eigen/Core>

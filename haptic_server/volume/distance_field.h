@@ -1,7 +1,8 @@
-// How far it is to the nearest protected structure, and which one that is: samples at the voxels, trilinear
-// between them. Known up to `reach`, also outside of the volume; memory goes to bricks where it is less.
+// Says how far it is to the nearest protected structure, and which one that is: there are samples at the
+// voxels, trilinear between them. They are known up to `reach`, also outside of the volume; memory goes to
+// bricks where it is less.
 //
-// Frame V, m; negative inside a structure. Reading is RT-safe, any thread.
+// The frame is V, the unit m; it is negative inside a structure. Reading is RT-safe, for any thread.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +21,8 @@ struct DistanceSample {
 
 class DistanceField {
   public:
-    // Samples at the voxels of this box, which may go beyond the volume; reach everywhere. Allocates.
+    // The samples are at the voxels of this box, which may go beyond the volume, and are `reach`
+    // everywhere. It allocates.
     DistanceField(const IndexBox& voxels, const Eigen::Vector3d& spacing, double reach)
         : first_(voxels.min),
           spacing_(spacing),
@@ -34,8 +36,8 @@ class DistanceField {
     DistanceSample smoothAt(const Eigen::Vector3d& p_V) const noexcept;
     size_t bytes() const noexcept { return distance_.size() * (sizeof(float) + sizeof(MaterialId)); }
 
-    // Start-up only. Bricks of samples, layer after layer along z; sample(voxel) gives {distance, nearest}
-    // for the box's voxels.
+    // It is for start-up only. Fills bricks of samples, layer after layer along z; sample(voxel) gives
+    // {distance, nearest} for the box's voxels.
     int layerCount() const noexcept { return map_.bricksPerAxis().z(); }
     IndexBox layer(int n) const noexcept;
     template <class Sample>

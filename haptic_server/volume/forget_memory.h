@@ -7,7 +7,7 @@
 namespace bonemill {
 
 // Only whole pages go; whatever they held reads as anything from now on. Does nothing when the system refuses
-// (locked memory). Not RT-safe.
+// (locked memory). It is not RT-safe.
 void forgetBytes(std::span<std::byte> bytes) noexcept;
 
 template <class T>

@@ -18,7 +18,8 @@ bool isSame(const DensityRange& a, const DensityRange& b) noexcept {
     return a.min == b.min && a.max == b.max;
 }
 
-// Range of the voxels in `box` joined with `known`. Stops as soon as it is `bounds`, which it cannot exceed.
+// Returns the range of the voxels in `box` joined with `known`. Stops as soon as it is `bounds`, which
+// it cannot exceed.
 DensityRange scan(const VoxelVolume& volume, const IndexBox& box, DensityRange known,
                   const DensityRange& bounds) noexcept {
     volume.forEachPart(box, [&](const IndexBox& part, size_t offset) {
@@ -33,9 +34,9 @@ DensityRange scan(const VoxelVolume& volume, const IndexBox& box, DensityRange k
 
 constexpr DensityRange kAnyDensity{0, kMaxDensity};
 
-// The range of a leaf's voxels after a change in `changed`, from its range before. What did not change lies
-// in the old range, so no more can come out than that joined with the changed voxels' range; mostly a few
-// rows show that no less comes out either.
+// Returns the range of a leaf's voxels after a change in `changed`, from its range before. What did not
+// change lies in the old range, so no more can come out than that joined with the changed voxels' range;
+// mostly a few rows show that no less comes out either.
 DensityRange rangeAfterChange(const VoxelVolume& volume, const IndexBox& voxels, const IndexBox& changed,
                               const DensityRange& before, int direction) noexcept {
     DensityRange known = scan(volume, changed.clamped(voxels.min, voxels.max), {}, kAnyDensity);

@@ -1,7 +1,7 @@
 // The octree over the volume is a lattice of leaves, min/max densities above them, and a version per leaf.
 //
-// Cells: cell (i, j, k) is the cube between voxels (i, j, k) and (i+1, j+1, k+1), for indices -1 .. dims-1.
-// Each leaf owns leaf_cells cells per axis (fewer at the far border); a leaf's voxels are the corners of its
+// Cell (i, j, k) is the cube between voxels (i, j, k) and (i+1, j+1, k+1), for indices -1 .. dims-1. Each
+// leaf owns leaf_cells cells per axis (fewer at the far border); a leaf's voxels are the corners of its
 // cells. A node of level l covers 2^l leaves per axis; level 0 are the leaves, the top level is the root.
 #pragma once
 
@@ -68,23 +68,24 @@ class LeafLattice {
     void beginWrite(const IndexBox& changed_voxels) noexcept;
     void endWrite(const IndexBox& changed_voxels) noexcept;
 
-    // Any thread. acquire: pairs with endWrite's release, so voxels read after it are at least that new.
+    // It is for any thread. acquire: pairs with endWrite's release, so voxels read after it are at
+    // least that new.
     uint32_t version(LeafId id) const noexcept { return versions_[id].load(std::memory_order_acquire); }
 
-    // Tick thread only (the mesher computes its own from the voxels). Does the density range hold
-    // the iso-value?
+    // It is for the tick thread only (the mesher computes its own from the voxels). Does the density range
+    // hold the iso-value?
     bool mayHoldSurface(LeafId id, Density iso) const noexcept {
         const DensityRange& r = levels_[0].range[id];
         return r.min < iso && r.max >= iso;
     }
 
-    // Top-down search, RT-safe, tick thread only: calls visit(LeafId) for every leaf that owns any of these
-    // cells, unless is_wanted(const DensityRange&, const IndexBox& cells) is false for it or a node above it.
-    // In ascending order of the lattice within each node.
+    // It searches from the top down, RT-safe, for the tick thread only: calls visit(LeafId) for every leaf
+    // that owns any of these cells, unless is_wanted(const DensityRange&, const IndexBox& cells) is false for
+    // it or a node above it. Leaves come in ascending order of the lattice within each node.
     template <class IsWanted, class Visit>
     void forEachLeaf(const IndexBox& cells, IsWanted&& is_wanted, Visit&& visit) const noexcept;
 
-    // The same for every leaf whose cells meet `box` (V, m) and whose range holds iso.
+    // It does the same for every leaf whose cells meet `box` (V, m) and whose range holds iso.
     template <class Visit>
     void forEachSurfaceLeaf(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& spacing, Density iso,
                             Visit&& visit) const noexcept;

@@ -1,8 +1,9 @@
-// Which triangles separate the corners of one cell that are inside the bone from those outside.
+// The table says which triangles separate the corners of one cell that are inside the bone
+// from those outside.
 //
-// Method: marching cubes (Lorensen and Cline 1987) with tables traced by our own code. On each face of the
-// cell the crossed edges are joined by segments; the segments of a cell form closed loops; each loop is
-// triangulated.
+// The method is marching cubes (Lorensen and Cline 1987) with tables traced by our own code. On each face of
+// the cell the crossed edges are joined by segments; the segments of a cell form closed loops; each loop is
+// cut into triangles.
 // - A face with two diagonal inside corners is ambiguous: its inside corners are always cut off one by one.
 //   The rule sees only the face, so two cells that share it agree and the surface has no holes.
 // - No diagonal of a triangulation lies in a face, so an edge of the surface never has more than two

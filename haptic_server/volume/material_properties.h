@@ -1,4 +1,4 @@
-// What a scene says of a kind of bone or tissue, in SI.
+// A scene says this of a kind of bone or tissue, in SI.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The samples of a scan, kept as narrow as they allow: a scan of 1024³ fills gigabytes.
+// The samples of a scan are kept as narrow as they allow: a scan of 1024³ fills gigabytes.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,8 @@ struct ValueRange {
     void include(const ValueRange& other) noexcept;
 };
 
-// Integers of 8 or 16 bit or floats, read as float whatever they are. Start-up only, not RT-safe.
+// They are integers of 8 or 16 bit or floats, read as float whatever they are. It is for start-up only,
+// and not RT-safe.
 class RawValues {
   public:
     using Samples =

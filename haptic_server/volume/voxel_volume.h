@@ -23,8 +23,8 @@ inline constexpr int kDensityCountsPerUnit = 257;  // 255 units = 65535 counts
 
 class VoxelVolume {
   public:
-    // The volume begins as air everywhere. Allocates; not RT-safe. `iso` is the density of the bone surface
-    // (counts, > 0).
+    // The volume begins as air everywhere. It allocates, so it is not RT-safe. `iso` is the density of the
+    // bone surface (counts, > 0).
     VoxelVolume(const VolumeGeometry& geometry, Density iso);
 
     const VolumeGeometry& geometry() const noexcept { return geometry_; }
@@ -48,52 +48,54 @@ class VoxelVolume {
             .load(std::memory_order_acquire);
     }
     Density at(int i, int j, int k) const noexcept { return at(offset(i, j, k)); }
-    // Plain densities by offset, which the compiler can read many at a time. For the owner of the volume only
-    // (tick thread): nobody else writes, so its reads race with nothing. Other threads use at().
+    // Returns plain densities by offset, which the compiler can read many at a time. It is for the owner
+    // of the volume only (tick thread): nobody else writes, so its reads race with nothing. Other
+    // threads use at().
     const Density* ownerData() const noexcept { return bricks_.data(); }
-    // `count` voxels along x, to `out`, and up to kReadSlack more behind them. Owner only, RT-safe.
+    // Copies `count` voxels along x to `out`, and up to kReadSlack more behind them. Only the owner may call
+    // it; it is RT-safe.
     void readRow(const Eigen::Vector3i& first, int count, Density* out) const noexcept;
     static constexpr int kMostInBrick = kBrickCells + kBrickHigh;  // of a row, from its own first cell on
     static constexpr int kReadSlack = kMostInBrick - 1;
 
     // Calls visit(offset, n) for runs that make up this row of voxels, each in one brick: n voxels from
-    // `offset` on. RT-safe, any thread.
+    // `offset` on. It is RT-safe, for any thread.
     template <class Visit>
     void forEachRun(const Eigen::Vector3i& first, int count, Visit&& visit) const noexcept;
     // Calls visit(part, offset) for parts that make up the box of voxels (in -1 .. dims), each in one brick:
-    // its voxels lie at `offset` and the strides from there. RT-safe, any thread.
+    // its voxels lie at `offset` and the strides from there. It is RT-safe, for any thread.
     template <class Visit>
     void forEachPart(const IndexBox& voxels, Visit&& visit) const noexcept;
     // This does the same without copies: each part is what the brick itself owns of the box.
     template <class Visit>
     void forEachOwnedPart(const IndexBox& voxels, Visit&& visit) const noexcept;
-    // This is the density of all that is stored around this cell, if its brick has no memory of its own.
-    // RT-safe, any thread.
+    // This is the density of all that is stored around this cell, if its brick has no memory of its own. It
+    // is RT-safe, for any thread.
     std::optional<Density> uniformDensity(const Eigen::Vector3i& cell) const noexcept;
 
-    // `count` voxels along x. Owner only, RT-safe. There must be spare bricks for those that it opens: none
-    // for voxels that were written before.
+    // Writes `count` voxels along x. Only the owner may call it; it is RT-safe. There must be spare bricks
+    // for those that it opens: none for voxels that were written before.
     void writeRow(const Eigen::Vector3i& first, int count, const Density* densities) noexcept;
-    // Gives memory to all bricks that a change in this box of voxels may need. Owner only, RT-safe. False:
-    // there are not enough spare ones.
+    // Gives memory to all bricks that a change in this box of voxels may need. Only the owner may call it; it
+    // is RT-safe. False says that there are not enough spare ones.
     bool openBricksIn(const IndexBox& voxels) noexcept;
-    // Memory for bricks to be changed that now share theirs. Allocates.
+    // Makes memory for bricks to be changed that now share theirs. It allocates.
     void makeSpareBricks(size_t count) { bricks_.makeSpare(count); }
     VoxelVolume withoutSpareBricks() const { return {geometry_, iso_, bricks_.withoutSpare()}; }
 
     // Makes room as it needs: allocates, not RT-safe, no other thread may look.
     void set(int i, int j, int k, Density density);
-    // All voxels at once: density(i, j, k), which is asked for some voxels more than once.
+    // Fills all voxels at once with density(i, j, k), which is asked for some voxels more than once.
     template <class DensityAt>
     void fill(DensityAt&& density);
     void shareUniformBricks() { bricks_.shareUniformBricks(); }
 
-    // densityGradient() at this voxel, counts per m. Any index in -1 .. dims. RT-safe.
+    // Returns densityGradient() at this voxel, counts per m. Any index in -1 .. dims is right. It is RT-safe.
     Eigen::Vector3f gradient(int i, int j, int k) const noexcept;
 
   private:
     VoxelVolume(const VolumeGeometry& geometry, Density iso, BrickStore bricks);
-    // How many voxels from here on are among the first `most` of a brick, from its first cell on.
+    // Returns how many voxels from here on are among the first `most` of a brick, from its first cell on.
     static int stretch(int index, int last, int most) noexcept {
         return std::min(most - ((index + 1) & (kBrickCells - 1)), last - index + 1);
     }
@@ -101,7 +103,7 @@ class VoxelVolume {
     void forEachPiece(const IndexBox& voxels, Visit&& visit) const noexcept;
     // Bricks that hold any of these voxels, copies included.
     IndexBox bricksHolding(const IndexBox& voxels) const noexcept;
-    // Voxels that a brick holds: indices, border and beyond included.
+    // Returns the voxels that a brick holds: indices, border and beyond included.
     static IndexBox voxelsIn(const Eigen::Vector3i& brick) noexcept {
         const Eigen::Vector3i low = brick.array() * kBrickCells - 1 - kBrickLow;
         return {low, low.array() + (kBrickEdge - 1)};

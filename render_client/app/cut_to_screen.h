@@ -1,4 +1,4 @@
-// Measures how long the server's cuts take until a picture shows them. One thread.
+// Measures how long the server's cuts take until a picture shows them. It is for one thread.
 //
 // The stamps are the server's CLOCK_REALTIME: between machines the figures are as good as their clocks.
 #pragma once

@@ -1,4 +1,4 @@
-// The command line of render_client. What is shown at the start has its options in view_options.h.
+// Reads the command line of render_client. What is shown at the start has its options in view_options.h.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@
 
 namespace bonemill {
 
-// How long the program waits for a server or its whole model, unless it is told.
+// The program waits so long for a server or its whole model, unless it is told.
 inline constexpr std::chrono::seconds kDefaultTimeout{60};
 
 struct OffscreenOptions {

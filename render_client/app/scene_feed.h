@@ -1,4 +1,5 @@
-// Moves what the subscriber received into the scene that is drawn. Thread: the one of the OpenGL context.
+// Moves what the subscriber received into the scene that is drawn. It belongs to the thread of
+// the OpenGL context.
 #pragma once
 
 #include <chrono>
@@ -24,7 +25,8 @@ class SceneFeed {
     template <class Stop>
     void updateUntil(std::chrono::steady_clock::time_point end, Stop&& stop);
 
-    // True when the scene shows exactly the server's model, and the tool if the server has one to show.
+    // Returns true when the scene shows exactly the server's model, and the tool if the server has
+    // one to show.
     bool isComplete() const;
 
     // From now on the others' lists show this viewer, and the scene shows the others. A window does both

@@ -1,7 +1,7 @@
-// Lets the milling sound hear the session: from the loudspeakers, into a WAV file, or both. A scene that does
-// not list milling_sound makes no synth, no thread and no sound device; its WAV file is silent.
+// The milling sound of the session is heard from the loudspeakers, into a WAV file, or both. A scene that
+// does not list milling_sound makes no synth, no thread and no sound device; its WAV file is silent.
 //
-// Thread: the one of the viewer.
+// It belongs to the thread of the viewer.
 #pragma once
 
 #include <filesystem>

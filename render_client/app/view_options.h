@@ -1,4 +1,4 @@
-// The options that say what is shown at the start.
+// These options say what is shown at the start.
 #pragma once
 
 #include <array>

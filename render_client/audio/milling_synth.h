@@ -1,12 +1,13 @@
-// The sound of the motor and of the burr in bone, from speed and load.
+// Makes the sound of the motor and of the burr in bone, from speed and load.
 //
-// Motor: harmonics of the rotation frequency f = |Ω|/2π, up to kHighest, and two gear tones above them;
-// louder with the speed. Cutting: band-passed noise, its strength modulated at the tooth passing frequency
-// flutes·f, louder with the square root of the cutting power. All levels and the frequency follow their
-// targets with kSmoothing, and every tone keeps its phase, so nothing clicks.
+// The motor has harmonics of the rotation frequency f = |Ω|/2π, up to kHighest, and two gear tones above
+// them; it gets louder with the speed. Cutting is band-passed noise, its strength modulated at the tooth
+// passing frequency flutes·f, and gets louder with the square root of the cutting power. All levels and the
+// frequency follow their targets with kSmoothing, and every tone keeps its phase, so nothing clicks.
 //
-// Units: rad/s, N, W; samples in -1 .. 1. One thread; RT-safe after construction (no memory, no lock). The
-// same settings and loads at the same samples give the same samples, in blocks of any length.
+// Units are rad/s, N, W; samples lie in -1 .. 1. It is for one thread, and RT-safe after construction
+// (no memory, no lock). The same settings and loads at the same samples give the same samples, in blocks
+// of any length.
 #pragma once
 
 #include <array>

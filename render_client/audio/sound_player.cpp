@@ -22,7 +22,7 @@ constexpr int kFadeLooks = 40;                 // until the end has been played
 
 }  // namespace
 
-// OpenAL's device, its context and a source that plays buffers one after the other.
+// It has OpenAL's device, its context and a source that plays buffers one after the other.
 class SoundPlayer::Output {
   public:
     // Throws std::runtime_error.

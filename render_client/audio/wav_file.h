@@ -1,5 +1,5 @@
-// A mono 16-bit WAV file that grows while it is written (RIFF; IBM, Microsoft: Multimedia Programming
-// Interface 1.0, 1991). One thread. The header says the length after finish() or destruction.
+// It is a mono 16-bit WAV file that grows while it is written (RIFF; IBM, Microsoft: Multimedia Programming
+// Interface 1.0, 1991). It is for one thread. The header says the length after finish() or destruction.
 #pragma once
 
 #include <cstdint>

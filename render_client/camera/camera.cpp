@@ -6,7 +6,7 @@
 namespace bonemill {
 namespace {
 
-// Far over near: 24 bit of depth still resolve 1e-3 of the distance well.
+// This is far over near: 24 bit of depth still resolve 1e-3 of the distance well.
 constexpr double kMaxDepthRatio = 5000;
 constexpr double kNearestFar = 1e-3;     // m
 constexpr double kEyesApart = 1.0 / 30;  // of the distance to the focus: comfortable on a desk

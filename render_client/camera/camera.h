@@ -1,6 +1,7 @@
-// A pin-hole camera as the renderer takes it, whatever decided where it stands.
+// It is a pin-hole camera as the renderer takes it, whatever decided where it stands.
 //
-// Frames: W world (m); C camera: x right, y up, z out of the picture. Plain values, any thread, never throws.
+// The frames are W, the world (m), and C, the camera: x right, y up, z out of the picture. They are plain
+// values, for any thread, and nothing throws.
 #pragma once
 
 #include <Eigen/Core>

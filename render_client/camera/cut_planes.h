@@ -1,6 +1,6 @@
 // The view's cut-planes are half-spaces: a point p is shown when n·p + d >= 0 for all of them.
 //
-// Any thread, never throws.
+// It is for any thread and never throws.
 #pragma once
 
 #include <Eigen/Core>

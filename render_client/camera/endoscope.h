@@ -1,6 +1,7 @@
-// A camera that rides on the tool: beside the shaft, looking past the burr along the tool's axis (-y of T).
+// This camera rides on the tool: beside the shaft it looks past the burr along the tool's axis (-y of T).
 //
-// Frames: W world, T tool (docs/frames.md); m, rad. Any thread, never throws.
+// The frames are W, the world, and T, the tool (docs/frames.md); the units are m and rad. It is for any
+// thread and never throws.
 #pragma once
 
 #include "common/geometry/pose.h"

@@ -1,6 +1,6 @@
-// Where the camera stands at first: as asked for, or else so that the bone fills the picture.
+// The camera stands at first as asked for, or else so that the bone fills the picture.
 //
-// Frame W, m, rad. Pure functions, any thread, never throw.
+// The frame is W, the units are m and rad. The functions are pure and never throw; any thread may call them.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace bonemill {
 
-// What is asked of the first view; the rest is chosen.
+// This is asked of the first view; the rest is chosen.
 struct ViewWish {
     std::optional<Eigen::Vector3d> target_W;
     std::optional<double> distance;

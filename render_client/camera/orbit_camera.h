@@ -1,8 +1,9 @@
-// A camera on a sphere around a target: orbit, zoom, pan, fit.
+// This camera moves on a sphere around a target: it orbits, zooms, pans and fits.
 //
-// Frames: W world (LPS of the volume file, m); C camera: x right, y up, z out of the picture. Azimuth 0 looks
-// from the front of the patient (from -y for up = +z); positive azimuth moves the eye to the patient's left
-// (+x); positive elevation moves it towards `up`. Plain values, no thread of its own, never throws.
+// The frames are W, the world (LPS of the volume file, m), and C, the camera: x right, y up, z out of the
+// picture. Azimuth 0 looks from the front of the patient (from -y for up = +z); positive azimuth moves the
+// eye to the patient's left (+x); positive elevation moves it towards `up`. It is plain values without a
+// thread of its own, and never throws.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// What the user of a viewer has chosen to see. Plain values; any thread.
+// The user of a viewer has chosen to see this. They are plain values, for any thread.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ struct ViewSettings {
     double opacity = kDefaultOpacity;  // of the transparent bone
     std::array<CutPlane, 3> cuts;      // across W's x (sagittal), y (coronal), z (axial)
     bool show_force = true;
-    // By ViewerEffect; only those that the scene lists are seen.
+    // The places are those of ViewerEffect; only those that the scene lists are seen.
     std::array<bool, kViewerEffects> hides_effects{};
     bool shows(ViewerEffect effect) const { return !hides_effects[size_t(effect)]; }
     bool show_hud = true;

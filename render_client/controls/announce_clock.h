@@ -1,5 +1,5 @@
 // Says when a viewer has to tell the others of itself: once per second, 30 times per second while it points,
-// and at once when it starts or stops pointing. Plain value; any one thread.
+// and at once when it starts or stops pointing. It is a plain value, for any one thread.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Counts pictures per second over the last second. Plain value; any one thread.
+// Counts pictures per second over the last second. It is a plain value, for any one thread.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// The help page: what mouse and keys do. Any thread.
+// The help page says what mouse and keys do. It is for any thread.
 #pragma once
 
 #include <vector>

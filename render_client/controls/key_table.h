@@ -1,4 +1,5 @@
-// Which key does what, and what people call it: help page, panel and notices take both from here. Any thread.
+// The table says which key does what, and what people call it: help page, panel and notices take both from
+// here. It is for any thread.
 #pragma once
 
 #include <optional>
@@ -87,7 +88,7 @@ std::string keyLabelOf(Action action);
 // Returns the text with its key behind it: "Endoscope (E)".
 std::string withKey(std::string_view text, Action action);
 
-// True when the event comes from the key of this action, whether it goes down or up.
+// Returns true when the event comes from the key of this action, whether it goes down or up.
 bool isKeyOf(Action action, const KeyEvent& event);
 
 // Returns the action of a key that goes down; a key that is held with Ctrl has none.

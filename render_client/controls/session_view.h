@@ -1,6 +1,7 @@
-// What a viewer knows about its session, for those who show it, and who may ask the server for what.
+// A viewer knows this about its session, for those who show it, and who may ask the server for what.
 //
-// Plain values; any thread. The pointers are the owner's; they are null while nothing has come yet.
+// They are plain values, for any thread. The pointers are the owner's; they are null while nothing
+// has come yet.
 #pragma once
 
 #include <string>
@@ -27,8 +28,8 @@ std::string whyNotCommand(const SessionView& session);
 std::string whyNotPoint(const SessionView& session);
 std::string whyNotEndSession(const SessionView& session);
 
-// What an action asks of the server, or why it cannot be asked. Both are empty for actions that are none of
-// the server's business.
+// It says what an action asks of the server, or why it cannot be asked. Both are empty for actions that are
+// none of the server's business.
 struct CommandOrReason {
     std::optional<topics::Command> command;
     std::string why_not;

@@ -1,7 +1,7 @@
-// What keys, mouse and panel do to a viewer. Each action means the same, whoever asked for it.
+// Keys, mouse and panel do this to a viewer. Each action means the same, whoever asked for it.
 //
-// View settings and camera are changed at once; what others have to do is left in the wishes. Thread: the
-// render thread. Never throws.
+// View settings and camera are changed at once; what others have to do is left in the wishes. It belongs to
+// the render thread. Never throws.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace bonemill {
 
-// What the user asked for and the owner of the viewer has to carry out.
+// The user asked for this, and the owner of the viewer has to carry it out.
 struct Wishes {
     std::vector<topics::Command> commands;
     bool reset_view = false;
@@ -27,7 +27,7 @@ struct Wishes {
     bool quit = false;
 };
 
-// From which side of the patient the bone is looked at.
+// The bone is looked at from this side of the patient.
 enum class Side { kFront, kBack, kLeft, kRight, kTop, kBottom };
 
 class ViewerControls {

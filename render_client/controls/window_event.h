@@ -1,4 +1,5 @@
-// What happens at a window: keys, text, mouse. Plain values that name no window library; any thread.
+// This happens at a window: keys, text, mouse. They are plain values that name no window library,
+// for any thread.
 //
 // Positions are pixels of the picture from its upper left corner, times are s of a steady clock.
 #pragma once

@@ -1,7 +1,7 @@
-// Blood on the surface film: it seeps from fresh cuts after a delay, spreads, begins to run down in rivulets,
-// and stops when it has clotted. The film's grid holds it; a cut through it takes it away.
+// This is the blood on the surface film: it seeps from fresh cuts after a delay, spreads, begins to run down
+// in rivulets, and stops when it has clotted. The film's grid holds it; a cut through it takes it away.
 //
-// Frame V, m, s. One thread. The same inputs and steps give the same film.
+// The frame is V, the units are m and s. It is for one thread. The same inputs and steps give the same film.
 #pragma once
 
 #include <bitset>

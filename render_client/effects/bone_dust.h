@@ -1,7 +1,8 @@
-// Grains of removed bone: they leave the burr's rim with its spin, fly with drag, bounce off the bone and
-// come to rest on it, fade, or are washed away. Grains neither touch each other nor the tool.
+// These are grains of removed bone: they leave the burr's rim with its spin, fly with drag, bounce off the
+// bone and come to rest on it, fade, or are washed away. Grains neither touch each other nor the tool.
 //
-// Frame V, m, s. One thread. The same inputs and steps give the same grains.
+// The frame is V, the units are m and s. It is for one thread. The same inputs and steps give
+// the same grains.
 #pragma once
 
 #include "proto/scene.pb.h"

@@ -1,6 +1,7 @@
-// The bone as what flies and flows meets it: the vertices of the node meshes, found by place.
+// What flies and flows meets the bone as this: the vertices of the node meshes, found by place.
 //
-// The surface only exists while an effect needs it. Frame V, m. One thread; allocates.
+// The surface only exists while an effect needs it. The frame is V, the unit m. It is for one
+// thread and allocates.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// How the burr's flutes stand, and how far they turn while one picture is shown. Plain value.
+// It says how the burr's flutes stand, and how far they turn while one picture is shown. It is a plain value.
 #pragma once
 
 #include "proto/scene.pb.h"

@@ -1,4 +1,5 @@
-// A tool state as the viewer's effects take it, bounded whatever came over the network. Frame V, SI.
+// It is a tool state as the viewer's effects take it, bounded whatever came over the network. The frame is V,
+// the units are SI.
 #pragma once
 
 #include <optional>
@@ -20,8 +21,8 @@ struct EffectInput {
     Eigen::Vector3d up_V = Eigen::Vector3d::UnitZ();           // unit, against gravity
 };
 
-// The bounds are ±25,000 rad/s, 1000 N, 10 kW, 100 mm³ and 0.1 to 50 mm for the burr.
-// Any thread, never throws.
+// The bounds are ±25,000 rad/s, 1000 N, 10 kW, 100 mm³ and 0.1 to 50 mm for the burr. It is for any thread
+// and never throws.
 EffectInput effectInputOf(const topics::ToolState& tool, const topics::SceneInfo& info);
 
 }  // namespace bonemill

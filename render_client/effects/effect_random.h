@@ -1,4 +1,4 @@
-// Gives the same numbers from the same seed everywhere. Plain value.
+// Gives the same numbers from the same seed everywhere. It is a plain value.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,7 +1,7 @@
-// A stream of water from a nozzle on the handpiece to the burr, as long as the pedal is down. Where it meets
-// bone it wets it, some of it runs down in drops; what meets the burr is thrown off.
+// A stream of water runs from a nozzle on the handpiece to the burr, as long as the pedal is down. Where it
+// meets bone it wets it, some of it runs down in drops; what meets the burr is thrown off.
 //
-// Frame V, m, s. One thread. The same inputs and steps give the same drops.
+// The frame is V, the units are m and s. It is for one thread. The same inputs and steps give the same drops.
 #pragma once
 
 #include "proto/scene.pb.h"

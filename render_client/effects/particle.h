@@ -1,4 +1,5 @@
-// The particle painter draws this as a small ball, or as a streak from p to p + streak. V, m.
+// The particle painter draws this as a small ball, or as a streak from p to p + streak. The frame is V,
+// the unit m.
 #pragma once
 
 #include <Eigen/Core>

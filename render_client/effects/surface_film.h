@@ -1,8 +1,9 @@
-// What lies on the bone around the burr: blood and water, 0 to 1 per cell of a grid that follows the burr.
-// What the grid leaves behind is forgotten.
+// Blood and water lie on the bone around the burr: 0 to 1 per cell of a grid that follows the burr. What the
+// grid leaves behind is forgotten.
 //
-// The grid is a torus: cell (i, j, k) of the volume frame's lattice lies in texel (i, j, k) mod kCells, so
-// that moving it copies nothing. Frame V, m. One thread; allocates only in the constructor.
+// The grid is a torus: cell (i, j, k) of the volume frame's lattice lies in texel (i, j, k) mod kCells,
+// so that moving it copies nothing. The frame is V, the unit m. It is for one thread and allocates only
+// in the constructor.
 #pragma once
 
 #include <Eigen/Geometry>

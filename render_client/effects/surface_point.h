@@ -1,4 +1,4 @@
-// A place on the bone's surface. V, m.
+// It is a place on the bone's surface. The frame is V, the unit m.
 #pragma once
 
 #include <Eigen/Core>

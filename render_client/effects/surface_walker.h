@@ -1,4 +1,5 @@
-// A drop on the bone's surface, drawn down by gravity. Frame V, m. Plain functions, any thread.
+// Gravity draws a drop down on the bone's surface. The frame is V, the unit m. Any thread may
+// call the functions.
 #pragma once
 
 #include "render_client/effects/bone_surface.h"

@@ -1,8 +1,9 @@
-// The visual effects that a scene lists, and what they do between two pictures. There is no OpenGL here; the
-// painters are in render_client/paint.
+// These are the visual effects that a scene lists, and what they do between two pictures. There is no OpenGL
+// here; the painters are in render_client/paint.
 //
-// An effect that is not listed is not constructed. Time goes on in steps of kStep whatever the calls, so the
-// same tool states at the same times give the same picture. Frame V, m, s. One thread.
+// An effect that is not listed is not constructed. Time goes on in steps of kStep whatever the calls, so
+// the same tool states at the same times give the same picture. The frame is V, the units are m and s. It
+// is for one thread.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Poses and boxes of the topics' messages, checked: what came over the network may be anything.
+// Poses and boxes of the topics' messages are checked: what came over the network may be anything.
 #pragma once
 
 #include <optional>

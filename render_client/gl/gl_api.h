@@ -1,6 +1,6 @@
-// The OpenGL 3.3 core functions this program uses, loaded from whichever context is current.
+// These are the OpenGL 3.3 core functions that this program uses, loaded from whichever context is current.
 //
-// Thread: a GlApi belongs to the thread whose context was current when it was loaded. Not RT-safe.
+// A GlApi belongs to the thread whose context was current when it was loaded. It is not RT-safe.
 #pragma once
 
 #include <GL/glcorearb.h>
@@ -88,7 +88,7 @@
 
 namespace bonemill {
 
-// The driver refused something: a missing function, a shader, a framebuffer, a call.
+// It says that the driver refused something: a missing function, a shader, a framebuffer, a call.
 class GlError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -103,7 +103,7 @@ struct GlApi {
     // GlError that names the first missing one.
     static GlApi load(const std::function<void*(const char*)>& address_of);
 
-    // True when the processor draws, and not a graphics card.
+    // Returns true when the processor draws, and not a graphics card.
     bool isSoftware() const;
 
     // Names renderer and version of the current context, for people.

@@ -1,5 +1,5 @@
-// Owners of OpenGL names. A name is deleted with its object, which therefore must die before its
-// context and on its thread.
+// These own OpenGL names. A name is deleted with its object, which therefore must die before its context and
+// on its thread.
 #pragma once
 
 #include <utility>

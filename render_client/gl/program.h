@@ -1,4 +1,5 @@
-// A vertex and a fragment shader, linked. The rules of gl_object.h for thread and lifetime hold here too.
+// It is a vertex and a fragment shader, linked. The rules of gl_object.h for thread and lifetime
+// hold here too.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// What the burr does to the bone, as the tool's buttons say. Pure function, any thread.
+// The tool's buttons say what the burr does to the bone. The function is pure; any thread may call it.
 #pragma once
 
 #include "proto/topics.pb.h"

@@ -1,4 +1,5 @@
-// The lines, alerts and figures of training that tell of a scene's effects. Pure functions, any thread.
+// These are the lines, alerts and figures of training that tell of a scene's effects. The functions are pure;
+// any thread may call them.
 #pragma once
 
 #include <optional>

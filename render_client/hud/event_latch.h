@@ -1,4 +1,4 @@
-// Events that last a tick stay on the screen long enough to be seen. Plain values, one thread.
+// Events that last a tick stay on the screen long enough to be seen. They are plain values, for one thread.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Numbers and names as the figures over the picture show them. Pure functions, any thread.
+// The figures over the picture show numbers and names so. The functions are pure; any thread may call them.
 #pragma once
 
 #include <string>

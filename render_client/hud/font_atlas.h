@@ -1,5 +1,5 @@
-// The glyphs of DejaVu Sans, plain and bold, at one height: their shapes in one picture, and their measures.
-// Plain values after construction; any thread.
+// It has the glyphs of DejaVu Sans, plain and bold, at one height: their shapes in one picture, and their
+// measures. After construction it is plain values, for any thread.
 #pragma once
 
 #include <array>

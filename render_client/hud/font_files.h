@@ -1,4 +1,4 @@
-// The font files that figures and panel are written in. Any thread.
+// Finds the font files that figures and panel are written in. It is for any thread.
 #pragma once
 
 #include <string>

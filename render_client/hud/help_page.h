@@ -1,5 +1,5 @@
-// The help page over the picture. It has as many columns as the picture's height needs, in smaller text where
-// they are too wide. Pure functions, any thread.
+// The help page lies over the picture. It has as many columns as the picture's height needs, in smaller text
+// where they are too wide. The functions are pure; any thread may call them.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
-// The parts that the head-up display is made of, without how they are drawn. Plain values, any thread.
+// The head-up display is made of these parts; how they are drawn is elsewhere. They are plain values,
+// for any thread.
 #pragma once
 
 #include <optional>
@@ -15,7 +16,7 @@ struct HudRow {
     HudTone tone = HudTone::kPlain;
 };
 
-// What the user should notice now, such as how a command ended.
+// The user should notice this now, such as how a command ended.
 struct HudNotice {
     std::string text;
     HudTone tone = HudTone::kPlain;
@@ -32,7 +33,7 @@ struct Hud {
     std::optional<HudNotice> alert;  // with a border around the picture
 };
 
-// A name beside a point of the picture; x and y are pixels from the upper left.
+// The name stands beside a point of the picture; x and y are pixels from the upper left.
 struct HudLabel {
     float x = 0;
     float y = 0;

@@ -1,5 +1,5 @@
-// Boxes and text of the head-up display as triangles, without how they are drawn. Positions are pixels from
-// the picture's upper left corner. Plain values, one thread.
+// Makes boxes and text of the head-up display into triangles; how they are drawn is elsewhere. Positions are
+// pixels from the picture's upper left corner. It is a plain value, for one thread.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace bonemill {
 
 class HudCanvas {
   public:
-    // What the shader of the head-up display takes. A glyph has its place in the font's picture in (u, v) and
+    // The shader of the head-up display takes this. A glyph has its place in the font's picture in (u, v) and
     // a negative radius; a box has the distance from its middle there.
     struct Vertex {
         float x, y, u, v;

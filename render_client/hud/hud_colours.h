@@ -1,4 +1,5 @@
-// The colours of figures and panel: red, green, blue and opacity, each from 0 to 1. Plain values, any thread.
+// The colours of figures and panel are red, green, blue and opacity, each from 0 to 1. They are plain values,
+// for any thread.
 #pragma once
 
 #include <array>

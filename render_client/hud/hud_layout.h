@@ -1,4 +1,5 @@
-// Where the parts of the head-up display stand in a picture, and how they look. Pure functions, any thread.
+// Decides where the parts of the head-up display stand in a picture, and how they look. The functions are
+// pure; any thread may call them.
 //
 // Positions and sizes are pixels from the picture's upper left corner.
 #pragma once

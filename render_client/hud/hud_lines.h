@@ -1,6 +1,6 @@
-// Every line of the head-up display, from top to bottom: what it says, and when it is there. Another line is
-// a function of hud_lines.cpp that makeHud() calls, or of effect_lines.cpp when it tells of an effect. Pure
-// functions, any thread.
+// These are the lines of the head-up display, from top to bottom: what each says, and when it is there.
+// Another line is a function of hud_lines.cpp that makeHud() calls, or of effect_lines.cpp when it tells of
+// an effect. The functions are pure; any thread may call them.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace bonemill {
 
-// How the viewer stands with its server.
+// It says how the viewer stands with its server.
 enum class Connection {
     kNoServer,    // none found yet
     kReceiving,   // the model is still arriving

@@ -1,4 +1,5 @@
-// A bar of a round length beside which one sees how large the bone is. Pure function, any thread.
+// Beside a bar of a round length one sees how large the bone is. The function is pure; any thread
+// may call it.
 #pragma once
 
 #include <string>

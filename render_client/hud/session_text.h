@@ -1,5 +1,5 @@
-// How the session is put into words, the same in the figures, the panel and the log. Pure
-// functions, any thread.
+// Puts the session into words, the same in the figures, the panel and the log. The functions are pure; any
+// thread may call them.
 #pragma once
 
 #include <string>

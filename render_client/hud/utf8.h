@@ -1,4 +1,4 @@
-// Text as code points. Pure functions, any thread.
+// Reads text as code points. The functions are pure; any thread may call them.
 #pragma once
 
 #include <cstdint>

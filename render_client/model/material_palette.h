@@ -1,7 +1,7 @@
-// The colours of a scene's materials, as the bone's shader looks them up. The palette only exists where a
+// The bone's shader looks up the colours of a scene's materials here. The palette only exists where a
 // material has a colour.
 //
-// Thread: the one of the context.
+// It belongs to the thread of the context.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Where two versions of a node's surface differ. Pure function, any thread.
+// Finds where two versions of a node's surface differ. The function is pure; any thread may call it.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,7 +1,8 @@
-// The bone on the graphics card: one vertex and one index buffer per octree leaf, drawn in
-// ascending order of the leaf.
+// The bone is on the graphics card as one vertex and one index buffer per octree leaf, drawn in ascending
+// order of the leaf.
 //
-// Thread: the one of the context. The same nodes give the same picture in whatever order they arrived.
+// It belongs to the thread of the context. The same nodes give the same picture in whatever
+// order they arrived.
 #pragma once
 
 #include <map>
@@ -14,7 +15,7 @@
 
 namespace bonemill {
 
-// What went to the graphics card since the start.
+// This went to the graphics card since the start.
 struct UploadCount {
     uint64_t nodes = 0;
     uint64_t bytes = 0;

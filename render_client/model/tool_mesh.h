@@ -1,4 +1,4 @@
-// The tool's surface on the GPU, in frame T (m). Thread: the one of the context.
+// It is the tool's surface on the GPU, in frame T (m). It belongs to the thread of the context.
 #pragma once
 
 #include <Eigen/Geometry>

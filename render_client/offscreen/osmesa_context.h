@@ -1,6 +1,7 @@
-// An OpenGL 3.3 core context in memory: it needs no display and no graphics card (Mesa's software renderer).
+// It is an OpenGL 3.3 core context in memory, which needs no display and no graphics card
+// (Mesa's software renderer).
 //
-// Thread: it belongs to the thread that made it. One at a time per thread.
+// It belongs to the thread that made it, and there is one at a time per thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// An RGB picture in memory and its PNG file.
+// It is an RGB picture in memory, and writes its PNG file.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// Copies what was drawn out of an OpenGL context. Thread: the one of the context, which must be current.
+// Copies what was drawn out of an OpenGL context. It belongs to the thread of the context, which
+// must be current.
 #pragma once
 
 #include "render_client/gl/gl_api.h"

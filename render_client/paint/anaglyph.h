@@ -1,6 +1,6 @@
-// Two eyes' pictures put into one for red-cyan glasses.
+// Puts two eyes' pictures into one for red-cyan glasses.
 //
-// Thread: the one of the context.
+// It belongs to the thread of the context.
 #pragma once
 
 #include <memory>

@@ -8,7 +8,7 @@
 // can be looked at. Each is found by depth and blended once, which gives the same picture in whatever order
 // the triangles come. The tool is drawn between them.
 //
-// Thread: the one of the context.
+// It belongs to the thread of the context.
 #pragma once
 
 #include <functional>
@@ -38,7 +38,7 @@ class BonePainter {
     // From now on bone is drawn with this film, or as it is when null. The film must outlive its use.
     void setFilm(const FilmPainter* film) { film_ = film; }
 
-    // How many bone triangles were inside the view volume of the last picture.
+    // Returns how many bone triangles were inside the view volume of the last picture.
     size_t trianglesDrawn() const { return triangles_drawn_; }
 
   private:

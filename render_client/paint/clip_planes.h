@@ -1,6 +1,6 @@
 // Switches OpenGL's clip planes on for as long as it lives.
 //
-// Thread: the one of the context.
+// It belongs to the thread of the context.
 #pragma once
 
 #include <array>

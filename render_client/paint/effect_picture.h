@@ -1,4 +1,4 @@
-// What visual effects add to one picture. Plain values; frame V, m, rad.
+// Visual effects add this to one picture. They are plain values in the frame V, with units m and rad.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,6 @@
-// The bone with blood and water on it: a surface shader of its own, and the film as a texture.
+// Draws the bone with blood and water on it, with a surface shader of its own and the film as a texture.
 //
-// Thread: the one of the context.
+// It belongs to the thread of the context.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,7 @@
-// What one picture shows, and the matrices, light and planes that follow from it.
+// One picture shows this; the matrices, light and planes follow from it.
 //
-// Frames: W world, V volume, T tool, C camera (camera.h); m, rad. Plain values.
+// The frames are W (world), V (volume), T (tool) and C (camera, see camera.h); the units are m and rad. They
+// are plain values.
 #pragma once
 
 #include <optional>
@@ -33,7 +34,7 @@ struct FrameView {
     const EffectPicture* effects = nullptr;  // null: the scene lists none
 };
 
-// True when the device pose lies visibly off the simulated tool.
+// Returns true when the device pose lies visibly off the simulated tool.
 bool isGhostVisible(const Pose& X_WT, const Pose& X_WT_device);
 
 struct KeyLight {

@@ -1,7 +1,7 @@
-// What is drawn over the whole frame: the background before bone and tool, ambient occlusion and the
+// Draws what goes over the whole frame: the background before bone and tool, ambient occlusion and the
 // composite after them.
 //
-// Thread: the one of the context.
+// It belongs to the thread of the context.
 #pragma once
 
 #include "render_client/gl/gl_object.h"

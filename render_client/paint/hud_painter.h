@@ -1,6 +1,6 @@
 // Draws what the head-up display says over the finished picture.
 //
-// Thread: the one of the context.
+// It belongs to the thread of the context.
 #pragma once
 
 #include <map>

@@ -1,7 +1,7 @@
 // Draws signs into the scene: the contact force as an arrow, instructors' pointers as glowing dots in rings.
 // What lies behind bone or tool shines through, fainter.
 //
-// Thread: the one of the context. Frames: C camera, W world; m.
+// It belongs to the thread of the context. The frames are C (camera) and W (world); the unit is m.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@
 
 namespace bonemill {
 
-// How the arrow shows a force (N). Its length is a part of the picture's height, logarithmic between the
-// smallest force that is shown and 20 N, and 0 below; its colour goes from green through yellow to red.
+// It says how the arrow shows a force (N). Its length is a part of the picture's height, logarithmic between
+// the smallest force that is shown and 20 N, and 0 below; its colour goes from green through yellow to red.
 struct ForceLook {
     double length = 0;
     Eigen::Vector3f colour = Eigen::Vector3f::Zero();

@@ -12,7 +12,7 @@ namespace {
 constexpr float kSmallest = 0.75f;    // pixels, radius; what is smaller is drawn so large, and fainter
 constexpr float kLeastDepth = 1e-4f;  // m before the eye
 
-// How many metres a pixel of the picture spans at this depth.
+// Returns how many metres a pixel of the picture spans at this depth.
 float pixelAt(const Frame& frame, float depth, int height) {
     return 2 * frame.tangents.y() * depth / float(height);
 }

@@ -1,7 +1,7 @@
 // Draws grains and drops as lit discs and streaks that face the eye. They read the depth
 // and leave it as it is.
 //
-// Thread: the one of the context.
+// It belongs to the thread of the context.
 #pragma once
 
 #include <vector>

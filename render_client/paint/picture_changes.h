@@ -1,4 +1,4 @@
-// Which pixels of a resting view have to be drawn anew. Plain values, one thread.
+// Finds which pixels of a resting view have to be drawn anew. It is a plain value, for one thread.
 #pragma once
 
 #include <vector>

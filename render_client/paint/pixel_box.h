@@ -1,4 +1,4 @@
-// A rectangle of pixels, half open, counted from the picture's lower left corner as OpenGL does.
+// It is a rectangle of pixels, half open, counted from the picture's lower left corner as OpenGL does.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,8 +1,8 @@
-// The buffers that a frame passes through: multisampled scene, its resolved copy, half-size occlusion, shadow
+// A frame passes through these buffers: multisampled scene, its resolved copy, half-size occlusion, shadow
 // map. In quick quality the scene is not multisampled and has no shadow; the bone alone and the finished
 // picture are kept for the next frame.
 //
-// Thread: the one of the context.
+// It belongs to the thread of the context.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,7 @@
 // Draws bone, tool, signs and the ghost of the device pose with light, shadow and ambient occlusion.
 //
-// Thread: the one of the context. Frames: W world, V volume, T tool, C camera (camera.h); m, rad.
+// It belongs to the thread of the context. The frames are W (world), V (volume), T (tool) and C (camera, see
+// camera.h); the units are m and rad.
 #pragma once
 
 #include <memory>
@@ -20,7 +21,7 @@
 
 namespace bonemill {
 
-// A part of a framebuffer, in pixels: x counts from its left edge, the part takes its whole height.
+// It is a part of a framebuffer, in pixels: x counts from its left edge, the part takes its whole height.
 struct PictureArea {
     int x = 0;
     int width = 0;
@@ -51,7 +52,7 @@ class SceneRenderer {
     // upper left corner; nothing over the background.
     std::optional<Eigen::Vector3d> pick(int x, int y) const;
 
-    // How many bone triangles were inside the view volume of the last picture.
+    // Returns how many bone triangles were inside the view volume of the last picture.
     size_t trianglesDrawn() const { return bone_.trianglesDrawn(); }
 
   private:

@@ -1,5 +1,5 @@
-// The GLSL sources (without #version) of everything that is drawn over or into the scene. Each group stands
-// in the source file that its heading names. Colours are linear until toneMap().
+// These are the GLSL sources (without #version) of everything that is drawn over or into the scene. Each
+// group stands in the source file that its heading names. Colours are linear until toneMap().
 #pragma once
 
 namespace bonemill::shaders {

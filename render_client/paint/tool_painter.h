@@ -1,6 +1,6 @@
 // Draws the tool, and the ghost of where the hand holds it.
 //
-// Thread: the one of the context.
+// It belongs to the thread of the context.
 #pragma once
 
 #include <memory>

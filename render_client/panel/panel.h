@@ -1,9 +1,9 @@
-// The control panel: every setting of the view, the session's commands and who is watching, for the mouse.
+// The control panel has every setting of the view, the session's commands and who is watching, for the mouse.
 //
 // The panel is a function of what is set and what the server says. It keeps nothing but what is folded,
 // scrolled, half typed or half confirmed (the end of the session), so it follows whoever changed something.
-// It needs no OpenGL; PanelPainter draws it. Positions are pixels from the picture's upper left corner.
-// Thread: the render thread.
+// It needs no OpenGL; PanelPainter draws it. Positions are pixels from the picture's upper left corner. It
+// belongs to the render thread.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// What the control panel says and offers, as one frame of ImGui. Thread: the render thread.
+// The control panel says and offers this, as one frame of ImGui. It belongs to the render thread.
 #pragma once
 
 #include <map>
@@ -26,7 +26,7 @@ class PanelContent {
           is_ending_(is_ending),
           scale_(scale) {}
 
-    // Is called between ImGui::NewFrame() and ImGui::Render().
+    // It is called between ImGui::NewFrame() and ImGui::Render().
     void build();
 
   private:

@@ -1,6 +1,7 @@
 // Draws the control panel over a finished picture, in any OpenGL 3.3 core context.
 //
-// Thread: the one of the context, which must be current for every call. Leaves blending and scissors off.
+// It belongs to the thread of the context, which must be current for every call. Leaves blending
+// and scissors off.
 #pragma once
 
 #include "render_client/gl/gl_object.h"

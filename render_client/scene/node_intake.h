@@ -1,7 +1,7 @@
 // Gives a scene the nodes that changed, each for itself: one that cannot be drawn is named in the log and
 // counted, its leaf stays as it was, and the others are shown all the same.
 //
-// Thread: the one of the OpenGL context.
+// It belongs to the thread of the OpenGL context.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class NodeIntake {
     // Forgets every node, shown or not.
     void clear();
 
-    // How many leaves do not show their newest mesh.
+    // Returns how many leaves do not show their newest mesh.
     size_t refusedCount() const { return refused_.size(); }
 
   private:

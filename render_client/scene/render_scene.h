@@ -1,7 +1,7 @@
-// Everything a viewer shows, fed with plain updates and drawn into any OpenGL 3.3 core context.
+// It is everything that a viewer shows, fed with plain updates and drawn into any OpenGL 3.3 core context.
 //
-// Thread: the one of the context, which must be current for every call. The picture depends only on the
-// newest updates, the view and the size, not on the order in which the updates came.
+// It belongs to the thread of the context, which must be current for every call. The picture depends only on
+// the newest updates, the view and the size, not on the order in which the updates came.
 #pragma once
 
 #include <map>
@@ -73,7 +73,7 @@ class RenderScene {
     void advance(double seconds) {
         if (effects_) effects_->advance(seconds);
     }
-    // Null while the scene lists none, or nothing is known of it yet.
+    // It is null while the scene lists none, or nothing is known of it yet.
     const VisualEffects* effects() const { return effects_.get(); }
 
     size_t nodeCount() const { return nodes_.nodeCount(); }
@@ -110,7 +110,7 @@ class RenderScene {
     Anaglyph anaglyph_;
     HudPainter hud_painter_;
     HudInput hud_input_;
-    // What came before the scene info said whether effects need it.
+    // These came before the scene info said whether effects need them.
     std::map<uint32_t, NodeMesh> early_nodes_;
     std::unique_ptr<VisualEffects> effects_;
     EffectPicture effect_picture_;

@@ -1,5 +1,5 @@
-// Commands on their way to the server: one after the other, repeated until acknowledged or
-// timed out. One thread.
+// Commands are on their way to the server here: one after the other, repeated until acknowledged or timed
+// out. It is for one thread.
 #pragma once
 
 #include <chrono>
@@ -20,7 +20,7 @@ struct CommandOutcome {
     bool is_acknowledged = false;  // false: no answer in time
     std::string result;            // what the server said, or why there is no answer
 
-    // True when the server did what it was asked for.
+    // Returns true when the server did what it was asked for.
     bool isDone() const { return is_acknowledged && result == "done"; }
 };
 

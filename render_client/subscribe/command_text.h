@@ -1,4 +1,4 @@
-// Puts a command, and how it ended, into words for logs and people. Any thread.
+// Puts a command, and how it ended, into words for logs and people. It is for any thread.
 #pragma once
 
 #include <string>

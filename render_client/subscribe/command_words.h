@@ -1,5 +1,5 @@
-// Commands as people write them: reset, pause, resume, tool NAME (or its number), checkpoint, restore N (or
-// last), accuracy NAME, export NAME, shutdown.
+// People write commands so: reset, pause, resume, tool NAME (or its number), checkpoint, restore N (or last),
+// accuracy NAME, export NAME, shutdown.
 #pragma once
 
 #include <string>

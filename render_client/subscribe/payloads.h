@@ -1,5 +1,5 @@
 // Checks what comes off the wire: there is nothing when the bytes are not what the rest of the client may
-// rely on. Thread-safe; never throws on any bytes (other than std::bad_alloc).
+// rely on. It is thread-safe and never throws on any bytes (other than std::bad_alloc).
 #pragma once
 
 #include <cstdint>

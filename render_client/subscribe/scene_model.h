@@ -1,4 +1,5 @@
-// Which node meshes the client has, and the changes that the renderer has not seen yet. One thread.
+// It has the node meshes of the client, and the changes that the renderer has not seen yet. It is
+// for one thread.
 //
 // Applies what arrives idempotently, whatever its order: the newest epoch counts, and in it the newest
 // revision. What belongs together comes out together, so that no crack shows: nodes wait until the newest
@@ -31,8 +32,8 @@ class SceneModel {
         std::vector<Change> nodes;  // then, in this order: replace the leaf's mesh
     };
 
-    // Is told the epoch of everything that arrives. Returns false when it comes from an older
-    // run and must be ignored.
+    // It is told the epoch of everything that arrives. Returns false when it comes from an older run and
+    // must be ignored.
     bool enterEpoch(uint64_t epoch);
 
     // `writer` identifies who sent it (dds::SampleInfo::writer).

@@ -1,4 +1,5 @@
-// The client's end of a session: what the server shows, kept up to date, and the way to send it commands.
+// It is the client's end of a session: what the server shows, kept up to date, and the way to
+// send it commands.
 //
 // One thread (the render thread): poll() takes what has arrived and never waits. Bytes that do not make sense
 // are dropped, counted, and at first named in the log; what comes with them arrives. A server that leaves
@@ -38,7 +39,7 @@ class SceneSubscriber {
     // Takes and decodes what has arrived, at most `max_nodes` node samples (the rest stays for the next
     // call), sends the commands that are due, and returns the nodes that changed since the last call.
     SceneModel::Changes poll(size_t max_nodes = kAllNodes);
-    // True when poll() has something to take, false when `timeout` passed before.
+    // Returns true when poll() has something to take, false when `timeout` passed before.
     bool waitForData(std::chrono::nanoseconds timeout) const { return wait_set_.wait(timeout); }
 
     // These are the newest ones of the current server run; there is nothing before the first.
@@ -47,10 +48,10 @@ class SceneSubscriber {
     const std::optional<topics::ToolState>& toolState() const noexcept { return tool_state_; }
     const std::optional<topics::Status>& status() const noexcept { return status_; }
 
-    // True when every node of the newest status is here, and no other. It is false in the short while between
-    // a changed node and the status that counts it.
+    // Returns true when every node of the newest status is here, and no other. It is false in the short while
+    // between a changed node and the status that counts it.
     bool isComplete() const;
-    // True when a server of this session is there: it is matched, and something came from
+    // Returns true when a server of this session is there: it is matched, and something came from
     // it within kServerTimeout.
     bool hasServer() const;
     static constexpr std::chrono::seconds kServerTimeout{3};

@@ -1,6 +1,6 @@
-// A window with an OpenGL 3.3 core context, and what happens at it.
+// It is a window with an OpenGL 3.3 core context, and tells what happens at it.
 //
-// Thread: the main thread. There is one window per process.
+// It belongs to the main thread. There is one window per process.
 #pragma once
 
 #include <string>

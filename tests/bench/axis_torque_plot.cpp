@@ -1,4 +1,4 @@
-// The sixth degree of freedom in one picture: a burr of 1 mm radius, spindle at 40,000 rpm, is pressed
+// Shows the sixth degree of freedom in one picture: a burr of 1 mm radius, spindle at 40,000 rpm, is pressed
 // sidewards into a block that is not milled, without and with cutting_force. Writes axis_torque.csv,
 // axis_torque.gp and axis_torque.png; nothing in them depends on time.
 //
@@ -24,7 +24,7 @@ struct Row {
     double force, torque, spin, motor_power, friction_power;
 };
 
-// How far the hand presses, m, at this time, s: in two steps, and out again.
+// Returns how far the hand presses, m, at this time, s: in two steps, and out again.
 double pressAt(double t) {
     const auto ramp = [&](double from, double seconds) { return std::clamp((t - from) / seconds, 0.0, 1.0); };
     return 1e-3 * ramp(0.5, 0.3) + 1e-3 * ramp(1.3, 0.3) - 2.2e-3 * ramp(2.2, 0.4);

@@ -13,14 +13,14 @@ class App;
 
 namespace bonemill::bench {
 
-// {mean, p50, p99, p999, max}, µs.
+// Returns {mean, p50, p99, p999, max}, µs.
 nlohmann::json microseconds(const LatencyHistogram& durations);
 
 class Table {
   public:
     explicit Table(std::vector<std::string> columns) : rows_{std::move(columns)} {}
     void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
-    // "mean", "p50", "p99", "p99.9" and "max" of the durations after these cells.
+    // The row has "mean", "p50", "p99", "p99.9" and "max" of the durations after these cells.
     void add(std::vector<std::string> cells, const LatencyHistogram& durations);
     void print() const;
 

@@ -1,7 +1,5 @@
 // Measures the cost of a tick on the thesis' tooth while milling a corridor, by preset, scaling factor and
-// octree leaf size.
-//
-// `haptic_bench presets`.
+// octree leaf size, for `haptic_bench presets`.
 //
 // Prints p50/p99/p99.9/max in µs and the ratio of the medians to the thesis' own setting (s = 3, octree depth
 // 3), all settings in turn in the same process, several rounds: quote a figure only if the rounds agree.

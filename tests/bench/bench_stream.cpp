@@ -40,7 +40,7 @@ struct StreamOptions {
     std::vector<int> viewers{1, 10, 30};
 };
 
-// Bone in three bands of density, as scenes tell soft, spongy and compact bone apart.
+// The bone has three bands of density, as scenes tell soft, spongy and compact bone apart.
 BoneProperties threeMaterials(const VoxelVolume& volume) {
     const int band = (kMaxDensity - volume.iso()) / 3 + 1;
     return {volume, [&](const Eigen::Vector3i& v) {
@@ -98,7 +98,7 @@ void replace(std::string& text, const std::string& what, const std::string& by) 
     if (at != std::string::npos) text.replace(at, what.size(), by);
 }
 
-// The scene with every piece of bone, and a hand that mills round and round for as long as wanted.
+// The scene has every piece of bone, and a hand that mills round and round for as long as wanted.
 std::string millingScene(const std::string& scene, int seconds) {
     std::ifstream file(scene);
     std::ostringstream text;
@@ -134,7 +134,7 @@ double shareOfACore(int pid, std::chrono::seconds time) {
     return (processorSeconds(pid) - before) / double(time.count());
 }
 
-// A real server whose simulated hand mills all the time.
+// It is a real server whose simulated hand mills all the time.
 class Session {
   public:
     Session(const std::string& scene, const std::string& report)

@@ -2,7 +2,7 @@
 
 namespace bonemill::bench {
 
-/// Cells along each edge of a leaf, as in the shipped scenes.
+/// A leaf has so many cells along each edge, as in the shipped scenes.
 constexpr int kLeafCells = 16;
 
 }  // namespace bonemill::bench

@@ -1,4 +1,4 @@
-// A viewer without a picture, steered line by line on stdin (domain and session: arguments):
+// This is a viewer without a picture, steered line by line on stdin (domain and session are arguments):
 //   join    joins the session; answers "<s until the model was complete> <nodes>"
 //   state   waits until the model is complete again; answers "<node count> <node digest> <processor s>"
 #include <poll.h>

@@ -1,21 +1,22 @@
-// Z-width: how far apart free air and a wall may be, by loop rate, before the closed loop with the simulated
-// device buzzes (Colgate and Brown 1994).
+// The Z-width is how far apart free air and a wall may be, by loop rate, before the closed loop with the
+// simulated device buzzes (Colgate and Brown 1994).
 //
-// Device: Plant's defaults (0.25 kg, 2 N·s/m, 0.2 N Coulomb, amplifiers 500 Hz, encoders 5 µm and 0.01°), one
-// tick of delay; hand: the default hand, or none and a weight instead. The tool falls or is pressed with 2 N
-// against a plane, or leans with 2.2 N and a little torque in a hole with half a voxel of clearance. Stable:
-// over 0.5 s after 0.5 s the force's RMS about its mean stays below 0.05 N and the handle's below 10 µm, and
-// the motion does not grow.
+// The device has Plant's defaults (0.25 kg, 2 N·s/m, 0.2 N Coulomb, amplifiers 500 Hz, encoders 5 µm and
+// 0.01°) and one tick of delay; the hand is the default hand, or none and a weight instead. The tool falls or
+// is pressed with 2 N against a plane, or leans with 2.2 N and a little torque in a hole with half a voxel of
+// clearance. It is stable if over 0.5 s after 0.5 s the force's RMS about its mean stays below 0.05 N and the
+// handle's below 10 µm, and the motion does not grow.
 //
-// Wall: rendered stiffness, the static change of force over a change of the device's place of ±20 µm
-// about where the run came to rest, along the push. Free air: drag, force over speed at 50 mm/s. Both
-// measured. Quantities:
+// The wall is the rendered stiffness, the static change of force over a change of the device's place of ±20
+// µm about where the run came to rest, along the push. Free air is the drag, force over speed at 50 mm/s.
+// Both are measured. The quantities are:
 //   zwidth    largest rendered stiffness with at most 3 N·s/m of drag, over k_t and the contact's stiffness
-//   (default × 1,
-//             4, 16, 64); the gradient presets take damping time 3 N·s/m / k_t, thesis_2012 is as printed
-//   tuned     the same for thesis_2012 with its static damping chosen for 3 N·s/m, which the thesis does not
-//   do coupling  at the largest stable k_t, all else at its default, drag as it comes contact   at the
-//   largest stable contact stiffness, likewise
+//             (default × 1, 4, 16, 64); the gradient presets take damping time 3 N·s/m / k_t, thesis_2012 is
+//             as printed
+//   tuned     the same for thesis_2012 with its static damping chosen for 3 N·s/m, which the thesis does
+//             not do
+//   coupling  at the largest stable k_t, all else at its default, drag as it comes
+//   contact   at the largest stable contact stiffness, likewise
 // A stiffness rises from its default by factors of two until the first unstable value (or falls until the
 // first stable one); the limit is then bisected to 3 %.
 //
@@ -109,8 +110,8 @@ double Pressed::rendered() {
     return (forceAt(kMove) - less) / (2 * kMove);
 }
 
-// Largest factor on the default stiffness, connected to a stable start: the default or, if that is unstable,
-// the first stable one below it. 0: none found; kScanTo: no end found.
+// Returns the largest factor on the default stiffness that is connected to a stable start: the default or, if
+// that is unstable, the first stable one below it. 0 says that none was found, kScanTo that no end was found.
 template <class StableAt>
 double largestStable(StableAt&& stable_at) {
     double low = 1;
@@ -129,7 +130,7 @@ double largestStable(StableAt&& stable_at) {
     return low;
 }
 
-// What the hand must push with to move through the air, N·s/m: the other end of the Z-width.
+// Returns what the hand must push with to move through the air, N·s/m: the other end of the Z-width.
 double dragInAir(Scene& scene) {
     constexpr double kSpeed = 0.05;  // m/s
     Stepper stepper(scene);

@@ -14,13 +14,13 @@ struct Alteration {
     std::string by;
 };
 
-// `gl` with shaders that have every alteration done. It counts for one thread, until the next call.
+// Returns `gl` with shaders that have every alteration done. It counts for one thread, until the next call.
 GlApi alterShaders(const GlApi& gl, std::vector<Alteration> alterations);
 
-// `gl` that gives no more than one sample per pixel.
+// Returns `gl` that gives no more than one sample per pixel.
 GlApi withoutAntialiasing(const GlApi& gl);
 
-// How often one was done since.
+// Counts how often one was done since.
 int alterationsDone();
 
 }  // namespace bonemill::test

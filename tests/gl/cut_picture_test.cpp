@@ -1,4 +1,4 @@
-// Cut-planes, checked against what geometry says.
+// Cut-planes are checked against what geometry says.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ TEST_F(ViewMode, AFlippedCutHidesTheOtherSide) {
     EXPECT_NEAR(cap->x(), kSphereCenter.x() + 0.2 * kSphereRadius, 2e-6);
 }
 
-// The volume's axes are not the world's: a plane across W's x, whatever V is.
+// The volume's axes are not the world's: the plane is across W's x, whatever V is.
 TEST_F(ViewMode, CutsAreAcrossTheWorldsAxes) {
     const Vector3d half = Vector3d::Constant(kSphereRadius);
     topics::SceneInfo info = makeSceneInfo("turned sphere", kSphereCenter - half, kSphereCenter + half);

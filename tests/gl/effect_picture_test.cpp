@@ -113,7 +113,7 @@ TEST_F(EffectPictures, WhatIsLeftOutOrHiddenLeavesNoTrace) {
     EXPECT_TRUE(draw() == without) << "hidden";
 }
 
-// Quick quality draws only what changed; with effects, too.
+// Quick quality draws only what changed, with effects, too.
 TEST_F(EffectPictures, QuickIsTheOneThatIsDrawnWhole) {
     topics::SceneInfo all;
     test::listAllEffects(all);

@@ -1,6 +1,7 @@
-// The viewer's effects at work on the tooth phantom, without server and clock:
-//   effect_show pictures DIR    writes effect_dust.png, effect_bleeding.png, effect_irrigation.png,
-//   effect_spin.png effect_show measure         prints what each effect costs per picture, as one JSON object
+// Shows the viewer's effects at work on the tooth phantom, without server and clock:
+//   effect_show pictures DIR    writes effect_dust.png, effect_bleeding.png, effect_irrigation.png and
+//                               effect_spin.png
+//   effect_show measure         prints what each effect costs per picture, as one JSON object
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -161,7 +162,8 @@ void drawSpin(const std::filesystem::path& folder) {
     std::cout << path.string() << std::endl;
 }
 
-// Milliseconds of one picture, advancing and drawing, while the burr mills: the mean over the strokes.
+// Returns the milliseconds of one picture, advancing and drawing, while the burr mills, as the mean
+// over the strokes.
 double meanMs(const scene::Effects& wish, Quality quality) {
     using Clock = std::chrono::steady_clock;
     Stage stage(640, 480, wish);

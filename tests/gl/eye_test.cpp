@@ -1,4 +1,4 @@
-// Where the eyes stand: two of them in stereo, one on the tool in the endoscope.
+// The eyes stand where they should: two of them in stereo, one on the tool in the endoscope.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -25,7 +25,7 @@ PictureDifference compare(const Picture& actual, const Picture& expected);
 // message says so: nothing was compared, so no test passes.
 std::string goldenProblem(const Picture& actual, const std::string& name);
 
-// The message that it was written.
+// Returns the message that it was written.
 std::string writeGolden(const Picture& picture, const std::filesystem::path& path);
 
 Picture readGolden(const std::string& name);

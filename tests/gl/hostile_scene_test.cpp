@@ -32,7 +32,7 @@ class HostileScene : public testing::TestWithParam<Quality> {
         if (const auto parsed = parseViewer(bytesOf(viewer), 7)) scene_.setWatchers({*parsed});
     }
     std::string mutated(const std::string& valid) { return test::mutated(valid, random_); }
-    // Each in three rounds: the rest must not hide it.
+    // Each message is damaged in one of three rounds: the rest must not hide it.
     std::string sometimes(const std::string& valid) { return random_() % 3 ? valid : mutated(valid); }
 
     OsmesaContext context_;
@@ -85,7 +85,7 @@ TEST_P(HostileScene, IsDrawnWhateverTheMessagesSay) {
     }
 }
 
-// Numbers as large as the parsers let through.
+// The numbers are as large as the parsers let through.
 TEST_P(HostileScene, IsDrawnFarAwayAndHuge) {
     topics::SceneInfo info = syntheticSceneInfo();
     for (int axis = 0; axis < 3; ++axis) {

@@ -13,7 +13,7 @@
 
 namespace bonemill::test {
 
-// How the burr runs during a stroke.
+// It says how the burr runs during a stroke.
 struct BurrRun {
     double spin_speed = 3000;  // rad/s
     double force = 3;          // N on the hand, away from the bone
@@ -43,7 +43,7 @@ class MillingSession {
     void show(RenderScene& scene) {
         for (LeafId leaf = 0; leaf < lattice_->leafCount(); ++leaf) sendLeaf(scene, leaf, false);
     }
-    // Along a line at constant speed, removing what is in the burr's way.
+    // The burr moves along a line at constant speed and removes what is in its way.
     void stroke(RenderScene& scene, const Pose& from, const Pose& to, double seconds, const BurrRun& run) {
         const int states = std::max(1, int(std::lround(seconds / kPeriod)));
         for (int n = 1; n <= states; ++n) {

@@ -1,4 +1,4 @@
-// What changes a model that is already shown: another tool, another node, another quantisation.
+// A model that is already shown changes: another tool, another node, another quantisation.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,8 @@ TEST_F(ViewMode, OnlyWhatIsSetGoesToTheGpu) {
     EXPECT_EQ(scene_->uploads().nodes, nodes + 1);
 }
 
-// 64 steps per voxel instead of thousands: at most half a step, 1/128 voxel, off.
+// The quantisation has 64 steps per voxel instead of thousands, so that it is at most half a step,
+// 1/128 voxel, off.
 TEST_F(ViewMode, ACoarseQuantisationLooksTheSame) {
     showSphere();
     const Picture fine = draw();

@@ -10,7 +10,7 @@ namespace {
 
 class NodeIntakeTest : public testing::Test {
   protected:
-    // A triangle whose last vertex there is not.
+    // One triangle has a last vertex that is not there.
     static NodeMesh broken(NodeMesh mesh) {
         mesh.indices.back() = uint32_t(mesh.vertices.size());
         return mesh;

@@ -1,4 +1,4 @@
-// The point under a pixel, checked against what geometry says.
+// The point under a pixel is checked against what geometry says.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -54,7 +54,7 @@ class RenderClient : public testing::Test {
     std::filesystem::path folder_;
 };
 
-// A server that shows a sphere and goes on saying so.
+// The server shows a sphere and goes on saying so.
 class SphereServer {
   public:
     SphereServer() : publisher_({.domain = testDomain(), .session = testSession(), .epoch = 0}) {

@@ -1,6 +1,6 @@
-// A scripted load of the spindle, heard and seen:
+// Plays a scripted load of the spindle, heard and seen:
 //   sound_show DIR    writes milling_sound.wav and, by gnuplot, milling_sound.png into DIR
-// Run-up, idle, light contact, heavy contact, stall, free again.
+// The load is a run-up, idle, light contact, heavy contact, a stall, and free again.
 #include <cmath>
 #include <complex>
 #include <cstdio>
@@ -19,7 +19,7 @@ namespace {
 constexpr size_t kWindow = 4096, kHop = 1600;
 constexpr double kShownHz = 6000;
 
-// What a spindle does, by hand: (s, rpm, N, W), linear in between.
+// The script says by hand what a spindle does: (s, rpm, N, W), linear in between.
 constexpr struct {
     double time, rpm, force, power;
 } kScript[] = {{0, 0, 0, 0},       {1.2, 30000, 0, 0}, {3, 30000, 0, 0}, {3.1, 28500, 1, 2},

@@ -14,7 +14,7 @@ namespace bonemill::test {
 using DistanceFunction = std::function<double(const Eigen::Vector3d& p_V)>;   // m, negative inside
 using MaterialFunction = std::function<uint8_t(const Eigen::Vector3d& p_V)>;  // 1 + index in the scene's list
 
-// Iso-surface of distance = 0 in a cube of `voxels` per side, cut into leaves of 16 cells.
+// Makes the iso-surface of distance = 0 in a cube of `voxels` per side, cut into leaves of 16 cells.
 inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const DistanceFunction& distance,
                                       const MaterialFunction& material = {}) {
     VolumeGeometry geometry;
@@ -42,7 +42,7 @@ inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const Distance
     return nodes;
 }
 
-// What removes the leaf.
+// It removes the leaf.
 inline NodeMesh emptyNode(uint32_t leaf) {
     NodeMesh mesh;
     mesh.leaf = leaf;

@@ -1,4 +1,4 @@
-// A scene in a small picture, for the tests of ways of looking, and what geometry says of it.
+// Sets up a scene in a small picture, for the tests of ways of looking, and tells what geometry says of it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ struct Pixel {
     double x = 0, y = 0;  // from the upper left
 };
 
-// Where a point (W) appears.
+// Returns where a point (W) appears.
 inline Pixel project(const Camera& camera, const Eigen::Vector3d& p_W, int width, int height) {
     const Eigen::Vector3d p_C = camera.R_WC.transpose() * (p_W - camera.eye_W);
     const double pixels = height / (2 * camera.halfTangent() * -p_C.z());

@@ -21,7 +21,7 @@ class AresBench {
         emulator_.startScenario();
     }
 
-    // Force on the hand, or NaN if the device has no pose.
+    // Returns the force on the hand, or NaN if the device has no pose.
     Eigen::Vector3d step() {
         now_ns_ += kTick_ns;
         DeviceSample sample;

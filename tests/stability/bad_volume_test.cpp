@@ -21,8 +21,8 @@ VoxelVolume filled(DensityOf&& density_of) {
     return volume;
 }
 
-// Drags the burr through the volume along a spiral, turning: worst force over its limit; NaN if anything is
-// not finite.
+// The burr is dragged through the volume along a spiral, turning. Returns the worst force over its limit, or
+// NaN if anything is not finite.
 double drag(VoxelVolume volume, const Variant& variant) {
     Scene scene(std::move(volume), burr(), variant);
     const HandLimitsConfig& most = scene.config.hand;
@@ -59,12 +59,12 @@ double chessboard(const Variant& variant) {
                 variant);
 }
 
-// Everything exactly at the iso-value: surface only at the volume's border.
+// Everything is exactly at the iso-value: surface is only at the volume's border.
 double flat(const Variant& variant) {
     return drag(filled([](int, int, int) { return kTestIso; }), variant);
 }
 
-// A ball in a CT in which one voxel of five is NaN or infinite.
+// A ball lies in a CT in which one voxel of five is NaN or infinite.
 double notANumber(const Variant& variant) {
     std::mt19937 random(3);
     RawVolume raw;
@@ -85,7 +85,7 @@ double notANumber(const Variant& variant) {
     return drag(densify(raw, DensityWindow{-1000, 3000, 600, 0}), variant);
 }
 
-// A plate of 14 × 14 mm laid on a plane of 0.125 mm voxels: one contact per voxel face.
+// A plate of 14 × 14 mm lies on a plane of 0.125 mm voxels, with one contact per voxel face.
 double manyContacts(const Variant& variant) {
     constexpr double kHalf = 7e-3, kThick = 1e-3, kPlaneTop = 1.05e-3;
     const auto plate = [=](const Eigen::Vector3d& p) {

@@ -1,4 +1,4 @@
-// One hard case = one figure and its bound, measured for every variant, and some with effects as well. A case
+// A hard case has one figure and its bound, measured for every variant, and some with effects as well. A case
 // holds if figure <= bound.
 //
 // A variant for which a case is known to fail, deterministically, is not left out: it runs in the suite
@@ -43,7 +43,7 @@ void PrintTo(const Trial& trial, std::ostream* out);  // GoogleTest's name for i
 
 class StabilityTrial : public testing::TestWithParam<Trial> {
   protected:
-    // Measures, prints, appends; the figure.
+    // Measures, prints, appends, and returns the figure.
     double measureAndReport() const;
 };
 class Holds : public StabilityTrial {};

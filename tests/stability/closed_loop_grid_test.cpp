@@ -18,7 +18,7 @@ struct Named {
     Kind value;
 };
 
-// Ends and middle of the ranges in docs/stability.md.
+// These are the ends and the middle of the ranges in docs/stability.md.
 const Named<DevicePlant> kDevices[] = {
     {"light", {.mass = 0.1, .damping = 0.5, .coulomb = 0.1, .inertia = 2e-5, .amplifier_hz = 1000}},
     {"typical", {}},
@@ -38,9 +38,9 @@ constexpr Encoders kEncoders[] = {{5e-6, 0.01}, {20e-6, 0.05}};
 struct GridPoint {
     LoopConfig config;
     std::string name;
-    // Colgate: viscous damping over K (T/2 + delay), with the amplifier's lag as delay; the worse of
-    // translation and rotation. Below 1 no virtual spring of the coupling's stiffness can be promised to
-    // be stable.
+    // By Colgate it is the viscous damping over K (T/2 + delay), with the amplifier's lag as delay, the
+    // worse of translation and rotation. Below 1 no virtual spring of the coupling's stiffness can be
+    // promised to be stable.
     double damping_ratio = 0;
 };
 
@@ -66,7 +66,7 @@ std::vector<GridPoint> gridPoints(const CouplingFigures& coupling, double dt) {
     return points;
 }
 
-// `push`: what the hand's springs, stretched from the start pose, or with no hand a weight pull with.
+// `push` is what the hand's springs, stretched from the start pose, or with no hand a weight pull with.
 double buzz(Scene& scene, const LoopConfig& config, const Pose& start, const Wrench& push) {
     ClosedLoop loop(config, scene, start);
     const HandPlant& hand = config.hand;
@@ -87,7 +87,7 @@ struct GridScene {
 const GridScene kOnPlane{planeBone, burr, abovePlane(0.2e-3), {{0, 0, -kPush}, {0, 0, 0}}};
 const GridScene kInHole{holeBone, peg, upright(kHoleMiddle), {{kPush, 0, kPush / 2}, {0.0003, 0, 0.0005}}};
 
-// Worst buzz over the points that are passive by Colgate's bound.
+// Returns the worst buzz over the points that are passive by Colgate's bound.
 double passivePoints(const Variant& variant, const GridScene& grid) {
     Scene scene(grid.bone(), grid.tool(), variant);
     double worst = 0;
@@ -142,7 +142,7 @@ double holeThreeTicks(const Variant& variant) {
     return withDelay(variant, kInHole, 3).percent_buzzing;
 }
 
-// Three ticks of delay on a device too lightly damped for them: shown, not promised.
+// A device is too lightly damped for three ticks of delay: the figure is shown, not promised.
 const std::vector<std::string> kEveryVariant{"thesis_2012", "fast", "balanced", "exact"};
 
 const std::vector<StabilityCase> kClosedLoopGridCases{

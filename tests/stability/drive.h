@@ -10,7 +10,7 @@
 
 namespace bonemill::test {
 
-// One tick at a time with whatever device pose the caller says.
+// It makes one tick at a time with whatever device pose the caller says.
 class Stepper : private TickIo {
   public:
     // It takes `tools` instead of the scene's tool, if it is not null, and a history if that is not null.

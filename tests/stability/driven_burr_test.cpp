@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kHandPush = 3;  // N, of the hand's springs
 
-// A round pit half as wide again as the burr: friction drives the burr along its floor to the wall,
-// and round.
+// The round pit is half as wide again as the burr: friction drives the burr along its floor to the
+// wall, and round.
 const Eigen::Vector3d kPitFloor(2.52e-3, 2.48e-3, 1e-3);
 VoxelVolume pitBone() {
     const auto pit = [](const Eigen::Vector3d& p) {
@@ -52,7 +52,7 @@ struct Pit {
     HandPlant hand;
 };
 
-// Largest change of the force from tick to tick, N, over `seconds`.
+// Returns the largest change of the force from tick to tick, N, over `seconds`.
 double largestStep(Pit& pit, double seconds) {
     double worst = 0;
     Eigen::Vector3d before = pit.loop.stepper.wrenchOnHand().force;
@@ -103,7 +103,7 @@ double runUpRest(const Variant& variant) {
     return forceBuzz(pit.loop, 1, 0.2);
 }
 
-// So weak a motor that the full push stops it.
+// The motor is so weak that the full push stops it.
 void weakMotor(FixedTickConfig& config) {
     if (config.effects.spindle)
         config.effects.spindle->max_torque = 0.5 * kCuttingFriction * kHandPush * kBurrRadius;
@@ -137,7 +137,8 @@ double stallStep(const Variant& variant) {
     return isStalled(pit) ? worst : kLost;
 }
 
-// The pedal down and up: energy of hand and device in the last ten rounds over that in the first.
+// The pedal goes down and up. Returns the energy of hand and device in the last ten rounds over that
+// in the first.
 double pedalGrowth(const Variant& variant) {
     constexpr int kRounds = 20, kTicks = 100;
     Pit pit(variant);
@@ -183,8 +184,8 @@ double pauseStep(const Variant& variant) {
     return worseOf(stopping, largestStep(pit, 0.3));
 }
 
-// Pressed against floor and wall, drawn round in the pit and let go: energy that the hand got beyond what the
-// motor gave, µJ.
+// The burr is pressed against floor and wall, drawn round in the pit and let go. Returns the energy that the
+// hand got beyond what the motor gave, µJ.
 double beyondTheMotor(const Variant& variant, int way) {
     Scene scene(pitBone(), burr(), variant);
     Stepper stepper(scene);
@@ -210,7 +211,7 @@ double beyondTheMotor(const Variant& variant) {
     return worseOf(beyondTheMotor(variant, 1), beyondTheMotor(variant, -1));
 }
 
-// Drilled into full bone by a hand that goes ahead: the largest step of the force.
+// The burr is drilled into full bone by a hand that goes ahead. Returns the largest step of the force.
 double drillingStep(const Variant& variant) {
     Pit pit(variant, kLying, withoutVibration);
     pit.hold(true);

@@ -1,8 +1,9 @@
-// Energy that a hand puts into the simulation, from poses and wrenches at the ticks (docs/stability.md).
+// This is the energy that a hand puts into the simulation, from poses and wrenches at
+// the ticks (docs/stability.md).
 //
 // Both meters take the wrench on the hand and the pose it acts at, and count work done against it as
 // positive: on a path that ends where it began, a passive simulation returns at least zero. Torque works on
-// the rotation vector of the step. Units J.
+// the rotation vector of the step. Units are J.
 #pragma once
 
 #include <algorithm>
@@ -52,7 +53,7 @@ class PortEnergy {
     }
     double energy() const noexcept { return energy_; }
 
-    // What holding the force makes of a spring of `stiffness` pressed by `depth` and released again, both at
+    // Holding the force makes this of a spring of `stiffness` pressed by `depth` and released again, both at
     // `speed`: at most K T v X for the hold, and twice that for each tick of delay. Port energy may not fall
     // below minus this.
     static double holdBound(double stiffness, double dt, double speed, double depth, int delay_ticks) {

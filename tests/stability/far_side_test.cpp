@@ -1,5 +1,5 @@
-// A tool whose medial axis has got into a wall thinner than itself, with the hand outside: neither face of
-// the wall may hold it there or pull it on.
+// A tool's medial axis has got into a wall thinner than itself, with the hand outside: neither face of the
+// wall may hold it there or pull it on.
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
@@ -10,7 +10,8 @@ namespace {
 constexpr int kMostTicks = 500;
 constexpr double kClear = 0.5e-3;  // m: how far outside, beyond touching, the hand waits
 
-// Walls and where in them the burr's centre starts, of the wall's thickness from its lower face.
+// These are the walls, and where in them the burr's centre starts, of the wall's thickness from
+// its lower face.
 constexpr double kWalls[] = {0.25e-3, 0.5e-3, 0.75e-3};
 constexpr double kStarts[] = {0.2, 0.5, 0.8};
 

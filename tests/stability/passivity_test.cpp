@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kEnergySlack_uJ = 1;
 
-// Corners visited in order at `speed`, with the turn between them spread evenly, and a rest at the end.
+// The corners are visited in order at `speed`, with the turn between them spread evenly, and a rest
+// at the end.
 std::vector<Pose> polyline(const std::vector<Pose>& corners, double speed, int rest_ticks) {
     std::vector<Pose> path;
     for (size_t c = 1; c < corners.size(); ++c) {
@@ -26,9 +27,9 @@ std::vector<Pose> polyline(const std::vector<Pose>& corners, double speed, int r
     return path;
 }
 
-// Energy gained over the path, µJ; 0 if none was. `dropped` ticks from `drop_from` on are missing; what
-// happens meanwhile is charged with the forces of an undisturbed run, so that the gap itself costs and brings
-// nothing: what remains is what the tool does when it comes back.
+// Returns the energy gained over the path, µJ; 0 if none was. `dropped` ticks from `drop_from` on are
+// missing; what happens meanwhile is charged with the forces of an undisturbed run, so that the gap itself
+// costs and brings nothing: what remains is what the tool does when it comes back.
 double gained(Scene& scene, const std::vector<Pose>& path, size_t drop_from = 0, size_t dropped = 0) {
     Stepper stepper(scene), undisturbed(scene);
     AlgorithmEnergy meter;
@@ -44,7 +45,7 @@ double gained(Scene& scene, const std::vector<Pose>& path, size_t drop_from = 0,
     return pressed > 0.1 ? std::max(0.0, -meter.energy() * kPerMicro) : kLost;
 }
 
-// Down, sideways, up, back, over a plane that lies askew in the grid; both ways round.
+// The path goes down, sideways, up and back over a plane that lies askew in the grid, both ways round.
 double loopOverPlane(const Variant& variant) {
     const Eigen::Vector3d normal = Eigen::Vector3d(0.3, 0.2, 1).normalized();
     const Eigen::Vector3d side = normal.cross(Eigen::Vector3d(0.2, 1, 0)).normalized();
@@ -64,8 +65,8 @@ double loopOverPlane(const Variant& variant) {
     return worst;
 }
 
-// The same at rest: each pose is held until the tool has settled, so that only the law of force is judged,
-// not the damping of the solve. In a conservative law both ways round give 0; otherwise one way gains.
+// At rest each pose is held until the tool has settled, so that only the law of force is judged, not the
+// damping of the solve. In a conservative law both ways round give 0; otherwise one way gains.
 double gainedAtRest(Scene& scene, std::vector<Pose> path) {
     constexpr int kSettleTicks = 16;
     double worst = 0;
@@ -85,7 +86,7 @@ double gainedAtRest(Scene& scene, std::vector<Pose> path) {
 
 constexpr double kFineStep = 5e-6 * 1e3;  // m/s that make 5 µm per pose
 
-// Over a right-angled edge, from one face to the other and back through the air.
+// The path goes over a right-angled edge, from one face to the other and back through the air.
 double overTheEdge(const Variant& variant) {
     const Eigen::Quaterniond askew = expRotation({0.15, 0.35, 0.1});
     const Eigen::Vector3d edge(3e-3, 2.5e-3, 3e-3);
@@ -106,7 +107,7 @@ double overTheEdge(const Variant& variant) {
     return gainedAtRest(scene, polyline(corners, kFineStep, 1));
 }
 
-// Round the hole, leaning on its wall, and tilting.
+// The peg goes round the hole, leaning on its wall, and tilts.
 std::vector<Pose> roundTheHole(double speed, int rest_ticks) {
     std::vector<Pose> corners{upright(kHoleMiddle)};
     for (int n = 0; n <= 24; ++n) {
@@ -128,7 +129,7 @@ double pegAtRest(const Variant& variant) {
     return gainedAtRest(scene, roundTheHole(kFineStep, 1));
 }
 
-// Straight press and release at a brisk 20 mm/s.
+// The hand presses straight down and releases at a brisk 20 mm/s.
 std::vector<Pose> pressAndRelease() {
     return polyline({abovePlane(0.1e-3), abovePlane(-0.6e-3), abovePlane(0.1e-3)}, 20e-3, 300);
 }
@@ -145,7 +146,7 @@ double worstDroppedTicks(const Variant& variant) {
     return worst;
 }
 
-// The same at the port: the held force gives back at most what holding it that long explains.
+// At the port the held force gives back at most what holding it that long explains.
 double droppedTicksAtThePort(const Variant& variant) {
     constexpr double kSpeed = 20e-3, kDt = 1e-3, kDepth = 0.6e-3;
     double worst = 0;

@@ -24,7 +24,7 @@ void pushDown(Stepper& stepper, const Pose& start, EachTick&& each_tick, double 
     }
 }
 
-// How far the burr's centre got below `height`, mm; negative: it never did.
+// Returns how far the burr's centre got below `height`, mm; negative says that it never did.
 double centreBelow(Scene& scene, const Pose& start, double height, double speed = kPushSpeed) {
     Stepper stepper(scene);
     double lowest = 1;
@@ -48,7 +48,7 @@ double oneVoxelWallFast(const Variant& variant) {
     return throughWall(variant, kFastSpeed);
 }
 
-// A pin thinner than what the tool may move in one tick: only the sweep can see the wall.
+// The pin is thinner than what the tool may move in one tick: only the sweep can see the wall.
 double pinThroughWall(const Variant& variant) {
     constexpr double kPin = 0.2e-3;
     const DistanceFunction one_voxel = wall(kMiddle, Eigen::Vector3d::UnitZ(), kVoxel);
@@ -73,7 +73,7 @@ double deepPushForce(const Variant& variant) {
     return worst / scene.config.hand.max_force;
 }
 
-// Right side: under full push the force points out of the bone.
+// The tool is on the right side if under full push the force points out of the bone.
 double deepPushDirection(const Variant& variant) {
     Scene scene(planeBone(), burr(), variant);
     Stepper stepper(scene);

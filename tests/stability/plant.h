@@ -1,12 +1,12 @@
-// Simulated haptic device with the user's hand on its handle, in Cartesian coordinates: what the loop must
-// stay stable with.
+// It is a simulated haptic device with the user's hand on its handle, in Cartesian coordinates, which the
+// loop must stay stable with.
 //
-// One rigid body carries the device's and the hand's mass and inertia (isotropic, about the tool point).
-// On it act: the commanded wrench after the amplifiers' first-order pole, viscous and Coulomb friction of
-// the device, the hand's spring and damper towards its target, and a constant bias (a weight when nobody
-// holds the handle). Ranges of the defaults: docs/stability.md. Integrated by leapfrog at kRate_hz or
-// finer; friction implicit, so that the body truly sticks and Coulomb friction cannot chatter. Units SI;
-// axes W. Deterministic.
+// One rigid body carries the device's and the hand's mass and inertia (isotropic, about the tool point). On
+// it act the commanded wrench after the amplifiers' first-order pole, viscous and Coulomb friction of the
+// device, the hand's spring and damper towards its target, and a constant bias (a weight when nobody holds
+// the handle). The ranges of the defaults are in docs/stability.md. It is integrated by leapfrog at kRate_hz
+// or finer; friction is implicit, so that the body truly sticks and Coulomb friction cannot chatter. Units
+// are SI, axes W. It is deterministic.
 #pragma once
 
 #include "common/geometry/pose.h"
@@ -50,9 +50,10 @@ class Plant {
     const Pose& pose() const noexcept { return pose_; }
     const Eigen::Vector3d& velocity() const noexcept { return v_; }
     const Eigen::Vector3d& angularVelocity() const noexcept { return w_; }
-    // What the encoders say: position in whole steps per axis, rotation vector from the start pose likewise.
+    // The encoders say the position in whole steps per axis, and the rotation vector from the
+    // start pose likewise.
     Pose measured() const noexcept;
-    // Kinetic energy and what the hand's springs hold, J.
+    // Returns the kinetic energy and what the hand's springs hold, J.
     double energy() const noexcept;
 
   private:

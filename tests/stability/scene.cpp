@@ -34,7 +34,7 @@ void layOut(FixedTickConfig& config, const BoneModel& bone) {
     effects.protected_field = protectedDistance(*effects.properties, effects.materials, volume.spacing(),
                                                 config.tool.burr.radius + 1e-3);
     if (!effects.protected_field) effects.virtual_fixture.reset();  // no bone in this scene
-    // What soft bone carries.
+    // The tool saturates at what soft bone carries.
     config.tool.saturation_force *= kSoft;
 }
 

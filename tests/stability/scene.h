@@ -1,4 +1,4 @@
-// Bone, tool and settings of one stability run, and the analytic bodies of the hard cases.
+// Has the bone, tool and settings of one stability run, and the analytic bodies of the hard cases.
 //
 // Frame V is W here: poses and distances mean the same in both.
 #pragma once
@@ -14,7 +14,7 @@ namespace bonemill::test {
 inline constexpr double kVoxel = 0.125e-3;  // m, also the tools' SDF spacing unless said otherwise
 inline constexpr double kBurrRadius = 1e-3;
 
-// A tool in the ways that the accuracy settings can ask for.
+// It is a tool in the ways that the accuracy settings can ask for.
 struct TestTool {
     SdfGrid grid;
     std::vector<ToolShape> shapes;  // none: only the grid
@@ -41,11 +41,12 @@ SdfGrid gridOf(const DistanceFunction& distance_T, const Eigen::Vector3d& half_s
 TestTool burr();                                      // sphere of kBurrRadius
 TestTool pegTool(double radius, double half_length);  // round-ended, along y through T's origin
 
-// Block with a round hole along y through `center`.
+// Makes a block with a round hole along y through `center`.
 DistanceFunction holeAlongY(const Eigen::Vector3d& center, double radius);
 // Makes a wall of this thickness about the plane through `point`.
 DistanceFunction wall(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double thickness);
-// V-groove of full opening angle `angle` (rad) along y, its bottom edge through `edge`, open towards +z.
+// Makes a V-groove of full opening angle `angle` (rad) along y, its bottom edge through `edge`,
+// open towards +z.
 DistanceFunction groove(const Eigen::Vector3d& edge, double angle);
 
 }  // namespace bonemill::test

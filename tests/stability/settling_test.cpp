@@ -60,8 +60,8 @@ double grooveWorst(const Variant& variant) {
     return worst;
 }
 
-// Four iterations a tick against as many as there can be: farthest that the two tools come apart from tick
-// `from` on, pressed into the groove by the same device, µm. thesis_2012 always takes one.
+// Four iterations a tick are compared with as many as there can be: returns how far the two tools come apart
+// at most from tick `from` on, pressed into the groove by the same device, µm. thesis_2012 always takes one.
 double apartByIterations(const Variant& variant, int from) {
     constexpr int kFour = 4, kTicks = 500, kPressTicks = 300;
     double worst = 0;
@@ -108,7 +108,7 @@ double coarseEncodersAtRest(const Variant& variant) {
     return forceResidual(loop);
 }
 
-// Worst encoder flicker: the reading toggles by one step every tick on a device that stands still.
+// The worst encoder flicker toggles the reading by one step every tick on a device that stands still.
 double flickeringEncoder(const Variant& variant) {
     Scene scene(planeBone(), burr(), variant);
     Stepper stepper(scene);

@@ -1,4 +1,5 @@
-// The force over a smooth motion stays smooth: sliding over the surface, milling it away under load.
+// The force over a smooth motion stays smooth while the tool slides over the surface, or mills it
+// away under load.
 #include "tests/stability/case_test.h"
 #include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
@@ -6,7 +7,8 @@
 namespace bonemill::test {
 namespace {
 
-// Slides the device over a tilted plane at constant depth; spread of the normal force over its mean, %.
+// Slides the device over a tilted plane at constant depth. Returns the spread of the normal force over
+// its mean, %.
 double grazingSlide(const Variant& variant) {
     const Eigen::Vector3d normal = Eigen::Vector3d(0.2, 0.1, 1).normalized();
     const Eigen::Vector3d middle(4e-3, 2.5e-3, 2e-3);
@@ -27,7 +29,7 @@ double grazingSlide(const Variant& variant) {
     return 100 * std::sqrt(square) / mean;
 }
 
-// Presses, then mills: largest change of force from tick to tick, N.
+// Presses, then mills. Returns the largest change of force from tick to tick, N.
 double removalUnderLoad(const Variant& variant) {
     Scene scene(planeBone(), burr(), variant);
     Stepper stepper(scene);

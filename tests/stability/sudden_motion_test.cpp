@@ -6,7 +6,8 @@
 namespace bonemill::test {
 namespace {
 
-// Worst of force, torque and the tool's step over their limits, while the device jumps there and back.
+// Returns the worst of force, torque and the tool's step over their limits, while the device jumps
+// there and back.
 double deviceJump(const Variant& variant) {
     Scene scene(planeBone(), burr(), variant);
     const HandLimitsConfig& most = scene.config.hand;
@@ -31,7 +32,8 @@ double deviceJump(const Variant& variant) {
     return worst;
 }
 
-// Device 0.1° before and 0.1° beyond half a turn from the tool, in turn: change of torque, % of the limit.
+// The device is 0.1° before and 0.1° beyond half a turn from the tool, in turn. Returns the change of torque,
+// % of the limit.
 double nearAntipodal(const Variant& variant) {
     Scene scene(VoxelVolume(boxOf(Eigen::Vector3d::Constant(1e-3)), kTestIso), burr(), variant);
     const Eigen::Vector3d axis = Eigen::Vector3d(1, -2, 2).normalized();

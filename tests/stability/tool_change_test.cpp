@@ -17,7 +17,7 @@ ToolModel modelOf(TestTool tool) {
     return {std::move(tool.grid), tool.shapes, tool.thinnest_radius};
 }
 
-// A closed loop with a typical hand that has come to rest where it pushes the small burr.
+// The closed loop has a typical hand, which has come to rest where it pushes the small burr.
 struct Bench {
     Bench(VoxelVolume volume, const Variant& variant, const Eigen::Vector3d& start,
           const Eigen::Vector3d& target)
@@ -60,7 +60,7 @@ Bench inHole(const Variant& variant) {
             bottom - Eigen::Vector3d(0, 0, 3e-3)};
 }
 
-// Change of the force from tick to tick over what the rate and the hand's own motion allow.
+// Returns the change of the force from tick to tick over what the rate and the hand's own motion allow.
 double largestJump(Bench bench, uint32_t buttons) {
     const double stiffness = std::max(couplingFigures(bench.scene.config).quick_stiffness,
                                       bench.scene.config.gradient.coupling.translation_stiffness *
@@ -109,7 +109,7 @@ double restInHole(const Variant& variant) {
     return restAfter(inHole(variant), {kLargeTool, kSmallTool});
 }
 
-// How far the large burr stays in the bone on which it rests, of a voxel.
+// Returns how far the large burr stays in the bone on which it rests, of a voxel.
 double leftInPlane(const Variant& variant) {
     Bench bench = onPlane(variant);
     bench.change(kLargeTool);
@@ -118,8 +118,8 @@ double leftInPlane(const Variant& variant) {
     return (kTop + kLarge - bench.loop.stepper.spo().position.z()) / kVoxel;
 }
 
-// The hand draws the large burr, which became it in the hole, out: ms until it is 5 mm up and
-// touches nothing.
+// The hand draws out the large burr, which became it in the hole. Returns the ms until it is 5 mm up
+// and touches nothing.
 double drawnOut(const Variant& variant) {
     constexpr double kUp = 5e-3;
     Bench bench = inHole(variant);
@@ -148,7 +148,8 @@ double liftSpeed(const Variant& variant) {
     return worst;
 }
 
-// Tools changed to and fro: largest energy of hand and device in the last ten rounds over that in the first.
+// The tools are changed to and fro. Returns the largest energy of hand and device in the last ten rounds over
+// that in the first.
 double growthOverRounds(const Variant& variant) {
     constexpr int kRounds = 20, kTicks = 60;
     Bench bench = onPlane(variant);

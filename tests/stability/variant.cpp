@@ -24,7 +24,7 @@ constexpr NamedEffect kEffects[] = {
     {"burr_vibration", false, true, [](EffectConfigs& e) { e.burr_vibration = test::kBurrVibration; }},
     {"thermal", false, true, [](EffectConfigs& e) { e.thermal = test::kThermal; }},
     {"material_stiffness", false, false, [](EffectConfigs& e) { e.material_stiffness.emplace(); }},
-    // So weak that the bone has the last word.
+    // The fixture is so weak that the bone has the last word.
     {"virtual_fixture", false, false,
      [](EffectConfigs& e) {
          e.virtual_fixture = {.distance = 0.3e-3, .stiffness = 1000, .max_force = 0.1, .hand_force_scale = 1};

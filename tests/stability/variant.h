@@ -23,21 +23,21 @@ struct Variant {
 const std::vector<Variant>& allVariants();
 const Variant& baselineVariant();
 
-// The default preset with each haptic effect alone, with all of them that leave the bone as it is
+// They are the default preset with each haptic effect alone, with all of them that leave the bone as it is
 // ("all_felt"), and with all ("all_effects").
 const std::vector<Variant>& effectVariants();
 using Names = std::vector<std::string>;
 Names feltEffects();                          // of the variants that leave the bone as it is
 Names feltEffectsBut(const Names& left_out);  // and not all together
-// What the burr of these is like: faster than vibration can follow, and friction as high as can be expected.
+// The burr of these spins faster than vibration can follow, and its friction is as high as can be expected.
 inline constexpr double kSpinSpeed = 4000, kCuttingFriction = 0.7;  // rad/s; μ_c
 // The vibration is of 400 Hz then: over so many ticks it sums to nothing.
 inline constexpr size_t kVibrationTicks = 5;
 
 void applyVariant(const Variant& variant, FixedTickConfig& config);
 
-// What the coupling in force is like, whichever model the settings choose. N/m, N·m/rad (small angles),
-// m/s, rad/s.
+// It says what the coupling in force is like, whichever model the settings choose. Units are N/m, N·m/rad
+// (small angles), m/s, rad/s.
 struct CouplingFigures {
     double translation_stiffness, quick_stiffness;  // N/m: held, and for what changes from tick to tick
     double rotation_stiffness, max_speed, max_angular_speed;
@@ -48,8 +48,8 @@ CouplingFigures couplingFigures(const FixedTickConfig& config);
 double& couplingStiffness(FixedTickConfig& config);
 double& contactStiffness(FixedTickConfig& config);
 
-// Makes free air feel like this (N·s/m) at the coupling's stiffness: gradient by its damping time,
-// thesis_2012 by its static damping, which as printed is 0.5 whatever the stiffness.
+// Makes free air feel like this (N·s/m) at the coupling's stiffness: the gradient presets by their damping
+// time, thesis_2012 by its static damping, which as printed is 0.5 whatever the stiffness.
 void setDragInAir(FixedTickConfig& config, double drag);
 
 }  // namespace bonemill::test

@@ -6,7 +6,7 @@
 
 namespace bonemill::test {
 
-/// m³ inside the drawn surface.
+/// It returns the m³ inside the drawn surface.
 inline double boneVolume(const BoneModel& bone) {
     return meshVolume(meshAll(bone.volume, bone.lattice), MeshGrid(bone.volume, bone.lattice));
 }

@@ -29,7 +29,7 @@ inline std::vector<SurfaceElement> planeElements(const Eigen::Vector3d& center, 
     return elements;
 }
 
-// Wall of a round hole along R's z axis; the bone is outside.
+// Makes the wall of a round hole along R's z axis; the bone is outside.
 inline std::vector<SurfaceElement> holeElements(const Eigen::Vector3d& center, const Eigen::Matrix3d& R,
                                                 double radius, double half, double step) {
     std::vector<SurfaceElement> elements;
@@ -79,7 +79,7 @@ inline SdfGrid gridOf(const std::vector<ToolShape>& shapes) {
     return {nodes, spacing, origin, std::move(values)};
 }
 
-// Everything a GradientModel needs, around a body given by its distance.
+// It has everything that a GradientModel needs, around a body given by its distance.
 struct ContactScene {
     ContactScene(const VolumeGeometry& geometry, const DistanceFunction& body,
                  const std::vector<ToolShape>& shapes, ShellConfig shell = {})

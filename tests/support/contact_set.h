@@ -26,7 +26,7 @@ struct ContactSet {
             add(radius * out, -out, uniform(random), 1e-9 * uniform(random));
         }
     }
-    // A tick's start with these as the last one's contacts.
+    // The tick starts with these as the last one's contacts.
     void giveTo(EffectTick& tick) const {
         tick.contacts = contacts;
         tick.is_on_burr = on_burr;

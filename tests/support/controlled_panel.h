@@ -1,4 +1,4 @@
-// A viewer's controls with the panel, as the tests that click and draw it need them.
+// It is a viewer's controls with the panel, as the tests that click and draw it need them.
 #pragma once
 
 #include "render_client/panel/panel.h"
@@ -9,7 +9,7 @@ namespace bonemill::test {
 class ControlledPanel : protected ControlledViewer {
   protected:
     void switchPanel() { controls_.act(Action::kPanel, session_, wishes_); }
-    // In a picture of this size (pixels).
+    // The panel is laid out in a picture of this size (pixels).
     void layOut(int width, int height, float scale = 1) {
         panel_.setPicture(width, height, scale, 0.02);
         panel_.layOut(controls_, session_, wishes_);

@@ -1,4 +1,4 @@
-// A viewer's controls with a server behind them, as the tests of controls and panel need them.
+// It is a viewer's controls with a server behind them, as the tests of controls and panel need them.
 #pragma once
 
 #include "proto/topics.pb.h"

@@ -19,7 +19,7 @@ struct EveryEffectBlock {
 // Writes block.nrrd and labels.nrrd (1 bone, 2 protected, 0 air) to the folder.
 void writeBlock(const std::string& folder, const EveryEffectBlock& block);
 
-// The laws of removal, of which a scene has one.
+// These are the laws of removal, of which a scene has one.
 inline constexpr const char* kByTime = "time_removal";
 inline constexpr const char* kByEnergy = "energy_removal";
 

@@ -8,7 +8,7 @@
 
 namespace bonemill::test {
 
-// Tick: HapticTick or FixedTick. One record for each input.
+// Tick is HapticTick or FixedTick. There is one record for each input.
 template <class Tick>
 std::vector<TickRecord> lead(Tick& tick, const std::vector<DeviceInput>& inputs) {
     EXPECT_FALSE(inputs.empty());

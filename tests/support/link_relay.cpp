@@ -1,9 +1,9 @@
-// A bad line: carries frames between two TAP devices with a limited rate, delay and loss, the same in
-// each direction.
+// This is a bad line: it carries frames between two TAP devices with a limited rate, delay and loss, the same
+// in each direction.
 //   link_relay NEAR FAR_NAMESPACE FAR RATE_KBIT_PER_S DELAY_MS LOSS_PER_MILLE QUEUE_KIB
-// Makes NEAR in its own network namespace and FAR in the other one (a file of /proc/PID/ns/net's kind),
-// prints "ready", and runs until it is killed. Rate 0: no limit. Frames that find the queue full are lost.
-// Loss comes from a generator with a fixed seed.
+// It makes NEAR in its own network namespace and FAR in the other one (a file of /proc/PID/ns/net's kind),
+// prints "ready", and runs until it is killed. A rate of 0 is no limit. Frames that find the queue full are
+// lost. Loss comes from a generator with a fixed seed.
 #include <fcntl.h>
 #include <linux/if.h>
 #include <linux/if_tun.h>

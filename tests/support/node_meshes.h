@@ -43,7 +43,8 @@ inline NodeMesh colouredSheetMesh(int side, unsigned seed) {
     return mesh;
 }
 
-// Triangles are their vertices' values, each begun at its smallest corner (winding kept), sorted.
+// Each key begins at its triangle's smallest corner (winding kept) and is the vertices' values; the
+// keys are sorted.
 using TriangleKey = std::array<std::array<int, 6>, 3>;
 inline std::vector<TriangleKey> triangleKeys(const NodeMesh& mesh) {
     std::vector<TriangleKey> keys;

@@ -39,7 +39,7 @@ struct PlyMesh {
     }
 };
 
-// Empty if the header is not the documented one, or the size not what it says.
+// The mesh is empty if the header is not the documented one, or the size not what it says.
 inline PlyMesh readPly(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     std::stringstream content;

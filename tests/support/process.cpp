@@ -24,7 +24,7 @@ void redirect(int descriptor, const std::string& file) {
     close(opened);
 }
 
-// A name is that of a program of the build; of its twin in BONEMILL_GUARDED_DIR where ctest sets that and
+// A name is that of a program of the build, or of its twin in BONEMILL_GUARDED_DIR where ctest sets that and
 // there is one.
 std::filesystem::path programOf(const std::string& name) {
     if (name.find('/') != std::string::npos) return name;

@@ -30,7 +30,7 @@ class Process {
     bool isRunning();
     int pid() const { return pid_; }
     Finished wait(std::chrono::seconds limit = std::chrono::seconds(120));
-    // What it has printed so far.
+    // They return what it has printed so far.
     std::string outSoFar() const;
     std::string errSoFar() const;
 
@@ -46,8 +46,8 @@ Finished run(const std::vector<std::string>& arguments);
 void writeFile(const std::string& path, const std::string& content);
 std::string readFile(const std::string& path);
 
-// Looks again and again until the condition holds. False when it never did: the limit only ends a test
-// that hangs.
+// Looks again and again until the condition holds. It returns false when it never did: the limit only ends a
+// test that hangs.
 bool waitFor(const std::function<bool()>& condition, std::chrono::seconds limit = std::chrono::seconds(100));
 
 }  // namespace bonemill::test

@@ -7,7 +7,7 @@
 
 namespace bonemill {
 
-// A strip of triangles whose shape depends on leaf and revision.
+// Makes a strip of triangles whose shape depends on leaf and revision.
 inline NodeMesh syntheticNode(uint32_t leaf, uint32_t revision, uint32_t triangles = 20) {
     NodeMesh mesh;
     mesh.leaf = leaf;

@@ -1,5 +1,5 @@
-// Effects with the figures that the tests count on. They are those of a scene that lists the effect and says
-// no more (tests/unit/setup/scene_burr_effects_test.cpp), but that bone is equally hard at any density.
+// The effects have the figures that the tests count on. They are those of a scene that lists the effect and
+// says no more (tests/unit/setup/scene_burr_effects_test.cpp), but that bone is equally hard at any density.
 #pragma once
 
 #include "haptic_server/effects/effect_configs.h"
@@ -18,7 +18,7 @@ inline constexpr BurrVibrationConfig kBurrVibration{
     .amplitude_per_force = 0.05, .max_amplitude = 0.5, .diamond_factor = 0.3};
 inline constexpr VirtualFixtureConfig kVirtualFixture{
     .distance = 1e-3, .stiffness = 2000, .max_force = 10, .hand_force_scale = 1};
-// From full to nothing, and from nothing to full, in 20 ms.
+// Bone goes from full to nothing, and from nothing to full, in 20 ms.
 inline constexpr TimeRemovalConfig kTimeRemoval{.rate = 12750 * kDensityCountsPerUnit};
 inline constexpr AddMaterialConfig kAddMaterial{.rate = 12750 * kDensityCountsPerUnit};
 inline constexpr HeatConfig kHeat{.cell = 0.5e-3,

@@ -24,7 +24,7 @@ class Descriptor {
     int number_;
 };
 
-// What a bad line does to frames, in each direction.
+// It says what a bad line does to frames, in each direction.
 struct LineQuality {
     int rate_kbit_per_s = 0;  // 0: no limit
     int delay_ms = 0;
@@ -37,7 +37,7 @@ class Host {
   public:
     // Starts a program on this PC (tests/support/process.h).
     std::unique_ptr<Process> start(const std::vector<std::string>& arguments) const;
-    // Bound to this port of this PC, 5 s until a read gives up.
+    // The socket is bound to this port of this PC, and a read gives up after 5 s.
     Descriptor udpSocket(int port) const;
     struct Traffic {
         uint64_t sent_bytes = 0;
@@ -63,7 +63,7 @@ class VirtualNetwork {
     // Moves this process into a network of its own. Returns what is missing for that here, in one line, or
     // nothing. It is the first call of a test.
     static std::string enter();
-    // What is missing for bad lines; also once this process has entered.
+    // Returns what is missing for bad lines; it may be asked also once this process has entered.
     static std::string missingForLines();
 
     // Makes the switch. It throws std::runtime_error as everything here does.

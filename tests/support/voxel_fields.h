@@ -73,7 +73,7 @@ inline std::vector<NodeMesh> meshAll(const VoxelVolume& volume, const LeafLattic
     return meshes;
 }
 
-// What the tick does around a change of voxels.
+// It does what the tick does around a change of voxels.
 template <class Write>
 void writeLikeTick(VoxelVolume& volume, LeafLattice& lattice, const IndexBox& box, Write&& density_of) {
     lattice.beginWrite(box);

@@ -66,7 +66,7 @@ double marginedBurrEnd(const ToolConfig& config, double burr_end_y) {
     return burr_end_y - kBurrMarginSpacings * config.sdf_spacing;
 }
 
-// Its farthest place from the hand, along y.
+// Returns the burr's farthest place from the hand, along y.
 double burrEnd(const ToolConfig& config) {
     return config.burr_kind == BurrKind::kBall ? -config.burr_radius : -config.burr_length / 2;
 }
@@ -78,7 +78,8 @@ Vector3d gridOrigin(const ToolConfig& config, const Eigen::AlignedBox3d& tool_bo
     return origin;
 }
 
-// `distance`: Vector3d -> double, negative inside; called for neighbours along x in turn.
+// `distance` takes a Vector3d, returns a double, negative inside, and is called for neighbours along
+// x in turn.
 template <class Distance>
 SdfGrid sample(const ToolConfig& config, const Vector3d& origin, Distance&& distance) {
     const Eigen::Vector3i& n = config.sdf_nodes;
@@ -161,7 +162,7 @@ Sampled sampleTool(const ToolConfig& config) {
     return config.mesh_path.empty() ? sampleShapes(config) : sampleMesh(config);
 }
 
-// The same tool and the same space, with more nodes.
+// Makes the same tool in the same space with more nodes.
 ToolConfig refined(const ToolConfig& config, const SdfGrid& coarse, int refinement) {
     ToolConfig fine = config;
     if (fine.mesh_path.empty()) fine.shapes = toolShapes(config);
@@ -189,7 +190,7 @@ std::vector<std::string> cutWarnings(const SdfGrid& sdf, const Eigen::AlignedBox
     return warnings;
 }
 
-// Farthest that the burr reaches out of the tool, m; at places all over its surface.
+// Returns how far at most the burr reaches out of the tool, m, at places all over its surface.
 double burrOutside(const Burr& burr, const SdfGrid& sdf) {
     constexpr int kAround = 24, kAlong = 24;
     double farthest = 0;
@@ -258,7 +259,7 @@ std::vector<ToolShape> toolShapes(const ToolConfig& config) {
         return {SphereShape{Vector3d::Zero(), config.burr_radius},
                 CapsuleShape{Vector3d::Zero(), last, radius}};
     const Vector3d half = config.burr_length / 2 * Vector3d::UnitY();
-    // Inside a cone, which is as wide as the shaft only there.
+    // The shaft begins inside a cone, which is as wide as the shaft only there.
     const CylinderShape shaft{(1 - kShaftOverlap) * half, last + radius * Vector3d::UnitY(), radius};
     if (config.burr_kind == BurrKind::kCylinder)
         return {CylinderShape{-half, half, config.burr_radius}, shaft};

@@ -1,4 +1,4 @@
-// Refuses tool shapes that are no solid. Start-up only: throws.
+// Refuses tool shapes that are no solid. It is for start-up only, since it throws.
 #pragma once
 
 #include <string>

@@ -14,7 +14,8 @@ using Eigen::Vector3d;
 
 constexpr uint32_t kLeafTriangles = 4;
 
-// Where on a triangle the nearest point lies: a corner, an edge (from corner e to the next) or the face.
+// It says where on a triangle the nearest point lies: a corner, an edge (from corner e to the next)
+// or the face.
 enum Feature { kCorner0 = 0, kEdge0 = 3, kFace = 6 };
 
 struct Closest {
@@ -33,7 +34,7 @@ void tryEdge(const Vector3d& p, const Vector3d& a, const Vector3d& b, int edge, 
     best = {point, feature, distance2};
 }
 
-// unit_normal zero: no area, only edges.
+// A unit_normal of zero says that there is no area, only edges.
 Closest closestOn(const std::array<Vector3d, 3>& v, const Vector3d& unit_normal, const Vector3d& p) {
     bool above_face = unit_normal != Vector3d::Zero();
     for (int e = 0; e < 3 && above_face; ++e)

@@ -1,9 +1,10 @@
-// Exact signed distance to a closed triangle mesh.
+// It is the exact signed distance to a closed triangle mesh.
 //
-// Distance: the nearest point of the nearest triangle, found in a tree of axis-parallel boxes. Sign: against
-// the angle-weighted pseudonormal of the feature (face, edge or vertex) that holds the nearest point; J. A.
-// Bærentzen, H. Aanæs, "Signed Distance Computation Using the Angle Weighted Pseudonormal", IEEE TVCG 11(3),
-// 2005. The sign is right wherever the mesh does not pass through itself. Start-up only: allocates.
+// The distance is that to the nearest point of the nearest triangle, found in a tree of axis-parallel boxes.
+// The sign goes by the angle-weighted pseudonormal of the feature (face, edge or vertex) that holds the
+// nearest point; J. A. Bærentzen, H. Aanæs, "Signed Distance Computation Using the Angle Weighted
+// Pseudonormal", IEEE TVCG 11(3), 2005. It is right wherever the mesh does not pass through itself. The class
+// is for start-up only, since it allocates.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +23,8 @@ class MeshDistance {
         double distance;    // m, negative inside
         uint32_t triangle;  // that holds the nearest point
     };
-    // `guess`: any triangle; one that is near, such as the last answer for a point close by, saves most of
-    // the search.
+    // `guess` is any triangle; one that is near, such as the last answer for a point close by, saves most
+    // of the search.
     Nearest query(const Eigen::Vector3d& p, uint32_t guess = 0) const;
 
   private:

@@ -54,8 +54,8 @@ bool isTextStl(std::string_view bytes) {
     return bytes.substr(0, 5) == "solid" && bytes.substr(0, 4096).find('\0') == std::string_view::npos;
 }
 
-// A binary STL says how long it must be; the loader's own check knows nothing better to say than "cannot
-// determine".
+// A binary STL says how long it must be; the loader's own check knows nothing better to say
+// than "cannot determine".
 void checkBinaryStl(std::string_view bytes, const std::string& name) {
     if (bytes.size() < kStlHeader + sizeof(uint32_t))
         throw UserError(name +

@@ -1,4 +1,4 @@
-// Reads the triangles of a mesh file. Start-up only: allocates and throws.
+// Reads the triangles of a mesh file. It is for start-up only, since it allocates and throws.
 #pragma once
 
 #include <filesystem>

@@ -16,7 +16,7 @@ constexpr int kSegments = 48;      // around the axis
 constexpr int kQuarterRings = 12;  // from a ball's pole to its equator
 constexpr double kSmoothBend = 40 * kDegree;
 
-// A ring of a solid of revolution: how far along and off the axis, and the normal there.
+// It is a ring of a solid of revolution: how far along and off the axis, and the normal there.
 struct Ring {
     double along, off;
     double normal_along, normal_off;

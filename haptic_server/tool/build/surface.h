@@ -1,4 +1,4 @@
-// Triangles to draw a tool with. Start-up only: allocates.
+// Makes triangles to draw a tool with. It is for start-up only, since it allocates.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@ struct TriangleSurface {
     std::vector<uint32_t> indices;           // 3 per triangle, counter-clockwise seen from outside
 };
 
-// Each shape closed and whole: those of a union overlap.
+// Each shape is closed and whole: those of a union overlap.
 TriangleSurface surfaceOf(const std::vector<ToolShape>& shapes);
 
-// The mesh itself, shaded smoothly across edges that bend by less than 40°.
+// It is the mesh itself, shaded smoothly across edges that bend by less than 40°.
 TriangleSurface surfaceOf(const TriangleMesh& mesh);
 
 }  // namespace bonemill

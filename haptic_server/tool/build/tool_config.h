@@ -1,5 +1,5 @@
-// What the tool is, in SI and frame T: the scene's message Tool without Protobuf. Same defaults as
-// proto/scene.proto.
+// It says what the tool is, in SI and frame T: the scene's message Tool without Protobuf. It has the same
+// defaults as proto/scene.proto.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ struct ToolConfig {
     std::vector<ToolShape> shapes;  // their union; none and no mesh: burr and shaft (toolShapes)
     std::filesystem::path
         mesh_path;  // instead of shapes: a closed .stl or .obj in mm; as the process can open it
-    // What cuts, around T's origin; lengths in m.
+    // The burr is what cuts, around T's origin; lengths are in m.
     BurrKind burr_kind = BurrKind::kBall;
     double burr_radius = 1.0e-3;
     double burr_length = 0, burr_tip_radius = 0;  // as Burr

@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Of the largest side. The smallest burr sold is about 0.5 mm thick, the longest drill about 300 mm long;
-// what lies outside was most likely not saved in millimetres.
+// These limit the largest side. The smallest burr sold is about 0.5 mm thick, the longest drill about 300 mm
+// long; what lies outside was most likely not saved in millimetres.
 constexpr double kSmallestTool = 0.3e-3;
 constexpr double kLargestTool = 0.5;
 

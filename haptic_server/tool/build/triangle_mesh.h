@@ -1,5 +1,5 @@
-// A closed triangle mesh: what is left of a file's triangles once they are welded and found to bound a solid.
-// Start-up only: allocates and throws.
+// A closed triangle mesh is what is left of a file's triangles once they are welded and found to bound a
+// solid. It is for start-up only, since it allocates and throws.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct TriangleMesh {
     Eigen::Vector3d vertex(uint32_t triangle, int corner) const {
         return vertices[triangles[triangle][corner % 3]];
     }
-    // Twice the triangle's area times its outward unit normal.
+    // Returns twice the triangle's area times its outward unit normal.
     Eigen::Vector3d areaNormal(uint32_t triangle) const;
 };
 

@@ -1,6 +1,6 @@
 // Turns raw values into the bone's densities: window, iso-value, small pieces.
 //
-// Not RT-safe (allocates); no shared state.
+// It is not RT-safe (it allocates) and has no shared state.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ struct DensityMapping {
     }
 };
 
-// Throws UserError when the window is empty, the iso-value lies outside it or at its edge, or no value is
-// finite.
+// Throws UserError when the window is empty, the iso-value lies outside it or at its edge, or no
+// value is finite.
 DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window);
 
 VoxelVolume densify(const RawVolume& raw, const DensityMapping& mapping);

@@ -1,6 +1,6 @@
 // Clears what is no bone and not near any, for it need not be kept.
 //
-// Not RT-safe (allocates); no shared state.
+// It is not RT-safe (it allocates) and has no shared state.
 #pragma once
 
 #include "haptic_server/volume/voxel_volume.h"

@@ -1,5 +1,5 @@
-// Tells the guarding process which file a reader is at (guarded_import.h). No Eigen in here: ITK's sources
-// include it.
+// Tells the guarding process which file a reader is at (guarded_import.h). No Eigen may be in here: ITK's
+// sources include it.
 #pragma once
 
 #include <filesystem>

@@ -65,7 +65,8 @@ class Pipe {
     int ends_[2];
 };
 
-// The parent's end of the pipe. It waits for the child until the clock on the wall says that it is too late.
+// It is the parent's end of the pipe. It waits for the child until the clock on the wall says that it
+// is too late.
 class Incoming {
   public:
     Incoming(int file, std::chrono::milliseconds most) : file_(file), end_(Clock::now() + most) {}

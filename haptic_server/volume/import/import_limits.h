@@ -10,12 +10,12 @@ namespace bonemill {
 
 inline constexpr uint64_t kMaxVoxels = uint64_t(1) << 31;
 
-// deflate shrinks at most 1032 : 1 (zlib technical details); a header that promises more than that is
-// damaged.
+// deflate shrinks at most 1032 : 1 (zlib technical details); a header that promises more than
+// that is damaged.
 inline constexpr uint64_t kMaxDeflateRatio = 1040;
 
 // Throws UserError naming `file` unless `dims` are three axes of >= 2 voxels (one slice is no volume), at
-// most kMaxVoxels in all, and the import fits into the memory that is free now. `bytes_per_voxel`: what the
+// most kMaxVoxels in all, and the import fits into the memory that is free now. `bytes_per_voxel` is what the
 // reader takes at the most.
 void checkVolumeSize(const std::vector<uint64_t>& dims, uint64_t bytes_per_voxel, const std::string& file);
 

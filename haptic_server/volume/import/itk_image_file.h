@@ -29,7 +29,7 @@ struct ItkImageHeader {
     std::array<std::array<double, 3>, 3> axis{};  // where each index axis points
 };
 
-// Start-up only, one thread. Throws UserError with one message naming the file.
+// It is for start-up only, by one thread. Throws UserError with one message naming the file.
 class ItkImageFile {
   public:
     // Reads the header.

@@ -1,6 +1,6 @@
 // Finds the material that a scanned voxel is of: by its raw value or by a volume of labels on the same grid.
 //
-// Not RT-safe (allocates); no shared state.
+// It is not RT-safe (it allocates) and has no shared state.
 #pragma once
 
 #include <optional>

@@ -8,8 +8,8 @@
 namespace bonemill {
 
 // While it lives, the process may map at most `extra_bytes` more than it does now; beyond that, allocation
-// fails with std::bad_alloc. Without effect under sanitizers, which map terabytes themselves. One thread,
-// start-up only.
+// fails with std::bad_alloc. It has no effect under sanitizers, which map terabytes themselves. It is for one
+// thread, at start-up only.
 class MemoryCap {
   public:
     explicit MemoryCap(uint64_t extra_bytes);

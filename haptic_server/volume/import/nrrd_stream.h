@@ -1,5 +1,5 @@
 // Writes one attached NRRD file (NRRD0004, little endian) of T = uint8_t, int16_t, uint16_t or float as the
-// values come: no volume is too large for it. Not RT-safe.
+// values come: no volume is too large for it. It is not RT-safe.
 #pragma once
 
 #include <cstdint>

@@ -2,8 +2,8 @@
 //
 // A key/value line "bonemill geometry" repeats the geometry as hexadecimal floats, because decimal mm cannot
 // bring back every double of m; importVolume uses it as long as it agrees with the standard fields, so that
-// the geometry of our own files returns bit for bit. Not RT-safe. Throws UserError when the file cannot be
-// written.
+// the geometry of our own files returns bit for bit. It is not RT-safe. Throws UserError when the file
+// cannot be written.
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 // voxels' centres, by one pass of lower envelopes of parabolas per axis (Felzenszwalb and Huttenlocher 2012),
 // less half a voxel in the direction of the way, so that 0 lies on the voxels' faces.
 //
-// Start-up only; allocates at most some 300 MB at a time.
+// It is for start-up only, and allocates at most some 300 MB at a time.
 #pragma once
 
 #include <memory>

@@ -107,7 +107,7 @@ TEST_F(MeshCodecFuzz, RandomBuffersInsideAWellFormedMessage) {
         message.set_vertices(randomBytes(size_t(below(200))));
         message.set_indices(randomBytes(size_t(below(200))));
         message.set_materials(randomBytes(size_t(below(20))));
-        // Valid headers, or nearly every try would end at the first byte.
+        // The headers are valid, as otherwise nearly every try would end at the first byte.
         if (!message.vertices().empty()) (*message.mutable_vertices())[0] = char(0xa0);
         if (!message.indices().empty()) (*message.mutable_indices())[0] = char(0xe1);
         message.set_vertex_count(uint32_t(below(300)));

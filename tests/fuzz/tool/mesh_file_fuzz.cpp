@@ -1,7 +1,7 @@
 // Damaged mesh files end in a tool or in a UserError, never in anything else.
 //
-// BONEMILL_FUZZ_RUNS: files per format (default 400). BONEMILL_FUZZ_SEED: the first seed (default 1); each
-// file has its own, printed when it fails.
+// BONEMILL_FUZZ_RUNS is the number of files per format (default 400). BONEMILL_FUZZ_SEED is the first seed
+// (default 1); each file has its own, printed when it fails.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -33,7 +33,7 @@ constexpr unsigned kDicomShare =
 constexpr unsigned kDicomShare = 1;
 #endif
 
-// Address space beyond which an allocation for files of a few hundred bytes is absurd: fails as
+// Beyond this address space an allocation for files of a few hundred bytes is absurd and fails as
 // std::bad_alloc. Sanitizers reserve terabytes for themselves and bring a limit of their own.
 void limitMemory() {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)

@@ -29,7 +29,7 @@ class ShownSession {
         thread_.join();
     }
 
-    // All that have come so far, oldest first.
+    // Returns all that have come so far, oldest first.
     std::vector<topics::Command> commands() const {
         const std::lock_guard lock(mutex_);
         return commands_;

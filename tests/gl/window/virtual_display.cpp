@@ -20,7 +20,7 @@ void require(const char* program, const char* package) {
                                  " (deploy/install-deps)");
 }
 
-// The line that Xvfb writes when it is ready: the number of its display.
+// Returns the line that Xvfb writes when it is ready: the number of its display.
 std::string readLine(int descriptor) {
     std::string line;
     char sign = 0;

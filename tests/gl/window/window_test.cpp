@@ -44,7 +44,7 @@ std::string number(double value) {
     return std::to_string(int(value));
 }
 
-// A viewer in a window that covers the display.
+// The viewer is in a window that covers the display.
 class WindowedViewer {
   public:
     explicit WindowedViewer(const std::string& name, const std::string& role)
@@ -110,7 +110,7 @@ class Window : public testing::Test {
         display_.type(
             {"mousedown", button, "mousemove_relative", "--", number(by.x), number(by.y), "mouseup", button});
     }
-    // What the window shows after all that was typed before: events come in their order.
+    // Returns what the window shows after all that was typed before: events come in their order.
     Picture look(WindowedViewer& viewer) {
         const std::filesystem::path file = viewer.nextPicture();
         key("F12");
@@ -160,7 +160,7 @@ class PanelTwin : test::ControlledPanel {
             sendAndLayOut(MouseButtonEvent{MouseButton::kLeft, is_down, pixel, {}, 0});
         rest();
     }
-    // The mouse on the panel, where it touches no control.
+    // The mouse stands on the panel, where it touches no control.
     void rest() {
         constexpr PixelPoint kTitle{kWidth - 40, 24};
         display_.type({"mousemove", number(kTitle.x), number(kTitle.y)});

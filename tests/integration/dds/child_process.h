@@ -14,7 +14,7 @@ class ChildProcess {
     ChildProcess& operator=(const ChildProcess&) = delete;
     ~ChildProcess();
 
-    // The next line that it prints; empty when it ends or stays silent for 30 s.
+    // Returns the next line that it prints; it is empty when the program ends or stays silent for 30 s.
     std::string readLine();
     bool tell(const std::string& line);
     std::string ask(const std::string& line);

@@ -70,7 +70,8 @@ TEST_F(Cracks, NoneIsSeenForMoreThanAFrame) {
         publish(burr, frame % 3 == 0 ? 2000 : 0);  // what changed waits, and only little may go at a time
         for (const size_t nodes : {size_t(3), SceneSubscriber::kAllNodes}) {
             client_.poll(nodes);
-            // Once only if this process was not run for so long that the viewer no longer waited.
+            // It is open at most once in a row, when this process was not run for so long that the viewer
+            // no longer waited.
             open_in_a_row = isClosed() ? 0 : open_in_a_row + 1;
             ASSERT_LE(open_in_a_row, 1) << "frame " << frame;
             open_pictures_ += open_in_a_row;

@@ -1,8 +1,9 @@
-// A server without a volume, steered line by line on stdin; answers "<node count> <node digest>" to
-// each line.
+// This is a server without a volume, steered line by line on stdin; it answers "<node count> <node digest>"
+// to each line.
 //   nodes FIRST COUNT REVISION    publishes COUNT nodes
 //   empty LEAF REVISION           publishes that the node is empty
-// Between the lines it publishes status and tool state, and carries out commands. Leaves when stdin closes.
+// Between the lines it publishes status and tool state, and carries out commands. It leaves
+// when stdin closes.
 #include <poll.h>
 #include <unistd.h>
 

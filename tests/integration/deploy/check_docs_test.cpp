@@ -10,7 +10,7 @@ namespace {
 
 using test::Finished;
 
-// A tree with two documents, a header and a picture, in which everything is as it should be.
+// The tree has two documents, a header and a picture, in which everything is as it should be.
 class CheckDocs : public testing::Test {
   protected:
     CheckDocs() {

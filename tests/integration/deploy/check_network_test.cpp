@@ -15,7 +15,7 @@ using test::Finished;
 
 const std::string kNet = "sys/class/net/eth3/";
 
-// A PC that is set up as well as can be for its interface eth3.
+// The PC is set up as well as can be for its interface eth3.
 class CheckNetwork : public testing::Test {
   protected:
     CheckNetwork() {

@@ -16,7 +16,7 @@ using test::Finished;
 constexpr const char* kNothingMissing = "Nothing that is needed is missing; ";
 const std::string kCpu = "sys/devices/system/cpu/cpu3/";
 
-// A PC of four cores, set up as well as can be, whose tick runs on core 3.
+// The PC has four cores, is set up as well as can be, and runs its tick on core 3.
 class CheckRealtime : public testing::Test {
   protected:
     CheckRealtime() {

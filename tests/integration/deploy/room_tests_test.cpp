@@ -9,7 +9,8 @@ namespace {
 
 using test::Finished;
 
-// Rooms: a ground of headers, one with tests of two kinds, one that only others' tests link, and a schema.
+// The rooms are a ground of headers, one with tests of two kinds, one that only others' tests link,
+// and a schema.
 constexpr const char* kRooms =
     "room ground common\n"
     "room rt common/rt\n"

@@ -68,7 +68,7 @@ class EffectIdentity : public testing::TestWithParam<const char*> {
         test::writeScene(folder_ / "scene.textproto", scene);
         return makeSimulation(loadScene(folder_ / "scene.textproto"));
     }
-    // `effects` instead of the scene's own, on a bone that nobody has touched.
+    // The run takes `effects`, if given, instead of the scene's own, on a bone that nobody has touched.
     Outcome run(const scene::Scene& scene, const EffectConfigs* effects = nullptr) const {
         Simulation simulation = simulationOf(scene);
         if (effects) simulation.tick.effects = *effects;

@@ -19,7 +19,7 @@ thread_local size_t given_bytes = 0;
 
 void* give(size_t size, size_t alignment) {
     given_bytes += size;
-    // The function aligned_alloc wants a multiple.
+    // The function aligned_alloc wants a multiple of the alignment.
     void* const memory = std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
     if (!memory) throw std::bad_alloc();
     return memory;
@@ -72,7 +72,7 @@ class EffectMemory : public testing::Test {
             if (name != which) configs = withoutEffect(std::move(configs), name);
         return configs;
     }
-    // Counts those of a whole tick with these effects.
+    // Counts the bytes of a whole tick with these effects.
     size_t bytesOfTick(const EffectConfigs& configs) {
         FixedTickConfig config = simulation_.fixedTick();
         config.effects = configs;

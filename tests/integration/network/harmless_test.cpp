@@ -1,5 +1,5 @@
 // A viewer that is slow, stopped, dead or cut off harms neither the loop nor the viewers beside it, and shows
-// the server's model when it is well again. Judged by what each of them has shown, not by how fast.
+// the server's model when it is well again. It is judged by what each of them has shown, not by how fast.
 #include <signal.h>
 
 #include "tests/integration/network/network_session.h"
@@ -31,7 +31,7 @@ class Harmless : public test::NetworkSession {
     bool goodGoesOnAfter(int changes) {
         return waitFor([&] { return changesOf(*good_) > changes + kSomeChanges; });
     }
-    // Shows another model than the good viewer.
+    // It is behind while it shows another model than the good viewer.
     bool isBehind(const Process& probe) { return newest(probe)["digest"] != newest(*good_)["digest"]; }
     // In the end all show what was published, and no tick was lost on the way.
     void expectNoHarm(const std::vector<const Process*>& recovered) {

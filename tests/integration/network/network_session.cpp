@@ -21,7 +21,8 @@ void NetworkSession::SetUp() {
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder_ / "slab.nrrd"}).exit_code, 0);
 }
 
-// Down into the slab, whose top is at z = 2 mm, to and fro along x until the time is over, and up again.
+// The hand goes down into the slab, whose top is at z = 2 mm, to and fro along x until the time is over,
+// and up again.
 void NetworkSession::writeScene(int seconds) const {
     constexpr double kLength_mm = 3;
     std::ostringstream text;

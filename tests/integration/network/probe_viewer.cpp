@@ -1,4 +1,4 @@
-// A viewer without a picture. Prints one JSON line every 100 ms: what it shows.
+// This is a viewer without a picture. It prints one JSON line every 100 ms that says what it shows.
 //   probe_viewer --session N [--domain D] [--profile ...] [--interface ...] [--peer ...]
 #include <cinttypes>
 #include <cstdio>

@@ -38,7 +38,7 @@ class Profiles : public test::NetworkSession {
         EXPECT_EQ(late["complete"], true);
         for (const auto& probe : probes) EXPECT_EQ(newest(*probe)["digest"], report["published_digest"]);
     }
-    // While the bone was milled: by the haptics PC, and by the last viewer's.
+    // They count while the bone was milled: by the haptics PC, and by the last viewer's.
     uint64_t sent_bytes_ = 0, received_bytes_ = 0;
 };
 

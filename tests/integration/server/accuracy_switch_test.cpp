@@ -22,8 +22,8 @@ using test::writeFile;
 // A busy machine causes these on its own.
 constexpr uint32_t kFaultsOfTheMachine = kFaultOverrun | kFaultStaleDevice;
 
-// A slab (top at z = 2 mm) into which the simulated hand pushes the burr for as long as the test takes: 0.5
-// mm deep without milling, or slowly down through it.
+// The simulated hand pushes the burr into a slab (top at z = 2 mm) for as long as the test takes: 0.5 mm deep
+// without milling, or slowly down through it.
 class AccuracySwitching : public testing::Test {
   protected:
     AccuracySwitching() {

@@ -16,11 +16,11 @@ namespace {
 
 using test::TemporaryFolder;
 
-// glibc without fused multiply-add: the names of glibc 2.33 and later, and those from before, which know
-// no others.
+// This is glibc without fused multiply-add: it has the names of glibc 2.33 and later, and those from before,
+// which know no others.
 const char* const kWithoutFma = "glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4,-FMA_Usable,-AVX2_Usable,-FMA4_Usable";
 
-// Down into the block, to and fro with the pedal, then with added material, and out.
+// The hand goes down into the block, to and fro with the pedal, then with added material, and out.
 std::string millingPath(const test::EveryEffectBlock& block) {
     const double edge = block.edge * block.voxel_mm * 1e-3, face = edge / 2 + block.burr_radius_mm * 1e-3;
     std::ostringstream csv;
@@ -63,7 +63,7 @@ TEST_P(CpuBits, TheHashIsTheSameWithoutFusedMultiplyAdd) {
 INSTANTIATE_TEST_SUITE_P(Law, CpuBits, testing::Values(test::kByTime, test::kByEnergy),
                          [](const auto& info) { return std::string(info.param); });
 
-// Else the test above compares a run with itself.
+// Otherwise the test above compares a run with itself.
 TEST(CpuBitsTunables, ChangeTheCLibrarysLastBits) {
     if (!__builtin_cpu_supports("fma"))
         GTEST_SKIP() << "this CPU has no fused multiply-add: there is nothing to turn off";

@@ -31,7 +31,7 @@ uint64_t surfaceHash(const std::vector<NodeMesh>& nodes) {
     return hash.value();
 }
 
-// A slab (top at z = 2 mm) that the simulated hand mills slowly for as long as the test takes.
+// The simulated hand mills a slab (top at z = 2 mm) slowly for as long as the test takes.
 class Instructor : public testing::Test {
   protected:
     Instructor() {
@@ -98,7 +98,7 @@ class Instructor : public testing::Test {
         for (const auto& [leaf, node] : probe_.nodes) nodes.push_back(node);
         return surfaceHash(nodes);
     }
-    // When nothing has changed for a while.
+    // It is the hash when nothing has changed for a while.
     uint64_t settledHash() {
         using namespace std::chrono_literals;
         auto since = std::chrono::steady_clock::now();

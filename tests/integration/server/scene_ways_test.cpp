@@ -28,7 +28,7 @@ std::vector<std::string> shippedScenes() {
     return names;
 }
 
-// Copies, so that the phantoms that their relative paths name are those of this test.
+// The scenes are copies, so that the phantoms that their relative paths name are those of this test.
 class SceneWays : public testing::Test {
   protected:
     SceneWays() {
@@ -47,7 +47,7 @@ class SceneWays : public testing::Test {
     test::TemporaryFolder folder_;
 };
 
-// The hand's way, so fast that it is done after kTicks.
+// Writes the hand's way, so fast that it is done after kTicks.
 void writeTrajectory(const DeviceSetup& setup, const std::string& file) {
     std::ofstream out(file);
     out.precision(17);

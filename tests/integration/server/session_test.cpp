@@ -22,7 +22,7 @@ using test::TemporaryFolder;
 using test::waitFor;
 using test::writeFile;
 
-// A slab (top at z = 2 mm) that the simulated hand mills for three seconds.
+// The simulated hand mills a slab (top at z = 2 mm) for three seconds.
 class Session : public testing::Test {
   protected:
     Session() : session_(std::to_string(testSession())), domain_(std::to_string(testDomain())) {
@@ -75,7 +75,7 @@ class Session : public testing::Test {
                 "--domain",
                 domain_};
     }
-    // The newest line of an offscreen viewer: what its newest picture shows; null before the first.
+    // The newest line of an offscreen viewer says what its newest picture shows; it is null before the first.
     static nlohmann::json newest(const Process& client) {
         const std::string out = client.outSoFar();
         const size_t end = out.rfind('\n');

@@ -21,7 +21,7 @@ using test::run;
 using test::TemporaryFolder;
 using test::writeFile;
 
-// Tool's +y along W's +z, so that the shaft stands upright.
+// The tool's +y lies along W's +z, so that the shaft stands upright.
 const char* const kUpright = "0.70710678118654757,0.70710678118654757,0,0";
 
 // The device goes straight down from z_from to z_to in `ticks`, then rests for `dwell` ticks.
@@ -213,8 +213,8 @@ TEST(Simulate, SavedDifferenceAndMeshAddUp) {
     EXPECT_NEAR(ply.volume(), milled["bone_mm3"].get<double>(), 1e-4 * ply.volume());
 }
 
-// The corridor in the tooth is where the trajectory says. Oracle: all voxels of the scan that lie inside the
-// burr at any traced tool position; independent of the tick's own milling.
+// The corridor in the tooth is where the trajectory says. The oracle is all voxels of the scan that lie
+// inside the burr at any traced tool position; it is independent of the tick's own milling.
 class SimulatePresets : public testing::TestWithParam<const char*> {};
 
 TEST_P(SimulatePresets, CorridorInTheToothIsTheSweptBurr) {
@@ -257,7 +257,7 @@ TEST_P(SimulatePresets, CorridorInTheToothIsTheSweptBurr) {
     std::printf("swept %.3f mm3, removed voxels %.3f mm3, between the surfaces %.3f mm3\n", expected_mm3,
                 json["removed_mm3"].get<double>(), surface_mm3);
     EXPECT_TRUE(json["mesh"]["is_closed"]);
-    // And the burr was where the device was, but for the springs' give.
+    // The burr was where the device was, but for the springs' give.
     const auto& last = trace.back();
     EXPECT_NEAR(last[3], 12.2e-3, 0.1e-3);
     for (const auto& row : trace) EXPECT_LT(std::hypot(row[1] - 2.7e-3, row[2] + 2.45e-3), 0.5e-3);

@@ -84,14 +84,14 @@ struct Path {
     }
 };
 
-// Without damping and with the solve converged, so that only what the contact itself gives or takes is left.
+// The solve is without damping and converged, so that only what the contact itself gives or takes is left.
 AccuracySettings converged(Preset preset) {
     AccuracySettings settings = presetSettings(preset);
     settings.iterations = AccuracySettings::kMostIterations;
     return settings;
 }
 
-// What the hand puts in: -Σ ½ (w_k + w_{k+1}) · (pose_{k+1} - pose_k), w the wrench on the hand.
+// The hand puts in -Σ ½ (w_k + w_{k+1}) · (pose_{k+1} - pose_k), where w is the wrench on the hand.
 class EnergyPutIn {
   public:
     explicit EnergyPutIn(const Pose& device) : device_(device) {}
@@ -111,7 +111,7 @@ class EnergyPutIn {
 };
 
 struct PathEnergy {
-    // J, of the same run: how far they differ tells the quadrature's error.
+    // Both are J of the same run: how far they differ tells the quadrature's error.
     double every_tick, every_other_tick;
     bool has_touched;
 };

@@ -17,7 +17,7 @@ Eigen::Vector3i anySize(int largest) {
             *rc::gen::inRange(1, largest + 1)};
 }
 
-// Densities around iso and at both ends, so that equality, thin walls and clamping all turn up.
+// Densities lie around iso and at both ends, so that equality, thin walls and clamping all turn up.
 Density anyDensity(Density iso) {
     return *rc::gen::element<Density>(0, kMaxDensity, iso, Density(iso - 1),
                                       Density(iso + (iso < kMaxDensity ? 1 : 0)), Density(iso / 2));

@@ -1,5 +1,5 @@
-// Counts what this thread does to the heap and to locks while an RtProbe lives. For tests that prove that a
-// tick does neither; not in sanitizer builds, which replace the same functions (there the target
+// Counts what this thread does to the heap and to locks while an RtProbe lives. It is for tests that prove
+// that a tick does neither; it is not in sanitizer builds, which replace the same functions (there the target
 // bonemill::rt_probe does not exist, so a test that needs it is listed under `if(NOT BONEMILL_SANITIZE)`).
 #pragma once
 

@@ -9,8 +9,8 @@ namespace {
 
 TEST(ForceOnSphere, IsTheIntegralOfThePressure) {
     const double kappa = 1e12, radius = 1e-3, depth = 0.2e-3;
-    // Rings of the plane inside the sphere; pressure κ times depth below the sphere's surface (distance from
-    // the plane's point to it), along the line to the centre.
+    // The plane's rings inside the sphere are summed; their pressure is κ times the depth below the sphere's
+    // surface (distance from the plane's point to it), along the line to the centre.
     const double height = radius - depth, edge = std::sqrt(radius * radius - height * height);
     constexpr int kRings = 20000;
     double force = 0;

@@ -50,7 +50,7 @@ void expectSameField(const VoxelVolume& coarse, const VoxelVolume& fine) {
         for (int j = 0; j < fine.dims().y(); ++j)
             for (int i = 0; i < fine.dims().x(); ++i) {
                 Vector3d p_V = X_VF * fine.spacing().cwiseProduct(Vector3d(i, j, k));
-                // Off the lattice's own rounding.
+                // A place that lies on the coarse lattice but for rounding is put onto it.
                 const Vector3d index = p_V.cwiseQuotient(coarse.spacing());
                 for (int axis = 0; axis < 3; ++axis)
                     if (std::abs(index[axis] - std::round(index[axis])) < 1e-9)

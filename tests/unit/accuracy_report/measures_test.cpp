@@ -34,7 +34,8 @@ TEST(Errors, EqualAnswersHaveNone) {
 
 TEST(Errors, MagnitudeDirectionAndPoseAreToldApart) {
     const std::vector<Answer> truth{answer({0, 0, 2}, {0, 0.01, 0})};
-    // 10 % longer and 30° off; torque 20 % short; 3-4-5 µm beside; 2 mrad turned.
+    // The force is 10 % longer and 30° off, the torque 20 % short; the tool is 3-4-5 µm beside and turned by
+    // 2 mrad.
     const double angle = M_PI / 6;
     const std::vector<Answer> answers{answer(2.2 * Vector3d(std::sin(angle), 0, std::cos(angle)),
                                              {0.008, 0, 0}, {3e-6, 4e-6, 0}, {0, 0, 2e-3})};
@@ -88,7 +89,7 @@ TEST(Noise, DoesNotReachFromOnePathToTheNext) {
     EXPECT_EQ(noise.noise(), 0);
 }
 
-// A spring from the origin, linear and torsional, felt exactly.
+// It is a spring from the origin, linear and torsional, felt exactly.
 std::vector<Answer> springAnswers(const std::vector<Pose>& device, double k, double k_rotation) {
     std::vector<Answer> answers;
     for (const Pose& pose : device)

@@ -20,7 +20,8 @@ std::vector<Density> densitiesOf(const VoxelVolume& volume) {
 }
 
 TEST(MillingProbe, SweptVolumeIsThatOfTheCapsuleAndTheBoneComesBack) {
-    // Solid all over: nothing to touch, the tool follows the hand exactly but for its lag.
+    // The bone is solid all over: there is nothing to touch, and the tool follows the hand exactly but for
+    // its lag.
     BoneModel bone = test::boneOf(
         test::bodyVolume(test::cubeGeometry(49, 0.125e-3), [](const Vector3d&) { return -1.0; }));
     const auto before = densitiesOf(bone.volume);

@@ -139,7 +139,7 @@ TEST(ProbingStroke, IsClosedStartsFreeAndPresses) {
         deepest = std::max(deepest, 4e-3 - pose.position.z());
         widest = std::max(widest, (pose.position - place.X_WT.position).head<2>().norm());
     }
-    // 4 N at 3 N/mm; the spline cuts the corners of its knots.
+    // The coupling is stretched by 4 N at 3 N/mm; the spline cuts the corners of its knots.
     EXPECT_NEAR(stroke.deepest, stretchOf(tick.toolCoupling(), 4), 1e-9);
     EXPECT_NEAR(deepest, stroke.deepest, 0.15e-3);
     EXPECT_NEAR(widest, 1.1e-3, 0.2e-3);

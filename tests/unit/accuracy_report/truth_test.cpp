@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using test::upright;
 
-// Down into the floor and a long rest.
+// The hand goes down into the floor and rests there for long.
 ProbingStroke press(double depth) {
     ProbingStroke stroke{"press", {}, depth};
     for (int n = 0; n < 300; ++n) {
@@ -55,7 +55,7 @@ TEST(Truth, CoarserVoxelsAreRefinedMore) {
     EXPECT_LT(width / (0.5e-3 / (refinement - 1)), 8);
 }
 
-// Oracle: the same run on the whole bone at that refinement.
+// The oracle is the same run on the whole bone at that refinement.
 TEST(Truth, IsThatOfTheWholeBone) {
     const Vector3d middle(3e-3, 3e-3, 2e-3);
     const BoneModel bone =

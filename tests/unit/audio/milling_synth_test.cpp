@@ -105,7 +105,7 @@ TEST(MillingSynth, neverClicks) {
     const double bound = 1.3 * largestStep(play(steady, heavy, 1.0));
     MillingSynth synth(wish);
     std::vector<float> all;
-    // Every 10 ms everything jumps: speed, contact, hearing.
+    // Speed, contact and hearing all jump every 10 ms.
     for (int n = 0; n < 150; ++n) {
         const SoundLoad load{speedOf(n % 3 ? 500 : 40), n % 2 ? 10.0 : 0, n % 5 ? 10.0 : 0};
         const auto block = play(synth, load, 0.01, n % 7 != 0);

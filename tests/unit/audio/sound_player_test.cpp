@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kPlayedRate = MillingSynth::kSampleRate;
 
-// OpenAL reads its settings once per process: before any test's first call.
+// OpenAL reads its settings once per process, so this comes before any test's first call.
 void useWaveBackend(const std::string& settings_path, const std::string& settings) {
     std::ofstream(settings_path) << settings;
     setenv("ALSOFT_CONF", settings_path.c_str(), 1);
@@ -41,7 +41,7 @@ bool startsWithin(const SoundPlayer& player, milliseconds limit) {
     return false;
 }
 
-// Reads those of the chunk "data" of a mono 16-bit file.
+// Reads the samples of the chunk "data" of a mono 16-bit file.
 std::vector<float> samplesOf(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
@@ -83,7 +83,7 @@ TEST(SoundPlayer, playsTheSpeedsThatItIsToldAndFadesAtItsEnd) {
     EXPECT_LT(test::rms(std::span(samples).last(end_size)), 0.1 * test::rms(samples));
 }
 
-// In a process that has not called OpenAL yet, and may not again.
+// It runs in a process that has not called OpenAL yet, and may not again.
 bool playsWithoutDevice() {
     const test::TemporaryFolder folder;
     useWaveBackend(folder / "alsoft.conf", "[wave]\n");  // a backend that has nowhere to write

@@ -20,7 +20,7 @@ struct MilledBall {
             Eigen::Vector3i::Constant(8), {.levels = {{1}, {2}}});
     }
 
-    // Along x at this height, as the tick does it. direction: -1 removes, +1 adds.
+    // Mills along x at this height, as the tick does it; direction -1 removes, +1 adds.
     void groove(double y, double z = 11e-3, int direction = -1) {
         TimedMilling milling({.removal_rate = 1e9, .addition_rate = 1e9}, bone.volume, bone.lattice, 2e-3);
         for (int n = 0; n < 20; ++n) {

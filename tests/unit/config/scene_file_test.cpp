@@ -32,7 +32,7 @@ class SceneFile : public ::testing::Test {
         std::ofstream(file, std::ios::binary) << text;
         return file;
     }
-    // The message without the folder, which differs from run to run.
+    // The message comes without the folder, which differs from run to run.
     std::string refusal(const std::string& text) const { return refusalOf(write(text)); }
     std::string refusalOf(const fs::path& file) const {
         try {

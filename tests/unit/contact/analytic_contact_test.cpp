@@ -105,9 +105,9 @@ TEST(AnalyticContact, ShaftLyingOnPlane) {
     }
 }
 
-// Per length, for a shaft that goes on for ever, h = R - δ, a = √(R² - h²): ∫ κ (R - ρ) h/ρ dx with ρ² = x² +
-// h², which is 2κh(R asinh(a/h) - a). (The bone-normal law has κ(aR - h² asinh(a/h)) instead.) Checks the
-// quadrature itself.
+// Per length, a shaft that goes on for ever, with h = R - δ and a = √(R² - h²), has ∫ κ (R - ρ) h/ρ dx with
+// ρ² = x² + h², which is 2κh(R asinh(a/h) - a). (The bone-normal law has κ(aR - h² asinh(a/h)) instead.) This
+// checks the quadrature itself.
 TEST(AnalyticContact, QuadratureAgreesWithTheClosedForms) {
     const double radius = 1.2e-3, depth = 0.1e-3, high = radius - depth;
     const Matrix3d R = expRotation({0.3, 0.2, -0.7}).toRotationMatrix();

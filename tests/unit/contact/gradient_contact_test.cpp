@@ -117,7 +117,8 @@ TEST(GradientContact, GatheringFindsAllThatAMotionCanTouch) {
     EXPECT_GT(near.evaluate<double>(tool, moved).contacts, 0u);
 }
 
-// Whatever is skipped leaf by leaf and block by block: as many candidates as a test of every point finds.
+// Whatever is skipped leaf by leaf and block by block, there are as many candidates as a test of
+// every point finds.
 TEST(GradientContact, CandidatesAreThePointsNearTheTool) {
     const ContactScene scene(cubeGeometry(65, 0.125e-3), bumpyBody(), kBurrAndShaft);
     std::mt19937 random(21);
@@ -136,7 +137,7 @@ TEST(GradientContact, CandidatesAreThePointsNearTheTool) {
         for (LeafId leaf = 0; leaf < scene.bone.lattice.leafCount(); ++leaf)
             scene.bone.shell.forEachBlock(0, leaf, [&](const ShellBlock& b, uint32_t count) {
                 for (uint32_t i = 0; i < count; ++i) {
-                    // Half its diagonal, and how far it bends.
+                    // A patch reaches over its point by half its diagonal and by how far it bends.
                     const double patch = settings.patch_points > 1
                                              ? std::sqrt(double(b.area[i]) / 2) +
                                                    0.5 * double(b.area[i]) / tool.thinnestRadius()
@@ -162,7 +163,7 @@ TEST(GradientContact, SaysWhenThereIsNoRoom) {
     EXPECT_LE(contact.candidateCount(), 50u);
 }
 
-// A wall thinner than the burr, and its far side inside the burr: the far side must not pull.
+// The wall is thinner than the burr, and its far side lies inside the burr: the far side must not pull.
 TEST(GradientContact, TheFarSideOfAThinWallDoesNotPull) {
     const double top = 4.3e-3, thickness = 0.3e-3;
     const ContactScene scene(
@@ -199,7 +200,7 @@ TEST(GradientContact, StiffnessCapIsTheSameForPlaneSlotAndSurround) {
     }
 }
 
-// ---- advance()
+// The tests from here on are of advance().
 
 TEST(Advance, StopsBeforeAWallAtAnySpeed) {
     const double top = 4.3e-3, thickness = 0.125e-3;

@@ -32,7 +32,7 @@ TEST(PatchMemory, ForgetsEverything) {
     EXPECT_EQ(memory.placesOf(kPatch), 0);
 }
 
-// Against a map, with as many patches as a gathering has at most.
+// The memory is compared with a map, with as many patches as a gathering has at most.
 TEST(PatchMemory, NeverMixesPatchesUpAndHardlyForgets) {
     PatchMemory memory(4096);
     std::mt19937_64 random(5);

@@ -12,7 +12,7 @@ constexpr double kVoxel = 0.25e-3;
 constexpr double kToolRadius = 1.5e-3;
 constexpr double kBoneTop = 5.03e-3;
 
-// Bone: half space below z = kBoneTop (V), tool: a sphere.
+// The bone is the half space below z = kBoneTop (V), the tool a sphere.
 class SphereOnPlane : public testing::Test {
   protected:
     SphereOnPlane()
@@ -41,7 +41,8 @@ TEST_F(SphereOnPlane, NoContactNoForce) {
 }
 
 TEST_F(SphereOnPlane, ForceIsTheSumOverThePointsOfTheExactSphere) {
-    // Slow oracle: the shell points of a plane are the cell centres in x and y at the height of the plane.
+    // As a slow oracle, the shell points of a plane are the cell centres in x and y at the height
+    // of the plane.
     const double depth = 0.4e-3;
     const Pose pose = pressed(depth);
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -76,7 +77,7 @@ TEST_F(SphereOnPlane, FewContactsKeepFullStiffness) {
     EXPECT_NEAR(stiff.wrench.force.z() / result.wrench.force.z(), 2, 1e-12);
 }
 
-// Eq 6-9 point by point, as printed.
+// These are eqs 6-9 point by point, as printed.
 Matrix6d printedDerivative(double k, double d, const Eigen::Vector3d& n, const Eigen::Vector3d& r) {
     Matrix6d m;
     const Eigen::Matrix3d dF_dx = -k * n * n.transpose();
@@ -114,9 +115,9 @@ TEST_F(SphereOnPlane, SumsArePointByPointTheThesisFormulas) {
     EXPECT_LT((result.derivative.bottomRightCorner(3, 3) - rotational).norm(), 1e-4 * rotational.norm());
 }
 
-// One bone point b with normal n, the tool a half space whose face looks along -n: the printed derivatives
-// are right but for the two errors that the baseline keeps (eq 7 turns the bone's normal with the tool; eq 8
-// lacks + F~).
+// With one bone point b with normal n, and as the tool a half space whose face looks along -n, the printed
+// derivatives are right but for the two errors that the baseline keeps (eq 7 turns the bone's normal with the
+// tool; eq 8 lacks + F~).
 TEST(PrintedDerivatives, EqualFiniteDifferencesButForTheTwoKnownErrors) {
     const double k = 1200;
     const Eigen::Vector3d n = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();

@@ -1,4 +1,4 @@
-// A shell that follows an edited bone, its levels and its limits.
+// The shell follows an edited bone and keeps its levels and its limits.
 #include "haptic_server/contact/point_shell.h"
 
 #include <random>
@@ -33,7 +33,7 @@ void expectSameBits(const PointShell& a, const PointShell& b, int level, uint32_
 // The pairs are leaf cells and normals.
 class ShellRefresh : public testing::TestWithParam<std::tuple<int, ShellNormals>> {};
 
-// A bone that is edited at random, and what its shell must then be.
+// The bone is edited at random; rebuilt() is what its shell must then be.
 struct EditedBone {
     EditedBone(int leaf_cells, std::vector<ShellLevel> levels)
         : volume(bodyVolume(test::boxGeometry({37, 31, 34}),
@@ -151,7 +151,7 @@ TEST(PointShell, RefusesFactorsThatAreNoneOrNotDistinct) {
         EXPECT_THROW(PointShell(volume, lattice, {.levels = levelsOf(factors)}), std::invalid_argument);
 }
 
-// All crossings lie in the one voxel: triangles without area.
+// All crossings lie in the one voxel, so that the triangles have no area.
 TEST(PointShell, SurfaceThatOnlyTouchesAVoxelGivesNoPoint) {
     VoxelVolume volume(cubeGeometry(8, 1e-3), test::kTestIso);
     volume.set(3, 3, 3, test::kTestIso);

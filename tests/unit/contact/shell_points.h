@@ -1,4 +1,4 @@
-// What the tests of the point shell share: its levels, and its points in one list.
+// The tests of the point shell share this: its levels, and its points in one list.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ inline std::vector<ShellLevel> levelsOf(const std::vector<int>& factors,
     return levels;
 }
 
-// All points of a leaf; each lies within its block, which knows its largest area.
+// These are all points of a leaf; each lies within its block, which knows its largest area.
 inline std::vector<ShellPoint> pointsOf(const PointShell& shell, int level, LeafId leaf) {
     std::vector<ShellPoint> points;
     shell.forEachBlock(level, leaf, [&](const ShellBlock& b, uint32_t count) {

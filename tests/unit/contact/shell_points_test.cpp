@@ -1,4 +1,4 @@
-// Where the points of a shell lie, and that their areas add up to the surface.
+// The points of a shell lie on the surface, and their areas add up to it.
 #include "tests/unit/contact/shell_points.h"
 
 #include <random>
@@ -28,7 +28,7 @@ double totalArea(const std::vector<ShellPoint>& points) {
     return sum;
 }
 
-// Slow oracles: the trilinear field and the drawn surface.
+// The slow oracles are the trilinear field and the drawn surface.
 double densityAt(const VoxelVolume& volume, const Eigen::Vector3d& p_V) {
     const Eigen::Vector3d at = p_V.cwiseQuotient(volume.spacing());
     const Eigen::Vector3i cell =
@@ -60,7 +60,7 @@ double meshArea(const VoxelVolume& volume, const LeafLattice& lattice) {
     return area;
 }
 
-// A grid of this spacing around the origin of its centre, 20 of the largest voxels to each side.
+// The grid has this spacing around the origin of its centre, and 20 of the largest voxels to each side.
 struct Grid {
     explicit Grid(const Eigen::Vector3d& spacing) : largest(spacing.maxCoeff()) {
         geometry.spacing = spacing;
@@ -81,7 +81,7 @@ std::vector<Eigen::Vector3d> someSpacings() {
     return spacings;
 }
 
-// Zero at 1 with a zero slope, so that a sum over points is as good as an integral.
+// It is zero at 1 with a zero slope, so that a sum over points is as good as an integral.
 double bump(double x) {
     return x * x < 1 ? (1 - x * x) * (1 - x * x) : 0;
 }
@@ -155,8 +155,8 @@ TEST(ShellAreas, AddUpToAPlaneOfAnyOrientation) {
     }
 }
 
-// The documented bounds: the projection's tolerance above the trilinear surface, and that surface's own error
-// beside a sphere.
+// The documented bounds are the projection's tolerance above the trilinear surface, and that surface's own
+// error beside a sphere.
 TEST(ShellPoints, LieOnTheTrilinearSurfaceAndNearTheSphere) {
     for (const ShellNormals normals : {ShellNormals::kTrilinear, ShellNormals::kCentralDifference})
         for (const Eigen::Vector3d& spacing : someSpacings()) {
@@ -202,7 +202,7 @@ TEST(ShellPoints, NoiseGivesPointsOnTheSurfaceWithTheMeshsArea) {
                 ASSERT_TRUE(p.normal.isZero() || std::abs(p.normal.norm() - 1) < 1e-5f);
                 ASSERT_GT(p.area, 0);
                 const Eigen::Vector3d p_V = p.position.cast<double>();
-                // Largest |density - iso|: the noise's own, but for cells at the border of air.
+                // The largest |density - iso| is the noise's own, but for cells at the border of air.
                 const bool is_noise = seed % 2 == 0 && inside.exteriorDistance(p_V) == 0;
                 const double largest = is_noise ? 150 : kMaxDensity;
                 ASSERT_LE(std::abs(densityAt(volume, p_V) - volume.iso()),

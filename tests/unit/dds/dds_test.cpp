@@ -25,7 +25,7 @@ NodeMeshSample nodeSample(uint32_t node, uint32_t revision) {
 
 class DdsTest : public testing::Test {
   protected:
-    // Node -> payload, or "disposed", or "left" for a key whose writer is gone.
+    // A node maps to its payload, to "disposed", or to "left" for a key whose writer is gone.
     using Seen = std::map<uint32_t, std::string>;
 
     // Takes until `node` was seen, or for 10 s.

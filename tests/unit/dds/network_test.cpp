@@ -13,7 +13,7 @@
 namespace bonemill::dds {
 namespace {
 
-// What is said when these options make no network.
+// Returns what is said when these options make no network.
 std::string refusalOf(const NetworkOptions& options) {
     try {
         networkConfiguration(options);

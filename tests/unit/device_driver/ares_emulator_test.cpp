@@ -19,7 +19,7 @@ HandImpedance noHand() {
     return {0, 0, 0, 0, 0, 0};
 }
 
-// Actuator forces that push the handle with this wrench where it is now.
+// Returns the actuator forces that push the handle with this wrench where it is now.
 Vector6d forcesFor(const AresEmulator& emulator, const Wrench& wrench) {
     Matrix6d J_inv;
     EXPECT_TRUE(AresKinematics{}.inverseJacobian(emulator.state().X_DT, J_inv));
@@ -78,7 +78,7 @@ TEST(AresEmulator, AFreeHandleSticksBelowAndMovesAboveCoulombFriction) {
     AresEmulator other(AresKinematics{}, plant, noHand(), OperatorPath{});
     push(other, {{0.25, 0, 0}, {0, 0, 0}}, 1.5);
     EXPECT_GT(other.state().X_DT.position.x(), 1e-3);
-    // Terminal speed: what friction leaves of the force, over the viscous friction.
+    // The terminal speed is what friction leaves of the force, over the viscous friction.
     EXPECT_NEAR(other.state().v_DT.x(), 0.05 / plant.viscous_friction, 1e-5);
 }
 

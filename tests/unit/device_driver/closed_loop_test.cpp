@@ -23,7 +23,8 @@ class ClosedLoop {
         emulator.startScenario();
     }
 
-    // One period; the server computes the answer to this period's sample, the device gets it in the next one.
+    // In one period the server computes the answer to this period's sample; the device gets it in
+    // the next one.
     void step(bool server_answers = true) {
         now_ns += kPeriodNs;
         DeviceSample sample;

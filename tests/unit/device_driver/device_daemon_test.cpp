@@ -44,7 +44,7 @@ class DeviceDaemonTest : public testing::Test {
         return file.string();
     }
 
-    // Differs between tests that run at the same time.
+    // The number differs between tests that run at the same time.
     const uint32_t session_ = 100000 + uint32_t(getpid());
 
   private:

@@ -20,13 +20,13 @@ class ForceLimiterTest : public testing::Test {
         for (int n = 0; n < 500; ++n) feel({});  // the server answers: the ramp is up
     }
 
-    // A period in which the server answers with this wrench.
+    // In this period the server answers with this wrench.
     Vector6d feel(const Wrench& wrench, double dt = kPeriod) {
         now_ns += kPeriodNs;
         limiter.take(wrench, now_ns);
         return limiter.forces(&J_inv, now_ns, dt);
     }
-    // A period in which it is silent.
+    // In this period the server is silent.
     Vector6d wait() {
         now_ns += kPeriodNs;
         return limiter.forces(&J_inv, now_ns, kPeriod);
@@ -106,8 +106,8 @@ TEST_F(ForceLimiterTest, HoldsStillWhenNoTimePasses) {
     EXPECT_EQ(feel({{0, 0, -20}, {0, 0, 0}}, -1.0), before);
 }
 
-// The order of the limits: silence fades what is sent, not what was wanted, so that a demand of many times
-// the clamp is half as strong in the middle of the ramp, and turns nowhere.
+// The order of the limits matters: silence fades what is sent, not what was wanted, so that a demand of many
+// times the clamp is half as strong in the middle of the ramp, and turns nowhere.
 TEST_F(ForceLimiterTest, ADemandBeyondTheClampFadesAsAnyOther) {
     const StaleRampConfig ramp;
     const Vector6d pressing = settle({{0, 0, 1000}, {0, 0, 0}});

@@ -33,7 +33,7 @@ struct VibrationTest : testing::Test {
     double sample(size_t n) const {
         return felt[n].force.dot(bench.tick.X_VT_start.rotation * Vector3d::UnitX());
     }
-    // Returns of the last kWindow samples the amplitude, N, of the frequency in Hz.
+    // Returns the amplitude, N, that the last kWindow samples have at this frequency, Hz.
     double amplitudeAt(int hz) const {
         std::complex<double> sum = 0;
         for (int n = 0; n < kWindow; ++n)

@@ -66,7 +66,7 @@ TEST_F(ContactGroupsTest, KeepForceMomentAndWhatATranslationStretches) {
     }
 }
 
-// Σ F |P (ω × r)|² of the groups against the contacts'.
+// Σ F |P (ω × r)|² of the groups is compared with the contacts'.
 TEST_F(ContactGroupsTest, LoseLittleOfATurn) {
     addOnPeg(3000, 1e-3, 8e-3);
     contacts.giveTo(bench.tick);

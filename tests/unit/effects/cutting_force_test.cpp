@@ -41,7 +41,7 @@ TEST_F(CuttingForceTest, PullsAgainstTheSpinWithFrictionTimesForce) {
     EXPECT_NEAR(bench.tick.record.axis_torque, 0.5 * 4 * 1e-3, 1e-5);
 }
 
-// M Ω = μ_c Σ F v · v/(v + v_ε), for any contacts; with v_ε out of the way, the power of friction.
+// M Ω = μ_c Σ F v · v/(v + v_ε) holds for any contacts; with v_ε out of the way it is the power of friction.
 TEST_F(CuttingForceTest, AxisTorqueTimesSpinIsThePowerOfFriction) {
     const Vector3d axis = bench.tick.axis();
     for (const double spin : {30.0, 4000.0, -4000.0}) {
@@ -133,7 +133,7 @@ TEST_F(CuttingForceTest, FollowsAChangeOfLoadWithItsTimeConstant) {
     contacts.giveTo(bench.tick);
     for (int n = 0; n < 20; ++n) smooth.begin(bench.tick);
     smooth.finish(bench.tick);
-    // Backward Euler: 1 − (1 + dt/τ)^(−n).
+    // Backward Euler gives 1 − (1 + dt/τ)^(−n).
     const double full = 0.5 * 4 * 1e-3, share = 1 - std::pow(1 + bench.tick.dt / kTau, -20);
     EXPECT_NEAR(bench.tick.record.axis_torque, share * full, 0.01 * full);
     smooth.restart(Restart::kOtherTool);

@@ -27,7 +27,7 @@ const Variant& balanced() {
 constexpr double kFarEnough = 1e-3;  // m
 
 // The hand goes along with the tool and pulls with a constant force, `tangent` of its angle to the normal.
-// How far the tool goes in `ticks`, m, once it is pressed and pulled.
+// Returns how far the tool goes in `ticks`, m, once it is pressed and pulled.
 double wayUnder(double tangent, int settle_ticks, int ticks) {
     Scene scene(planeBone(), burr(), balanced(), 1e-3, stick);
     Stepper stepper(scene);
@@ -95,8 +95,8 @@ TEST(FrictionInTick, SlidingCostsFrictionTimesForceWithoutChatter) {
         }
 }
 
-// Sidewards on the plane: the torque about the shaft is M = μ F R, and no force but the cutting force's
-// lies across.
+// The burr lies sidewards on the plane: the torque about the shaft is M = μ F R, and no force but the cutting
+// force's lies across.
 Wrench pressedWhileSpinning(bool cutting, TickRecord& record) {
     Scene scene(planeBone(), burr(), balanced(), 1e-3, [=](FixedTickConfig& config) {
         withoutMilling(config).tool.burr.speed = 4000;
@@ -122,11 +122,11 @@ TEST(CuttingForceInTick, GivesTheHandTheSixthDegreeOfFreedom) {
     EXPECT_NEAR(with.effects.axis_torque, -felt.torque.y(), 1e-3 * std::abs(felt.torque.y()));
     EXPECT_NEAR(with.effects.axis_torque * with.effects.spin_speed, with.effects.cutting_power,
                 0.01 * with.effects.cutting_power);
-    // Ω a × r at the bottom: a = y, r = −z: −x; friction pulls the tool along +x.
+    // At the bottom Ω a × r is along −x, with a = y and r = −z; friction pulls the tool along +x.
     EXPECT_NEAR(felt.force.x(), friction * normal, 0.05 * friction * normal);
 }
 
-// Too weak a motor: the burr stands, and the hand holds the whole torque of the motor.
+// The motor is too weak: the burr stands, and the hand holds the whole torque of the motor.
 TEST(CuttingForceInTick, AStalledBurrHoldsTheMotorsTorque) {
     constexpr double kWeak = 0.2e-3;  // N·m
     Scene scene(planeBone(), burr(), balanced(), 1e-3, [](FixedTickConfig& config) {

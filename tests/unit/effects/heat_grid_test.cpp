@@ -72,7 +72,7 @@ TEST(HeatGrid, HeatIsConserved) {
     EXPECT_GT(heat.activeBricks(), 8u);
 }
 
-// Q / (ρc (4πατ)^(3/2)) exp(-r² / 4ατ) (Carslaw and Jaeger).
+// The temperature is Q / (ρc (4πατ)^(3/2)) exp(-r² / 4ατ) (Carslaw and Jaeger).
 TEST(HeatGrid, PointSourceSpreadsAsInTheInfiniteMedium) {
     const VoxelVolume bone = boneOf({64, 64, 64});
     const HeatConfig config = insulated();
@@ -164,7 +164,7 @@ TEST(HeatGrid, IrrigatedPlateCoolsTowardsTheWater) {
     run(heat, kSeconds);
     const double transfer = 1 / (1 / config.wet_transfer + kSpacing / 2 / config.conductivity);
     const double rate = 2 * transfer / (config.heat_capacity * kSpacing);
-    // The middle of the plate: its rim has more surface.
+    // The middle of the plate is compared: its rim has more surface.
     EXPECT_NEAR(heat.temperatureAt(cubeAt(8, 8, 0)), 30 + 17 * std::exp(-rate * kSeconds), 0.1);
     heat.irrigate(cubeAt(8, 8, 0), 0);
     const double before = heat.temperatureAt(cubeAt(8, 8, 0));
@@ -238,7 +238,7 @@ TEST(HeatGrid, NecrosisCanNeedItsTime) {
     EXPECT_NEAR(heat.necroticVolume() / std::pow(32 * kSpacing, 3), 1, 0.01);
 }
 
-// However much is hot: a bounded number of bricks.
+// However much is hot, the number of bricks is bounded.
 TEST(HeatGrid, BricksAreBounded) {
     const VoxelVolume bone = boneOf({128, 128, 64});
     HeatGrid heat(insulated(), bone, kDt);

@@ -47,7 +47,7 @@ TEST(ProtectedStructures, DistanceIsThatOfTheBurrsSurface) {
     EXPECT_TRUE(was_far && was_near);
 }
 
-// Straight down through the layer: a hole of the burr's section.
+// The burr goes straight down through the layer and leaves a hole of its own section.
 TEST(ProtectedStructures, DamageIsTheVolumeThatTheBurrSwept) {
     ProtectedBench bench(layer(2.5e-3 - kVoxel / 2, 3.5e-3 - kVoxel / 2));
     FixedTick tick = bench.makeTick();
@@ -79,7 +79,7 @@ TEST(ProtectedStructures, ABurrThatStandsStillHarmsNothing) {
     EXPECT_EQ(
         bench.run(tick, straightPath(TissueBench::at(place), place, 50, 0)).back().effects.damaged_volume, 0);
     const auto records = bench.run(tick, straightPath(TissueBench::at(place), place, 50, kButtonRemove));
-    // Soft tissue that is no bone: inside the burr it is lost as well. All but the burr's upper 0.2 mm.
+    // Soft tissue that is no bone is lost inside the burr as well: all but the burr's upper 0.2 mm is in it.
     const double cap = 0.2e-3;
     const double expected = 4.0 / 3 * M_PI * std::pow(kBurr, 3) - M_PI * cap * cap * (kBurr - cap / 3);
     EXPECT_NEAR(records.back().effects.damaged_volume / expected, 1, 0.05);
@@ -123,7 +123,7 @@ TEST(ProtectedStructures, AStalledBurrHarmsNothing) {
     EXPECT_EQ(records.back().effects.damaged_volume, 0);
 }
 
-// A burr so large that a tick does not see all of it, on its way past a thin structure.
+// The burr is so large that a tick does not see all of it on its way past a thin structure.
 TEST(ProtectedStructures, ALargeBurrMissesNothingOnItsWay) {
     constexpr double kLarge = 2.5e-3, kSpeed = 50e-3;       // m, m/s
     const DistanceFunction nerve = [](const Vector3d& p) {  // in the air
@@ -157,7 +157,7 @@ TEST(BurrProbes, SeeAThinStructureBesideALongBurr) {
     }
 }
 
-// Over a flat structure: the lowest point of a burr with edges, however it leans.
+// Over a flat structure the lowest point of a burr with edges counts, however the burr leans.
 TEST(BurrProbes, ReachAsFarAsTheBurr) {
     const TissueBench bench(layer(0, 3e-3 + kVoxel / 2), 6e-3);
     for (const BurrKind kind : {BurrKind::kBall, BurrKind::kCylinder, BurrKind::kCone}) {
@@ -165,7 +165,8 @@ TEST(BurrProbes, ReachAsFarAsTheBurr) {
         const double tip = kind == BurrKind::kCone ? burr.tip_radius : burr.radius;
         for (const double lean : {0.0, 0.3, 1.0, M_PI / 2}) {
             const Pose pose{{kMiddle, kMiddle, 7e-3}, expRotation({M_PI / 2 - lean, 0, 0})};
-            // These are of both rims of a body of revolution, its axis at this angle from the vertical.
+            // The lowest point is on one of the two rims of a body of revolution, its axis at this angle from
+            // the vertical.
             const double up = std::cos(lean), across = std::sin(lean);
             const double lowest =
                 std::max(burr.length / 2 * up + tip * across, -burr.length / 2 * up + burr.radius * across);

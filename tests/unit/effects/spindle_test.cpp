@@ -18,7 +18,7 @@ double speedAfter(const SpindleConfig& config, double seconds, double dt, double
     return speed;
 }
 
-// Without drag: at the motor's limit up to where its droop takes over, then exponentially.
+// Without drag it runs up at the motor's limit to where the droop takes over, then exponentially.
 double runUp(const SpindleConfig& c, double t) {
     const double knee = kFullSpeed - c.max_torque / c.droop, t_knee = c.inertia * knee / c.max_torque;
     if (t < t_knee) return c.max_torque / c.inertia * t;
@@ -90,7 +90,7 @@ TEST(Spindle, TurnsBackwardsForANegativeSpeed) {
                      -speedAfter(config, 0.1, 1e-3, 1e-3));
 }
 
-// A burr pressed sidewards at its equator: M = μ_c F R.
+// The burr is pressed sidewards at its equator: M = μ_c F R.
 struct PressedSpindle : testing::Test {
     void run(double seconds, double force, bool pedal) {
         test::ContactSet contacts;
@@ -139,7 +139,7 @@ TEST_F(PressedSpindle, IsNotStalledWhileItRunsUpOrStands) {
     EXPECT_FALSE(was_stalled);
 }
 
-// However slowly it runs up.
+// This holds however slowly it runs up.
 TEST_F(PressedSpindle, NeverStallsInTheAir) {
     Spindle slow{SpindleConfig{.inertia = 5e-6, .max_torque = 0.02, .droop = 1e-7, .drag = 1e-6}};
     bench.tick.is_pedal_down = true;

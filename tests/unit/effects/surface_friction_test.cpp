@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 constexpr SurfaceFrictionConfig kConfig{.coefficient = 0.3, .presliding_stiffness = 5e4};
 constexpr double kRadius = 1e-3;
 
-// A tool that stands on contacts and is moved by hand.
+// The tool stands on contacts and is moved by hand.
 struct FrictionTest : testing::Test {
     FrictionTest() {
         bench.tick.spin_speed = 0;
@@ -32,7 +32,7 @@ struct FrictionTest : testing::Test {
                          false);
         }
     }
-    // One tick that ends at `pose`; the wrench there.
+    // Runs one tick that ends at `pose` and returns the wrench there.
     Wrench moveTo(const Pose& pose) {
         EffectTick& tick = bench.tick;
         contacts.giveTo(tick);
@@ -124,7 +124,7 @@ TEST_F(FrictionTest, IsMinusTheGradientOfItsEnergyStickingAndSlipping) {
     }
 }
 
-// Stiffness against differences of the wrench where the energy is smooth, and never negative.
+// The stiffness equals differences of the wrench where the energy is smooth, and is never negative.
 TEST_F(FrictionTest, StiffnessIsSemiDefiniteAndThatOfAStickingTool) {
     contacts.addOnBall(random, kRadius, 40);
     moveBy({1e-6, 0, 0});
@@ -172,7 +172,7 @@ TEST_F(FrictionTest, NeverDrives) {
     }
 }
 
-// Turned on a narrow contact and back on a wide one, where the same turn stretches more.
+// The tool is turned on a narrow contact and back on a wide one, where the same turn stretches more.
 TEST_F(FrictionTest, AWiderContactGivesBackNoMoreThanTheNarrowOneGot) {
     for (int n = 0; n < 20; ++n) {
         standOnRing((n % 2 ? 1 : 0.5) * kRadius);

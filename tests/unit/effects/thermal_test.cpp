@@ -11,14 +11,14 @@ namespace {
 using namespace test;
 using Eigen::Vector3d;
 
-// Time removal at rate 0 in the configuration: the burr only rubs.
+// The configuration has time removal at rate 0, so that the burr only rubs.
 struct HotBench : TissueBench {
     HotBench() : TissueBench(halfSpace({-1, 0, 0}, Vector3d::UnitX())) {
         config.tool.burr.speed = 1000;  // rad/s
         config.tool.burr.friction = 0.5;
         config.effects.thermal = test::kThermal;
     }
-    // Leaning over by 45°, so that the burr's side rubs, pressed onto the bone.
+    // The burr leans over by 45°, so that its side rubs, and is pressed onto the bone.
     std::vector<TickRecord> press(uint32_t buttons, int ticks) {
         FixedTick tick = makeTick();
         const Pose start{{4e-3, 4e-3, kTop + kBurr + 0.1e-3}, expRotation({M_PI / 4, 0, 0})};
@@ -33,7 +33,7 @@ TEST(Thermal, PowerIsFrictionTimesRubbingSpeed) {
     const TickRecord last = bench.press(kButtonRemove, 300).back();
     const double force = last.f_hand_W[2];
     EXPECT_GT(force, 0.5);
-    // ρ of the ball's lowest point, 45° off the axis.
+    // ρ is that of the ball's lowest point, 45° off the axis.
     const double expected = 0.5 * force * 1000 * kBurr * std::sqrt(0.5);
     EXPECT_NEAR(last.effects.cutting_power / expected, 1, 0.08);
     EXPECT_GT(last.effects.temperature, 40);

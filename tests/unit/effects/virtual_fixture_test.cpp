@@ -37,7 +37,7 @@ VirtualFixtureConfig typicalBut(double VirtualFixtureConfig::*field, double valu
     return config;
 }
 
-// One fixture with a tool, asked as the tick does.
+// The fixture with its tool is asked as the tick asks it.
 struct Fixture {
     explicit Fixture(const VirtualFixtureConfig& config, const Burr& burr = burrOf(BurrKind::kBall))
         : fixture(config, bench().config.effects.protected_field), tool{&bench().tool, burr, 12} {
@@ -69,7 +69,8 @@ TEST(VirtualFixture, PushesBackByDepthInTheRegion) {
     EXPECT_LE(deep.wrench.force.norm(), 10 * 1.8);  // the field of voxels is steeper than 1 in places
 }
 
-// Round a ball: no jumps from voxel to voxel, and the same force everywhere but for the stairs of the labels.
+// Round a ball there are no jumps from voxel to voxel, and the force is the same everywhere but for the
+// stairs of the labels.
 TEST(VirtualFixture, ForceHasNoJumpsRoundABall) {
     const VirtualFixtureConfig config{
         .distance = 1e-3, .stiffness = 2000, .max_force = 10, .hand_force_scale = 1};
@@ -83,7 +84,7 @@ TEST(VirtualFixture, ForceHasNoJumpsRoundABall) {
             kNervePlace + radius * Vector3d(std::cos(angle), 0.6 * std::sin(angle), 0.8 * std::sin(angle));
         const Vector3d force = fixture.at({place, Eigen::Quaterniond::Identity()}).wrench.force;
         EXPECT_NEAR(force.norm(), 1, 0.15);
-        // 2 kN/m along, F/r and the bends of the field across.
+        // The force changes by 2 kN/m along, by F/r and the bends of the field across.
         if (n > 0) {
             EXPECT_LT((force - before).norm(), 3 * config.stiffness * step) << n;
         }
@@ -139,7 +140,7 @@ TEST(VirtualFixture, EdgesReachAsFarAsTheBall) {
     const VirtualFixtureConfig config{
         .distance = 1e-3, .stiffness = 2000, .max_force = 100, .hand_force_scale = 1};
     const Fixture fixture(config, burr);
-    // Its flat end above the nerve.
+    // The burr's flat end is above the nerve.
     const double height = kNerveRadius + burr.length / 2 + 0.6e-3;
     const Pose pose{kNervePlace + Vector3d(0, 0, height), expRotation({M_PI / 2, 0, 0})};
     const double expected = 2000 * 0.4e-3;
@@ -171,7 +172,8 @@ TEST(VirtualFixture, HandForceScaleFallsNearbyAndRisesOnlyWhenTheHandIsFree) {
     EXPECT_EQ(handForce(fixture, false, 2), 2);
 }
 
-// Round and round through the region, the burr's pose by the solve, the hand on a path of its own.
+// The burr goes round and round through the region: the solve gives its pose, and the hand has a path
+// of its own.
 TEST(VirtualFixture, ClosedPathsOfTheHandGainNoEnergy) {
     const TissueBench& scene = bench();
     for (const double scale : {1.0, 0.5}) {
@@ -193,7 +195,7 @@ TEST(VirtualFixture, ClosedPathsOfTheHandGainNoEnergy) {
         constexpr int kTicks = 8000;
         const auto device = [&](int n) {
             const double turn = 2 * M_PI * n / kTicks;
-            // Above the bone, down to the nerve's region from the side, twice around.
+            // The path starts above the bone and goes down to the nerve's region from the side, twice around.
             const Vector3d p(1.6e-3 * std::sin(2 * turn), 0.9e-3 * std::sin(3 * turn),
                              kTop - kNervePlace.z() + kBurr + 0.9e-3 * std::cos(turn) - 0.8e-3);
             return Pose{kNervePlace + p, expRotation({0.3 * std::sin(turn), 0, 0})};
@@ -223,7 +225,8 @@ TEST(VirtualFixture, ClosedPathsOfTheHandGainNoEnergy) {
     }
 }
 
-// Pressed into the region in the air, at the loop's rate: it comes to rest where coupling and fixture agree.
+// The tool is pressed into the region in the air, at the loop's rate: it comes to rest where coupling and
+// fixture agree.
 TEST(VirtualFixture, HoldsThePressedToolStill) {
     TissueBench air(sphereAt({4e-3, 4e-3, 6.5e-3}, kNerveRadius));
     air.config.effects.virtual_fixture = {

@@ -18,7 +18,7 @@ constexpr double kPress = 3;      // N
 constexpr double kLeading = 2e5;  // N/m: a hand that feeds
 
 const Vector3d kDown = -Vector3d::UnitZ();
-// The tool's axis, which is y in T, along these.
+// The tool's axis, which is y in T, lies along these.
 const Eigen::Quaterniond kAlongX(Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitZ()));
 const Eigen::Quaterniond kUpright(Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitX()));
 const Eigen::Quaterniond kOblique(Eigen::AngleAxisd(M_PI / 4, Vector3d(1, 0.3, 0).normalized()));
@@ -29,7 +29,7 @@ RigConfig sideways() {
     return config;
 }
 
-// A burr on the block's top, off the voxels' planes.
+// The burr stands on the block's top, off the voxels' planes.
 Vector3d onTop(const MillingRig& rig) {
     return rig.center() + Vector3d(31e-6, -17e-6, rig.config.burr.radius);
 }
@@ -105,8 +105,9 @@ TEST(EnergyRemoval, DoesNotDependOnTheVoxels) {
     }
 }
 
-// u = 0.3 J/mm³, μ_c = 0.5, v_c = 10 m/s, 6 mm² fed at 10 mm/s: 3.6 N, 60 mm³/s, 18 W, 2.9 mN·m. The side of
-// a cylinder has one speed all over. On a wall of 2 x 3 mm it is bent, but ∫ p dA = v/c ∫ cos θ dA.
+// u = 0.3 J/mm³, μ_c = 0.5, v_c = 10 m/s and 6 mm² fed at 10 mm/s make 3.6 N, 60 mm³/s, 18 W and 2.9
+// mN·m. The side of a cylinder has one speed all over. On a wall of 2 x 3 mm it is bent, but ∫ p dA = v/c
+// ∫ cos θ dA.
 TEST(EnergyRemoval, MeetsTheCheckValue) {
     RigConfig config;
     config.size = {5e-3, 5e-3, 3e-3};
@@ -132,7 +133,7 @@ TEST(EnergyRemoval, MeetsTheCheckValue) {
     EXPECT_NEAR(friction / config.burr.speed, 2.9e-3, 0.02 * 2.9e-3);
 }
 
-// A ball fed along its own axis: p = v cos θ u / (μ Ω ρ), so that ∫ p dA = 2 π ρ_rim v u / (μ Ω).
+// A ball fed along its own axis has p = v cos θ u / (μ Ω ρ), so that ∫ p dA = 2 π ρ_rim v u / (μ Ω).
 TEST(EnergyRemoval, ThePoleOfABallGoesThrough) {
     constexpr double kFeed = 3e-3;
     RigConfig config;
@@ -236,7 +237,7 @@ TEST(EnergyRemoval, DiamondsTakeMoreEnergy) {
     expectBalance(rig, 2 * config.removal.specific_energy);
 }
 
-// Harder bone below: the burr slows down there, and the balance counts each by its own.
+// The bone below is harder: the burr slows down there, and the balance counts each by its own.
 TEST(EnergyRemoval, KnowsHardBoneFromSoft) {
     RigConfig config = sideways();
     config.is_hard_below = 0.5e-3;
@@ -251,7 +252,8 @@ TEST(EnergyRemoval, KnowsHardBoneFromSoft) {
     EXPECT_LT(speedAt(0.65e-3), 0.6 * speedAt(0.4e-3));
 }
 
-// Pushed faster than the surface may move in a tick, and through a thin wall: finite, and the rest is solid.
+// The burr is pushed faster than the surface may move in a tick, and through a thin wall: all stays finite,
+// and the rest is solid.
 TEST(EnergyRemoval, SurvivesWhatNoHandDoes) {
     RigConfig config = sideways();
     config.wall = {4e-3, 0.4e-3};
@@ -270,7 +272,7 @@ TEST(EnergyRemoval, SurvivesWhatNoHandDoes) {
     EXPECT_TRUE(checkMesh(meshes, MeshGrid(rig.bone.volume, rig.bone.lattice)).isClosed());
 }
 
-// Where there is only time for some of the contacts at once: the leaves around the burr take turns, in the
+// Where there is only time for some of the contacts at once, the leaves around the burr take turns, in the
 // air of a pit as well.
 TEST(EnergyRemoval, LeavesTakeTurnsUnderABurrWithTooManyContacts) {
     constexpr size_t kFewContacts = 80;
@@ -285,7 +287,7 @@ TEST(EnergyRemoval, LeavesTakeTurnsUnderABurrWithTooManyContacts) {
         EXPECT_NEAR(turning.records[n].f_hand_W[2], kPress, 0.02 * kPress) << n;
 }
 
-// Where there is only time for coarser points.
+// The shell is coarse where there is only time for coarser points.
 TEST(EnergyRemoval, KeepsTheBalanceOnACoarseShell) {
     for (const int factor : {2, 3}) {
         RigConfig config = sideways();

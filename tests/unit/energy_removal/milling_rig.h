@@ -18,7 +18,7 @@ inline constexpr double kKrpm = 1000 * 2 * M_PI / 60;  // rad/s
 struct RigConfig {
     Eigen::Vector3d size{4e-3, 4e-3, 3e-3};  // of the volume
     double surface = 2e-3;                   // of the bone: the plane z = this
-    // The bone is a wall of these thicknesses along x and y around the middle; zero: a block as large as
+    // The bone is a wall of these thicknesses along x and y around the middle; zero makes a block as large as
     // the volume.
     Eigen::Vector2d wall = Eigen::Vector2d::Zero();
     Eigen::Vector3d spacing = Eigen::Vector3d::Constant(0.125e-3);
@@ -56,7 +56,7 @@ inline SdfGrid gridOf(const std::vector<ToolShape>& shapes, double spacing) {
 
 class MillingRig final : private TickIo {
   public:
-    // Where the hand wants the tool at time t, given where the simulated one is.
+    // It says where the hand wants the tool at time t, given where the simulated one is.
     using Hand = std::function<Eigen::Vector3d(double t, const Eigen::Vector3d& p_spo)>;
 
     explicit MillingRig(const RigConfig& config)
@@ -76,8 +76,8 @@ class MillingRig final : private TickIo {
         records.reserve(records.size() + size_t(left_));
         tick_.run(*this);
     }
-    // Along `direction` (unit) with this force, which comes up within kRise, ahead of the tool by what it
-    // moved in the last tick; across it the hand stays where it starts.
+    // The hand presses along `direction` (unit) with this force, which comes up within kRise, ahead of the
+    // tool by what it moved in the last tick; across it the hand stays where it starts.
     void press(double seconds, const Eigen::Vector3d& start, const Eigen::Vector3d& direction, double force,
                uint32_t buttons = kButtonRemove) {
         const double way = force / config.hand_stiffness, begin = t_;
@@ -102,7 +102,7 @@ class MillingRig final : private TickIo {
         return meshVolume(meshes, MeshGrid(bone.volume, bone.lattice));
     }
     double removedVolume() const { return volume_before_ - boneVolume(); }
-    // ∫ P dt and Σ u ΔV as the ticks say, J.
+    // work() is ∫ P dt and removedEnergy() is Σ u ΔV as the ticks say, J.
     double work() const {
         double sum = 0;
         for (const TickRecord& r : records) sum += double(r.effects.removal_power) / config.rate;

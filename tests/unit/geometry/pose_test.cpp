@@ -54,7 +54,7 @@ TEST(Pose, TheRotationBetweenDirectionsIsTheShortest) {
     const auto direction = [&] { return Eigen::Vector3d(normal(random), normal(random), normal(random)); };
     for (int n = 0; n < 1000; ++n) {
         const Eigen::Vector3d from = direction();
-        // Every third nearly opposite, by 1 rad down to 1e-16 rad.
+        // Every third pair is nearly opposite, by 1 rad down to 1e-16 rad.
         const Eigen::Vector3d to =
             n % 3 ? direction() : Eigen::Vector3d(-from + std::pow(10, -n / 60.0) * direction());
         const Eigen::Quaterniond rotation = rotationBetween(from, to);

@@ -1,4 +1,4 @@
-// Where the parts of the head-up display stand, from the triangles alone.
+// The triangles alone tell where the parts of the head-up display stand.
 #include "render_client/hud/hud_layout.h"
 
 #include <gtest/gtest.h>

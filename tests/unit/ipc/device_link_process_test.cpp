@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kSuccess = 0;
 
-// A child process that runs `body` and leaves with its result; killed if the test ends first.
+// The child process runs `body` and leaves with its result; it is killed if the test ends first.
 class Child {
   public:
     explicit Child(const std::function<int()>& body) : pid_(fork()) {
@@ -124,7 +124,7 @@ TEST(DeviceLinkProcesses, aKilledDaemonIsNoticedAndMayReturn) {
         DeviceSample sample{};
         for (int i = 0; i < 5; ++i) {
             ASSERT_TRUE(server.waitForSample(farAwayNs()));
-            // False only if the last life ended in the middle of a write; the next write repairs that.
+            // It is false only if the last life ended in the middle of a write; the next write repairs that.
             if (!server.readSample(sample)) continue;
             ASSERT_TRUE(isPlausible(sample));
             ASSERT_GT(sample.sequence, last_sequence);

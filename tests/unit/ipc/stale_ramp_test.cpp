@@ -13,7 +13,7 @@ constexpr int64_t kMs = 1'000'000;
 constexpr StaleRampConfig kConfig{
     .stale_after_ns = 20 * kMs, .ramp_down_ns = 50 * kMs, .ramp_up_ns = 300 * kMs};
 
-// A ramp that has been fed fresh stamps until it is fully up; its clock is simulated, one tick per ms.
+// The ramp has been fed fresh stamps until it is fully up; its clock is simulated, one tick per ms.
 struct SimulatedRun {
     StaleRamp ramp{kConfig};
     int64_t now_ns = 1'000'000 * kMs;

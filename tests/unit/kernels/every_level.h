@@ -1,4 +1,4 @@
-// The kernels of every instruction set that this CPU has, beside the baseline.
+// Tests run with the kernels of every instruction set that this CPU has, beside the baseline.
 #pragma once
 
 #include <gtest/gtest.h>

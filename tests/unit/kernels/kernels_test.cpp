@@ -56,7 +56,7 @@ TEST_P(VoxelKernels, ContactSumsAreThoseOfPlainLoops) {
     }
 }
 
-// A plane of a brick against plain arithmetic in double.
+// A plane of a brick is compared with plain arithmetic in double.
 TEST_P(VoxelKernels, MilledPlanes) {
     const float spacing = 0.0973e-3f;  // no voxel exactly on a boundary
     for (int round = 0; round < 300; ++round) {
@@ -211,7 +211,8 @@ TEST_P(VoxelKernels, SidesOfALayerOfCells) {
     }
 }
 
-// Cells of random densities; their patches, and the patches' centroids moved onto the surface.
+// The cells have random densities; tested are their patches, and the patches' centroids moved
+// onto the surface.
 struct CellCase {
     int count;
     std::vector<float> excess[8];
@@ -231,7 +232,7 @@ double densityAt(const CellCase& cells, size_t n, double x, double y, double z) 
 }
 
 TEST_P(VoxelKernels, CellPatchesAndProjections) {
-    // One triangle only is known here, cut off one corner: what marching cubes draws is tested elsewhere.
+    // Only one triangle is known here, cut off one corner: what marching cubes draws is tested elsewhere.
     std::vector<int> triangles(256 * kTrianglesPerCell, 0);
     for (int inside = 0; inside < 256; ++inside)
         triangles[size_t(inside) * kTrianglesPerCell] = 0 | 4 << 4 | 8 << 8;
@@ -277,7 +278,7 @@ TEST_P(VoxelKernels, CellPatchesAndProjections) {
     }
 }
 
-// Onto a flat face between the voxels; where it is too far off, to the point's own place.
+// A point moves onto a flat face between the voxels, and to its own place where the face is too far off.
 TEST_P(VoxelKernels, PointsMoveOntoTheSurface) {
     constexpr int kEdge = 20;
     VolumeGeometry geometry;

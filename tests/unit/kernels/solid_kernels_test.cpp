@@ -1,4 +1,5 @@
-// Distances to round solids: every instruction set gives the bits of the baseline, and the baseline is right.
+// For distances to round solids, every instruction set gives the bits of the baseline, and the
+// baseline is right.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -78,7 +79,8 @@ TEST_P(SolidKernels, SingleAndDoublePrecisionPoints) {
     check(double(), 1e-15);
 }
 
-// A cone in plain double precision; of a point, what the kernels' gradients can be judged by.
+// The cone is in plain double precision; a PlainSample of a point is what the kernels' gradients can be
+// judged by.
 struct PlainCone {
     Eigen::Vector3d from, to;
     double radius[2];
@@ -107,7 +109,7 @@ struct PlainSample {
     double to_kink;  // where another part of the surface becomes the nearest
 };
 
-// The nearest place of the profile's three segments, one after the other.
+// Finds the nearest place of the profile's three segments, one after the other.
 PlainSample sampleOf(const PlainCone& cone, const Eigen::Vector3d& p) {
     const double along = (p - cone.from).dot(cone.axis());
     const Eigen::Vector3d off = p - cone.from - along * cone.axis();
@@ -139,7 +141,7 @@ const PlainCone kCones[] = {
     {{20e-3, -30e-3, 9e-3}, {20.5e-3, -10e-3, 9e-3}, {1e-3, 0.9e-3}},  // far from the origin
 };
 
-// Anywhere, far outside, on the axis and near it, on each surface and on both sides of it.
+// The points lie anywhere, far outside, on the axis and near it, on each surface and on both sides of it.
 std::vector<Eigen::Vector3d> pointsAround(const PlainCone& cone, std::mt19937& random) {
     std::uniform_real_distribution<double> uniform(-1, 1);
     const auto anywhere = [&] { return Eigen::Vector3d(uniform(random), uniform(random), uniform(random)); };
@@ -222,7 +224,7 @@ TEST_P(SolidKernels, GradientOfAConeIsTheDistancesDerivative) {
             if (plain.off < kSmooth || plain.to_kink < 4 * kStep) continue;
             if (is_inside ? plain.distance > -4 * kStep : plain.distance < kSmooth) continue;
             ++smooth;
-            // The point itself, then one step ahead and one behind on each axis.
+            // The first place is the point itself; the others are one step ahead and one behind on each axis.
             constexpr int kPlaces = 7;
             double p[3][kPlaces], distance[kPlaces], g[3][kPlaces];
             std::fill_n(distance, kPlaces, 1);

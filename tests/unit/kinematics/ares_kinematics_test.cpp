@@ -135,7 +135,7 @@ TEST(AresKinematics, ForwardNeedsFewIterations) {
         const ForwardSolution cold = kinematics.forward(q, Pose{});
         EXPECT_TRUE(cold.converged);
         EXPECT_LE(cold.iterations, 5);
-        // One loop period at 0.5 m/s and 240 deg/s away.
+        // This pose is one loop period at 0.5 m/s and 240 deg/s away.
         const ForwardSolution warm = kinematics.forward(q, X_DT.incremented({5e-4, 0, 0}, {0, 4.2e-3, 0}));
         EXPECT_TRUE(warm.converged);
         EXPECT_LE(warm.iterations, 2);
@@ -159,7 +159,7 @@ TEST(AresKinematics, ReportsStrokeAndLean) {
     EXPECT_EQ(kinematics.workspaceFaults({{0, 0, half_stroke - 1e-6}, identity}), kWorkspaceOk);
     EXPECT_EQ(kinematics.workspaceFaults({{0, 0, half_stroke + 1e-6}, identity}), kWorkspaceStroke);
     EXPECT_EQ(kinematics.workspaceFaults({{0, 0, -half_stroke - 1e-6}, identity}), kWorkspaceStroke);
-    // Away from the pair at 0 degrees: by 104 mm its links lean to 0.42, by 123 mm they are too short.
+    // Away from the pair at 0 degrees, that pair's links lean to 0.42 at 104 mm and are too short at 123 mm.
     EXPECT_FALSE(kinematics.workspaceFaults({{-0.102, 0, 0}, identity}) & kWorkspaceLean);
     EXPECT_TRUE(kinematics.workspaceFaults({{-0.110, 0, 0}, identity}) & kWorkspaceLean);
     EXPECT_EQ(kinematics.workspaceFaults({{-0.130, 0, 0}, identity}), kWorkspaceUnreachable);
@@ -183,7 +183,7 @@ TEST(AresKinematics, RefusesAGeometryThatCannotBeBuilt) {
 }
 
 TEST(AresKinematics, SingularityIndexIsZeroWhenLegsCannotHoldThePlatform) {
-    // All links in one common direction: no force sideways, no torque about that axis.
+    // With all links in one common direction there is no force sideways, and no torque about that axis.
     Matrix6d J_inv = jacobianAt(AresKinematics{}, Pose{});
     EXPECT_GT(singularityIndex(J_inv), 0.25);
     for (int i = 0; i < kLegCount; ++i) J_inv.block<1, 3>(i, 0) = Eigen::RowVector3d(0, 0, 1);

@@ -1,4 +1,4 @@
-// Compares with the long doubles of the C library, whose last bit is 2^-11 of a double's.
+// The functions are compared with the long doubles of the C library, whose last bit is 2^-11 of a double's.
 #include "common/math/pinned_math.h"
 
 #include <gtest/gtest.h>
@@ -180,7 +180,7 @@ void expectErrorBelow(double limit, Function function, Truth truth) {
     }
     const Worst worst = worstOverExponents(-1021, 1022, true, function, truth);
     expectBelow(limit, worst);
-    // Where the sine or the cosine is smallest: the doubles next to multiples of a right angle.
+    // The sine or the cosine is smallest at the doubles next to multiples of a right angle.
     Worst near;
     for (int quarter = 1; quarter < kArguments; ++quarter) {
         const double x = double(quarter * (M_PIl / 2));
@@ -188,7 +188,7 @@ void expectErrorBelow(double limit, Function function, Truth truth) {
     }
     expectBelow(limit, near);
     for (const double x : {kInfinity, -kInfinity, kNaN}) EXPECT_TRUE(std::isnan(function(x)));
-    // The double that lies closest to a multiple of a right angle.
+    // This double lies closest to a multiple of a right angle.
     const double closest = std::ldexp(6381956970095103.0, 797);
     EXPECT_LT(errorOf(function(closest), truth((long double)closest)), limit);
     EXPECT_LT(errorOf(function(kHuge), truth((long double)kHuge)), limit);
@@ -252,8 +252,8 @@ TEST(PinnedMath, TablesHoldMoreThanADouble) {
         EXPECT_NEAR(double((step.high + logl(step.factor)) + step.low), 0, 1e-19) << step.factor;
 }
 
-// The same with every compiler, every C library and every CPU. Whoever changes a function on purpose
-// changes this.
+// The bits are the same with every compiler, every C library and every CPU. Whoever changes a function on
+// purpose changes this.
 TEST(PinnedMath, BitsAreThese) {
     uint64_t hash = 14695981039346656037u;
     const auto add = [&](double x) {

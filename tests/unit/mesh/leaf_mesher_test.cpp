@@ -18,7 +18,7 @@ using test::meshAll;
 
 constexpr Density kIso = 32768;
 
-// Cubes, non-cubes, single cells, leaves cut by the far border, one leaf for all.
+// There are cubes, non-cubes, single cells, leaves cut by the far border, and one leaf for all.
 const std::vector<Eigen::Vector3i> kLeafSizes = {{16, 16, 16}, {4, 4, 4},  {5, 7, 3},
                                                  {1, 1, 1},    {9, 2, 31}, {200, 200, 200}};
 
@@ -117,8 +117,8 @@ TEST(LeafMesher, LeavesShareBitIdenticalVertices) {
     EXPECT_GT(shared, 100u);
 }
 
-// Material by density, as a scene says it: the outermost voxels are only partly filled and would be of the
-// softer one.
+// The material goes by density, as a scene says it: the outermost voxels are only partly filled and would be
+// of the softer one.
 TEST(LeafMesher, AVoxelThatIsPartlyFilledLooksAsTheBoneBelowIt) {
     constexpr MaterialId kSoft = 1, kHard = 2;
     constexpr double kRadius = 7.3;
@@ -170,7 +170,7 @@ TEST(LeafMesher, ACutShowsTheLayersBelow) {
     for (const size_t count : seen) EXPECT_GT(count, 100u);
 }
 
-// Oracle: walk every grid edge of the volume; each crossed one must carry exactly one vertex, where
+// The oracle walks every grid edge of the volume; each crossed one must carry exactly one vertex, where
 // interpolation says.
 TEST(LeafMesher, OneVertexOnEachCrossedGridEdgeWhereInterpolationPutsIt) {
     std::mt19937 random(5);

@@ -24,7 +24,7 @@ class MeshRoundsTest : public testing::Test {
     void meshAll() {
         while (!rounds_.hasMeshedAll()) rounds_.round([](NodeGroup&&) {});
     }
-    // Leaves in the order in which the sink got them.
+    // The leaves come in the order in which the sink got them.
     std::vector<LeafId> roundsLeaves() {
         std::vector<LeafId> leaves;
         is_more_ = rounds_.round([&](NodeGroup&& group) {

@@ -20,7 +20,7 @@ using test::writeLikeTick;
 
 constexpr Density kMesherIso = 30000;
 
-// What a client keeps: the newest mesh of each leaf, an empty one removes it.
+// A client keeps the newest mesh of each leaf; an empty one removes it.
 struct Model {
     std::map<LeafId, NodeMesh> meshes;
     size_t received = 0;
@@ -220,7 +220,7 @@ TEST(Mesher, IncrementalEqualsFullAfterRandomEdits) {
     }
 }
 
-// Meant for ThreadSanitizer, true without it as well.
+// This is meant for ThreadSanitizer, and is true without it as well.
 TEST(Mesher, RunsBesideATickThatWrites) {
     Bone bone({40, 40, 40}, {6, 6, 6});
     Mesher mesher(bone.volume, *bone.lattice);
@@ -274,8 +274,8 @@ TEST(Mesher, NeverSendsALeafHalfWritten) {
         std::uniform_int_distribution<int> rest_us(0, 1000);
         for (bool is_large = false; !is_enough; is_large = !is_large) {
             writeLikeTick(volume, lattice, whole, body(is_large));
-            // Rests of any length, so that writes fall into every part of the mesher's work and some leave
-            // it alone.
+            // The rests are of any length, so that writes fall into every part of the mesher's work and some
+            // leave it alone.
             std::this_thread::sleep_for(std::chrono::microseconds(rest_us(random)));
         }
     });

@@ -16,7 +16,7 @@ double filled(const VoxelVolume& volume) {
     return sum * volume.voxelVolume();
 }
 
-// Whatever the densities: of all 256 kinds of cells, with every kind of neighbour.
+// This holds whatever the densities: all 256 kinds of cells occur, with every kind of neighbour.
 TEST(CellFill, AddsUpToTheVolumeOfTheDrawnSurface) {
     std::mt19937 random(3);
     for (const bool is_noise : {true, false})

@@ -12,7 +12,7 @@ namespace {
 constexpr Density kIso = 20000;
 constexpr int kDense = 60000, kLoose = 30000;
 
-// Bone that gets denser along x in steps; a label on its upper half.
+// The bone gets denser along x in steps and has a label on its upper half.
 std::shared_ptr<const BoneProperties> properties(VoxelVolume& volume) {
     test::forEachVoxel(test::wholeBox(volume), [&](int i, int j, int k) {
         volume.set(i, j, k, Density(i < 4 ? 5000 : i < 8 ? kLoose : kDense));

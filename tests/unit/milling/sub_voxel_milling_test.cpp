@@ -24,7 +24,7 @@ BoneModel filled(const Eigen::Vector3i& dims, const Eigen::Vector3d& spacing, De
     return BoneModel(std::move(volume), Eigen::Vector3i(16, 12, 16), {.levels = {{1}, {2}, {3}}});
 }
 
-// Half a side has this length around the burr, whatever the spacing.
+// The cube has this edge length, m, whatever the spacing.
 BoneModel cube(double side, const Eigen::Vector3d& spacing, Density iso, Density density) {
     return filled((side * spacing.cwiseInverse()).array().ceil().cast<int>() + 1, spacing, iso, density);
 }
@@ -37,7 +37,8 @@ Eigen::Vector3d positionOf(const VoxelVolume& volume, int i, int j, int k) {
     return volume.spacing().cwiseProduct(Eigen::Vector3d(i, j, k));
 }
 
-// Slow oracle, as the header words it.
+// As a slow oracle, this is the distance from the sphere that is larger by the sag of
+// the interpolated distance.
 double signedDistance(const VoxelVolume& volume, int i, int j, int k, const Eigen::Vector3d& center,
                       double radius) {
     const double sag = volume.spacing().squaredNorm() / (8 * radius);
@@ -53,8 +54,8 @@ double limitAt(const VoxelVolume& volume, double d, int direction) {
     return std::clamp(volume.iso() - direction * slopeOf(volume) * d, 0.0, double(kMaxDensity));
 }
 
-// Largest distance of the drawn surface's vertices from the sphere, among those nearer to it than a voxel or
-// two; and of the shell's points.
+// These are the largest distances from the sphere of the drawn surface's vertices and of the shell's points,
+// among those nearer to it than three voxels.
 struct Offset {
     double mesh = 0, shell = 0;
     size_t vertices = 0, points = 0;
@@ -84,8 +85,8 @@ class SubVoxelSphere : public testing::TestWithParam<int> {};  // radius in voxe
 
 // The sag of the interpolated distance is 0 .. h²/(4 R) in a cell (0 .. h²/(8 R) on an edge), and the ramp is
 // that of a sphere larger by 3h²/(8 R): the surface ends up to that much outside, never inside. Where the
-// ramp ends inside a cell half a percent of a voxel comes on top. For the usual burr, 8 voxels in radius: 5 %
-// of a voxel.
+// ramp ends inside a cell half a percent of a voxel comes on top. For the usual burr, 8 voxels in radius,
+// this is 5 % of a voxel.
 TEST_P(SubVoxelSphere, DwellingLeavesTheSphere) {
     const double radius = GetParam() * kFineVoxel;
     for (const Eigen::Vector3d& spacing : kSpacings)
@@ -160,7 +161,8 @@ TEST(SubVoxelMilling, NoVoxelLosesMoreThanTheRate) {
     }
 }
 
-// Where the burr's centre stands on the bone when the contact lets it sink in by `sunk`.
+// Returns the height at which the burr's centre stands on the bone when the contact lets it sink
+// in by `sunk`.
 double heightOnBone(const BoneModel& bone, const Eigen::Vector2d& xy, double radius, double sunk) {
     double height = -INFINITY;
     for (LeafId leaf = 0; leaf < bone.lattice.leafCount(); ++leaf)
@@ -248,7 +250,7 @@ TEST(SubVoxelMilling, WhatIsAtItsLimitMarksNoLeaf) {
         milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kTickTime).changed.isEmpty());
 }
 
-// Switched between ticks, in both directions, also at the volume's border.
+// The shape is switched between ticks, in both directions, also at the volume's border.
 TEST(SubVoxelMilling, ShellAndRangesFollowWhateverTheShape) {
     BoneModel bone = cube(4e-3, kSpacings[1], 26214, kMaxDensity);
     TimedMilling milling({.removal_rate = 9e6, .addition_rate = 9e6}, bone.volume, bone.lattice, 0.7e-3);

@@ -50,7 +50,7 @@ bool isOfPlane(const BoneModel& bone, const Vector3d& p) {
     return p.minCoeff() > border && p.maxCoeff() < 5e-3 - border;
 }
 
-// Everywhere within kReach of the plane's point by this much, in so many ticks.
+// The surface is lowered everywhere within kReach of the plane's point by this much, in so many ticks.
 double lower(BoneModel& bone, const Plane& plane, double recession, int ticks) {
     SurfaceShift shift(bone, 1.5 * kReach, 65536, kMostCells);
     const SpecificEnergy u(uniform(), nullptr, bone.volume.iso());

@@ -33,7 +33,7 @@ class PanelClicks : public testing::Test, protected test::ControlledPanel {
         EXPECT_TRUE(place) << "no control '" << label << "' can be seen";
         return place.value_or(PixelPoint{});
     }
-    // Press and release before any picture, as a quick hand on a slow computer does.
+    // Press and release come before any picture, as from a quick hand on a slow computer.
     void click(const std::string& label) { click(at(label)); }
     void click(const PixelPoint& place) {
         send(MouseMoveEvent{place});

@@ -83,7 +83,8 @@ double trilinear(const RawVolume& raw, const Eigen::Vector3d& p_W) {
     return value;
 }
 
-// Largest distance between the exact surface and the iso-surface of the samples, along random rays.
+// Returns the largest distance between the exact surface and the iso-surface of the samples,
+// along random rays.
 double surfaceError(const AnalyticBody& body, double voxel) {
     const int cells = int(14e-3 / voxel);
     const RawVolume raw = sampleBody(body, centredGrid(Eigen::Vector3i::Constant(cells), voxel), 65535);

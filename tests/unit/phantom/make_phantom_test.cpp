@@ -53,7 +53,7 @@ TEST(MakePhantom, bodyFileHoldsTheStatedSurface) {
         1e-12);
 }
 
-// Value at a position in W, mm; on a voxel, or on a line of the grid.
+// at() is the value at a position in W, mm, that lies on a voxel or on a line of the grid.
 class Grid {
   public:
     explicit Grid(const std::string& file) : raw_(importVolume(file)) {}

@@ -18,7 +18,7 @@ double distance_mm(double x_mm, double y_mm, double z_mm) {
     return vertebraDistance(Vector3d(x_mm, y_mm, z_mm) / 1000) * 1000;
 }
 
-// How far one may go from a point in the bone, or in the open, before the surface.
+// Returns how far one may go from a point in the bone, or in the open, before the surface.
 double reach_mm(const Vector3d& from_mm, const Vector3d& direction) {
     const bool starts_inside = distance_mm(from_mm.x(), from_mm.y(), from_mm.z()) < 0;
     for (double s = 0; s < 100; s += 0.01) {
@@ -47,7 +47,7 @@ TEST(VertebraPhantom, HasTheSizesOfTheTables) {
 }
 
 TEST(VertebraPhantom, ThePedicleIsAsWideAsTheTablesSay) {
-    // Across its axis, which leans 10 degrees inwards.
+    // The width is measured across the pedicle's axis, which leans 10 degrees inwards.
     const Vector3d across = Vector3d(22, -4, 0).normalized();
     for (const double side : {1.0, -1.0}) {
         const Vector3d mirror(side, 1, 1);
@@ -105,7 +105,8 @@ class ScannedVertebra : public testing::Test {
 };
 VertebraScan* ScannedVertebra::scan_ = nullptr;
 
-// One piece, one hole through it (the canal), nothing hollow inside: V - E + F = 0, and E = 3/2 F.
+// The surface is one piece with one hole through it (the canal) and nothing hollow inside: V - E + F = 0, and
+// E = 3/2 F.
 TEST_F(ScannedVertebra, HasAClosedSurfaceWithOneCanal) {
     DensityWindow window;
     window.low = -200;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int64_t kPeriodNs = kNsPerMillisecond;
 
-// Tick `tick` of a 1 kHz run, begun `late_ns` after it was due in period `period`.
+// Returns tick `tick` of a 1 kHz run, begun `late_ns` after it was due in period `period`.
 TickRecord recordOf(uint64_t tick, int64_t period, int64_t late_ns = 0) {
     TickRecord record{};
     record.tick = tick;

@@ -20,7 +20,7 @@ long lockedKib() {
 }
 
 TEST(LockMemory, saysMemoryIsNotLockedExactlyWhenItIsNot) {
-    // In a child: the lock and the heap's new habits stay out of the other tests.
+    // It runs in a child, so that the lock and the heap's new habits stay out of the other tests.
     const pid_t child = fork();
     if (child == 0) {
         const bool is_reported = !lockMemory().missing.empty();

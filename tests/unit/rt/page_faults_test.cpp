@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t kPages = 200;
 
-// What touching each page of `memory` costs this thread.
+// Returns what touching each page of `memory` costs this thread.
 std::optional<uint64_t> faultsOfTouching(volatile char* memory, size_t page) {
     const auto before = pageFaultsOf(gettid());
     for (size_t n = 0; n < kPages; ++n) memory[n * page] = 1;
@@ -18,7 +18,7 @@ std::optional<uint64_t> faultsOfTouching(volatile char* memory, size_t page) {
     return after->minor - before->minor;
 }
 
-// No bound from above on the first touch: a sanitizer's shadow pages are counted with it.
+// The first touch has no bound from above: a sanitizer's shadow pages are counted with it.
 TEST(PageFaults, CountsThePagesThatAThreadTouchesFirst) {
     const auto page = size_t(sysconf(_SC_PAGESIZE));
     const size_t size = kPages * page;

@@ -14,7 +14,7 @@ class AccuracyFiguresFile : public testing::Test {
         test::writeFile(file(), content);
         return readAccuracyFigures(file());
     }
-    // Why the content is refused; it must name the file.
+    // Returns why the content is refused; the message must name the file.
     std::string refusal(const std::string& content) const {
         test::writeFile(file(), content);
         return refusalOf(file());

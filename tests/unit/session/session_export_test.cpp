@@ -76,7 +76,7 @@ TEST_F(SessionExportTest, WritesTheBoneOfTheMomentThatWasAskedFor) {
     }
     EXPECT_EQ(difference.values.range().low, 0);
     EXPECT_EQ(difference.values.range().high, kFullDifference);
-    // Full inside, half at the surface: densities and surfaces tell the same volume.
+    // The difference is full inside and half at the surface: densities and surfaces tell the same volume.
     const double removed_mm3 = scanned_mm3 - then_mm3;
     EXPECT_GT(removed_mm3, 20);
     EXPECT_NEAR(sum / kFullDifference * kVoxelMm3, removed_mm3, 0.1 * removed_mm3);

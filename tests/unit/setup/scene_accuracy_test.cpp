@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Pressure κ times depth over the cap of a ball, by numbers.
+// The oracle sums pressure κ times depth over the cap of a ball.
 TEST(WallForce, IsTheBallsForceAtHalfTheWall) {
     const double kappa = 1e12, radius = 1e-3, wall = 0.3e-3;
     double force = 0;

@@ -58,7 +58,7 @@ TEST(SceneEffects, RecordWhatTheyDeclare) {
     EXPECT_TRUE(recordedEffectsOf(effects).heat && recordedEffectsOf(effects).protection);
 }
 
-// 5 N·mm missing at 1000 turns a minute less than wanted.
+// At 1000 turns a minute less than wanted, 5 N·mm are missing.
 TEST(SceneEffects, DroopIsTorquePerThousandTurnsAMinute) {
     scene::Scene scene;
     scene.mutable_effects()->mutable_spindle()->set_droop_nmm_per_krpm(5);

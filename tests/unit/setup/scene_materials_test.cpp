@@ -16,7 +16,8 @@ namespace {
 
 class SceneMaterials : public testing::Test {
   protected:
-    // 20 x 18 x 16 voxels: bone of 1000, in its upper half 2000; a nerve (label 5) along x in it, of 0.
+    // The 20 x 18 x 16 voxels are bone of 1000, in its upper half 2000, with a nerve (label 5) of 0 along x
+    // in it.
     SceneMaterials() {
         geometry_.dims = {20, 18, 16};
         geometry_.spacing.setConstant(0.5e-3);
@@ -71,7 +72,7 @@ TEST_F(SceneMaterials, ComeFromValuesAndLabels) {
     });
     ASSERT_TRUE(effects.protected_field);
     EXPECT_EQ(effects.protected_field->reach(), 2e-3 + 1e-3 + 1e-3);
-    // Three voxels above the nerve's upper face.
+    // The place is three voxels above the nerve's upper face.
     EXPECT_NEAR(effects.protected_field->at({5e-3, 4e-3, 9 * 0.5e-3}).distance, 1.25e-3, 1e-6);
 }
 

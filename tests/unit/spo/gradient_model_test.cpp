@@ -68,7 +68,7 @@ TEST(GradientModel, SettlesWhereCouplingAndContactBalance) {
         }
 }
 
-// Bone so hard that even the shortest cut of the step goes too deep.
+// The bone is so hard that even the shortest cut of the step goes too deep.
 TEST(GradientModel, SaysSoWhenItFindsNoWayToBalance) {
     const ContactScene scene = flatScene();
     for (const bool is_hard : {false, true}) {
@@ -106,7 +106,7 @@ TEST(GradientModel, FreeToolFollowsAtThePaceOfTheDampingTimeWhateverTheRate) {
     EXPECT_NEAR(left_of_first, std::pow(0.5, 5), 0.02);  // implicit Euler with dt = τ halves it every tick
 }
 
-// In free air, at 5 and 8 rad/s against a limit of 4.19: the tool's turn lags, and nothing else. The hand
+// In free air, at 5 and 8 rad/s against a limit of 4.19, the tool's turn lags, and nothing else. The hand
 // moves before the turn, then also during it.
 TEST(GradientModel, AHandThatTurnsTooQuicklyKeepsTheToolsPlace) {
     const ContactScene scene = flatScene();
@@ -136,7 +136,7 @@ TEST(GradientModel, RelaxingSpringStiffensAHeldToolForAShortTimeAndDoesNotHoldBa
     const GradientConfig config{};
     const EnergyCouplingConfig& coupling = config.coupling;
     GradientModel model(config, scene.world(), toolOf(scene), 1e-3);
-    // Pressed into the bone, then a sudden small step further.
+    // The tool is pressed into the bone, and the hand then goes a sudden small step further.
     const Pose device{kAbove - Vector3d(0, 0, 0.5e-3), kUpright},
         further = device.incremented({0, 0, -0.02e-3}, {0, 0, 0});
     const SpoStep rest = settle(model, {kAbove, kUpright}, device);
@@ -147,7 +147,7 @@ TEST(GradientModel, RelaxingSpringStiffensAHeldToolForAShortTimeAndDoesNotHoldBa
     const double quick = coupling.relaxing_share * coupling.translation_stiffness * coupling.relaxing_time /
                          (coupling.relaxing_time + 1e-3);
     EXPECT_NEAR((first - later) / (quick * 0.02e-3), 1, 0.1);
-    // Free and at constant speed it is as if there were none.
+    // In free motion at constant speed it is as if there were no relaxing spring.
     GradientConfig without = config;
     without.coupling.relaxing_share = 0;
     double drag[2];
@@ -293,7 +293,8 @@ TEST(GradientModel, EnergyNeverRisesUnderAHandAtRest) {
     }
 }
 
-// Force steps of a slow slide over a flat face: 0.3 mm voxels, k_t 1000 N/m, 5 mm/s, burr 1 to 3 mm.
+// The force steps are those of a slow slide over a flat face: 0.3 mm voxels, k_t 1000 N/m, 5 mm/s, burr 1 to
+// 3 mm.
 TEST(GradientModel, SlidingOverAFlatFaceIsSmooth) {
     for (const double radius : {1e-3, 2e-3, 3e-3})
         for (const Vector3d& normal : {Vector3d(0, 0, 1), Vector3d(0.3, 0.1, 1), Vector3d(1, 1, 1)}) {

@@ -153,7 +153,7 @@ TEST(SceneModel, AnOlderBatchWaitsForTheNewestToo) {
     EXPECT_EQ(leavesOf(model.takeChanges(kNow)), (std::vector<uint32_t>{4}));
 }
 
-// However many batches follow each other, each cut short.
+// This holds however many batches follow each other, each cut short.
 TEST(SceneModel, TheFirstThatWaitsStartsTheClock) {
     SceneModel model;
     for (int n = 1; n <= 6; ++n) {

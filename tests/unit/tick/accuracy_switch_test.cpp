@@ -55,7 +55,7 @@ Records withSwitching(const std::vector<DeviceInput>& inputs) {
     return io.records;
 }
 
-// 0.5 mm into the slab, and rest there through more than one round of all changes.
+// The hand goes 0.5 mm into the slab, and rests there through more than one round of all changes.
 std::vector<DeviceInput> press(size_t approach, size_t rest) {
     auto inputs =
         test::straightPath(SwitchingBench::at(6.2e-3), SwitchingBench::at(5.5e-3).position, int(approach), 0);

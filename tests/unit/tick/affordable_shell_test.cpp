@@ -12,7 +12,7 @@ constexpr int kSecond = 1000;  // ticks
 // Makes the choice tick by tick; each choice is in force at once.
 class Chooser {
   public:
-    // The factor after `ticks` more with this load.
+    // Returns the factor after `ticks` more with this load.
     int after(int ticks, double budget_share, bool has_overflow = false, int asked_for = 1) {
         SpoStep step;
         step.budget_share = budget_share;

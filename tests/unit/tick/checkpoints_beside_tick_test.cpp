@@ -17,12 +17,11 @@ using test::MilledBall;
 
 constexpr int kTicksBetween = 6, kSaved = 14;
 
-// Mills to and fro through the ball until it is told to stop; keeps what the bone
-// was after each tick.
+// Mills to and fro through the ball until it is told to stop; keeps what the bone was after each tick.
 class MillingIo final : public TickIo {
   public:
     MillingIo(const BoneModel& bone, const std::atomic<bool>& stop) : bone_(bone), stop_(stop) {}
-    // Between two ticks, where memory may be had: here the bone is looked at.
+    // The bone is looked at here, between two ticks, where memory may be had.
     bool read(DeviceInput& input) noexcept override {
         remember();
         if (stop_) return false;
@@ -83,7 +82,7 @@ struct Threads {
         while (ball.history.isRestoring()) std::this_thread::yield();
         waitForTicks();
     }
-    // After the last tick.
+    // It is called after the last tick.
     std::vector<Density> restored(uint32_t id) {
         EXPECT_TRUE(ball.checkpoints.restore(id));
         ball.restoreAll();

@@ -20,7 +20,7 @@ HandLimits make(double max_force = 100) {
 Wrench upwards(double newton) {
     return {{0, 0, newton}, {0, 0.1 * newton, 0}};
 }
-// The hand at rest.
+// The hand is at rest in these.
 Wrench sentBy(HandLimits& limits, const Wrench& computed) {
     return limits.limit({.wrench_V = computed});
 }
@@ -98,7 +98,7 @@ TEST(HandLimits, AChangeIsOverAlsoAtTheNorm) {
     EXPECT_EQ(sentBy(limits, upwards(0)).force.z(), 0);
 }
 
-// One bad tick: the hand hardly feels it, and the force comes back along the ramp.
+// One tick is bad: the hand hardly feels it, and the force comes back along the ramp.
 TEST(HandLimits, AfterAWrenchThatIsNotFiniteTheForceComesBackAlongTheRamp) {
     for (const bool is_solved : {true, false}) {
         HandLimits limits = make();
@@ -141,7 +141,7 @@ TEST(HandLimits, TicksSolvedOffAndOnOnlyLetTheForceFall) {
     EXPECT_LT(last, 5);
 }
 
-// The order of the limits: whatever comes before, nothing undoes the ramp of a silent device.
+// The order of the limits matters: whatever comes before, nothing undoes the ramp of a silent device.
 TEST(HandLimits, TheStaleFactorIsTheLastWord) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> uniform(-1, 1);

@@ -19,7 +19,7 @@ constexpr double kVoxel = 0.125e-3;
 constexpr double kBurr = 1e-3;
 constexpr double kTop = 6e-3;  // bone fills z < kTop (V)
 
-// A slab in a volume whose frame V is turned and shifted against W.
+// The slab lies in a volume whose frame V is turned and shifted against W.
 struct Bench {
     explicit Bench(const Pose& X_WV = {{0.1, -0.2, 0.3}, expRotation({0.4, -0.9, 0.2})})
         : bone(slab(X_WV), Eigen::Vector3i::Constant(16), ShellConfig{}),
@@ -84,7 +84,7 @@ TEST(HapticTick, PressingPushesBackAlongTheSurfaceNormalInTheWorld) {
     EXPECT_GT(last.contacts, 0u);
     EXPECT_GT(force.dot(up_W), 0.5);
     EXPECT_GT(force.dot(up_W) / force.norm(), 0.99);
-    // Equilibrium: what the hand feels is the coupling's stretch.
+    // In equilibrium what the hand feels is the coupling's stretch.
     const double stretch = (Eigen::Vector3d(last.p_WT[0], last.p_WT[1], last.p_WT[2]) - end).norm();
     EXPECT_NEAR(force.norm(), 3000 * stretch, 1e-6);
 }
@@ -153,7 +153,7 @@ TEST(HapticTick, StaleDeviceMillsNothingAndForceFollowsTheRamp) {
     for (const TickRecord& r : records) EXPECT_EQ(r.removed_voxels, 0u);
 }
 
-// Bone as hard as no number can say: thesis_2012 finds no equilibrium in it.
+// The bone is as hard as no number can say: thesis_2012 finds no equilibrium in it.
 TEST(HapticTick, WithoutAnEquilibriumTheForceFadesAndComesBackAlongTheRamp) {
     Bench bench;
     bench.config.contact.point_stiffness = 1e308;
@@ -259,7 +259,7 @@ TEST(HapticTick, CorridorHasTheVolumeOfTheSweptBurr) {
     EXPECT_LT((bench.inV(last.p_WT) - (kStart - Eigen::Vector3d(0, 0, 4.3e-3))).norm(), 0.05e-3);
     const double depth = kTop - bench.inV(last.p_WT).z();  // of the burr centre below the surface
     const double swept = M_PI * kBurr * kBurr * depth + 2.0 / 3 * M_PI * std::pow(kBurr, 3);
-    // Straight: the tool kept to the axis. What it wandered widens the corridor.
+    // The corridor is straight if the tool kept to the axis; what it wandered widens the corridor.
     double wander = 0;
     for (const TickRecord& r : records)
         wander = std::max(wander, (bench.inV(r.p_WT) - kStart).head<2>().norm());

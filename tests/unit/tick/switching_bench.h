@@ -42,7 +42,7 @@ struct SwitchingBench {
             accuracy.choose(AccuracySwitch::choiceOf(presetAt(n++)));
         } while (tick.tick(io));
     }
-    // In an order in which each preset follows each other one.
+    // In this order each preset follows each other one.
     static Preset presetAt(size_t tick) noexcept {
         constexpr std::array<size_t, 12> kOrder{0, 1, 0, 2, 0, 3, 1, 2, 3, 2, 1, 3};
         return kPresets[kOrder[tick / kTicksPerPreset % kOrder.size()]];

@@ -18,7 +18,7 @@
 namespace bonemill {
 namespace {
 
-// ScriptedIo whose records and cuts leave through rings, as in a session.
+// It is a ScriptedIo whose records and cuts leave through rings, as in a session.
 class RingIo final : public TickIo {
   public:
     RingIo(std::vector<DeviceInput> inputs, SpscRing<TickRecord>& ring, SpscRing<Cut>& cuts)

@@ -32,7 +32,7 @@ Pose at(double z) {
     return {{4.05e-3, 3.95e-3, z}, Eigen::Quaterniond::Identity()};
 }
 
-// Down into the slab, a rest there, and up again.
+// The hand goes down into the slab, rests there, and goes up again.
 std::vector<DeviceInput> dip(int rest, int away, uint32_t buttons = 0) {
     auto inputs = test::straightPath(at(8.2e-3), at(7.5e-3).position, 700, buttons);
     inputs.insert(inputs.end(), size_t(rest), inputs.back());

@@ -54,7 +54,7 @@ TEST(ToolSwitch, AForceAtItsLimitFallsAtOnce) {
     EXPECT_LT(feltAfter(kTicks), 0.1);
 }
 
-// Largest change of the force from one tick to the next.
+// Returns the largest change of the force from one tick to the next.
 double largestStep(const std::vector<TickRecord>& records) {
     double largest = 0;
     for (size_t i = 1; i < records.size(); ++i)

@@ -37,7 +37,7 @@ void forEachNode(const SdfGrid& sdf, Visit&& visit) {
             for (int i = 0; i < sdf.nodes().x(); ++i) visit(sdf.nodePosition(i, j, k), sdf.at(i, j, k));
 }
 
-// The demo's tool in its own formulas: burr of 1 mm, endless shaft of 0.8 mm.
+// These are the demo tool's own formulas: it has a burr of 1 mm and an endless shaft of 0.8 mm.
 double demoTool(const Vector3d& p) {
     const double shaft = std::hypot(p.x(), p.z(), std::min(p.y(), 0.0)) - 0.8e-3;
     return std::min(p.norm() - 1e-3, shaft);
@@ -71,7 +71,7 @@ TEST(BuildTool, DemoToolIsOfSecondOrderBetweenNodes) {
         const double burr = p.norm() - 1e-3, shaft = std::hypot(p.x(), p.z(), std::min(p.y(), 0.0)) - 0.8e-3;
         const double r =
             std::min({p.norm(), std::hypot(p.x(), p.z()), 1e-3}) - std::sqrt(3.0) * sdf.spacing();
-        // Away from the crease between burr and shaft, and from the axis.
+        // Places near the crease between burr and shaft, and near the axis, are left out.
         if (std::abs(burr - shaft) < 4 * sdf.spacing() || r < 0.3e-3) continue;
         ++checked;
         ASSERT_NEAR(sdf.distance(p), demoTool(p), sdf.spacing() * sdf.spacing() / (4 * r) + 1e-9)

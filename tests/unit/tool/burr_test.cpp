@@ -27,7 +27,7 @@ class BurrDistance : public testing::TestWithParam<Burr> {
         std::uniform_real_distribution<double> where(-1.5 * GetParam().reach(), 1.5 * GetParam().reach());
         for (int n = 0; n < count; ++n) visit(Vector3d(where(random), where(random), where(random)));
     }
-    // Half of the profile, from the axis at the far end round to the axis at the hand's end.
+    // It walks half of the profile, from the axis at the far end round to the axis at the hand's end.
     static Vector3d profile(const Burr& burr, double share) {
         if (burr.kind == BurrKind::kBall)
             return burr.radius * Vector3d(std::sin(M_PI * share), -std::cos(M_PI * share), 0);
@@ -39,7 +39,7 @@ class BurrDistance : public testing::TestWithParam<Burr> {
     }
 };
 
-// The nearest of many places on the profile in the point's own half-plane.
+// The oracle takes the nearest of many places on the profile in the point's own half-plane.
 TEST_P(BurrDistance, IsThatToTheNearestPlaceOfTheSurface) {
     forRandomPoints(100, [&](const Vector3d& p) {
         const Vector3d in_plane(std::hypot(p.x(), p.z()), p.y(), 0);
@@ -80,7 +80,7 @@ TEST_P(BurrDistance, ReachesNoFartherThanItSays) {
 INSTANTIATE_TEST_SUITE_P(Kinds, BurrDistance,
                          testing::Values(kBall, kCylinder, kCone, kPointed, kInverted, kWheel));
 
-// What the tool is made of when its shapes are not given.
+// The tool is made of these shapes when none are given.
 TEST(BurrDistance, IsThatOfTheToolsShapes) {
     const auto expectSame = [](const Burr& burr, const ToolShape& shape) {
         std::mt19937 random(5);

@@ -24,8 +24,8 @@ inline TriangleSoup insideOut(TriangleSoup soup) {
     return soup;
 }
 
-// How often the surface goes around p: the triangles' solid angles (A. van Oosterom, J. Strackee, IEEE TBME
-// 30, 1983).
+// Counts how often the surface goes around p, by the triangles' solid angles (A. van Oosterom, J. Strackee,
+// IEEE TBME 30, 1983).
 inline double windingNumber(const TriangleMesh& mesh, const Eigen::Vector3d& p) {
     double sum = 0;
     for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -54,7 +54,7 @@ TEST(ShapeField, DistancesAreThoseOfTheShapesAloneAndTogether) {
     }
 }
 
-// Away from where the nearest part of the surface changes.
+// This holds away from where the nearest part of the surface changes.
 TEST(ShapeField, GradientIsTheDistancesDerivative) {
     constexpr double kStep = 1e-7;
     for (const ToolShape& shape : kShapes) {

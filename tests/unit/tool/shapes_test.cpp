@@ -13,7 +13,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Any place and direction: the shape's own frame S has its `from` at the origin and its axis along +y.
+// The place and direction are any: the shape's own frame S has its `from` at the origin and its
+// axis along +y.
 const Pose kX_TS{Vector3d(0.4e-3, -0.3e-3, 0.7e-3), Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized()};
 
 template <class Visit>
@@ -62,7 +63,7 @@ TEST(Shapes, CylinderInAnyDirection) {
     EXPECT_GT(inside, 5);
 }
 
-// Nearest of many points on the profile's outline.
+// The oracle takes the nearest of many points on the profile's outline.
 double coneOracle(const Vector2d& q, double length, double from_radius, double to_radius) {
     constexpr int kSamples = 4000;
     double nearest = 1;
@@ -85,8 +86,8 @@ TEST(Shapes, ConeInAnyDirection) {
         forRandomPoints(500, [&](const Vector3d& p_S) {
             const double expected = coneOracle({p_S.y(), offAxis(p_S)}, length, radii[0], radii[1]);
             inside += expected < 0;
-            // Between samples at most half a step (about 0.5 µm) sideways at distance d: error below step²/8d
-            // or step/2.
+            // The nearest sample is at most half a step (about 0.5 µm) sideways at distance d, so that the
+            // error is below step²/8d or step/2.
             ASSERT_NEAR(signedDistance(cone, kX_TS * p_S), expected, 0.5e-6);
         });
         EXPECT_GT(inside, 0);

@@ -39,7 +39,8 @@ void expectSoundSurface(const TriangleSurface& surface) {
     }
 }
 
-// On the shape, with its normals (away from edges, where the distance has a gradient), and of its volume.
+// The surface lies on the shape, has its normals (away from edges, where the distance has a gradient), and is
+// of its volume.
 void expectSurfaceOf(const ToolShape& shape, double volume) {
     const TriangleSurface surface = surfaceOf(std::vector<ToolShape>{shape});
     expectSoundSurface(surface);

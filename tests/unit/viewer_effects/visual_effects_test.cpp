@@ -142,7 +142,7 @@ TEST(Bleeding, onlyOfTheMaterialsNamed) {
     EXPECT_EQ(wounds("marrow"), 0u);
 }
 
-// A mesh that changes where no burr cuts: the bone was put back, or another tool works there.
+// The mesh changes where no burr cuts: the bone was put back, or another tool works there.
 TEST(Bleeding, notWhereNothingWasCut) {
     VisualEffects effects(everything(), kRadius);
     effects.setNode(floorMesh());

@@ -13,7 +13,7 @@ using test::forEachVoxel;
 
 constexpr Density kIso = 30000;
 
-// What the bricks hold, copies included, against at().
+// What the bricks hold, copies included, is compared with at().
 void expectCopiesAgree(const VoxelVolume& volume) {
     const BrickStore& bricks = volume.bricks();
     BrickId id = 0;
@@ -76,7 +76,8 @@ TEST(Bricks, AirAndTheDensestBoneCostNothing) {
     VoxelVolume volume(boxGeometry({160, 160, 160}), kIso);
     EXPECT_EQ(volume.bricks().ownCount(), 0u);
     volume.fill([](int, int, int) { return kMaxDensity; });
-    // 11 per axis; those at the border of air hold both. The last ones have their only voxel in the border.
+    // There are 11 per axis; those at the border of air hold both. The last ones have their only voxel
+    // in the border.
     EXPECT_EQ(volume.bricks().brickCount(), 11u * 11 * 11);
     EXPECT_EQ(volume.bricks().ownCount(), 11u * 11 * 11 - 8 * 8 * 8);
     volume.fill([](int, int, int) { return Density(0); });
@@ -97,7 +98,7 @@ TEST(Bricks, OpeningChangesNoDensity) {
 TEST(Bricks, AreSharedAgainWhenTheyAreUniform) {
     VoxelVolume volume = noise({50, 40, 45});
     const size_t before = volume.bricks().ownCount();
-    // The bricks that hold nothing else: two on each axis have all of their voxels in 0 .. 34.
+    // Some bricks hold nothing else: two on each axis have all of their voxels in 0 .. 34.
     forEachVoxel({Eigen::Vector3i::Zero(), Eigen::Vector3i::Constant(34)},
                  [&](int i, int j, int k) { volume.set(i, j, k, 0); });
     const VoxelVolume unshared = volume;

@@ -112,7 +112,8 @@ TEST(LeafLattice, RefreshedRangesEqualAFullScan) {
     }
 }
 
-// Few distinct densities: extremes inside and outside the change, the two beside the sign bit among them.
+// The distinct densities are few: extremes lie inside and outside the change, the two beside the sign bit
+// among them.
 TEST(LeafLattice, RefreshedRangesEqualAFullScanWithTies) {
     constexpr Density kValues[] = {0, 1, 32767, 32768, 65534, kMaxDensity};
     for (const Eigen::Vector3i& leaf_cells : kLeafSizes) {
@@ -167,7 +168,8 @@ TEST(LeafLattice, WriteReachesExactlyTheLeavesWithinItsInfluence) {
             lattice.endWrite(voxel);
             for (LeafId id = 0; id < lattice.leafCount(); ++id) {
                 const IndexBox cells = lattice.cellsOf(id);
-                // Corners of the cells, and one more voxel for the gradient at the corners.
+                // The leaf's mesh depends on the corners of its cells, and on one more voxel for the gradient
+                // at the corners.
                 const Eigen::Array3i first = cells.min.array() - 1;
                 const Eigen::Array3i last = cells.max.array() + 2;
                 const bool is_near = (voxel.min.array() >= first).all() && (voxel.min.array() <= last).all();
@@ -192,7 +194,7 @@ TEST(LeafLattice, WritesOutsideTheVolumeAreHarmless) {
     for (LeafId id = 0; id < lattice.leafCount(); ++id) EXPECT_EQ(lattice.version(id) % 2, 0u);
 }
 
-// Brute force: a leaf is wanted when its box of cells meets the box in space and its range holds iso.
+// By brute force, a leaf is wanted when its box of cells meets the box in space and its range holds iso.
 std::vector<LeafId> surfaceLeavesByBruteForce(const LeafLattice& lattice, const VoxelVolume& volume,
                                               const Eigen::AlignedBox3d& box) {
     std::vector<LeafId> wanted;
@@ -201,7 +203,7 @@ std::vector<LeafId> surfaceLeavesByBruteForce(const LeafLattice& lattice, const 
         const Eigen::Array3d low = cells.min.cast<double>().cwiseProduct(volume.spacing()).array();
         const Eigen::Array3d high =
             (cells.max + Eigen::Vector3i::Ones()).cast<double>().cwiseProduct(volume.spacing()).array();
-        // Half-open cells: a box that only touches a leaf's high side belongs to the next leaf.
+        // The cells are half-open: a box that only touches a leaf's high side belongs to the next leaf.
         const bool meets = (box.min().array() < high).all() && (box.max().array() >= low).all();
         if (meets && lattice.mayHoldSurface(id, kLatticeIso)) wanted.push_back(id);
     }

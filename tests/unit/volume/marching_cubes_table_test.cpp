@@ -40,7 +40,8 @@ std::multiset<Segment> triangleSides(int config) {
     return sides;
 }
 
-// Sides without a partner that runs back: the rim of the surface, which the neighbouring cells must continue.
+// Sides without a partner that runs back are the rim of the surface, which the neighbouring
+// cells must continue.
 std::set<Segment> rim(int config) {
     std::set<Segment> result;
     const auto sides = triangleSides(config);
@@ -56,7 +57,7 @@ std::set<Segment> rimInFace(int config, int axis, int side) {
     return result;
 }
 
-// The same edge of the neighbour beyond the high face.
+// Returns the same edge of the neighbour beyond the high face.
 int seenFromNeighbour(int edge, int axis) {
     const int low_corner = kCubeEdges[edge].low_corner & ~(1 << axis);
     for (int e = 0; e < 12; ++e)

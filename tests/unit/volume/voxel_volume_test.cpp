@@ -59,7 +59,8 @@ TEST(VoxelVolume, GradientAtTheDataEdgeSeesTheAir) {
     EXPECT_FLOAT_EQ(volume.gradient(0, 1, 1).y(), 0);
 }
 
-// In the border the outer neighbour is missing: the difference to the inner one over one step.
+// In the border the outer neighbour is missing: the gradient is the difference to the inner one
+// over one step.
 TEST(VoxelVolume, GradientInTheBorderIsOneSided) {
     VoxelVolume volume(boxGeometry({4, 4, 4}, Eigen::Vector3d::Constant(0.001)), 1000);
     forEachVoxel(test::wholeBox(volume), [&](int i, int j, int k) { volume.set(i, j, k, 6000); });

@@ -9,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-// `first` values, then `rest` until the volume is full.
+// The `first` values come first, then `rest` until the volume is full.
 RawVolume rawOf(const Eigen::Vector3i& dims, std::vector<float> first, float rest) {
     RawVolume raw;
     raw.geometry.dims = dims;

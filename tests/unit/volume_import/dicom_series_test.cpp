@@ -1,4 +1,4 @@
-// Groups and orders from headers alone.
+// Series are grouped and ordered from headers alone.
 #include "haptic_server/volume/import/dicom_series.h"
 
 #include <gtest/gtest.h>

@@ -34,7 +34,7 @@ DicomImage sliceOf(const SampleVolume& sample, int k) {
     return image;
 }
 
-// File names in no order that means anything.
+// The file names are in no order that means anything.
 void writeSeries(const std::filesystem::path& folder, const SampleVolume& sample) {
     std::vector<int> names(size_t(sample.dims.z()));
     for (size_t n = 0; n < names.size(); ++n) names[n] = int(n);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Density kIso = 30000;
 
-// Bone in one corner of soft tissue that is nowhere the same.
+// The bone lies in one corner of soft tissue that is nowhere the same.
 VoxelVolume boneInTissue() {
     VoxelVolume volume(test::boxGeometry({100, 90, 80}), kIso);
     volume.fill([](int i, int j, int k) {

@@ -25,7 +25,7 @@ SampleVolume leftHandedSample() {
     return sample;
 }
 
-// Axes in another order: posterior, inferior, right.
+// Its axes are in another order: posterior, inferior, right.
 SampleVolume permutedSample() {
     SampleVolume sample;
     sample.directions << 0, 0, -1, 1, 0, 0, 0, -1, 0;

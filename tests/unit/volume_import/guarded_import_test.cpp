@@ -30,7 +30,7 @@ TEST(GuardedImport, volumeComesThroughUnchanged) {
     EXPECT_EQ(got.values, sent.values);
 }
 
-// More than go through the pipe at a time; every type of sample.
+// These are more samples than go through the pipe at a time, and of every type.
 template <class T>
 void expectSamplesComeThrough(float first) {
     std::vector<T> samples;
@@ -59,7 +59,7 @@ TEST(GuardedImport, errorsComeThrough) {
                     {"file", "memory"});
 }
 
-// They are more than a pipe holds, so that the reader must be ended, too.
+// There are more samples than a pipe holds, so that the reader must be ended, too.
 TEST(GuardedImport, whatDoesNotFitTogetherIsRefused) {
     using Dims = Eigen::Vector3i;
     for (const Dims& dims : {Dims(100, 100, 99), Dims(100, 100, 101), Dims(-100, -100, 100)}) {

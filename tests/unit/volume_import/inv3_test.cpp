@@ -38,8 +38,8 @@ TEST(Inv3, cutShortArchiveIsRefused) {
     expectUserError([&] { importVolume(folder / "a.inv3"); }, {"a.inv3"});
 }
 
-// The example of the Debian package invesalius-examples, where it is installed: a head, so bone in the upper
-// half of the lowest slices' front (teeth) and air above the vertex.
+// The example of the Debian package invesalius-examples is read where it is installed: it is a head, so bone
+// is in the upper half of the lowest slices' front (teeth) and air above the vertex.
 TEST(Inv3, debianCraniumIsAHeadInLps) {
     const std::filesystem::path path = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "invesalius-examples is not installed";
@@ -49,8 +49,8 @@ TEST(Inv3, debianCraniumIsAHeadInLps) {
     EXPECT_NEAR(raw.geometry.spacing.z(), 1.5e-3, 1e-12);
     EXPECT_TRUE(raw.is_hounsfield);
     const auto at = [&](int i, int j, int k) { return raw.values[size_t(i + 256 * (j + 256 * k))]; };
-    // It is the outermost soft tissue along the middle of the face and of the back of the head, at the height
-    // of the nose.
+    // These are the outermost soft tissue along the middle of the face and of the back of the head, at the
+    // height of the nose.
     int front = 0, back = 255;
     while (at(128, front, 20) < -300) ++front;
     while (at(128, back, 20) < -300) --back;

@@ -38,13 +38,13 @@ TEST(MaterialIds, labelsAndRangesMix) {
     EXPECT_EQ(materialIds(raw, rules, &labels, "l.nrrd"), (Ids{3, 3, 2, 1, 2, 3}));
 }
 
-// The same voxels with axes in another order and direction.
+// The voxels are the same, with axes in another order and direction.
 TEST(MaterialIds, labelsMayBeStoredAnotherWayRound) {
     const Eigen::Vector3i dims(4, 3, 2);
     std::vector<float> numbers(24), turned(24);
     for (int n = 0; n < 24; ++n) numbers[size_t(n)] = float(n + 1);
     const RawVolume raw = rawOf(dims, numbers);
-    // Label axes: along -y, along x, along z, that is a rotation about z by 90°.
+    // The labels' axes are along -y, along x and along z, that is a rotation about z by 90°.
     RawVolume labels;
     labels.geometry.dims = {3, 4, 2};
     labels.geometry.spacing = {2e-3, 1e-3, 3e-3};

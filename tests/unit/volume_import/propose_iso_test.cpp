@@ -60,7 +60,8 @@ TEST(ProposeIso, weakBoneLowersTheThreshold) {
     EXPECT_GE(weak, 200);
 }
 
-// Industrial CT of a tooth: air, dentine, enamel, and a pulp cavity darker than the air outside.
+// The shape is that of an industrial CT of a tooth: air, dentine, enamel, and a pulp cavity darker than the
+// air outside.
 TEST(ProposeIso, industrialScanGivesTheMiddleOfAirAndDentine) {
     const double iso =
         proposeIsoValue(mixtureOf({{390, 15, 0.7}, {150, 40, 0.02}, {825, 20, 0.2}, {1190, 25, 0.08}}));

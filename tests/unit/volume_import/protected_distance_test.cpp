@@ -43,7 +43,7 @@ Scattered scattered(const Vector3i& dims, int count, std::mt19937& random) {
     return all;
 }
 
-// Every voxel, also outside of the volume, against the search through all protected voxels.
+// Every voxel, also outside of the volume, is compared with the search through all protected voxels.
 TEST(ProtectedDistance, isThatOfTheNearestProtectedVoxel) {
     std::mt19937 random(3);
     for (const Vector3d& spacing : {Vector3d(1e-3, 1e-3, 1e-3), Vector3d(0.5e-3, 0.5e-3, 1.2e-3)}) {
@@ -58,7 +58,8 @@ TEST(ProtectedDistance, isThatOfTheNearestProtectedVoxel) {
             for (const auto& [place, id] : nerves.voxels) {
                 const Vector3d way = spacing.cwiseProduct((v - place).cast<double>());
                 nearest = std::min(nearest, way.norm());
-                // Half a voxel in this direction; isolated voxels are inside by half of their thinnest edge.
+                // The face is half a voxel nearer in this direction; isolated voxels are inside by half of
+                // their thinnest edge.
                 const double half =
                     way.isZero() ? spacing.x() : way.normalized().cwiseProduct(spacing).norm();
                 expected = std::min(expected, way.norm() - half / 2);

@@ -16,7 +16,7 @@ VoxelVolume airOf(const Eigen::Vector3i& dims) {
     return VoxelVolume(geometry, kPiecesIso);
 }
 
-// Pieces of 1, 2 and 3 voxels; the last touches another only across an edge, which does not connect.
+// The pieces have 1, 2 and 3 voxels; the last touches another only across an edge, which does not connect.
 TEST(SmallPieces, goBelowTheSurface) {
     VoxelVolume volume = airOf({6, 5, 4});
     const auto set = [&](int i, int j, int k) { volume.set(i, j, k, kPiecesIso); };
@@ -42,7 +42,7 @@ TEST(SmallPieces, nothingIsTooSmallForSizesOfZeroAndOne) {
     EXPECT_EQ(volume.at(1, 1, 1), kPiecesIso);
 }
 
-// The slow and obvious way: voxel by voxel, one piece after the other.
+// This is the slow and obvious way: voxel by voxel, one piece after the other.
 class FloodFill {
   public:
     FloodFill(VoxelVolume& volume, uint32_t smallest)
@@ -97,7 +97,7 @@ VoxelVolume noise(const Eigen::Vector3i& dims, double share_of_bone, unsigned se
     return volume;
 }
 
-// Near 0.31 pieces of noise join into one: windings of every kind.
+// Near 0.31 pieces of noise join into one, with windings of every kind.
 TEST(SmallPieces, areThoseOfAFloodFill) {
     unsigned seed = 0;
     for (const Eigen::Vector3i& dims :

@@ -19,7 +19,7 @@ struct SampleVolume {
     Eigen::Vector3d origin_mm{10, -20, 30};
 
     std::vector<int16_t> values() const;
-    // Where the file says that the sample with this value lies (LPS, m).
+    // Returns where the file says that the sample with this value lies (LPS, m).
     Eigen::Vector3d place(double value) const;
 };
 
