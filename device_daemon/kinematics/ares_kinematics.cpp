@@ -69,8 +69,8 @@ bool AresKinematics::inverseJacobian(const Pose& X_DT, Matrix6d& J_inv) const no
     return true;
 }
 
-ForwardSolution AresKinematics::forward(const Vector6d& q, const Pose& start) const noexcept {
-    ForwardSolution solution{start};
+ForwardSolution AresKinematics::forward(const Vector6d& q, const Pose& X_DT_start) const noexcept {
+    ForwardSolution solution{X_DT_start};
     Vector6d q_now;
     Matrix6d J_inv;
     while (inverse(solution.X_DT, q_now)) {

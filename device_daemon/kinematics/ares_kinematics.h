@@ -71,9 +71,9 @@ class AresKinematics {
     // Finds J_inv with q_dot = J_inv [v; omega]; false when the pose is unreachable or serially singular.
     bool inverseJacobian(const Pose& X_DT, Matrix6d& J_inv) const noexcept;
 
-    // Finds the handle pose for slider positions by Newton's method from `start`, with at most
-    // kMaxForwardIterations steps. If it does not converge, q is impossible or `start` too far away.
-    ForwardSolution forward(const Vector6d& q, const Pose& start) const noexcept;
+    // Finds the handle pose for slider positions by Newton's method from `X_DT_start`, with at most
+    // kMaxForwardIterations steps. If it does not converge, q is impossible or that too far away.
+    ForwardSolution forward(const Vector6d& q, const Pose& X_DT_start) const noexcept;
 
     // Returns the WorkspaceFault bits of a pose.
     uint32_t workspaceFaults(const Pose& X_DT) const noexcept;

@@ -3,12 +3,12 @@
 namespace bonemill {
 
 DeviceLoop::DeviceLoop(const AresKinematics& kinematics, JointDevice& device, const DeviceLoopConfig& config,
-                       const Pose& start) noexcept
+                       const Pose& X_DT_start) noexcept
     : kinematics_(kinematics),
       device_(device),
       sample_flags_(config.sample_flags),
       limiter_(config.limits, config.stale),
-      X_DT_(start) {}
+      X_DT_(X_DT_start) {}
 
 bool DeviceLoop::read(double elapsed, DeviceSample& sample) noexcept {
     elapsed_ = elapsed;

@@ -22,9 +22,9 @@ struct DeviceLoopConfig {
 
 class DeviceLoop {
   public:
-    // `device` must outlive the loop; `start` is where forward kinematics begins to search.
+    // `device` must outlive the loop; `X_DT_start` is where forward kinematics begins to search.
     DeviceLoop(const AresKinematics& kinematics, JointDevice& device, const DeviceLoopConfig& config,
-               const Pose& start) noexcept;
+               const Pose& X_DT_start) noexcept;
 
     // Reads the joints, `elapsed` s after the last period; the stamp is left to the caller. False says that
     // no pose fits the joints, and there is nothing to publish.

@@ -29,17 +29,17 @@ std::vector<Answer> answersOf(const RunRecords& records) {
 void ErrorSum::add(const std::vector<Answer>& answers, const std::vector<Answer>& truth) {
     for (size_t n = 0; n < std::min(answers.size(), truth.size()); ++n) {
         const Answer &a = answers[n], &t = truth[n];
-        const double force = t.hand.force.norm();
+        const double force = t.hand_W.force.norm();
         if (force < Errors::kFeltForce) continue;
         ++ticks_;
-        force_vector_ += (a.hand.force - t.hand.force).squaredNorm();
-        force_ += square(a.hand.force.norm() - force);
+        force_vector_ += (a.hand_W.force - t.hand_W.force).squaredNorm();
+        force_ += square(a.hand_W.force.norm() - force);
         true_force_ += square(force);
-        torque_ += square(a.hand.torque.norm() - t.hand.torque.norm());
-        true_torque_ += t.hand.torque.squaredNorm();
-        direction_ += square(angleBetween(a.hand.force, t.hand.force));
-        position_ += (a.spo.position - t.spo.position).squaredNorm();
-        rotation_ += logRotation(a.spo.rotation * t.spo.rotation.conjugate()).squaredNorm();
+        torque_ += square(a.hand_W.torque.norm() - t.hand_W.torque.norm());
+        true_torque_ += t.hand_W.torque.squaredNorm();
+        direction_ += square(angleBetween(a.hand_W.force, t.hand_W.force));
+        position_ += (a.X_WT.position - t.X_WT.position).squaredNorm();
+        rotation_ += logRotation(a.X_WT.rotation * t.X_WT.rotation.conjugate()).squaredNorm();
     }
 }
 
@@ -57,7 +57,7 @@ Errors ErrorSum::errors() const {
 
 void NoiseSum::add(const std::vector<Answer>& answers) {
     for (size_t n = 1; n + 1 < answers.size(); ++n) {
-        const auto force = [&](size_t tick) { return answers[tick].hand.force; };
+        const auto force = [&](size_t tick) { return answers[tick].hand_W.force; };
         sum_ += (force(n + 1) - 2 * force(n) + force(n - 1)).squaredNorm();
         ++count_;
     }
@@ -72,8 +72,8 @@ PathEnergy energyOf(const std::vector<Answer>& answers, std::span<const Pose> de
     for (size_t n = 1; n < std::min(answers.size(), device.size()); ++n) {
         const Eigen::Vector3d moved = device[n].position - device[n - 1].position;
         const Eigen::Vector3d turned = logRotation(device[n].rotation * device[n - 1].rotation.conjugate());
-        energy.at_end -= 0.5 * (answers[n].hand.force + answers[n - 1].hand.force).dot(moved);
-        energy.at_end -= 0.5 * (answers[n].hand.torque + answers[n - 1].hand.torque).dot(turned);
+        energy.at_end -= 0.5 * (answers[n].hand_W.force + answers[n - 1].hand_W.force).dot(moved);
+        energy.at_end -= 0.5 * (answers[n].hand_W.torque + answers[n - 1].hand_W.torque).dot(turned);
         energy.lowest = std::min(energy.lowest, energy.at_end);
     }
     return energy;

@@ -11,8 +11,8 @@ namespace bonemill {
 
 // One tick answers with the tool's pose in W, and with what the hand feels (axes W).
 struct Answer {
-    Pose spo;
-    Wrench hand;
+    Pose X_WT;
+    Wrench hand_W;
 };
 std::vector<Answer> answersOf(const RunRecords& records);
 

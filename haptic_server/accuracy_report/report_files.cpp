@@ -109,7 +109,7 @@ TruthSummary summaryOf(const std::vector<ProbingStroke>& strokes, const std::vec
         noise.add(truth[n].answers);
         coarser.add(truth[n].coarser, truth[n].answers);
         for (const Answer& answer : truth[n].answers) {
-            const double f = answer.hand.force.norm(), t = answer.hand.torque.norm();
+            const double f = answer.hand_W.force.norm(), t = answer.hand_W.torque.norm();
             if (f < Errors::kFeltForce) continue;
             force += f * f, torque += t * t, ++count;
             summary.force_max = std::max(summary.force_max, f);

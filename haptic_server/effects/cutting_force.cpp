@@ -39,7 +39,7 @@ CuttingForce::Pull CuttingForce::pullOf(const EffectTick& tick) const noexcept {
         const Vector3d n = contact.push_V.cast<double>();
         const Matrix3d tangential = Matrix3d::Identity() - n * n.transpose();
         const Vector3d by_turn = tangential * axis.cross(r), v_spin = spin * by_turn;
-        const Vector3d v_tool = tangential * (tick.velocity + tick.angular_velocity.cross(r));
+        const Vector3d v_tool = tangential * (tick.velocity_V + tick.angular_velocity_V.cross(r));
         const double v_mean = std::sqrt((v_spin + v_tool).squaredNorm() + spin * spin * spread);
         const double per_speed =
             share * burr.friction * double(contact.force) / (v_mean + config_.slow_speed);

@@ -66,8 +66,8 @@ void EffectHost::addToHand(Wrench& wrench_V) noexcept {
 
 void EffectHost::afterSolve(const Pose& X_VT, SpoModel& model) noexcept {
     tick_.X_VT = X_VT;
-    tick_.velocity = (X_VT.position - tick_.X_VT_start.position) / tick_.dt;
-    tick_.angular_velocity = logRotation(X_VT.rotation * tick_.X_VT_start.rotation.conjugate()) / tick_.dt;
+    tick_.velocity_V = (X_VT.position - tick_.X_VT_start.position) / tick_.dt;
+    tick_.angular_velocity_V = logRotation(X_VT.rotation * tick_.X_VT_start.rotation.conjugate()) / tick_.dt;
     if (!any(HapticEffect::kReadsContacts)) return;
     const size_t count = model.listContacts(contacts_);
     tick_.contacts = {contacts_.data(), count};

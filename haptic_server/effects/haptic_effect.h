@@ -43,8 +43,8 @@ struct EffectTick {
 
     // These are known after the solve.
     Pose X_VT;
-    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          // of the tool point, m/s
-    Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  // rad/s
+    Eigen::Vector3d velocity_V = Eigen::Vector3d::Zero();          // of the tool point, m/s
+    Eigen::Vector3d angular_velocity_V = Eigen::Vector3d::Zero();  // rad/s
 
     // These are known after the force went out, for effects that read contacts, and are kept until the
     // next tick's.

@@ -77,7 +77,7 @@ TEST(Noise, StraightAndBentForcesAndAJump) {
     EXPECT_NEAR(none.noise(), 0, 1e-12);
     constant.add(bent);  // second difference: 3e-3 everywhere
     EXPECT_NEAR(constant.noise(), 3e-3, 1e-12);
-    straight[20].hand.force.x() += 1;  // second differences 1, -2, 1
+    straight[20].hand_W.force.x() += 1;  // second differences 1, -2, 1
     jump.add(straight);
     EXPECT_NEAR(jump.noise(), std::sqrt(6.0 / 48), 1e-12);
 }

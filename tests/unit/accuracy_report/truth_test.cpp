@@ -37,9 +37,9 @@ TEST(Truth, RestingBurrOnAPlaneHasTheForceAndDepthOfTheClosedForm) {
         const double depth = depthUnderSpring(tick, strokes[n].deepest);
         const double force = forceOnSphere(tick.gradient.contact.stiffness_per_area, test::kBurr, depth);
         const Answer& rest = truth[n].answers.back();
-        EXPECT_NEAR(rest.hand.force.z() / force, 1, 1e-3);
-        EXPECT_NEAR(4e-3 - rest.spo.position.z(), depth, 0.3e-6);
-        EXPECT_LT(rest.hand.force.head<2>().norm(), 2e-3 * force);
+        EXPECT_NEAR(rest.hand_W.force.z() / force, 1, 1e-3);
+        EXPECT_NEAR(4e-3 - rest.X_WT.position.z(), depth, 0.3e-6);
+        EXPECT_LT(rest.hand_W.force.head<2>().norm(), 2e-3 * force);
         EXPECT_EQ(truth[n].coarser.size(), truth[n].answers.size());
     }
 }
@@ -77,8 +77,9 @@ TEST(Truth, IsThatOfTheWholeBone) {
         ASSERT_EQ(truth[n].answers.size(), oracle.size());
         double most_apart = 0, most_force = 0;
         for (size_t i = 0; i < oracle.size(); ++i) {
-            most_apart = std::max(most_apart, (truth[n].answers[i].hand.force - oracle[i].hand.force).norm());
-            most_force = std::max(most_force, oracle[i].hand.force.norm());
+            most_apart =
+                std::max(most_apart, (truth[n].answers[i].hand_W.force - oracle[i].hand_W.force).norm());
+            most_force = std::max(most_force, oracle[i].hand_W.force.norm());
         }
         EXPECT_LT(most_apart, 2e-3) << strokes[n].name;
         EXPECT_GT(most_force, 1) << strokes[n].name;

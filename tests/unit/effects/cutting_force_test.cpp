@@ -66,8 +66,8 @@ TEST_F(CuttingForceTest, AxisTorqueTimesSpinIsThePowerOfFriction) {
 
 TEST_F(CuttingForceTest, IsMinusTheGradientOfItsEnergyForFiniteStepsToo) {
     contacts.addOnBall(random, bench.tool.burr.radius, 30);
-    bench.tick.velocity = {0.02, -0.05, 0.03};
-    bench.tick.angular_velocity = {1, 2, -3};
+    bench.tick.velocity_V = {0.02, -0.05, 0.03};
+    bench.tick.angular_velocity_V = {1, 2, -3};
     feltAfterBegin();
     const auto energy = [&](const Pose& pose) { return cutting.energy(bench.tick, pose); };
     for (const double turn : {1e-3, 0.1, 1.0}) {
