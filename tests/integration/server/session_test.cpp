@@ -189,6 +189,11 @@ std::vector<TraceRow> rowsOf(const std::string& trace) {
 }
 
 TEST_F(Session, AKilledDaemonRampsTheForceDownAndANewOneGoesOn) {
+    // The burr mills so slowly that the hand, which goes on, presses on it.
+    const std::string scene = test::readFile(folder_ / "s.textproto"), at_once = "time_removal {}";
+    writeFile(folder_ / "s.textproto",
+              std::string(scene).replace(scene.find(at_once), at_once.size(),
+                                         "time_removal { rate_density_per_s: 400 }"));
     const std::string trace = folder_ / "trace.csv";
     const auto hasRow = [&](auto&& isWanted) {
         return waitFor([&] {
@@ -200,7 +205,7 @@ TEST_F(Session, AKilledDaemonRampsTheForceDownAndANewOneGoesOn) {
     Process server_process(server({"--trace", trace}));
     {
         Process daemon_process(daemon());
-        ASSERT_TRUE(hasRow([](const TraceRow& r) { return r.removed > 0 && r.force > 0.1; }));
+        ASSERT_TRUE(hasRow([](const TraceRow& r) { return r.force > 0.2; }));
         daemon_process.signal(SIGKILL);
     }
     ASSERT_TRUE(hasRow(is_zero_while_stale));
@@ -211,17 +216,19 @@ TEST_F(Session, AKilledDaemonRampsTheForceDownAndANewOneGoesOn) {
     EXPECT_TRUE(report()["fault_ticks"].contains("stale_device"));
 
     bool saw_zero_while_stale = false, saw_fresh_after_stale = false;
-    double force_before = 0, largest_step_down = 0, largest_force = 0;
+    double force_before = 0, largest_step_down = 0, largest_force = 0, milled = 0;
     for (const TraceRow& r : rowsOf(test::readFile(trace))) {
         if (r.is_stale) {
             largest_step_down = std::max(largest_step_down, force_before - r.force);
             EXPECT_EQ(r.removed, 0) << "milled without a hand";
         }
         largest_force = std::max(largest_force, r.force);
+        milled += r.removed;
         force_before = r.force;
         saw_zero_while_stale |= is_zero_while_stale(r);
         saw_fresh_after_stale |= saw_zero_while_stale && !r.is_stale && (r.contacts > 0 || r.removed > 0);
     }
+    EXPECT_GT(milled, 0);
     EXPECT_LT(largest_step_down, 0.3 * largest_force) << "a ramp over 50 ms has no large steps";
     EXPECT_TRUE(saw_fresh_after_stale);
 }
