@@ -36,9 +36,10 @@ struct AccuracySettings {
 
 AccuracySettings presetSettings(Preset preset) noexcept;
 
-// "thesis_2012", "fast", "balanced", "exact".
 std::string_view presetName(Preset preset) noexcept;
 std::optional<Preset> presetOfName(std::string_view name) noexcept;
+// All of them, with commas, for messages. Allocates.
+std::string presetNames();
 
 // The preset's name, or for settings that no preset has, every knob: "gradient s=2 grid×1 float 2 iterations
 // ccd". Allocates.

@@ -59,8 +59,7 @@ std::string SessionCommands::refusalOf(const topics::Command& command) const {
 std::string SessionCommands::setAccuracy(const std::string& name) {
     const auto preset = presetOfName(name);
     if (name != "scene" && !preset)
-        return "refused: no preset is called '" + repeatedText(name) +
-               "'; thesis_2012, fast, balanced, exact or scene";
+        return "refused: no preset is called '" + repeatedText(name) + "'; " + presetNames() + " or scene";
     if (!is_switchable_ && preset) return "refused: the scene says accuracy.switchable: false";
     if (preset == Preset::kThesis2012 && effect_of_gradient_law_)
         return std::string("refused: effects.") + effect_of_gradient_law_ +
