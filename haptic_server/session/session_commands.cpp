@@ -5,6 +5,23 @@
 #include "haptic_server/session/repeated_text.h"
 
 namespace bonemill {
+namespace {
+
+// Some actions are a bool only because an action must have a value: false says nothing that could be done.
+bool asksForNothing(const topics::Command& command) {
+    switch (command.action_case()) {
+        case topics::Command::kResetVolume:
+            return !command.reset_volume();
+        case topics::Command::kSaveCheckpoint:
+            return !command.save_checkpoint();
+        case topics::Command::kShutDown:
+            return !command.shut_down();
+        default:
+            return false;
+    }
+}
+
+}  // namespace
 
 SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bone, const Recorder& recorder,
                                  const SessionControls& controls, bool only_instructors)
@@ -18,6 +35,7 @@ SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bon
 
 std::optional<std::string> SessionCommands::carryOut(const topics::Command& command) {
     if (const std::string refusal = refusalOf(command); !refusal.empty()) return refusal;
+    if (asksForNothing(command)) return "refused: a command that is false asks for nothing; send true";
     switch (command.action_case()) {
         case topics::Command::kResetVolume:
             return restore(Checkpoints::kScannedBone);
