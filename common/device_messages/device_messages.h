@@ -25,8 +25,7 @@ struct WrenchCommand {
     double f_hand_D[3];         // on the hand
     double t_hand_D[3];         // on the hand, about the handle's tool point
     uint64_t answers_sequence;  // of the DeviceSample this wrench answers
-    uint32_t flags;
-    uint32_t reserved;
+    uint64_t reserved;
 };
 
 enum Button : uint32_t {
@@ -47,7 +46,7 @@ static_assert(sizeof(DeviceSample) == 80 && offsetof(DeviceSample, p_DT) == 16 &
 static_assert(std::is_trivially_copyable_v<WrenchCommand> && std::is_standard_layout_v<WrenchCommand>);
 static_assert(sizeof(WrenchCommand) == 80 && offsetof(WrenchCommand, f_hand_D) == 16 &&
               offsetof(WrenchCommand, t_hand_D) == 40 && offsetof(WrenchCommand, answers_sequence) == 64 &&
-              offsetof(WrenchCommand, flags) == 72);
+              offsetof(WrenchCommand, reserved) == 72);
 
 // |q| may differ from 1 by so much, which is far above rounding and far below what a torn or
 // random quaternion shows.

@@ -5,6 +5,7 @@
 
 #include <time.h>
 
+#include <cmath>
 #include <cstdint>
 
 #include "common/units.h"
@@ -19,6 +20,11 @@ inline int64_t monotonicNowNs() noexcept {
 
 inline constexpr timespec timespecOfNs(int64_t ns) noexcept {
     return {time_t(ns / kNsPerSecond), long(ns % kNsPerSecond)};
+}
+
+// Of what a scene says.
+inline int64_t nsOfMilliseconds(double ms) noexcept {
+    return std::llround(ms * double(kNsPerMillisecond));
 }
 
 inline constexpr double secondsOfNs(int64_t ns) noexcept {

@@ -20,7 +20,6 @@ class PeriodicTimer {
     // clock shows now_ns.
     int64_t advance(int64_t now_ns) noexcept;
 
-    int64_t periodNs() const noexcept { return period_ns_; }
     uint64_t missedPeriods() const noexcept { return missed_; }
 
   private:

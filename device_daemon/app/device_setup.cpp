@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "common/device_messages/device_messages.h"
+#include "common/rt/clock.h"
 #include "common/units.h"
 #include "common/user_error.h"
 
@@ -68,8 +69,8 @@ std::vector<std::string> phasesOf(const scene::SimulatedOperator& person) {
 DeviceLoopConfig loopOf(const scene::Scene& scene) {
     DeviceLoopConfig loop;
     loop.limits.max_actuator_force = scene.device().max_actuator_force_n();
-    loop.stale.stale_after_ns = std::llround(double(kNsPerMillisecond) * scene.loop().stale_after_ms());
-    loop.stale.ramp_down_ns = std::llround(double(kNsPerMillisecond) * scene.loop().ramp_ms());
+    loop.stale.stale_after_ns = nsOfMilliseconds(scene.loop().stale_after_ms());
+    loop.stale.ramp_down_ns = nsOfMilliseconds(scene.loop().ramp_ms());
     loop.sample_flags = kDeviceFlagSimulated;
     return loop;
 }

@@ -58,9 +58,6 @@ class AresEmulator final : public JointDevice {
 
     // Lets the scenario's time run; before that the hand rests at the path's start with no button pressed.
     void startScenario() noexcept { scenario_runs_ = true; }
-    bool isScenarioDone() const noexcept {
-        return scenario_runs_ && state_.scenario_time >= path_.duration();
-    }
 
     // Moves the plant by dt with these amplifier inputs.
     void advance(double dt, const Vector6d& actuator_forces) noexcept;

@@ -1,6 +1,5 @@
 #include "device_daemon/kinematics/ares_kinematics.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 #include <numbers>
@@ -111,15 +110,6 @@ Vector6d actuatorForces(const Matrix6d& J_inv, const Wrench& wrench) noexcept {
 Wrench wrenchOf(const Matrix6d& J_inv, const Vector6d& actuator_forces) noexcept {
     const Vector6d w = J_inv.transpose() * actuator_forces;
     return {w.head<3>(), w.tail<3>()};
-}
-
-double singularityIndex(const Matrix6d& J_inv) noexcept {
-    Matrix6d scaled = J_inv;
-    scaled.rightCols<3>() /= kConditioningLength;
-    // The singular values are roots of the Gram matrix' eigenvalues: exact enough above an index of 1e-7.
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled.transpose() * scaled, Eigen::EigenvaluesOnly);
-    const double smallest = std::max(0.0, solver.eigenvalues()[0]);
-    return std::sqrt(smallest / solver.eigenvalues()[5]);
 }
 
 }  // namespace bonemill

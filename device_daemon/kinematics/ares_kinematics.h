@@ -3,7 +3,7 @@
 //
 // Frame D has its origin at the platform's centre in its neutral pose (level, every slider in the middle of
 // its stroke), and +z along the actuators from the base to the platform. The neutral handle pose is therefore
-// the identity, and the base plane lies at z = -neutralHeight(). Frame T is fixed to the platform, with its
+// the identity, and the base plane lies below the origin. Frame T is fixed to the platform, with its
 // origin at the centre. Leg i has the slider S_i = B_i + q_i z and the platform point P_i = p + R c_i with
 // |P_i - S_i| = L; q = 0 is the stroke's low end. Twists are [v_DT; omega_D], wrenches [force; torque about
 // T's origin], both in D. Units are m, rad, N, N·m.
@@ -43,9 +43,6 @@ enum WorkspaceFault : uint32_t {
 // This is the smallest cosine between a link and its actuator's axis.
 inline constexpr double kMinLinkCosine = 0.42;
 
-// This length makes rotation and translation comparable in the singularity index.
-inline constexpr double kConditioningLength = 0.030;
-
 struct ForwardSolution {
     Pose X_DT;           // the last iterate, also when it did not converge
     int iterations = 0;  // Newton steps taken
@@ -60,9 +57,6 @@ class AresKinematics {
 
     bool isBuildable() const noexcept;
     const AresGeometry& geometry() const noexcept { return geometry_; }
-    double neutralHeight() const noexcept {
-        return neutral_height_;
-    }  // of the platform over the base plane, m
 
     // Finds the slider positions for a handle pose; false when a link cannot reach (q is then unspecified).
     // It does not check the stroke: see workspaceFaults().
@@ -90,7 +84,7 @@ class AresKinematics {
     bool linkVector(const Leg& leg, const Pose& X_DT, Eigen::Vector3d& link, double& q) const noexcept;
 
     AresGeometry geometry_;
-    double neutral_height_;
+    double neutral_height_;  // of the platform over the base plane, m
     std::array<Leg, kLegCount> legs_;
 };
 
@@ -101,8 +95,5 @@ Vector6d actuatorForces(const Matrix6d& J_inv, const Wrench& wrench) noexcept;
 
 // Returns the wrench on the hand that actuator forces make: w = J_inv^T tau.
 Wrench wrenchOf(const Matrix6d& J_inv, const Vector6d& actuator_forces) noexcept;
-
-// Returns sigma_min / sigma_max of J_inv diag(I, I / kConditioningLength); 0 is singular.
-double singularityIndex(const Matrix6d& J_inv) noexcept;
 
 }  // namespace bonemill

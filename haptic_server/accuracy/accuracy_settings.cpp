@@ -32,6 +32,13 @@ std::optional<Preset> presetOfName(std::string_view name) noexcept {
     return std::nullopt;
 }
 
+std::string presetNames() {
+    std::string names;
+    for (const Preset preset : kPresets)
+        names += (names.empty() ? "" : ", ") + std::string(presetName(preset));
+    return names;
+}
+
 std::string settingsName(const AccuracySettings& settings) {
     for (const Preset preset : kPresets)
         if (presetSettings(preset) == settings) return std::string(presetName(preset));

@@ -36,9 +36,10 @@ struct AccuracySettings {
 
 AccuracySettings presetSettings(Preset preset) noexcept;
 
-// The names are "thesis_2012", "fast", "balanced", "exact".
 std::string_view presetName(Preset preset) noexcept;
 std::optional<Preset> presetOfName(std::string_view name) noexcept;
+// Returns all of them with commas between, for messages. It allocates.
+std::string presetNames();
 
 // Returns the preset's name, or for settings that no preset has, every knob: "gradient s=2 grid×1 float 2
 // iterations ccd". It allocates.

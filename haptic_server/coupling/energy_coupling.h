@@ -12,16 +12,17 @@
 #pragma once
 
 #include "common/geometry/pose.h"
+#include "common/units.h"
 
 namespace bonemill {
 
 struct EnergyCouplingConfig {
     double translation_stiffness = 3000;  // k_t, N/m
     double rotation_stiffness = 0.5;      // k_θ, N·m/rad; the thesis' k_vcr is twice that at small angles
-    double saturation_torque = 0.6;       // T_m, N·m
-    double damping_time = 1e-3;           // τ, s: how long the free tool takes to follow the hand
-    double relaxing_share = 1;            // k_2 / k_t
-    double relaxing_time = 4e-3;          // τ_2, s
+    double saturation_torque = 0.5 * 75 * kDegree;   // T_m, N·m: that of 75°
+    double damping_time = 1e-3;                      // τ, s: how long the free tool takes to follow the hand
+    double relaxing_share = 1;                       // k_2 / k_t
+    double relaxing_time = 4e-3;                     // τ_2, s
     Eigen::Vector3d p_TG = Eigen::Vector3d::Zero();  // grip point G, where the force acts, in T
 };
 

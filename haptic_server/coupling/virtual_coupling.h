@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "common/geometry/pose.h"
+#include "common/units.h"
 
 namespace bonemill {
 
@@ -14,7 +15,7 @@ struct CouplingConfig {
         1.0;                 // N·m per unit quaternion vector part (k_vcr); k_vcr/2 per rad at small angles
     double max_speed = 0.5;  // m/s, of the step before damping: the tool moves at (1 - α) of it at most
     double max_angular_speed =
-        4.18879;  // rad/s = 240 °/s, before damping; the thesis' "0.073 rad per ms" is a slip (0.00419)
+        240 * kDegree;            // rad/s, before damping; the thesis' "0.073 rad per ms" is a slip (0.00419)
     double static_damping = 0.5;  // α: the tool moves by (1 - α) of the step
 };
 

@@ -54,8 +54,9 @@ struct EffectTick {
     BurrLoad burr_load;                        // of the contacts on the burr
     const Candidates* candidates = nullptr;    // of the last gathering
 
-    EffectRecord
-        record{};  // starts each tick as zeros but for what the last one said of spin, torque and power
+    // It is made anew at the end of each tick (EffectHost::finish): zeros, spin, force and power of the burr,
+    // then what each effect's finish() writes. Until then it is the last tick's.
+    EffectRecord record{};
 
     Eigen::Vector3d axis() const noexcept { return X_VT_start.rotation * Eigen::Vector3d::UnitY(); }
 };

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <set>
 
-#include "haptic_server/setup/scene_effects.h"
+#include "common/config/viewer_effects.h"
 
 namespace bonemill {
 namespace {
@@ -90,9 +90,8 @@ std::string describeEffects(const scene::Scene& scene, const EffectCosts* costs)
     effects.GetReflection()->ListFields(effects, &listed);
     for (const FieldDescriptor* field : listed) {
         const std::string parameters = parametersOf(effects.GetReflection()->GetMessage(effects, field));
-        text += field->number() >= kFirstViewerEffect
-                    ? line(field->name(), parameters, "; in the viewer")
-                    : line(field->name(), parameters, costText(field->name(), costs));
+        text += isViewerEffect(*field) ? line(field->name(), parameters, "; in the viewer")
+                                       : line(field->name(), parameters, costText(field->name(), costs));
     }
     text += materialsText(scene, costs);
     if (text.empty()) return "effects: none\n";

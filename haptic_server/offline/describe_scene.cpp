@@ -24,8 +24,8 @@ Pose waypointPose(const scene::SimulatedOperator::Waypoint& waypoint) {
             Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
 }
 
-// The device goes straight along the scenario's waypoints, spread over kMeasuredTicks.
-std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario) {
+// The device goes straight along the scenario's waypoints, spread over kMeasuredTicks of this length (s).
+std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario, double dt) {
     const int waypoints = scenario.waypoint_size();
     std::vector<DeviceInput> path(waypoints > 0 ? kMeasuredTicks : 0);
     for (int tick = 0; tick < int(path.size()); ++tick) {
@@ -38,7 +38,7 @@ std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario) {
                              a.rotation.slerp(at - from, b.rotation)};
         input.buttons = (scenario.waypoint(from).remove() ? kButtonRemove : 0u) |
                         (scenario.waypoint(from).add() ? kButtonAdd : 0u);
-        input.t_s = tick * kMillisecond;
+        input.t_s = tick * dt;
     }
     return path;
 }
@@ -112,7 +112,7 @@ std::string describeScene(const std::string& scene_file) {
         << "point-shell: " << describeLevels(bone.shell) << '\n';
     describeTools(simulation, out);
     describeBudget(simulation, out);
-    const std::vector<DeviceInput> path = pathOf(loaded.scene.simulated_operator());
+    const std::vector<DeviceInput> path = pathOf(loaded.scene.simulated_operator(), simulation.tick.dt);
     const EffectCosts costs = measureEffectCosts(simulation.fixedTick(), *simulation.bone, path, kRounds);
     out << describeEffects(loaded.scene, path.empty() ? nullptr : &costs);
     describeCost(runPath(simulation.fixedTick(), *simulation.bone, path), out);

@@ -77,7 +77,6 @@ Publisher::Written Publisher::publishNodes(std::span<const NodeMesh> meshes, int
         if (has_surface(mesh)) written.is_whole &= writeNode(mesh, tag, written.bytes);
     for (const NodeMesh& mesh : meshes)
         if (mesh.isEmpty() && isNewer(mesh)) written.is_whole &= removeNode(mesh);
-    node_bytes_ += written.bytes;
     return written;
 }
 

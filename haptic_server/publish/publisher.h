@@ -45,7 +45,6 @@ class Publisher {
     // ignored. `oldest_cut_ns` is the start (CLOCK_MONOTONIC) of the oldest tick whose cut is new in them, or
     // 0 for none.
     Written publishNodes(std::span<const NodeMesh> meshes, int64_t oldest_cut_ns = 0);
-    Written publishNode(const NodeMesh& mesh) { return publishNodes({&mesh, 1}); }
 
     // The epoch is filled in.
     bool publishSceneInfo(topics::SceneInfo info);
@@ -64,13 +63,10 @@ class Publisher {
 
     // Says how long the writes of nodes took.
     const LatencyHistogram& writeTimes() const noexcept { return write_times_; }
-    uint64_t nodeBytes() const noexcept { return node_bytes_; }
 
     uint64_t epoch() const noexcept { return epoch_; }
     const NodeDigest& digest() const noexcept { return digest_; }
     uint64_t malformedCommands() const noexcept { return inbox_.malformedCount(); }
-    // So many clients listen to the status now.
-    int clientCount() const { return status_writer_.matchedReaders(); }
 
   private:
     struct Node {
@@ -92,7 +88,6 @@ class Publisher {
     NodeDigest digest_;
     uint64_t batch_ = 0;
     LatencyHistogram write_times_;
-    uint64_t node_bytes_ = 0;
     topics::Status status_;  // as last published
     CommandInbox inbox_;
 

@@ -23,8 +23,6 @@ class EffectStatistics {
     void add(const EffectRecord& record) noexcept;
 
     const RecordedEffects& recorded() const noexcept { return recorded_; }
-    double maxAxisTorque() const noexcept { return max_axis_torque_; }
-    double maxCuttingPower() const noexcept { return max_cutting_power_; }
     double removedEnergy() const noexcept { return removed_energy_; }
     std::optional<double> maxTemperature() const noexcept { return max_temperature_; }
     double necrotic() const noexcept { return necrotic_; }

@@ -55,10 +55,8 @@ class RunStatistics {
     uint64_t droppedTicks() const { return dropped_ticks_; }
     uint64_t lostRecords() const { return lost_records_; }
 
-    // forceReady lasts from the wake-up to the written wrench, tickCompute from the wake-up to the end of
-    // the tick's work.
+    // tickCompute lasts from the wake-up to the end of the tick's work.
     const LatencyHistogram& wakeupLatency() const { return wakeup_latency_; }
-    const LatencyHistogram& forceReady() const { return force_ready_; }
     const LatencyHistogram& tickCompute() const { return tick_compute_; }
 
     double meanContacts() const { return records_ ? double(contacts_sum_) / double(records_) : 0.0; }

@@ -40,7 +40,7 @@ class DeviceLinkIo final : public TickIo {
 
     static constexpr int64_t kStopCheckNs = 50'000'000;
 
-    // Any thread may ask whether the device has said goodbye.
+    // Any thread may ask whether the device has said goodbye; without ends_with_device it never has.
     bool hasDeviceLeft() const noexcept {
         return config_.ends_with_device && has_device_left_.load(std::memory_order_relaxed);
     }

@@ -39,8 +39,8 @@ DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& l
     DeviceLinkIoConfig config;
     config.ends_with_device = options.until_device_leaves;
     config.period_ns = int64_t(std::llround(double(kNsPerSecond) / loop.rate_hz()));
-    config.ramp.stale_after_ns = int64_t(loop.stale_after_ms() * double(kNsPerMillisecond));
-    config.ramp.ramp_down_ns = int64_t(loop.ramp_ms() * double(kNsPerMillisecond));
+    config.ramp.stale_after_ns = nsOfMilliseconds(loop.stale_after_ms());
+    config.ramp.ramp_down_ns = nsOfMilliseconds(loop.ramp_ms());
     config.X_WD = simulation.X_WD;
     return config;
 }

@@ -5,6 +5,23 @@
 #include "haptic_server/session/repeated_text.h"
 
 namespace bonemill {
+namespace {
+
+// Some actions are a bool only because an action must have a value: false says nothing that could be done.
+bool asksForNothing(const topics::Command& command) {
+    switch (command.action_case()) {
+        case topics::Command::kResetVolume:
+            return !command.reset_volume();
+        case topics::Command::kSaveCheckpoint:
+            return !command.save_checkpoint();
+        case topics::Command::kShutDown:
+            return !command.shut_down();
+        default:
+            return false;
+    }
+}
+
+}  // namespace
 
 SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bone, const Recorder& recorder,
                                  const SessionControls& controls, bool only_instructors)
@@ -18,6 +35,7 @@ SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bon
 
 std::optional<std::string> SessionCommands::carryOut(const topics::Command& command) {
     if (const std::string refusal = refusalOf(command); !refusal.empty()) return refusal;
+    if (asksForNothing(command)) return "refused: a command that is false asks for nothing; send true";
     switch (command.action_case()) {
         case topics::Command::kResetVolume:
             return restore(Checkpoints::kScannedBone);
@@ -59,8 +77,7 @@ std::string SessionCommands::refusalOf(const topics::Command& command) const {
 std::string SessionCommands::setAccuracy(const std::string& name) {
     const auto preset = presetOfName(name);
     if (name != "scene" && !preset)
-        return "refused: no preset is called '" + repeatedText(name) +
-               "'; thesis_2012, fast, balanced, exact or scene";
+        return "refused: no preset is called '" + repeatedText(name) + "'; " + presetNames() + " or scene";
     if (!is_switchable_ && preset) return "refused: the scene says accuracy.switchable: false";
     if (preset == Preset::kThesis2012 && effect_of_gradient_law_)
         return std::string("refused: effects.") + effect_of_gradient_law_ +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/config/viewer_effects.h"
 #include "common/units.h"
 #include "haptic_server/setup/scene_effects.h"
 
@@ -25,11 +26,7 @@ double finite(float value) {
 
 // Returns those that are the viewer's alone.
 scene::Effects viewerEffectsOf(scene::Effects effects) {
-    const google::protobuf::Reflection& reflection = *effects.GetReflection();
-    std::vector<const google::protobuf::FieldDescriptor*> listed;
-    reflection.ListFields(effects, &listed);
-    for (const auto* field : listed)
-        if (field->number() < kFirstViewerEffect) reflection.ClearField(&effects, field);
+    keepViewerEffects(effects);
     return effects;
 }
 

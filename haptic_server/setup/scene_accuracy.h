@@ -33,8 +33,8 @@ double wallForce(const GradientContactConfig& contact, double radius, double wal
 // The coupling pulls with at most this force while the tool is in use, in N.
 double saturationForceOf(const scene::Scene& scene, const scene::Tool& tool, double finest_spacing);
 
-// These are contact and coupling of the gradient law, with the scene's first tool. `finest_spacing` is the
-// volume's smallest voxel spacing, in m.
+// These are contact, coupling and speed limits of the gradient law. What differs from tool to tool is
+// saturationForceOf() alone; the budget of point tests is TickBudget's.
 GradientConfig gradientConfigOf(const scene::Scene& scene);
 
 }  // namespace bonemill

@@ -11,9 +11,6 @@ namespace bonemill {
 
 Burr burrOf(const scene::Tool& tool);
 
-// Fields of scene::Effects from this number on are the viewer's: they cost the tick nothing.
-inline constexpr int kFirstViewerEffect = 20;
-
 // The configuration lacks what depends on the volume.
 EffectConfigs effectConfigsOf(const scene::Scene& scene);
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "common/units.h"
 #include "haptic_server/contact/contact_configs.h"
 #include "haptic_server/coupling/energy_coupling.h"
 
@@ -11,8 +12,8 @@ namespace bonemill {
 struct GradientConfig {
     GradientContactConfig contact;
     EnergyCouplingConfig coupling;
-    double max_speed = 0.5;            // m/s of the tool point
-    double max_angular_speed = 4.189;  // rad/s
+    double max_speed = 0.5;                    // m/s of the tool point
+    double max_angular_speed = 240 * kDegree;  // rad/s
     // So many points may be tested in a tick, about; a test is one point's distance, energy and wrench at one
     // pose. A quarter as many candidates have room.
     size_t most_point_tests = 2'000'000;

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "common/config/viewer_effects.h"
 #include "render_client/subscribe/scene_parts.h"
 
 namespace bonemill {

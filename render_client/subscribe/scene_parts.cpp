@@ -57,17 +57,6 @@ bool isWithinRanges(const Message& message) {
     });
 }
 
-void keepViewerEffects(scene::Effects& effects) {
-    scene::Effects kept;
-    if (effects.has_bone_dust()) kept.mutable_bone_dust()->Swap(effects.mutable_bone_dust());
-    if (effects.has_bleeding()) kept.mutable_bleeding()->Swap(effects.mutable_bleeding());
-    if (effects.has_irrigation()) kept.mutable_irrigation()->Swap(effects.mutable_irrigation());
-    if (effects.has_burr_spin()) kept.mutable_burr_spin()->Swap(effects.mutable_burr_spin());
-    if (effects.has_milling_sound()) kept.mutable_milling_sound()->Swap(effects.mutable_milling_sound());
-    effects.Swap(&kept);
-    effects.DiscardUnknownFields();
-}
-
 void keepShownParts(scene::Material& material) {
     scene::Material kept;
     kept.set_name(material.name());

@@ -13,7 +13,6 @@ inline constexpr int kMostShownMaterials = 255;
 bool isWithinRanges(const google::protobuf::Message& message);
 
 // Forgets what is no viewer's business, so that nobody relies on it.
-void keepViewerEffects(scene::Effects& effects);
 void keepShownParts(scene::Material& material);
 
 }  // namespace bonemill

@@ -59,14 +59,14 @@ void addTickCommand(CLI::App& app) {
     command->add_option("--volume", o->tick_case.edge, "voxels per edge")->check(CLI::Range(32, 1024));
     command->add_option("--voxel-mm", o->voxel_mm)->check(CLI::Range(0.01, 10.0));
     command->add_option("--burr-radius-mm", o->burr_radius_mm)->check(CLI::Range(0.1, 20.0));
-    command->add_option("--preset", o->preset, "thesis_2012, fast, balanced or exact");
+    command->add_option("--preset", o->preset, "One of " + presetNames());
     command->add_option("--ticks", o->tick_case.ticks)->check(CLI::Range(1000, 1'000'000));
     command->add_option("--runs", o->runs, "repeat, and take each figure's median")->check(CLI::Range(1, 99));
     command->add_flag("--no-mill", o->is_still, "press and slide only, without any effect");
     addJsonOption(*command, o->json);
     command->callback([o] {
         const auto preset = presetOfName(o->preset);
-        if (!preset) throw UserError("--preset " + o->preset + ": thesis_2012, fast, balanced or exact");
+        if (!preset) throw UserError("--preset " + o->preset + ": one of " + presetNames());
         o->tick_case.preset = *preset;
         o->tick_case.spacing = o->voxel_mm * kMillimetre;
         o->tick_case.burr_radius = o->burr_radius_mm * kMillimetre;

@@ -66,7 +66,7 @@ class SphereServer {
         *info.mutable_tool() = test::makeToolMesh(1e-3, 5e-4, 0.02);
         info.set_burr_radius_m(1e-3);
         publisher_.publishSceneInfo(info);
-        for (const NodeMesh& node : nodes_) publisher_.publishNode(node);
+        for (const NodeMesh& node : nodes_) publisher_.publishNodes({&node, 1});
         thread_ = std::thread([this] {
             while (!stop_) {
                 publisher_.publishStatus(test::makeStatus());

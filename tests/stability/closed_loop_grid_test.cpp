@@ -91,11 +91,14 @@ const GridScene kInHole{holeBone, peg, upright(kHoleMiddle), {{kPush, 0, kPush /
 double passivePoints(const Variant& variant, const GridScene& grid) {
     Scene scene(grid.bone(), grid.tool(), variant);
     double worst = 0;
+    int passive = 0;
     for (const GridPoint& point : gridPoints(couplingFigures(scene.config), scene.config.dt)) {
         if (point.damping_ratio < 1) continue;
+        ++passive;
         const double figure = buzz(scene, point.config, grid.start, grid.push);
         worst = worseOf(worst, figure);
     }
+    EXPECT_GT(passive, 0);
     return worst;
 }
 

@@ -2,8 +2,8 @@
 
 #include <fstream>
 
+#include "common/config/viewer_effects.h"
 #include "common/units.h"
-#include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/volume/import/nrrd_writer.h"
 
 namespace bonemill::test {
@@ -79,7 +79,7 @@ std::vector<std::string> tickEffectNames() {
     std::vector<std::string> names;
     const auto& type = *scene::Effects::descriptor();
     for (int n = 0; n < type.field_count(); ++n)
-        if (type.field(n)->number() < kFirstViewerEffect) names.push_back(type.field(n)->name());
+        if (!isViewerEffect(*type.field(n))) names.push_back(type.field(n)->name());
     return names;
 }
 

@@ -21,7 +21,7 @@ class ShownSession {
         status_ = makeStatus();
         status_.set_preset("balanced");
         publisher_.publishSceneInfo(info_);
-        for (const NodeMesh& node : milledBlock()) publisher_.publishNode(node);
+        for (const NodeMesh& node : milledBlock()) publisher_.publishNodes({&node, 1});
         thread_ = std::thread([this] { serve(); });
     }
     ~ShownSession() {

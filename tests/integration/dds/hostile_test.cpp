@@ -19,7 +19,7 @@ Sample garbage(const std::string& bytes) {
 
 TEST(HostilePayloads, AreCountedAndDroppedByClients) {
     Publisher publisher({.domain = testDomain(), .session = testSession()});
-    ASSERT_TRUE(publisher.publishNode(syntheticNode(1, 2)).is_whole);
+    ASSERT_TRUE(publisher.publishNodes(std::vector{syntheticNode(1, 2)}).is_whole);
     ASSERT_TRUE(publisher.publishStatus({}));
     ClientProbe client;
     ASSERT_TRUE(client.pollUntil([&] { return client.subscriber.isComplete(); }));
@@ -40,7 +40,7 @@ TEST(HostilePayloads, AreCountedAndDroppedByClients) {
     ASSERT_TRUE(client.pollUntil([&] { return client.subscriber.malformedSamples() >= 6; }));
     EXPECT_EQ(client.nodes.size(), 1u);
     EXPECT_TRUE(client.subscriber.isComplete());
-    ASSERT_TRUE(publisher.publishNode(syntheticNode(1, 4)).is_whole);
+    ASSERT_TRUE(publisher.publishNodes(std::vector{syntheticNode(1, 4)}).is_whole);
     ASSERT_TRUE(publisher.publishStatus({}));
     EXPECT_TRUE(
         client.pollUntil([&] { return client.subscriber.isComplete() && client.nodes.at(1).revision == 4; }));

@@ -83,14 +83,14 @@ TEST(Topics, KilledClientDisturbsNobody) {
     ChildProcess victim("synthetic_client"), survivor("synthetic_client");
     constexpr uint32_t kNodes = 50;
     for (uint32_t leaf = 0; leaf < kNodes; ++leaf)
-        ASSERT_TRUE(publisher.publishNode(syntheticNode(leaf, 0)).is_whole);
+        ASSERT_TRUE(publisher.publishNodes(std::vector{syntheticNode(leaf, 0)}).is_whole);
     ASSERT_TRUE(publisher.publishStatus({}));
     ASSERT_FALSE(victim.readLine().empty());
 
     for (uint32_t revision = 2; revision <= 200; revision += 2) {
         if (revision == 60) victim.kill();
         for (uint32_t leaf = 0; leaf < kNodes; ++leaf) {
-            ASSERT_TRUE(publisher.publishNode(syntheticNode(leaf, revision)).is_whole);
+            ASSERT_TRUE(publisher.publishNodes(std::vector{syntheticNode(leaf, revision)}).is_whole);
         }
         ASSERT_TRUE(publisher.publishStatus({}));
     }
@@ -127,7 +127,7 @@ TEST(Topics, LostServerLeavesTheModelAndARestartedOneReplacesIt) {
 
 TEST(Topics, OtherSessionsOfTheDomainAreIgnored) {
     Publisher other({.domain = testDomain(), .session = testSession() + 1});
-    ASSERT_TRUE(other.publishNode(syntheticNode(1000, 2)).is_whole);
+    ASSERT_TRUE(other.publishNodes(std::vector{syntheticNode(1000, 2)}).is_whole);
     ASSERT_TRUE(other.publishStatus({}));
     ChildProcess server("synthetic_server");
     ClientProbe client;
@@ -139,12 +139,12 @@ TEST(Publisher, IgnoresMeshesThatAreNotNewerAndCountsOnlyNodesWithAMesh) {
     Publisher publisher({.domain = testDomain(), .session = testSession()});
     NodeDigest expected;
     expected.add(1, encodeNodeMesh(syntheticNode(1, 6), {}).content);
-    EXPECT_TRUE(publisher.publishNode(syntheticNode(1, 6)).is_whole);
-    EXPECT_TRUE(publisher.publishNode(syntheticNode(1, 4)).is_whole);
-    EXPECT_TRUE(publisher.publishNode(emptyNode(2, 2)).is_whole);
+    EXPECT_TRUE(publisher.publishNodes(std::vector{syntheticNode(1, 6)}).is_whole);
+    EXPECT_TRUE(publisher.publishNodes(std::vector{syntheticNode(1, 4)}).is_whole);
+    EXPECT_TRUE(publisher.publishNodes(std::vector{emptyNode(2, 2)}).is_whole);
     EXPECT_EQ(publisher.digest(), expected);
-    EXPECT_TRUE(publisher.publishNode(emptyNode(1, 8)).is_whole);
-    EXPECT_TRUE(publisher.publishNode(syntheticNode(1, 6)).is_whole);
+    EXPECT_TRUE(publisher.publishNodes(std::vector{emptyNode(1, 8)}).is_whole);
+    EXPECT_TRUE(publisher.publishNodes(std::vector{syntheticNode(1, 6)}).is_whole);
     EXPECT_EQ(publisher.digest(), NodeDigest());
 }
 

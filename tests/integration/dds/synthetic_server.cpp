@@ -25,11 +25,11 @@ void carryOut(const std::string& line, Publisher& publisher) {
     if (verb == "nodes") {
         words >> count >> revision;
         for (uint32_t leaf = first; leaf < first + count; ++leaf) {
-            publisher.publishNode(syntheticNode(leaf, revision));
+            publisher.publishNodes(std::vector{syntheticNode(leaf, revision)});
         }
     } else if (verb == "empty") {
         words >> revision;
-        publisher.publishNode(emptyNode(first, revision));
+        publisher.publishNodes(std::vector{emptyNode(first, revision)});
     }
     publisher.publishStatus({});
     std::cout << publisher.digest().count() << ' ' << publisher.digest().value() << std::endl;

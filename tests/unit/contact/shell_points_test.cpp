@@ -168,8 +168,10 @@ TEST(ShellPoints, LieOnTheTrilinearSurfaceAndNearTheSphere) {
             const PointShell shell(volume, lattice, {.levels = levelsOf({1, 2, 3}, normals)});
             const double counts_per_voxel = kMaxDensity / 4.0;
             const double diagonal = std::sqrt(3.0) * counts_per_voxel;  // largest |density - iso| in a cell
-            for (int level = 0; level < 3; ++level)
-                for (const ShellPoint& p : allPoints(shell, level, lattice)) {
+            for (int level = 0; level < 3; ++level) {
+                const auto points = allPoints(shell, level, lattice);
+                ASSERT_GT(points.size(), 0u);
+                for (const ShellPoint& p : points) {
                     const Eigen::Vector3d p_V = p.position.cast<double>();
                     const Eigen::Vector3d r = p_V - grid.center;
                     ASSERT_LT(std::abs(densityAt(volume, p_V) - volume.iso()),
@@ -179,6 +181,7 @@ TEST(ShellPoints, LieOnTheTrilinearSurfaceAndNearTheSphere) {
                     const double limit_deg = normals == ShellNormals::kTrilinear ? 3.5 : 0.3;
                     ASSERT_LT(std::acos(cosine) * 180 / M_PI, limit_deg) << spacing.transpose();
                 }
+            }
         }
 }
 
@@ -219,7 +222,8 @@ TEST(ShellPoints, KeepToTheirBlocks) {
     test::fillNoise(volume, random);
     const LeafLattice lattice(volume, {7, 5, 8});
     const PointShell shell(volume, lattice, {.levels = kLevels});
-    for (int level = 0; level < 3; ++level)
+    for (int level = 0; level < 3; ++level) {
+        ASSERT_GT(shell.pointCount(level), 0u);
         for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
             const IndexBox cells = lattice.cellsOf(leaf);
             const int s = shell.scalingFactor(level);
@@ -233,6 +237,7 @@ TEST(ShellPoints, KeepToTheirBlocks) {
                 last_key = p.key;
             }
         }
+    }
 }
 
 }  // namespace

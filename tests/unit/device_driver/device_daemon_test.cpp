@@ -1,55 +1,41 @@
 // Runs the program itself: exit codes, messages, and a whole scenario against a server made of one thread.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
+#include <signal.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <future>
+#include <atomic>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "common/ipc/device_link.h"
 #include "common/rt/clock.h"
-#include "tests/support/places.h"
+#include "tests/support/process.h"
 
 namespace bonemill {
 namespace {
 
-struct Outcome {
-    int exit_code;
-    std::string output;  // stdout and stderr
-};
-
-Outcome runDaemon(const std::string& arguments) {
-    const std::string command = test::binDir() + "/device_daemon " + arguments + " 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");
-    Outcome outcome{-1, ""};
-    std::array<char, 4096> part;
-    while (const size_t n = fread(part.data(), 1, part.size(), pipe)) outcome.output.append(part.data(), n);
-    const int status = pclose(pipe);
-    if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
-    return outcome;
-}
-
 class DeviceDaemonTest : public testing::Test {
   protected:
-    DeviceDaemonTest() { std::filesystem::create_directories(folder_); }
-    ~DeviceDaemonTest() override { std::filesystem::remove_all(folder_); }
-
     std::string sceneFile(const std::string& text) const {
-        const std::filesystem::path file = folder_ / "scene.textproto";
-        std::ofstream(file) << text;
-        return file.string();
+        const std::string file = folder_ / "scene.textproto";
+        test::writeFile(file, text);
+        return file;
+    }
+    // With further words after these.
+    std::vector<std::string> commandLine(const std::string& scene_file,
+                                         const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> words{"device_daemon",    "--scene",   scene_file,
+                                       "--best-effort-rt", "--session", std::to_string(session_)};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
     }
 
     // The number differs between tests that run at the same time.
     const uint32_t session_ = 100000 + uint32_t(getpid());
 
   private:
-    const std::filesystem::path folder_ =
-        std::filesystem::temp_directory_path() / ("device_daemon_test_" + std::to_string(getpid()));
+    const test::TemporaryFolder folder_;
 };
 
 constexpr char kShortScene[] = R"(
@@ -60,52 +46,94 @@ simulated_operator {
   waypoint { time_s: 0.5 p_WT_mm { z: -2 } phase: "done" }
 })";
 
-struct Served {
-    uint64_t answers = 0;
-    uint32_t last_flags = 0;
-};
+// The first phase lasts longer than any test waits.
+constexpr char kLongScene[] = R"(
+volume { path: "not_read_by_the_daemon.nrrd" }
+simulated_operator {
+  waypoint { time_s: 0 p_WT_mm { z: 2 } phase: "approach" }
+  waypoint { time_s: 36000 p_WT_mm { z: -2 } phase: "press" }
+})";
 
-// Answers every sample with a spring that resists z < 0 of the handle, until told to stop.
-Served serveWall(uint32_t session, std::future<void> stop) {
-    DeviceLink link = DeviceLink::create(DeviceLink::nameOfSession(session), LinkSide::kServer);
-    Served served;
-    while (stop.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+// Answers every sample with a spring that resists z < 0 of the handle.
+class WallServer {
+  public:
+    explicit WallServer(uint32_t session)
+        : link_(DeviceLink::create(DeviceLink::nameOfSession(session), LinkSide::kServer)),
+          thread_([this](const std::stop_token& stop) {
+              while (!stop.stop_requested()) answerNext();
+          }) {}
+
+    uint64_t answers() const { return answers_; }
+    // Answers no more, and returns the flags of the newest sample.
+    uint32_t end() {
+        thread_ = {};
+        DeviceSample newest{};
+        return link_.readSample(newest) ? newest.flags : 0;
+    }
+
+  private:
+    void answerNext() {
         DeviceSample sample;
-        if (!link.waitForSample(monotonicNowNs() + 10 * kNsPerMillisecond) || !link.readSample(sample))
-            continue;
+        if (!link_.waitForSample(monotonicNowNs() + 10 * kNsPerMillisecond) || !link_.readSample(sample))
+            return;
         WrenchCommand command{};
         command.stamp_ns = monotonicNowNs();
         command.answers_sequence = sample.sequence;
         command.f_hand_D[2] = sample.p_DT[2] < 0 ? -1000 * sample.p_DT[2] : 0;
-        link.writeCommand(command);
-        ++served.answers;
+        link_.writeCommand(command);
+        ++answers_;
     }
-    DeviceSample last{};
-    if (link.readSample(last)) served.last_flags = last.flags;
-    return served;
+
+    DeviceLink link_;
+    std::atomic<uint64_t> answers_{0};
+    std::jthread thread_;
+};
+
+std::string allOf(const test::Finished& finished) {
+    return finished.out + finished.err;
+}
+
+void expectSays(const test::Finished& finished, const std::string& text) {
+    EXPECT_NE(allOf(finished).find(text), std::string::npos) << text << " in " << allOf(finished);
 }
 
 TEST_F(DeviceDaemonTest, PlaysTheScenarioWithAServerAndLeaves) {
-    std::promise<void> stop;
-    auto server = std::async(std::launch::async, serveWall, session_, stop.get_future());
-    const Outcome outcome = runDaemon("--scene " + sceneFile(kShortScene) + " --best-effort-rt --session " +
-                                      std::to_string(session_) + " --wait-seconds 60");
-    stop.set_value();
-    const Served served = server.get();
-    EXPECT_GT(served.answers, 50u);
-    EXPECT_TRUE(served.last_flags & kDeviceFlagLeaving);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-    for (const char* phase :
-         {"phase approach", "phase press", "\"final_phase\":\"done\"", "\"failed_poses\":0"}) {
-        EXPECT_NE(outcome.output.find(phase), std::string::npos) << phase << " in " << outcome.output;
+    test::Process daemon(commandLine(sceneFile(kShortScene)));
+    WallServer server(session_);
+    const test::Finished finished = daemon.wait();
+    EXPECT_GT(server.answers(), 0u);
+    EXPECT_TRUE(server.end() & kDeviceFlagLeaving);
+    EXPECT_EQ(finished.exit_code, 0) << allOf(finished);
+    expectSays(finished, "\"final_phase\":\"done\"");
+    expectSays(finished, "\"failed_poses\":0");
+}
+
+// However seldom it runs, it has the time to get there.
+TEST_F(DeviceDaemonTest, SaysTheFirstAndTheLastPhaseAndLeavesWhenToldTo) {
+    struct {
+        const char* scene;
+        std::vector<std::string> options;
+        std::string phase;
+    } const cases[] = {{kLongScene, {}, "approach"}, {kShortScene, {"--hold"}, "done"}};
+    for (const auto& [scene, options, phase] : cases) {
+        test::Process daemon(commandLine(sceneFile(scene), options));
+        WallServer server(session_);
+        EXPECT_TRUE(test::waitFor([&] {
+            const std::string said = daemon.outSoFar() + daemon.errSoFar();
+            return said.find("phase " + phase) != std::string::npos && server.answers() > 50;
+        })) << phase;
+        daemon.signal(SIGTERM);
+        const test::Finished finished = daemon.wait();
+        EXPECT_TRUE(server.end() & kDeviceFlagLeaving) << phase;
+        EXPECT_EQ(finished.exit_code, 0) << allOf(finished);
+        expectSays(finished, "\"final_phase\":\"" + phase + "\"");
     }
 }
 
 TEST_F(DeviceDaemonTest, GivesUpWithoutAServer) {
-    const Outcome outcome = runDaemon("--scene " + sceneFile(kShortScene) + " --best-effort-rt --session " +
-                                      std::to_string(session_) + " --wait-seconds 0.1");
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_NE(outcome.output.find("error: no haptic_server"), std::string::npos) << outcome.output;
+    const test::Finished finished = test::run(commandLine(sceneFile(kShortScene), {"--wait-seconds", "0.1"}));
+    EXPECT_EQ(finished.exit_code, 2);
+    expectSays(finished, "error: no haptic_server");
 }
 
 TEST_F(DeviceDaemonTest, RefusesBadScenes) {
@@ -115,25 +143,27 @@ TEST_F(DeviceDaemonTest, RefusesBadScenes) {
         {"/does/not/exist.textproto", "/does/not/exist.textproto"},
     };
     for (const auto& [file, name] : cases) {
-        const Outcome outcome = runDaemon("--best-effort-rt --scene " + file);
-        EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
-        EXPECT_EQ(outcome.output.rfind("error: ", 0), 0u) << outcome.output;
-        EXPECT_NE(outcome.output.find(name), std::string::npos) << outcome.output;
+        const test::Finished finished = test::run(commandLine(file));
+        EXPECT_EQ(finished.exit_code, 2) << allOf(finished);
+        EXPECT_EQ(allOf(finished).rfind("error: ", 0), 0u) << allOf(finished);
+        expectSays(finished, name);
     }
-    const Outcome outside =
-        runDaemon("--best-effort-rt --scene " +
-                  sceneFile(volume + "simulated_operator { waypoint { p_WT_mm { x: 500 } } }"));
+    const test::Finished outside =
+        test::run(commandLine(sceneFile(volume + "simulated_operator { waypoint { p_WT_mm { x: 500 } } }")));
     EXPECT_EQ(outside.exit_code, 2);
-    EXPECT_NE(outside.output.find("waypoint[0]"), std::string::npos) << outside.output;
+    expectSays(outside, "waypoint[0]");
 }
 
 TEST_F(DeviceDaemonTest, RefusesBadOptions) {
-    for (const char* arguments : {"", "--scene", "--scene x --seconds -1", "--scene x --nonsense"}) {
-        const Outcome outcome = runDaemon(arguments);
-        EXPECT_EQ(outcome.exit_code, 2) << arguments << ": " << outcome.output;
-        EXPECT_EQ(outcome.output.rfind("error: ", 0), 0u) << outcome.output;
+    const std::vector<std::string> cases[] = {
+        {}, {"--scene"}, {"--scene", "x", "--seconds", "-1"}, {"--scene", "x", "--nonsense"}};
+    for (std::vector<std::string> words : cases) {
+        words.insert(words.begin(), "device_daemon");
+        const test::Finished finished = test::run(words);
+        EXPECT_EQ(finished.exit_code, 2) << allOf(finished);
+        EXPECT_EQ(allOf(finished).rfind("error: ", 0), 0u) << allOf(finished);
     }
-    EXPECT_EQ(runDaemon("--help").exit_code, 0);
+    EXPECT_EQ(test::run({"device_daemon", "--help"}).exit_code, 0);
 }
 
 }  // namespace

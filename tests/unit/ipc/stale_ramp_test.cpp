@@ -75,7 +75,9 @@ TEST(StaleRamp, recoversSmoothlyFromWhereItWas) {
         last = run.ramp.factor();
         largest_step = std::max(largest_step, run.tick(true) - last);
     }
-    const double last_step = run.tick(true) - run.ramp.factor();
+    last = run.ramp.factor();
+    const double last_step = run.tick(true) - last;
+    EXPECT_GT(last_step, 0);
     EXPECT_EQ(run.ramp.factor(), 1.0);
     EXPECT_LT(first_step, 0.1 * largest_step);  // no kink where it begins and ends
     EXPECT_LT(last_step, 0.1 * largest_step);

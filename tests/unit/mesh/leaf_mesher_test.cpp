@@ -91,7 +91,9 @@ TEST(LeafMesher, ClosedAtExtremeIsoValues) {
             volume.set(i, j, k, kValues[size_t(any(random))]);
         });
         const LeafLattice lattice(volume, {5, 5, 5});
-        EXPECT_TRUE(checkMesh(meshAll(volume, lattice), MeshGrid(volume, lattice)).isClosed());
+        const std::vector<NodeMesh> meshes = meshAll(volume, lattice);
+        ASSERT_GT(meshes.size(), 0u);
+        EXPECT_TRUE(checkMesh(meshes, MeshGrid(volume, lattice)).isClosed());
     }
 }
 
@@ -138,6 +140,7 @@ TEST(LeafMesher, AVoxelThatIsPartlyFilledLooksAsTheBoneBelowIt) {
         hard += size_t(std::ranges::count(mesh.materials, kHard));
         all += mesh.vertices.size();
     }
+    ASSERT_GT(all, 0u);
     EXPECT_EQ(hard, all);
 }
 
@@ -205,6 +208,7 @@ TEST(LeafMesher, OneVertexOnEachCrossedGridEdgeWhereInterpolationPutsIt) {
             found[{int(std::floor(cell.x())), int(std::floor(cell.y())), int(std::floor(cell.z())), axis}] =
                 fraction[axis];
         }
+    ASSERT_GT(expected.size(), 0u);
     ASSERT_EQ(found.size(), expected.size());
     for (const auto& [edge, fraction] : expected) {
         ASSERT_TRUE(found.contains(edge));
@@ -249,12 +253,15 @@ TEST(LeafMesher, LeafPositionsAgreeWithTheIntegerGrid) {
     const LeafLattice lattice(volume, {7, 8, 9});
     const MeshGrid grid(volume, lattice);
     EXPECT_EQ(grid.stepsPerCell(), 65535 / 9);
+    size_t vertices = 0;
     for (const NodeMesh& mesh : meshAll(volume, lattice))
         for (const PackedVertex& v : mesh.vertices) {
+            ++vertices;
             const Eigen::Vector3d p =
                 (mesh.origin + mesh.step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z))).cast<double>();
             EXPECT_LT((p - grid.position(grid.stepsOf(mesh.leaf, v))).norm(), 1e-8);
         }
+    ASSERT_GT(vertices, 0u);
 }
 
 TEST(LeafMesher, NormalWithoutGradientPointsOutOfTheBone) {
@@ -276,9 +283,13 @@ TEST(LeafMesher, FlatFieldGivesFiniteNormals) {
     forEachVoxel(test::wholeBox(volume),
                  [&](int i, int j, int k) { volume.set(i, j, k, i % 2 == 0 ? kMaxDensity : 0); });
     const LeafLattice lattice(volume, {4, 4, 4});
+    size_t vertices = 0;
     for (const NodeMesh& mesh : meshAll(volume, lattice))
-        for (const PackedVertex& v : mesh.vertices)
+        for (const PackedVertex& v : mesh.vertices) {
+            ++vertices;
             EXPECT_NEAR(decodeNormal(v.octahedral_u, v.octahedral_v).norm(), 1, 1e-5);
+        }
+    ASSERT_GT(vertices, 0u);
 }
 
 TEST(LeafMesher, HomogeneousLeafIsEmpty) {

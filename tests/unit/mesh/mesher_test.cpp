@@ -155,6 +155,7 @@ TEST(Mesher, LeavesBeingWrittenWait) {
     const Mesher::PassResult during = mesher.pass(model.sink());
     EXPECT_GT(during.pending, 0u);
     EXPECT_EQ(during.read + during.pending, bone.lattice->leafCount());
+    ASSERT_GT(model.meshes.size(), 0u);
     for (const auto& [leaf, mesh] : model.meshes) EXPECT_EQ(bone.lattice->version(leaf) % 2, 0u);
     bone.lattice->endWrite(box);
     const Mesher::PassResult after = mesher.pass(model.sink());

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <condition_variable>
 #include <cstdlib>
 #include <mutex>
 
@@ -40,6 +41,16 @@ TEST(RtGuardDeathTest, abortsOnAFreeInsideANestedScope) {
 TEST(RtGuardDeathTest, abortsOnALockInsideAScope) {
     std::mutex mutex;
     EXPECT_DEATH(lockInScope(mutex), "rt-guard: lock inside a real-time scope: pthread_mutex_lock");
+}
+
+TEST(RtGuardDeathTest, abortsOnASignalInsideAScope) {
+    std::condition_variable condition;
+    EXPECT_DEATH(
+        {
+            const RtScope scope;
+            condition.notify_one();
+        },
+        "rt-guard: lock inside a real-time scope: pthread_cond_signal");
 }
 
 TEST(RtGuard, letsTheRestOfTheProgramAlone) {

@@ -66,6 +66,30 @@ TEST_F(SessionCommandsTest, TheThesisLawIsRefusedWhereAnEffectNeedsTheOther) {
     EXPECT_EQ(commands.carryOut(command), "done");
 }
 
+TEST_F(SessionCommandsTest, WhatIsFalseIsRefusedAndNotDone) {
+    constexpr void (topics::Command::*kActions[])(bool) = {&topics::Command::set_reset_volume,
+                                                           &topics::Command::set_save_checkpoint,
+                                                           &topics::Command::set_shut_down};
+    for (const auto set : kActions) {
+        topics::Command command;
+        command.set_role(topics::Viewer::INSTRUCTOR);
+        (command.*set)(false);
+        EXPECT_EQ(commands_.carryOut(command),
+                  "refused: a command that is false asks for nothing; send true");
+    }
+    EXPECT_FALSE(stop_requested_);
+    topics::Status status;
+    commands_.describe(status);
+    EXPECT_EQ(status.checkpoints_size(), 0);
+    topics::Command command;
+    command.set_role(topics::Viewer::INSTRUCTOR);
+    command.set_save_checkpoint(true);
+    EXPECT_EQ(commands_.carryOut(command), "done");
+    command.set_shut_down(true);
+    EXPECT_EQ(commands_.carryOut(command), "done");
+    EXPECT_TRUE(stop_requested_);
+}
+
 // The refusal is kept and sent to everyone.
 TEST_F(SessionCommandsTest, OfAnUnknownNameOnly32PrintableCharactersAreRepeated) {
     EXPECT_EQ(setAccuracy(std::string(3000, 'x')),

@@ -1,0 +1,59 @@
+// A scene that says nothing asks for what the code has by itself.
+#include "haptic_server/setup/scene_setup.h"
+
+#include <gtest/gtest.h>
+
+namespace bonemill {
+namespace {
+
+// What the budgets allow follows from the rate (tests/unit/tick/tick_budget_test.cpp).
+TEST(TickConfigOfAScene, DefaultsOfTheSceneAreTheDefaultsOfTheCode) {
+    const TickConfig scene = tickConfigOf(scene::Scene{});
+    const TickConfig code;
+    EXPECT_DOUBLE_EQ(scene.dt, code.dt);
+    EXPECT_DOUBLE_EQ(scene.contact.point_stiffness, code.contact.point_stiffness);
+    EXPECT_EQ(scene.contact.full_stiffness_contacts, code.contact.full_stiffness_contacts);
+    EXPECT_EQ(scene.contact.shell_level, code.contact.shell_level);
+    EXPECT_DOUBLE_EQ(scene.coupling.translation_stiffness, code.coupling.translation_stiffness);
+    EXPECT_DOUBLE_EQ(scene.coupling.rotation_stiffness, code.coupling.rotation_stiffness);
+    EXPECT_DOUBLE_EQ(scene.coupling.max_speed, code.coupling.max_speed);
+    EXPECT_DOUBLE_EQ(scene.coupling.max_angular_speed, code.coupling.max_angular_speed);
+    EXPECT_DOUBLE_EQ(scene.coupling.static_damping, code.coupling.static_damping);
+    EXPECT_DOUBLE_EQ(scene.hand.max_force, code.hand.max_force);
+    EXPECT_DOUBLE_EQ(scene.hand.max_torque, code.hand.max_torque);
+    EXPECT_TRUE(effectNames(scene.effects).empty());
+}
+
+TEST(TickConfigOfAScene, DefaultsOfTheGradientLawAreTheDefaultsOfTheCode) {
+    const GradientConfig scene = tickConfigOf(scene::Scene{}).gradient;
+    const GradientConfig code;
+    EXPECT_DOUBLE_EQ(scene.contact.stiffness_per_area, code.contact.stiffness_per_area);
+    EXPECT_DOUBLE_EQ(scene.contact.stiffness_cap, code.contact.stiffness_cap);
+    EXPECT_DOUBLE_EQ(scene.coupling.translation_stiffness, code.coupling.translation_stiffness);
+    EXPECT_DOUBLE_EQ(scene.coupling.rotation_stiffness, code.coupling.rotation_stiffness);
+    EXPECT_DOUBLE_EQ(scene.coupling.saturation_torque, code.coupling.saturation_torque);
+    EXPECT_DOUBLE_EQ(scene.coupling.damping_time, code.coupling.damping_time);
+    EXPECT_DOUBLE_EQ(scene.coupling.relaxing_share, code.coupling.relaxing_share);
+    EXPECT_DOUBLE_EQ(scene.coupling.relaxing_time, code.coupling.relaxing_time);
+    EXPECT_EQ(scene.coupling.p_TG, code.coupling.p_TG);
+    EXPECT_DOUBLE_EQ(scene.max_speed, code.max_speed);
+    EXPECT_DOUBLE_EQ(scene.max_angular_speed, code.max_angular_speed);
+    EXPECT_TRUE(accuracyOf(scene::Scene{}) == AccuracySettings{});
+}
+
+TEST(ToolConfigOfAScene, DefaultsOfTheSceneAreTheDefaultsOfTheCode) {
+    const ToolConfig scene = toolConfigOf(LoadedScene{}, scene::Tool{});
+    const ToolConfig code;
+    EXPECT_TRUE(scene.shapes.empty());
+    EXPECT_EQ(scene.mesh_path, code.mesh_path);
+    EXPECT_EQ(scene.burr_kind, code.burr_kind);
+    EXPECT_DOUBLE_EQ(scene.burr_radius, code.burr_radius);
+    EXPECT_DOUBLE_EQ(scene.burr_length, code.burr_length);
+    EXPECT_DOUBLE_EQ(scene.burr_tip_radius, code.burr_tip_radius);
+    EXPECT_EQ(scene.sdf_nodes, code.sdf_nodes);
+    EXPECT_DOUBLE_EQ(scene.sdf_spacing, code.sdf_spacing);
+    EXPECT_EQ(scene.sdf_origin_T, code.sdf_origin_T);
+}
+
+}  // namespace
+}  // namespace bonemill
