@@ -95,8 +95,10 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
         bonemill::setUpLog("haptic_server", log_level);
         if (simulate_command->parsed()) {
-            std::cout << bonemill::simulate(simulate) << std::endl;
-            return 0;
+            const bonemill::SimulateResult result = bonemill::simulate(simulate);
+            std::cout << result.json << std::endl;
+            for (const std::string& problem : result.problems) std::cerr << "error: " << problem << '\n';
+            return result.problems.empty() ? 0 : 1;
         }
         if (report_command->parsed()) {
             std::cout << bonemill::accuracyReport(report, std::cerr) << std::flush;

@@ -66,7 +66,7 @@ bool MeshOutbox::hasGivenWhole() const {
 void MeshOutbox::put(NodeGroup&& group, int64_t now_ns) {
     if (group.meshes.empty()) return;
     Waiting joined;
-    joined.since_ns = now_ns;
+    joined.since_ns = group.since_ns != 0 ? group.since_ns : now_ns;
     joined.oldest_cut_ns = group.oldest_cut_ns;
     joined.leaves.insert(group.neighbours.begin(), group.neighbours.end());
     for (NodeMesh& mesh : group.meshes) {
@@ -99,6 +99,7 @@ std::vector<NodeGroup> MeshOutbox::takeNearest(const Eigen::Vector3f& point, int
         Waiting& group = waiting.mapped();
         bytes -= codedSize(group.meshes);
         taken.emplace_back().oldest_cut_ns = group.oldest_cut_ns;
+        taken.back().since_ns = group.since_ns;
         for (const uint32_t leaf : group.leaves)
             if (!group.meshes.contains(leaf)) taken.back().neighbours.push_back(leaf);
         for (auto& [leaf, mesh] : group.meshes) taken.back().meshes.push_back(std::move(mesh));

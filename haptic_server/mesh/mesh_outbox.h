@@ -18,11 +18,13 @@ struct NodeGroup {
     std::vector<uint32_t>
         neighbours;             // other leaves of the same change: what waits of them belongs to it too
     int64_t oldest_cut_ns = 0;  // start of the oldest tick whose cut is in it, CLOCK_MONOTONIC; 0: none
+    int64_t since_ns = 0;       // it has waited in the outbox since then; 0: it was not there yet
 };
 
 class MeshOutbox {
   public:
-    // Joins what waits with it when they share a leaf; a newer mesh of a leaf replaces the older one.
+    // Joins what waits with it when they share a leaf; a newer mesh of a leaf replaces the older one. A group
+    // that was taken and comes back has waited all the time.
     void put(NodeGroup&& group, int64_t now_ns);
 
     // Takes whole groups, those nearest to the point (V, m) first, until their coded size is some `bytes`: at

@@ -26,6 +26,12 @@ bool MeshRounds::round(const Sink& sink) {
     return passOverOthers(sink) || !is_done;
 }
 
+void MeshRounds::finish(const Sink& sink, int64_t until_ns) {
+    next_pass_ns_ = 0;
+    while (round(sink) && monotonicNowNs() < until_ns) {
+    }
+}
+
 // A cut in the ring has been written: the versions read from now on are those after it, or newer.
 void MeshRounds::takeCuts() {
     Cut cut;

@@ -30,6 +30,10 @@ class MeshRounds {
     bool round(const Sink& sink);
     static constexpr std::chrono::microseconds kPeriod{500};
 
+    // When nothing writes any more: makes all rounds that are left, at once, until this instant
+    // (CLOCK_MONOTONIC) at most. Then the sink has had the bone as it is.
+    void finish(const Sink& sink, int64_t until_ns);
+
     bool hasMeshedAll() const noexcept { return mesher_.hasMeshedAll(); }
 
     // The time of each cut goes from the start of its tick until the sink had the meshes of all leaves that

@@ -13,6 +13,7 @@
 #include "haptic_server/offline/run_path.h"
 #include "haptic_server/offline/state_hash.h"
 #include "haptic_server/record/fault_names.h"
+#include "haptic_server/record/final_files.h"
 #include "haptic_server/record/hex_text.h"
 #include "haptic_server/record/run_statistics.h"
 #include "haptic_server/record/trace_writer.h"
@@ -76,7 +77,7 @@ nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
 
 }  // namespace
 
-std::string simulate(const SimulateOptions& options) {
+SimulateResult simulate(const SimulateOptions& options) {
     const LoadedScene loaded = loadScene(options.scene);
     const std::vector<TrajectoryRow> rows = readTrajectory(options.trajectory);
     checkSpacing(rows, 1 / loaded.scene.loop().rate_hz(), options.trajectory);
@@ -104,14 +105,16 @@ std::string simulate(const SimulateOptions& options) {
         if (trace) trace->write(record);
     });
     hash.addVolume(bone.volume);
+    FinalFiles files;
     if (trace && !trace->close())
-        throw UserError(options.trace + ": the trace could not be written to its end (disk full?)");
+        files.note(options.trace + ": the trace could not be written to its end (disk full?)");
 
     const std::vector<NodeMesh> meshes = meshWholeBone(bone.volume, bone.lattice);
     const MeshCheck mesh = checkMesh(meshes, grid);
-    if (!options.save.volume.empty()) writeNrrd(options.save.volume, bone.volume);
-    if (!options.save.mesh.empty()) saveMesh(options.save.mesh, bone.volume, bone.lattice, meshes);
-    if (before) saveDifference(options.save.difference, *before, bone.volume);
+    const SavePaths& save = options.save;
+    files.write(save.volume, [&] { writeNrrd(save.volume, bone.volume); });
+    files.write(save.mesh, [&] { saveMesh(save.mesh, bone.volume, bone.lattice, meshes); });
+    files.write(save.difference, [&] { saveDifference(save.difference, *before, bone.volume); });
     nlohmann::json json = totals(statistics, hash);
     for (const auto& [key, value] : statistics.effects().figures()) json[key] = value;
     if (recorded.any()) json["warnings"] = statistics.effects().warnings(materialNamesOf(loaded.scene));
@@ -124,7 +127,7 @@ std::string simulate(const SimulateOptions& options) {
     json["bone_before_mm3"] = volume_before * kPerCubicMillimetre;
     json["mesh"] = {
         {"triangles", mesh.triangles}, {"vertices", mesh.vertices}, {"is_closed", mesh.isClosed()}};
-    return json.dump();
+    return {json.dump(), files.problems()};
 }
 
 }  // namespace bonemill

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "haptic_server/record/bone_files.h"
 
@@ -15,8 +16,12 @@ struct SimulateOptions {
     SavePaths save;
 };
 
-// Runs all rows and returns the JSON object with totals and `state_hash`
-// (docs/simulate.md). Throws UserError.
-std::string simulate(const SimulateOptions& options);
+struct SimulateResult {
+    std::string json;                   // object with totals and `state_hash` (docs/simulate.md)
+    std::vector<std::string> problems;  // one message for each file that is not there or not whole
+};
+
+// Runs all rows, then writes the files. Throws UserError when the input is wrong.
+SimulateResult simulate(const SimulateOptions& options);
 
 }  // namespace bonemill

@@ -54,7 +54,9 @@ void Recorder::addToWindow(const TickRecord& record) {
 bool Recorder::finish() {
     drain();
     statistics_.setLostRecords(ring_.dropped());
-    return !trace_ || trace_->close();
+    if (!trace_) return true;
+    const bool is_written = trace_->close();
+    return is_written && statistics_.lostRecords() == 0;
 }
 
 std::optional<TickRecord> Recorder::latest() const {

@@ -33,7 +33,8 @@ class Recorder {
 
     // The recorder thread takes what is in the ring, every few milliseconds.
     void drain();
-    // Once the tick has ended this takes the rest and closes the trace. False: some of the trace is lost.
+    // Once the tick has ended this takes the rest and closes the trace. False: some of the trace is lost,
+    // because it could not be written or because the ring was full (statistics().lostRecords()).
     bool finish();
 
     // Any normal thread may ask.

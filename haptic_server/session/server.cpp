@@ -15,6 +15,7 @@
 #include "common/user_error.h"
 #include "haptic_server/mesh/mesh_rounds.h"
 #include "haptic_server/record/fault_names.h"
+#include "haptic_server/record/final_files.h"
 #include "haptic_server/session/device_link_io.h"
 #include "haptic_server/session/show_session.h"
 #include "haptic_server/setup/scene_effects.h"
@@ -33,6 +34,10 @@ constexpr int kTickPriority = 80;
 constexpr auto kPublishPeriod = 5ms;
 constexpr auto kRecordPeriod = 4ms;
 constexpr int64_t kWarmUpNs = kNsPerSecond;
+// At its end the session shows what was milled last. A bone that is not yet meshed, or a slow network, holds
+// it for no longer than this.
+constexpr int64_t kLastMeshingNs = kNsPerSecond / 2;
+constexpr int64_t kLastPublishingNs = kNsPerSecond / 2;
 
 DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& loop,
                               const Simulation& simulation) {
@@ -106,8 +111,11 @@ class Server {
         io_.stop();
         tick_thread_.join();
         recorder = {};
-        mesher = {};
         publisher = {};
+        // No tick and no command comes any more: what was being put back is in the files and in the picture.
+        history_.restoreAll(*simulation_.bone);
+        mesher = {};
+        endOnFailure([this] { show_.finish(monotonicNowNs() + kLastPublishingNs); });
         published_.writes = publisher_.writeTimes();
         published_.nodes = publisher_.digest().count();
         published_.digest = publisher_.digest().value();
@@ -128,14 +136,22 @@ class Server {
             logRealtime);
     }
 
-    // A thread works until it is told to stop; a failure ends the session in order, with its files.
+    // A thread works until it is told to stop.
     template <class Work>
     void loop(const std::stop_token& stop, std::chrono::microseconds period, Work work) {
-        try {
+        endOnFailure([&] {
             while (!stop.stop_requested()) {
                 work();
                 std::this_thread::sleep_for(period);
             }
+        });
+    }
+
+    // A failure ends the session in order, with its files.
+    template <class Work>
+    void endOnFailure(Work work) {
+        try {
+            work();
         } catch (const std::exception& error) {
             spdlog::error("{}: the session ends", error.what());
             has_failed_ = true;
@@ -154,11 +170,16 @@ class Server {
         MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_,
                           are_wanted ? simulation_.tick.effects.properties.get() : nullptr);
         const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
+        const auto markWhole = [&] {
+            if (rounds.hasMeshedAll()) outbox_.markWhole(monotonicNowNs());
+        };
         loop(stop, MeshRounds::kPeriod, [&] {
-            for (bool is_more = true; is_more && !stop.stop_requested();) {
+            for (bool is_more = true; is_more && !stop.stop_requested(); markWhole())
                 is_more = rounds.round(put);
-                if (rounds.hasMeshedAll()) outbox_.markWhole(monotonicNowNs());
-            }
+        });
+        endOnFailure([&] {
+            rounds.finish(put, monotonicNowNs() + kLastMeshingNs);
+            markWhole();
         });
         recorder_.setCutToPublisher(rounds.cutToSink());
     }
@@ -198,37 +219,38 @@ class Server {
     }
 
     int finish() {
-        // The tick thread has ended: what it was putting back is in the files, too.
-        history_.restoreAll(*simulation_.bone);
-        const bool trace_is_whole = recorder_.finish();
-        if (!trace_is_whole)
-            spdlog::error("{}: part of the trace could not be written (disk full?)", options_.trace);
+        FinalFiles files;
+        if (!recorder_.finish()) files.note(traceProblem());
         const RunStatistics& statistics = recorder_.statistics();
-        spdlog::info("{} ticks, {:.1f} Hz, tick p99 {:.1f} us, {} dropped, faults: {}", statistics.ticks(),
-                     statistics.meanRateHz(),
-                     microsecondsOfNs(double(statistics.tickCompute().percentileNs(99))),
-                     statistics.droppedTicks(), faultNames(statistics.faults()));
+        logClosing(statistics);
         for (const std::string& warning : statistics.effects().warnings(materialNamesOf(loaded_.scene)))
             spdlog::warn("effects warned: {}", warning);
-        // Each is written on its own: one that fails must not cost the others.
-        bool all_written = trace_is_whole;
-        const auto write = [&all_written](const std::string& path, auto&& action) {
-            try {
-                if (!path.empty()) action();
-            } catch (const std::exception& error) {
-                spdlog::error("{}", error.what());
-                all_written = false;
-            }
-        };
         const VoxelVolume& volume = simulation_.bone->volume;
         const LeafLattice& lattice = simulation_.bone->lattice;
         const SavePaths& save = options_.save;
-        write(save.volume, [&] { writeNrrd(save.volume, volume); });
-        write(save.mesh, [&] { saveMesh(save.mesh, volume, lattice, meshWholeBone(volume, lattice)); });
-        write(save.difference, [&] { saveDifference(save.difference, history_.scanned(), volume); });
-        write(options_.report,
-              [&] { statistics.writeJson(options_.report, materialNamesOf(loaded_.scene)); });
-        return all_written && !has_failed_ ? 0 : 1;
+        files.write(save.volume, [&] { writeNrrd(save.volume, volume); });
+        files.write(save.mesh, [&] { saveMesh(save.mesh, volume, lattice, meshWholeBone(volume, lattice)); });
+        files.write(save.difference, [&] { saveDifference(save.difference, history_.scanned(), volume); });
+        files.write(options_.report,
+                    [&] { statistics.writeJson(options_.report, materialNamesOf(loaded_.scene)); });
+        for (const std::string& problem : files.problems()) spdlog::error("{}", problem);
+        return files.problems().empty() && !has_failed_ ? 0 : 1;
+    }
+
+    std::string traceProblem() const {
+        const uint64_t lost = recorder_.statistics().lostRecords();
+        if (lost == 0) return options_.trace + ": part of the trace could not be written (disk full?)";
+        return options_.trace + ": the trace lacks " + std::to_string(lost) +
+               " ticks, which came faster than they could be written (disk slow or full?)";
+    }
+
+    static void logClosing(const RunStatistics& statistics) {
+        const uint64_t lost = statistics.lostRecords();
+        spdlog::info("{} ticks, {:.1f} Hz, tick p99 {:.1f} us, {} dropped, {}faults: {}", statistics.ticks(),
+                     statistics.meanRateHz(),
+                     microsecondsOfNs(double(statistics.tickCompute().percentileNs(99))),
+                     statistics.droppedTicks(), lost == 0 ? "" : std::to_string(lost) + " records lost, ",
+                     faultNames(statistics.faults()));
     }
 
     ServerOptions options_;

@@ -1,6 +1,8 @@
 #include "haptic_server/session/show_session.h"
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "common/rt/clock.h"
 #include "common/units.h"
@@ -107,6 +109,15 @@ void ShowSession::round() {
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
     carryOutCommands();
     if (now_ns - last_status_ns_ > (has_changed_ ? kStatusAfterChangeNs : kStatusPeriodNs)) publishStatus();
+}
+
+void ShowSession::finish(int64_t until_ns) {
+    publishNodes();
+    while (!outbox_.isEmpty() && monotonicNowNs() < until_ns) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the budget grows
+        publishNodes();
+    }
+    publishStatus();
 }
 
 void ShowSession::publishToolState(int64_t now_ns) {

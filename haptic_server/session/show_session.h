@@ -24,6 +24,10 @@ class ShowSession {
     // The publisher thread makes one round about 200 times per second.
     void round();
 
+    // Once the tick and the mesher have ended, whoever has joined the publisher thread publishes the nodes
+    // that wait, until this instant (CLOCK_MONOTONIC) at most, and the status that counts them.
+    void finish(int64_t until_ns);
+
   private:
     bool publishNodes();
     void publishToolState(int64_t now_ns);

@@ -60,6 +60,7 @@ void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     bone_V_ = Eigen::AlignedBox3d(*low, *high);
     if (!old || old->name() != info.name()) view_pending_ = true;
     hud_input_.info = info;
+    awaits_info_ = false;
     std::vector<Eigen::Vector4f> palette = paletteOf(info);
     if (palette != palette_) renderer_.setPalette(palette);
     palette_ = std::move(palette);
@@ -86,13 +87,14 @@ void RenderScene::makeEffects(const topics::SceneInfo& info) {
 void RenderScene::setNode(const NodeMesh& mesh) {
     nodes_.set(mesh);  // throws when it contradicts itself: then nobody gets it
     if (effects_) effects_->setNode(mesh);
-    if (has_effects_ && !hud_input_.info) early_nodes_.insert_or_assign(mesh.leaf, mesh);
+    if (has_effects_ && awaits_info_) early_nodes_.insert_or_assign(mesh.leaf, mesh);
 }
 
 // Another run of the server has begun, of which nothing is known yet.
 void RenderScene::clearNodes() {
     if (effects_) effects_->clear();
     early_nodes_.clear();
+    awaits_info_ = true;
     nodes_.clear();
 }
 

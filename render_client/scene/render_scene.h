@@ -110,6 +110,7 @@ class RenderScene {
     Anaglyph anaglyph_;
     HudPainter hud_painter_;
     HudInput hud_input_;
+    bool awaits_info_ = true;  // nothing has told the scene of this run of the server yet
     // These came before the scene info said whether effects need them.
     std::map<uint32_t, NodeMesh> early_nodes_;
     std::unique_ptr<VisualEffects> effects_;

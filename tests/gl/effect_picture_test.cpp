@@ -29,17 +29,23 @@ class EffectPictures : public testing::Test {
 
     // The burr has just cut a groove into the front of the ball.
     void mill(const scene::Effects& wish, Quality quality = Quality::kFull, bool has_effects = true) {
+        begin(has_effects);
+        scene_->settings().quality = quality;
+        scene_->setSceneInfo(infoOf(wish));
+        session_->show(*scene_);
+        stroke(0.4);
+    }
+    void begin(bool has_effects) {
         scene_.emplace(context_.gl(), has_effects);
         session_.emplace(ball(), test::kBurrRadius);
         scene_->settings().show_hud = false;
         scene_->settings().show_force = false;
-        scene_->settings().quality = quality;
+    }
+    static topics::SceneInfo infoOf(const scene::Effects& wish) {
         topics::SceneInfo info = test::milledInfo();
         *info.mutable_viewer_effects() = wish;
         info.mutable_camera()->set_distance_m(0.018);
-        scene_->setSceneInfo(info);
-        session_->show(*scene_);
-        stroke(0.4);
+        return info;
     }
     void stroke(double seconds) {
         Pose from = at_, to = at_;
@@ -93,6 +99,27 @@ TEST_F(EffectPictures, BurrSpin) {
     draw();
     session_->wait(*scene_, at_, 1.0 / 60, {.spin_speed = 12, .is_pedal_down = false});
     EXPECT_EQ(test::goldenProblem(draw(), "effect_spin"), "");
+}
+
+// Its nodes come before its scene info, as a restarted server sends them.
+TEST_F(EffectPictures, AfterARestartTheEffectsKnowTheBone) {
+    topics::SceneInfo all;
+    test::listAllEffects(all);
+    const Pose start = at_;
+    mill(all.viewer_effects());
+    const Picture fresh = draw();
+    at_ = start;
+    begin(true);
+    topics::SceneInfo info = infoOf(all.viewer_effects());
+    info.set_epoch(1);
+    scene_->setSceneInfo(info);
+    session_->show(*scene_);
+    scene_->clearNodes();
+    session_->show(*scene_);
+    info.set_epoch(2);
+    scene_->setSceneInfo(info);
+    stroke(0.4);
+    EXPECT_TRUE(draw() == fresh);
 }
 
 TEST_F(EffectPictures, WhatIsLeftOutOrHiddenLeavesNoTrace) {

@@ -1,6 +1,7 @@
 // An instructor commands a live session: checkpoints, tools, pause, roles. haptic_server, device_daemon and
 // render_client are processes, the test itself is a viewer.
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include "haptic_server/mesh/mesher.h"
 #include "haptic_server/offline/state_hash.h"
@@ -208,6 +209,21 @@ TEST_F(Instructor, ExportsTheBoneWhileTheSessionGoesOn) {
     EXPECT_NE(finished.err.find("end.ply"), std::string::npos) << finished.err;
     EXPECT_GT(std::filesystem::file_size(folder_ / "end.nrrd"), 100u);
     EXPECT_GT(std::filesystem::file_size(folder_ / "report.json"), 100u);
+}
+
+// The stream is slow enough that meshes always wait, and fast enough that those of the end need no 0.5 s.
+TEST_F(Instructor, EndingWhileItMillsShowsTheBoneThatIsInTheFiles) {
+    Process server_process(server({"--save-volume", folder_ / "end.nrrd", "--stream-mbit-per-s", "1"}));
+    ASSERT_TRUE(hasSession());
+    ASSERT_TRUE(probe_.pollUntil([this] { return probe_.subscriber.isComplete(); }));
+    Process daemon_process(daemon());
+    ASSERT_TRUE(isRemoved(0.1));
+    server_process.signal(SIGTERM);
+    const Finished finished = server_process.wait();
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    const uint64_t end = hashOfFile("end.nrrd");
+    EXPECT_NE(end, hashOfFile("slab.nrrd"));
+    EXPECT_TRUE(probe_.pollUntil([&] { return probe_.subscriber.isComplete() && shownHash() == end; }));
 }
 
 TEST_F(Instructor, AloneCommandsInAnExamination) {

@@ -171,6 +171,31 @@ TEST(Simulate, TraceHasTheDocumentedColumnsAndAddsUp) {
     EXPECT_NEAR(rows.back()[0], 0.899, 1e-12);
 }
 
+// The disk becomes full while the run writes; it was not when the files were opened.
+TEST(Simulate, AFileThatCannotBeWrittenCostsNeitherTheOthersNorTheTotals) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
+    writeFile(folder / "s.textproto", "effects { time_removal {} } volume { path: \"slab.nrrd\" }");
+    writeFile(folder / "a.csv", plunge(0.03e-3, -0.08e-3, 3.3e-3, 1.1e-3, 400, 0, 1));
+    const std::vector<std::string> plain{"haptic_server",        "simulate",     "--scene",
+                                         folder / "s.textproto", "--trajectory", folder / "a.csv"};
+    for (const char* name : {"full.csv", "full.nrrd"})
+        std::filesystem::create_symlink("/dev/full", folder / name);
+    std::vector<std::string> full = plain;
+    full.insert(full.end(), {"--trace", folder / "full.csv", "--save-volume", folder / "full.nrrd",
+                             "--save-mesh", folder / "mesh.stl", "--save-difference", folder / "cut.nrrd"});
+    const auto finished = run(full);
+    EXPECT_EQ(finished.exit_code, 1);
+    for (const char* name : {"full.csv", "full.nrrd"})
+        EXPECT_NE(finished.err.find(folder / name), std::string::npos) << finished.err;
+    ASSERT_FALSE(finished.out.empty()) << finished.err;
+    const auto json = nlohmann::json::parse(finished.out);
+    EXPECT_EQ(json["state_hash"], simulateOnce(plain)["state_hash"]);
+    EXPECT_EQ(std::filesystem::file_size(folder / "mesh.stl"),
+              84 + 50 * json["mesh"]["triangles"].get<size_t>());
+    EXPECT_GT(std::filesystem::file_size(folder / "cut.nrrd"), 100u);
+}
+
 TEST(Simulate, SavedVolumeGoesOnWhereTheRunEnded) {
     const TemporaryFolder folder;
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);

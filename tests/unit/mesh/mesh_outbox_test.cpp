@@ -110,6 +110,31 @@ TEST(MeshOutbox, AGroupPutBackIsTheSameGroup) {
     EXPECT_EQ(leavesOf(outbox.takeNearest(kOrigin, kAll, 0)), (Leaves{{1, 2, 8}}));
 }
 
+// DDS may refuse a group again and again.
+TEST(MeshOutbox, AGroupPutBackHasWaitedAllTheTime) {
+    MeshOutbox outbox;
+    outbox.put(groupOf({meshOf(9, 2, 0.15f)}), kSecond);
+    auto taken = outbox.takeNearest(kOrigin, kAll, 3 * kSecond);
+    ASSERT_EQ(taken.size(), 1u);
+    outbox.put(std::move(taken[0]), 3 * kSecond);
+    outbox.put(groupOf({meshOf(1, 2, 0.01f)}), 3 * kSecond);
+    EXPECT_EQ(leavesOf(outbox.takeNearest(kOrigin, 1, 3 * kSecond)), (Leaves{{9}}));
+}
+
+TEST(MeshOutbox, TheWholeIsNotGivenWhileAPartOfItWasPutBack) {
+    MeshOutbox outbox;
+    outbox.put(groupOf({meshOf(1, 2)}), 10);
+    outbox.markWhole(20);
+    for (int64_t now_ns : {30, 40}) {
+        auto taken = outbox.takeNearest(kOrigin, kAll, now_ns);
+        ASSERT_EQ(taken.size(), 1u);
+        outbox.put(std::move(taken[0]), now_ns);
+        EXPECT_FALSE(outbox.hasGivenWhole()) << now_ns;
+    }
+    outbox.takeNearest(kOrigin, kAll, 50);
+    EXPECT_TRUE(outbox.hasGivenWhole());
+}
+
 // A restore changes many leaves far away, and empties one.
 TEST(MeshOutbox, AnEmptiedLeafDoesNotMakeItsGroupNear) {
     MeshOutbox outbox;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <set>
 #include <thread>
 
 #include "common/rt/clock.h"
@@ -97,6 +99,32 @@ TEST_F(MeshRoundsTest, ACutThatTheRingDroppedIsMeshedAllTheSame) {
     }
     EXPECT_TRUE(is_meshed);
     EXPECT_EQ(rounds_.cutToSink().count(), 4u);
+}
+
+// The last pass over all leaves was a moment ago.
+TEST_F(MeshRoundsTest, FinishMeshesAllThatChangedWithoutWaitingForTheNextPass) {
+    meshAll();
+    roundsLeaves();
+    const IndexBox told{{20, 20, 20}, {20, 20, 20}}, untold{{44, 44, 44}, {44, 44, 44}};
+    for (const IndexBox& box : {told, untold}) {
+        write(box, 0);
+        write(box, kMaxDensity);
+    }
+    ring_.tryPush(cutOf(told, monotonicNowNs()));
+    std::set<LeafId> leaves;
+    rounds_.finish(
+        [&](NodeGroup&& group) {
+            for (const NodeMesh& mesh : group.meshes) leaves.insert(mesh.leaf);
+        },
+        std::numeric_limits<int64_t>::max());
+    EXPECT_TRUE(leaves.contains(lattice_.leafId({2, 2, 2})));
+    EXPECT_TRUE(leaves.contains(lattice_.leafId({5, 5, 5})));
+    EXPECT_TRUE(roundsLeaves().empty());
+}
+
+TEST_F(MeshRoundsTest, FinishEndsInTimeHoweverMuchIsLeft) {
+    rounds_.finish([](NodeGroup&&) {}, monotonicNowNs());
+    EXPECT_FALSE(rounds_.hasMeshedAll());
 }
 
 }  // namespace

@@ -1,0 +1,71 @@
+#include "haptic_server/session/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/temporary_folder.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int64_t kPeriodNs = 1'000'000;
+
+class RecorderTest : public testing::Test {
+  protected:
+    void pushTicks(int count) {
+        for (int n = 0; n < count; ++n) {
+            TickRecord record{};
+            record.tick = tick_++;
+            ring_.tryPush(record);
+        }
+    }
+    int traceLines() const {
+        std::ifstream file(trace_);
+        int lines = 0;
+        for (std::string line; std::getline(file, line);) ++lines;
+        return lines;
+    }
+
+    test::TemporaryFolder folder_;
+    const std::string trace_ = folder_ / "trace.csv";
+    SpscRing<TickRecord> ring_{4};
+    uint64_t tick_ = 0;
+};
+
+TEST_F(RecorderTest, ATraceWithAllTicksIsWhole) {
+    Recorder recorder(ring_, kPeriodNs, trace_);
+    pushTicks(4);
+    recorder.drain();
+    pushTicks(4);
+    EXPECT_TRUE(recorder.finish());
+    EXPECT_EQ(traceLines(), 1 + 8);
+    EXPECT_EQ(recorder.statistics().lostRecords(), 0u);
+}
+
+TEST_F(RecorderTest, ATraceThatLacksTicksIsNotWhole) {
+    Recorder recorder(ring_, kPeriodNs, trace_);
+    pushTicks(7);  // the ring has room for four
+    recorder.drain();
+    pushTicks(2);
+    EXPECT_FALSE(recorder.finish());
+    EXPECT_EQ(traceLines(), 1 + 6) << "what is there is in the file all the same";
+    EXPECT_EQ(recorder.statistics().lostRecords(), 3u);
+}
+
+TEST_F(RecorderTest, ATraceOnAFullDiskIsNotWhole) {
+    Recorder recorder(ring_, kPeriodNs, "/dev/full");
+    pushTicks(1);
+    EXPECT_FALSE(recorder.finish());
+    EXPECT_EQ(recorder.statistics().lostRecords(), 0u);
+}
+
+TEST_F(RecorderTest, WithoutATraceNothingOfItIsLost) {
+    Recorder recorder(ring_, kPeriodNs, "");
+    pushTicks(7);
+    EXPECT_TRUE(recorder.finish());
+    EXPECT_EQ(recorder.statistics().lostRecords(), 3u);
+}
+
+}  // namespace
+}  // namespace bonemill
