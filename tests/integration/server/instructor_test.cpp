@@ -213,7 +213,7 @@ TEST_F(Instructor, ExportsTheBoneWhileTheSessionGoesOn) {
 
 // The stream is slow enough that meshes always wait, and fast enough that those of the end need no 0.5 s.
 TEST_F(Instructor, EndingWhileItMillsShowsTheBoneThatIsInTheFiles) {
-    Process server_process(server({"--save-volume", folder_ / "end.nrrd", "--stream-mbit-per-s", "1"}));
+    Process server_process(server({"--save-volume", folder_ / "end.nrrd", "--stream-mbit-per-s", "0.15"}));
     ASSERT_TRUE(hasSession());
     ASSERT_TRUE(probe_.pollUntil([this] { return probe_.subscriber.isComplete(); }));
     Process daemon_process(daemon());
