@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "haptic_server/accuracy_report/probe_limits.h"
 #include "haptic_server/accuracy_report/timed_run.h"
 #include "haptic_server/contact/gradient_contact.h"
 #include "haptic_server/offline/run_path.h"
@@ -16,14 +17,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kLoads[] = {0.5, 1, 2, 4};                               // N
-constexpr double kHeaviestShare = 0.6;                                    // of the coupling's saturation
 constexpr double kWidths[] = {1, 1.5, 2, 3, 4, 5, 6, 8, 10, 12, 16, 24};  // voxels
 constexpr double kWidestOfRadius = 1.6;  // contact circle's diameter, burr radii
 constexpr double kBorderVoxels = 8;      // of the plane's volume around the contact
-constexpr int kLeafCells = 16;
 constexpr double kStartHeight = 0.1e-3;  // m
 constexpr int kPressTicks = 100, kRestTicks = 60, kMeanTicks = 20;
-constexpr int kUnlimitedPoints = 32768;  // what is near the burr is always fewer
 constexpr Density kIso = 32768;
 constexpr double kRampVoxels = 8;  // over which the density falls from full to none
 

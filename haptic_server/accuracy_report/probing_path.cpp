@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptic_server/accuracy_report/probe_limits.h"
 #include "haptic_server/accuracy_report/smooth_path.h"
 
 namespace bonemill {
@@ -12,8 +13,7 @@ using Eigen::Vector3d;
 
 constexpr int kLoopKnots = 24;
 constexpr int kPressKnots = 3;
-constexpr double kHeaviestStroke = 0.6;  // of the coupling's saturation
-constexpr double kRestTime = 0.04;       // s at the end: the tool comes back to the device
+constexpr double kRestTime = 0.04;  // s at the end: the tool comes back to the device
 
 // This is the loop's frame at a place.
 struct Loop {
@@ -55,7 +55,7 @@ ProbingStroke makeStroke(const ProbingPlace& place, const StrokeConfig& stroke, 
     const Vector3d t = tangentOf(place.normal_W);
     const Loop loop{place, t, place.normal_W.cross(t), std::min(stroke.loop_radius, tick.tool.burr.radius),
                     stroke.turning};
-    const double heaviest = std::min(stroke.heaviest, kHeaviestStroke * tick.tool.saturation_force);
+    const double heaviest = std::min(stroke.heaviest, kHeaviestShare * tick.tool.saturation_force);
     const double lightest = std::min(stroke.lightest, heaviest / 2);
     const auto pressed = [&](double angle, double height) -> PathKnot {
         const double load = lightest + (heaviest - lightest) * 0.5 * (1 - std::cos(3 * angle));

@@ -8,15 +8,14 @@
 
 #include "haptic_server/accuracy_report/analytic_probe.h"
 #include "haptic_server/accuracy_report/fine_bone.h"
+#include "haptic_server/accuracy_report/probe_limits.h"
 #include "haptic_server/offline/run_path.h"
 
 namespace bonemill {
 namespace {
 
 constexpr size_t kMostVoxels = 100'000'000;  // 200 MB of densities per thread
-constexpr int kTruthLeafCells = 16;
 constexpr int kToolRefinement = 4;
-constexpr int kTruthPoints = 32768;  // contact is never that wide
 constexpr double kVoxelsAcross = 8;
 constexpr double kLightForce = 1;  // N
 constexpr double kReach = 0.5e-3;  // m: bone this near to the tool's way may be touched
@@ -39,7 +38,7 @@ RunRecords runRefined(const ProbingStroke& stroke, const FixedTickConfig& tick, 
     FixedTickConfig config = tick;
     config.accuracy = truthSettings();
     config.gradient.most_point_tests = GradientConfig{}.most_point_tests;  // there is no hurry
-    BoneModel fine(refinedPart(bone.volume, part, times), Eigen::Vector3i::Constant(kTruthLeafCells),
+    BoneModel fine(refinedPart(bone.volume, part, times), Eigen::Vector3i::Constant(kLeafCells),
                    {.spare_points = 1});
     return runPath(config, fine, inputsOf(stroke.device, config.dt));
 }
@@ -80,7 +79,7 @@ AccuracySettings truthSettings() noexcept {
     return {.law = ContactLaw::kGradient,
             .shell_factor = 1,
             .patch_points = 2,
-            .refined_points = kTruthPoints,
+            .refined_points = kUnlimitedPoints,
             .tool_distance = ToolDistance::kAnalytic,
             .sdf_refinement = kToolRefinement,
             .precision = Precision::kDouble,
