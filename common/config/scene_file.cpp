@@ -1,5 +1,8 @@
 #include "common/config/scene_file.h"
 
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+
 #include <fstream>
 #include <system_error>
 
@@ -43,6 +46,19 @@ LoadedScene loadScene(const fs::path& file) {
     checkScene(parsed, file.string());
     return {std::move(parsed.scene), fs::absolute(file).parent_path().lexically_normal(), file,
             std::move(parsed.lines)};
+}
+
+uint64_t sceneHashOf(const scene::Scene& scene) {
+    std::string bytes;
+    {
+        google::protobuf::io::StringOutputStream stream(&bytes);
+        google::protobuf::io::CodedOutputStream coded(&stream);
+        coded.SetSerializationDeterministic(true);
+        scene.SerializeToCodedStream(&coded);
+    }
+    uint64_t hash = 14695981039346656037ull;  // FNV-1a
+    for (const unsigned char byte : bytes) hash = (hash ^ byte) * 1099511628211ull;
+    return hash;
 }
 
 fs::path resolvePath(const LoadedScene& loaded, const std::string& path_in_scene) {

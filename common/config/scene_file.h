@@ -20,6 +20,10 @@ struct LoadedScene {
 // for start-up only.
 LoadedScene loadScene(const std::filesystem::path& file);
 
+// Tells scenes apart by all that their fields say, whatever the order and the comments of the text: server
+// and daemon of a session compare it. It is stable from release to release only as long as the schema is.
+uint64_t sceneHashOf(const scene::Scene& scene);
+
 // A path written in the scene points there: absolute paths stay, relative ones start at the
 // scene file's folder.
 std::filesystem::path resolvePath(const LoadedScene& loaded, const std::string& path_in_scene);

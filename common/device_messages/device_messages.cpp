@@ -1,6 +1,8 @@
 #include "common/device_messages/device_messages.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace bonemill {
 namespace {
@@ -9,19 +11,36 @@ bool isFinite(const double (&v)[3]) noexcept {
     return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
+// It is false for NaN, too.
+bool isWithin(const double (&v)[3], double most) noexcept {
+    return std::abs(v[0]) <= most && std::abs(v[1]) <= most && std::abs(v[2]) <= most;
+}
+
+bool isFigure(double value) noexcept {
+    return value >= 0 && std::isfinite(value);
+}
+
 }  // namespace
 
 bool isPlausible(const DeviceSample& sample) noexcept {
-    for (const double coordinate : sample.p_DT) {
-        if (!(std::abs(coordinate) <= kLargestDeviceReach)) return false;  // also refuses NaN
-    }
     double squared_norm = 0.0;
     for (const double component : sample.q_DT) squared_norm += component * component;
-    return std::abs(std::sqrt(squared_norm) - 1.0) <= kQuaternionNormTolerance;
+    return isWithin(sample.p_DT, kLargestDeviceReach) &&
+           std::abs(std::sqrt(squared_norm) - 1.0) <= kQuaternionNormTolerance &&
+           isWithin(sample.v_DT, kLargestDeviceSpeed) && isWithin(sample.w_DT, kLargestDeviceSpin) &&
+           sample.state < kSafetyStateCount && sample.stop_cause < kStopCauseCount;
 }
 
 bool isPlausible(const WrenchCommand& command) noexcept {
     return isFinite(command.f_hand_D) && isFinite(command.t_hand_D);
+}
+
+bool isPlausible(const DeviceCapabilities& capabilities) noexcept {
+    const auto end = std::end(capabilities.name);
+    return std::find(std::begin(capabilities.name), end, '\0') != end &&
+           capabilities.kind < kDeviceKindCount && isFigure(capabilities.max_force) &&
+           isFigure(capabilities.max_torque) && isFigure(capabilities.max_stiffness) &&
+           isFigure(capabilities.max_rotation_stiffness) && isFigure(capabilities.workspace_radius);
 }
 
 }  // namespace bonemill

@@ -213,17 +213,23 @@ bool waitForNewer(LinkChannel<Message>& channel, uint32_t read_version, int64_t 
 
 }  // namespace
 
-std::string DeviceLink::nameOfSession(uint32_t session) {
-    return "/bonemill_" + std::to_string(session);
-}
-
-DeviceLink DeviceLink::create(const std::string& name, LinkSide side) {
+DeviceLink DeviceLink::create(uint32_t session, LinkSide side, uint64_t scene_hash) {
+    const std::string name = "/bonemill_" + std::to_string(session);
     constexpr int kAttempts = 100;  // each lost one means that a peer left in this very moment
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
         File file(openMemory(name));
         lockSetup(file.get());
         if (isUnlinked(file.get())) continue;
         LinkMemory* const memory = setUp(name, file.get(), side);
+        const uint64_t scene_of_peer =
+            slotOf(*memory, peerOf(side)).scene_hash.load(std::memory_order_relaxed);
+        if (isHeldByOther(file.get(), lockByteOf(peerOf(side))) && scene_of_peer != scene_hash) {
+            munmap(memory, sizeof(LinkMemory));
+            fail(name, std::string(programOf(peerOf(side))) + " has read another scene than this " +
+                           programOf(side) +
+                           ": start both with the same --scene, or choose another --session");
+        }
+        slotOf(*memory, side).scene_hash.store(scene_hash, std::memory_order_relaxed);
         DeviceLink link(name, side, file.release(), memory);
         unlockSetup(link.file_);
         return link;
@@ -246,7 +252,8 @@ DeviceLink::DeviceLink(DeviceLink&& other) noexcept
       side_(other.side_),
       file_(std::exchange(other.file_, -1)),
       memory_(std::exchange(other.memory_, nullptr)),
-      read_version_(other.read_version_) {}
+      read_version_(other.read_version_),
+      capabilities_version_(other.capabilities_version_) {}
 
 DeviceLink::~DeviceLink() {
     if (!memory_) return;
@@ -277,6 +284,20 @@ uint64_t DeviceLink::writeCommand(WrenchCommand command) noexcept {
 
 bool DeviceLink::readCommand(WrenchCommand& command) noexcept {
     return memory_->command.value.tryRead(command, &read_version_);
+}
+
+void DeviceLink::writeCapabilities(const DeviceCapabilities& capabilities) noexcept {
+    memory_->capabilities.value.write(capabilities);
+}
+
+bool DeviceLink::readCapabilities(DeviceCapabilities& capabilities) noexcept {
+    uint32_t version = 0;
+    DeviceCapabilities newest;
+    if (!memory_->capabilities.value.tryRead(newest, &version) || version == capabilities_version_)
+        return false;
+    capabilities_version_ = version;
+    capabilities = newest;
+    return true;
 }
 
 bool DeviceLink::waitForCommand(int64_t deadline_ns) noexcept {

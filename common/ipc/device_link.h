@@ -21,13 +21,11 @@ struct LinkMemory;
 
 class DeviceLink {
   public:
-    // Returns "/bonemill_<session>", a name for shm_open.
-    static std::string nameOfSession(uint32_t session);
-
     // Creates the memory or attaches to it. The memory of dead processes is taken over: a living peer's
     // content is kept, else it starts empty. Throws UserError when the memory is not ours, the peer was built
-    // with another layout, a living process has taken this side, or there is no permission.
-    static DeviceLink create(const std::string& name, LinkSide side);
+    // with another layout or has read another scene, a living process has taken this side, or there is no
+    // permission.
+    static DeviceLink create(uint32_t session, LinkSide side, uint64_t scene_hash);
 
     DeviceLink(DeviceLink&& other) noexcept;
     DeviceLink& operator=(DeviceLink&&) = delete;
@@ -49,6 +47,11 @@ class DeviceLink {
     bool readCommand(WrenchCommand& command) noexcept;
     bool waitForCommand(int64_t deadline_ns) noexcept;
 
+    // For the daemon: says what device there is. For the server: true when that has changed since the last
+    // call.
+    void writeCapabilities(const DeviceCapabilities& capabilities) noexcept;
+    bool readCapabilities(DeviceCapabilities& capabilities) noexcept;
+
     // Says "this process runs" where there is nothing to write. Every write beats, too.
     void beat(int64_t now_ns) noexcept;
     // Returns the peer's last beat, CLOCK_MONOTONIC; 0 if there was none.
@@ -56,8 +59,6 @@ class DeviceLink {
     int32_t peerPid() const noexcept;  // 0: not attached
     // Asks the kernel whether the peer's process holds its side of the link. It is not RT-safe.
     bool peerIsAlive() const noexcept;
-
-    const std::string& name() const noexcept { return name_; }
 
   private:
     DeviceLink(std::string name, LinkSide side, int file, LinkMemory* memory) noexcept;
@@ -67,6 +68,7 @@ class DeviceLink {
     int file_;
     LinkMemory* memory_;
     uint32_t read_version_ = 0;  // seqlock version of the last value read
+    uint32_t capabilities_version_ = 0;
 };
 
 }  // namespace bonemill

@@ -15,7 +15,7 @@
 namespace bonemill {
 
 inline constexpr uint64_t kLinkMagic = 0x4b4e494c4c494d42;  // "BMILLINK" in memory
-inline constexpr uint32_t kLinkLayoutVersion = 1;
+inline constexpr uint32_t kLinkLayoutVersion = 2;
 
 // These are advisory locks (fcntl, per open file) on single bytes of the memory file. The kernel drops them
 // when a process dies, so that a held byte means a living process: no pid can be mistaken.
@@ -26,6 +26,7 @@ struct LinkPeer {
     uint32_t reserved;
     std::atomic<int64_t> heartbeat_ns;
     std::atomic<uint64_t> last_sequence;  // of what this side wrote; a restarted process counts on from it
+    std::atomic<uint64_t> scene_hash;     // of the scene that this side has read
 };
 
 template <class T>
@@ -42,12 +43,13 @@ struct LinkMemory {
     LinkPeer daemon;
     LinkChannel<DeviceSample> sample;
     LinkChannel<WrenchCommand> command;
+    LinkChannel<DeviceCapabilities> capabilities;
 };
 static_assert(std::is_standard_layout_v<LinkMemory>);
-static_assert(sizeof(LinkPeer) == 24 && sizeof(LinkChannel<DeviceSample>) == 128);
+static_assert(sizeof(LinkPeer) == 32 && sizeof(LinkChannel<DeviceSample>) == 192);
 static_assert(offsetof(LinkMemory, layout_version) == 8 && offsetof(LinkMemory, size) == 12 &&
-              offsetof(LinkMemory, server) == 16 && offsetof(LinkMemory, daemon) == 40 &&
-              offsetof(LinkMemory, sample) == 64 && offsetof(LinkMemory, command) == 192 &&
-              sizeof(LinkMemory) == 320);
+              offsetof(LinkMemory, server) == 16 && offsetof(LinkMemory, daemon) == 48 &&
+              offsetof(LinkMemory, sample) == 128 && offsetof(LinkMemory, command) == 320 &&
+              offsetof(LinkMemory, capabilities) == 448 && sizeof(LinkMemory) == 576);
 
 }  // namespace bonemill

@@ -44,7 +44,7 @@ Daemon::Daemon(const DeviceSetup& setup, const DaemonOptions& options)
       kinematics_(setup.geometry),
       emulator_(kinematics_, setup.plant, setup.hand, setup.path),
       loop_(kinematics_, emulator_, setup.loop, emulator_.state().X_DT),
-      link_(DeviceLink::create(DeviceLink::nameOfSession(options.session), LinkSide::kDaemon)) {}
+      link_(DeviceLink::create(options.session, LinkSide::kDaemon, setup.scene_hash)) {}
 
 void Daemon::run() {
     RealtimeThread loop_thread(

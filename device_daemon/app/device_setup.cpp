@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "common/config/scene_file.h"
 #include "common/device_messages/device_messages.h"
 #include "common/rt/clock.h"
 #include "common/units.h"
@@ -111,7 +112,8 @@ void checkPath(const scene::SimulatedOperator& person, const DeviceSetup& setup)
 
 DeviceSetup deviceSetupOf(const scene::Scene& scene) {
     const Pose X_WD = poseOf(scene.device().p_wd_mm(), scene.device().q_wd());
-    DeviceSetup setup{.rate_hz = scene.loop().rate_hz(),
+    DeviceSetup setup{.scene_hash = sceneHashOf(scene),
+                      .rate_hz = scene.loop().rate_hz(),
                       .X_WD = X_WD,
                       .geometry = geometryOf(scene.device()),
                       .plant = plantOf(scene.device()),

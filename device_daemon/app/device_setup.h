@@ -12,6 +12,7 @@
 namespace bonemill {
 
 struct DeviceSetup {
+    uint64_t scene_hash;
     double rate_hz;
     Pose X_WD;
     AresGeometry geometry;

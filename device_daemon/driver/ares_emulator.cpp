@@ -26,15 +26,17 @@ void AresEmulator::advance(double dt, const Vector6d& actuator_forces) noexcept 
     for (int i = 0; i < substeps; ++i) substep(dt / substeps, actuator_forces);
 }
 
-JointReading AresEmulator::readJoints(double elapsed) noexcept {
+bool AresEmulator::readJoints(double elapsed, JointReading& reading) noexcept {
     advance(std::min(elapsed, kLongestElapsed), held_forces_);
-    JointReading reading;
+    reading = {};
+    reading.status = kStatusPowered | kStatusCalibrated | kStatusDriving;
+    reading.forces = state_.actuator_forces;
     reading.buttons = state_.target.buttons;
     kinematics_.inverse(state_.X_DT, reading.q);  // always reachable: moveBody() never leaves the workspace
     if (plant_.encoder_step > 0) {
         reading.q = (reading.q / plant_.encoder_step).array().round() * plant_.encoder_step;
     }
-    return reading;
+    return true;
 }
 
 void AresEmulator::substep(double h, const Vector6d& actuator_forces) noexcept {

@@ -63,8 +63,10 @@ class AresEmulator final : public JointDevice {
     void advance(double dt, const Vector6d& actuator_forces) noexcept;
 
     // Advances under the forces applied last, by kLongestElapsed at most, and returns the quantised joints.
-    JointReading readJoints(double elapsed) noexcept override;
-    void applyForces(const Vector6d& actuator_forces) noexcept override { held_forces_ = actuator_forces; }
+    bool readJoints(double elapsed, JointReading& reading) noexcept override;
+    void applyForces(const JointOrder& order) noexcept override { held_forces_ = order.forces; }
+    // It has no clock of its own.
+    bool waitForSample(int64_t) noexcept override { return false; }
 
     // This bounds the work of one call after a long pause of the loop; for the rest the emulated
     // world stands still.

@@ -1,28 +1,45 @@
-// This is what the device loop needs from a device with six actuators, real or emulated.
+// This is what a device with six linear actuators gives and takes, real or emulated: the joints of ARES.
 //
-// One thread (the device loop) calls both functions, readJoints() first, once per loop period each.
-// It is RT-safe.
+// One thread calls these functions: waitForSample(), readJoints() and applyForces() in turn, once per loop
+// period each. They are RT-safe.
 #pragma once
 
 #include <cstdint>
 
 #include "common/geometry/pose.h"
+#include "device_daemon/device/haptic_device.h"
 
 namespace bonemill {
 
 struct JointReading {
-    Vector6d q = Vector6d::Zero();  // slider positions from the low end of their stroke, m
-    uint32_t buttons = 0;           // bit 0 remove, bit 1 add
+    Vector6d q = Vector6d::Zero();       // slider positions from the low end of their stroke, m
+    Vector6d q_dot = Vector6d::Zero();   // m/s
+    Vector6d forces = Vector6d::Zero();  // that the motors give, N
+    uint32_t buttons = 0;                // Button bits
+    uint32_t status = 0;                 // DeviceStatus bits
+    StopCause fault = StopCause::kNone;
+    uint32_t fault_code = 0;
+    double load = 0;  // of the hottest motor: 0 cold, 1 as hot as it may get
+};
+
+// It is a DeviceOrder in the joints.
+struct JointOrder {
+    Vector6d forces = Vector6d::Zero();  // on the sliders, N, positive along +q
+    bool is_wanted = false;
+    bool is_engaged = false;
+    bool reset = false;
 };
 
 class JointDevice {
   public:
     virtual ~JointDevice() = default;
-    // Returns the joints now. `elapsed` is the time (s) since the last call by the loop's own clock; an
-    // emulated device lives through it under the forces applied last.
-    virtual JointReading readJoints(double elapsed) noexcept = 0;
-    // Puts these forces on the sliders (N, positive along +q), from now until the next call.
-    virtual void applyForces(const Vector6d& actuator_forces) noexcept = 0;
+    // As in HapticDevice.
+    virtual bool waitForSample(int64_t deadline_ns) noexcept = 0;
+    // Reads the joints now. `elapsed` is the time (s) since the last call by the loop's own clock; an
+    // emulated device lives through it under the forces applied last. False says that nothing was heard.
+    virtual bool readJoints(double elapsed, JointReading& reading) noexcept = 0;
+    // Holds from now until the next call.
+    virtual void applyForces(const JointOrder& order) noexcept = 0;
 };
 
 }  // namespace bonemill

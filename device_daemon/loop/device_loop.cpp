@@ -12,9 +12,10 @@ DeviceLoop::DeviceLoop(const AresKinematics& kinematics, JointDevice& device, co
 
 bool DeviceLoop::read(double elapsed, DeviceSample& sample) noexcept {
     elapsed_ = elapsed;
-    const JointReading joints = device_.readJoints(elapsed);
+    JointReading joints;
+    const bool is_heard = device_.readJoints(elapsed, joints);
     const ForwardSolution solution = kinematics_.forward(joints.q, X_DT_);
-    has_pose_ = solution.converged;
+    has_pose_ = is_heard && solution.converged;
     if (!has_pose_) {
         ++failed_poses_;
         return false;
@@ -41,7 +42,7 @@ void DeviceLoop::write(const WrenchCommand* newest, int64_t now_ns) noexcept {
     const bool is_usable = has_pose_ && kinematics_.inverseJacobian(X_DT_, J_inv);
     actuator_forces_ = limiter_.forces(is_usable ? &J_inv : nullptr, now_ns, elapsed_);
     applied_wrench_ = is_usable ? wrenchOf(J_inv, actuator_forces_) : Wrench{};  // unknown without a pose
-    device_.applyForces(actuator_forces_);
+    device_.applyForces({.forces = actuator_forces_, .is_wanted = true, .is_engaged = true});
 }
 
 }  // namespace bonemill

@@ -77,7 +77,7 @@ class Server {
           loaded_(loadScene(options.scene)),
           simulation_(makeSimulation(loaded_)),  // forks to read the volume: before signals, link and threads
           stop_signals_(blockStopSignals()),
-          link_(DeviceLink::create(DeviceLink::nameOfSession(options.session), LinkSide::kServer)),
+          link_(DeviceLink::create(options.session, LinkSide::kServer, sceneHashOf(loaded_.scene))),
           history_(*simulation_.bone),
           accuracy_(simulation_.accuracy),
           tools_(simulation_.spoTools()),

@@ -37,7 +37,7 @@ TEST(DeviceLinkFuzz, randomMemoryOfNobodyIsRefused) {
         RawMemory memory(name);
         const auto bytes = randomBytes(random, 1 + random() % (2 * sizeof(LinkMemory)));
         memory.write(bytes.data(), bytes.size(), 0);
-        EXPECT_THROW(DeviceLink::create(name, LinkSide::kServer), UserError);
+        EXPECT_THROW(DeviceLink::create(name.session(), LinkSide::kServer, 1), UserError);
     }
 }
 
@@ -52,15 +52,15 @@ TEST(DeviceLinkFuzz, randomMemoryOfALivingPeerIsRefused) {
         if (round % 2 && bytes.size() >= sizeof(kLinkMagic))
             std::memcpy(bytes.data(), &kLinkMagic, sizeof(kLinkMagic));
         memory.write(bytes.data(), bytes.size(), 0);
-        EXPECT_THROW(DeviceLink::create(name, LinkSide::kServer), UserError);
+        EXPECT_THROW(DeviceLink::create(name.session(), LinkSide::kServer, 1), UserError);
     }
 }
 
 TEST(DeviceLinkFuzz, garbageBehindAValidHeaderIsReadAndJudged) {
     std::mt19937_64 random(3);
     const TestLinkName name;
-    DeviceLink server = DeviceLink::create(name, LinkSide::kServer);
-    DeviceLink daemon = DeviceLink::create(name, LinkSide::kDaemon);
+    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
+    DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
     RawMemory memory(name);
     constexpr size_t kBody = offsetof(LinkMemory, server);
     int samples_read = 0;

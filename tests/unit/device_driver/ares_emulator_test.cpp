@@ -41,6 +41,12 @@ double energyOf(const AresEmulator& emulator, const AresPlant& plant, const Hand
                   hand.stiffness * stretch.squaredNorm() + hand.angular_stiffness * turn.squaredNorm());
 }
 
+JointReading readingOf(AresEmulator& emulator, double elapsed) {
+    JointReading reading;
+    EXPECT_TRUE(emulator.readJoints(elapsed, reading));
+    return reading;
+}
+
 TEST(AresEmulator, StaysAtRestExactly) {
     AresEmulator emulator(AresKinematics{}, {}, {}, OperatorPath{});
     emulator.advance(1.0, Vector6d::Zero());
@@ -117,7 +123,7 @@ TEST(AresEmulator, EncodersReportWholeSteps) {
     plant.encoder_step = 2e-5;
     AresEmulator emulator(AresKinematics{}, plant, {},
                           OperatorPath({{0, {{1.234e-3, 5.67e-4, 8.9e-5}, expRotation({0.01, 0, 0.02})}}}));
-    const Vector6d q = emulator.readJoints(0).q;
+    const Vector6d q = readingOf(emulator, 0).q;
     Vector6d exact;
     ASSERT_TRUE(AresKinematics{}.inverse(emulator.state().X_DT, exact));
     EXPECT_LE((q - exact).cwiseAbs().maxCoeff(), plant.encoder_step / 2 * (1 + 1e-9));
@@ -127,19 +133,19 @@ TEST(AresEmulator, EncodersReportWholeSteps) {
     }
     plant.encoder_step = 0;
     AresEmulator ideal(AresKinematics{}, plant, {}, OperatorPath({{0, emulator.state().X_DT}}));
-    EXPECT_EQ(ideal.readJoints(0).q, exact);
+    EXPECT_EQ(readingOf(ideal, 0).q, exact);
 }
 
 TEST(AresEmulator, TheHandFollowsItsPathAndPressesItsButtons) {
     const Pose goal{{0.015, 0.005, -0.01}, expRotation({0.3, 0, 0.2})};
     const OperatorPath path({{0, Pose{}, 1}, {1.0, goal, 2}});
     AresEmulator emulator(AresKinematics{}, {}, {}, path);
-    EXPECT_EQ(emulator.readJoints(0.5).buttons, 0u);  // the scenario has not started
+    EXPECT_EQ(readingOf(emulator, 0.5).buttons, 0u);  // the scenario has not started
     EXPECT_EQ(emulator.state().X_DT.position, Eigen::Vector3d::Zero());
     emulator.startScenario();
-    EXPECT_EQ(emulator.readJoints(0.02).buttons, 1u);
-    for (int i = 0; i < 2000; ++i) emulator.readJoints(kPeriod);
-    EXPECT_EQ(emulator.readJoints(0).buttons, 2u);
+    EXPECT_EQ(readingOf(emulator, 0.02).buttons, 1u);
+    for (int i = 0; i < 2000; ++i) readingOf(emulator, kPeriod);
+    EXPECT_EQ(readingOf(emulator, 0).buttons, 2u);
     EXPECT_GE(emulator.state().scenario_time, path.duration());
     EXPECT_LT((emulator.state().X_DT.position - goal.position).norm(),
               0.2 / 600 + 1e-6);  // Coulomb / stiffness
@@ -174,7 +180,7 @@ TEST(AresEmulator, RepeatsBitForBit) {
 TEST(AresEmulator, OneLongPauseOfTheLoopIsBounded) {
     AresEmulator emulator(AresKinematics{}, {}, {}, OperatorPath({{0, Pose{}}, {10, Pose{}}}));
     emulator.startScenario();
-    emulator.readJoints(100);
+    readingOf(emulator, 100);
     EXPECT_NEAR(emulator.state().scenario_time, AresEmulator::kLongestElapsed, 1e-9);
 }
 

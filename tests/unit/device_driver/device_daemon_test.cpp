@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/config/scene_file.h"
 #include "common/ipc/device_link.h"
 #include "common/rt/clock.h"
 #include "tests/support/process.h"
@@ -57,8 +58,8 @@ simulated_operator {
 // Answers every sample with a spring that resists z < 0 of the handle.
 class WallServer {
   public:
-    explicit WallServer(uint32_t session)
-        : link_(DeviceLink::create(DeviceLink::nameOfSession(session), LinkSide::kServer)),
+    WallServer(uint32_t session, const std::string& scene_file)
+        : link_(DeviceLink::create(session, LinkSide::kServer, sceneHashOf(loadScene(scene_file).scene))),
           thread_([this](const std::stop_token& stop) {
               while (!stop.stop_requested()) answerNext();
           }) {}
@@ -98,8 +99,9 @@ void expectSays(const test::Finished& finished, const std::string& text) {
 }
 
 TEST_F(DeviceDaemonTest, PlaysTheScenarioWithAServerAndLeaves) {
-    test::Process daemon(commandLine(sceneFile(kShortScene)));
-    WallServer server(session_);
+    const std::string file = sceneFile(kShortScene);
+    test::Process daemon(commandLine(file));
+    WallServer server(session_, file);
     const test::Finished finished = daemon.wait();
     EXPECT_GT(server.answers(), 0u);
     EXPECT_TRUE(server.end() & kDeviceFlagLeaving);
@@ -116,8 +118,9 @@ TEST_F(DeviceDaemonTest, SaysTheFirstAndTheLastPhaseAndLeavesWhenToldTo) {
         std::string phase;
     } const cases[] = {{kLongScene, {}, "approach"}, {kShortScene, {"--hold"}, "done"}};
     for (const auto& [scene, options, phase] : cases) {
-        test::Process daemon(commandLine(sceneFile(scene), options));
-        WallServer server(session_);
+        const std::string file = sceneFile(scene);
+        test::Process daemon(commandLine(file, options));
+        WallServer server(session_, file);
         EXPECT_TRUE(test::waitFor([&] {
             const std::string said = daemon.outSoFar() + daemon.errSoFar();
             return said.find("phase " + phase) != std::string::npos && server.answers() > 50;

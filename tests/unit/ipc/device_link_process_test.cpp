@@ -61,8 +61,8 @@ DeviceSample restingSample() {
     return sample;
 }
 
-int publishForever(const std::string& name) {
-    DeviceLink daemon = DeviceLink::create(name, LinkSide::kDaemon);
+int publishForever(const TestLinkName& name) {
+    DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
     for (;;) {
         daemon.writeSample(restingSample());
         usleep(200);
@@ -73,7 +73,7 @@ TEST(DeviceLinkProcesses, everySampleIsAnsweredAcrossProcesses) {
     constexpr uint64_t kSamples = 2000;
     const TestLinkName name;
     Child device([&] {
-        DeviceLink daemon = DeviceLink::create(name, LinkSide::kDaemon);
+        DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
         for (uint64_t i = 1; i <= kSamples; ++i) {
             DeviceSample sample = restingSample();
             sample.p_DT[0] = double(i) / kSamples;
@@ -86,7 +86,7 @@ TEST(DeviceLinkProcesses, everySampleIsAnsweredAcrossProcesses) {
         }
         return kSuccess;
     });
-    DeviceLink server = DeviceLink::create(name, LinkSide::kServer);
+    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
     DeviceSample sample{};
     while (sample.sequence < kSamples && server.waitForSample(farAwayNs()) && server.readSample(sample)) {
         ASSERT_TRUE(isPlausible(sample));
@@ -102,12 +102,12 @@ TEST(DeviceLinkProcesses, bothMayStartAtTheSameMoment) {
     const TestLinkName name;
     for (int round = 0; round < 100; ++round) {
         Child device([&] {
-            DeviceLink daemon = DeviceLink::create(name, LinkSide::kDaemon);
+            DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
             WrenchCommand command{};
             daemon.writeSample(restingSample());
             return daemon.waitForCommand(farAwayNs()) && daemon.readCommand(command) ? kSuccess : 1;
         });
-        DeviceLink server = DeviceLink::create(name, LinkSide::kServer);
+        DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
         DeviceSample sample{};
         ASSERT_TRUE(server.waitForSample(farAwayNs()) && server.readSample(sample));
         server.writeCommand({});
@@ -117,7 +117,7 @@ TEST(DeviceLinkProcesses, bothMayStartAtTheSameMoment) {
 
 TEST(DeviceLinkProcesses, aKilledDaemonIsNoticedAndMayReturn) {
     const TestLinkName name;
-    DeviceLink server = DeviceLink::create(name, LinkSide::kServer);
+    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
     uint64_t last_sequence = 0;
     for (int life = 0; life < 10; ++life) {
         Child device([&] { return publishForever(name); });
@@ -143,7 +143,7 @@ TEST(DeviceLinkProcesses, memoryOfKilledProcessesIsTakenOver) {
     const TestLinkName name;
     {
         Child device([&] { return publishForever(name); });
-        DeviceLink server = DeviceLink::create(name, LinkSide::kServer);
+        DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
         ASSERT_TRUE(server.waitForSample(farAwayNs()));
     }
     {
@@ -152,7 +152,7 @@ TEST(DeviceLinkProcesses, memoryOfKilledProcessesIsTakenOver) {
         device.kill();
     }
     ASSERT_TRUE(name.exists());  // a killed process cleans nothing up
-    DeviceLink daemon = DeviceLink::create(name, LinkSide::kDaemon);
+    DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
     EXPECT_FALSE(daemon.peerIsAlive());
     EXPECT_EQ(daemon.writeSample(restingSample()), 1u);
 }

@@ -12,8 +12,8 @@ namespace {
 
 TEST(DeviceLinkInTick, neitherAllocatesNorLocks) {
     const TestLinkName name;
-    DeviceLink server = DeviceLink::create(name, LinkSide::kServer);
-    DeviceLink daemon = DeviceLink::create(name, LinkSide::kDaemon);
+    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
+    DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
     StaleRamp ramp;
     DeviceSample sample{};
     WrenchCommand command{};

@@ -14,17 +14,21 @@ namespace bonemill {
 
 class TestLinkName {
   public:
-    TestLinkName() : name_("/bonemill_test_" + std::to_string(getpid()) + "_" + std::to_string(next()++)) {}
+    TestLinkName()
+        : session_((1u << 31) + uint32_t(getpid()) * 256 + next()++),
+          name_("/bonemill_" + std::to_string(session_)) {}
     ~TestLinkName() { shm_unlink(name_.c_str()); }
+    uint32_t session() const { return session_; }
     operator const std::string&() const { return name_; }
     const std::string& str() const { return name_; }
     bool exists() const { return access(("/dev/shm" + name_).c_str(), F_OK) == 0; }
 
   private:
-    static int& next() {
-        static int number = 0;
+    static uint32_t& next() {
+        static uint32_t number = 0;
         return number;
     }
+    uint32_t session_;
     std::string name_;
 };
 

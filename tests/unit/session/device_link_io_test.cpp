@@ -14,9 +14,8 @@ namespace {
 class DeviceLinkIoTest : public testing::Test {
   protected:
     DeviceLinkIoTest()
-        : name_("/bonemill_test_io_" + std::to_string(getpid())),
-          server_(DeviceLink::create(name_, LinkSide::kServer)),
-          daemon_(DeviceLink::create(name_, LinkSide::kDaemon)),
+        : server_(DeviceLink::create(kSession + uint32_t(getpid()), LinkSide::kServer, 1)),
+          daemon_(DeviceLink::create(kSession + uint32_t(getpid()), LinkSide::kDaemon, 1)),
           ring_(64),
           cuts_(64) {
         config_.X_WD = {{0.1, 0.2, 0.3}, Eigen::Quaterniond(M_SQRT1_2, M_SQRT1_2, 0, 0)};
@@ -31,7 +30,7 @@ class DeviceLinkIoTest : public testing::Test {
         return sample;
     }
 
-    std::string name_;
+    static constexpr uint32_t kSession = 1u << 30;
     DeviceLink server_, daemon_;
     SpscRing<TickRecord> ring_;
     SpscRing<Cut> cuts_;

@@ -1,0 +1,68 @@
+// This is what the device loop needs from any device that a hand can hold: its pose comes in, a wrench goes
+// out.
+//
+// The loop's thread calls waitForSample(), read() and write() in turn; all three are bounded, and neither
+// allocate nor lock. Frames and units are those of common/device_messages: D is the device's base, T the
+// handle.
+#pragma once
+
+#include <cstdint>
+
+#include "common/device_messages/device_messages.h"
+#include "common/geometry/pose.h"
+
+namespace bonemill {
+
+// The device says this of itself (bit mask).
+enum DeviceStatus : uint32_t {
+    kStatusPowered = 1u << 0,        // its motors could be switched on
+    kStatusCalibrated = 1u << 1,     // its positions count from a zero that it has found
+    kStatusHoming = 1u << 2,         // it is finding it
+    kStatusDriving = 1u << 3,        // its motors follow what is written
+    kStatusEnabled = 1u << 4,        // the enabling switch is held
+    kStatusEmergencyStop = 1u << 5,  // the emergency stop chain is open
+    kStatusResetPressed = 1u << 6,   // a button to reset is held
+    kStatusLeaving = 1u << 7,        // it ends in order, and nothing is wrong
+};
+
+struct DeviceReading {
+    Pose X_DT;
+    Eigen::Vector3d v_DT = Eigen::Vector3d::Zero();  // m/s
+    Eigen::Vector3d w_DT = Eigen::Vector3d::Zero();  // rad/s, in D
+    uint32_t buttons = 0;                            // Button bits
+    uint32_t status = 0;                             // DeviceStatus bits
+    StopCause fault = StopCause::kNone;              // what the device, or its driver, complains of
+    uint32_t fault_code = 0;                         // the device's own number of it
+    bool has_applied = false;                        // the device measures what its motors give
+    Wrench applied_D;                                // that, on the hand
+    double load = 0;                                 // of the hottest motor: 0 cold, 1 as hot as it may get
+};
+
+// The loop asks this of the device in every period.
+struct DeviceOrder {
+    Wrench wrench_hand_D;     // within the device's capabilities; zero unless is_engaged
+    bool is_wanted = false;   // the motors are to be switched on and to follow, if only with zero
+    bool is_engaged = false;  // the hand feels haptic_server
+    bool reset = false;       // clear your faults; true for one period
+};
+
+class HapticDevice {
+  public:
+    virtual ~HapticDevice() = default;
+
+    // What the device can do. It may change when another one is plugged in; then the number does, too.
+    virtual DeviceCapabilities capabilities() const noexcept = 0;
+    virtual uint32_t capabilitiesVersion() const noexcept { return 1; }
+
+    // Sleeps until the device has a new sample, or until the deadline (CLOCK_MONOTONIC ns): true says that
+    // there is one. Devices without a clock of their own return false at the deadline, which is the loop's
+    // own next period.
+    virtual bool waitForSample(int64_t deadline_ns) noexcept = 0;
+    // Reads the newest sample, `elapsed` s after the last period. False says that there is none that can be
+    // believed: the device is silent, or what it says makes no sense.
+    virtual bool read(double elapsed, DeviceReading& reading) noexcept = 0;
+    // Holds from now on until the next call.
+    virtual void write(const DeviceOrder& order) noexcept = 0;
+};
+
+}  // namespace bonemill
