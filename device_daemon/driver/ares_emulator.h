@@ -65,7 +65,8 @@ class AresEmulator final : public JointDevice {
     // Advances under the forces applied last, by kLongestElapsed at most, and returns the quantised joints.
     bool readJoints(double elapsed, JointReading& reading) noexcept override;
     void applyForces(const JointOrder& order) noexcept override { held_forces_ = order.forces; }
-    // It has no clock of its own.
+    // It lives in the caller's time.
+    bool hasClock() const noexcept override { return false; }
     bool waitForSample(int64_t) noexcept override { return false; }
 
     // This bounds the work of one call after a long pause of the loop; for the rest the emulated
