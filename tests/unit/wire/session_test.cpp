@@ -138,6 +138,7 @@ TEST(Sessions, IgnoreASecondHostWhileTheFirstLives) {
 TEST(Sessions, IgnorePacketsThatReflectWhatWasNeverSent) {
     Pair pair;
     pair.run(20);
+    const uint64_t accepted = pair.controller.statistics().accepted;
     pair.on_command = [&](const Bytes& bytes) {
         return std::vector<Bytes>{
             changed<JointCommand>(bytes, [](auto& c) { c.reflected_sequence += 1000; })};
