@@ -59,6 +59,11 @@ TopicDescription describeTopic<ViewerSample>() {
 }
 
 template <>
+TopicDescription describeTopic<HandPointerSample>() {
+    return {"bonemill_hand_pointer", &bonemill_dds_HandPointerSample_desc, streamQos(1)};
+}
+
+template <>
 TopicDescription describeTopic<CommandSample>() {
     return {"bonemill_command", &bonemill_dds_CommandSample_desc, commandQos()};
 }

@@ -1,4 +1,4 @@
-// Lists the six topics: name, type descriptor and quality of service of each envelope of proto/topics.idl.
+// Lists the seven topics: name, type descriptor and quality of service of each envelope of proto/topics.idl.
 #pragma once
 
 #include <topics.h>
@@ -12,6 +12,7 @@ using SceneInfoSample = bonemill_dds_SceneInfoSample;
 using ToolStateSample = bonemill_dds_ToolStateSample;
 using StatusSample = bonemill_dds_StatusSample;
 using ViewerSample = bonemill_dds_ViewerSample;
+using HandPointerSample = bonemill_dds_HandPointerSample;
 using CommandSample = bonemill_dds_CommandSample;
 
 struct TopicDescription {
@@ -32,6 +33,8 @@ template <>
 TopicDescription describeTopic<StatusSample>();
 template <>
 TopicDescription describeTopic<ViewerSample>();
+template <>
+TopicDescription describeTopic<HandPointerSample>();
 template <>
 TopicDescription describeTopic<CommandSample>();
 

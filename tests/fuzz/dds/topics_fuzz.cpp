@@ -5,9 +5,12 @@
 #include <functional>
 #include <random>
 
+#include "common/device_messages/device_messages.h"
 #include "common/mesh/mesh_codec.h"
+#include "device_daemon/pointer/hand_wish.h"
 #include "haptic_server/publish/command_inbox.h"
 #include "render_client/subscribe/payloads.h"
+#include "tests/support/hand_pointer.h"
 #include "tests/support/mutated_bytes.h"
 #include "tests/support/synthetic_nodes.h"
 
@@ -140,6 +143,20 @@ TEST(TopicsFuzz, Viewer) {
         EXPECT_LE(parsed->name().size(), 64u);
         EXPECT_TRUE(parsed->pointer_m().empty() || parsed->pointer_m_size() == 3);
         for (const double coordinate : parsed->pointer_m()) EXPECT_TRUE(std::isfinite(coordinate));
+        return true;
+    });
+}
+
+TEST(TopicsFuzz, HandPointer) {
+    const Pose X_WT{{0.1, 0.2, 0.3}, expRotation({0.4, 0.5, 0.6})};
+    fuzz(test::handPointer(7, 3, X_WT, kButtonRemove).SerializeAsString(), [](Bytes bytes) {
+        const auto wish = parseHandWish(bytes, 7);
+        if (!wish) return false;
+        EXPECT_EQ(wish->sender, 7u);
+        EXPECT_TRUE(wish->X_WT.isFinite());
+        EXPECT_LE(wish->X_WT.position.norm(), kLargestDeviceReach);
+        EXPECT_NEAR(wish->X_WT.rotation.norm(), 1, 1e-9);
+        EXPECT_LE(wish->buttons, uint32_t{kButtonRemove | kButtonAdd});
         return true;
     });
 }

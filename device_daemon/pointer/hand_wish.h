@@ -1,0 +1,25 @@
+// What a viewer's mouse wants of the tool, checked: the payload of the topic HandPointer may be anything.
+// Reading allocates and is not for the loop; thread-safe, never throws (other than std::bad_alloc).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "common/geometry/pose.h"
+
+namespace bonemill {
+
+struct HandWish {
+    uint64_t sender = 0;
+    uint32_t sequence = 0;
+    bool may_hold = false;  // its role lets it
+    bool is_holding = false;
+    Pose X_WT;             // of the tool point; meaningless unless is_holding
+    uint32_t buttons = 0;  // Button bits
+};
+
+// `sender` is that of the sample's envelope. Nothing comes of bytes that make no sense.
+std::optional<HandWish> parseHandWish(std::span<const uint8_t> payload, uint64_t sender);
+
+}  // namespace bonemill

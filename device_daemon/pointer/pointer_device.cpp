@@ -1,0 +1,132 @@
+#include "device_daemon/pointer/pointer_device.h"
+
+#include <spdlog/spdlog.h>
+#include <time.h>
+
+#include <chrono>
+#include <cstdio>
+
+#include "common/rt/clock.h"
+
+namespace bonemill {
+namespace {
+
+constexpr std::chrono::milliseconds kStopDelay{50};  // how late the thread may notice that it shall end
+constexpr size_t kMostWishesAtOnce = 256;            // more are a flood of foreign sessions
+constexpr uint64_t kMostNamedWishes = 4;             // malformed ones in the log
+
+}  // namespace
+
+PointerDevice::PointerDevice(const PointerConfig& config)
+    : config_(config),
+      X_DW_(config.X_WD.inverse()),
+      handle_(config.X_DT_start),
+      participant_(config.domain),
+      reader_(participant_),
+      wait_set_(participant_) {
+    wait_set_.add(reader_.handle());
+    listener_ = std::thread([this] { listen(); });
+}
+
+PointerDevice::~PointerDevice() {
+    should_stop_ = true;
+    listener_.join();
+}
+
+DeviceCapabilities PointerDevice::capabilities() const noexcept {
+    DeviceCapabilities device{};
+    std::snprintf(device.name, sizeof device.name, "mouse in the viewer");
+    device.kind = static_cast<uint32_t>(DeviceKind::kPointer);
+    device.abilities = kAbilityForce | kAbilityTorque | kAbilityOrientation | kAbilitySimulated;
+    device.max_force = kMaxForce;
+    device.max_torque = kMaxTorque;
+    device.max_stiffness = VirtualHandle::kMaxStiffness;
+    device.max_rotation_stiffness = VirtualHandle::kMaxRotationStiffness;
+    device.workspace_radius = VirtualHandle::kReach;
+    return device;
+}
+
+bool PointerDevice::waitForSample(int64_t deadline_ns) noexcept {
+    const timespec deadline = timespecOfNs(deadline_ns);
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr);
+    return false;
+}
+
+bool PointerDevice::read(double elapsed, DeviceReading& reading) noexcept {
+    follow(elapsed);
+    handle_.advance(elapsed, wrench_hand_D_);
+    reading = {};
+    reading.X_DT = handle_.pose();
+    reading.v_DT = handle_.v_DT();
+    reading.w_DT = handle_.w_DT();
+    reading.buttons = buttons_;
+    reading.status = kStatusPowered | kStatusCalibrated | kStatusDriving | (is_held_ ? kStatusEnabled : 0u);
+    reading.has_applied = true;
+    reading.applied_D = wrench_hand_D_;
+    return true;
+}
+
+void PointerDevice::write(const DeviceOrder& order) noexcept {
+    wrench_hand_D_ = order.is_engaged && order.wrench_hand_D.isFinite() ? order.wrench_hand_D : Wrench{};
+}
+
+void PointerDevice::follow(double elapsed) noexcept {
+    HeldWish wish;
+    uint32_t version = seen_version_;
+    age_ += elapsed;
+    if (newest_.tryRead(wish, &version) && version != seen_version_) {
+        seen_version_ = version;
+        if (!wish.is_held) return letGo();
+        age_ = 0;
+        is_held_ = true;
+        buttons_ = wish.buttons;
+        const auto& [w, x, y, z] = wish.q_DT;
+        handle_.want({Eigen::Vector3d(wish.p_DT.data()), Eigen::Quaterniond(w, x, y, z)});
+    }
+    if (age_ > kButtonSilence) buttons_ = 0;
+    if (is_held_ && age_ > kHoldSilence) letGo();
+}
+
+void PointerDevice::letGo() noexcept {
+    is_held_ = false;
+    buttons_ = 0;
+    handle_.letGo();
+}
+
+void PointerDevice::listen() {
+    while (!should_stop_) {
+        if (wait_set_.wait(kStopDelay)) takeWishes();
+    }
+}
+
+void PointerDevice::takeWishes() {
+    reader_.take(kMostWishesAtOnce,
+                 [this](const dds::HandPointerSample& sample, const dds::SampleInfo& info) {
+                     if (!info.has_data || sample.session != config_.session) return;
+                     const auto wish = parseHandWish(dds::payloadOf(sample), sample.sender);
+                     if (!wish) {
+                         if (++malformed_ <= kMostNamedWishes)
+                             spdlog::warn("dropped a malformed wish of viewer {}", sample.sender);
+                         return;
+                     }
+                     const int64_t now_ns = monotonicNowNs();
+                     const auto before = holder_.holder(now_ns);
+                     if (!holder_.take(*wish, now_ns)) return;
+                     const auto after = holder_.holder(now_ns);
+                     if (after && after != before) spdlog::info("viewer {} holds the tool", *after);
+                     if (before && !after) spdlog::info("viewer {} lets the tool go", *before);
+                     publish(*wish);
+                 });
+}
+
+void PointerDevice::publish(const HandWish& wish) noexcept {
+    const Pose X_DT = X_DW_ * wish.X_WT;
+    const Eigen::Vector3d p_DT = X_DT.position / config_.workspace_scale;
+    const Eigen::Quaterniond& q = X_DT.rotation;
+    newest_.write({.p_DT = {p_DT.x(), p_DT.y(), p_DT.z()},
+                   .q_DT = {q.w(), q.x(), q.y(), q.z()},
+                   .buttons = wish.buttons,
+                   .is_held = wish.is_holding});
+}
+
+}  // namespace bonemill

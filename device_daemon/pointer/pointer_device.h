@@ -1,0 +1,90 @@
+// The mouse in a viewer's window holds the tool: device_daemon --device pointer.
+//
+// Viewers publish on the topic HandPointer where they want the tool (docs/viewer.md). A thread of this class
+// reads them and hands the newest wish of who holds to the loop through a seqlock; the loop moves a
+// VirtualHandle, which feels the wrench of haptic_server. Wishes are in W; the handle is in D, with
+// X_WD of the scene and the tool moving workspace_scale times as far as the handle.
+//
+// What a silent viewer leaves behind: its buttons count for kButtonSilence, and after kHoldSilence the hand
+// lets go and the handle stays where it is. Ages count in the loop's own time. The functions of HapticDevice
+// are RT-safe and belong to the loop's thread; the rest is for the owner's.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <thread>
+
+#include "common/dds/endpoint.h"
+#include "common/dds/wait_set.h"
+#include "common/rt/seqlock.h"
+#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/pointer/pointer_holder.h"
+#include "device_daemon/virtual_handle/virtual_handle.h"
+
+namespace bonemill {
+
+struct PointerConfig {
+    uint32_t domain = 0;   // DDS domain of the viewers
+    uint32_t session = 1;  // that of server and viewers
+    Pose X_WD = {};
+    double workspace_scale = 1;
+    Pose X_DT_start = {};  // the handle rests there until a viewer holds it
+};
+
+class PointerDevice final : public HapticDevice {
+  public:
+    static constexpr double kButtonSilence = 0.2;  // s
+    static constexpr double kHoldSilence = 1;      // s
+    static constexpr double kMaxForce = 10;        // N on the hand: the hand is weaker, so that it never wins
+    static constexpr double kMaxTorque = 0.15;     // N·m, likewise
+
+    // Throws UserError when the DDS domain cannot be joined.
+    explicit PointerDevice(const PointerConfig& config);
+    ~PointerDevice() override;
+
+    DeviceCapabilities capabilities() const noexcept override;
+    bool waitForSample(int64_t deadline_ns) noexcept override;
+    bool read(double elapsed, DeviceReading& reading) noexcept override;
+    void write(const DeviceOrder& order) noexcept override;
+
+    // Counts the messages that made no sense; for any thread.
+    uint64_t malformedWishes() const noexcept { return malformed_; }
+
+  private:
+    // From the reading thread to the loop.
+    struct HeldWish {
+        std::array<double, 3> p_DT;
+        std::array<double, 4> q_DT;  // w, x, y, z
+        uint32_t buttons;
+        uint32_t is_held;
+    };
+
+    void listen();
+    void takeWishes();
+    void publish(const HandWish& wish) noexcept;
+    void follow(double elapsed) noexcept;
+    void letGo() noexcept;
+
+    const PointerConfig config_;
+    const Pose X_DW_;
+    Seqlock<HeldWish> newest_;
+    std::atomic<uint64_t> malformed_ = 0;
+
+    // These belong to the loop.
+    VirtualHandle handle_;
+    Wrench wrench_hand_D_;
+    uint32_t seen_version_ = Seqlock<HeldWish>::kNeverWritten;
+    double age_ = 0;  // s since a wish came
+    bool is_held_ = false;
+    uint32_t buttons_ = 0;
+
+    // These belong to the reading thread.
+    PointerHolder holder_;
+    dds::Participant participant_;
+    dds::Reader<dds::HandPointerSample> reader_;
+    dds::WaitSet wait_set_;
+    std::atomic<bool> should_stop_ = false;
+    std::thread listener_;
+};
+
+}  // namespace bonemill

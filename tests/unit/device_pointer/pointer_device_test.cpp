@@ -1,0 +1,157 @@
+// Viewers on a real topic hold the device, are silent, quarrel and send garbage; the loop's side runs in time
+// of its own.
+#include "device_daemon/pointer/pointer_device.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/rt/clock.h"
+#include "tests/support/hand_pointer.h"
+#include "tests/support/process.h"
+
+namespace bonemill {
+namespace {
+
+constexpr double kPeriod = 1e-3;  // s
+const Pose kX_WD{{0.05, 0.02, -0.01}, expRotation({0, 0, M_PI / 2})};
+const Pose kStart{{0, 0, 0.01}, Eigen::Quaterniond::Identity()};
+
+Pose at(double x, double y, double z) {
+    return {{x, y, z}, Eigen::Quaterniond::Identity()};
+}
+
+class Pointer : public testing::Test {
+  protected:
+    Pointer()
+        : device_({.domain = testDomain(), .session = testSession(), .X_WD = kX_WD, .X_DT_start = kStart}) {}
+
+    void connect(test::PointingViewer& viewer) {
+        ASSERT_TRUE(test::waitFor([&] { return viewer.readers() > 0; }));
+    }
+    void run(double seconds) {
+        for (int i = 0; i < std::lround(seconds / kPeriod); ++i) {
+            ASSERT_TRUE(device_.read(kPeriod, reading_));
+            device_.write({.wrench_hand_D = wrench_, .is_wanted = true, .is_engaged = true});
+        }
+    }
+    bool isHeld() const { return reading_.status & kStatusEnabled; }
+    // Sends the wish until the loop has it, and no other is under way any more; no time passes for the loop.
+    void wantUntilHeld(test::PointingViewer& viewer, const Pose& X_WT, uint32_t buttons) {
+        ASSERT_TRUE(test::waitFor([&] {
+            viewer.want(X_WT, buttons);
+            for (int i = 0; i < 20; ++i) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(10));
+                device_.read(0, reading_);
+            }
+            return isHeld() && reading_.buttons == buttons;
+        }));
+    }
+
+    PointerDevice device_;
+    DeviceReading reading_;
+    Wrench wrench_;
+};
+
+TEST_F(Pointer, SaysWhatItIs) {
+    const DeviceCapabilities capabilities = device_.capabilities();
+    EXPECT_TRUE(isPlausible(capabilities));
+    EXPECT_EQ(capabilities.kind, uint32_t(DeviceKind::kPointer));
+    EXPECT_GT(capabilities.max_force, VirtualHand{}.max_force) << "or the hand would win at the limit";
+    const int64_t deadline_ns = monotonicNowNs() + 2'000'000;
+    EXPECT_FALSE(device_.waitForSample(deadline_ns));
+    EXPECT_GE(monotonicNowNs(), deadline_ns);
+}
+
+TEST_F(Pointer, RestsAtItsStartUntilAViewerHoldsIt) {
+    run(0.5);
+    EXPECT_FALSE(isHeld());
+    EXPECT_LT((reading_.X_DT.position - kStart.position).norm(), 1e-12);
+    EXPECT_EQ(reading_.status & kStatusCalibrated, uint32_t{kStatusCalibrated});
+}
+
+TEST_F(Pointer, TheHandleGoesWhereTheViewerWantsItInW) {
+    test::PointingViewer viewer(1);
+    connect(viewer);
+    const Pose wanted{{0.06, 0.03, 0.02}, expRotation({0.1, 0.2, 0.3})};
+    wantUntilHeld(viewer, wanted, kButtonRemove);
+    run(0.15);
+    EXPECT_EQ(reading_.buttons, uint32_t{kButtonRemove});
+    run(0.8);
+    const Pose X_WT = kX_WD * reading_.X_DT;
+    EXPECT_LT((X_WT.position - wanted.position).norm(), 1e-5);
+    EXPECT_LT(X_WT.rotation.angularDistance(wanted.rotation), 1e-4);
+}
+
+TEST_F(Pointer, TheWrenchPushesTheHandle) {
+    wrench_.force = {0, 0, 3};
+    run(1);
+    EXPECT_NEAR(reading_.X_DT.position.z() - kStart.position.z(), 3 / VirtualHand{}.stiffness, 1e-5);
+    EXPECT_EQ(reading_.applied_D.force.z(), 3);
+    device_.write({.wrench_hand_D = wrench_, .is_wanted = true, .is_engaged = false});
+    device_.read(kPeriod, reading_);
+    EXPECT_EQ(reading_.applied_D.force.z(), 0) << "it is not engaged";
+}
+
+TEST_F(Pointer, SilenceReleasesTheButtonsAndThenTheTool) {
+    test::PointingViewer viewer(1);
+    connect(viewer);
+    wantUntilHeld(viewer, at(0.10, 0.02, 0), kButtonRemove);
+    run(0.19);
+    EXPECT_EQ(reading_.buttons, uint32_t{kButtonRemove});
+    run(0.02);
+    EXPECT_EQ(reading_.buttons, 0u);
+    EXPECT_TRUE(isHeld());
+    run(0.8);
+    EXPECT_FALSE(isHeld());
+    const Eigen::Vector3d where = reading_.X_DT.position;
+    run(1);
+    EXPECT_LT((reading_.X_DT.position - where).norm(), 1e-3);
+    wantUntilHeld(viewer, at(0.10, 0.02, 0), kButtonAdd);  // it is back
+}
+
+TEST_F(Pointer, LettingGoReleasesAtOnce) {
+    test::PointingViewer viewer(1);
+    connect(viewer);
+    wantUntilHeld(viewer, at(0.5, 0, 0), kButtonRemove);
+    ASSERT_TRUE(test::waitFor([&] {
+        viewer.letGo();
+        device_.read(0, reading_);
+        return !isHeld();
+    }));
+    EXPECT_EQ(reading_.buttons, 0u);
+}
+
+TEST_F(Pointer, ASecondViewerWaitsForItsTurn) {
+    test::PointingViewer first(1), second(2);
+    connect(first);
+    connect(second);
+    wantUntilHeld(first, at(0.06, 0.02, 0), kButtonRemove);
+    for (int i = 0; i < 20; ++i) {
+        second.want(at(0, 0, 0), kButtonAdd);
+        first.want(at(0.06, 0.02, 0), kButtonRemove);
+        run(0.01);
+        EXPECT_NE(reading_.buttons, uint32_t{kButtonAdd});
+    }
+    ASSERT_TRUE(test::waitFor([&] {
+        first.letGo();
+        second.want(at(0, 0, 0), kButtonAdd);
+        device_.read(0, reading_);
+        return reading_.buttons == kButtonAdd;
+    }));
+}
+
+TEST_F(Pointer, GarbageIsCountedAndChangesNothing) {
+    test::PointingViewer viewer(1);
+    connect(viewer);
+    ASSERT_TRUE(test::waitFor([&] {
+        viewer.send("garbage");
+        return device_.malformedWishes() > 2;
+    }));
+    device_.read(kPeriod, reading_);
+    EXPECT_FALSE(isHeld());
+    wantUntilHeld(viewer, at(0.06, 0.02, 0), 0);
+}
+
+}  // namespace
+}  // namespace bonemill
