@@ -73,7 +73,10 @@ void Daemon::runLoop() {
         }
         tick(instant_ns, secondsOfNs(instant_ns - last_ns));
         last_ns = instant_ns;
-        if (shouldEnd()) loop_.release();
+        if (shouldEnd()) {
+            loop_.release();
+            is_ending_ = true;  // what happens now is its own doing
+        }
     }
     sayGoodbye();
     statistics_.wall_time = secondsOfNs(monotonicNowNs() - start_ns);
@@ -177,9 +180,9 @@ void Daemon::watch() {
             spdlog::info("stopping: force ramps to zero");
             should_stop_ = true;
         }
-        reportState(shown_state, shown_cause);
+        if (!is_ending_) reportState(shown_state, shown_cause);
         if (loop_.blackBox().isFull()) writeBlackBox();
-        if (program_ && !should_stop_) program_->lookAfter();
+        if (program_ && !is_ending_) program_->lookAfter();
         if (progress_.is_attached) {
             reportServer(was_server_there);
         } else if (secondsOfNs(monotonicNowNs() - start_ns) > give_up_s) {
@@ -192,7 +195,7 @@ void Daemon::watch() {
 
 void Daemon::reportServer(bool& was_there) const {
     const bool is_there = progress_.is_server_there;
-    if (is_there == was_there || progress_.is_finished || should_stop_) return;
+    if (is_there == was_there || is_ending_) return;
     if (is_there)
         spdlog::info("haptic_server answers");
     else
@@ -218,8 +221,9 @@ void Daemon::reportState(SafetyState& shown_state, StopCause& shown_cause) const
 void Daemon::warnOfMissingSwitch() const {
     const uint32_t abilities = progress_.abilities;
     if (!options_.has_enabling_switch || (abilities & (kAbilityEnablingSwitch | kAbilitySimulated))) return;
-    spdlog::warn("this device has no enabling switch and will not engage: start with --no-enabling-switch if you "
-                 "accept that it engages by itself");
+    spdlog::warn(
+        "this device has no enabling switch and will not engage: start with --no-enabling-switch if you "
+        "accept that it engages by itself");
 }
 
 void Daemon::writeBlackBox() {

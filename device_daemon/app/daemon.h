@@ -70,6 +70,7 @@ class Daemon {
     LoopStatistics statistics_;
     Progress progress_;
     std::atomic<bool> should_stop_ = false;
+    std::atomic<bool> is_ending_ = false;
 };
 
 }  // namespace bonemill

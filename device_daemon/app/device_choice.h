@@ -17,6 +17,7 @@ const char* deviceChoices();
 struct ChosenDevice {
     std::unique_ptr<ChildProgram> program;  // emulator or bridge that belongs to it; null without
     std::unique_ptr<HapticDevice> device;
+    bool leaves_by_itself = false;  // it keeps to --seconds and the scenario's end
 };
 
 // Throws UserError for a word that names no device, and for a device that is not there.

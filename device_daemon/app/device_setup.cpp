@@ -1,135 +1,63 @@
 #include "device_daemon/app/device_setup.h"
 
 #include <cmath>
-#include <sstream>
 
 #include "common/config/scene_file.h"
-#include "common/device_messages/device_messages.h"
-#include "common/rt/clock.h"
 #include "common/units.h"
-#include "common/user_error.h"
+#include "device_daemon/ares/scene_ares.h"
 
 namespace bonemill {
 namespace {
 
-constexpr int kChecksPerSegment = 32;
+constexpr double kBlackBoxTime = 2;  // s
 
 Pose poseOf(const scene::Vec3& p_mm, const scene::Quaternion& q) {
     return {kMillimetre * Eigen::Vector3d(p_mm.x(), p_mm.y(), p_mm.z()),
             Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
 }
 
-AresGeometry geometryOf(const scene::Device& device) {
-    return {.base_radius = kMillimetre * device.base_radius_mm(),
-            .platform_radius = kMillimetre * device.platform_radius_mm(),
-            .base_half_angle = kDegree * device.base_half_angle_deg(),
-            .platform_half_angle = kDegree * device.platform_half_angle_deg(),
-            .link_length = kMillimetre * device.link_length_mm(),
-            .stroke = kMillimetre * device.stroke_mm()};
-}
-
-AresPlant plantOf(const scene::Device& device) {
-    return {.moving_mass = device.moving_mass_kg(),
-            .moving_inertia = device.moving_inertia_kg_m2(),
-            .viscous_friction = device.viscous_friction_n_s_per_m(),
-            .angular_friction = device.angular_friction_nm_s_per_rad(),
-            .coulomb_friction = device.coulomb_friction_n(),
-            .amplifier_bandwidth_hz = device.amplifier_bandwidth_hz(),
-            .encoder_step = kMicrometre * device.encoder_step_um()};
-}
-
-HandImpedance handOf(const scene::SimulatedOperator& person) {
-    return {.mass = person.hand_mass_kg(),
-            .damping = person.hand_damping_n_s_per_m(),
-            .stiffness = person.hand_stiffness_n_per_m(),
-            .inertia = person.hand_inertia_kg_m2(),
-            .angular_damping = person.hand_angular_damping_nm_s_per_rad(),
-            .angular_stiffness = person.hand_angular_stiffness_nm_per_rad()};
-}
-
-OperatorPath pathOf(const scene::SimulatedOperator& person, const Pose& X_WD) {
-    const Pose X_DW = X_WD.inverse();
-    std::vector<Waypoint> waypoints;
-    for (const auto& waypoint : person.waypoint()) {
-        const uint32_t buttons =
-            (waypoint.remove() ? kButtonRemove : 0u) | (waypoint.add() ? kButtonAdd : 0u);
-        waypoints.push_back({waypoint.time_s(), X_DW * poseOf(waypoint.p_wt_mm(), waypoint.q_wt()), buttons});
-    }
-    return OperatorPath(std::move(waypoints), kMillimetre * person.tremor_mm());
-}
-
-std::vector<std::string> phasesOf(const scene::SimulatedOperator& person) {
-    std::vector<std::string> phases;
-    for (const auto& waypoint : person.waypoint()) {
-        const bool goes_on = waypoint.phase().empty() && !phases.empty();
-        phases.push_back(goes_on ? phases.back() : waypoint.phase());
-    }
-    return phases;
-}
-
 DeviceLoopConfig loopOf(const scene::Scene& scene) {
+    const scene::Safety& safety = scene.safety();
     DeviceLoopConfig loop;
-    loop.limits.max_actuator_force = scene.device().max_actuator_force_n();
-    loop.stale.stale_after_ns = nsOfMilliseconds(scene.loop().stale_after_ms());
-    loop.stale.ramp_down_ns = nsOfMilliseconds(scene.loop().ramp_ms());
-    loop.sample_flags = kDeviceFlagSimulated;
+    loop.wrench = {.max_force = scene.coupling().max_force_n(),
+                   .max_torque = kMilli * scene.coupling().max_torque_nmm(),
+                   .max_force_rate = safety.max_force_rate_n_per_s(),
+                   .max_torque_rate = kMilli * safety.max_torque_rate_nmm_per_s()};
+    loop.motion.max_speed = kMillimetre * safety.max_speed_mm_per_s();
+    loop.motion.max_angular_speed = kDegree * safety.max_angular_speed_deg_per_s();
+    loop.motion.max_power = safety.max_power_w();
+    loop.motion.max_energy = safety.max_energy_j();
+    loop.states.engage_force = safety.engage_force_n();
+    loop.states.engage_torque = kMilli * safety.engage_torque_nmm();
+    loop.states.engage_time = kMilli * safety.engage_ms();
+    loop.states.ramp_time = kMilli * scene.loop().ramp_ms();
+    loop.states.silence = kMilli * scene.loop().stale_after_ms();
+    loop.black_box_records =
+        BlackBox::kAfterRecords + size_t(std::lround(kBlackBoxTime * scene.loop().rate_hz()));
     return loop;
 }
 
-std::string reasonOf(uint32_t workspace_faults) {
-    if (workspace_faults & kWorkspaceUnreachable) return "a link is too short";
-    if (workspace_faults & kWorkspaceStroke) return "a slider leaves its stroke";
-    return "a link leans too far";
-}
-
-void checkPath(const scene::SimulatedOperator& person, const DeviceSetup& setup) {
-    const AresKinematics kinematics(setup.geometry);
-    for (int i = 0; i < person.waypoint_size(); ++i) {
-        const double from = person.waypoint(std::max(i - 1, 0)).time_s();
-        const double to = person.waypoint(i).time_s();
-        for (int k = 1; k <= kChecksPerSegment; ++k) {
-            const double t = from + (to - from) * k / kChecksPerSegment;
-            const Pose X_DT = setup.path.at(t).X_DT;
-            const uint32_t faults = kinematics.workspaceFaults(X_DT);
-            if (faults == kWorkspaceOk) continue;
-            const Eigen::Vector3d p_mm = X_DT.position / kMillimetre;
-            const double turn_deg = logRotation(X_DT.rotation).norm() / kDegree;
-            std::ostringstream message;
-            message.precision(4);
-            message << "field `simulated_operator.waypoint[" << i
-                    << "]` or the way to it leaves the device's workspace: " << reasonOf(faults)
-                    << " at t = " << t << " s, where the handle is at (" << p_mm.x() << ", " << p_mm.y()
-                    << ", " << p_mm.z() << ") mm and turned by " << turn_deg
-                    << " deg from the device's neutral pose (about 25 mm per axis and 40 deg are possible): "
-                       "move the "
-                       "waypoint, or the device with device.p_WD_mm and device.q_WD";
-            throw UserError(message.str());
-        }
-    }
+Pose startOf(const scene::SimulatedOperator& person, const Pose& X_WD, double scale) {
+    if (person.waypoint_size() == 0) return {};
+    Pose X_DT = X_WD.inverse() * poseOf(person.waypoint(0).p_wt_mm(), person.waypoint(0).q_wt());
+    X_DT.position /= scale;
+    return X_DT;
 }
 
 }  // namespace
 
 DeviceSetup deviceSetupOf(const scene::Scene& scene) {
     const Pose X_WD = poseOf(scene.device().p_wd_mm(), scene.device().q_wd());
-    DeviceSetup setup{.scene_hash = sceneHashOf(scene),
-                      .rate_hz = scene.loop().rate_hz(),
-                      .X_WD = X_WD,
-                      .geometry = geometryOf(scene.device()),
-                      .plant = plantOf(scene.device()),
-                      .hand = handOf(scene.simulated_operator()),
-                      .path = pathOf(scene.simulated_operator(), X_WD),
-                      .phases = phasesOf(scene.simulated_operator()),
-                      .loop = loopOf(scene)};
-    if (!AresKinematics(setup.geometry).isBuildable()) {
-        throw UserError(
-            "field `device`: no platform pose exists for this geometry: with link_length_mm = " +
-            std::to_string(scene.device().link_length_mm()) +
-            " the links cannot reach from base_radius_mm to platform_radius_mm, or they lean too far; "
-            "make the links longer or the radii more alike");
-    }
-    checkPath(scene.simulated_operator(), setup);
-    return setup;
+    const double scale = scene.device().workspace_scale();
+    const Pose X_DT_start = startOf(scene.simulated_operator(), X_WD, scale);
+    return {.scene_hash = sceneHashOf(scene),
+            .rate_hz = scene.loop().rate_hz(),
+            .X_WD = X_WD,
+            .workspace_scale = scale,
+            .X_DT_start = X_DT_start,
+            .ares = aresConfigOf(scene.device(), false),
+            .simulated_ares = aresConfigOf(scene.device(), true, X_DT_start),
+            .loop = loopOf(scene)};
 }
 
 }  // namespace bonemill

@@ -1,11 +1,7 @@
-// Makes the RT-safe parts of the device of the scene file, at start-up: the one place where units
-// and frames change.
+// Makes what the daemon needs of the scene file, at start-up: the place where units and frames change.
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include "device_daemon/driver/ares_emulator.h"
+#include "device_daemon/ares/ares_device.h"
 #include "device_daemon/loop/device_loop.h"
 #include "proto/scene.pb.h"
 
@@ -15,16 +11,14 @@ struct DeviceSetup {
     uint64_t scene_hash;
     double rate_hz;
     Pose X_WD;
-    AresGeometry geometry;
-    AresPlant plant;
-    HandImpedance hand;
-    OperatorPath path;  // waypoints moved from W to D
-    std::vector<std::string>
-        phases;  // of each waypoint; one without a phase goes on with the phase before it
+    double workspace_scale;
+    Pose X_DT_start;        // where the scripted hand begins; D's origin without one
+    AresDeviceConfig ares;  // the real one
+    AresDeviceConfig simulated_ares;
     DeviceLoopConfig loop;
 };
 
-// Throws UserError when the geometry cannot be built or the path leaves the device's workspace.
+// Throws UserError when the geometry cannot be built.
 DeviceSetup deviceSetupOf(const scene::Scene& scene);
 
 }  // namespace bonemill

@@ -7,6 +7,8 @@
 #include "common/log/log.h"
 #include "common/user_error.h"
 #include "device_daemon/app/daemon.h"
+#include "device_daemon/app/device_choice.h"
+#include "device_daemon/ares/describe_ares.h"
 
 namespace {
 
@@ -32,17 +34,18 @@ void blockStopSignals() {
 
 int main(int argc, char** argv) {
     try {
-        const auto options = bonemill::parseOptions(argc, argv);
+        auto options = bonemill::parseOptions(argc, argv);
         if (!options) return 0;
         bonemill::setUpLog("device_daemon", options->log_level);
         const bonemill::DeviceSetup setup = loadSetup(options->scene);
         if (options->describe) {
-            std::cout << bonemill::describeAres(setup.ares) << std::flush;
+            std::cout << bonemill::describe(setup.ares) << std::flush;
             return 0;
         }
         blockStopSignals();
         bonemill::dds::setNetwork(options->network);
         const bonemill::ChosenDevice chosen = bonemill::chooseDevice(setup, *options);
+        if (chosen.leaves_by_itself) options->seconds.reset();
         bonemill::Daemon daemon(setup, *options, *chosen.device, chosen.program.get());
         daemon.run();
         const std::string device_words = chosen.program ? chosen.program->finish() : "";

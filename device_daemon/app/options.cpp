@@ -5,6 +5,7 @@
 #include <iostream>
 #include <thread>
 
+#include "common/dds/network_cli.h"
 #include "common/user_error.h"
 #include "device_daemon/app/device_choice.h"
 #include "device_daemon/app/stop_files.h"
@@ -24,7 +25,8 @@ std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
     app.add_option("--device", options.device, deviceChoices())->capture_default_str();
     app.add_option("--session", options.session, "Number that haptic_server was started with")
         ->capture_default_str();
-    app.add_option("--domain", options.domain, "DDS domain of the viewers whose mouse holds the tool, 0 to 230")
+    app.add_option("--domain", options.domain,
+                   "DDS domain of the viewers whose mouse holds the tool, 0 to 230")
         ->check(CLI::Range(0, 230))
         ->capture_default_str();
     dds::addNetworkOptions(app, options.network);

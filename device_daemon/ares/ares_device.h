@@ -42,6 +42,7 @@ class AresDevice final : public HapticDevice {
     AresDevice(JointDevice& joints, const AresDeviceConfig& config) noexcept;
 
     DeviceCapabilities capabilities() const noexcept override { return capabilities_; }
+    bool hasClock() const noexcept override { return joints_.hasClock(); }
     bool waitForSample(int64_t deadline_ns) noexcept override { return joints_.waitForSample(deadline_ns); }
     bool read(double elapsed, DeviceReading& reading) noexcept override;
     void write(const DeviceOrder& order) noexcept override;

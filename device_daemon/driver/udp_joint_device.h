@@ -13,6 +13,7 @@ class UdpJointDevice final : public JointDevice {
   public:
     explicit UdpJointDevice(const UdpDeviceConfig& config) : device_(config) {}
 
+    bool hasClock() const noexcept override { return true; }
     bool waitForSample(int64_t deadline_ns) noexcept override { return device_.waitForSample(deadline_ns); }
     bool readJoints(double elapsed, JointReading& reading) noexcept override;
     void applyForces(const JointOrder& order) noexcept override;

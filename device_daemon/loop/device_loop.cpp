@@ -114,11 +114,12 @@ void DeviceLoop::write(const WrenchCommand* newest, int64_t now_ns) noexcept {
     const bool is_felt = states_.state() == SafetyState::kEngaged || given_factor_ > 0;
     given_ = limiter_.limit(is_felt ? commanded_ : Wrench{}, given_factor_, elapsed_);
     const SafetyState state = states_.state();
-    device_.write(
-        {.wrench_hand_D = given_,
-         .is_wanted = has_command_ && state != SafetyState::kFault && state != SafetyState::kEmergencyStop,
-         .is_engaged = state == SafetyState::kEngaged,
-         .reset = states_.hasReset()});
+    if (is_releasing_ && given_factor_ == 0) ++unwanted_periods_;
+    device_.write({.wrench_hand_D = given_,
+                   .is_wanted = has_command_ && unwanted_periods_ == 0 && state != SafetyState::kFault &&
+                                state != SafetyState::kEmergencyStop,
+                   .is_engaged = state == SafetyState::kEngaged,
+                   .reset = states_.hasReset()});
     remember(newest, now_ns);
 }
 

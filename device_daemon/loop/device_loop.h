@@ -35,9 +35,10 @@ class DeviceLoop {
     // plausible counts as silence.
     void write(const WrenchCommand* newest, int64_t now_ns) noexcept;
 
-    // From now on the server counts as silent; isReleased() says that no force is left.
+    // From now on the server counts as silent, the force ramps to zero, and then the motors are switched off;
+    // isReleased() says that the device has been told so.
     void release() noexcept { is_releasing_ = true; }
-    bool isReleased() const noexcept { return is_releasing_ && given_factor_ == 0; }
+    bool isReleased() const noexcept { return unwanted_periods_ >= kUnwantedPeriods; }
 
     uint32_t abilities() const noexcept { return abilities_; }  // DeviceAbility bits of the device
     const SafetyStates& safety() const noexcept { return states_; }
@@ -51,6 +52,8 @@ class DeviceLoop {
     BlackBox& blackBox() noexcept { return black_box_; }
 
   private:
+    static constexpr int kUnwantedPeriods = 10;  // some of these orders may get lost
+
     void adaptToDevice() noexcept;
     bool takeOrders(const WrenchCommand* newest, int64_t now_ns) noexcept;
     void fill(DeviceSample& sample) const noexcept;
@@ -72,6 +75,7 @@ class DeviceLoop {
     uint32_t reset_orders_ = 0;  // the last number seen
     bool has_command_ = false, is_server_there_ = false, is_releasing_ = false;
     double given_factor_ = 0;
+    int unwanted_periods_ = 0;  // since the release left no force
     Wrench given_;
     uint64_t unheard_periods_ = 0;
 };

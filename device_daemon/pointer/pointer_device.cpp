@@ -46,12 +46,6 @@ DeviceCapabilities PointerDevice::capabilities() const noexcept {
     return device;
 }
 
-bool PointerDevice::waitForSample(int64_t deadline_ns) noexcept {
-    const timespec deadline = timespecOfNs(deadline_ns);
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr);
-    return false;
-}
-
 bool PointerDevice::read(double elapsed, DeviceReading& reading) noexcept {
     follow(elapsed);
     handle_.advance(elapsed, wrench_hand_D_);

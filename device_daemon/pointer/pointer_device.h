@@ -43,7 +43,8 @@ class PointerDevice final : public HapticDevice {
     ~PointerDevice() override;
 
     DeviceCapabilities capabilities() const noexcept override;
-    bool waitForSample(int64_t deadline_ns) noexcept override;
+    bool hasClock() const noexcept override { return false; }
+    bool waitForSample(int64_t) noexcept override { return false; }
     bool read(double elapsed, DeviceReading& reading) noexcept override;
     void write(const DeviceOrder& order) noexcept override;
 

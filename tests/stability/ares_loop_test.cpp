@@ -11,6 +11,12 @@ namespace {
 
 constexpr int64_t kTick_ns = 1'000'000;
 
+DeviceLoopConfig withoutSwitch() {
+    DeviceLoopConfig config;
+    config.states.needs_enabling_switch = false;
+    return config;
+}
+
 // Frame D stands where the tool starts: the neutral handle pose is the start pose.
 class AresBench {
   public:
@@ -18,7 +24,7 @@ class AresBench {
         : X_WD_(start),
           emulator_(AresKinematics{}, {}, {}, OperatorPath({{0, {}, 0}, {0.3, start.inverse() * target, 0}})),
           ares_(emulator_, {}),
-          loop_(ares_, {.states = {.needs_enabling_switch = false}}),
+          loop_(ares_, withoutSwitch()),
           stepper_(scene) {
         emulator_.startScenario();
     }

@@ -1,5 +1,6 @@
-// Server, daemon and emulator are killed, stopped and unplugged at random moments, again and again: each time the force
-// goes, and the session goes on when what was gone is back. BONEMILL_CHAOS_ROUNDS says how often (docs/safety.md).
+// Server, daemon and emulator are killed, stopped and unplugged at random moments, again and again: each time
+// the force goes, and the session goes on when what was gone is back. BONEMILL_CHAOS_ROUNDS says how often
+// (docs/safety.md).
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -32,30 +33,39 @@ size_t countOf(const std::string& text, const std::string& word) {
 
 // The simulated hand presses on a slab and mills it for hours.
 class DeviceChaos : public testing::Test {
-  protected:
+  public:
     DeviceChaos() : session_(std::to_string(testSession())), domain_(std::to_string(testDomain())) {
-        EXPECT_EQ(test::run({"make_phantom", "body", "--kind", "slab", "--out", folder_ / "slab.nrrd"}).exit_code, 0);
+        EXPECT_EQ(
+            test::run({"make_phantom", "body", "--kind", "slab", "--out", folder_ / "slab.nrrd"}).exit_code,
+            0);
         const std::string upright = "q_WT { w: 0.70710678 x: 0.70710678 }";
         test::writeFile(folder_ / "s.textproto",
-                        "name: \"chaos\" volume { path: \"slab.nrrd\" } effects { time_removal { rate_density_per_s: 10 } }\n"
+                        "name: \"chaos\" volume { path: \"slab.nrrd\" } effects { time_removal { "
+                        "rate_density_per_s: 10 } }\n"
                         "device { p_WD_mm { x: 0 y: 0.1 z: 2 } q_WD { w: 0.70710678 x: 0.70710678 } }\n"
                         "simulated_operator { tremor_mm: 0.1\n"
-                        "  waypoint { time_s: 0 p_WT_mm { x: 0 y: 0.1 z: 3.6 } " + upright + " phase: \"approach\" }\n"
-                        "  waypoint { time_s: 0.3 p_WT_mm { x: 0 y: 0.1 z: 1.6 } " + upright + " remove: true phase: \"press\" }\n"
-                        "  waypoint { time_s: 36000 p_WT_mm { x: 0 y: 0.1 z: 1.5 } " + upright + " } }\n");
+                        "  waypoint { time_s: 0 p_WT_mm { x: 0 y: 0.1 z: 3.6 } " +
+                            upright +
+                            " phase: \"approach\" }\n"
+                            "  waypoint { time_s: 0.3 p_WT_mm { x: 0 y: 0.1 z: 1.6 } " +
+                            upright +
+                            " remove: true phase: \"press\" }\n"
+                            "  waypoint { time_s: 36000 p_WT_mm { x: 0 y: 0.1 z: 1.5 } " +
+                            upright + " } }\n");
         startServer();
         startDaemon();
     }
     void startServer() {
         server_.reset();
-        server_ = std::make_unique<Process>(std::vector<std::string>{
-            "haptic_server", "--scene", folder_ / "s.textproto", "--session", session_, "--domain", domain_, "--best-effort-rt"});
+        server_ = std::make_unique<Process>(
+            std::vector<std::string>{"haptic_server", "--scene", folder_ / "s.textproto", "--session",
+                                     session_, "--domain", domain_, "--best-effort-rt"});
     }
     void startDaemon() {
         daemon_.reset();
         daemon_ = std::make_unique<Process>(std::vector<std::string>{
-            "device_daemon", "--device", "simulated", "--scene", folder_ / "s.textproto", "--session", session_,
-            "--best-effort-rt", "--stop-dir", folder_ / "stops"});
+            "device_daemon", "--device", "simulated", "--scene", folder_ / "s.textproto", "--session",
+            session_, "--best-effort-rt", "--stop-dir", folder_ / "stops"});
     }
     size_t engagedSoFar() const {
         return countOf(daemon_->errSoFar() + daemon_->outSoFar(), "device is engaged");
@@ -107,14 +117,15 @@ class DeviceChaos : public testing::Test {
 };
 
 TEST_F(DeviceChaos, TheSessionGoesOnWhateverDies) {
-    std::mt19937 random(uint32_t(getpid()));
+    std::mt19937 random{uint32_t(getpid())};
     using Action = size_t (DeviceChaos::*)();
     struct {
         const char* name;
         Action act;
-    } const actions[] = {{"server killed", &DeviceChaos::killServer},     {"server stopped", &DeviceChaos::pauseServer},
-                         {"daemon killed", &DeviceChaos::killDaemon},     {"daemon stopped", &DeviceChaos::pauseDaemon},
-                         {"emulator killed", &DeviceChaos::killEmulator}, {"emulator stopped", &DeviceChaos::pauseEmulator}};
+    } const actions[] = {
+        {"server killed", &DeviceChaos::killServer},     {"server stopped", &DeviceChaos::pauseServer},
+        {"daemon killed", &DeviceChaos::killDaemon},     {"daemon stopped", &DeviceChaos::pauseDaemon},
+        {"emulator killed", &DeviceChaos::killEmulator}, {"emulator stopped", &DeviceChaos::pauseEmulator}};
     ASSERT_TRUE(engagesAfter(0)) << daemon_->errSoFar();
     for (int round = 0; round < roundsWanted(); ++round) {
         std::this_thread::sleep_for(std::chrono::milliseconds(random() % 700));

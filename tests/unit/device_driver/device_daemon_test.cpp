@@ -26,8 +26,9 @@ class DeviceDaemonTest : public testing::Test {
     // With further words after these.
     std::vector<std::string> commandLine(const std::string& scene_file,
                                          const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> words{"device_daemon", "--device", "simulated", "--scene",   scene_file,
-                                       "--best-effort-rt", "--session", std::to_string(session_)};
+        std::vector<std::string> words{
+            "device_daemon", "--device",         "simulated", "--scene",
+            scene_file,      "--best-effort-rt", "--session", std::to_string(session_)};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -107,7 +108,7 @@ TEST_F(DeviceDaemonTest, PlaysTheScenarioWithAServerAndLeaves) {
     EXPECT_TRUE(server.end() & kDeviceFlagLeaving);
     EXPECT_EQ(finished.exit_code, 0) << allOf(finished);
     expectSays(finished, "\"final_phase\":\"done\"");
-    expectSays(finished, "\"failed_poses\":0");
+    expectSays(finished, "\"stops\":0");
 }
 
 // However seldom it runs, it has the time to get there.

@@ -17,12 +17,16 @@ constexpr int64_t kPeriodNs = 1'000'000;
 constexpr double kSoftWall = 1200;        // N/m, resists z < 0 of the handle
 constexpr double kThesisCoupling = 3000;  // N/m: what a rigid bone feels like through k_t = 3 N/mm
 
+DeviceLoopConfig withoutSwitch() {
+    DeviceLoopConfig config;
+    config.states.needs_enabling_switch = false;
+    return config;
+}
+
 class ClosedLoop {
   public:
     explicit ClosedLoop(const OperatorPath& path)
-        : emulator(AresKinematics{}, {}, {}, path),
-          ares(emulator, {}),
-          loop(ares, {.states = {.needs_enabling_switch = false}}) {
+        : emulator(AresKinematics{}, {}, {}, path), ares(emulator, {}), loop(ares, withoutSwitch()) {
         emulator.startScenario();
     }
 
@@ -116,7 +120,7 @@ TEST(ClosedLoop, ReleaseRampsToZeroAndStaysThere) {
     loop.run(2.0);
     loop.loop.release();
     EXPECT_FALSE(loop.loop.isReleased());
-    loop.run(0.06);
+    loop.run(0.07);
     EXPECT_TRUE(loop.loop.isReleased());
     EXPECT_EQ(loop.ares.actuatorForces(), Vector6d::Zero());
 }

@@ -162,6 +162,9 @@ TEST(DeviceLoop, ReleaseTakesTheForceAwayByTheRamp) {
         EXPECT_GE(rig.force(), before - 0.4);  // 10 N in 50 ms, at its steepest 1.5 times that
         before = rig.force();
     }
+    EXPECT_EQ(rig.force(), 0);
+    EXPECT_FALSE(rig.device.order.is_wanted);
+    rig.run(0.01);
     EXPECT_TRUE(rig.loop.isReleased());
 }
 
