@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -80,21 +81,20 @@ LinkSemaphores beginSetup(const LinkPlace& place, int64_t deadline_ns) {
 class Setup {
   public:
     Setup(LinkSemaphores semaphores, LinkSide side) noexcept
-        : semaphores_(semaphores), side_(side), has_side_(semaphores_.tryTake(side_)) {}
+        : semaphores_(semaphores), side_(side), owns_side_(semaphores_.tryTake(side_)) {}
     Setup(const Setup&) = delete;
     Setup& operator=(const Setup&) = delete;
     ~Setup() {
-        if (has_side_ && !is_done_) semaphores_.giveBack(side_);
+        if (owns_side_) semaphores_.giveBack(side_);
         semaphores_.endSetup();
     }
-    bool hasSide() const noexcept { return has_side_; }
-    void keepSide() noexcept { is_done_ = true; }
+    bool ownsSide() const noexcept { return owns_side_; }
+    void leaveSideToLink() noexcept { owns_side_ = false; }
 
   private:
     LinkSemaphores semaphores_;
     LinkSide side_;
-    bool has_side_;
-    bool is_done_ = false;
+    bool owns_side_;
 };
 
 LinkSegment joinPeer(const LinkPlace& place, LinkSide side, uint64_t scene_hash) {
@@ -113,7 +113,7 @@ DeviceLink DeviceLink::create(uint32_t session, LinkSide side, uint64_t scene_ha
     const LinkPlace place(session);
     const LinkSemaphores semaphores = beginSetup(place, monotonicNowNs() + kPatience_ns);
     Setup setup(semaphores, side);
-    if (!setup.hasSide()) {
+    if (!setup.ownsSide()) {
         place.refuse(std::string("another ") + programOf(side) + " (process " +
                      std::to_string(semaphores.pidOf(side)) +
                      ") uses it; stop that one or choose another --session");
@@ -121,7 +121,7 @@ DeviceLink DeviceLink::create(uint32_t session, LinkSide side, uint64_t scene_ha
     LinkSegment memory =
         semaphores.isTaken(peerOf(side)) ? joinPeer(place, side, scene_hash) : LinkSegment::make(place);
     slotOf(*memory, side).scene_hash.store(scene_hash, std::memory_order_relaxed);
-    setup.keepSide();
+    setup.leaveSideToLink();
     return {side, semaphores, std::move(memory)};
 }
 

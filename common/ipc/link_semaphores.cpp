@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
+#include <string>
 
 #include "common/ipc/link_layout.h"
 #include "common/rt/clock.h"
