@@ -1,6 +1,6 @@
 // The memory of a link: a System V segment, attached while the object lives.
 //
-// The kernel fixes the size of such a segment when it is made, and unlike a file it cannot be cut short under
+// The kernel fixes the size of such a segment when it is made, and, unlike a file, it is not cut short under
 // a program that reads it (SIGBUS). Owner, maker and mode are checked before it is touched. This is for start
 // and end; only access to what is attached is for the tick. Whoever calls has the set-up to itself
 // (LinkSemaphores).
