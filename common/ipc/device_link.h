@@ -1,35 +1,40 @@
 // This is the link between device_daemon, which writes DeviceSample, and haptic_server, which writes
-// WrenchCommand: POSIX shared memory with one seqlock per direction and a futex for whoever waits.
+// WrenchCommand: shared memory with one seqlock per direction and a futex for whoever waits.
 //
 // Whoever starts first makes the memory, and each side may die and come back. The newest value is all
 // that counts: nothing queues. Reading and writing are RT-safe: they are bounded, and a wake is one
-// system call, made only when the peer waits. Opening, peerIsAlive() and the destructor are not. One
-// thread uses a DeviceLink.
+// system call, made only when the peer waits. Opening, peerIsAlive() and the destructor are not; they wait
+// 2 s at most. One thread uses a DeviceLink.
+//
+// It is System V memory, because the kernel fixes its size for its life, knows who made it, and keeps
+// semaphores that a dying process gives back. POSIX shared memory is a file that anybody with the right to
+// write can cut short, which ends its readers by SIGBUS; here only root could, through /proc/PID/map_files,
+// who can end them anyway. A sealed memfd withstands even that, but somebody must live who hands it out, and
+// answer while stopped or busy; here either side may be the first or the last. Both programs must run as the
+// same user and in the same IPC namespace.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <string>
 
 #include "common/device_messages/device_messages.h"
+#include "common/ipc/link_segment.h"
+#include "common/ipc/link_semaphores.h"
+#include "common/ipc/link_side.h"
 
 namespace bonemill {
 
-enum class LinkSide { kServer, kDaemon };
-
-struct LinkMemory;
-
 class DeviceLink {
   public:
-    // Creates the memory or attaches to it. The memory of dead processes is taken over: a living peer's
-    // content is kept, else it starts empty. Throws UserError when the memory is not ours, the peer was built
-    // with another layout or has read another scene, a living process has taken this side, or there is no
-    // permission.
+    // Creates the memory or attaches to it: a living peer's content is kept, that of the dead makes way for
+    // empty memory. Throws UserError when what lies there is another user's, open to others or no link's, the
+    // peer was built with another layout or has read another scene, a living process has taken this side, or
+    // one is stuck while it starts.
     static DeviceLink create(uint32_t session, LinkSide side, uint64_t scene_hash);
 
-    DeviceLink(DeviceLink&& other) noexcept;
+    DeviceLink(DeviceLink&&) noexcept = default;
     DeviceLink& operator=(DeviceLink&&) = delete;
-    // Removes the memory if the peer is gone too.
+    // Removes the memory if the peer is gone too. Where another process is stuck while it starts, the memory
+    // stays and the next start takes it over.
     ~DeviceLink();
 
     // For the daemon: publishes and wakes; `sequence` is filled in and returned.
@@ -56,17 +61,16 @@ class DeviceLink {
     void beat(int64_t now_ns) noexcept;
     // Returns the peer's last beat, CLOCK_MONOTONIC; 0 if there was none.
     int64_t peerHeartbeatNs() const noexcept;
-    int32_t peerPid() const noexcept;  // 0: not attached
-    // Asks the kernel whether the peer's process holds its side of the link. It is not RT-safe.
+    // Asks the kernel whether a process holds the peer's side of the link: one system call, and not RT-safe.
+    // A stopped process lives.
     bool peerIsAlive() const noexcept;
 
   private:
-    DeviceLink(std::string name, LinkSide side, int file, LinkMemory* memory) noexcept;
+    DeviceLink(LinkSide side, LinkSemaphores semaphores, LinkSegment memory) noexcept;
 
-    std::string name_;
     LinkSide side_;
-    int file_;
-    LinkMemory* memory_;
+    LinkSemaphores semaphores_;
+    LinkSegment memory_;
     uint32_t read_version_ = 0;  // seqlock version of the last value read
     uint32_t capabilities_version_ = 0;
 };

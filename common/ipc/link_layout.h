@@ -1,6 +1,6 @@
 // This is the byte layout of the shared memory behind DeviceLink. Only the link and its tests need it.
 //
-// The fields up to `size` and the lock bytes never change, so that programs of different versions can
+// The header, the key (linkKeyOf) and the semaphores never change, so that programs of different versions can
 // recognise each other. Any other change of this file raises kLinkLayoutVersion.
 #pragma once
 
@@ -17,13 +17,17 @@ namespace bonemill {
 inline constexpr uint64_t kLinkMagic = 0x4b4e494c4c494d42;  // "BMILLINK" in memory
 inline constexpr uint32_t kLinkLayoutVersion = 2;
 
-// These are advisory locks (fcntl, per open file) on single bytes of the memory file. The kernel drops them
-// when a process dies, so that a held byte means a living process: no pid can be mistaken.
-enum LinkLockByte : int64_t { kLockSetup = 0, kLockServer = 1, kLockDaemon = 2 };
+// The set of semaphores with the memory's key: 0 is free, 1 is held.
+enum LinkSemaphore : unsigned short { kSetupSemaphore = 0, kServerSemaphore = 1, kDaemonSemaphore = 2 };
+inline constexpr int kLinkSemaphoreCount = 3;
+
+struct LinkHeader {
+    uint64_t magic;  // written last
+    uint32_t layout_version;
+    uint32_t size;
+};
 
 struct LinkPeer {
-    std::atomic<int32_t> pid;
-    uint32_t reserved;
     std::atomic<int64_t> heartbeat_ns;
     std::atomic<uint64_t> last_sequence;  // of what this side wrote; a restarted process counts on from it
     std::atomic<uint64_t> scene_hash;     // of the scene that this side has read
@@ -36,9 +40,7 @@ struct alignas(64) LinkChannel {
 };
 
 struct LinkMemory {
-    uint64_t magic;
-    uint32_t layout_version;
-    uint32_t size;
+    LinkHeader header;
     LinkPeer server;
     LinkPeer daemon;
     LinkChannel<DeviceSample> sample;
@@ -46,10 +48,12 @@ struct LinkMemory {
     LinkChannel<DeviceCapabilities> capabilities;
 };
 static_assert(std::is_standard_layout_v<LinkMemory>);
-static_assert(sizeof(LinkPeer) == 32 && sizeof(LinkChannel<DeviceSample>) == 192);
-static_assert(offsetof(LinkMemory, layout_version) == 8 && offsetof(LinkMemory, size) == 12 &&
-              offsetof(LinkMemory, server) == 16 && offsetof(LinkMemory, daemon) == 48 &&
-              offsetof(LinkMemory, sample) == 128 && offsetof(LinkMemory, command) == 320 &&
-              offsetof(LinkMemory, capabilities) == 448 && sizeof(LinkMemory) == 576);
+static_assert(sizeof(LinkHeader) == 16 && offsetof(LinkHeader, layout_version) == 8 &&
+              offsetof(LinkHeader, size) == 12);
+static_assert(sizeof(LinkPeer) == 24 && sizeof(LinkChannel<DeviceSample>) == 192);
+static_assert(offsetof(LinkMemory, header) == 0 && offsetof(LinkMemory, server) == 16 &&
+              offsetof(LinkMemory, daemon) == 40 && offsetof(LinkMemory, sample) == 64 &&
+              offsetof(LinkMemory, command) == 256 && offsetof(LinkMemory, capabilities) == 384 &&
+              sizeof(LinkMemory) == 512);
 
 }  // namespace bonemill

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace bonemill {
@@ -51,12 +52,49 @@ TEST(DeviceMessages, quaternionNormMustBeNearOne) {
     }
 }
 
-TEST(DeviceMessages, positionMustBeWithinReach) {
+TEST(DeviceMessages, placeAndSpeedsMustBePossible) {
+    struct {
+        double (DeviceSample::*vector)[3];
+        double most;
+    } const cases[] = {{&DeviceSample::p_DT, kLargestDeviceReach},
+                       {&DeviceSample::v_DT, kLargestDeviceSpeed},
+                       {&DeviceSample::w_DT, kLargestDeviceSpin}};
+    for (const auto& [vector, most] : cases) {
+        for (int i = 0; i < 3; ++i) {
+            DeviceSample sample = restingSample();
+            (sample.*vector)[i] = -most;
+            EXPECT_TRUE(isPlausible(sample)) << most << ' ' << i;
+            for (const double bad : {-1.001 * most, 1.001 * most, kBad[0], kBad[1], kBad[2], kBad[3]}) {
+                (sample.*vector)[i] = bad;
+                EXPECT_FALSE(isPlausible(sample)) << most << ' ' << i << ' ' << bad;
+            }
+        }
+    }
+}
+
+TEST(DeviceMessages, stateAndCauseMustBeKnown) {
+    for (const uint32_t number : {0u, 1u, 5u, 8u, 9u, 13u, 14u, 1u << 31, UINT32_MAX}) {
+        DeviceSample sample = restingSample();
+        sample.state = number;
+        EXPECT_EQ(isPlausible(sample), number <= uint32_t(SafetyState::kFault)) << number;
+        sample = restingSample();
+        sample.stop_cause = number;
+        EXPECT_EQ(isPlausible(sample), number <= uint32_t(StopCause::kLatePackets)) << number;
+    }
+}
+
+// The device's own numbers, counters and bits mean what they like.
+TEST(DeviceMessages, otherNumbersAreFree) {
     DeviceSample sample = restingSample();
-    sample.p_DT[1] = -kLargestDeviceReach;
+    sample.sequence = UINT64_MAX;
+    sample.stamp_ns = INT64_MIN;
+    sample.buttons = sample.flags = sample.fault_code = sample.reset_count = UINT32_MAX;
     EXPECT_TRUE(isPlausible(sample));
-    sample.p_DT[1] = -1.001 * kLargestDeviceReach;
-    EXPECT_FALSE(isPlausible(sample));
+    WrenchCommand command{};
+    command.sequence = command.answers_sequence = UINT64_MAX;
+    command.stamp_ns = INT64_MAX;
+    command.reset_orders = UINT32_MAX;
+    EXPECT_TRUE(isPlausible(command));
 }
 
 TEST(DeviceMessages, wrenchMustBeFinite) {
@@ -68,6 +106,37 @@ TEST(DeviceMessages, wrenchMustBeFinite) {
         command = {};
         command.t_hand_D[i] = -INFINITY;
         EXPECT_FALSE(isPlausible(command));
+    }
+}
+
+TEST(DeviceMessages, nameOfTheDeviceMustEnd) {
+    DeviceCapabilities device{};
+    EXPECT_TRUE(isPlausible(device));
+    std::memset(device.name, 'x', sizeof(device.name) - 1);
+    EXPECT_TRUE(isPlausible(device));
+    device.name[sizeof(device.name) - 1] = 'x';
+    EXPECT_FALSE(isPlausible(device));
+}
+
+TEST(DeviceMessages, kindOfTheDeviceMustBeKnown) {
+    for (const uint32_t kind : {0u, 1u, 8u, 9u, UINT32_MAX}) {
+        DeviceCapabilities device{};
+        device.kind = kind;
+        EXPECT_EQ(isPlausible(device), kind <= uint32_t(DeviceKind::kGamepad)) << kind;
+    }
+}
+
+TEST(DeviceMessages, figuresOfTheDeviceMustBeFiniteAndNotNegative) {
+    for (const auto figure :
+         {&DeviceCapabilities::max_force, &DeviceCapabilities::max_torque, &DeviceCapabilities::max_stiffness,
+          &DeviceCapabilities::max_rotation_stiffness, &DeviceCapabilities::workspace_radius}) {
+        DeviceCapabilities device{};
+        device.*figure = 1e6;
+        EXPECT_TRUE(isPlausible(device));
+        for (const double bad : {-1e-9, kBad[0], kBad[1], kBad[2]}) {
+            device.*figure = bad;
+            EXPECT_FALSE(isPlausible(device)) << bad;
+        }
     }
 }
 

@@ -1,54 +1,14 @@
-// Tries the link between real processes: start order, death and return.
+// Tries the link between real processes: start order, death, standstill and return.
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
-#include <utility>
-#include <vector>
 
-#include "common/ipc/device_link.h"
 #include "common/rt/clock.h"
+#include "tests/unit/ipc/child.h"
 #include "tests/unit/ipc/link_test_tools.h"
 
 namespace bonemill {
 namespace {
-
-constexpr int kSuccess = 0;
-
-// The child process runs `body` and leaves with its result; it is killed if the test ends first.
-class Child {
-  public:
-    explicit Child(const std::function<int()>& body) : pid_(fork()) {
-        if (pid_ == 0) {
-            int result = 99;
-            try {
-                result = body();
-            } catch (...) {
-            }
-            _exit(result);
-        }
-    }
-    Child(const Child&) = delete;
-    Child& operator=(const Child&) = delete;
-    ~Child() { kill(); }
-
-    int exitCode() {
-        int status = 0;
-        waitpid(std::exchange(pid_, -1), &status, 0);
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    }
-    void kill() {
-        if (pid_ <= 0) return;
-        ::kill(pid_, SIGKILL);
-        waitpid(std::exchange(pid_, -1), nullptr, 0);
-    }
-
-  private:
-    pid_t pid_;
-};
 
 int64_t farAwayNs() {
     return monotonicNowNs() + 250 * kNsPerSecond;
@@ -61,8 +21,8 @@ DeviceSample restingSample() {
     return sample;
 }
 
-int publishForever(const TestLinkName& name) {
-    DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
+int publishForever(const TestSession& session) {
+    DeviceLink daemon = session.open(LinkSide::kDaemon);
     for (;;) {
         daemon.writeSample(restingSample());
         usleep(200);
@@ -71,9 +31,9 @@ int publishForever(const TestLinkName& name) {
 
 TEST(DeviceLinkProcesses, everySampleIsAnsweredAcrossProcesses) {
     constexpr uint64_t kSamples = 2000;
-    const TestLinkName name;
+    const TestSession session;
     Child device([&] {
-        DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
+        DeviceLink daemon = session.open(LinkSide::kDaemon);
         for (uint64_t i = 1; i <= kSamples; ++i) {
             DeviceSample sample = restingSample();
             sample.p_DT[0] = double(i) / kSamples;
@@ -86,7 +46,7 @@ TEST(DeviceLinkProcesses, everySampleIsAnsweredAcrossProcesses) {
         }
         return kSuccess;
     });
-    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
+    DeviceLink server = session.open(LinkSide::kServer);
     DeviceSample sample{};
     while (sample.sequence < kSamples && server.waitForSample(farAwayNs()) && server.readSample(sample)) {
         ASSERT_TRUE(isPlausible(sample));
@@ -99,15 +59,15 @@ TEST(DeviceLinkProcesses, everySampleIsAnsweredAcrossProcesses) {
 }
 
 TEST(DeviceLinkProcesses, bothMayStartAtTheSameMoment) {
-    const TestLinkName name;
+    const TestSession session;
     for (int round = 0; round < 100; ++round) {
         Child device([&] {
-            DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
+            DeviceLink daemon = session.open(LinkSide::kDaemon);
             WrenchCommand command{};
             daemon.writeSample(restingSample());
             return daemon.waitForCommand(farAwayNs()) && daemon.readCommand(command) ? kSuccess : 1;
         });
-        DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
+        DeviceLink server = session.open(LinkSide::kServer);
         DeviceSample sample{};
         ASSERT_TRUE(server.waitForSample(farAwayNs()) && server.readSample(sample));
         server.writeCommand({});
@@ -116,11 +76,11 @@ TEST(DeviceLinkProcesses, bothMayStartAtTheSameMoment) {
 }
 
 TEST(DeviceLinkProcesses, aKilledDaemonIsNoticedAndMayReturn) {
-    const TestLinkName name;
-    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
+    const TestSession session;
+    DeviceLink server = session.open(LinkSide::kServer);
     uint64_t last_sequence = 0;
     for (int life = 0; life < 10; ++life) {
-        Child device([&] { return publishForever(name); });
+        Child device([&] { return publishForever(session); });
         DeviceSample sample{};
         for (int i = 0; i < 5; ++i) {
             ASSERT_TRUE(server.waitForSample(farAwayNs()));
@@ -140,21 +100,141 @@ TEST(DeviceLinkProcesses, aKilledDaemonIsNoticedAndMayReturn) {
 }
 
 TEST(DeviceLinkProcesses, memoryOfKilledProcessesIsTakenOver) {
-    const TestLinkName name;
+    const TestSession session;
     {
-        Child device([&] { return publishForever(name); });
-        DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
+        Child device([&] { return publishForever(session); });
+        DeviceLink server = session.open(LinkSide::kServer);
         ASSERT_TRUE(server.waitForSample(farAwayNs()));
     }
     {
-        Child device([&] { return publishForever(name); });
-        while (!name.exists()) usleep(100);
+        Child device([&] { return publishForever(session); });
+        while (!session.hasMemory()) usleep(100);
         device.kill();
     }
-    ASSERT_TRUE(name.exists());  // a killed process cleans nothing up
-    DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
+    ASSERT_TRUE(session.hasMemory());  // a killed process cleans nothing up
+    DeviceLink daemon = session.open(LinkSide::kDaemon);
     EXPECT_FALSE(daemon.peerIsAlive());
     EXPECT_EQ(daemon.writeSample(restingSample()), 1u);
+}
+
+TEST(DeviceLinkProcesses, aKilledServerMayReturnAndFindsWhatTheDaemonSays) {
+    const TestSession session;
+    DeviceLink daemon = session.open(LinkSide::kDaemon);
+    DeviceCapabilities capabilities{};
+    capabilities.max_force = 12;
+    daemon.writeCapabilities(capabilities);
+    daemon.writeSample(restingSample());
+    uint64_t last_sequence = 0;
+    for (int life = 0; life < 10; ++life) {
+        Child server([&] {
+            DeviceLink link = session.open(LinkSide::kServer);
+            DeviceSample sample{};
+            DeviceCapabilities found{};
+            if (!link.readSample(sample) || !link.readCapabilities(found) || found.max_force != 12) return 1;
+            for (;;) link.writeCommand({});
+        });
+        WrenchCommand command{};
+        while (command.sequence <= last_sequence) {
+            ASSERT_TRUE(daemon.waitForCommand(farAwayNs()));
+            daemon.readCommand(command);
+        }
+        EXPECT_TRUE(daemon.peerIsAlive());
+        server.kill();
+        EXPECT_FALSE(daemon.peerIsAlive());
+        daemon.readCommand(command);
+        last_sequence = command.sequence;
+    }
+}
+
+TEST(DeviceLinkProcesses, aStoppedDaemonLivesAndGoesOn) {
+    const TestSession session;
+    Child device([&] { return publishForever(session); });
+    DeviceSample sample{};
+    {
+        DeviceLink server = session.open(LinkSide::kServer);
+        ASSERT_TRUE(server.waitForSample(farAwayNs()));
+        device.stop();
+        EXPECT_TRUE(server.peerIsAlive());
+        server.readSample(sample);
+        EXPECT_FALSE(server.waitForSample(monotonicNowNs() + kNsPerMillisecond));
+    }
+    EXPECT_TRUE(says(session.refusalOf(LinkSide::kDaemon), "another device_daemon"));
+    DeviceLink server = session.open(LinkSide::kServer);  // needs nothing of the one that stands still
+    const uint64_t before = sample.sequence;
+    device.goOn();
+    while (sample.sequence <= before + 1) {
+        ASSERT_TRUE(server.waitForSample(farAwayNs()));
+        server.readSample(sample);
+    }
+}
+
+TEST(DeviceLinkProcesses, aStoppedServerHoldsNoDaemonUp) {
+    const TestSession session;
+    Child server([&] {
+        DeviceLink link = session.open(LinkSide::kServer);
+        for (;;) {
+            if (link.waitForSample(farAwayNs())) link.writeCommand({});
+            DeviceSample sample;
+            link.readSample(sample);
+        }
+        return kSuccess;
+    });
+    uint64_t last_sequence = 0;
+    for (int life = 0; life < 3; ++life) {
+        DeviceLink daemon = session.open(LinkSide::kDaemon);
+        WrenchCommand command{};
+        while (!daemon.peerIsAlive()) usleep(100);
+        while (command.sequence <= last_sequence) {
+            daemon.writeSample(restingSample());
+            daemon.waitForCommand(monotonicNowNs() + kNsPerMillisecond);
+            daemon.readCommand(command);
+        }
+        server.stop();
+        EXPECT_TRUE(daemon.peerIsAlive());
+        const uint64_t first = daemon.writeSample(restingSample());
+        EXPECT_EQ(daemon.writeSample(restingSample()), first + 1);  // and wakes whoever sleeps, in vain
+        daemon.readCommand(command);
+        last_sequence = command.sequence;
+        server.goOn();
+    }
+}
+
+TEST(DeviceLinkProcesses, ofTwoOnTheSameSideOneIsRefused) {
+    constexpr int kRefused = 7;
+    const TestSession session;
+    for (int round = 0; round < 100; ++round) {
+        Child other([&] {
+            try {
+                const DeviceLink link = session.open(LinkSide::kServer);
+                return pause();
+            } catch (const UserError& error) {
+                return says(error.what(), "another haptic_server") ? kRefused : 1;
+            }
+        });
+        usleep(10 * round);  // so that either may be the first
+        try {
+            const DeviceLink link = session.open(LinkSide::kServer);
+            ASSERT_EQ(other.exitCode(), kRefused) << round;
+        } catch (const UserError& error) {
+            ASSERT_TRUE(says(error.what(), "another haptic_server")) << error.what();
+        }
+    }
+}
+
+TEST(DeviceLinkProcesses, bothMayComeAndGoAsTheyLike) {
+    constexpr int kStarts = 1000;
+    const TestSession session;
+    const auto comeAndGo = [&](LinkSide side) {
+        for (int start = 0; start < kStarts; ++start) {
+            DeviceLink link = session.open(side);
+            link.peerIsAlive();
+        }
+        return kSuccess;
+    };
+    Child device([&] { return comeAndGo(LinkSide::kDaemon); });
+    EXPECT_NO_THROW(comeAndGo(LinkSide::kServer));
+    EXPECT_EQ(device.exitCode(), kSuccess);
+    EXPECT_FALSE(session.hasMemory() || session.hasSemaphores());
 }
 
 }  // namespace

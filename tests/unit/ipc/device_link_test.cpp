@@ -1,12 +1,11 @@
+// What two sides say to each other.
 #include "common/ipc/device_link.h"
 
 #include <gtest/gtest.h>
 
 #include <thread>
 
-#include "common/ipc/link_layout.h"
 #include "common/rt/clock.h"
-#include "common/user_error.h"
 #include "tests/unit/ipc/link_test_tools.h"
 
 namespace bonemill {
@@ -20,19 +19,10 @@ DeviceSample sampleOf(double number) {
     return sample;
 }
 
-std::string errorOf(const TestLinkName& name, LinkSide side) {
-    try {
-        DeviceLink::create(name.session(), side, 1);
-    } catch (const UserError& error) {
-        return error.what();
-    }
-    return "";
-}
-
 TEST(DeviceLink, carriesBothDirections) {
-    const TestLinkName name;
-    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
-    DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
+    const TestSession session;
+    DeviceLink server = session.open(LinkSide::kServer);
+    DeviceLink daemon = session.open(LinkSide::kDaemon);
     DeviceSample sample{};
     WrenchCommand command{};
     EXPECT_FALSE(server.readSample(sample));
@@ -55,9 +45,9 @@ TEST(DeviceLink, carriesBothDirections) {
 }
 
 TEST(DeviceLink, newestSampleReplacesTheOneBefore) {
-    const TestLinkName name;
-    DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
-    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
+    const TestSession session;
+    DeviceLink daemon = session.open(LinkSide::kDaemon);
+    DeviceLink server = session.open(LinkSide::kServer);
     for (int i = 1; i <= 5; ++i) daemon.writeSample(sampleOf(i));
     DeviceSample sample{};
     ASSERT_TRUE(server.readSample(sample));
@@ -66,9 +56,9 @@ TEST(DeviceLink, newestSampleReplacesTheOneBefore) {
 }
 
 TEST(DeviceLink, waitEndsAtTheDeadlineOrWithANewSample) {
-    const TestLinkName name;
-    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
-    DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
+    const TestSession session;
+    DeviceLink server = session.open(LinkSide::kServer);
+    DeviceLink daemon = session.open(LinkSide::kDaemon);
     EXPECT_FALSE(server.waitForSample(0));
     const int64_t deadline_ns = monotonicNowNs() + 5 * kNsPerMillisecond;
     EXPECT_FALSE(server.waitForSample(deadline_ns));
@@ -85,9 +75,9 @@ TEST(DeviceLink, waitEndsAtTheDeadlineOrWithANewSample) {
 
 TEST(DeviceLink, writingWakesTheSleeper) {
     constexpr int kRounds = 2000;
-    const TestLinkName name;
-    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
-    DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
+    const TestSession session;
+    DeviceLink server = session.open(LinkSide::kServer);
+    DeviceLink daemon = session.open(LinkSide::kDaemon);
     const int64_t far_ns =
         monotonicNowNs() + 250 * kNsPerSecond;  // a lost wake hangs the test into its timeout
     std::thread device([&] {
@@ -112,104 +102,36 @@ TEST(DeviceLink, writingWakesTheSleeper) {
     EXPECT_EQ(answered, uint64_t(kRounds));
 }
 
+TEST(DeviceLink, capabilitiesAreReadOnceEach) {
+    const TestSession session;
+    DeviceLink daemon = session.open(LinkSide::kDaemon);
+    DeviceLink server = session.open(LinkSide::kServer);
+    DeviceCapabilities read{};
+    EXPECT_FALSE(server.readCapabilities(read));
+    for (const double force : {10.0, 20.0}) {
+        DeviceCapabilities written{};
+        written.max_force = force;
+        daemon.writeCapabilities(written);
+        ASSERT_TRUE(server.readCapabilities(read));
+        EXPECT_EQ(read.max_force, force);
+        EXPECT_FALSE(server.readCapabilities(read));
+    }
+}
+
 TEST(DeviceLink, knowsItsPeer) {
-    const TestLinkName name;
-    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
+    const TestSession session;
+    DeviceLink server = session.open(LinkSide::kServer);
     EXPECT_FALSE(server.peerIsAlive());
-    EXPECT_EQ(server.peerPid(), 0);
     EXPECT_EQ(server.peerHeartbeatNs(), 0);
     {
-        DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
+        DeviceLink daemon = session.open(LinkSide::kDaemon);
         EXPECT_TRUE(server.peerIsAlive());
         EXPECT_TRUE(daemon.peerIsAlive());
-        EXPECT_EQ(server.peerPid(), getpid());
         daemon.beat(12345);
         EXPECT_EQ(server.peerHeartbeatNs(), 12345);
     }
     EXPECT_FALSE(server.peerIsAlive());
-    EXPECT_EQ(server.peerPid(), 0);
 }
-
-TEST(DeviceLink, isRemovedByTheLastToLeave) {
-    const TestLinkName name;
-    {
-        DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
-        { DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1); }
-        EXPECT_TRUE(name.exists());
-    }
-    EXPECT_FALSE(name.exists());
-}
-
-TEST(DeviceLink, aRestartedSideCountsOn) {
-    const TestLinkName name;
-    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
-    for (int start = 0; start < 3; ++start) {
-        DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
-        EXPECT_EQ(daemon.writeSample(sampleOf(1)), uint64_t(start + 1));
-    }
-}
-
-TEST(DeviceLink, takenSideIsRefused) {
-    const TestLinkName name;
-    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
-    EXPECT_NE(errorOf(name, LinkSide::kServer).find("another haptic_server"), std::string::npos);
-    EXPECT_TRUE(name.exists());
-}
-
-TEST(DeviceLink, memoryOfTheDeadIsTakenOverEmpty) {
-    const TestLinkName name;
-    RawMemory dead(name);  // left behind by another release
-    dead.write(kLinkMagic, 0);
-    dead.write(uint32_t(kLinkLayoutVersion + 1), offsetof(LinkMemory, layout_version));
-    dead.write(uint32_t(64), offsetof(LinkMemory, size));
-    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
-    DeviceSample sample{};
-    EXPECT_FALSE(server.readSample(sample));
-    DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
-    daemon.writeSample(sampleOf(1));
-    EXPECT_TRUE(server.readSample(sample));
-}
-
-TEST(DeviceLink, foreignMemoryIsRefusedAndLeftAlone) {
-    const TestLinkName name;
-    RawMemory foreign(name);
-    const char text[] = "somebody else's data, long enough for a header";
-    foreign.write(text, 0);
-    EXPECT_NE(errorOf(name, LinkSide::kDaemon).find("not a bonemill device link"), std::string::npos);
-    char kept[sizeof(text)] = {};
-    const int file = shm_open(name.str().c_str(), O_RDONLY, 0);
-    ASSERT_EQ(pread(file, kept, sizeof(kept), 0), ssize_t(sizeof(kept)));
-    close(file);
-    EXPECT_STREQ(kept, text);
-}
-
-TEST(DeviceLink, aLivingPeerOfAnotherVersionIsNamed) {
-    const TestLinkName name;
-    RawMemory peer(name);
-    peer.hold(kLockServer);
-    peer.write(kLinkMagic, 0);
-    peer.write(uint32_t(kLinkLayoutVersion + 1), offsetof(LinkMemory, layout_version));
-    peer.write(uint32_t(sizeof(LinkMemory)), offsetof(LinkMemory, size));
-    const std::string error = errorOf(name, LinkSide::kDaemon);
-    EXPECT_NE(error.find("layout version 2, this device_daemon needs 1"), std::string::npos) << error;
-    EXPECT_NE(error.find("haptic_server of the same release"), std::string::npos) << error;
-}
-
-TEST(DeviceLink, aLivingPeerWithAnotherSizeOrMagicIsRefused) {
-    const TestLinkName name;
-    RawMemory peer(name);
-    peer.hold(kLockDaemon);
-    peer.write(kLinkMagic, 0);
-    peer.write(kLinkLayoutVersion, offsetof(LinkMemory, layout_version));
-    peer.write(uint32_t(sizeof(LinkMemory) + 8), offsetof(LinkMemory, size));
-    EXPECT_NE(errorOf(name, LinkSide::kServer).find("wrong size"), std::string::npos);
-    peer.write(uint32_t(sizeof(LinkMemory)), offsetof(LinkMemory, size));  // says so, but the file is shorter
-    EXPECT_NE(errorOf(name, LinkSide::kServer).find("wrong size"), std::string::npos);
-    peer.write(~kLinkMagic, 0);
-    EXPECT_NE(errorOf(name, LinkSide::kServer).find("wrong magic"), std::string::npos);
-}
-
-TEST(DeviceLink, impossibleNameIsAUserError) {}
 
 }  // namespace
 }  // namespace bonemill

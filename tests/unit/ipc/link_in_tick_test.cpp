@@ -11,9 +11,9 @@ namespace bonemill {
 namespace {
 
 TEST(DeviceLinkInTick, neitherAllocatesNorLocks) {
-    const TestLinkName name;
-    DeviceLink server = DeviceLink::create(name.session(), LinkSide::kServer, 1);
-    DeviceLink daemon = DeviceLink::create(name.session(), LinkSide::kDaemon, 1);
+    const TestSession session;
+    DeviceLink server = session.open(LinkSide::kServer);
+    DeviceLink daemon = session.open(LinkSide::kDaemon);
     StaleRamp ramp;
     DeviceSample sample{};
     WrenchCommand command{};
