@@ -6,7 +6,7 @@
 readonly restart_after_s=2 most_restarts=3
 declare -A title=([server]=haptic_server [device]=device_daemon [viewer]=render_client)
 declare -A pid=() started_s=() due_s=() restarts=([server]=0 [device]=0 [viewer]=0)
-real_time=() end_code="" is_written=false
+real_time=() end_code=""
 
 run_session() {
     find_scene "${operand:-tooth_corridor}"
@@ -18,6 +18,8 @@ run_session() {
     make_phantoms
     choose_real_time
     choose_viewer
+    # What the shell itself notes, as "Killed", goes to a log: the user hears of it in our words.
+    exec {terminal}>&2 2>>"$logs/bonemill.log"
     exec {never}<> <(:)  # Nothing ever comes here: reading from it is a pause that a signal cuts short.
     trap 'end_code=0' INT TERM HUP
     trap : PIPE
@@ -67,7 +69,7 @@ choose_viewer() {
 command_of() {
     case $1 in
         server)
-            words=("$bin/haptic_server" --scene "$scene" --session "$number" "${real_time[@]}")
+            words=("$bin/haptic_server" --scene "$scene" --session "$number" --until-device-leaves "${real_time[@]}")
             mapfile -t -O "${#words[@]}" words < <(network_words)
             [[ $flags != *" --instructor-only "* ]] || words+=(--instructor-only)
             words+=("${extra[@]}") ;;
@@ -90,7 +92,7 @@ launch() {
     command_of "$1"
     # shellcheck disable=SC2016
     setsid setpriv --pdeathsig TERM sh -c '[ "$PPID" = "$0" ] && exec "$@"' "$$" "${words[@]}" \
-        >>"$logs/$1.log" 2>&1 </dev/null 9>&- {never}<&- &
+        >>"$logs/$1.log" 2>&1 </dev/null 9>&- {never}<&- {terminal}>&- &
     pid[$1]=$!
     started_s[$1]=$SECONDS
     unset "due_s[$1]"
@@ -105,7 +107,6 @@ write_session() {
     printf '%s\n' "scene=$scene_name" "device=${option[device]:-auto}" "since=$since" "logs=$logs" "script=$$" \
         "profile=${option[profile]:-}" "interface=${option[interface]:-}" "programs=$programs" >"$state/$number.new"
     mv -f -- "$state/$number.new" "$state/$number.session"
-    is_written=true
 }
 
 say_how_to_watch() {
@@ -136,13 +137,14 @@ has_ended() {
     unset "pid[$role]"
     case $role:$code in
         viewer:0) end_because 0 "the window was closed" ;;
-        server:0) end_because 0 "a viewer shut the session down" ;;
+        server:0) end_because 0 "the hand has finished, or a viewer has ended it" ;;
         device:0) end_because 0 "the hand has finished" ;;
         *:2) if lacks_real_time "$role"; then without_real_time; launch "$role"; else end_with_error "$role" "$code"; fi ;;
         *) restart "$role" "$code" ;;
     esac
 }
 
+complain() { printf 'bonemill: %s\n' "$*" >&"$terminal" || true; }
 end_because() { end_code=$1; say "$2: session $number ends"; }
 
 # What was granted on paper may still be refused, as in a container.
@@ -152,7 +154,7 @@ end_with_error() {  # ROLE CODE
     local what
     what=$(grep -a 'error: ' "$logs/$1.log" | tail -n 1 | sed 's/.*error: //' || true)
     end_code=$2
-    printf 'bonemill: %s: %s\n' "${title[$1]}" "${what:-it left with code $2, see $logs/$1.log}" >&2
+    complain "${title[$1]}: ${what:-it left with code $2, see $logs/$1.log}"
 }
 
 restart() {  # ROLE CODE
@@ -160,8 +162,7 @@ restart() {  # ROLE CODE
     (($2 <= 128)) || how="was ended by signal $(($2 - 128))"
     if ((restarts[$role] == most_restarts)); then
         end_code=1
-        printf 'bonemill: %s %s again, after %d restarts: session %s ends, see %s\n' \
-            "${title[$role]}" "$how" "$most_restarts" "$number" "$logs/$role.log" >&2
+        complain "${title[$role]} $how again, after $most_restarts restarts: session $number ends, see $logs/$role.log"
         return
     fi
     [[ $role != server ]] || more="; the bone will be whole again"
@@ -178,7 +179,8 @@ end_session() {
     end_program device 5
     end_program server 20
     end_program viewer 5
-    [[ $is_written == false ]] || rm -f -- "$state/$number.session"
+    rm -f -- "$state/$number.session"
+    [[ -s $logs/bonemill.log ]] || rm -f -- "$logs/bonemill.log"
     say "session $number has ended; logs in $logs"
 }
 

@@ -19,7 +19,7 @@ namespace bonemill::test {
 // NAME.leave as soon as that is there, and prints the line before the number first.
 constexpr const char* kStandIn = R"sh(#!/bin/bash
 name=${0##*/} folder=${0%/*}/..
-if [[ $1 == --help ]]; then cat "$folder/$name.help"; exit; fi
+if [[ $1 == --help || $1 == --list ]]; then cat "$folder/$name.help"; exit; fi
 trap 'echo "end $name" >>"$folder/events"; exit 0' TERM
 echo "start $name $$ $*" >>"$folder/events"
 while [[ ! -e $folder/$name.leave ]]; do sleep 0.02; done
@@ -35,7 +35,7 @@ class BonemillRig {
         fs::copy_file(sourceDir() + "/deploy/bonemill", folder_ / "bin/bonemill");
         fs::create_directory_symlink(sourceDir() + "/deploy", folder_ / "share/bonemill");
         writeFile(folder_ / "own.textproto", "name: \"own\"\n");
-        writeFile(folder_ / "device_daemon.help", "  --device TEXT  --stop-dir TEXT  --list");
+        writeFile(folder_ / "device_daemon.help", "  --device TEXT\n  --stop-dir TEXT\n  --list\n");
     }
 
     void useStandIns() const {
@@ -56,6 +56,7 @@ class BonemillRig {
 
     std::vector<std::string> words(const std::vector<std::string>& more) const {
         std::vector<std::string> all{"/usr/bin/env",
+                                     "--default-signal=INT",  // A test in the background may have it ignored.
                                      "--unset=DISPLAY",
                                      "--unset=WAYLAND_DISPLAY",
                                      "XDG_RUNTIME_DIR=" + folder_ / "run",

@@ -49,11 +49,13 @@ class BonemillSession : public testing::Test {
             return std::distance(std::sregex_iterator(text.begin(), text.end(), pattern), {}) >= times;
         });
     }
+    // There is one folder of logs, as soon as the session has come so far.
     std::string logOf(const std::string& name) const {
         const std::filesystem::path logs = rig_.folder() / "logs/bonemill";
         if (!exists(logs)) return "";
-        const std::filesystem::directory_iterator first(logs);
-        return test::readFile(first->path() / (name + ".log"));
+        for (const auto& folder : std::filesystem::directory_iterator(logs))
+            return test::readFile(folder.path() / (name + ".log"));
+        return "";
     }
 
     BonemillRig rig_;
@@ -82,7 +84,7 @@ TEST_F(BonemillSession, GoesOnWhenServerOrDaemonIsKilledAndEndsInOrder) {
     EXPECT_EQ(finished.err, "");
     EXPECT_TRUE(isGone(second_daemon) && isGone(second_server));
     EXPECT_NE(logOf("device").find("stopping: force ramps to zero"), std::string::npos) << logOf("device");
-    EXPECT_NE(logOf("server").find("SIGTERM received"), std::string::npos) << logOf("server");
+    EXPECT_NE(logOf("server").find(" dropped, faults: "), std::string::npos) << logOf("server");
 }
 
 TEST_F(BonemillSession, EndsWithTheScriptThatIsKilled) {
