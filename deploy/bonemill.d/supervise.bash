@@ -111,7 +111,7 @@ write_session() {
 
 say_how_to_watch() {
     [[ -z ${option[profile]:-} || ${option[profile]} == one-pc ]] ||
-        say "viewers on other PCs: bonemill watch --profile ${option[profile]} --interface THEIRS --session $number (without multicast: bonemill watch $(uname -n))"
+        say "viewers on other PCs: bonemill watch --profile ${option[profile]} --interface THEIRS --session $number (without multicast: bonemill watch $(uname -n) --session $number)"
     if [[ -n ${pid[viewer]:-} ]]; then say "close the window or press Ctrl-C to end"; else say "Ctrl-C ends it, or: bonemill stop $number"; fi
 }
 
