@@ -23,6 +23,8 @@ session_options() {
   --window-size WxH size of the window
   --seconds T       end after so many seconds
   --instructor-only carry out commands of instructors only, for examinations
+  --no-enabling-switch
+                    the device has no switch that must be held: it engages by itself while the force is small
 TEXT
 }
 
@@ -31,6 +33,7 @@ network_options() {
   --profile P       network: one-pc, lab, classroom, or a Cyclone DDS file (docs/network.md)
   --interface I     this PC's interface to the others
   --peer ADDRESS    a PC to look for where multicast does not work; may be repeated
+  --domain D        DDS domain, 0 (default) to 230
 TEXT
 }
 

@@ -26,7 +26,7 @@ running_sessions() {
 declare -A session=()
 read_session() {
     local key value
-    session=([scene]="" [device]="" [since]="" [logs]="" [script]="" [profile]="" [interface]="" [programs]="")
+    session=([scene]="" [device]="" [since]="" [logs]="" [script]="" [profile]="" [interface]="" [domain]="" [programs]="")
     while IFS='=' read -r key value; do session[$key]=$value; done 2>/dev/null <"$state/$1.session" || true
 }
 

@@ -21,6 +21,7 @@ run_session() {
     # What the shell itself notes, as "Killed", goes to a log: the user hears of it in our words.
     exec {terminal}>&2 2>>"$logs/bonemill.log"
     exec {never}<> <(:)  # Nothing ever comes here: reading from it is a pause that a signal cuts short.
+    exec {device_words}<> "$logs/device.log"
     trap 'end_code=0' INT TERM HUP
     trap : PIPE
     trap end_session EXIT
@@ -76,6 +77,8 @@ command_of() {
         device)
             words=("$bin/device_daemon" --scene "$scene" --session "$number" "${real_time[@]}")
             ! daemon_knows --device || words+=(--device "${option[device]:-auto}")
+            ! daemon_knows --profile || mapfile -t -O "${#words[@]}" words < <(network_words)
+            [[ $flags != *" --no-enabling-switch "* ]] || words+=(--no-enabling-switch)
             ! daemon_knows --stop-dir || words+=(--stop-dir "$logs")
             [[ -z ${option[seconds]:-} ]] || words+=(--seconds "${option[seconds]}") ;;
         viewer)  # Whoever sits here has the hand, so the window may command, as it may on one PC.
@@ -92,7 +95,7 @@ launch() {
     command_of "$1"
     # shellcheck disable=SC2016
     setsid setpriv --pdeathsig TERM sh -c '[ "$PPID" = "$0" ] && exec "$@"' "$$" "${words[@]}" \
-        >>"$logs/$1.log" 2>&1 </dev/null 9>&- {never}<&- {terminal}>&- &
+        >>"$logs/$1.log" 2>&1 </dev/null 9>&- {never}<&- {terminal}>&- {device_words}<&- &
     pid[$1]=$!
     started_s[$1]=$SECONDS
     unset "due_s[$1]"
@@ -105,7 +108,7 @@ write_session() {
     for role in server device viewer; do [[ -z ${pid[$role]:-} ]] || programs+=", ${title[$role]} ${pid[$role]}"; done
     : "${since:=$(date +%H:%M:%S)}"
     printf '%s\n' "scene=$scene_name" "device=${option[device]:-auto}" "since=$since" "logs=$logs" "script=$$" \
-        "profile=${option[profile]:-}" "interface=${option[interface]:-}" "programs=$programs" >"$state/$number.new"
+        "profile=${option[profile]:-}" "interface=${option[interface]:-}" "domain=${option[domain]:-}" "programs=$programs" >"$state/$number.new"
     mv -f -- "$state/$number.new" "$state/$number.session"
 }
 
@@ -122,10 +125,20 @@ supervise() {
     local role
     while [[ -z $end_code ]]; do
         pause 0.2
+        relay_device_words
         for role in "${!pid[@]}"; do is_alive "$role" || has_ended "$role"; done
         for role in "${!due_s[@]}"; do
             [[ -n $end_code ]] || ((SECONDS < due_s[$role])) || launch "$role"
         done
+    done
+}
+
+# What the device warns of is for whoever holds it.
+relay_device_words() {
+    local line
+    while IFS= read -r line <&"$device_words"; do
+        [[ $line =~ \ device_daemon\ (warn|warning|error)\ (.*) ]] || continue
+        [[ $line == *"real time: "* ]] || say "device: ${BASH_REMATCH[2]}"
     done
 }
 

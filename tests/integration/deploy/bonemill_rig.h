@@ -15,16 +15,16 @@
 
 namespace bonemill::test {
 
-// A stand-in notes in `events` how it was started and that it was told to end. It leaves with the number in
-// NAME.leave as soon as that is there, and prints the line before the number first.
+// A stand-in notes in `events` how it was started and that it was told to end, and prints what is in
+// NAME.says. It leaves with the number in NAME.leave as soon as that is there.
 constexpr const char* kStandIn = R"sh(#!/bin/bash
 name=${0##*/} folder=${0%/*}/..
 if [[ $1 == --help || $1 == --list ]]; then cat "$folder/$name.help"; exit; fi
 trap 'echo "end $name" >>"$folder/events"; exit 0' TERM
 echo "start $name $$ $*" >>"$folder/events"
+[[ ! -e $folder/$name.says ]] || cat "$folder/$name.says"
 while [[ ! -e $folder/$name.leave ]]; do sleep 0.02; done
-head -n -1 "$folder/$name.leave"
-exit "$(tail -n 1 "$folder/$name.leave")"
+exit "$(cat "$folder/$name.leave")"
 )sh";
 
 class BonemillRig {
@@ -35,7 +35,8 @@ class BonemillRig {
         fs::copy_file(sourceDir() + "/deploy/bonemill", folder_ / "bin/bonemill");
         fs::create_directory_symlink(sourceDir() + "/deploy", folder_ / "share/bonemill");
         writeFile(folder_ / "own.textproto", "name: \"own\"\n");
-        writeFile(folder_ / "device_daemon.help", "  --device TEXT\n  --stop-dir TEXT\n  --list\n");
+        writeFile(folder_ / "device_daemon.help",
+                  "  --device TEXT\n  --profile TEXT\n  --stop-dir TEXT\n  --list\n");
     }
 
     void useStandIns() const {
@@ -83,8 +84,11 @@ class BonemillRig {
     bool awaitStarts(const std::string& name, size_t count) const {
         return waitFor([&] { return pidsOf(name).size() >= count; });
     }
-    void letLeave(const std::string& name, const std::string& lines_and_code) const {
-        writeFile(folder_ / "leave", lines_and_code + "\n");
+    void letSay(const std::string& name, const std::string& text) const {
+        writeFile(folder_ / (name + ".says"), text);
+    }
+    void letLeave(const std::string& name, int exit_code) const {
+        writeFile(folder_ / "leave", std::to_string(exit_code) + "\n");
         std::filesystem::rename(folder_ / "leave", folder_ / (name + ".leave"));
     }
 

@@ -33,7 +33,7 @@ class BonemillSession : public testing::Test {
     }
     std::vector<std::string> startWords() const {
         return rig_.words({"start", rig_.scene(), "--session", session_, "--device", "simulated",
-                           "--no-viewer", "--", "--domain", std::to_string(testDomain())});
+                           "--no-viewer", "--domain", std::to_string(testDomain())});
     }
     // Returns the process of this name that the session has now, or 0.
     int pidOf(const std::string& name) const {

@@ -98,7 +98,7 @@ TEST_F(Bonemill, StartsThreeProgramsAsOneSessionAndEndsThemInOrder) {
 TEST_F(Bonemill, AClosedWindowEndsTheSession) {
     Process session(startWords());
     ASSERT_TRUE(allHaveStarted());
-    rig_.letLeave("render_client", "0");
+    rig_.letLeave("render_client", 0);
     const Finished finished = session.wait();
     EXPECT_EQ(finished.exit_code, 0);
     EXPECT_TRUE(has(finished.out, "the window was closed")) << finished.out;
@@ -109,7 +109,7 @@ TEST_F(Bonemill, AClosedWindowEndsTheSession) {
 TEST_F(Bonemill, AHandThatHasFinishedEndsTheSession) {
     Process session(startWords({"--no-viewer"}));
     ASSERT_TRUE(rig_.awaitStarts("device_daemon", 1));
-    rig_.letLeave("device_daemon", "0");
+    rig_.letLeave("device_daemon", 0);
     EXPECT_EQ(session.wait().exit_code, 0);
     EXPECT_FALSE(has(rig_.events(), "render_client"));
     EXPECT_TRUE(allAreGone());
@@ -179,7 +179,7 @@ TEST_F(Bonemill, AKilledProgramIsStartedAgainAndTheOthersStay) {
 }
 
 TEST_F(Bonemill, AProgramThatDiesAgainAndAgainEndsTheSession) {
-    rig_.letLeave("haptic_server", "1");
+    rig_.letLeave("haptic_server", 1);
     const Finished finished = test::run(startWords());
     EXPECT_EQ(finished.exit_code, 1);
     EXPECT_EQ(rig_.pidsOf("haptic_server").size(), 4u);
@@ -189,12 +189,35 @@ TEST_F(Bonemill, AProgramThatDiesAgainAndAgainEndsTheSession) {
 }
 
 TEST_F(Bonemill, WrongInputOfAProgramIsSaidOnceAndNotTriedAgain) {
-    rig_.letLeave("haptic_server", "error: own.textproto: there is no volume\n2");
+    rig_.letSay("haptic_server", "error: own.textproto: there is no volume\n");
+    rig_.letLeave("haptic_server", 2);
     const Finished finished = test::run(startWords());
     EXPECT_EQ(finished.exit_code, 2);
     EXPECT_EQ(finished.err, "bonemill: haptic_server: own.textproto: there is no volume\n");
     EXPECT_EQ(rig_.pidsOf("haptic_server").size(), 1u);
     EXPECT_TRUE(allAreGone());
+}
+
+TEST_F(Bonemill, WhatTheDeviceWarnsOfIsSaid) {
+    rig_.letSay(
+        "device_daemon",
+        "12:00:00.000 device_daemon info phase mill\n12:00:01.000 device_daemon warn the hand slips\n");
+    Process session(startWords({"--no-viewer"}));
+    EXPECT_TRUE(waitFor([&] { return has(session.outSoFar(), "bonemill: device: the hand slips\n"); }))
+        << session.outSoFar();
+    EXPECT_FALSE(has(session.outSoFar(), "phase mill"));
+}
+
+// Real time may be granted on paper and refused in fact, as in a container.
+TEST_F(Bonemill, RealTimeThatIsRefusedIsDoneWithout) {
+    rig_.letSay("haptic_server", "error: no real time; --best-effort-rt goes on without\n");
+    rig_.letLeave("haptic_server", 2);
+    const Finished finished = test::run(startWords());
+    EXPECT_EQ(finished.exit_code, 2);
+    EXPECT_TRUE(has(finished.out, "does not grant real time: going on without")) << finished.out;
+    EXPECT_TRUE(has(rig_.events().substr(rig_.events().rfind("start haptic_server")), " --best-effort-rt"))
+        << rig_.events();
+    EXPECT_LE(rig_.pidsOf("haptic_server").size(), 2u);
 }
 
 TEST_F(Bonemill, AProgramThatDoesNotEndIsKilled) {
@@ -284,15 +307,16 @@ TEST_F(Bonemill, TheDoctorFindsWhatRunsWithoutASession) {
 TEST_F(Bonemill, WatchFindsTheSessionAndItsNetwork) {
     expectRefusal(rig_.call({"watch"}),
                   "start one with: bonemill start; or name the PC: bonemill watch HOST");
-    Process session(
-        rig_.words({"host", rig_.scene(), "--profile", "classroom", "--interface", "eth7", "--no-viewer"}));
+    Process session(rig_.words({"host", rig_.scene(), "--profile", "classroom", "--interface", "eth7",
+                                "--domain", "9", "--no-viewer"}));
     ASSERT_TRUE(rig_.awaitStarts("device_daemon", 1)) << session.errSoFar();
-    EXPECT_TRUE(has(startOf("haptic_server"), " --profile classroom --interface eth7 "));
+    for (const char* name : {"haptic_server", "device_daemon"})
+        EXPECT_TRUE(has(startOf(name), " --profile classroom --interface eth7 --domain 9 ")) << startOf(name);
     Process viewer(rig_.words({"watch", "--role", "viewer", "--", "--no-hud"}));
     ASSERT_TRUE(rig_.awaitStarts("render_client", 1)) << viewer.errSoFar();
-    EXPECT_TRUE(
-        has(startOf("render_client"), " --session " + numberIn(session.outSoFar()) +
-                                          " --role viewer --profile classroom --interface eth7 --no-hud "))
+    EXPECT_TRUE(has(startOf("render_client"),
+                    " --session " + numberIn(session.outSoFar()) +
+                        " --role viewer --profile classroom --interface eth7 --domain 9 --no-hud "))
         << startOf("render_client");
     EXPECT_TRUE(has(session.outSoFar(), "viewers on other PCs: bonemill watch --profile classroom"));
     session.signal(SIGTERM);
