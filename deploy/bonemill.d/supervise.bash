@@ -5,7 +5,7 @@
 
 readonly restart_after_s=2 most_restarts=3
 declare -A title=([server]=haptic_server [device]=device_daemon [viewer]=render_client)
-declare -A pid=() started_s=() due_s=() restarts=([server]=0 [device]=0 [viewer]=0)
+declare -A pid=() started_s=() due_s=() asked_real_time=() restarts=([server]=0 [device]=0 [viewer]=0)
 real_time=() end_code=""
 
 run_session() {
@@ -55,6 +55,7 @@ choose_real_time() {
     "$share/check-realtime" >/dev/null 2>&1 || without_real_time
 }
 without_real_time() {
+    [[ ${#real_time[@]} -eq 0 ]] || return 0
     real_time=(--best-effort-rt)
     say "this PC does not grant real time: going on without, good for a look (bonemill doctor says what to type)"
 }
@@ -98,6 +99,7 @@ launch() {
         >>"$logs/$1.log" 2>&1 </dev/null 9>&- {never}<&- {terminal}>&- {device_words}<&- &
     pid[$1]=$!
     started_s[$1]=$SECONDS
+    [[ ${#real_time[@]} -eq 0 ]] && asked_real_time[$1]=true || asked_real_time[$1]=false
     unset "due_s[$1]"
     write_session
 }
@@ -108,13 +110,15 @@ write_session() {
     for role in server device viewer; do [[ -z ${pid[$role]:-} ]] || programs+=", ${title[$role]} ${pid[$role]}"; done
     : "${since:=$(date +%H:%M:%S)}"
     printf '%s\n' "scene=$scene_name" "device=${option[device]:-auto}" "since=$since" "logs=$logs" "script=$$" \
-        "profile=${option[profile]:-}" "interface=${option[interface]:-}" "domain=${option[domain]:-}" "programs=$programs" >"$state/$number.new"
+        "profile=${option[profile]:-}" "interface=${option[interface]:-}" "domain=${option[domain]:-}" \
+        "programs=$programs" >"$state/$number.new"
     mv -f -- "$state/$number.new" "$state/$number.session"
 }
 
 say_how_to_watch() {
     [[ -z ${option[profile]:-} || ${option[profile]} == one-pc ]] ||
-        say "viewers on other PCs: bonemill watch --profile ${option[profile]} --interface THEIRS --session $number (without multicast: bonemill watch $(uname -n) --session $number)"
+        say "viewers on other PCs: bonemill watch --profile ${option[profile]} --interface THEIRS --session $number" \
+            "(without multicast: bonemill watch $(uname -n) --session $number)"
     if [[ -n ${pid[viewer]:-} ]]; then say "close the window or press Ctrl-C to end"; else say "Ctrl-C ends it, or: bonemill stop $number"; fi
 }
 
@@ -150,7 +154,7 @@ has_ended() {
     unset "pid[$role]"
     case $role:$code in
         viewer:0) end_because 0 "the window was closed" ;;
-        server:0) end_because 0 "the hand has finished, or a viewer has ended it" ;;
+        server:0) end_because 0 "the hand has finished, or somebody has ended haptic_server" ;;
         device:0) end_because 0 "the hand has finished" ;;
         *:2) if lacks_real_time "$role"; then without_real_time; launch "$role"; else end_with_error "$role" "$code"; fi ;;
         *) restart "$role" "$code" ;;
@@ -161,7 +165,7 @@ complain() { printf 'bonemill: %s\n' "$*" >&"$terminal" || true; }
 end_because() { end_code=$1; say "$2: session $number ends"; }
 
 # What was granted on paper may still be refused, as in a container.
-lacks_real_time() { [[ ${#real_time[@]} -eq 0 ]] && grep -q -e --best-effort-rt "$logs/$1.log"; }
+lacks_real_time() { [[ ${asked_real_time[$1]} == true ]] && grep -q -e --best-effort-rt "$logs/$1.log"; }
 
 end_with_error() {  # ROLE CODE
     local what
@@ -195,16 +199,22 @@ end_session() {
     rm -f -- "$state/$number.session"
     [[ -s $logs/bonemill.log ]] || rm -f -- "$logs/bonemill.log"
     say "session $number has ended; logs in $logs"
+    exit "${end_code:-1}"
 }
 
 end_program() {  # ROLE LIMIT_S
-    local tenth
-    is_alive "$1" || return 0
+    local tenth code=0
+    [[ -n ${pid[$1]:-} ]] || return 0
     kill -TERM "${pid[$1]}" 2>/dev/null || true
     for ((tenth = 0; tenth < $2 * 10; ++tenth)); do
-        is_alive "$1" || return 0
+        is_alive "$1" || break
         pause 0.1
     done
-    say "${title[$1]} did not end within $2 s: it is killed"
-    kill -KILL -- "-${pid[$1]}" 2>/dev/null || true  # This is its group: what it started goes, too.
+    if is_alive "$1"; then
+        say "${title[$1]} did not end within $2 s: it is killed"
+        kill -KILL -- "-${pid[$1]}" 2>/dev/null || true  # This is its group: what it started goes, too.
+    fi
+    wait "${pid[$1]}" || code=$?
+    # It says so when it could not do its last work, as to write a file.
+    ((code == 0 || code > 128)) || { end_code=$code; complain "${title[$1]} left with code $code, see $logs/$1.log"; }
 }

@@ -210,14 +210,30 @@ TEST_F(Bonemill, WhatTheDeviceWarnsOfIsSaid) {
 
 // Real time may be granted on paper and refused in fact, as in a container.
 TEST_F(Bonemill, RealTimeThatIsRefusedIsDoneWithout) {
-    rig_.letSay("haptic_server", "error: no real time; --best-effort-rt goes on without\n");
-    rig_.letLeave("haptic_server", 2);
-    const Finished finished = test::run(startWords());
-    EXPECT_EQ(finished.exit_code, 2);
+    test::writeFile(rig_.folder() / "refuse_real_time", "");
+    Process session(startWords({"--no-viewer"}));
+    for (const std::string name : {"haptic_server", "device_daemon"})
+        EXPECT_TRUE(waitFor([&] {
+            const std::string events = rig_.events();
+            const size_t newest = events.rfind("start " + name);
+            return newest != std::string::npos &&
+                   has(events.substr(newest, events.find('\n', newest) - newest), " --best-effort-rt");
+        })) << rig_.events();
+    session.signal(SIGTERM);
+    const Finished finished = session.wait();
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
     EXPECT_TRUE(has(finished.out, "does not grant real time: going on without")) << finished.out;
-    EXPECT_TRUE(has(rig_.events().substr(rig_.events().rfind("start haptic_server")), " --best-effort-rt"))
-        << rig_.events();
-    EXPECT_LE(rig_.pidsOf("haptic_server").size(), 2u);
+    EXPECT_FALSE(has(finished.out, "started again")) << finished.out;
+}
+
+TEST_F(Bonemill, AServerThatFailsAtItsEndIsTold) {
+    test::writeFile(rig_.folder() / "haptic_server.end", "1");
+    Process session(startWords({"--no-viewer"}));
+    ASSERT_TRUE(rig_.awaitStarts("device_daemon", 1));
+    session.signal(SIGTERM);
+    const Finished finished = session.wait();
+    EXPECT_EQ(finished.exit_code, 1);
+    EXPECT_EQ(finished.err.rfind("bonemill: haptic_server left with code 1, see ", 0), 0u) << finished.err;
 }
 
 TEST_F(Bonemill, AProgramThatDoesNotEndIsKilled) {
