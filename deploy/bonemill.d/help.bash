@@ -1,0 +1,71 @@
+# What bonemill and each of its commands say about themselves.
+# shellcheck shell=bash
+
+usage() {
+    cat <<'TEXT'
+Usage: bonemill COMMAND [options]
+  start [SCENE]    start a session on this PC with the best hand it finds: haptic arm, SpaceMouse or mouse
+  list             sessions that run, and scenes that can be started
+  stop [N|all]     end a session
+  watch [HOST]     a window on a session of this PC, or of HOST
+  host [SCENE]     start a session that other PCs watch
+  doctor           what this PC lacks, and what to type
+`bonemill COMMAND --help` says more.
+TEXT
+}
+
+session_options() {
+    cat <<'TEXT'
+  SCENE             name of a scene (bonemill list shows them), or a file (default: tooth_corridor)
+  --device HAND     auto (default), simulated (the scripted hand of the scene), pointer, ...: see bonemill doctor
+  --session N       number of the session (default: the first free one)
+  --no-viewer       without a window of its own
+  --window-size WxH size of the window
+  --seconds T       end after so many seconds
+  --instructor-only carry out commands of instructors only, for examinations
+  --no-enabling-switch
+                    the device has no switch that must be held: it engages by itself while the force is small
+TEXT
+}
+
+network_options() {
+    cat <<'TEXT'
+  --profile P       network: one-pc, lab, classroom, or a Cyclone DDS file (docs/network.md)
+  --interface I     this PC's interface to the others
+  --peer ADDRESS    a PC to look for where multicast does not work; may be repeated
+  --domain D        DDS domain, 0 (default) to 230
+TEXT
+}
+
+usage_of() {  # COMMAND
+    case $1 in
+        start)
+            echo "Usage: bonemill start [SCENE] [options] [-- WORDS FOR haptic_server]"
+            session_options
+            network_options
+            echo "Ctrl-C, closing the window, or bonemill stop ends everything in order." ;;
+        host)
+            echo "Usage: bonemill host [SCENE] --interface I [--profile lab|classroom] [options] [-- WORDS FOR haptic_server]"
+            echo "The profile is lab unless said otherwise; the other PCs type: bonemill watch THIS-PC"
+            session_options
+            network_options ;;
+        watch)
+            echo "Usage: bonemill watch [HOST] [options] [-- WORDS FOR render_client]"
+            echo "  HOST              name or address of the PC with the session; without it: a session of this PC"
+            echo "  --session N       number of the session (default: the one that runs here; 1 on another PC)"
+            network_options
+            echo "  --role R          viewer, operator or instructor"
+            echo "  --name NAME       what the others read in their list of viewers"
+            echo "  --window-size WxH size of the window" ;;
+        stop)
+            echo "Usage: bonemill stop [N|all]"
+            echo "Ends session N, or all sessions; without a word the one that runs. It waits until they have ended." ;;
+        list)
+            echo "Usage: bonemill list"
+            echo "Sessions that run: number, scene, device, start, processes, logs. Then the scenes that can be started." ;;
+        doctor)
+            echo "Usage: bonemill doctor [--interface I]"
+            echo "Says what this PC lacks, and what to type: programs, real time, network (of interface I), display, OpenGL,"
+            echo "devices, what was left running. It installs nothing. The exit code is 1 when no session can be started." ;;
+    esac
+}

@@ -1,0 +1,68 @@
+# Scenes: which there are, which file is meant, and the phantoms that they read.
+# shellcheck shell=bash
+# shellcheck disable=SC2154
+
+scene_names() { (cd "$share/scenes" && for file in *.textproto; do echo "${file%.textproto}"; done); }
+
+# Each with the first sentence of the comment that it begins with.
+list_scenes() {
+    local name
+    while read -r name; do
+        printf '  %-16s %s\n' "$name" "$(sed -n '/^#/!q; s/^# *//p' "$share/scenes/$name.textproto" | paste -sd ' ' | sed 's/\. .*/./')"
+    done < <(scene_names)
+}
+
+# home_folder VARIABLE DEFAULT: the XDG folder of this user that the variable names.
+home_folder() {
+    [[ -n ${!1:-}${HOME:-} ]] || fail "neither $1 nor HOME is set: nobody says where to write"
+    printf '%s\n' "${!1:-$HOME/$2}"
+}
+
+# Scenes read phantoms from ../../build/data. In an installed tree that is nobody's to write, so there a scene is used from
+# a copy in the user's own data folder.
+own_scenes() {
+    if [[ $installed == true ]]; then
+        data=$(home_folder XDG_DATA_HOME .local/share)/bonemill/build/data
+        scenes=${data%/build/data}/deploy/scenes
+        { mkdir -p -- "$scenes" && cp -- "$share"/scenes/* "$scenes"; } || fail "the scenes cannot be copied to $scenes"
+    else
+        scenes=$share/scenes data=$(realpath -m -- "$share/../build/data")
+    fi
+}
+
+# find_scene WORD: a name is that of our own scene, whatever files lie about.
+find_scene() {
+    own_scenes
+    if [[ $1 != */* && -f $scenes/$1.textproto ]]; then
+        scene=$scenes/$1.textproto
+    elif [[ -f $1 ]]; then
+        scene=$(realpath -- "$1")
+    else
+        fail "there is no scene '$1': there are $(scene_names | paste -sd ' '), or give a file"
+    fi
+    scene_name=$(basename -- "$scene" .textproto)
+}
+
+# Prints which phantoms the scene reads that are not there, as file names.
+missing_phantoms() {
+    local path
+    while read -r path; do
+        path=$(realpath -m -- "$(dirname -- "$scene")/$path")
+        [[ $path != "$data"/* || -e $path ]] || basename -- "$path" .nrrd
+    done < <(sed -nE 's/^ *(label_)?path: *"([^"/][^"]*)".*/\2/p' "$scene")
+}
+
+make_phantoms() {
+    local file name
+    while read -r file; do
+        [[ $file == skull_labels ]] && name=$file || name=${file%_labels}
+        case $name in
+            tooth | bone_block | clay_block | vertebra | skull_labels) ;;
+            *) fail "$scene_name needs $data/$file.nrrd, which is no phantom: the first lines of $scene say where it comes from" ;;
+        esac
+        say "making the phantom $name, once: some seconds"
+        # Two sessions that start side by side do not write the same file.
+        flock "$state/phantoms.lock" "$share/make-phantoms" --bin "$bin" --out "$data" "$name" >>"$logs/phantoms.log" 2>&1 9>&- ||
+            fail "the phantom $name could not be made: $(tail -n 1 "$logs/phantoms.log")"
+    done < <(missing_phantoms)
+}

@@ -1,0 +1,96 @@
+# Which sessions of this user run. Whoever runs session N holds the lock N.lock in the state folder, so a session that died
+# in whatever way is never taken for a living one; N.session tells of it, one key=value a line.
+# shellcheck shell=bash
+
+# The folder may lie in /tmp, where anyone could have made it before: it must be ours alone, and no link.
+open_state() {
+    state=${XDG_RUNTIME_DIR:-/tmp}/bonemill-$UID
+    mkdir -m 700 -- "$state" 2>/dev/null || true
+    [[ -d $state && ! -L $state && $(stat -c %u:%a -- "$state") == "$UID:700" ]] ||
+        fail "$state is not a folder that only you can use: remove it, or set XDG_RUNTIME_DIR to a folder of yours"
+}
+
+# is_running N: it removes what a dead session left.
+is_running() { ! flock -n "$state/$1.lock" rm -f -- "$state/$1.session"; }
+
+# Prints the numbers of the sessions that run.
+running_sessions() {
+    local file number
+    for file in "$state"/*.session; do
+        number=$(basename -- "$file" .session)
+        [[ -f $file ]] && is_running "$number" && echo "$number"
+    done | sort -n
+}
+
+# read_session N: into the variable `session`.
+declare -A session=()
+read_session() {
+    local key value
+    session=([scene]="" [device]="" [since]="" [logs]="" [script]="" [profile]="" [interface]="" [domain]="" [programs]="")
+    while IFS='=' read -r key value; do session[$key]=$value; done 2>/dev/null <"$state/$1.session" || true
+}
+
+list_sessions() {
+    local number numbers
+    mapfile -t numbers < <(running_sessions)
+    [[ ${#numbers[@]} -gt 0 ]] || { echo "No session runs. To start one: bonemill start"; return; }
+    echo "Sessions that run:"
+    for number in "${numbers[@]}"; do
+        read_session "$number"
+        printf '  %-3s %-16s device %s, since %s, processes: bonemill %s%s, logs in %s\n' "$number" "${session[scene]}" \
+            "${session[device]}" "${session[since]}" "${session[script]}" "${session[programs]}" "${session[logs]}"
+    done
+}
+
+# Prints "PID NAME SESSION OWNER" of every server and daemon of this PC, whoever started it.
+running_programs() {
+    local folder name words number i
+    for folder in /proc/[0-9]*; do
+        { read -r name; } 2>/dev/null <"$folder/comm" || continue
+        [[ $name == haptic_server || $name == device_daemon ]] || continue
+        { mapfile -d '' -t words; } 2>/dev/null <"$folder/cmdline" || continue
+        number=1
+        for i in "${!words[@]}"; do
+            [[ ${words[i]} != --session ]] || number=${words[i + 1]:-}
+            [[ ${words[i]} != --session=* ]] || number=${words[i]#*=}
+        done
+        [[ ${#words[@]} -eq 0 ]] || echo "${folder#/proc/} $name $number $(stat -c %u "$folder" 2>/dev/null || true)"
+    done
+}
+
+# take_number [N]: holds the lock of this number, or of the first free one, on descriptor 9 for as long as this process
+# lives. Programs that were started by hand, or by others, have their numbers, too.
+take_number() {
+    local used
+    used=" $(running_programs | awk '{print $3}' | paste -sd ' ') "
+    if [[ -n ${1:-} ]]; then
+        { [[ $used != *" $1 "* ]] && lock_number "$1"; } || fail "session $1 runs already: leave --session out, or end it with: bonemill stop $1"
+        return
+    fi
+    for ((number = 1; number < 10000; ++number)); do
+        [[ $used == *" $number "* ]] || ! lock_number "$number" || return 0
+    done
+    fail "no session number is free"
+}
+
+lock_number() {
+    number=$1
+    exec 9>"$state/$number.lock"
+    flock -n 9
+}
+
+# A stopped script (Ctrl-Z) goes on for as long as it takes to end.
+ask_to_end() {
+    read_session "$1"
+    kill -TERM "${session[script]}" 2>/dev/null || true
+    kill -CONT "${session[script]}" 2>/dev/null || true
+}
+
+await_end() {
+    local tenth
+    for ((tenth = 0; tenth < 400; ++tenth)); do
+        is_running "$1" || { say "session $1 has ended"; return; }
+        sleep 0.1
+    done
+    fail "session $1 does not end: bonemill list tells its process, kill -9 ends that at once, and its programs with it"
+}

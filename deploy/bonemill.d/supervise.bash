@@ -1,0 +1,220 @@
+# Runs one session: starts its three programs, starts again what dies, and ends all of them in order.
+# Every program is told by the kernel to end (PR_SET_PDEATHSIG) when this script dies, in whatever way.
+# shellcheck shell=bash
+# shellcheck disable=SC2154
+
+readonly restart_after_s=2 most_restarts=3
+declare -A title=([server]=haptic_server [device]=device_daemon [viewer]=render_client)
+declare -A pid=() started_s=() due_s=() asked_real_time=() restarts=([server]=0 [device]=0 [viewer]=0)
+real_time=() end_code=""
+
+run_session() {
+    find_scene "${operand:-tooth_corridor}"
+    check_device
+    open_state
+    take_number "${option[session]:-}"
+    make_log_folder
+    say "session $number of $scene_name; logs in $logs"
+    make_phantoms
+    choose_real_time
+    choose_viewer
+    # What the shell itself notes, as "Killed", goes to a log: the user hears of it in our words.
+    exec {terminal}>&2 2>>"$logs/bonemill.log"
+    exec {never}<> <(:)  # Nothing ever comes here: reading from it is a pause that a signal cuts short.
+    exec {device_words}<> "$logs/device.log"
+    trap 'end_code=0' INT TERM HUP
+    trap : PIPE
+    trap end_session EXIT
+    launch server
+    launch device
+    [[ $flags == *" --no-viewer "* ]] || launch viewer
+    say_how_to_watch
+    supervise
+    exit "$end_code"
+}
+
+check_device() {
+    local device=${option[device]:-auto}
+    daemon_knows --device || [[ $device == auto || $device == simulated ]] ||
+        fail "--device $device: this device_daemon has only the simulated hand"
+}
+
+make_log_folder() {
+    local parent try name
+    parent=$(home_folder XDG_STATE_HOME .local/state)/bonemill
+    name=$(date +%Y-%m-%d_%H-%M-%S)_${scene_name//[^A-Za-z0-9_-]/_}
+    mkdir -p -- "$parent" || fail "the log folder $parent cannot be made"
+    for try in "" _2 _3 _4 _5 _6 _7 _8 _9; do
+        logs=$parent/$name$try
+        mkdir -- "$logs" 2>/dev/null && return
+    done
+    fail "no log folder can be made in $parent"
+}
+
+choose_real_time() {
+    "$share/check-realtime" >/dev/null 2>&1 || without_real_time
+}
+without_real_time() {
+    [[ ${#real_time[@]} -eq 0 ]] || return 0
+    real_time=(--best-effort-rt)
+    say "this PC does not grant real time: going on without, good for a look (bonemill doctor says what to type)"
+}
+
+choose_viewer() {
+    [[ $flags != *" --no-viewer "* ]] || return 0
+    has_display && return
+    flags+="--no-viewer "
+    say "there is no display here: going on without a window"
+}
+
+# command_of ROLE: into the variable `words`.
+command_of() {
+    case $1 in
+        server)
+            words=("$bin/haptic_server" --scene "$scene" --session "$number" --until-device-leaves "${real_time[@]}")
+            mapfile -t -O "${#words[@]}" words < <(network_words)
+            [[ $flags != *" --instructor-only "* ]] || words+=(--instructor-only)
+            words+=("${extra[@]}") ;;
+        device)
+            words=("$bin/device_daemon" --scene "$scene" --session "$number" "${real_time[@]}")
+            ! daemon_knows --device || words+=(--device "${option[device]:-auto}")
+            ! daemon_knows --profile || mapfile -t -O "${#words[@]}" words < <(network_words)
+            [[ $flags != *" --no-enabling-switch "* ]] || words+=(--no-enabling-switch)
+            ! daemon_knows --stop-dir || words+=(--stop-dir "$logs")
+            [[ -z ${option[seconds]:-} ]] || words+=(--seconds "${option[seconds]}") ;;
+        viewer)  # Whoever sits here has the hand, so the window may command, as it may on one PC.
+            words=("$bin/render_client" --session "$number" --role operator)
+            mapfile -t -O "${#words[@]}" words < <(network_words)
+            [[ -z ${option[window-size]:-} ]] || words+=(--size "${option[window-size]}") ;;
+    esac
+}
+
+# launch ROLE. A process group of its own keeps the terminal's Ctrl-C from it, so that the order of the end is ours. The
+# small shell is there for the moment before the kernel knows whose death it shall watch.
+launch() {
+    local words
+    command_of "$1"
+    # shellcheck disable=SC2016
+    setsid setpriv --pdeathsig TERM sh -c '[ "$PPID" = "$0" ] && exec "$@"' "$$" "${words[@]}" \
+        >>"$logs/$1.log" 2>&1 </dev/null 9>&- {never}<&- {terminal}>&- {device_words}<&- &
+    pid[$1]=$!
+    started_s[$1]=$SECONDS
+    [[ ${#real_time[@]} -eq 0 ]] && asked_real_time[$1]=true || asked_real_time[$1]=false
+    unset "due_s[$1]"
+    write_session
+}
+
+# The file appears whole, so that a reader never sees half of it.
+write_session() {
+    local role programs=""
+    for role in server device viewer; do [[ -z ${pid[$role]:-} ]] || programs+=", ${title[$role]} ${pid[$role]}"; done
+    : "${since:=$(date +%H:%M:%S)}"
+    printf '%s\n' "scene=$scene_name" "device=${option[device]:-auto}" "since=$since" "logs=$logs" "script=$$" \
+        "profile=${option[profile]:-}" "interface=${option[interface]:-}" "domain=${option[domain]:-}" \
+        "programs=$programs" >"$state/$number.new"
+    mv -f -- "$state/$number.new" "$state/$number.session"
+}
+
+say_how_to_watch() {
+    [[ -z ${option[profile]:-} || ${option[profile]} == one-pc ]] ||
+        say "viewers on other PCs: bonemill watch --profile ${option[profile]} --interface THEIRS --session $number" \
+            "(without multicast: bonemill watch $(uname -n) --session $number)"
+    if [[ -n ${pid[viewer]:-} ]]; then say "close the window or press Ctrl-C to end"; else say "Ctrl-C ends it, or: bonemill stop $number"; fi
+}
+
+is_alive() { [[ -n ${pid[$1]:-} ]] && kill -0 "${pid[$1]}" 2>/dev/null; }
+pause() { read -rt "$1" <&"$never" || true; }
+
+supervise() {
+    local role
+    while [[ -z $end_code ]]; do
+        pause 0.2
+        relay_device_words
+        for role in "${!pid[@]}"; do is_alive "$role" || has_ended "$role"; done
+        for role in "${!due_s[@]}"; do
+            [[ -n $end_code ]] || ((SECONDS < due_s[$role])) || launch "$role"
+        done
+    done
+}
+
+# What the device warns of is for whoever holds it.
+relay_device_words() {
+    local line
+    while IFS= read -r line <&"$device_words"; do
+        [[ $line =~ \ device_daemon\ (warn|warning|error)\ (.*) ]] || continue
+        [[ $line == *"real time: "* ]] || say "device: ${BASH_REMATCH[2]}"
+    done
+}
+
+# has_ended ROLE: what an end means for the session.
+has_ended() {
+    local role=$1 code=0
+    [[ -z $end_code ]] || return 0
+    wait "${pid[$role]}" || code=$?
+    unset "pid[$role]"
+    case $role:$code in
+        viewer:0) end_because 0 "the window was closed" ;;
+        server:0) end_because 0 "the hand has finished, or somebody has ended haptic_server" ;;
+        device:0) end_because 0 "the hand has finished" ;;
+        *:2) if lacks_real_time "$role"; then without_real_time; launch "$role"; else end_with_error "$role" "$code"; fi ;;
+        *) restart "$role" "$code" ;;
+    esac
+}
+
+complain() { printf 'bonemill: %s\n' "$*" >&"$terminal" || true; }
+end_because() { end_code=$1; say "$2: session $number ends"; }
+
+# What was granted on paper may still be refused, as in a container.
+lacks_real_time() { [[ ${asked_real_time[$1]} == true ]] && grep -q -e --best-effort-rt "$logs/$1.log"; }
+
+end_with_error() {  # ROLE CODE
+    local what
+    what=$(grep -a 'error: ' "$logs/$1.log" | tail -n 1 | sed 's/.*error: //' || true)
+    end_code=$2
+    complain "${title[$1]}: ${what:-it left with code $2, see $logs/$1.log}"
+}
+
+restart() {  # ROLE CODE
+    local role=$1 how="left with code $2" more=""
+    (($2 <= 128)) || how="was ended by signal $(($2 - 128))"
+    if ((restarts[$role] == most_restarts)); then
+        end_code=1
+        complain "${title[$role]} $how again, after $most_restarts restarts: session $number ends, see $logs/$role.log"
+        return
+    fi
+    [[ $role != server ]] || more="; the bone will be whole again"
+    due_s[$role]=$((started_s[$role] + restart_after_s + 1))  # Whole seconds: one more, lest it be less than said.
+    restarts[$role]=$((restarts[$role] + 1))
+    say "${title[$role]} $how: it is started again (${restarts[$role]} of $most_restarts)$more"
+    write_session
+}
+
+# The force goes to zero before anything else ends, and what was milled is still sent to the viewers.
+end_session() {
+    trap '' INT TERM HUP
+    trap - EXIT
+    end_program device 5
+    end_program server 20
+    end_program viewer 5
+    rm -f -- "$state/$number.session"
+    [[ -s $logs/bonemill.log ]] || rm -f -- "$logs/bonemill.log"
+    say "session $number has ended; logs in $logs"
+    exit "${end_code:-1}"
+}
+
+end_program() {  # ROLE LIMIT_S
+    local tenth code=0
+    [[ -n ${pid[$1]:-} ]] || return 0
+    kill -TERM "${pid[$1]}" 2>/dev/null || true
+    for ((tenth = 0; tenth < $2 * 10; ++tenth)); do
+        is_alive "$1" || break
+        pause 0.1
+    done
+    if is_alive "$1"; then
+        say "${title[$1]} did not end within $2 s: it is killed"
+        kill -KILL -- "-${pid[$1]}" 2>/dev/null || true  # This is its group: what it started goes, too.
+    fi
+    wait "${pid[$1]}" || code=$?
+    # It says so when it could not do its last work, as to write a file.
+    ((code == 0 || code > 128)) || { end_code=$code; complain "${title[$1]} left with code $code, see $logs/$1.log"; }
+}
