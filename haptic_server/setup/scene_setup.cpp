@@ -167,6 +167,18 @@ void addProperties(Simulation& simulation, const LoadedScene& loaded, const Voxe
     effects.protected_field = protectedFieldOf(loaded, *effects.properties, volume.spacing());
 }
 
+// The scene says what the hand feels (haptic_server/tick/hand_side.h): at the tool, which goes `scale` times as
+// far, a spring of the same force is softer, and one of `scale` times the torque stiffer.
+void scaleWorkspace(TickConfig& config, double scale) {
+    config.workspace_scale = scale;
+    config.coupling.translation_stiffness /= scale;
+    config.coupling.rotation_stiffness *= scale;
+    EnergyCouplingConfig& gradient = config.gradient.coupling;
+    gradient.translation_stiffness /= scale;
+    gradient.rotation_stiffness *= scale;
+    gradient.saturation_torque *= scale;
+}
+
 }  // namespace
 
 std::vector<SpoTool> Simulation::spoTools() const {
@@ -189,6 +201,7 @@ TickConfig tickConfigOf(const scene::Scene& scene) {
                        .static_damping = coupling.static_damping()};
     config.hand = {.max_force = coupling.max_force_n(),
                    .max_torque = coupling.max_torque_nmm() * kMillimetre};
+    scaleWorkspace(config, scene.device().workspace_scale());
     config.effects = effectConfigsOf(scene);
     TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     return config;

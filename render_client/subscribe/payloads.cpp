@@ -92,6 +92,12 @@ bool isUsable(const topics::ToolState& state) {
            std::isfinite(state.max_penetration_m()) && isUsable(state.effects());
 }
 
+// States and causes of a later version are shown as unknown.
+bool isUsable(const topics::Device& device) {
+    return isSane(device.max_force_n()) && device.max_force_n() >= 0 && isSane(device.max_torque_nmm()) &&
+           device.max_torque_nmm() >= 0;
+}
+
 bool isUsable(const topics::Status& status) {
     const double numbers[] = {status.rate_hz(),
                               status.tick_p50_us(),
@@ -104,7 +110,8 @@ bool isUsable(const topics::Status& status) {
         return isTime(c.session_s()) && std::isfinite(c.removed_mm3());
     };
     return isFinite(numbers) && isTime(status.session_s()) && status.checkpoints_size() <= kMostCheckpoints &&
-           std::ranges::all_of(status.checkpoints(), is_usable) && isUsable(status.training());
+           std::ranges::all_of(status.checkpoints(), is_usable) && isUsable(status.training()) &&
+           isUsable(status.device());
 }
 
 bool isUsable(const topics::Viewer& viewer) {
@@ -195,6 +202,8 @@ std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {
     for (std::string* text : {status->mutable_scene(), status->mutable_preset(), status->mutable_fault_text(),
                               status->mutable_last_command_result()})
         *text = shownText(*text, kLongestText);
+    if (status->has_device())
+        status->mutable_device()->set_name(shownName(status->device().name()));
     if (status->has_training())
         for (std::string& warning : *status->mutable_training()->mutable_warnings())
             warning = shownText(warning, kLongestText);
