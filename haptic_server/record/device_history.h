@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/telemetry/device_status.h"
+#include "haptic_server/telemetry/device_report.h"
 
 namespace bonemill {
 
 struct DeviceChange {
     double t_s;  // since the session's first tick
-    DeviceStatus now;
+    DeviceReport now;
 };
 
 class DeviceHistory {
@@ -20,21 +20,21 @@ class DeviceHistory {
     static constexpr size_t kMostKept = 256;
 
     // A run is taken to begin engaged. Statuses come in the order of their ticks.
-    void add(double t_s, const DeviceStatus& status);
+    void add(double t_s, const DeviceReport& status);
 
     // The first kMostKept changes, and how many there were in all.
     std::span<const DeviceChange> kept() const { return kept_; }
     uint64_t count() const { return count_; }
 
   private:
-    DeviceStatus last_;
+    DeviceReport last_;
     std::vector<DeviceChange> kept_;
     uint64_t count_ = 0;
 };
 
 // Says what has stopped the device: "too fast", "device fault 17"; empty if nothing has.
-std::string causeText(const DeviceStatus& status);
+std::string causeText(const DeviceReport& status);
 // Says it all for people: "protective stop: too fast. Hold the handle and reset."
-std::string deviceText(const DeviceStatus& status);
+std::string deviceText(const DeviceReport& status);
 
 }  // namespace bonemill

@@ -74,7 +74,7 @@ class DeviceLinkIo final : public TickIo {
     TickPace pace_;
     Pose X_WT_device_;
     uint32_t buttons_ = 0;
-    DeviceStatus device_;
+    DeviceReport device_;
     DeviceCapabilities capabilities_{};  // of the device in use
     bool has_capabilities_ = false;
     uint32_t faults_ = 0;          // TickFault bits for the tick that comes

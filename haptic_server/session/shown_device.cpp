@@ -19,7 +19,7 @@ std::string readableName(const char* name) {
 
 }  // namespace
 
-topics::Device shownDevice(const DeviceStatus& status, const DeviceCapabilities* capabilities) {
+topics::Device shownDevice(const DeviceReport& status, const DeviceCapabilities* capabilities) {
     topics::Device device;
     device.set_state(status.state);
     device.set_stop_cause(status.stop_cause);

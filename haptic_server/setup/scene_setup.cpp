@@ -7,6 +7,7 @@
 #include "common/user_error.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_materials.h"
+#include "haptic_server/tick/hand_side.h"
 #include "haptic_server/tick/tick_budget.h"
 #include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/import_volume.h"
@@ -165,18 +166,6 @@ void addProperties(Simulation& simulation, const LoadedScene& loaded, const Voxe
         return material_ids.empty() ? kNoMaterial : material_ids[at];
     });
     effects.protected_field = protectedFieldOf(loaded, *effects.properties, volume.spacing());
-}
-
-// The scene says what the hand feels (haptic_server/tick/hand_side.h): at the tool, which goes `scale` times as
-// far, a spring of the same force is softer, and one of `scale` times the torque stiffer.
-void scaleWorkspace(TickConfig& config, double scale) {
-    config.workspace_scale = scale;
-    config.coupling.translation_stiffness /= scale;
-    config.coupling.rotation_stiffness *= scale;
-    EnergyCouplingConfig& gradient = config.gradient.coupling;
-    gradient.translation_stiffness /= scale;
-    gradient.rotation_stiffness *= scale;
-    gradient.saturation_torque *= scale;
 }
 
 }  // namespace

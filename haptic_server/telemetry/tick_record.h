@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "haptic_server/telemetry/cut.h"
-#include "haptic_server/telemetry/device_status.h"
+#include "haptic_server/telemetry/device_report.h"
 #include "haptic_server/telemetry/effect_record.h"
 
 namespace bonemill {
@@ -56,7 +56,7 @@ struct TickRecord {
     uint32_t faults;          // TickFault bits of this tick
     Cut cut;                  // the voxels milled in this tick
     EffectRecord effects;
-    DeviceStatus device;
+    DeviceReport device;
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 

@@ -66,6 +66,16 @@ void fitTorque(HandSide& side, const DeviceCapabilities& device, double workspac
 
 }  // namespace
 
+void scaleWorkspace(TickConfig& config, double scale) noexcept {
+    config.workspace_scale = scale;
+    config.coupling.translation_stiffness /= scale;
+    config.coupling.rotation_stiffness *= scale;
+    EnergyCouplingConfig& gradient = config.gradient.coupling;
+    gradient.translation_stiffness /= scale;
+    gradient.rotation_stiffness *= scale;
+    gradient.saturation_torque *= scale;
+}
+
 HandSide handSideOf(const TickConfig& config) noexcept {
     HandSide side{.limits = config.hand,
                   .spring = {},

@@ -15,6 +15,10 @@
 
 namespace bonemill {
 
+// Turns couplings as the hand is to feel them into those at the tool: where it goes `scale` times as far, a
+// spring of the same force is softer, and one of `scale` times the torque stiffer.
+void scaleWorkspace(TickConfig& config, double scale) noexcept;
+
 struct HandSide {
     HandLimitsConfig limits;
     HandSpring spring;

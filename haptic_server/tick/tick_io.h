@@ -12,7 +12,7 @@ namespace bonemill {
 struct DeviceInput {
     Pose X_WT_device;                 // where the hand really holds the tool
     uint32_t buttons = 0;             // Button bits
-    DeviceStatus device;              // nothing is milled but while it is engaged
+    DeviceReport device;              // nothing is milled but while it is engaged
     // Another device is there than in the ticks before, and this is what it can do. It is good until the next
     // read(); null says that nothing has changed.
     const DeviceCapabilities* other_device = nullptr;

@@ -22,12 +22,23 @@ DeviceCapabilities deviceOf(double max_force, double max_torque, double max_stif
             .workspace_radius = 0.1};
 }
 
-// The hand holds the tool still, pressed and turned against the slab.
-std::vector<DeviceInput> held(int ticks, const DeviceCapabilities* device = nullptr, uint32_t buttons = 0) {
-    Pose hand = test::SwitchingBench::at(test::kBenchTop - 1e-3);
-    hand.rotation = expRotation({0.3, 0, 0});
-    auto inputs = test::straightPath(hand, hand.position, ticks, buttons);
+constexpr double kPressed = test::kBenchTop + 0.2e-3;  // z of the hand's tool point: the burr gives way 0.8 mm
+
+std::vector<DeviceInput> pressing(int ticks) {
+    const Pose above = test::SwitchingBench::at(test::kBenchTop + 1.1e-3);
+    return test::straightPath(above, test::SwitchingBench::at(kPressed).position, ticks, 0);
+}
+std::vector<DeviceInput> held(int ticks, const DeviceCapabilities* device = nullptr) {
+    const Pose hand = test::SwitchingBench::at(kPressed);
+    auto inputs = test::straightPath(hand, hand.position, ticks, 0);
     inputs.front().other_device = device;
+    return inputs;
+}
+// The hand turns in the air, faster than the tool may.
+std::vector<DeviceInput> turning(int ticks) {
+    const Pose hand = test::SwitchingBench::at(test::kBenchTop + 2e-3);
+    auto inputs = test::straightPath(hand, hand.position, ticks, 0);
+    for (int n = 0; n < ticks; ++n) inputs[size_t(n)].X_WT_device.rotation = expRotation({0.01 * n, 0, 0});
     return inputs;
 }
 Eigen::Vector3d feltForce(const TickRecord& record) {
@@ -44,6 +55,7 @@ TEST(DeviceChange, InContactTheForceGoesToWhatTheDeviceGivesAtALimitedRate) {
     const DeviceCapabilities arm = deviceOf(3, 0, 500), strong = deviceOf(40, 2, 0);
     for (const Preset preset : kPresets) {
         ToolBench bench(1, presetSettings(preset));
+        bench.run(pressing(300));
         const TickRecord before = bench.run(held(400)).back();
         ASSERT_GT(feltForce(before).norm(), 1) << presetName(preset);
         const auto weak = bench.run(held(400, &arm));
@@ -62,9 +74,7 @@ TEST(DeviceChange, InContactTheForceGoesToWhatTheDeviceGivesAtALimitedRate) {
 TEST(DeviceChange, ADeviceWithoutTorqueIsSentNoneAtOnceAndIsNotCalledLimited) {
     ToolBench bench(1);
     const DeviceCapabilities arm = deviceOf(30, 0, 0);
-    Pose hand = test::SwitchingBench::at(test::kBenchTop + 2e-3);
-    auto turn = test::straightPath(hand, hand.position, 20, 0);
-    for (size_t n = 0; n < turn.size(); ++n) turn[n].X_WT_device.rotation = expRotation({0.01 * double(n), 0, 0});
+    auto turn = turning(20);
     EXPECT_GT(Eigen::Vector3d(bench.run(turn).back().t_hand_W).norm(), 1e-3);
     turn.front().other_device = &arm;
     for (const TickRecord& record : bench.run(turn)) {
@@ -78,6 +88,7 @@ TEST(DeviceChange, TheCouplingIsNoStifferThanTheDeviceHolds) {
     const DeviceCapabilities soft = deviceOf(30, 0, 400);
     for (const Preset preset : kPresets) {
         ToolBench bench(1, presetSettings(preset));
+        bench.run(pressing(300));
         const TickRecord last = bench.run(held(600, &soft)).back();
         const double stretch = (Eigen::Vector3d(last.p_WT) - Eigen::Vector3d(last.p_WT_device)).norm();
         EXPECT_LE(feltForce(last).norm(), 1.001 * 400 * stretch) << presetName(preset);
@@ -88,7 +99,8 @@ TEST(DeviceChange, TheCouplingIsNoStifferThanTheDeviceHolds) {
 TEST(DeviceChange, TheLimitOutlivesAChangeOfTheTool) {
     ToolBench bench(0);
     const DeviceCapabilities arm = deviceOf(2, 0, 0);
-    bench.run(held(10, &arm));
+    bench.run(pressing(300));
+    bench.run(held(300, &arm));
     bench.tools.choose(2);
     for (const TickRecord& record : bench.run(held(400))) EXPECT_LE(feltForce(record).norm(), 2 * (1 + 1e-9));
 }
@@ -96,8 +108,11 @@ TEST(DeviceChange, TheLimitOutlivesAChangeOfTheTool) {
 TEST(DeviceState, OnlyAnEngagedDeviceMillsAndEveryOneFeels) {
     for (uint32_t state = 0; state < kSafetyStateCount; ++state) {
         ToolBench bench(1);
-        auto inputs = held(200, nullptr, kButtonRemove);
-        for (DeviceInput& input : inputs) input.device.state = state;
+        auto inputs = pressing(200);
+        for (DeviceInput& input : inputs) {
+            input.device.state = state;
+            input.buttons = kButtonRemove;
+        }
         const auto records = bench.run(inputs);
         EXPECT_EQ(bench.history.missingVoxels() > 0, SafetyState(state) == SafetyState::kEngaged) << state;
         EXPECT_GT(records.back().contacts, 0u) << state;
@@ -121,7 +136,7 @@ TEST(WorkspaceScale, TheHandGetsTheToolsForceAndItsTorqueOverTheScale) {
         TickConfig config = test::millingConfig();
         config.workspace_scale = scale;
         HapticTick tick(config, {bench.bone}, {bench.tools, bench.accuracy});
-        return test::lead(tick, held(400)).back();
+        return test::lead(tick, turning(20)).back();
     };
     const TickRecord same = torqueAt(1), larger = torqueAt(4);
     EXPECT_EQ(feltForce(larger), feltForce(same));

@@ -94,7 +94,8 @@ TEST(HandLimits, AChangeIsOverAlsoAtTheNorm) {
     HandLimits limits = make(10);
     sentBy(limits, upwards(9));
     limits.beginSuddenChange();
-    for (int tick = 0; tick < 100; ++tick) EXPECT_LE(sentBy(limits, upwards(30)).force.norm(), 10 + 1e-9);
+    const Wrench far_beyond{{0, 0, 30}, {0, 1, 0}};
+    for (int tick = 0; tick < 100; ++tick) EXPECT_LE(sentBy(limits, far_beyond).force.norm(), 10 + 1e-9);
     EXPECT_TRUE(limits.isChangeOver());
     EXPECT_EQ(sentBy(limits, upwards(0)).force.z(), 0);
 }

@@ -9,7 +9,7 @@ namespace bonemill {
 
 // A tick that runs without a device, from a file for instance, takes it for engaged. The numbers are those of
 // the device's samples.
-struct DeviceStatus {
+struct DeviceReport {
     uint32_t state = uint32_t(SafetyState::kEngaged);
     uint32_t stop_cause = uint32_t(StopCause::kNone);
     uint32_t fault_code = 0;
