@@ -1,4 +1,5 @@
-// These are the states that the device went through in a run, and what stopped it. One normal thread calls it.
+// These are the states that the device went through in a run, and what stopped it. One normal thread calls
+// it.
 #pragma once
 
 #include <span>

@@ -27,10 +27,10 @@ class DeviceLinkIo final : public TickIo {
     DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link, SpscRing<TickRecord>& telemetry,
                  SpscRing<Cut>& cuts);
 
-    // Wakes on a new device sample, but no earlier than TickPace allows. When the device is silent it wakes by itself: two periods after the last
-    // tick, and every period once the device counts as stale. Before the very first sample there is nothing
-    // to simulate: it only waits. False after stop(), and when the device has said goodbye while
-    // ends_with_device is set.
+    // Wakes on a new device sample, but no earlier than TickPace allows. When the device is silent it wakes
+    // by itself: two periods after the last tick, and every period once the device counts as stale. Before
+    // the very first sample there is nothing to simulate: it only waits. False after stop(), and when the
+    // device has said goodbye while ends_with_device is set.
     bool read(DeviceInput& input) noexcept override;
     int64_t write(const Wrench& wrench_hand_W) noexcept override;
     int64_t now() noexcept override;
@@ -43,9 +43,11 @@ class DeviceLinkIo final : public TickIo {
     // And for the number of ticks that were held back because samples came too fast.
     uint64_t earlySamples() const noexcept { return early_.load(std::memory_order_relaxed); }
     // And for what the device can do; false says that none has told yet.
-    bool capabilities(DeviceCapabilities& capabilities) const noexcept { return shown_.tryRead(capabilities); }
-    // Any thread may count up: each new number orders the device to come out of a stop. Relaxed is enough, for
-    // nothing else goes with it.
+    bool capabilities(DeviceCapabilities& capabilities) const noexcept {
+        return shown_.tryRead(capabilities);
+    }
+    // Any thread may count up: each new number orders the device to come out of a stop. Relaxed is enough,
+    // for nothing else goes with it.
     std::atomic<uint32_t>& resetOrders() noexcept { return reset_orders_; }
 
     static constexpr int64_t kStopCheckNs = 50'000'000;
@@ -61,7 +63,7 @@ class DeviceLinkIo final : public TickIo {
     int64_t waitForDue() noexcept;
     // Sleeps until a tick may start. Returns that instant, or 0 if it has come already.
     int64_t holdBack() noexcept;
-    bool takeSample() noexcept;       // false: there is none that is new and plausible
+    bool takeSample() noexcept;        // false: there is none that is new and plausible
     bool takeCapabilities() noexcept;  // likewise, for another device
     void refuse() noexcept;
 

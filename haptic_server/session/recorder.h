@@ -74,7 +74,7 @@ class Recorder {
     EventSum new_events_;  // since takeSince()
     double new_removed_ = 0;
     std::vector<DeviceChange> new_device_changes_;  // since takeDeviceChanges()
-    EffectStatistics effects_;  // as of latest_
+    EffectStatistics effects_;                      // as of latest_
     LoopHealth health_;
 };
 

@@ -94,8 +94,8 @@ class Server {
           commands_(loaded_.scene, *simulation_.bone, recorder_,
                     {history_, accuracy_, tools_, stop_requested_, bone_export_, io_.resetOrders()},
                     options.instructor_only),
-          show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, io_, commands_,
-                options.stream_mbit_per_s * kMega / 8) {
+          show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, io_,
+                commands_, options.stream_mbit_per_s * kMega / 8) {
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
         for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     }
@@ -269,8 +269,9 @@ class Server {
 
     void logDistrust() const {
         if (io_.implausibleMessages() + io_.earlySamples() == 0) return;
-        spdlog::warn("{} messages of device_daemon were refused, {} ticks held back for samples that came early",
-                     io_.implausibleMessages(), io_.earlySamples());
+        spdlog::warn(
+            "{} messages of device_daemon were refused, {} ticks held back for samples that came early",
+            io_.implausibleMessages(), io_.earlySamples());
     }
 
     static void logClosing(const RunStatistics& statistics) {
@@ -302,8 +303,8 @@ class Server {
     SessionExport bone_export_;
     SessionCommands commands_;
     ShowSession show_;
-    PublishFigures published_;        // publisher thread's until it is joined
-    std::string device_;              // as told last
+    PublishFigures published_;  // publisher thread's until it is joined
+    std::string device_;        // as told last
     bool has_told_of_implausible_ = false, has_told_of_early_ = false;
     std::optional<PageFaults> warm_;  // of the tick thread, when it had run for kWarmUpNs
     RealtimeThread tick_thread_;

@@ -1,5 +1,6 @@
-// A tick lives through a fixed time, so that ticks which come faster than their period mill and move too fast.
-// This says how early the next one may start. Times are CLOCK_MONOTONIC ns. It is RT-safe, for one thread.
+// A tick lives through a fixed time, so that ticks which come faster than their period mill and move too
+// fast. This says how early the next one may start. Times are CLOCK_MONOTONIC ns. It is RT-safe, for one
+// thread.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +16,8 @@ class TickPace {
 
     void begin(int64_t start_ns) noexcept {
         last_start_ns_ = start_ns;
-        due_ns_ = std::max(due_ns_, start_ns - kMostCaughtUp * period_ns_) + period_ns_ -
-                  period_ns_ / kFasterClock;
+        due_ns_ =
+            std::max(due_ns_, start_ns - kMostCaughtUp * period_ns_) + period_ns_ - period_ns_ / kFasterClock;
     }
     int64_t earliestNs() const noexcept { return std::max(last_start_ns_ + period_ns_ / 2, due_ns_); }
     // Tells whether an instant is too early because too many ticks came before it, and not just because the

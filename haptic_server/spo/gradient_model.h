@@ -24,8 +24,8 @@ class GradientModel final : public SpoModel {
     bool isToolGrowing() const noexcept { return growing_.offset() > 0; }
     void setAccuracy(const AccuracySettings& settings) noexcept override;
     void setTool(const SpoTool& tool) noexcept override;
-    // Takes effect with the next advance(), whose coupling pulls with `most_pull` (N) at most, or with what the
-    // tool carries if that is less. It is RT-safe, for the tick thread only.
+    // Takes effect with the next advance(), whose coupling pulls with `most_pull` (N) at most, or with what
+    // the tool carries if that is less. It is RT-safe, for the tick thread only.
     void setCoupling(const EnergyCouplingConfig& coupling, double most_pull) noexcept;
     void setEffects(ContactWeights* weights, SolveEnergy* energy) noexcept override;
     size_t listContacts(std::span<SurfaceContact> out) noexcept override;

@@ -27,7 +27,7 @@ enum TickFault : uint32_t {
     kFaultCoarserShell = 1u << 10,    // fewer contact points than asked for: more are too many for a tick
     kFaultStalled = 1u << 11,  // forces are out of balance, but no step towards it was found in this tick
     kFaultImplausibleDevice = 1u << 12,  // what device_daemon says cannot be: it was refused
-    kFaultEarlySamples = 1u << 13,  // samples come faster than the loop's rate: the tick was held back
+    kFaultEarlySamples = 1u << 13,       // samples come faster than the loop's rate: the tick was held back
 };
 constexpr uint32_t kLastFault = kFaultEarlySamples;
 

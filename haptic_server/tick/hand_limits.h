@@ -14,8 +14,9 @@
 //    rate; what that device cannot give meanwhile, its daemon cuts. A norm of 0 says that the device has no
 //    force or no torque: nobody can feel it go, so that it goes at once, and that is no limit that acted.
 // 3. The rate, when what the hand feels has changed at one stroke. A larger burr may find bone where the
-//    smaller one had room, restored bone may be where the tool is, another device may be held more stiffly, an
-//    equilibrium may be found again after ticks without one. The wrench then goes from the old one to the new one at kForceRate and kTorqueRate.
+//    smaller one had room, restored bone may be where the tool is, another device may be held more stiffly,
+//    an equilibrium may be found again after ticks without one. The wrench then goes from the old one to the
+//    new one at kForceRate and kTorqueRate.
 // 4. The factor of the stale ramp, 0 to 1. It comes last, so that no other limit can undo it: at 0 nothing is
 //    sent, whatever was computed. The rate does not see it, for it would take the ramp for a change of the
 //    wrench.
@@ -107,8 +108,8 @@ class HandLimits {
     Wrench allowed(const FeltStep& step) noexcept {
         Wrench wrench = step.wrench_V;
         leaveOut(wrench);
-        was_limited_ = limitNorm(wrench.force, config_.max_force) |
-                       limitNorm(wrench.torque, config_.max_torque);
+        was_limited_ =
+            limitNorm(wrench.force, config_.max_force) | limitNorm(wrench.torque, config_.max_torque);
         if (!isChangeOver()) slowDown(wrench, step.X_VT_device);
         faded_for_ = 0;
         before_fading_ = wrench;

@@ -9,10 +9,10 @@ namespace {
 
 // These are the least that a scene may ask for of coupling.max_force_n, max_torque_nmm and the stiffnesses. A
 // device that says less, and not 0, gives nothing that could be felt or would hold the tool.
-constexpr double kLeastForce = 0.1;                              // N
-constexpr double kLeastTorque = 0.1 * kMillimetre;               // N·m
-constexpr double kLeastStiffness = 1e-3 / kMillimetre;           // N/m
-constexpr double kLeastRotationStiffness = 0.05 * kMillimetre;   // N·m/rad
+constexpr double kLeastForce = 0.1;                             // N
+constexpr double kLeastTorque = 0.1 * kMillimetre;              // N·m
+constexpr double kLeastStiffness = 1e-3 / kMillimetre;          // N/m
+constexpr double kLeastRotationStiffness = 0.05 * kMillimetre;  // N·m/rad
 
 double forceOf(const DeviceCapabilities& device) noexcept {
     return device.abilities & kAbilityForce && device.max_force >= kLeastForce ? device.max_force : 0;
@@ -77,10 +77,8 @@ void scaleWorkspace(TickConfig& config, double scale) noexcept {
 }
 
 HandSide handSideOf(const TickConfig& config) noexcept {
-    HandSide side{.limits = config.hand,
-                  .spring = {},
-                  .thesis = config.coupling,
-                  .gradient = config.gradient.coupling};
+    HandSide side{
+        .limits = config.hand, .spring = {}, .thesis = config.coupling, .gradient = config.gradient.coupling};
     side.spring = springOf(side, config.workspace_scale);
     return side;
 }

@@ -178,7 +178,7 @@ SpoStep HapticTick::moveAndFeel(double stale_factor, uint32_t& faults) noexcept 
     if (model_ == &gradient_ && gradient_.isToolGrowing()) hand_limits_.beginSuddenChange();
     effects_.addToHand(step.wrench_hand_V);
     step.wrench_hand_V.torque /= config_.workspace_scale;  // hand_side.h
-    const bool is_felt = step.is_solved && has_pose_;  // before a pose nobody knows where the hand is
+    const bool is_felt = step.is_solved && has_pose_;      // before a pose nobody knows where the hand is
     step.wrench_hand_V = hand_limits_.limit({step.wrench_hand_V, is_felt, X_VT_device_, stale_factor});
     if (hand_limits_.wasLimited()) faults |= kFaultForceClamped;
     return step;

@@ -10,9 +10,9 @@
 namespace bonemill {
 
 struct DeviceInput {
-    Pose X_WT_device;                 // where the hand really holds the tool
-    uint32_t buttons = 0;             // Button bits
-    DeviceReport device;              // nothing is milled but while it is engaged
+    Pose X_WT_device;      // where the hand really holds the tool
+    uint32_t buttons = 0;  // Button bits
+    DeviceReport device;   // nothing is milled but while it is engaged
     // Another device is there than in the ticks before, and this is what it can do. It is good until the next
     // read(); null says that nothing has changed.
     const DeviceCapabilities* other_device = nullptr;

@@ -202,8 +202,7 @@ std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {
     for (std::string* text : {status->mutable_scene(), status->mutable_preset(), status->mutable_fault_text(),
                               status->mutable_last_command_result()})
         *text = shownText(*text, kLongestText);
-    if (status->has_device())
-        status->mutable_device()->set_name(shownName(status->device().name()));
+    if (status->has_device()) status->mutable_device()->set_name(shownName(status->device().name()));
     if (status->has_training())
         for (std::string& warning : *status->mutable_training()->mutable_warnings())
             warning = shownText(warning, kLongestText);

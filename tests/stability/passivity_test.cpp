@@ -174,11 +174,26 @@ double droppedTicksAtThePort(const Variant& variant) {
 }
 
 const std::vector<StabilityCase> kPassivityCases{
-    {"energy_loop_over_plane", "uJ_gained", kEnergySlack_uJ, loopOverPlane, {}, Names{"surface_friction"} + everyDevice()},
-    {"energy_round_the_hole", "uJ_gained", kEnergySlack_uJ, pegMoving, {}, Names{"surface_friction"} + everyDevice()},
+    {"energy_loop_over_plane",
+     "uJ_gained",
+     kEnergySlack_uJ,
+     loopOverPlane,
+     {},
+     Names{"surface_friction"} + everyDevice()},
+    {"energy_round_the_hole",
+     "uJ_gained",
+     kEnergySlack_uJ,
+     pegMoving,
+     {},
+     Names{"surface_friction"} + everyDevice()},
     {"energy_over_edge_at_rest", "uJ_gained", kEnergySlack_uJ, overTheEdge, {"thesis_2012"}},
     {"energy_round_hole_at_rest", "uJ_gained", kEnergySlack_uJ, pegAtRest, {}},
-    {"energy_dropped_ticks", "uJ_gained", kEnergySlack_uJ, worstDroppedTicks, {}, Names{"surface_friction"} + everyDevice()},
+    {"energy_dropped_ticks",
+     "uJ_gained",
+     kEnergySlack_uJ,
+     worstDroppedTicks,
+     {},
+     Names{"surface_friction"} + everyDevice()},
     {"port_energy_dropped_ticks", "of_hold_bound", 1, droppedTicksAtThePort, {}},
 };
 BONEMILL_STABILITY_CASES(Passivity, kPassivityCases);

@@ -36,8 +36,8 @@ inline constexpr double kSpinSpeed = 4000, kCuttingFriction = 0.7;  // rad/s; μ
 // The vibration is of 400 Hz then: over so many ticks it sums to nothing.
 inline constexpr size_t kVibrationTicks = 5;
 
-// They are the default preset with other devices: an arm that gives 3 N and no torque ("arm"), and workspaces of
-// which the tool's is smaller and larger than the handle's ("scale_0_3", "scale_3").
+// They are the default preset with other devices: an arm that gives 3 N and no torque ("arm"), and workspaces
+// of which the tool's is smaller and larger than the handle's ("scale_0_3", "scale_3").
 const std::vector<Variant>& deviceVariants();
 extern const DeviceCapabilities kArm;
 Names scaledWorkspaces();

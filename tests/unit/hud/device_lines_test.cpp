@@ -36,7 +36,8 @@ TEST(DeviceLines, AnEngagedDeviceIsOneQuietLine) {
 }
 
 TEST(DeviceLines, EveryStopIsRedAndSaysWhyAndWhatToDo) {
-    for (const SafetyState state : {SafetyState::kProtectiveStop, SafetyState::kEmergencyStop, SafetyState::kFault})
+    for (const SafetyState state :
+         {SafetyState::kProtectiveStop, SafetyState::kEmergencyStop, SafetyState::kFault})
         for (uint32_t cause = 1; cause < kStopCauseCount; ++cause) {
             const auto rows = deviceRows(deviceIn(state, StopCause(cause)), nullptr);
             EXPECT_EQ(rows[0].value, nameOf(state));
@@ -53,7 +54,8 @@ TEST(DeviceLines, EveryStopIsRedAndSaysWhyAndWhatToDo) {
 }
 
 TEST(DeviceLines, BeforeItEngagesItIsAWarningAndACauseThatIsOverIsNotShown) {
-    for (const SafetyState state : {SafetyState::kConnected, SafetyState::kHoming, SafetyState::kReady, SafetyState::kPaused}) {
+    for (const SafetyState state :
+         {SafetyState::kConnected, SafetyState::kHoming, SafetyState::kReady, SafetyState::kPaused}) {
         const auto rows = deviceRows(deviceIn(state, StopCause::kSpeed), nullptr);
         ASSERT_EQ(rows.size(), 1u);
         EXPECT_EQ(rows[0].tone, HudTone::kWarning);

@@ -53,11 +53,10 @@ TEST(DeviceHistory, TheReportHasItWhereThereIsAny) {
     statistics.add(record);
     const auto json = nlohmann::json::parse(statistics.toJson());
     EXPECT_EQ(json["device_changes"], 1);
-    EXPECT_EQ(json["device_states"],
-              (nlohmann::json{{{"t_s", 0.5},
-                               {"state", "protective stop"},
-                               {"cause", "too much power"},
-                               {"what_to_do", whatToDo(StopCause::kPower)}}}));
+    EXPECT_EQ(json["device_states"], (nlohmann::json{{{"t_s", 0.5},
+                                                      {"state", "protective stop"},
+                                                      {"cause", "too much power"},
+                                                      {"what_to_do", whatToDo(StopCause::kPower)}}}));
 }
 
 }  // namespace

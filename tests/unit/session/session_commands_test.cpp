@@ -17,7 +17,8 @@ class SessionCommandsTest : public testing::Test {
           tools_(std::vector<SpoTool>{{&tool_, {.radius = 1e-3}, 5}}, 0),
           bone_export_(ball_.history, ball_.bone, ""),
           commands_(sceneOf(), ball_.bone, recorder_,
-                    {ball_.history, accuracy_, tools_, stop_requested_, bone_export_, reset_orders_}, false) {}
+                    {ball_.history, accuracy_, tools_, stop_requested_, bone_export_, reset_orders_}, false) {
+    }
 
     static scene::Scene sceneOf() {
         scene::Scene scene;
@@ -55,7 +56,8 @@ TEST_F(SessionCommandsTest, TheThesisLawIsRefusedWhereAnEffectNeedsTheOther) {
     scene::Scene scene = sceneOf();
     scene.mutable_effects()->mutable_energy_removal();
     SessionCommands commands(scene, ball_.bone, recorder_,
-                             {ball_.history, accuracy_, tools_, stop_requested_, bone_export_, reset_orders_}, false);
+                             {ball_.history, accuracy_, tools_, stop_requested_, bone_export_, reset_orders_},
+                             false);
     topics::Command command;
     command.set_role(topics::Viewer::OPERATOR);
     command.set_set_accuracy("thesis_2012");
@@ -68,10 +70,9 @@ TEST_F(SessionCommandsTest, TheThesisLawIsRefusedWhereAnEffectNeedsTheOther) {
 }
 
 TEST_F(SessionCommandsTest, WhatIsFalseIsRefusedAndNotDone) {
-    constexpr void (topics::Command::*kActions[])(bool) = {&topics::Command::set_reset_volume,
-                                                           &topics::Command::set_save_checkpoint,
-                                                           &topics::Command::set_shut_down,
-                                                           &topics::Command::set_reset_device};
+    constexpr void (topics::Command::*kActions[])(bool) = {
+        &topics::Command::set_reset_volume, &topics::Command::set_save_checkpoint,
+        &topics::Command::set_shut_down, &topics::Command::set_reset_device};
     for (const auto set : kActions) {
         topics::Command command;
         command.set_role(topics::Viewer::INSTRUCTOR);

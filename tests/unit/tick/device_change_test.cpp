@@ -1,4 +1,5 @@
-// Another device is plugged in while the tick runs: what the hand feels fits it, and gets there without a jump.
+// Another device is plugged in while the tick runs: what the hand feels fits it, and gets there without a
+// jump.
 #include <gtest/gtest.h>
 
 #include "haptic_server/bone/bone_history.h"
@@ -22,7 +23,8 @@ DeviceCapabilities deviceOf(double max_force, double max_torque, double max_stif
             .workspace_radius = 0.1};
 }
 
-constexpr double kPressed = test::kBenchTop + 0.2e-3;  // z of the hand's tool point: the burr gives way 0.8 mm
+constexpr double kPressed =
+    test::kBenchTop + 0.2e-3;  // z of the hand's tool point: the burr gives way 0.8 mm
 
 std::vector<DeviceInput> pressing(int ticks) {
     const Pose above = test::SwitchingBench::at(test::kBenchTop + 1.1e-3);
