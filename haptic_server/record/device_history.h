@@ -20,8 +20,8 @@ class DeviceHistory {
     // A device that comes and goes without end fills neither memory nor log.
     static constexpr size_t kMostKept = 256;
 
-    // A run is taken to begin engaged. Statuses come in the order of their ticks.
-    void add(double t_s, const DeviceReport& status);
+    // A run is taken to begin engaged. Reports come in the order of their ticks.
+    void add(double t_s, const DeviceReport& report);
 
     // The first kMostKept changes, and how many there were in all.
     std::span<const DeviceChange> kept() const { return kept_; }
@@ -34,8 +34,8 @@ class DeviceHistory {
 };
 
 // Says what has stopped the device: "too fast", "device fault 17"; empty if nothing has.
-std::string causeText(const DeviceReport& status);
+std::string causeText(const DeviceReport& report);
 // Says it all for people: "protective stop: too fast. Hold the handle and reset."
-std::string deviceText(const DeviceReport& status);
+std::string deviceText(const DeviceReport& report);
 
 }  // namespace bonemill

@@ -196,13 +196,20 @@ class Server {
         recorder_.setPageFaults({now->minor - warm_->minor, now->major - warm_->major});
     }
 
+    // A daemon that tells of one device after the other does not fill the log.
+    void tellOfCapabilities() {
+        DeviceCapabilities device;
+        if (!io_.capabilities(device)) return;
+        const std::string text = deviceText(device);
+        if (text == device_ || devices_told_ == DeviceHistory::kMostKept) return;
+        spdlog::info("the device is {}", text);
+        device_ = text;
+        ++devices_told_;
+    }
+
     // Each change of the device is told of once, and so is that it cannot be trusted.
     void tellOfDevice() {
-        if (DeviceCapabilities device; io_.capabilities(device)) {
-            const std::string text = deviceText(device);
-            if (text != device_) spdlog::info("the device is {}", text);
-            device_ = text;
-        }
+        tellOfCapabilities();
         for (const DeviceChange& change : recorder_.takeDeviceChanges())
             spdlog::log(change.now.stop_cause == uint32_t(StopCause::kNone) ? spdlog::level::info
                                                                             : spdlog::level::warn,
@@ -305,6 +312,7 @@ class Server {
     ShowSession show_;
     PublishFigures published_;  // publisher thread's until it is joined
     std::string device_;        // as told last
+    size_t devices_told_ = 0;
     bool has_told_of_implausible_ = false, has_told_of_early_ = false;
     std::optional<PageFaults> warm_;  // of the tick thread, when it had run for kWarmUpNs
     RealtimeThread tick_thread_;

@@ -19,15 +19,15 @@ std::string readableName(const char* name) {
 
 }  // namespace
 
-topics::Device shownDevice(const DeviceReport& status, const DeviceCapabilities* capabilities) {
+topics::Device shownDevice(const DeviceReport& report, const DeviceCapabilities* capabilities) {
     topics::Device device;
-    device.set_state(status.state);
-    device.set_stop_cause(status.stop_cause);
-    device.set_fault_code(status.fault_code);
-    device.set_is_simulated(status.flags & kDeviceFlagSimulated);
-    device.set_is_force_limited(status.flags & kDeviceFlagForceLimited);
-    device.set_is_enabled(status.flags & kDeviceFlagEnabled);
-    device.set_force_waits(status.flags & kDeviceFlagForceWaits);
+    device.set_state(report.state);
+    device.set_stop_cause(report.stop_cause);
+    device.set_fault_code(report.fault_code);
+    device.set_is_simulated(report.flags & kDeviceFlagSimulated);
+    device.set_is_force_limited(report.flags & kDeviceFlagForceLimited);
+    device.set_is_enabled(report.flags & kDeviceFlagEnabled);
+    device.set_force_waits(report.flags & kDeviceFlagForceWaits);
     if (!capabilities) return device;
     device.set_name(readableName(capabilities->name));
     device.set_kind(capabilities->kind);

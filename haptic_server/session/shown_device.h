@@ -7,7 +7,7 @@
 namespace bonemill {
 
 // `capabilities` is null as long as no device has told of itself.
-topics::Device shownDevice(const DeviceReport& status, const DeviceCapabilities* capabilities);
+topics::Device shownDevice(const DeviceReport& report, const DeviceCapabilities* capabilities);
 
 // Says what the session adapts to: "Touch: 3.3 N, no torque".
 std::string deviceText(const DeviceCapabilities& capabilities);

@@ -1,6 +1,6 @@
 #include "render_client/hud/device_lines.h"
 
-#include "common/device_messages/device_state.h"
+#include "common/device_messages/device_messages.h"
 #include "render_client/hud/figure_text.h"
 
 namespace bonemill {
@@ -45,6 +45,12 @@ void addCause(SafetyState state, StopCause cause, uint32_t fault_code, std::vect
         rows.push_back({"", line, HudTone::kAlarm});
 }
 
+void addWhatItWaitsFor(const topics::Device& device, std::vector<HudRow>& rows) {
+    if (device.abilities() & kAbilityEnablingSwitch && !device.is_enabled())
+        rows.push_back({"", "hold the enabling switch", HudTone::kWarning});
+    if (device.force_waits()) rows.push_back({"", "move the tool away", HudTone::kWarning});
+}
+
 }  // namespace
 
 std::vector<HudRow> deviceRows(const topics::Device& device, const topics::ToolState* tool) {
@@ -55,8 +61,7 @@ std::vector<HudRow> deviceRows(const topics::Device& device, const topics::ToolS
                               std::string(nameOf(state)) + (device.is_simulated() ? ", simulated" : ""),
                               toneOf(state)}};
     if (isStop(state)) addCause(state, cause, device.fault_code(), rows);
-    if (state == SafetyState::kReady && device.force_waits())
-        rows.push_back({"", "move the tool away", HudTone::kWarning});
+    if (state == SafetyState::kReady) addWhatItWaitsFor(device, rows);
     return rows;
 }
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/device_messages/device_state.h"
+#include "common/device_messages/device_messages.h"
 #include "render_client/hud/hud_lines.h"
 
 namespace bonemill {
@@ -63,6 +63,11 @@ TEST(DeviceLines, BeforeItEngagesItIsAWarningAndACauseThatIsOverIsNotShown) {
     topics::Device waits = deviceIn(SafetyState::kReady);
     waits.set_force_waits(true);
     EXPECT_EQ(textOf(deviceRows(waits, nullptr)), "ready move the tool away");
+    waits.set_force_waits(false);
+    waits.set_abilities(kAbilityEnablingSwitch);
+    EXPECT_EQ(textOf(deviceRows(waits, nullptr)), "ready hold the enabling switch");
+    waits.set_is_enabled(true);
+    EXPECT_EQ(textOf(deviceRows(waits, nullptr)), "ready");
 }
 
 TEST(DeviceLines, TheToolsStateIsNewerAndUnknownStatesAreAlarms) {
