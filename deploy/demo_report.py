@@ -34,6 +34,8 @@ FAULT_MEANING = {
     "force_clamped": "the limit of force or torque on the hand acted",
     "shell_overflow": "some milled surface had no contact points",
     "contact_overflow": "more points near the tool than there is room for: some had no effect",
+    "implausible_device": "device_daemon said what cannot be: it was refused",
+    "early_samples": "device samples came faster than the loop's rate: ticks were held back",
     "stalled": "forces were out of balance, but no step towards balance was found in a tick: the tool stood still",
     "volume_full": "no memory for more changed bone: what would need it was not milled",
     "milling_cut_short": "more to mill than there is time for in a tick: the rest was milled later",

@@ -88,6 +88,9 @@ ReportData measureAll(const LoadedScene& loaded, Simulation& simulation, std::os
     const BuiltTool tool = buildTool(tool_config, refinementsOf(settings));
     FixedTickConfig tick = simulation.fixedTick();
     tick.tool.model = &tool.model;
+    // The truth is the wrench at the tool, whatever the hand gets of its torque.
+    tick.hand.max_torque *= tick.workspace_scale;
+    tick.workspace_scale = 1;
 
     BoneModel bone = layoutBone(simulation);
     TouchProbe probe(bone, tool.model);

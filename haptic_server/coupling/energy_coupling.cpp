@@ -122,10 +122,15 @@ Wrench couplingWrenchOnDevice(const EnergyCoupling& coupling, const Pose& X_VT, 
     return wrench;
 }
 
-RelaxingSpring::RelaxingSpring(const EnergyCoupling& coupling, double dt) noexcept
-    : coupling_(coupling),
-      share_(dt / (coupling.relaxing_time + dt)),
-      stiffness_(coupling.relaxing_share * coupling.translation_stiffness * (1 - share_)) {}
+RelaxingSpring::RelaxingSpring(const EnergyCoupling& coupling, double dt) noexcept : dt_(dt) {
+    setCoupling(coupling);
+}
+
+void RelaxingSpring::setCoupling(const EnergyCoupling& coupling) noexcept {
+    coupling_ = coupling;
+    share_ = dt_ / (coupling.relaxing_time + dt_);
+    stiffness_ = coupling.relaxing_share * coupling.translation_stiffness * (1 - share_);
+}
 
 Vector3d RelaxingSpring::stretchOf(const Pose& X_VT, const Pose& X_VT_device) const noexcept {
     return X_VT_device * coupling_.p_TG - X_VT * coupling_.p_TG;

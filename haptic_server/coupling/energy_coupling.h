@@ -83,14 +83,16 @@ class RelaxingSpring {
     // End of a tick: d_f goes its way towards d.
     void follow(const Pose& X_VT, const Pose& X_VT_device) noexcept;
     void forget() noexcept { has_memory_ = false; }
-    void setSaturationForce(double force) noexcept { coupling_.saturation_force = force; }  // N
+    // The stretch that it follows stays.
+    void setCoupling(const EnergyCoupling& coupling) noexcept;
 
   private:
     Eigen::Vector3d stretchOf(const Pose& X_VT, const Pose& X_VT_device) const noexcept;
 
     EnergyCoupling coupling_;
-    double share_;                                        // of the way that d_f goes in a tick
-    double stiffness_;                                    // N/m against d_f before it follows
+    double dt_;
+    double share_ = 0;                                    // of the way that d_f goes in a tick
+    double stiffness_ = 0;                                // N/m against d_f before it follows
     Eigen::Vector3d followed_ = Eigen::Vector3d::Zero();  // d_f
     bool has_memory_ = false;
 };

@@ -33,6 +33,10 @@ const char* nameOf(uint32_t fault) {
             return "volume_full";
         case kFaultStalled:
             return "stalled";
+        case kFaultImplausibleDevice:
+            return "implausible_device";
+        case kFaultEarlySamples:
+            return "early_samples";
     }
     return nullptr;
 }

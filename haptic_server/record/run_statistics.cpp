@@ -37,6 +37,17 @@ nlohmann::ordered_json summaryUs(const LatencyHistogram& histogram) {
     return summary(histogram, double(kNsPerMicrosecond));
 }
 
+nlohmann::ordered_json changesOf(const DeviceHistory& device) {
+    nlohmann::ordered_json changes = nlohmann::ordered_json::array();
+    for (const DeviceChange& change : device.kept()) {
+        changes.push_back({{"t_s", change.t_s}, {"state", nameOf(SafetyState(change.now.state))}});
+        if (change.now.stop_cause == uint32_t(StopCause::kNone)) continue;
+        changes.back()["cause"] = causeText(change.now);
+        changes.back()["what_to_do"] = whatToDo(StopCause(change.now.stop_cause));
+    }
+    return changes;
+}
+
 }  // namespace
 
 void RunStatistics::add(const TickRecord& record) {
@@ -56,6 +67,7 @@ void RunStatistics::add(const TickRecord& record) {
     added_voxels_ += record.added_voxels;
     cuts_ += !record.cut.isEmpty();
     if (effects_.recorded().any()) effects_.add(record.effects);
+    device_.add(record.t_s, record.device);
     addFaults(record.faults);
 }
 
@@ -124,6 +136,10 @@ std::string RunStatistics::toJson(const std::vector<std::string>& materials) con
         {"cuts", cuts_},
         {"fault_ticks", faults},
     };
+    if (device_.count() > 0) {
+        report["device_changes"] = device_.count();
+        report["device_states"] = changesOf(device_);
+    }
     for (const auto& [key, value] : effects_.figures()) report[key] = value;
     if (effects_.recorded().any()) report["warnings"] = effects_.warnings(materials);
     if (page_faults_)

@@ -11,6 +11,7 @@
 
 #include "common/rt/latency_histogram.h"
 #include "common/rt/page_faults.h"
+#include "haptic_server/record/device_history.h"
 #include "haptic_server/record/effect_statistics.h"
 #include "haptic_server/telemetry/tick_record.h"
 
@@ -69,6 +70,7 @@ class RunStatistics {
     uint64_t removedVoxels() const { return removed_voxels_; }
     uint64_t addedVoxels() const { return added_voxels_; }
     const EffectStatistics& effects() const { return effects_; }
+    const DeviceHistory& device() const { return device_; }
     uint32_t faults() const { return faults_; }  // every TickFault bit that was ever set
 
     // Makes one JSON object whose keys have unit suffixes. `materials` are the names of the scene's.
@@ -109,6 +111,7 @@ class RunStatistics {
     uint64_t removed_voxels_ = 0;
     uint64_t added_voxels_ = 0;
     EffectStatistics effects_;
+    DeviceHistory device_;
     uint32_t faults_ = 0;
     std::array<uint64_t, 32> fault_ticks_{};
 };

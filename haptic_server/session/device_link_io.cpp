@@ -1,6 +1,9 @@
 #include "haptic_server/session/device_link_io.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
 
 #include "common/rt/clock.h"
 
@@ -9,6 +12,12 @@ namespace {
 
 // A healthy device is given this many periods before the tick goes on without it.
 constexpr int64_t kPatiencePeriods = 2;
+
+void sleepUntil(int64_t instant_ns) noexcept {
+    const timespec instant = timespecOfNs(instant_ns);
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &instant, nullptr) == EINTR) {
+    }
+}
 
 }  // namespace
 
@@ -19,7 +28,8 @@ DeviceLinkIo::DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link,
       telemetry_(telemetry),
       cuts_(cuts),
       ramp_(config.ramp),
-      R_DW_(config.X_WD.rotation.conjugate()) {}
+      R_DW_(config.X_WD.rotation.conjugate()),
+      pace_(config.period_ns) {}
 
 bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     if (first_start_ns_ == 0 && !waitForFirstSample()) return false;
@@ -32,12 +42,16 @@ bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     input.is_stale = is_stale_;
     input.X_WT_device = X_WT_device_;
     input.buttons = buttons_;
+    input.device = device_;
+    input.other_device = takeCapabilities() ? &capabilities_ : nullptr;
+    input.faults = std::exchange(faults_, 0);
     if (is_first) first_start_ns_ = start;
     input.t_s = secondsOfNs(start - first_start_ns_);
     input.start_ns = start;
     input.deadline_ns = start + config_.period_ns;
     input.wakeup_latency_ns = is_first ? 0 : std::max<int64_t>(0, start - due);
     last_start_ns_ = start;
+    pace_.begin(start);
     return true;
 }
 
@@ -45,10 +59,22 @@ int64_t DeviceLinkIo::waitForDue() noexcept {
     const int64_t patience = is_stale_ ? config_.period_ns : kPatiencePeriods * config_.period_ns;
     const int64_t deadline = last_start_ns_ + patience;
     link_.waitForSample(deadline);
-    DeviceSample sample;
-    if (!link_.readSample(sample) || sample.sequence == sequence_ || !take(sample)) return deadline;
+    const int64_t held_until = holdBack();
+    if (!takeSample()) return std::max(deadline, held_until);
     // The stamp comes from another process: never believe one from before the last tick or from the future.
-    return std::clamp(sample.stamp_ns, last_start_ns_, std::max(last_start_ns_, monotonicNowNs()));
+    const int64_t earliest = std::max(last_start_ns_, held_until);
+    return std::clamp(sample_stamp_ns_, earliest, std::max(earliest, monotonicNowNs()));
+}
+
+int64_t DeviceLinkIo::holdBack() noexcept {
+    const int64_t now = monotonicNowNs(), earliest = pace_.earliestNs();
+    if (now >= earliest) return 0;
+    if (pace_.isTooFast(now)) {
+        early_.fetch_add(1, std::memory_order_relaxed);
+        faults_ |= kFaultEarlySamples;
+    }
+    sleepUntil(earliest);
+    return earliest;
 }
 
 bool DeviceLinkIo::waitForFirstSample() noexcept {
@@ -56,25 +82,48 @@ bool DeviceLinkIo::waitForFirstSample() noexcept {
         if (is_stopping_.load(std::memory_order_relaxed)) return false;
         const int64_t now = monotonicNowNs();
         link_.beat(now);
-        DeviceSample sample;
-        if (link_.waitForSample(now + kStopCheckNs) && link_.readSample(sample)) take(sample);
+        if (link_.waitForSample(now + kStopCheckNs) && !takeSample()) sleepUntil(now + config_.period_ns);
     }
     return true;
 }
 
-bool DeviceLinkIo::take(const DeviceSample& sample) noexcept {
+bool DeviceLinkIo::takeSample() noexcept {
+    DeviceSample sample;
+    if (!link_.readSample(sample) || sample.sequence == sequence_) return false;
     if (!isPlausible(sample)) {
-        implausible_.fetch_add(1, std::memory_order_relaxed);
+        refuse();
         return false;
     }
     const Eigen::Map<const Eigen::Vector3d> p_DT(sample.p_DT);
     const Eigen::Quaterniond q_DT(sample.q_DT[0], sample.q_DT[1], sample.q_DT[2], sample.q_DT[3]);
-    X_WT_device_ = config_.X_WD * Pose{p_DT, q_DT.normalized()};
+    X_WT_device_ = config_.X_WD * Pose{config_.workspace_scale * p_DT, q_DT.normalized()};
     buttons_ = sample.buttons;
+    device_ = {sample.state, sample.stop_cause, sample.fault_code, sample.flags};
     sequence_ = sample.sequence;
     if (sample.flags & kDeviceFlagLeaving) has_device_left_.store(true, std::memory_order_relaxed);
     sample_stamp_ns_ = sample.stamp_ns;
     return true;
+}
+
+// A daemon may say again and again what its device can do; the tick hears of it when that is something else.
+bool DeviceLinkIo::takeCapabilities() noexcept {
+    DeviceCapabilities capabilities;
+    if (!link_.readCapabilities(capabilities)) return false;
+    if (!isPlausible(capabilities)) {
+        refuse();
+        return false;
+    }
+    if (has_capabilities_ && std::memcmp(&capabilities, &capabilities_, sizeof capabilities) == 0)
+        return false;
+    capabilities_ = capabilities;
+    has_capabilities_ = true;
+    shown_.write(capabilities);
+    return true;
+}
+
+void DeviceLinkIo::refuse() noexcept {
+    implausible_.fetch_add(1, std::memory_order_relaxed);
+    faults_ |= kFaultImplausibleDevice;
 }
 
 int64_t DeviceLinkIo::write(const Wrench& wrench_hand_W) noexcept {
@@ -84,6 +133,7 @@ int64_t DeviceLinkIo::write(const Wrench& wrench_hand_W) noexcept {
     Eigen::Map<Eigen::Vector3d>(command.f_hand_D) = wrench_hand_D.force;
     Eigen::Map<Eigen::Vector3d>(command.t_hand_D) = wrench_hand_D.torque;
     command.answers_sequence = sequence_;
+    command.reset_orders = reset_orders_.load(std::memory_order_relaxed);
     link_.writeCommand(command);
     return monotonicNowNs();
 }

@@ -6,7 +6,9 @@
 
 #include "common/ipc/device_link.h"
 #include "common/ipc/stale_ramp.h"
+#include "common/rt/seqlock.h"
 #include "common/rt/spsc_ring.h"
+#include "haptic_server/session/tick_pace.h"
 #include "haptic_server/tick/tick_io.h"
 
 namespace bonemill {
@@ -15,6 +17,7 @@ struct DeviceLinkIoConfig {
     int64_t period_ns = 1'000'000;
     StaleRampConfig ramp;
     Pose X_WD;
+    double workspace_scale = 1;     // the tool moves so many times as far as the handle
     bool ends_with_device = false;  // end the session when the device leaves in order
 };
 
@@ -24,10 +27,10 @@ class DeviceLinkIo final : public TickIo {
     DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link, SpscRing<TickRecord>& telemetry,
                  SpscRing<Cut>& cuts);
 
-    // Wakes on a new device sample. When the device is silent it wakes by itself: two periods after the last
-    // tick, and every period once the device counts as stale. Before the very first sample there is nothing
-    // to simulate: it only waits. False after stop(), and when the device has said goodbye while
-    // ends_with_device is set.
+    // Wakes on a new device sample, but no earlier than TickPace allows. When the device is silent it wakes
+    // by itself: two periods after the last tick, and every period once the device counts as stale. Before
+    // the very first sample there is nothing to simulate: it only waits. False after stop(), and when the
+    // device has said goodbye while ends_with_device is set.
     bool read(DeviceInput& input) noexcept override;
     int64_t write(const Wrench& wrench_hand_W) noexcept override;
     int64_t now() noexcept override;
@@ -35,8 +38,17 @@ class DeviceLinkIo final : public TickIo {
 
     // Any thread may call it, also a signal handler: read() returns false within kStopCheckNs.
     void stop() noexcept { is_stopping_.store(true, std::memory_order_relaxed); }
-    // Any thread may ask for the number of samples that no daemon of ours would send.
-    uint64_t implausibleSamples() const noexcept { return implausible_.load(std::memory_order_relaxed); }
+    // Any thread may ask for the number of samples, and of devices, that no daemon of ours would tell of.
+    uint64_t implausibleMessages() const noexcept { return implausible_.load(std::memory_order_relaxed); }
+    // And for the number of ticks that were held back because samples came too fast.
+    uint64_t earlySamples() const noexcept { return early_.load(std::memory_order_relaxed); }
+    // And for what the device can do; false says that none has told yet.
+    bool capabilities(DeviceCapabilities& capabilities) const noexcept {
+        return shown_.tryRead(capabilities);
+    }
+    // Any thread may count up: each new number orders the device to come out of a stop. Relaxed is enough,
+    // for nothing else goes with it.
+    std::atomic<uint32_t>& resetOrders() noexcept { return reset_orders_; }
 
     static constexpr int64_t kStopCheckNs = 50'000'000;
 
@@ -49,7 +61,11 @@ class DeviceLinkIo final : public TickIo {
     bool waitForFirstSample() noexcept;
     // Waits for the next tick and returns the instant that should have woken it.
     int64_t waitForDue() noexcept;
-    bool take(const DeviceSample& sample) noexcept;  // false: implausible, refused
+    // Sleeps until a tick may start. Returns that instant, or 0 if it has come already.
+    int64_t holdBack() noexcept;
+    bool takeSample() noexcept;        // false: there is none that is new and plausible
+    bool takeCapabilities() noexcept;  // likewise, for another device
+    void refuse() noexcept;
 
     DeviceLinkIoConfig config_;
     DeviceLink& link_;
@@ -57,8 +73,13 @@ class DeviceLinkIo final : public TickIo {
     SpscRing<Cut>& cuts_;
     StaleRamp ramp_;
     Eigen::Quaterniond R_DW_;
+    TickPace pace_;
     Pose X_WT_device_;
     uint32_t buttons_ = 0;
+    DeviceReport device_;
+    DeviceCapabilities capabilities_{};  // of the device in use
+    bool has_capabilities_ = false;
+    uint32_t faults_ = 0;          // TickFault bits for the tick that comes
     uint64_t sequence_ = 0;        // of the sample in use
     int64_t sample_stamp_ns_ = 0;  // when its joints were read
     int64_t first_start_ns_ = 0;
@@ -67,6 +88,9 @@ class DeviceLinkIo final : public TickIo {
     std::atomic<bool> is_stopping_{false};
     std::atomic<bool> has_device_left_{false};
     std::atomic<uint64_t> implausible_{0};
+    std::atomic<uint64_t> early_{0};
+    std::atomic<uint32_t> reset_orders_{0};
+    Seqlock<DeviceCapabilities> shown_;  // capabilities_, for other threads
 };
 
 }  // namespace bonemill

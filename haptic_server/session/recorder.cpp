@@ -17,6 +17,7 @@ void Recorder::drain() {
     bool any = false;
     EventSum events;
     double removed = 0;
+    const size_t known_changes = statistics_.device().kept().size();
     while (ring_.tryPop(record)) {
         any = true;
         statistics_.add(record);
@@ -30,6 +31,8 @@ void Recorder::drain() {
     latest_ = record;
     new_events_.add(events);
     new_removed_ += removed;
+    const auto changes = statistics_.device().kept().subspan(known_changes);
+    new_device_changes_.insert(new_device_changes_.end(), changes.begin(), changes.end());
     if (effects_.recorded().any()) effects_ = statistics_.effects();
     health_.ticks = statistics_.ticks();
     health_.dropped_ticks = statistics_.droppedTicks();
@@ -68,6 +71,11 @@ std::optional<Recorder::Since> Recorder::takeSince() {
     const std::lock_guard lock(mutex_);
     if (!latest_) return std::nullopt;
     return Since{*latest_, std::exchange(new_events_, {}), std::exchange(new_removed_, 0)};
+}
+
+std::vector<DeviceChange> Recorder::takeDeviceChanges() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(new_device_changes_, {});
 }
 
 EffectStatistics Recorder::effects() const {

@@ -46,6 +46,8 @@ class Recorder {
         double removed;  // m³
     };
     std::optional<Since> takeSince();
+    // These changes of the device are new since the call before.
+    std::vector<DeviceChange> takeDeviceChanges();
     EffectStatistics effects() const;
     LoopHealth health() const;
     // This is called before finish() and says what the tick thread's page faults were after its first second.
@@ -71,7 +73,8 @@ class Recorder {
     std::optional<TickRecord> latest_;
     EventSum new_events_;  // since takeSince()
     double new_removed_ = 0;
-    EffectStatistics effects_;  // as of latest_
+    std::vector<DeviceChange> new_device_changes_;  // since takeDeviceChanges()
+    EffectStatistics effects_;                      // as of latest_
     LoopHealth health_;
 };
 

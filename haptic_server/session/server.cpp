@@ -18,6 +18,7 @@
 #include "haptic_server/record/final_files.h"
 #include "haptic_server/session/device_link_io.h"
 #include "haptic_server/session/show_session.h"
+#include "haptic_server/session/shown_device.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_materials.h"
 #include "haptic_server/tick/haptic_tick.h"
@@ -47,6 +48,7 @@ DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& l
     config.ramp.stale_after_ns = nsOfMilliseconds(loop.stale_after_ms());
     config.ramp.ramp_down_ns = nsOfMilliseconds(loop.ramp_ms());
     config.X_WD = simulation.X_WD;
+    config.workspace_scale = simulation.tick.workspace_scale;
     return config;
 }
 
@@ -90,9 +92,10 @@ class Server {
           publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
           bone_export_(history_, *simulation_.bone, options.export_dir),
           commands_(loaded_.scene, *simulation_.bone, recorder_,
-                    {history_, accuracy_, tools_, stop_requested_, bone_export_}, options.instructor_only),
-          show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, commands_,
-                options.stream_mbit_per_s * kMega / 8) {
+                    {history_, accuracy_, tools_, stop_requested_, bone_export_, io_.resetOrders()},
+                    options.instructor_only),
+          show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, io_,
+                commands_, options.stream_mbit_per_s * kMega / 8) {
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
         for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     }
@@ -193,6 +196,30 @@ class Server {
         recorder_.setPageFaults({now->minor - warm_->minor, now->major - warm_->major});
     }
 
+    // A daemon that tells of one device after the other does not fill the log.
+    void tellOfCapabilities() {
+        DeviceCapabilities device;
+        if (!io_.capabilities(device)) return;
+        const std::string text = deviceText(device);
+        if (text == device_ || devices_told_ == DeviceHistory::kMostKept) return;
+        spdlog::info("the device is {}", text);
+        device_ = text;
+        ++devices_told_;
+    }
+
+    // Each change of the device is told of once, and so is that it cannot be trusted.
+    void tellOfDevice() {
+        tellOfCapabilities();
+        for (const DeviceChange& change : recorder_.takeDeviceChanges())
+            spdlog::log(change.now.stop_cause == uint32_t(StopCause::kNone) ? spdlog::level::info
+                                                                            : spdlog::level::warn,
+                        "the device: {}", deviceText(change.now));
+        if (io_.implausibleMessages() > 0 && !std::exchange(has_told_of_implausible_, true))
+            spdlog::warn("device_daemon says what cannot be; it is refused, and more of it only counted");
+        if (io_.earlySamples() > 0 && !std::exchange(has_told_of_early_, true))
+            spdlog::warn("samples come faster than loop.rate_hz; the loop keeps its rate");
+    }
+
     void waitForTheEnd() {
         spdlog::info("session {} of scene '{}' waits for a device", options_.session, loaded_.scene.name());
         int64_t first_tick_ns = 0;
@@ -211,6 +238,7 @@ class Server {
                 spdlog::info("the device is there: the loop runs");
             }
             if (first_tick_ns) countPageFaults(first_tick_ns);
+            tellOfDevice();
             if (first_tick_ns && options_.seconds > 0 &&
                 secondsOfNs(monotonicNowNs() - first_tick_ns) > options_.seconds)
                 return;
@@ -221,8 +249,10 @@ class Server {
     int finish() {
         FinalFiles files;
         if (!recorder_.finish()) files.note(traceProblem());
+        tellOfDevice();
         const RunStatistics& statistics = recorder_.statistics();
         logClosing(statistics);
+        logDistrust();
         for (const std::string& warning : statistics.effects().warnings(materialNamesOf(loaded_.scene)))
             spdlog::warn("effects warned: {}", warning);
         const VoxelVolume& volume = simulation_.bone->volume;
@@ -242,6 +272,13 @@ class Server {
         if (lost == 0) return options_.trace + ": part of the trace could not be written (disk full?)";
         return options_.trace + ": the trace lacks " + std::to_string(lost) +
                " ticks, which came faster than they could be written (disk slow or full?)";
+    }
+
+    void logDistrust() const {
+        if (io_.implausibleMessages() + io_.earlySamples() == 0) return;
+        spdlog::warn(
+            "{} messages of device_daemon were refused, {} ticks held back for samples that came early",
+            io_.implausibleMessages(), io_.earlySamples());
     }
 
     static void logClosing(const RunStatistics& statistics) {
@@ -273,7 +310,10 @@ class Server {
     SessionExport bone_export_;
     SessionCommands commands_;
     ShowSession show_;
-    PublishFigures published_;        // publisher thread's until it is joined
+    PublishFigures published_;  // publisher thread's until it is joined
+    std::string device_;        // as told last
+    size_t devices_told_ = 0;
+    bool has_told_of_implausible_ = false, has_told_of_early_ = false;
     std::optional<PageFaults> warm_;  // of the tick thread, when it had run for kWarmUpNs
     RealtimeThread tick_thread_;
 };

@@ -16,6 +16,8 @@ bool asksForNothing(const topics::Command& command) {
             return !command.save_checkpoint();
         case topics::Command::kShutDown:
             return !command.shut_down();
+        case topics::Command::kResetDevice:
+            return !command.reset_device();
         default:
             return false;
     }
@@ -56,6 +58,9 @@ std::optional<std::string> SessionCommands::carryOut(const topics::Command& comm
             return "done";
         case topics::Command::kExport:
             return controls_.bone_export.begin(command.export_());
+        case topics::Command::kResetDevice:
+            controls_.reset_orders.fetch_add(1, std::memory_order_relaxed);
+            return "done";
         default:
             return "refused: this server does not know the action";
     }

@@ -24,6 +24,7 @@ struct SessionControls {
     ToolSwitch& tools;
     std::atomic<bool>& stop_requested;
     SessionExport& bone_export;
+    std::atomic<uint32_t>& reset_orders;  // counts the orders to reset the device
 };
 
 class SessionCommands {

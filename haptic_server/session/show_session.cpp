@@ -7,6 +7,7 @@
 #include "common/rt/clock.h"
 #include "common/units.h"
 #include "haptic_server/record/fault_names.h"
+#include "haptic_server/session/shown_device.h"
 #include "haptic_server/setup/scene_materials.h"
 
 namespace bonemill {
@@ -78,13 +79,14 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
 
 ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                          const AccuracyFigures& figures, MeshOutbox& outbox, Recorder& recorder,
-                         SessionCommands& commands, double bytes_per_s)
+                         const DeviceLinkIo& device, SessionCommands& commands, double bytes_per_s)
     : publisher_(publisher),
       scene_name_(scene.name()),
       outbox_(outbox),
       budget_(bytes_per_s),
       X_VW_(simulation.bone->volume.geometry().X_WV.inverse()),
       recorder_(recorder),
+      device_(device),
       commands_(commands),
       figures_(figures),
       effects_(scene.effects()),
@@ -191,6 +193,11 @@ void ShowSession::publishStatus() {
     effects_.describe(recorder_.effects(), material_names_, status);
     const auto latest = recorder_.latest();
     status.set_device_stale(!latest || (latest->faults & kFaultStaleDevice));
+    if (latest) {
+        DeviceCapabilities capabilities;
+        const bool is_known = device_.capabilities(capabilities);
+        *status.mutable_device() = shownDevice(latest->device, is_known ? &capabilities : nullptr);
+    }
     publisher_.publishStatus(std::move(status));
 }
 

@@ -6,6 +6,7 @@
 #include "haptic_server/publish/byte_budget.h"
 #include "haptic_server/publish/publisher.h"
 #include "haptic_server/session/accuracy_figures.h"
+#include "haptic_server/session/device_link_io.h"
 #include "haptic_server/session/recorder.h"
 #include "haptic_server/session/session_commands.h"
 #include "haptic_server/session/shown_effects.h"
@@ -19,7 +20,7 @@ class ShowSession {
     // outlive this object.
     ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                 const AccuracyFigures& figures, MeshOutbox& outbox, Recorder& recorder,
-                SessionCommands& commands, double bytes_per_s);
+                const DeviceLinkIo& device, SessionCommands& commands, double bytes_per_s);
 
     // The publisher thread makes one round about 200 times per second.
     void round();
@@ -43,6 +44,7 @@ class ShowSession {
     Pose X_VW_;
     bool is_whole_ = false;  // all of the bone has been published
     Recorder& recorder_;
+    const DeviceLinkIo& device_;
     SessionCommands& commands_;
     AccuracyFigures figures_;
     ShownEffects effects_;

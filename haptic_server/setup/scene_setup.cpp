@@ -7,6 +7,7 @@
 #include "common/user_error.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_materials.h"
+#include "haptic_server/tick/hand_side.h"
 #include "haptic_server/tick/tick_budget.h"
 #include "haptic_server/volume/import/far_air.h"
 #include "haptic_server/volume/import/import_volume.h"
@@ -189,6 +190,7 @@ TickConfig tickConfigOf(const scene::Scene& scene) {
                        .static_damping = coupling.static_damping()};
     config.hand = {.max_force = coupling.max_force_n(),
                    .max_torque = coupling.max_torque_nmm() * kMillimetre};
+    scaleWorkspace(config, scene.device().workspace_scale());
     config.effects = effectConfigsOf(scene);
     TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     return config;

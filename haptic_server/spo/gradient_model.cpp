@@ -96,11 +96,21 @@ void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
 
 void GradientModel::setTool(const SpoTool& tool) noexcept {
     tool_ = tool;
-    coupling_.saturation_force = tool.saturation_force;
-    relaxing_.setSaturationForce(tool.saturation_force);
-    lambda_ = 0;
+    saturate();
     is_new_tool_ = true;
     setAccuracy(settings_);
+}
+
+void GradientModel::setCoupling(const EnergyCouplingConfig& coupling, double most_pull) noexcept {
+    most_pull_ = most_pull;
+    static_cast<EnergyCouplingConfig&>(coupling_) = coupling;
+    saturate();
+}
+
+void GradientModel::saturate() noexcept {
+    coupling_.saturation_force = std::min(tool_.saturation_force, most_pull_);
+    relaxing_.setCoupling(coupling_);
+    lambda_ = 0;
 }
 
 void GradientModel::setEffects(ContactWeights* weights, SolveEnergy* energy) noexcept {

@@ -4,6 +4,8 @@
 // tool diverge (docs/stability.md).
 #pragma once
 
+#include <limits>
+
 #include "haptic_server/contact/gradient_contact.h"
 #include "haptic_server/spo/gradient_config.h"
 #include "haptic_server/spo/spo_model.h"
@@ -22,6 +24,9 @@ class GradientModel final : public SpoModel {
     bool isToolGrowing() const noexcept { return growing_.offset() > 0; }
     void setAccuracy(const AccuracySettings& settings) noexcept override;
     void setTool(const SpoTool& tool) noexcept override;
+    // Takes effect with the next advance(), whose coupling pulls with `most_pull` (N) at most, or with what
+    // the tool carries if that is less. It is RT-safe, for the tick thread only.
+    void setCoupling(const EnergyCouplingConfig& coupling, double most_pull) noexcept;
     void setEffects(ContactWeights* weights, SolveEnergy* energy) noexcept override;
     size_t listContacts(std::span<SurfaceContact> out) noexcept override;
 
@@ -45,6 +50,7 @@ class GradientModel final : public SpoModel {
         SpoStep* out;
     };
     void useTool() noexcept;
+    void saturate() noexcept;
     void fitTool(const Tick& tick) noexcept;
     void growTool() noexcept;
     void gather(const Pose& X_VT, double margin, SpoStep& out) noexcept;
@@ -67,6 +73,7 @@ class GradientModel final : public SpoModel {
     SpoWorld world_;
     SpoTool tool_;
     EnergyCoupling coupling_;  // of tool_
+    double most_pull_ = std::numeric_limits<double>::infinity();
     double dt_;
     AccuracySettings settings_;
     int level_ = 0;

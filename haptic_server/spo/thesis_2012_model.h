@@ -17,6 +17,8 @@ class Thesis2012Model final : public SpoModel {
     void restart() noexcept override {}
     void setAccuracy(const AccuracySettings& settings) noexcept override;
     void setTool(const SpoTool& tool) noexcept override { tool_ = tool.model; }
+    // Takes effect with the next advance(). It is RT-safe, for the tick thread only.
+    void setCoupling(const CouplingConfig& coupling) noexcept { coupling_ = coupling; }
 
   private:
     PenaltyContactConfig contact_;

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "haptic_server/telemetry/cut.h"
+#include "haptic_server/telemetry/device_report.h"
 #include "haptic_server/telemetry/effect_record.h"
 
 namespace bonemill {
@@ -25,8 +26,10 @@ enum TickFault : uint32_t {
     kFaultMillingCutShort = 1u << 9,  // more to mill than there is time for in a tick: the rest comes later
     kFaultCoarserShell = 1u << 10,    // fewer contact points than asked for: more are too many for a tick
     kFaultStalled = 1u << 11,  // forces are out of balance, but no step towards it was found in this tick
+    kFaultImplausibleDevice = 1u << 12,  // what device_daemon says cannot be: it was refused
+    kFaultEarlySamples = 1u << 13,       // samples come faster than the loop's rate: the tick was held back
 };
-constexpr uint32_t kLastFault = kFaultStalled;
+constexpr uint32_t kLastFault = kFaultEarlySamples;
 
 struct TickRecord {
     uint64_t tick;
@@ -53,6 +56,7 @@ struct TickRecord {
     uint32_t faults;          // TickFault bits of this tick
     Cut cut;                  // the voxels milled in this tick
     EffectRecord effects;
+    DeviceReport device;
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 

@@ -3,13 +3,20 @@
 // 1. Something to send. A tick without an equilibrium, or with a wrench that is not finite, has nothing to
 //    say. The hand then gets the last wrench that it got, faded to nothing within kFade. This comes first,
 //    because what is not a number can be compared with no limit.
-// 2. The norms. Force and torque are scaled by one factor, so that the wrench keeps its direction. This comes
-//    before the rate: where the hand comes from and where it goes to are then both within the norms, and with
-//    them all that lies between, so that the norms hold whatever the rate does. A wrench that was computed
-//    far beyond the norms falls from what was sent, at once.
+// 2. The norms. Force and torque are scaled each by a factor of its own, so that each keeps its direction and
+//    a torque beyond its limit takes nothing from the force. It is also what keeps the energy: the coupling's
+//    force depends on its stretch and its torque on its turn, and cut at its own norm each is still the
+//    gradient of an energy (but for the lever of a grip beside the tool point). With one factor the force
+//    would depend on the turn as well, and a closed path of the hand could gain. This comes before the rate:
+//    where the hand comes from and where it goes to are then both within the norms, and with them all that
+//    lies between, so that the norms hold whatever the rate does. A wrench that was computed far beyond the
+//    norms falls from what was sent, at once. Norms that come down with another device are reached at the
+//    rate; what that device cannot give meanwhile, its daemon cuts. A norm of 0 says that the device has no
+//    force or no torque: nobody can feel it go, so that it goes at once, and that is no limit that acted.
 // 3. The rate, when what the hand feels has changed at one stroke. A larger burr may find bone where the
-//    smaller one had room, restored bone may be where the tool is, an equilibrium may be found again after
-//    ticks without one. The wrench then goes from the old one to the new one at kForceRate and kTorqueRate.
+//    smaller one had room, restored bone may be where the tool is, another device may be held more stiffly,
+//    an equilibrium may be found again after ticks without one. The wrench then goes from the old one to the
+//    new one at kForceRate and kTorqueRate.
 // 4. The factor of the stale ramp, 0 to 1. It comes last, so that no other limit can undo it: at 0 nothing is
 //    sent, whatever was computed. The rate does not see it, for it would take the ramp for a change of the
 //    wrench.
@@ -26,8 +33,8 @@
 namespace bonemill {
 
 struct HandLimitsConfig {
-    double max_force = 50;  // N
-    double max_torque = 1;  // N·m
+    double max_force = 50;  // N; 0: the hand feels no force
+    double max_torque = 1;  // N·m; 0: the hand feels no torque
 };
 
 // A motion of the hand makes this of the wrench from one tick to the next, when nothing else changes.
@@ -63,6 +70,14 @@ class HandLimits {
         BONEMILL_ASSERT(dt > 0);
     }
 
+    // Another device is in the hand from the next tick on.
+    void setDevice(const HandLimitsConfig& config, const HandSpring& spring) noexcept {
+        config_ = config;
+        spring_ = spring;
+        leaveOut(last_);
+        leaveOut(before_fading_);
+        beginSuddenChange();
+    }
     // Says that what is felt changes at one stroke from now on.
     void beginSuddenChange() noexcept { quiet_for_ = 0; }
     bool isChangeOver() const noexcept { return quiet_for_ > kQuiet; }
@@ -92,19 +107,23 @@ class HandLimits {
 
     Wrench allowed(const FeltStep& step) noexcept {
         Wrench wrench = step.wrench_V;
-        was_limited_ = limitNorms(wrench);
+        leaveOut(wrench);
+        was_limited_ =
+            limitNorm(wrench.force, config_.max_force) | limitNorm(wrench.torque, config_.max_torque);
         if (!isChangeOver()) slowDown(wrench, step.X_VT_device);
         faded_for_ = 0;
         before_fading_ = wrench;
         return wrench;
     }
 
-    bool limitNorms(Wrench& wrench) const noexcept {
-        const double excess =
-            std::max(wrench.force.norm() / config_.max_force, wrench.torque.norm() / config_.max_torque);
-        if (excess <= 1) return false;
-        wrench.force /= excess;
-        wrench.torque /= excess;
+    void leaveOut(Wrench& wrench) const noexcept {
+        if (config_.max_force == 0) wrench.force.setZero();
+        if (config_.max_torque == 0) wrench.torque.setZero();
+    }
+    static bool limitNorm(Eigen::Vector3d& value, double most) noexcept {
+        const double norm = value.norm();
+        if (norm <= most) return false;
+        value /= norm / most;
         return true;
     }
 

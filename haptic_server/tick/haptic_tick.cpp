@@ -26,16 +26,6 @@ constexpr double kFarthest = 1e3;  // m from W's origin: beyond any scan, and sq
 // restored since are stale.
 constexpr int kLeavesPreparedPerTick = 1;
 
-// It is as stiff as the quicker of the two laws.
-HandSpring handSpringOf(const TickConfig& config) noexcept {
-    const EnergyCouplingConfig& gradient = config.gradient.coupling;
-    return {
-        .stiffness = std::max(config.coupling.translation_stiffness,
-                              gradient.translation_stiffness * (1 + gradient.relaxing_share)),
-        .rotation_stiffness = std::max(config.coupling.rotation_stiffness / 2, gradient.rotation_stiffness),
-        .lever = gradient.p_TG.norm()};
-}
-
 SpoWorld worldOf(const BoneModel& bone) noexcept {
     return {bone.volume, bone.lattice, bone.shell};
 }
@@ -57,10 +47,10 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
                            {config.dt, tools_.largestBurrRadius(), tools_.largestBurrReach(),
                             gradient_.mostCandidates(), config.most_milled_cells}),
                gradient_.mostCandidates(), config.gradient.contact.stiffness_per_area),
-      hand_limits_(config.hand, handSpringOf(config), config.dt),
+      hand_limits_(config.hand, handSideOf(config).spring, config.dt),
       X_WV_(bone_.volume.geometry().X_WV),
       X_VW_(X_WV_.inverse()) {
-    BONEMILL_ASSERT(config.dt > 0 && config.most_milled_cells > 0);
+    BONEMILL_ASSERT(config.dt > 0 && config.workspace_scale > 0 && config.most_milled_cells > 0);
     const AccuracySettings& settings = accuracy_.chosen();
     bone_.shell.prepare(bone_.volume, bone_.lattice, levelOf(bone_.shell, settings),
                         int(bone_.lattice.leafCount()));
@@ -97,6 +87,13 @@ void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     model_ = model;
 }
 
+void HapticTick::adaptTo(const DeviceCapabilities& device) noexcept {
+    const HandSide side = handSideOf(config_, device);
+    thesis_.setCoupling(side.thesis);
+    gradient_.setCoupling(side.gradient, side.most_pull);
+    hand_limits_.setDevice(side.limits, side.spring);
+}
+
 void HapticTick::chooseTool() noexcept {
     const size_t chosen = tools_.chosen();
     if (chosen == tool_) return;
@@ -111,7 +108,8 @@ bool HapticTick::tick(TickIo& io) noexcept {
     DeviceInput input;
     if (!io.read(input)) return false;
     const RtScope scope;
-    uint32_t faults = input.is_stale ? kFaultStaleDevice : kFaultNone;
+    uint32_t faults = input.faults | (input.is_stale ? kFaultStaleDevice : kFaultNone);
+    if (input.other_device) adaptTo(*input.other_device);
     acceptPose(input, faults);
     chooseTool();
     beginEffects(input);
@@ -160,7 +158,8 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     const bool add = input.buttons & kButtonAdd;
     EffectTick start;
     start.dt = config_.dt;
-    start.may_mill = has_pose_ && !input.is_stale && !(history_ && history_->isMillingPaused());
+    start.may_mill = has_pose_ && !input.is_stale && input.device.isEngaged() &&
+                     !(history_ && history_->isMillingPaused());
     start.is_pedal_down = start.may_mill && remove && !add;
     start.is_add_wanted = start.may_mill && add && !remove;
     start.tool = &tools_[tool_];
@@ -178,7 +177,8 @@ SpoStep HapticTick::moveAndFeel(double stale_factor, uint32_t& faults) noexcept 
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
     if (model_ == &gradient_ && gradient_.isToolGrowing()) hand_limits_.beginSuddenChange();
     effects_.addToHand(step.wrench_hand_V);
-    const bool is_felt = step.is_solved && has_pose_;  // before a pose nobody knows where the hand is
+    step.wrench_hand_V.torque /= config_.workspace_scale;  // hand_side.h
+    const bool is_felt = step.is_solved && has_pose_;      // before a pose nobody knows where the hand is
     step.wrench_hand_V = hand_limits_.limit({step.wrench_hand_V, is_felt, X_VT_device_, stale_factor});
     if (hand_limits_.wasLimited()) faults |= kFaultForceClamped;
     return step;
@@ -232,6 +232,7 @@ TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step)
     record.iterations = step.iterations;
     record.max_penetration = step.max_penetration;
     record.buttons = input.buttons;
+    record.device = input.device;
     return record;
 }
 

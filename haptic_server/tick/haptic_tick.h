@@ -15,7 +15,7 @@
 #include "haptic_server/telemetry/tick_record.h"
 #include "haptic_server/tick/accuracy_switch.h"
 #include "haptic_server/tick/affordable_shell.h"
-#include "haptic_server/tick/hand_limits.h"
+#include "haptic_server/tick/hand_side.h"
 #include "haptic_server/tick/tick_config.h"
 #include "haptic_server/tick/tick_io.h"
 #include "haptic_server/tick/tool_switch.h"
@@ -51,6 +51,7 @@ class HapticTick {
     Pose X_WT() const noexcept { return X_WV_ * X_VT_; }
 
   private:
+    void adaptTo(const DeviceCapabilities& device) noexcept;
     void acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;

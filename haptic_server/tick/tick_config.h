@@ -19,6 +19,8 @@ struct TickConfig {
     HandLimitsConfig hand;
     GradientConfig gradient;
     EffectConfigs effects;
+    // The tool moves so many times as far as the handle, and turns with it. Couplings are those of the tool.
+    double workspace_scale = 1;
     size_t most_milled_cells = MillingConfig{}.most_cells;  // in a tick
 };
 

@@ -3,15 +3,20 @@
 
 #include <cstdint>
 
-#include "common/device_messages/device_messages.h"  // Button
+#include "common/device_messages/device_messages.h"
 #include "common/geometry/pose.h"
 #include "haptic_server/telemetry/tick_record.h"
 
 namespace bonemill {
 
 struct DeviceInput {
-    Pose X_WT_device;                 // where the hand really holds the tool
-    uint32_t buttons = 0;             // Button bits
+    Pose X_WT_device;      // where the hand really holds the tool
+    uint32_t buttons = 0;  // Button bits
+    DeviceReport device;   // nothing is milled but while it is engaged
+    // Another device is there than in the ticks before, and this is what it can do. It is good until the next
+    // read(); null says that nothing has changed.
+    const DeviceCapabilities* other_device = nullptr;
+    uint32_t faults = 0;              // TickFault bits that were found on the way to this tick
     double stale_factor = 1;          // of the force: 1 fresh device; ramps to 0 while it is stale
     bool is_stale = false;            // no fresh sample: nothing is milled
     double t_s = 0;                   // since the session's first tick, or the trajectory file's own time

@@ -139,9 +139,8 @@ void addCommandOptions(CLI::App& app, RawOptions& raw, CLI::Option* offscreen,
         app.add_option(
                "--command", raw.command,
                "No viewer: ask the server for \"reset\", \"pause\", \"resume\", \"tool NAME-or-number\", "
-               "\"checkpoint\", \"restore NUMBER-or-last\", \"accuracy NAME\", \"export NAME\" or "
-               "\"shutdown\", print what it "
-               "answers and stop")
+               "\"checkpoint\", \"restore NUMBER-or-last\", \"accuracy NAME\", \"export NAME\", "
+               "\"reset-device\" or \"shutdown\", print what it answers and stop")
             ->check(commandProblem)
             ->type_name("TEXT")
             ->excludes(offscreen);

@@ -24,6 +24,7 @@ constexpr KeyBinding kKeys[] = {
     {"K", keyOf('K'), false, Action::kSaveCheckpoint, "save a checkpoint"},
     {"U", keyOf('U'), false, Action::kLastCheckpoint, "back to the last checkpoint"},
     {"N", keyOf('N'), false, Action::kNextTool, "next tool"},
+    {"D", keyOf('D'), false, Action::kResetDevice, "reset the device after a stop"},
     {"0", keyOf('0'), false, Action::kAccuracyScene, "accuracy of the scene file"},
     {"1", keyOf('1'), false, Action::kAccuracy1, "accuracy"},
     {"2", keyOf('2'), false, Action::kAccuracy2, "accuracy"},

@@ -31,6 +31,7 @@ enum class Action {
     kSaveCheckpoint,
     kLastCheckpoint,
     kNextTool,
+    kResetDevice,
     kAccuracyScene,
     kAccuracy1,
     kAccuracy2,

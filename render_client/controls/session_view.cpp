@@ -88,6 +88,10 @@ CommandOrReason commandOf(Action action, const SessionView& session) {
         case Action::kNextTool:
             asked = nextTool(session);
             break;
+        case Action::kResetDevice:
+            command.set_reset_device(true);
+            asked = {command, ""};
+            break;
         case Action::kAccuracyScene:
         case Action::kAccuracy1:
         case Action::kAccuracy2:

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <vector>
+#include <sstream>
 
 namespace bonemill {
 namespace {
@@ -39,6 +39,16 @@ std::string shortenedText(const std::string& text, size_t most) {
     std::string result;
     for (size_t i = 0; i + 1 < most; ++i) result += signs[i];
     return result + "\u2026";
+}
+
+std::vector<std::string> wrappedText(const std::string& text, size_t most) {
+    std::vector<std::string> lines(1);
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        if (!lines.back().empty() && lines.back().size() + 1 + word.size() > most) lines.emplace_back();
+        lines.back() += (lines.back().empty() ? "" : " ") + word;
+    }
+    return lines;
 }
 
 }  // namespace bonemill

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace bonemill {
 
@@ -14,5 +15,9 @@ std::string figureText(double value, int decimals, const char* unit);
 std::string readableText(double value, const char* unit);
 // Returns at most so many signs (UTF-8), the last one an ellipsis if some are left out.
 std::string shortenedText(const std::string& text, size_t most);
+// A row has room for so many characters.
+inline constexpr size_t kLongestRow = 26;
+// Returns lines of at most `most` bytes, cut at spaces; a longer word stays whole.
+std::vector<std::string> wrappedText(const std::string& text, size_t most);
 
 }  // namespace bonemill

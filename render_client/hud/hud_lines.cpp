@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 #include <utility>
 
 #include "common/units.h"
 #include "render_client/hud/burr_work.h"
+#include "render_client/hud/device_lines.h"
 #include "render_client/hud/effect_lines.h"
 #include "render_client/hud/figure_text.h"
 #include "render_client/hud/session_text.h"
@@ -15,23 +15,11 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kLongestValue = 26;  // characters
 constexpr size_t kLongestName = 24;
 constexpr int kMostWatchers = 8;  // rows of the list
 
 double norm(const google::protobuf::RepeatedField<double>& v) {
     return v.size() == 3 ? std::hypot(v[0], v[1], v[2]) : std::nan("");
-}
-
-// Returns lines of at most `most` bytes, cut at spaces; a longer word stays whole.
-std::vector<std::string> wrapped(const std::string& text, size_t most) {
-    std::vector<std::string> lines(1);
-    std::istringstream words(text);
-    for (std::string word; words >> word;) {
-        if (!lines.back().empty() && lines.back().size() + 1 + word.size() > most) lines.emplace_back();
-        lines.back() += (lines.back().empty() ? "" : " ") + word;
-    }
-    return lines;
 }
 
 void addSessionRows(const topics::Status& status, std::vector<HudRow>& rows) {
@@ -69,7 +57,7 @@ void addLoopRows(const topics::Status& status, std::vector<HudRow>& rows) {
 void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
     // A preset is one word; all knobs take more than one line.
     std::string label = "Accuracy";
-    for (const std::string& line : wrapped(status.preset(), kLongestValue))
+    for (const std::string& line : wrappedText(status.preset(), kLongestRow))
         rows.push_back({std::exchange(label, ""), line});
     rows.push_back({"Force error", status.has_accuracy_error()
                                        ? readableText(status.force_error_percent(), " %") + ", " +
@@ -98,6 +86,11 @@ void addToolRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
 
 void addEffectRows(const HudInput& input, std::vector<HudRow>& rows) {
     const auto more = effectRows(input.tool->effects(), input.info ? &*input.info : nullptr, input.events);
+    rows.insert(rows.end(), more.begin(), more.end());
+}
+
+void addDeviceRows(const HudInput& input, std::vector<HudRow>& rows) {
+    const auto more = deviceRows(input.status->device(), input.tool ? &*input.tool : nullptr);
     rows.insert(rows.end(), more.begin(), more.end());
 }
 
@@ -166,6 +159,7 @@ Hud makeHud(const HudInput& input) {
     if (input.tool && input.tool->has_effects()) addEffectRows(input, hud.rows);
     if (input.status) {
         hud.rows.push_back({"Removed", readableText(input.status->removed_mm3(), " mm\u00b3")});
+        if (input.status->has_device()) addDeviceRows(input, hud.rows);
         addFaultRow(*input.status, hud.rows);
     }
     if (input.frame_rate_hz > 0) hud.rows.push_back({"Pictures", figureText(input.frame_rate_hz, 0, " Hz")});

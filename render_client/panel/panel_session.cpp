@@ -28,6 +28,10 @@ void PanelContent::buildSession() {
     buildTools();
     gap();
     buildAccuracy();
+    if (session_.status && session_.status->has_device()) {
+        gap();
+        button("Reset the device", Action::kResetDevice, "Brings it out of a stop whose cause is gone");
+    }
     ImGui::EndDisabled();
     gap();
     buildEnd();

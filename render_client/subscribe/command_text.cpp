@@ -22,6 +22,8 @@ std::string commandText(const topics::Command& command) {
                        : "back to checkpoint " + std::to_string(command.restore_checkpoint());
         case topics::Command::kExport:
             return "export " + command.export_();
+        case topics::Command::kResetDevice:
+            return "reset the device";
         case topics::Command::ACTION_NOT_SET:
             break;
     }

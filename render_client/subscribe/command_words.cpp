@@ -69,6 +69,7 @@ constexpr CommandWord kWords[] = {
     {"accuracy", "NAME",
      [](Command& c, const std::string& name, const Session&) { c.set_set_accuracy(name); }},
     {"export", "NAME", [](Command& c, const std::string& name, const Session&) { c.set_export_(name); }},
+    {"reset-device", "", [](Command& c, const std::string&, const Session&) { c.set_reset_device(true); }},
     {"shutdown", "", [](Command& c, const std::string&, const Session&) { c.set_shut_down(true); }},
 };
 

@@ -1,5 +1,5 @@
 // People write commands so: reset, pause, resume, tool NAME (or its number), checkpoint, restore N (or last),
-// accuracy NAME, export NAME, shutdown.
+// accuracy NAME, export NAME, reset-device, shutdown.
 #pragma once
 
 #include <string>

@@ -92,6 +92,12 @@ bool isUsable(const topics::ToolState& state) {
            std::isfinite(state.max_penetration_m()) && isUsable(state.effects());
 }
 
+// States and causes of a later version are shown as unknown.
+bool isUsable(const topics::Device& device) {
+    return isSane(device.max_force_n()) && device.max_force_n() >= 0 && isSane(device.max_torque_nmm()) &&
+           device.max_torque_nmm() >= 0;
+}
+
 bool isUsable(const topics::Status& status) {
     const double numbers[] = {status.rate_hz(),
                               status.tick_p50_us(),
@@ -106,7 +112,8 @@ bool isUsable(const topics::Status& status) {
         return isTime(c.session_s()) && std::isfinite(c.removed_mm3());
     };
     return isFinite(numbers) && isTime(status.session_s()) && status.checkpoints_size() <= kMostCheckpoints &&
-           std::ranges::all_of(status.checkpoints(), is_usable) && isUsable(status.training());
+           std::ranges::all_of(status.checkpoints(), is_usable) && isUsable(status.training()) &&
+           isUsable(status.device());
 }
 
 bool isUsable(const topics::Viewer& viewer) {

@@ -16,8 +16,9 @@ bool isAmong(const Names& names, const Variant& variant) {
 std::vector<Variant> variantsOf(const StabilityCase& stability_case) {
     std::vector<Variant> variants;
     if (!stability_case.needs_effects) variants = allVariants();
-    for (const Variant& variant : effectVariants())
-        if (isAmong(stability_case.with_effects, variant)) variants.push_back(variant);
+    for (const auto* others : {&effectVariants(), &deviceVariants()})
+        for (const Variant& variant : *others)
+            if (isAmong(stability_case.also_for, variant)) variants.push_back(variant);
     return variants;
 }
 

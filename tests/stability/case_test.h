@@ -1,5 +1,5 @@
-// A hard case has one figure and its bound, measured for every variant, and some with effects as well. A case
-// holds if figure <= bound.
+// A hard case has one figure and its bound, measured for every variant, and some with effects and other
+// devices as well. A case holds if figure <= bound.
 //
 // A variant for which a case is known to fail, deterministically, is not left out: it runs in the suite
 // BaselineFails (thesis_2012) or KnownLimit (any other), which expects the figure beyond the bound, so
@@ -30,8 +30,8 @@ struct StabilityCase {
     const char* unit;
     double bound;
     double (*measure)(const Variant&);
-    Names fails_for;             // names of variants
-    Names with_effects = {};     // names of effectVariants() for which it is measured as well
+    Names fails_for;      // names of variants
+    Names also_for = {};  // names of effectVariants() and deviceVariants() for which it is measured too
     bool needs_effects = false;  // only for those
 };
 

@@ -150,7 +150,7 @@ const std::vector<std::string> kEveryVariant{"thesis_2012", "fast", "balanced", 
 
 const std::vector<StabilityCase> kClosedLoopGridCases{
     {"loop_grid_plane_passive", "N_rms_worst", kLargestBuzz, planePassive, {}},
-    {"loop_grid_plane_one_tick", "N_rms_worst", kLargestBuzz, planeOneTick, {}},
+    {"loop_grid_plane_one_tick", "N_rms_worst", kLargestBuzz, planeOneTick, {}, everyDevice()},
     {"loop_grid_plane_three_ticks", "percent_buzzing", 0, planeThreeTicks, kEveryVariant},
     {"loop_grid_hole_passive", "N_rms_worst", kLargestBuzz, holePassive, {}},
     {"loop_grid_hole_one_tick",
@@ -158,7 +158,7 @@ const std::vector<StabilityCase> kClosedLoopGridCases{
      kLargestBuzz,
      holeOneTick,
      {"thesis_2012"},
-     {"cutting_force", "surface_friction", "all_felt"}},
+     Names{"cutting_force", "surface_friction", "all_felt"} + everyDevice()},
     {"loop_grid_hole_three_ticks", "percent_buzzing", 0, holeThreeTicks, kEveryVariant},
 };
 BONEMILL_STABILITY_CASES(ClosedLoopGrid, kClosedLoopGridCases);

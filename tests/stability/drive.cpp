@@ -36,12 +36,15 @@ Stepper::Stepper(Scene& scene, const ToolSwitch* tools, BoneHistory* history)
     : held_buttons_(scene.held_buttons),
       own_tool_({scene.spoTool()}),
       accuracy_(scene.config.accuracy),
-      tick_(scene.config, {scene.bone, history}, {tools ? *tools : own_tool_, accuracy_}) {}
+      tick_(scene.config, {scene.bone, history}, {tools ? *tools : own_tool_, accuracy_}) {
+    plugIn(scene.device);
+}
 
 const TickRecord& Stepper::step(const Pose& X_WT_device, uint32_t buttons) {
     input_.X_WT_device = X_WT_device;
     input_.buttons = buttons | held_buttons_;
     tick_.tick(*this);
+    plugIn(nullptr);
     return record_;
 }
 
@@ -61,10 +64,18 @@ ClosedLoop::ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start
       stepper(scene, tools, history),
       dt(scene.config.dt),
       averaged_ticks(scene.averaged_ticks),
+      start_(start),
+      workspace_scale_(scene.config.workspace_scale),
       on_the_way_(size_t(config.delay_ticks)) {}
 
+Pose ClosedLoop::toolPose() const noexcept {
+    Pose pose = plant.measured();
+    pose.position += (workspace_scale_ - 1) * (pose.position - start_.position);
+    return pose;
+}
+
 void ClosedLoop::step(uint32_t buttons) {
-    stepper.step(plant.measured(), buttons);
+    stepper.step(toolPose(), buttons);
     on_the_way_.push_back(stepper.wrenchOnHand());
     held_ = on_the_way_.front();
     on_the_way_.pop_front();

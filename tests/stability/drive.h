@@ -18,6 +18,8 @@ class Stepper : private TickIo {
 
     const TickRecord& step(const Pose& X_WT_device, uint32_t buttons = 0);
     void holdButtons(uint32_t buttons) noexcept { held_buttons_ = buttons; }
+    // From the next step on the hand holds this one, which must outlive that step.
+    void plugIn(const DeviceCapabilities* device) noexcept { input_.other_device = device; }
     const Wrench& wrenchOnHand() const noexcept { return wrench_; }
     Pose spo() const noexcept { return tick_.X_WT(); }
     const TickRecord& record() const noexcept { return record_; }
@@ -68,6 +70,11 @@ class ClosedLoop {
     size_t averaged_ticks;
 
   private:
+    // The handle starts where the tool does.
+    Pose toolPose() const noexcept;
+
+    Pose start_;
+    double workspace_scale_;
     std::deque<Wrench> on_the_way_;
     Wrench held_;
 };

@@ -33,13 +33,17 @@ std::vector<Pose> polyline(const std::vector<Pose>& corners, double speed, int r
 double gained(Scene& scene, const std::vector<Pose>& path, size_t drop_from = 0, size_t dropped = 0) {
     Stepper stepper(scene), undisturbed(scene);
     AlgorithmEnergy meter;
+    const auto handle = [&](Pose tool) {
+        tool.position /= scene.config.workspace_scale;
+        return tool;
+    };
     double pressed = 0;
     for (size_t n = 0; n < path.size(); ++n) {
         const bool is_dropped = n >= drop_from && n < drop_from + dropped;
         if (dropped > 0) undisturbed.step(path[n]);
         if (!is_dropped) stepper.step(path[n]);
         if (!stepper.isFinite()) return kNan;
-        meter.add(path[n], is_dropped ? undisturbed.wrenchOnHand() : stepper.wrenchOnHand());
+        meter.add(handle(path[n]), is_dropped ? undisturbed.wrenchOnHand() : stepper.wrenchOnHand());
         pressed = std::max(pressed, stepper.wrenchOnHand().force.norm());
     }
     return pressed > 0.1 ? std::max(0.0, -meter.energy() * kPerMicro) : kLost;
@@ -170,11 +174,26 @@ double droppedTicksAtThePort(const Variant& variant) {
 }
 
 const std::vector<StabilityCase> kPassivityCases{
-    {"energy_loop_over_plane", "uJ_gained", kEnergySlack_uJ, loopOverPlane, {}, {"surface_friction"}},
-    {"energy_round_the_hole", "uJ_gained", kEnergySlack_uJ, pegMoving, {}, {"surface_friction"}},
+    {"energy_loop_over_plane",
+     "uJ_gained",
+     kEnergySlack_uJ,
+     loopOverPlane,
+     {},
+     Names{"surface_friction"} + everyDevice()},
+    {"energy_round_the_hole",
+     "uJ_gained",
+     kEnergySlack_uJ,
+     pegMoving,
+     {},
+     Names{"surface_friction"} + everyDevice()},
     {"energy_over_edge_at_rest", "uJ_gained", kEnergySlack_uJ, overTheEdge, {"thesis_2012"}},
     {"energy_round_hole_at_rest", "uJ_gained", kEnergySlack_uJ, pegAtRest, {}},
-    {"energy_dropped_ticks", "uJ_gained", kEnergySlack_uJ, worstDroppedTicks, {}, {"surface_friction"}},
+    {"energy_dropped_ticks",
+     "uJ_gained",
+     kEnergySlack_uJ,
+     worstDroppedTicks,
+     {},
+     Names{"surface_friction"} + everyDevice()},
     {"port_energy_dropped_ticks", "of_hold_bound", 1, droppedTicksAtThePort, {}},
 };
 BONEMILL_STABILITY_CASES(Passivity, kPassivityCases);

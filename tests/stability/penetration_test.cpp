@@ -70,7 +70,7 @@ double deepPushForce(const Variant& variant) {
         const double force = stepper.isFinite() ? stepper.wrenchOnHand().force.norm() : kNan;
         worst = worseOf(worst, force);
     });
-    return worst / scene.config.hand.max_force;
+    return worst / scene.handSide().limits.max_force;
 }
 
 // The tool is on the right side if under full push the force points out of the bone.
@@ -84,7 +84,12 @@ double deepPushDirection(const Variant& variant) {
 }
 
 const std::vector<StabilityCase> kPenetrationCases{
-    {"one_voxel_wall", "mm_past_wall", 0, oneVoxelWall, {"thesis_2012"}, feltEffectsBut({"cutting_force"})},
+    {"one_voxel_wall",
+     "mm_past_wall",
+     0,
+     oneVoxelWall,
+     {"thesis_2012"},
+     feltEffectsBut({"cutting_force"}) + everyDevice()},
     {"one_voxel_wall_fast_hand",
      "mm_past_wall",
      0,
@@ -92,9 +97,14 @@ const std::vector<StabilityCase> kPenetrationCases{
      {"thesis_2012"},
      feltEffectsBut({"cutting_force"})},
     {"pin_through_wall_fast_hand", "mm_past_wall", 0, pinThroughWall, {"thesis_2012"}, feltEffectsBut({})},
-    {"deep_push_side", "mm_past_surface", 0, deepPush, {"thesis_2012"}, feltEffectsBut({"cutting_force"})},
-    {"deep_push_force", "of_max_force", 1 + 1e-9, deepPushForce, {}, feltEffects()},
-    {"deep_push_direction", "degrees", 10, deepPushDirection, {"thesis_2012"}},
+    {"deep_push_side",
+     "mm_past_surface",
+     0,
+     deepPush,
+     {"thesis_2012"},
+     feltEffectsBut({"cutting_force"}) + everyDevice()},
+    {"deep_push_force", "of_max_force", 1 + 1e-9, deepPushForce, {}, feltEffects() + everyDevice()},
+    {"deep_push_direction", "degrees", 10, deepPushDirection, {"thesis_2012"}, everyDevice()},
 };
 BONEMILL_STABILITY_CASES(Penetration, kPenetrationCases);
 

@@ -43,6 +43,7 @@ void layOut(FixedTickConfig& config, const BoneModel& bone) {
 Scene::Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, double dt,
              const std::function<void(FixedTickConfig&)>& edit)
     : config(configOf(variant, dt, edit)),
+      device(variant.device),
       held_buttons(variant.held_buttons),
       averaged_ticks(config.effects.burr_vibration ? kVibrationTicks : 1),
       bone(std::move(volume), Eigen::Vector3i::Constant(16),

@@ -28,11 +28,13 @@ struct Scene {
 
     // Its tool is without a model; that is `tool`.
     FixedTickConfig config;
+    const DeviceCapabilities* device;  // null: none has told of itself
     uint32_t held_buttons;
     size_t averaged_ticks;  // of what is called a residual: so that it leaves the wanted vibration out
     BoneModel bone;
     ToolModel tool;
 
+    HandSide handSide() const { return device ? handSideOf(config, *device) : handSideOf(config); }
     SpoTool spoTool() const { return {&tool, config.tool.burr, config.tool.saturation_force}; }
 };
 

@@ -125,16 +125,21 @@ double flickeringEncoder(const Variant& variant) {
 }
 
 const std::vector<StabilityCase> kSettlingCases{
-    {"peg_in_hole_held", "N_rms", 0.05, pegHeld, {}, feltEffects()},
-    {"peg_in_hole_no_hand", "N_rms", 0.05, pegFree, {}, feltEffects()},
-    {"wedge_10_to_60_degrees", "N_rms", 0.05, grooveWorst, {"thesis_2012"}, feltEffects()},
+    {"peg_in_hole_held", "N_rms", 0.05, pegHeld, {}, feltEffects() + everyDevice()},
+    {"peg_in_hole_no_hand", "N_rms", 0.05, pegFree, {}, feltEffects() + everyDevice()},
+    {"wedge_10_to_60_degrees", "N_rms", 0.05, grooveWorst, {"thesis_2012"}, feltEffects() + everyDevice()},
     {"wedge_four_iterations_pressing",
      "um_from_converged",
      kVoxel / 4 * kPerMicrometre,
      fourIterationsPressing,
      {"fast"}},
     {"wedge_four_iterations_at_rest", "um_from_converged", 2, fourIterationsAtRest, {}},
-    {"coarse_encoders_at_rest", "N_rms", 0.05, coarseEncodersAtRest, {}, feltEffectsBut({"cutting_force"})},
+    {"coarse_encoders_at_rest",
+     "N_rms",
+     0.05,
+     coarseEncodersAtRest,
+     {},
+     feltEffectsBut({"cutting_force"}) + everyDevice()},
     // A flicker of one step may be felt as the coupling's quick stiffness times the step, and no more.
     {"encoder_flicker", "of_quick_step", 1, flickeringEncoder, {}, feltEffectsBut({"burr_vibration"})},
 };

@@ -57,7 +57,7 @@ const std::vector<StabilityCase> kSmoothnessCases{
      2,
      grazingSlide,
      {"thesis_2012"},
-     feltEffectsBut({"burr_vibration", "material_stiffness", "virtual_fixture"})},
+     feltEffectsBut({"burr_vibration", "material_stiffness", "virtual_fixture"}) + everyDevice()},
     {"removal_under_load", "N_per_tick", 2 * kCouplingStiffness* kRecession, removalUnderLoad, {}},
 };
 BONEMILL_STABILITY_CASES(Smoothness, kSmoothnessCases);

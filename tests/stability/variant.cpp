@@ -73,6 +73,34 @@ const std::vector<Variant>& effectVariants() {
     return kVariants;
 }
 
+const DeviceCapabilities kArm{.name = "arm of three degrees",
+                              .kind = uint32_t(DeviceKind::kUnknown),
+                              .abilities = kAbilityForce | kAbilityOrientation,
+                              .max_force = 3,
+                              .max_torque = 0,
+                              .max_stiffness = 0,
+                              .max_rotation_stiffness = 0,
+                              .workspace_radius = 0.08};
+
+const std::vector<Variant>& deviceVariants() {
+    static const std::vector<Variant> kVariants{
+        {.name = "arm", .preset = Preset::kBalanced, .device = &kArm},
+        {.name = "scale_0_3", .preset = Preset::kBalanced, .workspace_scale = 0.3},
+        {.name = "scale_3", .preset = Preset::kBalanced, .workspace_scale = 3}};
+    return kVariants;
+}
+
+Names scaledWorkspaces() {
+    return {"scale_0_3", "scale_3"};
+}
+Names everyDevice() {
+    return Names{"arm"} + scaledWorkspaces();
+}
+Names operator+(Names a, const Names& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
 Names feltEffects() {
     Names names;
     for (const NamedEffect& effect : kEffects)
@@ -92,6 +120,7 @@ Names feltEffectsBut(const Names& left_out) {
 
 void applyVariant(const Variant& variant, FixedTickConfig& config) {
     config.accuracy = presetSettings(variant.preset);
+    scaleWorkspace(config, variant.workspace_scale);
     if (!variant.add_effects) return;
     config.tool.burr.speed = kSpinSpeed;
     config.tool.burr.friction = kCuttingFriction;

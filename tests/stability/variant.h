@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "haptic_server/tick/tick_config.h"
+#include "haptic_server/tick/hand_side.h"
 #include "haptic_server/tick/tick_io.h"
 
 namespace bonemill::test {
@@ -16,6 +16,8 @@ struct Variant {
     // Adds effects in place of milling by time; null stands for milling by time.
     void (*add_effects)(EffectConfigs&) = nullptr;
     uint32_t held_buttons = 0;  // all the while: with effects of a burr that turns the pedal is down
+    const DeviceCapabilities* device = nullptr;  // null: none has told of itself
+    double workspace_scale = 1;
 
     bool isBaseline() const { return preset == Preset::kThesis2012; }
 };
@@ -33,6 +35,14 @@ Names feltEffectsBut(const Names& left_out);  // and not all together
 inline constexpr double kSpinSpeed = 4000, kCuttingFriction = 0.7;  // rad/s; μ_c
 // The vibration is of 400 Hz then: over so many ticks it sums to nothing.
 inline constexpr size_t kVibrationTicks = 5;
+
+// They are the default preset with other devices: an arm that gives 3 N and no torque ("arm"), and workspaces
+// of which the tool's is smaller and larger than the handle's ("scale_0_3", "scale_3").
+const std::vector<Variant>& deviceVariants();
+extern const DeviceCapabilities kArm;
+Names scaledWorkspaces();
+Names everyDevice();
+Names operator+(Names a, const Names& b);
 
 void applyVariant(const Variant& variant, FixedTickConfig& config);
 

@@ -28,6 +28,7 @@ TEST(SessionCommands, AreWhatTheActionsSay) {
     Session session;
     EXPECT_TRUE(session.ask(Action::kResetBone).reset_volume());
     EXPECT_TRUE(session.ask(Action::kSaveCheckpoint).save_checkpoint());
+    EXPECT_TRUE(session.ask(Action::kResetDevice).reset_device());
     EXPECT_EQ(session.ask(Action::kAccuracyScene).set_accuracy(), "scene");
     EXPECT_EQ(session.ask(Action::kAccuracy1).set_accuracy(), "thesis_2012");
     EXPECT_EQ(session.ask(Action::kAccuracy4).set_accuracy(), "exact");

@@ -163,6 +163,13 @@ TEST_F(PanelClicks, SessionButtonsAreCommands) {
     EXPECT_EQ(clickForCommand("As the scene file says (0)").set_accuracy(), "scene");
 }
 
+TEST_F(PanelClicks, ADeviceIsResetWhereThereIsOne) {
+    layOut();
+    EXPECT_FALSE(panel_.find("Reset the device (D)"));
+    status_.mutable_device()->set_name("Touch");
+    EXPECT_TRUE(clickForCommand("Reset the device (D)").reset_device());
+}
+
 TEST_F(PanelClicks, WhatIsInForceAlreadyIsNotAskedForAgain) {
     click("6 mm##tool 0");
     click("balanced");

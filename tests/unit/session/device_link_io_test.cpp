@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <limits>
+#include <thread>
 
 #include "common/rt/clock.h"
 
@@ -27,7 +29,18 @@ class DeviceLinkIoTest : public testing::Test {
         sample.p_DT[0] = x;
         sample.q_DT[0] = 1;
         sample.buttons = kButtonRemove;
+        sample.state = uint32_t(SafetyState::kEngaged);
         return sample;
+    }
+    static DeviceCapabilities device(double max_force) {
+        return {.name = "arm",
+                .kind = uint32_t(DeviceKind::kTouch),
+                .abilities = kAbilityForce,
+                .max_force = max_force,
+                .max_torque = 0,
+                .max_stiffness = 1000,
+                .max_rotation_stiffness = 0,
+                .workspace_radius = 0.1};
     }
 
     static constexpr uint32_t kSession = 1u << 30;
@@ -85,7 +98,8 @@ TEST_F(DeviceLinkIoTest, ImplausibleSamplesAndStampsAreNotBelieved) {
     garbage.stamp_ns = std::numeric_limits<int64_t>::min();
     daemon_.writeSample(garbage);
     ASSERT_TRUE(io.read(input));
-    EXPECT_EQ(io.implausibleSamples(), 1u);
+    EXPECT_EQ(io.implausibleMessages(), 1u);
+    EXPECT_TRUE(input.faults & kFaultImplausibleDevice);
     EXPECT_NEAR(input.X_WT_device.position.x(), 0.102, 1e-12);
     for (const int64_t stamp :
          {std::numeric_limits<int64_t>::min(), int64_t(0), std::numeric_limits<int64_t>::max()}) {
@@ -96,6 +110,107 @@ TEST_F(DeviceLinkIoTest, ImplausibleSamplesAndStampsAreNotBelieved) {
         EXPECT_GE(input.wakeup_latency_ns, 0);
         EXPECT_LT(input.wakeup_latency_ns, 10 * kNsPerSecond);
     }
+}
+
+TEST_F(DeviceLinkIoTest, TheToolMovesAsFarAsTheScaleSaysAndTurnsWithTheHandle) {
+    config_.workspace_scale = 3;
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceSample sample = sampleAt(0.01);
+    sample.q_DT[0] = sample.q_DT[3] = M_SQRT1_2;
+    daemon_.writeSample(sample);
+    DeviceInput input;
+    ASSERT_TRUE(io.read(input));
+    EXPECT_LT((input.X_WT_device.position - Eigen::Vector3d(0.13, 0.2, 0.3)).norm(), 1e-15);
+    const Eigen::Quaterniond expected =
+        config_.X_WD.rotation * Eigen::Quaterniond(M_SQRT1_2, 0, 0, M_SQRT1_2);
+    EXPECT_LT(expected.angularDistance(input.X_WT_device.rotation), 1e-12);
+}
+
+TEST_F(DeviceLinkIoTest, TheTickHearsOfEachOtherDeviceOnce) {
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceCapabilities shown;
+    EXPECT_FALSE(io.capabilities(shown));
+    const auto next = [&] {
+        daemon_.writeSample(sampleAt(0));
+        DeviceInput input;
+        EXPECT_TRUE(io.read(input));
+        return input;
+    };
+    EXPECT_FALSE(next().other_device) << "nobody has told of a device";
+    daemon_.writeCapabilities(device(3));
+    const DeviceInput first = next();
+    ASSERT_TRUE(first.other_device);
+    EXPECT_EQ(first.other_device->max_force, 3);
+    EXPECT_TRUE(io.capabilities(shown));
+    EXPECT_STREQ(shown.name, "arm");
+    EXPECT_FALSE(next().other_device);
+    daemon_.writeCapabilities(device(3));
+    EXPECT_FALSE(next().other_device) << "it is the same";
+    DeviceCapabilities garbage = device(std::numeric_limits<double>::quiet_NaN());
+    daemon_.writeCapabilities(garbage);
+    const DeviceInput refused = next();
+    EXPECT_FALSE(refused.other_device);
+    EXPECT_TRUE(refused.faults & kFaultImplausibleDevice);
+    EXPECT_EQ(io.implausibleMessages(), 1u);
+    EXPECT_TRUE(io.capabilities(shown) && shown.max_force == 3) << "the last good one stays";
+    daemon_.writeCapabilities(device(7));
+    const DeviceInput other = next();
+    EXPECT_TRUE(other.other_device && other.other_device->max_force == 7);
+    EXPECT_FALSE(other.faults & kFaultImplausibleDevice);
+}
+
+TEST_F(DeviceLinkIoTest, TheDevicesStateComesThroughAndOrdersToResetItGoOut) {
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceSample stopped = sampleAt(0);
+    stopped.state = uint32_t(SafetyState::kProtectiveStop);
+    stopped.stop_cause = uint32_t(StopCause::kDeviceFault);
+    stopped.fault_code = 17;
+    stopped.flags = kDeviceFlagSimulated | kDeviceFlagEnabled;
+    daemon_.writeSample(stopped);
+    DeviceInput input;
+    ASSERT_TRUE(io.read(input));
+    EXPECT_FALSE(input.device.isEngaged());
+    EXPECT_EQ(input.device.state, stopped.state);
+    EXPECT_EQ(input.device.stop_cause, stopped.stop_cause);
+    EXPECT_EQ(input.device.fault_code, 17u);
+    EXPECT_EQ(input.device.flags, stopped.flags);
+    WrenchCommand command;
+    io.write({});
+    ASSERT_TRUE(daemon_.readCommand(command));
+    EXPECT_EQ(command.reset_orders, 0u);
+    io.resetOrders().fetch_add(1);
+    io.write({});
+    ASSERT_TRUE(daemon_.readCommand(command));
+    EXPECT_EQ(command.reset_orders, 1u);
+}
+
+// The daemon of this test writes as fast as it can, in between garbage. What is judged is each tick's own
+// start, which no load can bring forward.
+TEST_F(DeviceLinkIoTest, AFloodOfSamplesDoesNotHurryTheTick) {
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    std::atomic<bool> is_over{false};
+    std::thread flood([&] {
+        for (uint64_t n = 0; !is_over; ++n)
+            daemon_.writeSample(sampleAt(n % 3 ? 0.001 : std::numeric_limits<double>::quiet_NaN()));
+    });
+    constexpr int kTicks = 100;
+    int64_t first = 0, last = 0;
+    uint32_t faults = 0;
+    for (int tick = 0; tick < kTicks; ++tick) {
+        DeviceInput input;
+        ASSERT_TRUE(io.read(input));
+        if (tick > 0) {
+            EXPECT_GE(input.start_ns - last, config_.period_ns / 2);
+        }
+        last = input.start_ns;
+        if (tick == 0) first = last;
+        faults |= input.faults;
+    }
+    is_over = true;
+    flood.join();
+    EXPECT_GE(last - first, (kTicks - 5) * config_.period_ns * 63 / 64) << "the simulation runs too fast";
+    EXPECT_GT(io.earlySamples(), 0u);
+    EXPECT_TRUE(faults & kFaultEarlySamples);
 }
 
 TEST_F(DeviceLinkIoTest, TheMesherIsToldOfCutsAndOfNothingElse) {

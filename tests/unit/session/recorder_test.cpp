@@ -43,6 +43,24 @@ TEST_F(RecorderTest, ATraceWithAllTicksIsWhole) {
     EXPECT_EQ(recorder.statistics().lostRecords(), 0u);
 }
 
+TEST_F(RecorderTest, EachChangeOfTheDeviceIsGivenOnce) {
+    Recorder recorder(ring_, kPeriodNs, "");
+    const auto push = [&](SafetyState state) {
+        TickRecord record{};
+        record.tick = tick_++;
+        record.device.state = uint32_t(state);
+        ring_.tryPush(record);
+    };
+    push(SafetyState::kReady), push(SafetyState::kReady), push(SafetyState::kEngaged);
+    recorder.drain();
+    push(SafetyState::kPaused);
+    recorder.drain();
+    const auto changes = recorder.takeDeviceChanges();
+    ASSERT_EQ(changes.size(), 3u);
+    EXPECT_EQ(changes[2].now.state, uint32_t(SafetyState::kPaused));
+    EXPECT_TRUE(recorder.takeDeviceChanges().empty());
+}
+
 TEST_F(RecorderTest, ATraceThatLacksTicksIsNotWhole) {
     Recorder recorder(ring_, kPeriodNs, trace_);
     pushTicks(7);  // the ring has room for four

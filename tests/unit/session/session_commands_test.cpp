@@ -17,7 +17,8 @@ class SessionCommandsTest : public testing::Test {
           tools_(std::vector<SpoTool>{{&tool_, {.radius = 1e-3}, 5}}, 0),
           bone_export_(ball_.history, ball_.bone, ""),
           commands_(sceneOf(), ball_.bone, recorder_,
-                    {ball_.history, accuracy_, tools_, stop_requested_, bone_export_}, false) {}
+                    {ball_.history, accuracy_, tools_, stop_requested_, bone_export_, reset_orders_}, false) {
+    }
 
     static scene::Scene sceneOf() {
         scene::Scene scene;
@@ -39,6 +40,7 @@ class SessionCommandsTest : public testing::Test {
     ToolSwitch tools_;
     std::atomic<bool> stop_requested_{false};
     SessionExport bone_export_;
+    std::atomic<uint32_t> reset_orders_{0};
     SessionCommands commands_;
 };
 
@@ -54,7 +56,8 @@ TEST_F(SessionCommandsTest, TheThesisLawIsRefusedWhereAnEffectNeedsTheOther) {
     scene::Scene scene = sceneOf();
     scene.mutable_effects()->mutable_energy_removal();
     SessionCommands commands(scene, ball_.bone, recorder_,
-                             {ball_.history, accuracy_, tools_, stop_requested_, bone_export_}, false);
+                             {ball_.history, accuracy_, tools_, stop_requested_, bone_export_, reset_orders_},
+                             false);
     topics::Command command;
     command.set_role(topics::Viewer::OPERATOR);
     command.set_set_accuracy("thesis_2012");
@@ -67,9 +70,9 @@ TEST_F(SessionCommandsTest, TheThesisLawIsRefusedWhereAnEffectNeedsTheOther) {
 }
 
 TEST_F(SessionCommandsTest, WhatIsFalseIsRefusedAndNotDone) {
-    constexpr void (topics::Command::*kActions[])(bool) = {&topics::Command::set_reset_volume,
-                                                           &topics::Command::set_save_checkpoint,
-                                                           &topics::Command::set_shut_down};
+    constexpr void (topics::Command::*kActions[])(bool) = {
+        &topics::Command::set_reset_volume, &topics::Command::set_save_checkpoint,
+        &topics::Command::set_shut_down, &topics::Command::set_reset_device};
     for (const auto set : kActions) {
         topics::Command command;
         command.set_role(topics::Viewer::INSTRUCTOR);
@@ -78,6 +81,7 @@ TEST_F(SessionCommandsTest, WhatIsFalseIsRefusedAndNotDone) {
                   "refused: a command that is false asks for nothing; send true");
     }
     EXPECT_FALSE(stop_requested_);
+    EXPECT_EQ(reset_orders_, 0u);
     topics::Status status;
     commands_.describe(status);
     EXPECT_EQ(status.checkpoints_size(), 0);
@@ -88,6 +92,18 @@ TEST_F(SessionCommandsTest, WhatIsFalseIsRefusedAndNotDone) {
     command.set_shut_down(true);
     EXPECT_EQ(commands_.carryOut(command), "done");
     EXPECT_TRUE(stop_requested_);
+}
+
+TEST_F(SessionCommandsTest, OperatorsAndInstructorsResetTheDevice) {
+    topics::Command command;
+    command.set_reset_device(true);
+    EXPECT_NE(commands_.carryOut(command)->find("refused"), std::string::npos);
+    uint32_t orders = 0;
+    for (const auto role : {topics::Viewer::OPERATOR, topics::Viewer::INSTRUCTOR}) {
+        command.set_role(role);
+        EXPECT_EQ(commands_.carryOut(command), "done");
+        EXPECT_EQ(reset_orders_, ++orders);
+    }
 }
 
 // The refusal is kept and sent to everyone.

@@ -41,6 +41,23 @@ TEST(TickConfigOfAScene, DefaultsOfTheGradientLawAreTheDefaultsOfTheCode) {
     EXPECT_TRUE(accuracyOf(scene::Scene{}) == AccuracySettings{});
 }
 
+// The tool's world is so much larger than the hand's: the hand feels what the scene says.
+TEST(TickConfigOfAScene, AScaledWorkspaceLeavesTheStiffnessInTheHand) {
+    for (const double scale : {0.3, 3.0}) {
+        scene::Scene scene;
+        scene.mutable_device()->set_workspace_scale(scale);
+        const TickConfig scaled = tickConfigOf(scene), plain;
+        EXPECT_EQ(scaled.workspace_scale, scale);
+        EXPECT_DOUBLE_EQ(scaled.coupling.translation_stiffness * scale, plain.coupling.translation_stiffness);
+        EXPECT_DOUBLE_EQ(scaled.coupling.rotation_stiffness / scale, plain.coupling.rotation_stiffness);
+        const EnergyCouplingConfig &at_tool = scaled.gradient.coupling, &in_hand = plain.gradient.coupling;
+        EXPECT_DOUBLE_EQ(at_tool.translation_stiffness * scale, in_hand.translation_stiffness);
+        EXPECT_DOUBLE_EQ(at_tool.rotation_stiffness / scale, in_hand.rotation_stiffness);
+        EXPECT_DOUBLE_EQ(at_tool.saturation_torque / scale, in_hand.saturation_torque);
+        EXPECT_EQ(scaled.hand.max_torque, plain.hand.max_torque);
+    }
+}
+
 TEST(ToolConfigOfAScene, DefaultsOfTheSceneAreTheDefaultsOfTheCode) {
     const ToolConfig scene = toolConfigOf(LoadedScene{}, scene::Tool{});
     const ToolConfig code;

@@ -27,6 +27,7 @@ TEST_F(CommandWords, EachWordIsItsCommand) {
     EXPECT_EQ(of("resume").action_case(), topics::Command::kPauseMilling);
     EXPECT_FALSE(of("resume").pause_milling());
     EXPECT_TRUE(of(" checkpoint ").save_checkpoint());
+    EXPECT_TRUE(of("reset-device").reset_device());
     EXPECT_TRUE(of("shutdown").shut_down());
     EXPECT_EQ(of("accuracy fast").set_accuracy(), "fast");
     EXPECT_EQ(of("export after lunch").export_(), "after lunch");

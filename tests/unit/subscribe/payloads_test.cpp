@@ -166,6 +166,29 @@ TEST(Payloads, EffectStateAndTrainingAreChecked) {
     EXPECT_FALSE(isAccepted(&parseStatus, status));
 }
 
+TEST(Payloads, ADevicesNameIsCleanedAndItsFiguresAreChecked) {
+    topics::Status status;
+    status.set_epoch(1);
+    topics::Device& device = *status.mutable_device();
+    device.set_name("Touch\n" + std::string(100, 'x'));
+    device.set_state(77);  // of a later version
+    device.set_max_force_n(3.3);
+    const auto parsed = parseStatus(bytesOf(status.SerializeAsString()));
+    ASSERT_TRUE(parsed);
+    EXPECT_EQ(parsed->device().name(), "Touch" + std::string(59, 'x'));
+    EXPECT_EQ(parsed->device().state(), 77u);
+    for (const double bad : {-1.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
+        device.set_max_force_n(bad);
+        EXPECT_FALSE(isAccepted(&parseStatus, status)) << bad;
+        device.set_max_force_n(3.3);
+        device.set_max_torque_nmm(bad);
+        EXPECT_FALSE(isAccepted(&parseStatus, status)) << bad;
+        device.set_max_torque_nmm(0);
+    }
+    status.clear_device();
+    EXPECT_FALSE(parseStatus(bytesOf(status.SerializeAsString()))->has_device());
+}
+
 TEST(Payloads, StatusIsChecked) {
     topics::Status status;
     status.set_epoch(1);

@@ -36,15 +36,16 @@ TEST(HandLimits, WithoutAChangeEveryWrenchPasses) {
     EXPECT_FALSE(limits.wasLimited());
 }
 
-TEST(HandLimits, ScaleTheWholeWrenchByOneFactor) {
+TEST(HandLimits, ScaleForceAndTorqueEachByItsOwnFactor) {
     HandLimits limits({.max_force = 10, .max_torque = 1}, {}, kDt);
     const Wrench sent = sentBy(limits, {{30, 0, 40}, {0, 0.5, 0}});
     EXPECT_LT((sent.force - Eigen::Vector3d(6, 0, 8)).norm(), 1e-12);
-    EXPECT_NEAR(sent.torque.y(), 0.1, 1e-12);
+    EXPECT_EQ(sent.torque.y(), 0.5);
     EXPECT_TRUE(limits.wasLimited());
     const Wrench turned = sentBy(limits, {{3, 0, 4}, {0, 2, 0}});
-    EXPECT_LT((turned.force - Eigen::Vector3d(1.5, 0, 2)).norm(), 1e-12);
+    EXPECT_EQ(turned.force, Eigen::Vector3d(3, 0, 4));
     EXPECT_NEAR(turned.torque.y(), 1, 1e-12);
+    EXPECT_TRUE(limits.wasLimited());
     const Wrench small{{1, 2, 3}, {0, 0.5, 0}};
     EXPECT_EQ(sentBy(limits, small).force, small.force);
     EXPECT_FALSE(limits.wasLimited());
@@ -93,7 +94,8 @@ TEST(HandLimits, AChangeIsOverAlsoAtTheNorm) {
     HandLimits limits = make(10);
     sentBy(limits, upwards(9));
     limits.beginSuddenChange();
-    for (int tick = 0; tick < 100; ++tick) EXPECT_LE(sentBy(limits, upwards(30)).force.norm(), 10 + 1e-9);
+    const Wrench far_beyond{{0, 0, 30}, {0, 1, 0}};
+    for (int tick = 0; tick < 100; ++tick) EXPECT_LE(sentBy(limits, far_beyond).force.norm(), 10 + 1e-9);
     EXPECT_TRUE(limits.isChangeOver());
     EXPECT_EQ(sentBy(limits, upwards(0)).force.z(), 0);
 }
@@ -139,6 +141,61 @@ TEST(HandLimits, TicksSolvedOffAndOnOnlyLetTheForceFall) {
         last = sent;
     }
     EXPECT_LT(last, 5);
+}
+
+// Two springs, far beyond the norms, are led round a closed path: the force that the stretch makes must not
+// depend on the turn.
+TEST(HandLimits, TakeNoEnergyOutOfAClosedPath) {
+    HandLimits limits({.max_force = 2, .max_torque = 0.05}, {}, kDt);
+    constexpr int kSteps = 4000;
+    const auto at = [](int step) {
+        const double a = 2 * M_PI * step / kSteps;
+        return std::pair{Eigen::Vector3d(3e-3 * std::cos(a), 0, 0), Eigen::Vector3d(0, 0.4 * std::sin(a), 0)};
+    };
+    const auto sentAt = [&](int step) {
+        const auto [stretch, turn] = at(step);
+        return sentBy(limits, {-1000 * stretch, -0.5 * turn});
+    };
+    double work = 0, given = 0;
+    for (int step = 0; step < kSteps; ++step) {
+        const Wrench a = sentAt(step), b = sentAt(step + 1);
+        const double share = 0.5 * ((a.force + b.force).dot(at(step + 1).first - at(step).first) +
+                                    (a.torque + b.torque).dot(at(step + 1).second - at(step).second));
+        work += share;
+        given += std::abs(share);
+    }
+    EXPECT_GT(given, 5e-3);
+    EXPECT_LT(std::abs(work), 1e-3 * given);
+}
+
+TEST(HandLimits, WhatADeviceDoesNotHaveIsLeftOutAndNoLimit) {
+    HandLimits limits = make();
+    sentBy(limits, {{0, 0, 3}, {0, 0.5, 0}});
+    limits.setDevice({.max_force = 5, .max_torque = 0}, {});
+    for (int tick = 0; tick < 3; ++tick) {
+        const Wrench sent = sentBy(limits, {{0, 0, 3}, {0, 0.5, 0}});
+        EXPECT_EQ(sent.torque.norm(), 0);
+        EXPECT_EQ(sent.force.z(), 3);
+        EXPECT_FALSE(limits.wasLimited());
+        EXPECT_EQ(sentUnsolved(limits, upwards(kNan)).torque.norm(), 0);
+    }
+    limits.setDevice({.max_force = 0, .max_torque = 0}, {});
+    EXPECT_EQ(sentBy(limits, upwards(3)).force.norm(), 0);
+    EXPECT_FALSE(limits.wasLimited());
+}
+
+TEST(HandLimits, AnotherDeviceChangesTheForceAtTheRateDownAndUp) {
+    HandLimits limits = make();
+    double last = sentBy(limits, upwards(20)).force.z();
+    for (const double most : {3.0, 12.0}) {
+        limits.setDevice({.max_force = most, .max_torque = 1}, {});
+        for (int tick = 0; tick < 300; ++tick) {
+            const double sent = sentBy(limits, upwards(20)).force.z();
+            EXPECT_LE(std::abs(sent - last), kStep * 1.0001);
+            last = sent;
+        }
+        EXPECT_NEAR(last, most, 1e-9);
+    }
 }
 
 // The order of the limits matters: whatever comes before, nothing undoes the ramp of a silent device.

@@ -1,0 +1,68 @@
+#include "render_client/hud/device_lines.h"
+
+#include "common/device_messages/device_messages.h"
+#include "render_client/hud/figure_text.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kLongestDeviceName = 20;
+
+bool isStop(SafetyState state) {
+    return state == SafetyState::kProtectiveStop || state == SafetyState::kEmergencyStop ||
+           state == SafetyState::kFault;
+}
+
+// A state of a later version is an alarm, for nobody here knows what it means.
+HudTone toneOf(SafetyState state) {
+    switch (state) {
+        case SafetyState::kEngaged:
+            return HudTone::kPlain;
+        case SafetyState::kConnected:
+        case SafetyState::kHoming:
+        case SafetyState::kReady:
+        case SafetyState::kPaused:
+            return HudTone::kWarning;
+        case SafetyState::kDisconnected:
+        case SafetyState::kProtectiveStop:
+        case SafetyState::kEmergencyStop:
+        case SafetyState::kFault:
+            break;
+    }
+    return HudTone::kAlarm;
+}
+
+std::string causeOf(StopCause cause, uint32_t fault_code) {
+    const std::string text = nameOf(cause);
+    return cause == StopCause::kDeviceFault ? text + " " + std::to_string(fault_code) : text;
+}
+
+void addCause(SafetyState state, StopCause cause, uint32_t fault_code, std::vector<HudRow>& rows) {
+    if (cause == StopCause::kNone) return;
+    const std::string text = causeOf(cause, fault_code);
+    if (text != nameOf(state)) rows.push_back({"", text, HudTone::kAlarm});
+    for (const std::string& line : wrappedText(whatToDo(cause), kLongestRow))
+        rows.push_back({"", line, HudTone::kAlarm});
+}
+
+void addWhatItWaitsFor(const topics::Device& device, std::vector<HudRow>& rows) {
+    if (device.abilities() & kAbilityEnablingSwitch && !device.is_enabled())
+        rows.push_back({"", "hold the enabling switch", HudTone::kWarning});
+    if (device.force_waits()) rows.push_back({"", "move the tool away", HudTone::kWarning});
+}
+
+}  // namespace
+
+std::vector<HudRow> deviceRows(const topics::Device& device, const topics::ToolState* tool) {
+    const auto state = SafetyState(tool ? tool->device_state() : device.state());
+    const auto cause = StopCause(tool ? tool->stop_cause() : device.stop_cause());
+    const std::string name = shortenedText(device.name(), kLongestDeviceName);
+    std::vector<HudRow> rows{{name.empty() ? "Device" : name,
+                              std::string(nameOf(state)) + (device.is_simulated() ? ", simulated" : ""),
+                              toneOf(state)}};
+    if (isStop(state)) addCause(state, cause, device.fault_code(), rows);
+    if (state == SafetyState::kReady) addWhatItWaitsFor(device, rows);
+    return rows;
+}
+
+}  // namespace bonemill
