@@ -1,8 +1,8 @@
 // docs/ares_link.md says what the code does: its tables of fields, and its example.
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <map>
-#include <regex>
 #include <sstream>
 
 #include "tests/support/places.h"
@@ -23,7 +23,8 @@ std::string sectionOf(const std::string& heading) {
     return text.substr(begin, text.find("\n##", begin + 5) - begin);
 }
 
-size_t sizeOfType(const std::string& name, const std::string& count) {
+// Of "u32" or "f64[6]".
+size_t sizeOfType(const std::string& type) {
     const std::map<std::string, size_t> sizes = {{"header", sizeof(Header)},
                                                  {"char", 1},
                                                  {"u8", 1},
@@ -34,7 +35,9 @@ size_t sizeOfType(const std::string& name, const std::string& count) {
                                                  {"f32", 4},
                                                  {"u64", 8},
                                                  {"f64", 8}};
-    return sizes.at(name) * (count.empty() ? 1 : std::stoul(count));
+    const size_t bracket = type.find('[');
+    const size_t count = bracket == std::string::npos ? 1 : std::stoul(type.substr(bracket + 1));
+    return sizes.at(type.substr(0, bracket)) * count;
 }
 
 struct Field {
@@ -42,15 +45,16 @@ struct Field {
 };
 
 std::map<std::string, Field> fieldsOf(const std::string& heading) {
-    const std::regex row(R"(\n\| (\d+) \| ([a-z]+\d*)(?:\[(\d+)\])? \| (\w+) \|)");
-    const std::string section = sectionOf(heading);
+    std::istringstream section(sectionOf(heading));
     std::map<std::string, Field> fields;
     size_t next = 0;
-    for (std::sregex_iterator match(section.begin(), section.end(), row), end; match != end; ++match) {
-        const Field field{std::stoul((*match)[1]), sizeOfType((*match)[2], (*match)[3])};
-        EXPECT_EQ(field.offset, next) << heading << (*match)[4];
-        next = field.offset + field.size;
-        fields[(*match)[4]] = field;
+    for (std::string line; std::getline(section, line);) {
+        size_t offset = 0;
+        char type[40] = "", name[40] = "";
+        if (std::sscanf(line.c_str(), "| %zu | %39s | %39s |", &offset, type, name) != 3) continue;
+        EXPECT_EQ(offset, next) << heading << name;
+        fields[name] = {offset, sizeOfType(type)};
+        next = offset + fields[name].size;
     }
     fields["end"] = {next, 0};
     return fields;
