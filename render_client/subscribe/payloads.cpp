@@ -105,9 +105,7 @@ bool isUsable(const topics::Status& status) {
                               status.tick_max_us(),
                               status.removed_mm3(),
                               status.force_error_percent(),
-                              status.force_direction_error_deg(),
-                              status.device().max_force_n(),
-                              status.device().max_torque_nmm()};
+                              status.force_direction_error_deg()};
     const auto is_usable = [](const topics::Checkpoint& c) {
         return isTime(c.session_s()) && std::isfinite(c.removed_mm3());
     };
