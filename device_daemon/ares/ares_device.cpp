@@ -64,6 +64,8 @@ bool AresDevice::read(double elapsed, DeviceReading& reading) noexcept {
         X_DT_ = location.X_DT;
         twist_D_ = location.J_inv.partialPivLu().solve(guard_.sliderSpeed());
         holding_ = ::bonemill::actuatorForces(location.J_inv, holdingWrench(config_.weight, X_DT_));
+    } else if (guard_.cause() == StopCause::kNone || !isFinite(joints)) {
+        holding_.setZero();  // uncalibrated, or not a number: nothing is known of the pose
     }
     fillPose(joints, reading);
     return guard_.cause() == StopCause::kNone;
@@ -74,10 +76,8 @@ void AresDevice::fillPose(const JointReading& joints, DeviceReading& reading) co
     if (!has_pose_) return;
     reading.v_DT = twist_D_.head<3>();
     reading.w_DT = twist_D_.tail<3>();
-    reading.has_applied = joints.forces.allFinite();
-    if (reading.has_applied) {
-        reading.applied_D = wrenchOf(guard_.location().J_inv, joints.forces - sent_.base);
-    }
+    reading.has_applied = true;
+    reading.applied_D = wrenchOf(guard_.location().J_inv, joints.forces - sent_.base);
 }
 
 void AresDevice::write(const DeviceOrder& order) noexcept {
@@ -104,7 +104,7 @@ AresDevice::Sent AresDevice::compose(const DeviceOrder& order) noexcept {
     wrench_share_ = limited.wanted_share;
     return {.forces = limited.forces,
             .base = limited.base_share * base,
-            .push = is_felt ? limited.wanted_share * order.wrench_hand_D.force.norm() : 0.0};
+            .push = (is_felt ? limited.wanted_share : 0.0) * order.wrench_hand_D.force};
 }
 
 void AresDevice::fadeWalls(bool is_engaged) noexcept {

@@ -19,6 +19,7 @@
 #include "device_daemon/ares/gravity.h"
 #include "device_daemon/ares/position_guard.h"
 #include "device_daemon/ares/soft_wall.h"
+#include "device_daemon/device/haptic_device.h"
 
 namespace bonemill {
 
@@ -58,8 +59,8 @@ class AresDevice final : public HapticDevice {
     // The forces of one write().
     struct Sent {
         Vector6d forces = Vector6d::Zero();
-        Vector6d base = Vector6d::Zero();  // of these: weight and walls
-        double push = 0;                   // N on the hand that the ordered wrench has a part in
+        Vector6d base = Vector6d::Zero();                // of these: weight and walls
+        Eigen::Vector3d push = Eigen::Vector3d::Zero();  // N on the hand: what is left of the ordered force
     };
     void fillPose(const JointReading& joints, DeviceReading& reading) const noexcept;
     void fadeWalls(bool is_engaged) noexcept;

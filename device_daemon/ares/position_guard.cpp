@@ -6,6 +6,10 @@
 
 namespace bonemill {
 
+bool isFinite(const JointReading& joints) noexcept {
+    return joints.q.allFinite() && joints.q_dot.allFinite() && joints.forces.allFinite();
+}
+
 PositionGuard::PositionGuard(const AresKinematics& kinematics, const PositionGuardConfig& config) noexcept
     : kinematics_(kinematics),
       config_(config),
@@ -18,7 +22,7 @@ PositionGuard::PositionGuard(const AresKinematics& kinematics, const PositionGua
     }
 }
 
-bool PositionGuard::take(const JointReading& joints, double push, double elapsed) noexcept {
+bool PositionGuard::take(const JointReading& joints, const Eigen::Vector3d& push, double elapsed) noexcept {
     const bool is_homed = (joints.status & kStatusCalibrated) && !(joints.status & kStatusHoming);
     if (!is_homed) {
         is_trusted_ = is_distrusted_ = false;
@@ -27,7 +31,7 @@ bool PositionGuard::take(const JointReading& joints, double push, double elapsed
     }
     if (is_distrusted_) return false;
     since_finite_ += elapsed;
-    if (!joints.q.allFinite() || !joints.q_dot.allFinite()) {
+    if (!isFinite(joints)) {
         cause_ = StopCause::kImplausiblePose;
         return false;
     }
@@ -63,11 +67,11 @@ bool PositionGuard::begin(const Vector6d& q) noexcept {
     return true;
 }
 
-StopCause PositionGuard::doubtOf(const Vector6d& q, double push, double elapsed) noexcept {
+StopCause PositionGuard::doubtOf(const Vector6d& q, const Eigen::Vector3d& push, double elapsed) noexcept {
     if (jump_.jumped(q, elapsed)) return StopCause::kPoseJump;
-    if (stuck_.isStuck(q)) return StopCause::kSensorStuck;
-    const double free_push = config_.has_frozen_check && !isNearAStop() ? push : 0;
-    return frozen_.isFrozen(q, free_push, elapsed) ? StopCause::kSensorStuck : StopCause::kNone;
+    if (stuck_.isStuck(q, elapsed)) return StopCause::kSensorStuck;
+    if (!config_.has_frozen_check || isNearAStop()) frozen_.restart();
+    return frozen_.isFrozen(q, push, elapsed) ? StopCause::kSensorStuck : StopCause::kNone;
 }
 
 StopCause PositionGuard::refusalOf(const Location& location) const noexcept {

@@ -32,13 +32,15 @@ struct PositionGuardConfig {
     Pose X_DT_start;  // where the search for the first pose begins, without a home place
 };
 
+bool isFinite(const JointReading& joints) noexcept;
+
 class PositionGuard {
   public:
     PositionGuard(const AresKinematics& kinematics, const PositionGuardConfig& config) noexcept;
 
     // Takes the next reading, `elapsed` s after the last one; `push` (N) is what the motors were told to
     // push the hand with in that time. True says that location() is where the handle is.
-    bool take(const JointReading& joints, double push, double elapsed) noexcept;
+    bool take(const JointReading& joints, const Eigen::Vector3d& push, double elapsed) noexcept;
     // Gives the positions another chance.
     void reset() noexcept;
 
@@ -52,7 +54,7 @@ class PositionGuard {
 
   private:
     bool begin(const Vector6d& q) noexcept;
-    StopCause doubtOf(const Vector6d& q, double push, double elapsed) noexcept;
+    StopCause doubtOf(const Vector6d& q, const Eigen::Vector3d& push, double elapsed) noexcept;
     StopCause refusalOf(const Location& location) const noexcept;
     bool isNearAStop() const noexcept;
     bool distrust(StopCause cause) noexcept;

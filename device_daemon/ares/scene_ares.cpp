@@ -70,8 +70,8 @@ AresDeviceConfig aresConfigOf(const scene::Device& device, bool is_simulated, co
         config.guard.has_frozen_check = false;
     } else {
         config.guard.home = homeOf(device);
+        config.weight = weightOf(device);
     }
-    config.weight = weightOf(device);
     config.max_actuator_force = device.max_actuator_force_n();
     config.max_force = device.max_force_n();
     config.max_torque = kMilli * device.max_torque_nmm();

@@ -6,7 +6,7 @@
 
 namespace bonemill {
 
-// An emulated device has no hand that trembles and no home place: its checks for stuck and frozen
+// An emulated device has no hand that trembles, no home place and no weight: its checks for stuck and frozen
 // encoders are milder, and `X_DT_start` is where its handle stands. Throws UserError if the geometry cannot
 // be built or the home place is out of reach.
 AresDeviceConfig aresConfigOf(const scene::Device& device, bool is_simulated, const Pose& X_DT_start = {});

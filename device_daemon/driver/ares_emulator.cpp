@@ -8,6 +8,7 @@ namespace bonemill {
 namespace {
 
 constexpr double kSubstepRate_hz = 25000;
+constexpr double kRetreatTime = 0.7;     // s
 constexpr double kRoundingSlack = 1e-6;  // so that 1 ms makes 25 substeps, not 26
 
 constexpr double kGravity = 9.81;  // m/s²
@@ -26,12 +27,6 @@ AresEmulator::AresEmulator(const AresKinematics& kinematics, const AresPlant& pl
     state_.target.buttons = 0;
     state_.X_DT = state_.target.X_DT;
     kinematics_.inverse(state_.X_DT, q_links_);
-}
-
-void AresEmulator::pauseScenario() noexcept {
-    scenario_runs_ = false;
-    state_.target.v_DT.setZero();
-    state_.target.w_DT.setZero();
 }
 
 void AresEmulator::advance(double dt, const Vector6d& actuator_forces) noexcept {
@@ -71,11 +66,31 @@ void AresEmulator::moveSliders(const Vector6d& q_links) noexcept {
     q_links_ = q_links;
 }
 
-void AresEmulator::substep(double h, const Vector6d& actuator_forces) noexcept {
-    if (scenario_runs_) {
+void AresEmulator::moveHand(double h) noexcept {
+    if (scenario_runs_ && retreat_ == 0) {
         state_.scenario_time += h;
         state_.target = path_.at(state_.scenario_time);
+        return;
     }
+    if (state_.scenario_time == 0) return;
+    const double step = h / kRetreatTime;
+    const double next = std::clamp(retreat_ + (scenario_runs_ ? -step : step), 0.0, 1.0);
+    const double rate = 6 * next * (1 - next) * (next - retreat_) / h;
+    retreat_ = next;
+    const HandTarget there = path_.at(state_.scenario_time);
+    const Pose start = path_.at(0).X_DT;
+    const Eigen::Vector3d way = start.position - there.X_DT.position;
+    const Eigen::Vector3d turn = logRotation(start.rotation * there.X_DT.rotation.conjugate());
+    const double share = retreat_ * retreat_ * (3 - 2 * retreat_);
+    state_.target = {.X_DT = there.X_DT.incremented(share * way, share * turn),
+                     .v_DT = rate * way,
+                     .w_DT = rate * turn,
+                     .buttons = 0,
+                     .waypoint = there.waypoint};
+}
+
+void AresEmulator::substep(double h, const Vector6d& actuator_forces) noexcept {
+    moveHand(h);
     const double settled = -std::expm1(-2 * std::numbers::pi * plant_.amplifier_bandwidth_hz * h);
     state_.actuator_forces += settled * (actuator_forces - state_.actuator_forces);
 

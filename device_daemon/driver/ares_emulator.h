@@ -62,8 +62,9 @@ class AresEmulator final : public JointDevice {
 
     // Lets the scenario's time run; before that the hand rests at the path's start with no button pressed.
     void startScenario() noexcept { scenario_runs_ = true; }
-    // Holds the scenario's time; the hand rests where it wants to be now.
-    void pauseScenario() noexcept;
+    // Holds the scenario's time; the hand lets the buttons go and draws the handle back to where the path starts, as a
+    // person does who feels nothing any more. When the scenario goes on it first returns.
+    void pauseScenario() noexcept { scenario_runs_ = false; }
 
     // Shorts the motors' windings or opens them again: shorted, they brake every motion. The amplifiers must
     // then be told to give nothing.
@@ -86,6 +87,7 @@ class AresEmulator final : public JointDevice {
     const EmulatorState& state() const noexcept { return state_; }
 
   private:
+    void moveHand(double h) noexcept;
     void substep(double h, const Vector6d& actuator_forces) noexcept;
     void pushBody(double h, const Wrench& drive) noexcept;
     void moveBody(double h) noexcept;
@@ -99,6 +101,7 @@ class AresEmulator final : public JointDevice {
     Vector6d slider_offsets_ = Vector6d::Zero();  // m, from the links, within the play
     Vector6d q_links_ = Vector6d::Zero();         // m, where the links were read last
     bool scenario_runs_ = false;
+    double retreat_ = 0;  // way of the hand back to the start, 0 to 1
     bool is_braked_ = false;
     EmulatorState state_;
 };

@@ -2,11 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
+
+#include "device_daemon/kinematics/singularity.h"
 
 namespace bonemill {
 namespace {
@@ -44,19 +45,6 @@ Matrix6d jacobianAt(const AresKinematics& kinematics, const Pose& X_DT) {
     return J_inv;
 }
 
-// This length makes rotation and translation comparable.
-constexpr double kConditioningLength = 0.030;
-
-// Returns sigma_min / sigma_max of J_inv diag(I, I / kConditioningLength); 0 is singular.
-double singularityIndex(const Matrix6d& J_inv) {
-    Matrix6d scaled = J_inv;
-    scaled.rightCols<3>() /= kConditioningLength;
-    // The singular values are roots of the Gram matrix' eigenvalues: exact enough above an index of 1e-7.
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled.transpose() * scaled, Eigen::EigenvaluesOnly);
-    const double smallest = std::max(0.0, solver.eigenvalues()[0]);
-    return std::sqrt(smallest / solver.eigenvalues()[5]);
-}
-
 TEST(AresKinematics, NeutralPoseIsTheMiddleOfEveryStroke) {
     const AresKinematics kinematics;
     ASSERT_TRUE(kinematics.isBuildable());
@@ -87,6 +75,51 @@ TEST(AresKinematics, JacobianMatchesFiniteDifferences) {
             const Vector6d difference = (above - below) / (2 * kStep);
             EXPECT_LT((difference - J_inv.col(k)).cwiseAbs().maxCoeff(), 1e-8) << "column " << k;
         }
+    }
+}
+
+// Compares an analytic gradient over the twist with central differences of `value`.
+template <typename Gradient, typename Value>
+void expectGradient(const Gradient& gradient, const Pose& X_DT, double tolerance, Value value) {
+    constexpr double kStep = 1e-6;
+    for (int k = 0; k < 6; ++k) {
+        const Vector6d step = kStep * Vector6d::Unit(k);
+        const auto above = value(X_DT.incremented(step.head<3>(), step.tail<3>()));
+        const auto below = value(X_DT.incremented(-step.head<3>(), -step.tail<3>()));
+        EXPECT_LT(((above - below) / (2 * kStep) - gradient(k)).cwiseAbs().maxCoeff(), tolerance) << k;
+    }
+}
+
+TEST(AresKinematics, JacobianGradientMatchesFiniteDifferences) {
+    const AresKinematics kinematics;
+    PoseSampler sampler;
+    for (int i = 0; i < 200; ++i) {
+        const Pose X_DT = sampler.next();
+        std::array<Matrix6d, 6> gradient;
+        ASSERT_TRUE(kinematics.inverseJacobianGradient(X_DT, gradient));
+        expectGradient([&](int k) -> const Matrix6d& { return gradient[k]; }, X_DT, 1e-6,
+                       [&](const Pose& near) -> Matrix6d { return jacobianAt(kinematics, near); });
+    }
+}
+
+TEST(AresKinematics, LinkHeightsAndTheirGradientMatchTheLinks) {
+    const AresKinematics kinematics;
+    PoseSampler sampler;
+    const auto heightsAt = [&](const Pose& X_DT) -> Vector6d {
+        Vector6d heights;
+        Matrix6d unused;
+        EXPECT_TRUE(kinematics.linkHeights(X_DT, heights, unused));
+        return heights;
+    };
+    for (int i = 0; i < 200; ++i) {
+        const Pose X_DT = sampler.next();
+        Vector6d heights, q_low;
+        Matrix6d gradient;
+        ASSERT_TRUE(kinematics.linkHeights(X_DT, heights, gradient));
+        expectGradient([&](int k) -> Vector6d { return gradient.col(k); }, X_DT, 1e-8, heightsAt);
+        // The links, not the sliders, make up for a shift across the actuators.
+        ASSERT_TRUE(kinematics.inverse(X_DT, q_low));
+        EXPECT_LE(heights.maxCoeff(), kinematics.geometry().link_length);
     }
 }
 
@@ -178,6 +211,25 @@ TEST(AresKinematics, ReportsStrokeAndLean) {
     EXPECT_EQ(kinematics.workspaceFaults({{-0.130, 0, 0}, identity}), kWorkspaceUnreachable);
 }
 
+TEST(AresKinematics, SlackWidensStrokeAndLean) {
+    const AresKinematics kinematics;
+    const Pose above{{0, 0, kinematics.geometry().stroke / 2 + 0.5e-3}, Eigen::Quaterniond::Identity()};
+    EXPECT_EQ(kinematics.workspaceFaults(above), kWorkspaceStroke);
+    EXPECT_EQ(kinematics.workspaceFaults(above, 1e-3), kWorkspaceOk);
+    const Pose below{{0, 0, kinematics.geometry().stroke / 2 - 0.5e-3}, Eigen::Quaterniond::Identity()};
+    EXPECT_EQ(kinematics.workspaceFaults(below), kWorkspaceOk);
+    EXPECT_EQ(kinematics.workspaceFaults(below, -1e-3), kWorkspaceStroke);
+}
+
+TEST(AresKinematics, ReportsATurnThatIsTooFar) {
+    const AresKinematics kinematics;
+    for (const double sign : {-1.0, 1.0}) {
+        const auto turned = [&](double angle) { return Pose{{}, expRotation({0, 0, sign * angle})}; };
+        EXPECT_FALSE(kinematics.workspaceFaults(turned(kMaxTurn - 1e-3)) & kWorkspaceTurn);
+        EXPECT_TRUE(kinematics.workspaceFaults(turned(kMaxTurn + 1e-3)) & kWorkspaceTurn);
+    }
+}
+
 TEST(AresKinematics, ForwardOfImpossibleJointsDoesNotConverge) {
     const AresKinematics kinematics;
     Vector6d q = Vector6d::Constant(kinematics.geometry().stroke / 2);
@@ -195,13 +247,10 @@ TEST(AresKinematics, RefusesAGeometryThatCannotBeBuilt) {
     EXPECT_FALSE(AresKinematics(geometry).isBuildable());
 }
 
-TEST(AresKinematics, SingularityIndexIsZeroWhenLegsCannotHoldThePlatform) {
-    // With all links in one common direction there is no force sideways, and no torque about that axis.
-    Matrix6d J_inv = jacobianAt(AresKinematics{}, Pose{});
-    EXPECT_GT(singularityIndex(J_inv), 0.25);
-    for (int i = 0; i < kLegCount; ++i) J_inv.block<1, 3>(i, 0) = Eigen::RowVector3d(0, 0, 1);
-    EXPECT_LT(singularityIndex(J_inv), 1e-7);
-    EXPECT_FALSE(actuatorForces(J_inv, {{1, 0, 0}, {0, 0, 0}}).allFinite());
+TEST(AresKinematics, RefusesAGeometryWhoseLegsDoNotHoldThePlatform) {
+    AresGeometry geometry;
+    geometry.platform_half_angle = geometry.base_half_angle;  // turned about z, all links lean alike
+    EXPECT_FALSE(AresKinematics(geometry).isBuildable());
 }
 
 }  // namespace
