@@ -1,6 +1,7 @@
 #include "render_client/app/hand_feed.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "render_client/controls/help_rows.h"
 
@@ -41,7 +42,8 @@ void HandFeed::update(const SessionView& session, bool begin_now, Clock::time_po
 // A user who has let the tool go, or whom somebody else was faster than, is not asked again.
 bool HandFeed::shouldBeginByItself(const SessionView& session) {
     const bool is_wanted = begins_by_itself_ || isHeldByMouse(session);
-    if (!is_wanted || !session.is_complete || offered_epoch_ == subscriber_.epoch()) return false;
+    if (!std::exchange(shows_model_, session.is_complete)) return false;  // the bone has to be seen to begin
+    if (!is_wanted || offered_epoch_ == subscriber_.epoch()) return false;
     offered_epoch_ = subscriber_.epoch();
     return !controls_.toolHold().isHolding() && whyNotHold(session).empty();
 }
@@ -87,7 +89,7 @@ void HandFeed::showHand(const SessionView& session, Clock::time_point now) {
     was_holding_ = hold.isHolding();
     scene_.setPull(hold.isHolding() ? std::optional(hold.wish().position) : std::nullopt);
     const float opacity = hold.isHolding() ? hintOpacity(now - begun_) : 0;
-    scene_.setHint(opacity > 0 ? std::optional(HudHint{holdRows(), opacity}) : std::nullopt);
+    scene_.setHint(opacity > 0 ? std::optional(HudHint{hintRows(), opacity}) : std::nullopt);
     scene_.setHelp(helpRows(hold.isHolding()         ? HelpFor::kHolding
                             : isHeldByMouse(session) ? HelpFor::kMayHold
                                                      : HelpFor::kLooking));

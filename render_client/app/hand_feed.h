@@ -40,6 +40,7 @@ class HandFeed {
     const bool begins_by_itself_;
     PictureView view_;
     uint64_t offered_epoch_ = 0;  // run of the server in which the tool was taken, or left, at the start
+    bool shows_model_ = false;    // the picture before showed the whole model
     bool was_holding_ = false;
     Clock::time_point begun_, held_last_, told_;
     uint32_t told_buttons_ = 0;
