@@ -10,9 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLeastPause = 8ms;  // between two messages: no window needs more than 125 per second
-constexpr auto kFarewell = 500ms;  // so long the viewer goes on saying that it has let go
-constexpr auto kHintTime = 12s;    // then the hint fades
+constexpr auto kHintTime = 12s;  // then the hint fades
 constexpr auto kFadeTime = 2s;
 constexpr double kUsualBurr = 1e-3;  // m, while the scene does not say
 
@@ -23,10 +21,6 @@ float hintOpacity(HandFeed::Clock::duration age) {
 
 }  // namespace
 
-HandFeed::~HandFeed() {
-    if (controls_.toolHold().isHolding()) subscriber_.letToolGo();
-}
-
 void HandFeed::lookAt(int width, int height) {
     view_ = {scene_.viewCamera(), width, height};
     controls_.toolHold().lookAt(view_);
@@ -35,7 +29,7 @@ void HandFeed::lookAt(int width, int height) {
 void HandFeed::update(const SessionView& session, bool begin_now, Clock::time_point now) {
     const bool by_itself = shouldBeginByItself(session);
     if (begin_now || by_itself) begin(begin_now, now);
-    tellDaemon(now);
+    tellDevice();
     showHand(session, now);
 }
 
@@ -70,23 +64,18 @@ Eigen::Vector3d HandFeed::surfaceInView(bool is_at_cursor) const {
     return bone_W.center() + bone_W.diagonal().norm() / 2 * towards_eye;
 }
 
-void HandFeed::tellDaemon(Clock::time_point now) {
+void HandFeed::tellDevice() {
     const ToolHold& hold = controls_.toolHold();
-    if (hold.isHolding()) held_last_ = now;
-    const bool has_changed = hold.buttons() != told_buttons_ || hold.isHolding() != was_holding_;
-    if (now - held_last_ > kFarewell || (!has_changed && now - told_ < kLeastPause)) return;
-    told_ = now;
-    told_buttons_ = hold.buttons();
+    const bool was_holding = std::exchange(was_holding_, hold.isHolding());
     if (hold.isHolding()) {
         subscriber_.wantTool(hold.wish(), hold.buttons());
-    } else {
+    } else if (was_holding) {
         subscriber_.letToolGo();
     }
 }
 
 void HandFeed::showHand(const SessionView& session, Clock::time_point now) {
     const ToolHold& hold = controls_.toolHold();
-    was_holding_ = hold.isHolding();
     scene_.setPull(hold.isHolding() ? std::optional(hold.wish().position) : std::nullopt);
     const float opacity = hold.isHolding() ? hintOpacity(now - begun_) : 0;
     scene_.setHint(opacity > 0 ? std::optional(HudHint{hintRows(), opacity}) : std::nullopt);
