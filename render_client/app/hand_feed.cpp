@@ -1,6 +1,7 @@
 #include "render_client/app/hand_feed.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "render_client/controls/help_rows.h"
 
@@ -9,9 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLeastPause = 8ms;  // between two messages: no window needs more than 125 per second
-constexpr auto kFarewell = 500ms;  // so long the viewer goes on saying that it has let go
-constexpr auto kHintTime = 12s;    // then the hint fades
+constexpr auto kHintTime = 12s;  // then the hint fades
 constexpr auto kFadeTime = 2s;
 constexpr double kUsualBurr = 1e-3;  // m, while the scene does not say
 
@@ -22,10 +21,6 @@ float hintOpacity(HandFeed::Clock::duration age) {
 
 }  // namespace
 
-HandFeed::~HandFeed() {
-    if (controls_.toolHold().isHolding()) subscriber_.letToolGo();
-}
-
 void HandFeed::lookAt(int width, int height) {
     view_ = {scene_.viewCamera(), width, height};
     controls_.toolHold().lookAt(view_);
@@ -34,14 +29,15 @@ void HandFeed::lookAt(int width, int height) {
 void HandFeed::update(const SessionView& session, bool begin_now, Clock::time_point now) {
     const bool by_itself = shouldBeginByItself(session);
     if (begin_now || by_itself) begin(begin_now, now);
-    tellDaemon(now);
+    tellDevice();
     showHand(session, now);
 }
 
 // A user who has let the tool go, or whom somebody else was faster than, is not asked again.
 bool HandFeed::shouldBeginByItself(const SessionView& session) {
     const bool is_wanted = begins_by_itself_ || isHeldByMouse(session);
-    if (!is_wanted || !session.is_complete || offered_epoch_ == subscriber_.epoch()) return false;
+    if (!std::exchange(shows_model_, session.is_complete)) return false;  // the bone has to be seen to begin
+    if (!is_wanted || offered_epoch_ == subscriber_.epoch()) return false;
     offered_epoch_ = subscriber_.epoch();
     return !controls_.toolHold().isHolding() && whyNotHold(session).empty();
 }
@@ -68,26 +64,21 @@ Eigen::Vector3d HandFeed::surfaceInView(bool is_at_cursor) const {
     return bone_W.center() + bone_W.diagonal().norm() / 2 * towards_eye;
 }
 
-void HandFeed::tellDaemon(Clock::time_point now) {
+void HandFeed::tellDevice() {
     const ToolHold& hold = controls_.toolHold();
-    if (hold.isHolding()) held_last_ = now;
-    const bool has_changed = hold.buttons() != told_buttons_ || hold.isHolding() != was_holding_;
-    if (now - held_last_ > kFarewell || (!has_changed && now - told_ < kLeastPause)) return;
-    told_ = now;
-    told_buttons_ = hold.buttons();
+    const bool was_holding = std::exchange(was_holding_, hold.isHolding());
     if (hold.isHolding()) {
         subscriber_.wantTool(hold.wish(), hold.buttons());
-    } else {
+    } else if (was_holding) {
         subscriber_.letToolGo();
     }
 }
 
 void HandFeed::showHand(const SessionView& session, Clock::time_point now) {
     const ToolHold& hold = controls_.toolHold();
-    was_holding_ = hold.isHolding();
     scene_.setPull(hold.isHolding() ? std::optional(hold.wish().position) : std::nullopt);
     const float opacity = hold.isHolding() ? hintOpacity(now - begun_) : 0;
-    scene_.setHint(opacity > 0 ? std::optional(HudHint{holdRows(), opacity}) : std::nullopt);
+    scene_.setHint(opacity > 0 ? std::optional(HudHint{hintRows(), opacity}) : std::nullopt);
     scene_.setHelp(helpRows(hold.isHolding()         ? HelpFor::kHolding
                             : isHeldByMouse(session) ? HelpFor::kMayHold
                                                      : HelpFor::kLooking));

@@ -1,4 +1,4 @@
-// The tool in this viewer's mouse: begins to hold it, tells device_daemon where it is wanted, and lets the
+// The tool in this viewer's mouse: begins to hold it, tells the device where it is wanted, and lets the
 // user see how. It belongs to the thread of the OpenGL context.
 #pragma once
 
@@ -19,8 +19,6 @@ class HandFeed {
     // whatever the session's device; otherwise only where the session says that a mouse holds the tool.
     HandFeed(ViewerControls& controls, RenderScene& scene, SceneSubscriber& subscriber, bool begins_by_itself)
         : controls_(controls), scene_(scene), subscriber_(subscriber), begins_by_itself_(begins_by_itself) {}
-    // Lets the tool go.
-    ~HandFeed();
 
     // Once per picture, before its events: the mouse means what the user has seen.
     void lookAt(int width, int height);
@@ -31,7 +29,7 @@ class HandFeed {
     bool shouldBeginByItself(const SessionView& session);
     void begin(bool is_at_cursor, Clock::time_point now);
     Eigen::Vector3d surfaceInView(bool is_at_cursor) const;
-    void tellDaemon(Clock::time_point now);
+    void tellDevice();
     void showHand(const SessionView& session, Clock::time_point now);
 
     ViewerControls& controls_;
@@ -40,9 +38,9 @@ class HandFeed {
     const bool begins_by_itself_;
     PictureView view_;
     uint64_t offered_epoch_ = 0;  // run of the server in which the tool was taken, or left, at the start
+    bool shows_model_ = false;    // the picture before showed the whole model
     bool was_holding_ = false;
-    Clock::time_point begun_, held_last_, told_;
-    uint32_t told_buttons_ = 0;
+    Clock::time_point begun_;
 };
 
 }  // namespace bonemill

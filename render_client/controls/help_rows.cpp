@@ -35,6 +35,12 @@ void addKeys(const Bindings& bindings, std::vector<HudRow>& rows, Wanted&& is_wa
     }
 }
 
+std::vector<HudRow> holdRows() {
+    std::vector<HudRow> rows(std::begin(kMouseWithTool), std::end(kMouseWithTool));
+    addKeys(keyTable(), rows, [](const KeyBinding& binding) { return binding.is_of_hold; });
+    return rows;
+}
+
 }  // namespace
 
 std::vector<HudRow> helpRows(HelpFor whom) {
@@ -48,10 +54,21 @@ std::vector<HudRow> helpRows(HelpFor whom) {
     return rows;
 }
 
-std::vector<HudRow> holdRows() {
-    std::vector<HudRow> rows(std::begin(kMouseWithTool), std::end(kMouseWithTool));
-    addKeys(keyTable(), rows, [](const KeyBinding& binding) { return binding.is_of_hold; });
-    return rows;
+std::vector<HudRow> hintRows() {
+    const auto keys = [](std::initializer_list<Action> actions) {
+        std::string text;
+        for (const Action action : actions) text += (text.empty() ? "" : " ") + keyLabelOf(action);
+        return text;
+    };
+    return {{"Mouse", "tool"},
+            {"Left, " + keys({Action::kMill}), "mill"},
+            {"Shift+left, " + keys({Action::kAddMaterial}), "add material"},
+            {"Right, " + keys({Action::kTurnTool}), "turn the tool"},
+            {"Wheel, " + keys({Action::kToolDeeper, Action::kToolNearer}), "deeper, nearer"},
+            {"Middle", "orbit"},
+            {keys({Action::kClutch}) + " held", "mouse for the camera"},
+            {keys({Action::kHoldTool}), "let go"},
+            {keys({Action::kHelp}), "all keys"}};
 }
 
 }  // namespace bonemill

@@ -14,7 +14,7 @@ enum class HelpFor { kLooking, kMayHold, kHolding };
 // parted by spaces.
 std::vector<HudRow> helpRows(HelpFor whom);
 
-// Returns mouse and keys of the tool alone, for a hint over the picture.
-std::vector<HudRow> holdRows();
+// Returns in short what mouse and keys do to the tool that they hold, for a hint over the picture.
+std::vector<HudRow> hintRows();
 
 }  // namespace bonemill

@@ -87,7 +87,11 @@ void ViewerControls::onButton(const MouseButtonEvent& event, const SessionView& 
     }
     if (drag_ != Drag::kNone) return;  // a second button does not disturb a drag
     drag_button_ = event.button;
-    if (event.button != MouseButton::kLeft || event.held.shift) {
+    const bool is_spare =
+        hold_.isHolding() && event.button == MouseButton::kMiddle;  // the tool has the others
+    if (is_spare && !event.held.shift) {
+        drag_ = Drag::kOrbit;
+    } else if (event.button != MouseButton::kLeft || event.held.shift) {
         drag_ = Drag::kPan;
     } else if (event.held.control) {
         drag_ = mayPoint(session, wishes) ? Drag::kPoint : Drag::kNone;

@@ -25,8 +25,9 @@ std::string watcherName(const std::string& name) {
     return name.empty() ? "(no name)" : name;
 }
 
-std::string watcherText(topics::Viewer::Role role, double frame_rate_hz, bool is_complete) {
-    return roleName(role) + ", " + figureText(frame_rate_hz, 0, " Hz") + (is_complete ? "" : ", incomplete");
+std::string watcherText(const topics::Viewer& watcher) {
+    return roleName(watcher.role()) + ", " + figureText(watcher.frame_rate_hz(), 0, " Hz") +
+           (watcher.is_holding() ? ", holds the tool" : "") + (watcher.is_complete() ? "" : ", incomplete");
 }
 
 std::string clockText(double seconds) {

@@ -17,7 +17,7 @@ std::string roleName(topics::Viewer::Role role);
 std::string watcherName(const std::string& name);
 
 // Returns what a list of watchers says of one: "operator, 60 Hz", "viewer, 12 Hz, incomplete".
-std::string watcherText(topics::Viewer::Role role, double frame_rate_hz, bool is_complete);
+std::string watcherText(const topics::Viewer& watcher);
 
 // Returns a time of the session (s) as h:mm:ss in whole seconds, at most 1e9 s; a dash for what is no time.
 std::string clockText(double seconds);

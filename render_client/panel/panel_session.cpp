@@ -121,15 +121,18 @@ void PanelContent::buildTraining() {
 }
 
 void PanelContent::buildWatchers() {
-    const auto row = [this](const std::string& name, topics::Viewer::Role role, double rate_hz,
-                            bool is_complete) {
+    const auto row = [this](const std::string& name, const topics::Viewer& watcher) {
         say(watcherName(name), HudTone::kPlain);
         ImGui::SameLine();
-        sayQuietly(watcherText(role, rate_hz, is_complete));
+        sayQuietly(watcherText(watcher));
     };
-    row(session_.name + " (you)", session_.role, session_.frame_rate_hz, session_.is_complete);
-    for (const topics::Viewer& other : session_.others)
-        row(other.name(), other.role(), other.frame_rate_hz(), other.is_complete());
+    topics::Viewer self;
+    self.set_role(session_.role);
+    self.set_frame_rate_hz(session_.frame_rate_hz);
+    self.set_is_complete(session_.is_complete);
+    self.set_is_holding(controls_.toolHold().isHolding());
+    row(session_.name + " (you)", self);
+    for (const topics::Viewer& other : session_.others) row(other.name(), other);
 }
 
 }  // namespace bonemill

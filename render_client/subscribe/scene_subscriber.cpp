@@ -39,7 +39,7 @@ SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
       status_reader_(participant_),
       viewer_reader_(participant_),
       viewer_writer_(participant_),
-      hand_writer_(participant_),
+      hand_(participant_, options.session, outbox_.sender(), options.role),
       command_writer_(participant_),
       wait_set_(participant_) {
     wait_set_.add(node_reader_.handle());
@@ -135,35 +135,6 @@ void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::
     sample.sender = viewer.sender();
     dds::setPayload(sample, bytes);
     viewer_writer_.write(sample);
-}
-
-void SceneSubscriber::wantTool(const Pose& X_WT, uint32_t buttons) {
-    topics::HandPointer message;
-    message.mutable_p_wt_m()->Assign(X_WT.position.begin(), X_WT.position.end());
-    const Eigen::Quaterniond& q = X_WT.rotation;
-    for (const double part : {q.w(), q.x(), q.y(), q.z()}) message.add_q_wt(part);
-    message.set_buttons(buttons);
-    message.set_is_holding(true);
-    writeHand(std::move(message));
-}
-
-void SceneSubscriber::letToolGo() {
-    writeHand({});
-}
-
-void SceneSubscriber::writeHand(topics::HandPointer message) {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    message.set_epoch(epoch());
-    message.set_sender(outbox_.sender());
-    message.set_role(options_.role);
-    message.set_sequence(++hand_sequence_);
-    message.set_stamp_ns(std::chrono::nanoseconds(now).count());
-    const std::string bytes = message.SerializeAsString();
-    dds::HandPointerSample sample{};
-    sample.session = options_.session;
-    sample.sender = message.sender();
-    dds::setPayload(sample, bytes);
-    hand_writer_.write(sample);
 }
 
 uint32_t SceneSubscriber::sendCommand(topics::Command command) {

@@ -16,9 +16,9 @@
 
 #include "common/dds/endpoint.h"
 #include "common/dds/wait_set.h"
-#include "common/geometry/pose.h"
 #include "proto/topics.pb.h"
 #include "render_client/subscribe/command_outbox.h"
+#include "render_client/subscribe/hand_speaker.h"
 #include "render_client/subscribe/scene_model.h"
 
 namespace bonemill {
@@ -68,9 +68,8 @@ class SceneSubscriber {
     void announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W,
                   bool is_holding = false);
     // Says where the mouse of this viewer wants the tool point: with every picture while it holds the tool.
-    void wantTool(const Pose& X_WT, uint32_t buttons);
-    // Says that it holds it no more; a message may be lost, so more than once.
-    void letToolGo();
+    void wantTool(const Pose& X_WT, uint32_t buttons) { hand_.want(X_WT, buttons, epoch()); }
+    void letToolGo() { hand_.letGo(epoch()); }
     // Returns the other viewers of the session, heard within kViewerTimeout, by sender.
     std::vector<topics::Viewer> viewers() const;
     static constexpr std::chrono::seconds kViewerTimeout{4};
@@ -86,7 +85,6 @@ class SceneSubscriber {
     void takeToolState();
     void takeViewers();
     bool enterEpoch(uint64_t epoch);
-    void writeHand(topics::HandPointer message);
     void dropMalformed(const std::string& what);
 
     SubscriberOptions options_;
@@ -110,8 +108,7 @@ class SceneSubscriber {
     dds::Reader<dds::StatusSample> status_reader_;
     dds::Reader<dds::ViewerSample> viewer_reader_;
     dds::Writer<dds::ViewerSample> viewer_writer_;
-    dds::Writer<dds::HandPointerSample> hand_writer_;
-    uint32_t hand_sequence_ = 0;
+    HandSpeaker hand_;
     dds::Writer<dds::CommandSample> command_writer_;
     dds::WaitSet wait_set_;
 };

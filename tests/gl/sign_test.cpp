@@ -30,6 +30,28 @@ TEST_F(ViewMode, NoArrowForNoForce) {
     EXPECT_EQ(effect_of({std::nan(""), 0, 0}), 0u);
 }
 
+TEST_F(ViewMode, AMouseThatHoldsTheToolHasALineToItInTheColourOfTheForce) {
+    showMilledBlock(*scene_);
+    scene_->settings().show_force = false;
+    const Pose X_WT = toolInCavity();
+    const auto draw_with = [&](const std::optional<Vector3d>& wish, double newtons) {
+        topics::ToolState tool = makeToolState(X_WT, X_WT, 1);
+        setVector({0, 0, newtons}, tool.mutable_force_n());
+        scene_->setToolState(tool);
+        scene_->setPull(wish);
+        return draw();
+    };
+    const Vector3d away = X_WT.position + 0.004 * scene_->camera().R_WC().col(0);
+    const Picture none = draw_with(std::nullopt, 5);
+    EXPECT_EQ(countDifferent(none, draw_with(X_WT.position, 5)), 0u) << "tool and wish do not part";
+    const Picture idle = draw_with(away, 0), pressing = draw_with(away, 5);
+    EXPECT_GT(countDifferent(none, idle), 100u);
+    EXPECT_GT(countDifferent(idle, pressing), 100u);
+    EXPECT_EQ(countDifferent(none, draw_with(std::nullopt, 5)), 0u);
+    const Vector3d behind_eye = scene_->camera().eye_W() + 0.1 * scene_->camera().towardsEye_W();
+    EXPECT_EQ(countDifferent(none, draw_with(behind_eye, 5)), 0u);
+}
+
 TEST_F(ViewMode, OnlyInstructorsPointAndAlsoFromBehindBone) {
     showSphere();
     const Picture bare = draw();

@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/device_messages/device_messages.h"
 #include "haptic_server/publish/publisher.h"
 #include "tests/gl/milled_scene.h"
 #include "tests/support/dds_session.h"
@@ -27,6 +28,12 @@ class ShownSession {
     ~ShownSession() {
         stop_ = true;
         thread_.join();
+    }
+
+    void giveToolTo(const std::string& device, DeviceKind kind) {
+        const std::lock_guard lock(mutex_);
+        status_.mutable_device()->set_name(device);
+        status_.mutable_device()->set_kind(uint32_t(kind));
     }
 
     // Returns all that have come so far, oldest first.

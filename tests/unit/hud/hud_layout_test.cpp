@@ -51,6 +51,18 @@ TEST_F(HudLayout, WatchersStandBesideTheFiguresOrBelowThem) {
     EXPECT_GT(canvas_.vertices()[first].y, figures.bottom - 1);
 }
 
+TEST_F(HudLayout, AHintStandsBelowTheFiguresOrBesideThem) {
+    const HudCorner figures{220, 300};
+    const HudHint hint{{{"Wheel", "deeper"}, {"G", "let go"}}, 0.25f};
+    layOutHint(canvas_, hint, figures, {800, 600});
+    EXPECT_LT(extentSince(0).left, figures.right);
+    EXPECT_GT(canvas_.vertices().front().y, figures.bottom);
+    EXPECT_LT(canvas_.vertices().front().a, 0.25f) << "it fades";
+    const size_t first = canvas_.vertices().size();
+    layOutHint(canvas_, hint, figures, {800, 320});
+    EXPECT_GT(extentSince(first).left, figures.right);
+}
+
 TEST_F(HudLayout, TheHelpPageGetsSmallerTextWhereItWouldNotFit) {
     std::vector<HudRow> rows;
     for (int i = 0; i < 40; ++i) rows.push_back({"Shift+X", "cut away the other side"});

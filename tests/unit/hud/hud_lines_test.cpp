@@ -166,6 +166,7 @@ TEST(Hud, WhoIsWatching) {
     input.watchers = {watcher("Anna"), watcher(""), watcher("Dr. Berg")};
     input.watchers[1].set_role(topics::Viewer::OPERATOR);
     input.watchers[1].set_is_complete(false);
+    input.watchers[2].set_is_holding(true);
     input.watchers[2].set_role(topics::Viewer::INSTRUCTOR);
     const std::vector<HudRow> rows = makeHud(input).watchers;
     ASSERT_EQ(rows.size(), 3u);
@@ -174,7 +175,7 @@ TEST(Hud, WhoIsWatching) {
     EXPECT_EQ(rows[1].label, "(no name)");
     EXPECT_EQ(rows[1].value, "operator, 30 Hz, incomplete");
     EXPECT_EQ(rows[1].tone, HudTone::kWarning);
-    EXPECT_EQ(rows[2].value, "instructor, 30 Hz");
+    EXPECT_EQ(rows[2].value, "instructor, 30 Hz, holds the tool");
     input.show_watchers = false;
     EXPECT_TRUE(makeHud(input).watchers.empty());
 }
@@ -208,6 +209,16 @@ TEST(Hud, ANoticeIsPassedOn) {
     ASSERT_TRUE(makeHud(input).notice);
     EXPECT_EQ(makeHud(input).notice->text, "accuracy fast: done");
     EXPECT_EQ(makeHud(input).notice->tone, HudTone::kGood);
+}
+
+TEST(Hud, AHintGivesWayToTheHelpPage) {
+    HudInput input;
+    EXPECT_FALSE(makeHud(input).hint);
+    input.hint = HudHint{{{"Wheel", "deeper"}}, 0.5f};
+    ASSERT_TRUE(makeHud(input).hint);
+    EXPECT_EQ(makeHud(input).hint->opacity, 0.5f);
+    input.show_help = true;
+    EXPECT_FALSE(makeHud(input).hint);
 }
 
 TEST(Hud, TheHelpPageIsShownOnRequest) {

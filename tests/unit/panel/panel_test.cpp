@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/device_messages/device_messages.h"
 #include "tests/support/controlled_panel.h"
 
 namespace bonemill {
@@ -62,6 +63,21 @@ TEST_F(PanelClicks, TrainingTakesItsPlaceOnlyWhereTheSceneTeachesCare) {
     status_.clear_training();
     layOut();
     EXPECT_NEAR(at("End the session").y, before, 1);
+}
+
+TEST_F(PanelClicks, TheToolIsOfferedWhereAMouseHoldsIt) {
+    layOut();
+    EXPECT_FALSE(panel_.find("Hold the tool (G)"));
+    status_.mutable_device()->set_kind(uint32_t(DeviceKind::kPointer));
+    click("Hold the tool (G)");
+    EXPECT_TRUE(wishes_.hold_tool);
+    controls_.toolHold().begin({}, 1e-3, true);
+    click("Hold the tool (G)");
+    EXPECT_FALSE(controls_.toolHold().isHolding());
+    wishes_ = {};
+    session_.others.emplace_back().set_is_holding(true);
+    click("Hold the tool (G)");
+    EXPECT_FALSE(wishes_.hold_tool) << "another viewer has it";
 }
 
 TEST_F(PanelClicks, BoxesSwitchWhatIsSeen) {

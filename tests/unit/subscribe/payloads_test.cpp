@@ -193,8 +193,25 @@ TEST(Payloads, StatusIsChecked) {
     topics::Status status;
     status.set_epoch(1);
     EXPECT_TRUE(isAccepted(&parseStatus, status));
+    status.mutable_device()->set_name("mouse\n" + std::string(200, 'n'));
+    status.mutable_device()->set_max_force_n(8);
+    EXPECT_EQ(parseStatus(bytesOf(status.SerializeAsString()))->device().name(),
+              "mouse" + std::string(59, 'n'));
+    status.mutable_device()->set_max_force_n(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_FALSE(isAccepted(&parseStatus, status));
+    status.clear_device();
     status.set_rate_hz(std::numeric_limits<double>::infinity());
     EXPECT_FALSE(isAccepted(&parseStatus, status));
+}
+
+TEST(Payloads, WhoOnlyLooksHoldsNothing) {
+    topics::Viewer viewer;
+    viewer.set_sender(7);
+    viewer.set_is_holding(true);
+    const auto parsed = [&] { return parseViewer(bytesOf(viewer.SerializeAsString()), 7); };
+    EXPECT_FALSE(parsed()->is_holding());
+    viewer.set_role(topics::Viewer::OPERATOR);
+    EXPECT_TRUE(parsed()->is_holding());
 }
 
 }  // namespace

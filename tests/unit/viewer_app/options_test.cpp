@@ -146,12 +146,19 @@ TEST(Options, RefusesViewsThatMakeNoSense) {
     EXPECT_THROW(parse({"--command", "reset", "--camera", "orbit"}), UserError);
 }
 
+TEST(Options, TheMouseHoldsTheToolOnRequest) {
+    EXPECT_FALSE(parse({})->holds_tool);
+    EXPECT_TRUE(parse({"--hold-tool"})->holds_tool);
+}
+
 TEST(Options, RefusesWhatMakesNoSense) {
     EXPECT_THROW(parse({"--command"}), UserError);
     EXPECT_THROW(parse({"--command", ""}), UserError);
     EXPECT_THROW(parse({"--command", "explode"}), UserError);
     EXPECT_THROW(parse({"--command", "restore \xff"}), UserError);
     EXPECT_THROW(parse({"--command", "reset", "--offscreen", "--out", "p"}), UserError);
+    EXPECT_THROW(parse({"--hold-tool", "--offscreen", "--out", "p"}), UserError);
+    EXPECT_THROW(parse({"--hold-tool", "--role", "viewer"}), UserError);
     EXPECT_THROW(parse({"--timeout-s", "3"}), UserError);
     EXPECT_THROW(parse({"--bogus"}), UserError);
     EXPECT_THROW(parse({"--offscreen"}), UserError);
