@@ -32,11 +32,11 @@ struct ArmLibraries {
 };
 
 struct DeviceFacts {
-    std::vector<UsbFact> usb;
-    std::vector<InputFact> inputs;
-    std::string spnav_path;
+    std::vector<UsbFact> usb = {};
+    std::vector<InputFact> inputs = {};
+    std::string spnav_path = {};
     SpnavState spnav = SpnavState::kNoSocket;
-    ArmLibraries libraries;
+    ArmLibraries libraries = {};
 };
 
 DeviceFacts gatherDeviceFacts(const ArmLibraries& libraries);

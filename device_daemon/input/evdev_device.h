@@ -12,8 +12,8 @@ namespace bonemill {
 
 struct EvdevDevice {
     int file = -1;  // the receiver closes it
-    std::string name;
-    EvdevState state;
+    std::string name = {};
+    EvdevState state = {};
     bool has_rumble = false;  // it can, and its file may be written
 };
 

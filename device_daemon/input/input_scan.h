@@ -16,8 +16,8 @@ enum class InputRole {
 };
 
 struct InputFact {
-    std::string path;  // /dev/input/event*
-    std::string name;
+    std::string path = {};  // /dev/input/event*
+    std::string name = {};
     InputRole role = InputRole::kOther;
     bool may_read = false;
 };
@@ -25,8 +25,8 @@ struct InputFact {
 struct UsbFact {
     uint16_t vendor = 0;
     uint16_t product = 0;
-    std::string path;  // /dev/bus/usb/*
-    std::string name;  // of the product, as the device says it
+    std::string path = {};  // /dev/bus/usb/*
+    std::string name = {};  // of the product, as the device says it
     bool may_write = false;
 };
 

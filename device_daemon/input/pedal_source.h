@@ -17,8 +17,8 @@ namespace bonemill {
 
 // Codes are the kernel's: KEY_B, BTN_0, ...
 struct PedalKeys {
-    std::optional<uint16_t> remove;  // without it every key that is not `add`
-    std::optional<uint16_t> add;
+    std::optional<uint16_t> remove = {};  // without it every key that is not `add`
+    std::optional<uint16_t> add = {};
 };
 
 class PedalSource final : private InputSource {
