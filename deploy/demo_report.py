@@ -298,9 +298,9 @@ def run_section(run):
     device = run["device"]
     if device:
         lines += [
-            f"Device side: {device['ticks']} ticks at {device['rate_hz']:.1f} Hz, {device['missed_periods']} missed "
-            f"periods, {device['late_answers']} late answers of the server, hand at most "
-            f"{device['max_tracking_mm']:.2f} mm from where it wanted to be.",
+            f"Device side: {device['ticks']} ticks at {device['rate_hz']:.1f} Hz, {device['late_answers']} late answers "
+            f"of the server, {device['stops']} stops, hand at most {device['device']['max_tracking_mm']:.2f} mm from "
+            "where it wanted to be.",
             "",
         ]
     if run["sound"]:

@@ -12,18 +12,13 @@
 #include "common/rt/realtime_thread.h"
 #include "common/rt/rt_guard.h"
 #include "common/user_error.h"
+#include "device_daemon/app/stop_files.h"
 
 namespace bonemill {
 namespace {
 
 constexpr int64_t kWatchPeriodNs = 50 * kNsPerMillisecond;
 constexpr double kForEver = std::numeric_limits<double>::infinity();
-
-double endTimeOf(const DeviceSetup& setup, const DaemonOptions& options) {
-    const bool has_path = !setup.phases.empty();
-    const double path_end = has_path && !options.hold ? setup.path.duration() : kForEver;
-    return std::min(path_end, options.seconds.value_or(kForEver));
-}
 
 // Waits for SIGINT or SIGTERM, and returns false after kWatchPeriodNs without one.
 bool waitForSignal() {
@@ -37,14 +32,15 @@ bool waitForSignal() {
 
 }  // namespace
 
-Daemon::Daemon(const DeviceSetup& setup, const DaemonOptions& options)
+Daemon::Daemon(const DeviceSetup& setup, const DaemonOptions& options, HapticDevice& device,
+               ChildProgram* program)
     : setup_(setup),
       options_(options),
-      end_time_(endTimeOf(setup, options)),
-      kinematics_(setup.geometry),
-      emulator_(kinematics_, setup.plant, setup.hand, setup.path),
-      loop_(kinematics_, emulator_, setup.loop, emulator_.state().X_DT),
-      link_(DeviceLink::create(options.session, LinkSide::kDaemon, setup.scene_hash)) {}
+      device_(device),
+      program_(program),
+      loop_(device, setup.loop),
+      link_(DeviceLink::create(options.session, LinkSide::kDaemon, setup.scene_hash)),
+      period_ns_(std::llround(kNsPerSecond / setup.rate_hz)) {}
 
 void Daemon::run() {
     RealtimeThread loop_thread(
@@ -59,25 +55,31 @@ void Daemon::run() {
         throw;
     }
     loop_thread.join();
-    statistics_.final_phase = phaseOf(progress_.waypoint);
 }
 
 void Daemon::runLoop() {
-    const int64_t period_ns = std::llround(kNsPerSecond / setup_.rate_hz);
     const int64_t start_ns = monotonicNowNs();
-    PeriodicTimer timer(period_ns, start_ns);
-    int64_t last_instant_ns = start_ns;
+    PeriodicTimer timer(period_ns_, start_ns);
+    const bool has_clock = device_.hasClock();
+    int64_t last_ns = start_ns;
     while (!loop_.isReleased()) {
-        const int64_t instant_ns = timer.waitNext();
-        tick(instant_ns, secondsOfNs(instant_ns - last_instant_ns));
-        last_instant_ns = instant_ns;
+        int64_t instant_ns = 0;
+        if (has_clock) {
+            // A device that has fallen silent is looked after at the loop's own pace.
+            device_.waitForSample(last_ns + 2 * period_ns_);
+            instant_ns = monotonicNowNs();
+        } else {
+            instant_ns = timer.waitNext();
+        }
+        tick(instant_ns, secondsOfNs(instant_ns - last_ns));
+        last_ns = instant_ns;
         if (shouldEnd()) loop_.release();
     }
     sayGoodbye();
     statistics_.wall_time = secondsOfNs(monotonicNowNs() - start_ns);
     statistics_.missed_periods = timer.missedPeriods();
-    statistics_.scenario_time = emulator_.state().scenario_time;
-    statistics_.failed_poses = loop_.failedPoses();
+    statistics_.unheard_periods = loop_.unheardPeriods();
+    statistics_.final_state = nameOf(loop_.safety().state());
     progress_.is_finished = true;
 }
 
@@ -86,20 +88,33 @@ void Daemon::tick(int64_t instant_ns, double elapsed) noexcept {
     const int64_t woke_ns = monotonicNowNs();
 
     DeviceSample sample;
-    if (loop_.read(elapsed, sample)) {
-        sample.stamp_ns = monotonicNowNs();
-        last_sequence_ = link_.writeSample(sample);
-        last_sample_ = sample;
-        if (first_sequence_ == 0) first_sequence_ = last_sequence_;
-    }
+    if (loop_.read(woke_ns, elapsed, sample)) publish(sample);
     WrenchCommand command;
     const bool has_command = link_.readCommand(command);
-    if (has_command) attachToServer(command, last_sequence_);
-    loop_.write(has_command ? &command : nullptr, monotonicNowNs());
+    if (has_command) noteAttached(command);
+    // What an earlier run left in the memory answers earlier samples.
+    const bool is_for_us = has_command && progress_.is_attached.load(std::memory_order_relaxed);
+    loop_.write(is_for_us ? &command : nullptr, monotonicNowNs());
 
-    statistics_.wakeup_latency.record(woke_ns - instant_ns);
+    if (elapsed > 0) statistics_.period.record(int64_t(elapsed * kNsPerSecond));
+    if (!device_.hasClock()) statistics_.wakeup_latency.record(woke_ns - instant_ns);
     statistics_.compute_time.record(monotonicNowNs() - woke_ns);
-    recordTick(has_command ? &command : nullptr, last_sequence_);
+    recordTick(is_for_us ? &command : nullptr);
+}
+
+// A device that is faster than the loop of the scene is felt at its own pace; the server gets what it asked
+// for.
+void Daemon::publish(DeviceSample& sample) noexcept {
+    const int64_t now_ns = monotonicNowNs();
+    if (now_ns - published_ns_ < period_ns_ * 3 / 4) return;
+    published_ns_ = now_ns;
+    if (device_.capabilitiesVersion() != capabilities_version_) {
+        capabilities_version_ = device_.capabilitiesVersion();
+        link_.writeCapabilities(device_.capabilities());
+    }
+    last_sequence_ = link_.writeSample(sample);
+    last_sample_ = sample;
+    if (first_sequence_ == 0) first_sequence_ = last_sequence_;
 }
 
 // Lets the server tell an orderly end from a fault.
@@ -110,39 +125,43 @@ void Daemon::sayGoodbye() noexcept {
     link_.writeSample(last_sample_);
 }
 
-void Daemon::attachToServer(const WrenchCommand& command, uint64_t sequence) noexcept {
-    // What an earlier run left in the memory answers earlier samples.
+void Daemon::noteAttached(const WrenchCommand& command) noexcept {
     const bool answers_this_run = first_sequence_ != 0 && command.answers_sequence >= first_sequence_ &&
-                                  command.answers_sequence <= sequence;
+                                  command.answers_sequence <= last_sequence_;
     if (!answers_this_run || progress_.is_attached.load(std::memory_order_relaxed)) return;
-    emulator_.startScenario();
+    attached_ns_ = monotonicNowNs();
     progress_.is_attached.store(true, std::memory_order_relaxed);
 }
 
-void Daemon::recordTick(const WrenchCommand* command, uint64_t sequence) noexcept {
-    const EmulatorState& state = emulator_.state();
+void Daemon::recordTick(const WrenchCommand* command) noexcept {
     LoopStatistics& s = statistics_;
     ++s.ticks;
-    if (progress_.is_attached.load(std::memory_order_relaxed)) {
+    if (command) {
         ++s.attached_ticks;
-        if (!command || command->answers_sequence + 1 < sequence) ++s.late_answers;
+        if (command->answers_sequence + 1 < last_sequence_) ++s.late_answers;
     }
-    s.max_tracking_error =
-        std::max(s.max_tracking_error, (state.target.X_DT.position - state.X_DT.position).norm());
-    s.max_force = std::max(s.max_force, loop_.appliedWrench().force.norm());
-    s.max_torque = std::max(s.max_torque, loop_.appliedWrench().torque.norm());
-    if (loop_.limitEvents() & kForceClamped) ++s.clipped_ticks;
-    if (loop_.limitEvents() & kForceRateLimited) ++s.rate_limited_ticks;
-    if (state.at_stop) ++s.stop_ticks;
+    s.max_force = std::max(s.max_force, loop_.given().force.norm());
+    s.max_torque = std::max(s.max_torque, loop_.given().torque.norm());
+    const SafetyStates& safety = loop_.safety();
+    if (safety.state() == SafetyState::kEngaged) {
+        ++s.engaged_ticks;
+        if (loop_.limitEvents() & kWrenchClamped) ++s.clamped_ticks;
+        if (loop_.limitEvents() & kWrenchRateLimited) ++s.rate_limited_ticks;
+    }
+    if (safety.cause() != StopCause::kNone && progress_.cause == StopCause::kNone) ++s.stops;
 
-    // While this side ends the run, silence is its own doing.
-    progress_.is_stale.store(loop_.isPeerStale() && !shouldEnd(), std::memory_order_relaxed);
-    progress_.waypoint.store(state.target.waypoint, std::memory_order_relaxed);
-    progress_.scenario_time.store(state.scenario_time, std::memory_order_relaxed);
+    progress_.is_server_there.store(loop_.isServerThere(), std::memory_order_relaxed);
+    progress_.abilities.store(loop_.abilities(), std::memory_order_relaxed);
+    progress_.fault_code.store(safety.faultCode(), std::memory_order_relaxed);
+    progress_.cause.store(safety.cause(), std::memory_order_relaxed);
+    progress_.state.store(safety.state(), std::memory_order_relaxed);
 }
 
 bool Daemon::shouldEnd() const noexcept {
-    return should_stop_.load(std::memory_order_relaxed) || emulator_.state().scenario_time >= end_time_;
+    const bool is_over = options_.seconds && attached_ns_ != 0 &&
+                         secondsOfNs(monotonicNowNs() - attached_ns_) > *options_.seconds;
+    return is_over || should_stop_.load(std::memory_order_relaxed) ||
+           (loop_.reading().status & kStatusLeaving);
 }
 
 void Daemon::watch() {
@@ -150,15 +169,19 @@ void Daemon::watch() {
                  options_.session);
     const double give_up_s = options_.wait_seconds.value_or(kForEver);
     const int64_t start_ns = monotonicNowNs();
-    int shown_waypoint = -2;
-    bool shown_stale = true;
+    SafetyState shown_state = SafetyState::kDisconnected;
+    StopCause shown_cause = StopCause::kNone;
+    bool was_server_there = false;
     while (!progress_.is_finished) {
         if (waitForSignal() && !should_stop_) {
             spdlog::info("stopping: force ramps to zero");
             should_stop_ = true;
         }
+        reportState(shown_state, shown_cause);
+        if (loop_.blackBox().isFull()) writeBlackBox();
+        if (program_ && !should_stop_) program_->lookAfter();
         if (progress_.is_attached) {
-            reportProgress(shown_waypoint, shown_stale);
+            reportServer(was_server_there);
         } else if (secondsOfNs(monotonicNowNs() - start_ns) > give_up_s) {
             throw UserError("no haptic_server has answered within " + std::to_string(*options_.wait_seconds) +
                             " s: start it with the same --session (" + std::to_string(options_.session) +
@@ -167,28 +190,47 @@ void Daemon::watch() {
     }
 }
 
-void Daemon::reportProgress(int& shown_waypoint, bool& shown_stale) const {
-    const double t = progress_.scenario_time;
-    const int waypoint = progress_.waypoint;
-    if (waypoint != shown_waypoint) {
-        const bool is_new_phase = shown_waypoint < -1 || phaseOf(waypoint) != phaseOf(shown_waypoint);
-        if (is_new_phase) spdlog::info("{:8.3f} s  phase {}", t, phaseOf(waypoint));
-        shown_waypoint = waypoint;
-    }
-    const bool is_stale = progress_.is_stale;
-    if (is_stale != shown_stale && !progress_.is_finished) {
-        if (is_stale)
-            spdlog::warn("{:8.3f} s  haptic_server is silent: force ramps to zero", t);
-        else
-            spdlog::info("{:8.3f} s  haptic_server answers", t);
-        shown_stale = is_stale;
-    }
+void Daemon::reportServer(bool& was_there) const {
+    const bool is_there = progress_.is_server_there;
+    if (is_there == was_there || progress_.is_finished || should_stop_) return;
+    if (is_there)
+        spdlog::info("haptic_server answers");
+    else
+        spdlog::warn("haptic_server is silent: force ramps to zero");
+    was_there = is_there;
 }
 
-std::string Daemon::phaseOf(int waypoint) const {
-    if (!progress_.is_attached) return "waiting for haptic_server";
-    if (waypoint < 0 || setup_.phases[waypoint].empty()) return "hold";
-    return setup_.phases[waypoint];
+void Daemon::reportState(SafetyState& shown_state, StopCause& shown_cause) const {
+    const SafetyState state = progress_.state;
+    const StopCause cause = progress_.cause;
+    if (cause != shown_cause && cause != StopCause::kNone) {
+        const uint32_t code = progress_.fault_code;
+        spdlog::error("{}: {}{}. {}", nameOf(state), nameOf(cause),
+                      code == 0 ? "" : " " + std::to_string(code), whatToDo(cause));
+    } else if (state != shown_state) {
+        spdlog::info("device is {}", nameOf(state));
+        if (state == SafetyState::kReady) warnOfMissingSwitch();
+    }
+    shown_state = state;
+    shown_cause = cause;
+}
+
+void Daemon::warnOfMissingSwitch() const {
+    const uint32_t abilities = progress_.abilities;
+    if (!options_.has_enabling_switch || (abilities & (kAbilityEnablingSwitch | kAbilitySimulated))) return;
+    spdlog::warn("this device has no enabling switch and will not engage: start with --no-enabling-switch if you "
+                 "accept that it engages by itself");
+}
+
+void Daemon::writeBlackBox() {
+    const StopCause cause = progress_.cause;
+    const std::filesystem::path file = stopFile(options_.stop_dir, options_.session, cause);
+    try {
+        loop_.blackBox().write(file);
+        spdlog::info("the last two seconds are in {}", file.string());
+    } catch (const UserError& error) {
+        spdlog::warn("{}", error.what());
+    }
 }
 
 }  // namespace bonemill

@@ -4,20 +4,25 @@
 #include <atomic>
 
 #include "common/ipc/device_link.h"
+#include "device_daemon/app/child_program.h"
 #include "device_daemon/app/device_setup.h"
 #include "device_daemon/app/loop_statistics.h"
 #include "device_daemon/app/options.h"
+#include "device_daemon/loop/device_loop.h"
 
 namespace bonemill {
 
 class Daemon {
   public:
-    // Throws UserError when the session is taken or a permission is missing, among others.
-    Daemon(const DeviceSetup& setup, const DaemonOptions& options);
+    // `device` and `program`, which may be null, must outlive the daemon. Throws UserError when the session
+    // is taken or a permission is missing, among others.
+    Daemon(const DeviceSetup& setup, const DaemonOptions& options, HapticDevice& device,
+           ChildProgram* program);
 
-    // Blocks until the scenario, --seconds or a signal ends it and the force has ramped to zero. SIGINT and
-    // SIGTERM must be blocked in the calling thread. Throws UserError when there is no real-time scheduling
-    // and no --best-effort-rt, or when nobody answered within --wait-seconds.
+    // Blocks until the device leaves, or --seconds or a signal ends it, and the force has ramped to zero.
+    // SIGINT and SIGTERM must be blocked in the calling thread. Throws UserError when there is no real-time
+    // scheduling and no
+    // --best-effort-rt, or when nobody answered within --wait-seconds.
     void run();
 
     const LoopStatistics& statistics() const noexcept { return statistics_; }
@@ -27,30 +32,38 @@ class Daemon {
     // order is enough.
     struct Progress {
         std::atomic<bool> is_attached = false;  // haptic_server has answered a sample of this run
-        std::atomic<bool> is_stale = false;
-        std::atomic<int> waypoint = -1;
-        std::atomic<double> scenario_time = 0;
+        std::atomic<bool> is_server_there = false;
+        std::atomic<SafetyState> state = SafetyState::kDisconnected;
+        std::atomic<StopCause> cause = StopCause::kNone;
+        std::atomic<uint32_t> fault_code = 0;
+        std::atomic<uint32_t> abilities = 0;  // DeviceAbility bits
         std::atomic<bool> is_finished = false;
     };
 
     void runLoop();
     void tick(int64_t instant_ns, double elapsed) noexcept;
+    void publish(DeviceSample& sample) noexcept;
     void sayGoodbye() noexcept;
-    void attachToServer(const WrenchCommand& command, uint64_t sequence) noexcept;
-    void recordTick(const WrenchCommand* command, uint64_t sequence) noexcept;
+    void noteAttached(const WrenchCommand& command) noexcept;
+    void recordTick(const WrenchCommand* command) noexcept;
     bool shouldEnd() const noexcept;
 
     void watch();
-    void reportProgress(int& shown_waypoint, bool& shown_stale) const;
-    std::string phaseOf(int waypoint) const;
+    void reportServer(bool& was_there) const;
+    void reportState(SafetyState& shown_state, StopCause& shown_cause) const;
+    void warnOfMissingSwitch() const;
+    void writeBlackBox();
 
     DeviceSetup setup_;
     DaemonOptions options_;
-    double end_time_;  // of the scenario, s
-    AresKinematics kinematics_;
-    AresEmulator emulator_;
+    HapticDevice& device_;
+    ChildProgram* program_;
     DeviceLoop loop_;
     DeviceLink link_;
+    int64_t period_ns_;
+    uint32_t capabilities_version_ = 0;
+    int64_t published_ns_ = 0;
+    int64_t attached_ns_ = 0;
     uint64_t first_sequence_ = 0;  // of this run's samples; 0 before the first
     DeviceSample last_sample_{};
     uint64_t last_sequence_ = 0;

@@ -36,10 +36,17 @@ int main(int argc, char** argv) {
         if (!options) return 0;
         bonemill::setUpLog("device_daemon", options->log_level);
         const bonemill::DeviceSetup setup = loadSetup(options->scene);
+        if (options->describe) {
+            std::cout << bonemill::describeAres(setup.ares) << std::flush;
+            return 0;
+        }
         blockStopSignals();
-        bonemill::Daemon daemon(setup, *options);
+        bonemill::dds::setNetwork(options->network);
+        const bonemill::ChosenDevice chosen = bonemill::chooseDevice(setup, *options);
+        bonemill::Daemon daemon(setup, *options, *chosen.device, chosen.program.get());
         daemon.run();
-        std::cout << bonemill::jsonLineOf(daemon.statistics()) << std::endl;
+        const std::string device_words = chosen.program ? chosen.program->finish() : "";
+        std::cout << bonemill::jsonLineOf(daemon.statistics(), device_words) << std::endl;
         return 0;
     } catch (const bonemill::UserError& error) {
         std::cerr << "error: " << error.what() << std::endl;

@@ -6,6 +6,8 @@
 #include <thread>
 
 #include "common/user_error.h"
+#include "device_daemon/app/device_choice.h"
+#include "device_daemon/app/stop_files.h"
 
 namespace bonemill {
 
@@ -15,19 +17,31 @@ int defaultCore() noexcept {
 
 std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
     DaemonOptions options;
+    options.stop_dir = defaultStopDir();
     CLI::App app{
-        "Simulated ARES haptic device with a simulated hand; haptic_server answers it through shared "
-        "memory."};
+        "Gives haptic_server the hand: reads the haptic device, and gives it the force, within its limits."};
     app.add_option("--scene", options.scene, "Scene file (.textproto)")->required();
+    app.add_option("--device", options.device, deviceChoices())->capture_default_str();
     app.add_option("--session", options.session, "Number that haptic_server was started with")
         ->capture_default_str();
-    app.add_option("--seconds", options.seconds, "Leave after this much of the scenario, in s")
+    app.add_option("--domain", options.domain, "DDS domain of the viewers whose mouse holds the tool, 0 to 230")
+        ->check(CLI::Range(0, 230))
+        ->capture_default_str();
+    dds::addNetworkOptions(app, options.network);
+    app.add_option("--seconds", options.seconds, "Leave after so many s with haptic_server")
         ->check(CLI::PositiveNumber);
     app.add_option(
            "--wait-seconds", options.wait_seconds,
            "Leave with an error if haptic_server has not answered after so many s (default: wait for ever)")
         ->check(CLI::PositiveNumber);
-    app.add_flag("--hold", options.hold, "Rest at the last waypoint instead of leaving");
+    app.add_flag("--hold", options.hold, "The scripted hand rests at its last waypoint instead of leaving");
+    app.add_flag("!--no-enabling-switch", options.has_enabling_switch,
+                 "The device has no switch that must be held: it engages by itself while the force is small");
+    app.add_flag("--describe", options.describe,
+                 "Print geometry, frames and limits of the scene's ARES, and end");
+    app.add_option("--stop-dir", options.stop_dir,
+                   "Folder for the last two seconds before every stop, as CSV files")
+        ->capture_default_str();
     app.add_flag("--best-effort-rt", options.best_effort_realtime,
                  "Go on without real-time scheduling and locked memory");
     app.add_option("--rt-core", options.core, "Processor core for the device loop (-1: any)")

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+
+#include "common/dds/network.h"
 
 namespace bonemill {
 
@@ -13,10 +16,16 @@ int defaultCore() noexcept;
 
 struct DaemonOptions {
     std::string scene;
+    std::string device = "auto";  // device_choice.h
     uint32_t session = 1;
-    std::optional<double> seconds;       // of the scenario; not given: until the last waypoint
+    uint32_t domain = 0;  // DDS domain of the viewers, for the pointer
+    dds::NetworkOptions network;
+    std::optional<double> seconds;       // with haptic_server; not given: until the device leaves
     std::optional<double> wait_seconds;  // how long to wait for haptic_server; not given: for ever
-    bool hold = false;
+    bool hold = false;                   // the scripted hand rests at its last waypoint
+    bool has_enabling_switch = true;
+    bool describe = false;
+    std::filesystem::path stop_dir;
     bool best_effort_realtime = false;
     int core = defaultCore();
     std::string log_level = "info";

@@ -54,9 +54,11 @@ class HapticDevice {
     virtual DeviceCapabilities capabilities() const noexcept = 0;
     virtual uint32_t capabilitiesVersion() const noexcept { return 1; }
 
+    // Tells whether the device gives the pace: waitForSample() wakes with each of its samples. Otherwise the
+    // loop has its own timer, and does not call waitForSample().
+    virtual bool hasClock() const noexcept = 0;
     // Sleeps until the device has a new sample, or until the deadline (CLOCK_MONOTONIC ns): true says that
-    // there is one. Devices without a clock of their own return false at the deadline, which is the loop's
-    // own next period.
+    // there is one.
     virtual bool waitForSample(int64_t deadline_ns) noexcept = 0;
     // Reads the newest sample, `elapsed` s after the last period. False says that there is none that can be
     // believed: the device is silent, or what it says makes no sense.

@@ -33,7 +33,8 @@ struct JointOrder {
 class JointDevice {
   public:
     virtual ~JointDevice() = default;
-    // As in HapticDevice.
+    // Both as in HapticDevice.
+    virtual bool hasClock() const noexcept = 0;
     virtual bool waitForSample(int64_t deadline_ns) noexcept = 0;
     // Reads the joints now. `elapsed` is the time (s) since the last call by the loop's own clock; an
     // emulated device lives through it under the forces applied last. False says that nothing was heard.

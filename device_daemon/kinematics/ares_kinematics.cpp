@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "device_daemon/kinematics/singularity.h"
+
 namespace bonemill {
 namespace {
 
@@ -31,10 +33,15 @@ AresKinematics::AresKinematics(const AresGeometry& geometry) noexcept : geometry
     neutral_height_ =
         geometry.stroke / 2 + std::sqrt(geometry.link_length * geometry.link_length - reach * reach);
     for (Leg& leg : legs_) leg.base.z() = -neutral_height_;
+    Matrix6d J_inv;
+    if (!isBuildable() || !inverseJacobian(Pose{}, J_inv)) return;
+    handedness_ = J_inv.determinant() < 0 ? -1.0 : 1.0;
 }
 
 bool AresKinematics::isBuildable() const noexcept {
-    return std::isfinite(neutral_height_) && workspaceFaults(Pose{}) == kWorkspaceOk;
+    Matrix6d J_inv;
+    return std::isfinite(neutral_height_) && workspaceFaults(Pose{}) == kWorkspaceOk &&
+           inverseJacobian(Pose{}, J_inv) && singularityIndex(J_inv) >= kMinSingularityIndex;
 }
 
 bool AresKinematics::linkVector(const Leg& leg, const Pose& X_DT, Eigen::Vector3d& link,
@@ -89,16 +96,59 @@ ForwardSolution AresKinematics::forward(const Vector6d& q, const Pose& X_DT_star
     return solution;
 }
 
-uint32_t AresKinematics::workspaceFaults(const Pose& X_DT) const noexcept {
+uint32_t AresKinematics::workspaceFaults(const Pose& X_DT, double slack) const noexcept {
+    // |w| is the cosine of half the turn. Without the comparison's negation not-a-number would pass.
+    if (!(std::abs(X_DT.rotation.w()) >= std::cos(kMaxTurn / 2))) return kWorkspaceTurn;
     uint32_t faults = kWorkspaceOk;
     Eigen::Vector3d link;
     double q = 0;
     for (const Leg& leg : legs_) {
         if (!linkVector(leg, X_DT, link, q)) return kWorkspaceUnreachable;
-        if (q < 0 || q > geometry_.stroke) faults |= kWorkspaceStroke;
-        if (link.z() < kMinLinkCosine * geometry_.link_length) faults |= kWorkspaceLean;
+        if (q < -slack || q > geometry_.stroke + slack) faults |= kWorkspaceStroke;
+        if (link.z() < kMinLinkCosine * geometry_.link_length - slack) faults |= kWorkspaceLean;
     }
     return faults;
+}
+
+bool AresKinematics::isOwnAssembly(const Matrix6d& J_inv) const noexcept {
+    return J_inv.determinant() * handedness_ > 0;
+}
+
+bool AresKinematics::linkHeights(const Pose& X_DT, Vector6d& heights, Matrix6d& gradient) const noexcept {
+    Eigen::Vector3d link;
+    double q = 0;
+    for (int i = 0; i < kLegCount; ++i) {
+        if (!linkVector(legs_[i], X_DT, link, q) || link.z() == 0) return false;
+        heights[i] = link.z();
+        // The link's length is constant: a height falls by what the platform's point goes outwards.
+        const Eigen::Vector3d inwards(-link.x() / link.z(), -link.y() / link.z(), 0);
+        gradient.block<1, 3>(i, 0) = inwards.transpose();
+        gradient.block<1, 3>(i, 3) = (X_DT.rotation * legs_[i].platform).cross(inwards).transpose();
+    }
+    return true;
+}
+
+bool AresKinematics::inverseJacobianGradient(const Pose& X_DT,
+                                             std::array<Matrix6d, 6>& gradient) const noexcept {
+    Eigen::Vector3d link;
+    double q = 0;
+    for (int i = 0; i < kLegCount; ++i) {
+        if (!linkVector(legs_[i], X_DT, link, q) || link.z() == 0) return false;
+        const Eigen::Vector3d arm = X_DT.rotation * legs_[i].platform;  // from T's origin to the joint, in D
+        const Eigen::Vector3d row = link / link.z();
+        for (int k = 0; k < 6; ++k) {
+            const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k % 3);
+            const Eigen::Vector3d arm_change =
+                k < 3 ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : axis.cross(arm);
+            const Eigen::Vector3d joint_change = k < 3 ? axis : arm_change;
+            Eigen::Vector3d link_change(joint_change.x(), joint_change.y(), 0);
+            link_change.z() = -link.dot(link_change) / link.z();
+            const Eigen::Vector3d row_change = (link_change - link_change.z() * row) / link.z();
+            gradient[k].block<1, 3>(i, 0) = row_change.transpose();
+            gradient[k].block<1, 3>(i, 3) = (arm_change.cross(row) + arm.cross(row_change)).transpose();
+        }
+    }
+    return true;
 }
 
 Vector6d actuatorForces(const Matrix6d& J_inv, const Wrench& wrench) noexcept {

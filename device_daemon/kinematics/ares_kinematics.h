@@ -38,10 +38,16 @@ enum WorkspaceFault : uint32_t {
     kWorkspaceUnreachable = 1u << 0,  // a link is too short: no slider position exists
     kWorkspaceStroke = 1u << 1,       // a slider would leave its stroke
     kWorkspaceLean = 1u << 2,         // a link leans too far from its actuator (towards a serial singularity)
+    kWorkspaceTurn = 1u << 3,         // the platform is turned too far for its joints
+    kWorkspaceSingular = 1u << 4,     // the legs hardly hold the platform: see singularity.h
+    kWorkspaceMirrored = 1u << 5,     // only another assembly of the same legs reaches this pose
 };
 
 // This is the smallest cosine between a link and its actuator's axis.
 inline constexpr double kMinLinkCosine = 0.42;
+// This is the largest turn (rad) from the neutral orientation, about any axis: 75 degrees. The nearest
+// assembly with the same slider positions and the same handedness is turned by more than 135 degrees.
+inline constexpr double kMaxTurn = 1.3089969389957472;
 
 struct ForwardSolution {
     Pose X_DT;           // the last iterate, also when it did not converge
@@ -51,8 +57,8 @@ struct ForwardSolution {
 
 class AresKinematics {
   public:
-    // A geometry whose neutral pose is impossible gives an object with isBuildable() == false; nothing else
-    // of it may be used then.
+    // A geometry whose neutral pose is impossible or singular gives an object with isBuildable() == false;
+    // nothing else of it may be used then.
     explicit AresKinematics(const AresGeometry& geometry = {}) noexcept;
 
     bool isBuildable() const noexcept;
@@ -65,12 +71,26 @@ class AresKinematics {
     // Finds J_inv with q_dot = J_inv [v; omega]; false when the pose is unreachable or serially singular.
     bool inverseJacobian(const Pose& X_DT, Matrix6d& J_inv) const noexcept;
 
-    // Finds the handle pose for slider positions by Newton's method from `X_DT_start`, with at most
-    // kMaxForwardIterations steps. If it does not converge, q is impossible or that too far away.
+    // Finds a handle pose for slider positions by Newton's method from `X_DT_start`, with at most
+    // kMaxForwardIterations steps. If it does not converge, q is impossible or that too far away. If it does,
+    // the pose may still be that of another assembly: locate() in pose_search.h tells.
     ForwardSolution forward(const Vector6d& q, const Pose& X_DT_start) const noexcept;
 
-    // Returns the WorkspaceFault bits of a pose.
-    uint32_t workspaceFaults(const Pose& X_DT) const noexcept;
+    // Finds how J_inv changes with each component of the twist [v; omega] at a pose: gradient[k] is dJ_inv
+    // over a small motion along component k. False as inverseJacobian().
+    bool inverseJacobianGradient(const Pose& X_DT, std::array<Matrix6d, 6>& gradient) const noexcept;
+
+    // Returns those WorkspaceFault bits of a pose that are mechanical: reach, stroke, lean and turn. A pose
+    // may lie beyond stroke and lean by `slack` (m); a negative slack asks for a distance from them.
+    uint32_t workspaceFaults(const Pose& X_DT, double slack = 0) const noexcept;
+
+    // Tells whether a pose with this Jacobian is assembled as the neutral pose is: no singularity need be
+    // crossed between them.
+    bool isOwnAssembly(const Matrix6d& J_inv) const noexcept;
+
+    // Finds the height (m) of each link along its actuator, which is the link's length times the cosine of
+    // its lean, and the gradient of each over the twist; false as inverseJacobian().
+    bool linkHeights(const Pose& X_DT, Vector6d& heights, Matrix6d& gradient) const noexcept;
 
     static constexpr int kMaxForwardIterations = 12;
     static constexpr double kForwardTolerance = 1e-10;  // m, largest slider error
@@ -85,6 +105,7 @@ class AresKinematics {
 
     AresGeometry geometry_;
     double neutral_height_;  // of the platform over the base plane, m
+    double handedness_ = 0;  // the sign of the neutral pose's det J_inv
     std::array<Leg, kLegCount> legs_;
 };
 

@@ -1,65 +1,79 @@
-// This is one period of the device loop, without processes, threads or clocks: joints -> pose ->
-// DeviceSample, and WrenchCommand -> limits -> actuator forces. The limits, and their order,
-// stand in safety/force_limiter.h.
+// This is one period of the device loop, without processes, threads or clocks: reading -> DeviceSample, and
+// WrenchCommand -> limits and states -> order to the device.
 //
-// In a period read() comes first, and the sample goes out at once; then write() takes the newest command.
-// The command so answers an earlier sample, and the loop has the one tick of delay that a real device has.
-// Time comes in as a parameter: the same class runs in device_daemon and in simulated time. It is RT-safe,
-// for one thread.
+// In a period read() comes first, and the sample goes out at once; then write() takes the newest command. The
+// command so answers an earlier sample, and the loop has the one tick of delay that a real device has. Time
+// comes in as a parameter: the same class runs in device_daemon and in simulated time. It is RT-safe, for one
+// thread.
 #pragma once
 
 #include "common/device_messages/device_messages.h"
-#include "device_daemon/driver/joint_device.h"
-#include "device_daemon/safety/force_limiter.h"
+#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/loop/black_box.h"
+#include "device_daemon/safety/safety_states.h"
+#include "device_daemon/safety/wrench_limiter.h"
 
 namespace bonemill {
 
 struct DeviceLoopConfig {
-    ForceLimits limits;
-    StaleRampConfig stale;
-    uint32_t sample_flags = 0;  // DeviceFlag bits that every sample carries
+    WrenchLimits wrench;  // its norms are lowered to what the device gives
+    MotionLimits motion;  // max_force is the device's
+    SafetyConfig states;  // its silence is also that of haptic_server
+    size_t black_box_records = 2000;
 };
 
 class DeviceLoop {
   public:
-    // `device` must outlive the loop; `X_DT_start` is where forward kinematics begins to search.
-    DeviceLoop(const AresKinematics& kinematics, JointDevice& device, const DeviceLoopConfig& config,
-               const Pose& X_DT_start) noexcept;
+    // `device` must outlive the loop. Allocates the black box.
+    DeviceLoop(HapticDevice& device, const DeviceLoopConfig& config);
 
-    // Reads the joints, `elapsed` s after the last period; the stamp is left to the caller. False says that
-    // no pose fits the joints, and there is nothing to publish.
-    bool read(double elapsed, DeviceSample& sample) noexcept;
+    // Reads the device, `elapsed` s after the last period. False says that no pose was ever heard, and there
+    // is nothing to publish. A device that has fallen silent shows its last pose, with the stamp of then.
+    bool read(int64_t now_ns, double elapsed, DeviceSample& sample) noexcept;
 
-    // Applies the newest command, or null if there is none yet. What is not plausible counts as silence.
+    // Gives the device what it may have of the newest command, or of null if there is none yet. What is not
+    // plausible counts as silence.
     void write(const WrenchCommand* newest, int64_t now_ns) noexcept;
 
-    // From now on every command is ignored and the force ramps to zero; isReleased() says that
-    // it arrived there.
-    void release() noexcept { limiter_.release(); }
-    bool isReleased() const noexcept { return limiter_.isReleased(); }
+    // From now on the server counts as silent; isReleased() says that no force is left.
+    void release() noexcept { is_releasing_ = true; }
+    bool isReleased() const noexcept { return is_releasing_ && given_factor_ == 0; }
 
-    bool isPeerStale() const noexcept { return limiter_.isStale(); }
-    // Returns the handle's pose that was last found.
-    const Pose& pose() const noexcept { return X_DT_; }
-    // Return the forces last applied, and the wrench on the hand that they make, in D.
-    const Vector6d& actuatorForces() const noexcept { return actuator_forces_; }
-    const Wrench& appliedWrench() const noexcept { return applied_wrench_; }
-    // Returns the ForceLimitEvent bits of the last write().
+    uint32_t abilities() const noexcept { return abilities_; }  // DeviceAbility bits of the device
+    const SafetyStates& safety() const noexcept { return states_; }
+    bool isServerThere() const noexcept { return is_server_there_; }
+    // What the hand was given last, in D.
+    const Wrench& given() const noexcept { return given_; }
     uint32_t limitEvents() const noexcept { return limiter_.events(); }
-    // Tells how often read() returned false.
-    uint64_t failedPoses() const noexcept { return failed_poses_; }
+    const DeviceReading& reading() const noexcept { return reading_; }
+    // Tells how many periods had no reading after the first one.
+    uint64_t unheardPeriods() const noexcept { return unheard_periods_; }
+    BlackBox& blackBox() noexcept { return black_box_; }
 
   private:
-    AresKinematics kinematics_;
-    JointDevice& device_;
-    uint32_t sample_flags_;
-    ForceLimiter limiter_;
-    Pose X_DT_;
-    bool has_pose_ = false;  // the last read() succeeded
-    double elapsed_ = 0;     // s, of the last read()
-    Vector6d actuator_forces_ = Vector6d::Zero();
-    Wrench applied_wrench_;
-    uint64_t failed_poses_ = 0;
+    void adaptToDevice() noexcept;
+    bool takeOrders(const WrenchCommand* newest, int64_t now_ns) noexcept;
+    void fill(DeviceSample& sample) const noexcept;
+    void remember(const WrenchCommand* newest, int64_t now_ns) noexcept;
+
+    HapticDevice& device_;
+    DeviceLoopConfig config_;
+    uint32_t capabilities_version_ = 0;
+    uint32_t abilities_ = 0;
+    WrenchLimiter limiter_;
+    SafetyStates states_;
+    BlackBox black_box_;
+    DeviceReading reading_;  // the newest that was heard, with the newest fault
+    int64_t heard_ns_ = 0;   // then
+    bool is_heard_ = false;  // in this period
+    double elapsed_ = 0;     // s, of this period
+    Wrench commanded_;       // by the newest plausible command
+    int64_t command_stamp_ns_ = 0;
+    uint32_t reset_orders_ = 0;  // the last number seen
+    bool has_command_ = false, is_server_there_ = false, is_releasing_ = false;
+    double given_factor_ = 0;
+    Wrench given_;
+    uint64_t unheard_periods_ = 0;
 };
 
 }  // namespace bonemill

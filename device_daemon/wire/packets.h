@@ -10,8 +10,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <span>
 
 namespace bonemill::wire {
 
@@ -82,7 +80,7 @@ enum CommandFlag : uint32_t {
 
 struct JointState {
     Header header;
-    uint32_t reflected_sequence;  // of the newest command
+    uint32_t reflected_sequence;  // of the newest packet of the host
     uint32_t inputs;              // Input bits
     uint64_t controller_ns;
     uint16_t statusword;
@@ -106,7 +104,7 @@ struct JointState {
 
 struct JointCommand {
     Header header;
-    uint32_t reflected_sequence;  // of the newest state
+    uint32_t reflected_sequence;  // of the newest packet of the controller
     uint32_t flags;               // CommandFlag bits
     uint64_t host_ns;
     uint16_t controlword;

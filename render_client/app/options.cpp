@@ -92,6 +92,8 @@ void addPictureOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     app.add_flag_callback(
         "--no-effects", [&options] { options.has_effects = false; },
         "None of the effects that the scene lists, neither seen nor heard");
+    app.add_flag("--hold-tool", options.holds_tool,
+                 "The mouse holds the tool at once, for a device_daemon with --device pointer");
     app.add_option("--sound-wav", options.sound_wav, "Write the scene's milling sound into this WAV file too")
         ->type_name("FILE");
 }
@@ -189,6 +191,10 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
         options.offscreen->timeout = timeout;
     }
     if (raw.measure_s) options.measure = MeasureOptions{std::chrono::seconds(*raw.measure_s), timeout};
+    if (options.holds_tool && (raw.offscreen || raw.measure_s || !raw.command.empty()))
+        throw UserError("--hold-tool needs a window: leave out --offscreen, --measure-s and --command");
+    if (options.holds_tool && options.subscriber.role == topics::Viewer::VIEWER)
+        throw UserError("--hold-tool needs --role operator or instructor: a viewer only looks");
     if (!options.sound_wav.empty() && (!options.has_effects || raw.measure_s || !raw.command.empty()))
         throw UserError(
             "--sound-wav needs a viewer with effects: leave out --no-effects, --measure-s and --command");

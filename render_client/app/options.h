@@ -42,6 +42,7 @@ struct ClientOptions {
     dds::NetworkOptions network;
     ViewWish view;
     ViewSettings settings;            // what is shown at the start
+    bool holds_tool = false;          // with the mouse, as soon as it can be
     bool has_effects = true;          // of the scene, seen and heard
     std::filesystem::path sound_wav;  // empty: none
     bool chooses_quality = true;      // kQuick where OpenGL is software and pictures follow each other

@@ -7,11 +7,11 @@
 #include <map>
 
 #include "common/user_error.h"
+#include "render_client/app/hand_feed.h"
 #include "render_client/app/scene_feed.h"
 #include "render_client/app/stop_signal.h"
 #include "render_client/controls/announce_clock.h"
 #include "render_client/controls/frame_rate.h"
-#include "render_client/controls/help_rows.h"
 #include "render_client/controls/viewer_controls.h"
 #include "render_client/hud/session_text.h"
 #include "render_client/offscreen/read_picture.h"
@@ -79,11 +79,11 @@ std::filesystem::path nextPictureName() {
     }
 }
 
-// A release or a move ends or follows what began before the mouse came to the panel.
-bool concernsOngoing(const WindowEvent& event) {
+// A release ends what began before the mouse came to the panel.
+bool isRelease(const WindowEvent& event) {
     if (const auto* key = std::get_if<KeyEvent>(&event)) return !key->is_down;
-    if (const auto* button = std::get_if<MouseButtonEvent>(&event)) return !button->is_down;
-    return std::holds_alternative<MouseMoveEvent>(event);
+    const auto* button = std::get_if<MouseButtonEvent>(&event);
+    return button && !button->is_down;
 }
 
 class WindowViewer {
@@ -95,13 +95,13 @@ class WindowViewer {
           sound_({.is_played = true, .wav = options.sound_wav}),
           feed_(options.subscriber, scene_),
           controls_(scene_.settings(), scene_.camera()),
+          hand_(controls_, scene_, feed_.subscriber(), options.holds_tool),
           painter_(window_.gl()),
           notices_(scene_) {
         spdlog::info("window, {}", window_.gl().describe());
         scene_.setViewWish(options.view);
         scene_.settings() = options.settings;
         if (options.has_effects) feed_.sound(&sound_);
-        scene_.setHelp(helpRows());
         if (options.chooses_quality && window_.gl().isSoftware()) scene_.settings().quality = Quality::kQuick;
     }
 
@@ -117,10 +117,12 @@ class WindowViewer {
         const bool is_minimised = width == 0 || height == 0;
         const SessionView session = lookAtSession();
         Wishes wishes;
-        if (!is_minimised) preparePanel(width, height);
+        if (!is_minimised) prepare(width, height);
         takeInput(height, session, wishes);
         if (!is_minimised) panel_.layOut(controls_, session, wishes);
         carryOut(wishes);
+        hand_.update(session, wishes.hold_tool, Clock::now());
+        window_.showCrosshair(controls_.toolHold().isHolding());
         announce();
         attendance_.update(session.others);
         notices_.showOutcomes(feed_.subscriber());
@@ -151,16 +153,22 @@ class WindowViewer {
         return session;
     }
 
-    void preparePanel(int width, int height) {
+    void prepare(int width, int height) {
         const Clock::time_point now = Clock::now();
         const std::chrono::duration<double> seconds = now - std::exchange(last_picture_, now);
         panel_.setPicture(width, height, window_.contentScale(), seconds.count());
+        hand_.lookAt(width, height);
     }
 
     void takeInput(int height, const SessionView& session, Wishes& wishes) {
         for (const WindowEvent& event : window_.takeEvents()) {
             const bool is_panels = panel_.handle(event, controls_, session, wishes);
-            if (!is_panels || concernsOngoing(event)) controls_.handle(event, height, session, wishes);
+            const auto* move = std::get_if<MouseMoveEvent>(&event);
+            if (is_panels && move) {
+                controls_.passOver(*move);
+            } else if (!is_panels || isRelease(event)) {
+                controls_.handle(event, height, session, wishes);
+            }
         }
     }
 
@@ -177,9 +185,11 @@ class WindowViewer {
 
     void announce() {
         const auto at = controls_.pointing();
-        if (!announce_clock_.isDue(Clock::now(), at.has_value())) return;
+        const bool is_holding = controls_.toolHold().isHolding();
+        const bool is_news = std::exchange(was_holding_, is_holding) != is_holding;
+        if (!announce_clock_.isDue(Clock::now(), at.has_value()) && !is_news) return;
         pointer_W_ = at ? pick(*at) : std::nullopt;
-        feed_.subscriber().announce(frame_rate_.perSecond(), pointer_W_);
+        feed_.subscriber().announce(frame_rate_.perSecond(), pointer_W_, is_holding);
     }
 
     // Returns the others, and the user while it points: the laser is seen where it is held, too.
@@ -211,6 +221,7 @@ class WindowViewer {
     SoundFeed sound_;
     SceneFeed feed_;
     ViewerControls controls_;
+    HandFeed hand_;
     Panel panel_;
     PanelPainter painter_;
     Notices notices_;
@@ -219,6 +230,7 @@ class WindowViewer {
     AnnounceClock announce_clock_;
     std::optional<Eigen::Vector3d> pointer_W_;  // where the user points, as announced last
     Clock::time_point last_picture_ = Clock::now();
+    bool was_holding_ = false;  // as announced last
     bool has_quit_ = false;
 };
 

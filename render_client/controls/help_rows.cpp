@@ -7,6 +7,12 @@
 namespace bonemill {
 namespace {
 
+// This is what ToolHold and ViewerControls make of the mouse.
+const HudRow kMouseWithTool[] = {
+    {"Mouse", "moves the tool"},         {"Left drag", "mill"},
+    {"Shift+left drag", "add material"}, {"Right drag", "turn the tool"},
+    {"Wheel", "tool deeper, nearer"},    {"Middle drag", "orbit, with Shift pan"}};
+
 // This is what ViewerControls makes of the mouse.
 const HudRow kMouse[] = {{"Left drag", "orbit"},
                          {"Right drag, Shift+left drag", "pan"},
@@ -14,10 +20,11 @@ const HudRow kMouse[] = {{"Left drag", "orbit"},
                          {"Double click", "orbit around that point"},
                          {"Ctrl+left drag", "point (instructor)"}};
 
-template <class Bindings>
-void addKeys(const Bindings& bindings, std::vector<HudRow>& rows) {
+template <class Bindings, class Wanted>
+void addKeys(const Bindings& bindings, std::vector<HudRow>& rows, Wanted&& is_wanted) {
     std::string last;
     for (const auto& binding : bindings) {
+        if (!is_wanted(binding)) continue;
         const std::string meaning = meaningOf(binding);
         if (meaning == last) {
             rows.back().label += " " + std::string(binding.label);
@@ -30,10 +37,20 @@ void addKeys(const Bindings& bindings, std::vector<HudRow>& rows) {
 
 }  // namespace
 
-std::vector<HudRow> helpRows() {
-    std::vector<HudRow> rows(std::begin(kMouse), std::end(kMouse));
-    addKeys(keyTable(), rows);
-    addKeys(signTable(), rows);
+std::vector<HudRow> helpRows(HelpFor whom) {
+    std::vector<HudRow> rows =
+        whom == HelpFor::kHolding ? holdRows() : std::vector<HudRow>(std::begin(kMouse), std::end(kMouse));
+    addKeys(keyTable(), rows, [&](const KeyBinding& binding) {
+        const bool begins_hold = binding.action == Action::kHoldTool && whom == HelpFor::kMayHold;
+        return begins_hold || !binding.is_of_hold;
+    });
+    addKeys(signTable(), rows, [](const SignBinding&) { return true; });
+    return rows;
+}
+
+std::vector<HudRow> holdRows() {
+    std::vector<HudRow> rows(std::begin(kMouseWithTool), std::end(kMouseWithTool));
+    addKeys(keyTable(), rows, [](const KeyBinding& binding) { return binding.is_of_hold; });
     return rows;
 }
 

@@ -46,6 +46,13 @@ enum class Action {
     kOrbitDown,
     kZoomIn,
     kZoomOut,
+    kHoldTool,
+    kMill,         // this and those below act while the mouse holds the tool; this one while the key is held
+    kAddMaterial,  // while the key is held
+    kTurnTool,     // while the key is held
+    kClutch,       // while the key is held
+    kToolDeeper,
+    kToolNearer,
     kHelp,
     kSavePicture,
     kQuit,
@@ -58,6 +65,7 @@ struct KeyBinding {
     Action action;
     std::string_view meaning;  // neighbours with the same one share a row of the help page
     bool repeats = false;      // it acts again while the key is held
+    bool is_of_hold = false;   // it is of use only where a mouse can hold the tool
 };
 
 // Signs such as [ and + are bound by the text they make: where they lie differs from layout to layout.

@@ -1,5 +1,7 @@
 #include "render_client/controls/session_view.h"
 
+#include "common/device_messages/device_messages.h"
+
 namespace bonemill {
 namespace {
 
@@ -34,6 +36,23 @@ CommandOrReason nextTool(const SessionView& session) {
 std::string whyNotCommand(const SessionView& session) {
     if (session.role == topics::Viewer::VIEWER) return "A viewer only looks: start with --role operator";
     if (!session.has_server) return "There is no server";
+    return "";
+}
+
+bool isHeldByMouse(const SessionView& session) {
+    return session.status && session.status->has_device() &&
+           session.status->device().kind() == uint32_t(DeviceKind::kPointer);
+}
+
+std::string whyNotHold(const SessionView& session) {
+    const std::string why_not = whyNotCommand(session);
+    if (!why_not.empty()) return why_not;
+    for (const topics::Viewer& other : session.others)
+        if (other.is_holding())
+            return (other.name().empty() ? "Another viewer" : other.name()) + " holds the tool";
+    if (session.status && session.status->has_device() && !isHeldByMouse(session))
+        return session.status->device().name() +
+               " holds the tool: device_daemon --device pointer gives it to the mouse";
     return "";
 }
 

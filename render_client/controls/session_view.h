@@ -25,8 +25,12 @@ struct SessionView {
 
 // Returns why this viewer may not do it, a sentence for the user; empty when it may.
 std::string whyNotCommand(const SessionView& session);
+std::string whyNotHold(const SessionView& session);
 std::string whyNotPoint(const SessionView& session);
 std::string whyNotEndSession(const SessionView& session);
+
+// The session's tool is held by a mouse (device_daemon --device pointer).
+bool isHeldByMouse(const SessionView& session);
 
 // It says what an action asks of the server, or why it cannot be asked. Both are empty for actions that are
 // none of the server's business.

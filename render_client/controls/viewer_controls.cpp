@@ -63,6 +63,7 @@ Eigen::Vector3d towardsEyeAt(OrbitCamera camera, double azimuth) {
 
 void ViewerControls::handle(const WindowEvent& event, int picture_height, const SessionView& session,
                             Wishes& wishes) {
+    if (hold_.handle(event, drag_ != Drag::kNone)) return;
     std::visit(Overloaded{[&](const KeyEvent& e) { onKey(e, session, wishes); },
                           [&](const TextEvent& e) {
                               if (const auto action = actionOf(e)) act(*action, session, wishes);
@@ -118,6 +119,23 @@ void ViewerControls::onMove(const MouseMoveEvent& event, int picture_height) {
     if (drag_ == Drag::kOrbit) camera_.orbit(-right * kOrbitPerHeight, down * kOrbitPerHeight);
 }
 
+void ViewerControls::passOver(const MouseMoveEvent& event) {
+    mouse_ = event.to;
+    hold_.passOver(event.to);
+}
+
+void ViewerControls::switchHold(const SessionView& session, Wishes& wishes) {
+    if (hold_.isHolding()) {
+        hold_.letGo();
+        wishes.notice = HudNotice{"The tool is let go: " + keyLabelOf(Action::kHoldTool) + " takes it again",
+                                  HudTone::kPlain};
+        return;
+    }
+    const std::string why_not = whyNotHold(session);
+    wishes.hold_tool = why_not.empty();
+    if (!why_not.empty()) wishes.notice = HudNotice{why_not, HudTone::kWarning};
+}
+
 std::optional<PixelPoint> ViewerControls::pointing() const {
     if (drag_ == Drag::kPoint || is_point_key_down_) return mouse_;
     return std::nullopt;
@@ -144,6 +162,8 @@ void ViewerControls::act(Action action, const SessionView& session, Wishes& wish
         case Action::kPoint:
             is_point_key_down_ = mayPoint(session, wishes);
             return;
+        case Action::kHoldTool:
+            return switchHold(session, wishes);
         case Action::kSavePicture:
             wishes.save_picture = true;
             return;

@@ -13,6 +13,7 @@
 #include "render_client/camera/view_settings.h"
 #include "render_client/controls/key_table.h"
 #include "render_client/controls/session_view.h"
+#include "render_client/controls/tool_hold.h"
 #include "render_client/hud/hud.h"
 
 namespace bonemill {
@@ -21,6 +22,7 @@ namespace bonemill {
 struct Wishes {
     std::vector<topics::Command> commands;
     bool reset_view = false;
+    bool hold_tool = false;               // with the mouse, from where it may begin
     std::optional<PixelPoint> centre_at;  // orbit around the surface there from now on
     std::optional<HudNotice> notice;      // why something was not done
     bool save_picture = false;
@@ -37,6 +39,8 @@ class ViewerControls {
 
     // Takes an event of the window, over a picture of this height (pixels).
     void handle(const WindowEvent& event, int picture_height, const SessionView& session, Wishes& wishes);
+    // The mouse moved over the panel, which means nobody here.
+    void passOver(const MouseMoveEvent& event);
     void act(Action action, const SessionView& session, Wishes& wishes);
     // Turns around the target; the distance stays.
     void lookFrom(Side side);
@@ -53,6 +57,9 @@ class ViewerControls {
 
     const ViewSettings& settings() const { return settings_; }
     const OrbitCamera& camera() const { return camera_; }
+    // The owner begins the hold, and tells it which picture the user sees.
+    ToolHold& toolHold() { return hold_; }
+    const ToolHold& toolHold() const { return hold_; }
     bool isPanelOpen() const { return is_panel_open_; }
     // Returns where the user points with the laser now.
     std::optional<PixelPoint> pointing() const;
@@ -70,6 +77,7 @@ class ViewerControls {
     void moveCut(double by);
     bool mayPoint(const SessionView& session, Wishes& wishes) const;
     std::string whyNoPlace() const;
+    void switchHold(const SessionView& session, Wishes& wishes);
 
     ViewSettings& settings_;
     OrbitCamera& camera_;
@@ -79,6 +87,7 @@ class ViewerControls {
     Drag drag_ = Drag::kNone;
     MouseButton drag_button_ = MouseButton::kLeft;
     PixelPoint mouse_;
+    ToolHold hold_;
     std::optional<MouseButtonEvent> last_click_;
 };
 

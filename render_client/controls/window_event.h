@@ -11,6 +11,7 @@ namespace bonemill {
 // A key goes by what is printed on it: letters and digits are their upper-case ASCII signs.
 enum class Key : int {
     kNone = 0,
+    kSpace = 32,
     kEnter = 256,
     kTab,
     kBackspace,

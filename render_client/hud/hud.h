@@ -22,6 +22,12 @@ struct HudNotice {
     HudTone tone = HudTone::kPlain;
 };
 
+// The rows stand over the picture for a while: what the mouse does now.
+struct HudHint {
+    std::vector<HudRow> rows;
+    float opacity = 1;
+};
+
 struct Hud {
     std::string title;
     std::string state;
@@ -29,6 +35,7 @@ struct Hud {
     std::vector<HudRow> rows;
     std::vector<HudRow> watchers;  // empty: no list
     std::vector<HudRow> help;      // keys and what they do; empty: no help page
+    std::optional<HudHint> hint;
     std::optional<HudNotice> notice;
     std::optional<HudNotice> alert;  // with a border around the picture
 };

@@ -119,6 +119,33 @@ void layOutScaleBar(HudCanvas& canvas, const ScaleBar& bar, double metres_per_pi
                 kHudScaleColour);
 }
 
+void layOutHint(HudCanvas& canvas, const HudHint& hint, const HudCorner& figures,
+                const PictureSize& picture) {
+    const float em = canvas.em();
+    const Spacing space(em);
+    const auto faded = [&](HudColour colour) {
+        colour[3] *= hint.opacity;
+        return colour;
+    };
+    float labels = 0, values = 0;
+    for (const HudRow& row : hint.rows) {
+        labels = std::max(labels, canvas.width(row.label, FontStyle::kBold));
+        values = std::max(values, canvas.width(row.value, FontStyle::kPlain));
+    }
+    const float height = space.line * float(hint.rows.size()) + space.padding;
+    const float top = float(picture.height) - space.margin - height;
+    const float edge = top > figures.bottom ? space.margin : figures.right + em * 0.6f;
+    const float left = edge + space.padding;
+    canvas.box(edge, top, labels + space.gap + values + 2 * space.padding, height, space.rounding,
+               faded(kHudPanelColour));
+    float base = top + space.padding * 0.2f;
+    for (const HudRow& row : hint.rows) {
+        base += space.line;
+        canvas.text(left, base, row.label, FontStyle::kBold, faded(kHudTitleColour));
+        canvas.text(left + labels + space.gap, base, row.value, FontStyle::kPlain, faded(kHudLabelColour));
+    }
+}
+
 void layOutNotice(HudCanvas& canvas, const HudNotice& notice, const PictureSize& picture) {
     layOutBanner(canvas, notice, float(picture.height) - canvas.em() * 1.1f, float(picture.width));
 }

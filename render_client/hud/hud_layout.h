@@ -33,6 +33,9 @@ void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, cons
 void layOutScaleBar(HudCanvas& canvas, const ScaleBar& bar, double metres_per_pixel,
                     const PictureSize& picture);
 
+// Puts the hint into the lower left corner, or beside the figures when there is no room below them.
+void layOutHint(HudCanvas& canvas, const HudHint& hint, const HudCorner& figures, const PictureSize& picture);
+
 // A notice is a line in the middle of the lower edge. An alert is a line above it, with a border around the
 // picture: neither hides the other.
 void layOutNotice(HudCanvas& canvas, const HudNotice& notice, const PictureSize& picture);

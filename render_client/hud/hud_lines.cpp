@@ -154,6 +154,7 @@ Hud makeHud(const HudInput& input) {
     hud.state = stateText(input);
     hud.state_tone = stateTone(input.connection);
     hud.notice = input.notice;
+    if (!input.show_help) hud.hint = input.hint;
     hud.alert = alertOf(input);
     if (input.status) {
         addSessionRows(*input.status, hud.rows);

@@ -30,6 +30,7 @@ struct HudInput {
     bool show_watchers = true;
     std::vector<HudRow> help;
     bool show_help = false;
+    std::optional<HudHint> hint;
     std::optional<HudNotice> notice;
     uint32_t events = 0;     // EffectState.Event bits that the trainee is to see now
     uint32_t structure = 0;  // EffectState.event_id of those of protected structures

@@ -17,6 +17,12 @@
 
 namespace bonemill {
 
+// The user wants the tool there; the line to it shows how hard the hand presses.
+struct Pull {
+    Eigen::Vector3d wish_W;
+    double newtons;  // force on the hand
+};
+
 struct FrameView {
     Camera camera;
     bool is_lit_from_eye = false;  // an endoscope's light, instead of one from the upper left
@@ -26,6 +32,7 @@ struct FrameView {
     std::optional<Pose> X_WT;              // the simulated tool (SPO)
     std::optional<Pose> X_WT_device;       // where the hand is; drawn when it differs visibly
     std::optional<Eigen::Vector3d> f_T_W;  // the arrow's force, N
+    std::optional<Pull> pull;              // of a mouse that holds the tool
     BurrWork burr_work = BurrWork::kIdle;
     CutPlanes cuts_W;
     std::optional<double> bone_opacity;  // empty: opaque

@@ -68,6 +68,7 @@ void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_
         draw(help, picture);
     }
     HudCanvas notices(font);
+    if (hud.hint) layOutHint(notices, *hud.hint, corner, picture);
     if (hud.notice) layOutNotice(notices, *hud.notice, picture);
     if (hud.alert) layOutAlert(notices, *hud.alert, picture);
     draw(notices, picture);

@@ -22,10 +22,14 @@ constexpr float kDot = 0.008f;
 constexpr float kRing = 0.022f;
 constexpr float kRingWidth = 0.0045f;
 constexpr float kGlow = 0.036f;
+constexpr float kPullLine = 0.0028f;
+constexpr float kPullRing = 0.011f;
+constexpr float kShortestPull = 0.006f;
 constexpr int kSides = 32;
 constexpr float kHiddenStrength = 0.35f;
 
 const Eigen::Vector3f kPointerColour(1.0f, 0.16f, 0.72f);
+const Eigen::Vector3f kIdlePullColour(0.7f, 0.75f, 0.8f);
 
 Eigen::Vector4f withAlpha(const Eigen::Vector3f& colour, float alpha) {
     return {colour.x(), colour.y(), colour.z(), alpha};
@@ -33,6 +37,31 @@ Eigen::Vector4f withAlpha(const Eigen::Vector3f& colour, float alpha) {
 
 double logarithmic(double value, double low, double high) {
     return std::clamp(std::log(value / low) / std::log(high / low), 0.0, 1.0);
+}
+
+// Returns the metres that the picture's height spans there.
+float heightAt(const Frame& frame, const Eigen::Vector3f& p_C) {
+    return 2 * frame.tangents.y() * -p_C.z();
+}
+
+struct PullEnds {
+    Eigen::Vector3f tool_C, wish_C;
+    Eigen::Vector3f colour;
+};
+
+// There are none without a pull that can be seen.
+std::optional<PullEnds> pullEnds(const Frame& frame, const FrameView& view) {
+    if (!frame.X_CT || !view.pull) return std::nullopt;
+    PullEnds ends{frame.X_CT->topRightCorner<3, 1>(),
+                  (view.camera.R_WC.transpose() * (view.pull->wish_W - view.camera.eye_W)).cast<float>(),
+                  kIdlePullColour};
+    const float near = frame.near_far.x();
+    if (-ends.tool_C.z() <= near || -ends.wish_C.z() <= near ||
+        (ends.wish_C - ends.tool_C).norm() < kShortestPull * heightAt(frame, ends.tool_C))
+        return std::nullopt;
+    const ForceLook look = forceLook(view.pull->newtons);
+    if (look.length > 0) ends.colour = look.colour;
+    return ends;
 }
 
 Eigen::Vector3f onCircle(int i, const Eigen::Vector3f& right, const Eigen::Vector3f& up) {
@@ -70,15 +99,20 @@ MarkerPainter::MarkerPainter(const GlApi& gl)
 
 void MarkerPainter::draw(const Frame& frame, const FrameView& view) {
     vertices_.clear();
+    addPullLine(frame, view);
+    flush(frame, GL_BACK);
     addArrow(frame, view);
     flush(frame, GL_BACK);
+    addPullRing(frame, view);
     addPointers(frame, view);
     flush(frame, 0);
 }
 
 Eigen::AlignedBox3f MarkerPainter::box(const Frame& frame, const FrameView& view) {
     vertices_.clear();
+    addPullLine(frame, view);
     addArrow(frame, view);
+    addPullRing(frame, view);
     addPointers(frame, view);
     Eigen::AlignedBox3f box;
     for (const Vertex& vertex : vertices_) box.extend(vertex.p_C);
@@ -86,11 +120,27 @@ Eigen::AlignedBox3f MarkerPainter::box(const Frame& frame, const FrameView& view
     return box;
 }
 
+// The line is there where tool and wish visibly part; it has the arrow's colours.
+void MarkerPainter::addPullLine(const Frame& frame, const FrameView& view) {
+    const auto ends = pullEnds(frame, view);
+    if (!ends) return;
+    const float radius = kPullLine * heightAt(frame, ends->wish_C);
+    addCone(ends->tool_C, ends->wish_C - ends->tool_C, radius, radius, ends->colour);
+}
+
+void MarkerPainter::addPullRing(const Frame& frame, const FrameView& view) {
+    const auto ends = pullEnds(frame, view);
+    if (!ends) return;
+    const float radius = kPullRing * heightAt(frame, ends->wish_C);
+    const Eigen::Vector4f colour = withAlpha(ends->colour, 1);
+    addRing(ends->wish_C, 0.6f * radius, radius, colour, colour);
+}
+
 void MarkerPainter::addPointers(const Frame& frame, const FrameView& view) {
     const Eigen::Matrix4f X_CW = view.camera.X_CW();
     for (const Eigen::Vector3d& p_W : view.pointers_W) {
         const Eigen::Vector4f p = X_CW * p_W.cast<float>().homogeneous();
-        if (-p.z() > frame.near_far.x()) addPointer(p.head<3>(), 2 * frame.tangents.y() * -p.z());
+        if (-p.z() > frame.near_far.x()) addPointer(p.head<3>(), heightAt(frame, p.head<3>()));
     }
 }
 
@@ -102,7 +152,7 @@ void MarkerPainter::addArrow(const Frame& frame, const FrameView& view) {
     const ForceLook look = forceLook(newtons);
     const Eigen::Vector3f burr = frame.X_CT->topRightCorner<3, 1>();
     if (look.length <= 0 || -burr.z() <= frame.near_far.x()) return;
-    const float height = 2 * frame.tangents.y() * -burr.z();
+    const float height = heightAt(frame, burr);
     const Eigen::Vector3f axis = (view.camera.R_WC.transpose() * *view.f_T_W / newtons).cast<float>();
     const float head = std::min(kHeadLength, 0.7f * float(look.length)) * height;
     const float shaft = float(look.length) * height - head;

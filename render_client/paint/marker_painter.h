@@ -1,4 +1,5 @@
-// Draws signs into the scene: the contact force as an arrow, instructors' pointers as glowing dots in rings.
+// Draws signs into the scene: the contact force as an arrow, the pull of a mouse as a line from the tool to a
+// ring where it is wanted, instructors' pointers as glowing dots in rings.
 // What lies behind bone or tool shines through, fainter.
 //
 // It belongs to the thread of the context. The frames are C (camera) and W (world); the unit is m.
@@ -35,6 +36,8 @@ class MarkerPainter {
         Eigen::Vector3f p_C, n_C;
         Eigen::Vector4f colour;
     };
+    void addPullLine(const Frame& frame, const FrameView& view);
+    void addPullRing(const Frame& frame, const FrameView& view);
     void addArrow(const Frame& frame, const FrameView& view);
     // Adds the part of a cone between two radii, with its lower end at `base` (C).
     void addCone(const Eigen::Vector3f& base, const Eigen::Vector3f& axis, float low, float high,

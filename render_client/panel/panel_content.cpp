@@ -28,6 +28,10 @@ void PanelContent::build() {
     ImGui::Begin(withKey("Controls", Action::kPanel).c_str(), nullptr,
                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                      ImGuiWindowFlags_NoSavedSettings);
+    if (controls_.toolHold().isHolding() || isHeldByMouse(session_)) {
+        if (isOpen("Tool in the mouse")) buildHold();
+        gap();
+    }
     if (isOpen("View")) buildView();
     gap();
     if (hasEffects()) {

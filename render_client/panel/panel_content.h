@@ -32,6 +32,7 @@ class PanelContent {
   private:
     // These say what is seen (panel_view.cpp).
     void buildView();
+    void buildHold();
     void buildSides();
     void buildTransparency();
     void buildCuts();

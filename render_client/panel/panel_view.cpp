@@ -1,4 +1,4 @@
-// Here are the panel's parts about what is seen: view and effects.
+// Here are the panel's parts about what is seen, view and effects, and about the mouse that holds the tool.
 #include <imgui.h>
 
 #include <algorithm>
@@ -36,6 +36,21 @@ void PanelContent::buildView() {
     buildStereo();
     gap();
     buildSigns();
+}
+
+void PanelContent::buildHold() {
+    const bool is_holding = controls_.toolHold().isHolding();
+    const std::string why_not = is_holding ? "" : whyNotHold(session_);
+    ImGui::BeginDisabled(!why_not.empty());
+    box("Hold the tool", Action::kHoldTool, is_holding, "The tool follows the mouse; the left button mills");
+    ImGui::EndDisabled();
+    if (!why_not.empty()) {
+        ImGui::PushTextWrapPos();
+        say(why_not, HudTone::kWarning);
+        ImGui::PopTextWrapPos();
+    }
+    sayQuietly(is_holding ? withKey("Mouse and keys: the help", Action::kHelp)
+                          : keyLabelOf(Action::kHoldTool) + " takes it where the mouse is");
 }
 
 void PanelContent::buildTransparency() {

@@ -150,6 +150,15 @@ void RenderScene::applyFirstView(double aspect) {
     view_pending_ = false;
 }
 
+Eigen::AlignedBox3d RenderScene::bone_W() const {
+    return boxIn(X_WV_, bone_V_);
+}
+
+std::optional<Pose> RenderScene::devicePose() const {
+    if (!hud_input_.tool) return std::nullopt;
+    return readPose(hud_input_.tool->p_wt_device_m(), hud_input_.tool->q_wt_device());
+}
+
 bool RenderScene::followsTool() const {
     if (settings_.camera != CameraMode::kEndoscope || !hud_input_.tool || tool_.isEmpty()) return false;
     return readPose(hud_input_.tool->p_wt_m(), hud_input_.tool->q_wt()).has_value();
@@ -161,7 +170,7 @@ FrameView RenderScene::makeView() const {
     view.X_WV = X_WV_;
     view.bone_V = bone_V_;
     view.quality = settings_.quality;
-    view.cuts_W = cutPlanes(settings_.cuts, boxIn(X_WV_, bone_V_));
+    view.cuts_W = cutPlanes(settings_.cuts, bone_W());
     if (settings_.is_transparent) view.bone_opacity = std::clamp(settings_.opacity, 0.0, 1.0);
     if (hud_input_.info) view.burr_radius = hud_input_.info->burr_radius_m();
     for (const topics::Viewer& watcher : hud_input_.watchers)
@@ -175,7 +184,9 @@ void RenderScene::showTool(FrameView& view) const {
     view.X_WT = readPose(tool.p_wt_m(), tool.q_wt());
     view.X_WT_device = readPose(tool.p_wt_device_m(), tool.q_wt_device());
     view.burr_work = burrWorkOf(tool);
-    if (settings_.show_force) view.f_T_W = readVector(tool.force_n());
+    const auto force_W = readVector(tool.force_n());
+    if (settings_.show_force) view.f_T_W = force_W;
+    if (pull_W_ && force_W) view.pull = Pull{*pull_W_, force_W->norm()};
     if (!followsTool()) return;
     view.camera = endoscopeCamera(*view.X_WT, view.burr_radius);
     view.is_lit_from_eye = true;

@@ -49,6 +49,11 @@ class RenderScene {
     // The notice is shown until it is replaced; nullopt takes it away.
     void setNotice(std::optional<HudNotice> notice) { hud_input_.notice = std::move(notice); }
 
+    // Takes where the user's mouse wants the tool point (W); nullopt while it holds no tool.
+    void setPull(const std::optional<Eigen::Vector3d>& wish_W) { pull_W_ = wish_W; }
+    // Takes what stands over the picture of what the mouse does; nullopt takes it away.
+    void setHint(std::optional<HudHint> hint) { hud_input_.hint = std::move(hint); }
+
     // Takes the rows of the help page: keys and what they do. There is no page before the first call.
     void setHelp(std::vector<HudRow> rows) { hud_input_.help = std::move(rows); }
 
@@ -75,6 +80,15 @@ class RenderScene {
     }
     // It is null while the scene lists none, or nothing is known of it yet.
     const VisualEffects* effects() const { return effects_.get(); }
+
+    // Returns the camera of the next picture.
+    Camera viewCamera() const { return makeView().camera; }
+    // Returns the box (W) of the bone as it was at the start; it is empty while nothing is known.
+    Eigen::AlignedBox3d bone_W() const;
+    // Returns that of the tool in use, m; 0 while nothing is known.
+    double burrRadius() const { return hud_input_.info ? hud_input_.info->burr_radius_m() : 0; }
+    // Returns where the device's hand is, if a tool state has told.
+    std::optional<Pose> devicePose() const;
 
     size_t nodeCount() const { return nodes_.nodeCount(); }
     size_t triangleCount() const { return nodes_.triangleCount(); }
@@ -124,6 +138,7 @@ class RenderScene {
     bool view_pending_ = true;
     ViewSettings settings_;
     bool can_pick_ = false;
+    std::optional<Eigen::Vector3d> pull_W_;
     EventLatch events_;
     std::vector<Eigen::Vector4f> palette_;
     const GlApi& gl_;

@@ -99,7 +99,9 @@ bool isUsable(const topics::Status& status) {
                               status.tick_max_us(),
                               status.removed_mm3(),
                               status.force_error_percent(),
-                              status.force_direction_error_deg()};
+                              status.force_direction_error_deg(),
+                              status.device().max_force_n(),
+                              status.device().max_torque_nmm()};
     const auto is_usable = [](const topics::Checkpoint& c) {
         return isTime(c.session_s()) && std::isfinite(c.removed_mm3());
     };
@@ -195,6 +197,7 @@ std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {
     for (std::string* text : {status->mutable_scene(), status->mutable_preset(), status->mutable_fault_text(),
                               status->mutable_last_command_result()})
         *text = shownText(*text, kLongestText);
+    if (status->has_device()) status->mutable_device()->set_name(shownName(status->device().name()));
     if (status->has_training())
         for (std::string& warning : *status->mutable_training()->mutable_warnings())
             warning = shownText(warning, kLongestText);
@@ -207,6 +210,7 @@ std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint
     viewer->DiscardUnknownFields();
     viewer->set_name(shownName(viewer->name()));
     if (viewer->role() != topics::Viewer::INSTRUCTOR) viewer->clear_pointer_m();
+    if (viewer->role() == topics::Viewer::VIEWER) viewer->clear_is_holding();
     return viewer;
 }
 

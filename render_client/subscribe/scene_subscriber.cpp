@@ -39,6 +39,7 @@ SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
       status_reader_(participant_),
       viewer_reader_(participant_),
       viewer_writer_(participant_),
+      hand_writer_(participant_),
       command_writer_(participant_),
       wait_set_(participant_) {
     wait_set_.add(node_reader_.handle());
@@ -118,13 +119,15 @@ void SceneSubscriber::takeViewers() {
     std::erase_if(viewers_, [now](const auto& v) { return now - v.second.heard > kViewerTimeout; });
 }
 
-void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W) {
+void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W,
+                               bool is_holding) {
     topics::Viewer viewer;
     viewer.set_sender(outbox_.sender());
     viewer.set_name(options_.name);
     viewer.set_role(options_.role);
     viewer.set_frame_rate_hz(frame_rate_hz);
     viewer.set_is_complete(isComplete());
+    viewer.set_is_holding(is_holding);
     if (pointer_W) viewer.mutable_pointer_m()->Assign(pointer_W->begin(), pointer_W->end());
     const std::string bytes = viewer.SerializeAsString();
     dds::ViewerSample sample{};
@@ -132,6 +135,35 @@ void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::
     sample.sender = viewer.sender();
     dds::setPayload(sample, bytes);
     viewer_writer_.write(sample);
+}
+
+void SceneSubscriber::wantTool(const Pose& X_WT, uint32_t buttons) {
+    topics::HandPointer message;
+    message.mutable_p_wt_m()->Assign(X_WT.position.begin(), X_WT.position.end());
+    const Eigen::Quaterniond& q = X_WT.rotation;
+    for (const double part : {q.w(), q.x(), q.y(), q.z()}) message.add_q_wt(part);
+    message.set_buttons(buttons);
+    message.set_is_holding(true);
+    writeHand(std::move(message));
+}
+
+void SceneSubscriber::letToolGo() {
+    writeHand({});
+}
+
+void SceneSubscriber::writeHand(topics::HandPointer message) {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    message.set_epoch(epoch());
+    message.set_sender(outbox_.sender());
+    message.set_role(options_.role);
+    message.set_sequence(++hand_sequence_);
+    message.set_stamp_ns(std::chrono::nanoseconds(now).count());
+    const std::string bytes = message.SerializeAsString();
+    dds::HandPointerSample sample{};
+    sample.session = options_.session;
+    sample.sender = message.sender();
+    dds::setPayload(sample, bytes);
+    hand_writer_.write(sample);
 }
 
 uint32_t SceneSubscriber::sendCommand(topics::Command command) {

@@ -16,6 +16,7 @@
 
 #include "common/dds/endpoint.h"
 #include "common/dds/wait_set.h"
+#include "common/geometry/pose.h"
 #include "proto/topics.pb.h"
 #include "render_client/subscribe/command_outbox.h"
 #include "render_client/subscribe/scene_model.h"
@@ -62,8 +63,14 @@ class SceneSubscriber {
     // after their turn came.
     std::vector<CommandOutcome> takeOutcomes() { return outbox_.takeOutcomes(); }
 
-    // Tells all others who is watching here and where it points (m): once per second at least.
-    void announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W);
+    // Tells all others who is watching here, where it points (m), and whether its mouse holds the tool: once
+    // per second at least.
+    void announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W,
+                  bool is_holding = false);
+    // Says where the mouse of this viewer wants the tool point: with every picture while it holds the tool.
+    void wantTool(const Pose& X_WT, uint32_t buttons);
+    // Says that it holds it no more; a message may be lost, so more than once.
+    void letToolGo();
     // Returns the other viewers of the session, heard within kViewerTimeout, by sender.
     std::vector<topics::Viewer> viewers() const;
     static constexpr std::chrono::seconds kViewerTimeout{4};
@@ -79,6 +86,7 @@ class SceneSubscriber {
     void takeToolState();
     void takeViewers();
     bool enterEpoch(uint64_t epoch);
+    void writeHand(topics::HandPointer message);
     void dropMalformed(const std::string& what);
 
     SubscriberOptions options_;
@@ -102,6 +110,8 @@ class SceneSubscriber {
     dds::Reader<dds::StatusSample> status_reader_;
     dds::Reader<dds::ViewerSample> viewer_reader_;
     dds::Writer<dds::ViewerSample> viewer_writer_;
+    dds::Writer<dds::HandPointerSample> hand_writer_;
+    uint32_t hand_sequence_ = 0;
     dds::Writer<dds::CommandSample> command_writer_;
     dds::WaitSet wait_set_;
 };

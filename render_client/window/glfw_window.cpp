@@ -22,7 +22,7 @@ constexpr struct {
     {GLFW_KEY_LEFT, Key::kLeft},     {GLFW_KEY_RIGHT, Key::kRight},
     {GLFW_KEY_UP, Key::kUp},         {GLFW_KEY_DOWN, Key::kDown},
     {GLFW_KEY_HOME, Key::kHome},     {GLFW_KEY_END, Key::kEnd},
-    {GLFW_KEY_F12, Key::kF12},
+    {GLFW_KEY_F12, Key::kF12},       {GLFW_KEY_SPACE, Key::kSpace},
 };
 
 // GLFW names letters by their place on a US keyboard; the user reads what is printed on them.
@@ -74,6 +74,7 @@ GlfwWindow::GlfwWindow(int width, int height, const std::string& title) {
     glfwSwapInterval(1);
     gl_ = GlApi::load([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); });
     glfwSetWindowUserPointer(window_, this);
+    crosshair_ = glfwCreateStandardCursor(GLFW_CROSSHAIR_CURSOR);
     double x = 0, y = 0;
     glfwGetCursorPos(window_, &x, &y);
     mouse_ = toPixels(x, y);
@@ -131,6 +132,11 @@ float GlfwWindow::contentScale() const {
     float x = 1, y = 1;
     glfwGetWindowContentScale(window_, &x, &y);
     return y;
+}
+
+void GlfwWindow::showCrosshair(bool is_wanted) {
+    if (std::exchange(shows_crosshair_, is_wanted) != is_wanted)
+        glfwSetCursor(window_, is_wanted ? crosshair_ : nullptr);
 }
 
 void GlfwWindow::show() {

@@ -9,6 +9,7 @@
 #include "render_client/controls/window_event.h"
 #include "render_client/gl/gl_api.h"
 
+struct GLFWcursor;
 struct GLFWwindow;
 
 namespace bonemill {
@@ -34,6 +35,9 @@ class GlfwWindow {
     // Returns how much larger than usual the display wants its text.
     float contentScale() const;
 
+    // The cursor is a crosshair, or the usual arrow.
+    void showCrosshair(bool is_wanted);
+
     // Shows the picture; waits for the display's next refresh.
     void show();
 
@@ -49,6 +53,8 @@ class GlfwWindow {
 
     Library library_;
     GLFWwindow* window_;
+    GLFWcursor* crosshair_ = nullptr;  // null: the display has none
+    bool shows_crosshair_ = false;
     GlApi gl_;
     std::vector<WindowEvent> events_;
     PixelPoint mouse_;  // of the last event: the mouse itself may be elsewhere by the time it is handled

@@ -141,7 +141,7 @@ class Session {
         : report_(report),
           server_(arguments("haptic_server", scene,
                             {"--domain", std::to_string(testDomain()), "--report", report})),
-          daemon_(arguments("device_daemon", scene, {"--wait-seconds", "60"})) {
+          daemon_(arguments("device_daemon", scene, {"--device", "simulated", "--wait-seconds", "60"})) {
         SceneSubscriber watcher({.domain = testDomain(), .session = testSession()});
         while (!watcher.isComplete() || !watcher.toolState()) {
             if (!server_.isRunning() || !daemon_.isRunning())

@@ -261,7 +261,7 @@ TEST_F(ScenePicture, TheHelpPageFitsThePicture) {
         scene_.reset();
         OsmesaContext context(width, height);
         RenderScene scene(context.gl());
-        scene.setHelp(helpRows());
+        scene.setHelp(helpRows(HelpFor::kLooking));
         const auto draw = [&, w = width, h = height, scale = ui_scale] {
             scene.draw(w, h, float(scale));
             return context.read();

@@ -1,4 +1,5 @@
 // Closes the loop of the real tick with the device daemon's emulated ARES, its kinematics, limits and delay.
+#include "device_daemon/ares/ares_device.h"
 #include "device_daemon/driver/ares_emulator.h"
 #include "device_daemon/loop/device_loop.h"
 #include "tests/stability/case_test.h"
@@ -16,7 +17,8 @@ class AresBench {
     AresBench(Scene& scene, const Pose& start, const Pose& target)
         : X_WD_(start),
           emulator_(AresKinematics{}, {}, {}, OperatorPath({{0, {}, 0}, {0.3, start.inverse() * target, 0}})),
-          loop_(AresKinematics{}, emulator_, {}, {}),
+          ares_(emulator_, {}),
+          loop_(ares_, {.states = {.needs_enabling_switch = false}}),
           stepper_(scene) {
         emulator_.startScenario();
     }
@@ -25,9 +27,10 @@ class AresBench {
     Eigen::Vector3d step() {
         now_ns_ += kTick_ns;
         DeviceSample sample;
-        if (!loop_.read(1e-3, sample)) return Eigen::Vector3d::Constant(kNan);
+        if (!loop_.read(now_ns_, 1e-3, sample)) return Eigen::Vector3d::Constant(kNan);
         loop_.write(&command_, now_ns_);
-        stepper_.step(X_WD_ * loop_.pose());
+        is_engaged_ = loop_.safety().state() == SafetyState::kEngaged;
+        stepper_.step(X_WD_ * loop_.reading().X_DT);
         const Wrench wrench_D = stepper_.wrenchOnHand().rotatedBy(X_WD_.rotation.conjugate());
         command_ = {};
         command_.stamp_ns = now_ns_;
@@ -38,13 +41,17 @@ class AresBench {
         return stepper_.wrenchOnHand().force;
     }
 
+    bool isEngaged() const { return is_engaged_; }
+
   private:
     Pose X_WD_;
     AresEmulator emulator_;
+    AresDevice ares_;
     DeviceLoop loop_;
     Stepper stepper_;
     WrenchCommand command_{};
     int64_t now_ns_ = 1'000'000'000;
+    bool is_engaged_ = false;
 };
 
 double forceResidual(AresBench& bench) {
@@ -57,7 +64,7 @@ double forceResidual(AresBench& bench) {
         sum += force;
         squares += force.squaredNorm();
     }
-    if (!(sum.norm() / kTicks > 0.5)) return kNan;  // it must press
+    if (!bench.isEngaged() || !(sum.norm() / kTicks > 0.5)) return kNan;  // it must press, and be felt
     return std::sqrt(std::max(0.0, squares / kTicks - (sum / kTicks).squaredNorm()));
 }
 

@@ -64,7 +64,7 @@ class Instructor : public testing::Test {
         return arguments;
     }
     std::vector<std::string> daemon() const {
-        return {"device_daemon", "--scene", folder_ / "s.textproto",
+        return {"device_daemon", "--device", "simulated", "--scene", folder_ / "s.textproto",
                 "--session",     session(), "--best-effort-rt"};
     }
     static Finished command(const std::string& text, const std::string& role = "operator") {

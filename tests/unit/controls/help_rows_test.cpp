@@ -19,9 +19,9 @@ bool names(const HudRow& row, std::string_view key) {
            std::istream_iterator<std::string>();
 }
 
-std::vector<std::string> meaningsOf(std::string_view key) {
+std::vector<std::string> meaningsOf(std::string_view key, HelpFor whom = HelpFor::kHolding) {
     std::vector<std::string> meanings;
-    for (const HudRow& row : helpRows())
+    for (const HudRow& row : helpRows(whom))
         if (names(row, key)) meanings.push_back(row.value);
     return meanings;
 }
@@ -35,8 +35,18 @@ TEST(HelpRows, NameEveryKeyOfTheTableOnceWithItsMeaning) {
     for (const SignBinding& binding : signTable()) expect_named(binding);
 }
 
+TEST(HelpRows, WhatHoldsTheToolIsThereOnlyWhereAMouseCanHoldIt) {
+    for (const KeyBinding& binding : keyTable()) {
+        const bool begins = binding.action == Action::kHoldTool;
+        EXPECT_EQ(meaningsOf(binding.label, HelpFor::kLooking).empty(), binding.is_of_hold) << binding.label;
+        EXPECT_EQ(meaningsOf(binding.label, HelpFor::kMayHold).empty(), binding.is_of_hold && !begins)
+            << binding.label;
+    }
+    EXPECT_EQ(holdRows().front().value, helpRows(HelpFor::kHolding).front().value);
+}
+
 TEST(HelpRows, KeysThatDoTheSameShareARow) {
-    const std::vector<HudRow> rows = helpRows();
+    const std::vector<HudRow> rows = helpRows(HelpFor::kLooking);
     for (const char* keys : {"X Y Z", "Shift+X Shift+Y Shift+Z", "Left Right Up Down", "[ ]", "+ = -"})
         EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [&](const HudRow& r) { return r.label == keys; }))
             << keys;

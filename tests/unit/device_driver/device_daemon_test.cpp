@@ -26,7 +26,7 @@ class DeviceDaemonTest : public testing::Test {
     // With further words after these.
     std::vector<std::string> commandLine(const std::string& scene_file,
                                          const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> words{"device_daemon",    "--scene",   scene_file,
+        std::vector<std::string> words{"device_daemon", "--device", "simulated", "--scene",   scene_file,
                                        "--best-effort-rt", "--session", std::to_string(session_)};
         words.insert(words.end(), more.begin(), more.end());
         return words;

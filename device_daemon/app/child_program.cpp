@@ -1,0 +1,134 @@
+#include "device_daemon/app/child_program.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <spdlog/spdlog.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <filesystem>
+
+#include "common/rt/clock.h"
+#include "common/user_error.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int64_t kStartNs = 10 * kNsPerSecond;  // a loaded machine reads a large scene in this time
+constexpr int64_t kEndNs = 2 * kNsPerSecond;
+constexpr int64_t kRestartNs = kNsPerSecond;
+
+std::string pathOf(const std::string& name) {
+    const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    for (const auto& folder : {here, here.parent_path()})
+        if (access((folder / name).c_str(), X_OK) == 0) return folder / name;
+    throw UserError(name + " is missing beside device_daemon in " + here.string() + ": build or install it");
+}
+
+// Between fork and exec only what is safe there.
+[[noreturn]] void becomeChild(const char* path, char* const* words, int output, pid_t parent) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent) _exit(127);
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    dup2(output, STDOUT_FILENO);
+    execv(path, words);
+    _exit(127);
+}
+
+}  // namespace
+
+ChildProgram::ChildProgram(const std::string& name, std::vector<std::string> words)
+    : path_(pathOf(name)), words_(std::move(words)) {
+    start();
+    awaitPort();
+}
+
+ChildProgram::~ChildProgram() {
+    finish();
+}
+
+void ChildProgram::start() {
+    std::vector<std::string> words = words_;
+    words.insert(words.begin(), path_);
+    words.insert(words.end(), {"--port", std::to_string(port_)});
+    std::vector<char*> raw;
+    for (std::string& word : words) raw.push_back(word.data());
+    raw.push_back(nullptr);
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) throw UserError("no pipe for " + path_);
+    const pid_t parent = getpid();
+    pid_ = fork();
+    if (pid_ == 0) becomeChild(path_.c_str(), raw.data(), ends[1], parent);
+    close(ends[1]);
+    if (output_ >= 0) close(output_);
+    output_ = ends[0];
+    fcntl(output_, F_SETFL, O_NONBLOCK);
+    if (pid_ < 0) throw UserError(path_ + " cannot be started");
+    ended_ns_ = 0;
+}
+
+void ChildProgram::awaitPort() {
+    constexpr std::string_view kSays = "listening on ";
+    const int64_t deadline_ns = monotonicNowNs() + kStartNs;
+    while (last_line_.rfind(kSays, 0) != 0) {
+        if (hasEnded()) throw UserError(path_ + " ended at its start; its message is above");
+        if (monotonicNowNs() > deadline_ns) throw UserError(path_ + " did not say at which port it listens");
+        pollfd poll_output{.fd = output_, .events = POLLIN, .revents = 0};
+        poll(&poll_output, 1, 50);
+        takeWords();
+    }
+    const size_t colon = last_line_.rfind(':');
+    const char* const digits = last_line_.data() + colon + 1;
+    std::from_chars(digits, last_line_.data() + last_line_.size(), port_);
+    if (colon == std::string::npos || port_ == 0) throw UserError(path_ + " said no port: " + last_line_);
+}
+
+void ChildProgram::takeWords() {
+    char buffer[4096];
+    ssize_t got = 0;
+    while ((got = read(output_, buffer, sizeof(buffer))) > 0) {
+        for (const char c : std::string_view(buffer, size_t(got))) {
+            if (c == '\n')
+                last_line_ = std::exchange(text_, {});
+            else if (text_.size() < 65536)
+                text_ += c;
+        }
+    }
+}
+
+bool ChildProgram::hasEnded() {
+    if (pid_ < 0) return true;
+    if (waitpid(pid_, &exit_status_, WNOHANG) != pid_) return false;
+    takeWords();
+    pid_ = -1;
+    ended_ns_ = monotonicNowNs();
+    return true;
+}
+
+void ChildProgram::lookAfter() {
+    takeWords();
+    if (!hasEnded()) return;
+    if (WIFEXITED(exit_status_) && WEXITSTATUS(exit_status_) == 0) return;
+    if (monotonicNowNs() - ended_ns_ < kRestartNs) return;
+    spdlog::warn("{} has died: it is started again", path_);
+    start();
+}
+
+std::string ChildProgram::finish() {
+    if (!hasEnded()) kill(pid_, SIGTERM);
+    for (const int64_t deadline_ns = monotonicNowNs() + kEndNs; !hasEnded();) {
+        if (monotonicNowNs() > deadline_ns) kill(pid_, SIGKILL);
+        usleep(10'000);
+        takeWords();
+    }
+    if (output_ >= 0) close(std::exchange(output_, -1));
+    return last_line_;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,25 @@
+// Makes the device that --device names.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "device_daemon/app/child_program.h"
+#include "device_daemon/app/device_setup.h"
+#include "device_daemon/app/options.h"
+#include "device_daemon/device/haptic_device.h"
+
+namespace bonemill {
+
+// What --device takes, for --help.
+const char* deviceChoices();
+
+struct ChosenDevice {
+    std::unique_ptr<ChildProgram> program;  // emulator or bridge that belongs to it; null without
+    std::unique_ptr<HapticDevice> device;
+};
+
+// Throws UserError for a word that names no device, and for a device that is not there.
+ChosenDevice chooseDevice(const DeviceSetup& setup, const DaemonOptions& options);
+
+}  // namespace bonemill

@@ -1,0 +1,18 @@
+// Says where the last seconds before a stop are written.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "common/device_messages/device_state.h"
+
+namespace bonemill {
+
+// Returns $XDG_STATE_HOME/bonemill, or ~/.local/state/bonemill.
+std::filesystem::path defaultStopDir();
+
+// Returns a new name in the folder, which is made if need be: stop_SESSION_TIME_CAUSE.csv. Never throws: a
+// folder that cannot be made shows when the file is written.
+std::filesystem::path stopFile(const std::filesystem::path& dir, uint32_t session, StopCause cause);
+
+}  // namespace bonemill

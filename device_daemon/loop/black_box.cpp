@@ -1,0 +1,69 @@
+#include "device_daemon/loop/black_box.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "common/assert.h"
+#include "common/user_error.h"
+
+namespace bonemill {
+namespace {
+
+template <size_t N>
+void writeAll(std::ostream& out, const double (&values)[N]) {
+    for (const double value : values) out << ',' << value;
+}
+
+void writeRow(std::ostream& out, const BlackBoxRecord& r, int64_t start_ns) {
+    out << double(r.time_ns - start_ns) * 1e-9 << ',' << r.is_heard << ',' << r.sample.sequence << ','
+        << nameOf(SafetyState(r.sample.state)) << ',' << nameOf(StopCause(r.sample.stop_cause)) << ','
+        << r.sample.flags << ',' << r.sample.buttons;
+    writeAll(out, r.sample.p_DT);
+    writeAll(out, r.sample.q_DT);
+    writeAll(out, r.sample.v_DT);
+    writeAll(out, r.sample.w_DT);
+    out << ',' << r.command.sequence << ',' << double(r.command.stamp_ns - start_ns) * 1e-9;
+    writeAll(out, r.command.f_hand_D);
+    writeAll(out, r.command.t_hand_D);
+    writeAll(out, r.f_given_D);
+    writeAll(out, r.t_given_D);
+    out << '\n';
+}
+
+constexpr char kColumns[] =
+    "time_s,is_heard,sample,state,cause,flags,buttons,px_DT_m,py_DT_m,pz_DT_m,qw_DT,qx_DT,qy_DT,qz_DT,vx_DT_"
+    "m_per_s,"
+    "vy_DT_m_per_s,vz_DT_m_per_s,wx_DT_rad_per_s,wy_DT_rad_per_s,wz_DT_rad_per_s,command,command_time_s,"
+    "fx_commanded_D_n,fy_commanded_D_n,fz_commanded_D_n,tx_commanded_D_nm,ty_commanded_D_nm,tz_commanded_D_"
+    "nm,"
+    "fx_given_D_n,fy_given_D_n,fz_given_D_n,tx_given_D_nm,ty_given_D_nm,tz_given_D_nm\n";
+
+}  // namespace
+
+BlackBox::BlackBox(size_t records) : records_(records) {
+    BONEMILL_ASSERT(records > kAfterRecords);
+}
+
+void BlackBox::record(const BlackBoxRecord& record, bool is_stopped) noexcept {
+    if (is_full_.load(std::memory_order_acquire)) return;
+    records_[next_] = record;
+    next_ = (next_ + 1) % records_.size();
+    count_ = std::min(count_ + 1, records_.size());
+    if (is_stopped && !was_stopped_) left_ = kAfterRecords;
+    was_stopped_ = is_stopped;
+    if (left_ > 0 && --left_ == 0) is_full_.store(true, std::memory_order_release);
+}
+
+void BlackBox::write(const std::filesystem::path& file) {
+    BONEMILL_ASSERT(isFull());
+    std::ofstream out(file);
+    out.precision(9);
+    out << kColumns;
+    const size_t first = count_ < records_.size() ? 0 : next_;
+    for (size_t i = 0; i < count_; ++i)
+        writeRow(out, records_[(first + i) % records_.size()], records_[first].time_ns);
+    is_full_.store(false, std::memory_order_release);
+    if (!out.flush()) throw UserError(file.string() + ": cannot be written");
+}
+
+}  // namespace bonemill

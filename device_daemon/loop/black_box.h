@@ -1,0 +1,50 @@
+// Keeps the last two seconds of samples and commands, so that a stop can be understood afterwards.
+//
+// The loop's thread records; once a stop has come and kAfterRecords more are in, the box holds still until
+// another thread has written it to a file. record() is RT-safe; the constructor and write() are not.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "common/device_messages/device_messages.h"
+
+namespace bonemill {
+
+struct BlackBoxRecord {
+    int64_t time_ns;  // CLOCK_MONOTONIC
+    DeviceSample sample;
+    WrenchCommand command;  // the newest one then; all zero if there was none
+    double f_given_D[3];    // N, to the device
+    double t_given_D[3];    // N·m
+    bool is_heard;          // the device gave a reading in this period
+};
+
+class BlackBox {
+  public:
+    static constexpr size_t kAfterRecords = 100;
+
+    // Holds so many records, more than kAfterRecords.
+    explicit BlackBox(size_t records);
+
+    // `is_stopped` says that there is a cause that holds the device.
+    void record(const BlackBoxRecord& record, bool is_stopped) noexcept;
+
+    // Any thread may ask: a stop is to be written.
+    bool isFull() const noexcept { return is_full_.load(std::memory_order_acquire); }
+    // Writes what is held as CSV, oldest first, and lets the box record again. Only when isFull(). Throws
+    // UserError.
+    void write(const std::filesystem::path& file);
+
+  private:
+    std::vector<BlackBoxRecord> records_;
+    size_t next_ = 0;
+    size_t count_ = 0;
+    size_t left_ = 0;  // records to come after the stop
+    bool was_stopped_ = false;
+    std::atomic<bool> is_full_ = false;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,153 @@
+#include "device_daemon/safety/safety_states.h"
+
+#include <algorithm>
+
+namespace bonemill {
+namespace {
+
+bool isBroken(StopCause cause) noexcept {
+    switch (cause) {
+        case StopCause::kImplausiblePose:
+        case StopCause::kPoseJump:
+        case StopCause::kSensorStuck:
+        case StopCause::kForceMismatch:
+        case StopCause::kDeviceFault:
+            return true;
+        default:
+            return false;
+    }
+}
+
+SafetyState stateOf(StopCause cause) noexcept {
+    if (cause == StopCause::kEmergencyStop) return SafetyState::kEmergencyStop;
+    return isBroken(cause) ? SafetyState::kFault : SafetyState::kProtectiveStop;
+}
+
+// What is worse takes over a stop that is there already; its first cause stays.
+int severityOf(SafetyState state) noexcept {
+    switch (state) {
+        case SafetyState::kProtectiveStop:
+            return 1;
+        case SafetyState::kFault:
+            return 2;
+        case SafetyState::kEmergencyStop:
+            return 3;
+        default:
+            return 0;
+    }
+}
+
+}  // namespace
+
+bool SafetyStates::isStopped() const noexcept {
+    return severityOf(state_) > 0;
+}
+
+void SafetyStates::update(const SafetyInput& input) noexcept {
+    has_reset_ = false;
+    waits_for_small_wrench_ = false;
+    silent_for_ = input.is_heard ? 0 : silent_for_ + std::max(input.dt, 0.0);
+    const StopCause active = causeOf(input);
+    if (active != StopCause::kNone) stop(active, input.reading.fault_code);
+    if (isStopped())
+        takeReset(input, active);
+    else
+        follow(input);
+    if (input.is_heard) {
+        was_enabled_ = input.reading.status & kStatusEnabled;
+        was_reset_pressed_ = input.reading.status & kStatusResetPressed;
+        warm_share_ = MotionWatch::warmShare(input.reading.load);
+    }
+    moveFactor(input);
+}
+
+StopCause SafetyStates::causeOf(const SafetyInput& input) noexcept {
+    if (input.is_heard && (input.reading.status & kStatusEmergencyStop)) return StopCause::kEmergencyStop;
+    if (input.reading.fault != StopCause::kNone) return input.reading.fault;
+    if (!input.is_heard || state_ != SafetyState::kEngaged) return StopCause::kNone;
+    return watch_.check(input.reading, input.given, input.dt);
+}
+
+void SafetyStates::stop(StopCause cause, uint32_t fault_code) noexcept {
+    const SafetyState wanted = stateOf(cause);
+    if (!isStopped()) {
+        cause_ = cause;
+        fault_code_ = fault_code;
+    }
+    if (severityOf(wanted) > severityOf(state_)) state_ = wanted;
+}
+
+void SafetyStates::takeReset(const SafetyInput& input, StopCause active) noexcept {
+    const bool is_pressed = input.is_heard && (input.reading.status & kStatusResetPressed);
+    if (!input.is_reset_ordered && !(is_pressed && !was_reset_pressed_)) return;
+    has_reset_ = true;  // the device's own faults go with it, and may have to go first
+    const bool is_own_fault = active == StopCause::kDeviceFault || active == StopCause::kLatePackets;
+    if (active != StopCause::kNone && !is_own_fault) return;
+    ++reset_count_;
+    cause_ = StopCause::kNone;
+    fault_code_ = 0;
+    is_freshly_pressed_ = false;
+    state_ = silent_for_ > config_.silence ? SafetyState::kDisconnected : reachedBy(input.reading);
+}
+
+// Without a stop: the device comes, goes, engages and disengages.
+void SafetyStates::follow(const SafetyInput& input) noexcept {
+    if (silent_for_ > config_.silence) {
+        if (state_ == SafetyState::kEngaged || state_ == SafetyState::kPaused)
+            cause_ = StopCause::kDeviceLost;
+        state_ = SafetyState::kDisconnected;
+        is_freshly_pressed_ = false;
+        return;
+    }
+    if (!input.is_heard) return;
+    const SafetyState reached = reachedBy(input.reading);
+    const bool is_held = !config_.needs_enabling_switch || (input.reading.status & kStatusEnabled);
+    if (reached != SafetyState::kReady) {
+        state_ = reached;
+        is_freshly_pressed_ = false;
+    } else if (state_ == SafetyState::kEngaged) {
+        if (!is_held || !(input.reading.status & kStatusDriving))
+            state_ = SafetyState::kReady;
+        else if (!input.is_server_there)
+            state_ = SafetyState::kPaused;
+        if (state_ != SafetyState::kEngaged) is_freshly_pressed_ = false;
+    } else {
+        if (state_ != SafetyState::kPaused) state_ = SafetyState::kReady;
+        tryToEngage(input);
+    }
+}
+
+SafetyState SafetyStates::reachedBy(const DeviceReading& reading) const noexcept {
+    if (reading.status & kStatusHoming) return SafetyState::kHoming;
+    constexpr uint32_t kNeeded = kStatusPowered | kStatusCalibrated;
+    return (reading.status & kNeeded) == kNeeded ? SafetyState::kReady : SafetyState::kConnected;
+}
+
+void SafetyStates::tryToEngage(const SafetyInput& input) noexcept {
+    const bool is_enabled = input.reading.status & kStatusEnabled;
+    if (!is_enabled) is_freshly_pressed_ = false;
+    if (is_enabled && !was_enabled_ && input.is_server_there) is_freshly_pressed_ = true;
+    const bool is_asked = config_.needs_enabling_switch ? is_freshly_pressed_ : true;
+    if (!is_asked || !input.is_server_there || !(input.reading.status & kStatusDriving)) return;
+    const bool is_small = input.commanded.force.norm() <= config_.engage_force &&
+                          input.commanded.torque.norm() <= config_.engage_torque;
+    waits_for_small_wrench_ = !is_small;
+    if (!is_small) return;
+    state_ = SafetyState::kEngaged;
+    cause_ = StopCause::kNone;
+    watch_.restart();
+}
+
+void SafetyStates::moveFactor(const SafetyInput& input) noexcept {
+    const double dt = std::max(input.dt, 0.0);
+    if (state_ == SafetyState::kEngaged)
+        way_ += dt / config_.engage_time;
+    else if (state_ == SafetyState::kEmergencyStop)
+        way_ = 0;
+    else
+        way_ -= dt / (isStopped() ? kStopTime : config_.ramp_time);
+    way_ = std::clamp(way_, 0.0, 1.0);
+    factor_ = way_ * way_ * (3 - 2 * way_);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,66 @@
+#include <gtest/gtest.h>
+
+#include "common/rt/clock.h"
+#include "common/user_error.h"
+#include "device_daemon/wire/controller_link.h"
+#include "device_daemon/wire/host_link.h"
+#include "tests/unit/wire/wire_test_tools.h"
+
+namespace bonemill::wire {
+namespace {
+
+constexpr int64_t kSoonNs = 10'000'000'000;  // ends a test that hangs
+
+TEST(UdpSocket, CarriesDatagramsWithTheirSource) {
+    UdpSocket a, b;
+    EXPECT_EQ(a.local().address, kLoopback);
+    const std::byte text[3] = {std::byte{1}, std::byte{2}, std::byte{3}};
+    ASSERT_TRUE(a.send(text, b.local()));
+    ASSERT_TRUE(b.waitUntil(monotonicNowNs() + kSoonNs));
+    std::byte buffer[2];
+    Endpoint source;
+    EXPECT_EQ(b.receive(buffer, source).size(), 2u) << "cut to the buffer";
+    EXPECT_EQ(source, a.local());
+    EXPECT_TRUE(b.receive(buffer, source).empty());
+    EXPECT_FALSE(b.waitUntil(monotonicNowNs() + 1));
+    EXPECT_FALSE(b.waitUntil(0));
+}
+
+TEST(UdpSocket, SaysWhatIsWrongWithAnAddress) {
+    const UdpSocket taken;
+    EXPECT_THROW(UdpSocket{taken.local()}, UserError);
+    EXPECT_THROW(UdpSocket{endpointOf("203.0.113.7", 0)}, UserError);
+    EXPECT_THROW(endpointOf("localhost", 1), UserError);
+    EXPECT_EQ(textOf(endpointOf("192.168.1.20", 4040)), "192.168.1.20:4040");
+}
+
+TEST(UdpLinks, HostAndControllerFindEachOtherAndForceFlows) {
+    Describe description = test::aresDescription();
+    description.watchdog_us = kLongestWatchdogUs;
+    ControllerLink<JointPackets> controller(description, {kLoopback, 0});
+    HostLink<JointPackets> host({.controller = controller.local(), .seed = randomSeed()}, {kLoopback, 0});
+
+    const int64_t end_ns = monotonicNowNs() + kSoonNs;
+    const JointCommand* in_force = nullptr;
+    while (!in_force && monotonicNowNs() < end_ns) {
+        host.poll(monotonicNowNs());
+        JointCommand command{};
+        command.mode = kModeTorque;
+        command.force[2] = 3;
+        command.controlword =
+            controlwordTowards(host.session().isTrusted(), driveStateOf(host.session().state().statusword));
+        host.send(command, monotonicNowNs());
+        controller.waitForCommand(monotonicNowNs() + kNsPerMillisecond);
+        controller.session().step(0, true, monotonicNowNs());
+        in_force = controller.session().commandInForce(monotonicNowNs());
+        JointState state{};
+        state.q[0] = 0.05;
+        controller.send(state, monotonicNowNs());
+    }
+    ASSERT_TRUE(in_force);
+    EXPECT_EQ(in_force->force[2], 3);
+    EXPECT_EQ(host.session().state().q[0], 0.05);
+}
+
+}  // namespace
+}  // namespace bonemill::wire
