@@ -9,6 +9,7 @@
 #include <atomic>
 #include <string_view>
 
+#include "common/device_messages/device_messages.h"
 #include "common/rt/seqlock.h"
 #include "device_daemon/device/haptic_device.h"
 #include "device_daemon/input/hand_input.h"
@@ -24,7 +25,7 @@ class RateDevice : public HapticDevice {
 
     DeviceCapabilities capabilities() const noexcept final;
     uint32_t capabilitiesVersion() const noexcept final { return names_ + 1; }
-    bool hasClock() const noexcept { return false; }
+    bool hasClock() const noexcept final { return false; }
     bool waitForSample(int64_t) noexcept final { return false; }
     // False while nothing is plugged in; the handle rests then and no button is pressed.
     bool read(double elapsed, DeviceReading& reading) noexcept final;
