@@ -45,6 +45,15 @@ bool refreshEvdev(int file, EvdevState& state) {
     return true;
 }
 
+bool takeEvents(int file, std::span<const std::byte> bytes, EvdevStream& stream) {
+    stream.take(bytes);
+    if (!stream.needsRefresh()) return true;
+    EvdevState state;
+    if (!refreshEvdev(file, state)) return false;
+    stream.refresh(state);
+    return true;
+}
+
 std::optional<EvdevDevice> openEvdev(const std::string& path, bool is_exclusive) {
     constexpr int kFlags = O_NONBLOCK | O_CLOEXEC;
     const int writable = open(path.c_str(), O_RDWR | kFlags);

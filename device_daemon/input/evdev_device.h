@@ -3,7 +3,9 @@
 // It makes system calls and allocates; it is not for the loop.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "device_daemon/input/evdev_state.h"
@@ -21,7 +23,14 @@ struct EvdevDevice {
 // heard by nobody else from then on: the desktop would take a pedal's key for typing.
 std::optional<EvdevDevice> openEvdev(const std::string& path, bool is_exclusive);
 
+// Returns an input device that is there now, or nothing; called on a reading thread.
+using EvdevOpener = std::function<std::optional<EvdevDevice>()>;
+
 // Asks for what is held down and where the axes stand. False says that the device does not answer.
 bool refreshEvdev(int file, EvdevState& state);
+
+// Hands these bytes of the file to the stream, and asks the device when events were dropped. False says that
+// it does not answer.
+bool takeEvents(int file, std::span<const std::byte> bytes, EvdevStream& stream);
 
 }  // namespace bonemill

@@ -37,8 +37,7 @@ class EvdevStream {
     // Starts with what the device is like before its first event.
     explicit EvdevStream(const EvdevState& state = {}) noexcept : state_(state) {}
 
-    // Returns true when at least one report has ended in these bytes.
-    bool take(std::span<const std::byte> bytes) noexcept;
+    void take(std::span<const std::byte> bytes) noexcept;
 
     const EvdevState& state() const noexcept { return state_; }
     bool needsRefresh() const noexcept { return needs_refresh_; }
@@ -48,7 +47,7 @@ class EvdevStream {
     }
 
   private:
-    bool takeEvent(const input_event& event) noexcept;
+    void takeEvent(const input_event& event) noexcept;
 
     EvdevState state_;
     std::array<std::byte, sizeof(input_event)> event_;

@@ -34,12 +34,7 @@ int GamepadDevice::open() {
 }
 
 bool GamepadDevice::take(std::span<const std::byte> bytes) {
-    if (!stream_.take(bytes)) return true;
-    if (stream_.needsRefresh()) {
-        EvdevState state;
-        if (!refreshEvdev(file_, state)) return false;
-        stream_.refresh(state);
-    }
+    if (!takeEvents(file_, bytes, stream_)) return false;
     publish(handInputOf(stream_.state()));
     return true;
 }

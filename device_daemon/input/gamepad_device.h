@@ -4,8 +4,6 @@
 // The thread rules are those of RateDevice.
 #pragma once
 
-#include <functional>
-#include <optional>
 #include <string>
 
 #include "device_daemon/input/evdev_device.h"
@@ -14,9 +12,6 @@
 #include "device_daemon/input/rumble.h"
 
 namespace bonemill {
-
-// Returns an input device that is there now; called on the reading thread.
-using EvdevOpener = std::function<std::optional<EvdevDevice>()>;
 
 // Opens /dev/input/event*; without a path the first gamepad that may be read.
 EvdevOpener gamepadAt(const std::string& path = {});

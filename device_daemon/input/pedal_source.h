@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "device_daemon/input/gamepad_device.h"
+#include "device_daemon/input/evdev_device.h"
 #include "device_daemon/input/input_reader.h"
 
 namespace bonemill {

@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "device_daemon/virtual_handle/bounded_vector.h"
+#include "device_daemon/virtual_handle/virtual_handle.h"
 
 namespace bonemill {
 namespace {
 
-constexpr double kLinearShare = 0.25;    // of the curve; the rest is cubic
-constexpr double kFreeStretch = 0.5;     // of the leash: a free handle trails by less and is not slowed
-constexpr double kLongestPeriod = 0.05;  // s: what VirtualHandle makes up for after a pause
+constexpr double kLinearShare = 0.25;  // of the curve; the rest is cubic
+constexpr double kFreeStretch = 0.5;   // of the leash: a free handle trails by less and is not slowed
 
 // The deflections of one triple, bounded together so that a diagonal is no faster than an axis.
 Eigen::Vector3d sharesOf(const float* deflections, double dead_zone) noexcept {
@@ -47,7 +47,7 @@ Rates ratesOf(const std::array<float, 6>& deflections, bool is_fine, const RateC
 }
 
 void RateWish::advance(double elapsed, const Rates& rates, const Pose& X_DT_handle) noexcept {
-    const double dt = std::clamp(elapsed, 0.0, kLongestPeriod);
+    const double dt = std::clamp(elapsed, 0.0, VirtualHandle::kLongestElapsed);
     Eigen::Vector3d lead = X_DT_.position - X_DT_handle.position;
     lead += dt * slowedBy(lead, leash_.distance, rates.v_D);
     Eigen::Vector3d turn = logRotation(X_DT_.rotation * X_DT_handle.rotation.conjugate());

@@ -59,7 +59,7 @@ class PipedInput {
     explicit PipedInput(const EvdevState& state = padState()) : state_(state) {}
     ~PipedInput() { unplug(); }
 
-    // The device that the reader opens; the test must not use this class while a reader may.
+    // For the device under test, which must not live longer than this.
     EvdevOpener opener() {
         return [this]() -> std::optional<EvdevDevice> {
             const int file = pending_.exchange(-1);
@@ -116,9 +116,9 @@ class FakeSpacenavd {
     bool hasClient() const { return is_greeted_; }
     float sensitivity() const { return sensitivity_; }
     void setDevice(bool has_device) { has_device_ = has_device; }
-    void send(const std::array<int32_t, 8>& message) const { sendBytes(bytesOf(message)); }
-    void sendBytes(std::span<const std::byte> bytes) const {
-        if (::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL) < 0) return;
+    void send(const std::array<int32_t, 8>& message) const {
+        // A client that is gone hears nothing.
+        [[maybe_unused]] const auto sent = ::send(client_, message.data(), sizeof message, MSG_NOSIGNAL);
     }
 
   private:
