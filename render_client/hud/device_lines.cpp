@@ -8,11 +8,6 @@ namespace {
 
 constexpr size_t kLongestDeviceName = 20;
 
-bool isStop(SafetyState state) {
-    return state == SafetyState::kProtectiveStop || state == SafetyState::kEmergencyStop ||
-           state == SafetyState::kFault;
-}
-
 // A state of a later version is an alarm, for nobody here knows what it means.
 HudTone toneOf(SafetyState state) {
     switch (state) {
@@ -60,7 +55,7 @@ std::vector<HudRow> deviceRows(const topics::Device& device, const topics::ToolS
     std::vector<HudRow> rows{{name.empty() ? "Device" : name,
                               std::string(nameOf(state)) + (device.is_simulated() ? ", simulated" : ""),
                               toneOf(state)}};
-    if (isStop(state)) addCause(state, cause, device.fault_code(), rows);
+    if (rows.front().tone == HudTone::kAlarm) addCause(state, cause, device.fault_code(), rows);
     if (state == SafetyState::kReady) addWhatItWaitsFor(device, rows);
     return rows;
 }

@@ -28,8 +28,8 @@ constexpr DeviceCapabilities kTestArm{.name = "test arm",
                                       .max_rotation_stiffness = 0,
                                       .workspace_radius = 0.1};
 
-// The hand holds the handle 0.7 mm in the slab, with the pedal down; it is written about 1000 times per
-// second.
+// The hand goes down until the burr would be 0.7 mm in the slab, with the pedal down. Its samples come about
+// 1000 times per second.
 class FakeDevice {
   public:
     explicit FakeDevice(uint64_t scene_hash)
@@ -45,11 +45,13 @@ class FakeDevice {
   private:
     void live(const std::stop_token& stop) {
         link_.writeCapabilities(kTestArm);
+        double height = 1e-3;  // m
         for (; !stop.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
             DeviceSample sample{};
             sample.stamp_ns = monotonicNowNs();
             sample.q_DT[0] = 1;
-            sample.p_DT[2] = says_nonsense ? 1e6 : 0;
+            height = std::max(0.0, height - 2e-6);
+            sample.p_DT[1] = says_nonsense ? 1e6 : height;  // along W's z
             sample.buttons = kButtonRemove;
             sample.state = uint32_t(state.load());
             sample.stop_cause = uint32_t(cause.load());
@@ -75,7 +77,7 @@ class DeviceStateOfASession : public testing::Test {
         // The slab's top is at z = 2 mm, the burr's radius is 1 mm.
         test::writeFile(folder_ / "s.textproto",
                         "name: \"state\" effects { time_removal {} } volume { path: \"slab.nrrd\" }\n"
-                        "device { p_WD_mm { x: 0 y: 0.1 z: 2.3 } }\n");
+                        "device { p_WD_mm { x: 0 y: 0.1 z: 2.3 } q_WD { w: 0.70710678 x: 0.70710678 } }\n");
     }
     std::vector<std::string> server() const {
         return {
@@ -107,7 +109,7 @@ TEST_F(DeviceStateOfASession, IsShownActedOnLoggedAndReported) {
     EXPECT_EQ(status().device().name(), "test arm");
     EXPECT_TRUE(status().device().is_simulated());
     EXPECT_EQ(status().device().max_force_n(), 2);
-    ASSERT_TRUE(waitFor([&] { return device.force > 0.5; })) << "contact goes on";
+    ASSERT_TRUE(waitFor([&] { return device.force > 0.2; })) << "contact goes on";
     EXPECT_EQ(status().removed_mm3(), 0);
 
     device.cause = StopCause::kSpeed;

@@ -36,8 +36,8 @@ TEST(DeviceLines, AnEngagedDeviceIsOneQuietLine) {
 }
 
 TEST(DeviceLines, EveryStopIsRedAndSaysWhyAndWhatToDo) {
-    for (const SafetyState state :
-         {SafetyState::kProtectiveStop, SafetyState::kEmergencyStop, SafetyState::kFault})
+    for (const SafetyState state : {SafetyState::kDisconnected, SafetyState::kProtectiveStop,
+                                    SafetyState::kEmergencyStop, SafetyState::kFault})
         for (uint32_t cause = 1; cause < kStopCauseCount; ++cause) {
             const auto rows = deviceRows(deviceIn(state, StopCause(cause)), nullptr);
             EXPECT_EQ(rows[0].value, nameOf(state));
