@@ -135,6 +135,20 @@ TEST(Sessions, IgnoreASecondHostWhileTheFirstLives) {
     EXPECT_EQ(pair.controller.host(), place);
 }
 
+// It could otherwise hide that the first has gone while its motors were on.
+TEST(Sessions, ASecondHostHasToWaitForTheWatchdogsFault) {
+    Pair pair;
+    pair.run(20);
+    HostSession<JointPackets> second({.controller = test::kControllerPlace, .seed = 8});
+    const Endpoint place{kLoopback, 5555};
+    const int64_t later_ns = pair.now_ns + 6'000'000;
+    const Bytes request = test::copyOf(*second.requestDue(later_ns));
+    EXPECT_EQ(pair.controller.take(request, place, later_ns), Taken::kNothing);
+    pair.controller.step(0, true, later_ns);
+    EXPECT_EQ(pair.controller.take(request, place, later_ns), Taken::kRequest);
+    EXPECT_EQ(pair.controller.drive().firstFault(), kFaultWatchdog);
+}
+
 TEST(Sessions, IgnorePacketsThatReflectWhatWasNeverSent) {
     Pair pair;
     pair.run(20);
