@@ -176,10 +176,12 @@ class Hostilities {
         if (taken == Taken::kCommand) {
             ASSERT_TRUE(from == controller_.host() && isWellFormed(d.content(), 80, 2) &&
                         hasFiniteForces(d.content()));
+            ASSERT_EQ(at<uint32_t>(d.content(), 8), controller_session_);
             valid_ = d;
             valid_ns_ = now_ns_;
         } else if (taken == Taken::kRequest) {
             ASSERT_TRUE(isWellFormed(d.content(), 40, 3));
+            controller_session_ = at<uint32_t>(d.content(), 8);
             description_ = datagramOf(controller_.sealDescription());
             toHost(description_, kControllerPlace);
         }
@@ -190,10 +192,13 @@ class Hostilities {
         const uint32_t descriptions = host_.descriptionCount();
         if (host_.take(d.content(), from, now_ns_)) {
             ASSERT_TRUE(from == kControllerPlace && isWellFormed(d.content(), 216, 1));
+            ASSERT_EQ(at<uint32_t>(d.content(), 8), host_session_);
             for (size_t i = 0; i < 6; ++i) ASSERT_TRUE(std::isfinite(at<double>(d.content(), 48 + 8 * i)));
         }
         if (host_.descriptionCount() != descriptions) {
             ASSERT_TRUE(from == kControllerPlace && isWellFormed(d.content(), 160, 4));
+            ASSERT_EQ(at<uint32_t>(d.content(), 8), at<uint32_t>(request_.content(), 8));
+            host_session_ = at<uint32_t>(d.content(), 8);
             ASSERT_GE(host_.description().watchdog_us, 2000u);
             ASSERT_LE(host_.description().watchdog_us, 30000u);
         }
@@ -218,6 +223,7 @@ class Hostilities {
              state_ = datagramOf(JointState{}), command_ = datagramOf(JointCommand{});
     Datagram valid_;
     int64_t valid_ns_ = 0;
+    uint32_t controller_session_ = 0, host_session_ = 0;  // as each has agreed to them last
 };
 
 TEST(WireFuzz, NothingMalformedIsBelievedAndNoForceFlowsThatWasNotCommanded) {

@@ -120,6 +120,25 @@ TEST(Sessions, IgnoreStrangers) {
     EXPECT_EQ(pair.controller.statistics().accepted, accepted + 1) << "a replay";
 }
 
+TEST(Sessions, IgnorePacketsOfOtherSessions) {
+    Pair pair;
+    pair.run(20);
+    const auto ofAnother = [](const auto& packet, const Bytes& bytes) {
+        auto other = packet;
+        std::memcpy(&other, bytes.data(), bytes.size());
+        seal(other, other.header.session + 1, other.header.sequence);
+        return std::vector<Bytes>{test::copyOf(other)};
+    };
+    const uint64_t states = pair.host.statistics().accepted, commands = pair.controller.statistics().accepted;
+    pair.on_state = [&](const Bytes& bytes) { return ofAnother(JointState{}, bytes); };
+    pair.on_command = [&](const Bytes& bytes) { return ofAnother(JointCommand{}, bytes); };
+    pair.run(3);
+    EXPECT_EQ(pair.host.statistics().accepted, states);
+    EXPECT_EQ(pair.controller.statistics().accepted, commands);
+    EXPECT_EQ(pair.host.statistics().rejected, 3u);
+    EXPECT_EQ(pair.controller.statistics().rejected, 3u);
+}
+
 TEST(Sessions, IgnoreASecondHostWhileTheFirstLives) {
     Pair pair;
     pair.run(20);
