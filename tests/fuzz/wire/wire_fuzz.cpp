@@ -176,10 +176,12 @@ class Hostilities {
         if (taken == Taken::kCommand) {
             ASSERT_TRUE(from == controller_.host() && isWellFormed(d.content(), 80, 2) &&
                         hasFiniteForces(d.content()));
+            ASSERT_EQ(at<uint32_t>(d.content(), 8), controller_session_);
             valid_ = d;
             valid_ns_ = now_ns_;
         } else if (taken == Taken::kRequest) {
             ASSERT_TRUE(isWellFormed(d.content(), 40, 3));
+            controller_session_ = at<uint32_t>(d.content(), 8);
             description_ = datagramOf(controller_.sealDescription());
             toHost(description_, kControllerPlace);
         }
@@ -190,10 +192,13 @@ class Hostilities {
         const uint32_t descriptions = host_.descriptionCount();
         if (host_.take(d.content(), from, now_ns_)) {
             ASSERT_TRUE(from == kControllerPlace && isWellFormed(d.content(), 216, 1));
+            ASSERT_EQ(at<uint32_t>(d.content(), 8), host_session_);
             for (size_t i = 0; i < 6; ++i) ASSERT_TRUE(std::isfinite(at<double>(d.content(), 48 + 8 * i)));
         }
         if (host_.descriptionCount() != descriptions) {
             ASSERT_TRUE(from == kControllerPlace && isWellFormed(d.content(), 160, 4));
+            ASSERT_EQ(at<uint32_t>(d.content(), 8), at<uint32_t>(request_.content(), 8));
+            host_session_ = at<uint32_t>(d.content(), 8);
             ASSERT_GE(host_.description().watchdog_us, 2000u);
             ASSERT_LE(host_.description().watchdog_us, 30000u);
         }
@@ -218,6 +223,7 @@ class Hostilities {
              state_ = datagramOf(JointState{}), command_ = datagramOf(JointCommand{});
     Datagram valid_;
     int64_t valid_ns_ = 0;
+    uint32_t controller_session_ = 0, host_session_ = 0;  // as each has agreed to them last
 };
 
 TEST(WireFuzz, NothingMalformedIsBelievedAndNoForceFlowsThatWasNotCommanded) {
@@ -238,40 +244,48 @@ TEST(WireFuzz, NothingMalformedIsBelievedAndNoForceFlowsThatWasNotCommanded) {
     EXPECT_TRUE(hostilities.hasForce()) << "they find each other again";
 }
 
-TEST(WireFuzz, PosesAreBelievedOnlyWhenTheyAreWellFormed) {
-    HostSession<PosePackets> host({.controller = kControllerPlace, .seed = 11});
-    ControllerSession<PosePackets> controller([] {
+struct PoseSide {
+    HostSession<PosePackets> host{{.controller = kControllerPlace, .seed = 11}};
+    ControllerSession<PosePackets> controller{[] {
         Describe d = description();
         d.max_actuator_force = 0;
         return d;
-    }());
-    controller.take(bytesOf(*host.requestDue(1)), kHostPlace, 1);
-    host.take(bytesOf(controller.sealDescription()), kControllerPlace, 1);
+    }()};
+    PoseSide() {
+        controller.take(bytesOf(*host.requestDue(1)), kHostPlace, 1);
+        host.take(bytesOf(controller.sealDescription()), kControllerPlace, 1);
+    }
+};
+
+TEST(WireFuzz, PosesAreBelievedOnlyWhenTheyAreWellFormed) {
+    constexpr int kPacketsPerSession = 500;  // one that is believed may carry its numbers far away
     Damage damage;
-    Datagram state_bytes, command_bytes;
-    for (int i = 0; i < kPackets / 20 && !HasFatalFailure(); ++i) {
-        if (i % 16 == 0) {
+    uint64_t believed_states = 0, believed_commands = 0;
+    for (int i = 0; i < kPackets / 20 / kPacketsPerSession && !HasFatalFailure(); ++i) {
+        PoseSide side;
+        for (int k = 2; k < kPacketsPerSession; ++k) {
             PoseState state{};
             PoseCommand command{};
             command.mode = kModeTorque;
-            controller.seal(state, i);
-            host.seal(command, i);
-            state_bytes = datagramOf(state);
-            command_bytes = datagramOf(command);
+            side.controller.seal(state, k);
+            side.host.seal(command, k);
+            const Datagram s = damage.of(datagramOf(state)), c = damage.of(datagramOf(command));
+            if (side.host.take(s.content(), kControllerPlace, k)) {
+                const PoseState& believed = side.host.state();
+                ASSERT_TRUE(isWellFormed(s.content(), 168, 5));
+                ASSERT_TRUE(std::isfinite(believed.p_DT[0]) && std::isfinite(believed.q_DT[3]));
+                ASSERT_EQ(std::isnan(believed.v_DT[0]), std::isnan(believed.w_DT[2]));
+            }
+            if (side.controller.take(c.content(), kHostPlace, k) == Taken::kCommand) {
+                ASSERT_TRUE(isWellFormed(c.content(), 80, 6) && hasFiniteForces(c.content()));
+            }
+            ASSERT_EQ(side.controller.commandInForce(k), nullptr) << "nobody has enabled it";
         }
-        const Datagram s = damage.of(state_bytes), c = damage.of(command_bytes);
-        if (host.take(s.content(), kControllerPlace, i)) {
-            ASSERT_TRUE(isWellFormed(s.content(), 168, 5));
-            ASSERT_TRUE(std::isfinite(host.state().p_DT[0]) && std::isfinite(host.state().q_DT[3]));
-            ASSERT_EQ(std::isnan(host.state().v_DT[0]), std::isnan(host.state().w_DT[2]));
-        }
-        if (controller.take(c.content(), kHostPlace, i) == Taken::kCommand) {
-            ASSERT_TRUE(isWellFormed(c.content(), 80, 6) && hasFiniteForces(c.content()));
-        }
-        ASSERT_EQ(controller.commandInForce(i), nullptr) << "nobody has enabled it";
+        believed_states += side.host.statistics().accepted;
+        believed_commands += side.controller.statistics().accepted;
     }
-    EXPECT_GT(host.statistics().accepted, 100u);
-    EXPECT_GT(controller.statistics().accepted, 100u);
+    EXPECT_GT(believed_states, uint64_t(kPackets / 20 / 100));
+    EXPECT_GT(believed_commands, uint64_t(kPackets / 20 / 100));
 }
 
 }  // namespace
