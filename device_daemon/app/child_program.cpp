@@ -22,13 +22,6 @@ constexpr int64_t kStartNs = 10 * kNsPerSecond;  // a loaded machine reads a lar
 constexpr int64_t kEndNs = 2 * kNsPerSecond;
 constexpr int64_t kRestartNs = kNsPerSecond;
 
-std::string pathOf(const std::string& name) {
-    const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-    for (const auto& folder : {here, here.parent_path()})
-        if (access((folder / name).c_str(), X_OK) == 0) return folder / name;
-    throw UserError(name + " is missing beside device_daemon in " + here.string() + ": build or install it");
-}
-
 // Between fork and exec only what is safe there.
 [[noreturn]] void becomeChild(const char* path, char* const* words, int output, pid_t parent) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -43,8 +36,15 @@ std::string pathOf(const std::string& name) {
 
 }  // namespace
 
+std::string programPath(const std::string& name) {
+    const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    for (const auto& folder : {here, here.parent_path()})
+        if (access((folder / name).c_str(), X_OK) == 0) return folder / name;
+    throw UserError(name + " is missing beside device_daemon in " + here.string() + ": build or install it");
+}
+
 ChildProgram::ChildProgram(const std::string& name, std::vector<std::string> words)
-    : path_(pathOf(name)), words_(std::move(words)) {
+    : path_(programPath(name)), words_(std::move(words)) {
     start();
     awaitPort();
 }

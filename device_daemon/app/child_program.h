@@ -13,6 +13,9 @@
 
 namespace bonemill {
 
+// Returns the path of a program of ours. Throws UserError when it is missing.
+std::string programPath(const std::string& name);
+
 class ChildProgram {
   public:
     // Starts `name`, which lies beside this program or one folder above, with these words and --port. Throws

@@ -1,11 +1,17 @@
 #include "device_daemon/app/device_choice.h"
 
+#include <spdlog/spdlog.h>
+
 #include <charconv>
 
 #include "common/user_error.h"
+#include "device_daemon/app/found_devices.h"
+#include "device_daemon/app/pedalled_device.h"
 #include "device_daemon/ares/ares_device.h"
 #include "device_daemon/driver/udp_joint_device.h"
 #include "device_daemon/driver/udp_pose_device.h"
+#include "device_daemon/input/gamepad_device.h"
+#include "device_daemon/input/spacemouse_device.h"
 #include "device_daemon/pointer/pointer_device.h"
 
 namespace bonemill {
@@ -76,30 +82,44 @@ ChosenDevice pointer(const DeviceSetup& setup, const DaemonOptions& options) {
                                                                    .X_DT_start = setup.X_DT_start})};
 }
 
+// Only some kinds take an address or a path behind their name.
+ChosenDevice deviceOf(const std::string& word, const DeviceSetup& setup, const DaemonOptions& options) {
+    const std::string kind = word.substr(0, word.find(':'));
+    const std::string place = kind.size() < word.size() ? word.substr(kind.size() + 1) : "";
+    spdlog::info("the hand is {}", word);
+    if (kind == "ares") return {nullptr, std::make_unique<WiredAres>(setup.ares, wireTo(kind, place))};
+    if (kind == "bridge") return {nullptr, std::make_unique<UdpPoseDevice>(wireTo(kind, place))};
+    if (kind == "gamepad")
+        return {nullptr, std::make_unique<GamepadDevice>(setup.rates, setup.X_DT_start, gamepadAt(place))};
+    if (!place.empty())
+        throw UserError("--device " + word + ": only ares, bridge and gamepad take more than a word");
+    if (kind == "simulated") return simulated(setup, options);
+    if (kind == "force-dimension") return bridged("bonemill_bridge_force_dimension");
+    if (kind == "touch") return bridged("bonemill_bridge_touch");
+    if (kind == "haply") return bridged("bonemill_bridge_haply");
+    if (kind == "spacemouse")
+        return {nullptr, std::make_unique<SpaceMouseDevice>(setup.rates, setup.X_DT_start)};
+    if (kind == "pointer") return pointer(setup, options);
+    throw UserError("--device " + word + ": there is no such device (see device_daemon --help)");
+}
+
 }  // namespace
 
 const char* deviceChoices() {
     return "The hand: auto (the best that is there), simulated (a scripted hand on the emulated ARES), "
            "ares:ADDRESS:PORT (a controller that speaks docs/ares_link.md), bridge:ADDRESS:PORT (a program "
            "that speaks "
-           "its pose packets), force-dimension, touch, haply, spacemouse, gamepad, pointer (the mouse in a "
+           "its pose packets), force-dimension, touch, haply, spacemouse, gamepad[:PATH], pointer (the mouse "
+           "in a "
            "viewer)";
 }
 
 ChosenDevice chooseDevice(const DeviceSetup& setup, const DaemonOptions& options) {
-    const std::string kind = options.device.substr(0, options.device.find(':'));
-    const std::string endpoint =
-        kind.size() < options.device.size() ? options.device.substr(kind.size() + 1) : "";
-    if (kind == "ares") return {nullptr, std::make_unique<WiredAres>(setup.ares, wireTo(kind, endpoint))};
-    if (kind == "bridge") return {nullptr, std::make_unique<UdpPoseDevice>(wireTo(kind, endpoint))};
-    if (!endpoint.empty())
-        throw UserError("--device " + options.device + ": only ares and bridge take an address");
-    if (kind == "simulated") return simulated(setup, options);
-    if (kind == "force-dimension") return bridged("bonemill_bridge_force_dimension");
-    if (kind == "touch") return bridged("bonemill_bridge_touch");
-    if (kind == "haply") return bridged("bonemill_bridge_haply");
-    if (kind == "pointer" || kind == "auto") return pointer(setup, options);
-    throw UserError("--device " + options.device + ": there is no such device (see device_daemon --help)");
+    ChosenDevice chosen =
+        deviceOf(options.device == "auto" ? bestOf(foundDevices()) : options.device, setup, options);
+    if (!options.pedal.empty())
+        chosen.device = std::make_unique<PedalledDevice>(std::move(chosen.device), options.pedal);
+    return chosen;
 }
 
 }  // namespace bonemill

@@ -5,6 +5,7 @@
 #include "common/config/scene_file.h"
 #include "common/units.h"
 #include "device_daemon/ares/scene_ares.h"
+#include "device_daemon/input/user_axes.h"
 
 namespace bonemill {
 namespace {
@@ -44,6 +45,19 @@ Pose startOf(const scene::SimulatedOperator& person, const Pose& X_WD, double sc
     return X_DT;
 }
 
+// Pushing away from the user moves the tool away from the scene's first view.
+RateConfig ratesOf(const scene::Scene& scene, const Pose& X_WD) {
+    const scene::Camera& camera = scene.camera();
+    const Eigen::Vector3d up_W = camera.has_up()
+                                     ? Eigen::Vector3d(camera.up().x(), camera.up().y(), camera.up().z())
+                                     : Eigen::Vector3d::UnitZ();
+    RateConfig rates;
+    rates.workspace_scale = scene.device().workspace_scale();
+    rates.R_DU =
+        userAxesOf(kDegree * camera.azimuth_deg(), kDegree * camera.elevation_deg(), up_W, X_WD.rotation);
+    return rates;
+}
+
 }  // namespace
 
 DeviceSetup deviceSetupOf(const scene::Scene& scene) {
@@ -57,6 +71,7 @@ DeviceSetup deviceSetupOf(const scene::Scene& scene) {
             .X_DT_start = X_DT_start,
             .ares = aresConfigOf(scene.device(), false),
             .simulated_ares = aresConfigOf(scene.device(), true, X_DT_start),
+            .rates = ratesOf(scene, X_WD),
             .loop = loopOf(scene)};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "device_daemon/ares/ares_device.h"
+#include "device_daemon/input/rate_control.h"
 #include "device_daemon/loop/device_loop.h"
 #include "proto/scene.pb.h"
 
@@ -15,6 +16,7 @@ struct DeviceSetup {
     Pose X_DT_start;        // where the scripted hand begins; D's origin without one
     AresDeviceConfig ares;  // the real one
     AresDeviceConfig simulated_ares;
+    RateConfig rates;  // of devices that steer by speed
     DeviceLoopConfig loop;
 };
 

@@ -8,6 +8,7 @@
 #include "common/user_error.h"
 #include "device_daemon/app/daemon.h"
 #include "device_daemon/app/device_choice.h"
+#include "device_daemon/app/found_devices.h"
 #include "device_daemon/ares/describe_ares.h"
 
 namespace {
@@ -36,6 +37,10 @@ int main(int argc, char** argv) {
     try {
         auto options = bonemill::parseOptions(argc, argv);
         if (!options) return 0;
+        if (options->list) {
+            std::cout << bonemill::deviceTable(bonemill::foundDevices()) << std::flush;
+            return 0;
+        }
         bonemill::setUpLog("device_daemon", options->log_level);
         const bonemill::DeviceSetup setup = loadSetup(options->scene);
         if (options->describe) {

@@ -21,7 +21,7 @@ std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
     options.stop_dir = defaultStopDir();
     CLI::App app{
         "Gives haptic_server the hand: reads the haptic device, and gives it the force, within its limits."};
-    app.add_option("--scene", options.scene, "Scene file (.textproto)")->required();
+    app.add_option("--scene", options.scene, "Scene file (.textproto)");
     app.add_option("--device", options.device, deviceChoices())->capture_default_str();
     app.add_option("--session", options.session, "Number that haptic_server was started with")
         ->capture_default_str();
@@ -39,6 +39,9 @@ std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
     app.add_flag("--hold", options.hold, "The scripted hand rests at its last waypoint instead of leaving");
     app.add_flag("!--no-enabling-switch", options.has_enabling_switch,
                  "The device has no switch that must be held: it engages by itself while the force is small");
+    app.add_option("--pedal", options.pedal,
+                   "A foot pedal or key beside the device: its path in /dev/input, see --list");
+    app.add_flag("--list", options.list, "Print which devices are there, and why others are not, and end");
     app.add_flag("--describe", options.describe,
                  "Print geometry, frames and limits of the scene's ARES, and end");
     app.add_option("--stop-dir", options.stop_dir,
@@ -59,6 +62,8 @@ std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         throw UserError(std::string(error.what()) + " (see device_daemon --help)");
     }
+    if (options.scene.empty() && !options.list)
+        throw UserError("no scene given: --scene FILE (see device_daemon --help)");
     return options;
 }
 

@@ -25,6 +25,8 @@ struct DaemonOptions {
     bool hold = false;                   // the scripted hand rests at its last waypoint
     bool has_enabling_switch = true;
     bool describe = false;
+    bool list = false;
+    std::string pedal;  // a path in /dev/input; empty: none
     std::filesystem::path stop_dir;
     bool best_effort_realtime = false;
     int core = defaultCore();

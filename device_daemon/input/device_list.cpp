@@ -56,7 +56,8 @@ ListedDevice spaceMouse(const DeviceFacts& facts) {
     switch (facts.spnav) {
         case SpnavState::kReady:
             entry.usable = true;
-            entry.what_to_type = use("spacemouse");
+            entry.word = "spacemouse";
+            entry.what_to_type = use(entry.word);
             break;
         case SpnavState::kNoDevice:
             entry.why_not = is_seen ? "it is on USB, and spacenavd has not opened it"
@@ -84,6 +85,7 @@ ListedDevice spaceMouse(const DeviceFacts& facts) {
 struct InputWords {
     const char* kind;
     const char* option;  // takes the path
+    const char* word;    // of --device, takes the path; empty for what is no hand
     const char* none;
 };
 
@@ -97,6 +99,7 @@ void listInputs(const DeviceFacts& facts, InputRole role, const InputWords& word
             .kind = words.kind, .name = input.name, .path = input.path, .usable = input.may_read};
         entry.why_not = input.may_read ? "" : "you may not read it";
         entry.what_to_type = input.may_read ? words.option + input.path : kInstallRules;
+        if (input.may_read && *words.word) entry.word = words.word + input.path;
         entries.push_back(entry);
     }
     if (entries.size() > before) return;
@@ -115,7 +118,8 @@ ListedDevice armOf(const ArmKind& arm, const UsbFact& usb, const ArmLibraries& l
         if (!library.why_not.empty()) entry.why_not += ": " + library.why_not;
     } else {
         entry.usable = true;
-        entry.what_to_type = use(arm.device);
+        entry.word = arm.device;
+        entry.what_to_type = use(entry.word);
     }
     return entry;
 }
@@ -154,13 +158,20 @@ std::vector<ListedDevice> listDevices(const DeviceFacts& facts) {
     listArms(facts, entries);
     entries.push_back(spaceMouse(facts));
     listInputs(facts, InputRole::kGamepad,
-               {.kind = "gamepad", .option = "device_daemon --device gamepad:", .none = "none is plugged in"},
+               {.kind = "gamepad",
+                .option = "device_daemon --device gamepad:",
+                .word = "gamepad:",
+                .none = "none is plugged in"},
                entries);
-    entries.push_back(
-        {.kind = "mouse", .name = "in a viewer's window", .usable = true, .what_to_type = use("pointer")});
+    entries.push_back({.kind = "mouse",
+                       .name = "in a viewer's window",
+                       .usable = true,
+                       .word = "pointer",
+                       .what_to_type = use("pointer")});
     listInputs(facts, InputRole::kKeyboard,
                {.kind = "pedal or keys",
                 .option = "device_daemon --pedal ",
+                .word = "",
                 .none = "no pedal and no keyboard is plugged in"},
                entries);
     return entries;

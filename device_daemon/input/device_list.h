@@ -17,6 +17,7 @@ struct ListedDevice {
     std::string name = {};  // as the device says it; empty when there is none
     std::string path = {};
     bool usable = false;
+    std::string word = {};          // of --device, when usable
     std::string why_not = {};       // empty when usable
     std::string what_to_type = {};  // to use it, or to make it usable; empty when typing does not help
 };
