@@ -14,13 +14,13 @@ struct MotionBounds {
     double acceleration;
 };
 
-// Where no bound acts this is x'' = b² (wanted - x) - 2 b x'. Braking from the bounded speed needs less than
-// the bounded acceleration, so that the bounds make no overshoot.
+// Where no bound acts this is x'' = k² (wanted - x) - 2 k x', with k = kBandwidth. Braking from the bounded
+// speed needs less than the bounded acceleration, so that the bounds make no overshoot.
 Eigen::Vector3d nextVelocity(const Eigen::Vector3d& way_left, const Eigen::Vector3d& velocity, double dt,
                              const MotionBounds& bounds) noexcept {
-    constexpr double b = MotionFilter::kBandwidth;
-    const Eigen::Vector3d wanted = bounded(b / 2 * way_left, bounds.speed);
-    return velocity + dt * bounded(2 * b * (wanted - velocity), bounds.acceleration);
+    constexpr double kBandwidth = MotionFilter::kBandwidth;
+    const Eigen::Vector3d wanted = bounded(kBandwidth / 2 * way_left, bounds.speed);
+    return velocity + dt * bounded(2 * kBandwidth * (wanted - velocity), bounds.acceleration);
 }
 
 }  // namespace

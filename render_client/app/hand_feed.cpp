@@ -13,6 +13,7 @@ using namespace std::chrono_literals;
 constexpr auto kHintTime = 12s;  // then the hint fades
 constexpr auto kFadeTime = 2s;
 constexpr double kUsualBurr = 1e-3;  // m, while the scene does not say
+constexpr double kBurrItself = 1.5;  // burr radii around its centre, where the burr is seen and no bone
 
 float hintOpacity(HandFeed::Clock::duration age) {
     const std::chrono::duration<float> left = kHintTime + kFadeTime - age, fade = kFadeTime;
@@ -26,28 +27,34 @@ void HandFeed::lookAt(int width, int height) {
     controls_.toolHold().lookAt(view_);
 }
 
-void HandFeed::update(const SessionView& session, bool begin_now, Clock::time_point now) {
-    const bool by_itself = shouldBeginByItself(session);
-    if (begin_now || by_itself) begin(begin_now, now);
+std::string HandFeed::update(const SessionView& session, bool begin_now, Clock::time_point now) {
+    const bool is_offered = isOffered(session) && !controls_.toolHold().isHolding();
+    const std::string why_not = is_offered ? whyNotHold(session) : "";
+    if (begin_now || (is_offered && why_not.empty())) begin(begin_now, now);
     tellDevice();
     showHand(session, now);
+    return why_not;
 }
 
-// A user who has let the tool go, or whom somebody else was faster than, is not asked again.
-bool HandFeed::shouldBeginByItself(const SessionView& session) {
+// Once in each run of the server: a user who has let the tool go, or whom somebody else was faster than, is
+// not asked again.
+bool HandFeed::isOffered(const SessionView& session) {
+    const bool has_seen_bone = std::exchange(shows_model_, session.is_complete);
     const bool is_wanted = begins_by_itself_ || isHeldByMouse(session);
-    if (!std::exchange(shows_model_, session.is_complete)) return false;  // the bone has to be seen to begin
-    if (!is_wanted || offered_epoch_ == subscriber_.epoch()) return false;
-    offered_epoch_ = subscriber_.epoch();
-    return !controls_.toolHold().isHolding() && whyNotHold(session).empty();
+    if (!has_seen_bone || !is_wanted || session.role == topics::Viewer::VIEWER) return false;
+    return std::exchange(offered_epoch_, subscriber_.epoch()) != subscriber_.epoch();
 }
 
 void HandFeed::begin(bool is_at_cursor, Clock::time_point now) {
     const double burr_radius = scene_.burrRadius() > 0 ? scene_.burrRadius() : kUsualBurr;
-    const Pose X_WT =
-        beginInFrontOf(surfaceInView(is_at_cursor), view_.camera, burr_radius, scene_.devicePose());
     const bool comes_to_cursor = scene_.settings().stereo == StereoMode::kOff;
-    controls_.toolHold().begin(X_WT, burr_radius, comes_to_cursor);
+    const Eigen::Vector3d surface_W = surfaceInView(is_at_cursor);
+    const std::optional<Pose> X_WT = scene_.devicePose();
+    const bool is_burr_under_cursor =
+        is_at_cursor && X_WT && (X_WT->position - surface_W).norm() < kBurrItself * burr_radius;
+    controls_.toolHold().begin(
+        is_burr_under_cursor ? *X_WT : beginInFrontOf(surface_W, view_.camera, burr_radius, X_WT),
+        burr_radius, comes_to_cursor);
     begun_ = now;
 }
 

@@ -121,7 +121,8 @@ class WindowViewer {
         takeInput(height, session, wishes);
         if (!is_minimised) panel_.layOut(controls_, session, wishes);
         carryOut(wishes);
-        hand_.update(session, wishes.hold_tool, Clock::now());
+        const std::string why_not = hand_.update(session, wishes.hold_tool, Clock::now());
+        if (!why_not.empty()) notices_.show({why_not, HudTone::kWarning});
         window_.showCrosshair(controls_.toolHold().isHolding());
         announce();
         attendance_.update(session.others);

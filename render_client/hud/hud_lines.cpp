@@ -34,8 +34,7 @@ void addToolNameRow(const topics::SceneInfo& info, std::vector<HudRow>& rows) {
 
 HudRow watcherRow(const topics::Viewer& watcher) {
     const std::string name = shortenedText(watcherName(watcher.name()), kLongestName);
-    return {name, watcherText(watcher),
-            watcher.is_complete() ? HudTone::kPlain : HudTone::kWarning};
+    return {name, watcherText(watcher), watcher.is_complete() ? HudTone::kPlain : HudTone::kWarning};
 }
 
 std::vector<HudRow> watcherRows(const std::vector<topics::Viewer>& watchers) {
