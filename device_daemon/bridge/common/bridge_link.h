@@ -1,0 +1,60 @@
+// The arm's end of the wire: what the arm says in a period goes to the host as a state, and what the host
+// commands comes back as a wrench that the arm may give.
+//
+// step() runs on the arm's thread; leave() and the questions below it are for any other.
+#pragma once
+
+#include <atomic>
+#include <optional>
+
+#include "device_daemon/bridge/common/arm.h"
+#include "device_daemon/bridge/common/force_gate.h"
+#include "device_daemon/wire/controller_link.h"
+
+namespace bonemill::bridge {
+
+class BridgeLink : public ArmPeriod {
+  public:
+    // Throws UserError if the address cannot be used.
+    BridgeLink(const ArmDescription& arm, const wire::Endpoint& local);
+
+    ArmOrder step(const ArmReading& reading, int64_t now_ns) noexcept override;
+
+    wire::Endpoint local() const noexcept { return link_.local(); }
+    // Asks for the end: the wrench fades, and the host hears that the bridge leaves in order.
+    void leave() noexcept { shall_leave_ = true; }
+    bool hasLeft() const noexcept { return has_left_; }
+    // The arm has not answered for kLostAfterPeriods.
+    bool isArmLost() const noexcept { return is_arm_lost_; }
+    // The number of the arm's complaint, for people.
+    uint32_t faultCode() const noexcept { return fault_code_; }
+    int64_t lastStepNs() const noexcept { return last_step_ns_; }
+
+    // A vendor's call that fails once or a few times is forgiven: the wrench fades meanwhile. After
+    // kTroublePeriods it is a fault of the device.
+    static constexpr int kTroublePeriods = 20;
+    static constexpr int kLostAfterPeriods = 1500;
+
+  private:
+    uint32_t faultsOf(const ArmReading& reading) noexcept;
+    bool isDriving() noexcept;
+    std::optional<Wrench> wanted(const ArmReading& reading, int64_t now_ns) const noexcept;
+    void sendState(const ArmReading& reading, int64_t now_ns) noexcept;
+
+    wire::ControllerLink<wire::PosePackets> link_;
+    ForceGate gate_;
+    Pose newest_X_DT_;
+    bool has_pose_ = false;
+    int bad_periods_ = 0;
+    bool is_driving_ = false;
+    int64_t before_ns_ = 0;
+
+    // Each is a lone word between two threads.
+    std::atomic<bool> shall_leave_{false};
+    std::atomic<bool> has_left_{false};
+    std::atomic<bool> is_arm_lost_{false};
+    std::atomic<uint32_t> fault_code_{0};
+    std::atomic<int64_t> last_step_ns_{0};
+};
+
+}  // namespace bonemill::bridge

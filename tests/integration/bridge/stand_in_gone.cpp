@@ -1,0 +1,4 @@
+// The library that stand_in_incomplete needs.
+extern "C" int standInGone() {
+    return 1;
+}
