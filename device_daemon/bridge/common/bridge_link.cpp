@@ -55,8 +55,8 @@ BridgeLink::BridgeLink(const ArmDescription& arm, const wire::Endpoint& local)
 ArmOrder BridgeLink::step(const ArmReading& reading, int64_t now_ns) noexcept {
     last_step_ns_ = now_ns;
     link_.poll(now_ns);
-    link_.session().step(faultsOf(reading), reading.is_powered && reading.is_homed && reading.is_enabled,
-                         now_ns);
+    link_.session().step(faultsOf(reading, now_ns),
+                         reading.is_powered && reading.is_homed && reading.is_enabled, now_ns);
     const double elapsed = secondsOfNs(before_ns_ == 0 ? 0 : now_ns - before_ns_);
     before_ns_ = now_ns;
     const Wrench wrench_D = gate_.step(wanted(reading, now_ns), elapsed);
@@ -66,11 +66,12 @@ ArmOrder BridgeLink::step(const ArmReading& reading, int64_t now_ns) noexcept {
     return isDriving() ? ArmOrder{wrench_D, true} : ArmOrder{};
 }
 
-uint32_t BridgeLink::faultsOf(const ArmReading& reading) noexcept {
-    bad_periods_ = reading.is_valid && !reading.has_failed ? 0 : bad_periods_ + 1;
+uint32_t BridgeLink::faultsOf(const ArmReading& reading, int64_t now_ns) noexcept {
+    if (good_ns_ == 0 || (reading.is_valid && !reading.has_failed)) good_ns_ = now_ns;
+    is_in_trouble_ = now_ns - good_ns_ >= kTroubleNs;
+    is_arm_lost_ = now_ns - good_ns_ >= kLostNs;
     fault_code_ = reading.fault_code;
-    is_arm_lost_ = bad_periods_ >= kLostAfterPeriods;
-    return reading.faults | (bad_periods_ >= kTroublePeriods ? wire::kFaultSdk : 0u);
+    return reading.faults | (is_in_trouble_ ? wire::kFaultSdk : 0u);
 }
 
 // The motors are switched on when the host enables operation, and off when it says so or the arm has failed.
@@ -100,7 +101,7 @@ std::optional<Wrench> BridgeLink::wanted(const ArmReading& reading, int64_t now_
 void BridgeLink::sendState(const ArmReading& reading, int64_t now_ns) noexcept {
     if (reading.is_valid) newest_X_DT_ = reading.X_DT;
     has_pose_ |= reading.is_valid;
-    if (!has_pose_ || (!reading.is_valid && bad_periods_ < kTroublePeriods)) return;
+    if (!has_pose_ || (!reading.is_valid && !is_in_trouble_)) return;
     wire::PoseState state{};
     state.inputs = inputsOf(reading, shall_leave_ && gate_.isClosed());
     state.mode = link_.session().newestCommand().mode;

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <optional>
 
+#include "common/units.h"
 #include "device_daemon/bridge/common/arm.h"
 #include "device_daemon/bridge/common/force_gate.h"
 #include "device_daemon/wire/controller_link.h"
@@ -24,19 +25,19 @@ class BridgeLink : public ArmPeriod {
     // Asks for the end: the wrench fades, and the host hears that the bridge leaves in order.
     void leave() noexcept { shall_leave_ = true; }
     bool hasLeft() const noexcept { return has_left_; }
-    // The arm has not answered for kLostAfterPeriods.
+    // The arm has not answered for kLostNs.
     bool isArmLost() const noexcept { return is_arm_lost_; }
     // The number of the arm's complaint, for people.
     uint32_t faultCode() const noexcept { return fault_code_; }
     int64_t lastStepNs() const noexcept { return last_step_ns_; }
 
     // A vendor's call that fails once or a few times is forgiven: the wrench fades meanwhile. After
-    // kTroublePeriods it is a fault of the device.
-    static constexpr int kTroublePeriods = 20;
-    static constexpr int kLostAfterPeriods = 1500;
+    // kTroubleNs it is a fault of the device, and after kLostNs the arm is lost.
+    static constexpr int64_t kTroubleNs = 20 * kNsPerMillisecond;
+    static constexpr int64_t kLostNs = 1500 * kNsPerMillisecond;
 
   private:
-    uint32_t faultsOf(const ArmReading& reading) noexcept;
+    uint32_t faultsOf(const ArmReading& reading, int64_t now_ns) noexcept;
     bool isDriving() noexcept;
     std::optional<Wrench> wanted(const ArmReading& reading, int64_t now_ns) const noexcept;
     void sendState(const ArmReading& reading, int64_t now_ns) noexcept;
@@ -45,7 +46,8 @@ class BridgeLink : public ArmPeriod {
     ForceGate gate_;
     Pose newest_X_DT_;
     bool has_pose_ = false;
-    int bad_periods_ = 0;
+    int64_t good_ns_ = 0;  // when the arm was last well
+    bool is_in_trouble_ = false;
     bool is_driving_ = false;
     int64_t before_ns_ = 0;
 

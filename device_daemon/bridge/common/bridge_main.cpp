@@ -61,6 +61,7 @@ class BridgeRun {
     int runSelfTest();
     bool isConfirmed();
     bool isHung(int64_t last_step_ns) const;
+    void start(ArmPeriod& period);
     void stop();
 
     Arm& arm_;
@@ -84,7 +85,7 @@ int BridgeRun::run() {
 int BridgeRun::runLink() {
     BridgeLink link(description_, wire::endpointOf(options_.address, options_.port));
     print("listening on " + wire::textOf(link.local()));
-    arm_.start(link);
+    start(link);
     const int result = serve(link);
     sayFarewell(link);
     stop();
@@ -132,7 +133,7 @@ int BridgeRun::runSelfTest() {
     if (options_.ramp && !isConfirmed()) throw UserError("--ramp was not confirmed: nothing was done");
     SelfTest test(description_, options_.seconds, options_.ramp);
     start_ns_ = monotonicNowNs();
-    arm_.start(test);
+    start(test);
     while (!test.hasEnded() && !way_out_.isRequested() && !isHung(test.lastStepNs())) usleep(kLookEveryUs);
     test.leave();
     usleep(kLookEveryUs + useconds_t(ForceGate::kFadeTime * kPerMicro));
@@ -140,6 +141,15 @@ int BridgeRun::runSelfTest() {
     const std::vector<std::string> lines = test.lines();
     for (const std::string& line : lines) print(line);
     return lines.front() == "passed" ? 0 : 1;
+}
+
+void BridgeRun::start(ArmPeriod& period) {
+    try {
+        arm_.start(period);
+    } catch (...) {
+        stop();  // before `period` goes
+        throw;
+    }
 }
 
 void BridgeRun::stop() {

@@ -94,6 +94,18 @@ std::vector<RecordedCall> readRecord(const std::string& file) {
     return record;
 }
 
+RecordedCall lastOf(const std::vector<RecordedCall>& record, const std::string& name) {
+    const auto found = std::find_if(record.rbegin(), record.rend(),
+                                    [&](const RecordedCall& call) { return call.name == name; });
+    return found == record.rend() ? RecordedCall{} : *found;
+}
+
+std::vector<RecordedCall> without(const std::vector<RecordedCall>& record, const std::string& name) {
+    std::vector<RecordedCall> others = record;
+    std::erase_if(others, [&](const RecordedCall& call) { return call.name == name; });
+    return others;
+}
+
 int countOf(const std::vector<RecordedCall>& record, const std::string& name) {
     return int(std::count_if(record.begin(), record.end(),
                              [&](const RecordedCall& call) { return call.name == name; }));

@@ -55,6 +55,9 @@ struct RecordedCall {
 };
 
 std::vector<RecordedCall> readRecord(const std::string& file);
+// The last call of this name; nothing in it if there is none.
+RecordedCall lastOf(const std::vector<RecordedCall>& record, const std::string& name);
+std::vector<RecordedCall> without(const std::vector<RecordedCall>& record, const std::string& name);
 int countOf(const std::vector<RecordedCall>& record, const std::string& name);
 
 // Checks what holds in every run, whatever the library does: all wrenches are finite, none is above the

@@ -4,7 +4,6 @@
 
 #include "common/device_messages/device_messages.h"
 #include "tests/integration/bridge/bridge_host.h"
-#include "tests/support/temporary_folder.h"
 
 namespace bonemill {
 namespace {
@@ -22,12 +21,7 @@ class ForceDimensionBridge : public testing::Test {
         return test::bridgeCommand("bonemill_bridge_force_dimension", library, words, record_file_, more);
     }
     std::vector<RecordedCall> record() const { return test::readRecord(record_file_); }
-    RecordedCall lastForce() const {
-        const auto calls = record();
-        for (auto call = calls.rbegin(); call != calls.rend(); ++call)
-            if (call->name == "force") return *call;
-        return {};
-    }
+    RecordedCall lastForce() const { return test::lastOf(record(), "force"); }
     // The force was zeroed, switched off, and the arm stopped and closed, in this order and last.
     void expectStopped() const {
         const auto calls = record();
@@ -196,23 +190,34 @@ TEST_F(ForceDimensionBridge, DoesNotEnableWithoutCalibration) {
     EXPECT_EQ(test::countOf(record(), "enable"), 0);
 }
 
-TEST_F(ForceDimensionBridge, EndsInTimeAlthoughTheLibraryHangs) {
-    for (const std::string words : {"hangs_at=300", "stop_hangs", "open_hangs"}) {
-        test::Process bridge(command(words));
-        if (words != "open_hangs") {
-            BridgeHost host(bridge);
-            host.want(true);
-            ASSERT_TRUE(host.runUntil([&] { return host.hasState(); }));
-            host.runPeriods(400);
-        } else {
-            ASSERT_TRUE(
-                test::waitFor([&] { return bridge.errSoFar().find("SDK version") != std::string::npos; }));
-        }
-        bridge.signal(SIGTERM);
-        EXPECT_EQ(bridge.wait().exit_code, 3) << words;
-        EXPECT_EQ(test::countOf(record(), "stop") > 0, words != "open_hangs") << words;
-        std::filesystem::remove(record_file_);
-    }
+class HangingBridge : public ForceDimensionBridge, public testing::WithParamInterface<const char*> {};
+
+TEST_P(HangingBridge, EndsInTimeWithAStop) {
+    test::Process bridge(command(GetParam()));
+    BridgeHost host(bridge);
+    host.want(true);
+    ASSERT_TRUE(host.runUntil([&] { return host.hasState(); }));
+    host.runPeriods(400);
+    bridge.signal(SIGTERM);
+    EXPECT_EQ(bridge.wait().exit_code, 3);
+    EXPECT_GT(test::countOf(record(), "stop"), 0);
+    test::expectHarmless(record(), kOmegaForce);
+}
+
+INSTANTIATE_TEST_SUITE_P(Calls, HangingBridge, testing::Values("hangs_at=300", "stop_hangs"));
+
+TEST_F(ForceDimensionBridge, CanBeEndedWhileTheLibraryHangsInOpening) {
+    test::Process bridge(command("open_hangs"));
+    ASSERT_TRUE(test::waitFor([&] { return bridge.errSoFar().find("SDK version") != std::string::npos; }));
+    bridge.signal(SIGTERM);
+    EXPECT_EQ(bridge.wait().exit_code, 3);
+}
+
+TEST_F(ForceDimensionBridge, EndsByItselfWhenTheLibraryHangs) {
+    test::Process bridge(command("hangs_at=100"));
+    const test::Finished finished = bridge.wait();
+    EXPECT_EQ(finished.exit_code, 3);
+    EXPECT_NE(finished.err.find("has not returned for 2 s"), std::string::npos) << finished.err;
 }
 
 TEST_F(ForceDimensionBridge, ACrashIsALostLink) {
