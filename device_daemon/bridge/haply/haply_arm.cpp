@@ -85,8 +85,6 @@ void HaplyArm::stop() noexcept {
 void HaplyArm::run(ArmPeriod& period) noexcept {
     PeriodicTimer timer(kPeriodNs, monotonicNowNs());
     ArmOrder order;
-    if (!socket_->send(probeMessage(state_, dialect_, true))) return;
-    unanswered_since_ns_ = monotonicNowNs();
     while (!shall_end_) {
         timer.waitNext();
         const bool has_answered = exchange(order);
@@ -97,18 +95,26 @@ void HaplyArm::run(ArmPeriod& period) noexcept {
 // Until the host has enabled operation once, the arm is asked and nothing is commanded. From then on a force
 // is, if only zero.
 bool HaplyArm::exchange(const ArmOrder& order) {
-    has_driven_ |= order.is_driving;
     const int64_t now_ns = monotonicNowNs();
     if (unanswered_since_ns_ == 0 || now_ns - unanswered_since_ns_ > kAskAgainNs) {
-        const Eigen::Vector3d force = wrenchInV(kHaplyAxes, order.wrench_D).force;
-        if (!socket_->send(has_driven_ ? forceMessage(state_, dialect_, force)
-                                       : probeMessage(state_, dialect_, false)))
-            return false;
+        if (!socket_->send(nextMessage(order))) return false;
         unanswered_since_ns_ = now_ns;
     }
-    if (!socket_->receive(message_, now_ns + kAnswerNs)) return false;
-    unanswered_since_ns_ = 0;
-    return takeMessage(message_, options_.device, state_);
+    bool is_understood = false;
+    // Of answers that came late, the newest counts.
+    for (int64_t deadline_ns = now_ns + kAnswerNs; socket_->receive(message_, deadline_ns); deadline_ns = 0) {
+        unanswered_since_ns_ = 0;
+        is_understood = takeMessage(message_, options_.device, state_);
+    }
+    return is_understood;
+}
+
+std::string HaplyArm::nextMessage(const ArmOrder& order) {
+    const bool is_first = !has_spoken_;
+    has_spoken_ = true;
+    has_driven_ |= order.is_driving;
+    if (is_first || !has_driven_) return probeMessage(state_, dialect_, is_first);
+    return forceMessage(state_, dialect_, wrenchInV(kHaplyAxes, order.wrench_D).force);
 }
 
 ArmReading HaplyArm::read(bool has_answered) const noexcept {

@@ -35,6 +35,7 @@ class HaplyArm : public Arm {
     // The rest is the loop's thread.
     void run(ArmPeriod& period) noexcept;
     bool exchange(const ArmOrder& order);
+    std::string nextMessage(const ArmOrder& order);
     ArmReading read(bool has_answered) const noexcept;
     void release() noexcept;
 
@@ -50,6 +51,7 @@ class HaplyArm : public Arm {
     bool has_thread_ = false;
 
     // Of the loop's thread.
+    bool has_spoken_ = false;
     bool has_driven_ = false;
     int64_t unanswered_since_ns_ = 0;  // 0: the last message was answered
     std::string message_;

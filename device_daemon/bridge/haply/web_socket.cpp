@@ -1,6 +1,7 @@
 #include "device_daemon/bridge/haply/web_socket.h"
 
 #include <libwebsockets.h>
+#include <poll.h>
 
 #include <algorithm>
 #include <deque>
@@ -16,7 +17,8 @@ constexpr int64_t kConnectNs = 3 * kNsPerSecond;
 constexpr int64_t kSendNs = 20 * kNsPerMillisecond;
 constexpr size_t kLargestMessage = 1 << 20;  // bytes; the whole inventory has a few thousand
 
-void wakeUp(lws_sorted_usec_list*) {}
+constexpr int64_t kLookEveryNs = kNsPerMillisecond;  // while it connects, its socket may become another
+constexpr int kWithoutWaiting = -1;
 
 }  // namespace
 
@@ -29,6 +31,7 @@ struct WebSocket::Connection {
     // Serves the socket until the condition holds, the deadline passes or the connection has ended.
     template <class Condition>
     bool serveUntil(const Condition& condition, int64_t deadline_ns);
+    void waitForSocket(int64_t longest_ns);
     void take(const char* data, size_t length, bool is_last);
     bool write();
 
@@ -70,19 +73,25 @@ int WebSocket::Connection::onEvent(lws* socket, lws_callback_reasons reason, voi
     return 0;
 }
 
+// libwebsockets has no wait that ends at an instant of ours: it is asked for what can be done without
+// waiting, and the waiting is done here.
 template <class Condition>
 bool WebSocket::Connection::serveUntil(const Condition& condition, int64_t deadline_ns) {
-    lws_sorted_usec_list_t alarm{};
-    bool is_met = condition();
-    while (!is_met && !has_ended) {
+    while (!condition()) {
         const int64_t left_ns = deadline_ns - monotonicNowNs();
-        if (left_ns <= 0) break;
-        lws_sul_schedule(context, 0, &alarm, wakeUp, left_ns / kNsPerMicrosecond + 1);
-        lws_service(context, 0);
-        is_met = condition();
+        if (has_ended || left_ns <= 0) return false;
+        lws_service(context, kWithoutWaiting);
+        if (!condition() && !has_ended) waitForSocket(std::min(left_ns, is_open ? left_ns : kLookEveryNs));
     }
-    lws_sul_schedule(context, 0, &alarm, wakeUp, LWS_SET_TIMER_USEC_CANCEL);
-    return is_met;
+    return true;
+}
+
+void WebSocket::Connection::waitForSocket(int64_t longest_ns) {
+    const bool wants_to_write = !is_open || !outgoing.empty();
+    pollfd descriptor{socket ? int(lws_get_socket_fd(socket)) : -1,
+                      short(POLLIN | (wants_to_write ? POLLOUT : 0)), 0};
+    const timespec limit = timespecOfNs(longest_ns);
+    ppoll(&descriptor, 1, &limit, nullptr);
 }
 
 void WebSocket::Connection::take(const char* data, size_t length, bool is_last) {
