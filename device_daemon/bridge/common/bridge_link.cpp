@@ -81,8 +81,8 @@ bool BridgeLink::isDriving() noexcept {
     const uint16_t controlword = link_.session().newestCommand().controlword;
     const bool is_told_off =
         drive.state() == wire::DriveState::kSwitchOnDisabled && controlword == wire::kControlDisable;
-    const bool has_failed =
-        drive.state() == wire::DriveState::kFault && (drive.firstFault() & ~kLinkFaults) != 0;
+    const uint32_t faults = drive.firstFault() | drive.activeFaults();
+    const bool has_failed = drive.state() == wire::DriveState::kFault && (faults & ~kLinkFaults) != 0;
     if (drive.state() == wire::DriveState::kOperationEnabled) is_driving_ = true;
     if ((is_told_off && gate_.isClosed()) || has_failed) is_driving_ = false;
     return is_driving_;
