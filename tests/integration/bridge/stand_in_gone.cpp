@@ -1,4 +1,5 @@
-// The library that stand_in_incomplete needs.
-extern "C" int standInGone() {
+#include "tests/integration/bridge/stand_in_gone.h"
+
+int standInGone() {
     return 1;
 }

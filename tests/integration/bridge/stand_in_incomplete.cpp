@@ -1,5 +1,6 @@
 // A library whose dependency is missing at run time.
-extern "C" int standInGone();
+#include "tests/integration/bridge/stand_in_gone.h"
+
 extern "C" int standInIncomplete() {
     return standInGone();
 }
