@@ -16,11 +16,12 @@
 #include <unistd.h>
 
 enum { kDescribeRequest = 3, kDescribe = 4, kPoseState = 5, kPoseCommand = 6 };
-enum { kWatchdogUs = 5000, kOff = 0x40, kReady = 0x21, kSwitchedOn = 0x23, kEnabled = 0x27, kFault = 0x08 };
+enum { kOff = 0x40, kReady = 0x21, kSwitchedOn = 0x23, kEnabled = 0x27, kFault = 0x08 };
 
 static volatile sig_atomic_t shall_end = 0;
 static struct sockaddr_in host;
 static uint32_t session, sent, newest; /* the session, and the last packet's number of either side */
+static uint32_t watchdog_us = 5000;
 static uint64_t heard_us;              /* when the host was last heard; 0: never */
 static unsigned status = kOff, faults, first_fault;
 static float wrench[6];
@@ -65,7 +66,7 @@ static void describe(int udp) {
     strcpy((char*)packet + 32, "spring (example in C)");
     putD(packet + 80, 10);    /* N */
     putD(packet + 112, 0.1);  /* workspace radius, m */
-    put32(packet + 144, kWatchdogUs);
+    put32(packet + 144, watchdog_us);
     put32(packet + 148, 1000); /* Hz */
     put32(packet + 152, 5);    /* somebody's own bridge */
     sendPacket(udp, packet, kDescribe, sizeof packet);
@@ -94,9 +95,13 @@ static void take(int udp, const uint8_t* packet, size_t length, struct sockaddr_
     const int is_ours = heard_us && is_host && u32(packet + 8) == session;
     const int is_new = number != newest && number - newest < 0x80000000u;
     if (packet[5] == kDescribeRequest && length == 40) {
-        if (!is_ours && heard_us && nowUs() - heard_us <= kWatchdogUs) return; /* there is another host */
-        if (!is_ours) { host = from; session = u32(packet + 8); if (status != kFault) status = kOff; }
-        else if (!is_new) return;
+        if (!is_ours && heard_us && nowUs() - heard_us <= watchdog_us) return; /* there is another host */
+        if (is_ours && !is_new) return;
+        if (!is_ours && status != kFault) status = kOff;
+        const uint32_t wish_us = u32(packet + 24) ? u32(packet + 24) : 5000;
+        watchdog_us = wish_us < 2000 ? 2000 : wish_us > 30000 ? 30000 : wish_us;
+        host = from;
+        session = u32(packet + 8);
         describe(udp);
     } else if (packet[5] == kPoseCommand && length == 80 && is_ours && is_new) obey(packet);
     else return;
@@ -143,7 +148,7 @@ int main(int argc, char** argv) {
         for (ssize_t length; size = sizeof from, (length = recvfrom(udp, packet, sizeof packet, MSG_DONTWAIT,
                                                                      (struct sockaddr*)&from, &size)) > 0;)
             take(udp, packet, (size_t)length, from);
-        const int is_silent = !heard_us || nowUs() - heard_us > kWatchdogUs;
+        const int is_silent = !heard_us || nowUs() - heard_us > watchdog_us;
         faults = is_silent && (faults || (status != kOff && status != kFault)) ? 1 : 0;
         if (faults && status != kFault) { status = kFault; first_fault = faults; }
         for (int i = 0; i < 3; ++i) { /* DEVICE: read the pose, give the force; only while it is enabled */

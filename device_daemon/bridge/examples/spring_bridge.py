@@ -16,7 +16,6 @@ import zlib
 DESCRIBE_REQUEST, DESCRIBE, POSE_STATE, POSE_COMMAND = 3, 4, 5, 6
 LENGTHS = {DESCRIBE_REQUEST: 40, POSE_COMMAND: 80}
 OFF, READY, SWITCHED_ON, ENABLED, FAULT = 0x40, 0x21, 0x23, 0x27, 0x08
-WATCHDOG_S = 0.005
 NAN = math.nan
 
 
@@ -29,6 +28,7 @@ class SpringBridge:
         self.status, self.faults, self.first_fault, self.last_control = OFF, 0, 0, 0
         self.wrench = (0.0,) * 6
         self.position, self.velocity = [0.0] * 3, [0.0] * 3
+        self.watchdog = 0.005  # s
         self.shall_end = False
 
     def send(self, kind, body):
@@ -40,7 +40,7 @@ class SpringBridge:
     def describe(self):
         simulated_force, somebodys_own = 1 | 16, 5
         self.send(DESCRIBE, struct.pack("<IIQ48s8dIII", 0, simulated_force, 0, b"spring (example in Python)", 10, 0, 0, 0,
-                                        0.1, 0, 0, 0, int(WATCHDOG_S * 1e6), 1000, somebodys_own))
+                                        0.1, 0, 0, 0, round(self.watchdog * 1e6), 1000, somebodys_own))
 
     def send_state(self):
         closed_enabled_homed, leaving, powered_remote, torque = 1 | 2 | 4, 32, 0x210, 10
@@ -77,9 +77,11 @@ class SpringBridge:
         is_ours = source == self.host and session == self.session
         is_new = 0 < (number - self.newest) & 0xFFFFFFFF < 0x80000000
         if kind == DESCRIBE_REQUEST and not is_ours:
-            if time.monotonic() - self.heard <= WATCHDOG_S:
+            if time.monotonic() - self.heard <= self.watchdog:
                 return  # there is another host
             self.host, self.session = source, session
+            wish_us, = struct.unpack_from("<I", packet, 24)
+            self.watchdog = min(max(wish_us or 5000, 2000), 30000) * 1e-6
             self.status = self.status if self.status == FAULT else OFF
         elif not is_ours or not is_new:
             return
@@ -90,7 +92,7 @@ class SpringBridge:
             self.obey(packet)
 
     def watch(self):
-        is_silent = time.monotonic() - self.heard > WATCHDOG_S
+        is_silent = time.monotonic() - self.heard > self.watchdog
         self.faults = int(is_silent and (self.faults != 0 or self.status not in (OFF, FAULT)))
         if self.faults and self.status != FAULT:
             self.status, self.first_fault = FAULT, self.faults

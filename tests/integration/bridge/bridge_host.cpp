@@ -37,17 +37,16 @@ BridgeHost::BridgeHost(Process& bridge, uint32_t watchdog_us)
     : link_({{wire::kLoopback, listeningPort(bridge)}, watchdog_us, wire::randomSeed()},
             {wire::kLoopback, 0}) {}
 
-void BridgeHost::want(bool is_wanted, const WrenchValues& wrench, bool resets) {
+void BridgeHost::want(bool is_wanted, const WrenchValues& wrench) {
     is_wanted_ = is_wanted;
     wrench_ = wrench;
-    resets_ = resets;
 }
 
 void BridgeHost::period() {
     link_.waitForState(monotonicNowNs() + kPeriodNs);
     wire::PoseCommand command{};
     // A reset counts when its bit rises, and only once the fault has gone: it is tried again and again.
-    const bool resets_now = resets_ && drive() == wire::DriveState::kFault && ++periods_ % 2 == 0;
+    const bool resets_now = drive() == wire::DriveState::kFault && ++periods_ % 2 == 0;
     command.controlword =
         resets_now ? uint16_t(wire::kControlFaultReset) : wire::controlwordTowards(is_wanted_, drive());
     command.mode = wire::kModeTorque;

@@ -26,12 +26,14 @@ class BridgeHost {
     void runPeriods(int count);
     // Leads the bridge to "operation enabled", once it is.
     bool engage();
-    // What is commanded from now on.
-    void want(bool is_wanted, const WrenchValues& wrench = {}, bool resets = false);
+    // What is commanded from now on. Faults are reset as they come, for a busy machine trips watchdogs.
+    void want(bool is_wanted, const WrenchValues& wrench = {});
 
     const wire::PoseState& state() const { return link_.session().state(); }
     const wire::Describe& description() const { return link_.session().description(); }
     wire::DriveState drive() const { return wire::driveStateOf(state().statusword); }
+    // Latched or there now.
+    uint32_t faults() const { return state().first_fault | state().active_faults; }
     bool hasState() const { return link_.session().hasState(); }
 
   private:
@@ -39,7 +41,6 @@ class BridgeHost {
 
     wire::HostLink<wire::PosePackets> link_;
     bool is_wanted_ = false;
-    bool resets_ = false;
     uint64_t periods_ = 0;
     WrenchValues wrench_{};
 };

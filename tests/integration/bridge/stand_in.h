@@ -72,7 +72,10 @@ inline void takeOverProcess() {
 inline void endAt(int count) {
     if (reached("abort_at", count)) abort();
     if (reached("crash_at", count)) raise(SIGSEGV);
-    if (reached("hangs_at", count)) blockForEver();
+    if (reached("hangs_at", count)) {
+        record("hangs\n");
+        blockForEver();
+    }
 }
 
 }  // namespace stand_in
