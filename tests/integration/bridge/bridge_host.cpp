@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <sstream>
 
 #include "common/rt/clock.h"
@@ -19,6 +20,14 @@ double normOf(const std::vector<double>& values, size_t first) {
     double sum = 0;
     for (size_t i = first; i < std::min(values.size(), first + 3); ++i) sum += values[i] * values[i];
     return std::sqrt(sum);
+}
+
+RecordedCall callOf(const std::string& line) {
+    std::istringstream words(line);
+    RecordedCall call;
+    words >> call.name;
+    for (std::string word; words >> word;) call.values.push_back(std::stod(word));
+    return call;
 }
 
 }  // namespace
@@ -80,17 +89,13 @@ double RecordedCall::torqueNorm() const {
     return normOf(values, 3);
 }
 
-std::vector<RecordedCall> readRecord(const std::string& file) {
-    std::vector<RecordedCall> record;
-    std::istringstream lines(readFile(file));
-    for (std::string line; std::getline(lines, line);) {
-        std::istringstream words(line);
-        RecordedCall call;
-        words >> call.name;
-        for (std::string word; words >> word;) call.values.push_back(std::stod(word));
-        record.push_back(call);
-    }
-    return record;
+const std::vector<RecordedCall>& CallRecord::calls() {
+    std::ifstream file(file_);
+    file.seekg(read_);
+    // A line without an end is still being written.
+    for (std::string line; std::getline(file, line) && !file.eof(); read_ += std::streamoff(line.size()) + 1)
+        calls_.push_back(callOf(line));
+    return calls_;
 }
 
 RecordedCall lastOf(const std::vector<RecordedCall>& record, const std::string& name) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <ios>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,19 @@ struct RecordedCall {
     double torqueNorm() const;
 };
 
-std::vector<RecordedCall> readRecord(const std::string& file);
+// Reads what a stand-in writes while it writes it: each look parses only what is new, so that a host that
+// looks in every period is not late for it.
+class CallRecord {
+  public:
+    explicit CallRecord(const std::string& file) : file_(file) {}
+    const std::vector<RecordedCall>& calls();
+
+  private:
+    std::string file_;
+    std::streamoff read_ = 0;  // bytes
+    std::vector<RecordedCall> calls_;
+};
+
 // The last call of this name; nothing in it if there is none.
 RecordedCall lastOf(const std::vector<RecordedCall>& record, const std::string& name);
 std::vector<RecordedCall> without(const std::vector<RecordedCall>& record, const std::string& name);

@@ -20,11 +20,11 @@ class ForceDimensionBridge : public testing::Test {
                                      const std::string& library = "libstand_in_drd.so") const {
         return test::bridgeCommand("bonemill_bridge_force_dimension", library, words, record_file_, more);
     }
-    std::vector<RecordedCall> record() const { return test::readRecord(record_file_); }
-    RecordedCall lastForce() const { return test::lastOf(record(), "force"); }
+    const std::vector<RecordedCall>& record() { return record_.calls(); }
+    RecordedCall lastForce() { return test::lastOf(record(), "force"); }
     // The force was zeroed, switched off, and the arm stopped and closed, in this order and last.
-    void expectStopped() const {
-        const auto calls = record();
+    void expectStopped() {
+        const auto& calls = record();
         ASSERT_GE(calls.size(), 4u);
         const size_t n = calls.size();
         EXPECT_EQ(calls[n - 4].name, "force");
@@ -37,6 +37,7 @@ class ForceDimensionBridge : public testing::Test {
 
     test::TemporaryFolder folder_;
     const std::string record_file_ = folder_ / "record";
+    test::CallRecord record_{record_file_};
 };
 
 TEST_F(ForceDimensionBridge, GivesTheCommandedWrenchInTheAxesOfTheSdkAndStops) {

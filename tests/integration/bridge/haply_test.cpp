@@ -29,16 +29,16 @@ class HaplyBridge : public testing::Test {
         all.insert(all.end(), more.begin(), more.end());
         return test::bridgeCommand("bonemill_bridge_haply", "", "", record_file_, all);
     }
-    std::vector<RecordedCall> record() const { return test::readRecord(record_file_); }
-    RecordedCall lastForce() const { return test::lastOf(record(), "force"); }
-    void expectHarmless() const {
+    const std::vector<RecordedCall>& record() { return record_.calls(); }
+    RecordedCall lastForce() { return test::lastOf(record(), "force"); }
+    void expectHarmless() {
         for (const RecordedCall& call : record()) {
             ASSERT_NE(call.name, "unknown");
             ASSERT_LE(call.forceNorm(), kHaplyForce + 1e-6);
         }
     }
     // The last command is no force, and the connection is closed.
-    void expectStopped() const {
+    void expectStopped() {
         EXPECT_TRUE(test::waitFor([&] { return test::countOf(record(), "close") == 1; }));
         EXPECT_EQ(lastForce().forceNorm(), 0);
         expectHarmless();
@@ -46,6 +46,7 @@ class HaplyBridge : public testing::Test {
 
     test::TemporaryFolder folder_;
     const std::string record_file_ = folder_ / "record";
+    test::CallRecord record_{record_file_};
     std::optional<test::Process> service_;
 };
 

@@ -126,7 +126,7 @@ def serve(client):
         time.sleep(float(WORDS.get("delay_ms", 0)) / 1000)
         if reached("closes_at", count):
             return
-        if reached("garbage_at", count) and count % 2:
+        if reached("garbage_at", count) and count % 10 == 0:
             send(client, "{ no json")
         elif not reached("silent_at", count):
             send(client, json.dumps(state(count)))

@@ -21,10 +21,10 @@ class TouchBridge : public testing::Test {
                                      const std::vector<std::string>& more = {}) const {
         return test::bridgeCommand("bonemill_bridge_touch", "libstand_in_hd.so", words, record_file_, more);
     }
-    std::vector<RecordedCall> record() const { return test::readRecord(record_file_); }
+    const std::vector<RecordedCall>& record() { return record_.calls(); }
     // The last force was zero, the scheduler stopped first, and the device last.
-    void expectStopped() const {
-        const auto all = record();
+    void expectStopped() {
+        const auto& all = record();
         EXPECT_EQ(test::lastOf(all, "force").forceNorm(), 0);
         EXPECT_EQ(test::countOf(all, "unloaded"), 0);
         EXPECT_EQ(test::countOf(all, "torque_written"), 0);
@@ -38,6 +38,7 @@ class TouchBridge : public testing::Test {
 
     test::TemporaryFolder folder_;
     const std::string record_file_ = folder_ / "record";
+    test::CallRecord record_{record_file_};
 };
 
 TEST_F(TouchBridge, GivesTheCommandedForceInTheAxesOfTheLibraryAndStops) {
