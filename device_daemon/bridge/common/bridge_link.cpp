@@ -63,7 +63,7 @@ ArmOrder BridgeLink::step(const ArmReading& reading, int64_t now_ns) noexcept {
     // The state goes out first: the vendor's calls that follow may take their time.
     sendState(reading, now_ns);
     if (shall_leave_ && gate_.isClosed()) has_left_ = true;
-    return isDriving() ? ArmOrder{wrench_D, true} : ArmOrder{};
+    return isDriving(now_ns) ? ArmOrder{wrench_D, true} : ArmOrder{};
 }
 
 uint32_t BridgeLink::faultsOf(const ArmReading& reading, int64_t now_ns) noexcept {
@@ -76,7 +76,7 @@ uint32_t BridgeLink::faultsOf(const ArmReading& reading, int64_t now_ns) noexcep
 
 // The motors are switched on when the host enables operation, and off when it says so or the arm has failed.
 // In between they stay on, also when the host is silent: an arm that still balances its weight does not fall.
-bool BridgeLink::isDriving() noexcept {
+bool BridgeLink::isDriving(int64_t now_ns) noexcept {
     const wire::DriveStateMachine& drive = link_.session().drive();
     const uint16_t controlword = link_.session().newestCommand().controlword;
     const bool is_told_off =
@@ -84,7 +84,9 @@ bool BridgeLink::isDriving() noexcept {
     const uint32_t faults = drive.firstFault() | drive.activeFaults();
     const bool has_failed = drive.state() == wire::DriveState::kFault && (faults & ~kLinkFaults) != 0;
     if (drive.state() == wire::DriveState::kOperationEnabled) is_driving_ = true;
-    if ((is_told_off && gate_.isClosed()) || has_failed) is_driving_ = false;
+    if (!is_told_off) on_ns_ = now_ns;
+    const bool is_off = gate_.isClosed() && now_ns - on_ns_ >= kOffAfterNs;
+    if (is_off || has_failed) is_driving_ = false;
     return is_driving_;
 }
 

@@ -35,10 +35,12 @@ class BridgeLink : public ArmPeriod {
     // kTroubleNs it is a fault of the device, and after kLostNs the arm is lost.
     static constexpr int64_t kTroubleNs = 20 * kNsPerMillisecond;
     static constexpr int64_t kLostNs = 1500 * kNsPerMillisecond;
+    // The host's "off" counts when it lasts: after the reset of a fault it says so for a moment.
+    static constexpr int64_t kOffAfterNs = 50 * kNsPerMillisecond;
 
   private:
     uint32_t faultsOf(const ArmReading& reading, int64_t now_ns) noexcept;
-    bool isDriving() noexcept;
+    bool isDriving(int64_t now_ns) noexcept;
     std::optional<Wrench> wanted(const ArmReading& reading, int64_t now_ns) const noexcept;
     void sendState(const ArmReading& reading, int64_t now_ns) noexcept;
 
@@ -49,6 +51,7 @@ class BridgeLink : public ArmPeriod {
     int64_t good_ns_ = 0;  // when the arm was last well
     bool is_in_trouble_ = false;
     bool is_driving_ = false;
+    int64_t on_ns_ = 0;  // when the host last did not want the motors off
     int64_t before_ns_ = 0;
 
     // Each is a lone word between two threads.

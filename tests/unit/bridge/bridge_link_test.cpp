@@ -85,13 +85,28 @@ TEST_F(BridgeLinkTest, MotorsGoOffWhenTheHostSaysSoAndTheForceHasFaded) {
     controlword_ = wire::kControlDisable;
     bool was_driven_with_force = false;
     ArmOrder order;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 80; ++i) {
         order = period();
         EXPECT_TRUE(order.is_driving || order.wrench_D.force.norm() == 0);
         was_driven_with_force |= order.is_driving && order.wrench_D.force.norm() < 1;
     }
     EXPECT_TRUE(was_driven_with_force) << "it fades";
     EXPECT_FALSE(order.is_driving);
+}
+
+TEST_F(BridgeLinkTest, TheArmDoesNotFallWhileAFaultOfTheLinkIsReset) {
+    periods(100);
+    is_host_alive_ = false;
+    periods(50);
+    is_host_alive_ = true;
+    for (int i = 0; i < 400; ++i) {
+        // As a host does that resets, and has not yet seen that it helped.
+        const bool is_fault = drive() == DriveState::kFault;
+        controlword_ =
+            !is_fault ? std::nullopt : std::optional<uint16_t>(i % 2 ? wire::kControlFaultReset : 0);
+        EXPECT_TRUE(period().is_driving);
+    }
+    EXPECT_EQ(drive(), DriveState::kOperationEnabled);
 }
 
 TEST_F(BridgeLinkTest, AnArmThatIsNotHomedIsNotEnabled) {
