@@ -7,7 +7,7 @@
 #include "device_daemon/app/child_program.h"
 #include "device_daemon/app/device_setup.h"
 #include "device_daemon/app/options.h"
-#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/haptic_device/haptic_device.h"
 
 namespace bonemill {
 

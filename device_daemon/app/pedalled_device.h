@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/haptic_device/haptic_device.h"
 #include "device_daemon/input/pedal_source.h"
 
 namespace bonemill {

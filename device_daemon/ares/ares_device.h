@@ -19,7 +19,7 @@
 #include "device_daemon/ares/gravity.h"
 #include "device_daemon/ares/position_guard.h"
 #include "device_daemon/ares/soft_wall.h"
-#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/haptic_device/haptic_device.h"
 
 namespace bonemill {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "common/geometry/pose.h"
-#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/haptic_device/haptic_device.h"
 
 namespace bonemill {
 

@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/haptic_device/haptic_device.h"
 #include "device_daemon/wire/host_link.h"
 
 namespace bonemill {

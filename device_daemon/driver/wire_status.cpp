@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/haptic_device/haptic_device.h"
 #include "device_daemon/wire/drive_state.h"
 
 namespace bonemill {

@@ -11,7 +11,7 @@
 
 #include "common/device_messages/device_messages.h"
 #include "common/rt/seqlock.h"
-#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/haptic_device/haptic_device.h"
 #include "device_daemon/input/hand_input.h"
 #include "device_daemon/input/rate_control.h"
 #include "device_daemon/virtual_handle/virtual_handle.h"

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "common/device_messages/device_messages.h"
-#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/haptic_device/haptic_device.h"
 #include "device_daemon/loop/black_box.h"
 #include "device_daemon/safety/safety_states.h"
 #include "device_daemon/safety/wrench_limiter.h"

@@ -17,7 +17,7 @@
 #include "common/dds/endpoint.h"
 #include "common/dds/wait_set.h"
 #include "common/rt/seqlock.h"
-#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/haptic_device/haptic_device.h"
 #include "device_daemon/pointer/pointer_holder.h"
 #include "device_daemon/virtual_handle/virtual_handle.h"
 

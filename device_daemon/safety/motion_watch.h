@@ -6,7 +6,7 @@
 // thread; time comes in as a parameter. Frames are D, units N, N·m, m/s, rad/s, W, J, s.
 #pragma once
 
-#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/haptic_device/haptic_device.h"
 
 namespace bonemill {
 

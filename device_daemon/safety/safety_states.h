@@ -11,7 +11,7 @@
 // It is RT-safe, for one thread, and pure: time comes in as a parameter. Units are SI.
 #pragma once
 
-#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/haptic_device/haptic_device.h"
 #include "device_daemon/safety/motion_watch.h"
 
 namespace bonemill {

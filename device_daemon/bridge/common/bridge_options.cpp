@@ -1,0 +1,54 @@
+#include "device_daemon/bridge/common/bridge_options.h"
+
+#include <iostream>
+
+#include "common/user_error.h"
+
+namespace bonemill::bridge {
+namespace {
+
+void addOptions(CLI::App& app, BridgeOptions& options) {
+    app.add_option("--port", options.port, "UDP port that device_daemon speaks to; 0 takes any free one")
+        ->capture_default_str();
+    app.add_option("--address", options.address, "Address of this PC to listen on")->capture_default_str();
+    app.add_option("--library", options.library, "The vendor's library, if it is not where it is searched");
+    app.add_option("--device", options.device, "Number or name of the arm; default: the first");
+    app.add_option("--max-force-n", options.max_force, "Give no more than this; default: what the arm can")
+        ->check(CLI::PositiveNumber);
+    app.add_flag("--probe", options.probe,
+                 "Load the library, open the arm, say what there is and leave; gives no force");
+    CLI::Option* self_test = app.add_flag("--self-test", options.self_test,
+                                          "Measure rate and jitter of the arm, without device_daemon");
+    app.add_flag("--ramp", options.ramp, "With --self-test: push up with 0.5 N and back, after you typed yes")
+        ->needs(self_test);
+    app.add_option("--seconds", options.seconds, "How long the self-test lasts")
+        ->check(CLI::Range(0.1, 3600.0))
+        ->needs(self_test)
+        ->capture_default_str();
+    app.add_flag("--best-effort-rt", options.best_effort_realtime,
+                 "Go on without real-time scheduling and locked memory");
+    app.add_option("--rt-core", options.core, "Processor core for the arm's loop (-1: any)")
+        ->check(CLI::Range(-1, 4095))
+        ->capture_default_str();
+}
+
+}  // namespace
+
+std::optional<BridgeOptions> parseBridgeOptions(int argc, char** argv, const std::string& about,
+                                                const std::function<void(CLI::App&)>& add) {
+    BridgeOptions options;
+    CLI::App app{about};
+    addOptions(app, options);
+    if (add) add(app);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        std::cout << app.help();
+        return std::nullopt;
+    } catch (const CLI::ParseError& error) {
+        throw UserError(std::string(error.what()) + " (see --help)");
+    }
+    return options;
+}
+
+}  // namespace bonemill::bridge

@@ -1,0 +1,39 @@
+// The last place before a vendor's library: what leaves it is finite, no larger than the arm's limits, and
+// comes and goes in 20 ms.
+//
+// It is RT-safe, for one thread.
+#pragma once
+
+#include <optional>
+
+#include "common/geometry/pose.h"
+
+namespace bonemill::bridge {
+
+struct WrenchLimits {
+    double max_force = 0;   // N
+    double max_torque = 0;  // N·m
+};
+
+// Scales force and torque down to the norms that are allowed, each in its direction. What is not finite is
+// zero.
+Wrench limited(const Wrench& wrench, const WrenchLimits& limits) noexcept;
+
+class ForceGate {
+  public:
+    explicit ForceGate(const WrenchLimits& limits) noexcept : limits_(limits) {}
+
+    // `wanted` is nothing where no force is allowed: then the last wrench fades. `elapsed` s have passed
+    // since the last call.
+    Wrench step(const std::optional<Wrench>& wanted, double elapsed) noexcept;
+    bool isClosed() const noexcept { return opening_ == 0; }
+
+    static constexpr double kFadeTime = 0.02;  // s
+
+  private:
+    const WrenchLimits limits_;
+    Wrench held_;
+    double opening_ = 0;  // 0 closed, 1 open
+};
+
+}  // namespace bonemill::bridge

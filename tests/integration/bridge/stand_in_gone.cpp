@@ -1,0 +1,5 @@
+#include "tests/integration/bridge/stand_in_gone.h"
+
+int standInGone() {
+    return 1;
+}

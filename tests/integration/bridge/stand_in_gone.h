@@ -1,0 +1,4 @@
+// What stand_in_incomplete needs of stand_in_gone.
+#pragma once
+
+extern "C" int standInGone();
