@@ -10,6 +10,13 @@ namespace {
 constexpr double kSubstepRate_hz = 25000;
 constexpr double kRoundingSlack = 1e-6;  // so that 1 ms makes 25 substeps, not 26
 
+constexpr double kGravity = 9.81;  // m/s²
+// A motor must give more than this to push its slider through the play.
+constexpr double kSliderFriction = 0.05;  // N
+// Of motors with shorted windings, felt at the handle.
+constexpr double kBrakeDamping = 20;           // N·s/m
+constexpr double kBrakeAngularDamping = 0.05;  // N·m·s/rad
+
 }  // namespace
 
 AresEmulator::AresEmulator(const AresKinematics& kinematics, const AresPlant& plant,
@@ -18,6 +25,13 @@ AresEmulator::AresEmulator(const AresKinematics& kinematics, const AresPlant& pl
     state_.target = path_.at(0);
     state_.target.buttons = 0;
     state_.X_DT = state_.target.X_DT;
+    kinematics_.inverse(state_.X_DT, q_links_);
+}
+
+void AresEmulator::pauseScenario() noexcept {
+    scenario_runs_ = false;
+    state_.target.v_DT.setZero();
+    state_.target.w_DT.setZero();
 }
 
 void AresEmulator::advance(double dt, const Vector6d& actuator_forces) noexcept {
@@ -33,10 +47,28 @@ bool AresEmulator::readJoints(double elapsed, JointReading& reading) noexcept {
     reading.forces = state_.actuator_forces;
     reading.buttons = state_.target.buttons;
     kinematics_.inverse(state_.X_DT, reading.q);  // always reachable: moveBody() never leaves the workspace
+    Matrix6d J_inv;
+    if (kinematics_.inverseJacobian(state_.X_DT, J_inv)) {
+        reading.q_dot = J_inv * (Vector6d() << state_.v_DT, state_.w_DT).finished();
+    }
+    if (plant_.play > 0) {
+        moveSliders(reading.q);
+        reading.q += slider_offsets_;
+    }
     if (plant_.encoder_step > 0) {
         reading.q = (reading.q / plant_.encoder_step).array().round() * plant_.encoder_step;
     }
     return true;
+}
+
+void AresEmulator::moveSliders(const Vector6d& q_links) noexcept {
+    const double side = plant_.play / 2;
+    for (int i = 0; i < 6; ++i) {
+        const double force = state_.actuator_forces[i];
+        const double dragged = std::clamp(slider_offsets_[i] + q_links_[i] - q_links[i], -side, side);
+        slider_offsets_[i] = std::abs(force) > kSliderFriction ? std::copysign(side, force) : dragged;
+    }
+    q_links_ = q_links;
 }
 
 void AresEmulator::substep(double h, const Vector6d& actuator_forces) noexcept {
@@ -59,8 +91,9 @@ void AresEmulator::pushBody(double h, const Wrench& drive) noexcept {
     const double inertia = plant_.moving_inertia + hand_.inertia;
     const HandTarget& target = state_.target;
 
-    const Eigen::Vector3d pull = hand_.stiffness * (target.X_DT.position - state_.X_DT.position);
-    const double damping = plant_.viscous_friction + hand_.damping;
+    Eigen::Vector3d pull = hand_.stiffness * (target.X_DT.position - state_.X_DT.position);
+    pull.z() -= kGravity * plant_.unbalanced_mass;
+    const double damping = plant_.viscous_friction + hand_.damping + (is_braked_ ? kBrakeDamping : 0);
     Eigen::Vector3d momentum = mass * state_.v_DT + h * (drive.force + pull + hand_.damping * target.v_DT);
     // Coulomb friction is implicit: it takes momentum, at most all of it.
     const double friction = h * plant_.coulomb_friction;
@@ -70,7 +103,8 @@ void AresEmulator::pushBody(double h, const Wrench& drive) noexcept {
 
     const Eigen::Vector3d twist =
         hand_.angular_stiffness * logRotation(target.X_DT.rotation * state_.X_DT.rotation.conjugate());
-    const double angular_damping = plant_.angular_friction + hand_.angular_damping;
+    const double angular_damping =
+        plant_.angular_friction + hand_.angular_damping + (is_braked_ ? kBrakeAngularDamping : 0);
     state_.w_DT = (inertia * state_.w_DT + h * (drive.torque + twist + hand_.angular_damping * target.w_DT)) /
                   (inertia + h * angular_damping);
 }

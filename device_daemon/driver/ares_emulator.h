@@ -4,9 +4,11 @@
 // The six amplifiers, each with a first-order pole, push the sliders. The handle with everything that moves
 // along is one rigid body of isotropic mass and inertia, with viscous friction, and with Coulomb friction
 // against translation. The hand's mass rides on it, and its spring and damper pull towards the OperatorPath.
-// Gravity is balanced, as on a counterweighted device. The encoders report slider positions in whole steps.
-// All is integrated at 25 kHz or finer (semi-implicit Euler; damping and Coulomb friction implicit, so that
-// the body truly sticks). Leaving the workspace is stopped dead, like running into a mechanical stop.
+// Gravity is balanced as on a counterweighted device, but for the mass that a scene says. The encoders report
+// slider positions in whole steps. Sliders have no mass: where there is play, each lies at the side of the
+// gap to which its motor pushes it, and a motor without force lets the link drag it along. All is integrated
+// at 25 kHz or finer (semi-implicit Euler; damping and Coulomb friction implicit, so that the body truly
+// sticks). Leaving the workspace is stopped dead, like running into a mechanical stop.
 //
 // It is deterministic: the same forces give the same motion bit for bit. It is not thread-safe, and
 // RT-safe after construction.
@@ -27,6 +29,8 @@ struct AresPlant {
     double coulomb_friction = 0.2;    // N, against translation
     double amplifier_bandwidth_hz = 500;
     double encoder_step = 5e-6;  // m; 0 is an ideal encoder
+    double unbalanced_mass = 0;  // kg of the moving mass that its weight pulls along -z of D
+    double play = 0;             // m, between each slider and its link
 };
 
 // If all is zero, nobody holds the handle.
@@ -58,6 +62,12 @@ class AresEmulator final : public JointDevice {
 
     // Lets the scenario's time run; before that the hand rests at the path's start with no button pressed.
     void startScenario() noexcept { scenario_runs_ = true; }
+    // Holds the scenario's time; the hand rests where it wants to be now.
+    void pauseScenario() noexcept;
+
+    // Shorts the motors' windings or opens them again: shorted, they brake every motion. The amplifiers must
+    // then be told to give nothing.
+    void setBraked(bool is_braked) noexcept { is_braked_ = is_braked; }
 
     // Moves the plant by dt with these amplifier inputs.
     void advance(double dt, const Vector6d& actuator_forces) noexcept;
@@ -78,13 +88,17 @@ class AresEmulator final : public JointDevice {
     void substep(double h, const Vector6d& actuator_forces) noexcept;
     void pushBody(double h, const Wrench& drive) noexcept;
     void moveBody(double h) noexcept;
+    void moveSliders(const Vector6d& q_links) noexcept;
 
     AresKinematics kinematics_;
     AresPlant plant_;
     HandImpedance hand_;
     OperatorPath path_;
     Vector6d held_forces_ = Vector6d::Zero();
+    Vector6d slider_offsets_ = Vector6d::Zero();  // m, from the links, within the play
+    Vector6d q_links_ = Vector6d::Zero();         // m, where the links were read last
     bool scenario_runs_ = false;
+    bool is_braked_ = false;
     EmulatorState state_;
 };
 

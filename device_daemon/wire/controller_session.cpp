@@ -42,7 +42,8 @@ Taken ControllerSession<Packets>::takeRequest(std::span<const std::byte> bytes, 
     if (is_of_session) {  // the answer was lost
         return flow_.skip(request->header.sequence) ? Taken::kRequest : Taken::kNothing;
     }
-    if (has_host_ && !isSilent(now_ns)) {
+    // While the drive is armed, the watchdog has yet to say that the host before has gone.
+    if ((has_host_ && !isSilent(now_ns)) || isArmed(drive_.state())) {
         flow_.reject(false);
         return Taken::kNothing;
     }

@@ -184,5 +184,74 @@ TEST(AresEmulator, OneLongPauseOfTheLoopIsBounded) {
     EXPECT_NEAR(emulator.state().scenario_time, AresEmulator::kLongestElapsed, 1e-9);
 }
 
+TEST(AresEmulator, WithPlayTheSlidersLieWhereTheirMotorsPush) {
+    AresPlant plant;
+    plant.play = 40e-6;
+    plant.encoder_step = 0;
+    AresEmulator loose(AresKinematics{}, plant, {}, OperatorPath());
+    plant.play = 0;
+    AresEmulator tight(AresKinematics{}, plant, {}, OperatorPath());
+    const auto offset = [&](double force) {
+        for (AresEmulator* emulator : {&loose, &tight}) emulator->advance(0.01, Vector6d::Constant(force));
+        return (readingOf(loose, 0).q - readingOf(tight, 0).q).eval();
+    };
+    EXPECT_LT(offset(0).norm(), 1e-12);
+    EXPECT_LT((offset(0.1) - Vector6d::Constant(20e-6)).norm(), 1e-12);
+    EXPECT_LT((offset(-0.1) - Vector6d::Constant(-20e-6)).norm(), 1e-12);
+    // Without force a slider stays behind until the link has come through the gap.
+    const Vector6d dragged = offset(0);
+    EXPECT_LE(dragged.maxCoeff(), 20e-6);
+    EXPECT_GE(dragged.minCoeff(), -20e-6);
+}
+
+TEST(AresEmulator, AnUnbalancedMassPullsTheHandleDown) {
+    AresPlant plant = frictionless();
+    plant.unbalanced_mass = 0.1;
+    const HandImpedance hand;
+    AresEmulator emulator(AresKinematics{}, plant, hand, OperatorPath());
+    push(emulator, {}, 2);
+    EXPECT_NEAR(emulator.state().X_DT.position.z(), -0.1 * 9.81 / hand.stiffness, 1e-6);
+    push(emulator, {{0, 0, 0.1 * 9.81}, Eigen::Vector3d::Zero()}, 2);
+    EXPECT_NEAR(emulator.state().X_DT.position.z(), 0, 1e-6) << "compensated";
+}
+
+TEST(AresEmulator, ShortedMotorsBrake) {
+    const auto speedAfter = [](bool is_braked) {
+        AresEmulator emulator(AresKinematics{}, frictionless(), noHand(), OperatorPath());
+        push(emulator, {{1, 0, 0}, Eigen::Vector3d::Zero()}, 0.02);
+        emulator.setBraked(is_braked);
+        push(emulator, {}, 0.02);
+        return emulator.state().v_DT.norm();
+    };
+    EXPECT_LT(speedAfter(true), 0.3 * speedAfter(false));
+}
+
+TEST(AresEmulator, APausedScenarioHoldsItsTimeAndTheHandsWish) {
+    AresEmulator emulator(
+        AresKinematics{}, {}, {},
+        OperatorPath({{0, Pose{}, 0}, {1, {{0.01, 0, 0}, Eigen::Quaterniond::Identity()}, 0}}));
+    emulator.startScenario();
+    push(emulator, {}, 0.5);
+    emulator.pauseScenario();
+    const Eigen::Vector3d wish = emulator.state().target.X_DT.position;
+    push(emulator, {}, 0.5);
+    EXPECT_NEAR(emulator.state().scenario_time, 0.5, 1e-9);
+    EXPECT_EQ(emulator.state().target.X_DT.position, wish);
+    EXPECT_EQ(emulator.state().target.v_DT.norm(), 0);
+    emulator.startScenario();
+    push(emulator, {}, 0.25);
+    EXPECT_NEAR(emulator.state().scenario_time, 0.75, 1e-9);
+}
+
+TEST(AresEmulator, SaysHowFastItsSlidersMove) {
+    AresEmulator emulator(AresKinematics{}, {}, noHand(), OperatorPath());
+    push(emulator, {{1, 0, 2}, Eigen::Vector3d::Zero()}, 0.05);
+    const JointReading before = readingOf(emulator, 0);
+    constexpr double kStep = 1e-3;
+    emulator.advance(kStep, Vector6d::Zero());
+    const JointReading after = readingOf(emulator, 0);
+    EXPECT_LT((0.5 * (before.q_dot + after.q_dot) - (after.q - before.q) / kStep).norm(), 0.02);
+}
+
 }  // namespace
 }  // namespace bonemill

@@ -120,6 +120,25 @@ TEST(Sessions, IgnoreStrangers) {
     EXPECT_EQ(pair.controller.statistics().accepted, accepted + 1) << "a replay";
 }
 
+TEST(Sessions, IgnorePacketsOfOtherSessions) {
+    Pair pair;
+    pair.run(20);
+    const auto ofAnother = [](const auto& packet, const Bytes& bytes) {
+        auto other = packet;
+        std::memcpy(&other, bytes.data(), bytes.size());
+        seal(other, other.header.session + 1, other.header.sequence);
+        return std::vector<Bytes>{test::copyOf(other)};
+    };
+    const uint64_t states = pair.host.statistics().accepted, commands = pair.controller.statistics().accepted;
+    pair.on_state = [&](const Bytes& bytes) { return ofAnother(JointState{}, bytes); };
+    pair.on_command = [&](const Bytes& bytes) { return ofAnother(JointCommand{}, bytes); };
+    pair.run(3);
+    EXPECT_EQ(pair.host.statistics().accepted, states);
+    EXPECT_EQ(pair.controller.statistics().accepted, commands);
+    EXPECT_EQ(pair.host.statistics().rejected, 3u);
+    EXPECT_EQ(pair.controller.statistics().rejected, 3u);
+}
+
 TEST(Sessions, IgnoreASecondHostWhileTheFirstLives) {
     Pair pair;
     pair.run(20);
@@ -135,9 +154,24 @@ TEST(Sessions, IgnoreASecondHostWhileTheFirstLives) {
     EXPECT_EQ(pair.controller.host(), place);
 }
 
+// It could otherwise hide that the first has gone while its motors were on.
+TEST(Sessions, ASecondHostHasToWaitForTheWatchdogsFault) {
+    Pair pair;
+    pair.run(20);
+    HostSession<JointPackets> second({.controller = test::kControllerPlace, .seed = 8});
+    const Endpoint place{kLoopback, 5555};
+    const int64_t later_ns = pair.now_ns + 6'000'000;
+    const Bytes request = test::copyOf(*second.requestDue(later_ns));
+    EXPECT_EQ(pair.controller.take(request, place, later_ns), Taken::kNothing);
+    pair.controller.step(0, true, later_ns);
+    EXPECT_EQ(pair.controller.take(request, place, later_ns), Taken::kRequest);
+    EXPECT_EQ(pair.controller.drive().firstFault(), kFaultWatchdog);
+}
+
 TEST(Sessions, IgnorePacketsThatReflectWhatWasNeverSent) {
     Pair pair;
     pair.run(20);
+    const uint64_t accepted = pair.controller.statistics().accepted;
     pair.on_command = [&](const Bytes& bytes) {
         return std::vector<Bytes>{
             changed<JointCommand>(bytes, [](auto& c) { c.reflected_sequence += 1000; })};

@@ -1,0 +1,61 @@
+#include "device_daemon/driver/udp_pose_device.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "device_daemon/driver/wire_status.h"
+
+namespace bonemill {
+namespace {
+
+Eigen::Vector3d vectorOf(const float* xyz) noexcept {
+    return Eigen::Map<const Eigen::Vector3f>(xyz).cast<double>();
+}
+
+// The codec has seen to it that the numbers are finite.
+bool isPlausiblePose(const wire::PoseState& state) noexcept {
+    const double reach = Eigen::Map<const Eigen::Vector3d>(state.p_DT).norm();
+    const double size = Eigen::Map<const Eigen::Vector4d>(state.q_DT).norm();
+    return reach <= kLargestDeviceReach && std::abs(size - 1) <= kQuaternionNormTolerance;
+}
+
+}  // namespace
+
+DeviceCapabilities UdpPoseDevice::capabilities() const noexcept {
+    return capabilitiesOf(device_.session().description());
+}
+
+bool UdpPoseDevice::read(double, DeviceReading& reading) noexcept {
+    const wire::PoseState* state = device_.read();
+    if (!state || !isPlausiblePose(*state)) return false;
+    readMotion(*state, reading);
+    reading.buttons = buttonsOf(state->inputs);
+    reading.status = device_.status();
+    reading.fault = device_.fault();
+    reading.fault_code = state->fault_code;
+    reading.has_applied = std::isfinite(state->applied[0]);
+    if (reading.has_applied) reading.applied_D = {vectorOf(state->applied), vectorOf(state->applied + 3)};
+    reading.load = std::clamp(double(state->load), 0.0, 1.0);
+    return true;
+}
+
+void UdpPoseDevice::readMotion(const wire::PoseState& state, DeviceReading& reading) noexcept {
+    const double* q = state.q_DT;
+    reading.X_DT = {Eigen::Map<const Eigen::Vector3d>(state.p_DT),
+                    Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized()};
+    differentiator_.take(reading.X_DT, int64_t(state.controller_ns));
+    const bool has_motion = std::isfinite(state.v_DT[0]);
+    reading.v_DT = has_motion ? vectorOf(state.v_DT) : differentiator_.v_DT();
+    reading.w_DT = has_motion ? vectorOf(state.w_DT) : differentiator_.w_DT();
+}
+
+void UdpPoseDevice::write(const DeviceOrder& order) noexcept {
+    wire::PoseCommand command{};
+    if (order.is_wanted) {
+        Eigen::Map<Eigen::Vector3f>(command.wrench) = order.wrench_hand_D.force.cast<float>();
+        Eigen::Map<Eigen::Vector3f>(command.wrench + 3) = order.wrench_hand_D.torque.cast<float>();
+    }
+    device_.write(command, {order.is_wanted, order.is_engaged, order.reset});
+}
+
+}  // namespace bonemill

@@ -1,0 +1,37 @@
+// This is any device whose own program, a bridge, speaks poses and wrenches over the UDP wire
+// (docs/ares_link.md).
+//
+// Making one throws UserError. Everything else is RT-safe but for the socket's system calls; one thread uses
+// it.
+#pragma once
+
+#include "device_daemon/device/haptic_device.h"
+#include "device_daemon/driver/pose_differentiator.h"
+#include "device_daemon/driver/udp_device.h"
+
+namespace bonemill {
+
+class UdpPoseDevice final : public HapticDevice {
+  public:
+    explicit UdpPoseDevice(const UdpDeviceConfig& config) : device_(config) {}
+
+    // Of nothing until the bridge has described itself.
+    DeviceCapabilities capabilities() const noexcept override;
+    uint32_t capabilitiesVersion() const noexcept override {
+        return 1 + device_.session().descriptionCount();
+    }
+    bool waitForSample(int64_t deadline_ns) noexcept override { return device_.waitForSample(deadline_ns); }
+    bool read(double elapsed, DeviceReading& reading) noexcept override;
+    void write(const DeviceOrder& order) noexcept override;
+
+    const wire::HostSession<wire::PosePackets>& session() const noexcept { return device_.session(); }
+    wire::Endpoint local() const noexcept { return device_.local(); }
+
+  private:
+    void readMotion(const wire::PoseState& state, DeviceReading& reading) noexcept;
+
+    UdpDevice<wire::PosePackets> device_;
+    PoseDifferentiator differentiator_;
+};
+
+}  // namespace bonemill

@@ -1,0 +1,51 @@
+#include "device_daemon/emulator/options.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "common/user_error.h"
+
+namespace bonemill {
+
+std::optional<EmulatorOptions> parseOptions(int argc, char** argv) {
+    EmulatorOptions options;
+    std::vector<std::string> faults;
+    CLI::App app{
+        "Emulated ARES with its motion controller and a simulated hand; device_daemon drives it over UDP."};
+    app.footer(faultHelp());
+    app.add_option("--scene", options.scene, "Scene file (.textproto)")->required();
+    app.add_option("--port", options.port, "UDP port to listen on (0: any free one)")->capture_default_str();
+    app.add_option("--address", options.address, "IPv4 address of this machine to listen on")
+        ->capture_default_str();
+    app.add_option("--rate", options.rate_hz, "States per second (default: the scene's loop.rate_hz)")
+        ->check(CLI::Range(100.0, 10000.0));
+    app.add_option("--seconds", options.seconds, "Leave after this much of the scenario, in s")
+        ->check(CLI::PositiveNumber);
+    app.add_flag("--hold", options.hold, "Rest at the last waypoint instead of leaving");
+    app.add_option("--watchdog-ms", options.watchdog_ms,
+                   "The motors brake when the host is silent for so long, unless it asks for another time")
+        ->check(CLI::Range(2.0, 30.0))
+        ->capture_default_str();
+    app.add_flag("--unhomed", options.is_unhomed, "Begin with a zero that must be found");
+    app.add_option("--fault", faults, "A fault to have (see below)");
+    app.add_option("--seed", options.seed, "Chooses the packets that faults befall")->capture_default_str();
+    app.add_flag("--best-effort-rt", options.best_effort_realtime,
+                 "Go on without real-time scheduling and locked memory");
+    app.add_option("--rt-core", options.core, "Processor core for the controller's loop (-1: any)")
+        ->check(CLI::Range(-1, 4095))
+        ->capture_default_str();
+    app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
+        ->capture_default_str();
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        std::cout << app.help();
+        return std::nullopt;
+    } catch (const CLI::ParseError& error) {
+        throw UserError(std::string(error.what()) + " (see ares_emulator --help)");
+    }
+    for (const std::string& fault : faults) options.faults.push_back(faultSpecOf(fault));
+    return options;
+}
+
+}  // namespace bonemill

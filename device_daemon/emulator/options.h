@@ -1,0 +1,32 @@
+// Reads the command line of ares_emulator.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "device_daemon/emulator/fault_spec.h"
+
+namespace bonemill {
+
+struct EmulatorOptions {
+    std::string scene;
+    std::string address = "127.0.0.1";
+    uint16_t port = 0;              // 0: any free one
+    std::optional<double> rate_hz;  // not given: the scene's
+    std::optional<double> seconds;  // of the scenario; not given: until the last waypoint
+    bool hold = false;
+    double watchdog_ms = 5;
+    bool is_unhomed = false;
+    std::vector<FaultSpec> faults;
+    uint32_t seed = 1;
+    bool best_effort_realtime = false;
+    int core = -1;  // any
+    std::string log_level = "info";
+};
+
+// Returns nothing after --help, which is already printed. Throws UserError.
+std::optional<EmulatorOptions> parseOptions(int argc, char** argv);
+
+}  // namespace bonemill

@@ -1,0 +1,207 @@
+// Measures what the UDP wire adds on loopback: from a controller's state to the command that answers it,
+// beside a bare exchange of datagrams of the same sizes between two threads, in turns in the same run. It
+// asserts nothing. The wire's share is the difference; the rest is the machine's.
+#include <CLI/CLI.hpp>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "common/rt/clock.h"
+#include "common/rt/periodic_timer.h"
+#include "common/rt/realtime_thread.h"
+#include "common/user_error.h"
+#include "device_daemon/driver/udp_joint_device.h"
+#include "device_daemon/wire/controller_link.h"
+#include "tests/bench/bench_output.h"
+
+namespace bonemill::bench {
+namespace {
+
+struct LinkRun {
+    LatencyHistogram round_trip;  // from before a packet is sent until its answer was taken
+    uint64_t exchanges = 0, unanswered = 0;
+    uint64_t watchdog_trips = 0;
+};
+
+constexpr int64_t kWaitNs = 100 * kNsPerMillisecond;  // of an answering side, for the end
+
+class Threads {
+  public:
+    explicit Threads(int answering_core, int asking_core)
+        : answering_core_(answering_core), asking_core_(asking_core) {}
+
+    // Lets one answer for as long as the other asks.
+    void run(const std::function<void(const std::atomic<bool>&)>& answer, const std::function<void()>& ask) {
+        std::atomic<bool> is_over = false;
+        RealtimeThread answering(
+            {.request = {.core = answering_core_}, .best_effort = true, .what = "the answer"},
+            [&] { answer(is_over); }, [&](const RealtimeReport& r) { note(r); });
+        RealtimeThread asking(
+            {.request = {.core = asking_core_}, .best_effort = true, .what = "the question"}, ask,
+            [](const RealtimeReport&) {});
+        asking.join();
+        is_over = true;
+    }
+
+  private:
+    void note(const RealtimeReport& report) {
+        if (has_told_) return;
+        has_told_ = true;
+        for (const std::string& missing : report.missing) std::printf("not granted: %s\n", missing.c_str());
+    }
+    int answering_core_, asking_core_;
+    bool has_told_ = false;
+};
+
+// Two threads throw datagrams of the packets' sizes to and fro.
+void pingPong(Threads& threads, int64_t period_ns, int exchanges, LinkRun& run) {
+    wire::UdpSocket asking, answering;
+    using Buffer = std::array<std::byte, wire::kLargestPacket>;
+    const auto answer = [&](const std::atomic<bool>& is_over) {
+        while (!is_over) {
+            Buffer buffer;
+            wire::Endpoint from;
+            answering.waitUntil(monotonicNowNs() + kWaitNs);
+            while (!answering.receive(buffer, from).empty()) {
+                answering.send(std::span(buffer).first(sizeof(wire::JointCommand)), from);
+            }
+        }
+    };
+    threads.run(answer, [&] {
+        PeriodicTimer timer(period_ns, monotonicNowNs());
+        Buffer question{}, buffer;
+        wire::Endpoint from;
+        for (int i = 0; i < exchanges; ++i) {
+            const int64_t due_ns = timer.waitNext();
+            const int64_t sent_ns = monotonicNowNs();
+            std::memcpy(question.data(), &i, sizeof(i));
+            asking.send(std::span(question).first(sizeof(wire::JointState)), answering.local());
+            bool is_answered = false;
+            while (!is_answered && asking.waitUntil(due_ns + period_ns)) {
+                is_answered = asking.receive(buffer, from).size() == sizeof(wire::JointCommand) &&
+                              std::memcmp(buffer.data(), &i, sizeof(i)) == 0;
+            }
+            ++run.exchanges;
+            if (is_answered)
+                run.round_trip.record(monotonicNowNs() - sent_ns);
+            else
+                ++run.unanswered;
+        }
+    });
+}
+
+wire::Describe description(double rate_hz) {
+    wire::Describe d{};
+    d.max_actuator_force = 50;
+    d.stroke = 0.15;
+    d.watchdog_us = wire::kDefaultWatchdogUs;
+    d.rate_hz = uint32_t(std::lround(rate_hz));
+    return d;
+}
+
+// The controller sends its states by the clock; the host is the device that device_daemon uses.
+void overTheWire(Threads& threads, int64_t period_ns, double rate_hz, int exchanges, LinkRun& run) {
+    wire::ControllerLink<wire::JointPackets> controller(description(rate_hz), {wire::kLoopback, 0});
+    UdpJointDevice host({.controller = controller.local()});
+    const auto answer = [&](const std::atomic<bool>& is_over) {
+        JointReading reading;
+        while (!is_over) {
+            if (!host.waitForSample(monotonicNowNs() + kWaitNs) || !host.readJoints(0, reading)) continue;
+            host.applyForces({.forces = reading.q, .is_wanted = true, .is_engaged = true});
+        }
+    };
+    threads.run(answer, [&] {
+        controller.waitForCommand(monotonicNowNs() + kNsPerSecond);
+        PeriodicTimer timer(period_ns, monotonicNowNs());
+        for (int i = 0; i < exchanges; ++i) {
+            const int64_t due_ns = timer.waitNext();
+            wire::JointState state{};
+            state.inputs = wire::kInputChainClosed | wire::kInputHomed;
+            const int64_t sent_ns = monotonicNowNs();
+            controller.poll(sent_ns);
+            controller.session().step(0, true, sent_ns);
+            if (!controller.send(state, sent_ns)) continue;
+            bool is_answered = false;
+            while (!is_answered && monotonicNowNs() < due_ns + period_ns) {
+                is_answered =
+                    controller.waitForCommand(due_ns + period_ns) &&
+                    controller.session().newestCommand().reflected_sequence == state.header.sequence;
+            }
+            ++run.exchanges;
+            if (is_answered)
+                run.round_trip.record(monotonicNowNs() - sent_ns);
+            else
+                ++run.unanswered;
+        }
+        run.watchdog_trips += controller.session().watchdogTrips();
+    });
+}
+
+struct Options {
+    double rate_hz = 1000, seconds = 20;
+    int rounds = 5;
+    int answering_core = -1, asking_core = -1;
+    std::string json;
+};
+
+nlohmann::json toJson(const LinkRun& run) {
+    return {{"exchanges", run.exchanges},
+            {"unanswered", run.unanswered},
+            {"watchdog_trips", run.watchdog_trips},
+            {"round_trip_us", microseconds(run.round_trip)}};
+}
+
+void measure(const Options& o) {
+    const int64_t period_ns = std::llround(double(kNsPerSecond) / o.rate_hz);
+    const int exchanges = std::max(1, int(o.rate_hz * o.seconds / o.rounds));
+    Threads threads(o.answering_core, o.asking_core);
+    LinkRun bare, link;
+    for (int round = 0; round < o.rounds; ++round) {
+        pingPong(threads, period_ns, exchanges, bare);
+        overTheWire(threads, period_ns, o.rate_hz, exchanges, link);
+    }
+    Table table({"us", "mean", "p50", "p99", "p99.9", "max"});
+    table.add({"bare UDP, there and back"}, bare.round_trip);
+    table.add({"state sent to command received"}, link.round_trip);
+    table.print();
+    std::printf("not answered within the period: bare %llu of %llu; link %llu of %llu, watchdog trips %llu\n",
+                (unsigned long long)bare.unanswered, (unsigned long long)bare.exchanges,
+                (unsigned long long)link.unanswered, (unsigned long long)link.exchanges,
+                (unsigned long long)link.watchdog_trips);
+    writeJson(o.json, {{"rate_hz", o.rate_hz}, {"bare", toJson(bare)}, {"link", toJson(link)}});
+}
+
+}  // namespace
+}  // namespace bonemill::bench
+
+int main(int argc, char** argv) {
+    using namespace bonemill;
+    bench::Options o;
+    CLI::App app("what the UDP wire adds on loopback, beside a bare exchange of datagrams");
+    app.add_option("--rate-hz", o.rate_hz)->check(CLI::Range(500.0, 8000.0))->capture_default_str();
+    app.add_option("--seconds", o.seconds, "of each of the two")
+        ->check(CLI::Range(0.1, 3600.0))
+        ->capture_default_str();
+    app.add_option("--rounds", o.rounds, "in which the two take turns")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    app.add_option("--host-core", o.answering_core, "core of the host's thread (-1: any)")
+        ->capture_default_str();
+    app.add_option("--controller-core", o.asking_core, "core of the controller's thread (-1: any)")
+        ->capture_default_str();
+    bench::addJsonOption(app, o.json);
+    try {
+        app.parse(argc, argv);
+        bench::measure(o);
+    } catch (const CLI::ParseError& error) {
+        const bool is_help = error.get_exit_code() == 0;
+        app.exit(error);
+        return is_help ? 0 : 2;
+    } catch (const UserError& error) {
+        std::fprintf(stderr, "link_bench: %s\n", error.what());
+        return 2;
+    }
+    return 0;
+}
