@@ -6,6 +6,7 @@
 #include "common/device_messages/device_messages.h"
 #include "common/units.h"
 #include "common/user_error.h"
+#include "device_daemon/ares/scene_ares.h"
 
 namespace bonemill {
 namespace {
@@ -15,15 +16,6 @@ constexpr int kChecksPerSegment = 32;
 Pose poseOf(const scene::Vec3& p_mm, const scene::Quaternion& q) {
     return {kMillimetre * Eigen::Vector3d(p_mm.x(), p_mm.y(), p_mm.z()),
             Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
-}
-
-AresGeometry geometryOf(const scene::Device& device) {
-    return {.base_radius = kMillimetre * device.base_radius_mm(),
-            .platform_radius = kMillimetre * device.platform_radius_mm(),
-            .base_half_angle = kDegree * device.base_half_angle_deg(),
-            .platform_half_angle = kDegree * device.platform_half_angle_deg(),
-            .link_length = kMillimetre * device.link_length_mm(),
-            .stroke = kMillimetre * device.stroke_mm()};
 }
 
 AresPlant plantOf(const scene::Device& device) {
@@ -47,15 +39,18 @@ HandImpedance handOf(const scene::SimulatedOperator& person) {
             .angular_stiffness = person.hand_angular_stiffness_nm_per_rad()};
 }
 
-OperatorPath pathOf(const scene::SimulatedOperator& person, const Pose& X_WD) {
+// The handle moves less than the tool by the workspace's scale.
+OperatorPath pathOf(const scene::SimulatedOperator& person, const Pose& X_WD, double scale) {
     const Pose X_DW = X_WD.inverse();
     std::vector<Waypoint> waypoints;
     for (const auto& waypoint : person.waypoint()) {
         const uint32_t buttons =
             (waypoint.remove() ? kButtonRemove : 0u) | (waypoint.add() ? kButtonAdd : 0u);
-        waypoints.push_back({waypoint.time_s(), X_DW * poseOf(waypoint.p_wt_mm(), waypoint.q_wt()), buttons});
+        Pose X_DT = X_DW * poseOf(waypoint.p_wt_mm(), waypoint.q_wt());
+        X_DT.position /= scale;
+        waypoints.push_back({waypoint.time_s(), X_DT, buttons});
     }
-    return OperatorPath(std::move(waypoints), kMillimetre * person.tremor_mm());
+    return OperatorPath(std::move(waypoints), kMillimetre * person.tremor_mm() / scale);
 }
 
 std::vector<std::string> phasesOf(const scene::SimulatedOperator& person) {
@@ -70,6 +65,7 @@ std::vector<std::string> phasesOf(const scene::SimulatedOperator& person) {
 std::string reasonOf(uint32_t workspace_faults) {
     if (workspace_faults & kWorkspaceUnreachable) return "a link is too short";
     if (workspace_faults & kWorkspaceStroke) return "a slider leaves its stroke";
+    if (workspace_faults & kWorkspaceTurn) return "the handle turns too far";
     return "a link leans too far";
 }
 
@@ -105,21 +101,14 @@ Scenario scenarioOf(const scene::Scene& scene) {
     const scene::Device& device = scene.device();
     const Pose X_WD = poseOf(device.p_wd_mm(), device.q_wd());
     Scenario scenario{.rate_hz = scene.loop().rate_hz(),
-                      .geometry = geometryOf(device),
+                      .geometry = aresConfigOf(device, true).geometry,
                       .plant = plantOf(device),
                       .hand = handOf(scene.simulated_operator()),
-                      .path = pathOf(scene.simulated_operator(), X_WD),
+                      .path = pathOf(scene.simulated_operator(), X_WD, device.workspace_scale()),
                       .phases = phasesOf(scene.simulated_operator()),
                       .max_actuator_force = device.max_actuator_force_n(),
                       .max_force = device.max_force_n(),
                       .max_torque = kMilli * device.max_torque_nmm()};
-    if (!AresKinematics(scenario.geometry).isBuildable()) {
-        throw UserError(
-            "field `device`: no platform pose exists for this geometry: with link_length_mm = " +
-            std::to_string(device.link_length_mm()) +
-            " the links cannot reach from base_radius_mm to platform_radius_mm, or they lean too far; "
-            "make the links longer or the radii more alike");
-    }
     checkPath(scene.simulated_operator(), scenario);
     return scenario;
 }

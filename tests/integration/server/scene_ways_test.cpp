@@ -9,6 +9,7 @@
 
 #include "common/config/scene_file.h"
 #include "device_daemon/app/device_setup.h"
+#include "device_daemon/emulator/scenario.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 
@@ -48,16 +49,16 @@ class SceneWays : public testing::Test {
 };
 
 // Writes the hand's way, so fast that it is done after kTicks.
-void writeTrajectory(const DeviceSetup& setup, const std::string& file) {
+void writeTrajectory(const Scenario& scenario, const Pose& X_WD, const std::string& file) {
     std::ofstream out(file);
     out.precision(17);
     out << "t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons\n";
     for (int n = 0; n < kTicks; ++n) {
-        const HandTarget target = setup.path.at(setup.path.duration() * n / kTicks);
-        const Pose X_WT = setup.X_WD * target.X_DT;
+        const HandTarget target = scenario.path.at(scenario.path.duration() * n / kTicks);
+        const Pose X_WT = X_WD * target.X_DT;
         const Eigen::Vector3d& p = X_WT.position;
         const Eigen::Quaterniond& q = X_WT.rotation;
-        out << n / setup.rate_hz << ',' << p.x() << ',' << p.y() << ',' << p.z() << ',' << q.w() << ','
+        out << n / scenario.rate_hz << ',' << p.x() << ',' << p.y() << ',' << p.z() << ',' << q.w() << ','
             << q.x() << ',' << q.y() << ',' << q.z() << ',' << target.buttons << '\n';
     }
 }
@@ -79,11 +80,11 @@ void expectWellFormed(const scene::Scene& scene, const std::string& name) {
 }
 
 void SceneWays::expectRuns(const LoadedScene& loaded) {
-    const DeviceSetup setup = deviceSetupOf(loaded.scene);  // throws if the device cannot go that way
-    EXPECT_GE(setup.path.duration(), 5);
-    EXPECT_LE(setup.path.duration(), 25);
+    const Scenario scenario = scenarioOf(loaded.scene);  // throws if the device cannot go that way
+    EXPECT_GE(scenario.path.duration(), 5);
+    EXPECT_LE(scenario.path.duration(), 25);
     const std::string trajectory = folder_ / "way.csv";
-    writeTrajectory(setup, trajectory);
+    writeTrajectory(scenario, deviceSetupOf(loaded.scene).X_WD, trajectory);
     const auto run =
         test::run({"haptic_server", "simulate", "--scene", loaded.file, "--trajectory", trajectory});
     ASSERT_EQ(run.exit_code, 0) << run.err;

@@ -15,6 +15,7 @@ class FaultyJoints final : public JointDevice {
   public:
     explicit FaultyJoints(JointDevice& sound) : sound_(sound) {}
 
+    bool hasClock() const noexcept override { return false; }
     bool waitForSample(int64_t deadline_ns) noexcept override { return sound_.waitForSample(deadline_ns); }
     bool readJoints(double elapsed, JointReading& reading) noexcept override {
         if (!sound_.readJoints(elapsed, reading)) return false;
@@ -51,6 +52,7 @@ class FaultyJoints final : public JointDevice {
 // The handle stands where it is put.
 class PlacedJoints final : public JointDevice {
   public:
+    bool hasClock() const noexcept override { return false; }
     bool waitForSample(int64_t) noexcept override { return false; }
     bool readJoints(double, JointReading& reading) noexcept override {
         reading = reading_;

@@ -50,6 +50,7 @@ TEST(AresDevice, ShowsTheTruePoseAndItsMotion) {
 TEST(AresDevice, TakesTheVelocitiesOfTheJointsWhereTheyGiveThem) {
     class Moving final : public JointDevice {
       public:
+        bool hasClock() const noexcept override { return true; }
         bool waitForSample(int64_t) noexcept override { return true; }
         bool readJoints(double, JointReading& reading) noexcept override {
             reading.status = kStatusCalibrated;
@@ -61,6 +62,7 @@ TEST(AresDevice, TakesTheVelocitiesOfTheJointsWhereTheyGiveThem) {
     } joints;
     AresDevice device(joints, {});
     DeviceReading reading;
+    EXPECT_TRUE(device.hasClock());
     EXPECT_TRUE(device.waitForSample(0));
     ASSERT_TRUE(device.read(kPeriod, reading));
     EXPECT_LT((reading.v_DT - Eigen::Vector3d(0, 0, 0.1)).norm(), 1e-12);
