@@ -10,7 +10,6 @@ real_time=() end_code=""
 
 run_session() {
     find_scene "${operand:-tooth_corridor}"
-    check_device
     open_state
     take_number "${option[session]:-}"
     make_log_folder
@@ -31,12 +30,6 @@ run_session() {
     say_how_to_watch
     supervise
     exit "$end_code"
-}
-
-check_device() {
-    local device=${option[device]:-auto}
-    daemon_knows --device || [[ $device == auto || $device == simulated ]] ||
-        fail "--device $device: this device_daemon has only the simulated hand"
 }
 
 make_log_folder() {
@@ -77,10 +70,9 @@ command_of() {
             words+=("${extra[@]}") ;;
         device)
             words=("$bin/device_daemon" --scene "$scene" --session "$number" "${real_time[@]}")
-            ! daemon_knows --device || words+=(--device "${option[device]:-auto}")
-            ! daemon_knows --profile || mapfile -t -O "${#words[@]}" words < <(network_words)
+            words+=(--device "${option[device]:-auto}" --stop-dir "$logs")
+            mapfile -t -O "${#words[@]}" words < <(network_words)
             [[ $flags != *" --no-enabling-switch "* ]] || words+=(--no-enabling-switch)
-            ! daemon_knows --stop-dir || words+=(--stop-dir "$logs")
             [[ -z ${option[seconds]:-} ]] || words+=(--seconds "${option[seconds]}") ;;
         viewer)  # Whoever sits here has the hand, so the window may command, as it may on one PC.
             words=("$bin/render_client" --session "$number" --role operator)

@@ -62,8 +62,8 @@ class AresEmulator final : public JointDevice {
 
     // Lets the scenario's time run; before that the hand rests at the path's start with no button pressed.
     void startScenario() noexcept { scenario_runs_ = true; }
-    // Holds the scenario's time; the hand lets the buttons go and draws the handle back to where the path starts, as a
-    // person does who feels nothing any more. When the scenario goes on it first returns.
+    // Holds the scenario's time; the hand lets the buttons go and draws the handle back to where the path
+    // starts, as a person does who feels nothing any more. When the scenario goes on it first returns.
     void pauseScenario() noexcept { scenario_runs_ = false; }
 
     // Shorts the motors' windings or opens them again: shorted, they brake every motion. The amplifiers must

@@ -5,9 +5,9 @@
 // it.
 #pragma once
 
-#include "device_daemon/haptic_device/haptic_device.h"
 #include "device_daemon/driver/pose_differentiator.h"
 #include "device_daemon/driver/udp_device.h"
+#include "device_daemon/haptic_device/haptic_device.h"
 
 namespace bonemill {
 

@@ -39,7 +39,7 @@ TEST_F(EffectStateTest, WithoutEffectsTheToolStateIsWhatItWas) {
     topics::ToolState state = *client_.subscriber.toolState();
     EXPECT_FALSE(state.has_effects());
     const std::string bytes = state.SerializeAsString();
-    for (int field : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12})
+    for (int field : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 15})
         state.GetReflection()->ClearField(&state, state.GetDescriptor()->FindFieldByNumber(field));
     EXPECT_EQ(state.ByteSizeLong(), 0u) << "no bytes but those of the fields that were always there";
     EXPECT_GT(bytes.size(), 100u);

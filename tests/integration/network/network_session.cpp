@@ -52,8 +52,8 @@ void NetworkSession::startServer(const Words& network) {
 
 void NetworkSession::startMilling(int seconds) {
     writeScene(seconds);
-    daemon_ = haptics_pc_->start(
-        {"device_daemon", "--device", "simulated", "--scene", folder_ / "scene.textproto", "--session", session_, "--best-effort-rt"});
+    daemon_ = haptics_pc_->start({"device_daemon", "--device", "simulated", "--scene",
+                                  folder_ / "scene.textproto", "--session", session_, "--best-effort-rt"});
 }
 
 void NetworkSession::waitForDevice() {

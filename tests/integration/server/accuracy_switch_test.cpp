@@ -52,8 +52,8 @@ class AccuracySwitching : public testing::Test {
             domain(),        "--report", folder_ / "report.json", "--best-effort-rt"};
     }
     std::vector<std::string> daemon() const {
-        return {"device_daemon", "--device", "simulated", "--scene", folder_ / "s.textproto",
-                "--session",     session(), "--best-effort-rt"};
+        return {"device_daemon",         "--device",  "simulated", "--scene",
+                folder_ / "s.textproto", "--session", session(),   "--best-effort-rt"};
     }
     static Finished setAccuracy(const std::string& name) {
         return run(

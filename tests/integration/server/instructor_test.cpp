@@ -64,8 +64,8 @@ class Instructor : public testing::Test {
         return arguments;
     }
     std::vector<std::string> daemon() const {
-        return {"device_daemon", "--device", "simulated", "--scene", folder_ / "s.textproto",
-                "--session",     session(), "--best-effort-rt"};
+        return {"device_daemon",         "--device",  "simulated", "--scene",
+                folder_ / "s.textproto", "--session", session(),   "--best-effort-rt"};
     }
     static Finished command(const std::string& text, const std::string& role = "operator") {
         return run({"render_client", "--command", text, "--role", role, "--session", session(), "--domain",

@@ -55,8 +55,8 @@ class Session : public testing::Test {
         return arguments;
     }
     std::vector<std::string> daemon() {
-        return {"device_daemon", "--device", "simulated", "--scene", folder_ / "s.textproto",
-                "--session",     session_,  "--best-effort-rt"};
+        return {"device_daemon",         "--device",  "simulated", "--scene",
+                folder_ / "s.textproto", "--session", session_,    "--best-effort-rt"};
     }
     std::vector<std::string> client(const std::string& out, int frames, int interval_ms) {
         return {"render_client",
