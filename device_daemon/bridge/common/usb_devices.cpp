@@ -80,7 +80,7 @@ std::string whyNoDevice(const std::vector<UsbDevice>& found, const std::string& 
         for (const fs::path& node : device.forbidden) nodes.push_back(node.string());
         return "permission: " + what + " " + device.id + " is on USB, and this user may not use " +
                joined(nodes) +
-               ". Copy deploy/udev/70-bonemill-haptic.rules to /etc/udev/rules.d and plug it in again.";
+               ". Copy deploy/udev/60-bonemill.rules to /etc/udev/rules.d and plug it in again.";
     }
     return "device: " + what + " " + found.front().id +
            " is on USB and may be used, but its library does not see it. Does another program have it?";

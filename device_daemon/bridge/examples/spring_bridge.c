@@ -140,6 +140,7 @@ int main(int argc, char** argv) {
     signal(SIGTERM, onSignal);
     signal(SIGINT, onSignal);
     double position[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};
+    int farewells = 0;
     for (uint64_t next_us = nowUs();; next_us += 1000) {
         const uint64_t now_us = nowUs();
         if (now_us < next_us) usleep((useconds_t)(next_us - now_us));
@@ -157,6 +158,6 @@ int main(int argc, char** argv) {
             position[i] += 0.001 * velocity[i];
         }
         if (heard_us) sendState(udp, position);
-        if (shall_end) return 0;
+        if (shall_end && ++farewells > 20) return 0; /* the host hears it, also when a packet is lost */
     }
 }

@@ -125,6 +125,9 @@ def main():
         wake = max(wake + 0.001, time.monotonic() - 0.02)
         time.sleep(max(0, wake - time.monotonic()))
         bridge.period()
+    for _ in range(20):  # the host hears that it leaves, also when a packet is lost
+        bridge.period()
+        time.sleep(0.001)
 
 
 if __name__ == "__main__":
