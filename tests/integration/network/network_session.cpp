@@ -22,8 +22,9 @@ void NetworkSession::SetUp() {
 }
 
 // The hand goes down into the slab, whose top is at z = 2 mm, to and fro along x until the time is over,
-// and up again.
-void NetworkSession::writeScene(int seconds) const {
+// and up again. Server and daemon read the same scene, and the daemon ends its way early.
+void NetworkSession::writeScene() const {
+    constexpr int seconds = 8;
     constexpr double kLength_mm = 3;
     std::ostringstream text;
     const auto waypoint = [&](double time_s, double x_mm, double z_mm, const std::string& more) {
@@ -43,7 +44,7 @@ void NetworkSession::writeScene(int seconds) const {
 }
 
 void NetworkSession::startServer(const Words& network) {
-    writeScene(3);
+    writeScene();
     server_ =
         haptics_pc_->start(joined(Words{"haptic_server", "--scene", folder_ / "scene.textproto", "--session",
                                         session_, "--best-effort-rt", "--report", folder_ / "report.json"},
@@ -51,9 +52,9 @@ void NetworkSession::startServer(const Words& network) {
 }
 
 void NetworkSession::startMilling(int seconds) {
-    writeScene(seconds);
-    daemon_ = haptics_pc_->start({"device_daemon", "--device", "simulated", "--scene",
-                                  folder_ / "scene.textproto", "--session", session_, "--best-effort-rt"});
+    daemon_ =
+        haptics_pc_->start({"device_daemon", "--device", "simulated", "--scene", folder_ / "scene.textproto",
+                            "--session", session_, "--best-effort-rt", "--seconds", std::to_string(seconds)});
 }
 
 void NetworkSession::waitForDevice() {

@@ -42,7 +42,7 @@ class NetworkSession : public testing::Test {
     std::unique_ptr<Host> haptics_pc_;
 
   private:
-    void writeScene(int seconds) const;
+    void writeScene() const;
     TemporaryFolder folder_;
     std::string session_ = std::to_string(getpid());
     std::unique_ptr<Process> server_, daemon_;
