@@ -65,7 +65,7 @@ const char* whatToDo(StopCause cause) noexcept {
         case StopCause::kNone:
             return "";
         case StopCause::kDeviceLost:
-            return "Check cable and power of the device, then reset.";
+            return "Check cable and power of the device.";
         case StopCause::kImplausiblePose:
             return "Move the handle to the middle of its workspace and calibrate again.";
         case StopCause::kPoseJump:

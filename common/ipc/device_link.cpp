@@ -58,7 +58,8 @@ bool waitForNewer(LinkChannel<Message>& channel, uint32_t read_version, int64_t 
     uint32_t version = counter.load(std::memory_order_acquire);
     for (bool is_time_left = true; is_time_left && (version == read_version || !isComplete(version));) {
         channel.is_awaited.exchange(1, std::memory_order_acq_rel);
-        is_time_left = futexWait(counter, version, deadline_ns);  // returns at once if the counter moved on
+        // It returns at once if the counter moved on, which a hostile writer may let it do for ever.
+        is_time_left = futexWait(counter, version, deadline_ns) && monotonicNowNs() < deadline_ns;
         version = counter.load(std::memory_order_acquire);
     }
     channel.is_awaited.store(0, std::memory_order_relaxed);

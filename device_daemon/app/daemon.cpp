@@ -30,6 +30,12 @@ bool waitForSignal() {
     return sigtimedwait(&signals, nullptr, &timeout) > 0;
 }
 
+DeviceLoopConfig loopConfigOf(const DeviceSetup& setup, const DaemonOptions& options) {
+    DeviceLoopConfig config = setup.loop;
+    config.states.needs_enabling_switch = options.has_enabling_switch;
+    return config;
+}
+
 }  // namespace
 
 Daemon::Daemon(const DeviceSetup& setup, const DaemonOptions& options, HapticDevice& device,
@@ -38,7 +44,7 @@ Daemon::Daemon(const DeviceSetup& setup, const DaemonOptions& options, HapticDev
       options_(options),
       device_(device),
       program_(program),
-      loop_(device, setup.loop),
+      loop_(device, loopConfigOf(setup, options)),
       link_(DeviceLink::create(options.session, LinkSide::kDaemon, setup.scene_hash)),
       period_ns_(std::llround(kNsPerSecond / setup.rate_hz)) {}
 
@@ -109,8 +115,8 @@ void Daemon::tick(int64_t instant_ns, double elapsed) noexcept {
 // for.
 void Daemon::publish(DeviceSample& sample) noexcept {
     const int64_t now_ns = monotonicNowNs();
-    if (now_ns - published_ns_ < period_ns_ * 3 / 4) return;
-    published_ns_ = now_ns;
+    if (now_ns < publish_at_ns_ - period_ns_ / 2) return;
+    publish_at_ns_ = std::max(publish_at_ns_ + period_ns_, now_ns);
     if (device_.capabilitiesVersion() != capabilities_version_) {
         capabilities_version_ = device_.capabilitiesVersion();
         link_.writeCapabilities(device_.capabilities());
@@ -227,8 +233,8 @@ void Daemon::warnOfMissingSwitch() const {
 }
 
 void Daemon::writeBlackBox() {
-    const StopCause cause = progress_.cause;
-    const std::filesystem::path file = stopFile(options_.stop_dir, options_.session, cause);
+    const std::filesystem::path file =
+        stopFile(options_.stop_dir, options_.session, loop_.blackBox().cause());
     try {
         loop_.blackBox().write(file);
         spdlog::info("the last two seconds are in {}", file.string());

@@ -62,7 +62,7 @@ class Daemon {
     DeviceLink link_;
     int64_t period_ns_;
     uint32_t capabilities_version_ = 0;
-    int64_t published_ns_ = 0;
+    int64_t publish_at_ns_ = 0;  // when the next sample is due
     int64_t attached_ns_ = 0;
     uint64_t first_sequence_ = 0;  // of this run's samples; 0 before the first
     DeviceSample last_sample_{};

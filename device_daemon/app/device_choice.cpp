@@ -24,8 +24,16 @@ class WiredAres final : public HapticDevice {
   public:
     WiredAres(const AresDeviceConfig& config, const UdpDeviceConfig& wire)
         : joints_(wire), ares_(joints_, config) {}
-    DeviceCapabilities capabilities() const noexcept override { return ares_.capabilities(); }
-    uint32_t capabilitiesVersion() const noexcept override { return ares_.capabilitiesVersion(); }
+    // Only the controller knows whether there is an enabling switch.
+    DeviceCapabilities capabilities() const noexcept override {
+        DeviceCapabilities device = ares_.capabilities();
+        if (const wire::Describe* said = joints_.description())
+            device.abilities |= said->abilities & kAbilityEnablingSwitch;
+        return device;
+    }
+    uint32_t capabilitiesVersion() const noexcept override {
+        return ares_.capabilitiesVersion() + joints_.descriptionCount();
+    }
     bool hasClock() const noexcept override { return ares_.hasClock(); }
     bool waitForSample(int64_t deadline_ns) noexcept override { return ares_.waitForSample(deadline_ns); }
     bool read(double elapsed, DeviceReading& reading) noexcept override {

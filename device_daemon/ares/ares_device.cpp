@@ -76,7 +76,7 @@ void AresDevice::fillPose(const JointReading& joints, DeviceReading& reading) co
     if (!has_pose_) return;
     reading.v_DT = twist_D_.head<3>();
     reading.w_DT = twist_D_.tail<3>();
-    reading.has_applied = true;
+    reading.has_applied = wrench_share_ == 1;  // or it is less than was ordered, and rightly so
     reading.applied_D = wrenchOf(guard_.location().J_inv, joints.forces - sent_.base);
 }
 
@@ -96,15 +96,14 @@ void AresDevice::write(const DeviceOrder& order) noexcept {
 AresDevice::Sent AresDevice::compose(const DeviceOrder& order) noexcept {
     const Vector6d base = holding_ + wallForces();
     Vector6d wanted = Vector6d::Zero();
-    const bool is_felt = order.is_engaged && has_pose_;
-    if (is_felt) wanted = ::bonemill::actuatorForces(guard_.location().J_inv, order.wrench_hand_D);
+    if (has_pose_) wanted = ::bonemill::actuatorForces(guard_.location().J_inv, order.wrench_hand_D);
     const LimitedForces limited = limitForces(base, wanted, config_.max_actuator_force);
     was_not_finite_ = !limited.is_finite || !order.wrench_hand_D.isFinite();
     if (was_not_finite_) return {};
     wrench_share_ = limited.wanted_share;
     return {.forces = limited.forces,
             .base = limited.base_share * base,
-            .push = (is_felt ? limited.wanted_share : 0.0) * order.wrench_hand_D.force};
+            .push = (has_pose_ ? limited.wanted_share : 0.0) * order.wrench_hand_D.force};
 }
 
 void AresDevice::fadeWalls(bool is_engaged) noexcept {

@@ -7,8 +7,8 @@
 // true with the last pose at rest and without kStatusCalibrated. `applied_D` is the measured answer to the
 // ordered wrench: what holds the weight and what the soft walls push is taken off.
 //
-// write() sends, while the motors are wanted: what holds the weight, always; the soft walls and the ordered
-// wrench, while engaged. The first two go first, and the wrench is scaled to what they leave of each motor.
+// write() sends, while the motors are wanted: what holds the weight and the ordered wrench, always; the soft
+// walls, while engaged. The first two go first, and the wrench is scaled to what they leave of each motor.
 // The walls fade in and out with the engagement. After a reading that was refused, only the weight is held,
 // as at the last pose that was believed. A number that is not finite makes no force at all, and kDeviceFault
 // with the code kAresNotFinite in the next reading.

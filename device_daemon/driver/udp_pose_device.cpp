@@ -22,7 +22,10 @@ bool isPlausiblePose(const wire::PoseState& state) noexcept {
 }  // namespace
 
 DeviceCapabilities UdpPoseDevice::capabilities() const noexcept {
-    return capabilitiesOf(device_.session().description());
+    DeviceCapabilities device = capabilitiesOf(device_.session().description());
+    // Who says of himself that he is simulated would be spared the enabling switch.
+    device.abilities &= ~uint32_t(kAbilitySimulated);
+    return device;
 }
 
 bool UdpPoseDevice::read(double, DeviceReading& reading) noexcept {

@@ -40,7 +40,7 @@ struct DeviceReading {
 
 // The loop asks this of the device in every period.
 struct DeviceOrder {
-    Wrench wrench_hand_D;     // within the device's capabilities; zero unless is_engaged
+    Wrench wrench_hand_D;     // within the device's capabilities; after engagement it ramps to zero
     bool is_wanted = false;   // the motors are to be switched on and to follow, if only with zero
     bool is_engaged = false;  // the hand feels haptic_server
     bool reset = false;       // clear your faults; true for one period

@@ -44,13 +44,16 @@ BlackBox::BlackBox(size_t records) : records_(records) {
     BONEMILL_ASSERT(records > kAfterRecords);
 }
 
-void BlackBox::record(const BlackBoxRecord& record, bool is_stopped) noexcept {
+void BlackBox::record(const BlackBoxRecord& record, StopCause cause) noexcept {
     if (is_full_.load(std::memory_order_acquire)) return;
     records_[next_] = record;
     next_ = (next_ + 1) % records_.size();
     count_ = std::min(count_ + 1, records_.size());
-    if (is_stopped && !was_stopped_) left_ = kAfterRecords;
-    was_stopped_ = is_stopped;
+    if (cause != StopCause::kNone && cause != last_cause_ && left_ == 0) {
+        left_ = kAfterRecords;
+        stop_cause_ = cause;
+    }
+    last_cause_ = cause;
     if (left_ > 0 && --left_ == 0) is_full_.store(true, std::memory_order_release);
 }
 

@@ -29,9 +29,11 @@ class BlackBox {
     // Holds so many records, more than kAfterRecords.
     explicit BlackBox(size_t records);
 
-    // `is_stopped` says that there is a cause that holds the device.
-    void record(const BlackBoxRecord& record, bool is_stopped) noexcept;
+    // `cause` is what holds the device now; a new one is a stop.
+    void record(const BlackBoxRecord& record, StopCause cause) noexcept;
 
+    // The cause of the stop that is held; once isFull(), for any thread.
+    StopCause cause() const noexcept { return stop_cause_; }
     // Any thread may ask: a stop is to be written.
     bool isFull() const noexcept { return is_full_.load(std::memory_order_acquire); }
     // Writes what is held as CSV, oldest first, and lets the box record again. Only when isFull(). Throws
@@ -43,7 +45,8 @@ class BlackBox {
     size_t next_ = 0;
     size_t count_ = 0;
     size_t left_ = 0;  // records to come after the stop
-    bool was_stopped_ = false;
+    StopCause last_cause_ = StopCause::kNone;
+    StopCause stop_cause_ = StopCause::kNone;  // of the stop under way
     std::atomic<bool> is_full_ = false;
 };
 

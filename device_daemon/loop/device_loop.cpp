@@ -50,9 +50,14 @@ bool DeviceLoop::read(int64_t now_ns, double elapsed, DeviceSample& sample) noex
     if (is_heard_) {
         reading_ = newest;
         heard_ns_ = now_ns;
+        has_status_ = true;
     } else {
         reading_.fault = newest.fault;
         reading_.fault_code = newest.fault_code;
+        // A device whose pose is refused still says what its switches do; a silent one says nothing.
+        has_status_ = newest.status != 0;
+        if (has_status_) reading_.status = newest.status;
+        if (has_status_) reading_.buttons = newest.buttons;
         reading_.status &= ~uint32_t(kStatusDriving);
         reading_.v_DT.setZero();
         reading_.w_DT.setZero();
@@ -87,7 +92,8 @@ bool DeviceLoop::takeOrders(const WrenchCommand* newest, int64_t now_ns) noexcep
     if (!newest || !isPlausible(*newest)) newest = nullptr;
     bool is_reset_ordered = false;
     if (newest) {
-        is_reset_ordered = has_command_ && newest->reset_orders != reset_orders_;
+        // A server that starts anew counts from 0 again: that orders nothing.
+        is_reset_ordered = has_command_ && int32_t(newest->reset_orders - reset_orders_) > 0;
         reset_orders_ = newest->reset_orders;
         commanded_ = {vectorOf(newest->f_hand_D), vectorOf(newest->t_hand_D)};
         command_stamp_ns_ = newest->stamp_ns;
@@ -104,6 +110,7 @@ void DeviceLoop::write(const WrenchCommand* newest, int64_t now_ns) noexcept {
     const bool is_reset_ordered = takeOrders(newest, now_ns);
     states_.update({.dt = elapsed_,
                     .is_heard = is_heard_,
+                    .has_status = has_status_,
                     .reading = reading_,
                     .is_server_there = is_server_there_,
                     .commanded = commanded_,
@@ -112,15 +119,24 @@ void DeviceLoop::write(const WrenchCommand* newest, int64_t now_ns) noexcept {
     given_factor_ = states_.factor();
     // What no hand feels must not be where the rate counts from.
     const bool is_felt = states_.state() == SafetyState::kEngaged || given_factor_ > 0;
-    given_ = limiter_.limit(is_felt ? commanded_ : Wrench{}, given_factor_, elapsed_);
+    given_ = limiter_.limit(is_felt ? commanded_ : Wrench{}, given_factor_, std::min(elapsed_, kLongestStep));
     const SafetyState state = states_.state();
     if (is_releasing_ && given_factor_ == 0) ++unwanted_periods_;
     device_.write({.wrench_hand_D = given_,
-                   .is_wanted = has_command_ && unwanted_periods_ == 0 && state != SafetyState::kFault &&
-                                state != SafetyState::kEmergencyStop,
+                   .is_wanted = has_command_ && unwanted_periods_ == 0 && (given_factor_ > 0 || mayDrive()),
                    .is_engaged = state == SafetyState::kEngaged,
                    .reset = states_.hasReset()});
     remember(newest, now_ns);
+}
+
+// What has run away, or is broken, is switched off once the ramp has taken its force.
+bool DeviceLoop::mayDrive() const noexcept {
+    const SafetyState state = states_.state();
+    const StopCause cause = states_.cause();
+    const bool ran_away =
+        state == SafetyState::kProtectiveStop &&
+        (cause == StopCause::kSpeed || cause == StopCause::kPower || cause == StopCause::kEnergy);
+    return !ran_away && state != SafetyState::kFault && state != SafetyState::kEmergencyStop;
 }
 
 void DeviceLoop::remember(const WrenchCommand* newest, int64_t now_ns) noexcept {
@@ -131,7 +147,7 @@ void DeviceLoop::remember(const WrenchCommand* newest, int64_t now_ns) noexcept 
     store(given_.force, record.f_given_D);
     store(given_.torque, record.t_given_D);
     record.is_heard = is_heard_;
-    black_box_.record(record, states_.cause() != StopCause::kNone);
+    black_box_.record(record, states_.cause());
 }
 
 }  // namespace bonemill

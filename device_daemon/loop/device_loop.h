@@ -53,10 +53,13 @@ class DeviceLoop {
 
   private:
     static constexpr int kUnwantedPeriods = 10;  // some of these orders may get lost
+    // After a pause of the loop (s) force and ramps go on from where they were, not from where they would be.
+    static constexpr double kLongestStep = 5e-3;
 
     void adaptToDevice() noexcept;
     bool takeOrders(const WrenchCommand* newest, int64_t now_ns) noexcept;
     void fill(DeviceSample& sample) const noexcept;
+    bool mayDrive() const noexcept;
     void remember(const WrenchCommand* newest, int64_t now_ns) noexcept;
 
     HapticDevice& device_;
@@ -66,11 +69,12 @@ class DeviceLoop {
     WrenchLimiter limiter_;
     SafetyStates states_;
     BlackBox black_box_;
-    DeviceReading reading_;  // the newest that was heard, with the newest fault
-    int64_t heard_ns_ = 0;   // then
-    bool is_heard_ = false;  // in this period
-    double elapsed_ = 0;     // s, of this period
-    Wrench commanded_;       // by the newest plausible command
+    DeviceReading reading_;    // the newest that was heard, with the newest fault
+    int64_t heard_ns_ = 0;     // then
+    bool is_heard_ = false;    // in this period
+    bool has_status_ = false;  // likewise, of its switches
+    double elapsed_ = 0;       // s, of this period
+    Wrench commanded_;         // by the newest plausible command
     int64_t command_stamp_ns_ = 0;
     uint32_t reset_orders_ = 0;  // the last number seen
     bool has_command_ = false, is_server_there_ = false, is_releasing_ = false;

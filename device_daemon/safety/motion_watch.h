@@ -41,6 +41,11 @@ class MotionWatch {
     // the period before. Returns the limit that is passed, or kNone.
     StopCause check(const DeviceReading& reading, const Wrench& given_D, double dt) noexcept;
 
+    // The same while it is not engaged: a motor that pushes without being told to has run away.
+    StopCause checkMotors(const DeviceReading& reading, const Wrench& given_D, double dt) noexcept {
+        return isMismatched(reading, given_D, dt) ? StopCause::kForceMismatch : StopCause::kNone;
+    }
+
     // Returns the share of the force that motors of this load get.
     static double warmShare(double load) noexcept;
 

@@ -1,6 +1,7 @@
 #include "device_daemon/safety/safety_states.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace bonemill {
 namespace {
@@ -44,16 +45,18 @@ bool SafetyStates::isStopped() const noexcept {
 }
 
 void SafetyStates::update(const SafetyInput& input) noexcept {
+    const double dt = std::max(input.dt, 0.0);
     has_reset_ = false;
     waits_for_small_wrench_ = false;
-    silent_for_ = input.is_heard ? 0 : silent_for_ + std::max(input.dt, 0.0);
+    silent_for_ = input.is_heard ? 0 : silent_for_ + dt;
+    unwatched_ += dt;
     const StopCause active = causeOf(input);
     if (active != StopCause::kNone) stop(active, input.reading.fault_code);
     if (isStopped())
         takeReset(input, active);
     else
         follow(input);
-    if (input.is_heard) {
+    if (input.has_status) {
         was_enabled_ = input.reading.status & kStatusEnabled;
         was_reset_pressed_ = input.reading.status & kStatusResetPressed;
         warm_share_ = MotionWatch::warmShare(input.reading.load);
@@ -62,10 +65,13 @@ void SafetyStates::update(const SafetyInput& input) noexcept {
 }
 
 StopCause SafetyStates::causeOf(const SafetyInput& input) noexcept {
-    if (input.is_heard && (input.reading.status & kStatusEmergencyStop)) return StopCause::kEmergencyStop;
+    if (input.has_status && (input.reading.status & kStatusEmergencyStop)) return StopCause::kEmergencyStop;
     if (input.reading.fault != StopCause::kNone) return input.reading.fault;
-    if (!input.is_heard || state_ != SafetyState::kEngaged) return StopCause::kNone;
-    return watch_.check(input.reading, input.given, input.dt);
+    if (!input.is_heard || !(input.reading.status & kStatusDriving)) return StopCause::kNone;
+    // What was not heard meanwhile has pushed, too.
+    const double dt = std::exchange(unwatched_, 0.0);
+    if (state_ == SafetyState::kEngaged) return watch_.check(input.reading, input.given, dt);
+    return watch_.checkMotors(input.reading, input.given, dt);
 }
 
 void SafetyStates::stop(StopCause cause, uint32_t fault_code) noexcept {
@@ -78,16 +84,26 @@ void SafetyStates::stop(StopCause cause, uint32_t fault_code) noexcept {
 }
 
 void SafetyStates::takeReset(const SafetyInput& input, StopCause active) noexcept {
-    const bool is_pressed = input.is_heard && (input.reading.status & kStatusResetPressed);
-    if (!input.is_reset_ordered && !(is_pressed && !was_reset_pressed_)) return;
-    has_reset_ = true;  // the device's own faults go with it, and may have to go first
-    const bool is_own_fault = active == StopCause::kDeviceFault || active == StopCause::kLatePackets;
-    if (active != StopCause::kNone && !is_own_fault) return;
+    const bool is_pressed = input.has_status && (input.reading.status & kStatusResetPressed);
+    const bool is_new = input.is_reset_ordered || (is_pressed && !was_reset_pressed_);
+    // Nobody resets an emergency stop ahead of closing its chain.
+    reset_for_ = active == StopCause::kEmergencyStop ? 0 : is_new ? kResetTime : reset_for_ - input.dt;
+    if (reset_for_ <= 0) return;
+    asked_for_ = is_new ? kResetEvery : asked_for_ + input.dt;
+    if (asked_for_ >= kResetEvery) {
+        has_reset_ = true;
+        asked_for_ = 0;
+    }
+    if (active == StopCause::kNone) leaveStop(input.reading);
+}
+
+void SafetyStates::leaveStop(const DeviceReading& reading) noexcept {
     ++reset_count_;
+    reset_for_ = 0;
     cause_ = StopCause::kNone;
     fault_code_ = 0;
     is_freshly_pressed_ = false;
-    state_ = silent_for_ > config_.silence ? SafetyState::kDisconnected : reachedBy(input.reading);
+    state_ = silent_for_ > config_.silence ? SafetyState::kDisconnected : reachedBy(reading);
 }
 
 // Without a stop: the device comes, goes, engages and disengages.
@@ -141,7 +157,7 @@ void SafetyStates::tryToEngage(const SafetyInput& input) noexcept {
 void SafetyStates::moveFactor(const SafetyInput& input) noexcept {
     const double dt = std::max(input.dt, 0.0);
     if (state_ == SafetyState::kEngaged)
-        way_ += dt / config_.engage_time;
+        way_ += std::min(dt, kLongestStep) / config_.engage_time;
     else if (state_ == SafetyState::kEmergencyStop)
         way_ = 0;
     else

@@ -28,6 +28,7 @@ struct SafetyConfig {
 struct SafetyInput {
     double dt = 0;                  // s since the last period
     bool is_heard = false;          // `reading` is new and can be believed
+    bool has_status = false;        // its status is new, if not its pose
     DeviceReading reading;          // the newest one; its fault counts also when it cannot be believed
     bool is_server_there = false;   // haptic_server answers
     Wrench commanded;               // by haptic_server, within the limits of the wrench
@@ -38,6 +39,10 @@ struct SafetyInput {
 class SafetyStates {
   public:
     static constexpr double kStopTime = 0.01;  // s: short, and still no kick
+    // A device needs some periods to clear its own faults: for so long (s) a reset waits, and asks again.
+    static constexpr double kResetTime = 0.3;
+    static constexpr double kResetEvery = 0.05;
+    static constexpr double kLongestStep = 5e-3;  // s, of a ramp upwards, after a pause of the loop
 
     explicit SafetyStates(const SafetyConfig& config = {}, const MotionLimits& limits = {}) noexcept
         : config_(config), watch_(limits) {}
@@ -65,6 +70,7 @@ class SafetyStates {
     StopCause causeOf(const SafetyInput& input) noexcept;
     void stop(StopCause cause, uint32_t fault_code) noexcept;
     void takeReset(const SafetyInput& input, StopCause active) noexcept;
+    void leaveStop(const DeviceReading& reading) noexcept;
     void follow(const SafetyInput& input) noexcept;
     SafetyState reachedBy(const DeviceReading& reading) const noexcept;
     void tryToEngage(const SafetyInput& input) noexcept;
@@ -83,8 +89,11 @@ class SafetyStates {
     bool was_reset_pressed_ = true;
     bool waits_for_small_wrench_ = false;
     bool has_reset_ = false;
-    double way_ = 0;     // of the ramp, 0 to 1
-    double factor_ = 0;  // smooth over it
+    double reset_for_ = 0;  // s that a reset still waits
+    double asked_for_ = 0;  // s since the device was asked to clear its faults
+    double unwatched_ = 0;  // s since the motors were watched last
+    double way_ = 0;        // of the ramp, 0 to 1
+    double factor_ = 0;     // smooth over it
     double warm_share_ = 1;
 };
 

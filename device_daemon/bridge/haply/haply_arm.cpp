@@ -12,8 +12,8 @@ namespace bonemill::bridge {
 namespace {
 
 constexpr int64_t kInventoryNs = 2 * kNsPerSecond;
-constexpr int64_t kAnswerNs = 5 * kNsPerMillisecond;      // so long a period waits
-constexpr int64_t kAskAgainNs = 100 * kNsPerMillisecond;  // then the answer is not coming
+constexpr int64_t kAnswerNs = 5 * kNsPerMillisecond;     // so long a period waits
+constexpr int64_t kAskAgainNs = 10 * kNsPerMillisecond;  // then the answer is not coming
 // The service does not say how strong its arms are.
 constexpr double kCautiousForce = 5;      // N
 constexpr double kInverse3Radius = 0.10;  // m

@@ -16,21 +16,21 @@ std::vector<std::string> linesOf(const std::filesystem::path& file) {
     return lines;
 }
 
-void record(BlackBox& box, int64_t from, int64_t to, bool is_stopped) {
+void record(BlackBox& box, int64_t from, int64_t to, StopCause cause) {
     for (int64_t i = from; i < to; ++i) {
         BlackBoxRecord record{};
         record.time_ns = i * 1'000'000;
         record.sample.sequence = uint64_t(i);
-        box.record(record, is_stopped);
+        box.record(record, cause);
     }
 }
 
 TEST(BlackBox, HoldsWhatWasBeforeAStopAndALittleAfter) {
     const test::TemporaryFolder folder;
     BlackBox box(2000);
-    record(box, 0, 5000, false);
+    record(box, 0, 5000, StopCause::kNone);
     EXPECT_FALSE(box.isFull());
-    record(box, 5000, 6000, true);
+    record(box, 5000, 6000, StopCause::kSpeed);
     ASSERT_TRUE(box.isFull());
     box.write(folder / "stop.csv");
     EXPECT_FALSE(box.isFull());
@@ -45,21 +45,25 @@ TEST(BlackBox, HoldsWhatWasBeforeAStopAndALittleAfter) {
 TEST(BlackBox, AnEarlyStopHasFewerRecordsAndTheNextOneIsKept) {
     const test::TemporaryFolder folder;
     BlackBox box(2000);
-    record(box, 0, 10, false);
-    record(box, 10, 200, true);
+    record(box, 0, 10, StopCause::kNone);
+    record(box, 10, 200, StopCause::kSpeed);
     ASSERT_TRUE(box.isFull());
     box.write(folder / "first.csv");
     EXPECT_EQ(linesOf(folder / "first.csv").size(), 1u + 10 + BlackBox::kAfterRecords);
-    record(box, 200, 300, true);  // the same stop goes on
+    record(box, 200, 300, StopCause::kSpeed);  // the same stop goes on
     EXPECT_FALSE(box.isFull());
-    record(box, 300, 400, false);
-    record(box, 400, 600, true);
+    record(box, 300, 400, StopCause::kNone);
+    record(box, 400, 600, StopCause::kSpeed);
     EXPECT_TRUE(box.isFull());
+    box.write(folder / "second.csv");
+    record(box, 600, 800, StopCause::kDeviceFault);  // another cause on top is another stop
+    EXPECT_TRUE(box.isFull());
+    EXPECT_EQ(box.cause(), StopCause::kDeviceFault);
 }
 
 TEST(BlackBox, SaysWhenItCannotBeWritten) {
     BlackBox box(200);
-    record(box, 0, 300, true);
+    record(box, 0, 300, StopCause::kSpeed);
     EXPECT_ANY_THROW(box.write("/no/such/folder/stop.csv"));
     EXPECT_FALSE(box.isFull());  // and goes on
 }

@@ -148,6 +148,23 @@ TEST(DeviceLoop, AResetOrderOfTheServerCountsOnce) {
     rig.run(0.01);
     EXPECT_EQ(rig.loop.safety().resetCount(), 1u);
     EXPECT_EQ(rig.state(), SafetyState::kReady);
+    rig.device.reading.fault = StopCause::kSingularity;
+    rig.step();
+    rig.device.reading.fault = StopCause::kNone;
+    rig.command.reset_orders = 0;  // another server starts, and has ordered nothing
+    rig.run(0.5);
+    EXPECT_EQ(rig.state(), SafetyState::kProtectiveStop);
+}
+
+TEST(DeviceLoop, WhatHasRunAwayIsSwitchedOffAfterItsRamp) {
+    LoopRig rig;
+    rig.engage();
+    rig.device.reading.v_DT = {3, 0, 0};
+    rig.run(0.005);
+    EXPECT_EQ(rig.state(), SafetyState::kProtectiveStop);
+    EXPECT_TRUE(rig.device.order.is_wanted);
+    rig.run(0.02);
+    EXPECT_FALSE(rig.device.order.is_wanted);
 }
 
 TEST(DeviceLoop, ReleaseTakesTheForceAwayByTheRamp) {

@@ -41,7 +41,8 @@ class LoopRig {
     }
     SafetyState state() const { return loop.safety().state(); }
     StopCause cause() const { return loop.safety().cause(); }
-    double force() const { return device.order.wrench_hand_D.force.norm(); }
+    // What the motors give: nothing once they are not wanted.
+    double force() const { return device.order.is_wanted ? device.order.wrench_hand_D.force.norm() : 0; }
 
     static void setForce(WrenchCommand& command, double fz) {
         command.f_hand_D[0] = command.f_hand_D[1] = 0;

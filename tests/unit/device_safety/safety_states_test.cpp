@@ -21,6 +21,7 @@ class States {
     }
     SafetyState run(double seconds = kStatesDt) {
         for (int i = 0; i < std::lround(seconds / kStatesDt); ++i) {
+            in.has_status = in.is_heard || refuses_pose;
             states.update(in);
             steepest = std::max(steepest, last_factor - states.factor());
             last_factor = states.factor();
@@ -43,6 +44,7 @@ class States {
     }
 
     SafetyInput in;
+    bool refuses_pose = false;  // the device speaks, but its pose is not believed
     SafetyStates states;
     double last_factor = 0;
     double steepest = 0;  // fall of the factor in one period
@@ -195,9 +197,14 @@ TEST(SafetyStates, TheDeviceIsAskedToClearItsOwnFault) {
     s.run();
     EXPECT_TRUE(s.states.hasReset());
     s.in.is_reset_ordered = false;
-    EXPECT_EQ(s.run(), SafetyState::kFault);  // the device still says so
+    EXPECT_EQ(s.run(0.1), SafetyState::kFault);  // the device still says so
     s.in.reading.fault = StopCause::kNone;
-    EXPECT_EQ(s.reset(), SafetyState::kReady);
+    EXPECT_EQ(s.run(), SafetyState::kReady);  // one reset is enough
+    s.in.reading.fault = StopCause::kDeviceFault;
+    s.reset();
+    s.run(0.4);
+    s.in.reading.fault = StopCause::kNone;
+    EXPECT_EQ(s.run(0.1), SafetyState::kFault);  // and it does not wait for ever
 }
 
 TEST(SafetyStates, ABrokenSensorIsAFaultAlsoWhenNothingCanBeRead) {
@@ -207,6 +214,45 @@ TEST(SafetyStates, ABrokenSensorIsAFaultAlsoWhenNothingCanBeRead) {
     s.in.reading.fault = StopCause::kSensorStuck;
     EXPECT_EQ(s.run(), SafetyState::kFault);
     EXPECT_EQ(s.reset(), SafetyState::kFault);
+}
+
+TEST(SafetyStates, SwitchesCountAlsoWhenThePoseIsRefused) {
+    States s;
+    ASSERT_EQ(s.engage(), SafetyState::kEngaged);
+    s.in.is_heard = false;
+    s.refuses_pose = true;
+    s.in.reading.fault = StopCause::kSensorStuck;
+    s.in.reading.status |= kStatusEmergencyStop;
+    EXPECT_EQ(s.run(), SafetyState::kEmergencyStop);
+    s.in.reading.status &= ~uint32_t(kStatusEmergencyStop);
+    s.in.reading.fault = StopCause::kNone;
+    s.in.reading.status |= kStatusResetPressed;
+    EXPECT_EQ(s.run(), SafetyState::kReady);
+}
+
+TEST(SafetyStates, AMotorThatPushesUntoldIsAFaultInEveryState) {
+    for (const bool is_stopped : {false, true}) {
+        States s;
+        if (is_stopped) {
+            s.engage();
+            s.in.reading.v_DT = {3, 0, 0};
+            s.run(0.005);
+            s.in.reading.v_DT.setZero();
+        }
+        s.in.reading.has_applied = true;
+        s.in.reading.applied_D.force = {0, 0, 30};
+        EXPECT_EQ(s.run(0.2), SafetyState::kFault) << is_stopped;
+    }
+}
+
+TEST(SafetyStates, AfterAPauseOfTheLoopTheForceStillFadesIn) {
+    States s;
+    s.run();
+    s.press();
+    s.run();
+    s.in.dt = 1;
+    s.states.update(s.in);
+    EXPECT_LT(s.states.factor(), 0.01);
 }
 
 TEST(SafetyStates, AResetButtonCountsByItsPress) {
