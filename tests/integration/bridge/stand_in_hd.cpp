@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -29,14 +30,20 @@ unsigned (*callback)(void*) = nullptr;
 void* callback_data = nullptr;
 bool is_enabled = false;
 bool is_in_frame = false;
+std::mutex errors_mutex;  // the caller's thread pops them, the servo thread pushes them
 std::vector<unsigned> errors;
 double written_force[3] = {};
+
+void pushError(unsigned code) {
+    const std::lock_guard lock(errors_mutex);
+    errors.push_back(code);
+}
 
 // "loses_at": from then on, the arm's cable is out.
 void pushErrors() {
     if (stand_in::reached("loses_at", ticks))
-        for (const unsigned code : {0x0302u, 0x0300u, 0x0204u}) errors.push_back(code);
-    if (told("warm_at", -1) == ticks) errors.push_back(0x0200);
+        for (const unsigned code : {0x0302u, 0x0300u, 0x0204u}) pushError(code);
+    if (told("warm_at", -1) == ticks) pushError(0x0200);
 }
 
 void pace() {
@@ -68,8 +75,8 @@ unsigned hdInitDevice(const char* name) {
         told("no_device") || (told("only_named") && (!name || std::strcmp(name, "Default PHANToM")));
     record("init\n");
     if (is_refused) {
-        errors.push_back(0x0300);
-        errors.push_back(0x0303);
+        pushError(0x0300);
+        pushError(0x0303);
         return 0xffffffffu;
     }
     stand_in::takeOverProcess();
@@ -83,7 +90,7 @@ void hdDisableDevice(unsigned) {
 void hdMakeCurrentDevice(unsigned) {}
 
 void hdBeginFrame(unsigned) {
-    if (is_in_frame) errors.push_back(0x0400);
+    if (is_in_frame) pushError(0x0400);
     is_in_frame = true;
 }
 
@@ -158,6 +165,7 @@ const char* hdGetString(unsigned what) {
 
 ErrorInfo hdGetError() {
     if (told("errors_never_end")) return {0x0302, 0, 0};
+    const std::lock_guard lock(errors_mutex);
     if (errors.empty()) return {0, 0, 0};
     const unsigned code = errors.back();
     errors.pop_back();
