@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "common/device_messages/device_messages.h"
 #include "tests/integration/bridge/bridge_host.h"
