@@ -75,7 +75,6 @@ const char* whatToDo(StopCause cause) noexcept {
         case StopCause::kSpeed:
             return "Hold the handle and reset.";
         case StopCause::kPower:
-            return "Hold the handle, move the tool out of the bone and reset.";
         case StopCause::kEnergy:
             return "Hold the handle, move the tool out of the bone and reset.";
         case StopCause::kForceMismatch:

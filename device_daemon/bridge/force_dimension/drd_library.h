@@ -38,6 +38,8 @@ class DrdLibrary {
     DrdLibrary(const std::string& chosen, const Tell& tell);
 
     // These are always there.
+    // They have the vendor's names.
+    // NOLINTBEGIN(readability-identifier-naming)
     void (*dhdGetSDKVersion)(int*, int*, int*, int*) = nullptr;
     int (*dhdGetDeviceCount)() = nullptr;
     int (*dhdOpenID)(char) = nullptr;
@@ -66,6 +68,7 @@ class DrdLibrary {
     int (*drdOpenID)(char) = nullptr;
     int (*drdClose)(char) = nullptr;
     bool (*drdIsInitialized)(char) = nullptr;
+    // NOLINTEND(readability-identifier-naming)
 
     // Opens and closes with drd where there is one, which its calibration asks for.
     int openArm(char id) { return drdOpenID ? drdOpenID(id) : dhdOpenID(id); }

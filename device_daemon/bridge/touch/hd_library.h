@@ -57,6 +57,8 @@ class HdLibrary {
     // Loads it and says what it has found. Throws UserError.
     HdLibrary(const std::string& chosen, const Tell& tell);
 
+    // They have the vendor's names.
+    // NOLINTBEGIN(readability-identifier-naming)
     HdDevice (*hdInitDevice)(const char*) = nullptr;
     void (*hdDisableDevice)(HdDevice) = nullptr;
     void (*hdMakeCurrentDevice)(HdDevice) = nullptr;
@@ -76,6 +78,7 @@ class HdLibrary {
     void (*hdStopScheduler)() = nullptr;
     unsigned long (*hdScheduleAsynchronous)(unsigned (*)(void*), void*, unsigned short) = nullptr;
     void (*hdUnschedule)(unsigned long) = nullptr;
+    // NOLINTEND(readability-identifier-naming)
 
     // Takes all errors that have piled up and returns the oldest, which led to the others; 0 if there is
     // none.
