@@ -113,8 +113,8 @@ bool DeviceLinkIo::takeCapabilities() noexcept {
         refuse();
         return false;
     }
-    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): equal numbers with other bytes are told once
-    // more
+    // Equal numbers with other bytes are told once more, which does no harm.
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
     if (has_capabilities_ && std::memcmp(&capabilities, &capabilities_, sizeof capabilities) == 0)
         return false;
     capabilities_ = capabilities;

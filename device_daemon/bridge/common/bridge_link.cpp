@@ -101,14 +101,14 @@ std::optional<Wrench> BridgeLink::wanted(const ArmReading& reading, int64_t now_
 // A period in which the arm did not say where it is sends nothing, until that is a fault that the host has to
 // hear.
 void BridgeLink::sendState(const ArmReading& reading, int64_t now_ns) noexcept {
-    if (reading.is_valid) newest_X_DT_ = reading.X_DT;
+    if (reading.is_valid) X_DT_ = reading.X_DT;
     has_pose_ |= reading.is_valid;
     if (!has_pose_ || (!reading.is_valid && !is_in_trouble_)) return;
     wire::PoseState state{};
     state.inputs = inputsOf(reading, shall_leave_ && gate_.isClosed());
     state.mode = link_.session().newestCommand().mode;
-    Eigen::Map<Eigen::Vector3d>(state.p_DT) = newest_X_DT_.position;
-    const Eigen::Quaterniond& q = newest_X_DT_.rotation;
+    Eigen::Map<Eigen::Vector3d>(state.p_DT) = X_DT_.position;
+    const Eigen::Quaterniond& q = X_DT_.rotation;
     Eigen::Map<Eigen::Vector4d>(state.q_DT) = Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
     fillVelocity(state, reading);
     state.fault_code = reading.fault_code;

@@ -46,7 +46,7 @@ class BridgeLink : public ArmPeriod {
 
     wire::ControllerLink<wire::PosePackets> link_;
     ForceGate gate_;
-    Pose newest_X_DT_;
+    Pose X_DT_;
     bool has_pose_ = false;
     int64_t good_ns_ = 0;  // when the arm was last well
     bool is_in_trouble_ = false;

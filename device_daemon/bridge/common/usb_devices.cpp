@@ -65,8 +65,10 @@ std::vector<UsbDevice> findUsb(std::span<const UsbId> ids, const fs::path& root)
         const bool is_wanted = std::any_of(ids.begin(), ids.end(), [&](const UsbId& id) {
             return vendor == id.vendor && (*id.product == 0 || product == id.product);
         });
-        if (is_wanted)
-            found.push_back(describe(fs::canonical(entry.path(), error), root, vendor + ":" + product));
+        if (!is_wanted) continue;
+        std::string numbers = vendor;
+        numbers.append(":").append(product);
+        found.push_back(describe(fs::canonical(entry.path(), error), root, numbers));
     }
     return found;
 }

@@ -11,9 +11,9 @@ using nlohmann::json;
 
 // Members of what may be anything; null where there is nothing.
 const json& at(const json& object, const char* name) {
-    static const json nothing;
+    static const json kNothing;
     const auto found = object.is_object() ? object.find(name) : object.end();
-    return object.is_object() && found != object.end() ? *found : nothing;
+    return object.is_object() && found != object.end() ? *found : kNothing;
 }
 
 std::string textAt(const json& object, const char* name) {

@@ -111,11 +111,11 @@ bool WebSocket::Connection::write() {
 
 WebSocket::WebSocket(const std::string& host, uint16_t port) : connection_(std::make_unique<Connection>()) {
     lws_set_log_level(0, nullptr);
-    static const lws_protocols protocols[] = {{"bonemill", Connection::onEvent, 0, 65536, 0, nullptr, 0},
-                                              {nullptr, nullptr, 0, 0, 0, nullptr, 0}};
+    static const lws_protocols kProtocols[] = {{"bonemill", Connection::onEvent, 0, 65536, 0, nullptr, 0},
+                                               {nullptr, nullptr, 0, 0, 0, nullptr, 0}};
     lws_context_creation_info info{};
     info.port = CONTEXT_PORT_NO_LISTEN;
-    info.protocols = protocols;
+    info.protocols = kProtocols;
     info.user = connection_.get();
     connection_->context = lws_create_context(&info);
     if (!connection_->context) throw UserError("library: libwebsockets gives no context");
