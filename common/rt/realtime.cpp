@@ -8,11 +8,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 namespace bonemill {
 namespace {
@@ -112,6 +114,10 @@ bool mayLockAnything() {
 }
 
 }  // namespace
+
+int coreFromLast(int n) noexcept {
+    return std::max(kAnyCore, int(std::thread::hardware_concurrency()) - 1 - n);
+}
 
 void RealtimeReport::append(const RealtimeReport& other) {
     missing.insert(missing.end(), other.missing.begin(), other.missing.end());

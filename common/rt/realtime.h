@@ -12,6 +12,9 @@ namespace bonemill {
 
 inline constexpr int kAnyCore = -1;
 
+// The machine's last core for n = 0, the one before for n = 1, ...; kAnyCore where there are not so many.
+int coreFromLast(int n) noexcept;
+
 struct RealtimeRequest {
     int priority = 80;    // SCHED_FIFO, 1..99; below the kernel's own 99, above interrupt threads (50)
     int core = kAnyCore;  // pin to this core, or leave the choice to the kernel

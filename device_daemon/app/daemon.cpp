@@ -1,6 +1,5 @@
 #include "device_daemon/app/daemon.h"
 
-#include <signal.h>
 #include <spdlog/spdlog.h>
 
 #include <cmath>
@@ -20,16 +19,6 @@ namespace {
 constexpr int64_t kWatchPeriodNs = 50 * kNsPerMillisecond;
 constexpr double kForEver = std::numeric_limits<double>::infinity();
 
-// Waits for SIGINT or SIGTERM, and returns false after kWatchPeriodNs without one.
-bool waitForSignal() {
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
-    const timespec timeout = timespecOfNs(kWatchPeriodNs);
-    return sigtimedwait(&signals, nullptr, &timeout) > 0;
-}
-
 DeviceLoopConfig loopConfigOf(const DeviceSetup& setup, const DaemonOptions& options) {
     DeviceLoopConfig config = setup.loop;
     config.states.needs_enabling_switch = options.has_enabling_switch;
@@ -39,11 +28,12 @@ DeviceLoopConfig loopConfigOf(const DeviceSetup& setup, const DaemonOptions& opt
 }  // namespace
 
 Daemon::Daemon(const DeviceSetup& setup, const DaemonOptions& options, HapticDevice& device,
-               ChildProgram* program)
+               ChildProgram* program, const StopSignals& stop_signals)
     : setup_(setup),
       options_(options),
       device_(device),
       program_(program),
+      stop_signals_(stop_signals),
       loop_(device, loopConfigOf(setup, options)),
       link_(DeviceLink::create(options.session, LinkSide::kDaemon, setup.scene_hash)),
       period_ns_(std::llround(kNsPerSecond / setup.rate_hz)) {}
@@ -182,7 +172,7 @@ void Daemon::watch() {
     StopCause shown_cause = StopCause::kNone;
     bool was_server_there = false;
     while (!progress_.is_finished) {
-        if (waitForSignal() && !should_stop_) {
+        if (stop_signals_.await(kWatchPeriodNs) && !should_stop_) {
             spdlog::info("stopping: force ramps to zero");
             should_stop_ = true;
         }

@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "common/ipc/device_link.h"
+#include "common/rt/stop_signals.h"
 #include "device_daemon/app/child_program.h"
 #include "device_daemon/app/device_setup.h"
 #include "device_daemon/app/loop_statistics.h"
@@ -14,15 +15,14 @@ namespace bonemill {
 
 class Daemon {
   public:
-    // `device` and `program`, which may be null, must outlive the daemon. Throws UserError when the session
-    // is taken or a permission is missing, among others.
+    // `device`, `program`, which may be null, and `stop_signals` must outlive the daemon. Throws UserError
+    // when the session is taken or a permission is missing, among others.
     Daemon(const DeviceSetup& setup, const DaemonOptions& options, HapticDevice& device,
-           ChildProgram* program);
+           ChildProgram* program, const StopSignals& stop_signals);
 
     // Blocks until the device leaves, or --seconds or a signal ends it, and the force has ramped to zero.
-    // SIGINT and SIGTERM must be blocked in the calling thread. Throws UserError when there is no real-time
-    // scheduling and no
-    // --best-effort-rt, or when nobody answered within --wait-seconds.
+    // Throws UserError when there is no real-time scheduling and no --best-effort-rt, or when nobody answered
+    // within --wait-seconds.
     void run();
 
     const LoopStatistics& statistics() const noexcept { return statistics_; }
@@ -58,6 +58,7 @@ class Daemon {
     DaemonOptions options_;
     HapticDevice& device_;
     ChildProgram* program_;
+    const StopSignals& stop_signals_;
     DeviceLoop loop_;
     DeviceLink link_;
     int64_t period_ns_;

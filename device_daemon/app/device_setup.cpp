@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/config/scene_file.h"
+#include "common/config/scene_geometry.h"
 #include "common/units.h"
 #include "device_daemon/ares/scene_ares.h"
 #include "device_daemon/input/user_axes.h"
@@ -11,11 +12,6 @@ namespace bonemill {
 namespace {
 
 constexpr double kBlackBoxTime = 2;  // s
-
-Pose poseOf(const scene::Vec3& p_mm, const scene::Quaternion& q) {
-    return {kMillimetre * Eigen::Vector3d(p_mm.x(), p_mm.y(), p_mm.z()),
-            Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
-}
 
 DeviceLoopConfig loopOf(const scene::Scene& scene) {
     const scene::Safety& safety = scene.safety();
@@ -40,7 +36,7 @@ DeviceLoopConfig loopOf(const scene::Scene& scene) {
 
 Pose startOf(const scene::SimulatedOperator& person, const Pose& X_WD, double scale) {
     if (person.waypoint_size() == 0) return {};
-    Pose X_DT = X_WD.inverse() * poseOf(person.waypoint(0).p_wt_mm(), person.waypoint(0).q_wt());
+    Pose X_DT = X_WD.inverse() * poseOf(person.waypoint(0));
     X_DT.position /= scale;
     return X_DT;
 }
@@ -48,9 +44,7 @@ Pose startOf(const scene::SimulatedOperator& person, const Pose& X_WD, double sc
 // Pushing away from the user moves the tool away from the scene's first view.
 RateConfig ratesOf(const scene::Scene& scene, const Pose& X_WD) {
     const scene::Camera& camera = scene.camera();
-    const Eigen::Vector3d up_W = camera.has_up()
-                                     ? Eigen::Vector3d(camera.up().x(), camera.up().y(), camera.up().z())
-                                     : Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d up_W = camera.has_up() ? vectorOf(camera.up()) : Eigen::Vector3d::UnitZ();
     RateConfig rates;
     rates.workspace_scale = scene.device().workspace_scale();
     rates.R_DU =
@@ -61,7 +55,7 @@ RateConfig ratesOf(const scene::Scene& scene, const Pose& X_WD) {
 }  // namespace
 
 DeviceSetup deviceSetupOf(const scene::Scene& scene) {
-    const Pose X_WD = poseOf(scene.device().p_wd_mm(), scene.device().q_wd());
+    const Pose X_WD = poseOf(scene.device());
     const double scale = scene.device().workspace_scale();
     const Pose X_DT_start = startOf(scene.simulated_operator(), X_WD, scale);
     return {.scene_hash = sceneHashOf(scene),

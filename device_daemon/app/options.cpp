@@ -1,20 +1,12 @@
 #include "device_daemon/app/options.h"
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
-#include <iostream>
-#include <thread>
-
+#include "common/cli/command_line.h"
 #include "common/dds/network_cli.h"
 #include "common/user_error.h"
 #include "device_daemon/app/device_choice.h"
 #include "device_daemon/app/stop_files.h"
 
 namespace bonemill {
-
-int defaultCore() noexcept {
-    return std::max(-1, static_cast<int>(std::thread::hardware_concurrency()) - 2);
-}
 
 std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
     DaemonOptions options;
@@ -47,21 +39,9 @@ std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
     app.add_option("--stop-dir", options.stop_dir,
                    "Folder for the last two seconds before every stop, as CSV files")
         ->capture_default_str();
-    app.add_flag("--best-effort-rt", options.best_effort_realtime,
-                 "Go on without real-time scheduling and locked memory");
-    app.add_option("--rt-core", options.core, "Processor core for the device loop (-1: any)")
-        ->check(CLI::Range(-1, 4095))
-        ->capture_default_str();
-    app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
-        ->capture_default_str();
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::CallForHelp&) {
-        std::cout << app.help();
-        return std::nullopt;
-    } catch (const CLI::ParseError& error) {
-        throw UserError(std::string(error.what()) + " (see device_daemon --help)");
-    }
+    addRealtimeOptions(app, "the device loop", options.best_effort_realtime, options.core);
+    addLogLevelOption(app, options.log_level);
+    if (!parseCommandLine(app, argc, argv, "device_daemon")) return std::nullopt;
     if (options.scene.empty() && !options.list)
         throw UserError("no scene given: --scene FILE (see device_daemon --help)");
     return options;

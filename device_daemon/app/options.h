@@ -7,12 +7,9 @@
 #include <string>
 
 #include "common/dds/network.h"
+#include "common/rt/realtime.h"
 
 namespace bonemill {
-
-// Returns the core beside the last one, which haptic_server takes for its tick; -1 (any) on
-// a single-core machine.
-int defaultCore() noexcept;
 
 struct DaemonOptions {
     std::string scene;
@@ -29,7 +26,7 @@ struct DaemonOptions {
     std::string pedal;  // a path in /dev/input; empty: none
     std::filesystem::path stop_dir;
     bool best_effort_realtime = false;
-    int core = defaultCore();
+    int core = coreFromLast(1);  // haptic_server's tick has the last
     std::string log_level = "info";
 };
 

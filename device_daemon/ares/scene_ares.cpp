@@ -1,14 +1,11 @@
 #include "device_daemon/ares/scene_ares.h"
 
+#include "common/config/scene_geometry.h"
 #include "common/units.h"
 #include "common/user_error.h"
 
 namespace bonemill {
 namespace {
-
-Eigen::Vector3d vectorOf(const scene::Vec3& v) {
-    return {v.x(), v.y(), v.z()};
-}
 
 AresGeometry geometryOfAres(const scene::Device& device) {
     return {.base_radius = kMillimetre * device.base_radius_mm(),
@@ -23,7 +20,7 @@ MovingWeight weightOf(const scene::Device& device) {
     MovingWeight weight;
     if (device.is_counterweighted()) return weight;
     weight.mass = device.weight_kg();
-    weight.centre_T = kMillimetre * vectorOf(device.weight_centre_t_mm());
+    weight.centre_T = metresOf(device.weight_centre_t_mm());
     if (!device.has_gravity_d()) return weight;
     weight.down_D = vectorOf(device.gravity_d());
     if (!(weight.down_D.norm() > 0)) {
@@ -36,7 +33,7 @@ MovingWeight weightOf(const scene::Device& device) {
 }
 
 HomePlace homeOf(const scene::Device& device) {
-    return {.X_DT = {kMillimetre * vectorOf(device.home_p_dt_mm()), Eigen::Quaterniond::Identity()},
+    return {.X_DT = {metresOf(device.home_p_dt_mm()), Eigen::Quaterniond::Identity()},
             .tolerance = kMillimetre * device.home_tolerance_mm()};
 }
 

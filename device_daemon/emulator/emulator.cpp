@@ -1,6 +1,5 @@
 #include "device_daemon/emulator/emulator.h"
 
-#include <signal.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -41,21 +40,12 @@ EmulatedControllerConfig controllerConfigOf(const EmulatorOptions& options, doub
             .faults = options.faults};
 }
 
-// Waits for SIGINT or SIGTERM, and returns false after kWatchPeriodNs without one.
-bool waitForSignal() {
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
-    const timespec timeout = timespecOfNs(kWatchPeriodNs);
-    return sigtimedwait(&signals, nullptr, &timeout) > 0;
-}
-
 }  // namespace
 
-Emulator::Emulator(const Scenario& scenario, const EmulatorOptions& options)
+Emulator::Emulator(const Scenario& scenario, const EmulatorOptions& options, const StopSignals& stop_signals)
     : scenario_(scenario),
       options_(options),
+      stop_signals_(stop_signals),
       rate_hz_(options.rate_hz.value_or(scenario.rate_hz)),
       period_ns_(std::llround(kNsPerSecond / rate_hz_)),
       end_time_(endTimeOf(scenario, options)),
@@ -188,7 +178,7 @@ void Emulator::watch() {
     int shown_waypoint = -2;
     uint32_t shown_fault = 0;
     while (!progress_.is_finished) {
-        if (waitForSignal() && !should_stop_) {
+        if (stop_signals_.await(kWatchPeriodNs) && !should_stop_) {
             spdlog::info("stopping: the host is told to switch off");
             should_stop_ = true;
         }

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "common/rt/stop_signals.h"
 #include "device_daemon/emulator/emulated_controller.h"
 #include "device_daemon/emulator/emulator_statistics.h"
 #include "device_daemon/emulator/faulty_wire.h"
@@ -15,15 +16,14 @@ namespace bonemill {
 
 class Emulator {
   public:
-    // Listens from now on. Throws UserError when the address is not free, or the watchdog is too short for
-    // the rate.
-    Emulator(const Scenario& scenario, const EmulatorOptions& options);
+    // Listens from now on. `stop_signals` must outlive the emulator. Throws UserError when the address is not
+    // free, or the watchdog is too short for the rate.
+    Emulator(const Scenario& scenario, const EmulatorOptions& options, const StopSignals& stop_signals);
 
     wire::Endpoint local() const noexcept { return socket_.local(); }
 
-    // Blocks until the scenario, --seconds or a signal ends it and the host has switched off. SIGINT and
-    // SIGTERM must be blocked in the calling thread. Throws UserError when there is no real-time scheduling
-    // and no --best-effort-rt.
+    // Blocks until the scenario, --seconds or a signal ends it and the host has switched off. Throws
+    // UserError when there is no real-time scheduling and no --best-effort-rt.
     void run();
 
     const EmulatorStatistics& statistics() const noexcept { return statistics_; }
@@ -56,6 +56,7 @@ class Emulator {
 
     Scenario scenario_;
     EmulatorOptions options_;
+    const StopSignals& stop_signals_;
     double rate_hz_;
     int64_t period_ns_;
     double end_time_;  // of the scenario, s

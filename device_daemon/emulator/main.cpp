@@ -1,52 +1,41 @@
 // ares_emulator is an ARES with its motion controller and a hand on it, none of them real (docs/device.md).
-#include <signal.h>
-
 #include <iostream>
 
 #include "common/config/scene_file.h"
 #include "common/log/log.h"
+#include "common/rt/stop_signals.h"
+#include "common/run_program.h"
 #include "common/user_error.h"
 #include "device_daemon/emulator/emulator.h"
 
+namespace bonemill {
 namespace {
 
-bonemill::Scenario loadScenario(const std::string& file) {
-    const bonemill::LoadedScene loaded = bonemill::loadScene(file);
+Scenario loadScenario(const std::string& file) {
+    const LoadedScene loaded = loadScene(file);
     try {
-        return bonemill::scenarioOf(loaded.scene);
-    } catch (const bonemill::UserError& error) {
-        throw bonemill::UserError(file + ": " + error.what());
+        return scenarioOf(loaded.scene);
+    } catch (const UserError& error) {
+        throw UserError(file + ": " + error.what());
     }
 }
 
-// Every thread inherits it: the watcher takes the signals when it is ready for them.
-void blockStopSignals() {
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+int emulate(int argc, char** argv) {
+    const auto options = parseOptions(argc, argv);
+    if (!options) return 0;
+    setUpLog("ares_emulator", options->log_level);
+    const Scenario scenario = loadScenario(options->scene);
+    const StopSignals stop_signals;
+    Emulator emulator(scenario, *options, stop_signals);
+    std::cout << "listening on " << wire::textOf(emulator.local()) << std::endl;
+    emulator.run();
+    std::cout << jsonLineOf(emulator.statistics()) << std::endl;
+    return 0;
 }
 
 }  // namespace
+}  // namespace bonemill
 
 int main(int argc, char** argv) {
-    try {
-        const auto options = bonemill::parseOptions(argc, argv);
-        if (!options) return 0;
-        bonemill::setUpLog("ares_emulator", options->log_level);
-        const bonemill::Scenario scenario = loadScenario(options->scene);
-        blockStopSignals();
-        bonemill::Emulator emulator(scenario, *options);
-        std::cout << "listening on " << bonemill::wire::textOf(emulator.local()) << std::endl;
-        emulator.run();
-        std::cout << bonemill::jsonLineOf(emulator.statistics()) << std::endl;
-        return 0;
-    } catch (const bonemill::UserError& error) {
-        std::cerr << "error: " << error.what() << std::endl;
-        return bonemill::kUserErrorExitCode;
-    } catch (const std::exception& error) {
-        std::cerr << "error: " << error.what() << std::endl;
-        return 1;
-    }
+    return bonemill::runProgram([&] { return bonemill::emulate(argc, argv); });
 }

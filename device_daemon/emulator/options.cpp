@@ -1,8 +1,6 @@
 #include "device_daemon/emulator/options.h"
 
-#include <CLI/CLI.hpp>
-#include <iostream>
-
+#include "common/cli/command_line.h"
 #include "common/user_error.h"
 
 namespace bonemill {
@@ -29,21 +27,9 @@ std::optional<EmulatorOptions> parseOptions(int argc, char** argv) {
     app.add_flag("--unhomed", options.is_unhomed, "Begin with a zero that must be found");
     app.add_option("--fault", faults, "A fault to have (see below)");
     app.add_option("--seed", options.seed, "Chooses the packets that faults befall")->capture_default_str();
-    app.add_flag("--best-effort-rt", options.best_effort_realtime,
-                 "Go on without real-time scheduling and locked memory");
-    app.add_option("--rt-core", options.core, "Processor core for the controller's loop (-1: any)")
-        ->check(CLI::Range(-1, 4095))
-        ->capture_default_str();
-    app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
-        ->capture_default_str();
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::CallForHelp&) {
-        std::cout << app.help();
-        return std::nullopt;
-    } catch (const CLI::ParseError& error) {
-        throw UserError(std::string(error.what()) + " (see ares_emulator --help)");
-    }
+    addRealtimeOptions(app, "the controller's loop", options.best_effort_realtime, options.core);
+    addLogLevelOption(app, options.log_level);
+    if (!parseCommandLine(app, argc, argv, "ares_emulator")) return std::nullopt;
     for (const std::string& fault : faults) options.faults.push_back(faultSpecOf(fault));
     return options;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "common/config/scene_geometry.h"
 #include "common/device_messages/device_messages.h"
 #include "common/units.h"
 #include "common/user_error.h"
@@ -12,11 +13,6 @@ namespace bonemill {
 namespace {
 
 constexpr int kChecksPerSegment = 32;
-
-Pose poseOf(const scene::Vec3& p_mm, const scene::Quaternion& q) {
-    return {kMillimetre * Eigen::Vector3d(p_mm.x(), p_mm.y(), p_mm.z()),
-            Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
-}
 
 AresPlant plantOf(const scene::Device& device) {
     return {.moving_mass = device.moving_mass_kg(),
@@ -46,7 +42,7 @@ OperatorPath pathOf(const scene::SimulatedOperator& person, const Pose& X_WD, do
     for (const auto& waypoint : person.waypoint()) {
         const uint32_t buttons =
             (waypoint.remove() ? kButtonRemove : 0u) | (waypoint.add() ? kButtonAdd : 0u);
-        Pose X_DT = X_DW * poseOf(waypoint.p_wt_mm(), waypoint.q_wt());
+        Pose X_DT = X_DW * poseOf(waypoint);
         X_DT.position /= scale;
         waypoints.push_back({waypoint.time_s(), X_DT, buttons});
     }
@@ -99,7 +95,7 @@ void checkPath(const scene::SimulatedOperator& person, const Scenario& scenario)
 
 Scenario scenarioOf(const scene::Scene& scene) {
     const scene::Device& device = scene.device();
-    const Pose X_WD = poseOf(device.p_wd_mm(), device.q_wd());
+    const Pose X_WD = poseOf(device);
     Scenario scenario{.rate_hz = scene.loop().rate_hz(),
                       .geometry = aresConfigOf(device, true).geometry,
                       .plant = plantOf(device),

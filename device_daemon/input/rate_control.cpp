@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "device_daemon/virtual_handle/bounded_vector.h"
+#include "common/geometry/bounded_vector.h"
 #include "device_daemon/virtual_handle/virtual_handle.h"
 
 namespace bonemill {

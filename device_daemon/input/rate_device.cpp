@@ -1,7 +1,5 @@
 #include "device_daemon/input/rate_device.h"
 
-#include <cstring>
-
 namespace bonemill {
 namespace {
 
@@ -18,18 +16,9 @@ RateDevice::RateDevice(DeviceKind kind, std::string_view name, const RateConfig&
 }
 
 DeviceCapabilities RateDevice::capabilities() const noexcept {
-    DeviceCapabilities device{};
     Name name{};
     name_.tryRead(name);
-    std::memcpy(device.name, name.text, sizeof device.name);
-    device.kind = static_cast<uint32_t>(kind_);
-    device.abilities = kAbilityForce | kAbilityTorque | kAbilityOrientation | kAbilitySimulated;
-    device.max_force = kMaxForce;
-    device.max_torque = kMaxTorque;
-    device.max_stiffness = VirtualHandle::kMaxStiffness;
-    device.max_rotation_stiffness = VirtualHandle::kMaxRotationStiffness;
-    device.workspace_radius = VirtualHandle::kReach;
-    return device;
+    return handleCapabilities(kind_, name.text);
 }
 
 bool RateDevice::read(double elapsed, DeviceReading& reading) noexcept {
@@ -37,14 +26,7 @@ bool RateDevice::read(double elapsed, DeviceReading& reading) noexcept {
     follow(elapsed);
     handle_.advance(elapsed, wrench_hand_D_);
     buttons_.store(input_.buttons, std::memory_order_relaxed);
-    reading = {};
-    reading.X_DT = handle_.pose();
-    reading.v_DT = handle_.v_DT();
-    reading.w_DT = handle_.w_DT();
-    reading.buttons = input_.buttons;
-    reading.status = kStatusPowered | kStatusCalibrated | kStatusDriving;
-    reading.has_applied = true;
-    reading.applied_D = wrench_hand_D_;
+    reading = readingOf(handle_, wrench_hand_D_, input_.buttons);
     return input_.is_there;
 }
 
@@ -59,7 +41,7 @@ void RateDevice::follow(double elapsed) noexcept {
 }
 
 void RateDevice::write(const DeviceOrder& order) noexcept {
-    wrench_hand_D_ = order.is_engaged && order.wrench_hand_D.isFinite() ? order.wrench_hand_D : Wrench{};
+    wrench_hand_D_ = feltWrench(order);
     force_.store(static_cast<float>(wrench_hand_D_.force.norm()), std::memory_order_relaxed);
 }
 

@@ -11,18 +11,14 @@
 
 #include "common/device_messages/device_messages.h"
 #include "common/rt/seqlock.h"
-#include "device_daemon/haptic_device/haptic_device.h"
 #include "device_daemon/input/hand_input.h"
 #include "device_daemon/input/rate_control.h"
-#include "device_daemon/virtual_handle/virtual_handle.h"
+#include "device_daemon/virtual_handle/handle_device.h"
 
 namespace bonemill {
 
 class RateDevice : public HapticDevice {
   public:
-    static constexpr double kMaxForce = 10;     // N on the hand: the hand is weaker, so that it never wins
-    static constexpr double kMaxTorque = 0.15;  // N·m, likewise
-
     DeviceCapabilities capabilities() const noexcept final;
     uint32_t capabilitiesVersion() const noexcept final { return names_ + 1; }
     bool hasClock() const noexcept final { return false; }

@@ -4,7 +4,6 @@
 #include <time.h>
 
 #include <chrono>
-#include <cstdio>
 
 #include "common/rt/clock.h"
 
@@ -34,34 +33,19 @@ PointerDevice::~PointerDevice() {
 }
 
 DeviceCapabilities PointerDevice::capabilities() const noexcept {
-    DeviceCapabilities device{};
-    std::snprintf(device.name, sizeof device.name, "mouse in the viewer");
-    device.kind = static_cast<uint32_t>(DeviceKind::kPointer);
-    device.abilities = kAbilityForce | kAbilityTorque | kAbilityOrientation | kAbilitySimulated;
-    device.max_force = kMaxForce;
-    device.max_torque = kMaxTorque;
-    device.max_stiffness = VirtualHandle::kMaxStiffness;
-    device.max_rotation_stiffness = VirtualHandle::kMaxRotationStiffness;
-    device.workspace_radius = VirtualHandle::kReach;
-    return device;
+    return handleCapabilities(DeviceKind::kPointer, "mouse in the viewer");
 }
 
 bool PointerDevice::read(double elapsed, DeviceReading& reading) noexcept {
     follow(elapsed);
     handle_.advance(elapsed, wrench_hand_D_);
-    reading = {};
-    reading.X_DT = handle_.pose();
-    reading.v_DT = handle_.v_DT();
-    reading.w_DT = handle_.w_DT();
-    reading.buttons = buttons_;
-    reading.status = kStatusPowered | kStatusCalibrated | kStatusDriving | (is_held_ ? kStatusEnabled : 0u);
-    reading.has_applied = true;
-    reading.applied_D = wrench_hand_D_;
+    reading = readingOf(handle_, wrench_hand_D_, buttons_);
+    if (is_held_) reading.status |= kStatusEnabled;
     return true;
 }
 
 void PointerDevice::write(const DeviceOrder& order) noexcept {
-    wrench_hand_D_ = order.is_engaged && order.wrench_hand_D.isFinite() ? order.wrench_hand_D : Wrench{};
+    wrench_hand_D_ = feltWrench(order);
 }
 
 void PointerDevice::follow(double elapsed) noexcept {

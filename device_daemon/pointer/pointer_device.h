@@ -17,9 +17,8 @@
 #include "common/dds/endpoint.h"
 #include "common/dds/wait_set.h"
 #include "common/rt/seqlock.h"
-#include "device_daemon/haptic_device/haptic_device.h"
 #include "device_daemon/pointer/pointer_holder.h"
-#include "device_daemon/virtual_handle/virtual_handle.h"
+#include "device_daemon/virtual_handle/handle_device.h"
 
 namespace bonemill {
 
@@ -35,8 +34,6 @@ class PointerDevice final : public HapticDevice {
   public:
     static constexpr double kButtonSilence = 0.2;  // s
     static constexpr double kHoldSilence = 1;      // s
-    static constexpr double kMaxForce = 10;        // N on the hand: the hand is weaker, so that it never wins
-    static constexpr double kMaxTorque = 0.15;     // N·m, likewise
 
     // Throws UserError when the DDS domain cannot be joined.
     explicit PointerDevice(const PointerConfig& config);

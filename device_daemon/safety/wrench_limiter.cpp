@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/geometry/bounded_vector.h"
+
 namespace bonemill {
 
 Wrench WrenchLimiter::limit(const Wrench& wanted, double factor, double dt) noexcept {
@@ -14,28 +16,21 @@ Wrench WrenchLimiter::limit(const Wrench& wanted, double factor, double dt) noex
     const double time = dt > 0 ? dt : 0;  // NaN gives 0, too
     approach(target.force, limits_.max_force_rate * time, before_factor_.force);
     approach(target.torque, limits_.max_torque_rate * time, before_factor_.torque);
-    clamp(limits_.max_force, before_factor_.force);
-    clamp(limits_.max_torque, before_factor_.torque);
+    const bool is_clamped = limitLength(before_factor_.force, limits_.max_force) |
+                            limitLength(before_factor_.torque, limits_.max_torque);
+    if (is_clamped) events_ |= kWrenchClamped;
     const double share = factor > 0 ? std::min(factor, 1.0) : 0;
     return {share * before_factor_.force, share * before_factor_.torque};
 }
 
 void WrenchLimiter::approach(const Eigen::Vector3d& wanted, double most, Eigen::Vector3d& value) noexcept {
-    const Eigen::Vector3d change = wanted - value;
-    const double size = change.stableNorm();
-    if (size <= most) {
+    Eigen::Vector3d change = wanted - value;
+    if (limitLength(change, most)) {
+        value += change;
+        events_ |= kWrenchRateLimited;
+    } else {
         value = wanted;
-        return;
     }
-    value += change * (most / size);
-    events_ |= kWrenchRateLimited;
-}
-
-void WrenchLimiter::clamp(double most, Eigen::Vector3d& value) noexcept {
-    const double size = value.stableNorm();
-    if (size <= most) return;
-    value *= most / size;
-    events_ |= kWrenchClamped;
 }
 
 }  // namespace bonemill

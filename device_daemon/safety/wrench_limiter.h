@@ -2,13 +2,11 @@
 //
 // 1. Finite. What is not a number can be compared with no limit: it counts as zero.
 // 2. The rate: force and torque change by no more than their rates allow. From a demand far beyond the norms
-// they come
-//    back at once, because the rate counts from what was given.
+//    they come back at once, because the rate counts from what was given.
 // 3. The norms: force and torque are each scaled to what the device can give. Scaling keeps the direction,
-// and since it
-//    goes to a convex ball, it never lengthens the step that the rate has allowed.
+//    and since it goes to a convex ball, it never lengthens the step that the rate has allowed.
 // 4. The factor of engaging, pausing, stopping and of hot motors. It comes last, so that no other limit can
-// undo it.
+//    undo it.
 //
 // Force and torque are limited apart from each other: a torque that a device cannot give takes nothing of the
 // force. It is RT-safe, for one thread. Units are N, N·m, s; the frame is the caller's.
@@ -52,7 +50,6 @@ class WrenchLimiter {
 
   private:
     void approach(const Eigen::Vector3d& wanted, double most, Eigen::Vector3d& value) noexcept;
-    void clamp(double most, Eigen::Vector3d& value) noexcept;
 
     WrenchLimits limits_;
     Wrench before_factor_;

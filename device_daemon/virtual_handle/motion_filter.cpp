@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "device_daemon/virtual_handle/bounded_vector.h"
+#include "common/geometry/bounded_vector.h"
 
 namespace bonemill {
 namespace {

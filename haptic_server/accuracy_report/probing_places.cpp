@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "common/config/scene_geometry.h"
 #include "common/units.h"
 
 namespace bonemill {
@@ -45,13 +46,6 @@ struct Approach {
             length);
     }
 };
-
-Pose poseOf(const scene::SimulatedOperator::Waypoint& waypoint) {
-    const scene::Vec3& p = waypoint.p_wt_mm();
-    const scene::Quaternion& q = waypoint.q_wt();
-    return {kMillimetre * Vector3d(p.x(), p.y(), p.z()),
-            Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
-}
 
 void addScenarioPlaces(const scene::SimulatedOperator& scenario, Approach& approach) {
     for (int n = 0; n + 1 < scenario.waypoint_size() && approach.places.size() < kMostScenarioPlaces; ++n) {

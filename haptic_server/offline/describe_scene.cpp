@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "common/config/scene_geometry.h"
 #include "common/config/scene_table.h"
 #include "common/units.h"
 #include "haptic_server/offline/describe_effects.h"
@@ -17,13 +18,6 @@ namespace {
 constexpr int kMeasuredTicks = 4000;
 constexpr int kRounds = 5;
 
-Pose waypointPose(const scene::SimulatedOperator::Waypoint& waypoint) {
-    const scene::Vec3& p = waypoint.p_wt_mm();
-    const scene::Quaternion& q = waypoint.q_wt();
-    return {Eigen::Vector3d(p.x(), p.y(), p.z()) * kMillimetre,
-            Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
-}
-
 // The device goes straight along the scenario's waypoints, spread over kMeasuredTicks of this length (s).
 std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario, double dt) {
     const int waypoints = scenario.waypoint_size();
@@ -31,8 +25,8 @@ std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario, double
     for (int tick = 0; tick < int(path.size()); ++tick) {
         const double at = double(tick) / kMeasuredTicks * std::max(1, waypoints - 1);
         const int from = std::min(int(at), waypoints - 1);
-        const Pose a = waypointPose(scenario.waypoint(from));
-        const Pose b = waypointPose(scenario.waypoint(std::min(from + 1, waypoints - 1)));
+        const Pose a = poseOf(scenario.waypoint(from));
+        const Pose b = poseOf(scenario.waypoint(std::min(from + 1, waypoints - 1)));
         DeviceInput& input = path[size_t(tick)];
         input.X_WT_device = {a.position + (at - from) * (b.position - a.position),
                              a.rotation.slerp(at - from, b.rotation)};

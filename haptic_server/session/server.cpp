@@ -1,16 +1,17 @@
 #include "haptic_server/session/server.h"
 
-#include <signal.h>
 #include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <thread>
 
 #include "common/log/log.h"
 #include "common/rt/clock.h"
 #include "common/rt/realtime_thread.h"
+#include "common/rt/stop_signals.h"
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/mesh/mesh_rounds.h"
@@ -58,27 +59,13 @@ AccuracyFigures figuresOf(const ServerOptions& options) {
     return std::filesystem::exists(beside) ? readAccuracyFigures(beside) : AccuracyFigures{};
 }
 
-int coreOf(int option) {
-    return option == kLastCore ? int(std::thread::hardware_concurrency()) - 1 : option;
-}
-
-// SIGINT and SIGTERM are taken by the main thread alone, with sigtimedwait; all threads inherit this mask.
-sigset_t blockStopSignals() {
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-    return signals;
-}
-
 class Server {
   public:
     explicit Server(const ServerOptions& options)
         : options_(options),
           loaded_(loadScene(options.scene)),
-          simulation_(makeSimulation(loaded_)),  // forks to read the volume: before signals, link and threads
-          stop_signals_(blockStopSignals()),
+          simulation_(
+              makeSimulation(loaded_)),  // forks to read the volume: before stop_signals_, link, threads
           link_(DeviceLink::create(options.session, LinkSide::kServer, sceneHashOf(loaded_.scene))),
           history_(*simulation_.bone),
           accuracy_(simulation_.accuracy),
@@ -129,7 +116,7 @@ class Server {
   private:
     void startTick() {
         tick_thread_ = RealtimeThread(
-            {.request = {kTickPriority, coreOf(options_.rt_core)},
+            {.request = {kTickPriority, options_.rt_core},
              .best_effort = options_.best_effort_rt,
              .what = "the haptic loop"},
             [this] {
@@ -224,9 +211,9 @@ class Server {
         spdlog::info("session {} of scene '{}' waits for a device", options_.session, loaded_.scene.name());
         int64_t first_tick_ns = 0;
         while (!stop_requested_) {
-            constexpr timespec kPoll{0, 50'000'000};
-            if (const int signal = sigtimedwait(&stop_signals_, nullptr, &kPoll); signal > 0) {
-                spdlog::info("{} received: shutting down", signal == SIGINT ? "SIGINT" : "SIGTERM");
+            constexpr int64_t kLookEveryNs = 50 * kNsPerMillisecond;
+            if (const int signal = stop_signals_.await(kLookEveryNs)) {
+                spdlog::info("SIG{} received: shutting down", sigabbrev_np(signal));
                 return;
             }
             if (io_.hasDeviceLeft()) {
@@ -293,7 +280,7 @@ class Server {
     ServerOptions options_;
     LoadedScene loaded_;
     Simulation simulation_;
-    sigset_t stop_signals_;
+    StopSignals stop_signals_;
     DeviceLink link_;
     BoneHistory history_;
     AccuracySwitch accuracy_;

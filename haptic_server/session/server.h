@@ -5,11 +5,10 @@
 #include <string>
 
 #include "common/dds/network.h"
+#include "common/rt/realtime.h"
 #include "haptic_server/record/bone_files.h"
 
 namespace bonemill {
-
-inline constexpr int kLastCore = -2;
 
 struct ServerOptions {
     std::string scene;
@@ -22,15 +21,16 @@ struct ServerOptions {
     std::string trace;     // files to write; empty: none
     std::string report;
     SavePaths save;
-    std::string export_dir;   // where clients' export commands write; empty: they are refused
-    int rt_core = kLastCore;  // core of the tick thread; kAnyCore (-1) leaves the choice to the kernel
+    std::string export_dir;         // where clients' export commands write; empty: they are refused
+    int rt_core = coreFromLast(0);  // of the tick thread; kAnyCore (-1) leaves the choice to the kernel
     bool best_effort_rt = false;
     bool instructor_only = false;      // others may look, not command
     bool until_device_leaves = false;  // end when the daemon shuts down in order
 };
 
 // Runs until told to stop; returns the process' exit code. Throws UserError at start-up, also when real-time
-// permissions are missing and best_effort_rt is not set. Files are written also after SIGINT/SIGTERM.
+// permissions are missing and best_effort_rt is not set. Files are written also after SIGINT, SIGTERM or
+// SIGHUP.
 int runServer(const ServerOptions& options);
 
 }  // namespace bonemill

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <thread>
 
+#include "common/config/scene_geometry.h"
 #include "common/rt/clock.h"
 #include "common/units.h"
 #include "haptic_server/record/fault_names.h"
@@ -26,14 +27,12 @@ void assign(Repeated* out, const Vector& v) {
 void fillCamera(const scene::Camera& camera, topics::Camera* out) {
     if (camera.has_target_mm()) {
         out->set_has_target(true);
-        const scene::Vec3& t = camera.target_mm();
-        assign(out->mutable_target_m(), Eigen::Vector3d(t.x(), t.y(), t.z()) * kMillimetre);
+        assign(out->mutable_target_m(), metresOf(camera.target_mm()));
     }
     out->set_distance_m(camera.has_distance_mm() ? camera.distance_mm() * kMillimetre : 0);
     out->set_azimuth_rad(camera.azimuth_deg() * kDegree);
     out->set_elevation_rad(camera.elevation_deg() * kDegree);
-    if (camera.has_up())
-        assign(out->mutable_up(), Eigen::Vector3d(camera.up().x(), camera.up().y(), camera.up().z()));
+    if (camera.has_up()) assign(out->mutable_up(), vectorOf(camera.up()));
 }
 
 void fillTool(const TriangleSurface& surface, topics::TriangleMesh* out) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/config/scene_geometry.h"
 #include "common/config/scene_tools.h"
 #include "common/units.h"
 #include "common/user_error.h"
@@ -20,24 +21,21 @@ constexpr int kDefaultLeafCells = 16;
 constexpr double kMostOverload =
     3;  // a shaft of half the burr's radius is common, and leans more than it pokes
 
-Eigen::Vector3d metres(const scene::Vec3& mm) {
-    return kMillimetre * Eigen::Vector3d(mm.x(), mm.y(), mm.z());
-}
-
 ToolShape shapeOf(const scene::Tool::Shape& shape) {
     switch (shape.kind_case()) {
         case scene::Tool::Shape::kCapsule:
-            return CapsuleShape{metres(shape.capsule().from_mm()), metres(shape.capsule().to_mm()),
+            return CapsuleShape{metresOf(shape.capsule().from_mm()), metresOf(shape.capsule().to_mm()),
                                 shape.capsule().radius_mm() * kMillimetre};
         case scene::Tool::Shape::kCylinder:
-            return CylinderShape{metres(shape.cylinder().from_mm()), metres(shape.cylinder().to_mm()),
+            return CylinderShape{metresOf(shape.cylinder().from_mm()), metresOf(shape.cylinder().to_mm()),
                                  shape.cylinder().radius_mm() * kMillimetre};
         case scene::Tool::Shape::kCone:
-            return ConeShape{metres(shape.cone().from_mm()), metres(shape.cone().to_mm()),
+            return ConeShape{metresOf(shape.cone().from_mm()), metresOf(shape.cone().to_mm()),
                              shape.cone().from_radius_mm() * kMillimetre,
                              shape.cone().to_radius_mm() * kMillimetre};
         default:
-            return SphereShape{metres(shape.sphere().center_mm()), shape.sphere().radius_mm() * kMillimetre};
+            return SphereShape{metresOf(shape.sphere().center_mm()),
+                               shape.sphere().radius_mm() * kMillimetre};
     }
 }
 
@@ -207,13 +205,8 @@ ToolConfig toolConfigOf(const LoadedScene& loaded, const scene::Tool& tool) {
     config.burr_tip_radius = burr.tip_radius;
     config.sdf_nodes = {int(tool.sdf_nodes_x()), int(tool.sdf_nodes_y()), int(tool.sdf_nodes_z())};
     config.sdf_spacing = tool.sdf_spacing_mm() * kMillimetre;
-    if (tool.has_sdf_origin_mm()) config.sdf_origin_T = metres(tool.sdf_origin_mm());
+    if (tool.has_sdf_origin_mm()) config.sdf_origin_T = metresOf(tool.sdf_origin_mm());
     return config;
-}
-
-Pose devicePoseOf(const scene::Device& device) {
-    const scene::Quaternion& q = device.q_wd();
-    return {metres(device.p_wd_mm()), Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized()};
 }
 
 Simulation makeSimulation(const LoadedScene& loaded) {
@@ -223,7 +216,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
                           .bone = nullptr,
                           .mapping = {},
                           .tools = buildTools(loaded),
-                          .X_WD = devicePoseOf(scene.device()),
+                          .X_WD = poseOf(scene.device()),
                           .remarks = {},
                           .warnings = {}};
     RawVolume raw = importVolume(resolvePath(loaded, scene.volume().path()), {scene.volume().series_uid()});

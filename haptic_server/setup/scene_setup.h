@@ -45,6 +45,5 @@ Simulation makeSimulation(const LoadedScene& loaded);
 
 TickConfig tickConfigOf(const scene::Scene& scene);
 ToolConfig toolConfigOf(const LoadedScene& loaded, const scene::Tool& tool);
-Pose devicePoseOf(const scene::Device& device);
 
 }  // namespace bonemill

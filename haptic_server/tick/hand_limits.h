@@ -28,6 +28,7 @@
 #include <algorithm>
 
 #include "common/assert.h"
+#include "common/geometry/bounded_vector.h"
 #include "common/geometry/pose.h"
 
 namespace bonemill {
@@ -109,7 +110,7 @@ class HandLimits {
         Wrench wrench = step.wrench_V;
         leaveOut(wrench);
         was_limited_ =
-            limitNorm(wrench.force, config_.max_force) | limitNorm(wrench.torque, config_.max_torque);
+            limitLength(wrench.force, config_.max_force) | limitLength(wrench.torque, config_.max_torque);
         if (!isChangeOver()) slowDown(wrench, step.X_VT_device);
         faded_for_ = 0;
         before_fading_ = wrench;
@@ -119,12 +120,6 @@ class HandLimits {
     void leaveOut(Wrench& wrench) const noexcept {
         if (config_.max_force == 0) wrench.force.setZero();
         if (config_.max_torque == 0) wrench.torque.setZero();
-    }
-    static bool limitNorm(Eigen::Vector3d& value, double most) noexcept {
-        const double norm = value.norm();
-        if (norm <= most) return false;
-        value /= norm / most;
-        return true;
     }
 
     void slowDown(Wrench& wrench, const Pose& X_VT_device) noexcept {
@@ -138,10 +133,9 @@ class HandLimits {
     }
     // Brings the value no farther from `last` than `most`. False says that this cut it short.
     static bool approach(const Eigen::Vector3d& last, double most, Eigen::Vector3d& value) noexcept {
-        const Eigen::Vector3d change = value - last;
-        const double size = change.norm();
-        if (size <= most) return true;
-        value = last + change * (most / size);
+        Eigen::Vector3d change = value - last;
+        if (!limitLength(change, most)) return true;
+        value = last + change;
         return false;
     }
 

@@ -3,11 +3,10 @@
 #include <pwd.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 
+#include "common/cli/command_line.h"
 #include "common/dds/network_cli.h"
 #include "common/units.h"
 #include "common/user_error.h"
@@ -82,8 +81,7 @@ void addSessionOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
            "viewer: only looks; operator: also commands; instructor: also points and ends the session "
            "(default operator; viewer under the profiles lab and classroom)")
         ->check(CLI::IsMember(roleNames()));
-    app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
-        ->capture_default_str();
+    addLogLevelOption(app, options.log_level);
 }
 
 void addPictureOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
@@ -220,14 +218,7 @@ std::optional<ClientOptions> parseOptions(int argc, const char* const* argv) {
     CLI::App app{
         "Shows the session of a haptic_server in a window, or off screen as pictures (docs/viewer.md)."};
     addOptions(app, raw, options);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::CallForHelp&) {
-        std::cout << app.help();
-        return std::nullopt;
-    } catch (const CLI::ParseError& error) {
-        throw UserError(std::string(error.what()) + " (see render_client --help)");
-    }
+    if (!parseCommandLine(app, argc, argv, "render_client")) return std::nullopt;
     return convert(raw, options);
 }
 

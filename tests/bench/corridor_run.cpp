@@ -95,7 +95,7 @@ void CorridorIo::push(const TickRecord& record) noexcept {
 RealtimeReport inRealTime(const std::function<void()>& work) {
     RealtimeReport report;
     std::thread([&] {
-        report = makeThreadRealtime({.core = int(std::thread::hardware_concurrency()) - 1});
+        report = makeThreadRealtime({.core = coreFromLast(0)});
         work();
     }).join();
     return report;

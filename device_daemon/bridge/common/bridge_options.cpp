@@ -1,8 +1,6 @@
 #include "device_daemon/bridge/common/bridge_options.h"
 
-#include <iostream>
-
-#include "common/user_error.h"
+#include "common/cli/command_line.h"
 
 namespace bonemill::bridge {
 namespace {
@@ -25,11 +23,7 @@ void addOptions(CLI::App& app, BridgeOptions& options) {
         ->check(CLI::Range(0.1, 3600.0))
         ->needs(self_test)
         ->capture_default_str();
-    app.add_flag("--best-effort-rt", options.best_effort_realtime,
-                 "Go on without real-time scheduling and locked memory");
-    app.add_option("--rt-core", options.core, "Processor core for the arm's loop (-1: any)")
-        ->check(CLI::Range(-1, 4095))
-        ->capture_default_str();
+    addRealtimeOptions(app, "the arm's loop", options.best_effort_realtime, options.core);
 }
 
 }  // namespace
@@ -40,14 +34,7 @@ std::optional<BridgeOptions> parseBridgeOptions(int argc, char** argv, const std
     CLI::App app{about};
     addOptions(app, options);
     if (add) add(app);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::CallForHelp&) {
-        std::cout << app.help();
-        return std::nullopt;
-    } catch (const CLI::ParseError& error) {
-        throw UserError(std::string(error.what()) + " (see --help)");
-    }
+    if (!parseCommandLine(app, argc, argv, "the bridge's")) return std::nullopt;
     return options;
 }
 

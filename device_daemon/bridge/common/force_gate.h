@@ -6,22 +6,13 @@
 
 #include <optional>
 
-#include "common/geometry/pose.h"
+#include "common/geometry/bounded_vector.h"
 
 namespace bonemill::bridge {
 
-struct WrenchLimits {
-    double max_force = 0;   // N
-    double max_torque = 0;  // N·m
-};
-
-// Scales force and torque down to the norms that are allowed, each in its direction. What is not finite is
-// zero.
-Wrench limited(const Wrench& wrench, const WrenchLimits& limits) noexcept;
-
 class ForceGate {
   public:
-    explicit ForceGate(const WrenchLimits& limits) noexcept : limits_(limits) {}
+    explicit ForceGate(const WrenchNorms& norms) noexcept : norms_(norms) {}
 
     // `wanted` is nothing where no force is allowed: then the last wrench fades. `elapsed` s have passed
     // since the last call.
@@ -31,7 +22,7 @@ class ForceGate {
     static constexpr double kFadeTime = 0.02;  // s
 
   private:
-    const WrenchLimits limits_;
+    const WrenchNorms norms_;
     Wrench held_;
     double opening_ = 0;  // 0 closed, 1 open
 };

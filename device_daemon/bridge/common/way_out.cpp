@@ -12,13 +12,6 @@ namespace {
 
 constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 
-sigset_t stopSignals() noexcept {
-    sigset_t signals;
-    sigemptyset(&signals);
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, number);
-    return signals;
-}
-
 [[noreturn]] void leaveLibraryBehind() noexcept {
     constexpr std::string_view kText = "error: the vendor's library does not return; leaving without it\n";
     [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kText.data(), kText.size());
@@ -28,8 +21,6 @@ sigset_t stopSignals() noexcept {
 }  // namespace
 
 WayOut::WayOut() {
-    const sigset_t signals = stopSignals();
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     signal(SIGPIPE, SIG_IGN);  // that nobody reads what is printed is no reason to leave force behind
     thread_ = std::thread([this] { watch(); });
 }
@@ -45,10 +36,8 @@ void WayOut::begin() noexcept {
 }
 
 void WayOut::watch() noexcept {
-    const sigset_t signals = stopSignals();
-    const timespec limit = timespecOfNs(kLookEveryNs);
     while (!is_over_) {
-        if (sigtimedwait(&signals, nullptr, &limit) > 0) {
+        if (stop_signals_.await(kLookEveryNs)) {
             is_requested_ = true;
             begin();
         }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <thread>
 
+#include "common/rt/stop_signals.h"
 #include "common/units.h"
 
 namespace bonemill::bridge {
@@ -31,6 +32,7 @@ class WayOut {
   private:
     void watch() noexcept;
 
+    StopSignals stop_signals_;
     std::atomic<bool> is_requested_{false};
     std::atomic<int64_t> deadline_ns_{0};  // 0: none
     std::atomic<bool> is_over_{false};

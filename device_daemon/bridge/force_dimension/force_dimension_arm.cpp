@@ -8,6 +8,7 @@
 #include "common/rt/clock.h"
 #include "common/rt/periodic_timer.h"
 #include "common/user_error.h"
+#include "device_daemon/bridge/common/arm_loop.h"
 #include "device_daemon/bridge/common/axes.h"
 #include "device_daemon/bridge/common/usb_devices.h"
 #include "device_daemon/wire/packets.h"
@@ -94,13 +95,7 @@ ArmDescription ForceDimensionArm::describe() const {
 }
 
 void ForceDimensionArm::start(ArmPeriod& period) {
-    const RealtimeThreadConfig config{
-        {.core = options_.core}, options_.best_effort_realtime, "the arm's loop"};
-    thread_ = RealtimeThread(
-        config, [this, &period] { run(period); },
-        [this](const RealtimeReport& report) {
-            for (const std::string& missing : report.missing) tell_(missing);
-        });
+    thread_ = startArmLoop(options_, tell_, [this, &period] { run(period); });
     has_thread_ = true;
 }
 

@@ -157,9 +157,6 @@ TEST_F(ToolInMouse, WithoutSuchADeviceTheMouseIsTheCamerasAndAViewerNeverHolds) 
 
 // A slab lies below z = 2 mm.
 TEST_F(ToolInMouse, MillsTheBoneOfALiveSession) {
-    const std::string help = test::run({"device_daemon", "--help"}).out;
-    if (help.find("--device") == std::string::npos || help.find("--domain") == std::string::npos)
-        GTEST_SKIP() << "device_daemon does not offer --device pointer";
     test::TemporaryFolder folder;
     const std::string domain = std::to_string(testDomain()), session = std::to_string(testSession());
     ASSERT_EQ(test::run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code,

@@ -3,6 +3,8 @@
 // Times are real, since bridges have clocks of their own; limits only end a test that hangs.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <functional>
 #include <ios>
 #include <string>
@@ -83,5 +85,24 @@ void expectHarmless(const std::vector<RecordedCall>& record, double max_force, d
 std::vector<std::string> bridgeCommand(const std::string& program, const std::string& library,
                                        const std::string& words, const std::string& record_file,
                                        const std::vector<std::string>& more = {});
+
+// A bridge and what its stand-in writes down.
+class BridgeTest : public testing::Test {
+  protected:
+    const std::vector<RecordedCall>& record() { return record_.calls(); }
+    RecordedCall lastForce() { return lastOf(record(), "force"); }
+    // After what the test has done the bridge waits for the arm's calibration.
+    void expectNotEnabled(const BridgeHost& host) {
+        EXPECT_FALSE(host.state().inputs & wire::kInputHomed);
+        EXPECT_NE(host.drive(), wire::DriveState::kOperationEnabled);
+        EXPECT_EQ(countOf(record(), "enable"), 0);
+    }
+
+    TemporaryFolder folder_;
+    const std::string record_file_ = folder_ / "record";
+
+  private:
+    CallRecord record_{record_file_};
+};
 
 }  // namespace bonemill::test

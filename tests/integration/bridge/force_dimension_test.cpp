@@ -16,14 +16,12 @@ using wire::DriveState;
 
 constexpr double kOmegaForce = 12;  // N
 
-class ForceDimensionBridge : public testing::Test {
+class ForceDimensionBridge : public test::BridgeTest {
   protected:
     std::vector<std::string> command(const std::string& words, const std::vector<std::string>& more = {},
                                      const std::string& library = "libstand_in_drd.so") const {
         return test::bridgeCommand("bonemill_bridge_force_dimension", library, words, record_file_, more);
     }
-    const std::vector<RecordedCall>& record() { return record_.calls(); }
-    RecordedCall lastForce() { return test::lastOf(record(), "force"); }
     // The force was zeroed, switched off, and the arm stopped and closed, in this order and last.
     void expectStopped() {
         const auto& calls = record();
@@ -36,10 +34,6 @@ class ForceDimensionBridge : public testing::Test {
         EXPECT_EQ(calls[n - 2].name, "stop");
         EXPECT_EQ(calls[n - 1].name, "close");
     }
-
-    test::TemporaryFolder folder_;
-    const std::string record_file_ = folder_ / "record";
-    test::CallRecord record_{record_file_};
 };
 
 TEST_F(ForceDimensionBridge, GivesTheCommandedWrenchInTheAxesOfTheSdkAndStops) {
@@ -187,9 +181,7 @@ TEST_F(ForceDimensionBridge, DoesNotEnableWithoutCalibration) {
     host.want(true, {1, 0, 0, 0, 0, 0});
     ASSERT_TRUE(host.runUntil([&] { return host.hasState(); }));
     host.runPeriods(200);
-    EXPECT_FALSE(host.state().inputs & wire::kInputHomed);
-    EXPECT_NE(host.drive(), DriveState::kOperationEnabled);
-    EXPECT_EQ(test::countOf(record(), "enable"), 0);
+    expectNotEnabled(host);
 }
 
 class HangingBridge : public ForceDimensionBridge, public testing::WithParamInterface<const char*> {};

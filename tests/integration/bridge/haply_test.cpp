@@ -17,7 +17,7 @@ using wire::DriveState;
 
 constexpr double kHaplyForce = 5;  // N
 
-class HaplyBridge : public testing::Test {
+class HaplyBridge : public test::BridgeTest {
   protected:
     // Starts the service and returns the bridge's command.
     std::vector<std::string> command(const std::string& words, const std::vector<std::string>& more = {}) {
@@ -31,8 +31,6 @@ class HaplyBridge : public testing::Test {
         all.insert(all.end(), more.begin(), more.end());
         return test::bridgeCommand("bonemill_bridge_haply", "", "", record_file_, all);
     }
-    const std::vector<RecordedCall>& record() { return record_.calls(); }
-    RecordedCall lastForce() { return test::lastOf(record(), "force"); }
     void expectHarmless() {
         for (const RecordedCall& call : record()) {
             ASSERT_NE(call.name, "unknown");
@@ -46,9 +44,6 @@ class HaplyBridge : public testing::Test {
         expectHarmless();
     }
 
-    test::TemporaryFolder folder_;
-    const std::string record_file_ = folder_ / "record";
-    test::CallRecord record_{record_file_};
     std::optional<test::Process> service_;
 };
 
@@ -118,8 +113,7 @@ TEST_F(HaplyBridge, DoesNotEnableWithoutCalibration) {
     host.want(true, {1, 0, 0, 0, 0, 0});
     ASSERT_TRUE(host.runUntil([&] { return host.hasState(); }));
     host.runPeriods(200);
-    EXPECT_FALSE(host.state().inputs & wire::kInputHomed);
-    EXPECT_NE(host.drive(), DriveState::kOperationEnabled);
+    expectNotEnabled(host);
     EXPECT_EQ(test::countOf(record(), "force"), 0);
 }
 

@@ -18,13 +18,12 @@ using wire::DriveState;
 
 constexpr double kTouchForce = 3.3;  // N
 
-class TouchBridge : public testing::Test {
+class TouchBridge : public test::BridgeTest {
   protected:
     std::vector<std::string> command(const std::string& words,
                                      const std::vector<std::string>& more = {}) const {
         return test::bridgeCommand("bonemill_bridge_touch", "libstand_in_hd.so", words, record_file_, more);
     }
-    const std::vector<RecordedCall>& record() { return record_.calls(); }
     // The last force was zero, the scheduler stopped first, and the device last.
     void expectStopped() {
         const auto& all = record();
@@ -38,10 +37,6 @@ class TouchBridge : public testing::Test {
         EXPECT_EQ(calls[n - 2].name, "unschedule");
         EXPECT_EQ(calls[n - 1].name, "close");
     }
-
-    test::TemporaryFolder folder_;
-    const std::string record_file_ = folder_ / "record";
-    test::CallRecord record_{record_file_};
 };
 
 TEST_F(TouchBridge, GivesTheCommandedForceInTheAxesOfTheLibraryAndStops) {
@@ -65,9 +60,8 @@ TEST_F(TouchBridge, GivesTheCommandedForceInTheAxesOfTheLibraryAndStops) {
     EXPECT_NEAR(host.state().load, 0.25, 1e-6);
     EXPECT_TRUE(host.state().inputs & (2u << wire::kFirstButtonInput));
     host.want(true, {1, 2, 0.5f, 0, 0, 1});
-    EXPECT_TRUE(
-        host.runUntil([&] { return test::lastOf(record(), "force").forceNorm() > std::sqrt(5.25) - 1e-6; }));
-    const RecordedCall force = test::lastOf(record(), "force");
+    EXPECT_TRUE(host.runUntil([&] { return lastForce().forceNorm() > std::sqrt(5.25) - 1e-6; }));
+    const RecordedCall force = lastForce();
     EXPECT_NEAR(force.values[0], -1, 1e-5);
     EXPECT_NEAR(force.values[1], 0.5, 1e-5);
     EXPECT_NEAR(force.values[2], 2, 1e-5);
@@ -82,10 +76,9 @@ TEST_F(TouchBridge, ScalesWhatIsTooLargeAndFadesWhenTheHostIsSilent) {
     {
         BridgeHost host(bridge);
         host.want(true, {30, 40, 0, 0, 0, 0});
-        ASSERT_TRUE(
-            host.runUntil([&] { return test::lastOf(record(), "force").forceNorm() > kTouchForce - 1e-6; }));
+        ASSERT_TRUE(host.runUntil([&] { return lastForce().forceNorm() > kTouchForce - 1e-6; }));
     }
-    EXPECT_TRUE(test::waitFor([&] { return test::lastOf(record(), "force").forceNorm() == 0; }));
+    EXPECT_TRUE(test::waitFor([&] { return lastForce().forceNorm() == 0; }));
     const int so_far = test::countOf(record(), "force");
     EXPECT_TRUE(test::waitFor([&] { return test::countOf(record(), "force") > so_far + 50; }));
     bridge.signal(SIGINT);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "common/config/scene_geometry.h"
 #include "common/units.h"
 #include "haptic_server/offline/run_path.h"
 #include "haptic_server/phantom/tooth_phantom.h"
@@ -34,16 +35,10 @@ Pose poseAt(const scene::SimulatedOperator& scenario, double t_s, uint32_t& butt
     while (from + 2 < scenario.waypoint_size() && scenario.waypoint(from + 1).time_s() <= t_s) ++from;
     const auto &a = scenario.waypoint(from), &b = scenario.waypoint(from + 1);
     const double share = std::clamp((t_s - a.time_s()) / (b.time_s() - a.time_s()), 0.0, 1.0);
-    const auto position = [](const auto& waypoint) -> Eigen::Vector3d {
-        const scene::Vec3& p = waypoint.p_wt_mm();
-        return Eigen::Vector3d(p.x(), p.y(), p.z()) * kMillimetre;
-    };
-    const auto rotation = [](const auto& waypoint) -> Eigen::Quaterniond {
-        const scene::Quaternion& q = waypoint.q_wt();
-        return Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized();
-    };
+    const Pose X_WA = poseOf(a), X_WB = poseOf(b);
     buttons = (a.remove() ? kButtonRemove : 0u) | (a.add() ? kButtonAdd : 0u);
-    return {position(a) + share * (position(b) - position(a)), rotation(a).slerp(share, rotation(b))};
+    return {X_WA.position + share * (X_WB.position - X_WA.position),
+            X_WA.rotation.slerp(share, X_WB.rotation)};
 }
 
 std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario, double dt) {

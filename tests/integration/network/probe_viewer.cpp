@@ -2,10 +2,10 @@
 //   probe_viewer --session N [--domain D] [--profile ...] [--interface ...] [--peer ...]
 #include <cinttypes>
 #include <cstdio>
-#include <iostream>
 
+#include "common/cli/command_line.h"
 #include "common/dds/network_cli.h"
-#include "common/user_error.h"
+#include "common/run_program.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
 namespace {
@@ -44,18 +44,16 @@ class Probe {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("A viewer without a picture", "probe_viewer");
-    SubscriberOptions subscriber;
-    dds::NetworkOptions network;
-    app.add_option("--session", subscriber.session)->required();
-    app.add_option("--domain", subscriber.domain);
-    dds::addNetworkOptions(app, network);
-    CLI11_PARSE(app, argc, argv);
-    try {
+    return runProgram([&] {
+        CLI::App app("A viewer without a picture", "probe_viewer");
+        SubscriberOptions subscriber;
+        dds::NetworkOptions network;
+        app.add_option("--session", subscriber.session)->required();
+        app.add_option("--domain", subscriber.domain);
+        dds::addNetworkOptions(app, network);
+        if (!parseCommandLine(app, argc, argv, "probe_viewer")) return 0;
         dds::setNetwork(network);
         Probe(subscriber).run();
-    } catch (const UserError& error) {
-        std::cerr << "error: " << error.what() << '\n';
-        return kUserErrorExitCode;
-    }
+        return 0;
+    });
 }

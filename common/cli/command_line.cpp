@@ -1,0 +1,33 @@
+#include "common/cli/command_line.h"
+
+#include <iostream>
+
+#include "common/user_error.h"
+
+namespace bonemill {
+
+bool parseCommandLine(CLI::App& app, int argc, const char* const* argv, const std::string& program) {
+    try {
+        app.parse(argc, argv);
+        return true;
+    } catch (const CLI::CallForHelp&) {
+        std::cout << app.help();
+        return false;
+    } catch (const CLI::ParseError& error) {
+        throw UserError(std::string(error.what()) + " (see " + program + " --help)");
+    }
+}
+
+void addLogLevelOption(CLI::App& app, std::string& log_level) {
+    app.add_option("--log-level", log_level, "trace, debug, info, warn, error or off")->capture_default_str();
+}
+
+void addRealtimeOptions(CLI::App& app, const std::string& loop, bool& best_effort, int& core) {
+    constexpr int kMostCores = 4096;
+    app.add_flag("--best-effort-rt", best_effort, "Go on without real-time scheduling and locked memory");
+    app.add_option("--rt-core", core, "Processor core for " + loop + " (-1: any)")
+        ->check(CLI::Range(-1, kMostCores - 1))
+        ->capture_default_str();
+}
+
+}  // namespace bonemill
