@@ -9,32 +9,18 @@
 #include "device_daemon/pointer/hand_wish.h"
 #include "render_client/controls/tool_hold.h"
 #include "render_client/subscribe/scene_subscriber.h"
+#include "tests/gl/window/mouse_session.h"
 #include "tests/gl/window/shown_session.h"
-#include "tests/gl/window/virtual_display.h"
-#include "tests/support/places.h"
 
 namespace bonemill {
 namespace {
 
 using test::Process;
+using test::viewerWords;
 using test::VirtualDisplay;
 using test::waitFor;
 
-constexpr int kScreenWidth = 480, kScreenHeight = 360;
-
-std::vector<std::string> viewerWords(const std::vector<std::string>& more) {
-    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-    setenv("LP_NUM_THREADS", "1", 1);
-    std::vector<std::string> words{"render_client",
-                                   "--size",
-                                   std::to_string(kScreenWidth) + "x" + std::to_string(kScreenHeight),
-                                   "--domain",
-                                   std::to_string(testDomain()),
-                                   "--session",
-                                   std::to_string(testSession())};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-}
+constexpr int kScreenWidth = test::kMouseScreenWidth, kScreenHeight = test::kMouseScreenHeight;
 
 // Hears what viewers want of the tool.
 class WishReader {
@@ -155,23 +141,9 @@ TEST_F(ToolInMouse, WithoutSuchADeviceTheMouseIsTheCamerasAndAViewerNeverHolds) 
     EXPECT_FALSE(wishes_.newest() && wishes_.newest()->is_holding);
 }
 
-// A slab lies below z = 2 mm.
 TEST_F(ToolInMouse, MillsTheBoneOfALiveSession) {
-    test::TemporaryFolder folder;
-    const std::string domain = std::to_string(testDomain()), session = std::to_string(testSession());
-    ASSERT_EQ(test::run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code,
-              0);
-    const std::string scene = folder / "s.textproto";
-    test::writeFile(scene,
-                    "name: \"mouse\" effects { time_removal {} } volume { path: \"slab.nrrd\" window_low: 0 "
-                    "window_high: 65535 iso_value: 32768 }\n"
-                    "device { p_WD_mm { x: 0 y: 0.1 z: 6 } q_WD { w: 0.70710678 x: 0.70710678 } }\n");
-    Process server(
-        {"haptic_server", "--scene", scene, "--session", session, "--domain", domain, "--best-effort-rt"});
-    Process daemon({"device_daemon", "--scene", scene, "--session", session, "--domain", domain, "--device",
-                    "pointer", "--best-effort-rt"});
-    Process viewer(viewerWords({"--hold-tool"}));
-    ASSERT_TRUE(waitForWish([](const HandWish& w) { return w.is_holding; })) << viewer.errSoFar();
+    test::MouseSession session;
+    ASSERT_TRUE(waitForWish([](const HandWish& w) { return w.is_holding; })) << session.viewer().errSoFar();
 
     SceneSubscriber observer({.domain = testDomain(), .session = testSession(), .name = "observer"});
     const auto removed = [&] {
@@ -185,20 +157,21 @@ TEST_F(ToolInMouse, MillsTheBoneOfALiveSession) {
                    : 0;
     };
     for (int i = 0; i < 12; ++i) display_.type({"click", "4"});
-    EXPECT_TRUE(waitFor([&] { return force() > 0.5; })) << "the bone is felt: " << daemon.errSoFar();
+    EXPECT_TRUE(waitFor([&] { return force() > 0.5; })) << "the bone is felt: " << session.whatDaemonSaid();
     EXPECT_EQ(removed(), 0);
     display_.type({"mousedown", "1"});
-    EXPECT_TRUE(waitFor([&] { return removed() > 0.5; })) << "and milled: " << server.errSoFar();
+    EXPECT_TRUE(waitFor([&] { return removed() > 0.5; })) << "and milled: " << session.whatServerSaid();
 
-    viewer.signal(SIGSTOP);
+    session.viewer().signal(SIGSTOP);
     EXPECT_TRUE(waitFor([&] {
         observer.poll();
         return observer.toolState() && observer.toolState()->buttons() == 0;
     })) << "a viewer that hangs mills no more";
-    viewer.signal(SIGCONT);
+    session.viewer().signal(SIGCONT);
     display_.type({"mouseup", "1"});
-    viewer.signal(SIGTERM);
-    EXPECT_EQ(viewer.wait().exit_code, 0);
+    const test::MouseSession::Ended ended = session.end();
+    for (const test::Finished& program : {ended.viewer, ended.daemon, ended.server})
+        EXPECT_EQ(program.exit_code, 0) << program.err;
 }
 
 }  // namespace
