@@ -8,6 +8,7 @@
 #include "render_client/app/scene_feed.h"
 #include "render_client/app/stop_signal.h"
 #include "render_client/offscreen/osmesa_context.h"
+#include "render_client/window/glfw_window.h"
 
 namespace bonemill {
 namespace {
@@ -28,8 +29,8 @@ int64_t realtimeNowNs() {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
 }
 
-Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const OsmesaContext& context,
-                 RenderScene& scene, SceneFeed& feed) {
+Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const GlApi& gl, RenderScene& scene,
+                 SceneFeed& feed) {
     Measured measured;
     feed.watchCuts(&measured.cuts);
     const int64_t start_ns = monotonicNowNs();
@@ -39,7 +40,7 @@ Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const 
         feed.update();
         const int64_t draw_ns = monotonicNowNs();
         scene.draw(options.width, options.height, textScale(options.height));
-        context.gl().Finish();
+        gl.Finish();
         measured.render.record(monotonicNowNs() - draw_ns);
         measured.cuts.hasShown(realtimeNowNs());
         ++measured.frames;
@@ -50,12 +51,12 @@ Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const 
 }
 
 // Makes buffers, compiles shaders, draws the whole model, and what has come meanwhile.
-void warmUp(const ClientOptions& options, const OsmesaContext& context, RenderScene& scene, SceneFeed& feed) {
+void warmUp(const ClientOptions& options, const GlApi& gl, RenderScene& scene, SceneFeed& feed) {
     constexpr int kPictures = 3;
     for (int n = 0; n < kPictures; ++n) {
         feed.update();
         scene.draw(options.width, options.height, textScale(options.height));
-        context.gl().Finish();
+        gl.Finish();
     }
 }
 
@@ -69,20 +70,17 @@ void printTimes(const char* key, const LatencyHistogram& times) {
                 (unsigned long long)times.count(), ms(50), ms(99), millisecondsOfNs(double(times.maxNs())));
 }
 
-}  // namespace
-
-void runMeasurement(const ClientOptions& options) {
-    const OsmesaContext context(options.width, options.height);
-    spdlog::info("off screen, {}", context.gl().describe());
-    RenderScene scene(context.gl(), options.has_effects);
+void measure(const ClientOptions& options, const GlApi& gl) {
+    spdlog::info("{}", gl.describe());
+    RenderScene scene(gl, options.has_effects);
     scene.setViewWish(options.view);
     scene.settings() = options.settings;
-    if (options.chooses_quality && context.gl().isSoftware()) scene.settings().quality = Quality::kQuick;
+    if (options.chooses_quality && gl.isSoftware()) scene.settings().quality = Quality::kQuick;
     SceneFeed feed(options.subscriber, scene);
     waitUntilComplete(feed, options.subscriber, options.measure->timeout);
-    warmUp(options, context, scene, feed);
+    warmUp(options, gl, scene, feed);
     const UploadCount before = scene.uploads();
-    const Measured measured = drawFor(options.measure->time, options, context, scene, feed);
+    const Measured measured = drawFor(options.measure->time, options, gl, scene, feed);
     const UploadCount after = scene.uploads();
     std::printf(
         "{\"width\":%d,\"height\":%d,\"nodes\":%zu,\"triangles\":%zu,\"frames\":%llu,\"frame_rate_hz\":%.2f,",
@@ -94,6 +92,18 @@ void runMeasurement(const ClientOptions& options) {
     std::printf(",\"uploaded_nodes\":%llu,\"uploaded_bytes\":%llu}\n",
                 (unsigned long long)(after.nodes - before.nodes),
                 (unsigned long long)(after.bytes - before.bytes));
+}
+
+}  // namespace
+
+void runMeasurement(const ClientOptions& options) {
+    if (options.measure->is_in_window) {
+        const GlfwWindow window(options.width, options.height, "bonemill");
+        measure(options, window.gl());
+    } else {
+        const OsmesaContext context(options.width, options.height);
+        measure(options, context.gl());
+    }
 }
 
 }  // namespace bonemill

@@ -1,4 +1,5 @@
-// Draws off screen as fast as it can, without files, and prints what it costs as one JSON object on stdout.
+// Draws as fast as it can, without files, and prints what it costs as one JSON object on stdout: off screen
+// by the processor, or in a window by what draws there.
 #pragma once
 
 #include "render_client/app/options.h"
@@ -6,7 +7,7 @@
 namespace bonemill {
 
 // Runs for options.measure->time once the model is complete, or until a stop signal comes. Throws UserError
-// (DDS domain), GlError, and std::runtime_error when no model came in time.
+// (DDS domain, no display), GlError, and std::runtime_error when no model came in time.
 void runMeasurement(const ClientOptions& options);
 
 }  // namespace bonemill

@@ -27,6 +27,7 @@ struct RawOptions {
     uint32_t interval_ms = uint32_t(OffscreenOptions().interval.count());
     std::optional<uint32_t> timeout_s;
     std::optional<uint32_t> measure_s;
+    bool measures_in_window = false;
     std::optional<std::string> role;
     std::string size;
     std::string command;
@@ -143,11 +144,16 @@ void addCommandOptions(CLI::App& app, RawOptions& raw, CLI::Option* offscreen,
             ->type_name("TEXT")
             ->excludes(offscreen);
     for (CLI::Option* option : view_options) command->excludes(option);
-    app.add_option("--measure-s", raw.measure_s,
-                   "No viewer: draw off screen as fast as possible for so long, print what it costs and stop")
-        ->check(CLI::Range(1u, 3600u))
-        ->excludes(offscreen)
-        ->excludes(command);
+    CLI::Option* measure =
+        app.add_option(
+               "--measure-s", raw.measure_s,
+               "No viewer: draw off screen as fast as possible for so long, print what it costs and stop")
+            ->check(CLI::Range(1u, 3600u))
+            ->excludes(offscreen)
+            ->excludes(command);
+    app.add_flag("--in-window", raw.measures_in_window,
+                 "With --measure-s: draw in a window, by the graphics card if there is one")
+        ->needs(measure);
     app.add_option("--timeout-s", raw.timeout_s,
                    "Give up --wait-complete, or --command and --measure-s without a server, after this "
                    "(default " +
@@ -187,7 +193,11 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
         options.offscreen->interval = std::chrono::milliseconds(raw.interval_ms);
         options.offscreen->timeout = timeout;
     }
-    if (raw.measure_s) options.measure = MeasureOptions{std::chrono::seconds(*raw.measure_s), timeout};
+    if (raw.measure_s) {
+        options.measure = MeasureOptions{.time = std::chrono::seconds(*raw.measure_s),
+                                         .is_in_window = raw.measures_in_window,
+                                         .timeout = timeout};
+    }
     if (options.holds_tool && (raw.offscreen || raw.measure_s || !raw.command.empty()))
         throw UserError("--hold-tool needs a window: leave out --offscreen, --measure-s and --command");
     if (options.holds_tool && options.subscriber.role == topics::Viewer::VIEWER)

@@ -34,6 +34,7 @@ struct CommandOptions {
 // Instead of a viewer, the program measures what drawing costs.
 struct MeasureOptions {
     std::chrono::seconds time{10};
+    bool is_in_window = false;                       // otherwise off screen
     std::chrono::seconds timeout = kDefaultTimeout;  // of waiting for the whole model
 };
 
