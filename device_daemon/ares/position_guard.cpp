@@ -5,6 +5,11 @@
 #include "device_daemon/kinematics/singularity.h"
 
 namespace bonemill {
+namespace {
+
+constexpr double kJumpSlackSteps = 4;  // of the encoder
+
+}  // namespace
 
 bool isFinite(const JointReading& joints) noexcept {
     return joints.q.allFinite() && joints.q_dot.allFinite() && joints.forces.allFinite();
@@ -13,7 +18,7 @@ bool isFinite(const JointReading& joints) noexcept {
 PositionGuard::PositionGuard(const AresKinematics& kinematics, const PositionGuardConfig& config) noexcept
     : kinematics_(kinematics),
       config_(config),
-      jump_(config.largest_slider_speed, config.encoder_step),
+      jump_(config.largest_slider_speed, kJumpSlackSteps * config.encoder_step),
       stuck_(config.stuck_travel, kinematics.geometry().stroke),
       frozen_(config.friction) {
     if (config_.home) {
@@ -58,7 +63,7 @@ void PositionGuard::reset() noexcept {
 
 bool PositionGuard::begin(const Vector6d& q) noexcept {
     if (config_.home && !isAtHome(q, q_home_, config_.home->tolerance)) return false;
-    jump_.restart(q);
+    q_last_ = q;
     stuck_.restart(q);
     frozen_.restart();
     speed_ = {};
@@ -68,7 +73,8 @@ bool PositionGuard::begin(const Vector6d& q) noexcept {
 }
 
 StopCause PositionGuard::doubtOf(const Vector6d& q, const Eigen::Vector3d& push, double elapsed) noexcept {
-    if (jump_.jumped(q, elapsed)) return StopCause::kPoseJump;
+    const double way = (q - std::exchange(q_last_, q)).cwiseAbs().maxCoeff();
+    if (jump_.isJump(way, elapsed)) return StopCause::kPoseJump;
     if (stuck_.isStuck(q, elapsed)) return StopCause::kSensorStuck;
     if (!config_.has_frozen_check || isNearAStop()) frozen_.restart();
     return frozen_.isFrozen(q, push, elapsed) ? StopCause::kSensorStuck : StopCause::kNone;

@@ -12,6 +12,7 @@
 #include "device_daemon/ares/sensor_checks.h"
 #include "device_daemon/ares/slider_speed.h"
 #include "device_daemon/driver/joint_device.h"
+#include "device_daemon/driver/jump_check.h"
 #include "device_daemon/kinematics/pose_search.h"
 
 namespace bonemill {
@@ -62,7 +63,8 @@ class PositionGuard {
     AresKinematics kinematics_;
     PositionGuardConfig config_;
     Vector6d q_home_ = Vector6d::Zero();
-    JumpCheck jump_;
+    JumpCheck jump_;  // of any slider
+    Vector6d q_last_ = Vector6d::Zero();
     StuckCheck stuck_;
     FrozenCheck frozen_;
     SliderSpeed speed_;

@@ -1,16 +1,8 @@
 #include "device_daemon/ares/sensor_checks.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace bonemill {
-
-bool JumpCheck::jumped(const Vector6d& q, double elapsed) noexcept {
-    const double allowed = largest_speed_ * std::max(elapsed, 0.0) + slack_;
-    const bool has_jumped = !((q - q_last_).array().abs() <= allowed).all();
-    q_last_ = q;
-    return has_jumped;
-}
 
 void StuckCheck::restart(const Vector6d& q) noexcept {
     speed_ = {};

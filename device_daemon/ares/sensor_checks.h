@@ -22,25 +22,6 @@ namespace bonemill {
 
 inline constexpr double kStopMargin = 1e-3;  // m
 
-// A slider farther from where it was than its largest speed allows has slipped, or its encoder has.
-class JumpCheck {
-  public:
-    JumpCheck(double largest_speed, double encoder_step) noexcept
-        : largest_speed_(largest_speed), slack_(kSlackSteps * encoder_step) {}
-
-    // Restarts from these positions.
-    void restart(const Vector6d& q) noexcept { q_last_ = q; }
-    // Tells whether any slider jumped in the `elapsed` s since the last call.
-    bool jumped(const Vector6d& q, double elapsed) noexcept;
-
-    static constexpr double kSlackSteps = 4;
-
-  private:
-    double largest_speed_;  // m/s
-    double slack_;          // m
-    Vector6d q_last_ = Vector6d::Zero();
-};
-
 // A slider that stands still to the last bit while another one moves is stuck. A sound one does so for a
 // while where it turns back: along 20000 random moves of 25 mm and 40 degrees in a second, with a tremor of
 // 50 um, while another moved 5 mm once in 1000 moves, and 8.7 mm at most; without tremor 8 mm and 21 mm. But

@@ -12,11 +12,9 @@ Eigen::Vector3d vectorOf(const float* xyz) noexcept {
     return Eigen::Map<const Eigen::Vector3f>(xyz).cast<double>();
 }
 
-// The codec has seen to it that the numbers are finite.
-bool isPlausiblePose(const wire::PoseState& state) noexcept {
-    const double reach = Eigen::Map<const Eigen::Vector3d>(state.p_DT).norm();
-    const double size = Eigen::Map<const Eigen::Vector4d>(state.q_DT).norm();
-    return reach <= kLargestDeviceReach && std::abs(size - 1) <= kQuaternionNormTolerance;
+Pose poseOf(const wire::PoseState& state) noexcept {
+    const double* q = state.q_DT;
+    return {Eigen::Map<const Eigen::Vector3d>(state.p_DT), Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
 }
 
 }  // namespace
@@ -29,23 +27,35 @@ DeviceCapabilities UdpPoseDevice::capabilities() const noexcept {
 }
 
 bool UdpPoseDevice::read(double, DeviceReading& reading) noexcept {
+    reading = {};
     const wire::PoseState* state = device_.read();
-    if (!state || !isPlausiblePose(*state)) return false;
-    readMotion(*state, reading);
+    if (!state) return false;
     reading.buttons = buttonsOf(state->inputs);
     reading.status = device_.status();
     reading.fault = device_.fault();
     reading.fault_code = state->fault_code;
+    reading.load = std::clamp(double(state->load), 0.0, 1.0);
+    const Pose X_DT = poseOf(*state);
+    const bool is_believed = isBelieved(*state, X_DT, reading.status);
+    if (reading.fault == StopCause::kNone) reading.fault = guard_.cause();
+    if (!is_believed) return false;
+    reading.X_DT = {X_DT.position, X_DT.rotation.normalized()};
+    readMotion(*state, reading);
     reading.has_applied = std::isfinite(state->applied[0]);
     if (reading.has_applied) reading.applied_D = {vectorOf(state->applied), vectorOf(state->applied + 3)};
-    reading.load = std::clamp(double(state->load), 0.0, 1.0);
     return true;
 }
 
+bool UdpPoseDevice::isBelieved(const wire::PoseState& state, const Pose& X_DT, uint32_t status) noexcept {
+    if (device_.session().descriptionCount() != guarded_description_) {
+        guarded_description_ = device_.session().descriptionCount();
+        guard_.restart();
+    }
+    const bool is_calibrated = (status & kStatusCalibrated) && !(status & kStatusHoming);
+    return guard_.take(X_DT, int64_t(state.controller_ns), is_calibrated);
+}
+
 void UdpPoseDevice::readMotion(const wire::PoseState& state, DeviceReading& reading) noexcept {
-    const double* q = state.q_DT;
-    reading.X_DT = {Eigen::Map<const Eigen::Vector3d>(state.p_DT),
-                    Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized()};
     differentiator_.take(reading.X_DT, int64_t(state.controller_ns));
     const bool has_motion = std::isfinite(state.v_DT[0]);
     reading.v_DT = has_motion ? vectorOf(state.v_DT) : differentiator_.v_DT();
@@ -53,6 +63,7 @@ void UdpPoseDevice::readMotion(const wire::PoseState& state, DeviceReading& read
 }
 
 void UdpPoseDevice::write(const DeviceOrder& order) noexcept {
+    if (order.reset) guard_.reset();
     wire::PoseCommand command{};
     if (order.is_wanted) {
         Eigen::Map<Eigen::Vector3f>(command.wrench) = order.wrench_hand_D.force.cast<float>();

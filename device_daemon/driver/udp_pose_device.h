@@ -1,11 +1,16 @@
 // This is any device whose own program, a bridge, speaks poses and wrenches over the UDP wire
 // (docs/ares_link.md).
 //
+// read() returns false for a pose that is none and after a pose that jumped (pose_guard.h); status, buttons,
+// fault and motors' load of the reading are filled all the same, and its pose is not. Of a silent bridge
+// nothing is.
+//
 // Making one throws UserError. Everything else is RT-safe but for the socket's system calls; one thread uses
 // it.
 #pragma once
 
 #include "device_daemon/driver/pose_differentiator.h"
+#include "device_daemon/driver/pose_guard.h"
 #include "device_daemon/driver/udp_device.h"
 #include "device_daemon/haptic_device/haptic_device.h"
 
@@ -29,9 +34,12 @@ class UdpPoseDevice final : public HapticDevice {
     wire::Endpoint local() const noexcept { return device_.local(); }
 
   private:
+    bool isBelieved(const wire::PoseState& state, const Pose& X_DT, uint32_t status) noexcept;
     void readMotion(const wire::PoseState& state, DeviceReading& reading) noexcept;
 
     UdpDevice<wire::PosePackets> device_;
+    PoseGuard guard_;
+    uint32_t guarded_description_ = 0;  // whose session the guard has seen
     PoseDifferentiator differentiator_;
 };
 

@@ -9,26 +9,6 @@ namespace {
 
 constexpr double kStroke = 0.15, kStep = 5e-6, kMillisecond = 1e-3;
 
-TEST(JumpCheck, AllowsTheLargestSpeedAndAFewStepsAndNoMore) {
-    JumpCheck check(3, kStep);
-    Vector6d q = Vector6d::Constant(0.07);
-    check.restart(q);
-    q[2] += 3e-3 + 3 * kStep;
-    EXPECT_FALSE(check.jumped(q, kMillisecond));
-    q[2] -= 3e-3 + 5 * kStep;
-    EXPECT_TRUE(check.jumped(q, kMillisecond));
-}
-
-TEST(JumpCheck, ASilentTimeCountsAsTime) {
-    JumpCheck check(3, kStep);
-    Vector6d q = Vector6d::Constant(0.07);
-    check.restart(q);
-    q[0] += 10e-3;
-    EXPECT_FALSE(check.jumped(q, 4e-3));
-    q[0] += 10e-3;
-    EXPECT_TRUE(check.jumped(q, -1));
-}
-
 // Returns how many periods pass until joint 4 is found that stands still while joint 3 moves 50 um in each.
 int periodsUntilStuck(StuckCheck& check, Vector6d& q) {
     int periods = 0;

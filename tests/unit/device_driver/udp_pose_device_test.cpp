@@ -78,6 +78,40 @@ TEST_F(UdpPoseDeviceTest, BelievesNoPoseThatIsNone) {
     ASSERT_TRUE(runUntil([&] { return !is_heard; }));
 }
 
+TEST_F(UdpPoseDeviceTest, APoseThatIsNoneHidesNeitherStatusNorFault) {
+    ASSERT_TRUE(runUntil([&] { return is_heard && (reading.status & kStatusPowered); }));
+    controller.state.q_DT[0] = 0.99;
+    controller.state.p_DT[0] = 0.25;
+    ASSERT_TRUE(runUntil([&] { return reading.fault != StopCause::kNone; }));
+    EXPECT_FALSE(is_heard);
+    EXPECT_EQ(reading.fault, StopCause::kImplausiblePose);
+    EXPECT_EQ(reading.X_DT.position.norm(), 0);
+    controller.state.inputs = wire::kInputHomed | wire::kInputReset | (kButtonAdd << wire::kFirstButtonInput);
+    controller.state.fault_code = 77;
+    controller.faults = wire::kFaultAmplifier;
+    ASSERT_TRUE(runUntil([&] { return reading.fault == StopCause::kDeviceFault; }));
+    EXPECT_FALSE(is_heard);
+    EXPECT_EQ(reading.fault_code, 77u);
+    EXPECT_TRUE(reading.status & kStatusEmergencyStop);
+    EXPECT_TRUE(reading.status & kStatusResetPressed);
+    EXPECT_EQ(reading.buttons, uint32_t(kButtonAdd));
+}
+
+TEST_F(UdpPoseDeviceTest, APoseThatJumpsIsAFaultUntilAReset) {
+    ASSERT_TRUE(runUntil([&] { return is_heard && (reading.status & kStatusPowered); }));
+    controller.state.p_DT[0] = 5;  // within a period, or many of a busy machine
+    ASSERT_TRUE(runUntil([&] { return !is_heard; }));
+    EXPECT_EQ(reading.fault, StopCause::kPoseJump);
+    EXPECT_TRUE(reading.status & kStatusPowered);
+    EXPECT_EQ(reading.X_DT.position.norm(), 0);
+    runUntil([n = 0]() mutable { return ++n == 50; });
+    EXPECT_FALSE(is_heard);
+    order.reset = true;
+    ASSERT_TRUE(runUntil([&] { return is_heard; }));
+    EXPECT_EQ(reading.fault, StopCause::kNone);
+    EXPECT_EQ(reading.X_DT.position.x(), 5);
+}
+
 TEST_F(UdpPoseDeviceTest, GivesTheWrenchOnlyWhenItIsWanted) {
     order.wrench_hand_D = {{1, 2, 3}, {0.1, 0.2, 0.3}};
     ASSERT_TRUE(runUntil([&] { return bool(reading.status & kStatusPowered); }));
