@@ -30,4 +30,9 @@ void addRealtimeOptions(CLI::App& app, const std::string& loop, bool& best_effor
         ->capture_default_str();
 }
 
+void addParentOption(CLI::App& app, std::optional<int>& parent) {
+    app.add_option("--end-with-parent", parent,
+                   "Number of the process that has started it: ends when that one does");
+}
+
 }  // namespace bonemill

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 namespace bonemill {
@@ -14,5 +15,8 @@ void addLogLevelOption(CLI::App& app, std::string& log_level);
 // For a program with a real-time loop. `loop` is what the loop is called after "Processor core for"; -1 is
 // any core.
 void addRealtimeOptions(CLI::App& app, const std::string& loop, bool& best_effort, int& core);
+
+// For a program that another one of ours starts for itself (common/end_with_parent.h).
+void addParentOption(CLI::App& app, std::optional<int>& parent);
 
 }  // namespace bonemill

@@ -5,7 +5,6 @@
 #include <signal.h>
 #include <spawn.h>
 #include <spdlog/spdlog.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -22,16 +21,23 @@ constexpr int64_t kStartNs = 10 * kNsPerSecond;  // a loaded machine reads a lar
 constexpr int64_t kEndNs = 2 * kNsPerSecond;
 constexpr int64_t kRestartNs = kNsPerSecond;
 
-// Between fork and exec only what is safe there.
-[[noreturn]] void becomeChild(const char* path, char* const* words, int output, pid_t parent) {
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (getppid() != parent) _exit(127);
+// A new process shares the daemon's memory until it has become `path`. With fork() the kernel would copy the
+// page table of all that is locked, and the real-time thread beside would wait for it.
+pid_t spawn(const char* path, char* const* words, int output) {
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
     sigset_t none;
     sigemptyset(&none);
-    sigprocmask(SIG_SETMASK, &none, nullptr);
-    dup2(output, STDOUT_FILENO);
-    execv(path, words);
-    _exit(127);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
+    pid_t child = -1;
+    if (posix_spawn(&child, path, &actions, &attributes, words, environ) != 0) child = -1;
+    posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
+    return child;
 }
 
 }  // namespace
@@ -46,6 +52,7 @@ std::string programPath(const std::string& name) {
 ChildProgram::ChildProgram(const std::string& name, std::vector<std::string> words)
     : path_(programPath(name)), words_(std::move(words)) {
     start();
+    if (pid_ < 0) throw UserError(path_ + " cannot be started");
     awaitPort();
 }
 
@@ -56,21 +63,19 @@ ChildProgram::~ChildProgram() {
 void ChildProgram::start() {
     std::vector<std::string> words = words_;
     words.insert(words.begin(), path_);
-    words.insert(words.end(), {"--port", std::to_string(port_)});
+    words.insert(words.end(),
+                 {"--port", std::to_string(port_), "--end-with-parent", std::to_string(getpid())});
     std::vector<char*> raw;
     for (std::string& word : words) raw.push_back(word.data());
     raw.push_back(nullptr);
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) throw UserError("no pipe for " + path_);
-    const pid_t parent = getpid();
-    pid_ = fork();
-    if (pid_ == 0) becomeChild(path_.c_str(), raw.data(), ends[1], parent);
+    pid_ = spawn(path_.c_str(), raw.data(), ends[1]);
     close(ends[1]);
     if (output_ >= 0) close(output_);
     output_ = ends[0];
     fcntl(output_, F_SETFL, O_NONBLOCK);
-    if (pid_ < 0) throw UserError(path_ + " cannot be started");
-    ended_ns_ = 0;
+    ended_ns_ = pid_ < 0 ? monotonicNowNs() : 0;
 }
 
 void ChildProgram::awaitPort() {

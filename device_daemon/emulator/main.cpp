@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "common/config/scene_file.h"
+#include "common/end_with_parent.h"
 #include "common/log/log.h"
 #include "common/rt/stop_signals.h"
 #include "common/run_program.h"
@@ -23,6 +24,7 @@ Scenario loadScenario(const std::string& file) {
 int emulate(int argc, char** argv) {
     const auto options = parseOptions(argc, argv);
     if (!options) return 0;
+    if (options->parent) endWithParent(*options->parent);
     setUpLog("ares_emulator", options->log_level);
     const Scenario scenario = loadScenario(options->scene);
     const StopSignals stop_signals;

@@ -29,6 +29,7 @@ std::optional<EmulatorOptions> parseOptions(int argc, char** argv) {
     app.add_option("--seed", options.seed, "Chooses the packets that faults befall")->capture_default_str();
     addRealtimeOptions(app, "the controller's loop", options.best_effort_realtime, options.core);
     addLogLevelOption(app, options.log_level);
+    addParentOption(app, options.parent);
     if (!parseCommandLine(app, argc, argv, "ares_emulator")) return std::nullopt;
     for (const std::string& fault : faults) options.faults.push_back(faultSpecOf(fault));
     return options;

@@ -24,6 +24,7 @@ struct EmulatorOptions {
     bool best_effort_realtime = false;
     int core = -1;  // any
     std::string log_level = "info";
+    std::optional<int> parent;  // process to end with
 };
 
 // Returns nothing after --help, which is already printed. Throws UserError.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "common/end_with_parent.h"
 #include "common/rt/clock.h"
 #include "common/user_error.h"
 #include "device_daemon/bridge/common/bridge_link.h"
@@ -160,6 +161,7 @@ void BridgeRun::stop() {
 int runProgram(int argc, char** argv, const BridgeProgram& program) {
     const auto options = parseBridgeOptions(argc, argv, program.about, program.add_options);
     if (!options) return 0;
+    if (options->parent) endWithParent(*options->parent);
     WayOut way_out;
     const std::unique_ptr<Arm> arm = program.make_arm(*options);
     try {

@@ -24,6 +24,7 @@ void addOptions(CLI::App& app, BridgeOptions& options) {
         ->needs(self_test)
         ->capture_default_str();
     addRealtimeOptions(app, "the arm's loop", options.best_effort_realtime, options.core);
+    addParentOption(app, options.parent);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ struct BridgeOptions {
     double seconds = 5;  // of the self-test
     bool best_effort_realtime = false;
     int core = -1;
+    std::optional<int> parent;  // process to end with
 };
 
 // `about` says what the program is; `add` adds the options of one bridge alone. Returns nothing after --help,
