@@ -176,6 +176,7 @@ void Daemon::watch() {
             spdlog::info("stopping: force ramps to zero");
             should_stop_ = true;
         }
+        if (const std::string why = device_.refusal(); !why.empty()) throw UserError(why);
         if (!is_ending_) reportState(shown_state, shown_cause);
         if (loop_.blackBox().isFull()) writeBlackBox();
         if (program_ && !is_ending_) program_->lookAfter();

@@ -7,8 +7,7 @@
 #include "common/user_error.h"
 #include "device_daemon/app/found_devices.h"
 #include "device_daemon/app/pedalled_device.h"
-#include "device_daemon/ares/ares_device.h"
-#include "device_daemon/driver/udp_joint_device.h"
+#include "device_daemon/ares/wired_ares.h"
 #include "device_daemon/driver/udp_pose_device.h"
 #include "device_daemon/input/gamepad_device.h"
 #include "device_daemon/input/spacemouse_device.h"
@@ -18,33 +17,6 @@ namespace bonemill {
 namespace {
 
 constexpr char kThisMachine[] = "127.0.0.1";
-
-// ARES with its joints behind the wire.
-class WiredAres final : public HapticDevice {
-  public:
-    WiredAres(const AresDeviceConfig& config, const UdpDeviceConfig& wire)
-        : joints_(wire), ares_(joints_, config) {}
-    // Only the controller knows whether there is an enabling switch.
-    DeviceCapabilities capabilities() const noexcept override {
-        DeviceCapabilities device = ares_.capabilities();
-        if (const wire::Describe* said = joints_.description())
-            device.abilities |= said->abilities & kAbilityEnablingSwitch;
-        return device;
-    }
-    uint32_t capabilitiesVersion() const noexcept override {
-        return ares_.capabilitiesVersion() + joints_.descriptionCount();
-    }
-    bool hasClock() const noexcept override { return ares_.hasClock(); }
-    bool waitForSample(int64_t deadline_ns) noexcept override { return ares_.waitForSample(deadline_ns); }
-    bool read(double elapsed, DeviceReading& reading) noexcept override {
-        return ares_.read(elapsed, reading);
-    }
-    void write(const DeviceOrder& order) noexcept override { ares_.write(order); }
-
-  private:
-    UdpJointDevice joints_;
-    AresDevice ares_;
-};
 
 // Splits "127.0.0.1:5000". Throws UserError.
 UdpDeviceConfig wireTo(const std::string& word, const std::string& endpoint) {

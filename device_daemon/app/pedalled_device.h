@@ -26,6 +26,7 @@ class PedalledDevice final : public HapticDevice {
         return is_heard;
     }
     void write(const DeviceOrder& order) noexcept override { device_->write(order); }
+    std::string refusal() const override { return device_->refusal(); }
 
   private:
     std::unique_ptr<HapticDevice> device_;

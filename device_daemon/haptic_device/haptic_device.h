@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "common/device_messages/device_messages.h"
 #include "common/geometry/pose.h"
@@ -65,6 +66,10 @@ class HapticDevice {
     virtual bool read(double elapsed, DeviceReading& reading) noexcept = 0;
     // Holds from now on until the next call.
     virtual void write(const DeviceOrder& order) noexcept = 0;
+
+    // Says why this device must never be used with this scene, and what to do; empty where nothing speaks
+    // against it. Another thread than the loop's may ask at any time; it allocates.
+    virtual std::string refusal() const { return {}; }
 };
 
 }  // namespace bonemill

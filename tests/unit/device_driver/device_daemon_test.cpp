@@ -158,6 +158,22 @@ TEST_F(DeviceDaemonTest, RefusesBadScenes) {
     expectSays(outside, "waypoint[0]");
 }
 
+// The controller is there first, as a real one would be.
+TEST_F(DeviceDaemonTest, RefusesAControllerThatHasNotTheAresOfTheScene) {
+    const std::string other = std::string(kLongScene) + "device { stroke_mm: 140 max_actuator_force_n: 30 }";
+    test::Process controller({"ares_emulator", "--scene", sceneFile(other), "--best-effort-rt"});
+    const std::string begin = "listening on 127.0.0.1:";
+    ASSERT_TRUE(test::waitFor([&] { return controller.outSoFar().find('\n') != std::string::npos; }));
+    const std::string port = std::to_string(std::stoi(controller.outSoFar().substr(begin.size())));
+    std::vector<std::string> words = commandLine(sceneFile(kLongScene), {"--wait-seconds", "20"});
+    words[2] = "ares:127.0.0.1:" + port;
+    const test::Finished finished = test::run(words);
+    EXPECT_EQ(finished.exit_code, 2);
+    expectSays(finished, "error: the controller at 127.0.0.1:" + port);
+    expectSays(finished, "its stroke is 140, field `device.stroke_mm` says 151");
+    expectSays(finished, "largest actuator force is 30, field `device.max_actuator_force_n` says 50");
+}
+
 TEST_F(DeviceDaemonTest, RefusesBadOptions) {
     const std::vector<std::string> cases[] = {
         {}, {"--scene"}, {"--scene", "x", "--seconds", "-1"}, {"--scene", "x", "--nonsense"}};
