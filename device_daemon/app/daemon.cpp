@@ -44,13 +44,19 @@ void Daemon::run() {
          .best_effort = options_.best_effort_realtime,
          .what = "the device loop"},
         [this] { runLoop(); }, logRealtime);
+    // A stop that came last is written when nothing more can come.
+    const auto end = [&] {
+        loop_thread.join();
+        if (loop_.blackBox().isFull()) writeBlackBox();
+    };
     try {
         watch();
     } catch (...) {
         should_stop_ = true;
+        end();
         throw;
     }
-    loop_thread.join();
+    end();
 }
 
 void Daemon::runLoop() {
@@ -75,6 +81,7 @@ void Daemon::runLoop() {
         }
     }
     sayGoodbye();
+    loop_.blackBox().finish();
     statistics_.wall_time = secondsOfNs(monotonicNowNs() - start_ns);
     statistics_.missed_periods = timer.missedPeriods();
     statistics_.unheard_periods = loop_.unheardPeriods();

@@ -1,7 +1,5 @@
 #include "device_daemon/app/device_setup.h"
 
-#include <cmath>
-
 #include "common/config/scene_file.h"
 #include "common/config/scene_geometry.h"
 #include "common/units.h"
@@ -10,8 +8,6 @@
 
 namespace bonemill {
 namespace {
-
-constexpr double kBlackBoxTime = 2;  // s
 
 DeviceLoopConfig loopOf(const scene::Scene& scene) {
     const scene::Safety& safety = scene.safety();
@@ -29,8 +25,6 @@ DeviceLoopConfig loopOf(const scene::Scene& scene) {
     loop.states.engage_time = kMilli * safety.engage_ms();
     loop.states.ramp_time = kMilli * scene.loop().ramp_ms();
     loop.states.silence = kMilli * scene.loop().stale_after_ms();
-    loop.black_box_records =
-        BlackBox::kAfterRecords + size_t(std::lround(kBlackBoxTime * scene.loop().rate_hz()));
     return loop;
 }
 

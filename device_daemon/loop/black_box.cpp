@@ -40,21 +40,33 @@ constexpr char kColumns[] =
 
 }  // namespace
 
-BlackBox::BlackBox(size_t records) : records_(records) {
-    BONEMILL_ASSERT(records > kAfterRecords);
-}
+BlackBox::BlackBox() : records_((kBeforeNs + kAfterNs) / kShortestPeriodNs + 10) {}
 
 void BlackBox::record(const BlackBoxRecord& record, StopCause cause) noexcept {
-    if (is_full_.load(std::memory_order_acquire)) return;
+    if (isFull()) return;
+    const bool is_stop = cause != StopCause::kNone && cause != last_cause_ && !is_stopping_;
+    last_cause_ = cause;
+    keep(record, is_stop);
+    if (is_stop) {
+        is_stopping_ = true;
+        stop_ns_ = record.time_ns;
+        stop_cause_ = cause;
+    }
+    if (is_stopping_ && record.time_ns - stop_ns_ >= kAfterNs) finish();
+}
+
+void BlackBox::keep(const BlackBoxRecord& record, bool is_stop) noexcept {
+    if (record.time_ns < due_ns_ - kShortestPeriodNs / 2 && !is_stop) return;
+    due_ns_ = std::max(due_ns_ + kShortestPeriodNs, record.time_ns);
     records_[next_] = record;
     next_ = (next_ + 1) % records_.size();
     count_ = std::min(count_ + 1, records_.size());
-    if (cause != StopCause::kNone && cause != last_cause_ && left_ == 0) {
-        left_ = kAfterRecords;
-        stop_cause_ = cause;
-    }
-    last_cause_ = cause;
-    if (left_ > 0 && --left_ == 0) is_full_.store(true, std::memory_order_release);
+}
+
+void BlackBox::finish() noexcept {
+    if (!is_stopping_) return;
+    is_stopping_ = false;
+    is_full_.store(true, std::memory_order_release);
 }
 
 void BlackBox::write(const std::filesystem::path& file) {
@@ -62,9 +74,14 @@ void BlackBox::write(const std::filesystem::path& file) {
     std::ofstream out(file);
     out.precision(9);
     out << kColumns;
-    const size_t first = count_ < records_.size() ? 0 : next_;
-    for (size_t i = 0; i < count_; ++i)
-        writeRow(out, records_[(first + i) % records_.size()], records_[first].time_ns);
+    const size_t oldest = count_ < records_.size() ? 0 : next_;
+    const BlackBoxRecord* first = nullptr;
+    for (size_t i = 0; i < count_; ++i) {
+        const BlackBoxRecord& record = records_[(oldest + i) % records_.size()];
+        if (record.time_ns < stop_ns_ - kBeforeNs) continue;
+        if (!first) first = &record;
+        writeRow(out, record, first->time_ns);
+    }
     is_full_.store(false, std::memory_order_release);
     if (!out.flush()) throw UserError(file.string() + ": cannot be written");
 }

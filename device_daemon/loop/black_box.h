@@ -1,15 +1,17 @@
 // Keeps the last two seconds of samples and commands, so that a stop can be understood afterwards.
 //
-// The loop's thread records; once a stop has come and kAfterRecords more are in, the box holds still until
-// another thread has written it to a file. record() is RT-safe; the constructor and write() are not.
+// The loop's thread records; kAfterNs after a stop, or at the loop's end, the box holds still until another
+// thread has written it to a file. record() and finish() are RT-safe; the constructor and write() are not.
 #pragma once
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
 #include "common/device_messages/device_messages.h"
+#include "common/units.h"
 
 namespace bonemill {
 
@@ -24,13 +26,17 @@ struct BlackBoxRecord {
 
 class BlackBox {
   public:
-    static constexpr size_t kAfterRecords = 100;
+    static constexpr int64_t kBeforeNs = 2 * kNsPerSecond;
+    static constexpr int64_t kAfterNs = 100 * kNsPerMillisecond;
+    // Of a device that is faster, only one record in so long a time is kept.
+    static constexpr int64_t kShortestPeriodNs = 100 * kNsPerMicrosecond;
 
-    // Holds so many records, more than kAfterRecords.
-    explicit BlackBox(size_t records);
+    BlackBox();
 
     // `cause` is what holds the device now; a new one is a stop.
     void record(const BlackBoxRecord& record, StopCause cause) noexcept;
+    // Nothing more comes: a stop of just now is held as it is. For the thread that records.
+    void finish() noexcept;
 
     // The cause of the stop that is held; once isFull(), for any thread.
     StopCause cause() const noexcept { return stop_cause_; }
@@ -41,10 +47,14 @@ class BlackBox {
     void write(const std::filesystem::path& file);
 
   private:
+    void keep(const BlackBoxRecord& record, bool is_stop) noexcept;
+
     std::vector<BlackBoxRecord> records_;
     size_t next_ = 0;
     size_t count_ = 0;
-    size_t left_ = 0;  // records to come after the stop
+    int64_t due_ns_ = 0;        // of the next record that is kept
+    bool is_stopping_ = false;  // a stop has come, and what is after it still comes
+    int64_t stop_ns_ = 0;
     StopCause last_cause_ = StopCause::kNone;
     StopCause stop_cause_ = StopCause::kNone;  // of the stop under way
     std::atomic<bool> is_full_ = false;

@@ -17,11 +17,7 @@ void store(const Eigen::Vector3d& vector, double (&out)[3]) noexcept {
 }  // namespace
 
 DeviceLoop::DeviceLoop(HapticDevice& device, const DeviceLoopConfig& config)
-    : device_(device),
-      config_(config),
-      limiter_(config.wrench),
-      states_(config.states, config.motion),
-      black_box_(config.black_box_records) {
+    : device_(device), config_(config), limiter_(config.wrench), states_(config.states, config.motion) {
     adaptToDevice();
 }
 

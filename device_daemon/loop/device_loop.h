@@ -19,7 +19,6 @@ struct DeviceLoopConfig {
     WrenchLimits wrench;  // its norms are lowered to what the device gives
     MotionLimits motion;  // max_force is the device's
     SafetyConfig states;  // its silence is also that of haptic_server
-    size_t black_box_records = 2000;
 };
 
 class DeviceLoop {

@@ -3,7 +3,9 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
@@ -26,10 +28,11 @@ class DeviceDaemonTest : public testing::Test {
     // With further words after these.
     std::vector<std::string> commandLine(const std::string& scene_file,
                                          const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> words{
-            "device_daemon", "--device",         "simulated", "--scene",
-            scene_file,      "--best-effort-rt", "--session", std::to_string(session_)};
+        std::vector<std::string> words{"device_daemon",    "--scene",   scene_file,
+                                       "--best-effort-rt", "--session", std::to_string(session_)};
         words.insert(words.end(), more.begin(), more.end());
+        if (std::find(more.begin(), more.end(), "--device") == more.end())
+            words.insert(words.end(), {"--device", "simulated"});
         return words;
     }
 
@@ -66,6 +69,8 @@ class WallServer {
           }) {}
 
     uint64_t answers() const { return answers_; }
+    // A sample has said that the device was stopped.
+    bool hasSeenStop() const { return has_seen_stop_; }
     // Answers no more, and returns the flags of the newest sample.
     uint32_t end() {
         thread_ = {};
@@ -78,6 +83,7 @@ class WallServer {
         DeviceSample sample;
         if (!link_.waitForSample(monotonicNowNs() + 10 * kNsPerMillisecond) || !link_.readSample(sample))
             return;
+        if (sample.stop_cause != 0) has_seen_stop_ = true;
         WrenchCommand command{};
         command.stamp_ns = monotonicNowNs();
         command.answers_sequence = sample.sequence;
@@ -88,8 +94,17 @@ class WallServer {
 
     DeviceLink link_;
     std::atomic<uint64_t> answers_{0};
+    std::atomic<bool> has_seen_stop_{false};
     std::jthread thread_;
 };
+
+// The word for --device, of a controller that is there first, as a real one would be.
+std::string deviceOf(const test::Process& emulator) {
+    const std::string begin = "listening on ";
+    EXPECT_TRUE(test::waitFor([&] { return emulator.outSoFar().find('\n') != std::string::npos; }));
+    const std::string said = emulator.outSoFar();
+    return "ares:" + said.substr(begin.size(), said.find('\n') - begin.size());
+}
 
 std::string allOf(const test::Finished& finished) {
     return finished.out + finished.err;
@@ -158,20 +173,39 @@ TEST_F(DeviceDaemonTest, RefusesBadScenes) {
     expectSays(outside, "waypoint[0]");
 }
 
-// The controller is there first, as a real one would be.
 TEST_F(DeviceDaemonTest, RefusesAControllerThatHasNotTheAresOfTheScene) {
     const std::string other = std::string(kLongScene) + "device { stroke_mm: 140 max_actuator_force_n: 30 }";
     test::Process controller({"ares_emulator", "--scene", sceneFile(other), "--best-effort-rt"});
-    const std::string begin = "listening on 127.0.0.1:";
-    ASSERT_TRUE(test::waitFor([&] { return controller.outSoFar().find('\n') != std::string::npos; }));
-    const std::string port = std::to_string(std::stoi(controller.outSoFar().substr(begin.size())));
-    std::vector<std::string> words = commandLine(sceneFile(kLongScene), {"--wait-seconds", "20"});
-    words[2] = "ares:127.0.0.1:" + port;
-    const test::Finished finished = test::run(words);
+    const std::string device = deviceOf(controller);
+    const test::Finished finished =
+        test::run(commandLine(sceneFile(kLongScene), {"--device", device, "--wait-seconds", "20"}));
     EXPECT_EQ(finished.exit_code, 2);
-    expectSays(finished, "error: the controller at 127.0.0.1:" + port);
+    expectSays(finished, "error: the controller at " + device.substr(5));
     expectSays(finished, "its stroke is 140, field `device.stroke_mm` says 151");
     expectSays(finished, "largest actuator force is 30, field `device.max_actuator_force_n` says 50");
+}
+
+// It ends sooner than the file would be complete.
+TEST_F(DeviceDaemonTest, WritesAStopThatCameJustBeforeItsEnd) {
+    const test::TemporaryFolder stops;
+    const std::string file = sceneFile(kLongScene);
+    test::Process controller(
+        {"ares_emulator", "--scene", file, "--best-effort-rt", "--fault", "emergency-stop"});
+    const std::string device = deviceOf(controller);
+    test::Process daemon(commandLine(file, {"--device", device, "--stop-dir", stops.path()}));
+    WallServer server(session_, file);
+    ASSERT_TRUE(test::waitFor([&] {
+        for (int i = 0; i < 20 && !server.hasSeenStop(); ++i) usleep(1000);
+        return server.hasSeenStop();
+    }));
+    daemon.signal(SIGTERM);
+    const test::Finished finished = daemon.wait();
+    EXPECT_EQ(finished.exit_code, 0) << allOf(finished);
+    const std::filesystem::directory_iterator files(stops.path());
+    ASSERT_EQ(std::distance(begin(files), end(files)), 1) << allOf(finished);
+    EXPECT_NE(test::readFile(std::filesystem::directory_iterator(stops.path())->path())
+                  .find(",emergency stop,emergency stop,"),
+              std::string::npos);
 }
 
 TEST_F(DeviceDaemonTest, RefusesBadOptions) {

@@ -41,7 +41,6 @@ TEST(DeviceSetup, DefaultsOfTheSceneAreTheDefaultsOfTheCode) {
     EXPECT_EQ(setup.loop.states.engage_time, loop.states.engage_time);
     EXPECT_EQ(setup.loop.states.ramp_time, loop.states.ramp_time);
     EXPECT_EQ(setup.loop.states.silence, loop.states.silence);
-    EXPECT_EQ(setup.loop.black_box_records, 2100u);
 }
 
 TEST(DeviceSetup, TheHandBeginsAtTheFirstWaypoint) {
