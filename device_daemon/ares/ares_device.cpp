@@ -76,7 +76,8 @@ void AresDevice::fillPose(const JointReading& joints, DeviceReading& reading) co
     if (!has_pose_) return;
     reading.v_DT = twist_D_.head<3>();
     reading.w_DT = twist_D_.tail<3>();
-    reading.has_applied = wrench_share_ == 1;  // or it is less than was ordered, and rightly so
+    reading.has_applied = true;
+    reading.applied_share = wrench_share_;
     reading.applied_D = wrenchOf(guard_.location().J_inv, joints.forces - sent_.base);
 }
 
@@ -100,10 +101,10 @@ AresDevice::Sent AresDevice::compose(const DeviceOrder& order) noexcept {
     const LimitedForces limited = limitForces(base, wanted, config_.max_actuator_force);
     was_not_finite_ = !limited.is_finite || !order.wrench_hand_D.isFinite();
     if (was_not_finite_) return {};
-    wrench_share_ = limited.wanted_share;
+    wrench_share_ = has_pose_ ? limited.wanted_share : 0;
     return {.forces = limited.forces,
             .base = limited.base_share * base,
-            .push = (has_pose_ ? limited.wanted_share : 0.0) * order.wrench_hand_D.force};
+            .push = wrench_share_ * order.wrench_hand_D.force};
 }
 
 void AresDevice::fadeWalls(bool is_engaged) noexcept {

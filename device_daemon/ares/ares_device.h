@@ -5,7 +5,8 @@
 // workspace; otherwise it returns false, and `fault`, `status` and the buttons of the reading are filled all
 // the same. They are not if the joints are silent. Before calibration, and while the device homes, it returns
 // true with the last pose at rest and without kStatusCalibrated. `applied_D` is the measured answer to the
-// ordered wrench: what holds the weight and what the soft walls push is taken off.
+// share of the ordered wrench that the motors were told to give: what holds the weight and what the soft
+// walls push is taken off.
 //
 // write() sends, while the motors are wanted: what holds the weight and the ordered wrench, always; the soft
 // walls, while engaged. The first two go first, and the wrench is scaled to what they leave of each motor.

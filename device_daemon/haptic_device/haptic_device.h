@@ -36,6 +36,7 @@ struct DeviceReading {
     uint32_t fault_code = 0;                         // the device's own number of it
     bool has_applied = false;                        // the device measures what its motors give
     Wrench applied_D;                                // that, on the hand
+    double applied_share = 1;                        // of the order, that the device has its motors give
     double load = 0;                                 // of the hottest motor: 0 cold, 1 as hot as it may get
 };
 

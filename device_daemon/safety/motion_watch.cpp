@@ -45,7 +45,8 @@ StopCause MotionWatch::checkPower(const DeviceReading& reading, const Wrench& gi
 bool MotionWatch::isMismatched(const DeviceReading& reading, const Wrench& given_D, double dt) noexcept {
     if (!reading.has_applied) return false;
     const double share = shareOf(dt, kMismatchTime);
-    given_smooth_ += share * (given_D.force - given_smooth_);
+    const Eigen::Vector3d ordered = reading.applied_share * given_D.force;
+    given_smooth_ += share * (ordered - given_smooth_);
     applied_smooth_ += share * (reading.applied_D.force - applied_smooth_);
     const double allowed = kMismatchShare * given_smooth_.norm() + kMismatchFloor * limits_.max_force;
     const bool differs = !((applied_smooth_ - given_smooth_).norm() <= allowed);

@@ -83,6 +83,23 @@ TEST(AresDevice, TheHandFeelsTheOrderedWrench) {
     EXPECT_LT((bench.reading.applied_D.torque - order.wrench_hand_D.torque).norm(), 1e-3);
 }
 
+TEST(AresDevice, WhatIsAppliedAnswersTheShareThatTheMotorsWereToldToGive) {
+    AresDeviceConfig weak;
+    weak.max_actuator_force = 1;
+    AresBench bench(OperatorPath({}, 5e-5), weak);
+    const DeviceOrder order = engaged({0, 0, 10});
+    ASSERT_TRUE(bench.run(0.5, order));
+    EXPECT_NEAR(bench.device.wrenchShare(), 0.6, 0.01);  // six motors that push straight up
+    ASSERT_TRUE(bench.reading.has_applied);
+    EXPECT_NEAR(bench.reading.applied_share, bench.device.wrenchShare(), 1e-3);
+    EXPECT_LT(
+        (bench.reading.applied_D.force - bench.reading.applied_share * order.wrench_hand_D.force).norm(),
+        0.02);
+    ASSERT_TRUE(bench.run(0.1, {}));  // not wanted: nothing may come
+    ASSERT_TRUE(bench.reading.has_applied);
+    EXPECT_EQ(bench.reading.applied_share, 0);
+}
+
 TEST(AresDevice, HoldsTheWeightWheneverItIsPoweredAndKeepsItOutOfWhatIsApplied) {
     AresBench bench(OperatorPath({}, 5e-5), heavyArm());
     const Vector6d holding = actuatorForces(jacobian({}), holdingWrench(heavyArm().weight, {}));

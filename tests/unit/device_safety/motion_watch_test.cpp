@@ -113,6 +113,22 @@ TEST(MotionWatch, StopsMotorsThatDoNotDoWhatTheyAreTold) {
     }
 }
 
+TEST(MotionWatch, AMismatchIsOneAgainstWhatTheDeviceItselfHasOrdered) {
+    MotionWatch watch({.max_force = 20});
+    const Wrench given{{0, 0, 20}, {}};
+    DeviceReading limited;  // its motors cannot give more than 8 N of it, and do
+    limited.has_applied = true;
+    limited.applied_share = 0.4;
+    limited.applied_D.force = {0, 0, 8};
+    EXPECT_EQ(tripOf(watch, limited, given).second, StopCause::kNone);
+    watch.restart();
+    limited.applied_D.force = {0, 0, 0};
+    EXPECT_EQ(tripOf(watch, limited, given).second, StopCause::kForceMismatch);
+    watch.restart();
+    limited.applied_D.force = {0, 0, 20};
+    EXPECT_EQ(tripOf(watch, limited, given).second, StopCause::kForceMismatch);
+}
+
 TEST(MotionWatch, HotMotorsGetLessAndThenNothing) {
     EXPECT_EQ(MotionWatch::warmShare(0), 1);
     EXPECT_EQ(MotionWatch::warmShare(0.8), 1);
