@@ -1,5 +1,7 @@
 #include "device_daemon/driver/udp_device.h"
 
+#include <utility>
+
 #include "common/rt/clock.h"
 #include "device_daemon/driver/wire_status.h"
 #include "device_daemon/wire/drive_state.h"
@@ -7,7 +9,7 @@
 namespace bonemill {
 namespace {
 
-// An order to reset is said so often, because packets get lost. The controller acts on the first.
+// An order to reset is said so often, because packets get lost. The controller acts on the first that comes.
 constexpr int kResetRepeats = 10;
 
 }  // namespace
@@ -16,6 +18,7 @@ template <class Packets>
 auto UdpDevice<Packets>::read() noexcept -> const State* {
     const int64_t now_ns = monotonicNowNs();
     link_.poll(now_ns);
+    told_fault_ = std::exchange(newest_fault_, session().state().first_fault);
     return session().hasState() && !session().isLost(now_ns) ? &session().state() : nullptr;
 }
 
@@ -28,10 +31,12 @@ uint32_t UdpDevice<Packets>::status() const noexcept {
 template <class Packets>
 StopCause UdpDevice<Packets>::fault() const noexcept {
     const State& state = session().state();
-    const uint32_t faults = state.first_fault != 0 ? state.first_fault : state.active_faults;
-    if (faults != 0) return stopCauseOf(faults);
-    if (wire::driveStateOf(state.statusword) == wire::DriveState::kFault) return StopCause::kDeviceFault;
-    return session().tooManyLate() ? StopCause::kLatePackets : StopCause::kNone;
+    if (newest_fault_ != 0 && newest_fault_ != told_fault_) return stopCauseOf(newest_fault_);
+    uint32_t faults = state.first_fault | state.active_faults;
+    const bool has_fault = wire::driveStateOf(state.statusword) == wire::DriveState::kFault;
+    if (has_fault && faults == 0) faults = wire::kFaultInternal;
+    if (session().tooManyLate()) faults |= wire::kFaultLatePackets;
+    return stopCauseOf(faults);
 }
 
 template <class Packets>
@@ -48,12 +53,14 @@ void UdpDevice<Packets>::write(Command& command, const Wish& wish) noexcept {
 template <class Packets>
 uint16_t UdpDevice<Packets>::controlword(const Wish& wish) noexcept {
     const wire::DriveState state = wire::driveStateOf(session().state().statusword);
+    // What has not gone yet is not reset: whoever wants it asks again.
+    const bool is_over = state == wire::DriveState::kFault && session().state().active_faults == 0;
     if (wish.reset) resets_left_ = kResetRepeats;
-    if (resets_left_ > 0 && state == wire::DriveState::kFault) {
+    if (!is_over) resets_left_ = 0;
+    if (resets_left_ > 0) {
         --resets_left_;
         return wire::kControlFaultReset;
     }
-    resets_left_ = 0;
     return wire::controlwordTowards(wish.is_wanted && session().isTrusted(), state);
 }
 

@@ -36,6 +36,8 @@ class UdpDevice {
     const State* read() noexcept;
     // Of that state.
     uint32_t status() const noexcept;
+    // The first cause in the period in which it is heard, since who hears it latches it; from then on the
+    // gravest of all that are there or latched, so that none hides behind another.
     StopCause fault() const noexcept;
 
     // What the loop asks, of an order for joints or for a pose.
@@ -54,7 +56,9 @@ class UdpDevice {
     uint16_t controlword(const Wish& wish) noexcept;
 
     wire::HostLink<Packets> link_;
-    int resets_left_ = 0;  // commands that still carry the order to reset
+    uint32_t newest_fault_ = 0;  // the controller's first fault
+    uint32_t told_fault_ = 0;    // the same, in the period before
+    int resets_left_ = 0;        // commands that still carry the order to reset
 };
 
 extern template class UdpDevice<wire::JointPackets>;

@@ -11,13 +11,16 @@ namespace {
 
 constexpr uint16_t kVoltageEnabledBit = 1u << 4;
 
-// The first one that is there counts: what a user must know before the rest comes first.
+constexpr uint32_t kPassingFaults =
+    wire::kFaultOverTemperature | wire::kFaultOverSpeed | wire::kFaultWatchdog | wire::kFaultLatePackets;
+
+// The first one that is there counts, and the gravest comes first: what is broken, and what nobody has given
+// a name, before what passes.
 constexpr std::pair<uint32_t, StopCause> kCauses[] = {
     {wire::kFaultEmergencyStop, StopCause::kEmergencyStop},
+    {~kPassingFaults, StopCause::kDeviceFault},
     {wire::kFaultOverTemperature, StopCause::kOverTemperature},
     {wire::kFaultOverSpeed, StopCause::kSpeed},
-    {wire::kFaultEncoder | wire::kFaultAmplifier | wire::kFaultSdk | wire::kFaultInternal,
-     StopCause::kDeviceFault},
     {wire::kFaultWatchdog, StopCause::kDeviceLost},
     {wire::kFaultLatePackets, StopCause::kLatePackets},
 };
@@ -40,11 +43,10 @@ uint32_t deviceStatusOf(uint32_t inputs, uint16_t statusword, bool is_trusted) n
 }
 
 StopCause stopCauseOf(uint32_t faults) noexcept {
-    if (faults == 0) return StopCause::kNone;
     for (const auto& [bits, cause] : kCauses) {
         if (faults & bits) return cause;
     }
-    return StopCause::kDeviceFault;
+    return StopCause::kNone;
 }
 
 uint32_t buttonsOf(uint32_t inputs) noexcept {

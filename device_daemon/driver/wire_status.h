@@ -13,7 +13,7 @@ namespace bonemill {
 // Returns the DeviceStatus bits. `is_trusted`: the link has proved itself; before that nothing is powered.
 uint32_t deviceStatusOf(uint32_t inputs, uint16_t statusword, bool is_trusted) noexcept;
 
-// Returns the cause that stops the device, of Fault bits.
+// Returns the cause that stops the device, of Fault bits: of several the gravest. kNone without any.
 StopCause stopCauseOf(uint32_t faults) noexcept;
 
 // Returns the Button bits of the inputs.

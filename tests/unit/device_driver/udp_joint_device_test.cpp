@@ -124,6 +124,52 @@ TEST_F(UdpJointDeviceTest, NamesFaultsAndResetsThem) {
     }
 }
 
+TEST_F(UdpJointDeviceTest, AGraverFaultDoesNotHideBehindTheFirst) {
+    order = {.is_wanted = true};
+    ASSERT_TRUE(runUntil([&] { return bool(reading.status & kStatusDriving); }));
+    controller.faults = wire::kFaultOverTemperature;
+    ASSERT_TRUE(runUntil([&] { return reading.fault != StopCause::kNone; }));
+    EXPECT_EQ(reading.fault, StopCause::kOverTemperature);
+    controller.faults |= wire::kFaultAmplifier;
+    ASSERT_TRUE(runUntil([&] { return reading.fault != StopCause::kOverTemperature; }));
+    EXPECT_EQ(reading.fault, StopCause::kDeviceFault);
+    EXPECT_EQ(reading.fault_code, uint32_t(wire::kFaultOverTemperature)) << "the first one stays latched";
+    controller.faults = 0;
+    ASSERT_TRUE(runUntil([&] { return reading.fault != StopCause::kDeviceFault; }));
+    EXPECT_EQ(reading.fault, StopCause::kOverTemperature);
+}
+
+TEST_F(UdpJointDeviceTest, TellsTheFirstOfTwoFaultsFirstAlsoWhenItHearsOfThemTogether) {
+    order = {.is_wanted = true};
+    ASSERT_TRUE(runUntil([&] { return bool(reading.status & kStatusDriving); }));
+    controller.faults = wire::kFaultOverTemperature;
+    controller.period();
+    controller.faults |= wire::kFaultEncoder;
+    controller.period();
+    for (const StopCause cause : {StopCause::kOverTemperature, StopCause::kDeviceFault}) {
+        ASSERT_TRUE(runUntil([] { return true; }));
+        EXPECT_EQ(reading.fault, cause);
+    }
+}
+
+TEST_F(UdpJointDeviceTest, ResetsWhatIsOverOnly) {
+    order = {.is_wanted = true};
+    ASSERT_TRUE(runUntil([&] { return bool(reading.status & kStatusDriving); }));
+    controller.faults = wire::kFaultAmplifier;
+    ASSERT_TRUE(runUntil([&] { return reading.fault != StopCause::kNone; }));
+    order.reset = true;
+    runUntil([&, turns = 0]() mutable {
+        EXPECT_FALSE(session().newestCommand().controlword & wire::kControlFaultReset);
+        order.reset = false;
+        return ++turns == 5;
+    });
+    controller.faults = 0;
+    runUntil([turns = 0]() mutable { return ++turns == 50; });
+    EXPECT_EQ(reading.fault, StopCause::kDeviceFault) << "the order of then does not count";
+    order.reset = true;
+    EXPECT_TRUE(runUntil([&] { return reading.fault == StopCause::kNone; }));
+}
+
 TEST_F(UdpJointDeviceTest, SaysWhenTheDeviceIsWithoutPowerOrInEmergencyStopOrLeaves) {
     ASSERT_TRUE(runUntil([&] { return bool(reading.status & kStatusPowered); }));
     controller.is_powered = false;
