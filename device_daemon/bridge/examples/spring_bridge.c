@@ -16,15 +16,18 @@
 #include <unistd.h>
 
 enum { kDescribeRequest = 3, kDescribe = 4, kPoseState = 5, kPoseCommand = 6 };
+enum { kGivesForce = 1, kIsSimulated = 16 }; /* DEVICE: an arm with a motor or a hand is not simulated */
 enum { kOff = 0x40, kReady = 0x21, kSwitchedOn = 0x23, kEnabled = 0x27, kFault = 0x08 };
 
 static volatile sig_atomic_t shall_end = 0;
 static struct sockaddr_in host;
 static uint32_t session, sent, newest; /* the session, and the last packet's number of either side */
 static uint32_t watchdog_us = 5000;
-static uint64_t heard_us;              /* when the host was last heard; 0: never */
+static uint64_t heard_us, commanded_us; /* when the host was last heard, and commanded last; 0: never */
 static unsigned status = kOff, faults, first_fault;
 static float wrench[6];
+static const double kMaxForce = 10; /* N */
+static double share;                /* of the wrench that is given: it comes and goes within 20 ms */
 
 static void onSignal(int number) { (void)number; shall_end = 1; }
 
@@ -62,10 +65,10 @@ static void sendPacket(int udp, uint8_t* packet, int type, uint16_t length) {
 
 static void describe(int udp) {
     uint8_t packet[160] = {0};
-    put32(packet + 20, 1u | 16u); /* it gives force; it is simulated */
+    put32(packet + 20, kGivesForce | kIsSimulated);
     strcpy((char*)packet + 32, "spring (example in C)");
-    putD(packet + 80, 10);    /* N */
-    putD(packet + 112, 0.1);  /* workspace radius, m */
+    putD(packet + 80, kMaxForce);
+    putD(packet + 112, 0.1); /* workspace radius, m */
     put32(packet + 144, watchdog_us);
     put32(packet + 148, 1000); /* Hz */
     put32(packet + 152, 5);    /* somebody's own bridge */
@@ -79,6 +82,8 @@ static void obey(const uint8_t* packet) { /* the state machine of CiA 402, as fa
     last = control;
     memcpy(wrench, packet + 48, sizeof wrench);
     for (int i = 0; i < 6; ++i) if (!isfinite(wrench[i])) memset(wrench, 0, sizeof wrench);
+    const double x = wrench[0], y = wrench[1], z = wrench[2], force = sqrt(x * x + y * y + z * z);
+    for (int i = 0; i < 3; ++i) if (force > kMaxForce) wrench[i] *= (float)(kMaxForce / force);
     if (status == kFault) {
         if (resets && !faults) { status = kOff; first_fault = 0; }
     } else if (!(control & 2) || !(control & 4)) status = kOff;
@@ -102,9 +107,12 @@ static void take(int udp, const uint8_t* packet, size_t length, struct sockaddr_
         watchdog_us = wish_us < 2000 ? 2000 : wish_us > 30000 ? 30000 : wish_us;
         host = from;
         session = u32(packet + 8);
+        if (!is_ours) commanded_us = 0;
         describe(udp);
-    } else if (packet[5] == kPoseCommand && length == 80 && is_ours && is_new) obey(packet);
-    else return;
+    } else if (packet[5] == kPoseCommand && length == 80 && is_ours && is_new) {
+        obey(packet);
+        commanded_us = nowUs();
+    } else return;
     newest = number;
     heard_us = nowUs();
 }
@@ -116,9 +124,11 @@ static void sendState(int udp, const double position[3]) {
     const uint64_t now_ns = nowUs() * 1000u;
     memcpy(packet + 24, &now_ns, 8);
     put16(packet + 32, (uint16_t)(status | 0x210)); /* it has power, and obeys the network */
-    packet[34] = 10;                                /* mode: torque */
+    packet[34] = status == kEnabled ? 10 : 0;       /* mode: torque, or none */
     put32(packet + 36, first_fault);
     put32(packet + 40, faults);
+    const uint64_t age_10us = (nowUs() - commanded_us) / 10;
+    put16(packet + 44, commanded_us && age_10us < 65535 ? (uint16_t)age_10us : 65535);
     for (int i = 0; i < 3; ++i) putD(packet + 48 + 8 * i, position[i]);
     putD(packet + 72, 1); /* it does not turn */
     for (int i = 0; i < 6; ++i) putF(packet + 104 + 4 * i, NAN); /* the host differentiates */
@@ -152,8 +162,9 @@ int main(int argc, char** argv) {
         const int is_silent = !heard_us || nowUs() - heard_us > watchdog_us;
         faults = is_silent && (faults || (status != kOff && status != kFault)) ? 1 : 0;
         if (faults && status != kFault) { status = kFault; first_fault = faults; }
-        for (int i = 0; i < 3; ++i) { /* DEVICE: read the pose, give the force; only while it is enabled */
-            const double force = status == kEnabled ? wrench[i] : 0;
+        share = status == kEnabled ? fmin(1, share + 0.05) : fmax(0, share - 0.05);
+        for (int i = 0; i < 3; ++i) { /* DEVICE: read the pose, give the share of the force */
+            const double force = share * wrench[i];
             velocity[i] += 0.001 * (force - 200 * position[i] - 2 * velocity[i]) / 0.1;
             position[i] += 0.001 * velocity[i];
         }

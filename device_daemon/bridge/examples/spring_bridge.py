@@ -16,6 +16,8 @@ import zlib
 DESCRIBE_REQUEST, DESCRIBE, POSE_STATE, POSE_COMMAND = 3, 4, 5, 6
 LENGTHS = {DESCRIBE_REQUEST: 40, POSE_COMMAND: 80}
 OFF, READY, SWITCHED_ON, ENABLED, FAULT = 0x40, 0x21, 0x23, 0x27, 0x08
+GIVES_FORCE, IS_SIMULATED = 1, 16  # DEVICE: an arm with a motor or a hand is not simulated
+MAX_FORCE = 10  # N
 NAN = math.nan
 
 
@@ -26,7 +28,8 @@ class SpringBridge:
         self.udp.setblocking(False)
         self.host, self.session, self.sent, self.newest, self.heard = None, 0, 0, 0, -math.inf
         self.status, self.faults, self.first_fault, self.last_control = OFF, 0, 0, 0
-        self.wrench = (0.0,) * 6
+        self.wrench, self.commanded = (0.0,) * 3, -math.inf
+        self.share = 0  # of the wrench that is given: it comes and goes within 20 ms
         self.position, self.velocity = [0.0] * 3, [0.0] * 3
         self.watchdog = 0.005  # s
         self.shall_end = False
@@ -38,15 +41,18 @@ class SpringBridge:
         self.udp.sendto(packet + struct.pack("<I", zlib.crc32(packet)), self.host)
 
     def describe(self):
-        simulated_force, somebodys_own = 1 | 16, 5
-        self.send(DESCRIBE, struct.pack("<IIQ48s8dIII", 0, simulated_force, 0, b"spring (example in Python)", 10, 0, 0, 0,
-                                        0.1, 0, 0, 0, round(self.watchdog * 1e6), 1000, somebodys_own))
+        somebodys_own = 5
+        self.send(DESCRIBE, struct.pack("<IIQ48s8dIII", 0, GIVES_FORCE | IS_SIMULATED, 0, b"spring (example in Python)",
+                                        MAX_FORCE, 0, 0, 0, 0.1, 0, 0, 0, round(self.watchdog * 1e6), 1000, somebodys_own))
 
     def send_state(self):
-        closed_enabled_homed, leaving, powered_remote, torque = 1 | 2 | 4, 32, 0x210, 10
+        closed_enabled_homed, leaving, powered_remote = 1 | 2 | 4, 32, 0x210
+        torque_or_none = 10 if self.status == ENABLED else 0
+        age_10us = min((time.monotonic() - self.commanded) * 1e5, 65535)
         self.send(POSE_STATE, struct.pack(
             "<IIQHBBIIHH7d6fIf6fI", self.newest, closed_enabled_homed | (leaving if self.shall_end else 0),
-            time.monotonic_ns(), self.status | powered_remote, torque, 0, self.first_fault, self.faults, 0, 0,
+            time.monotonic_ns(), self.status | powered_remote, torque_or_none, 0, self.first_fault, self.faults,
+            int(age_10us), 0,
             *self.position, 1, 0, 0, 0, *[NAN] * 6, 0, 0, *[NAN] * 6, 0))
 
     def obey(self, packet):
@@ -55,7 +61,11 @@ class SpringBridge:
         resets = control & 0x80 and not self.last_control & 0x80
         self.last_control = control
         wrench = struct.unpack_from("<6f", packet, 48)
-        self.wrench = wrench if all(map(math.isfinite, wrench)) else (0.0,) * 6
+        if not all(map(math.isfinite, wrench)):
+            wrench = (0.0,) * 6
+        fitting = MAX_FORCE / max(MAX_FORCE, math.hypot(*wrench[:3]))
+        self.wrench = tuple(fitting * force for force in wrench[:3])
+        self.commanded = time.monotonic()
         if self.status == FAULT:
             if resets and not self.faults:
                 self.status, self.first_fault = OFF, 0
@@ -79,7 +89,7 @@ class SpringBridge:
         if kind == DESCRIBE_REQUEST and not is_ours:
             if time.monotonic() - self.heard <= self.watchdog:
                 return  # there is another host
-            self.host, self.session = source, session
+            self.host, self.session, self.commanded = source, session, -math.inf
             wish_us, = struct.unpack_from("<I", packet, 24)
             self.watchdog = min(max(wish_us or 5000, 2000), 30000) * 1e-6
             self.status = self.status if self.status == FAULT else OFF
@@ -104,8 +114,9 @@ class SpringBridge:
         except BlockingIOError:
             pass
         self.watch()
-        for i in range(3):  # DEVICE: read the pose, give the force; only while it is enabled
-            force = self.wrench[i] if self.status == ENABLED else 0
+        self.share = min(1, self.share + 0.05) if self.status == ENABLED else max(0, self.share - 0.05)
+        for i in range(3):  # DEVICE: read the pose, give the share of the force
+            force = self.share * self.wrench[i]
             self.velocity[i] += 0.001 * (force - 200 * self.position[i] - 2 * self.velocity[i]) / 0.1
             self.position[i] += 0.001 * self.velocity[i]
         if self.host:

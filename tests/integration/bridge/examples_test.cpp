@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include "common/device_messages/device_messages.h"
 #include "tests/integration/bridge/bridge_host.h"
 #include "tests/support/places.h"
 
@@ -30,6 +31,7 @@ TEST_P(ExampleBridge, MovesUnderTheCommandedForceAndLeavesInOrder) {
     EXPECT_EQ(host.description().max_force, 10);
     EXPECT_EQ(host.description().workspace_radius, 0.1);
     EXPECT_EQ(host.description().rate_hz, 1000u);
+    EXPECT_EQ(host.description().abilities, kAbilityForce | kAbilitySimulated);
     EXPECT_EQ(host.state().q_DT[0], 1);
     host.want(true, {2, 0, -1, 0, 0, 0});
     EXPECT_TRUE(host.runUntil([&] { return host.drive() == DriveState::kOperationEnabled; }));
@@ -41,6 +43,29 @@ TEST_P(ExampleBridge, MovesUnderTheCommandedForceAndLeavesInOrder) {
     bridge.signal(SIGTERM);
     EXPECT_TRUE(host.runUntil([&] { return host.state().inputs & wire::kInputLeaving; }));
     EXPECT_EQ(bridge.wait().exit_code, 0);
+}
+
+// 30 N would be 0.15 m; what it describes is 10 N. It swings before it rests.
+TEST_P(ExampleBridge, GivesNoMoreThanItDescribes) {
+    test::Process bridge(command());
+    BridgeHost host(bridge);
+    host.want(true, {0, 30, 0, 0, 0, 0});
+    int resting = 0;
+    EXPECT_TRUE(host.runUntil([&] {
+        resting = std::abs(host.state().p_DT[1] - 0.05) < 0.002 ? resting + 1 : 0;
+        return resting >= 100;
+    }));
+}
+
+TEST_P(ExampleBridge, SaysWhichModeIsInForceAndHowOldTheCommandIs) {
+    test::Process bridge(command());
+    BridgeHost host(bridge);
+    ASSERT_TRUE(host.runUntil([&] { return host.hasState(); }));
+    EXPECT_EQ(host.state().mode, wire::kModeNone);
+    host.want(true);
+    ASSERT_TRUE(host.runUntil([&] { return host.drive() == DriveState::kOperationEnabled; }));
+    EXPECT_EQ(host.state().mode, wire::kModeTorque);
+    EXPECT_LT(host.state().command_age_10us, 65535);
 }
 
 TEST_P(ExampleBridge, GivesNoForceToASilentHostAndTakesAnother) {
