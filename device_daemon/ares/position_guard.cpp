@@ -1,7 +1,9 @@
 #include "device_daemon/ares/position_guard.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "common/units.h"
 #include "device_daemon/kinematics/singularity.h"
 
 namespace bonemill {
@@ -40,7 +42,7 @@ bool PositionGuard::take(const JointReading& joints, const Eigen::Vector3d& push
         cause_ = StopCause::kImplausiblePose;
         return false;
     }
-    elapsed = std::exchange(since_finite_, 0.0);
+    elapsed = sinceLast(joints);
     cause_ = is_trusted_ ? doubtOf(joints.q, push, elapsed) : StopCause::kNone;
     if (cause_ != StopCause::kNone) return distrust(cause_);
     if (!is_trusted_ && !begin(joints.q)) return distrust(StopCause::kImplausiblePose);
@@ -54,6 +56,14 @@ bool PositionGuard::take(const JointReading& joints, const Eigen::Vector3d& push
     const Vector6d& differences = speed_.update(joints.q, elapsed);
     q_dot_ = joints.q_dot.isZero(0) ? differences : joints.q_dot;
     return cause_ == StopCause::kNone;
+}
+
+// Packets come late or get lost: what the loop has between two of them may be far less than what lies between
+// their readings. A clock that stands still, or was set back, counts for nothing.
+double PositionGuard::sinceLast(const JointReading& joints) noexcept {
+    const double by_joints =
+        (double(joints.taken_ns) - double(std::exchange(taken_ns_, joints.taken_ns))) / kNsPerSecond;
+    return std::max(std::exchange(since_finite_, 0.0), by_joints);
 }
 
 void PositionGuard::reset() noexcept {

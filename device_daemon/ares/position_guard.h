@@ -39,8 +39,9 @@ class PositionGuard {
   public:
     PositionGuard(const AresKinematics& kinematics, const PositionGuardConfig& config) noexcept;
 
-    // Takes the next reading, `elapsed` s after the last one; `push` (N) is what the motors were told to
-    // push the hand with in that time. True says that location() is where the handle is.
+    // Takes the next reading, `elapsed` s after the last one by the loop's clock; where the joints say when
+    // they were read, and that is longer, it counts. `push` (N) is what the motors were told to push the hand
+    // with in that time. True says that location() is where the handle is.
     bool take(const JointReading& joints, const Eigen::Vector3d& push, double elapsed) noexcept;
     // Gives the positions another chance.
     void reset() noexcept;
@@ -54,6 +55,7 @@ class PositionGuard {
     const Vector6d& sliderSpeed() const noexcept { return q_dot_; }
 
   private:
+    double sinceLast(const JointReading& joints) noexcept;
     bool begin(const Vector6d& q) noexcept;
     StopCause doubtOf(const Vector6d& q, const Eigen::Vector3d& push, double elapsed) noexcept;
     StopCause refusalOf(const Location& location) const noexcept;
@@ -70,7 +72,8 @@ class PositionGuard {
     SliderSpeed speed_;
     Vector6d q_dot_ = Vector6d::Zero();
     Location location_;
-    double since_finite_ = 0;  // s, since the last reading of numbers
+    double since_finite_ = 0;  // s by the loop's clock, since the last reading of numbers
+    int64_t taken_ns_ = 0;     // by the joints' clock: that reading
     bool is_trusted_ = false;
     bool is_distrusted_ = false;  // until a reset
     StopCause cause_ = StopCause::kNone;

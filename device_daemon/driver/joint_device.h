@@ -19,7 +19,8 @@ struct JointReading {
     uint32_t status = 0;                 // DeviceStatus bits
     StopCause fault = StopCause::kNone;
     uint32_t fault_code = 0;
-    double load = 0;  // of the hottest motor: 0 cold, 1 as hot as it may get
+    double load = 0;       // of the hottest motor: 0 cold, 1 as hot as it may get
+    int64_t taken_ns = 0;  // when q was read, by any clock that runs evenly; 0 if that is not known
 };
 
 // It is a DeviceOrder in the joints.

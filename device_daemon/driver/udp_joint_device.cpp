@@ -29,6 +29,7 @@ bool UdpJointDevice::readJoints(double, JointReading& reading) noexcept {
     reading.fault = device_.fault();
     reading.fault_code = state->first_fault;
     reading.load = loadOf(state->temperature_dc);
+    reading.taken_ns = int64_t(state->controller_ns);
     return true;
 }
 

@@ -138,6 +138,58 @@ TEST(EncoderFaults, ASilentTimeIsNoJump) {
     EXPECT_TRUE(bench.run(0.2, engaged()));
 }
 
+// The joints of a controller whose packets come late, or not at all: each holds the joints of one period, and
+// the loop's own time between two of them says little.
+class PacketJoints final : public JointDevice {
+  public:
+    explicit PacketJoints(AresEmulator& emulator) : emulator_(emulator) {}
+
+    bool hasClock() const noexcept override { return true; }
+    bool waitForSample(int64_t) noexcept override { return true; }
+    bool readJoints(double, JointReading& reading) noexcept override {
+        reading = newest_;
+        return true;
+    }
+    void applyForces(const JointOrder& order) noexcept override { emulator_.applyForces(order); }
+
+    void come() {
+        taken_ns_ += 1'000'000;
+        emulator_.readJoints(kPeriod, newest_);
+        newest_.taken_ns = taken_ns_;
+    }
+
+  private:
+    AresEmulator& emulator_;
+    JointReading newest_;
+    int64_t taken_ns_ = 1;
+};
+
+TEST(EncoderFaults, PacketsThatComeLateAreNoJump) {
+    // A quick move, 0.3 m/s at its quickest.
+    const OperatorPath path({{0, {}, 0}, {0.2, {{0, 0.02, 0.035}, Eigen::Quaterniond::Identity()}, 0}});
+    AresEmulator emulator(AresKinematics{}, {}, {}, path);
+    emulator.startScenario();
+    PacketJoints packets(emulator);
+    AresDevice device(packets, {});
+    DeviceReading reading;
+    double fastest = 0;
+    for (int i = 0; i < 100; ++i) {
+        // One comes 0.95 ms late, the next one in time, and every other time one does not come at all.
+        packets.come();
+        ASSERT_TRUE(device.read(1.95e-3, reading)) << nameOf(reading.fault);
+        if (i % 2) {
+            ASSERT_TRUE(device.read(1e-3, reading));
+            packets.come();
+        }
+        packets.come();
+        ASSERT_TRUE(device.read(0.05e-3, reading)) << nameOf(reading.fault) << " at " << i;
+        device.write(engaged());
+        EXPECT_LT((reading.v_DT - emulator.state().v_DT).norm(), 0.05);
+        fastest = std::max(fastest, emulator.state().v_DT.norm());
+    }
+    EXPECT_GT(fastest, 0.25);
+}
+
 class HomedBench : public AresBench {
   public:
     HomedBench() : AresBench(OperatorPath({}, kTremor), configWithHome()) {}

@@ -52,7 +52,10 @@ TEST_F(UdpJointDeviceTest, ReadsWhatTheControllerSays) {
         controller.state.force[i] = 2.0f * float(i);
         controller.state.temperature_dc[i] = 500;
     }
+    const int64_t before_ns = monotonicNowNs();
     ASSERT_TRUE(runUntil([&] { return is_heard && (reading.status & kStatusPowered); }));
+    EXPECT_GE(reading.taken_ns, before_ns);
+    EXPECT_LE(reading.taken_ns, monotonicNowNs());
     EXPECT_EQ(reading.q[5], 0.05);
     EXPECT_EQ(reading.q_dot[4], 2);
     EXPECT_EQ(reading.forces[3], 6);
