@@ -35,7 +35,7 @@ class MotionWatch {
     explicit MotionWatch(const MotionLimits& limits = {}) noexcept : limits_(limits) {}
     void setLimits(const MotionLimits& limits) noexcept { limits_ = limits; }
 
-    // Forgets what was: the device engages.
+    // Forgets what was: the device engages, or its motors are off.
     void restart() noexcept;
     // Called once per period while the device is engaged, with what the device says and what it was given in
     // the period before. Returns the limit that is passed, or kNone.

@@ -67,9 +67,13 @@ void SafetyStates::update(const SafetyInput& input) noexcept {
 StopCause SafetyStates::causeOf(const SafetyInput& input) noexcept {
     if (input.has_status && (input.reading.status & kStatusEmergencyStop)) return StopCause::kEmergencyStop;
     if (input.reading.fault != StopCause::kNone) return input.reading.fault;
-    if (!input.is_heard || !(input.reading.status & kStatusDriving)) return StopCause::kNone;
+    if (!input.is_heard) return StopCause::kNone;
     // What was not heard meanwhile has pushed, too.
     const double dt = std::exchange(unwatched_, 0.0);
+    if (!(input.reading.status & kStatusDriving)) {  // they push nothing, and what they did is over
+        watch_.restart();
+        return StopCause::kNone;
+    }
     if (state_ == SafetyState::kEngaged) return watch_.check(input.reading, input.given, dt);
     return watch_.checkMotors(input.reading, input.given, dt);
 }

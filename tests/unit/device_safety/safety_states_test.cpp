@@ -245,6 +245,24 @@ TEST(SafetyStates, AMotorThatPushesUntoldIsAFaultInEveryState) {
     }
 }
 
+// An arm that is heavy is held up from the first order on, and its motors need some ms until they do.
+TEST(SafetyStates, MotorsThatHaveJustBeenSwitchedOnMayNeedSomeTime) {
+    for (const bool was_engaged : {false, true}) {
+        States s;
+        if (was_engaged) s.engage();
+        s.in.reading.status &= ~uint32_t(kStatusDriving);
+        s.run(3);
+        s.in.reading.status |= kStatusDriving;
+        s.in.reading.has_applied = true;
+        for (double missing = 20; missing > 0.01; missing *= 0.7) {
+            s.in.reading.applied_D.force = {0, 0, -missing};
+            ASSERT_EQ(s.run(), SafetyState::kReady) << missing << " N, " << nameOf(s.states.cause());
+        }
+        s.in.reading.applied_D.force = {0, 0, -20};
+        EXPECT_EQ(s.run(0.2), SafetyState::kFault);
+    }
+}
+
 TEST(SafetyStates, AfterAPauseOfTheLoopTheForceStillFadesIn) {
     States s;
     s.run();
