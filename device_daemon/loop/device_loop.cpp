@@ -30,7 +30,7 @@ void DeviceLoop::adaptToDevice() noexcept {
     limits.max_torque = std::min(limits.max_torque, device.max_torque);
     limiter_.setLimits(limits);
     MotionLimits motion = config_.motion;
-    motion.max_force = limits.max_force;
+    motion.max_force = device.max_force;
     states_.setMotionLimits(motion);
     abilities_ = device.abilities;
     // A simulated hand without a switch hurts nobody; every other device needs one, or its user's word.

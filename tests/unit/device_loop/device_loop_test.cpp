@@ -94,6 +94,18 @@ TEST(DeviceLoop, AnotherDeviceBringsItsOwnLimits) {
     EXPECT_EQ(rig.device.order.wrench_hand_D.torque, Eigen::Vector3d::Zero());
 }
 
+// How exactly motors measure their force goes with what they can give, not with what a scene lets them give.
+TEST(DeviceLoop, AGentleSceneMakesNoFaultOfWhatAStrongDeviceMeasures) {
+    for (const double off : {0.8, 4.0}) {
+        LoopRig rig({.wrench = {.max_force = 2}});
+        rig.engage();
+        rig.device.reading.has_applied = true;
+        rig.device.reading.applied_D.force = {0, off, rig.force()};
+        rig.run(0.2);
+        EXPECT_EQ(rig.state(), off < 1 ? SafetyState::kEngaged : SafetyState::kFault) << off;
+    }
+}
+
 TEST(DeviceLoop, OnlyASimulatedDeviceMayLackTheSwitch) {
     LoopRig rig;
     rig.server = [](WrenchCommand& c) { LoopRig::setForce(c, 0); };
