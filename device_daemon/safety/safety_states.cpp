@@ -59,7 +59,9 @@ void SafetyStates::update(const SafetyInput& input) noexcept {
     if (input.has_status) {
         was_enabled_ = input.reading.status & kStatusEnabled;
         was_reset_pressed_ = input.reading.status & kStatusResetPressed;
-        warm_share_ = MotionWatch::warmShare(input.reading.load);
+        const double step = std::min(dt, kLongestStep) / kWarmTime;
+        const double share = MotionWatch::warmShare(input.reading.load);
+        warm_share_ = std::clamp(share, warm_share_ - step, warm_share_ + step);
     }
     moveFactor(input);
 }

@@ -42,6 +42,9 @@ class SafetyStates {
     // A device needs some periods to clear its own faults: for so long (s) a reset waits, and asks again.
     static constexpr double kResetTime = 0.3;
     static constexpr double kResetEvery = 0.05;
+    // The share of hot motors would go from 1 to 0, or back, in this time (s): no motor's heat is quicker,
+    // but the flicker of its thermometer is.
+    static constexpr double kWarmTime = 1;
     static constexpr double kLongestStep = 5e-3;  // s, of a ramp upwards, after a pause of the loop
 
     explicit SafetyStates(const SafetyConfig& config = {}, const MotionLimits& limits = {}) noexcept
@@ -89,12 +92,12 @@ class SafetyStates {
     bool was_reset_pressed_ = true;
     bool waits_for_small_wrench_ = false;
     bool has_reset_ = false;
-    double reset_for_ = 0;  // s that a reset still waits
-    double asked_for_ = 0;  // s since the device was asked to clear its faults
-    double unwatched_ = 0;  // s since the motors were watched last
-    double way_ = 0;        // of the ramp, 0 to 1
-    double factor_ = 0;     // smooth over it
-    double warm_share_ = 1;
+    double reset_for_ = 0;   // s that a reset still waits
+    double asked_for_ = 0;   // s since the device was asked to clear its faults
+    double unwatched_ = 0;   // s since the motors were watched last
+    double way_ = 0;         // of the ramp, 0 to 1
+    double factor_ = 0;      // smooth over it
+    double warm_share_ = 1;  // of hot motors
 };
 
 }  // namespace bonemill

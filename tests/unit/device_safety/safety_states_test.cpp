@@ -291,11 +291,25 @@ TEST(SafetyStates, HotMotorsAreSparedBeforeTheyStop) {
     States s;
     ASSERT_EQ(s.engage(), SafetyState::kEngaged);
     s.in.reading.load = 0.9;
-    s.run();
+    s.run(SafetyStates::kWarmTime);
     EXPECT_NEAR(s.states.factor(), 0.65, 1e-9);
     s.in.reading.load = 1.0;
     EXPECT_EQ(s.run(), SafetyState::kProtectiveStop);
     EXPECT_EQ(s.states.cause(), StopCause::kOverTemperature);
+}
+
+// A thermometer that flickers, or lies once, must not be felt.
+TEST(SafetyStates, AThermometerThatFlickersMakesNoSteps) {
+    States s;
+    ASSERT_EQ(s.engage(), SafetyState::kEngaged);
+    double before = s.states.factor();
+    for (int i = 0; i < 3000; ++i) {
+        s.in.reading.load = i % 500 == 0 ? 0.99 : 0.88 + 0.02 * (i % 2);
+        s.run();
+        ASSERT_LE(std::abs(s.states.factor() - before), kStatesDt / SafetyStates::kWarmTime + 1e-12) << i;
+        before = s.states.factor();
+    }
+    EXPECT_NEAR(before, 0.65, 0.08);
 }
 
 }  // namespace
