@@ -18,7 +18,17 @@ bool ControllerLink<Packets>::poll(int64_t now_ns) noexcept {
         if (taken == Taken::kRequest) socket_.send(bytesOf(session_.sealDescription()), session_.host());
         has_command |= taken == Taken::kCommand;
     }
+    keepStrangersOut();
     return has_command;
+}
+
+// Nobody else is listened to while there is a host, so nobody shall stand in its way either.
+template <class Packets>
+void ControllerLink<Packets>::keepStrangersOut() noexcept {
+    const auto host = session_.hasHost() ? std::optional(session_.host()) : std::nullopt;
+    if (host == admitted_) return;
+    socket_.admitOnly(host);
+    admitted_ = host;
 }
 
 template <class Packets>

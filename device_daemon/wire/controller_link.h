@@ -31,8 +31,11 @@ class ControllerLink {
     Endpoint local() const noexcept { return socket_.local(); }
 
   private:
+    void keepStrangersOut() noexcept;
+
     UdpSocket socket_;
     ControllerSession<Packets> session_;
+    std::optional<Endpoint> admitted_;  // the only one that the kernel lets in, if there is one
 };
 
 extern template class ControllerLink<JointPackets>;

@@ -38,12 +38,15 @@ Taken ControllerSession<Packets>::takeRequest(std::span<const std::byte> bytes, 
         flow_.reject(has_host_ && source == host_);
         return Taken::kNothing;
     }
-    const bool is_of_session = has_host_ && source == host_ && request->header.session == session_;
+    const bool is_host = has_host_ && source == host_;
+    const bool is_of_session = is_host && request->header.session == session_;
     if (is_of_session) {  // the answer was lost
         return flow_.skip(request->header.sequence) ? Taken::kRequest : Taken::kNothing;
     }
-    // While the drive is armed, the watchdog has yet to say that the host before has gone.
-    if ((has_host_ && !isSilent(now_ns)) || isArmed(drive_.state())) {
+    // A host that is silent may ask again until it is forgotten; a stranger shall not be quicker. While the
+    // drive is armed, the watchdog has yet to say that the host is silent.
+    const bool is_taken = has_host_ && !(is_host && isSilent(now_ns));
+    if (is_taken || isArmed(drive_.state())) {
         flow_.reject(false);
         return Taken::kNothing;
     }

@@ -1,9 +1,9 @@
 // This is the controller's side of the wire, without a socket and without a clock: it answers the host that
 // asks, believes that host's commands, and lets force flow only while all is well.
 //
-// A host is adopted when there is none, or when the one before is silent for longer than the watchdog. The
-// controller calls take() for what comes, then step() once per period, then asks commandInForce(). Times are
-// CLOCK_MONOTONIC ns. It is RT-safe, for one thread.
+// A host is adopted when there is none, or when the same one, silent for longer than the watchdog, asks anew.
+// The controller calls take() for what comes, then step() once per period, then asks commandInForce(). Times
+// are CLOCK_MONOTONIC ns. It is RT-safe, for one thread.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace bonemill::wire {
 
-// A host that is silent for so long gets no more states.
+// A host that is silent for so long gets no more states, and another one may take its place.
 inline constexpr int64_t kForgetHostAfterNs = 1'000'000'000;
 
 enum class Taken {

@@ -1,6 +1,7 @@
 #include "device_daemon/wire/udp_socket.h"
 
 #include <arpa/inet.h>
+#include <linux/filter.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 #include "common/rt/clock.h"
@@ -92,6 +94,26 @@ bool UdpSocket::send(std::span<const std::byte> bytes, const Endpoint& to) noexc
     const ssize_t sent = sendto(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL,
                                 reinterpret_cast<const sockaddr*>(&address), sizeof(address));
     return sent == ssize_t(bytes.size());
+}
+
+// The filter's bytes are those of the UDP header, and SKF_NET_OFF leads to the IP header before it.
+void UdpSocket::admitOnly(const std::optional<Endpoint>& source) noexcept {
+    if (!source) {
+        constexpr int kUnused = 0;
+        setsockopt(descriptor_, SOL_SOCKET, SO_DETACH_FILTER, &kUnused, sizeof(kUnused));
+        return;
+    }
+    constexpr uint32_t kSourceAddress = uint32_t(SKF_NET_OFF) + 12, kSourcePort = 0, kAll = UINT32_MAX;
+    sock_filter steps[] = {
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kSourceAddress),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, source->address, 0, 3),
+        BPF_STMT(BPF_LD | BPF_H | BPF_ABS, kSourcePort),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, source->port, 0, 1),
+        BPF_STMT(BPF_RET | BPF_K, kAll),
+        BPF_STMT(BPF_RET | BPF_K, 0),
+    };
+    const sock_fprog program{std::size(steps), steps};
+    setsockopt(descriptor_, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof(program));
 }
 
 bool UdpSocket::waitUntil(int64_t deadline_ns) noexcept {

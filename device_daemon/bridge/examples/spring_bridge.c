@@ -100,7 +100,8 @@ static void take(int udp, const uint8_t* packet, size_t length, struct sockaddr_
     const int is_ours = heard_us && is_host && u32(packet + 8) == session;
     const int is_new = number != newest && number - newest < 0x80000000u;
     if (packet[5] == kDescribeRequest && length == 40) {
-        if (!is_ours && heard_us && nowUs() - heard_us <= watchdog_us) return; /* there is another host */
+        const uint64_t keeps_place_us = is_host ? watchdog_us : 1000000;
+        if (!is_ours && heard_us && nowUs() - heard_us <= keeps_place_us) return; /* there is another host */
         if (is_ours && !is_new) return;
         if (!is_ours && status != kFault) status = kOff;
         const uint32_t wish_us = u32(packet + 24) ? u32(packet + 24) : 5000;

@@ -87,7 +87,7 @@ class SpringBridge:
         is_ours = source == self.host and session == self.session
         is_new = 0 < (number - self.newest) & 0xFFFFFFFF < 0x80000000
         if kind == DESCRIBE_REQUEST and not is_ours:
-            if time.monotonic() - self.heard <= self.watchdog:
+            if time.monotonic() - self.heard <= (self.watchdog if source == self.host else 1):
                 return  # there is another host
             self.host, self.session, self.commanded = source, session, -math.inf
             wish_us, = struct.unpack_from("<I", packet, 24)

@@ -149,22 +149,27 @@ TEST(Sessions, IgnoreASecondHostWhileTheFirstLives) {
     pair.run(5);
     EXPECT_TRUE(pair.hasForce());
     pair.host_sends = false;
+    const int64_t heard_ns = pair.now_ns;
     pair.run(10);
-    EXPECT_EQ(pair.controller.take(request, place, pair.now_ns), Taken::kRequest);
+    EXPECT_EQ(pair.controller.drive().firstFault(), kFaultWatchdog);
+    pair.controller.step(0, true, heard_ns + kForgetHostAfterNs);
+    EXPECT_EQ(pair.controller.take(request, place, heard_ns + kForgetHostAfterNs), Taken::kNothing)
+        << "the first may ask again";
+    pair.controller.step(0, true, heard_ns + kForgetHostAfterNs + 1);
+    EXPECT_EQ(pair.controller.take(request, place, heard_ns + kForgetHostAfterNs + 1), Taken::kRequest);
     EXPECT_EQ(pair.controller.host(), place);
 }
 
-// It could otherwise hide that the first has gone while its motors were on.
-TEST(Sessions, ASecondHostHasToWaitForTheWatchdogsFault) {
+// It could otherwise hide that it was silent while its motors were on.
+TEST(Sessions, AHostThatAsksAnewHasToWaitForTheWatchdogsFault) {
     Pair pair;
     pair.run(20);
-    HostSession<JointPackets> second({.controller = test::kControllerPlace, .seed = 8});
-    const Endpoint place{kLoopback, 5555};
+    HostSession<JointPackets> anew({.controller = test::kControllerPlace, .seed = 8});
     const int64_t later_ns = pair.now_ns + 6'000'000;
-    const Bytes request = test::copyOf(*second.requestDue(later_ns));
-    EXPECT_EQ(pair.controller.take(request, place, later_ns), Taken::kNothing);
+    const Bytes request = test::copyOf(*anew.requestDue(later_ns));
+    EXPECT_EQ(pair.controller.take(request, test::kHostPlace, later_ns), Taken::kNothing);
     pair.controller.step(0, true, later_ns);
-    EXPECT_EQ(pair.controller.take(request, place, later_ns), Taken::kRequest);
+    EXPECT_EQ(pair.controller.take(request, test::kHostPlace, later_ns), Taken::kRequest);
     EXPECT_EQ(pair.controller.drive().firstFault(), kFaultWatchdog);
 }
 

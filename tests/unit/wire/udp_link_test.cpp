@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "common/rt/clock.h"
 #include "common/user_error.h"
 #include "device_daemon/wire/controller_link.h"
@@ -32,6 +34,47 @@ TEST(UdpSocket, SaysWhatIsWrongWithAnAddress) {
     EXPECT_THROW(UdpSocket{endpointOf("203.0.113.7", 0)}, UserError);
     EXPECT_THROW(endpointOf("localhost", 1), UserError);
     EXPECT_EQ(textOf(endpointOf("192.168.1.20", 4040)), "192.168.1.20:4040");
+}
+
+TEST(UdpSocket, AdmitsOneAndAllAgain) {
+    UdpSocket socket, friendly, stranger;
+    const std::byte text[1] = {};
+    std::byte buffer[1];
+    Endpoint source;
+    const auto heard = [&](UdpSocket& sender) {
+        return sender.send(text, socket.local()) && !socket.receive(buffer, source).empty();
+    };
+    EXPECT_TRUE(heard(stranger));
+    socket.admitOnly(friendly.local());
+    EXPECT_FALSE(heard(stranger));
+    EXPECT_TRUE(heard(friendly));
+    socket.admitOnly(Endpoint{0x7f000002, friendly.local().port});
+    EXPECT_FALSE(heard(friendly));
+    socket.admitOnly(std::nullopt);
+    EXPECT_TRUE(heard(stranger));
+}
+
+// It would fill the queue, the watchdog would trip, and the stranger could take the host's place.
+TEST(UdpLinks, AStrangersFloodDoesNotKeepTheHostOut) {
+    Describe description = test::aresDescription();
+    ControllerLink<JointPackets> controller(description, {kLoopback, 0});
+    HostLink<JointPackets> host({.controller = controller.local(), .seed = randomSeed()}, {kLoopback, 0});
+    const int64_t end_ns = monotonicNowNs() + kSoonNs;
+    while (!host.session().isDescribed() && monotonicNowNs() < end_ns) {
+        host.poll(monotonicNowNs());
+        controller.poll(monotonicNowNs());
+    }
+    ASSERT_TRUE(host.session().isDescribed());
+    UdpSocket stranger;
+    const std::vector<std::byte> large(50'000);
+    for (int i = 0; i < 200; ++i) stranger.send(large, controller.local());
+    JointState state{};
+    controller.send(state, monotonicNowNs());
+    host.poll(monotonicNowNs());
+    JointCommand command{};
+    ASSERT_TRUE(host.send(command, monotonicNowNs()));
+    EXPECT_TRUE(controller.poll(monotonicNowNs()));
+    EXPECT_EQ(controller.session().statistics().rejected, 0u) << "the kernel has dropped them";
 }
 
 TEST(UdpLinks, HostAndControllerFindEachOtherAndForceFlows) {
