@@ -73,10 +73,11 @@ take_number() {
     fail "no session number is free"
 }
 
+# What a dead session left goes, lest it be taken for this one: its process number may be somebody else's by now.
 lock_number() {
     number=$1
     exec 9>"$state/$number.lock"
-    flock -n 9
+    flock -n 9 && rm -f -- "$state/$number.session"
 }
 
 # A stopped script (Ctrl-Z) goes on for as long as it takes to end.

@@ -158,6 +158,23 @@ TEST_F(Bonemill, AKilledScriptLeavesNothingBehind) {
     EXPECT_EQ(next.wait().exit_code, 0);
 }
 
+// A process number is given anew, and what a killed script has left names one that is somebody else's.
+TEST_F(Bonemill, StopDuringAStartEndsNobodyElse) {
+    Process bystander({"/bin/sleep", "60"});
+    const std::string number = "8123", state = rig_.folder() / ("run/bonemill-" + std::to_string(getuid()));
+    std::filesystem::create_directory(state);
+    std::filesystem::permissions(state, std::filesystem::perms::owner_all);
+    test::writeFile(state + "/" + number + ".session", "script=" + std::to_string(bystander.pid()) + "\n");
+    // It takes as long as the rig's folder is there.
+    rig_.putProgram("make_phantom", "#!/bin/bash\nwhile [[ -e $0 ]]; do sleep 0.02; done\n");
+    Process session(rig_.words({"start", "tooth_caries", "--no-viewer", "--session", number}));
+    ASSERT_TRUE(waitFor([&] { return has(session.outSoFar(), "making the phantom"); }));
+    EXPECT_TRUE(has(rig_.call({"stop"}).out, "no session of yours runs"));
+    EXPECT_FALSE(isGone(bystander.pid()));
+    session.signal(SIGKILL);
+    bystander.signal(SIGKILL);
+}
+
 TEST_F(Bonemill, AKilledProgramIsStartedAgainAndTheOthersStay) {
     Process session(startWords());
     ASSERT_TRUE(allHaveStarted());
