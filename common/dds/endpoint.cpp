@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
 
 namespace bonemill::dds {
@@ -15,7 +16,14 @@ Entity createTopic(const Participant& participant, const TopicDescription& descr
         std::string("topic ") + description.name);
 }
 
+// A hostile peer that makes endpoints without end must not fill the log.
+bool mayNameMismatch() {
+    static std::atomic<uint64_t> named = 0;
+    return named.fetch_add(1, std::memory_order_relaxed) < kMostNamedMismatches;
+}
+
 void logOffered(dds_entity_t, const dds_offered_incompatible_qos_status_t status, void* topic) {
+    if (!mayNameMismatch()) return;
     spdlog::warn(
         "DDS: a reader of {} does not match this program's writer (QoS policy {}): another version of "
         "bonemill?",
@@ -23,6 +31,7 @@ void logOffered(dds_entity_t, const dds_offered_incompatible_qos_status_t status
 }
 
 void logRequested(dds_entity_t, const dds_requested_incompatible_qos_status_t status, void* topic) {
+    if (!mayNameMismatch()) return;
     spdlog::warn(
         "DDS: a writer of {} does not match this program's reader (QoS policy {}): another version of "
         "bonemill?",

@@ -13,6 +13,9 @@
 
 namespace bonemill::dds {
 
+// Of the peers that do not match, a process logs so many.
+inline constexpr uint64_t kMostNamedMismatches = 20;
+
 struct SampleInfo {
     bool has_data = false;     // false: only the key fields of the sample are set
     bool is_disposed = false;  // the key is gone on purpose; a writer that merely left does not dispose

@@ -39,6 +39,11 @@ Qos& Qos::keepAll(int max_samples) {
     return *this;
 }
 
+Qos& Qos::atMostKeys(int max_keys) {
+    dds_qset_resource_limits(qos_.get(), DDS_LENGTH_UNLIMITED, max_keys, DDS_LENGTH_UNLIMITED);
+    return *this;
+}
+
 Qos& Qos::disposeOnRequestOnly() {
     dds_qset_writer_data_lifecycle(qos_.get(), false);
     return *this;

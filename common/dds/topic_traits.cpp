@@ -21,7 +21,7 @@ Qos stateQos() {
 // Only the newest sample counts, but for what is counted since the sample before.
 Qos streamQos(int depth) {
     Qos qos;
-    qos.bestEffort().keepLast(depth);
+    qos.bestEffort().keepLast(depth).atMostKeys(kMostStreamKeys);
     return qos;
 }
 

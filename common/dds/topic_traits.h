@@ -21,6 +21,10 @@ struct TopicDescription {
     Qos qos;
 };
 
+// So many senders of a stream a reader knows at once: far more than there are viewers, and a bound for the
+// memory that invented ones can take.
+inline constexpr int kMostStreamKeys = 1024;
+
 template <class Sample>
 TopicDescription describeTopic();
 template <>

@@ -92,6 +92,24 @@ TEST_F(DdsTest, TakeKeepsTheRestForTheNextCall) {
     EXPECT_EQ(reader.take(150, ignore), 0u);
 }
 
+TEST_F(DdsTest, InventedSendersOfAStreamTakeBoundedMemory) {
+    Reader<HandPointerSample> reader(participant_);
+    HandPointerSample sample{};
+    sample.session = testSession();
+    const auto ignore = [](const HandPointerSample&, const SampleInfo&) {};
+    {
+        Writer<HandPointerSample> hostile(participant_);
+        for (sample.sender = 1; sample.sender <= 2 * kMostStreamKeys; ++sample.sender) hostile.write(sample);
+        EXPECT_EQ(reader.take(10 * kMostStreamKeys, ignore), size_t(kMostStreamKeys));
+        EXPECT_TRUE(hostile.write(sample));
+        EXPECT_EQ(reader.take(1, ignore), 0u);
+    }
+    reader.take(10 * kMostStreamKeys, ignore);  // that they have gone
+    Writer<HandPointerSample> writer(participant_);
+    EXPECT_TRUE(writer.write(sample));
+    EXPECT_EQ(reader.take(1, ignore), 1u);
+}
+
 TEST_F(DdsTest, PayloadIsNotCopiedIntoTheSample) {
     const std::string bytes = "payload";
     NodeMeshSample sample{};
@@ -111,12 +129,14 @@ TEST_F(DdsTest, LogsAWriterThatDoesNotMatch) {
     description.qos.bestEffort();
     const AnyWriter writer(other, description);
     for (int i = 0; i < 1000 && sink->last_raw().empty(); ++i) std::this_thread::sleep_for(10ms);
+    for (uint64_t i = 0; i < 2 * kMostNamedMismatches; ++i) const AnyWriter more(other, description);
 
     spdlog::set_default_logger(logger_before);
     const auto lines = sink->last_formatted();
     ASSERT_FALSE(lines.empty());
     EXPECT_NE(lines[0].find("bonemill_node_mesh"), std::string::npos) << lines[0];
     EXPECT_EQ(writer.matchedReaders(), 0);
+    EXPECT_LE(lines.size(), kMostNamedMismatches) << "they must not fill the log";
 }
 
 TEST(Participant, RefusesADomainThatHasNoPorts) {
