@@ -13,6 +13,8 @@ namespace {
 constexpr std::chrono::milliseconds kStopDelay{50};  // how late the thread may notice that it shall end
 constexpr size_t kMostWishesAtOnce = 256;            // more are a flood of foreign sessions
 constexpr uint64_t kMostNamedWishes = 4;             // malformed ones in the log
+// So often the log says at once who holds, and so often beyond that: hostile viewers must not fill it.
+constexpr int64_t kNamedAtOnce = 100, kNameEveryNs = kNsPerSecond;
 
 }  // namespace
 
@@ -90,11 +92,19 @@ void PointerDevice::takeWishes() {
                      const int64_t now_ns = monotonicNowNs();
                      const auto before = holder_.holder(now_ns);
                      if (!holder_.take(*wish, now_ns)) return;
-                     const auto after = holder_.holder(now_ns);
-                     if (after && after != before) spdlog::info("viewer {} holds the tool", *after);
-                     if (before && !after) spdlog::info("viewer {} lets the tool go", *before);
+                     nameChange(before, holder_.holder(now_ns), now_ns);
                      publish(*wish);
                  });
+}
+
+void PointerDevice::nameChange(const std::optional<uint64_t>& before, const std::optional<uint64_t>& after,
+                               int64_t now_ns) {
+    if (before == after || named_changes_ >= kNamedAtOnce + (now_ns - start_ns_) / kNameEveryNs) return;
+    ++named_changes_;
+    if (after)
+        spdlog::info("viewer {} holds the tool", *after);
+    else
+        spdlog::info("viewer {} lets the tool go", *before);
 }
 
 void PointerDevice::publish(const HandWish& wish) noexcept {

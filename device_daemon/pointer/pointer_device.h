@@ -12,10 +12,12 @@
 
 #include <array>
 #include <atomic>
+#include <optional>
 #include <thread>
 
 #include "common/dds/endpoint.h"
 #include "common/dds/wait_set.h"
+#include "common/rt/clock.h"
 #include "common/rt/seqlock.h"
 #include "device_daemon/pointer/pointer_holder.h"
 #include "device_daemon/virtual_handle/handle_device.h"
@@ -59,6 +61,9 @@ class PointerDevice final : public HapticDevice {
 
     void listen();
     void takeWishes();
+    // Logs who holds the tool, if that is another one now.
+    void nameChange(const std::optional<uint64_t>& before, const std::optional<uint64_t>& after,
+                    int64_t now_ns);
     void publish(const HandWish& wish) noexcept;
     void follow(double elapsed) noexcept;
     void letGo() noexcept;
@@ -78,6 +83,8 @@ class PointerDevice final : public HapticDevice {
 
     // These belong to the reading thread.
     PointerHolder holder_;
+    const int64_t start_ns_ = monotonicNowNs();
+    int64_t named_changes_ = 0;
     dds::Participant participant_;
     dds::Reader<dds::HandPointerSample> reader_;
     dds::WaitSet wait_set_;

@@ -3,6 +3,8 @@
 #include "device_daemon/pointer/pointer_device.h"
 
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ringbuffer_sink.h>
+#include <spdlog/spdlog.h>
 
 #include <cmath>
 
@@ -137,6 +139,27 @@ TEST_F(Pointer, ASecondViewerWaitsForItsTurn) {
         device_.read(0, reading_);
         return reading_.buttons == kButtonAdd;
     }));
+}
+
+TEST_F(Pointer, AViewerThatHoldsAndLetsGoWithoutEndDoesNotFillTheLog) {
+    const auto sink = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(10'000);
+    const auto logger_before = spdlog::default_logger();
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", sink));
+    test::PointingViewer viewer(1);
+    connect(viewer);
+    const int64_t start_ns = monotonicNowNs();
+    for (int i = 0; i < 300; ++i) {
+        viewer.want(at(0.06, 0.02, 0));
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        viewer.letGo();
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    const auto seconds = size_t((monotonicNowNs() - start_ns) / kNsPerSecond);
+    spdlog::set_default_logger(logger_before);
+    const auto lines = sink->last_formatted();
+    ASSERT_FALSE(lines.empty());
+    EXPECT_NE(lines[0].find("viewer 1 holds the tool"), std::string::npos) << lines[0];
+    EXPECT_LE(lines.size(), 110 + seconds);
 }
 
 TEST_F(Pointer, GarbageIsCountedAndChangesNothing) {
