@@ -30,12 +30,19 @@ UdpDeviceConfig wireTo(const std::string& word, const std::string& endpoint) {
     const std::string address = endpoint.substr(0, colon);
     const bool is_here = address.rfind("127.", 0) == 0;
     return {.controller = wire::endpointOf(address, port),
-            .local = wire::endpointOf(is_here ? kThisMachine : "0.0.0.0", 0)};
+            .socket = wire::UdpSocket(wire::endpointOf(is_here ? kThisMachine : "0.0.0.0", 0))};
 }
 
-UdpDeviceConfig wireTo(const ChildProgram& program) {
-    return {.controller = wire::endpointOf(kThisMachine, program.port())};
-}
+// A program of the daemon's own, and the way to it; it listens to nobody else.
+struct OwnProgram {
+    OwnProgram(const std::string& name, std::vector<std::string> words) {
+        words.insert(words.end(), {"--host-port", std::to_string(wire.socket.local().port)});
+        program = std::make_unique<ChildProgram>(name, std::move(words));
+        wire.controller = wire::endpointOf(kThisMachine, program->port());
+    }
+    UdpDeviceConfig wire{.controller = {}};
+    std::unique_ptr<ChildProgram> program;
+};
 
 ChosenDevice simulated(const DeviceSetup& setup, const DaemonOptions& options) {
     std::vector<std::string> words{"--scene", options.scene, "--log-level", options.log_level};
@@ -43,15 +50,15 @@ ChosenDevice simulated(const DeviceSetup& setup, const DaemonOptions& options) {
     if (options.hold) words.push_back("--hold");
     // Without real time its host may be late now and then, and nobody is hurt by it.
     if (options.best_effort_realtime) words.insert(words.end(), {"--best-effort-rt", "--watchdog-ms", "30"});
-    auto program = std::make_unique<ChildProgram>("ares_emulator", words);
-    auto device = std::make_unique<WiredAres>(setup.simulated_ares, wireTo(*program));
-    return {std::move(program), std::move(device), true};
+    OwnProgram own("ares_emulator", words);
+    auto device = std::make_unique<WiredAres>(setup.simulated_ares, std::move(own.wire));
+    return {std::move(own.program), std::move(device), true};
 }
 
 ChosenDevice bridged(const std::string& program_name) {
-    auto program = std::make_unique<ChildProgram>(program_name, std::vector<std::string>{});
-    auto device = std::make_unique<UdpPoseDevice>(wireTo(*program));
-    return {std::move(program), std::move(device)};
+    OwnProgram own(program_name, {});
+    auto device = std::make_unique<UdpPoseDevice>(std::move(own.wire));
+    return {std::move(own.program), std::move(device)};
 }
 
 ChosenDevice pointer(const DeviceSetup& setup, const DaemonOptions& options) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "common/units.h"
 
@@ -35,8 +36,8 @@ std::array<SharedFigure, 5> sharedFigures(const wire::Describe& said,
 
 }  // namespace
 
-WiredAres::WiredAres(const AresDeviceConfig& config, const UdpDeviceConfig& wire)
-    : config_(config), controller_(wire.controller), joints_(wire), ares_(joints_, config) {}
+WiredAres::WiredAres(const AresDeviceConfig& config, UdpDeviceConfig wire)
+    : config_(config), controller_(wire.controller), joints_(std::move(wire)), ares_(joints_, config) {}
 
 DeviceCapabilities WiredAres::capabilities() const noexcept {
     DeviceCapabilities device = ares_.capabilities();

@@ -21,7 +21,7 @@ inline constexpr uint32_t kAresIsAnother = 0xA0000002;  // a fault code: the con
 
 class WiredAres final : public HapticDevice {
   public:
-    WiredAres(const AresDeviceConfig& config, const UdpDeviceConfig& wire);
+    WiredAres(const AresDeviceConfig& config, UdpDeviceConfig wire);
 
     // Only the controller knows whether there is an enabling switch.
     DeviceCapabilities capabilities() const noexcept override;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
 #include "device_daemon/haptic_device/haptic_device.h"
 #include "device_daemon/wire/host_link.h"
@@ -14,8 +15,8 @@ namespace bonemill {
 
 struct UdpDeviceConfig {
     wire::Endpoint controller;
-    wire::Endpoint local{wire::kLoopback, 0};  // what the host sends from
-    uint32_t watchdog_us = 0;                  // 0: the controller's own
+    wire::UdpSocket socket{};  // what the host sends from
+    uint32_t watchdog_us = 0;  // 0: the controller's own
 };
 
 template <class Packets>
@@ -24,11 +25,11 @@ class UdpDevice {
     using State = typename Packets::State;
     using Command = typename Packets::Command;
 
-    explicit UdpDevice(const UdpDeviceConfig& config)
+    explicit UdpDevice(UdpDeviceConfig config)
         : link_({.controller = config.controller,
                  .watchdog_us = config.watchdog_us,
                  .seed = wire::randomSeed()},
-                config.local) {}
+                std::move(config.socket)) {}
 
     bool waitForSample(int64_t deadline_ns) noexcept { return link_.waitForState(deadline_ns); }
 

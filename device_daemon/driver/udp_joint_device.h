@@ -4,6 +4,8 @@
 // it.
 #pragma once
 
+#include <utility>
+
 #include "device_daemon/driver/joint_device.h"
 #include "device_daemon/driver/udp_device.h"
 
@@ -11,7 +13,7 @@ namespace bonemill {
 
 class UdpJointDevice final : public JointDevice {
   public:
-    explicit UdpJointDevice(const UdpDeviceConfig& config) : device_(config) {}
+    explicit UdpJointDevice(UdpDeviceConfig config) : device_(std::move(config)) {}
 
     bool hasClock() const noexcept override { return true; }
     bool waitForSample(int64_t deadline_ns) noexcept override { return device_.waitForSample(deadline_ns); }

@@ -9,6 +9,8 @@
 // it.
 #pragma once
 
+#include <utility>
+
 #include "device_daemon/driver/pose_differentiator.h"
 #include "device_daemon/driver/pose_guard.h"
 #include "device_daemon/driver/udp_device.h"
@@ -18,7 +20,7 @@ namespace bonemill {
 
 class UdpPoseDevice final : public HapticDevice {
   public:
-    explicit UdpPoseDevice(const UdpDeviceConfig& config) : device_(config) {}
+    explicit UdpPoseDevice(UdpDeviceConfig config) : device_(std::move(config)) {}
 
     // Of nothing until the bridge has described itself.
     DeviceCapabilities capabilities() const noexcept override;

@@ -52,7 +52,9 @@ Emulator::Emulator(const Scenario& scenario, const EmulatorOptions& options, con
       socket_(wire::endpointOf(options.address, options.port)),
       from_host_(options.faults, options.seed, period_ns_),
       to_host_(options.faults, options.seed + 1, period_ns_),
-      controller_(scenario, controllerConfigOf(options, rate_hz_), monotonicNowNs()) {}
+      controller_(scenario, controllerConfigOf(options, rate_hz_), monotonicNowNs()) {
+    socket_.admitOnly(wire::hereAt(options.host_port));
+}
 
 void Emulator::run() {
     RealtimeThread loop_thread(

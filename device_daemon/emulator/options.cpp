@@ -15,6 +15,8 @@ std::optional<EmulatorOptions> parseOptions(int argc, char** argv) {
     app.add_option("--port", options.port, "UDP port to listen on (0: any free one)")->capture_default_str();
     app.add_option("--address", options.address, "IPv4 address of this machine to listen on")
         ->capture_default_str();
+    app.add_option("--host-port", options.host_port,
+                   "Listen to nobody but this port of this PC (0: to any host)");
     app.add_option("--rate", options.rate_hz, "States per second (default: the scene's loop.rate_hz)")
         ->check(CLI::Range(100.0, 10000.0));
     app.add_option("--seconds", options.seconds, "Leave after this much of the scenario, in s")

@@ -14,6 +14,7 @@ struct EmulatorOptions {
     std::string scene;
     std::string address = "127.0.0.1";
     uint16_t port = 0;              // 0: any free one
+    uint16_t host_port = 0;         // of this PC, the only one that is listened to; 0: any host
     std::optional<double> rate_hz;  // not given: the scene's
     std::optional<double> seconds;  // of the scenario; not given: until the last waypoint
     bool hold = false;

@@ -14,6 +14,7 @@ bool ControllerLink<Packets>::poll(int64_t now_ns) noexcept {
         Endpoint source;
         const auto bytes = socket_.receive(buffer, source);
         if (bytes.empty()) break;
+        if (only_host_ && source != *only_host_) continue;  // it came before the kernel knew
         const Taken taken = session_.take(bytes, source, now_ns);
         if (taken == Taken::kRequest) socket_.send(bytesOf(session_.sealDescription()), session_.host());
         has_command |= taken == Taken::kCommand;
@@ -25,7 +26,7 @@ bool ControllerLink<Packets>::poll(int64_t now_ns) noexcept {
 // Nobody else is listened to while there is a host, so nobody shall stand in its way either.
 template <class Packets>
 void ControllerLink<Packets>::keepStrangersOut() noexcept {
-    const auto host = session_.hasHost() ? std::optional(session_.host()) : std::nullopt;
+    const auto host = session_.hasHost() ? std::optional(session_.host()) : only_host_;
     if (host == admitted_) return;
     socket_.admitOnly(host);
     admitted_ = host;

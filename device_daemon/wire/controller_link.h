@@ -15,8 +15,12 @@ class ControllerLink {
     using State = typename Packets::State;
     using Command = typename Packets::Command;
 
-    ControllerLink(const Describe& description, const Endpoint& local)
-        : socket_(local), session_(description) {}
+    // With `only_host`, nobody else is ever listened to.
+    ControllerLink(const Describe& description, const Endpoint& local,
+                   const std::optional<Endpoint>& only_host = {})
+        : socket_(local), session_(description), only_host_(only_host) {
+        keepStrangersOut();
+    }
 
     // Takes what has come, without waiting, and answers requests. True says that a command was among it.
     bool poll(int64_t now_ns) noexcept;
@@ -35,6 +39,7 @@ class ControllerLink {
 
     UdpSocket socket_;
     ControllerSession<Packets> session_;
+    const std::optional<Endpoint> only_host_;
     std::optional<Endpoint> admitted_;  // the only one that the kernel lets in, if there is one
 };
 

@@ -4,6 +4,8 @@
 // uses it.
 #pragma once
 
+#include <utility>
+
 #include "device_daemon/wire/host_session.h"
 #include "device_daemon/wire/udp_socket.h"
 
@@ -19,7 +21,10 @@ class HostLink {
     using Command = typename Packets::Command;
 
     // `local` is the address and port that the host sends from.
-    HostLink(const HostSessionConfig& config, const Endpoint& local) : socket_(local), session_(config) {}
+    HostLink(const HostSessionConfig& config, const Endpoint& local) : HostLink(config, UdpSocket(local)) {}
+    // The same with a socket that is there already.
+    HostLink(const HostSessionConfig& config, UdpSocket socket)
+        : socket_(std::move(socket)), session_(config) {}
 
     // Sleeps until a new state has come, or until the deadline; asks for the description meanwhile. True says
     // that a state has come.

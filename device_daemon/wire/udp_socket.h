@@ -23,6 +23,11 @@ inline constexpr uint32_t kLoopback = 0x7f000001;
 // Either side reads no more datagrams at once, so that a flood cannot hold it.
 inline constexpr int kDatagramsAtOnce = 64;
 
+// The one at this port of this machine; none for port 0.
+inline std::optional<Endpoint> hereAt(uint16_t port) noexcept {
+    return port == 0 ? std::nullopt : std::optional(Endpoint{kLoopback, port});
+}
+
 // Reads an address such as "192.168.1.20". Throws UserError.
 Endpoint endpointOf(const std::string& address, uint16_t port);
 // Returns "127.0.0.1:4040".

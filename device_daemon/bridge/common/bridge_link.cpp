@@ -49,8 +49,9 @@ void fillVelocity(wire::PoseState& state, const ArmReading& reading) noexcept {
 
 }  // namespace
 
-BridgeLink::BridgeLink(const ArmDescription& arm, const wire::Endpoint& local)
-    : link_(packetOf(arm), local), gate_({arm.max_force, arm.max_torque}) {}
+BridgeLink::BridgeLink(const ArmDescription& arm, const wire::Endpoint& local,
+                       const std::optional<wire::Endpoint>& only_host)
+    : link_(packetOf(arm), local, only_host), gate_({arm.max_force, arm.max_torque}) {}
 
 ArmOrder BridgeLink::step(const ArmReading& reading, int64_t now_ns) noexcept {
     last_step_ns_ = now_ns;

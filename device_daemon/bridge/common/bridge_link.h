@@ -17,7 +17,8 @@ namespace bonemill::bridge {
 class BridgeLink : public ArmPeriod {
   public:
     // Throws UserError if the address cannot be used.
-    BridgeLink(const ArmDescription& arm, const wire::Endpoint& local);
+    BridgeLink(const ArmDescription& arm, const wire::Endpoint& local,
+               const std::optional<wire::Endpoint>& only_host = {});
 
     ArmOrder step(const ArmReading& reading, int64_t now_ns) noexcept override;
 

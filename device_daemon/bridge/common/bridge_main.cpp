@@ -84,7 +84,8 @@ int BridgeRun::run() {
 }
 
 int BridgeRun::runLink() {
-    BridgeLink link(description_, wire::endpointOf(options_.address, options_.port));
+    BridgeLink link(description_, wire::endpointOf(options_.address, options_.port),
+                    wire::hereAt(options_.host_port));
     print("listening on " + wire::textOf(link.local()));
     start(link);
     const int result = serve(link);

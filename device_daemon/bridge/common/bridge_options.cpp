@@ -9,6 +9,8 @@ void addOptions(CLI::App& app, BridgeOptions& options) {
     app.add_option("--port", options.port, "UDP port that device_daemon speaks to; 0 takes any free one")
         ->capture_default_str();
     app.add_option("--address", options.address, "Address of this PC to listen on")->capture_default_str();
+    app.add_option("--host-port", options.host_port,
+                   "Listen to nobody but this port of this PC (0: to any host)");
     app.add_option("--library", options.library, "The vendor's library, if it is not where it is searched");
     app.add_option("--device", options.device, "Number or name of the arm; default: the first");
     app.add_option("--max-force-n", options.max_force, "Give no more than this; default: what the arm can")

@@ -12,6 +12,7 @@ namespace bonemill::bridge {
 struct BridgeOptions {
     std::string address = "127.0.0.1";
     uint16_t port = 0;                // 0: any free one
+    uint16_t host_port = 0;           // of this PC, the only one that is listened to; 0: any host
     std::string library;              // empty: search
     std::string device;               // number or name; empty: the first
     std::optional<double> max_force;  // N; not given: the arm's own

@@ -77,6 +77,25 @@ TEST(UdpLinks, AStrangersFloodDoesNotKeepTheHostOut) {
     EXPECT_EQ(controller.session().statistics().rejected, 0u) << "the kernel has dropped them";
 }
 
+TEST(UdpLinks, AControllerOfOneHostIsNobodyElses) {
+    UdpSocket own;
+    const Endpoint only = own.local();
+    ControllerLink<JointPackets> controller(test::aresDescription(), {kLoopback, 0}, hereAt(only.port));
+    HostLink<JointPackets> stranger({.controller = controller.local(), .seed = 1}, {kLoopback, 0});
+    HostLink<JointPackets> host({.controller = controller.local(), .seed = 2}, std::move(own));
+    stranger.poll(monotonicNowNs());
+    controller.poll(monotonicNowNs());
+    EXPECT_FALSE(controller.session().hasHost());
+    host.poll(monotonicNowNs());
+    controller.poll(monotonicNowNs());
+    EXPECT_TRUE(controller.session().hasHost());
+    EXPECT_EQ(controller.session().host(), only);
+    controller.session().step(0, true, monotonicNowNs() + 2 * kForgetHostAfterNs);
+    stranger.poll(monotonicNowNs() + kAskEveryNs);
+    controller.poll(monotonicNowNs());
+    EXPECT_FALSE(controller.session().hasHost()) << "not even after the host has gone";
+}
+
 TEST(UdpLinks, HostAndControllerFindEachOtherAndForceFlows) {
     Describe description = test::aresDescription();
     description.watchdog_us = kLongestWatchdogUs;
