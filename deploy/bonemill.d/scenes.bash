@@ -18,13 +18,17 @@ home_folder() {
     printf '%s\n' "${!1:-$HOME/$2}"
 }
 
+# Sessions may start at the same moment, and one may read what is there already: only newer files are copied, by one at a
+# time. Descriptor 8 is the lock's.
+copy_scenes() { flock 8 && cp --update --preserve=timestamps -- "$share"/scenes/* "$scenes"; }
+
 # Scenes read phantoms from ../../build/data. In an installed tree that is nobody's to write, so there a scene is used from
 # a copy in the user's own data folder.
 own_scenes() {
     if [[ $installed == true ]]; then
         data=$(home_folder XDG_DATA_HOME .local/share)/bonemill/build/data
         scenes=${data%/build/data}/deploy/scenes
-        { mkdir -p -- "$scenes" && cp -- "$share"/scenes/* "$scenes"; } || fail "the scenes cannot be copied to $scenes"
+        { mkdir -p -- "$scenes" && copy_scenes 8>"$scenes/.lock"; } || fail "the scenes cannot be copied to $scenes"
     else
         scenes=$share/scenes data=$(realpath -m -- "$share/../build/data")
     fi

@@ -128,7 +128,8 @@ TEST_F(Bonemill, WithoutADisplayThereIsNoWindow) {
 
 TEST_F(Bonemill, TwoSessionsRunSideBySideAndStopEndsAll) {
     Process first(startWords()), second(startWords());
-    ASSERT_TRUE(rig_.awaitStarts("render_client", 2));
+    ASSERT_TRUE(rig_.awaitStarts("render_client", 2))
+        << first.outSoFar() << first.errSoFar() << second.outSoFar() << second.errSoFar() << rig_.events();
     const std::string one = numberIn(first.outSoFar()), two = numberIn(second.outSoFar());
     EXPECT_NE(one, two);
     expectRefusal(rig_.call({"stop"}), "several sessions run");
