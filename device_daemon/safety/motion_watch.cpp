@@ -1,6 +1,7 @@
 #include "device_daemon/safety/motion_watch.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace bonemill {
 namespace {
@@ -35,6 +36,7 @@ bool MotionWatch::isTooFast(const DeviceReading& reading) noexcept {
 
 StopCause MotionWatch::checkPower(const DeviceReading& reading, const Wrench& given_D, double dt) noexcept {
     const double power = given_D.force.dot(reading.v_DT) + given_D.torque.dot(reading.w_DT);
+    if (!std::isfinite(power)) return StopCause::kNone;  // isTooFast() counts such samples
     power_ += shareOf(dt, kPowerTime) * (power - power_);
     energy_ = std::max(0.0, energy_ * (1 - shareOf(dt, kEnergyTime)) + power * dt);
     if (power_ > limits_.max_power) return StopCause::kPower;

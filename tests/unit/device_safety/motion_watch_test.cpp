@@ -53,6 +53,14 @@ TEST(MotionWatch, StopsAHandleThatFlies) {
     EXPECT_EQ(tripOf(watch, movingAt({0.9, 0, 0}), {}).second, StopCause::kNone);
 }
 
+TEST(MotionWatch, ASpeedThatIsNoNumberBlindsThePowersWatchForNoLonger) {
+    MotionWatch watch;
+    const Wrench given{{40, 0, 0}, {}};
+    EXPECT_EQ(watch.check(movingAt({std::numeric_limits<double>::quiet_NaN(), 0, 0}), given, kWatchDt),
+              StopCause::kNone);
+    EXPECT_EQ(tripOf(watch, movingAt({0.9, 0, 0}), given).second, StopCause::kPower);
+}
+
 TEST(MotionWatch, OneFastSampleAloneIsNoise) {
     MotionWatch watch;
     for (int i = 0; i < 1000; ++i)
