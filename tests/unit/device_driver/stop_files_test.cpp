@@ -1,0 +1,39 @@
+#include "device_daemon/app/stop_files.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/process.h"
+
+namespace bonemill {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(StopFiles, TheNewestStayAndWhatIsNotOneStaysToo) {
+    const test::TemporaryFolder folder;
+    const auto old = fs::file_time_type::clock::now() - std::chrono::hours(1);
+    for (int i = 0; i < 120; ++i) {
+        const std::string file = folder / ("stop_7_" + std::to_string(i) + ".csv");
+        test::writeFile(file, "");
+        fs::last_write_time(file, old + std::chrono::seconds(i));
+    }
+    test::writeFile(folder / "notes.csv", "");
+    fs::last_write_time(folder / "notes.csv", old - std::chrono::hours(1));
+    fs::create_symlink(folder / "notes.csv", folder / "stop_7_link.csv");
+
+    test::writeFile(stopFile(folder.path(), 7, StopCause::kSpeed), "");
+    size_t stops = 0;
+    for (const auto& entry : fs::directory_iterator(folder.path()))
+        stops += entry.is_regular_file() && !entry.is_symlink();
+    EXPECT_EQ(stops, kMostStopFiles + 1) << "and the notes";
+    EXPECT_FALSE(fs::exists(folder / "stop_7_20.csv"));
+    EXPECT_TRUE(fs::exists(folder / "stop_7_21.csv"));
+    EXPECT_TRUE(fs::exists(folder / "notes.csv"));
+}
+
+TEST(StopFiles, AFolderThatCannotBeMadeIsNoError) {
+    EXPECT_EQ(stopFile("/proc/nowhere", 7, StopCause::kSpeed).parent_path(), "/proc/nowhere");
+}
+
+}  // namespace
+}  // namespace bonemill
