@@ -53,7 +53,7 @@ WirePacket packetOf(const wire::JointState& state) {
 TappedWire::TappedWire()
     : emulator_(emulatorOfThisProcess()), thread_([this](const std::stop_token& stop) { relay(stop); }) {}
 
-// The daemon starts the emulator that lies beside it, and ends its words with --port and a number.
+// The daemon starts the emulator that lies beside it. Ports are this wire's business.
 std::string TappedWire::daemonIn(const std::string& folder) const {
     namespace fs = std::filesystem;
     const fs::path daemon = fs::path(folder) / "device_daemon", emulator = fs::path(folder) / "ares_emulator";
@@ -62,9 +62,12 @@ std::string TappedWire::daemonIn(const std::string& folder) const {
     writeFile(emulator,
               "#!/bin/sh\necho 'listening on " + wire::textOf(socket_.local()) +
                   "'\n"
-                  "left=$#\n"
-                  "while [ $left -gt 2 ]; do set -- \"$@\" \"$1\"; shift; left=$((left - 1)); done\n"
-                  "shift 2\n"
+                  "drop=\n"
+                  "for word; do\n"
+                  "  shift\n"
+                  "  if [ -n \"$drop\" ]; then drop=; continue; fi\n"
+                  "  case $word in --port | --host-port) drop=1 ;; *) set -- \"$@\" \"$word\" ;; esac\n"
+                  "done\n"
                   "exec " +
                   binDir() + "/ares_emulator \"$@\" --address " + place.substr(0, place.find(':')) +
                   " --port " + std::to_string(emulator_.port) + " >&2\n");

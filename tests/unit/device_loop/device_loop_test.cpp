@@ -97,7 +97,9 @@ TEST(DeviceLoop, AnotherDeviceBringsItsOwnLimits) {
 // How exactly motors measure their force goes with what they can give, not with what a scene lets them give.
 TEST(DeviceLoop, AGentleSceneMakesNoFaultOfWhatAStrongDeviceMeasures) {
     for (const double off : {0.8, 4.0}) {
-        LoopRig rig({.wrench = {.max_force = 2}});
+        DeviceLoopConfig gentle;
+        gentle.wrench.max_force = 2;
+        LoopRig rig(gentle);
         rig.engage();
         rig.device.reading.has_applied = true;
         rig.device.reading.applied_D.force = {0, off, rig.force()};
