@@ -2,9 +2,9 @@
 
 #include "common/config/scene_file.h"
 #include "common/config/scene_geometry.h"
+#include "common/geometry/view_axes.h"
 #include "common/units.h"
 #include "device_daemon/ares/scene_ares.h"
-#include "device_daemon/input/user_axes.h"
 
 namespace bonemill {
 namespace {
@@ -38,11 +38,14 @@ Pose startOf(const scene::SimulatedOperator& person, const Pose& X_WD, double sc
 // Pushing away from the user moves the tool away from the scene's first view.
 RateConfig ratesOf(const scene::Scene& scene, const Pose& X_WD) {
     const scene::Camera& camera = scene.camera();
-    const Eigen::Vector3d up_W = camera.has_up() ? vectorOf(camera.up()) : Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d up_W =
+        unitUp(camera.has_up() ? vectorOf(camera.up()) : Eigen::Vector3d(Eigen::Vector3d::Zero()));
     RateConfig rates;
     rates.workspace_scale = scene.device().workspace_scale();
-    rates.R_DU =
-        userAxesOf(kDegree * camera.azimuth_deg(), kDegree * camera.elevation_deg(), up_W, X_WD.rotation);
+    // Its user thinks in the axes of the first picture: U is that camera.
+    const Eigen::Matrix3d R_WU =
+        viewAxes(kDegree * camera.azimuth_deg(), kDegree * camera.elevation_deg(), up_W);
+    rates.R_DU = (X_WD.rotation.conjugate() * Eigen::Quaterniond(R_WU)).normalized();
     return rates;
 }
 

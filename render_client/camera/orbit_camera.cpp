@@ -10,12 +10,6 @@ constexpr double kFitMargin = 1.06;
 
 }  // namespace
 
-void OrbitCamera::setUp(const Eigen::Vector3d& up_W) {
-    const double length = up_W.norm();
-    up_W_ =
-        std::isfinite(length) && length > 1e-9 ? Eigen::Vector3d(up_W / length) : Eigen::Vector3d::UnitZ();
-}
-
 void OrbitCamera::orbit(double delta_azimuth, double delta_elevation) {
     azimuth = std::remainder(azimuth + delta_azimuth, 2 * M_PI);
     elevation = std::clamp(elevation + delta_elevation, -kMaxElevation, kMaxElevation);
@@ -28,25 +22,6 @@ void OrbitCamera::zoom(double factor) {
 void OrbitCamera::pan(double right, double up) {
     const double picture_height = 2 * distance * std::tan(kFieldOfView / 2);
     target_W -= picture_height * (R_WC().col(0) * right + R_WC().col(1) * up);
-}
-
-Eigen::Vector3d OrbitCamera::towardsEye_W() const {
-    const Eigen::Vector3d anterior = -Eigen::Vector3d::UnitY();
-    const bool up_is_anterior = std::abs(up_W_.dot(anterior)) > 0.99;
-    const Eigen::Vector3d reference = up_is_anterior ? Eigen::Vector3d::UnitZ() : anterior;
-    const Eigen::Vector3d front = (reference - up_W_ * up_W_.dot(reference)).normalized();
-    const Eigen::Vector3d left = up_W_.cross(front);
-    const double bounded = std::clamp(elevation, -kMaxElevation, kMaxElevation);
-    return std::cos(bounded) * (std::cos(azimuth) * front + std::sin(azimuth) * left) +
-           std::sin(bounded) * up_W_;
-}
-
-Eigen::Matrix3d OrbitCamera::R_WC() const {
-    Eigen::Matrix3d axes;
-    axes.col(2) = towardsEye_W();
-    axes.col(0) = up_W_.cross(axes.col(2)).normalized();
-    axes.col(1) = axes.col(2).cross(axes.col(0));
-    return axes;
 }
 
 Camera OrbitCamera::view() const {

@@ -23,6 +23,14 @@ std::string refusalOf(const std::string& text) {
     return "";
 }
 
+// From the patient's left, with the device turned as much: right in the picture is the device's x.
+TEST(DeviceSetup, ASpaceMousesAxesAreThoseOfTheFirstPicture) {
+    const DeviceSetup setup = deviceSetupOf(sceneOf(
+        "camera { azimuth_deg: 90 elevation_deg: 0 } device { q_WD { w: 0.70710678 z: 0.70710678 } }"));
+    EXPECT_TRUE((setup.rates.R_DU * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitX(), 1e-6));
+    EXPECT_TRUE((setup.rates.R_DU * Eigen::Vector3d::UnitY()).isApprox(Eigen::Vector3d::UnitZ(), 1e-6));
+}
+
 TEST(DeviceSetup, DefaultsOfTheSceneAreTheDefaultsOfTheCode) {
     const DeviceSetup setup = deviceSetupOf(scene::Scene{});
     const DeviceLoopConfig loop;
