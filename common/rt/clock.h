@@ -22,6 +22,12 @@ inline constexpr timespec timespecOfNs(int64_t ns) noexcept {
     return {time_t(ns / kNsPerSecond), long(ns % kNsPerSecond)};
 }
 
+// From one stamp to a later one of a clock outside, whose numbers may be any: a difference that does not fit
+// wraps.
+inline constexpr int64_t nsBetween(int64_t from_ns, int64_t to_ns) noexcept {
+    return int64_t(uint64_t(to_ns) - uint64_t(from_ns));
+}
+
 // Of what a scene says.
 inline int64_t nsOfMilliseconds(double ms) noexcept {
     return std::llround(ms * double(kNsPerMillisecond));

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/units.h"
+#include "common/rt/clock.h"
 #include "device_daemon/driver/jump_check.h"
 
 namespace bonemill {
@@ -42,9 +42,7 @@ void PoseGuard::reset() noexcept {
 }
 
 bool PoseGuard::hasJumped(const Pose& X_DT, int64_t stamp_ns) const noexcept {
-    // Stamps come from outside: their difference may not fit, and then wraps.
-    const auto elapsed_ns = int64_t(uint64_t(stamp_ns) - uint64_t(stamp_ns_));
-    const double elapsed = double(elapsed_ns) / double(kNsPerSecond);
+    const double elapsed = secondsOfNs(nsBetween(stamp_ns_, stamp_ns));
     return kLargestWay.isJump((X_DT.position - X_DT_.position).norm(), elapsed) ||
            kLargestTurn.isJump(X_DT.rotation.angularDistance(X_DT_.rotation), elapsed);
 }
