@@ -1,4 +1,5 @@
-// This is a HostSession on its socket.
+// This is a HostSession on its socket. Nobody but its controller gets a packet into that, so that a flood of
+// others keeps no state out.
 //
 // Making one throws UserError. Afterwards everything is RT-safe but for the socket's system calls; one thread
 // uses it.
@@ -24,7 +25,9 @@ class HostLink {
     HostLink(const HostSessionConfig& config, const Endpoint& local) : HostLink(config, UdpSocket(local)) {}
     // The same with a socket that is there already.
     HostLink(const HostSessionConfig& config, UdpSocket socket)
-        : socket_(std::move(socket)), session_(config) {}
+        : socket_(std::move(socket)), session_(config) {
+        socket_.admitOnly(config.controller);
+    }
 
     // Sleeps until a new state has come, or until the deadline; asks for the description meanwhile. True says
     // that a state has come.

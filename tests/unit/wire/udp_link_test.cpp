@@ -77,6 +77,25 @@ TEST(UdpLinks, AStrangersFloodDoesNotKeepTheHostOut) {
     EXPECT_EQ(controller.session().statistics().rejected, 0u) << "the kernel has dropped them";
 }
 
+// It would fill the queue, and the device would be lost.
+TEST(UdpLinks, AStrangersFloodDoesNotKeepTheControllersStatesOut) {
+    ControllerLink<JointPackets> controller(test::aresDescription(), {kLoopback, 0});
+    HostLink<JointPackets> host({.controller = controller.local(), .seed = randomSeed()}, {kLoopback, 0});
+    const int64_t end_ns = monotonicNowNs() + kSoonNs;
+    while (!host.session().isDescribed() && monotonicNowNs() < end_ns) {
+        host.poll(monotonicNowNs());
+        controller.poll(monotonicNowNs());
+    }
+    ASSERT_TRUE(host.session().isDescribed());
+    UdpSocket stranger;
+    const std::byte tiny[1] = {};
+    for (int i = 0; i < 2000; ++i) stranger.send(tiny, host.local());
+    JointState state{};
+    controller.send(state, monotonicNowNs());
+    EXPECT_TRUE(host.poll(monotonicNowNs()));
+    EXPECT_EQ(host.session().statistics().rejected, 0u) << "the kernel has dropped them";
+}
+
 TEST(UdpLinks, AControllerOfOneHostIsNobodyElses) {
     UdpSocket own;
     const Endpoint only = own.local();
