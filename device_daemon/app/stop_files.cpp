@@ -1,5 +1,7 @@
 #include "device_daemon/app/stop_files.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>
@@ -12,18 +14,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A folder that a user has chosen may hold files of the user's own: only names of stopFile() count.
 bool isStopFile(const fs::directory_entry& entry) {
+    constexpr char kDate[] = "[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]",
+                   kTime[] = "[0-9][0-9]-[0-9][0-9]-[0-9][0-9]";
+    static const std::string kPattern = std::string("stop_[0-9]*_") + kDate + '_' + kTime + "_[0-9]*_*.csv";
     std::error_code error;
-    const std::string name = entry.path().filename();
-    return entry.symlink_status(error).type() == fs::file_type::regular && name.starts_with("stop_") &&
-           name.ends_with(".csv");
+    return entry.symlink_status(error).type() == fs::file_type::regular &&
+           fnmatch(kPattern.c_str(), entry.path().filename().c_str(), 0) == 0;
+}
+
+// One that has just gone counts as the oldest.
+fs::file_time_type lastWriteTime(const fs::directory_entry& entry) {
+    std::error_code error;
+    return entry.last_write_time(error);
 }
 
 void makeRoomIn(const fs::path& dir) {
     std::error_code error;
     std::vector<std::pair<fs::file_time_type, fs::path>> files;
-    for (const fs::directory_entry& entry : fs::directory_iterator(dir, error))
-        if (isStopFile(entry)) files.emplace_back(entry.last_write_time(error), entry.path());
+    for (fs::directory_iterator entry(dir, error), end; !error && entry != end; entry.increment(error))
+        if (isStopFile(*entry)) files.emplace_back(lastWriteTime(*entry), entry->path());
     std::sort(files.begin(), files.end());
     for (size_t i = 0; i + kMostStopFiles <= files.size(); ++i) fs::remove(files[i].second, error);
 }

@@ -9,26 +9,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string stopName(int milliseconds) {
+    return "stop_7_2026-11-23_04-05-06_" + std::to_string(milliseconds) + "_motor_too_hot.csv";
+}
+
 TEST(StopFiles, TheNewestStayAndWhatIsNotOneStaysToo) {
     const test::TemporaryFolder folder;
     const auto old = fs::file_time_type::clock::now() - std::chrono::hours(1);
     for (int i = 0; i < 120; ++i) {
-        const std::string file = folder / ("stop_7_" + std::to_string(i) + ".csv");
+        const std::string file = folder / stopName(i);
         test::writeFile(file, "");
         fs::last_write_time(file, old + std::chrono::seconds(i));
     }
     test::writeFile(folder / "notes.csv", "");
     fs::last_write_time(folder / "notes.csv", old - std::chrono::hours(1));
-    fs::create_symlink(folder / "notes.csv", folder / "stop_7_link.csv");
+    test::writeFile(folder / "stop_motion.csv", "");
+    fs::last_write_time(folder / "stop_motion.csv", old - std::chrono::hours(1));
+    fs::create_symlink(folder / "notes.csv", folder / stopName(120));
 
     test::writeFile(stopFile(folder.path(), 7, StopCause::kSpeed), "");
     size_t stops = 0;
     for (const auto& entry : fs::directory_iterator(folder.path()))
         stops += entry.is_regular_file() && !entry.is_symlink();
-    EXPECT_EQ(stops, kMostStopFiles + 1) << "and the notes";
-    EXPECT_FALSE(fs::exists(folder / "stop_7_20.csv"));
-    EXPECT_TRUE(fs::exists(folder / "stop_7_21.csv"));
+    EXPECT_EQ(stops, kMostStopFiles + 2) << "and the user's own";
+    EXPECT_FALSE(fs::exists(folder / stopName(20)));
+    EXPECT_TRUE(fs::exists(folder / stopName(21)));
     EXPECT_TRUE(fs::exists(folder / "notes.csv"));
+    EXPECT_TRUE(fs::exists(folder / "stop_motion.csv"));
 }
 
 TEST(StopFiles, AFolderThatCannotBeMadeIsNoError) {
