@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
 
 #include "tests/support/places.h"
@@ -34,19 +35,35 @@ std::filesystem::path programOf(const std::string& name) {
     return std::filesystem::path(test::binDir()) / name;
 }
 
+// That of this process, but for the folder where programs keep their state.
+std::vector<std::string> environmentWith(const std::string& state_folder) {
+    constexpr std::string_view kState = "XDG_STATE_HOME=";
+    std::vector<std::string> variables;
+    for (char** variable = environ; *variable; ++variable)
+        if (!std::string_view(*variable).starts_with(kState)) variables.emplace_back(*variable);
+    variables.push_back(std::string(kState) + state_folder);
+    return variables;
+}
+
+std::vector<char*> pointersTo(std::vector<std::string>& words) {
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    return pointers;
+}
+
 }  // namespace
 
 Process::Process(const std::vector<std::string>& arguments) {
     std::vector<std::string> words = arguments;
     words[0] = programOf(arguments[0]).string();
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
+    std::vector<std::string> variables = environmentWith(folder_ / "state");
+    const std::vector<char*> argv = pointersTo(words), environment = pointersTo(variables);
     pid_ = fork();
     if (pid_ != 0) return;
     redirect(STDOUT_FILENO, folder_ / "out");
     redirect(STDERR_FILENO, folder_ / "err");
-    execv(argv[0], argv.data());
+    execve(argv[0], argv.data(), environment.data());
     _exit(127);
 }
 

@@ -38,6 +38,13 @@ TEST(StopFiles, TheNewestStayAndWhatIsNotOneStaysToo) {
     EXPECT_TRUE(fs::exists(folder / "stop_motion.csv"));
 }
 
+// Among the files of whoever runs the tests, the oldest would go to make room for theirs.
+TEST(StopFiles, OfProgramsUnderTestGoToAFolderOfTheirOwn) {
+    const test::Finished finished = test::run({"/usr/bin/printenv", "XDG_STATE_HOME"});
+    EXPECT_EQ(finished.exit_code, 0);
+    EXPECT_EQ(finished.out.rfind(fs::temp_directory_path().string(), 0), 0u) << finished.out;
+}
+
 TEST(StopFiles, AFolderThatCannotBeMadeIsNoError) {
     EXPECT_EQ(stopFile("/proc/nowhere", 7, StopCause::kSpeed).parent_path(), "/proc/nowhere");
 }
