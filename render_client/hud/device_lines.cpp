@@ -40,10 +40,15 @@ void addCause(SafetyState state, StopCause cause, uint32_t fault_code, std::vect
         rows.push_back({"", line, HudTone::kAlarm});
 }
 
-void addWhatItWaitsFor(const topics::Device& device, std::vector<HudRow>& rows) {
-    if (device.abilities() & kAbilityEnablingSwitch && !device.is_enabled())
+// After a pause a switch that is still held counts as pressed no more.
+void addWhatItWaitsFor(SafetyState state, const topics::Device& device, std::vector<HudRow>& rows) {
+    const bool has_switch = device.abilities() & kAbilityEnablingSwitch;
+    if (has_switch && !device.is_enabled())
         rows.push_back({"", "hold the enabling switch", HudTone::kWarning});
-    if (device.force_waits()) rows.push_back({"", "move the tool away", HudTone::kWarning});
+    if (device.force_waits())
+        rows.push_back({"", "move the tool away", HudTone::kWarning});
+    else if (has_switch && device.is_enabled() && state == SafetyState::kPaused)
+        rows.push_back({"", "press the switch anew", HudTone::kWarning});
 }
 
 }  // namespace
@@ -56,7 +61,7 @@ std::vector<HudRow> deviceRows(const topics::Device& device, const topics::ToolS
                               std::string(nameOf(state)) + (device.is_simulated() ? ", simulated" : ""),
                               toneOf(state)}};
     if (rows.front().tone == HudTone::kAlarm) addCause(state, cause, device.fault_code(), rows);
-    if (state == SafetyState::kReady) addWhatItWaitsFor(device, rows);
+    if (state == SafetyState::kReady || state == SafetyState::kPaused) addWhatItWaitsFor(state, device, rows);
     return rows;
 }
 

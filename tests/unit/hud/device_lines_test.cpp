@@ -60,14 +60,21 @@ TEST(DeviceLines, BeforeItEngagesItIsAWarningAndACauseThatIsOverIsNotShown) {
         ASSERT_EQ(rows.size(), 1u);
         EXPECT_EQ(rows[0].tone, HudTone::kWarning);
     }
-    topics::Device waits = deviceIn(SafetyState::kReady);
-    waits.set_force_waits(true);
-    EXPECT_EQ(textOf(deviceRows(waits, nullptr)), "ready move the tool away");
-    waits.set_force_waits(false);
-    waits.set_abilities(kAbilityEnablingSwitch);
-    EXPECT_EQ(textOf(deviceRows(waits, nullptr)), "ready hold the enabling switch");
-    waits.set_is_enabled(true);
-    EXPECT_EQ(textOf(deviceRows(waits, nullptr)), "ready");
+}
+
+TEST(DeviceLines, ReadyAndPausedSayWhatTheyWaitFor) {
+    for (const SafetyState state : {SafetyState::kReady, SafetyState::kPaused}) {
+        const std::string name = nameOf(state);
+        topics::Device waits = deviceIn(state);
+        waits.set_force_waits(true);
+        EXPECT_EQ(textOf(deviceRows(waits, nullptr)), name + " move the tool away");
+        waits.set_force_waits(false);
+        waits.set_abilities(kAbilityEnablingSwitch);
+        EXPECT_EQ(textOf(deviceRows(waits, nullptr)), name + " hold the enabling switch");
+        waits.set_is_enabled(true);
+        const std::string anew = state == SafetyState::kPaused ? " press the switch anew" : "";
+        EXPECT_EQ(textOf(deviceRows(waits, nullptr)), name + anew);
+    }
 }
 
 TEST(DeviceLines, TheToolsStateIsNewerAndUnknownStatesAreAlarms) {
