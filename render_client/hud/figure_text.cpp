@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <sstream>
 
 namespace bonemill {
@@ -24,7 +25,8 @@ std::string figureText(double value, int decimals, const char* unit) {
     if (!std::isfinite(value)) return kNoNumber;
     char text[64];
     std::snprintf(text, sizeof text, "%.*f%s", decimals, value, unit);
-    return text;
+    const bool is_zero = std::strtod(text, nullptr) == 0;
+    return is_zero && text[0] == '-' ? text + 1 : text;
 }
 
 std::string readableText(double value, const char* unit) {

@@ -55,6 +55,14 @@ TEST(EffectText, FiguresHaveUnits) {
     EXPECT_EQ(find(rows, "Damaged")->tone, HudTone::kAlarm);
 }
 
+TEST(EffectText, NothingHasNoSign) {
+    EffectState state;
+    state.set_axis_torque_nm(-4e-6);
+    EXPECT_EQ(find(effectRows(state, nullptr, 0), "Load")->value, "0.00 N\u00b7mm");
+    state.set_axis_torque_nm(-6e-6);
+    EXPECT_EQ(find(effectRows(state, nullptr, 0), "Load")->value, "-0.01 N\u00b7mm");
+}
+
 TEST(EffectText, AStalledSpindleSaysSo) {
     EffectState state;
     state.set_spin_speed(0);
