@@ -46,7 +46,8 @@ std::string programPath(const std::string& name) {
     const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
     for (const auto& folder : {here, here.parent_path()})
         if (access((folder / name).c_str(), X_OK) == 0) return folder / name;
-    throw UserError(name + " is missing beside device_daemon in " + here.string() + ": build or install it");
+    throw UserError(name + " is missing beside device_daemon in " + here.string() +
+                    ": install it, or build it: cmake --build --preset release --target " + name);
 }
 
 ChildProgram::ChildProgram(const std::string& name, std::vector<std::string> words)
