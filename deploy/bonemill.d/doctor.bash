@@ -78,7 +78,8 @@ look_at_devices() {
     if [[ ! -x $bin/device_daemon ]]; then
         advise "nobody can look before the programs are built" "see Programs"
     else
-        { timeout 20 "$bin/device_daemon" --list 2>&1 || true; } | sed 's/^/  /'
+        { timeout 20 "$bin/device_daemon" --list 2>&1 || true; } |
+            sed 's/^/  /; s/device_daemon --scene FILE --device/bonemill start --device/'
     fi
 }
 

@@ -46,7 +46,7 @@ constexpr std::array<ArmKind, 3> kArms{{
 }};
 
 std::string use(const std::string& device) {
-    return "device_daemon --device " + device;
+    return "device_daemon --scene FILE --device " + device;
 }
 
 ListedDevice spaceMouse(const DeviceFacts& facts) {
@@ -159,7 +159,7 @@ std::vector<ListedDevice> listDevices(const DeviceFacts& facts) {
     entries.push_back(spaceMouse(facts));
     listInputs(facts, InputRole::kGamepad,
                {.kind = "gamepad",
-                .option = "device_daemon --device gamepad:",
+                .option = "device_daemon --scene FILE --device gamepad:",
                 .word = "gamepad:",
                 .none = "none is plugged in"},
                entries);
@@ -170,7 +170,7 @@ std::vector<ListedDevice> listDevices(const DeviceFacts& facts) {
                        .what_to_type = use("pointer")});
     listInputs(facts, InputRole::kKeyboard,
                {.kind = "pedal or keys",
-                .option = "device_daemon --pedal ",
+                .option = "device_daemon --scene FILE --pedal ",
                 .word = "",
                 .none = "no pedal and no keyboard is plugged in"},
                entries);

@@ -28,7 +28,7 @@ TEST(DeviceList, WithNothingPluggedInEverythingButTheMouseSaysWhyNot) {
         EXPECT_EQ(entry.usable, entry.kind == "mouse") << entry.kind;
         EXPECT_EQ(entry.why_not.empty(), entry.usable) << entry.kind;
     }
-    EXPECT_EQ(entryOf({}, "mouse").what_to_type, "device_daemon --device pointer");
+    EXPECT_EQ(entryOf({}, "mouse").what_to_type, "device_daemon --scene FILE --device pointer");
     for (const char* kind :
          {"Force Dimension", "Novint Falcon", "Touch", "SpaceMouse", "gamepad", "pedal or keys"})
         EXPECT_FALSE(entryOf({}, kind).why_not.empty()) << kind;
@@ -45,7 +45,7 @@ TEST(DeviceList, ASpaceMouseIsReadyWhenSpacenavdHasIt) {
     const ListedDevice entry =
         entryOf({.spnav_path = "/run/spnav.sock", .spnav = SpnavState::kReady}, "SpaceMouse");
     EXPECT_TRUE(entry.usable);
-    EXPECT_EQ(entry.what_to_type, "device_daemon --device spacemouse");
+    EXPECT_EQ(entry.what_to_type, "device_daemon --scene FILE --device spacemouse");
     EXPECT_TRUE(contains(entryOf({.spnav = SpnavState::kNoDevice}, "SpaceMouse").why_not,
                          "no SpaceMouse is plugged"));
     for (const SpnavState state : {SpnavState::kSilent, SpnavState::kForbidden})
@@ -67,7 +67,8 @@ TEST(DeviceList, AForbiddenPedalSaysWhichRuleToInstall) {
     const ListedDevice entry = entryOf(facts, "pedal or keys");
     EXPECT_FALSE(entry.usable);
     EXPECT_TRUE(contains(entry.what_to_type, "deploy/udev/60-bonemill.rules"));
-    EXPECT_EQ(entryOf(facts, "gamepad").what_to_type, "device_daemon --device gamepad:/dev/input/event9");
+    EXPECT_EQ(entryOf(facts, "gamepad").what_to_type,
+              "device_daemon --scene FILE --device gamepad:/dev/input/event9");
     EXPECT_TRUE(entryOf(facts, "gamepad").usable);
     EXPECT_TRUE(contains(entryOf({.inputs = {pad}}, "pedal or keys").why_not, "no pedal"));
 }
