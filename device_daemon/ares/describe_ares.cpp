@@ -42,8 +42,8 @@ void addWorkspace(std::ostringstream& out, const AresKinematics& kinematics) {
 
 void addLimits(std::ostringstream& out, const AresDeviceConfig& config) {
     out << "limits\n"
-        << "  on the hand " << config.max_force << " N and " << config.max_torque * kPerMilli
-        << " N mm, per actuator " << config.max_actuator_force << " N\n"
+        << "  on the hand " << config.max_force << " N and " << config.max_torque << " N m, per actuator "
+        << config.max_actuator_force << " N\n"
         << "  a slider faster than " << config.guard.largest_slider_speed
         << " m/s is an encoder that jumps\n";
 }

@@ -23,7 +23,7 @@ TEST(DescribeAres, NamesThePlaceholderAndItsFigures) {
     const std::string text = describe(aresConfigOf({}, false));
     for (const char* part : {"a placeholder: no dimension of ARES is published", "link", "210 mm", "151 mm",
                              "D (device)", "ball around D's origin", "singularity index 0.291",
-                             "50 N and 1e+03 N mm", "counterweight", "(0 0 0) mm in D"}) {
+                             "50 N and 1 N m", "counterweight", "(0 0 0) mm in D"}) {
         EXPECT_NE(text.find(part), std::string::npos) << part << "\nin\n" << text;
     }
 }
