@@ -1,5 +1,6 @@
 #include "device_daemon/app/daemon.h"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <cmath>
@@ -17,6 +18,7 @@ namespace bonemill {
 namespace {
 
 constexpr int64_t kWatchPeriodNs = 50 * kNsPerMillisecond;
+constexpr int64_t kLongestSilenceNs = 2 * kNsPerSecond;  // of a device that is there, at the start
 constexpr double kForEver = std::numeric_limits<double>::infinity();
 
 DeviceLoopConfig loopConfigOf(const DeviceSetup& setup, const DaemonOptions& options) {
@@ -177,7 +179,7 @@ void Daemon::watch() {
     const int64_t start_ns = monotonicNowNs();
     SafetyState shown_state = SafetyState::kDisconnected;
     StopCause shown_cause = StopCause::kNone;
-    bool was_server_there = false;
+    bool was_server_there = false, is_silence_said = false;
     while (!progress_.is_finished) {
         if (stop_signals_.await(kWatchPeriodNs) && !should_stop_) {
             spdlog::info("stopping: force ramps to zero");
@@ -185,14 +187,18 @@ void Daemon::watch() {
         }
         if (const std::string why = device_.refusal(); !why.empty()) throw UserError(why);
         if (!is_ending_) reportState(shown_state, shown_cause);
+        if (!is_silence_said && monotonicNowNs() - start_ns > kLongestSilenceNs) {
+            warnOfSilentDevice();
+            is_silence_said = true;
+        }
         if (loop_.blackBox().isFull()) writeBlackBox();
         if (program_ && !is_ending_) program_->lookAfter();
         if (progress_.is_attached) {
             reportServer(was_server_there);
         } else if (secondsOfNs(monotonicNowNs() - start_ns) > give_up_s) {
-            throw UserError("no haptic_server has answered within " + std::to_string(*options_.wait_seconds) +
-                            " s: start it with the same --session (" + std::to_string(options_.session) +
-                            ")");
+            throw UserError(fmt::format(
+                "no haptic_server has answered within {} s: start it with the same --session ({})", give_up_s,
+                options_.session));
         }
     }
 }
@@ -220,6 +226,11 @@ void Daemon::reportState(SafetyState& shown_state, StopCause& shown_cause) const
     }
     shown_state = state;
     shown_cause = cause;
+}
+
+void Daemon::warnOfSilentDevice() const {
+    if (progress_.state == SafetyState::kDisconnected && !is_ending_)
+        spdlog::warn("the device does not answer: device_daemon --list says what is there");
 }
 
 void Daemon::warnOfMissingSwitch() const {

@@ -51,6 +51,7 @@ class Daemon {
     void watch();
     void reportServer(bool& was_there) const;
     void reportState(SafetyState& shown_state, StopCause& shown_cause) const;
+    void warnOfSilentDevice() const;
     void warnOfMissingSwitch() const;
     void writeBlackBox();
 

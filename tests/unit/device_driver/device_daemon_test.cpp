@@ -152,7 +152,20 @@ TEST_F(DeviceDaemonTest, SaysTheFirstAndTheLastPhaseAndLeavesWhenToldTo) {
 TEST_F(DeviceDaemonTest, GivesUpWithoutAServer) {
     const test::Finished finished = test::run(commandLine(sceneFile(kShortScene), {"--wait-seconds", "0.1"}));
     EXPECT_EQ(finished.exit_code, 2);
-    expectSays(finished, "error: no haptic_server");
+    expectSays(finished, "error: no haptic_server has answered within 0.1 s:");
+}
+
+TEST_F(DeviceDaemonTest, WarnsOnceOfADeviceThatDoesNotAnswer) {
+    const std::string warning = "warning the device does not answer: device_daemon --list says";
+    const std::string file = sceneFile(kShortScene);
+    const std::string silent = "gamepad:" + file;
+    const test::Finished finished =
+        test::run(commandLine(file, {"--device", silent, "--wait-seconds", "2.5"}));
+    expectSays(finished, warning);
+    EXPECT_EQ(finished.err.find(warning), finished.err.rfind(warning)) << finished.err;
+    const test::Finished heard =
+        test::run(commandLine(file, {"--device", "pointer", "--wait-seconds", "2.5"}));
+    EXPECT_EQ(heard.err.find("does not answer"), std::string::npos) << heard.err;
 }
 
 TEST_F(DeviceDaemonTest, RefusesBadScenes) {
