@@ -4,7 +4,7 @@
 usage() {
     cat <<'TEXT'
 Usage: bonemill COMMAND [options]
-  start [SCENE]    start a session on this PC with the best hand it finds: haptic arm, SpaceMouse or mouse
+  start [SCENE]    start a session on this PC with the best hand it finds: haptic arm, SpaceMouse, gamepad or mouse
   list             sessions that run, and scenes that can be started
   stop [N|all]     end a session
   watch [HOST]     a window on a session of this PC, or of HOST

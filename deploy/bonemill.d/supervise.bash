@@ -129,12 +129,12 @@ supervise() {
     done
 }
 
-# What the device warns of is for whoever holds it.
+# What the device warns of, and that it is over, is for whoever holds it, and which hand was found.
 relay_device_words() {
     local line
     while IFS= read -r line <&"$device_words"; do
-        [[ $line =~ \ device_daemon\ (warn|warning|error)\ (.*) ]] || continue
-        [[ $line == *"real time: "* ]] || say "device: ${BASH_REMATCH[2]}"
+        [[ $line =~ \ device_daemon\ ((warn|warning|error)\ |info\ (the hand is |haptic_server answers))(.*) ]] || continue
+        [[ $line == *"real time: "* ]] || say "device: ${BASH_REMATCH[3]}${BASH_REMATCH[4]}"
     done
 }
 
@@ -147,7 +147,7 @@ has_ended() {
     case $role:$code in
         viewer:0) end_because 0 "the window was closed" ;;
         server:0) end_because 0 "the hand has finished, or somebody has ended haptic_server" ;;
-        device:0) end_because 0 "the hand has finished" ;;
+        device:0) end_because 0 "the hand has finished, or somebody has ended device_daemon" ;;
         *:2) if lacks_real_time "$role"; then without_real_time; launch "$role"; else end_with_error "$role" "$code"; fi ;;
         *) restart "$role" "$code" ;;
     esac
@@ -207,6 +207,8 @@ end_program() {  # ROLE LIMIT_S
         kill -KILL -- "-${pid[$1]}" 2>/dev/null || true  # This is its group: what it started goes, too.
     fi
     wait "${pid[$1]}" || code=$?
+    # Wrong input of one is mostly wrong input of the others, and was said already.
+    ((code != 2 || ${end_code:-0} != 2)) || return 0
     # It says so when it could not do its last work, as to write a file.
     ((code == 0 || code > 128)) || { end_code=$code; complain "${title[$1]} left with code $code, see $logs/$1.log"; }
 }

@@ -207,6 +207,7 @@ TEST_F(Bonemill, AProgramThatDiesAgainAndAgainEndsTheSession) {
 }
 
 TEST_F(Bonemill, WrongInputOfAProgramIsSaidOnceAndNotTriedAgain) {
+    test::writeFile(rig_.folder() / "device_daemon.end", "2");  // It would have said the same.
     rig_.letSay("haptic_server", "error: own.textproto: there is no volume\n");
     rig_.letLeave("haptic_server", 2);
     const Finished finished = test::run(startWords());
@@ -219,10 +220,15 @@ TEST_F(Bonemill, WrongInputOfAProgramIsSaidOnceAndNotTriedAgain) {
 TEST_F(Bonemill, WhatTheDeviceWarnsOfIsSaid) {
     rig_.letSay(
         "device_daemon",
-        "12:00:00.000 device_daemon info phase mill\n12:00:01.000 device_daemon warn the hand slips\n");
+        "12:00:00.000 device_daemon info the hand is pointer\n12:00:00.000 device_daemon info phase mill\n"
+        "12:00:01.000 device_daemon warn the hand slips\n12:00:02.000 device_daemon info haptic_server "
+        "answers\n");
     Process session(startWords({"--no-viewer"}));
-    EXPECT_TRUE(waitFor([&] { return has(session.outSoFar(), "bonemill: device: the hand slips\n"); }))
-        << session.outSoFar();
+    EXPECT_TRUE(waitFor([&] {
+        return has(session.outSoFar(),
+                   "bonemill: device: the hand is pointer\nbonemill: device: the hand slips\n"
+                   "bonemill: device: haptic_server answers\n");
+    })) << session.outSoFar();
     EXPECT_FALSE(has(session.outSoFar(), "phase mill"));
 }
 
@@ -299,6 +305,9 @@ TEST_F(Bonemill, WrongUseIsRefused) {
                                                   {"host", "minimal"},
                                                   {"list", "all"}})
         expectRefusal(rig_.call(words), "");
+    for (const std::string seconds : {"abc", "0.0", "-1", "1.5.2", "nan"})
+        expectRefusal(rig_.call({"start", "--seconds", seconds}),
+                      "--seconds " + seconds + ": give a number above 0");
     EXPECT_EQ(rig_.call({}).exit_code, 2);
     for (const char* command : {"start", "host", "list", "stop", "watch", "doctor"}) {
         const Finished help = rig_.call({command, "--help"});
@@ -317,8 +326,10 @@ TEST_F(Bonemill, MissingProgramsAreSaidWithWhatToType) {
 
 TEST_F(Bonemill, TheDoctorLooksAtEverything) {
     rig_.setDisplay(false);
-    rig_.putProgram("device_daemon",
-                    "#!/bin/bash\n[[ $1 != --list ]] || echo 'mouse  a pointer'\necho ' --list'\n");
+    rig_.putProgram(
+        "device_daemon",
+        "#!/bin/bash\n[[ $1 != --list ]] || echo 'mouse  device_daemon --scene FILE --device pointer'\n"
+        "echo ' --list'\n");
     const Finished doctor = rig_.call({"doctor"});
     EXPECT_EQ(doctor.exit_code, 0) << doctor.err;
     EXPECT_EQ(doctor.err, "");
@@ -326,7 +337,7 @@ TEST_F(Bonemill, TheDoctorLooksAtEverything) {
          {"Programs:\n", "Real time:\n", "Network:\n", "Display:\n", "Devices:\n", "Sessions:\n"})
         EXPECT_TRUE(has(doctor.out, heading)) << doctor.out;
     EXPECT_TRUE(has(doctor.out, "there is none (DISPLAY is not set)")) << doctor.out;
-    EXPECT_TRUE(has(doctor.out, "  mouse  a pointer\n")) << doctor.out;
+    EXPECT_TRUE(has(doctor.out, "  mouse  bonemill start --device pointer\n")) << doctor.out;
 }
 
 TEST_F(Bonemill, TheDoctorFindsWhatRunsWithoutASession) {
