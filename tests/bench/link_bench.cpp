@@ -1,6 +1,10 @@
-// Measures what the UDP wire adds on loopback: from a controller's state to the command that answers it,
-// beside a bare exchange of datagrams of the same sizes between two threads, in turns in the same run. It
-// asserts nothing. The wire's share is the difference; the rest is the machine's.
+// Measures what the ways to the hand add on one PC: from a controller's state to the command that answers it
+// over the UDP wire (a bridge's is the same wire), and from a sample to its wrench through the memory that
+// device_daemon and haptic_server share, beside a bare exchange of datagrams between two threads, in turns in
+// the same run. It asserts nothing. What is added is the difference to the bare exchange; the rest is the
+// machine's.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <array>
 #include <atomic>
@@ -8,6 +12,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "common/ipc/device_link.h"
 #include "common/rt/clock.h"
 #include "common/rt/periodic_timer.h"
 #include "common/rt/realtime_thread.h"
@@ -55,6 +60,22 @@ class Threads {
     bool has_told_ = false;
 };
 
+// Sends questions by the clock, and counts what comes of them. `ask` sends one, waits for its answer until
+// the deadline, and says whether it came.
+template <class Ask>
+void askByTheClock(int64_t period_ns, int exchanges, LinkRun& run, const Ask& ask) {
+    PeriodicTimer timer(period_ns, monotonicNowNs());
+    for (int i = 0; i < exchanges; ++i) {
+        const int64_t due_ns = timer.waitNext();
+        const int64_t sent_ns = monotonicNowNs();
+        ++run.exchanges;
+        if (ask(sent_ns, due_ns + period_ns))
+            run.round_trip.record(monotonicNowNs() - sent_ns);
+        else
+            ++run.unanswered;
+    }
+}
+
 // Two threads throw datagrams of the packets' sizes to and fro.
 void pingPong(Threads& threads, int64_t period_ns, int exchanges, LinkRun& run) {
     wire::UdpSocket asking, answering;
@@ -70,25 +91,20 @@ void pingPong(Threads& threads, int64_t period_ns, int exchanges, LinkRun& run) 
         }
     };
     threads.run(answer, [&] {
-        PeriodicTimer timer(period_ns, monotonicNowNs());
         Buffer question{}, buffer;
         wire::Endpoint from;
-        for (int i = 0; i < exchanges; ++i) {
-            const int64_t due_ns = timer.waitNext();
-            const int64_t sent_ns = monotonicNowNs();
-            std::memcpy(question.data(), &i, sizeof(i));
+        int number = 0;
+        askByTheClock(period_ns, exchanges, run, [&](int64_t, int64_t deadline_ns) {
+            ++number;
+            std::memcpy(question.data(), &number, sizeof(number));
             asking.send(std::span(question).first(sizeof(wire::JointState)), answering.local());
-            bool is_answered = false;
-            while (!is_answered && asking.waitUntil(due_ns + period_ns)) {
-                is_answered = asking.receive(buffer, from).size() == sizeof(wire::JointCommand) &&
-                              std::memcmp(buffer.data(), &i, sizeof(i)) == 0;
+            while (asking.waitUntil(deadline_ns)) {
+                if (asking.receive(buffer, from).size() == sizeof(wire::JointCommand) &&
+                    std::memcmp(buffer.data(), &number, sizeof(number)) == 0)
+                    return true;
             }
-            ++run.exchanges;
-            if (is_answered)
-                run.round_trip.record(monotonicNowNs() - sent_ns);
-            else
-                ++run.unanswered;
-        }
+            return false;
+        });
     });
 }
 
@@ -101,41 +117,66 @@ wire::Describe description(double rate_hz) {
     return d;
 }
 
-// The controller sends its states by the clock; the host is the device that device_daemon uses.
+void answerNext(UdpJointDevice& host) {
+    JointReading reading;
+    if (!host.waitForSample(monotonicNowNs() + kWaitNs) || !host.readJoints(0, reading)) return;
+    host.applyForces({.forces = reading.q, .is_wanted = true, .is_engaged = true});
+}
+
+// The controller sends its states; the host is the device that device_daemon uses.
 void overTheWire(Threads& threads, int64_t period_ns, double rate_hz, int exchanges, LinkRun& run) {
     wire::ControllerLink<wire::JointPackets> controller(description(rate_hz), {wire::kLoopback, 0});
     UdpJointDevice host({.controller = controller.local()});
     const auto answer = [&](const std::atomic<bool>& is_over) {
-        JointReading reading;
-        while (!is_over) {
-            if (!host.waitForSample(monotonicNowNs() + kWaitNs) || !host.readJoints(0, reading)) continue;
-            host.applyForces({.forces = reading.q, .is_wanted = true, .is_engaged = true});
-        }
+        while (!is_over) answerNext(host);
     };
     threads.run(answer, [&] {
         controller.waitForCommand(monotonicNowNs() + kNsPerSecond);
-        PeriodicTimer timer(period_ns, monotonicNowNs());
-        for (int i = 0; i < exchanges; ++i) {
-            const int64_t due_ns = timer.waitNext();
+        askByTheClock(period_ns, exchanges, run, [&](int64_t now_ns, int64_t deadline_ns) {
             wire::JointState state{};
             state.inputs = wire::kInputChainClosed | wire::kInputHomed;
-            const int64_t sent_ns = monotonicNowNs();
-            controller.poll(sent_ns);
-            controller.session().step(0, true, sent_ns);
-            if (!controller.send(state, sent_ns)) continue;
-            bool is_answered = false;
-            while (!is_answered && monotonicNowNs() < due_ns + period_ns) {
-                is_answered =
-                    controller.waitForCommand(due_ns + period_ns) &&
-                    controller.session().newestCommand().reflected_sequence == state.header.sequence;
+            controller.poll(now_ns);
+            controller.session().step(0, true, now_ns);
+            if (!controller.send(state, now_ns)) return false;
+            while (monotonicNowNs() < deadline_ns) {
+                if (controller.waitForCommand(deadline_ns) &&
+                    controller.session().newestCommand().reflected_sequence == state.header.sequence)
+                    return true;
             }
-            ++run.exchanges;
-            if (is_answered)
-                run.round_trip.record(monotonicNowNs() - sent_ns);
-            else
-                ++run.unanswered;
-        }
+            return false;
+        });
         run.watchdog_trips += controller.session().watchdogTrips();
+    });
+}
+
+// The daemon writes its samples; the server answers each as it comes.
+void throughSharedMemory(Threads& threads, int64_t period_ns, int exchanges, LinkRun& run) {
+    const auto session = uint32_t(getpid());
+    DeviceLink server = DeviceLink::create(session, LinkSide::kServer, 1);
+    DeviceLink daemon = DeviceLink::create(session, LinkSide::kDaemon, 1);
+    const auto answer = [&](const std::atomic<bool>& is_over) {
+        while (!is_over) {
+            DeviceSample sample;
+            if (!server.waitForSample(monotonicNowNs() + kWaitNs) || !server.readSample(sample)) continue;
+            WrenchCommand command{};
+            command.answers_sequence = sample.sequence;
+            server.writeCommand(command);
+        }
+    };
+    threads.run(answer, [&] {
+        askByTheClock(period_ns, exchanges, run, [&](int64_t now_ns, int64_t deadline_ns) {
+            DeviceSample sample{};
+            sample.stamp_ns = now_ns;
+            sample.q_DT[0] = 1;
+            const uint64_t sequence = daemon.writeSample(sample);
+            WrenchCommand command{};
+            while (monotonicNowNs() < deadline_ns) {
+                if (daemon.waitForCommand(deadline_ns) && daemon.readCommand(command) &&
+                    command.answers_sequence == sequence)
+                    return true;
+            }
+            return false;
+        });
     });
 }
 
@@ -157,20 +198,24 @@ void measure(const Options& o) {
     const int64_t period_ns = std::llround(double(kNsPerSecond) / o.rate_hz);
     const int exchanges = std::max(1, int(o.rate_hz * o.seconds / o.rounds));
     Threads threads(o.answering_core, o.asking_core);
-    LinkRun bare, link;
+    LinkRun bare, joints, memory;
     for (int round = 0; round < o.rounds; ++round) {
         pingPong(threads, period_ns, exchanges, bare);
-        overTheWire(threads, period_ns, o.rate_hz, exchanges, link);
+        overTheWire(threads, period_ns, o.rate_hz, exchanges, joints);
+        throughSharedMemory(threads, period_ns, exchanges, memory);
     }
     Table table({"us", "mean", "p50", "p99", "p99.9", "max"});
     table.add({"bare UDP, there and back"}, bare.round_trip);
-    table.add({"state sent to command received"}, link.round_trip);
+    table.add({"joints: state to command"}, joints.round_trip);
+    table.add({"shared memory: sample to wrench"}, memory.round_trip);
     table.print();
-    std::printf("not answered within the period: bare %llu of %llu; link %llu of %llu, watchdog trips %llu\n",
-                (unsigned long long)bare.unanswered, (unsigned long long)bare.exchanges,
-                (unsigned long long)link.unanswered, (unsigned long long)link.exchanges,
-                (unsigned long long)link.watchdog_trips);
-    writeJson(o.json, {{"rate_hz", o.rate_hz}, {"bare", toJson(bare)}, {"link", toJson(link)}});
+    std::printf("of %llu each, not answered within the period: bare %llu, joints %llu, memory %llu\n",
+                (unsigned long long)bare.exchanges, (unsigned long long)bare.unanswered,
+                (unsigned long long)joints.unanswered, (unsigned long long)memory.unanswered);
+    writeJson(o.json, {{"rate_hz", o.rate_hz},
+                       {"bare", toJson(bare)},
+                       {"joints", toJson(joints)},
+                       {"memory", toJson(memory)}});
 }
 
 }  // namespace
@@ -179,12 +224,12 @@ void measure(const Options& o) {
 int main(int argc, char** argv) {
     using namespace bonemill;
     bench::Options o;
-    CLI::App app("what the UDP wire adds on loopback, beside a bare exchange of datagrams");
+    CLI::App app("what wire and shared memory add on one PC, beside a bare exchange of datagrams");
     app.add_option("--rate-hz", o.rate_hz)->check(CLI::Range(500.0, 8000.0))->capture_default_str();
-    app.add_option("--seconds", o.seconds, "of each of the two")
+    app.add_option("--seconds", o.seconds, "of each of the three")
         ->check(CLI::Range(0.1, 3600.0))
         ->capture_default_str();
-    app.add_option("--rounds", o.rounds, "in which the two take turns")
+    app.add_option("--rounds", o.rounds, "in which they take turns")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     app.add_option("--host-core", o.answering_core, "core of the host's thread (-1: any)")
