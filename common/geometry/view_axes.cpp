@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/math/pinned_math.h"
+
 namespace bonemill {
 namespace {
 
@@ -14,8 +16,8 @@ Eigen::Vector3d towardsEye(double azimuth, double elevation, const Eigen::Vector
     const Eigen::Vector3d front = (reference - up_W * up_W.dot(reference)).normalized();
     const Eigen::Vector3d left = up_W.cross(front);
     const double bounded = std::clamp(elevation, -kMaxViewElevation, kMaxViewElevation);
-    return std::cos(bounded) * (std::cos(azimuth) * front + std::sin(azimuth) * left) +
-           std::sin(bounded) * up_W;
+    return pinned::cos(bounded) * (pinned::cos(azimuth) * front + pinned::sin(azimuth) * left) +
+           pinned::sin(bounded) * up_W;
 }
 
 }  // namespace

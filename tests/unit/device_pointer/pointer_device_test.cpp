@@ -55,6 +55,21 @@ class Pointer : public testing::Test {
     Wrench wrench_;
 };
 
+// Catches the log. It is made before the device, whose thread must not see the logger change.
+class CaughtLog {
+  protected:
+    CaughtLog() { spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", sink_)); }
+    ~CaughtLog() { spdlog::set_default_logger(logger_before_); }
+
+    const std::shared_ptr<spdlog::sinks::ringbuffer_sink_mt> sink_ =
+        std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(10'000);
+
+  private:
+    const std::shared_ptr<spdlog::logger> logger_before_ = spdlog::default_logger();
+};
+
+class LoggedPointer : public CaughtLog, public Pointer {};
+
 TEST_F(Pointer, SaysWhatItIs) {
     const DeviceCapabilities capabilities = device_.capabilities();
     EXPECT_TRUE(isPlausible(capabilities));
@@ -141,10 +156,7 @@ TEST_F(Pointer, ASecondViewerWaitsForItsTurn) {
     }));
 }
 
-TEST_F(Pointer, AViewerThatHoldsAndLetsGoWithoutEndDoesNotFillTheLog) {
-    const auto sink = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(10'000);
-    const auto logger_before = spdlog::default_logger();
-    spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", sink));
+TEST_F(LoggedPointer, AViewerThatHoldsAndLetsGoWithoutEndDoesNotFillTheLog) {
     test::PointingViewer viewer(1);
     connect(viewer);
     const int64_t start_ns = monotonicNowNs();
@@ -155,8 +167,7 @@ TEST_F(Pointer, AViewerThatHoldsAndLetsGoWithoutEndDoesNotFillTheLog) {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     const auto seconds = size_t((monotonicNowNs() - start_ns) / kNsPerSecond);
-    spdlog::set_default_logger(logger_before);
-    const auto lines = sink->last_formatted();
+    const auto lines = sink_->last_formatted();
     ASSERT_FALSE(lines.empty());
     EXPECT_NE(lines[0].find("viewer 1 holds the tool"), std::string::npos) << lines[0];
     EXPECT_LE(lines.size(), 110 + seconds);
