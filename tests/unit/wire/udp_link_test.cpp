@@ -52,20 +52,30 @@ TEST(UdpSocket, AdmitsOneAndAllAgain) {
     EXPECT_TRUE(heard(stranger));
 }
 
-// It would fill the queue, the watchdog would trip, and the stranger could take the host's place.
-TEST(UdpLinks, AStrangersFloodDoesNotKeepTheHostOut) {
-    Describe description = test::aresDescription();
-    ControllerLink<JointPackets> controller(description, {kLoopback, 0});
-    HostLink<JointPackets> host({.controller = controller.local(), .seed = randomSeed()}, {kLoopback, 0});
-    const int64_t end_ns = monotonicNowNs() + kSoonNs;
-    while (!host.session().isDescribed() && monotonicNowNs() < end_ns) {
-        host.poll(monotonicNowNs());
-        controller.poll(monotonicNowNs());
+class FloodedLinks : public testing::Test {
+  protected:
+    void connect() {
+        const int64_t end_ns = monotonicNowNs() + kSoonNs;
+        while (!host.session().isDescribed() && monotonicNowNs() < end_ns) {
+            host.poll(monotonicNowNs());
+            controller.poll(monotonicNowNs());
+        }
+        ASSERT_TRUE(host.session().isDescribed());
     }
-    ASSERT_TRUE(host.session().isDescribed());
-    UdpSocket stranger;
-    const std::byte tiny[1] = {};  // large ones leave room for a packet
-    for (int i = 0; i < 2000; ++i) stranger.send(tiny, controller.local());
+    static void floodByAStranger(const Endpoint& target) {
+        UdpSocket stranger;
+        const std::byte tiny[1] = {};  // large ones leave room for a packet
+        for (int i = 0; i < 2000; ++i) stranger.send(tiny, target);
+    }
+
+    ControllerLink<JointPackets> controller{test::aresDescription(), {kLoopback, 0}};
+    HostLink<JointPackets> host{{.controller = controller.local(), .seed = randomSeed()}, {kLoopback, 0}};
+};
+
+// It would fill the queue, the watchdog would trip, and the stranger could take the host's place.
+TEST_F(FloodedLinks, AStrangersFloodDoesNotKeepTheHostOut) {
+    connect();
+    floodByAStranger(controller.local());
     JointState state{};
     controller.send(state, monotonicNowNs());
     host.poll(monotonicNowNs());
@@ -76,18 +86,9 @@ TEST(UdpLinks, AStrangersFloodDoesNotKeepTheHostOut) {
 }
 
 // It would fill the queue, and the device would be lost.
-TEST(UdpLinks, AStrangersFloodDoesNotKeepTheControllersStatesOut) {
-    ControllerLink<JointPackets> controller(test::aresDescription(), {kLoopback, 0});
-    HostLink<JointPackets> host({.controller = controller.local(), .seed = randomSeed()}, {kLoopback, 0});
-    const int64_t end_ns = monotonicNowNs() + kSoonNs;
-    while (!host.session().isDescribed() && monotonicNowNs() < end_ns) {
-        host.poll(monotonicNowNs());
-        controller.poll(monotonicNowNs());
-    }
-    ASSERT_TRUE(host.session().isDescribed());
-    UdpSocket stranger;
-    const std::byte tiny[1] = {};
-    for (int i = 0; i < 2000; ++i) stranger.send(tiny, host.local());
+TEST_F(FloodedLinks, AStrangersFloodDoesNotKeepTheControllersStatesOut) {
+    connect();
+    floodByAStranger(host.local());
     JointState state{};
     controller.send(state, monotonicNowNs());
     EXPECT_TRUE(host.poll(monotonicNowNs()));
