@@ -1,5 +1,6 @@
 #include "haptic_server/accuracy/accuracy_settings.h"
 
+#include <cmath>
 #include <iterator>
 
 namespace bonemill {
@@ -10,14 +11,16 @@ constexpr std::string_view kNames[] = {"thesis_2012", "fast", "balanced", "exact
 AccuracySettings presetSettings(Preset preset) noexcept {
     switch (preset) {
         case Preset::kThesis2012:  // scaling factor 3 as in its demonstrations
-            return {ContactLaw::kThesis2012, 3, 1, 0, ToolDistance::kGrid, 1, Precision::kFloat, 1, false};
+            return {ContactLaw::kThesis2012, 3, 0, 0, ToolDistance::kGrid, 1, Precision::kFloat, 1, false};
         case Preset::kFast:
-            return {ContactLaw::kGradient, 1, 1, 0, ToolDistance::kAnalytic, 1, Precision::kFloat, 1, true};
+            return {ContactLaw::kGradient, 1, 100e-6, 256, ToolDistance::kAnalytic, 1, Precision::kFloat, 1,
+                    true};
         case Preset::kBalanced:
-            return {ContactLaw::kGradient, 1, 4, 512, ToolDistance::kAnalytic, 2, Precision::kFloat, 4, true};
+            return {ContactLaw::kGradient, 1, 60e-6, 768, ToolDistance::kAnalytic, 2, Precision::kFloat, 4,
+                    true};
         case Preset::kExact:
-            return {ContactLaw::kGradient, 1, 4,   4608, ToolDistance::kAnalytic, 4,
-                    Precision::kDouble,    8, true};
+            return {ContactLaw::kGradient, 1, 30e-6, 4608, ToolDistance::kAnalytic, 4, Precision::kDouble, 8,
+                    true};
     }
     return {};
 }
@@ -45,8 +48,9 @@ std::string settingsName(const AccuracySettings& settings) {
     std::string name = settings.law == ContactLaw::kThesis2012 ? "thesis" : "gradient";
     name += " s=" + std::to_string(settings.shell_factor);
     if (settings.law == ContactLaw::kThesis2012) return name;
-    if (settings.patch_points > 1)
-        name += " q=" + std::to_string(settings.patch_points) + "/" + std::to_string(settings.refined_points);
+    if (settings.sample_spacing > 0)
+        name += " samples " + std::to_string(std::lround(1e6 * settings.sample_spacing)) + " um/" +
+                std::to_string(settings.most_samples);
     name += settings.tool_distance == ToolDistance::kGrid
                 ? " grid x" + std::to_string(settings.sdf_refinement)
                 : " analytic";

@@ -22,15 +22,15 @@ inline constexpr Preset kPresets[] = {Preset::kThesis2012, Preset::kFast, Preset
 struct AccuracySettings {
     ContactLaw law = ContactLaw::kGradient;
     int shell_factor = 1;  // s: one contact point per s×s×s cells
-    int patch_points = 4;  // q: patches near the tool are sampled at q × q places, 1 .. kMostPatchPoints,
-    int refined_points = 512;  // as long as there are no more than this many of them; else q gives way
+    double sample_spacing = 60e-6;  // m: near the tool the bone is sampled this finely; 0: one sample per point
+    int most_samples = 768;         // as long as there are no more than about this many; else spacing gives way
     ToolDistance tool_distance = ToolDistance::kAnalytic;
     int sdf_refinement = 2;  // the scene's distance grid with nodes this many times as dense
     Precision precision = Precision::kFloat;
     int iterations = 4;                // of the equilibrium solve, 1 .. kMostIterations; thesis_2012 has one
     bool continuous_collision = true;  // long steps are swept; without, they are cut to the trust radius
 
-    static constexpr int kMostIterations = 16, kMostPatchPoints = 4;
+    static constexpr int kMostIterations = 16;
     bool operator==(const AccuracySettings&) const = default;
 };
 

@@ -186,7 +186,7 @@ PatchErrors AnalyticProbe::patchAt(const AccuracySettings& settings, double widt
     PatchErrors errors{.shell_factor = settings.shell_factor,
                        .tool_distance = settings.tool_distance,
                        .sdf_refinement = settings.sdf_refinement,
-                       .patch_points = settings.patch_points,
+                       .sample_spacing = settings.sample_spacing,
                        .width_voxels = width_voxels,
                        .depth = depthOfWidth(radius, width_voxels * config_.spacing)};
     const double true_force = forceOnSphere(kappa, radius, errors.depth);
@@ -197,7 +197,7 @@ PatchErrors AnalyticProbe::patchAt(const AccuracySettings& settings, double widt
         const Pose X_WV = bone.volume.geometry().X_WV;
         const Pose X_VT = X_WV.inverse() * Pose{{0, 0, radius - errors.depth}, plane->R_WT};
         contact.gather({bone.volume, bone.lattice, bone.shell, levelOf(bone.shell, settings),
-                        settings.patch_points, settings.refined_points},
+                        settings.sample_spacing, settings.most_samples},
                        field, X_VT, 1e-6);
         const Vector3d force = X_WV.rotation * contact.evaluate<double>(field, X_VT).term.wrench.force;
         const double error = std::abs(force.norm() / true_force - 1);
@@ -211,12 +211,11 @@ PatchErrors AnalyticProbe::patchAt(const AccuracySettings& settings, double widt
 }
 
 std::vector<PatchErrors> AnalyticProbe::patchErrors() const {
-    constexpr int kMost = AccuracySettings::kMostPatchPoints;
     AccuracySettings settings;
-    settings.refined_points = kUnlimitedPoints;
+    settings.most_samples = kUnlimitedSamples;
     std::vector<AccuracySettings> kinds;
-    for (const int patch_points : {1, 2, kMost}) {
-        settings.patch_points = patch_points;
+    for (const Preset preset : {Preset::kThesis2012, Preset::kFast, Preset::kBalanced, Preset::kExact}) {
+        settings.sample_spacing = presetSettings(preset).sample_spacing;
         kinds.push_back(settings);
     }
     settings.tool_distance = ToolDistance::kGrid;

@@ -34,7 +34,7 @@ struct PatchErrors {
     int shell_factor = 1;
     ToolDistance tool_distance = ToolDistance::kAnalytic;
     int sdf_refinement = 1;
-    int patch_points = 1;
+    double sample_spacing = 0;  // m
     double width_voxels = 0;   // diameter of the contact circle
     double depth = 0;          // m
     double force_rms = 0;      // of 1, over the grids
@@ -59,8 +59,8 @@ class AnalyticProbe {
     ~AnalyticProbe();
 
     PlaneErrors measure(const AccuracySettings& settings);
-    // There is one entry for each shell factor with the analytic burr and 1 to 4 patch points per side, and
-    // one with its grids and the most points.
+    // There is one entry for each shell factor with the analytic burr and each preset's sampling, and
+    // one with its grids and the finest sampling.
     std::vector<PatchErrors> patchErrors() const;
 
   private:

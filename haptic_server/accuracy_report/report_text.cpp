@@ -185,7 +185,7 @@ std::string thesisText() {
 std::string kindText(const PatchErrors& p) {
     const std::string tool =
         p.tool_distance == ToolDistance::kAnalytic ? "analytic" : "grid x" + std::to_string(p.sdf_refinement);
-    return tool + ", q = " + std::to_string(p.patch_points);
+    return tool + (p.sample_spacing > 0 ? format(", %.3g µm", kPerMicrometre * p.sample_spacing) : ", points");
 }
 
 std::string patchTable(const ReportData& data) {
@@ -194,8 +194,8 @@ std::string patchTable(const ReportData& data) {
         "prescribed "
         "depth in a plane, over the same grids, against π κ (R − d) d². Force errors in %, root mean square "
         "over the "
-        "grids; the largest, and those of the direction: patch.csv. q × q places per contact point "
-        "(accuracy.patch_points).\n\n| shell factor | contact circle, "
+        "grids; the largest, and those of the direction: patch.csv. By how finely the bone is sampled "
+        "(accuracy.sample_spacing_um).\n\n| shell factor | contact circle, "
         "voxels | depth µm |";
     std::string rule = "|--:|--:|--:|", rows;
     const PatchErrors* row = nullptr;  // first of the current row

@@ -30,9 +30,9 @@ void addAroundBalanced(Choices& choices, bool has_shapes) {
     if (!has_shapes) base = grid;
     choices.vary(base, &S::shell_factor, {2, 3});
     S plain = base, dense = base;
-    plain.patch_points = 1, plain.refined_points = 0;
-    dense.patch_points = S::kMostPatchPoints;
-    dense.refined_points = presetSettings(Preset::kExact).refined_points;
+    plain.sample_spacing = 0, plain.most_samples = 0;
+    dense.sample_spacing = presetSettings(Preset::kExact).sample_spacing;
+    dense.most_samples = presetSettings(Preset::kExact).most_samples;
     choices.add(plain);
     choices.add(dense);
     choices.vary(grid, &S::sdf_refinement, {1, 2, 4});
@@ -47,7 +47,7 @@ void addAroundBalanced(Choices& choices, bool has_shapes) {
 void addCheap(Choices& choices, bool has_shapes) {
     AccuracySettings cheap;
     cheap.tool_distance = has_shapes ? ToolDistance::kAnalytic : ToolDistance::kGrid;
-    cheap.patch_points = 1, cheap.refined_points = 0;
+    cheap.sample_spacing = 0, cheap.most_samples = 0;
     cheap.iterations = 1;
     choices.vary(cheap, &AccuracySettings::shell_factor, {1, 2, 3});
     cheap.tool_distance = ToolDistance::kGrid;
@@ -60,8 +60,8 @@ void setTo(scene::Accuracy& knobs, const AccuracySettings& settings) {
     knobs.set_contact_law(settings.law == ContactLaw::kGradient ? Accuracy::GRADIENT
                                                                 : Accuracy::PENALTY_THESIS_2012);
     knobs.set_shell_factor(uint32_t(settings.shell_factor));
-    knobs.set_patch_points(uint32_t(settings.patch_points));
-    knobs.set_refined_points(uint32_t(settings.refined_points));
+    knobs.set_sample_spacing_um(kPerMicrometre * settings.sample_spacing);
+    knobs.set_most_samples(uint32_t(settings.most_samples));
     knobs.set_tool_distance(settings.tool_distance == ToolDistance::kGrid ? Accuracy::GRID
                                                                           : Accuracy::ANALYTIC);
     knobs.set_sdf_refinement(uint32_t(settings.sdf_refinement));

@@ -16,6 +16,7 @@ namespace {
 
 constexpr size_t kMostVoxels = 100'000'000;  // 200 MB of densities per thread
 constexpr int kToolRefinement = 4;
+constexpr double kTrueSpacing = 15e-6;  // m: half of what `exact` samples
 constexpr double kVoxelsAcross = 8;
 constexpr double kLightForce = 1;  // N
 constexpr double kReach = 0.5e-3;  // m: bone this near to the tool's way may be touched
@@ -78,8 +79,8 @@ int wantedRefinement(double spacing, const FixedTickConfig& tick) noexcept {
 AccuracySettings truthSettings() noexcept {
     return {.law = ContactLaw::kGradient,
             .shell_factor = 1,
-            .patch_points = 2,
-            .refined_points = kUnlimitedPoints,
+            .sample_spacing = kTrueSpacing,
+            .most_samples = kUnlimitedSamples,
             .tool_distance = ToolDistance::kAnalytic,
             .sdf_refinement = kToolRefinement,
             .precision = Precision::kDouble,

@@ -9,6 +9,10 @@
 namespace bonemill {
 namespace {
 
+// Of a patch's diagonal: no place is farther from the patch's own point, its centroid. The pieces of a cell may be
+// nearly that far apart.
+constexpr double kReachOfPatch = 0.6;
+
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -40,10 +44,6 @@ GradientContactResult resultOf(const ContactSums& sums, uint32_t contacts) noexc
 GradientContact::GradientContact(const GradientContactConfig& config, size_t most_candidates)
     : config_(config),
       candidates_(most_candidates),
-      own_x_(most_candidates + kCellLanes),
-      own_y_(most_candidates + kCellLanes),
-      own_z_(most_candidates + kCellLanes),
-      reach_squared_(most_candidates + kCellLanes),
       split_(most_candidates),
       lowest_(most_candidates),
       inverse_rate_(most_candidates) {}
@@ -53,7 +53,7 @@ bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const
     margin_ = margin;
     origin_ = X_VT.position;
     const bool has_room = collect(bone, tool, X_VT, most_tests);
-    refine(bone);
+    refine(bone, tool, X_VT);
     if (weights_) touching_stiffness_ *= weights_->scale(candidates_, origin_, tool, X_VT);
     guardFarSide(bone.volume, tool, X_VT);
     capStiffness(tool, X_VT);
@@ -63,14 +63,14 @@ bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const
 bool GradientContact::collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
                               size_t most_tests) noexcept {
     const Vector3d& spacing = bone.volume.spacing();
-    const double ratio = spacing.maxCoeff() / spacing.minCoeff();
-    reach_per_area_ = bone.patch_points > 1 ? float((ratio + 1 / ratio) / 4) : 0;
+    const double patch_diagonal = bone.shell.scalingFactor(bone.level) * spacing.norm();
+    patch_reach_ = bone.sample_spacing > 0 ? kReachOfPatch * patch_diagonal : 0;
     candidates_.count = 0;
     touching_stiffness_ = 0;
     deepest_ = 0;
     bool has_room = true;
     const Pose X_TV = X_VT.inverse();
-    const double reach = margin_ + spacing.norm();  // a patch is about a cell's face
+    const double reach = margin_ + std::max(patch_reach_, spacing.norm());
     Eigen::AlignedBox3d box = boxInV(tool.box(), X_VT);
     box.min().array() -= reach;
     box.max().array() += reach;
@@ -106,14 +106,13 @@ bool GradientContact::collectFrom(const BlockBatch& blocks, const ToolField& too
     into_tool.fill(batch, center[0], center[1], center[2], blocks.count);
     tool.distances(batch, to_block);
     const NearTest test = nearTest(tool, X_VT);
+    const float reach = test.margin + test.patch_reach;
     const float error = float(2 * tool.distanceError());  // of the centre's distance and the points'
     SampleBatch<float> at;
     bool has_room = true;
     for (int n = 0; n < blocks.count && has_room; ++n) {
         const ShellBlock& block = *blocks.block[n];
-        // A patch around a point reaches this much nearer to the tool.
-        const float largest_patch = std::sqrt(reach_per_area_ * block.largest_area);
-        if (to_block[n] > block.radius + test.margin + largest_patch + error) continue;
+        if (to_block[n] > block.radius + reach + error) continue;
         into_tool.fill(batch, block.x, block.y, block.z, blocks.points[n]);
         tool.sample(batch, at);
         point_tests_ += size_t(batch.count);
@@ -126,11 +125,10 @@ NearTest GradientContact::nearTest(const ToolField& tool, const Pose& X_VT) cons
     NearTest test;
     const Matrix3d R_VT = X_VT.rotation.toRotationMatrix();
     for (int i = 0; i < 9; ++i) test.R_VT[i] = float(R_VT(i / 3, i % 3));
-    test.reach_per_area = reach_per_area_;
+    test.patch_reach = float(patch_reach_);
     // The bone may bend towards the tool as much as the thinnest tool does.
-    test.bend_per_area = reach_per_area_ > 0 ? float(0.5 / tool.thinnestRadius()) : 0;
+    test.bend = float(0.5 * patch_reach_ * patch_reach_ / tool.thinnestRadius());
     test.margin = float(margin_);
-    test.refine_within = refineWithin();
     return test;
 }
 
@@ -140,7 +138,7 @@ bool GradientContact::addCandidates(const ShellBlock& block, LeafId leaf, int co
     alignas(64) float nearest[kContactBatch];
     int selected[kContactBatch];
     const int found = kernels().select_near(test, at.distance, at.gx, at.gy, at.gz, block.nx, block.ny,
-                                            block.nz, block.area, count, nearest, selected);
+                                            block.nz, count, nearest, selected);
     const size_t before = candidates_.count;
     const bool has_room =
         candidates_.add(block, selected, found, leaf, origin_, float(config_.stiffness_per_area), nearest);

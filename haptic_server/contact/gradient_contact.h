@@ -5,10 +5,9 @@
 // With φ the tool's distance at bone point b, δ = -φ, g = R∇φ, n the bone's outward normal and a the
 // point's area:
 //   E = Σ κ a λ Ψ(δ),   Ψ = ½δ² for δ > 0, going on linearly beyond the depth cap.
-// A point stands for a patch of the surface; with patch_points = q > 1 the patches near the tool are sampled
-// at q × q places: those of a square of the same area around the point, at right angles to n, moved onto the
-// surface. Stiff contact is often narrower than the points are apart. Wide contact has points enough, and is
-// not refined.
+// A point stands for a patch of the surface, the triangles in its cells. Stiff contact is often narrower than
+// the points are apart: near the tool these triangles are cut into pieces (surface_pieces.h), and the pieces'
+// centroids, moved onto the trilinear surface, take the point's place. Wide contact has points enough.
 //
 // λ <= 1 is frozen when the candidates are gathered, so that each solve has one energy. It is 1 unless
 // - the stiffness in the direction of g is above the cap (then the total is the same for a plane, a slot and
@@ -31,9 +30,9 @@
 #include "haptic_server/contact/candidates.h"
 #include "haptic_server/contact/contact_configs.h"
 #include "haptic_server/contact/contact_weights.h"
-#include "haptic_server/contact/patch_memory.h"
 #include "haptic_server/contact/point_shell.h"
 #include "haptic_server/contact/surface_contact.h"
+#include "haptic_server/contact/surface_pieces.h"
 #include "haptic_server/coupling/energy_coupling.h"
 #include "haptic_server/tool/tool_field.h"
 
@@ -45,8 +44,8 @@ struct ShellView {
     const LeafLattice& lattice;
     const PointShell& shell;
     int level;
-    int patch_points;    // per side, 1 .. 4
-    int refined_points;  // about as many places on refined patches; patch_points gives way for new ones
+    double sample_spacing;  // m, near the tool; 0: one sample per point
+    int most_samples;       // about as many near the tool; the spacing gives way
 };
 
 struct GradientContactResult {
@@ -57,9 +56,8 @@ struct GradientContactResult {
 
 class GradientContact {
   public:
-    // Patches with a place nearer to the tool are refined, m. A patch that changes sides while it is in
-    // contact changes the energy.
-    static constexpr double kRefineWithin = 50e-6;
+    // What is nearer to the tool is sampled finely, m.
+    static constexpr double kFineWithin = 50e-6;
     // In tool's thinnest radii, this is the depth from which on the force of a point no longer grows, and
     // those between which the far-side guard sets in.
     static constexpr double kDepthCap = 0.75, kGuardFrom = 0.25, kGuardFull = 0.5;
@@ -79,9 +77,9 @@ class GradientContact {
         candidates_.most = std::min(most, candidates_.patch.size());
     }
 
-    // Forgets of the last gatherings how finely which patch was sampled. This is called when the shell level
-    // or the sampling changes, or the tool is placed anew.
-    void forget() noexcept { patch_memory_.forget(); }
+    // Forgets of the last gathering how finely it sampled. This is called when the shell level or the sampling
+    // changes, or the tool is placed anew.
+    void forget() noexcept { pieces_.forget(); }
 
     // Returns energy, wrench on the tool and stiffness at this pose, over the gathered points.
     template <class Scalar>
@@ -108,6 +106,7 @@ class GradientContact {
     double margin() const noexcept { return margin_; }
 
   private:
+    static constexpr size_t kMostPieces = 65536;
     // A contact counts for the stiffness cap in proportion to its depth, so that a new one comes in smoothly.
     static constexpr double kFullShareDepth = 20e-6;  // m
     static double shareInContact(double distance) noexcept {
@@ -134,12 +133,16 @@ class GradientContact {
     NearTest nearTest(const ToolField& tool, const Pose& X_VT) const noexcept;
     bool addCandidates(const ShellBlock& block, LeafId leaf, int count, const SampleBatch<float>& at,
                        const NearTest& test) noexcept;
-    float refineWithin() const noexcept { return float(std::min(margin_, kRefineWithin)); }
-    void refine(const ShellView& bone) noexcept;
-    bool isNear(size_t candidate) const noexcept { return candidates_.nearest[candidate] < refineWithin(); }
-    int placesOfNewPatches(const ShellView& bone, size_t coarse) noexcept;
-    void splitPatch(const Eigen::Vector3f& spacing, size_t index, int q) noexcept;
-    void movePlacesOntoSurface(const VoxelVolume& volume, size_t coarse) noexcept;
+    // Is the whole patch too large for one sample?
+    bool isCoarse(size_t candidate) const noexcept {
+        const double near = double(candidates_.nearest[candidate]);
+        return near < std::min(margin_, kFineWithin) || SurfacePieces::kLengthPerDistance * near < patch_reach_;
+    }
+    void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
+    void cutPatch(const ShellView& bone, uint32_t candidate) noexcept;
+    bool cutCell(const ShellView& bone, const Eigen::Vector3i& cell, uint32_t candidate) noexcept;
+    void placePieces() noexcept;
+    void movePlacesOntoSurface(const VoxelVolume& volume, size_t from) noexcept;
     void fillHoles() noexcept;
     void startSweep(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
                     double allowed_depth) noexcept;
@@ -150,22 +153,17 @@ class GradientContact {
     GradientContactConfig config_;
     ContactWeights* weights_ = nullptr;
     Candidates candidates_;
-    // For the refined places, from the first one on, these hold the patch's own point (V, from origin_), how
-    // far a place may be from its start, in m², and the patches that they stand for.
-    std::vector<float> own_x_, own_y_, own_z_, reach_squared_;
-    std::vector<uint32_t> split_;
+    SurfacePieces pieces_{kMostPieces};
+    std::vector<uint32_t> split_;  // ascending: the first split_count_ are candidates whose pieces take their place
     size_t split_count_ = 0;
     // A sweep needs how near each candidate may come, in m, and 1/(the most that the whole step can bring
     // it nearer).
     std::vector<float> lowest_, inverse_rate_;
-    PatchMemory patch_memory_{4096};
     size_t point_tests_ = 0;
     double touching_stiffness_ = 0;  // N/m: of the candidates in contact, all directions together
     double deepest_ = 0;             // m
     double margin_ = 0;
-    // It is half a patch's diagonal, squared, per area: of a square, or of one with the proportions of the
-    // longest cell face; 0 without patches.
-    float reach_per_area_ = 0;
+    double patch_reach_ = 0;  // m: no place of a patch is farther from its point; 0 without pieces
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // V: the tool point at the gathering
 };
 

@@ -1,92 +1,101 @@
 // Samples the patches near the tool more finely.
 #include <algorithm>
-#include <cmath>
 
+#include "haptic_server/contact/cell_corners.h"
 #include "haptic_server/contact/gradient_contact.h"
+#include "haptic_server/volume/marching_cubes_table.h"
 
 namespace bonemill {
 namespace {
 
 using Eigen::Vector3f;
+using Eigen::Vector3i;
 
-constexpr int kPlaceSteps = 2;  // from a place on the tangent plane, at most half a patch away
+constexpr int kPlaceSteps = 2;  // from a place on a triangle onto the trilinear surface,
+constexpr double kReachOfPlace = 0.5;  // which is never so far off, in voxels
 
-// It has the steps between neighbouring places of a square patch, at right angles to n, and along the grid's
-// axes where the surface is.
-struct PatchFrame {
-    Vector3f step_u, step_v;
-};
+int insideOf(const CellCorners& corners) noexcept {
+    int inside = 0;
+    for (int corner = 0; corner < 8; ++corner)
+        inside |= int(corners.excess[size_t(corner)] >= 0) << corner;
+    return inside;
+}
 
-PatchFrame patchFrame(const Vector3f& n, const Vector3f& spacing, float step) noexcept {
-    if (n.isZero(0)) return {Vector3f::Zero(), Vector3f::Zero()};
-    int least = 0, most = 0;
-    n.cwiseAbs().minCoeff(&least);
-    n.cwiseAbs().maxCoeff(&most);
-    if (least == most) least = (most + 1) % 3;
-    // u lies along the third axis, v along `least`: the patch has the proportions of the cells there.
-    const float stretch = std::sqrt(spacing[3 - least - most] / spacing[least]);
-    const Vector3f u = n.cross(Vector3f::Unit(least)).normalized();
-    return {step * stretch * u, step / stretch * n.cross(u)};
+// Returns where the surface crosses an edge of the cell, in cell steps.
+Vector3f crossing(const CellCorners& corners, int edge) noexcept {
+    const CubeEdge& e = kCubeEdges[size_t(edge)];
+    const float low = corners.excess[e.low_corner], high = corners.excess[e.low_corner | 1u << e.axis];
+    Vector3f at(float(e.low_corner & 1), float(e.low_corner >> 1 & 1), float(e.low_corner >> 2 & 1));
+    at[e.axis] += low / (low - high);
+    return at;
 }
 
 }  // namespace
 
-// The patches near the tool are sampled as finely as asked for, and as the number of near patches allows.
-void GradientContact::refine(const ShellView& bone) noexcept {
-    patch_memory_.nextGathering();
-    if (bone.patch_points == 1) return;
-    const size_t coarse = candidates_.count;
-    const int q_new = placesOfNewPatches(bone, coarse);
-    const Vector3f spacing = bone.volume.spacing().cast<float>();
+// The patches near the tool are sampled as finely as asked for, and as the number of samples allows.
+void GradientContact::refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept {
     split_count_ = 0;
-    for (size_t i = 0; i < coarse; ++i) {
-        if (!isNear(i)) continue;
-        uint8_t& q = patch_memory_.placesOf(candidates_.patch[i]);
-        if (q == 0) q = uint8_t(q_new);
-        if (q > 1 && candidates_.count + size_t(q * q) <= candidates_.capacity()) splitPatch(spacing, i, q);
+    if (!(bone.sample_spacing > 0)) return;
+    pieces_.start(tool, X_VT, origin_, margin_, std::min(margin_, kFineWithin));
+    const size_t coarse = candidates_.count;
+    for (size_t i = 0; i < coarse; ++i)
+        if (isCoarse(i)) split_[split_count_++] = uint32_t(i);
+    if (2 * split_count_ > size_t(bone.most_samples)) {
+        split_count_ = 0;  // there are points enough
+        return;
     }
+    for (size_t n = 0; n < split_count_; ++n) cutPatch(bone, split_[n]);
+    pieces_.cut(bone.sample_spacing, size_t(bone.most_samples));
+    point_tests_ += pieces_.takePointTests();
+    placePieces();
     movePlacesOntoSurface(bone.volume, coarse);
     fillHoles();
 }
 
-// The number is per side. Known patches keep theirs, so there may be twice as many places as asked for.
-int GradientContact::placesOfNewPatches(const ShellView& bone, size_t coarse) noexcept {
-    size_t near = 0, fresh = 0, known_places = 0;
-    for (size_t i = 0; i < coarse; ++i) {
-        if (!isNear(i)) continue;
-        const size_t q = patch_memory_.placesOf(candidates_.patch[i]);
-        ++near;
-        known_places += q * q;
-        fresh += q == 0;
-    }
-    const size_t room = size_t(bone.refined_points);
-    int q = bone.patch_points;
-    while (q > 1 && (near * size_t(q * q) > room || known_places + fresh * size_t(q * q) > 2 * room)) --q;
-    return q;
+// Gives the triangles of a candidate's cells.
+void GradientContact::cutPatch(const ShellView& bone, uint32_t candidate) noexcept {
+    const PatchId patch = candidates_.patch[candidate];
+    const IndexBox leaf = bone.lattice.cellsOf(patch.leaf);
+    const int factor = bone.shell.scalingFactor(bone.level);
+    const Vector3i first = leaf.min + factor * patch.block.index();
+    const Vector3i last = (first.array() + (factor - 1)).min(leaf.max.array());
+    for (int k = first.z(); k <= last.z(); ++k)
+        for (int j = first.y(); j <= last.y(); ++j)
+            for (int i = first.x(); i <= last.x(); ++i)
+                if (!cutCell(bone, {i, j, k}, candidate)) return;
 }
 
-// Puts its q × q places, still on the tangent plane, at the end of the candidates.
-void GradientContact::splitPatch(const Vector3f& spacing, size_t index, int q) noexcept {
+bool GradientContact::cutCell(const ShellView& bone, const Vector3i& cell, uint32_t candidate) noexcept {
+    const CellCorners corners = readCorners(bone.volume, cell);
+    const CubeTriangles& triangles = cubeTriangles()[size_t(insideOf(corners))];
+    const Eigen::Vector3d& spacing = bone.volume.spacing();
+    const Vector3f base = (cell.cast<double>().cwiseProduct(spacing) - origin_).cast<float>();
+    const Vector3f steps = spacing.cast<float>();
+    for (int n = 0; n < triangles.count; ++n) {
+        Vector3f at[3];
+        for (size_t corner = 0; corner < 3; ++corner)
+            at[corner] =
+                base + crossing(corners, triangles.edges[size_t(n)][corner]).cwiseProduct(steps);
+        if (!pieces_.add(at, candidate)) return false;
+    }
+    return true;
+}
+
+// Puts the pieces' centroids, still on their triangles, at the end of the candidates.
+void GradientContact::placePieces() noexcept {
     Candidates& c = candidates_;
-    const Vector3f own_point = c.position(index), n = c.normal(index);
-    const float side = std::sqrt(c.area[index]);
-    const PatchFrame frame = patchFrame(n, spacing, side / float(q));
-    const float reach = side / 2 * std::sqrt(spacing.maxCoeff() / spacing.minCoeff());
-    c.weight[index] /= float(q * q);
-    for (int place = 0; place < q * q; ++place) {
-        const int column = place % q, row = place / q;
-        const float u = float(column) - 0.5f * float(q - 1), v = float(row) - 0.5f * float(q - 1);
-        const Vector3f start = own_point + u * frame.step_u + v * frame.step_v;
+    pieces_.forEach([&](const SurfacePiece& piece) {
+        if (c.count == c.capacity()) return;
+        const Vector3f center = piece.centroid();
         const size_t to = c.count++;
-        c.copy(index, to);
-        c.x[to] = start.x(), c.y[to] = start.y(), c.z[to] = start.z();
-        own_x_[to] = own_point.x(), own_y_[to] = own_point.y(), own_z_[to] = own_point.z();
-        reach_squared_[to] = reach * reach;
-    }
-    split_[split_count_++] = uint32_t(index);
+        c.copy(piece.patch, to);
+        c.x[to] = center.x(), c.y[to] = center.y(), c.z[to] = center.z();
+        c.nearest[to] = piece.nearest;
+        c.weight[to] *= piece.area / c.area[to];
+    });
 }
 
-void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t coarse) noexcept {
+void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t from) noexcept {
     const BrickStore& bricks = volume.bricks();
     DensityView view{.bricks = bricks.data(),
                      .slots = bricks.slots(),
@@ -102,13 +111,13 @@ void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t co
     }
     Candidates& c = candidates_;
     kernels().move_onto_surface(view, kPlaceSteps,
-                                {&c.x[coarse], &c.y[coarse], &c.z[coarse], &own_x_[coarse], &own_y_[coarse],
-                                 &own_z_[coarse], &reach_squared_[coarse], int(c.count - coarse)});
+                                {&c.x[from], &c.y[from], &c.z[from],
+                                 float(kReachOfPlace * volume.spacing().minCoeff()), int(c.count - from)});
 }
 
-// The last places take those of the patches that were split.
+// The last places take those of the patches that were cut, the last of these first.
 void GradientContact::fillHoles() noexcept {
-    for (size_t n = 0; n < split_count_; ++n) candidates_.copy(--candidates_.count, split_[n]);
+    for (size_t n = split_count_; n-- > 0;) candidates_.copy(--candidates_.count, split_[n]);
 }
 
 }  // namespace bonemill

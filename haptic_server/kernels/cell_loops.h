@@ -211,13 +211,11 @@ void readCells(const DensityView& d, const Ints& i, const Ints& j, const Ints& k
 void moveOntoSurface(const DensityView& density, int steps, const SurfacePoints& points) {
     const DensityView d = density;
     const float ix = d.inverse_spacing[0], iy = d.inverse_spacing[1], iz = d.inverse_spacing[2];
+    const float reach_squared = points.reach * points.reach;
     for (int first = 0; first < points.count; first += kWidth) {
-        Points start, p, own, in_cell, slope;
-        Floats reach_squared, excess, e[8];
+        Points start, p, in_cell, slope;
+        Floats excess, e[8];
         load(points.x + first, start.x), load(points.y + first, start.y), load(points.z + first, start.z);
-        load(points.own_x + first, own.x), load(points.own_y + first, own.y),
-            load(points.own_z + first, own.z);
-        load(points.reach_squared + first, reach_squared);
         Ints is_found = ~Ints{};
         for (int l = 0; l < kWidth; ++l) is_found[l] = first + l < points.count ? -1 : 0;
         const Floats zero{};
@@ -240,9 +238,7 @@ void moveOntoSurface(const DensityView& density, int steps, const SurfacePoints&
             is_found &= dx * dx + dy * dy + dz * dz <= reach_squared;
             p.x = is_found ? p.x : start.x, p.y = is_found ? p.y : start.y, p.z = is_found ? p.z : start.z;
         }
-        store(is_found ? p.x : own.x, points.x + first);
-        store(is_found ? p.y : own.y, points.y + first);
-        store(is_found ? p.z : own.z, points.z + first);
+        store(p.x, points.x + first), store(p.y, points.y + first), store(p.z, points.z + first);
     }
 }
 

@@ -33,8 +33,8 @@ struct RoundSolid {
     Scalar length, radius;
 };
 
-// A truncated cone with flat ends about the segment that starts at `from` and goes `length` > 0 along the
-// unit vector `axis`.
+// All points within `edge_radius` of a truncated cone with flat ends about the segment that starts at `from`
+// and goes `length` > 0 along the unit vector `axis`.
 template <class Scalar>
 struct ConeSolid {
     Scalar from[3], axis[3];
@@ -42,6 +42,7 @@ struct ConeSolid {
     Scalar length;
     Scalar radius[2];  // where the segment starts and where it ends
     Scalar side[2];    // unit, from the first rim to the second: along and off the axis
+    Scalar edge_radius;
 };
 
 // The frame leads from the tool's axes to the bone's, and says where the tool point lies among the
@@ -68,10 +69,9 @@ inline constexpr int kContactBatch = 64;
 // towards the tool.
 struct NearTest {
     float R_VT[9];         // rows
-    float reach_per_area;  // half a patch's diagonal, squared, per area
-    float bend_per_area;   // 1/m
-    float margin;          // m: points nearer than this
-    float refine_within;   // m: points with a place nearer than this
+    float patch_reach;  // m: no place of a point's patch is farther from the point
+    float bend;         // m: by which a patch may bend towards the tool, off the plane at the point
+    float margin;       // m: points with a place nearer than this
 };
 
 template <class Scalar>
@@ -161,11 +161,10 @@ struct DensityView {
     float origin[3];           // m: of the points' coordinates
 };
 // These points move onto the surface, in m, as structure of arrays that go on to the next multiple
-// of kCellLanes.
+// of kCellLanes. Where there is no way, or it is longer than `reach`, they stay.
 struct SurfacePoints {
-    float *x, *y, *z;                    // in: where they start; out: where they ended
-    const float *own_x, *own_y, *own_z;  // where they end instead if that is too far off, or there is no way
-    const float* reach_squared;          // m²
+    float *x, *y, *z;  // in: where they start; out: where they ended
+    float reach;       // m
     int count;
 };
 
@@ -173,11 +172,11 @@ struct Kernels {
     PointKernels<float> single;
     PointKernels<double> twice;
     // Selects the near ones of at most kContactBatch points: writes their indices, and of all points how
-    // near a place comes. Distances and gradients (T), normals (V) and areas; the arrays go on to a multiple
-    // of kCellLanes.
+    // near a place of its patch comes. Distances and gradients (T) and normals (V); the arrays go on to a
+    // multiple of kCellLanes.
     int (*select_near)(const NearTest& test, const float* distance, const float* gx, const float* gy,
-                       const float* gz, const float* nx, const float* ny, const float* nz, const float* area,
-                       int count, float* nearest, int* selected);
+                       const float* gz, const float* nx, const float* ny, const float* nz, int count,
+                       float* nearest, int* selected);
     // A brick's plane of `rows` rows of `count` voxels, kBrickStrideY apart and both at most kBrickCells,
     // after milling with limits from above (remove) or from below (add): the rows that changed are written to
     // out, kBrickCells apart.

@@ -78,8 +78,8 @@ inline FromConeAxis<Scalar> fromAxis(const ConeSolid<Scalar>& s, Scalar px, Scal
 template <class Scalar>
 constexpr Scalar kNoDirection = Scalar(1e-12);  // m: below it a direction is taken by convention
 
-// Returns the distance of the profile, and its gradient along and off the axis. The profile is convex: it is
-// the largest of the distances to its lines, but for points that are nearest to a rim.
+// Returns the distance of the profile, and its gradient along and off the axis. Without its edges' radius the
+// profile is convex: it is the largest of the distances to its lines, but for points that are nearest to a rim.
 template <class Scalar>
 struct ConeProfile {
     Scalar distance, along, off;
@@ -98,7 +98,7 @@ inline ConeProfile<Scalar> fromProfile(const ConeSolid<Scalar>& s, Scalar along,
     const Scalar outwards = beyond > -along ? Scalar(1) : Scalar(-1);
     const Scalar scale = 1 / largest(to_rim, kNoDirection<Scalar>);
     const Scalar face_along = is_end ? outwards : -s.side[1], face_off = is_end ? Scalar(0) : s.side[0];
-    return {is_rim ? to_rim : largest(end, side), is_rim ? rx * scale : face_along,
+    return {(is_rim ? to_rim : largest(end, side)) - s.edge_radius, is_rim ? rx * scale : face_along,
             is_rim ? ry * scale : face_off};
 }
 
@@ -212,23 +212,23 @@ void addContacts(const ContactFrame& frame, const float* __restrict x, const flo
 }
 
 int selectNear(const NearTest& test, const float* distance, const float* gx, const float* gy, const float* gz,
-               const float* nx, const float* ny, const float* nz, const float* area, int count,
-               float* nearest, int* selected) {
+               const float* nx, const float* ny, const float* nz, int count, float* nearest, int* selected) {
     const NearTest t = test;
     const float* R = t.R_VT;
     alignas(64) int is_near[kContactBatch];
     for (int i = 0; i < count; i += kWidth) {
-        Floats d, tx, ty, tz, mx, my, mz, a, tilt;
+        Floats d, tx, ty, tz, mx, my, mz, slope;
         load(distance + i, d), load(gx + i, tx), load(gy + i, ty), load(gz + i, tz);
-        load(nx + i, mx), load(ny + i, my), load(nz + i, mz), load(area + i, a);
+        load(nx + i, mx), load(ny + i, my), load(nz + i, mz);
         const Floats vx = R[0] * tx + R[1] * ty + R[2] * tz;
         const Floats vy = R[3] * tx + R[4] * ty + R[5] * tz;
         const Floats vz = R[6] * tx + R[7] * ty + R[8] * tz;
         const Floats cx = vy * mz - vz * my, cy = vz * mx - vx * mz, cz = vx * my - vy * mx;
-        rootOf((cx * cx + cy * cy + cz * cz) * t.reach_per_area * a, tilt);
-        const Floats place = d - tilt - t.bend_per_area * a;
+        rootOf(cx * cx + cy * cy + cz * cz, slope);
+        const Floats nearer = t.patch_reach * slope + t.bend;
+        const Floats place = d - (nearer < t.patch_reach ? nearer : t.patch_reach + Floats{});
         store(place, nearest + i);
-        store((d < t.margin) | (place < t.refine_within), is_near + i);
+        store(place < t.margin, is_near + i);
     }
     int found = 0;
     for (int i = 0; i < count; ++i) {

@@ -43,8 +43,8 @@ AccuracySettings accuracyOf(const scene::Scene& scene) {
         settings.law = knobs.contact_law() == scene::Accuracy::GRADIENT ? ContactLaw::kGradient
                                                                         : ContactLaw::kThesis2012;
     if (knobs.has_shell_factor()) settings.shell_factor = int(knobs.shell_factor());
-    if (knobs.has_patch_points()) settings.patch_points = int(knobs.patch_points());
-    if (knobs.has_refined_points()) settings.refined_points = int(knobs.refined_points());
+    if (knobs.has_sample_spacing_um()) settings.sample_spacing = knobs.sample_spacing_um() * kMicrometre;
+    if (knobs.has_most_samples()) settings.most_samples = int(knobs.most_samples());
     if (knobs.has_tool_distance())
         settings.tool_distance =
             knobs.tool_distance() == scene::Accuracy::GRID ? ToolDistance::kGrid : ToolDistance::kAnalytic;

@@ -28,11 +28,13 @@ ToolShape shapeOf(const scene::Tool::Shape& shape) {
                                 shape.capsule().radius_mm() * kMillimetre};
         case scene::Tool::Shape::kCylinder:
             return CylinderShape{metresOf(shape.cylinder().from_mm()), metresOf(shape.cylinder().to_mm()),
-                                 shape.cylinder().radius_mm() * kMillimetre};
+                                 shape.cylinder().radius_mm() * kMillimetre,
+                                 shape.cylinder().edge_radius_mm() * kMillimetre};
         case scene::Tool::Shape::kCone:
             return ConeShape{metresOf(shape.cone().from_mm()), metresOf(shape.cone().to_mm()),
                              shape.cone().from_radius_mm() * kMillimetre,
-                             shape.cone().to_radius_mm() * kMillimetre};
+                             shape.cone().to_radius_mm() * kMillimetre,
+                             shape.cone().edge_radius_mm() * kMillimetre};
         default:
             return SphereShape{metresOf(shape.sphere().center_mm()),
                                shape.sphere().radius_mm() * kMillimetre};

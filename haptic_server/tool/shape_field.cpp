@@ -61,7 +61,8 @@ ShapeField::ShapeField(const std::vector<ToolShape>& shapes) : ToolField(boxOf(s
 }
 
 ShapeField::Solid ShapeField::solidOf(const ToolShape& shape) {
-    const auto between = [](bool is_round, const Vector3d& from, const Vector3d& to, double r0, double r1) {
+    const auto between = [](bool is_round, const Vector3d& from, const Vector3d& to, double r0, double r1,
+                            double edge_radius = 0) {
         const double length = (to - from).norm();
         const Vector3d axis = length > 0 ? Vector3d((to - from) / length) : Vector3d::UnitY();
         return Solid{is_round,
@@ -70,16 +71,16 @@ ShapeField::Solid ShapeField::solidOf(const ToolShape& shape) {
                      axis.unitOrthogonal(),
                      length,
                      {r0, r1},
-                     Vector2d(length, r1 - r0).normalized()};
+                     Vector2d(length, r1 - r0).normalized(),
+                     edge_radius};
     };
     if (const auto* s = std::get_if<SphereShape>(&shape))
         return between(true, s->center, s->center, s->radius, s->radius);
     if (const auto* s = std::get_if<CapsuleShape>(&shape))
         return between(true, s->from, s->to, s->radius, s->radius);
-    if (const auto* s = std::get_if<ConeShape>(&shape))
-        return between(false, s->from, s->to, s->from_radius, s->to_radius);
-    const auto& s = std::get<CylinderShape>(shape);
-    return between(false, s.from, s.to, s.radius, s.radius);
+    const auto* cone = std::get_if<ConeShape>(&shape);
+    const ConeShape s = insideEdges(cone ? *cone : asCone(std::get<CylinderShape>(shape)));
+    return between(false, s.from, s.to, s.from_radius, s.to_radius, s.edge_radius);
 }
 
 template <class Scalar>
@@ -153,7 +154,7 @@ ToolSample ShapeField::sampleCone(const Solid& s, const Vector3d& p_T) noexcept 
                           [](const auto& a, const auto& b) { return a.distance < b.distance; });
     const bool is_inside = along > 0 && along < s.length && rho - s.radius[0] < widening * along / s.length;
     ToolSample sample;
-    sample.distance = is_inside ? -hit.distance : hit.distance;
+    sample.distance = (is_inside ? -hit.distance : hit.distance) - s.edge_radius;
     sample.gradient = hit.gradient.x() * s.axis + hit.gradient.y() * radial;
     return sample;
 }

@@ -26,13 +26,15 @@ class ShapeField final : public ToolField {
     double testCost() const noexcept override;
 
   private:
-    // A round one is all points within `radius[0]` of the segment, any other a truncated cone with flat ends.
+    // A round one is all points within `radius[0]` of the segment, any other all within `edge_radius` of a
+    // truncated cone with flat ends.
     struct Solid {
         bool is_round;
         Eigen::Vector3d from, axis, normal;  // axis: unit; normal: unit, any to the axis
         double length;
         double radius[2];
         Eigen::Vector2d side;  // unit, from the first rim to the second: along and off the axis
+        double edge_radius;
 
         template <class Scalar>
         RoundSolid<Scalar> round() const noexcept {
@@ -48,7 +50,8 @@ class ShapeField final : public ToolField {
                     {Scalar(normal.x()), Scalar(normal.y()), Scalar(normal.z())},
                     Scalar(length),
                     {Scalar(radius[0]), Scalar(radius[1])},
-                    {Scalar(side.x()), Scalar(side.y())}};
+                    {Scalar(side.x()), Scalar(side.y())},
+                    Scalar(edge_radius)};
         }
     };
     static Solid solidOf(const ToolShape& shape);

@@ -28,7 +28,7 @@ double distanceTo(const CapsuleShape& s, const Vector3d& p) {
 }
 
 // The profile is the trapezoid between the axis, the two ends and the side.
-double distanceTo(const ConeShape& s, const Vector3d& p) {
+double distanceToSharp(const ConeShape& s, const Vector3d& p) {
     const double length = (s.to - s.from).norm();
     const Vector3d axis = (s.to - s.from) / length;
     const double along = (p - s.from).dot(axis);
@@ -40,8 +40,17 @@ double distanceTo(const ConeShape& s, const Vector3d& p) {
     return along > 0 && along < length && q.y() < side ? -distance : distance;
 }
 
-ConeShape asCone(const CylinderShape& s) {
-    return {s.from, s.to, s.radius, s.radius};
+double distanceTo(const ConeShape& s, const Vector3d& p) {
+    const ConeShape inside = insideEdges(s);
+    return distanceToSharp(inside, p) - inside.edge_radius;
+}
+
+// What an end of this radius allows, where the side rises from it by the sine `rise` of its angle to the axis.
+double roundestAt(double radius, double rise, double edge_radius) {
+    constexpr double kShareOfEnd = 0.5;
+    const double run = std::sqrt(1 - rise * rise);
+    if (rise > 0 && radius == 0) return rise < 1 ? edge_radius * rise / (1 - rise) : edge_radius;
+    return rise < 1 ? kShareOfEnd * radius * run / (1 - rise) : kShareOfEnd * radius;
 }
 
 double distanceTo(const CylinderShape& s, const Vector3d& p) {
@@ -85,6 +94,20 @@ Eigen::AlignedBox3d boxOf(const CylinderShape& s) {
 }
 
 }  // namespace
+
+ConeShape insideEdges(const ConeShape& s) {
+    const double length = (s.to - s.from).norm();
+    const Vector3d axis = (s.to - s.from) / length;
+    const Vector2d side = Vector2d(length, s.to_radius - s.from_radius).normalized();
+    const double r = std::min({s.edge_radius, length / 4, roundestAt(s.from_radius, side.y(), s.edge_radius),
+                               roundestAt(s.to_radius, -side.y(), s.edge_radius)});
+    // The side, moved inwards by r, is so far off the axis.
+    const auto off = [&](double along) { return s.from_radius + (side.y() * along - r) / side.x(); };
+    double from = r, to = length - r;
+    if (off(from) < 0) from = (r - s.from_radius * side.x()) / side.y();
+    if (off(to) < 0) to = (r - s.from_radius * side.x()) / side.y();
+    return {s.from + from * axis, s.from + to * axis, std::max(0.0, off(from)), std::max(0.0, off(to)), r};
+}
 
 double signedDistance(const ToolShape& shape, const Eigen::Vector3d& p_T) {
     return std::visit([&](const auto& s) { return distanceTo(s, p_T); }, shape);

@@ -72,7 +72,7 @@ double apartByIterations(const Variant& variant, int from) {
                 config.accuracy.iterations = iterations;
                 // There is room for all; else the way into the groove decides which patch is sampled
                 // how finely.
-                config.accuracy.refined_points = presetSettings(Preset::kExact).refined_points;
+                config.accuracy.most_samples = presetSettings(Preset::kExact).most_samples;
             };
         };
         Scene scene(groove.volume, burr(), variant, 1e-3, limitTo(kFour));

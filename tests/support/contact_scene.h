@@ -90,7 +90,7 @@ struct ContactScene {
 
     ShellView view(const AccuracySettings& settings = {}) const {
         return {bone.volume,           bone.lattice,           bone.shell, levelOf(bone.shell, settings),
-                settings.patch_points, settings.refined_points};
+                settings.sample_spacing, settings.most_samples};
     }
 
     GradientContactResult contactAt(const GradientContactConfig& config, const AccuracySettings& settings,

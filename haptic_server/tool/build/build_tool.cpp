@@ -260,10 +260,11 @@ std::vector<ToolShape> toolShapes(const ToolConfig& config) {
                 CapsuleShape{Vector3d::Zero(), last, radius}};
     const Vector3d half = config.burr_length / 2 * Vector3d::UnitY();
     // The shaft begins inside a cone, which is as wide as the shaft only there.
-    const CylinderShape shaft{(1 - kShaftOverlap) * half, last + radius * Vector3d::UnitY(), radius};
+    const CylinderShape shaft{(1 - kShaftOverlap) * half, last + radius * Vector3d::UnitY(), radius,
+                              kEdgeRadius};
     if (config.burr_kind == BurrKind::kCylinder)
-        return {CylinderShape{-half, half, config.burr_radius}, shaft};
-    return {ConeShape{-half, half, config.burr_tip_radius, config.burr_radius}, shaft};
+        return {CylinderShape{-half, half, config.burr_radius, kEdgeRadius}, shaft};
+    return {ConeShape{-half, half, config.burr_tip_radius, config.burr_radius, kEdgeRadius}, shaft};
 }
 
 TriangleSurface toolSurface(const ToolConfig& config) {

@@ -80,7 +80,7 @@ void append(const ConeShape& s, TriangleSurface& surface) {
 }
 
 void append(const CylinderShape& s, TriangleSurface& surface) {
-    append(ConeShape{s.from, s.to, s.radius, s.radius}, surface);
+    append(asCone(s), surface);
 }
 
 // Poles and apexes make triangles without area: nothing to draw.

@@ -86,24 +86,25 @@ TEST(AnalyticProbe, AToolWithoutShapesIsMeasuredOnItsGrid) {
 
 TEST(AnalyticProbe, PatchErrorsFallWithThePatchsWidth) {
     const std::vector<PatchErrors> patches = AnalyticProbe(configOf(0.125e-3)).patchErrors();
-    const auto at = [&](double width, int factor, int patch_points, ToolDistance tool, int refinement = 1) {
+    const auto at = [&](double width, int factor, double spacing, ToolDistance tool, int refinement = 1) {
         for (const PatchErrors& p : patches)
             if (p.width_voxels == width && p.shell_factor == factor && p.tool_distance == tool &&
                 (tool == ToolDistance::kAnalytic || p.sdf_refinement == refinement) &&
-                p.patch_points == patch_points)
+                p.sample_spacing == spacing)
                 return p;
         ADD_FAILURE() << "no such patch";
         return PatchErrors{};
     };
     constexpr ToolDistance kAnalytic = ToolDistance::kAnalytic, kGrid = ToolDistance::kGrid;
-    const PatchErrors small = at(2, 1, 1, kAnalytic), large = at(10, 1, 1, kAnalytic);
+    const double kFine = presetSettings(Preset::kExact).sample_spacing;
+    const PatchErrors small = at(2, 1, 0, kAnalytic), large = at(10, 1, 0, kAnalytic);
     EXPECT_LT(large.force_rms, small.force_rms / 10);
     EXPECT_LT(large.force_rms, 5e-3);
     EXPECT_LT(large.direction_rms, small.direction_rms);
     EXPECT_GE(small.force_worst, small.force_rms);
-    EXPECT_LT(at(2, 1, 4, kAnalytic).force_rms, small.force_rms / 3);
-    EXPECT_GT(at(10, 3, 1, kAnalytic).force_rms, large.force_rms);
-    EXPECT_GT(at(10, 1, 4, kGrid).force_rms, at(10, 1, 4, kGrid, 4).force_rms);
+    EXPECT_LT(at(2, 1, kFine, kAnalytic).force_rms, small.force_rms / 3);
+    EXPECT_GT(at(10, 3, 0, kAnalytic).force_rms, large.force_rms);
+    EXPECT_GT(at(10, 1, kFine, kGrid).force_rms, at(10, 1, kFine, kGrid, 4).force_rms);
     // Returns the depth of a circle of 10 voxels' diameter.
     EXPECT_NEAR(large.depth, 1e-3 - std::sqrt(1e-6 - 0.625e-3 * 0.625e-3), 1e-12);
 }

@@ -43,7 +43,8 @@ TEST(SweepSettings, EveryKnobVariesAroundBalanced) {
     AccuracySettings s = base;
     s.shell_factor = 3;
     EXPECT_TRUE(contains(all, s));
-    s = base, s.patch_points = 4, s.refined_points = presetSettings(Preset::kExact).refined_points;
+    s = base, s.sample_spacing = presetSettings(Preset::kExact).sample_spacing,
+    s.most_samples = presetSettings(Preset::kExact).most_samples;
     EXPECT_TRUE(contains(all, s));
     s = base, s.tool_distance = ToolDistance::kGrid, s.sdf_refinement = 4;
     EXPECT_TRUE(contains(all, s));

@@ -26,7 +26,7 @@ DistanceFunction bumpyBody() {
 }
 
 Vector6d minusGradient(const GradientContact& contact, const ToolField& tool, const Pose& at) {
-    constexpr double kStep = 5e-10;  // m: short, so that hardly a point crosses a seam of the tool
+    constexpr double kStep = 1e-10;  // m: short, so that hardly a point crosses a seam of the tool
     Vector6d w;
     for (int i = 0; i < 6; ++i) {
         const double h = i < 3 ? kStep : kStep / 2e-3;
@@ -105,7 +105,7 @@ TEST(GradientContact, GatheringFindsAllThatAMotionCanTouch) {
     const ContactScene scene(cubeGeometry(33, 0.25e-3), bumpyBody(), kBurrAndShaft);
     const ToolField& tool = scene.tool.field({});
     const GradientContactConfig config;
-    const ShellView view = scene.view({.patch_points = 1});
+    const ShellView view = scene.view({.sample_spacing = 0});
     const Pose start{{4e-3, 4e-3, 5.5e-3}, expRotation({1.2, 0.1, 0})};
     GradientContact near(config), all(config);
     near.gather(view, tool, start, 0.5e-3);
@@ -126,7 +126,7 @@ TEST(GradientContact, CandidatesAreThePointsNearTheTool) {
     constexpr double kSlack = 1e-8;  // m, of single precision
     size_t most = 0;
     for (int n = 0; n < 200; ++n) {
-        const AccuracySettings settings{.patch_points = 1 + n % 2, .refined_points = 0};
+        const AccuracySettings settings{.sample_spacing = n % 2 * 60e-6, .most_samples = 0};
         const ToolField& tool = scene.tool.field(settings);
         const Pose X_VT{Vector3d(4e-3, 4e-3, 4.8e-3) +
                             1.5e-3 * Vector3d(uniform(random), uniform(random), uniform(random)),
@@ -137,11 +137,9 @@ TEST(GradientContact, CandidatesAreThePointsNearTheTool) {
         for (LeafId leaf = 0; leaf < scene.bone.lattice.leafCount(); ++leaf)
             scene.bone.shell.forEachBlock(0, leaf, [&](const ShellBlock& b, uint32_t count) {
                 for (uint32_t i = 0; i < count; ++i) {
-                    // A patch reaches over its point by half its diagonal and by how far it bends.
-                    const double patch = settings.patch_points > 1
-                                             ? std::sqrt(double(b.area[i]) / 2) +
-                                                   0.5 * double(b.area[i]) / tool.thinnestRadius()
-                                             : 0;
+                    // A patch reaches over its point by little more than half a cell's diagonal.
+                    const double patch =
+                        settings.sample_spacing > 0 ? 0.6 * scene.bone.volume.spacing().norm() : 0;
                     const double gap = tool.sample(X_TV * Vector3d(b.x[i], b.y[i], b.z[i])).distance - margin;
                     surely += gap < -kSlack;
                     perhaps += gap < patch + kSlack;

@@ -44,7 +44,7 @@ std::vector<DeviceInput> dip(int rest, int away, uint32_t buttons = 0) {
 
 TEST(TickBudget, TooManyPointsForATickMeanACoarserShellAndSaySo) {
     FixedTickConfig config;
-    config.accuracy.patch_points = 1;
+    config.accuracy.sample_spacing = 0;
     config.gradient.contact.stiffness_per_area = 1e10;  // a wide contact
     const auto unlimited = BudgetBench(config).run(dip(1000, 0));
     uint32_t most = 0;

@@ -1,0 +1,136 @@
+#include "haptic_server/contact/surface_pieces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bonemill {
+namespace {
+
+using Eigen::Vector3f;
+
+// Which corners an edge joins; the third one is across.
+constexpr int kEdge[3][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}};
+
+float lengthSquared(const SurfacePiece& piece, const int (&edge)[3]) noexcept {
+    return (piece.corner[edge[1]] - piece.corner[edge[0]]).squaredNorm();
+}
+
+const int (&longestEdge(const SurfacePiece& piece, float& squared) noexcept)[3] {
+    int longest = 0;
+    squared = lengthSquared(piece, kEdge[0]);
+    for (int edge = 1; edge < 3; ++edge)
+        if (const float length = lengthSquared(piece, kEdge[edge]); length > squared)
+            squared = length, longest = edge;
+    return kEdge[longest];
+}
+
+}  // namespace
+
+SurfacePieces::SurfacePieces(size_t room)
+    : into_tool_(Pose{}, Eigen::Vector3d::Zero()), pieces_(room), next_(room) {}
+
+void SurfacePieces::start(const ToolField& tool, const Pose& X_VT, const Eigen::Vector3d& origin_V,
+                          double margin, double fine_within) noexcept {
+    tool_ = &tool;
+    into_tool_ = IntoTool<float>(X_VT, origin_V);
+    margin_ = float(margin);
+    fine_within_ = float(fine_within);
+    count_ = next_count_ = 0;
+    fresh_count_ = 0;
+}
+
+bool SurfacePieces::add(const Vector3f corners[3], uint32_t patch) noexcept {
+    if (next_count_ + size_t(fresh_count_) >= next_.size()) return false;
+    SurfacePiece piece{{corners[0], corners[1], corners[2]}, 0, 0, 0, patch};
+    piece.area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2;
+    put(piece);
+    return true;
+}
+
+// Takes a new piece, whose distance is not known yet.
+void SurfacePieces::put(const SurfacePiece& piece) noexcept {
+    fresh_[fresh_count_] = piece;
+    longestEdge(piece, fresh_[fresh_count_].longest_squared);
+    if (++fresh_count_ == PointBatch<float>::kCapacity) sort();
+}
+
+// Drops those of the new pieces that the tool cannot reach.
+void SurfacePieces::sort() noexcept {
+    // No point of a triangle is farther from its centroid than two thirds of its longest edge.
+    constexpr float kReach = 2.0f / 3;
+    alignas(64) float x[PointBatch<float>::kCapacity], y[PointBatch<float>::kCapacity],
+        z[PointBatch<float>::kCapacity], distance[PointBatch<float>::kCapacity];
+    for (int i = 0; i < fresh_count_; ++i) {
+        const Vector3f center = fresh_[i].centroid();
+        x[i] = center.x(), y[i] = center.y(), z[i] = center.z();
+    }
+    PointBatch<float> batch;
+    into_tool_.fill(batch, x, y, z, fresh_count_);
+    tool_->distances(batch, distance);
+    point_tests_ += size_t(fresh_count_);
+    for (int i = 0; i < fresh_count_; ++i) {
+        fresh_[i].nearest = distance[i] - kReach * std::sqrt(fresh_[i].longest_squared);
+        if (fresh_[i].nearest < margin_ && next_count_ < next_.size()) next_[next_count_++] = fresh_[i];
+    }
+    fresh_count_ = 0;
+}
+
+bool SurfacePieces::isCoarse(const SurfacePiece& piece, float longest_squared) const noexcept {
+    if (piece.longest_squared <= longest_squared) return false;
+    const float enough = kLengthPerDistance * piece.nearest;
+    return piece.nearest < fine_within_ || piece.longest_squared > enough * enough;
+}
+
+void SurfacePieces::halve(const SurfacePiece& piece) noexcept {
+    float squared = 0;
+    const auto& [from, to, across] = longestEdge(piece, squared);
+    const Vector3f middle = (piece.corner[from] + piece.corner[to]) / 2;
+    SurfacePiece half = piece;
+    half.area = piece.area / 2;
+    half.corner[to] = middle;
+    put(half);
+    half.corner[to] = piece.corner[to], half.corner[from] = middle;
+    put(half);
+}
+
+// Cuts every piece that is too long once, as far as there is room. False: there was none.
+bool SurfacePieces::round(float longest_squared) noexcept {
+    bool has_cut = false;
+    next_count_ = 0;
+    for (size_t n = 0; n < count_; ++n) {
+        const size_t at_least = next_count_ + size_t(fresh_count_) + (count_ - n);
+        if (isCoarse(pieces_[n], longest_squared) && at_least < next_.size()) {
+            halve(pieces_[n]);
+            has_cut = true;
+        } else {
+            next_[next_count_++] = pieces_[n];
+        }
+    }
+    takeNext();
+    return has_cut;
+}
+
+void SurfacePieces::takeNext() noexcept {
+    sort();
+    std::swap(pieces_, next_);
+    count_ = std::exchange(next_count_, 0);
+}
+
+void SurfacePieces::cut(double spacing, size_t most) noexcept {
+    constexpr float kFinerSquared = 0.5f;
+    takeNext();
+    float longest = 0;
+    for (size_t n = 0; n < count_; ++n) longest = std::max(longest, pieces_[n].longest_squared);
+    float limit = float(spacing * spacing);
+    int level = 0;
+    for (; limit < longest; limit /= kFinerSquared) ++level;
+    while (level > 0 && 2 * count_ <= (level > level_ ? 2 * most : most)) {
+        limit *= kFinerSquared;
+        --level;
+        while (round(limit)) {
+        }
+    }
+    level_ = level;
+}
+
+}  // namespace bonemill

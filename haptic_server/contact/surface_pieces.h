@@ -1,0 +1,75 @@
+// Cuts triangles of iso-surface near the tool into pieces that are small against the contact, however large the
+// voxels are. The triangles of all cells tile the surface without gaps and overlaps, so their pieces do, too;
+// that is what keeps a sum over them smooth when the tool slides (docs/accuracy.md).
+//
+// A piece is cut in two across its longest edge as long as that is longer than its limit: the sampling's
+// spacing where the tool touches or nearly does, and in proportion to the distance away from it. Pieces that
+// the tool cannot reach are dropped.
+//
+// It is RT-safe but for construction, and for the tick thread only. Positions are in V's axes, from an origin.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "haptic_server/contact/into_tool.h"
+
+namespace bonemill {
+
+struct SurfacePiece {
+    Eigen::Vector3f corner[3];  // m
+    float area;                 // m²
+    float longest_squared;      // m²: of its edges
+    float nearest;              // m: no point of it is nearer to the tool
+    uint32_t patch;             // which candidate it is a part of
+
+    Eigen::Vector3f centroid() const noexcept { return (corner[0] + corner[1] + corner[2]) / 3; }
+};
+
+class SurfacePieces {
+  public:
+    // A piece that is so many times as long as it is far from the tool is short enough.
+    static constexpr float kLengthPerDistance = 4;
+
+    // It allocates room for so many pieces.
+    explicit SurfacePieces(size_t room);
+
+    // Begins anew with no piece, around a tool at X_VT that may move by `margin` (m).
+    void start(const ToolField& tool, const Pose& X_VT, const Eigen::Vector3d& origin_V, double margin,
+               double fine_within) noexcept;
+    // False: there is no room for it.
+    bool add(const Eigen::Vector3f corners[3], uint32_t patch) noexcept;
+    // Cuts all that was added. There are about `most` pieces in the end; if the spacing (m) makes more, a
+    // coarser one is taken. What the last call took is kept as long as that does not make twice as many.
+    void cut(double spacing, size_t most) noexcept;
+    // Forgets the last call's spacing.
+    void forget() noexcept { level_ = kNoLevel; }
+
+    template <class Visit>
+    void forEach(Visit&& visit) const noexcept {
+        for (size_t n = 0; n < count_; ++n) visit(pieces_[n]);
+    }
+    // Work since the last call, in distances of one point to the tool.
+    size_t takePointTests() noexcept { return std::exchange(point_tests_, 0); }
+
+  private:
+    static constexpr int kNoLevel = 1000;
+    bool isCoarse(const SurfacePiece& piece, float longest_squared) const noexcept;
+    void halve(const SurfacePiece& piece) noexcept;
+    void put(const SurfacePiece& piece) noexcept;
+    void sort() noexcept;
+    bool round(float longest_squared) noexcept;
+    void takeNext() noexcept;
+
+    const ToolField* tool_ = nullptr;
+    IntoTool<float> into_tool_;
+    float margin_ = 0, fine_within_ = 0;
+    std::vector<SurfacePiece> pieces_, next_;
+    size_t count_ = 0, next_count_ = 0;
+    SurfacePiece fresh_[PointBatch<float>::kCapacity];  // whose distances are looked at together
+    int fresh_count_ = 0;
+    int level_ = kNoLevel;  // of the last cut(): the spacing was longer than asked for by root 2 to this
+    size_t point_tests_ = 0;
+};
+
+}  // namespace bonemill
