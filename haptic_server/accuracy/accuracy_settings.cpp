@@ -13,7 +13,7 @@ AccuracySettings presetSettings(Preset preset) noexcept {
         case Preset::kThesis2012:  // scaling factor 3 as in its demonstrations
             return {ContactLaw::kThesis2012, 3, 0, 0, ToolDistance::kGrid, 1, Precision::kFloat, 1, false};
         case Preset::kFast:
-            return {ContactLaw::kGradient, 1, 100e-6, 256, ToolDistance::kAnalytic, 1, Precision::kFloat, 1,
+            return {ContactLaw::kGradient, 1, 80e-6, 512, ToolDistance::kAnalytic, 1, Precision::kFloat, 1,
                     true};
         case Preset::kBalanced:
             return {ContactLaw::kGradient, 1, 60e-6, 768, ToolDistance::kAnalytic, 2, Precision::kFloat, 4,

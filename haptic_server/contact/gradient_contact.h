@@ -133,10 +133,12 @@ class GradientContact {
     NearTest nearTest(const ToolField& tool, const Pose& X_VT) const noexcept;
     bool addCandidates(const ShellBlock& block, LeafId leaf, int count, const SampleBatch<float>& at,
                        const NearTest& test) noexcept;
+    // The tool seldom moves by more than half of the margin, which is a guess of twice its motion.
+    double fineWithin() const noexcept { return std::min(margin_ / 2, kFineWithin); }
     // Is the whole patch too large for one sample?
     bool isCoarse(size_t candidate) const noexcept {
         const double near = double(candidates_.nearest[candidate]);
-        return near < std::min(margin_, kFineWithin) || SurfacePieces::kLengthPerDistance * near < patch_reach_;
+        return near < fineWithin() || SurfacePieces::kLengthPerDistance * near < patch_reach_;
     }
     void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
     void cutPatch(const ShellView& bone, uint32_t candidate) noexcept;

@@ -36,7 +36,7 @@ Vector3f crossing(const CellCorners& corners, int edge) noexcept {
 void GradientContact::refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept {
     split_count_ = 0;
     if (!(bone.sample_spacing > 0)) return;
-    pieces_.start(tool, X_VT, origin_, margin_, std::min(margin_, kFineWithin));
+    pieces_.start(tool, X_VT, origin_, margin_, fineWithin());
     const size_t coarse = candidates_.count;
     for (size_t i = 0; i < coarse; ++i)
         if (isCoarse(i)) split_[split_count_++] = uint32_t(i);

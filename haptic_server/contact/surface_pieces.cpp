@@ -33,6 +33,7 @@ void SurfacePieces::start(const ToolField& tool, const Pose& X_VT, const Eigen::
                           double margin, double fine_within) noexcept {
     tool_ = &tool;
     into_tool_ = IntoTool<float>(X_VT, origin_V);
+    R_TV_ = X_VT.rotation.conjugate().toRotationMatrix().cast<float>();
     margin_ = float(margin);
     fine_within_ = float(fine_within);
     count_ = next_count_ = 0;
@@ -41,9 +42,10 @@ void SurfacePieces::start(const ToolField& tool, const Pose& X_VT, const Eigen::
 
 bool SurfacePieces::add(const Vector3f corners[3], uint32_t patch) noexcept {
     if (next_count_ + size_t(fresh_count_) >= next_.size()) return false;
-    SurfacePiece piece{{corners[0], corners[1], corners[2]}, 0, 0, 0, patch};
-    piece.area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2;
-    put(piece);
+    const Vector3f across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    const float twice_area = across.norm();
+    if (!(twice_area > 0)) return true;
+    put({{corners[0], corners[1], corners[2]}, twice_area / 2, 0, 0, R_TV_ * (across / twice_area), patch});
     return true;
 }
 
@@ -59,18 +61,21 @@ void SurfacePieces::sort() noexcept {
     // No point of a triangle is farther from its centroid than two thirds of its longest edge.
     constexpr float kReach = 2.0f / 3;
     alignas(64) float x[PointBatch<float>::kCapacity], y[PointBatch<float>::kCapacity],
-        z[PointBatch<float>::kCapacity], distance[PointBatch<float>::kCapacity];
+        z[PointBatch<float>::kCapacity], nearest[PointBatch<float>::kCapacity];
+    PieceBatch batch;
     for (int i = 0; i < fresh_count_; ++i) {
-        const Vector3f center = fresh_[i].centroid();
+        const SurfacePiece& piece = fresh_[i];
+        const Vector3f center = piece.centroid();
         x[i] = center.x(), y[i] = center.y(), z[i] = center.z();
+        batch.nx[i] = piece.normal_T.x(), batch.ny[i] = piece.normal_T.y(), batch.nz[i] = piece.normal_T.z();
+        batch.reach[i] = kReach * std::sqrt(piece.longest_squared);
     }
-    PointBatch<float> batch;
-    into_tool_.fill(batch, x, y, z, fresh_count_);
-    tool_->distances(batch, distance);
+    into_tool_.fill(batch.center, x, y, z, fresh_count_);
+    tool_->nearest(batch, nearest);
     point_tests_ += size_t(fresh_count_);
     for (int i = 0; i < fresh_count_; ++i) {
-        fresh_[i].nearest = distance[i] - kReach * std::sqrt(fresh_[i].longest_squared);
-        if (fresh_[i].nearest < margin_ && next_count_ < next_.size()) next_[next_count_++] = fresh_[i];
+        fresh_[i].nearest = nearest[i];
+        if (nearest[i] < margin_ && next_count_ < next_.size()) next_[next_count_++] = fresh_[i];
     }
     fresh_count_ = 0;
 }

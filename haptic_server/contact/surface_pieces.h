@@ -21,6 +21,7 @@ struct SurfacePiece {
     float area;                 // m²
     float longest_squared;      // m²: of its edges
     float nearest;              // m: no point of it is nearer to the tool
+    Eigen::Vector3f normal_T;   // unit
     uint32_t patch;             // which candidate it is a part of
 
     Eigen::Vector3f centroid() const noexcept { return (corner[0] + corner[1] + corner[2]) / 3; }
@@ -63,6 +64,7 @@ class SurfacePieces {
 
     const ToolField* tool_ = nullptr;
     IntoTool<float> into_tool_;
+    Eigen::Matrix3f R_TV_ = Eigen::Matrix3f::Identity();
     float margin_ = 0, fine_within_ = 0;
     std::vector<SurfacePiece> pieces_, next_;
     size_t count_ = 0, next_count_ = 0;

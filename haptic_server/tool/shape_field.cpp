@@ -84,7 +84,7 @@ ShapeField::Solid ShapeField::solidOf(const ToolShape& shape) {
 }
 
 template <class Scalar>
-void ShapeField::nearest(const PointBatch<Scalar>& points_T, Scalar* out) const noexcept {
+void ShapeField::leastDistance(const PointBatch<Scalar>& points_T, Scalar* out) const noexcept {
     std::fill_n(out, points_T.count, std::numeric_limits<Scalar>::max());
     for (const Solid& solid : solids_) {
         if (solid.is_round)
@@ -97,26 +97,45 @@ void ShapeField::nearest(const PointBatch<Scalar>& points_T, Scalar* out) const 
 }
 
 void ShapeField::distances(const PointBatch<float>& points_T, float* out) const noexcept {
-    nearest(points_T, out);
+    leastDistance(points_T, out);
 }
 
 void ShapeField::distances(const PointBatch<double>& points_T, double* out) const noexcept {
-    nearest(points_T, out);
+    leastDistance(points_T, out);
 }
 
 // The solid replaces what `out` holds where it is nearer.
 template <class Scalar>
+void ShapeField::sampleNearer(const Solid& solid, const PointBatch<Scalar>& points_T,
+                              SampleBatch<Scalar>& out) noexcept {
+    const auto& k = kernels().points<Scalar>();
+    if (solid.is_round)
+        k.sample_nearer_round(solid.round<Scalar>(), points_T.x, points_T.y, points_T.z, points_T.count,
+                              out.distance, out.gx, out.gy, out.gz);
+    else
+        k.sample_nearer_cone(solid.cone<Scalar>(), points_T.x, points_T.y, points_T.z, points_T.count,
+                             out.distance, out.gx, out.gy, out.gz);
+}
+
+template <class Scalar>
 void ShapeField::sampleNearest(const PointBatch<Scalar>& points_T, SampleBatch<Scalar>& out) const noexcept {
     std::fill_n(out.distance, points_T.count, std::numeric_limits<Scalar>::max());
+    for (const Solid& solid : solids_) sampleNearer(solid, points_T, out);
+}
+
+// Every solid is convex: along a plane its distance falls no faster than at the start.
+void ShapeField::nearest(const PieceBatch& pieces, float* out) const noexcept {
+    const int count = pieces.center.count;
+    std::fill_n(out, count, std::numeric_limits<float>::max());
+    SampleBatch<float> at;
     for (const Solid& solid : solids_) {
-        if (solid.is_round)
-            kernels().points<Scalar>().sample_nearer_round(solid.round<Scalar>(), points_T.x, points_T.y,
-                                                           points_T.z, points_T.count, out.distance, out.gx,
-                                                           out.gy, out.gz);
-        else
-            kernels().points<Scalar>().sample_nearer_cone(solid.cone<Scalar>(), points_T.x, points_T.y,
-                                                          points_T.z, points_T.count, out.distance, out.gx,
-                                                          out.gy, out.gz);
+        std::fill_n(at.distance, count, std::numeric_limits<float>::max());
+        sampleNearer(solid, pieces.center, at);
+        for (int i = 0; i < count; ++i) {
+            const float along = at.gx[i] * pieces.nx[i] + at.gy[i] * pieces.ny[i] + at.gz[i] * pieces.nz[i];
+            const float slope = std::sqrt(std::max(0.0f, 1 - along * along));
+            out[i] = std::min(out[i], at.distance[i] - slope * pieces.reach[i]);
+        }
     }
 }
 

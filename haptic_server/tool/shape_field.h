@@ -20,6 +20,7 @@ class ShapeField final : public ToolField {
     void distances(const PointBatch<double>& points_T, double* out) const noexcept override;
     void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept override;
     void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept override;
+    void nearest(const PieceBatch& pieces_T, float* out) const noexcept override;
     ToolSample sample(const Eigen::Vector3d& p_T) const noexcept override;
     double distanceError() const noexcept override { return kRounding; }
     double distanceBound(const Eigen::Vector3d& p_T) const noexcept override;
@@ -58,7 +59,10 @@ class ShapeField final : public ToolField {
     static ToolSample sampleRound(const Solid& solid, const Eigen::Vector3d& p_T) noexcept;
     static ToolSample sampleCone(const Solid& solid, const Eigen::Vector3d& p_T) noexcept;
     template <class Scalar>
-    void nearest(const PointBatch<Scalar>& points_T, Scalar* out) const noexcept;
+    void leastDistance(const PointBatch<Scalar>& points_T, Scalar* out) const noexcept;
+    template <class Scalar>
+    static void sampleNearer(const Solid& solid, const PointBatch<Scalar>& points_T,
+                             SampleBatch<Scalar>& out) noexcept;
     template <class Scalar>
     void sampleNearest(const PointBatch<Scalar>& points_T, SampleBatch<Scalar>& out) const noexcept;
 

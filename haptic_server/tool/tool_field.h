@@ -26,6 +26,14 @@ struct SampleBatch {
     alignas(64) Scalar gz[PointBatch<Scalar>::kCapacity];
 };
 
+// These are flat pieces of a surface, in T: no point of one is farther than `reach` from its centre.
+struct PieceBatch {
+    PointBatch<float> center;
+    alignas(64) float nx[PointBatch<float>::kCapacity], ny[PointBatch<float>::kCapacity],
+        nz[PointBatch<float>::kCapacity];  // unit
+    alignas(64) float reach[PointBatch<float>::kCapacity];
+};
+
 struct ToolSample {
     double distance = 0;  // m
     Eigen::Vector3d gradient =
@@ -43,6 +51,12 @@ class ToolField {
     // Writes the same distances with their gradients.
     virtual void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept = 0;
     virtual void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept = 0;
+    // Writes to out[0 .. count-1] a bound that no point of the piece falls below, in m. It is as near to the least
+    // distance as the field can tell.
+    virtual void nearest(const PieceBatch& pieces_T, float* out) const noexcept {
+        distances(pieces_T.center, out);
+        for (int i = 0; i < pieces_T.center.count; ++i) out[i] -= pieces_T.reach[i];
+    }
     // Returns distance and gradient at one point, in double precision.
     virtual ToolSample sample(const Eigen::Vector3d& p_T) const noexcept = 0;
     // In m: distances() and sample() of a batch are nowhere farther from the distance than this, but for

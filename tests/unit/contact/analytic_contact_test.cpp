@@ -84,6 +84,29 @@ TEST(AnalyticContact, BurrOnPlane) {
     }
 }
 
+// A ball that is smaller than a voxel is felt wherever it touches, with every preset.
+TEST(AnalyticContact, BallSmallerThanAVoxel) {
+    const double h = 1e-3;
+    const std::vector<Orientation> turns = orientations();
+    for (size_t n = 0; n < turns.size(); ++n) {
+        const Vector3d center = h * (Vector3d::Constant(12) + turns[n].shift);
+        const Vector3d normal = turns[n].R.col(2);
+        const auto body = halfSpace(center, normal);
+        for (const double radius : {0.3e-3, 0.5e-3, 0.7e-3}) {
+            const ContactScene scene(cubeGeometry(25, h), body, {SphereShape{{0, 0, 0}, radius}});
+            const double depth = 0.05 * radius, truth = M_PI * 1e12 * (radius - depth) * depth * depth;
+            for (const Preset preset : {Preset::kFast, Preset::kBalanced, Preset::kExact}) {
+                const Vector3d place = center + 0.7e-3 * turns[n].R.col(0);
+                const auto result = scene.contactAt({.stiffness_per_area = 1e12}, presetSettings(preset),
+                                                    Pose{place + (radius - depth) * normal});
+                const double bound = preset == Preset::kFast ? 0.1 : 0.03;
+                EXPECT_NEAR(result.term.wrench.force.dot(normal) / truth, 1, bound)
+                    << presetName(preset) << ", radius " << radius * 1e3 << " mm, orientation " << n;
+            }
+        }
+    }
+}
+
 TEST(AnalyticContact, ShaftLyingOnPlane) {
     for (const double h : {0.1e-3, 0.3e-3, 1e-3}) {
         const double radius = 12 * h, depth = 0.72 * h, length = 24 * h;

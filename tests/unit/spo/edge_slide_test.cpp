@@ -29,20 +29,26 @@ const std::vector<ToolShape> kDrill = {CylinderShape{{0, -4e-3, 0}, {0, 4e-3, 0}
                                        CapsuleShape{{0, 4e-3, 0}, {0, 20e-3, 0}, 1.2e-3}};
 constexpr double kDt = 1e-3;
 
-// Returns the tool's lowest height over the face below T's origin, by its distance field.
-double heightOver(const ToolField& tool, const Eigen::Quaterniond& R_FT) {
-    // The height at which the field first touches the plane z = 0 is found by bisection over samples of the plane.
-    double low = 0, high = 8e-3;
-    for (int n = 0; n < 40; ++n) {
-        const double height = (low + high) / 2;
+struct Touch {
+    double height = 9e-3;                        // m, of T's origin over the face z = 0 that the tool touches
+    Vector3d p_F = Vector3d::Zero();             // where
+};
+
+// Lowers the tool by its least distance from the face until it touches.
+Touch touchdown(const ToolField& tool, const Eigen::Quaterniond& R_FT) {
+    constexpr double kGrid = 0.07e-3;
+    Touch touch;
+    for (int n = 0; n < 6; ++n) {
         double nearest = 1;
-        for (int i = -60; i <= 60; ++i)
-            for (int j = -60; j <= 60; ++j)
-                nearest = std::min(nearest, tool.sample(R_FT.conjugate() * Vector3d(i * 0.1e-3, j * 0.1e-3, -height))
-                                                .distance);
-        (nearest < 0 ? low : high) = height;
+        for (int i = -85; i <= 85; ++i)
+            for (int j = -85; j <= 85; ++j) {
+                const Vector3d p(i * kGrid, j * kGrid, -touch.height);
+                const double distance = tool.sample(R_FT.conjugate() * p).distance;
+                if (distance < nearest) nearest = distance, touch.p_F = {p.x(), p.y(), 0};
+            }
+        touch.height -= nearest;
     }
-    return high;
+    return touch;
 }
 
 SlideFigures slide(const Slide& s) {
@@ -59,22 +65,13 @@ SlideFigures slide(const Slide& s) {
     GradientModel model({}, scene.world(), {&scene.tool, {.radius = 1.6e-3}, 50}, kDt);
     model.setAccuracy(presetSettings(s.preset));
     const ToolField& field = scene.tool.field(presetSettings(s.preset));
-    // Where the tool touches shall be in the middle of the volume.
-    const double height = heightOver(field, R_FT);
-    Vector3d touch_F = Vector3d::Zero();
-    double nearest = 1;
-    for (int i = -100; i <= 100; ++i)
-        for (int j = -100; j <= 100; ++j) {
-            const Vector3d p(i * 0.06e-3, j * 0.06e-3, -height);
-            const double d = field.sample(R_FT.conjugate() * p).distance;
-            if (d < nearest) nearest = d, touch_F = {p.x(), p.y(), 0};
-        }
+    const Touch touch = touchdown(field, R_FT);
     const double stretch = s.load / 3000;
     const int press = 150, ticks = std::min(400, int(0.4e-3 / (s.speed * kDt)));
     const auto device = [&](int tick) {
         const double x = s.speed * kDt * std::max(0, tick - press);
-        const double z = height + 0.05e-3 - (stretch + 0.05e-3) * std::min(1.0, tick / 80.0);
-        return Pose{middle + R_VF * (Vector3d(0, 0, z) - touch_F + (x - 0.2e-3) * along_F), R_VF * R_FT};
+        const double z = touch.height + 0.05e-3 - (stretch + 0.05e-3) * std::min(1.0, tick / 80.0);
+        return Pose{middle + R_VF * (Vector3d(0, 0, z) - touch.p_F + (x - 0.2e-3) * along_F), R_VF * R_FT};
     };
     Pose spo = device(0);
     SlideFigures figures;
@@ -93,16 +90,45 @@ SlideFigures slide(const Slide& s) {
     return figures;
 }
 
-TEST(EdgeSlide, Explore) {
+const std::vector<ToolShape> kCone = {ConeShape{{0, -3e-3, 0}, {0, 3e-3, 0}, 0.3e-3, 1.6e-3, kEdgeRadius},
+                                      CapsuleShape{{0, 3e-3, 0}, {0, 20e-3, 0}, 1.2e-3}};
+
+constexpr double kVoxelSizes[] = {0.1e-3, 0.25e-3, 0.5e-3, 1e-3};
+
+// The same slides for each preset: every seed has a direction in the grid, a lean and a voxel of its own.
+void expectToSlide(Preset preset, double most_friction, double most_step) {
+    constexpr double kLeans[] = {0, 1, 5, 20, 45, 70, 89, 90};  // degrees
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        Slide s{.preset = preset, .voxel = kVoxelSizes[seed / 2 % 4], .lean = kLeans[seed % 8] * kDegree, .seed = seed};
+        s.shapes = seed % 3 == 2 ? kCone : kDrill;
+        if (seed % 5 == 4) s.load = 0.5;
+        const SlideFigures f = slide(s);
+        EXPECT_LE(f.friction, most_friction) << "seed " << seed << ", voxel " << s.voxel << ", lean " << s.lean;
+        EXPECT_LE(f.step, most_step) << "seed " << seed << ", voxel " << s.voxel << ", lean " << s.lean;
+    }
+}
+
+TEST(EdgeSlide, ExactHasNoFalseFriction) {
+    expectToSlide(Preset::kExact, 0.01, 0.02);
+}
+
+TEST(EdgeSlide, BalancedHasHardlyAnyFalseFriction) {
+    expectToSlide(Preset::kBalanced, 0.03, 0.02);
+}
+
+TEST(EdgeSlide, FastIsSmooth) {
+    expectToSlide(Preset::kFast, 0.1, 0.04);
+}
+
+// Balls far smaller than a voxel are felt everywhere, as strongly as they should be.
+TEST(EdgeSlide, SmallBallsSlideOnLargeVoxels) {
     for (const Preset preset : {Preset::kFast, Preset::kBalanced, Preset::kExact})
-        for (const double voxel : {0.125e-3, 0.25e-3, 0.5e-3, 0.8e-3}) {
-            double friction = 0, step = 0;
-            for (unsigned seed = 0; seed < 4; ++seed) {
-                const SlideFigures f = slide({.preset = preset, .voxel = voxel, .lean = 20 * kDegree, .seed = seed, .shapes = kDrill});
-                friction = std::max(friction, f.friction), step = std::max(step, f.step);
+        for (const double radius : {0.3e-3, 0.5e-3, 1e-3})
+            for (unsigned seed = 0; seed < 3; ++seed) {
+                const SlideFigures f = slide({.preset = preset, .voxel = 1e-3, .lean = 0, .load = 0.3, .seed = seed, .shapes = {SphereShape{Vector3d::Zero(), radius}}});
+                EXPECT_LE(f.friction, preset == Preset::kFast ? 0.03 : 0.01) << presetName(preset) << radius;
+                EXPECT_LE(f.step, 0.02);
             }
-            std::printf("%s voxel %.3g: friction %.2f %% step %.4f N\n", std::string(presetName(preset)).c_str(), voxel * 1e3, 100 * friction, step);
-        }
 }
 
 }  // namespace
