@@ -22,7 +22,7 @@ inline constexpr VirtualFixtureConfig kVirtualFixture{
 inline constexpr TimeRemovalConfig kTimeRemoval{.rate = 12750 * kDensityCountsPerUnit};
 inline constexpr AddMaterialConfig kAddMaterial{.rate = 12750 * kDensityCountsPerUnit};
 inline constexpr HeatConfig kHeat{.cell = 0.5e-3,
-                                  .conductivity = 0.4,
+                                  .conductivity = 0.55,
                                   .heat_capacity = 2.4e6,
                                   .perfusion = 0,
                                   .body_temperature = 37,
@@ -31,7 +31,7 @@ inline constexpr HeatConfig kHeat{.cell = 0.5e-3,
                                   .dry_transfer = 10,
                                   .necrosis_temperature = 47,
                                   .necrosis_time = 0};
-inline constexpr ThermalConfig kThermal{.heat_share = 0.5, .irrigation_radius = 10e-3, .heat = kHeat};
+inline constexpr ThermalConfig kThermal{.heat_share = 0.1, .irrigation_radius = 10e-3, .heat = kHeat};
 inline constexpr ProtectedStructuresConfig kProtectedStructures{.warning_distance = 2e-3};
 
 }  // namespace bonemill::test
