@@ -30,6 +30,7 @@
 #include "haptic_server/contact/candidates.h"
 #include "haptic_server/contact/contact_configs.h"
 #include "haptic_server/contact/contact_weights.h"
+#include "haptic_server/contact/patch_memory.h"
 #include "haptic_server/contact/point_shell.h"
 #include "haptic_server/contact/surface_contact.h"
 #include "haptic_server/contact/surface_pieces.h"
@@ -77,9 +78,9 @@ class GradientContact {
         candidates_.most = std::min(most, candidates_.patch.size());
     }
 
-    // Forgets of the last gathering how finely it sampled. This is called when the shell level or the sampling
+    // Forgets of the last gatherings how finely which patch was sampled. This is called when the shell level or the sampling
     // changes, or the tool is placed anew.
-    void forget() noexcept { pieces_.forget(); }
+    void forget() noexcept { patch_memory_.forget(); }
 
     // Returns energy, wrench on the tool and stiffness at this pose, over the gathered points.
     template <class Scalar>
@@ -142,7 +143,8 @@ class GradientContact {
     }
     void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
     void cutPatch(const ShellView& bone, uint32_t candidate) noexcept;
-    bool cutCell(const ShellView& bone, const Eigen::Vector3i& cell, uint32_t candidate) noexcept;
+    bool cutCell(const ShellView& bone, const Eigen::Vector3i& cell, uint32_t candidate,
+                 uint8_t level) noexcept;
     void placePieces() noexcept;
     void movePlacesOntoSurface(const VoxelVolume& volume, size_t from) noexcept;
     void fillHoles() noexcept;
@@ -156,6 +158,7 @@ class GradientContact {
     ContactWeights* weights_ = nullptr;
     Candidates candidates_;
     SurfacePieces pieces_{kMostPieces};
+    PatchMemory patch_memory_{4096};
     std::vector<uint32_t> split_;  // ascending: the first split_count_ are candidates whose pieces take their place
     size_t split_count_ = 0;
     // A sweep needs how near each candidate may come, in m, and 1/(the most that the whole step can bring

@@ -30,11 +30,25 @@ Vector3f crossing(const CellCorners& corners, int edge) noexcept {
     return at;
 }
 
+// Returns how far the trilinear surface is off the triangle, in m: a little more than it is at four places.
+float sagOf(const CellCorners& corners, const Vector3f (&at)[3], const Vector3f& inverse_spacing) noexcept {
+    constexpr float kMore = 1.5f;
+    float sag = 0;
+    for (const Vector3f& place : {Vector3f((at[0] + at[1] + at[2]) / 3), Vector3f((at[0] + at[1]) / 2),
+                                  Vector3f((at[1] + at[2]) / 2), Vector3f((at[2] + at[0]) / 2)}) {
+        const FieldSample field = sampleField(corners, place);
+        const float rise = field.slope.cwiseProduct(inverse_spacing).norm();
+        if (rise > 0) sag = std::max(sag, std::abs(field.excess) / rise);
+    }
+    return kMore * sag;
+}
+
 }  // namespace
 
 // The patches near the tool are sampled as finely as asked for, and as the number of samples allows.
 void GradientContact::refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept {
     split_count_ = 0;
+    patch_memory_.nextGathering();
     if (!(bone.sample_spacing > 0)) return;
     pieces_.start(tool, X_VT, origin_, margin_, fineWithin());
     const size_t coarse = candidates_.count;
@@ -45,7 +59,10 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
         return;
     }
     for (size_t n = 0; n < split_count_; ++n) cutPatch(bone, split_[n]);
-    pieces_.cut(bone.sample_spacing, size_t(bone.most_samples));
+    const uint8_t level_of_new = pieces_.cut(bone.sample_spacing, size_t(bone.most_samples));
+    for (size_t n = 0; n < split_count_; ++n)
+        if (uint8_t& level = patch_memory_.levelOf(candidates_.patch[split_[n]]); level == PatchMemory::kNew)
+            level = level_of_new;
     point_tests_ += pieces_.takePointTests();
     placePieces();
     movePlacesOntoSurface(bone.volume, coarse);
@@ -55,6 +72,7 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
 // Gives the triangles of a candidate's cells.
 void GradientContact::cutPatch(const ShellView& bone, uint32_t candidate) noexcept {
     const PatchId patch = candidates_.patch[candidate];
+    const uint8_t level = patch_memory_.levelOf(patch);
     const IndexBox leaf = bone.lattice.cellsOf(patch.leaf);
     const int factor = bone.shell.scalingFactor(bone.level);
     const Vector3i first = leaf.min + factor * patch.block.index();
@@ -62,21 +80,25 @@ void GradientContact::cutPatch(const ShellView& bone, uint32_t candidate) noexce
     for (int k = first.z(); k <= last.z(); ++k)
         for (int j = first.y(); j <= last.y(); ++j)
             for (int i = first.x(); i <= last.x(); ++i)
-                if (!cutCell(bone, {i, j, k}, candidate)) return;
+                if (!cutCell(bone, {i, j, k}, candidate, level)) return;
 }
 
-bool GradientContact::cutCell(const ShellView& bone, const Vector3i& cell, uint32_t candidate) noexcept {
+bool GradientContact::cutCell(const ShellView& bone, const Vector3i& cell, uint32_t candidate,
+                              uint8_t level) noexcept {
     const CellCorners corners = readCorners(bone.volume, cell);
     const CubeTriangles& triangles = cubeTriangles()[size_t(insideOf(corners))];
     const Eigen::Vector3d& spacing = bone.volume.spacing();
     const Vector3f base = (cell.cast<double>().cwiseProduct(spacing) - origin_).cast<float>();
     const Vector3f steps = spacing.cast<float>();
+    const Vector3f inverse_steps = steps.cwiseInverse();
     for (int n = 0; n < triangles.count; ++n) {
-        Vector3f at[3];
-        for (size_t corner = 0; corner < 3; ++corner)
-            at[corner] =
-                base + crossing(corners, triangles.edges[size_t(n)][corner]).cwiseProduct(steps);
-        if (!pieces_.add(at, candidate)) return false;
+        Vector3f at[3], corner_V[3];
+        for (size_t c = 0; c < 3; ++c) {
+            at[c] = crossing(corners, triangles.edges[size_t(n)][c]);
+            corner_V[c] = base + at[c].cwiseProduct(steps);
+        }
+        const float sag = std::min(sagOf(corners, at, inverse_steps), float(kReachOfPlace) * steps.minCoeff());
+        if (!pieces_.add(corner_V, sag, candidate, level)) return false;
     }
     return true;
 }

@@ -40,12 +40,13 @@ void SurfacePieces::start(const ToolField& tool, const Pose& X_VT, const Eigen::
     fresh_count_ = 0;
 }
 
-bool SurfacePieces::add(const Vector3f corners[3], uint32_t patch) noexcept {
+bool SurfacePieces::add(const Vector3f corners[3], float sag, uint32_t patch, uint8_t level) noexcept {
     if (next_count_ + size_t(fresh_count_) >= next_.size()) return false;
     const Vector3f across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     const float twice_area = across.norm();
     if (!(twice_area > 0)) return true;
-    put({{corners[0], corners[1], corners[2]}, twice_area / 2, 0, 0, R_TV_ * (across / twice_area), patch});
+    put({{corners[0], corners[1], corners[2]}, twice_area / 2, 0, 0, R_TV_ * (across / twice_area), patch,
+         sag, level});
     return true;
 }
 
@@ -74,14 +75,15 @@ void SurfacePieces::sort() noexcept {
     tool_->nearest(batch, nearest);
     point_tests_ += size_t(fresh_count_);
     for (int i = 0; i < fresh_count_; ++i) {
-        fresh_[i].nearest = nearest[i];
-        if (nearest[i] < margin_ && next_count_ < next_.size()) next_[next_count_++] = fresh_[i];
+        fresh_[i].nearest = nearest[i] - fresh_[i].sag;
+        if (fresh_[i].nearest < margin_ && next_count_ < next_.size()) next_[next_count_++] = fresh_[i];
     }
     fresh_count_ = 0;
 }
 
-bool SurfacePieces::isCoarse(const SurfacePiece& piece, float longest_squared) const noexcept {
-    if (piece.longest_squared <= longest_squared) return false;
+bool SurfacePieces::isCoarse(const SurfacePiece& piece, const Round& round) const noexcept {
+    if (piece.longest_squared <= round.longest_squared) return false;
+    if (piece.level == kNewPatch ? !round.has_room : piece.level > round.level) return false;
     const float enough = kLengthPerDistance * piece.nearest;
     return piece.nearest < fine_within_ || piece.longest_squared > enough * enough;
 }
@@ -92,19 +94,20 @@ void SurfacePieces::halve(const SurfacePiece& piece) noexcept {
     const Vector3f middle = (piece.corner[from] + piece.corner[to]) / 2;
     SurfacePiece half = piece;
     half.area = piece.area / 2;
+    half.sag = piece.sag / 2;
     half.corner[to] = middle;
     put(half);
     half.corner[to] = piece.corner[to], half.corner[from] = middle;
     put(half);
 }
 
-// Cuts every piece that is too long once, as far as there is room. False: there was none.
-bool SurfacePieces::round(float longest_squared) noexcept {
+// False: no piece was too long, or there was no room.
+bool SurfacePieces::cutOnce(const Round& round) noexcept {
     bool has_cut = false;
     next_count_ = 0;
     for (size_t n = 0; n < count_; ++n) {
         const size_t at_least = next_count_ + size_t(fresh_count_) + (count_ - n);
-        if (isCoarse(pieces_[n], longest_squared) && at_least < next_.size()) {
+        if (isCoarse(pieces_[n], round) && at_least < next_.size()) {
             halve(pieces_[n]);
             has_cut = true;
         } else {
@@ -121,21 +124,23 @@ void SurfacePieces::takeNext() noexcept {
     count_ = std::exchange(next_count_, 0);
 }
 
-void SurfacePieces::cut(double spacing, size_t most) noexcept {
+uint8_t SurfacePieces::cut(double spacing, size_t most) noexcept {
     constexpr float kFinerSquared = 0.5f;
     takeNext();
     float longest = 0;
     for (size_t n = 0; n < count_; ++n) longest = std::max(longest, pieces_[n].longest_squared);
-    float limit = float(spacing * spacing);
-    int level = 0;
-    for (; limit < longest; limit /= kFinerSquared) ++level;
-    while (level > 0 && 2 * count_ <= (level > level_ ? 2 * most : most)) {
-        limit *= kFinerSquared;
-        --level;
-        while (round(limit)) {
+    Round round{float(spacing * spacing), 0, true};
+    for (; round.longest_squared < longest; round.longest_squared /= kFinerSquared) ++round.level;
+    int level_of_new = round.level;
+    while (round.level > 0 && count_ <= 4 * most) {
+        round.longest_squared *= kFinerSquared;
+        --round.level;
+        round.has_room = round.has_room && 2 * count_ <= most;
+        if (round.has_room) level_of_new = round.level;
+        while (cutOnce(round)) {
         }
     }
-    level_ = level;
+    return uint8_t(std::min<int>(level_of_new, kNewPatch - 1));
 }
 
 }  // namespace bonemill

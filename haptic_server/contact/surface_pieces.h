@@ -23,12 +23,16 @@ struct SurfacePiece {
     float nearest;              // m: no point of it is nearer to the tool
     Eigen::Vector3f normal_T;   // unit
     uint32_t patch;             // which candidate it is a part of
+    float sag;                  // m: the surface itself is no farther off the flat piece
+    uint8_t level;              // to which that is cut; kNewPatch: as finely as there is room
 
     Eigen::Vector3f centroid() const noexcept { return (corner[0] + corner[1] + corner[2]) / 3; }
 };
 
 class SurfacePieces {
   public:
+    // A piece of level n may be as long as the spacing times the n-th power of root 2.
+    static constexpr uint8_t kNewPatch = 255;
     // A piece that is so many times as long as it is far from the tool is short enough.
     static constexpr float kLengthPerDistance = 4;
 
@@ -39,12 +43,10 @@ class SurfacePieces {
     void start(const ToolField& tool, const Pose& X_VT, const Eigen::Vector3d& origin_V, double margin,
                double fine_within) noexcept;
     // False: there is no room for it.
-    bool add(const Eigen::Vector3f corners[3], uint32_t patch) noexcept;
-    // Cuts all that was added. There are about `most` pieces in the end; if the spacing (m) makes more, a
-    // coarser one is taken. What the last call took is kept as long as that does not make twice as many.
-    void cut(double spacing, size_t most) noexcept;
-    // Forgets the last call's spacing.
-    void forget() noexcept { level_ = kNoLevel; }
+    bool add(const Eigen::Vector3f corners[3], float sag, uint32_t patch, uint8_t level) noexcept;
+    // Cuts all that was added, those of new patches to a spacing (m) that makes no more than about `most` pieces in
+    // all. Returns their level. Other patches are cut to theirs as long as there are not four times as many.
+    uint8_t cut(double spacing, size_t most) noexcept;
 
     template <class Visit>
     void forEach(Visit&& visit) const noexcept {
@@ -54,12 +56,17 @@ class SurfacePieces {
     size_t takePointTests() noexcept { return std::exchange(point_tests_, 0); }
 
   private:
-    static constexpr int kNoLevel = 1000;
-    bool isCoarse(const SurfacePiece& piece, float longest_squared) const noexcept;
+    // A round cuts the patches of this level and finer ones, each piece that is too long once.
+    struct Round {
+        float longest_squared;  // m²
+        int level;
+        bool has_room;  // for new patches, too
+    };
+    bool isCoarse(const SurfacePiece& piece, const Round& round) const noexcept;
     void halve(const SurfacePiece& piece) noexcept;
     void put(const SurfacePiece& piece) noexcept;
     void sort() noexcept;
-    bool round(float longest_squared) noexcept;
+    bool cutOnce(const Round& round) noexcept;
     void takeNext() noexcept;
 
     const ToolField* tool_ = nullptr;
@@ -70,7 +77,6 @@ class SurfacePieces {
     size_t count_ = 0, next_count_ = 0;
     SurfacePiece fresh_[PointBatch<float>::kCapacity];  // whose distances are looked at together
     int fresh_count_ = 0;
-    int level_ = kNoLevel;  // of the last cut(): the spacing was longer than asked for by root 2 to this
     size_t point_tests_ = 0;
 };
 
