@@ -137,9 +137,9 @@ class GradientContact {
     // The tool seldom moves by more than half of the margin, which is a guess of twice its motion.
     double fineWithin() const noexcept { return std::min(margin_ / 2, kFineWithin); }
     // Is the whole patch too large for one sample?
-    bool isCoarse(size_t candidate) const noexcept {
-        const double near = double(candidates_.nearest[candidate]);
-        return near < fineWithin() || SurfacePieces::kLengthPerDistance * near < patch_reach_;
+    bool isCoarse(const ToolField& tool, size_t candidate) const noexcept {
+        const float near = candidates_.nearest[candidate];
+        return near < float(fineWithin()) || SurfacePieces::shortEnough(tool, near) < float(patch_reach_);
     }
     void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
     void cutPatch(const ShellView& bone, uint32_t candidate) noexcept;

@@ -53,7 +53,7 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
     pieces_.start(tool, X_VT, origin_, margin_, fineWithin());
     const size_t coarse = candidates_.count;
     for (size_t i = 0; i < coarse; ++i)
-        if (isCoarse(i)) split_[split_count_++] = uint32_t(i);
+        if (isCoarse(tool, i)) split_[split_count_++] = uint32_t(i);
     if (2 * split_count_ > size_t(bone.most_samples)) {
         split_count_ = 0;  // there are points enough
         return;

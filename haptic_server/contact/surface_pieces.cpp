@@ -84,7 +84,7 @@ void SurfacePieces::sort() noexcept {
 bool SurfacePieces::isCoarse(const SurfacePiece& piece, const Round& round) const noexcept {
     if (piece.longest_squared <= round.longest_squared) return false;
     if (piece.level == kNewPatch ? !round.has_room : piece.level > round.level) return false;
-    const float enough = kLengthPerDistance * piece.nearest;
+    const float enough = shortEnough(*tool_, piece.nearest);
     return piece.nearest < fine_within_ || piece.longest_squared > enough * enough;
 }
 

@@ -9,6 +9,7 @@
 // It is RT-safe but for construction, and for the tick thread only. Positions are in V's axes, from an origin.
 #pragma once
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -33,8 +34,12 @@ class SurfacePieces {
   public:
     // A piece of level n may be as long as the spacing times the n-th power of root 2.
     static constexpr uint8_t kNewPatch = 255;
-    // A piece that is so many times as long as it is far from the tool is short enough.
-    static constexpr float kLengthPerDistance = 4;
+    // A piece at this distance (m) needs to be no shorter: a few times as long as it is far from the tool, but
+    // not so long that a thin tool finds its way between two samples.
+    static float shortEnough(const ToolField& tool, float nearest) noexcept {
+        constexpr float kLengthPerDistance = 4;
+        return std::min(kLengthPerDistance * nearest, float(tool.thinnestRadius()));
+    }
 
     // It allocates room for so many pieces.
     explicit SurfacePieces(size_t room);
