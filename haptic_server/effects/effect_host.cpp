@@ -26,6 +26,7 @@ void EffectHost::restart(Restart why) noexcept {
 
 void EffectHost::begin(const EffectTick& start) noexcept {
     tick_.dt = start.dt;
+    tick_.periods = start.periods;
     tick_.may_mill = start.may_mill;
     tick_.is_pedal_down = start.is_pedal_down;
     tick_.is_add_wanted = start.is_add_wanted;

@@ -30,7 +30,8 @@ struct BurrLoad {
 // This is what effects see of the tick and tell each other, in SI and axes V unless the name says otherwise.
 struct EffectTick {
     // These are known from the start of the tick on.
-    double dt = 1e-3;
+    double dt = 1e-3;            // s: of all periods that the tick lives through
+    int periods = 1;             // of the loop
     bool may_mill = false;       // milling is neither paused nor stale
     bool is_pedal_down = false;  // and may mill
     bool is_add_wanted = false;  // the add button alone, likewise

@@ -48,8 +48,7 @@ Made make(const VirtualFixtureConfig& config, const Needs& needs) {
     return std::make_unique<VirtualFixture>(config, needs.all.protected_field);
 }
 Made make(const TimeRemovalConfig& config, const Needs& needs) {
-    return std::make_unique<TimeRemoval>(config, needs.bone, needs.room.largest_burr_radius,
-                                         needs.room.most_cells);
+    return std::make_unique<TimeRemoval>(config, needs.bone, needs.room);
 }
 Made make(const AddMaterialConfig& config, const Needs& needs) {
     return std::make_unique<AddMaterial>(config, needs.bone, needs.room.largest_burr_radius,

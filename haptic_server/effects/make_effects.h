@@ -11,7 +11,8 @@ struct EffectRoom {
     double largest_burr_radius;  // m, of all tools
     double largest_burr_reach;   // m, of all tools: Burr::reach()
     size_t most_contacts;
-    size_t most_cells;  // as MillingConfig
+    size_t most_cells;   // as MillingConfig
+    double longest_way;  // m, of a burr in a tick
 };
 
 // The effects stand in the order in which they act.

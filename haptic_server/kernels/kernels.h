@@ -99,11 +99,15 @@ struct PointKernels {
                          const Scalar* gz, int count, ContactSums& sums);
 };
 
-// The burr's limit in a plane of voxels (milling/burr_limit.h), counts and m.
+// The burr's limit in a plane of voxels (milling/burr_limit.h), counts and m. The burr's centre goes a way in
+// the tick, and the limit is that of all its places on it.
 struct BurrPlane {
-    float first_x, step_x;    // from the burr's centre to the plane's first voxel, along x
+    float first_x, step_x;    // from where the centre sets out to the plane's first voxel, along x
     float first_y, step_y;    // along y
-    float off_plane_squared;  // m²: of the plane from the centre
+    float off_plane_squared;  // m²: of the plane from there
+    float way_x, way_y;       // unit, the way's direction, whose z has its part in off_plane_along
+    float off_plane_along;    // m: of the plane along the way
+    float way;                // m: its length; 0: the centre stays
     float radius, slope;      // counts per m
     float reach_squared;      // m²: no limit from there on
     float core_squared;       // m²: inside, the limit is the last density there is

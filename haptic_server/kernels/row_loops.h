@@ -22,10 +22,24 @@ struct MilledLanes {
     Ints changed{}, removed{}, added{};
 };
 
+// This is a row's part in the squares of distances, m², and its part along the way, m.
+struct RowPlace {
+    float off_squared, along;
+};
+
+// Takes from squared distances from the way's beginning to those from its nearest point.
+void fromWay(const BurrPlane& b, const RowPlace& place, const Floats& x, Floats& squared) {
+    const Floats along = x * b.way_x + place.along;
+    const Floats low = along < 0 ? Floats{} : along;
+    const Floats nearest = low > b.way ? Floats{} + b.way : low;
+    const Floats left = squared + nearest * (nearest - 2 * along);
+    squared = left < 0 ? Floats{} : left;
+}
+
 // kDirection -1 removes, +1 adds. There are no branches; lanes beyond the burr's reach or the row keep their
-// density. off_row_squared: m², of the row from the burr's centre.
-template <int kDirection>
-void millRow(const BurrPlane& b, float off_row_squared, const uint16_t* row, int count, uint16_t* out,
+// density.
+template <int kDirection, bool kIsSwept>
+void millRow(const BurrPlane& b, const RowPlace& place, const uint16_t* row, int count, uint16_t* out,
              MilledLanes& milled) {
     constexpr float kMost = 65535, kCore = kDirection < 0 ? 0 : kMost;
     Ints lane;
@@ -35,7 +49,8 @@ void millRow(const BurrPlane& b, float off_row_squared, const uint16_t* row, int
         loadWords(row + i, words);
         const Ints old = __builtin_convertvector(words, Ints);
         const Floats x = b.first_x + __builtin_convertvector(lane + i, Floats) * b.step_x;
-        const Floats squared = x * x + off_row_squared;
+        Floats squared = x * x + place.off_squared;
+        if constexpr (kIsSwept) fromWay(b, place, x, squared);
         Floats distance;
         rootOf(squared, distance);
         const Floats ramp = float(b.iso) - float(kDirection) * b.slope * (distance - b.radius);
@@ -55,16 +70,18 @@ void millRow(const BurrPlane& b, float off_row_squared, const uint16_t* row, int
     }
 }
 
-template <int kDirection>
-MilledPlane millPlane(const BurrPlane& burr, const uint16_t* first, int count, int rows, uint16_t* out) {
+template <int kDirection, bool kIsSwept>
+MilledPlane millRows(const BurrPlane& burr, const uint16_t* first, int count, int rows, uint16_t* out) {
     const BurrPlane b = burr;
     MilledLanes sum;
     uint32_t is_changed = 0;
     for (int r = 0; r < rows; ++r, first += kBrickStrideY, out += kBrickCells) {
-        const float y = b.first_y + float(r) * b.step_y, off_row_squared = y * y + b.off_plane_squared;
-        if (off_row_squared >= b.reach_squared || isFinished<kDirection>(first)) continue;
+        const float y = b.first_y + float(r) * b.step_y;
+        const RowPlace place{y * y + b.off_plane_squared, y * b.way_y + b.off_plane_along};
+        if (!kIsSwept && place.off_squared >= b.reach_squared) continue;
+        if (isFinished<kDirection>(first)) continue;
         MilledLanes milled;
-        millRow<kDirection>(b, off_row_squared, first, count, out, milled);
+        millRow<kDirection, kIsSwept>(b, place, first, count, out, milled);
         is_changed |= uint32_t(isAny(milled.changed)) << r;
         sum.removed += milled.removed;
         sum.added += milled.added;
@@ -75,6 +92,12 @@ MilledPlane millPlane(const BurrPlane& burr, const uint16_t* first, int count, i
         plane.added -= sum.added[l];
     }
     return plane;
+}
+
+template <int kDirection>
+MilledPlane millPlane(const BurrPlane& burr, const uint16_t* first, int count, int rows, uint16_t* out) {
+    return burr.way > 0 ? millRows<kDirection, true>(burr, first, count, rows, out)
+                        : millRows<kDirection, false>(burr, first, count, rows, out);
 }
 
 void cellSides(const VoxelBox& box, int columns, int rows, uint16_t iso, size_t row_size, uint8_t* out) {

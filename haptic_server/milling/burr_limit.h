@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "haptic_server/kernels/kernels.h"
+#include "haptic_server/milling/burr_way.h"
 #include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill {
@@ -19,7 +20,8 @@ enum class MillingShape : uint8_t {
     kSubVoxel,
 };
 
-// This is the limit for one burr, one direction (-1 removes, +1 adds) and one shape.
+// This is the limit for one burr, one direction (-1 removes, +1 adds) and one shape. Where the burr goes in
+// a tick, it is that of all its places on the way: that of the capsule.
 //
 // Between voxels the distance from a sphere of radius R is less than its linear interpolation, by
 // Σ h_i² t_i (1 - t_i) (1 - n_i²) / (2 R) along normal n at place t in a cell with edges h_i: at most h²/(8
@@ -57,16 +59,22 @@ class BurrLimit {
 
     // Voxels at this distance from the burr's centre or farther have no limit; m.
     double reach() const noexcept { return reach_; }
+    // Counts per m, of the ramp across the surface.
+    double slope() const noexcept { return slope_; }
 
-    // This is the limit in a plane of voxels, as the kernels want it. to_first leads from the burr's centre
-    // to the plane's first voxel, in m.
-    BurrPlane plane(const Eigen::Vector3d& to_first, const Eigen::Vector3d& spacing,
+    // This is the limit in a plane of voxels, as the kernels want it, of a burr that goes this way. to_first
+    // leads from where it sets out to the plane's first voxel, in m.
+    BurrPlane plane(const BurrWay& way, const Eigen::Vector3d& to_first, const Eigen::Vector3d& spacing,
                     int amount) const noexcept {
         return {.first_x = float(to_first.x()),
                 .step_x = float(spacing.x()),
                 .first_y = float(to_first.y()),
                 .step_y = float(spacing.y()),
                 .off_plane_squared = float(to_first.z() * to_first.z()),
+                .way_x = float(way.direction().x()),
+                .way_y = float(way.direction().y()),
+                .off_plane_along = float(to_first.z() * way.direction().z()),
+                .way = float(way.length()),
                 .radius = float(radius_),
                 .slope = float(slope_),
                 .reach_squared = float(reach_ * reach_),

@@ -8,12 +8,17 @@ namespace {
 
 constexpr int64_t kCellsLookedAtPerWorkedOn = 8;  // so much quicker
 
-// These are the writable voxels of the box around a sphere; the box is empty if the sphere is elsewhere.
-IndexBox boxAround(const VoxelVolume& volume, const Eigen::Vector3d& p_VB, double radius) noexcept {
+// A way is one if the balls at its ends leave more than this between them, in voxels; else the burr only is
+// where it ends.
+constexpr double kSeenRidge = 0.005;
+
+// These are the writable voxels of the box around a capsule; the box is empty if the capsule is elsewhere.
+IndexBox boxAround(const VoxelVolume& volume, const BurrWay& way, double radius) noexcept {
     const Eigen::Array3d spacing = volume.spacing().array();
     const Eigen::Array3d dims = volume.dims().cast<double>().array();
-    const Eigen::Array3d low = ((p_VB.array() - radius) / spacing).max(0.0).min(dims);
-    const Eigen::Array3d high = ((p_VB.array() + radius) / spacing).max(-1.0).min(dims - 1);
+    const Eigen::Array3d least = way.from().cwiseMin(way.to()), most = way.from().cwiseMax(way.to());
+    const Eigen::Array3d low = ((least - radius) / spacing).max(0.0).min(dims);
+    const Eigen::Array3d high = ((most + radius) / spacing).max(-1.0).min(dims - 1);
     return {low.ceil().cast<int>().matrix(), high.floor().cast<int>().matrix()};
 }
 
@@ -26,12 +31,12 @@ double squaredDistance(const VoxelVolume& volume, const IndexBox& voxels,
 }
 
 // A burr of this radius can change so many voxels per axis.
-Eigen::Vector3i mostVoxels(const VoxelVolume& volume, double burr_radius) noexcept {
+Eigen::Vector3i mostVoxels(const VoxelVolume& volume, double burr_radius, double longest_way) noexcept {
     const auto reach = [&](int direction) {
         return BurrLimit(volume, burr_radius, MillingShape::kSubVoxel, direction).reach();
     };
     const double farthest = std::max(reach(-1), reach(+1));
-    const Eigen::Array3d voxels = (2 * farthest / volume.spacing().array()).floor() + 2;
+    const Eigen::Array3d voxels = ((2 * farthest + longest_way) / volume.spacing().array()).floor() + 2;
     return voxels.min(volume.dims().cast<double>().array()).cast<int>().matrix();
 }
 
@@ -46,35 +51,44 @@ TimedMilling::TimedMilling(const MillingConfig& config, const VoxelVolume& volum
     : config_(config),
       largest_burr_radius_(largest_burr_radius),
       burr_radius_(largest_burr_radius),
-      collector_(lattice, mostVoxels(volume, largest_burr_radius), config.most_cells) {}
+      collector_(lattice, mostVoxels(volume, largest_burr_radius, config.longest_way), config.most_cells) {}
+
+bool TimedMilling::Stroke::isOutOfReach(const VoxelVolume& volume, const IndexBox& voxels) const noexcept {
+    const double reach = limit.reach() + way.length() / 2;
+    return squaredDistance(volume, voxels, way.middle()) >= reach * reach;
+}
+
+double TimedMilling::countsOf(double rate, const BurrLimit& limit, double dt) const noexcept {
+    const bool is_each_voxel = config_.shape == MillingShape::kVoxelCentres;
+    return dt * (is_each_voxel ? rate : speedAt(rate) * limit.slope());
+}
 
 MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
-                                  const Eigen::Vector3d& p_VB, int direction, double dt) noexcept {
+                                  const BurrWay& way, int direction, double dt) noexcept {
     MillingResult result;
     if (direction == 0) return result;
     if (direction != carry_direction_) carry_ = 0;
     carry_direction_ = direction;
-    carry_ += (direction < 0 ? config_.removal_rate : config_.addition_rate) * dt;
+    const BurrLimit limit(volume, burr_radius_, config_.shape, direction);
+    carry_ += countsOf(direction < 0 ? config_.removal_rate : config_.addition_rate, limit, dt);
     const int amount = int(std::min(carry_, double(kMaxDensity)));
-    carry_ -= std::floor(carry_);
     if (amount == 0) return result;
 
-    collectChanges(volume, lattice,
-                   {p_VB, direction, amount, BurrLimit(volume, burr_radius_, config_.shape, direction)},
-                   result);
+    const double ridge = way.length() * way.length() / (8 * burr_radius_);
+    const bool is_one = ridge > kSeenRidge * volume.spacing().minCoeff();
+    collectChanges(volume, lattice, {is_one ? way : BurrWay(way.to()), direction, amount, limit}, result);
+    if (!result.is_cut_short) carry_ -= std::floor(carry_);
     if (!collector_.isEmpty()) result.shell_is_complete = collector_.write(volume, lattice, shell, direction);
     return result;
 }
 
 void TimedMilling::collectChanges(VoxelVolume& volume, const LeafLattice& lattice, const Stroke& stroke,
                                   MillingResult& result) noexcept {
-    const double reach_squared = stroke.limit.reach() * stroke.limit.reach();
     const auto is_wanted = [&](const DensityRange& range, const IndexBox& voxels) {
-        return !isFinished(range, stroke.direction) &&
-               squaredDistance(volume, voxels, stroke.p_VB) < reach_squared;
+        return !isFinished(range, stroke.direction) && !stroke.isOutOfReach(volume, voxels);
     };
     collector_.collect(
-        lattice, boxAround(volume, stroke.p_VB, stroke.limit.reach()), is_wanted,
+        lattice, boxAround(volume, stroke.way, stroke.limit.reach()), is_wanted,
         [&](const IndexBox& voxels, int first_part, MillingResult& of_leaf) {
             return collectLeaf(volume, voxels, first_part, stroke, of_leaf);
         },
@@ -99,10 +113,9 @@ bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t
     ChangedRuns& rows = collector_.beginPart();
     MillingResult of_part;
     IndexBox plane = part;
-    const double reach_squared = stroke.limit.reach() * stroke.limit.reach();
     for (int k = part.min.z(); k <= part.max.z(); ++k, offset += VoxelVolume::kStrideZ) {
         plane.min.z() = plane.max.z() = k;
-        if (squaredDistance(volume, plane, stroke.p_VB) >= reach_squared) continue;
+        if (stroke.isOutOfReach(volume, plane)) continue;
         collectPlane(volume, plane, offset, stroke, rows, of_part);
     }
     return collector_.takePart(volume, size_t(part.count() / kCellsLookedAtPerWorkedOn), of_part, of_leaf);
@@ -110,8 +123,9 @@ bool TimedMilling::collectPart(VoxelVolume& volume, const IndexBox& part, size_t
 
 void TimedMilling::collectPlane(const VoxelVolume& volume, const IndexBox& plane, size_t offset,
                                 const Stroke& stroke, ChangedRuns& rows, MillingResult& of_part) noexcept {
-    const Eigen::Vector3d to_first = volume.spacing().cwiseProduct(plane.min.cast<double>()) - stroke.p_VB;
-    const BurrPlane burr = stroke.limit.plane(to_first, volume.spacing(), stroke.amount);
+    const Eigen::Vector3d to_first =
+        volume.spacing().cwiseProduct(plane.min.cast<double>()) - stroke.way.from();
+    const BurrPlane burr = stroke.limit.plane(stroke.way, to_first, volume.spacing(), stroke.amount);
     const Density* old = volume.ownerData() + offset;
     Density fresh[kBrickCells * kBrickCells];
     const int count = plane.max.x() - plane.min.x() + 1, row_count = plane.max.y() - plane.min.y() + 1;

@@ -1,5 +1,10 @@
 // Removal and addition of material at a rate of density per time (thesis §4.2.2): voxels in the burr's reach
 // lose or gain density until they are at the burr's limit (burr_limit.h).
+//
+// With the shape kVoxelCentres that is what the thesis says: each voxel at the rate. With kSubVoxel the rate
+// says how fast the surface moves, whatever the voxels: as fast as the fastest burr under which a place in
+// the middle of its way goes from full to nothing at the rate, v = 2 R rate / full. (Each voxel at the rate
+// would make it rate / slope, which goes with the voxels' size.)
 #pragma once
 
 #include <algorithm>
@@ -18,6 +23,7 @@ struct MillingConfig {
     // A tick makes the surface of so many cells anew; bricks for which there is no time wait for the next
     // one, in turn.
     size_t most_cells = 50'000'000;  // whose surface is made anew; eight that are only looked at count as one
+    double longest_way = 0;          // m: of a burr in a tick
 };
 
 // Owns the scratch memory of the burr in use. Construction allocates; apply() is RT-safe, for the
@@ -28,10 +34,20 @@ class TimedMilling {
     TimedMilling(const MillingConfig& config, const VoxelVolume& volume, const LeafLattice& lattice,
                  double largest_burr_radius);
 
-    // Changes the voxels beyond their limit by rate·dt, but not past it, then the leaf versions, density
-    // ranges and point-shell with them. direction -1 removes, +1 adds. p_VB: centre of the burr.
+    // Changes the voxels beyond their limit by what the rate makes in dt, but not past it, then the leaf
+    // versions, density ranges and point-shell with them. direction -1 removes, +1 adds. p_VB: centre of the
+    // burr.
     MillingResult apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell,
-                        const Eigen::Vector3d& p_VB, int direction, double dt) noexcept;
+                        const Eigen::Vector3d& p_VB, int direction, double dt) noexcept {
+        return apply(volume, lattice, shell, BurrWay(p_VB), direction, dt);
+    }
+    // This does so along a burr's way, which may be `longest_way` long. What there was no time for in the
+    // ticks before comes with it.
+    MillingResult apply(VoxelVolume& volume, LeafLattice& lattice, PointShell& shell, const BurrWay& way,
+                        int direction, double dt) noexcept;
+
+    // This is v above, m/s: the burr in use removes at this speed.
+    double removalSpeed() const noexcept { return speedAt(config_.removal_rate); }
 
     // These take effect with the next apply().
     void setShape(MillingShape shape) noexcept { config_.shape = shape; }
@@ -45,10 +61,14 @@ class TimedMilling {
   private:
     // A stroke is what one tick mills.
     struct Stroke {
-        Eigen::Vector3d p_VB;
+        BurrWay way;
         int direction, amount;
         BurrLimit limit;
+
+        bool isOutOfReach(const VoxelVolume& volume, const IndexBox& voxels) const noexcept;
     };
+    double speedAt(double rate) const noexcept { return 2 * burr_radius_ * rate / kMaxDensity; }
+    double countsOf(double rate, const BurrLimit& limit, double dt) const noexcept;
     void collectChanges(VoxelVolume& volume, const LeafLattice& lattice, const Stroke& stroke,
                         MillingResult& result) noexcept;
     int collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part, const Stroke& stroke,
@@ -61,7 +81,8 @@ class TimedMilling {
     MillingConfig config_;
     double largest_burr_radius_;
     double burr_radius_;
-    double carry_ = 0;  // fraction of a density count left over from earlier ticks, same direction
+    double carry_ =
+        0;  // counts left over from earlier ticks, same direction: a fraction, or what had no time
     int carry_direction_ = 0;
     ChangeCollector collector_;
 };

@@ -29,7 +29,8 @@ DeviceLinkIo::DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link,
       cuts_(cuts),
       ramp_(config.ramp),
       R_DW_(config.X_WD.rotation.conjugate()),
-      pace_(config.period_ns) {}
+      pace_(config.period_ns),
+      lived_(config.period_ns) {}
 
 bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     if (first_start_ns_ == 0 && !waitForFirstSample()) return false;
@@ -50,6 +51,7 @@ bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     input.start_ns = start;
     input.deadline_ns = start + config_.period_ns;
     input.wakeup_latency_ns = is_first ? 0 : std::max<int64_t>(0, start - due);
+    input.periods = lived_.begin(start);
     last_start_ns_ = start;
     pace_.begin(start);
     return true;

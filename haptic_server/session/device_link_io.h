@@ -8,6 +8,7 @@
 #include "common/ipc/stale_ramp.h"
 #include "common/rt/seqlock.h"
 #include "common/rt/spsc_ring.h"
+#include "haptic_server/session/lived_periods.h"
 #include "haptic_server/session/tick_pace.h"
 #include "haptic_server/tick/tick_io.h"
 
@@ -74,6 +75,7 @@ class DeviceLinkIo final : public TickIo {
     StaleRamp ramp_;
     Eigen::Quaterniond R_DW_;
     TickPace pace_;
+    LivedPeriods lived_;
     Pose X_WT_device_;
     uint32_t buttons_ = 0;
     DeviceReport device_;

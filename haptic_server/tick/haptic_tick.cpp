@@ -45,7 +45,8 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
       affordable_(config.dt),
       effects_(makeEffects(config.effects, bone_,
                            {config.dt, tools_.largestBurrRadius(), tools_.largestBurrReach(),
-                            gradient_.mostCandidates(), config.most_milled_cells}),
+                            gradient_.mostCandidates(), config.most_milled_cells,
+                            config.gradient.max_speed * config.dt}),
                gradient_.mostCandidates(), config.gradient.contact.stiffness_per_area),
       hand_limits_(config.hand, handSideOf(config).spring, config.dt),
       X_WV_(bone_.volume.geometry().X_WV),
@@ -157,7 +158,8 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     const bool remove = input.buttons & kButtonRemove;
     const bool add = input.buttons & kButtonAdd;
     EffectTick start;
-    start.dt = config_.dt;
+    start.dt = config_.dt * input.periods;
+    start.periods = input.periods;
     start.may_mill = has_pose_ && !input.is_stale && input.device.isEngaged() &&
                      !(history_ && history_->isMillingPaused());
     start.is_pedal_down = start.may_mill && remove && !add;

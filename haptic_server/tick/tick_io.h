@@ -19,6 +19,7 @@ struct DeviceInput {
     uint32_t faults = 0;              // TickFault bits that were found on the way to this tick
     double stale_factor = 1;          // of the force: 1 fresh device; ramps to 0 while it is stale
     bool is_stale = false;            // no fresh sample: nothing is milled
+    int periods = 1;                  // that the tick lives through; more when none ran in those before
     double t_s = 0;                   // since the session's first tick, or the trajectory file's own time
     int64_t start_ns = 0;             // when this tick began, CLOCK_MONOTONIC
     int64_t deadline_ns = INT64_MAX;  // work that ends later is an overrun

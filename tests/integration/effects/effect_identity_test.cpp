@@ -21,7 +21,8 @@ struct Outcome {
     bool operator==(const Outcome& other) const { return ticks == other.ticks && volume == other.volume; }
 };
 
-// Touches the face, slides, mills into the protected layer, lays material down, leaves.
+// Touches the face, slides, mills into the protected layer, slides along the pit's wall, lays material down,
+// leaves.
 std::vector<DeviceInput> pathOver(const BoneModel& bone, double burr_radius) {
     struct Phase {
         int ticks;
@@ -33,6 +34,8 @@ std::vector<DeviceInput> pathOver(const BoneModel& bone, double burr_radius) {
                                  {100, 0.5e-3, -0.2e-3, 0},
                                  {250, 1e-3, -1.8e-3, kButtonRemove},
                                  {100, -0.5e-3, -1.8e-3, kButtonRemove},
+                                 {60, -0.9e-3, -1.8e-3, 0},
+                                 {60, -0.9e-3, -1.3e-3, 0},
                                  {80, -0.5e-3, 0.5e-3, kButtonAdd},
                                  {60, -0.5e-3, 1.5e-3, 0}};
     const Eigen::Vector3d size = bone.volume.spacing().cwiseProduct(bone.volume.dims().cast<double>());

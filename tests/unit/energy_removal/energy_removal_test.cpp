@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/unit/energy_removal/milling_rig.h"
+#include "tests/support/milling_rig.h"
 
 namespace bonemill {
 namespace {
@@ -87,6 +87,19 @@ TEST(EnergyRemoval, DoesNotDependOnTheTickRate) {
         rig.press(0.15, onTop(rig), kDown, kPress);
         if (slowest == 0) slowest = rig.removedVolume();
         EXPECT_NEAR(rig.removedVolume() / slowest, 1, 0.02) << rate;
+    }
+}
+
+TEST(EnergyRemoval, LivesThroughPeriodsWithoutATick) {
+    double first = 0;
+    for (const int periods : {1, 4}) {
+        RigConfig config = sideways();
+        config.periods = periods;
+        MillingRig rig(config);
+        rig.press(0.2, onTop(rig), kDown, kPress);
+        if (first == 0) first = rig.removedVolume();
+        EXPECT_NEAR(rig.removedVolume() / first, 1, 0.05) << periods;
+        expectBalance(rig, config.removal.specific_energy, 0.02);
     }
 }
 

@@ -143,16 +143,18 @@ TEST(SubVoxelMilling, EveryVoxelEndsAtItsLimitAndNoneElsewhereChanges) {
             }
 }
 
-TEST(SubVoxelMilling, NoVoxelLosesMoreThanTheRate) {
+// The ramp of densities moves on by the burr's speed of removal.
+TEST(SubVoxelMilling, NoVoxelLosesMoreThanTheSpeedAllows) {
     BoneModel bone = cube(4e-3, kSpacings[0], 32768, kMaxDensity);
     MillingConfig config = atOnce();
-    config.removal_rate = 1'000'003.7;
+    config.removal_rate = 100'003.7;
     const double radius = 1e-3;
     const Eigen::Vector3d center(2e-3, 2.01e-3, 1.97e-3);
     TimedMilling milling(config, bone.volume, bone.lattice, radius);
+    EXPECT_NEAR(milling.removalSpeed(), 2 * radius * config.removal_rate / kMaxDensity, 1e-12);
     for (int n = 1; n <= 100; ++n) {
         milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kTickTime);
-        const double lost = config.removal_rate * n * kTickTime;
+        const double lost = slopeOf(bone.volume) * milling.removalSpeed() * n * kTickTime;
         test::forEachVoxel(test::wholeBox(bone.volume), [&](int i, int j, int k) {
             const double limit =
                 limitAt(bone.volume, signedDistance(bone.volume, i, j, k, center, radius), -1);
@@ -223,6 +225,32 @@ TEST(SubVoxelMilling, APassLeavesTheSweptCapsule) {
             M_PI * radius * radius * (end - start).norm() + 4.0 / 3 * M_PI * std::pow(radius, 3);
         EXPECT_NEAR((before - test::boneVolume(bone)) / swept, 1, 0.01) << spacing.transpose();
     }
+}
+
+// However far the burr goes in a tick, nothing is left between where it sets out and where it ends.
+TEST(SubVoxelMilling, OneTickLeavesWhatManyDo) {
+    const double radius = 0.6e-3;
+    const Eigen::Vector3d start(1.02e-3, 1.11e-3, 1.07e-3), end(3.31e-3, 2.6e-3, 2.94e-3);
+    for (const Eigen::Vector3d& spacing : kSpacings)
+        for (const int direction : {-1, +1}) {
+            const Density before = direction < 0 ? kMaxDensity : 0;
+            BoneModel once = cube(4.4e-3, spacing, 26214, before),
+                      often = cube(4.4e-3, spacing, 26214, before);
+            MillingConfig config = atOnce();
+            config.longest_way = (end - start).norm();
+            TimedMilling in_one(config, once.volume, once.lattice, radius);
+            TimedMilling in_many(config, often.volume, often.lattice, radius);
+            in_one.apply(once.volume, once.lattice, once.shell, BurrWay(start, end, config.longest_way),
+                         direction, kTickTime);
+            constexpr int kSteps = 400;
+            for (int n = 0; n <= kSteps; ++n)
+                in_many.apply(often.volume, often.lattice, often.shell,
+                              start + double(n) / kSteps * (end - start), direction, kTickTime);
+            test::forEachVoxel(test::wholeBox(once.volume), [&](int i, int j, int k) {
+                ASSERT_NEAR(once.volume.at(i, j, k), often.volume.at(i, j, k), 8)
+                    << i << ' ' << j << ' ' << k;
+            });
+        }
 }
 
 TEST(SubVoxelMilling, ABurrAwayFromTheBoneTouchesNothing) {

@@ -89,6 +89,19 @@ TEST_F(DeviceLinkIoTest, SilenceTicksOnAndBecomesStale) {
     EXPECT_LT(input.stale_factor, 1);  // it fades in
 }
 
+TEST_F(DeviceLinkIoTest, ALateTickLivesThroughThePeriodsBeforeIt) {
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    daemon_.writeSample(sampleAt(0));
+    DeviceInput input;
+    ASSERT_TRUE(io.read(input));
+    EXPECT_EQ(input.periods, 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(6));
+    daemon_.writeSample(sampleAt(0));
+    ASSERT_TRUE(io.read(input));
+    EXPECT_GE(input.periods, 6);
+    EXPECT_LE(input.periods, LivedPeriods::kMostNs / config_.period_ns);
+}
+
 TEST_F(DeviceLinkIoTest, ImplausibleSamplesAndStampsAreNotBelieved) {
     DeviceLinkIo io(config_, server_, ring_, cuts_);
     daemon_.writeSample(sampleAt(0.002));

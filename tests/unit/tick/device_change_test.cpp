@@ -107,7 +107,8 @@ TEST(DeviceChange, TheLimitOutlivesAChangeOfTheTool) {
     for (const TickRecord& record : bench.run(held(400))) EXPECT_LE(feltForce(record).norm(), 2 * (1 + 1e-9));
 }
 
-TEST(DeviceState, OnlyAnEngagedDeviceMillsAndEveryOneFeels) {
+// The bone goes where the burr mills, faster than this hand.
+TEST(DeviceState, OnlyAnEngagedDeviceMillsAndEveryOtherOneFeels) {
     for (uint32_t state = 0; state < kSafetyStateCount; ++state) {
         ToolBench bench(1);
         auto inputs = pressing(200);
@@ -117,7 +118,7 @@ TEST(DeviceState, OnlyAnEngagedDeviceMillsAndEveryOneFeels) {
         }
         const auto records = bench.run(inputs);
         EXPECT_EQ(bench.history.missingVoxels() > 0, SafetyState(state) == SafetyState::kEngaged) << state;
-        EXPECT_GT(records.back().contacts, 0u) << state;
+        EXPECT_EQ(records.back().contacts == 0, SafetyState(state) == SafetyState::kEngaged) << state;
         EXPECT_EQ(records.back().device.state, state);
     }
 }

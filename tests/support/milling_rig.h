@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,11 @@ struct RigConfig {
         0;  // m under the surface: from there on four times the specific energy; 0: nowhere
     Density iso = kTestIso;
     double rate = 1000;  // Hz
+    int periods = 1;     // that each tick lives through: in those before it none ran
+    // Either of these is listed instead of energy_removal.
+    std::optional<TimeRemovalConfig> time_removal;
+    std::optional<AddMaterialConfig> add_material;
+    double shaft_radius = 0;  // m, of a ball's shaft along the tool's axis; 0: none
     Burr burr{.radius = 1e-3, .speed = 40 * kKrpm};
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // of the tool
     EnergyRemovalConfig removal = kEnergyRemoval;
@@ -41,6 +47,15 @@ inline std::vector<ToolShape> shapesOf(const Burr& burr) {
     if (burr.kind == BurrKind::kCylinder) return {CylinderShape{-half, half, burr.radius}};
     if (burr.kind == BurrKind::kCone) return {ConeShape{-half, half, burr.tip_radius, burr.radius}};
     return {SphereShape{Eigen::Vector3d::Zero(), burr.radius}};
+}
+
+inline std::vector<ToolShape> shapesOf(const RigConfig& config) {
+    std::vector<ToolShape> shapes = shapesOf(config.burr);
+    constexpr double kLength = 8e-3;  // m
+    if (config.shaft_radius > 0)
+        shapes.push_back(
+            CapsuleShape{Eigen::Vector3d::Zero(), kLength * Eigen::Vector3d::UnitY(), config.shaft_radius});
+    return shapes;
 }
 
 inline SdfGrid gridOf(const std::vector<ToolShape>& shapes, double spacing) {
@@ -62,8 +77,7 @@ class MillingRig final : private TickIo {
     explicit MillingRig(const RigConfig& config)
         : config(config),
           bone(blockOf(config), Eigen::Vector3i::Constant(16), {.levels = {{config.shell_factor}}}),
-          tool_(gridOf(shapesOf(config.burr), config.burr.radius / 8), shapesOf(config.burr),
-                config.burr.radius),
+          tool_(gridOf(shapesOf(config), config.burr.radius / 8), shapesOf(config), config.burr.radius),
           tick_(tickConfigOf(config, bone.volume, tool_), bone),
           volume_before_(boneVolume()) {}
 
@@ -72,7 +86,7 @@ class MillingRig final : private TickIo {
         if (records.empty()) spo_ = start;
         hand_ = std::move(hand);
         buttons_ = buttons;
-        left_ = int(std::lround(seconds * config.rate));
+        left_ = int(std::lround(seconds * config.rate / config.periods));
         records.reserve(records.size() + size_t(left_));
         tick_.run(*this);
     }
@@ -92,9 +106,12 @@ class MillingRig final : private TickIo {
     }
     static constexpr double kRise = 0.02;  // s
     // The hand moves at a steady speed.
-    void feed(double seconds, const Eigen::Vector3d& start, const Eigen::Vector3d& velocity) {
+    void feed(double seconds, const Eigen::Vector3d& start, const Eigen::Vector3d& velocity,
+              uint32_t buttons = kButtonRemove) {
         const double from = t_;
-        run(seconds, start, [=](double t, const Eigen::Vector3d&) { return start + velocity * (t - from); });
+        run(
+            seconds, start, [=](double t, const Eigen::Vector3d&) { return start + velocity * (t - from); },
+            buttons);
     }
 
     double boneVolume() const {
@@ -105,7 +122,8 @@ class MillingRig final : private TickIo {
     // work() is ∫ P dt and removedEnergy() is Σ u ΔV as the ticks say, J.
     double work() const {
         double sum = 0;
-        for (const TickRecord& r : records) sum += double(r.effects.removal_power) / config.rate;
+        for (const TickRecord& r : records)
+            sum += double(r.effects.removal_power) * config.periods / config.rate;
         return sum;
     }
     double removedEnergy() const {
@@ -114,6 +132,15 @@ class MillingRig final : private TickIo {
         return sum;
     }
     Eigen::Vector3d position() const { return spo_; }
+    // Returns how far the simulated tool was from the hand at most, from this tick on, m.
+    double largestLag(size_t from = 0) const {
+        double largest = 0;
+        for (size_t n = from; n < records.size(); ++n) {
+            const Eigen::Map<const Eigen::Vector3d> tool(records[n].p_WT), hand(records[n].p_WT_device);
+            largest = std::max(largest, (tool - hand).norm());
+        }
+        return largest;
+    }
     Eigen::Vector3d center() const { return {config.size.x() / 2, config.size.y() / 2, config.surface}; }
     // Returns the mean of a figure over the last so many seconds.
     template <class Figure>
@@ -158,7 +185,9 @@ class MillingRig final : private TickIo {
         tick.gradient.coupling.translation_stiffness = config.hand_stiffness;
         tick.gradient.coupling.relaxing_share = 0;
         tick.most_milled_cells = config.most_milled_cells;
-        tick.effects.energy_removal = config.removal;
+        tick.effects.time_removal = config.time_removal;
+        tick.effects.add_material = config.add_material;
+        if (!config.time_removal && !config.add_material) tick.effects.energy_removal = config.removal;
         if (config.is_hard_below > 0) {
             const double hard_below = (config.surface - config.is_hard_below) / config.spacing.z();
             tick.effects.properties = std::make_shared<const BoneProperties>(
@@ -174,7 +203,8 @@ class MillingRig final : private TickIo {
         input.X_WT_device = {records.empty() ? spo_ : hand_(t_, spo_), config.rotation};
         input.buttons = buttons_;
         input.t_s = t_;
-        t_ += 1 / config.rate;
+        input.periods = config.periods;
+        t_ += config.periods / config.rate;
         return true;
     }
     int64_t write(const Wrench&) noexcept override { return 0; }
