@@ -51,8 +51,7 @@ Made make(const TimeRemovalConfig& config, const Needs& needs) {
     return std::make_unique<TimeRemoval>(config, needs.bone, needs.room);
 }
 Made make(const AddMaterialConfig& config, const Needs& needs) {
-    return std::make_unique<AddMaterial>(config, needs.bone, needs.room.largest_burr_radius,
-                                         needs.room.most_cells);
+    return std::make_unique<AddMaterial>(config, needs.bone, needs.room);
 }
 Made make(const ThermalConfig& config, const Needs& needs) {
     return std::make_unique<Thermal>(config, needs.bone, needs.room.dt);

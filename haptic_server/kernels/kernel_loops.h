@@ -23,6 +23,7 @@ const Kernels kTable = {.single = {intoFrame<float>, nearerRound<float>, sampleN
                         .select_near = selectNear,
                         .remove_plane = millPlane<-1>,
                         .add_plane = millPlane<+1>,
+                        .lay_plane = layPlane,
                         .cell_patches = cellPatches,
                         .project_into_cells = projectIntoCells,
                         .move_onto_surface = moveOntoSurface,

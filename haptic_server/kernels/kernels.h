@@ -121,6 +121,12 @@ struct MilledPlane {
     uint32_t is_changed;  // rows, bit by row
 };
 
+struct LaidPlane {
+    int added;            // voxels that rose to iso or above
+    uint32_t is_changed;  // rows, bit by row
+    bool is_owed;         // some voxels are still below what they shall have
+};
+
 // Cells that the iso-surface crosses, as structure of arrays; the arrays go on to the next multiple of
 // kCellLanes, with anything in them.
 inline constexpr int kCellLanes = 16;
@@ -188,6 +194,10 @@ struct Kernels {
                                 uint16_t* out);
     MilledPlane (*add_plane)(const BurrPlane& burr, const uint16_t* first, int count, int rows,
                              uint16_t* out);
+    // The same for voxels that rise towards densities that they shall have, by `amount` at most, and not at
+    // all in the core of `place`. Both planes' rows are kBrickStrideY apart.
+    LaidPlane (*lay_plane)(const BurrPlane& place, const uint16_t* shall, const uint16_t* first, int count,
+                           int rows, uint16_t* out);
     // triangles[kTrianglesPerCell * inside + triangle] has the crossed edges a + 16 b + 256 c of the cell,
     // not all zero; it is zero beyond the last triangle.
     void (*cell_patches)(const CellArrays& cells, const int* triangles, const float steps[3],

@@ -100,6 +100,55 @@ MilledPlane millPlane(const BurrPlane& burr, const uint16_t* first, int count, i
                         : millRows<kDirection, false>(burr, first, count, rows, out);
 }
 
+struct LaidLanes {
+    Ints changed{}, added{}, owed{};
+};
+
+void layRow(const BurrPlane& b, const RowPlace& place, const uint16_t* shall, const uint16_t* row, int count,
+            uint16_t* out, LaidLanes& laid) {
+    Ints lane;
+    for (int l = 0; l < kWidth; ++l) lane[l] = l;
+    for (int i = 0; i < kBrickCells; i += kWidth) {
+        Words words, wanted;
+        loadWords(row + i, words);
+        loadWords(shall + i, wanted);
+        const Ints old = __builtin_convertvector(words, Ints);
+        const Ints end = lane + i < count ? __builtin_convertvector(wanted, Ints) : Ints{};
+        const Floats x = b.first_x + __builtin_convertvector(lane + i, Floats) * b.step_x;
+        Floats squared = x * x + place.off_squared;
+        fromWay(b, place, x, squared);
+        const Ints allowed = squared < b.core_squared ? Ints{} : end;
+        const Ints step = old + b.amount;
+        const Ints risen = allowed < step ? allowed : step;
+        const Ints now = risen > old ? risen : old;
+        const Words fresh = __builtin_convertvector(now, Words);
+        __builtin_memcpy(out + i, &fresh, sizeof fresh);
+        laid.changed += now != old;
+        laid.added += (old < b.iso) & (now >= b.iso);
+        laid.owed += end > now;
+    }
+}
+
+LaidPlane layPlane(const BurrPlane& burr, const uint16_t* shall, const uint16_t* first, int count, int rows,
+                   uint16_t* out) {
+    const BurrPlane b = burr;
+    LaidLanes sum;
+    uint32_t is_changed = 0;
+    for (int r = 0; r < rows; ++r, first += kBrickStrideY, shall += kBrickStrideY, out += kBrickCells) {
+        if (isFinished<-1>(shall)) continue;
+        const float y = b.first_y + float(r) * b.step_y;
+        const RowPlace place{y * y + b.off_plane_squared, y * b.way_y + b.off_plane_along};
+        LaidLanes laid;
+        layRow(b, place, shall, first, count, out, laid);
+        is_changed |= uint32_t(isAny(laid.changed)) << r;
+        sum.added += laid.added;
+        sum.owed += laid.owed;
+    }
+    LaidPlane plane{0, is_changed, isAny(sum.owed)};
+    for (int l = 0; l < kWidth; ++l) plane.added -= sum.added[l];
+    return plane;
+}
+
 void cellSides(const VoxelBox& box, int columns, int rows, uint16_t iso, size_t row_size, uint8_t* out) {
     using Bytes = uint8_t __attribute__((vector_size(kWideWords)));
     for (int r = 0; r < rows; ++r, out += row_size) {

@@ -3,32 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptic_server/milling/burr_box.h"
+
 namespace bonemill {
 namespace {
 
 constexpr int64_t kCellsLookedAtPerWorkedOn = 8;  // so much quicker
-
-// A way is one if the balls at its ends leave more than this between them, in voxels; else the burr only is
-// where it ends.
-constexpr double kSeenRidge = 0.005;
-
-// These are the writable voxels of the box around a capsule; the box is empty if the capsule is elsewhere.
-IndexBox boxAround(const VoxelVolume& volume, const BurrWay& way, double radius) noexcept {
-    const Eigen::Array3d spacing = volume.spacing().array();
-    const Eigen::Array3d dims = volume.dims().cast<double>().array();
-    const Eigen::Array3d least = way.from().cwiseMin(way.to()), most = way.from().cwiseMax(way.to());
-    const Eigen::Array3d low = ((least - radius) / spacing).max(0.0).min(dims);
-    const Eigen::Array3d high = ((most + radius) / spacing).max(-1.0).min(dims - 1);
-    return {low.ceil().cast<int>().matrix(), high.floor().cast<int>().matrix()};
-}
-
-// The nearest point of a box of voxels has this squared distance.
-double squaredDistance(const VoxelVolume& volume, const IndexBox& voxels,
-                       const Eigen::Vector3d& p_VB) noexcept {
-    const Eigen::Array3d low = volume.spacing().array() * voxels.min.cast<double>().array() - p_VB.array();
-    const Eigen::Array3d high = p_VB.array() - volume.spacing().array() * voxels.max.cast<double>().array();
-    return low.max(high).max(0.0).matrix().squaredNorm();
-}
 
 // A burr of this radius can change so many voxels per axis.
 Eigen::Vector3i mostVoxels(const VoxelVolume& volume, double burr_radius, double longest_way) noexcept {
@@ -74,9 +54,7 @@ MillingResult TimedMilling::apply(VoxelVolume& volume, LeafLattice& lattice, Poi
     const int amount = int(std::min(carry_, double(kMaxDensity)));
     if (amount == 0) return result;
 
-    const double ridge = way.length() * way.length() / (8 * burr_radius_);
-    const bool is_one = ridge > kSeenRidge * volume.spacing().minCoeff();
-    collectChanges(volume, lattice, {is_one ? way : BurrWay(way.to()), direction, amount, limit}, result);
+    collectChanges(volume, lattice, {seenWay(volume, way, burr_radius_), direction, amount, limit}, result);
     if (!result.is_cut_short) carry_ -= std::floor(carry_);
     if (!collector_.isEmpty()) result.shell_is_complete = collector_.write(volume, lattice, shell, direction);
     return result;

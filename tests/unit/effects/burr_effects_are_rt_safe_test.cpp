@@ -51,7 +51,7 @@ TEST(BurrEffectsAreRtSafe, AllTogether) {
         effects.cutting_force = test::kCuttingForce;
         effects.burr_vibration = test::kBurrVibration;
         effects.surface_friction = test::kSurfaceFriction;
-        effects.time_removal = test::kTimeRemoval;
+        effects.time_removal = TimeRemovalConfig{.rate = 20 * kDensityCountsPerUnit};  // slower than the hand
     });
 }
 

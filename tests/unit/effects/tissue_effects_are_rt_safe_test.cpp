@@ -15,7 +15,7 @@ TEST(TissueEffectsAreRtSafe, WhileMillingThroughAllOfThem) {
     EffectConfigs& effects = bench.config.effects;
     effects.materials[kNerve].stiffness_factor = 0.5;
     effects.material_stiffness.emplace();
-    effects.time_removal = test::kTimeRemoval;
+    effects.time_removal = TimeRemovalConfig{.rate = 200 * kDensityCountsPerUnit};  // slower than the hand
     effects.thermal = test::kThermal;
     effects.virtual_fixture = test::kVirtualFixture;
     effects.virtual_fixture->stiffness = 500;

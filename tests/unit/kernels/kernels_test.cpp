@@ -56,6 +56,13 @@ TEST_P(VoxelKernels, ContactSumsAreThoseOfPlainLoops) {
     }
 }
 
+// The place is x, y from where the burr sets out.
+double squaredFromWay(const BurrPlane& burr, double x, double y) {
+    const double along = x * double(burr.way_x) + y * double(burr.way_y) + double(burr.off_plane_along);
+    const double nearest = std::clamp(along, 0.0, double(burr.way));
+    return x * x + y * y + double(burr.off_plane_squared) + nearest * (nearest - 2 * along);
+}
+
 // A plane of a brick is compared with plain arithmetic in double.
 TEST_P(VoxelKernels, MilledPlanes) {
     const float spacing = 0.0973e-3f;  // no voxel exactly on a boundary
@@ -63,12 +70,17 @@ TEST_P(VoxelKernels, MilledPlanes) {
         const int n = 1 + below(kBrickCells), rows = 1 + below(kBrickCells);
         std::vector<uint16_t> plane(kBrickStrideZ), out[2];
         for (uint16_t& d : plane) d = uint16_t(below(3) == 0 ? below(65536) : below(2) * 65535);
-        const bool removes = round % 2;
+        const bool removes = round % 2, goes = round % 4 < 2;
+        const float z = float(below(1000)) * 1e-6f;
         const BurrPlane burr{.first_x = -float(below(20)) * spacing,
                              .step_x = spacing,
                              .first_y = -float(below(20)) * spacing,
                              .step_y = spacing,
-                             .off_plane_squared = float(below(1000)) * 1e-9f,
+                             .off_plane_squared = z * z,
+                             .way_x = 0.6f,
+                             .way_y = 0.48f,
+                             .off_plane_along = 0.64f * z,
+                             .way = goes ? float(1 + below(900)) * 1e-6f : 0,
                              .radius = 1e-3f,
                              .slope = 30000 / spacing,
                              .reach_squared = 1.1e-3f * 1.1e-3f,
@@ -88,8 +100,8 @@ TEST_P(VoxelKernels, MilledPlanes) {
             const bool is_changed = milled[0].is_changed >> r & 1;
             bool is_any = false;
             for (int i = 0; i < n; ++i) {
-                const double x = burr.first_x + i * double(spacing), y = burr.first_y + r * double(spacing),
-                             squared = x * x + y * y + burr.off_plane_squared;
+                const double x = burr.first_x + i * double(spacing), y = burr.first_y + r * double(spacing);
+                const double squared = squaredFromWay(burr, x, y);
                 const double ramp =
                     burr.iso - (removes ? -1 : 1) * burr.slope * (std::sqrt(squared) - burr.radius);
                 double limit = std::clamp(ramp, 0.0, 65535.0);
@@ -113,6 +125,58 @@ TEST_P(VoxelKernels, MilledPlanes) {
         EXPECT_EQ(milled[0].removed, removed);
         EXPECT_EQ(milled[0].added, added);
         EXPECT_EQ(milled[0].is_changed >> rows, 0u);
+    }
+}
+
+TEST_P(VoxelKernels, LaidPlanes) {
+    const float spacing = 0.0973e-3f;
+    for (int round = 0; round < 300; ++round) {
+        const int n = 1 + below(kBrickCells), rows = 1 + below(kBrickCells);
+        std::vector<uint16_t> plane(kBrickStrideZ), shall(kBrickStrideZ), out[2];
+        for (uint16_t& d : plane) d = uint16_t(below(2) * below(65536));
+        for (uint16_t& d : shall) d = uint16_t(below(2) * below(65536));
+        const float z = float(below(1000)) * 1e-6f;
+        const BurrPlane place{.first_x = -float(below(20)) * spacing,
+                              .step_x = spacing,
+                              .first_y = -float(below(20)) * spacing,
+                              .step_y = spacing,
+                              .off_plane_squared = z * z,
+                              .way_x = 0.6f,
+                              .way_y = 0.48f,
+                              .off_plane_along = 0.64f * z,
+                              .way = float(below(900)) * 1e-6f,
+                              .radius = 1e-3f,
+                              .slope = 1,
+                              .reach_squared = 0.9e-3f * 0.9e-3f,
+                              .core_squared = 0.9e-3f * 0.9e-3f,
+                              .iso = 30000,
+                              .amount = below(65536)};
+        LaidPlane laid[2];
+        for (const int which : {0, 1}) {
+            out[which].assign(kBrickCells * kBrickCells, 7);
+            const Kernels& k = which ? ours() : oracle();
+            laid[which] = k.lay_plane(place, shall.data(), plane.data(), n, rows, out[which].data());
+        }
+        int added = 0;
+        bool is_owed = false;
+        for (int r = 0; r < rows; ++r)
+            for (int i = 0; i < n; ++i) {
+                const size_t at = size_t(r) * kBrickStrideY + size_t(i), to = size_t(r * kBrickCells + i);
+                const double x = place.first_x + i * double(spacing), y = place.first_y + r * double(spacing);
+                const bool is_free = squaredFromWay(place, x, y) >= double(place.core_squared);
+                const int old = plane[at], end = is_free ? shall[at] : 0;
+                const int now = std::max(old, std::min(end, old + place.amount));
+                const int fresh = laid[0].is_changed >> r & 1 ? out[0][to] : old;
+                EXPECT_EQ(fresh, now) << i << ' ' << r;
+                added += old < place.iso && fresh >= place.iso;
+                is_owed |= shall[at] > now;
+            }
+        EXPECT_EQ(laid[0].added, added);
+        EXPECT_EQ(laid[0].is_owed, is_owed);
+        EXPECT_EQ(laid[1].added, added);
+        EXPECT_EQ(laid[1].is_owed, is_owed);
+        EXPECT_EQ(laid[1].is_changed, laid[0].is_changed);
+        EXPECT_EQ(out[0], out[1]);
     }
 }
 

@@ -1,0 +1,197 @@
+#include "haptic_server/milling/deposit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptic_server/kernels/kernels.h"
+#include "haptic_server/milling/burr_box.h"
+
+namespace bonemill {
+namespace {
+
+// Beyond the bricks that a burr can reach in a tick there are so many more on each side, in which what is
+// left behind rises at the rate; in the outermost it comes at once.
+constexpr int kBricksAround = 2;
+constexpr int64_t kLookedAtPerCell = 8;
+
+// On the mean over the cells the surface then lies on the ball: of what burr_limit.h enlarges the ball by,
+// the interpolation takes 3/7 back.
+double onTheMean(const VoxelVolume& volume, double burr_radius) noexcept {
+    return burr_radius - 4.0 / 7 * BurrLimit::ampleSag(volume, burr_radius);
+}
+
+Eigen::Vector3i slotsPerAxis(const VoxelVolume& volume, const DepositConfig& config) noexcept {
+    const double reach = BurrLimit(volume, config.largest_burr_radius, MillingShape::kSubVoxel, +1).reach();
+    const Eigen::Array3d bricks = (2 * reach + config.longest_way) / (volume.spacing().array() * kBrickCells);
+    const Eigen::Array3i all = (volume.dims().array() + 1) / kBrickCells + 1;
+    return (bricks.ceil().cast<int>() + 1 + 2 * kBricksAround).min(all).matrix();
+}
+
+}  // namespace
+
+Deposit::Deposit(const BoneModel& bone, const DepositConfig& config)
+    : config_(config),
+      slots_per_axis_(slotsPerAxis(bone.volume, config)),
+      slots_(size_t(slots_per_axis_.prod())),
+      shall_(slots_.size() * kBrick),
+      collector_(bone.lattice, (slots_per_axis_ * kBrickCells).cwiseMin(bone.volume.dims()),
+                 config.most_cells) {}
+
+size_t Deposit::slotOf(const Eigen::Vector3i& brick) const noexcept {
+    const Eigen::Vector3i& n = slots_per_axis_;
+    const Eigen::Vector3i at(brick.x() % n.x(), brick.y() % n.y(), brick.z() % n.z());
+    return size_t(at.x() + n.x() * (at.y() + n.y() * at.z()));
+}
+
+Density* Deposit::shallOf(size_t slot, const Eigen::Vector3i& voxel) noexcept {
+    const auto in_brick = [](int index) { return size_t((index + 1) & (kBrickCells - 1)); };
+    return &shall_[slot * kBrick + in_brick(voxel.x()) + kBrickStrideY * in_brick(voxel.y()) +
+                   kPlane * in_brick(voxel.z())];
+}
+
+void Deposit::clear(size_t slot) noexcept {
+    if (slots_[slot].owed.isEmpty()) return;
+    std::fill_n(&shall_[slot * kBrick], kBrick, Density(0));
+    slots_[slot].owed = {};
+    --used_count_;
+}
+
+void Deposit::forget() noexcept {
+    for (size_t slot = 0; used_count_ > 0; ++slot) clear(slot);
+    carry_ = 0;
+    collector_.forgetTurn();
+}
+
+size_t Deposit::claim(const Eigen::Vector3i& brick) noexcept {
+    const size_t slot = slotOf(brick);
+    if (slots_[slot].brick != brick) clear(slot);
+    if (slots_[slot].owed.isEmpty()) ++used_count_;
+    slots_[slot].brick = brick;
+    return slot;
+}
+
+// These bricks have slots of their own while the burr is here.
+IndexBox Deposit::window(const VoxelVolume& volume, const Eigen::Vector3d& p_VB) const noexcept {
+    const Eigen::Array3d place = (p_VB.array() / volume.spacing().array() + 1) / kBrickCells;
+    const Eigen::Array3d low = (place - slots_per_axis_.cast<double>().array() / 2 + 0.5).floor();
+    const Eigen::Vector3i first = low.max(-1e6).min(1e6).cast<int>().matrix();
+    return {first, first + slots_per_axis_ - Eigen::Vector3i::Ones()};
+}
+
+void Deposit::dropOutside(const IndexBox& bricks) noexcept {
+    for (size_t slot = 0; slot < slots_.size(); ++slot) {
+        const Eigen::Array3i brick = slots_[slot].brick.array();
+        if ((brick < bricks.min.array()).any() || (brick > bricks.max.array()).any()) clear(slot);
+    }
+}
+
+void Deposit::owe(const VoxelVolume& volume, const BurrWay& way, double burr_radius) noexcept {
+    if (!(config_.rate > 0)) return;
+    const double radius = std::min(burr_radius, config_.largest_burr_radius);
+    const BurrLimit limit(volume, onTheMean(volume, radius), MillingShape::kSubVoxel, +1);
+    const BurrWay seen = seenWay(volume, way, radius);
+    if (used_count_ > 0) dropOutside(window(volume, way.to()));
+    volume.forEachOwnedPart(boxAround(volume, seen, limit.reach()),
+                            [&](const IndexBox& part, size_t) { raise(volume, part, seen, limit); });
+}
+
+void Deposit::raise(const VoxelVolume& volume, const IndexBox& part, const BurrWay& way,
+                    const BurrLimit& limit) noexcept {
+    const size_t slot = claim(brickOf(part.min));
+    const int count = part.max.x() - part.min.x() + 1, rows = part.max.y() - part.min.y() + 1;
+    Density fresh[kBrickCells * kBrickCells];
+    Density* shall = shallOf(slot, part.min);
+    slots_[slot].owed.include(part);
+    for (int k = part.min.z(); k <= part.max.z(); ++k, shall += kPlane) {
+        const Eigen::Vector3d to_first =
+            volume.spacing().cwiseProduct(Eigen::Vector3d(part.min.x(), part.min.y(), k)) - way.from();
+        const BurrPlane burr = limit.plane(way, to_first, volume.spacing(), kMaxDensity);
+        const MilledPlane raised = kernels().add_plane(burr, shall, count, rows, fresh);
+        for (int r = 0; r < rows; ++r)
+            if (raised.is_changed >> r & 1)
+                std::copy_n(fresh + kBrickCells * r, count, shall + kBrickStrideY * size_t(r));
+    }
+}
+
+MillingResult Deposit::lay(BoneModel& bone, const ToolPlace& place, double dt) noexcept {
+    MillingResult result;
+    if (!isOwing()) return result;
+    const VoxelVolume& volume = bone.volume;
+    const IndexBox bricks = window(volume, place.p_VB);
+    dropOutside(bricks);
+    carry_ += config_.rate * dt;
+    const int amount = int(std::min(carry_, double(kMaxDensity)));
+    const double length =
+        volume.spacing().cwiseProduct((slots_per_axis_ * kBrickCells).cast<double>()).norm();
+    // No cell that the tool reaches into has a corner that rises.
+    const double free = place.radius + volume.spacing().norm();
+    const Stroke stroke{BurrWay(place.p_VB + length * place.axis_V, place.p_VB, length),
+                        BurrLimit(volume, free, MillingShape::kVoxelCentres, -1), amount, bricks.grown(-1)};
+    IndexBox owed;
+    for (Slot& slot : slots_) {
+        slot.is_left = false;
+        owed.include(slot.owed);
+    }
+    const auto is_wanted = [](const DensityRange& range, const IndexBox&) { return range.min < kMaxDensity; };
+    collector_.collect(
+        bone.lattice, owed, is_wanted,
+        [&](const IndexBox& voxels, int first_part, MillingResult& of_leaf) {
+            return collectLeaf(bone.volume, voxels, first_part, stroke, of_leaf);
+        },
+        result);
+    if (!collector_.isEmpty())
+        result.shell_is_complete = collector_.write(bone.volume, bone.lattice, bone.shell, +1);
+    if (result.is_cut_short) return result;
+    carry_ -= std::floor(carry_);
+    for (size_t slot = 0; slot < slots_.size(); ++slot)
+        if (!slots_[slot].is_left) clear(slot);
+    return result;
+}
+
+// The parts of a leaf are those of its bricks.
+int Deposit::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part, const Stroke& stroke,
+                         MillingResult& of_leaf) noexcept {
+    int n = 0, left = ChangeCollector::kAllParts;
+    volume.forEachOwnedPart(voxels, [&](const IndexBox& whole, size_t) {
+        const int index = n++;
+        if (index < first_part || left != ChangeCollector::kAllParts) return;
+        const Eigen::Vector3i brick = brickOf(whole.min);
+        Slot& slot = slots_[slotOf(brick)];
+        if (slot.owed.isEmpty() || slot.brick != brick) return;
+        const IndexBox part = whole.clamped(slot.owed.min, slot.owed.max);
+        if (!part.isEmpty() && !collectPart(volume, part, stroke, slot, of_leaf)) left = index;
+    });
+    return left;
+}
+
+// Returns what ChangeCollector::takePart() says.
+bool Deposit::collectPart(VoxelVolume& volume, const IndexBox& part, const Stroke& stroke, Slot& slot,
+                          MillingResult& of_leaf) noexcept {
+    ChangedRuns& changed_rows = collector_.beginPart();
+    MillingResult of_part;
+    const IndexBox& near = stroke.near;
+    const bool is_near =
+        (slot.brick.array() >= near.min.array()).all() && (slot.brick.array() <= near.max.array()).all();
+    const int count = part.max.x() - part.min.x() + 1, rows = part.max.y() - part.min.y() + 1;
+    const Density* old = volume.ownerData() + volume.offset(part.min.x(), part.min.y(), part.min.z());
+    const Density* shall = shallOf(size_t(&slot - slots_.data()), part.min);
+    Density fresh[kBrickCells * kBrickCells];
+    for (int k = part.min.z(); k <= part.max.z(); ++k, old += VoxelVolume::kStrideZ, shall += kPlane) {
+        const Eigen::Vector3i first(part.min.x(), part.min.y(), k);
+        const Eigen::Vector3d to_first =
+            volume.spacing().cwiseProduct(first.cast<double>()) - stroke.place.from();
+        const BurrPlane place = stroke.limit.plane(stroke.place, to_first, volume.spacing(),
+                                                   is_near ? stroke.amount : int(kMaxDensity));
+        const LaidPlane laid = kernels().lay_plane(place, shall, old, count, rows, fresh);
+        slot.is_left |= laid.is_owed;
+        for (int r = 0; r < rows; ++r)
+            if (laid.is_changed >> r & 1)
+                changed_rows.add(first + Eigen::Vector3i(0, r, 0), count,
+                                 old + VoxelVolume::kStrideY * size_t(r), fresh + kBrickCells * r,
+                                 of_part.changed);
+        of_part.added_voxels += uint32_t(laid.added);
+    }
+    return collector_.takePart(volume, size_t(part.count() / kLookedAtPerCell), of_part, of_leaf);
+}
+
+}  // namespace bonemill
