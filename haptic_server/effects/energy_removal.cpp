@@ -81,19 +81,54 @@ double EnergyRemoval::specificEnergyAt(const Eigen::Vector3d& p_V) noexcept {
     return last_energy_;
 }
 
+// The burr's box is cut into equal boxes along the tool's axes.
+size_t EnergyRemoval::regionOf(const EffectTick& tick, const SurfaceContact& contact) noexcept {
+    const Burr& burr = tick.tool->burr;
+    const Eigen::Vector3d half(burr.radius, std::max(burr.radius, burr.length / 2), burr.radius);
+    const Eigen::Vector3d r_T = tick.X_VT.rotation.conjugate() * contact.r_V.cast<double>();
+    const Eigen::Array3d place = (r_T.array() / half.array() + 1) * (kRegionsPerAxis / 2.0);
+    const Eigen::Array3i at = place.floor().max(0.0).min(kRegionsPerAxis - 1.0).cast<int>();
+    return size_t(at.x() + kRegionsPerAxis * (at.y() + kRegionsPerAxis * at.z()));
+}
+
+// The contacts of a patch follow each other.
+void EnergyRemoval::weighRegions(const EffectTick& tick) noexcept {
+    regions_.fill({});
+    PatchId last;
+    bool is_first = true;
+    for (size_t n = 0; n < tick.contacts.size(); ++n) {
+        if (!tick.is_on_burr[n]) continue;
+        const SurfaceContact& contact = tick.contacts[n];
+        Region& region = regions_[regionOf(tick, contact)];
+        region.force += double(contact.force);
+        const PatchId patch = tick.candidates->patch[contact.candidate];
+        if (is_first || patch != last) region.area += double(tick.candidates->area[contact.candidate]);
+        last = patch;
+        is_first = false;
+    }
+}
+
+double EnergyRemoval::shareAboveThreshold(const EffectTick& tick,
+                                          const SurfaceContact& contact) const noexcept {
+    if (!(config_.threshold_pressure > 0)) return 1;
+    const Region& region = regions_[regionOf(tick, contact)];
+    return std::max(0.0, 1 - config_.threshold_pressure * region.area / region.force);
+}
+
 // Gives the energies of the contacts whose turn it is to the surface. Returns the sum of all, J.
 double EnergyRemoval::spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept {
     const Burr& burr = tick.tool->burr;
     const Eigen::Vector3d axis = tick.X_VT.rotation * Eigen::Vector3d::UnitY();
     shift_.begin(bone, tick.X_VT.position);
+    if (config_.threshold_pressure > 0) weighRegions(tick);
     double energy = 0;
     for (size_t n = 0; n < tick.contacts.size(); ++n) {
         if (!tick.is_on_burr[n]) continue;
         const SurfaceContact& contact = tick.contacts[n];
-        const double area = double(tick.place_area[contact.candidate]), force = double(contact.force);
+        const double area = double(tick.place_area[contact.candidate]);
         const double speed =
             std::abs(tick.spin_speed) * rubbingRadius(contact.r_V.cast<double>(), axis, area);
-        const double above = std::max(0.0, force - config_.threshold_pressure * area);
+        const double above = double(contact.force) * shareAboveThreshold(tick, contact);
         const double of_contact = burr.friction * speed * above * tick.dt;
         energy += of_contact;
         const PatchId patch = tick.candidates->patch[contact.candidate];

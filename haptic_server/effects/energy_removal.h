@@ -19,11 +19,18 @@
 // `turns` groups, each in every turns-th tick and for as many ticks at once (the weights, too, then know
 // that dt).
 //
+// The cut surface is the burr's only within some micrometres, which is as much as the contact is deep: on
+// coarse voxels, and with a stiff contact (a short tick), few places carry what many should, at pressures far
+// above the mean. So the pressure that counts against the threshold is the mean over a region of the burr,
+// its force over the whole area of the patches that touch, and each contact gives its power times the share
+// of that mean which is above.
+//
 // mill() then spends the energy of the contacts on the surface (milling/surface_shift.h). What was spent too
 // much or too little is kept in an account and made good within kRepayTime, so that Σ u ΔV = ∫ P dt but for
 // what is in the account.
 #pragma once
 
+#include <array>
 #include <climits>
 
 #include "haptic_server/effects/effect_configs.h"
@@ -57,6 +64,13 @@ class EnergyRemoval final : public HapticEffect {
     }
     double softness(const EffectTick& tick, const Candidates& candidates, size_t n,
                     const Eigen::Vector3d& origin_V, const Eigen::Vector3d& p_T) noexcept;
+    struct Region {
+        double force = 0, area = 0;  // N, m²: of its patches that touch
+    };
+    static constexpr int kRegionsPerAxis = 4;
+    static size_t regionOf(const EffectTick& tick, const SurfaceContact& contact) noexcept;
+    void weighRegions(const EffectTick& tick) noexcept;
+    double shareAboveThreshold(const EffectTick& tick, const SurfaceContact& contact) const noexcept;
     double specificEnergyAt(const Eigen::Vector3d& p_V) noexcept;
     double spendContacts(const EffectTick& tick, const BoneModel& bone) noexcept;
     void takeTurn(const EffectTick& tick) noexcept;
@@ -66,6 +80,7 @@ class EnergyRemoval final : public HapticEffect {
     Eigen::Array3d inverse_spacing_;
     Eigen::Vector3i last_cell_ = Eigen::Vector3i::Constant(INT_MIN);  // and what it takes, J/m³
     double last_energy_ = 0;
+    std::array<Region, size_t(kRegionsPerAxis* kRegionsPerAxis* kRegionsPerAxis)> regions_{};
     SurfaceShift shift_;
     size_t most_contacts_;
     size_t turn_ = 0, turns_ = 1;
