@@ -1,10 +1,24 @@
 #include "haptic_server/effects/time_removal.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "haptic_server/effects/make_effects.h"
 
 namespace bonemill {
+namespace {
+
+void squaredDistances(const Candidates& candidates, size_t first, size_t count, const Eigen::Vector3f& from,
+                      float* out) noexcept {
+    const float *x = &candidates.x[first], *y = &candidates.y[first], *z = &candidates.z[first];
+    const float from_x = from.x(), from_y = from.y(), from_z = from.z();
+    for (size_t i = 0; i < count; ++i) {
+        const float dx = x[i] - from_x, dy = y[i] - from_y, dz = z[i] - from_z;
+        out[i] = dx * dx + dy * dy + dz * dz;
+    }
+}
+
+}  // namespace
 
 TimeRemoval::TimeRemoval(const TimeRemovalConfig& config, const BoneModel& bone, const EffectRoom& room)
     : HapticEffect(kScales),
@@ -27,22 +41,28 @@ double TimeRemoval::scale(const EffectTick& tick, Candidates& candidates, const 
     if (!is_cutting_) return 1;
     const auto radius = float(tick.tool->burr.radius + burrSlack(tool));
     const auto recession = float(milling_.removalSpeed() * tick.dt);
+    const float reach_squared = (radius + recession) * (radius + recession);
     const Eigen::Vector3f p_OB = (X_VT.position - origin_V).cast<float>();
-    for (size_t n = 0; n < candidates.count; ++n) {
-        const Eigen::Vector3f r = candidates.position(n) - p_OB;
-        const float distance = r.norm();
-        if (!(distance > 0 && distance < radius + recession)) continue;
-        // Outside of the burr the shaft may be nearer.
-        const bool is_on_burr =
-            distance < radius ||
-            distance - radius <=
-                float(tool.sample(X_VT.inverse() * (origin_V + candidates.position(n).cast<double>()))
-                          .distance);
-        if (!is_on_burr) continue;
-        const Eigen::Vector3f back = recession / distance * r;
-        candidates.x[n] += back.x();
-        candidates.y[n] += back.y();
-        candidates.z[n] += back.z();
+    const Eigen::Vector3f axis = (X_VT.rotation * Eigen::Vector3d::UnitY()).cast<float>();
+    constexpr size_t kBatch = 64;
+    float squared[kBatch];
+    for (size_t first = 0; first < candidates.count; first += kBatch) {
+        const size_t count = std::min(kBatch, candidates.count - first);
+        squaredDistances(candidates, first, count, p_OB, squared);
+        for (size_t n = first; n < first + count; ++n) {
+            if (!(squared[n - first] < reach_squared && squared[n - first] > 0)) continue;
+            const Eigen::Vector3f r = candidates.position(n) - p_OB;
+            const float distance = std::sqrt(squared[n - first]);
+            // Outside of the burr, on the hand's side, the shaft may be nearer.
+            if (distance > radius && r.dot(axis) > 0) {
+                const Eigen::Vector3d p_V = origin_V + candidates.position(n).cast<double>();
+                if (distance - radius > float(tool.sample(X_VT.inverse() * p_V).distance)) continue;
+            }
+            const float share = recession / distance;
+            candidates.x[n] += share * r.x();
+            candidates.y[n] += share * r.y();
+            candidates.z[n] += share * r.z();
+        }
     }
     return 1;
 }
