@@ -20,6 +20,12 @@ bool isFigure(double value) noexcept {
     return value >= 0 && std::isfinite(value);
 }
 
+bool isPlausible(const HandleDynamics& handle) noexcept {
+    return isFigure(handle.mass) && isFigure(handle.damping) && isFigure(handle.inertia) &&
+           isFigure(handle.angular_damping) && isFigure(handle.amplifier_time) && isFigure(handle.delay) &&
+           isFigure(handle.encoder_step) && isFigure(handle.encoder_angle);
+}
+
 }  // namespace
 
 bool isPlausible(const DeviceSample& sample) noexcept {
@@ -40,7 +46,8 @@ bool isPlausible(const DeviceCapabilities& capabilities) noexcept {
     return std::find(std::begin(capabilities.name), end, '\0') != end &&
            capabilities.kind < kDeviceKindCount && isFigure(capabilities.max_force) &&
            isFigure(capabilities.max_torque) && isFigure(capabilities.max_stiffness) &&
-           isFigure(capabilities.max_rotation_stiffness) && isFigure(capabilities.workspace_radius);
+           isFigure(capabilities.max_rotation_stiffness) && isFigure(capabilities.workspace_radius) &&
+           isPlausible(capabilities.handle);
 }
 
 }  // namespace bonemill

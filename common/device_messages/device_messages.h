@@ -1,4 +1,4 @@
-// device_daemon and haptic_server say this to each other through shared memory (layout 2).
+// device_daemon and haptic_server say this to each other through shared memory (layout 3).
 //
 // The frames are D, the device's base, and T, the tool frame of the handle. Units are m, N, N·m; stamps are
 // CLOCK_MONOTONIC ns of this machine. Everything here is RT-safe.
@@ -37,6 +37,20 @@ struct WrenchCommand {
     uint32_t reserved;
 };
 
+// This is what moves with the handle, and how late the device is. The server fits the coupling to it
+// (haptic_server/tick/device_fit.h). Without a mass the rest of translation is not known, without an inertia
+// that of rotation.
+struct HandleDynamics {
+    double mass;             // kg
+    double damping;          // N·s/m, viscous
+    double inertia;          // kg·m² about the handle's tool point, the least of all axes
+    double angular_damping;  // N·m·s/rad
+    double amplifier_time;   // s: time constant of the force after its command
+    double delay;            // s: from the reading of the encoders until the wrench that answers it begins
+    double encoder_step;     // m: readings are wrong by half of it
+    double encoder_angle;    // rad, likewise
+};
+
 // It says what kind of device there is, and is written by the daemon whenever another one is there. The
 // server adapts to it.
 struct DeviceCapabilities {
@@ -48,6 +62,7 @@ struct DeviceCapabilities {
     double max_stiffness;           // N/m that it holds without shaking; 0: not known
     double max_rotation_stiffness;  // N·m/rad; 0: not known
     double workspace_radius;        // m around D's origin
+    HandleDynamics handle = {};
 };
 
 enum Button : uint32_t {
@@ -99,9 +114,10 @@ static_assert(sizeof(WrenchCommand) == 80 && offsetof(WrenchCommand, f_hand_D) =
               offsetof(WrenchCommand, reset_orders) == 72);
 static_assert(std::is_trivially_copyable_v<DeviceCapabilities> &&
               std::is_standard_layout_v<DeviceCapabilities>);
-static_assert(sizeof(DeviceCapabilities) == 96 && offsetof(DeviceCapabilities, kind) == 48 &&
-              offsetof(DeviceCapabilities, max_force) == 56 &&
-              offsetof(DeviceCapabilities, workspace_radius) == 88);
+static_assert(sizeof(HandleDynamics) == 64 && sizeof(DeviceCapabilities) == 160 &&
+              offsetof(DeviceCapabilities, kind) == 48 && offsetof(DeviceCapabilities, max_force) == 56 &&
+              offsetof(DeviceCapabilities, workspace_radius) == 88 &&
+              offsetof(DeviceCapabilities, handle) == 96);
 
 // |q| may differ from 1 by so much, which is far above rounding and far below what a torn or
 // random quaternion shows.

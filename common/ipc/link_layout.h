@@ -15,7 +15,7 @@
 namespace bonemill {
 
 inline constexpr uint64_t kLinkMagic = 0x4b4e494c4c494d42;  // "BMILLINK" in memory
-inline constexpr uint32_t kLinkLayoutVersion = 2;
+inline constexpr uint32_t kLinkLayoutVersion = 3;
 
 // The set of semaphores with the memory's key: 0 is free, 1 is held.
 enum LinkSemaphore : unsigned short { kSetupSemaphore = 0, kServerSemaphore = 1, kDaemonSemaphore = 2 };
@@ -54,6 +54,6 @@ static_assert(sizeof(LinkPeer) == 24 && sizeof(LinkChannel<DeviceSample>) == 192
 static_assert(offsetof(LinkMemory, header) == 0 && offsetof(LinkMemory, server) == 16 &&
               offsetof(LinkMemory, daemon) == 40 && offsetof(LinkMemory, sample) == 64 &&
               offsetof(LinkMemory, command) == 256 && offsetof(LinkMemory, capabilities) == 384 &&
-              sizeof(LinkMemory) == 512);
+              sizeof(LinkMemory) == 576);
 
 }  // namespace bonemill

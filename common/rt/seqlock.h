@@ -47,7 +47,7 @@ class Seqlock {
             Words words;
             for (size_t i = 0; i < kWords; ++i) words[i] = body_[i].load(std::memory_order_acquire);
             if (counter_.load(std::memory_order_relaxed) != before) continue;
-            std::memcpy(&value, words.data(), sizeof(T));
+            std::memcpy(static_cast<void*>(&value), words.data(), sizeof(T));
             if (version) *version = before;
             return true;
         }

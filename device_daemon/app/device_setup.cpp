@@ -2,6 +2,7 @@
 
 #include "common/config/scene_file.h"
 #include "common/config/scene_geometry.h"
+#include "common/config/scene_handle.h"
 #include "common/geometry/view_axes.h"
 #include "common/units.h"
 #include "device_daemon/ares/scene_ares.h"
@@ -49,6 +50,12 @@ RateConfig ratesOf(const scene::Scene& scene, const Pose& X_WD) {
     return rates;
 }
 
+// The delay is a matter of the loop, too.
+AresDeviceConfig declaring(const scene::Scene& scene, AresDeviceConfig config) {
+    config.handle = handleDynamicsOf(scene);
+    return config;
+}
+
 }  // namespace
 
 DeviceSetup deviceSetupOf(const scene::Scene& scene) {
@@ -60,8 +67,8 @@ DeviceSetup deviceSetupOf(const scene::Scene& scene) {
             .X_WD = X_WD,
             .workspace_scale = scale,
             .X_DT_start = X_DT_start,
-            .ares = aresConfigOf(scene.device(), false),
-            .simulated_ares = aresConfigOf(scene.device(), true, X_DT_start),
+            .ares = declaring(scene, aresConfigOf(scene.device(), false)),
+            .simulated_ares = declaring(scene, aresConfigOf(scene.device(), true, X_DT_start)),
             .rates = ratesOf(scene, X_WD),
             .loop = loopOf(scene)};
 }

@@ -24,6 +24,7 @@ DeviceCapabilities capabilitiesOf(const AresDeviceConfig& config) {
     if (config.has_enabling_switch) capabilities.abilities |= kAbilityEnablingSwitch;
     capabilities.max_force = config.max_force;
     capabilities.max_torque = config.max_torque;
+    capabilities.handle = config.handle;
     capabilities.workspace_radius = reachRadius(AresKinematics(config.geometry), kSpecifiedTurn);
     return capabilities;
 }

@@ -34,7 +34,8 @@ struct AresDeviceConfig {
     double max_actuator_force = 50;  // N
     double max_force = 50;           // N that the hand may count on in any direction
     double max_torque = 1;           // N·m
-    bool is_simulated = false;       // no hand and no motor behind the joints
+    HandleDynamics handle = {};
+    bool is_simulated = false;  // no hand and no motor behind the joints
     bool has_enabling_switch = false;
 };
 

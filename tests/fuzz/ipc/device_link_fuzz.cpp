@@ -83,9 +83,13 @@ bool isSound(const WrenchCommand& command) {
 bool isSound(const DeviceCapabilities& capabilities) {
     const double figures[] = {capabilities.max_force, capabilities.max_torque, capabilities.max_stiffness,
                               capabilities.max_rotation_stiffness, capabilities.workspace_radius};
-    for (const double figure : figures) {
-        if (!(figure >= 0) || std::isinf(figure)) return false;
-    }
+    const HandleDynamics& handle = capabilities.handle;
+    const double of_handle[] = {
+        handle.mass,           handle.damping, handle.inertia,      handle.angular_damping,
+        handle.amplifier_time, handle.delay,   handle.encoder_step, handle.encoder_angle};
+    const auto isFigure = [](double figure) { return figure >= 0 && !std::isinf(figure); };
+    if (!std::all_of(std::begin(figures), std::end(figures), isFigure)) return false;
+    if (!std::all_of(std::begin(of_handle), std::end(of_handle), isFigure)) return false;
     return strnlen(capabilities.name, sizeof(capabilities.name)) < sizeof(capabilities.name) &&
            DeviceKind(capabilities.kind) <= DeviceKind::kGamepad;
 }
