@@ -193,9 +193,10 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
                                               ? contact_.evaluate<double>(*field_, X_VT)
                                               : contact_.evaluate<float>(*field_, X_VT);
     point_tests_ += contact_.candidateCount();
-    State state{X_VT, contact.term, contact.contacts, contact.max_depth};
+    State state{X_VT, contact.term, 0, contact.contacts, contact.max_depth};
     state.total += couplingEnergy(coupling_, X_VT, tick.X_VT_device, way_);
     state.total += relaxing_.energy(X_VT, tick.X_VT_device);
+    state.stored = state.total.energy;
     state.total += dampingEnergy(coupling_, X_VT, tick.X_VT_start, dt_);
     if (effects_) state.total += effects_->at(X_VT);
     return state;
@@ -331,6 +332,7 @@ SpoStep GradientModel::advance(const Pose& X_VT, const Pose& X_VT_device) noexce
     last_motion_ = between(tick.X_VT_start, state.X_VT);
     last_reach_ = reachOf(last_motion_);
     energy_ = state.total.energy;
+    out.stored_energy = state.stored;
     out.contacts = state.contacts;
     out.budget_share = double(point_tests_) / double(most_point_tests_);
     out.max_penetration = state.max_depth;

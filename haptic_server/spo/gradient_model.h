@@ -40,6 +40,7 @@ class GradientModel final : public SpoModel {
     struct State {
         Pose X_VT;
         EnergyTerm total;
+        double stored = 0;  // of that, J: what neither the damping nor the effects hold
         uint32_t contacts = 0;
         double max_depth = 0;
         bool isFinite() const noexcept;

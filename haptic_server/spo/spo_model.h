@@ -26,6 +26,8 @@ struct SpoStep {
     Pose X_VT;  // of the simulated tool after the tick
     // It acts on the hand about the tool point that it holds, before the limits of what it may feel.
     Wrench wrench_hand_V;
+    // Contact and springs hold this after the tick, J; a law without an energy says 0.
+    double stored_energy = 0;
     uint32_t contacts = 0;
     uint32_t candidates = 0;  // points that were tested in each iteration
     uint32_t iterations = 0;

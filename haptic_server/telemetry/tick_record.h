@@ -45,8 +45,10 @@ struct TickRecord {
     double f_hand_W[3];      // N, on the hand
     double t_hand_W[3];      // N·m, on the hand about the tool point that it holds
     double max_penetration;  // m
-    double removed;          // m³ in this tick
-    double added;            // m³ in this tick
+    // Of the scene's coupling the gradient law has so much stiffness, 1 for all (tick/hand_coupling.h).
+    double coupling_share, rotation_share;
+    double removed;  // m³ in this tick
+    double added;    // m³ in this tick
     uint32_t contacts;
     uint32_t candidates;      // points near the tool that each iteration tested
     uint32_t iterations;      // of the equilibrium solve

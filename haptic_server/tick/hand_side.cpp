@@ -66,6 +66,11 @@ void fitTorque(HandSide& side, const DeviceCapabilities& device, double workspac
 
 }  // namespace
 
+void HandSide::setGradient(const EnergyCouplingConfig& coupling, double workspace_scale) noexcept {
+    gradient = coupling;
+    spring = springOf(*this, workspace_scale);
+}
+
 void scaleWorkspace(TickConfig& config, double scale) noexcept {
     config.workspace_scale = scale;
     config.coupling.translation_stiffness /= scale;

@@ -26,6 +26,9 @@ struct HandSide {
     CouplingConfig thesis;
     EnergyCouplingConfig gradient;
     double most_pull = std::numeric_limits<double>::infinity();  // N: of the gradient law's coupling
+
+    // The hand's spring follows.
+    void setGradient(const EnergyCouplingConfig& coupling, double workspace_scale) noexcept;
 };
 
 // Before a device has said what it can do, everything is as the scene says.

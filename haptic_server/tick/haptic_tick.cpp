@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/assert.h"
 #include "common/rt/rt_guard.h"
@@ -49,6 +50,7 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
                             config.gradient.max_speed * config.dt}),
                gradient_.mostCandidates(), config.gradient.contact.stiffness_per_area),
       hand_limits_(config.hand, handSideOf(config).spring, config.dt),
+      hand_coupling_(config_),
       X_WV_(bone_.volume.geometry().X_WV),
       X_VW_(X_WV_.inverse()) {
     BONEMILL_ASSERT(config.dt > 0 && config.workspace_scale > 0 && config.most_milled_cells > 0);
@@ -81,6 +83,7 @@ void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     const bool is_thesis = settings.law == ContactLaw::kThesis2012;
     SpoModel* model = is_thesis ? static_cast<SpoModel*>(&thesis_) : &gradient_;
     model->setAccuracy(settings);
+    has_changed_suddenly_ = true;
     if (model != model_) {
         model->restart();
         effects_.restart(Restart::kOtherLaw);
@@ -89,10 +92,26 @@ void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
 }
 
 void HapticTick::adaptTo(const DeviceCapabilities& device) noexcept {
-    const HandSide side = handSideOf(config_, device);
-    thesis_.setCoupling(side.thesis);
+    hand_coupling_.adaptTo(device);
+    estimate_ =
+        HandEstimate(device.handle, hand_coupling_.side().spring, config_.workspace_scale, config_.dt);
+    thesis_.setCoupling(hand_coupling_.side().thesis);
+    useCoupling();
+}
+
+void HapticTick::useCoupling() noexcept {
+    const HandSide& side = hand_coupling_.side();
     gradient_.setCoupling(side.gradient, side.most_pull);
     hand_limits_.setDevice(side.limits, side.spring);
+}
+
+// The account begins anew whenever something else than hand and tool changes what is stored.
+void HapticTick::keepAccount(const SpoStep& step, const DeviceInput& input) noexcept {
+    const bool is_felt = has_pose_ && !input.is_stale && input.device.isEngaged();
+    const bool says_something = is_felt && model_ == &gradient_ && !gradient_.isToolGrowing() &&
+                                !std::exchange(has_changed_suddenly_, false);
+    if (says_something ? hand_coupling_.takeAccount(X_VT_device_, step) : hand_coupling_.passOver())
+        useCoupling();
 }
 
 void HapticTick::chooseTool() noexcept {
@@ -102,6 +121,7 @@ void HapticTick::chooseTool() noexcept {
     thesis_.setTool(tools_[tool_]);
     gradient_.setTool(tools_[tool_]);
     effects_.restart(Restart::kOtherTool);
+    has_changed_suddenly_ = true;
     hand_limits_.beginSuddenChange();
 }
 
@@ -114,8 +134,9 @@ bool HapticTick::tick(TickIo& io) noexcept {
     acceptPose(input, faults);
     chooseTool();
     beginEffects(input);
-    const SpoStep step = moveAndFeel(input.stale_factor, faults);
+    const SpoStep step = moveAndFeel(input, faults);
     const int64_t force_at_ns = io.write(inWorld(step.wrench_hand_V));
+    estimate_.sent(input.device.isEngaged() ? step.wrench_hand_V : Wrench{});
 
     effects_.afterSolve(X_VT_, *model_);
     const MillingResult milled = mill(faults);
@@ -148,7 +169,9 @@ void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept
         return;  // the last good one stays
     }
     X_WT_device.rotation.coeffs() /= norm;
-    X_VT_device_ = X_VW_ * X_WT_device;
+    const Pose X_VT_reading = X_VW_ * X_WT_device;
+    X_VT_device_ =
+        model_ == &gradient_ ? estimate_.take(X_VT_reading, hand_coupling_.standsAlone()) : X_VT_reading;
     if (!has_pose_) X_VT_ = X_VT_device_;  // the simulated tool starts where the hand is
     has_pose_ = true;
 }
@@ -170,7 +193,7 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     effects_.begin(start);
 }
 
-SpoStep HapticTick::moveAndFeel(double stale_factor, uint32_t& faults) noexcept {
+SpoStep HapticTick::moveAndFeel(const DeviceInput& input, uint32_t& faults) noexcept {
     SpoStep step = model_->advance(X_VT_, X_VT_device_);
     X_VT_ = step.X_VT;
     if (!step.is_solved) faults |= kFaultSolve;
@@ -178,10 +201,11 @@ SpoStep HapticTick::moveAndFeel(double stale_factor, uint32_t& faults) noexcept 
     if (step.has_stalled) faults |= kFaultStalled;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
     if (model_ == &gradient_ && gradient_.isToolGrowing()) hand_limits_.beginSuddenChange();
+    keepAccount(step, input);
     effects_.addToHand(step.wrench_hand_V);
     step.wrench_hand_V.torque /= config_.workspace_scale;  // hand_side.h
     const bool is_felt = step.is_solved && has_pose_;      // before a pose nobody knows where the hand is
-    step.wrench_hand_V = hand_limits_.limit({step.wrench_hand_V, is_felt, X_VT_device_, stale_factor});
+    step.wrench_hand_V = hand_limits_.limit({step.wrench_hand_V, is_felt, X_VT_device_, input.stale_factor});
     if (hand_limits_.wasLimited()) faults |= kFaultForceClamped;
     return step;
 }
@@ -194,6 +218,7 @@ MillingResult HapticTick::mill(uint32_t& faults) noexcept {
     if (history_->restoreSome(bone_, shell_is_complete)) {
         hand_limits_.beginSuddenChange();
         effects_.restart(Restart::kBonePutBack);
+        has_changed_suddenly_ = true;
     } else {
         milled = millWithEffects(faults);
     }
@@ -233,6 +258,8 @@ TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step)
     record.candidates = step.candidates;
     record.iterations = step.iterations;
     record.max_penetration = step.max_penetration;
+    record.coupling_share = hand_coupling_.share();
+    record.rotation_share = hand_coupling_.rotationShare();
     record.buttons = input.buttons;
     record.device = input.device;
     return record;

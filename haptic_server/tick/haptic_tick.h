@@ -15,7 +15,8 @@
 #include "haptic_server/telemetry/tick_record.h"
 #include "haptic_server/tick/accuracy_switch.h"
 #include "haptic_server/tick/affordable_shell.h"
-#include "haptic_server/tick/hand_side.h"
+#include "haptic_server/tick/hand_coupling.h"
+#include "haptic_server/tick/hand_estimate.h"
 #include "haptic_server/tick/tick_config.h"
 #include "haptic_server/tick/tick_io.h"
 #include "haptic_server/tick/tool_switch.h"
@@ -52,12 +53,14 @@ class HapticTick {
 
   private:
     void adaptTo(const DeviceCapabilities& device) noexcept;
+    void keepAccount(const SpoStep& step, const DeviceInput& input) noexcept;
+    void useCoupling() noexcept;
     void acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
     void chooseTool() noexcept;
     void beginEffects(const DeviceInput& input) noexcept;
-    SpoStep moveAndFeel(double stale_factor, uint32_t& faults) noexcept;
+    SpoStep moveAndFeel(const DeviceInput& input, uint32_t& faults) noexcept;
     MillingResult mill(uint32_t& faults) noexcept;
     MillingResult millWithEffects(uint32_t& faults) noexcept;
     Wrench inWorld(const Wrench& wrench_V) const noexcept;
@@ -76,10 +79,13 @@ class HapticTick {
     AffordableShell affordable_;
     EffectHost effects_;
     HandLimits hand_limits_;
+    HandCoupling hand_coupling_;
+    HandEstimate estimate_;
     Pose X_WV_, X_VW_;
     Pose X_VT_device_;
     Pose X_VT_;
     bool has_pose_ = false;
+    bool has_changed_suddenly_ = false;  // what the simulated side stores, by no one's work
     uint64_t tick_ = 0;
     uint32_t latched_faults_ = 0;
 };
