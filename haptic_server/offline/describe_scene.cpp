@@ -4,12 +4,14 @@
 #include <sstream>
 
 #include "common/config/scene_geometry.h"
+#include "common/config/scene_handle.h"
 #include "common/config/scene_table.h"
 #include "common/units.h"
 #include "haptic_server/offline/describe_effects.h"
 #include "haptic_server/offline/effect_cost.h"
 #include "haptic_server/offline/run_path.h"
 #include "haptic_server/record/tick_times.h"
+#include "haptic_server/setup/coupling_text.h"
 #include "haptic_server/setup/scene_setup.h"
 
 namespace bonemill {
@@ -87,6 +89,15 @@ void describeCost(const std::vector<TickRecord>& records, std::ostream& out) {
     if (!milling.empty()) out << "  removal, addition and shell refresh: " << percentilesUs(milling) << '\n';
 }
 
+DeviceCapabilities aresOf(const scene::Scene& scene) {
+    DeviceCapabilities ares{};
+    ares.abilities = kAbilityForce | kAbilityTorque | kAbilityOrientation;
+    ares.max_force = scene.device().max_force_n();
+    ares.max_torque = scene.device().max_torque_nmm() * kMilli;
+    ares.handle = handleDynamicsOf(scene);
+    return ares;
+}
+
 }  // namespace
 
 std::string describeScene(const std::string& scene_file) {
@@ -106,6 +117,7 @@ std::string describeScene(const std::string& scene_file) {
         << "point-shell: " << describeLevels(bone.shell) << '\n';
     describeTools(simulation, out);
     describeBudget(simulation, out);
+    out << "with the scene's ARES: " << couplingText(simulation.tick, aresOf(loaded.scene)) << '\n';
     const std::vector<DeviceInput> path = pathOf(loaded.scene.simulated_operator(), simulation.tick.dt);
     const EffectCosts costs = measureEffectCosts(simulation.fixedTick(), *simulation.bone, path, kRounds);
     out << describeEffects(loaded.scene, path.empty() ? nullptr : &costs);

@@ -20,6 +20,7 @@
 #include "haptic_server/session/device_link_io.h"
 #include "haptic_server/session/show_session.h"
 #include "haptic_server/session/shown_device.h"
+#include "haptic_server/setup/coupling_text.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_materials.h"
 #include "haptic_server/tick/haptic_tick.h"
@@ -189,7 +190,7 @@ class Server {
         if (!io_.capabilities(device)) return;
         const std::string text = deviceText(device);
         if (text == device_ || devices_told_ == DeviceHistory::kMostKept) return;
-        spdlog::info("the device is {}", text);
+        spdlog::info("the device is {}; {}", text, couplingText(simulation_.tick, device));
         device_ = text;
         ++devices_told_;
     }
