@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/geometry/bounded_vector.h"
 #include "tests/stability/hard_scenes.h"
 
 namespace bonemill::test {
@@ -29,6 +30,8 @@ std::vector<Eigen::Vector3d> averaged(const std::vector<Eigen::Vector3d>& values
     }
     return means;
 }
+
+constexpr double kPlentyOfForce = 50, kPlentyOfTorque = 1;  // N, N·m: more than any case presses with
 
 }  // namespace
 
@@ -58,15 +61,38 @@ int64_t Stepper::write(const Wrench& wrench_hand_W) noexcept {
     return 0;
 }
 
+DeviceCapabilities declared(const LoopConfig& config, double dt) {
+    const DevicePlant& device = config.device;
+    DeviceCapabilities says{};
+    says.abilities = kAbilityForce | kAbilityTorque | kAbilityOrientation;
+    says.max_force = config.most_force > 0 ? config.most_force : kPlentyOfForce;
+    says.max_torque = kPlentyOfTorque;
+    says.handle = {.mass = device.mass,
+                   .damping = device.damping,
+                   .inertia = device.inertia,
+                   .angular_damping = device.angular_damping,
+                   .amplifier_time = 1 / (2 * M_PI * device.amplifier_hz),
+                   .delay = (config.delay_ticks + config.jitter_ticks / 2) * dt,
+                   .encoder_step = device.encoder_step,
+                   .encoder_angle = device.encoder_angle};
+    return says;
+}
+
 ClosedLoop::ClosedLoop(const LoopConfig& config, Scene& scene, const Pose& start, const ToolSwitch* tools,
                        BoneHistory* history)
     : plant(config.device, config.hand, start),
       stepper(scene, tools, history),
       dt(scene.config.dt),
       averaged_ticks(scene.averaged_ticks),
+      config_(config),
+      declared_(declared(config, scene.config.dt)),
       start_(start),
       workspace_scale_(scene.config.workspace_scale),
       on_the_way_(size_t(config.delay_ticks)) {}
+
+void ClosedLoop::declare() {
+    stepper.plugIn(&declared_);
+}
 
 Pose ClosedLoop::toolPose() const noexcept {
     Pose pose = plant.measured();
@@ -74,16 +100,25 @@ Pose ClosedLoop::toolPose() const noexcept {
     return pose;
 }
 
+void ClosedLoop::actuate(double time) {
+    Wrench given = held_;
+    if (config_.most_force > 0) limitLength(given.force, config_.most_force);
+    plant.advance(time, given);
+}
+
 void ClosedLoop::step(uint32_t buttons) {
+    if (config_.lost_share > 0 && random() < config_.lost_share) return dropTick();
     stepper.step(toolPose(), buttons);
     on_the_way_.push_back(stepper.wrenchOnHand());
+    const double late = config_.jitter_ticks > 0 ? std::min(1.0, config_.jitter_ticks * random()) : 0;
+    if (late > 0) actuate(late * dt);
     held_ = on_the_way_.front();
     on_the_way_.pop_front();
-    plant.advance(dt, held_);
+    actuate((1 - late) * dt);
 }
 
 void ClosedLoop::dropTick() {
-    plant.advance(dt, held_);
+    actuate(dt);
 }
 
 void ClosedLoop::run(double seconds) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <random>
 #include <vector>
 
 #include "haptic_server/tick/haptic_tick.h"
@@ -51,7 +52,13 @@ struct LoopConfig {
     int delay_ticks = 1;  // a wrench computed from sample k acts from sample k + delay on
     DevicePlant device;
     HandPlant hand;
+    double jitter_ticks = 0;  // the delay varies by up to so much, evenly
+    double lost_share = 0;    // of the periods, in which the controller hears nothing
+    double most_force = 0;    // N that the motors give; 0: all
 };
+
+// What such a device says of itself.
+DeviceCapabilities declared(const LoopConfig& config, double dt);
 
 class ClosedLoop {
   public:
@@ -63,6 +70,8 @@ class ClosedLoop {
     // The controller misses a period: the device holds the last wrench.
     void dropTick();
     void run(double seconds);
+    // The device says what it is like, from the next step on.
+    void declare();
 
     Plant plant;
     Stepper stepper;
@@ -72,7 +81,12 @@ class ClosedLoop {
   private:
     // The handle starts where the tool does.
     Pose toolPose() const noexcept;
+    void actuate(double time);
+    double random() { return std::uniform_real_distribution<>(0, 1)(random_); }
 
+    LoopConfig config_;
+    DeviceCapabilities declared_;
+    std::minstd_rand random_;
     Pose start_;
     double workspace_scale_;
     std::deque<Wrench> on_the_way_;

@@ -1,0 +1,107 @@
+#include "tests/stability/loop_point.h"
+
+#include "tests/stability/hard_scenes.h"
+
+namespace bonemill::test {
+namespace {
+
+constexpr double kDt = 1e-3;
+constexpr double kInertiaPerMass = 2e-4, kAngularPerLinear = 2e-3, kAngularFriction = 5e-3;
+constexpr double kAnglePerStep = 35;  // rad/m: 0.01° at 5 µm
+constexpr double kAmplifiers_hz = 1000;
+constexpr double kPush = 2, kTwist = 5e-4;  // N, N·m
+constexpr int kMostWindows = 8;
+constexpr double kWindow = 0.5;  // s
+
+// A hole that the tool cannot drift out of along its axis, for there is nothing that would brake it.
+constexpr double kPegHalf = 1e-3, kClearance = kVoxel / 2;
+const Eigen::Vector3d kSocket(2.02e-3, 2.77e-3, 1.97e-3);
+
+VoxelVolume socketBone() {
+    return bodyVolume(boxOf({4e-3, 5.5e-3, 4e-3}), [](const Eigen::Vector3d& p) {
+        Eigen::Vector3d r = p - kSocket;
+        r.y() -= std::clamp(r.y(), -kPegHalf, kPegHalf);
+        return kBurrRadius + kClearance - r.norm();
+    });
+}
+
+struct Setting {
+    VoxelVolume bone;
+    TestTool tool;
+    Pose start;
+    Wrench push;
+};
+
+// What a thousand points share is made once.
+const Setting& settingOf(LoopPlace place) {
+    static const Setting kPlane{planeBone(), burr(), abovePlane(0.2e-3), {{0, 0, -kPush}, {0, 0, 0}}};
+    static const Setting kHole{socketBone(),
+                               pegTool(kBurrRadius, kPegHalf),
+                               upright(kSocket),
+                               {{kPush, 0, kPush / 2}, {kTwist, 0, kTwist}}};
+    return place == LoopPlace::kPlane ? kPlane : kHole;
+}
+
+bool isQuiet(const Residual& r) {
+    return r.rms <= kFeltForce && r.torque_rms <= kFeltTorque;
+}
+
+}  // namespace
+
+const std::vector<NamedHand>& loopHands() {
+    static const std::vector<NamedHand> kHands{{"none", kNoHand},
+                                               {"soft", {0.05, 1, 50, 1e-5, 0.002, 0.1}},
+                                               {"typical", {}},
+                                               {"stiff", {0.2, 15, 1000, 1e-4, 0.05, 2}}};
+    return kHands;
+}
+
+const char* nameOf(LoopPlace place) {
+    return place == LoopPlace::kPlane ? "plane" : "hole";
+}
+
+LoopConfig LoopPoint::config() const {
+    LoopConfig config;
+    config.delay_ticks = delay_ticks;
+    config.jitter_ticks = jitter_ticks;
+    config.lost_share = lost_share;
+    config.most_force = most_force;
+    config.hand = loopHands()[size_t(hand)].plant;
+    config.device = {.mass = mass,
+                     .damping = damping,
+                     .coulomb = friction,
+                     .inertia = mass * kInertiaPerMass,
+                     .angular_damping = damping * kAngularPerLinear,
+                     .angular_coulomb = friction * kAngularFriction,
+                     .amplifier_hz = kAmplifiers_hz,
+                     .encoder_step = encoder_step,
+                     .encoder_angle = encoder_step * kAnglePerStep};
+    return config;
+}
+
+LoopVerdict tryLoop(const LoopPoint& point, const Variant& variant, bool declares) {
+    const Setting& setting = settingOf(point.place);
+    Scene scene(setting.bone, setting.tool, variant, kDt);
+    const LoopConfig config = point.config();
+    ClosedLoop loop(config, scene, setting.start);
+    if (declares) loop.declare();
+    if (config.hand.stiffness > 0)
+        loop.plant.setTarget(setting.start.incremented(setting.push.force / config.hand.stiffness,
+                                                       setting.push.torque / config.hand.angular_stiffness));
+    else
+        loop.plant.setBias(setting.push);
+    loop.run(kWindow);
+    Residual r = residual(loop, kWindow);
+    double swing = r.rms + r.torque_rms;
+    for (int n = 2; n < kMostWindows && r.is_finite && !isQuiet(r); ++n) {
+        r = residual(loop, kWindow);
+        const double now = r.rms + r.torque_rms;
+        if (now > 0.9 * swing && n > 3) break;
+        swing = now;
+    }
+    LoopVerdict verdict{r.rms, r.torque_rms, 0, !r.is_finite || !r.is_touching};
+    verdict.wall = loop.stepper.record().coupling_share * couplingFigures(scene.config).translation_stiffness;
+    return verdict;
+}
+
+}  // namespace bonemill::test
