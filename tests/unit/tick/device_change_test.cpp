@@ -97,6 +97,29 @@ TEST(DeviceChange, TheCouplingIsNoStifferThanTheDeviceHolds) {
     }
 }
 
+// The fit goes on beside the ticks. ARES' own figures leave everything as the scene says.
+TEST(DeviceChange, ADeviceThatSaysWhatItIsLikeIsHeldByWhatItCarries) {
+    constexpr int kFitTicks = 500;
+    DeviceCapabilities device = deviceOf(40, 1, 0);
+    device.handle = {.mass = 0.25,
+                     .damping = 2,
+                     .inertia = 1e-4,
+                     .angular_damping = 0.004,
+                     .amplifier_time = 0.3e-3,
+                     .delay = 1e-3,
+                     .encoder_step = 5e-6,
+                     .encoder_angle = 1e-4};
+    ToolBench bench(1);
+    const TickRecord usual = bench.run(held(kFitTicks, &device)).back();
+    EXPECT_EQ(usual.coupling_share, 1);
+    EXPECT_EQ(usual.rotation_share, 1);
+    device.handle.angular_damping = 1e-4;
+    const TickRecord light = bench.run(held(kFitTicks, &device)).back();
+    EXPECT_EQ(light.coupling_share, 1);
+    EXPECT_LT(light.rotation_share, 0.5);
+    EXPECT_GT(light.rotation_share, 0.001);
+}
+
 // A tool chosen later is pulled with no more, either.
 TEST(DeviceChange, TheLimitOutlivesAChangeOfTheTool) {
     ToolBench bench(0);
