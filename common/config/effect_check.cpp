@@ -37,17 +37,20 @@ std::string pathOf(const std::string& effect) {
     return "effects." + effect;
 }
 
-bool isThesisLaw(const scene::Accuracy& accuracy) {
-    return accuracy.has_contact_law() ? accuracy.contact_law() == scene::Accuracy::PENALTY_THESIS_2012
-                                      : accuracy.preset() == scene::Accuracy::THESIS_2012;
+bool isGradientLaw(const scene::Accuracy& accuracy) {
+    if (accuracy.has_contact_law()) return accuracy.contact_law() == scene::Accuracy::GRADIENT;
+    const auto preset = accuracy.preset();
+    return preset == scene::Accuracy::FAST || preset == scene::Accuracy::BALANCED ||
+           preset == scene::Accuracy::EXACT;
 }
 
 void checkLaw(const scene::Scene& scene, const RefuseField& refuse) {
     const char* effect = effectOfGradientLaw(scene.effects());
-    if (effect == nullptr || !isThesisLaw(scene.accuracy())) return;
-    refuse(pathOf(effect),
-           "needs the gradient contact law, and accuracy asks for that of thesis_2012: take the preset FAST, "
-           "BALANCED or EXACT, or leave the effect out");
+    if (effect == nullptr || isGradientLaw(scene.accuracy())) return;
+    refuse(
+        pathOf(effect),
+        "needs the gradient contact law, and accuracy asks for another one: take the preset FAST, BALANCED "
+        "or EXACT, or leave the effect out");
 }
 
 void checkSpeed(const scene::Scene& scene, const RefuseField& refuse) {

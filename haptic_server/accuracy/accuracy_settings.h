@@ -6,17 +6,34 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace bonemill {
 
-enum class ContactLaw : uint8_t { kThesis2012, kGradient };
+// Those behind kGradient are of other schools, to compare with (docs/laws.md).
+enum class ContactLaw : uint8_t { kThesis2012, kGradient, kProxy3Dof, kVps, kPenaltySdf, kConstraint };
 // The tool's distances come from here: trilinear in its grid, or exact from its shapes (a mesh has only
 // the grid).
 enum class ToolDistance : uint8_t { kGrid, kAnalytic };
 enum class Precision : uint8_t { kFloat, kDouble };
 
-enum class Preset : uint8_t { kThesis2012, kFast, kBalanced, kExact };
+enum class Preset : uint8_t {
+    kThesis2012,
+    kFast,
+    kBalanced,
+    kExact,
+    kProxy3Dof,
+    kVps,
+    kPenaltySdf,
+    kConstraint
+};
+// The dial: the thesis and the gradient law's levels.
 inline constexpr Preset kPresets[] = {Preset::kThesis2012, Preset::kFast, Preset::kBalanced, Preset::kExact};
+// Each is one law of another school.
+inline constexpr Preset kComparedLaws[] = {Preset::kProxy3Dof};
+inline constexpr size_t kPresetCount = 8;
+// Returns all of them, the dial's first.
+std::vector<Preset> allPresets();
 
 // The settings are trivially copyable and may be changed between two ticks. The defaults are preset balanced.
 struct AccuracySettings {
@@ -36,9 +53,10 @@ struct AccuracySettings {
 
 AccuracySettings presetSettings(Preset preset) noexcept;
 
+std::string_view lawName(ContactLaw law) noexcept;
 std::string_view presetName(Preset preset) noexcept;
 std::optional<Preset> presetOfName(std::string_view name) noexcept;
-// Returns all of them with commas between, for messages. It allocates.
+// Returns all names with commas between, for messages. It allocates.
 std::string presetNames();
 
 // Returns the preset's name, or for settings that no preset has, every knob: "gradient s=2 grid×1 float 2

@@ -11,7 +11,7 @@ struct ParetoPoint {
     double error = 0;
     double time = 0;
     bool is_candidate =
-        true;  // false: its error is not one (thesis_2012); never on the front, never proposed
+        true;  // false: its error is not one (another law); never on the front, never proposed
 };
 
 // Says of each point whether no other candidate is at least as good in both and better in one. Equal points

@@ -139,15 +139,14 @@ std::string settingsOfPicture(const ReportData& data, const Axes& axes, const st
 std::string paretoScript(const ReportData& data, const std::filesystem::path& png) {
     const Axes axes(data);
     const auto& all = data.settings;
-    return block("candidates", data, [&](size_t n) { return !isThesis(all[n]); }) +
-           block("thesis", data, [&](size_t n) { return isThesis(all[n]); }) +
+    return block("candidates", data, [&](size_t n) { return !isOtherLaw(all[n]); }) +
+           block("other_laws", data, [&](size_t n) { return isOtherLaw(all[n]); }) +
            block("in_force", data, [&](size_t n) { return all[n].is_in_force; }) +
            block("front", data, [&](size_t n) { return bool(data.front[n]); }) +
            settingsOfPicture(data, axes, png) + legend(data) + labels(data, axes) +
            "plot $front using 1:2 with steps lw 2 lc rgb \"#50a060\" title \"Pareto front\", \\\n"
            " $candidates using 1:2 with points pt 7 ps 1.3 lc rgb \"#2050a0\" title \"gradient law\", \\\n"
-           " $thesis using 1:2 with points pt 9 ps 1.5 lc rgb \"#d06050\" title \"thesis\\\\_2012: another "
-           "law, its "
+           " $other_laws using 1:2 with points pt 9 ps 1.5 lc rgb \"#d06050\" title \"other laws: their "
            "difference\", \\\n"
            " $in_force using 1:2 with points pt 6 ps 3 lw 2 lc rgb \"#202020\" title \"in force in the "
            "scene\"\n";

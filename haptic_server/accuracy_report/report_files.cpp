@@ -26,7 +26,7 @@ void addTimes(Columns& row, const std::string& prefix, const TickTimes& times) {
 }
 
 Columns knobsOf(const AccuracySettings& settings) {
-    return {{"contact_law", settings.law == ContactLaw::kGradient ? "gradient" : "thesis_2012"},
+    return {{"contact_law", lawName(settings.law)},
             {"shell_factor", settings.shell_factor},
             {"sample_spacing_um", kPerMicrometre * settings.sample_spacing},
             {"most_samples", settings.most_samples},
@@ -49,8 +49,8 @@ Columns figuresOf(const SettingFigures& f, bool is_on_front) {
     row["rotation_error_mrad"] = kPerMilli * f.errors.rotation;
     row["max_penetration_um"] = kPerMicrometre * f.max_penetration;
     row["noise_mn"] = kPerMilli * f.noise;
-    row["plane_force_error_percent"] = isThesis(f) ? Columns() : Columns(100 * f.plane.force);
-    row["plane_depth_error_um"] = isThesis(f) ? Columns() : Columns(kPerMicrometre * f.plane.depth);
+    row["plane_force_error_percent"] = isOtherLaw(f) ? Columns() : Columns(100 * f.plane.force);
+    row["plane_depth_error_um"] = isOtherLaw(f) ? Columns() : Columns(kPerMicrometre * f.plane.depth);
     row["anisotropy_percent"] = 100 * f.plane.anisotropy;
     row["closed_path_energy_uj"] = kPerMicro * f.closed_energy;
     row["lowest_energy_uj"] = kPerMicro * f.lowest_energy;
@@ -124,14 +124,14 @@ TruthSummary summaryOf(const std::vector<ProbingStroke>& strokes, const std::vec
     return summary;
 }
 
-bool isThesis(const SettingFigures& figures) noexcept {
-    return figures.settings.law == ContactLaw::kThesis2012;
+bool isOtherLaw(const SettingFigures& figures) noexcept {
+    return figures.settings.law != ContactLaw::kGradient;
 }
 
 std::vector<ParetoPoint> paretoPoints(const std::vector<SettingFigures>& settings) {
     std::vector<ParetoPoint> points;
     for (const SettingFigures& f : settings)
-        points.push_back({f.errors.force_vector, f.times.p99_9, !isThesis(f)});
+        points.push_back({f.errors.force_vector, f.times.p99_9, !isOtherLaw(f)});
     return points;
 }
 

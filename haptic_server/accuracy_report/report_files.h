@@ -36,8 +36,8 @@ struct ReportData {
     std::optional<double> budget_us;
 };
 
-bool isThesis(const SettingFigures& figures) noexcept;
-// Each point is a force error against p99.9; thesis_2012 is no candidate, for the truth is not that
+bool isOtherLaw(const SettingFigures& figures) noexcept;
+// Each point is a force error against p99.9; other laws are no candidates, for the truth is not that
 // of its force.
 std::vector<ParetoPoint> paretoPoints(const std::vector<SettingFigures>& settings);
 size_t indexInForce(const ReportData& data) noexcept;

@@ -70,9 +70,9 @@ std::string settingRow(const ReportData& data, size_t n) {
     std::string name = f.name;
     if (f.is_in_force) name = "**" + name + "** (in force)";
     std::string row = format("| %zu | ", n + 1) + name +
-                      (data.front[n] ? " | ✓ |"
-                       : isThesis(f) ? " | † |"
-                                     : " | |");
+                      (data.front[n]   ? " | ✓ |"
+                       : isOtherLaw(f) ? " | † |"
+                                       : " | |");
     row += cell(100 * f.errors.force_vector) + cell(100 * f.errors.force) + cell(100 * f.errors.torque) +
            cell(f.errors.direction / kDegree) + cell(kPerMicrometre * f.errors.position) +
            cell(kPerMilli * f.errors.rotation) + cell(kPerMicrometre * f.max_penetration) +
@@ -172,14 +172,11 @@ std::string timesText(const ReportData& data) {
            format(" The scene's tick has %.4g µs.\n\n", kPerMicrosecond * data.tick_period);
 }
 
-std::string thesisText() {
-    return "**† thesis_2012** computes another force: a stiffness per contact point, limited to that of 10 "
-           "points, along "
-           "the bone's noisy normals. There is no truth of it that a finer sampling would approach. Its "
-           "columns of "
-           "errors show how far it is from the truth of the gradient law; it takes no part in the front and "
-           "is never "
-           "proposed.\n\n";
+std::string otherLawsText() {
+    return "**†** These are other contact laws: thesis_2012, and those of other schools (docs/laws.md). They "
+           "compute another force. There is no truth of it that a finer "
+           "sampling would approach. Their columns of errors show how far they are from the truth of the "
+           "gradient law; they take no part in the front and are never proposed.\n\n";
 }
 
 std::string kindText(const PatchErrors& p) {
@@ -217,7 +214,7 @@ std::vector<std::string> reportConclusions(const ReportData& data) {
     const SettingFigures& now = data.settings[indexInForce(data)];
     std::vector<std::string> lines{"In force in this scene: **" + now.name + "**, " + shortFigures(now) +
                                    '.'};
-    if (isThesis(now)) lines.back() += " (Its error is the difference to another law's truth, see †.)";
+    if (isOtherLaw(now)) lines.back() += " (Its error is the difference to another law's truth, see †.)";
     lines.push_back(nextBetterText(data));
     if (data.budget_us) lines.push_back(budgetText(data));
     if (const std::string stalled = stalledText(data); !stalled.empty()) lines.push_back(stalled);
@@ -235,7 +232,7 @@ std::string reportText(const ReportData& data) {
         data.contact_width / data.spacing);
     text += "![force error against tick time](pareto.png)\n\n";
     text += settingsTable(data) + '\n';
-    return text + truthText(data) + pathText(data) + figuresText(data) + timesText(data) + thesisText() +
+    return text + truthText(data) + pathText(data) + figuresText(data) + timesText(data) + otherLawsText() +
            patchTable(data);
 }
 

@@ -17,7 +17,7 @@ struct SettingFigures {
     AccuracySettings settings;
     std::string name;            // settingsName()
     bool is_in_force = false;    // the scene's own
-    Errors errors;               // along the probing path; for thesis_2012 differences, not errors
+    Errors errors;               // along the probing path; for other laws differences, not errors
     double max_penetration = 0;  // m
     double noise = 0;            // N
     double closed_energy = 0;    // J: least that any closed stroke took from the hand

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "haptic_server/setup/scene_accuracy.h"
+
 namespace bonemill {
 namespace {
 
@@ -57,8 +59,7 @@ void addCheap(Choices& choices, bool has_shapes) {
 
 void setTo(scene::Accuracy& knobs, const AccuracySettings& settings) {
     using scene::Accuracy;
-    knobs.set_contact_law(settings.law == ContactLaw::kGradient ? Accuracy::GRADIENT
-                                                                : Accuracy::PENALTY_THESIS_2012);
+    knobs.set_contact_law(sceneLawOf(settings.law));
     knobs.set_shell_factor(uint32_t(settings.shell_factor));
     knobs.set_sample_spacing_um(kPerMicrometre * settings.sample_spacing);
     knobs.set_most_samples(uint32_t(settings.most_samples));
@@ -74,7 +75,7 @@ void setTo(scene::Accuracy& knobs, const AccuracySettings& settings) {
 
 std::vector<AccuracySettings> sweepSettings(const AccuracySettings& of_scene, bool has_shapes) {
     Choices choices;
-    for (const Preset preset : kPresets) choices.add(presetSettings(preset));
+    for (const Preset preset : allPresets()) choices.add(presetSettings(preset));
     addAroundBalanced(choices, has_shapes);
     addCheap(choices, has_shapes);
     choices.vary(presetSettings(Preset::kThesis2012), &AccuracySettings::shell_factor, {1, 2});

@@ -69,8 +69,7 @@ void describeTools(const Simulation& simulation, std::ostream& out) {
 void describeBudget(const Simulation& simulation, std::ostream& out) {
     const TickConfig& tick = simulation.tick;
     out << "most point tests in a tick: " << tick.gradient.most_point_tests
-        << (simulation.accuracy.law == ContactLaw::kThesis2012 ? ", without effect on the thesis' law\n"
-                                                               : "\n")
+        << (simulation.accuracy.law == ContactLaw::kGradient ? "\n" : ", without effect on this law\n")
         << "most milled cells in a tick: " << tick.most_milled_cells << '\n';
 }
 

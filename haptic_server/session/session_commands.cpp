@@ -84,9 +84,9 @@ std::string SessionCommands::setAccuracy(const std::string& name) {
     if (name != "scene" && !preset)
         return "refused: no preset is called '" + repeatedText(name) + "'; " + presetNames() + " or scene";
     if (!is_switchable_ && preset) return "refused: the scene says accuracy.switchable: false";
-    if (preset == Preset::kThesis2012 && effect_of_gradient_law_)
+    if (preset && presetSettings(*preset).law != ContactLaw::kGradient && effect_of_gradient_law_)
         return std::string("refused: effects.") + effect_of_gradient_law_ +
-               " of the scene needs the gradient contact law, which thesis_2012 is not";
+               " of the scene needs the gradient contact law, which " + name + " is not";
     controls_.accuracy.choose(preset ? AccuracySwitch::choiceOf(*preset) : AccuracySwitch::kSceneChoice);
     return "done";
 }

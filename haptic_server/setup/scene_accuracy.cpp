@@ -19,9 +19,23 @@ Preset presetOf(scene::Accuracy::Preset preset) {
             return Preset::kFast;
         case scene::Accuracy::EXACT:
             return Preset::kExact;
+        case scene::Accuracy::PROXY_3DOF:
+            return Preset::kProxy3Dof;
         default:
             return Preset::kBalanced;
     }
+}
+
+constexpr std::pair<scene::Accuracy::ContactLaw, ContactLaw> kLaws[] = {
+    {scene::Accuracy::GRADIENT, ContactLaw::kGradient},
+    {scene::Accuracy::PENALTY_THESIS_2012, ContactLaw::kThesis2012},
+    {scene::Accuracy::BALL_PROXY, ContactLaw::kProxy3Dof},
+};
+
+ContactLaw lawOf(scene::Accuracy::ContactLaw wanted) {
+    for (const auto& [name, law] : kLaws)
+        if (name == wanted) return law;
+    return ContactLaw::kGradient;
 }
 
 ShellNormals givenNormals(scene::Accuracy::Normals normals) {
@@ -36,12 +50,16 @@ GradientContactConfig contactConfigOf(const scene::Contact& contact) {
 
 }  // namespace
 
+scene::Accuracy::ContactLaw sceneLawOf(ContactLaw wanted) {
+    for (const auto& [name, law] : kLaws)
+        if (law == wanted) return name;
+    return scene::Accuracy::GRADIENT;
+}
+
 AccuracySettings accuracyOf(const scene::Scene& scene) {
     const scene::Accuracy& knobs = scene.accuracy();
     AccuracySettings settings = presetSettings(presetOf(knobs.preset()));
-    if (knobs.has_contact_law())
-        settings.law = knobs.contact_law() == scene::Accuracy::GRADIENT ? ContactLaw::kGradient
-                                                                        : ContactLaw::kThesis2012;
+    if (knobs.has_contact_law()) settings.law = lawOf(knobs.contact_law());
     if (knobs.has_shell_factor()) settings.shell_factor = int(knobs.shell_factor());
     if (knobs.has_sample_spacing_um()) settings.sample_spacing = knobs.sample_spacing_um() * kMicrometre;
     if (knobs.has_most_samples()) settings.most_samples = int(knobs.most_samples());
@@ -60,7 +78,7 @@ AccuracySettings accuracyOf(const scene::Scene& scene) {
 std::vector<AccuracySettings> accuracyChoices(const scene::Scene& scene) {
     std::vector<AccuracySettings> choices{accuracyOf(scene)};
     if (scene.accuracy().switchable())
-        for (const Preset preset : kPresets) choices.push_back(presetSettings(preset));
+        for (const Preset preset : allPresets()) choices.push_back(presetSettings(preset));
     return choices;
 }
 
@@ -84,7 +102,7 @@ std::vector<int> sdfRefinementsOf(const scene::Scene& scene, const scene::Tool& 
     const bool has_shapes = !tool.has_mesh_path();
     std::set<int> refinements;
     for (const AccuracySettings& choice : accuracyChoices(scene)) {
-        const bool needs_grid = choice.law == ContactLaw::kGradient &&
+        const bool needs_grid = choice.law != ContactLaw::kThesis2012 &&
                                 !(has_shapes && choice.tool_distance == ToolDistance::kAnalytic);
         if (needs_grid && choice.sdf_refinement > 1) refinements.insert(choice.sdf_refinement);
     }

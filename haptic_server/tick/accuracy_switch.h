@@ -8,14 +8,14 @@
 
 namespace bonemill {
 
-// The choice is fixed: what the scene says, and the presets.
+// The choice is fixed: what the scene says, and the presets, the compared laws among them.
 class AccuracySwitch {
   public:
     static constexpr size_t kSceneChoice = 0;
 
     explicit AccuracySwitch(const AccuracySettings& of_scene) noexcept {
         choices_[kSceneChoice] = of_scene;
-        for (const Preset preset : kPresets) choices_[choiceOf(preset)] = presetSettings(preset);
+        for (const Preset preset : allPresets()) choices_[choiceOf(preset)] = presetSettings(preset);
     }
 
     static constexpr size_t choiceOf(Preset preset) noexcept { return 1 + size_t(preset); }
@@ -27,7 +27,7 @@ class AccuracySwitch {
     }
 
   private:
-    std::array<AccuracySettings, 1 + std::size(kPresets)> choices_;
+    std::array<AccuracySettings, 1 + kPresetCount> choices_;
     std::atomic<size_t> choice_{kSceneChoice};
 };
 

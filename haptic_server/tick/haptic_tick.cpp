@@ -42,6 +42,8 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
       tool_(tools_.chosen()),
       thesis_(config.contact, config.coupling, worldOf(bone_), tools_[tool_], config.dt),
       gradient_(config.gradient, worldOf(bone_), tools_[tool_], config.dt),
+      compared_({config.contact, config.coupling, config.gradient.coupling}, worldOf(bone_), tools_[tool_],
+                config.dt),
       model_(&gradient_),
       affordable_(config.dt),
       effects_(makeEffects(config.effects, bone_,
@@ -80,8 +82,7 @@ void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept 
 void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
     settings_ = settings;
     bone_.shell.follow(levelOf(bone_.shell, settings));
-    const bool is_thesis = settings.law == ContactLaw::kThesis2012;
-    SpoModel* model = is_thesis ? static_cast<SpoModel*>(&thesis_) : &gradient_;
+    SpoModel* model = modelOf(settings.law);
     model->setAccuracy(settings);
     has_changed_suddenly_ = true;
     if (model != model_) {
@@ -89,6 +90,12 @@ void HapticTick::takeUp(const AccuracySettings& settings) noexcept {
         effects_.restart(Restart::kOtherLaw);
     }
     model_ = model;
+}
+
+SpoModel* HapticTick::modelOf(ContactLaw law) noexcept {
+    if (law == ContactLaw::kThesis2012) return &thesis_;
+    if (SpoModel* compared = compared_.of(law)) return compared;
+    return &gradient_;
 }
 
 void HapticTick::adaptTo(const DeviceCapabilities& device) noexcept {
@@ -102,6 +109,7 @@ void HapticTick::adaptTo(const DeviceCapabilities& device) noexcept {
 void HapticTick::useCoupling() noexcept {
     const HandSide& side = hand_coupling_.side();
     gradient_.setCoupling(side.gradient, side.most_pull);
+    compared_.setCoupling(side.gradient, side.most_pull);
     hand_limits_.setDevice(side.limits, side.spring);
 }
 
@@ -120,6 +128,7 @@ void HapticTick::chooseTool() noexcept {
     tool_ = chosen;
     thesis_.setTool(tools_[tool_]);
     gradient_.setTool(tools_[tool_]);
+    compared_.setTool(tools_[tool_]);
     effects_.restart(Restart::kOtherTool);
     has_changed_suddenly_ = true;
     hand_limits_.beginSuddenChange();

@@ -9,6 +9,7 @@
 #include "haptic_server/bone/bone_history.h"
 #include "haptic_server/bone/bone_model.h"
 #include "haptic_server/effects/effect_host.h"
+#include "haptic_server/laws/compared_laws.h"
 #include "haptic_server/milling/milling_result.h"
 #include "haptic_server/spo/gradient_model.h"
 #include "haptic_server/spo/thesis_2012_model.h"
@@ -58,6 +59,7 @@ class HapticTick {
     void acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
+    SpoModel* modelOf(ContactLaw law) noexcept;
     void chooseTool() noexcept;
     void beginEffects(const DeviceInput& input) noexcept;
     SpoStep moveAndFeel(const DeviceInput& input, uint32_t& faults) noexcept;
@@ -74,7 +76,8 @@ class HapticTick {
     size_t tool_;  // of tools_
     Thesis2012Model thesis_;
     GradientModel gradient_;
-    SpoModel* model_;  // thesis_ or gradient_
+    ComparedLaws compared_;
+    SpoModel* model_;  // thesis_, gradient_ or one of compared_
     AccuracySettings settings_;
     AffordableShell affordable_;
     EffectHost effects_;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "haptic_server/accuracy/accuracy_settings.h"
 #include "haptic_server/telemetry/tick_record.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/process.h"
@@ -90,7 +91,8 @@ class AccuracySwitching : public testing::Test {
         ASSERT_TRUE(hasStatus());
         expectInForce(of_scene);
         const uint32_t faults_before = status().faults();
-        for (const std::string preset : {"thesis_2012", "fast", "exact", "balanced", "thesis_2012"}) {
+        for (const std::string preset :
+             {"thesis_2012", "fast", "exact", "balanced", "proxy_3dof", "thesis_2012"}) {
             const Finished answer = setAccuracy(preset);
             EXPECT_EQ(answer.exit_code, 0) << answer.err;
             EXPECT_EQ(answer.out, "accuracy " + preset + ": done\n");
@@ -142,9 +144,8 @@ TEST_F(AccuracySwitching, RefusesAPresetThatThereIsNot) {
     ASSERT_TRUE(hasStatus());
     const Finished answer = setAccuracy("best");
     EXPECT_EQ(answer.exit_code, 1);
-    EXPECT_EQ(
-        answer.out,
-        "accuracy best: refused: no preset is called 'best'; thesis_2012, fast, balanced, exact or scene\n");
+    EXPECT_EQ(answer.out,
+              "accuracy best: refused: no preset is called 'best'; " + presetNames() + " or scene\n");
     expectInForce("balanced");
 }
 

@@ -73,7 +73,7 @@ TEST_F(DescribeScene, ListsTheTools) {
 
 TEST_F(DescribeScene, TheThesisLawHasNoBudgetOfPointTests) {
     expectLine(describe("accuracy { preset: THESIS_2012 }"),
-               "most point tests in a tick: 100000, without effect on the thesis' law");
+               "most point tests in a tick: 100000, without effect on this law");
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ TEST(Conclusions, WarnOfTimesWithoutMilling) {
     EXPECT_TRUE(contains(lines[2], "with: fast (10 %) of the wanted volume"));
 }
 
-TEST(ReportText, HasTheTableAndSaysWhatThesisErrorsAreNot) {
+TEST(ReportText, HasTheTableAndSaysWhatOtherLawsErrorsAreNot) {
     const std::string text = reportText(smallReport());
     EXPECT_TRUE(contains(text, "**balanced** (in force) | ✓ |"));
     EXPECT_TRUE(contains(text, "| thesis_2012 | † |"));

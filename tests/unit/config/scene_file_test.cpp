@@ -226,11 +226,12 @@ TEST_F(SceneFile, soundNeedsAnEffectThatKnowsTheBurrsWork) {
 TEST_F(SceneFile, effectsThatReadContactsNeedTheGradientLaw) {
     const std::string scene =
         "volume { path: 'v' } tool { speed_rpm: 9000 }\neffects { energy_removal {} }\n";
-    for (const std::string law : {"preset: THESIS_2012", "contact_law: PENALTY_THESIS_2012"})
+    for (const std::string law : {"preset: THESIS_2012", "contact_law: PENALTY_THESIS_2012",
+                                  "preset: PROXY_3DOF", "contact_law: BALL_PROXY"})
         EXPECT_EQ(
             refusal(scene + "accuracy { " + law + " }"),
             "s.textproto:2: field `effects.energy_removal` needs the gradient contact law, and accuracy "
-            "asks for that of thesis_2012: take the preset FAST, BALANCED or EXACT, or leave the effect "
+            "asks for another one: take the preset FAST, BALANCED or EXACT, or leave the effect "
             "out");
     EXPECT_EQ(refusal(scene + "accuracy { preset: THESIS_2012 contact_law: GRADIENT }"), "accepted");
     EXPECT_EQ(refusal("volume { path: 'v' } effects { time_removal {} } accuracy { preset: THESIS_2012 }"),
@@ -304,8 +305,9 @@ TEST(SceneTable, schemaRowsHaveUnitDefaultAndRange) {
     EXPECT_NE(table.find("| `tool[].shape[].sphere.radius_mm` | mm | 1 | 0.01 .. 100 |"), std::string::npos);
     EXPECT_NE(table.find("| `volume.leaf_voxels` | voxels | not set | 4 .. 31 |"), std::string::npos);
     EXPECT_NE(table.find("| `device.p_WD_mm` | mm | not set | x, y, z |"), std::string::npos);
-    EXPECT_NE(table.find("| `accuracy.preset` |  | BALANCED | THESIS_2012, FAST, BALANCED, EXACT |"),
-              std::string::npos);
+    EXPECT_NE(
+        table.find("| `accuracy.preset` |  | BALANCED | THESIS_2012, FAST, BALANCED, EXACT, PROXY_3DOF"),
+        std::string::npos);
 }
 
 // BONEMILL_WRITE_DOCS=1 writes the table instead of comparing it.

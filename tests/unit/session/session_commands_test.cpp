@@ -44,14 +44,14 @@ class SessionCommandsTest : public testing::Test {
     SessionCommands commands_;
 };
 
-constexpr const char* kPresets = "; thesis_2012, fast, balanced, exact or scene";
+const std::string kPresets = "; " + presetNames() + " or scene";
 
 TEST_F(SessionCommandsTest, APresetsNameIsTakenAndAnUnknownOneRefused) {
     EXPECT_EQ(setAccuracy("fast"), "done");
     EXPECT_EQ(setAccuracy("best"), std::string("refused: no preset is called 'best'") + kPresets);
 }
 
-TEST_F(SessionCommandsTest, TheThesisLawIsRefusedWhereAnEffectNeedsTheOther) {
+TEST_F(SessionCommandsTest, AnotherLawIsRefusedWhereAnEffectNeedsTheGradientLaw) {
     EXPECT_EQ(setAccuracy("thesis_2012"), "done");
     scene::Scene scene = sceneOf();
     scene.mutable_effects()->mutable_energy_removal();
@@ -60,11 +60,12 @@ TEST_F(SessionCommandsTest, TheThesisLawIsRefusedWhereAnEffectNeedsTheOther) {
                              false);
     topics::Command command;
     command.set_role(topics::Viewer::OPERATOR);
-    command.set_set_accuracy("thesis_2012");
-    EXPECT_EQ(
-        commands.carryOut(command),
-        "refused: effects.energy_removal of the scene needs the gradient contact law, which thesis_2012 "
-        "is not");
+    for (const std::string law : {"thesis_2012", "proxy_3dof"}) {
+        command.set_set_accuracy(law);
+        EXPECT_EQ(commands.carryOut(command),
+                  "refused: effects.energy_removal of the scene needs the gradient contact law, which " +
+                      law + " is not");
+    }
     command.set_set_accuracy("exact");
     EXPECT_EQ(commands.carryOut(command), "done");
 }

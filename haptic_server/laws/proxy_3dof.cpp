@@ -1,0 +1,28 @@
+#include "haptic_server/laws/proxy_3dof.h"
+
+#include "common/geometry/bounded_vector.h"
+
+namespace bonemill {
+
+void Proxy3Dof::setTool(const SpoTool& tool) noexcept {
+    ComparedLaw::setTool(tool);
+    ball_ = BallField(tool.burr.radius);
+}
+
+SpoStep Proxy3Dof::advance(const Pose& X_VT, const Pose& X_VT_device) noexcept {
+    SpoStep step;
+    Eigen::Vector3d way = X_VT_device.position - X_VT.position;
+    step.is_motion_clamped = limitLength(way, config().steps.max_speed * dt());
+    Pose proxy{X_VT.position, X_VT_device.rotation};
+    const BlockedMotion::Wish wish{.X_VT = {X_VT.position + way, X_VT_device.rotation},
+                                   .K = Matrix6d::Identity(),
+                                   .may_turn = false,
+                                   .rounds = iterations(),
+                                   .recovery = BlockedMotion::kRecovery * dt()};
+    motion_.go(world(), level(), ball_, wish, proxy, step);
+    feel(step, proxy, X_VT_device);
+    step.wrench_hand_V.torque.setZero();
+    return step;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,28 @@
+// proxy_3dof: a ball that the hand drags over the bone by a spring, and that never enters it. Only the burr's
+// ball touches, the shaft does not, and there is no torque: the orientation is the hand's.
+//
+// After Zilles and Salisbury, "A constraint-based god-object method for haptic display", IROS 1995, with the
+// ball in place of their point after Ruspini, Kolarov and Khatib, "The haptic display of complex graphical
+// environments", SIGGRAPH 1997. docs/laws.md says what it is good for.
+#pragma once
+
+#include "haptic_server/laws/ball_field.h"
+#include "haptic_server/laws/blocked_motion.h"
+#include "haptic_server/laws/compared_law.h"
+
+namespace bonemill {
+
+class Proxy3Dof final : public ComparedLaw {
+  public:
+    Proxy3Dof(const LawConfig& config, const SpoWorld& world, const SpoTool& tool, double dt)
+        : ComparedLaw(config, world, tool, dt), ball_(tool.burr.radius) {}
+
+    SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override;
+    void setTool(const SpoTool& tool) noexcept override;
+
+  private:
+    BallField ball_;
+    BlockedMotion motion_;
+};
+
+}  // namespace bonemill
