@@ -30,7 +30,8 @@ enum class Preset : uint8_t {
 // The dial: the thesis and the gradient law's levels.
 inline constexpr Preset kPresets[] = {Preset::kThesis2012, Preset::kFast, Preset::kBalanced, Preset::kExact};
 // Each is one law of another school.
-inline constexpr Preset kComparedLaws[] = {Preset::kProxy3Dof};
+inline constexpr Preset kComparedLaws[] = {Preset::kProxy3Dof, Preset::kVps, Preset::kPenaltySdf,
+                                           Preset::kConstraint};
 inline constexpr size_t kPresetCount = 8;
 // Returns all of them, the dial's first.
 std::vector<Preset> allPresets();

@@ -26,24 +26,30 @@ class BlockedMotion {
     BlockedMotion() : points_(kMostPoints), planes_(kMostRows) {}
 
     struct Wish {
-        Pose X_VT;      // where the hand wants the tool, near enough for one tick
+        Pose X_VT;      // where the hand wants the tool: all the way, or balance would be sought elsewhere
         Matrix6d K;     // what makes motions near to each other
         bool may_turn;  // false: the tool has the wanted rotation already, and contact turns it no more
         int rounds;
-        double recovery;  // m in this tick
+        double recovery;              // m in this tick
+        double bite;                  // m: so deep in the bone the planes lie
+        double most_move, most_turn;  // m and rad in this tick
     };
+    // Forgets earlier ticks.
+    void restart() noexcept { last_reach_ = 0; }
     // Moves X_VT; fills contacts, candidates, iterations, max_penetration, has_contact_overflow and
     // has_stalled of `out`. Returns the reaction of the last step's contacts on the tool in units of K Δ.
     Vector6d go(const SpoWorld& bone, int level, const ToolField& tool, const Wish& wish, Pose& X_VT,
                 SpoStep& out) noexcept;
 
   private:
-    void takePlanes(const ToolField& tool, const Pose& X_VT, const Wish& wish, double reach,
+    void takePlanes(const ToolField& tool, const Pose& X_VT, const Wish& wish, double reach, double recovery,
                     SpoStep& out) noexcept;
-    double allowedShare(const ToolField& tool, const Pose& X_VT, const Vector6d& motion) noexcept;
+    double allowedShare(const ToolField& tool, const Pose& X_VT, const Vector6d& motion,
+                        double bite) noexcept;
 
     NearPoints points_;
     LeastConstraint planes_;
+    double last_reach_ = 0;  // m: how far the last tick's motion moved any of the tool's points
     std::vector<float> lowest_ = std::vector<float>(kMostPoints);  // m: how near each point may come
 };
 

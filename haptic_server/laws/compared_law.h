@@ -55,7 +55,12 @@ class ComparedLaw : public SpoModel {
         saturate();
     }
 
+    // The burr removes bone from the next advance() on, or no longer does.
+    void setCutting(bool is_cutting) noexcept { is_cutting_ = is_cutting; }
+
   protected:
+    // A rigid burr that never entered the bone would cut nothing: while it cuts, it may be so deep in it, m.
+    double bite() const noexcept { return is_cutting_ ? kBite * world_.volume.spacing().minCoeff() : 0; }
     // Ends a tick with the tool at this pose: says what the hand gets.
     void feel(SpoStep& step, const Pose& X_VT, const Pose& X_VT_device) noexcept {
         step.X_VT = X_VT;
@@ -74,6 +79,8 @@ class ComparedLaw : public SpoModel {
     double dt() const noexcept { return dt_; }
 
   private:
+    static constexpr double kBite = 0.1;  // voxels
+
     void saturate() noexcept {
         static_cast<EnergyCouplingConfig&>(coupling_) = config_.coupling;
         coupling_.saturation_force = std::min({tool_.saturation_force, most_pull_, most_carried_});
@@ -90,6 +97,7 @@ class ComparedLaw : public SpoModel {
     double most_pull_ = std::numeric_limits<double>::infinity();  // N
     ContinuousRotation way_;
     int level_ = 0;
+    bool is_cutting_ = false;
 };
 
 }  // namespace bonemill

@@ -12,7 +12,12 @@ namespace bonemill {
 namespace {
 
 constexpr double kHalfDiagonal = 0.7071;  // of a square of side 1
-constexpr int kPlaceSteps = 2;
+constexpr int kPlaceSteps = 8;
+constexpr double kCloseEnough = 0.02, kInside = 0.99, kBeyond = 0.1;  // of a disc's radius
+constexpr double kFacing = 0.1;  // cosine of the angle from which on a disc is met from beside
+constexpr double kRound = 0.98;  // cosine of the angle by which the tool bends from the rim to beyond
+constexpr double kSmallestSlope = 1e-6;
+constexpr double kShorter = 0.3;
 
 }  // namespace
 
@@ -74,18 +79,32 @@ bool NearPoints::gather(const SpoWorld& bone, int level, const ToolField& tool, 
 NearPoints::Place NearPoints::nearestPlace(size_t n, const ToolField& tool, const Pose& X_VT,
                                            const Pose& X_TV) const noexcept {
     const Eigen::Vector3d center = position(n), normal_V = normal(n);
-    Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-    Place place{center, 0, Eigen::Vector3d::Zero()};
-    for (int step = 0;; ++step) {
-        place.position = center + offset;
-        const ToolSample at = tool.sample(X_TV * place.position);
-        place.distance = at.distance;
-        place.out_of_tool = X_VT.rotation * at.gradient;
-        if (step == kPlaceSteps || normal_V.isZero(0)) return place;
-        const Eigen::Vector3d& g = place.out_of_tool;
-        const double to_axis = std::max(0.0, tool.thinnestRadius() + at.distance);
-        offset = bounded(offset - to_axis * (g - g.dot(normal_V) * normal_V), discRadius(n));
+    const double disc = discRadius(n);
+    ToolSample at = tool.sample(X_TV * center);
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero(), out = X_VT.rotation * at.gradient;
+    double stride = std::max(0.0, tool.thinnestRadius() + at.distance);  // all the way for a ball
+    for (int step = 0; step < kPlaceSteps && !normal_V.isZero(0); ++step) {
+        const Eigen::Vector3d along = out - out.dot(normal_V) * normal_V;
+        const Eigen::Vector3d next = bounded(offset - stride * along, disc);
+        if ((next - offset).norm() < kCloseEnough * disc) break;
+        const ToolSample there = tool.sample(X_TV * (center + next));
+        if (there.distance < at.distance) {
+            at = there, offset = next, out = X_VT.rotation * at.gradient;
+        } else {
+            stride *= kShorter;
+        }
     }
+    // At the rim of a disc an edge of the tool is as near to it sideways as from above; but there the next
+    // disc goes on, and nothing is to be met. What is round there has its own normal.
+    bool is_of_disc = offset.norm() < kInside * disc;
+    const Eigen::Vector3d sideways = out - out.dot(normal_V) * normal_V;
+    if (!is_of_disc && !sideways.isZero(kSmallestSlope)) {
+        const Eigen::Vector3d beyond =
+            center + offset - (std::abs(at.distance) + kBeyond * disc) * sideways.normalized();
+        is_of_disc = (X_VT.rotation * tool.sample(X_TV * beyond).gradient).dot(out) < kRound;
+    }
+    is_of_disc = is_of_disc && out.dot(normal_V) < -kFacing;
+    return {center + offset, at.distance, is_of_disc ? Eigen::Vector3d(-normal_V) : out};
 }
 
 void NearPoints::measure(const ToolField& tool, const Pose& X_VT, double beyond) noexcept {

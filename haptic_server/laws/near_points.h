@@ -45,12 +45,13 @@ class NearPoints {
     double distance(size_t n) const noexcept { return double(distance_[n]); }
 
     struct Place {
-        Eigen::Vector3d position;     // V
-        double distance;              // m, negative in the tool
-        Eigen::Vector3d out_of_tool;  // V: the gradient of the tool's distance
+        Eigen::Vector3d position;  // V
+        double distance;           // m, negative in the tool
+        Eigen::Vector3d
+            out_of_tool;  // V: into the bone at right angles to the disc; at its rim out of the tool
     };
-    // Returns the place of the disc that is nearest to the tool, or the deepest in it. It is exact for a
-    // ball, and near to it for what is not much less round than the tool's thinnest part.
+    // Returns the place of the disc that is nearest to the tool, or the deepest in it, by a descent of the
+    // tool's distance: at once for a ball, in some steps for a rim.
     Place nearestPlace(size_t n, const ToolField& tool, const Pose& X_VT, const Pose& X_TV) const noexcept;
 
   private:

@@ -1,7 +1,5 @@
 #include "haptic_server/laws/proxy_3dof.h"
 
-#include "common/geometry/bounded_vector.h"
-
 namespace bonemill {
 
 void Proxy3Dof::setTool(const SpoTool& tool) noexcept {
@@ -11,14 +9,15 @@ void Proxy3Dof::setTool(const SpoTool& tool) noexcept {
 
 SpoStep Proxy3Dof::advance(const Pose& X_VT, const Pose& X_VT_device) noexcept {
     SpoStep step;
-    Eigen::Vector3d way = X_VT_device.position - X_VT.position;
-    step.is_motion_clamped = limitLength(way, config().steps.max_speed * dt());
     Pose proxy{X_VT.position, X_VT_device.rotation};
-    const BlockedMotion::Wish wish{.X_VT = {X_VT.position + way, X_VT_device.rotation},
+    const BlockedMotion::Wish wish{.X_VT = X_VT_device,
                                    .K = Matrix6d::Identity(),
                                    .may_turn = false,
                                    .rounds = iterations(),
-                                   .recovery = BlockedMotion::kRecovery * dt()};
+                                   .recovery = BlockedMotion::kRecovery * dt(),
+                                   .bite = bite(),
+                                   .most_move = config().steps.max_speed * dt(),
+                                   .most_turn = 0};
     motion_.go(world(), level(), ball_, wish, proxy, step);
     feel(step, proxy, X_VT_device);
     step.wrench_hand_V.torque.setZero();

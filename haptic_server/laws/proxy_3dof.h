@@ -18,6 +18,10 @@ class Proxy3Dof final : public ComparedLaw {
         : ComparedLaw(config, world, tool, dt), ball_(tool.burr.radius) {}
 
     SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override;
+    void restart() noexcept override {
+        ComparedLaw::restart();
+        motion_.restart();
+    }
     void setTool(const SpoTool& tool) noexcept override;
 
   private:

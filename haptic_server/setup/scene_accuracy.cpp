@@ -21,6 +21,12 @@ Preset presetOf(scene::Accuracy::Preset preset) {
             return Preset::kExact;
         case scene::Accuracy::PROXY_3DOF:
             return Preset::kProxy3Dof;
+        case scene::Accuracy::VPS:
+            return Preset::kVps;
+        case scene::Accuracy::PENALTY_SDF:
+            return Preset::kPenaltySdf;
+        case scene::Accuracy::CONSTRAINT:
+            return Preset::kConstraint;
         default:
             return Preset::kBalanced;
     }
@@ -30,6 +36,9 @@ constexpr std::pair<scene::Accuracy::ContactLaw, ContactLaw> kLaws[] = {
     {scene::Accuracy::GRADIENT, ContactLaw::kGradient},
     {scene::Accuracy::PENALTY_THESIS_2012, ContactLaw::kThesis2012},
     {scene::Accuracy::BALL_PROXY, ContactLaw::kProxy3Dof},
+    {scene::Accuracy::VOXMAP_POINT_SHELL, ContactLaw::kVps},
+    {scene::Accuracy::POINT_PENALTY, ContactLaw::kPenaltySdf},
+    {scene::Accuracy::LEAST_CONSTRAINT, ContactLaw::kConstraint},
 };
 
 ContactLaw lawOf(scene::Accuracy::ContactLaw wanted) {

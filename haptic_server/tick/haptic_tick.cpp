@@ -42,8 +42,8 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
       tool_(tools_.chosen()),
       thesis_(config.contact, config.coupling, worldOf(bone_), tools_[tool_], config.dt),
       gradient_(config.gradient, worldOf(bone_), tools_[tool_], config.dt),
-      compared_({config.contact, config.coupling, config.gradient.coupling}, worldOf(bone_), tools_[tool_],
-                config.dt),
+      compared_({config.contact, config.coupling, config.gradient.coupling}, worldOf(bone_), tools_.all(),
+                tools_[tool_], config.dt),
       model_(&gradient_),
       affordable_(config.dt),
       effects_(makeEffects(config.effects, bone_,
@@ -199,6 +199,7 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     start.tool = &tools_[tool_];
     start.shape = model_ == &thesis_ ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
     start.X_VT_start = X_VT_;
+    compared_.setCutting(start.is_pedal_down);
     effects_.begin(start);
 }
 

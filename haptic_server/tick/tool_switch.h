@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <span>
 #include <vector>
 
 #include "common/assert.h"
@@ -26,6 +27,7 @@ class ToolSwitch {
     size_t chosen() const noexcept { return choice_.load(std::memory_order_relaxed); }
 
     size_t count() const noexcept { return tools_.size(); }
+    std::span<const SpoTool> all() const noexcept { return tools_; }
     const SpoTool& operator[](size_t index) const noexcept {
         BONEMILL_ASSERT(index < count());
         return tools_[index];

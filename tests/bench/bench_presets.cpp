@@ -33,6 +33,10 @@ constexpr Setting kSettings[] = {
     {"balanced, octree depth 3", Preset::kBalanced, 1, true},
     {"balanced, leaves of 16 cells", Preset::kBalanced, 1, false},
     {"exact, octree depth 3", Preset::kExact, 1, true},
+    {"proxy_3dof, octree depth 3", Preset::kProxy3Dof, 1, true},
+    {"vps, octree depth 3", Preset::kVps, 1, true},
+    {"penalty_sdf, octree depth 3", Preset::kPenaltySdf, 1, true},
+    {"constraint, octree depth 3", Preset::kConstraint, 1, true},
 };
 constexpr int kRounds = 3;
 constexpr int kTicks = 6000;

@@ -5,6 +5,7 @@
 
 #include "common/user_error.h"
 #include "tests/bench/bench_effects.h"
+#include "tests/bench/bench_laws.h"
 #include "tests/bench/bench_load.h"
 #include "tests/bench/bench_loop.h"
 #include "tests/bench/bench_mesh.h"
@@ -20,6 +21,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     bench::addTickCommand(app);
     bench::addMeshCommand(app);
+    bench::addLawsCommand(app);
     bench::addLoadCommand(app);
     bench::addLoopCommand(app);
     bench::addRemeshCommand(app);

@@ -20,11 +20,12 @@
 // A stiffness rises from its default by factors of two until the first unstable value (or falls until the
 // first stable one); the limit is then bisected to 3 %.
 //
-//   zwidth_bench [--out DIR] [--variant NAME]
+//   zwidth_bench [--out DIR] [--variant NAME] [--rate HZ]
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <thread>
@@ -216,13 +217,24 @@ struct Job {
     Setup setup;
 };
 
-std::vector<Job> jobs(const char* only_variant) {
+// Ours and the thesis', then the laws of other schools.
+const std::vector<Variant>& measuredVariants() {
+    static const std::vector<Variant> kVariants = [] {
+        std::vector<Variant> list = allVariants();
+        list.insert(list.end(), lawVariants().begin(), lawVariants().end());
+        return list;
+    }();
+    return kVariants;
+}
+
+std::vector<Job> jobs(const char* only_variant, double only_rate) {
     std::vector<Job> all;
     for (const Place& place : kPlaces)
         for (const Hand& hand : kHands)
-            for (const Variant& variant : allVariants()) {
+            for (const Variant& variant : measuredVariants()) {
                 if (only_variant && variant.name != only_variant) continue;
                 for (const double rate : kRates_hz) {
+                    if (only_rate > 0 && rate != only_rate) continue;
                     const Setup setup{variant, place, hand, rate};
                     for (ZwidthRow (*quantity)(const Setup&) : {zwidth, largestCoupling, largestContact})
                         all.push_back({quantity, setup});
@@ -233,8 +245,8 @@ std::vector<Job> jobs(const char* only_variant) {
 }
 
 // It uses every core; the figures do not depend on time.
-std::vector<ZwidthRow> measureAll(const char* only_variant) {
-    const std::vector<Job> all = jobs(only_variant);
+std::vector<ZwidthRow> measureAll(const char* only_variant, double only_rate) {
+    const std::vector<Job> all = jobs(only_variant, only_rate);
     std::vector<ZwidthRow> rows(all.size());
     std::atomic<size_t> next = 0;
     const auto work = [&] {
@@ -261,7 +273,8 @@ int main(int argc, char** argv) {
             if (std::strcmp(argv[i], option) == 0) return argv[i + 1];
         return nullptr;
     };
-    const auto rows = bonemill::test::measureAll(valueOf("--variant"));
+    const char* rate = valueOf("--rate");
+    const auto rows = bonemill::test::measureAll(valueOf("--variant"), rate ? std::atof(rate) : 0);
     const char* out = valueOf("--out");
     return rows.empty() || (out && !bonemill::test::writeZwidth(out, rows)) ? 1 : 0;
 }

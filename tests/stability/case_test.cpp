@@ -16,7 +16,7 @@ bool isAmong(const Names& names, const Variant& variant) {
 std::vector<Variant> variantsOf(const StabilityCase& stability_case) {
     std::vector<Variant> variants;
     if (!stability_case.needs_effects) variants = allVariants();
-    for (const auto* others : {&effectVariants(), &deviceVariants()})
+    for (const auto* others : {&lawVariants(), &effectVariants(), &deviceVariants()})
         for (const Variant& variant : *others)
             if (isAmong(stability_case.also_for, variant)) variants.push_back(variant);
     return variants;
@@ -24,6 +24,7 @@ std::vector<Variant> variantsOf(const StabilityCase& stability_case) {
 
 Expectation expectationOf(const StabilityCase& stability_case, const Variant& variant) {
     if (!isAmong(stability_case.fails_for, variant)) return Expectation::kHolds;
+    if (variant.isOtherLaw()) return Expectation::kOtherLawFails;
     return variant.name == baselineVariant().name ? Expectation::kBaselineFails : Expectation::kKnownLimit;
 }
 
@@ -60,6 +61,13 @@ double StabilityTrial::measureAndReport() const {
 
 std::vector<Trial> trials(const std::vector<StabilityCase>& cases, Expectation expectation) {
     std::vector<Trial> result;
+    if (expectation == Expectation::kReported) {
+        if (!std::getenv("BONEMILL_STABILITY_LAWS")) return result;
+        for (const StabilityCase& c : cases)
+            for (const Variant& variant : lawVariants())
+                if (!c.needs_effects) result.push_back({c, variant});
+        return result;
+    }
     for (const StabilityCase& c : cases)
         for (const Variant& variant : variantsOf(c))
             if (expectationOf(c, variant) == expectation) result.push_back({c, variant});
@@ -80,6 +88,12 @@ TEST_P(BaselineFails, Figure) {
     const double figure = measureAndReport();
     EXPECT_FALSE(std::isnan(figure));
     EXPECT_FALSE(isWithin(figure, GetParam().stability_case.bound));
+}
+TEST_P(OtherLawFails, Figure) {
+    EXPECT_FALSE(isWithin(measureAndReport(), GetParam().stability_case.bound));
+}
+TEST_P(Reported, Figure) {
+    measureAndReport();
 }
 // A limit that is known must not get worse: no more than three in ten settings buzz, no figure is twice
 // its bound.

@@ -2,10 +2,11 @@
 // devices as well. A case holds if figure <= bound.
 //
 // A variant for which a case is known to fail, deterministically, is not left out: it runs in the suite
-// BaselineFails (thesis_2012) or KnownLimit (any other), which expects the figure beyond the bound, so
-// that the documentation's table stays true. Each run prints its figure and appends it to the CSV file
-// named by BONEMILL_STABILITY_REPORT (case, variant, measured, bound, unit, pass); docs/stability.md is
-// filled from it.
+// BaselineFails (thesis_2012), OtherLawFails (those of other schools) or KnownLimit (ours), which expects the
+// figure beyond the bound, so that the documentation's table stays true. With BONEMILL_STABILITY_LAWS=1 every
+// case is measured for every law of another school as well, and judged nowhere: the suite Reported. Each run
+// prints its figure and appends it to the CSV file named by BONEMILL_STABILITY_REPORT (case, variant,
+// measured, bound, unit, pass); docs/stability.md is filled from it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -30,8 +31,9 @@ struct StabilityCase {
     const char* unit;
     double bound;
     double (*measure)(const Variant&);
-    Names fails_for;      // names of variants
-    Names also_for = {};  // names of effectVariants() and deviceVariants() for which it is measured too
+    Names fails_for;  // names of variants
+    Names also_for =
+        {};  // names of lawVariants(), effectVariants() and deviceVariants() for which it is measured too
     bool needs_effects = false;  // only for those
 };
 
@@ -48,9 +50,11 @@ class StabilityTrial : public testing::TestWithParam<Trial> {
 };
 class Holds : public StabilityTrial {};
 class BaselineFails : public StabilityTrial {};
+class OtherLawFails : public StabilityTrial {};
 class KnownLimit : public StabilityTrial {};
+class Reported : public StabilityTrial {};
 
-enum class Expectation { kHolds, kBaselineFails, kKnownLimit };
+enum class Expectation { kHolds, kBaselineFails, kOtherLawFails, kKnownLimit, kReported };
 std::vector<Trial> trials(const std::vector<StabilityCase>& cases, Expectation expectation);
 std::string trialName(const testing::TestParamInfo<Trial>& info);
 
@@ -62,5 +66,9 @@ std::string trialName(const testing::TestParamInfo<Trial>& info);
                              trialName);                                                                    \
     INSTANTIATE_TEST_SUITE_P(group, BaselineFails,                                                          \
                              testing::ValuesIn(trials(cases, Expectation::kBaselineFails)), trialName);     \
+    INSTANTIATE_TEST_SUITE_P(group, OtherLawFails,                                                          \
+                             testing::ValuesIn(trials(cases, Expectation::kOtherLawFails)), trialName);     \
     INSTANTIATE_TEST_SUITE_P(group, KnownLimit, testing::ValuesIn(trials(cases, Expectation::kKnownLimit)), \
+                             trialName);                                                                    \
+    INSTANTIATE_TEST_SUITE_P(group, Reported, testing::ValuesIn(trials(cases, Expectation::kReported)),     \
                              trialName)

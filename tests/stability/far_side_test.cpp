@@ -95,7 +95,12 @@ double handOutsideForce(const Variant& variant) {
 
 const std::vector<StabilityCase> kFarSideCases{
     {"inside_thin_wall_device_outside", "ms", 20, deviceOutsideTime, {}, feltEffects()},
-    {"inside_thin_wall_hand_pulls", "ms", 100, handOutsideTime, {"thesis_2012"}, feltEffects()},
+    {"inside_thin_wall_hand_pulls",
+     "ms",
+     100,
+     handOutsideTime,
+     {"thesis_2012", "proxy_3dof", "penalty_sdf", "constraint"},
+     feltEffects() + everyLaw()},
     {"inside_thin_wall_force", "N", 10, handOutsideForce, {}},
 };
 BONEMILL_STABILITY_CASES(FarSide, kFarSideCases);

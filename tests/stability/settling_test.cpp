@@ -127,7 +127,12 @@ double flickeringEncoder(const Variant& variant) {
 const std::vector<StabilityCase> kSettlingCases{
     {"peg_in_hole_held", "N_rms", 0.05, pegHeld, {}, feltEffects() + everyDevice()},
     {"peg_in_hole_no_hand", "N_rms", 0.05, pegFree, {}, feltEffects() + everyDevice()},
-    {"wedge_10_to_60_degrees", "N_rms", 0.05, grooveWorst, {"thesis_2012"}, feltEffects() + everyDevice()},
+    {"wedge_10_to_60_degrees",
+     "N_rms",
+     0.05,
+     grooveWorst,
+     {"thesis_2012", "vps"},
+     feltEffects() + everyDevice() + everyLaw()},
     {"wedge_four_iterations_pressing",
      "um_from_converged",
      kVoxel / 4 * kPerMicrometre,

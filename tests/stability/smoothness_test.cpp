@@ -56,9 +56,15 @@ const std::vector<StabilityCase> kSmoothnessCases{
      "percent",
      2,
      grazingSlide,
-     {"thesis_2012"},
-     feltEffectsBut({"burr_vibration", "material_stiffness", "virtual_fixture"}) + everyDevice()},
-    {"removal_under_load", "N_per_tick", 2 * kCouplingStiffness* kRecession, removalUnderLoad, {}},
+     {"thesis_2012", "vps", "penalty_sdf"},
+     feltEffectsBut({"burr_vibration", "material_stiffness", "virtual_fixture"}) + everyDevice() +
+         everyLaw()},
+    {"removal_under_load",
+     "N_per_tick",
+     2 * kCouplingStiffness* kRecession,
+     removalUnderLoad,
+     {"vps", "penalty_sdf"},
+     everyLaw()},
 };
 BONEMILL_STABILITY_CASES(Smoothness, kSmoothnessCases);
 

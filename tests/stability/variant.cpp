@@ -55,6 +55,25 @@ const std::vector<Variant>& allVariants() {
     return kVariants;
 }
 
+bool Variant::isOtherLaw() const {
+    return std::find(std::begin(kComparedLaws), std::end(kComparedLaws), preset) != std::end(kComparedLaws);
+}
+
+const std::vector<Variant>& lawVariants() {
+    static const std::vector<Variant> kVariants = [] {
+        std::vector<Variant> list;
+        for (const Preset preset : kComparedLaws) list.push_back({std::string(presetName(preset)), preset});
+        return list;
+    }();
+    return kVariants;
+}
+
+Names everyLaw() {
+    Names names;
+    for (const Variant& variant : lawVariants()) names.push_back(variant.name);
+    return names;
+}
+
 const Variant& baselineVariant() {
     for (const Variant& variant : allVariants())
         if (variant.isBaseline()) return variant;
@@ -135,6 +154,10 @@ CouplingFigures couplingFigures(const FixedTickConfig& config) {
                 c.max_angular_speed};
     }
     const GradientConfig& g = config.gradient;
+    if (config.accuracy.law != ContactLaw::kGradient) {
+        const double k = g.coupling.translation_stiffness;
+        return {k, k, g.coupling.rotation_stiffness, g.max_speed, g.max_angular_speed};
+    }
     return {g.coupling.translation_stiffness,
             g.coupling.translation_stiffness * (1 + g.coupling.relaxing_share), g.coupling.rotation_stiffness,
             g.max_speed, g.max_angular_speed};
@@ -146,7 +169,9 @@ double& couplingStiffness(FixedTickConfig& config) {
 }
 
 double& contactStiffness(FixedTickConfig& config) {
-    return isThesis(config) ? config.contact.point_stiffness : config.gradient.contact.stiffness_per_area;
+    const ContactLaw law = config.accuracy.law;
+    const bool is_per_point = isThesis(config) || law == ContactLaw::kVps || law == ContactLaw::kPenaltySdf;
+    return is_per_point ? config.contact.point_stiffness : config.gradient.contact.stiffness_per_area;
 }
 
 void setDragInAir(FixedTickConfig& config, double drag) {

@@ -10,6 +10,8 @@
 
 namespace bonemill::test {
 
+using Names = std::vector<std::string>;
+
 struct Variant {
     std::string name;
     Preset preset;
@@ -20,15 +22,19 @@ struct Variant {
     double workspace_scale = 1;
 
     bool isBaseline() const { return preset == Preset::kThesis2012; }
+    bool isOtherLaw() const;  // one of lawVariants()
 };
 
 const std::vector<Variant>& allVariants();
 const Variant& baselineVariant();
 
+// These are the contact laws of other schools (docs/laws.md).
+const std::vector<Variant>& lawVariants();
+Names everyLaw();
+
 // They are the default preset with each haptic effect alone, with all of them that leave the bone as it is
 // ("all_felt"), and with all ("all_effects").
 const std::vector<Variant>& effectVariants();
-using Names = std::vector<std::string>;
 Names feltEffects();                          // of the variants that leave the bone as it is
 Names feltEffectsBut(const Names& left_out);  // and not all together
 // The burr of these spins faster than vibration can follow, and its friction is as high as can be expected.
@@ -54,12 +60,14 @@ struct CouplingFigures {
 };
 CouplingFigures couplingFigures(const FixedTickConfig& config);
 
-// These are of the model in force: k_t, and N/m per point (thesis) or N/m³ (gradient).
+// These are of the model in force: k_t, and N/m per point (thesis, vps, penalty_sdf) or N/m³ (gradient; rigid
+// laws have none, and do not look at it).
 double& couplingStiffness(FixedTickConfig& config);
 double& contactStiffness(FixedTickConfig& config);
 
 // Makes free air feel like this (N·s/m) at the coupling's stiffness: the gradient presets by their damping
-// time, thesis_2012 by its static damping, which as printed is 0.5 whatever the stiffness.
+// time, thesis_2012 by its static damping, which as printed is 0.5 whatever the stiffness, and likewise vps
+// and penalty_sdf. The rigid laws have no drag in air.
 void setDragInAir(FixedTickConfig& config, double drag);
 
 }  // namespace bonemill::test

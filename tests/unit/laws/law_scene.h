@@ -20,7 +20,8 @@ inline ContactScene lawPlane(const Eigen::Vector3d& normal = Eigen::Vector3d::Un
 struct LawRun {
     LawRun(ContactLaw law, const ContactScene& scene, const Pose& start, const LawConfig& config = {},
            double radius = kLawRadius)
-        : laws(config, scene.world(), {&scene.tool, {.radius = radius}, 50}, 1e-3),
+        : tool{&scene.tool, {.radius = radius}, 50},
+          laws(config, scene.world(), {&tool, 1}, tool, 1e-3),
           model(*laws.of(law)),
           spo(start) {
         for (const Preset preset : kComparedLaws)
@@ -38,6 +39,7 @@ struct LawRun {
         return step;
     }
 
+    SpoTool tool;
     ComparedLaws laws;
     SpoModel& model;
     Pose spo;

@@ -9,7 +9,7 @@ namespace {
 using namespace test;
 using Eigen::Vector3d;
 
-constexpr ContactLaw kLaw = ContactLaw::kProxy3Dof;
+constexpr ContactLaw kProxy = ContactLaw::kProxy3Dof;
 
 // No contact point ever comes deeper into the ball than the tolerance, wherever the hand goes: random strokes
 // of up to 300 mm/s into a plane that lies askew.
@@ -19,7 +19,7 @@ TEST(Proxy3Dof, NeverEntersTheWall) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> place(-1.2e-3, 1.2e-3);
     const Vector3d start = kLawMiddle + (kLawRadius + 0.2e-3) * normal;
-    LawRun run(kLaw, scene, uprightAt(start));
+    LawRun run(kProxy, scene, uprightAt(start));
     Vector3d hand = start, target = start;
     double deepest = 0, lowest = 1;
     for (int n = 0; n < 3000; ++n) {
@@ -38,7 +38,7 @@ TEST(Proxy3Dof, NeverEntersTheWall) {
 // where there is no friction, and the proxy is the surface's nearest place to the hand.
 TEST(Proxy3Dof, IsHeldByASpringAtTheNearestPlaceOfTheSurface) {
     const ContactScene scene = lawPlane();
-    LawRun run(kLaw, scene, uprightAt(kLawMiddle + Vector3d(0, 0, kLawRadius)));
+    LawRun run(kProxy, scene, uprightAt(kLawMiddle + Vector3d(0, 0, kLawRadius)));
     const double k = LawConfig{}.coupling.translation_stiffness;
     for (const double depth : {0.1e-3, 0.5e-3, 1e-3}) {
         const SpoStep step = run.settle(uprightAt(kLawMiddle + Vector3d(0.2e-3, 0.1e-3, kLawRadius - depth)));
@@ -51,7 +51,7 @@ TEST(Proxy3Dof, IsHeldByASpringAtTheNearestPlaceOfTheSurface) {
 
 TEST(Proxy3Dof, HasNoDragInFreeAir) {
     const ContactScene scene = lawPlane();
-    LawRun run(kLaw, scene, uprightAt(kLawMiddle + Vector3d(0, 0, 2e-3)));
+    LawRun run(kProxy, scene, uprightAt(kLawMiddle + Vector3d(0, 0, 2e-3)));
     for (int n = 0; n < 20; ++n) {
         const SpoStep step = run.to(uprightAt(kLawMiddle + Vector3d(0.1e-3 * n, 0, 2e-3)));
         EXPECT_LT(step.wrench_hand_V.force.norm(), 1e-9);
@@ -66,7 +66,7 @@ TEST(Proxy3Dof, DoesNotFeelTheShaft) {
     const ContactScene scene(cubeGeometry(41, kLawVoxel), edge, shapes, {.levels = {{1}}});
     const Pose beside = uprightAt({4.6e-3, 2.5e-3, 0.5e-3});
     const Pose leaning{beside.position, expRotation({0, -60 * kDegree, 0})};  // the shaft is in the wall
-    for (const ContactLaw law : {kLaw}) {
+    for (const ContactLaw law : {kProxy}) {
         LawRun run(law, scene, beside);
         const SpoStep step = run.settle(leaning);
         EXPECT_LT(step.wrench_hand_V.force.norm(), 1e-6) << lawName(law);
@@ -78,7 +78,7 @@ TEST(Proxy3Dof, DoesNotFeelTheShaft) {
 TEST(Proxy3Dof, IsLetOutOfBoneThatIsThereAtOnce) {
     const ContactScene scene = lawPlane();
     const Pose inside = uprightAt(kLawMiddle + Vector3d(0, 0, kLawRadius - 0.2e-3));
-    LawRun run(kLaw, scene, inside);
+    LawRun run(kProxy, scene, inside);
     double z = inside.position.z();
     for (int n = 0; n < 40; ++n) {
         run.to(inside);

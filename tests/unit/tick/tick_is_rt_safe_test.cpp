@@ -94,6 +94,22 @@ TEST_F(TickIsRtSafe, AsThesis2012) {
     expectQuiet(tick, test::straightPath(at(3e-3), {4e-3, 4e-3, 6e-3}, 300, kButtonAdd));
 }
 
+TEST_F(TickIsRtSafe, AsEveryLawOfAnotherSchool) {
+    FixedTickConfig config = test::millingConfig();
+    config.tool.model = &tool_;
+    for (const Preset preset : kComparedLaws) {
+        SCOPED_TRACE(std::string(presetName(preset)));
+        config.accuracy = presetSettings(preset);
+        const size_t removed_before = removedVoxels();
+        FixedTick tick(config, bone_, &history_);
+        expectQuiet(tick, test::straightPath(at(6.2e-3), {4e-3, 4e-3, 3e-3}, 1000, kButtonRemove));
+        EXPECT_GT(removedVoxels(), removed_before + 200u);
+        history_.restore();
+        expectQuiet(tick, test::straightPath(at(6.2e-3), {4e-3, 4e-3, 6.2e-3}, 500, 0));
+        EXPECT_FALSE(history_.isRestoring());
+    }
+}
+
 TEST_F(TickIsRtSafe, WhileLevelsArePreparedAndTakenUp) {
     BoneModel bone(test::bodyVolume(test::cubeGeometry(64, 0.125e-3),
                                     test::halfSpace({0, 0, 5e-3}, Eigen::Vector3d::UnitZ())),
