@@ -21,7 +21,12 @@ double leaningPegTorque(const Variant& variant) {
 }
 
 const std::vector<StabilityCase> kLawCases{
-    {"leaning_peg_torque", "expected_over_felt", 1.1, leaningPegTorque, {"proxy_3dof"}, everyLaw()},
+    {"leaning_peg_torque",
+     "expected_over_felt",
+     1.25,
+     leaningPegTorque,
+     {"thesis_2012", "proxy_3dof", "vps", "penalty_sdf"},
+     everyLaw()},
 };
 BONEMILL_STABILITY_CASES(Laws, kLawCases);
 

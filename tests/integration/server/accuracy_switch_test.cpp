@@ -91,8 +91,8 @@ class AccuracySwitching : public testing::Test {
         ASSERT_TRUE(hasStatus());
         expectInForce(of_scene);
         const uint32_t faults_before = status().faults();
-        for (const std::string preset :
-             {"thesis_2012", "fast", "exact", "balanced", "proxy_3dof", "vps", "penalty_sdf", "constraint", "thesis_2012"}) {
+        for (const std::string preset : {"thesis_2012", "fast", "exact", "balanced", "proxy_3dof", "vps",
+                                         "penalty_sdf", "constraint", "thesis_2012"}) {
             const Finished answer = setAccuracy(preset);
             EXPECT_EQ(answer.exit_code, 0) << answer.err;
             EXPECT_EQ(answer.out, "accuracy " + preset + ": done\n");
