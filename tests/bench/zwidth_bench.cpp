@@ -31,85 +31,17 @@
 #include <thread>
 
 #include "tests/bench/zwidth_plot.h"
-#include "tests/stability/drive.h"
 #include "tests/stability/hard_scenes.h"
+#include "tests/stability/pressed.h"
 
 namespace bonemill::test {
 namespace {
 
-constexpr double kSettle = 0.5, kWatch = 0.5;           // s
-constexpr double kForceBuzz = 0.05, kMotion = 10e-6;    // N, m; RMS
-constexpr double kGrowth = 1.5, kMotionFloor = 0.2e-6;  // growth counts above this RMS (m)
 constexpr double kResolution = 1.03;
 constexpr double kRates_hz[] = {500, 1000, 2000, 4000};
 constexpr double kMostDrag = 3, kDragSlack = 1e-3;  // N·s/m; share, of rounding
 constexpr double kContactFactors[] = {1, 4, 16, 64};
 constexpr double kScanFrom = 1.0 / 64, kScanTo = 256;  // of the default stiffness
-
-struct Place {
-    const char* name;
-    VoxelVolume (*bone)();
-    TestTool (*tool)();
-    Pose start;
-    Wrench push;
-};
-const Place kPlaces[] = {{"plane", planeBone, burr, abovePlane(0.2e-3), {{0, 0, -2}, {0, 0, 0}}},
-                         {"hole", holeBone, peg, upright(kHoleMiddle), {{2, 0, 1}, {0.0003, 0, 0.0005}}}};
-struct Hand {
-    const char* name;
-    HandPlant plant;
-};
-const Hand kHands[] = {{"typical", {}}, {"none", kNoHand}};
-
-// Tells whether the tool is at rest against the bone.
-struct Pressed {
-    Pressed(Scene& scene, const Place& place, const HandPlant& hand);
-    bool isStable();
-    // Call it after isStable(). It returns the static stiffness at the hand, N/m.
-    double rendered();
-
-    const Place& place;
-    ClosedLoop loop;
-};
-
-LoopConfig loopWith(const HandPlant& hand) {
-    LoopConfig config;
-    config.hand = hand;
-    return config;
-}
-
-Pressed::Pressed(Scene& scene, const Place& at, const HandPlant& hand)
-    : place(at), loop(loopWith(hand), scene, at.start) {
-    if (hand.stiffness > 0)
-        loop.plant.setTarget(place.start.incremented(place.push.force / hand.stiffness,
-                                                     place.push.torque / hand.angular_stiffness));
-    else
-        loop.plant.setBias(place.push);
-}
-
-bool Pressed::isStable() {
-    loop.run(kSettle);
-    const Residual r = residual(loop, kWatch);
-    const bool grows = r.position_rms > kMotionFloor && r.growth > kGrowth;
-    return r.is_finite && r.is_touching && r.rms < kForceBuzz && r.position_rms < kMotion && !grows;
-}
-
-double Pressed::rendered() {
-    constexpr double kHold = 0.1, kMove = 20e-6;  // s, m
-    const Eigen::Vector3d along = place.push.force.normalized();
-    const Pose rest = loop.plant.measured();
-    const auto forceAt = [&](double way) {
-        const int ticks = int(kHold / loop.dt);
-        double sum = 0;
-        for (int n = 0; n < 2 * ticks; ++n) {
-            loop.stepper.step({rest.position + way * along, rest.rotation});
-            if (n >= ticks) sum -= loop.stepper.wrenchOnHand().force.dot(along) / ticks;
-        }
-        return sum;
-    };
-    const double less = forceAt(-kMove);
-    return (forceAt(kMove) - less) / (2 * kMove);
-}
 
 // Returns the largest factor on the default stiffness that is connected to a stable start: the default or, if
 // that is unstable, the first stable one below it. 0 says that none was found, kScanTo that no end was found.
@@ -141,8 +73,8 @@ double dragInAir(Scene& scene) {
 
 struct Setup {
     const Variant& variant;
-    const Place& place;
-    const Hand& hand;
+    const PressPlace& place;
+    const PressHand& hand;
     double rate_hz;
     bool tunes_baseline = false;
 
@@ -229,8 +161,8 @@ const std::vector<Variant>& measuredVariants() {
 
 std::vector<Job> jobs(const char* only_variant, double only_rate) {
     std::vector<Job> all;
-    for (const Place& place : kPlaces)
-        for (const Hand& hand : kHands)
+    for (const PressPlace& place : pressPlaces())
+        for (const PressHand& hand : pressHands())
             for (const Variant& variant : measuredVariants()) {
                 if (only_variant && variant.name != only_variant) continue;
                 for (const double rate : kRates_hz) {
