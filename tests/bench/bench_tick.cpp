@@ -19,6 +19,8 @@ namespace bonemill::bench {
 namespace {
 
 constexpr double kCouplingStiffness = 1000;  // N/m
+// The burr stays in contact: this hand is faster than it removes.
+constexpr double kRemovalRate = 60 * kDensityCountsPerUnit;  // counts/s
 
 FixedTickConfig configOf(const TickCase& c, const ToolModel& tool) {
     FixedTickConfig config;
@@ -27,7 +29,7 @@ FixedTickConfig configOf(const TickCase& c, const ToolModel& tool) {
     config.accuracy = presetSettings(c.preset);
     config.gradient.coupling.translation_stiffness = kCouplingStiffness;
     config.coupling.translation_stiffness = kCouplingStiffness;
-    if (c.mills) config.effects.time_removal = test::kTimeRemoval;
+    if (c.mills) config.effects.time_removal = TimeRemovalConfig{.rate = kRemovalRate};
     TickBudget::apply(config.dt, config.gradient, config.most_milled_cells);
     return config;
 }
