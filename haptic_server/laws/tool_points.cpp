@@ -16,7 +16,7 @@ constexpr double kOffGrid = 0.7071;  // of a cell
 
 ToolPoints::ToolPoints(const ToolField& tool, double spacing) : spacing_(spacing) {
     const double box = tool.box().sizes().prod();
-    spacing_ = std::max(spacing_, std::cbrt(box / kMostCells));
+    while (box > kMostCells * spacing_ * spacing_ * spacing_) spacing_ *= kWider;
     for (sample(tool); points_.size() > kMost; sample(tool))
         spacing_ *= kWider * std::sqrt(double(points_.size()) / double(kMost));
 }
