@@ -40,8 +40,9 @@ std::vector<Preset> allPresets();
 struct AccuracySettings {
     ContactLaw law = ContactLaw::kGradient;
     int shell_factor = 1;  // s: one contact point per s×s×s cells
-    double sample_spacing = 60e-6;  // m: near the tool the bone is sampled this finely; 0: one sample per point
-    int most_samples = 768;         // as long as there are no more than about this many; else spacing gives way
+    double sample_spacing =
+        60e-6;               // m: near the tool the bone is sampled this finely; 0: one sample per point
+    int most_samples = 768;  // as long as there are no more than about this many; else spacing gives way
     ToolDistance tool_distance = ToolDistance::kAnalytic;
     int sdf_refinement = 2;  // the scene's distance grid with nodes this many times as dense
     Precision precision = Precision::kFloat;

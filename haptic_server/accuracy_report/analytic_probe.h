@@ -35,11 +35,11 @@ struct PatchErrors {
     ToolDistance tool_distance = ToolDistance::kAnalytic;
     int sdf_refinement = 1;
     double sample_spacing = 0;  // m
-    double width_voxels = 0;   // diameter of the contact circle
-    double depth = 0;          // m
-    double force_rms = 0;      // of 1, over the grids
-    double force_worst = 0;    // of 1
-    double direction_rms = 0;  // rad
+    double width_voxels = 0;    // diameter of the contact circle
+    double depth = 0;           // m
+    double force_rms = 0;       // of 1, over the grids
+    double force_worst = 0;     // of 1
+    double direction_rms = 0;   // rad
 };
 
 struct AnalyticProbeConfig {

@@ -182,7 +182,8 @@ std::string otherLawsText() {
 std::string kindText(const PatchErrors& p) {
     const std::string tool =
         p.tool_distance == ToolDistance::kAnalytic ? "analytic" : "grid x" + std::to_string(p.sdf_refinement);
-    return tool + (p.sample_spacing > 0 ? format(", %.3g µm", kPerMicrometre * p.sample_spacing) : ", points");
+    return tool +
+           (p.sample_spacing > 0 ? format(", %.3g µm", kPerMicrometre * p.sample_spacing) : ", points");
 }
 
 std::string patchTable(const ReportData& data) {

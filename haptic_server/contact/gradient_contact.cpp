@@ -9,8 +9,8 @@
 namespace bonemill {
 namespace {
 
-// Of a patch's diagonal: no place is farther from the patch's own point, its centroid. The pieces of a cell may be
-// nearly that far apart.
+// Of a patch's diagonal: no place is farther from the patch's own point, its centroid. The pieces of a cell
+// may be nearly that far apart.
 constexpr double kReachOfPatch = 0.6;
 
 using Eigen::Matrix3d;

@@ -78,8 +78,8 @@ class GradientContact {
         candidates_.most = std::min(most, candidates_.patch.size());
     }
 
-    // Forgets of the last gatherings how finely which patch was sampled. This is called when the shell level or the sampling
-    // changes, or the tool is placed anew.
+    // Forgets of the last gatherings how finely which patch was sampled. This is called when the shell level
+    // or the sampling changes, or the tool is placed anew.
     void forget() noexcept { patch_memory_.forget(); }
 
     // Returns energy, wrench on the tool and stiffness at this pose, over the gathered points.
@@ -159,7 +159,8 @@ class GradientContact {
     Candidates candidates_;
     SurfacePieces pieces_{kMostPieces};
     PatchMemory patch_memory_{4096};
-    std::vector<uint32_t> split_;  // ascending: the first split_count_ are candidates whose pieces take their place
+    std::vector<uint32_t>
+        split_;  // ascending: the first split_count_ are candidates whose pieces take their place
     size_t split_count_ = 0;
     // A sweep needs how near each candidate may come, in m, and 1/(the most that the whole step can bring
     // it nearer).

@@ -11,13 +11,12 @@ namespace {
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-constexpr int kPlaceSteps = 2;  // from a place on a triangle onto the trilinear surface,
+constexpr int kPlaceSteps = 2;         // from a place on a triangle onto the trilinear surface,
 constexpr double kReachOfPlace = 0.5;  // which is never so far off, in voxels
 
 int insideOf(const CellCorners& corners) noexcept {
     int inside = 0;
-    for (int corner = 0; corner < 8; ++corner)
-        inside |= int(corners.excess[size_t(corner)] >= 0) << corner;
+    for (int corner = 0; corner < 8; ++corner) inside |= int(corners.excess[size_t(corner)] >= 0) << corner;
     return inside;
 }
 
@@ -97,7 +96,8 @@ bool GradientContact::cutCell(const ShellView& bone, const Vector3i& cell, uint3
             at[c] = crossing(corners, triangles.edges[size_t(n)][c]);
             corner_V[c] = base + at[c].cwiseProduct(steps);
         }
-        const float sag = std::min(sagOf(corners, at, inverse_steps), float(kReachOfPlace) * steps.minCoeff());
+        const float sag =
+            std::min(sagOf(corners, at, inverse_steps), float(kReachOfPlace) * steps.minCoeff());
         if (!pieces_.add(corner_V, sag, candidate, level)) return false;
     }
     return true;

@@ -45,8 +45,14 @@ bool SurfacePieces::add(const Vector3f corners[3], float sag, uint32_t patch, ui
     const Vector3f across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     const float twice_area = across.norm();
     if (!(twice_area > 0)) return true;
-    put({{corners[0], corners[1], corners[2]}, twice_area / 2, 0, 0, R_TV_ * (across / twice_area), patch,
-         sag, level});
+    put({{corners[0], corners[1], corners[2]},
+         twice_area / 2,
+         0,
+         0,
+         R_TV_ * (across / twice_area),
+         patch,
+         sag,
+         level});
     return true;
 }
 

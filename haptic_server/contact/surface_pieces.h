@@ -1,12 +1,13 @@
-// Cuts triangles of iso-surface near the tool into pieces that are small against the contact, however large the
-// voxels are. The triangles of all cells tile the surface without gaps and overlaps, so their pieces do, too;
-// that is what keeps a sum over them smooth when the tool slides (docs/accuracy.md).
+// Cuts triangles of iso-surface near the tool into pieces that are small against the contact, however large
+// the voxels are. The triangles of all cells tile the surface without gaps and overlaps, so their pieces do,
+// too; that is what keeps a sum over them smooth when the tool slides (docs/accuracy.md).
 //
 // A piece is cut in two across its longest edge as long as that is longer than its limit: the sampling's
 // spacing where the tool touches or nearly does, and in proportion to the distance away from it. Pieces that
 // the tool cannot reach are dropped.
 //
-// It is RT-safe but for construction, and for the tick thread only. Positions are in V's axes, from an origin.
+// It is RT-safe but for construction, and for the tick thread only. Positions are in V's axes, from an
+// origin.
 #pragma once
 
 #include <algorithm>
@@ -34,8 +35,8 @@ class SurfacePieces {
   public:
     // A piece of level n may be as long as the spacing times the n-th power of root 2.
     static constexpr uint8_t kNewPatch = 255;
-    // A piece at this distance (m) needs to be no shorter: a few times as long as it is far from the tool, but
-    // not so long that a thin tool finds its way between two samples.
+    // A piece at this distance (m) needs to be no shorter: a few times as long as it is far from the tool,
+    // but not so long that a thin tool finds its way between two samples.
     static float shortEnough(const ToolField& tool, float nearest) noexcept {
         constexpr float kLengthPerDistance = 4;
         return std::min(kLengthPerDistance * nearest, float(tool.thinnestRadius()));
@@ -49,8 +50,9 @@ class SurfacePieces {
                double fine_within) noexcept;
     // False: there is no room for it.
     bool add(const Eigen::Vector3f corners[3], float sag, uint32_t patch, uint8_t level) noexcept;
-    // Cuts all that was added, those of new patches to a spacing (m) that makes no more than about `most` pieces in
-    // all. Returns their level. Other patches are cut to theirs as long as there are not four times as many.
+    // Cuts all that was added, those of new patches to a spacing (m) that makes no more than about `most`
+    // pieces in all. Returns their level. Other patches are cut to theirs as long as there are not four times
+    // as many.
     uint8_t cut(double spacing, size_t most) noexcept;
 
     template <class Visit>

@@ -68,7 +68,7 @@ inline constexpr int kContactBatch = 64;
 // than the point by what lies in the patch's plane of the way to the tool, and by what the bone bends
 // towards the tool.
 struct NearTest {
-    float R_VT[9];         // rows
+    float R_VT[9];      // rows
     float patch_reach;  // m: no place of a point's patch is farther from the point
     float bend;         // m: by which a patch may bend towards the tool, off the plane at the point
     float margin;       // m: points with a place nearer than this

@@ -79,7 +79,8 @@ template <class Scalar>
 constexpr Scalar kNoDirection = Scalar(1e-12);  // m: below it a direction is taken by convention
 
 // Returns the distance of the profile, and its gradient along and off the axis. Without its edges' radius the
-// profile is convex: it is the largest of the distances to its lines, but for points that are nearest to a rim.
+// profile is convex: it is the largest of the distances to its lines, but for points that are nearest to a
+// rim.
 template <class Scalar>
 struct ConeProfile {
     Scalar distance, along, off;

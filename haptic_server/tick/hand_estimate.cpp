@@ -112,8 +112,11 @@ Pose HandEstimate::take(const Pose& X_VT_reading, bool stands_alone) noexcept {
         const Vector3d off = logRotation(X_VT_reading.rotation * predicted.conjugate());
         X_VT_.rotation = (expRotation(rotation_.correct(off)) * predicted).normalized();
     }
-    return {X_VT_reading.position + translation_.trust() * (X_VT_.position - X_VT_reading.position),
-            X_VT_reading.rotation.slerp(rotation_.trust(), X_VT_.rotation)};
+    return {
+        X_VT_reading.position + translation_.trust() * (X_VT_.position - X_VT_reading.position),
+        (expRotation(rotation_.trust() * logRotation(X_VT_.rotation * X_VT_reading.rotation.conjugate())) *
+         X_VT_reading.rotation)
+            .normalized()};
 }
 
 void HandEstimate::sent(const Wrench& wrench_hand_V) noexcept {

@@ -51,8 +51,8 @@ class ToolField {
     // Writes the same distances with their gradients.
     virtual void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept = 0;
     virtual void sample(const PointBatch<double>& points_T, SampleBatch<double>& out) const noexcept = 0;
-    // Writes to out[0 .. count-1] a bound that no point of the piece falls below, in m. It is as near to the least
-    // distance as the field can tell.
+    // Writes to out[0 .. count-1] a bound that no point of the piece falls below, in m. It is as near to the
+    // least distance as the field can tell.
     virtual void nearest(const PieceBatch& pieces_T, float* out) const noexcept {
         distances(pieces_T.center, out);
         for (int i = 0; i < pieces_T.center.count; ++i) out[i] -= pieces_T.reach[i];

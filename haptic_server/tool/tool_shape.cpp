@@ -45,7 +45,8 @@ double distanceTo(const ConeShape& s, const Vector3d& p) {
     return distanceToSharp(inside, p) - inside.edge_radius;
 }
 
-// What an end of this radius allows, where the side rises from it by the sine `rise` of its angle to the axis.
+// What an end of this radius allows, where the side rises from it by the sine `rise` of its angle to the
+// axis.
 double roundestAt(double radius, double rise, double edge_radius) {
     constexpr double kShareOfEnd = 0.5;
     const double run = std::sqrt(1 - rise * rise);

@@ -46,9 +46,9 @@ inline ConeShape asCone(const CylinderShape& s) {
     return {s.from, s.to, s.radius, s.radius, s.edge_radius};
 }
 
-// All points within `edge_radius` of the sharp cone that is returned make up the shape with its rounded edges.
-// The edges are as round as asked for, but no rounder than leaves something of each flat end and of the side;
-// a tip loses at most the length asked for.
+// All points within `edge_radius` of the sharp cone that is returned make up the shape with its rounded
+// edges. The edges are as round as asked for, but no rounder than leaves something of each flat end and of
+// the side; a tip loses at most the length asked for.
 ConeShape insideEdges(const ConeShape& shape);
 
 // This is the tight axis-parallel box of the shape with sharp edges.

@@ -137,7 +137,7 @@ const std::vector<StabilityCase> kSettlingCases{
      "um_from_converged",
      kVoxel / 4 * kPerMicrometre,
      fourIterationsPressing,
-     {"fast"}},
+     {}},
     {"wedge_four_iterations_at_rest", "um_from_converged", 2, fourIterationsAtRest, {}},
     {"coarse_encoders_at_rest",
      "N_rms",

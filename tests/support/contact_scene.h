@@ -89,8 +89,12 @@ struct ContactScene {
     SpoWorld world() const { return {bone.volume, bone.lattice, bone.shell}; }
 
     ShellView view(const AccuracySettings& settings = {}) const {
-        return {bone.volume,           bone.lattice,           bone.shell, levelOf(bone.shell, settings),
-                settings.sample_spacing, settings.most_samples};
+        return {bone.volume,
+                bone.lattice,
+                bone.shell,
+                levelOf(bone.shell, settings),
+                settings.sample_spacing,
+                settings.most_samples};
     }
 
     GradientContactResult contactAt(const GradientContactConfig& config, const AccuracySettings& settings,

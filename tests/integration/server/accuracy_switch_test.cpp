@@ -117,7 +117,7 @@ TEST_F(AccuracySwitching, WhilePressing) {
 
 TEST_F(AccuracySwitching, WhileMilling) {
     writeScene("preset: FAST iterations: 3", true);
-    expectEveryPresetInContact("gradient s=1 analytic float iterations=3 ccd");
+    expectEveryPresetInContact("gradient s=1 samples 80 um/512 analytic float iterations=3 ccd");
     EXPECT_GT(nlohmann::json::parse(test::readFile(folder_ / "report.json"))["removed_voxels"].get<double>(),
               0);
 }

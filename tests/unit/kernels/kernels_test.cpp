@@ -184,24 +184,24 @@ TEST_P(VoxelKernels, NearPointsOfABlock) {
     int all_near = 0, all_far = 0;
     for (int round = 0; round < 100; ++round) {
         const int n = 1 + below(kContactBatch);
-        const auto distance = randoms<float>(n, -1e-3, 1e-3), area = randoms<float>(n, 1e-9, 1e-7);
+        const auto distance = randoms<float>(n, -1e-3, 1e-3);
         std::vector<std::vector<float>> g, m;  // gradient and normal
         for (int axis = 0; axis < 3; ++axis) {
             g.push_back(randoms<float>(n, -1, 1));
             m.push_back(randoms<float>(n, -1, 1));
         }
         const NearTest test{
-            {0.36f, 0.48f, -0.8f, -0.8f, 0.6f, 0, 0.48f, 0.64f, 0.6f}, 0.5f, 500, 20e-6f, 50e-6f};
+            {0.36f, 0.48f, -0.8f, -0.8f, 0.6f, 0, 0.48f, 0.64f, 0.6f}, 0.2e-3f, 0.05e-3f, 20e-6f};
         std::vector<float> nearest[2];
         std::vector<int> selected[2];
         int found[2];
         for (const int which : {0, 1}) {
             nearest[which].resize(kContactBatch);
             selected[which].resize(kContactBatch);
-            found[which] = (which ? ours() : oracle())
-                               .select_near(test, distance.data(), g[0].data(), g[1].data(), g[2].data(),
-                                            m[0].data(), m[1].data(), m[2].data(), area.data(), n,
-                                            nearest[which].data(), selected[which].data());
+            found[which] =
+                (which ? ours() : oracle())
+                    .select_near(test, distance.data(), g[0].data(), g[1].data(), g[2].data(), m[0].data(),
+                                 m[1].data(), m[2].data(), n, nearest[which].data(), selected[which].data());
         }
         ASSERT_EQ(found[0], found[1]);
         expectSameBits(nearest[0], nearest[1], n);
@@ -212,10 +212,9 @@ TEST_P(VoxelKernels, NearPointsOfABlock) {
                 Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(test.R_VT).cast<double>() *
                 Eigen::Vector3d(g[0][i], g[1][i], g[2][i]);
             const double in_plane = g_V.cross(Eigen::Vector3d(m[0][i], m[1][i], m[2][i])).norm();
-            const double place = distance[i] - in_plane * std::sqrt(0.5 * area[i]) - 500 * double(area[i]);
+            const double place = distance[i] - std::min(in_plane * 0.2e-3 + 0.05e-3, 0.2e-3);
             EXPECT_NEAR(nearest[1][i], place, 1e-9);
-            const bool is_near = distance[i] < test.margin || nearest[1][i] < test.refine_within;
-            if (is_near) {
+            if (nearest[1][i] < test.margin) {
                 ASSERT_LT(next, found[1]);
                 EXPECT_EQ(selected[1][size_t(next++)], int(i));
             }
@@ -342,7 +341,7 @@ TEST_P(VoxelKernels, CellPatchesAndProjections) {
     }
 }
 
-// A point moves onto a flat face between the voxels, and to its own place where the face is too far off.
+// A point moves onto a flat face between the voxels, and stays where the face is too far off.
 TEST_P(VoxelKernels, PointsMoveOntoTheSurface) {
     constexpr int kEdge = 20;
     VolumeGeometry geometry;
@@ -358,22 +357,22 @@ TEST_P(VoxelKernels, PointsMoveOntoTheSurface) {
     for (int round = 0; round < 50; ++round) {
         const int n = 1 + below(60);
         const auto x = randoms<float>(n, 0, 15e-3), y = randoms<float>(n, 0, 15e-3),
-                   off = randoms<float>(n, -1e-3, 1e-3), own = randoms<float>(n, 5e-3, 6e-3);
-        std::vector<float> p[2][3], reach(x.size(), 0.5e-3f * 0.5e-3f);
+                   off = randoms<float>(n, -1e-3, 1e-3);
+        std::vector<float> p[2][3], start;
         for (const int which : {0, 1}) {
             p[which][0] = x, p[which][1] = y, p[which][2] = off;
             for (size_t i = 0; i < x.size(); ++i)
                 p[which][2][i] += float(1e-3 * (9.3 + 0.2 * (x[i] + 2e-3) * 1e3 - 0.1 * (y[i] + 1e-3) * 1e3));
+            start = p[which][2];
             (which ? ours() : oracle())
                 .move_onto_surface(view, 2,
-                                   {p[which][0].data(), p[which][1].data(), p[which][2].data(), own.data(),
-                                    own.data(), own.data(), reach.data(), n});
+                                   {p[which][0].data(), p[which][1].data(), p[which][2].data(), 0.5e-3f, n});
         }
         for (int axis = 0; axis < 3; ++axis) expectSameBits(p[0][axis], p[1][axis], n);
         for (size_t i = 0; i < size_t(n); ++i) {
             const double distance = std::abs(off[i]) / std::sqrt(1 + 0.04 + 0.01);
             if (distance > 0.51e-3) {
-                EXPECT_EQ(p[0][2][i], own[i]);
+                EXPECT_EQ(p[0][2][i], start[i]);
             }
             if (distance > 0.49e-3) continue;
             const double on_face = 9.3 + 0.2 * (p[0][0][i] + 2e-3) * 1e3 - 0.1 * (p[0][1][i] + 1e-3) * 1e3;

@@ -30,8 +30,8 @@ const std::vector<ToolShape> kDrill = {CylinderShape{{0, -4e-3, 0}, {0, 4e-3, 0}
 constexpr double kDt = 1e-3;
 
 struct Touch {
-    double height = 9e-3;                        // m, of T's origin over the face z = 0 that the tool touches
-    Vector3d p_F = Vector3d::Zero();             // where
+    double height = 9e-3;             // m, of T's origin over the face z = 0 that the tool touches
+    Vector3d p_F = Vector3d::Zero();  // where
 };
 
 // Lowers the tool by its least distance from the face until it touches.
@@ -55,13 +55,14 @@ SlideFigures slide(const Slide& s) {
     std::mt19937 random(s.seed);
     const Eigen::Quaterniond R_VF = s.seed ? randomRotation(random) : Eigen::Quaterniond::Identity();
     std::uniform_real_distribution<double> angle(0, 2 * M_PI);
-    const Eigen::Quaterniond R_FT = expRotation(angle(random) * Vector3d::UnitZ()) *
-                                    expRotation({M_PI / 2 - s.lean, 0, 0});
+    const Eigen::Quaterniond R_FT =
+        expRotation(angle(random) * Vector3d::UnitZ()) * expRotation({M_PI / 2 - s.lean, 0, 0});
     const double way = angle(random);
     const Vector3d along_F(std::cos(way), std::sin(way), 0);
     const int cells = std::max(24, int(std::ceil(5e-3 / s.voxel)));
     const Vector3d middle = Vector3d::Constant(cells * s.voxel / 2) + s.voxel * Vector3d(0.13, 0.22, 0.31);
-    const ContactScene scene(cubeGeometry(cells + 1, s.voxel), halfSpace(middle, R_VF * Vector3d::UnitZ()), s.shapes);
+    const ContactScene scene(cubeGeometry(cells + 1, s.voxel), halfSpace(middle, R_VF * Vector3d::UnitZ()),
+                             s.shapes);
     GradientModel model({}, scene.world(), {&scene.tool, {.radius = 1.6e-3}, 50}, kDt);
     model.setAccuracy(presetSettings(s.preset));
     const ToolField& field = scene.tool.field(presetSettings(s.preset));
@@ -99,11 +100,15 @@ constexpr double kVoxelSizes[] = {0.1e-3, 0.25e-3, 0.5e-3, 1e-3};
 void expectToSlide(Preset preset, double most_friction, double most_step) {
     constexpr double kLeans[] = {0, 1, 5, 20, 45, 70, 89, 90};  // degrees
     for (unsigned seed = 0; seed < 20; ++seed) {
-        Slide s{.preset = preset, .voxel = kVoxelSizes[seed / 2 % 4], .lean = kLeans[seed % 8] * kDegree, .seed = seed};
+        Slide s{.preset = preset,
+                .voxel = kVoxelSizes[seed / 2 % 4],
+                .lean = kLeans[seed % 8] * kDegree,
+                .seed = seed};
         s.shapes = seed % 3 == 2 ? kCone : kDrill;
         if (seed % 5 == 4) s.load = 0.5;
         const SlideFigures f = slide(s);
-        EXPECT_LE(f.friction, most_friction) << "seed " << seed << ", voxel " << s.voxel << ", lean " << s.lean;
+        EXPECT_LE(f.friction, most_friction)
+            << "seed " << seed << ", voxel " << s.voxel << ", lean " << s.lean;
         EXPECT_LE(f.step, most_step) << "seed " << seed << ", voxel " << s.voxel << ", lean " << s.lean;
     }
 }
@@ -125,7 +130,12 @@ TEST(EdgeSlide, SmallBallsSlideOnLargeVoxels) {
     for (const Preset preset : {Preset::kFast, Preset::kBalanced, Preset::kExact})
         for (const double radius : {0.3e-3, 0.5e-3, 1e-3})
             for (unsigned seed = 0; seed < 3; ++seed) {
-                const SlideFigures f = slide({.preset = preset, .voxel = 1e-3, .lean = 0, .load = 0.3, .seed = seed, .shapes = {SphereShape{Vector3d::Zero(), radius}}});
+                const SlideFigures f = slide({.preset = preset,
+                                              .voxel = 1e-3,
+                                              .lean = 0,
+                                              .load = 0.3,
+                                              .seed = seed,
+                                              .shapes = {SphereShape{Vector3d::Zero(), radius}}});
                 EXPECT_LE(f.friction, preset == Preset::kFast ? 0.03 : 0.01) << presetName(preset) << radius;
                 EXPECT_LE(f.step, 0.02);
             }

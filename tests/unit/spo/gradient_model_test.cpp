@@ -253,9 +253,9 @@ TEST(GradientModel, NeverGivesANonFiniteResult) {
     }
 }
 
-// What is begun is ended: a batch of 64 blocks of 64 points, the cutting of patches into samples, and the pass
-// over the candidates in hand, of which there are at most a quarter of the budget, once for the sweep and once
-// for the step.
+// What is begun is ended: a batch of 64 blocks of 64 points, the cutting of patches into samples, and the
+// pass over the candidates in hand, of which there are at most a quarter of the budget, once for the sweep
+// and once for the step.
 TEST(GradientModel, ATickEndsSoonAfterItsBudgetWhateverItMeets) {
     const ContactScene scene = flatScene();
     std::mt19937 random(4);
@@ -275,7 +275,8 @@ TEST(GradientModel, ATickEndsSoonAfterItsBudgetWhateverItMeets) {
             overflows += step.has_contact_overflow;
             spo = step.X_VT;
         }
-        EXPECT_LT(most * double(most_point_tests), 1.5 * double(most_point_tests) + 64 * 64 + 4 * AccuracySettings{}.most_samples);
+        EXPECT_LT(most * double(most_point_tests),
+                  1.5 * double(most_point_tests) + 64 * 64 + 4 * AccuracySettings{}.most_samples);
         EXPECT_EQ(overflows > 0, most_point_tests == 2'000);
         EXPECT_GT(most, 0.02);
     }
