@@ -3,6 +3,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "common/units.h"
+
 namespace bonemill {
 namespace {
 constexpr std::string_view kNames[] = {"thesis_2012", "fast", "balanced",    "exact",
@@ -38,14 +40,35 @@ AccuracySettings presetSettings(Preset preset) noexcept {
         case Preset::kThesis2012:  // scaling factor 3 as in its demonstrations
             return {ContactLaw::kThesis2012, 3, 0, 0, ToolDistance::kGrid, 1, Precision::kFloat, 1, false};
         case Preset::kFast:
-            return {ContactLaw::kGradient, 1, 80e-6, 512, ToolDistance::kAnalytic, 1,
-                    Precision::kFloat,     1, true};
+            return {ContactLaw::kGradient,
+                    1,
+                    80 * kMicrometre,
+                    512,
+                    ToolDistance::kAnalytic,
+                    1,
+                    Precision::kFloat,
+                    1,
+                    true};
         case Preset::kBalanced:
-            return {ContactLaw::kGradient, 1, 60e-6, 768, ToolDistance::kAnalytic, 2,
-                    Precision::kFloat,     4, true};
+            return {ContactLaw::kGradient,
+                    1,
+                    60 * kMicrometre,
+                    768,
+                    ToolDistance::kAnalytic,
+                    2,
+                    Precision::kFloat,
+                    4,
+                    true};
         case Preset::kExact:
-            return {ContactLaw::kGradient, 1, 30e-6, 4608, ToolDistance::kAnalytic, 4,
-                    Precision::kDouble,    8, true};
+            return {ContactLaw::kGradient,
+                    1,
+                    30 * kMicrometre,
+                    4608,
+                    ToolDistance::kAnalytic,
+                    4,
+                    Precision::kDouble,
+                    8,
+                    true};
         case Preset::kProxy3Dof:
             return comparedLaw(ContactLaw::kProxy3Dof, 8);
         case Preset::kVps:

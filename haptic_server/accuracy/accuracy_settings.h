@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/units.h"
+
 namespace bonemill {
 
 // Those behind kGradient are of other schools, to compare with (docs/laws.md).
@@ -41,7 +43,7 @@ struct AccuracySettings {
     ContactLaw law = ContactLaw::kGradient;
     int shell_factor = 1;  // s: one contact point per s×s×s cells
     double sample_spacing =
-        60e-6;               // m: near the tool the bone is sampled this finely; 0: one sample per point
+        60 * kMicrometre;    // m: near the tool the bone is sampled this finely; 0: one sample per point
     int most_samples = 768;  // as long as there are no more than about this many; else spacing gives way
     ToolDistance tool_distance = ToolDistance::kAnalytic;
     int sdf_refinement = 2;  // the scene's distance grid with nodes this many times as dense

@@ -1,6 +1,7 @@
 #include "haptic_server/accuracy_report/sweep_settings.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "haptic_server/setup/scene_accuracy.h"
 
@@ -61,7 +62,7 @@ void setTo(scene::Accuracy& knobs, const AccuracySettings& settings) {
     using scene::Accuracy;
     knobs.set_contact_law(sceneLawOf(settings.law));
     knobs.set_shell_factor(uint32_t(settings.shell_factor));
-    knobs.set_sample_spacing_um(kPerMicrometre * settings.sample_spacing);
+    knobs.set_sample_spacing_um(std::round(kPerMicrometre * settings.sample_spacing * 1e3) / 1e3);
     knobs.set_most_samples(uint32_t(settings.most_samples));
     knobs.set_tool_distance(settings.tool_distance == ToolDistance::kGrid ? Accuracy::GRID
                                                                           : Accuracy::ANALYTIC);

@@ -45,14 +45,15 @@ bool SurfacePieces::add(const Vector3f corners[3], float sag, uint32_t patch, ui
     const Vector3f across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     const float twice_area = across.norm();
     if (!(twice_area > 0)) return true;
-    put({{corners[0], corners[1], corners[2]},
-         twice_area / 2,
-         0,
-         0,
-         R_TV_ * (across / twice_area),
-         patch,
-         sag,
-         level});
+    SurfacePiece piece;
+    std::copy_n(corners, 3, piece.corner);
+    piece.area = twice_area / 2;
+    piece.normal_T = R_TV_ * (across / twice_area);
+    piece.patch = patch;
+    piece.level = level;
+    longestEdge(piece, piece.longest_squared);
+    piece.bend = sag / piece.longest_squared;
+    put(piece);
     return true;
 }
 
@@ -81,7 +82,7 @@ void SurfacePieces::sort() noexcept {
     tool_->nearest(batch, nearest);
     point_tests_ += size_t(fresh_count_);
     for (int i = 0; i < fresh_count_; ++i) {
-        fresh_[i].nearest = nearest[i] - fresh_[i].sag;
+        fresh_[i].nearest = nearest[i] - fresh_[i].bend * fresh_[i].longest_squared;
         if (fresh_[i].nearest < margin_ && next_count_ < next_.size()) next_[next_count_++] = fresh_[i];
     }
     fresh_count_ = 0;
@@ -100,7 +101,6 @@ void SurfacePieces::halve(const SurfacePiece& piece) noexcept {
     const Vector3f middle = (piece.corner[from] + piece.corner[to]) / 2;
     SurfacePiece half = piece;
     half.area = piece.area / 2;
-    half.sag = piece.sag / 2;
     half.corner[to] = middle;
     put(half);
     half.corner[to] = piece.corner[to], half.corner[from] = middle;

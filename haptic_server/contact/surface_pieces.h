@@ -25,8 +25,8 @@ struct SurfacePiece {
     float nearest;              // m: no point of it is nearer to the tool
     Eigen::Vector3f normal_T;   // unit
     uint32_t patch;             // which candidate it is a part of
-    float sag;                  // m: the surface itself is no farther off the flat piece
-    uint8_t level;              // to which that is cut; kNewPatch: as finely as there is room
+    float bend;     // 1/m: times longest_squared, how far the surface itself may be off the flat piece
+    uint8_t level;  // to which that is cut; kNewPatch: as finely as there is room
 
     Eigen::Vector3f centroid() const noexcept { return (corner[0] + corner[1] + corner[2]) / 3; }
 };

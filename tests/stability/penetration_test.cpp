@@ -101,7 +101,7 @@ const std::vector<StabilityCase> kPenetrationCases{
      0,
      pinThroughWall,
      {"thesis_2012", "vps", "penalty_sdf"},
-     feltEffectsBut({}) + everyLaw()},
+     feltEffectsBut({"material_stiffness"}) + everyLaw()},
     {"deep_push_side",
      "mm_past_surface",
      0,

@@ -32,7 +32,7 @@ std::vector<DeviceInput> pathOver(const BoneModel& bone, double burr_radius) {
     constexpr Phase kPhases[] = {{60, 0, 0.2e-3, 0},
                                  {100, 0, -0.2e-3, 0},
                                  {100, 0.5e-3, -0.2e-3, 0},
-                                 {250, 1e-3, -1.8e-3, kButtonRemove},
+                                 {400, 1e-3, -1.8e-3, kButtonRemove},
                                  {100, -0.5e-3, -1.8e-3, kButtonRemove},
                                  {60, -0.9e-3, -1.8e-3, 0},
                                  {60, -0.9e-3, -1.3e-3, 0},

@@ -191,9 +191,8 @@ std::vector<TraceRow> rowsOf(const std::string& trace) {
 TEST_F(Session, AKilledDaemonRampsTheForceDownAndANewOneGoesOn) {
     // The burr mills so slowly that the hand, which goes on, presses on it.
     const std::string scene = test::readFile(folder_ / "s.textproto"), at_once = "time_removal {}";
-    writeFile(folder_ / "s.textproto",
-              std::string(scene).replace(scene.find(at_once), at_once.size(),
-                                         "time_removal { rate_density_per_s: 60 }"));
+    writeFile(folder_ / "s.textproto", std::string(scene).replace(scene.find(at_once), at_once.size(),
+                                                                  "time_removal { rate_density_per_s: 60 }"));
     const std::string trace = folder_ / "trace.csv";
     const auto hasRow = [&](auto&& isWanted) {
         return waitFor([&] {

@@ -211,10 +211,14 @@ TEST(BuildTool, IsItsBurrAndAShaftWhereShapesAreNotGiven) {
             const Vector3d p(where(random), where(random), where(random));
             if (p.y() > 0) continue;
             const double burr = config.burr().signedDistance(p);
+            // What a rounded edge lacks of a sharp one, at the sharpest of these tools.
+            const double lack = config.burr_kind == BurrKind::kBall ? 0 : kEdgeRadius;
+            const double distance = field.sample(p).distance;
             if (burr > 0) {
-                EXPECT_NEAR(field.sample(p).distance, burr, 1e-9) << p.transpose();
+                EXPECT_GE(distance, burr - 1e-9) << p.transpose();
+                EXPECT_LE(distance, burr + lack + 1e-9) << p.transpose();
             } else if (burr < 0) {
-                EXPECT_LT(field.sample(p).distance, 1e-12) << p.transpose();
+                EXPECT_LT(distance, lack + 1e-12) << p.transpose();
             }
         }
         const double end = kind == BurrKind::kBall ? config.burr_radius : config.burr_length / 2;
