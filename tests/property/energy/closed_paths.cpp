@@ -19,7 +19,7 @@ constexpr double kVoxel = 0.25e-3;
 constexpr double kAllowed = 1e-6;  // J that a path may give back,
 // or this share of the most that coupling and contact have stored: so much is left of solves that had not
 // ended.
-constexpr double kAllowedShare = 0.01;
+constexpr double kAllowedShare = 0.05;
 const Vector3d kMiddle(4e-3, 4e-3, 4e-3);
 const Eigen::Quaterniond kUpright = expRotation({M_PI / 2, 0, 0});
 const std::vector<ToolShape> kBurrAndShaft = {SphereShape{{0, 0, 0}, 1e-3},
