@@ -12,7 +12,7 @@ using Eigen::Vector3f;
 constexpr int kEdge[3][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}};
 
 float lengthSquared(const SurfacePiece& piece, const int (&edge)[3]) noexcept {
-    return (piece.corner[edge[1]] - piece.corner[edge[0]]).squaredNorm();
+    return (piece.corner[size_t(edge[1])] - piece.corner[size_t(edge[0])]).squaredNorm();
 }
 
 const int (&longestEdge(const SurfacePiece& piece, float& squared) noexcept)[3] {
@@ -46,7 +46,7 @@ bool SurfacePieces::add(const Vector3f corners[3], float sag, uint32_t patch, ui
     const float twice_area = across.norm();
     if (!(twice_area > 0)) return true;
     SurfacePiece piece;
-    std::copy_n(corners, 3, piece.corner);
+    std::copy_n(corners, 3, piece.corner.begin());
     piece.area = twice_area / 2;
     piece.normal_T = R_TV_ * (across / twice_area);
     piece.patch = patch;
@@ -98,12 +98,12 @@ bool SurfacePieces::isCoarse(const SurfacePiece& piece, const Round& round) cons
 void SurfacePieces::halve(const SurfacePiece& piece) noexcept {
     float squared = 0;
     const auto& [from, to, across] = longestEdge(piece, squared);
-    const Vector3f middle = (piece.corner[from] + piece.corner[to]) / 2;
+    const Vector3f middle = (piece.corner[size_t(from)] + piece.corner[size_t(to)]) / 2;
     SurfacePiece half = piece;
     half.area = piece.area / 2;
-    half.corner[to] = middle;
+    half.corner[size_t(to)] = middle;
     put(half);
-    half.corner[to] = piece.corner[to], half.corner[from] = middle;
+    half.corner[size_t(to)] = piece.corner[size_t(to)], half.corner[size_t(from)] = middle;
     put(half);
 }
 

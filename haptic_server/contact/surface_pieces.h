@@ -11,6 +11,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -19,12 +20,12 @@
 namespace bonemill {
 
 struct SurfacePiece {
-    Eigen::Vector3f corner[3];  // m
-    float area;                 // m²
-    float longest_squared;      // m²: of its edges
-    float nearest;              // m: no point of it is nearer to the tool
-    Eigen::Vector3f normal_T;   // unit
-    uint32_t patch;             // which candidate it is a part of
+    std::array<Eigen::Vector3f, 3> corner;  // m
+    float area;                             // m²
+    float longest_squared;                  // m²: of its edges
+    float nearest;                          // m: no point of it is nearer to the tool
+    Eigen::Vector3f normal_T;               // unit
+    uint32_t patch;                         // which candidate it is a part of
     float bend;     // 1/m: times longest_squared, how far the surface itself may be off the flat piece
     uint8_t level;  // to which that is cut; kNewPatch: as finely as there is room
 
