@@ -8,20 +8,14 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Which corners an edge joins; the third one is across.
-constexpr int kEdge[3][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}};
+constexpr size_t kEdge[3][2] = {{0, 1}, {1, 2}, {2, 0}};  // which corners it joins
 
-float lengthSquared(const SurfacePiece& piece, const int (&edge)[3]) noexcept {
-    return (piece.corner[size_t(edge[1])] - piece.corner[size_t(edge[0])]).squaredNorm();
-}
-
-const int (&longestEdge(const SurfacePiece& piece, float& squared) noexcept)[3] {
-    int longest = 0;
-    squared = lengthSquared(piece, kEdge[0]);
-    for (int edge = 1; edge < 3; ++edge)
-        if (const float length = lengthSquared(piece, kEdge[edge]); length > squared)
-            squared = length, longest = edge;
-    return kEdge[longest];
+void findLongestEdge(SurfacePiece& piece) noexcept {
+    piece.longest_squared = -1;
+    for (uint8_t edge = 0; edge < 3; ++edge) {
+        const float squared = (piece.corner[kEdge[edge][1]] - piece.corner[kEdge[edge][0]]).squaredNorm();
+        if (squared > piece.longest_squared) piece.longest_squared = squared, piece.longest_edge = edge;
+    }
 }
 
 }  // namespace
@@ -45,13 +39,13 @@ bool SurfacePieces::add(const Vector3f corners[3], float sag, uint32_t patch, ui
     const Vector3f across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     const float twice_area = across.norm();
     if (!(twice_area > 0)) return true;
-    SurfacePiece piece;
+    SurfacePiece piece{};
     std::copy_n(corners, 3, piece.corner.begin());
     piece.area = twice_area / 2;
     piece.normal_T = R_TV_ * (across / twice_area);
     piece.patch = patch;
     piece.level = level;
-    longestEdge(piece, piece.longest_squared);
+    findLongestEdge(piece);
     piece.bend = sag / piece.longest_squared;
     put(piece);
     return true;
@@ -60,7 +54,6 @@ bool SurfacePieces::add(const Vector3f corners[3], float sag, uint32_t patch, ui
 // Takes a new piece, whose distance is not known yet.
 void SurfacePieces::put(const SurfacePiece& piece) noexcept {
     fresh_[fresh_count_] = piece;
-    longestEdge(piece, fresh_[fresh_count_].longest_squared);
     if (++fresh_count_ == PointBatch<float>::kCapacity) sort();
 }
 
@@ -90,21 +83,21 @@ void SurfacePieces::sort() noexcept {
 
 bool SurfacePieces::isCoarse(const SurfacePiece& piece, const Round& round) const noexcept {
     if (piece.longest_squared <= round.longest_squared) return false;
-    if (piece.level == kNewPatch ? !round.has_room : piece.level > round.level) return false;
+    if (piece.level == PatchMemory::kNew ? !round.has_room : piece.level > round.level) return false;
     const float enough = shortEnough(*tool_, piece.nearest);
     return piece.nearest < fine_within_ || piece.longest_squared > enough * enough;
 }
 
 void SurfacePieces::halve(const SurfacePiece& piece) noexcept {
-    float squared = 0;
-    const auto& [from, to, across] = longestEdge(piece, squared);
-    const Vector3f middle = (piece.corner[size_t(from)] + piece.corner[size_t(to)]) / 2;
-    SurfacePiece half = piece;
-    half.area = piece.area / 2;
-    half.corner[size_t(to)] = middle;
-    put(half);
-    half.corner[size_t(to)] = piece.corner[size_t(to)], half.corner[size_t(from)] = middle;
-    put(half);
+    const auto& ends = kEdge[piece.longest_edge];
+    const Vector3f middle = (piece.corner[ends[0]] + piece.corner[ends[1]]) / 2;
+    for (const size_t moved : {ends[1], ends[0]}) {
+        SurfacePiece half = piece;
+        half.area = piece.area / 2;
+        half.corner[moved] = middle;
+        findLongestEdge(half);
+        put(half);
+    }
 }
 
 // False: no piece was too long, or there was no room.
@@ -146,7 +139,7 @@ uint8_t SurfacePieces::cut(double spacing, size_t most) noexcept {
         while (cutOnce(round)) {
         }
     }
-    return uint8_t(std::min<int>(level_of_new, kNewPatch - 1));
+    return uint8_t(std::min<int>(level_of_new, PatchMemory::kNew - 1));
 }
 
 }  // namespace bonemill

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "haptic_server/contact/into_tool.h"
+#include "haptic_server/contact/patch_memory.h"
 
 namespace bonemill {
 
@@ -26,16 +27,15 @@ struct SurfacePiece {
     float nearest;                          // m: no point of it is nearer to the tool
     Eigen::Vector3f normal_T;               // unit
     uint32_t patch;                         // which candidate it is a part of
-    float bend;     // 1/m: times longest_squared, how far the surface itself may be off the flat piece
-    uint8_t level;  // to which that is cut; kNewPatch: as finely as there is room
+    float bend;            // 1/m: times longest_squared, how far the surface itself may be off the flat piece
+    uint8_t longest_edge;  // which that is
+    uint8_t level;         // to which the patch is cut; PatchMemory::kNew: as finely as there is room
 
     Eigen::Vector3f centroid() const noexcept { return (corner[0] + corner[1] + corner[2]) / 3; }
 };
 
 class SurfacePieces {
   public:
-    // A piece of level n may be as long as the spacing times the n-th power of root 2.
-    static constexpr uint8_t kNewPatch = 255;
     // A piece at this distance (m) needs to be no shorter: a few times as long as it is far from the tool,
     // but not so long that a thin tool finds its way between two samples.
     static float shortEnough(const ToolField& tool, float nearest) noexcept {
@@ -49,7 +49,8 @@ class SurfacePieces {
     // Begins anew with no piece, around a tool at X_VT that may move by `margin` (m).
     void start(const ToolField& tool, const Pose& X_VT, const Eigen::Vector3d& origin_V, double margin,
                double fine_within) noexcept;
-    // False: there is no room for it.
+    // A patch of level n is cut to the spacing times the n-th power of root 2. False: there is no room for
+    // it.
     bool add(const Eigen::Vector3f corners[3], float sag, uint32_t patch, uint8_t level) noexcept;
     // Cuts all that was added, those of new patches to a spacing (m) that makes no more than about `most`
     // pieces in all. Returns their level. Other patches are cut to theirs as long as there are not four times

@@ -103,8 +103,8 @@ void expectToSlide(Preset preset, double most_friction, double most_step) {
         Slide s{.preset = preset,
                 .voxel = kVoxelSizes[seed / 2 % 4],
                 .lean = kLeans[seed % 8] * kDegree,
-                .seed = seed};
-        s.shapes = seed % 3 == 2 ? kCone : kDrill;
+                .seed = seed,
+                .shapes = seed % 3 == 2 ? kCone : kDrill};
         if (seed % 5 == 4) s.load = 0.5;
         const SlideFigures f = slide(s);
         EXPECT_LE(f.friction, most_friction)
