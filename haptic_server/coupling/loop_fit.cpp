@@ -104,9 +104,11 @@ int LoopFit::soften() noexcept {
         found_ = springs.stiffness;
     }
     nextShape();
-    tried_ = shape().stiffness;
     is_done_ = candidate_ >= kCandidates;
-    if (is_done_ && found_ == 0) best_.stiffness = kLeastStiffness * wish_.stiffness;
+    if (!is_done_)
+        tried_ = shape().stiffness;
+    else if (found_ == 0)
+        best_.stiffness = kLeastStiffness * wish_.stiffness;
     return loops;
 }
 
