@@ -195,7 +195,7 @@ void ShowSession::publishStatus() {
     if (latest) {
         DeviceCapabilities capabilities;
         const bool is_known = device_.capabilities(capabilities);
-        *status.mutable_device() = shownDevice(latest->device, is_known ? &capabilities : nullptr);
+        *status.mutable_device() = shownDevice(*latest, is_known ? &capabilities : nullptr);
     }
     publisher_.publishStatus(std::move(status));
 }

@@ -19,7 +19,8 @@ std::string readableName(const char* name) {
 
 }  // namespace
 
-topics::Device shownDevice(const DeviceReport& report, const DeviceCapabilities* capabilities) {
+topics::Device shownDevice(const TickRecord& record, const DeviceCapabilities* capabilities) {
+    const DeviceReport& report = record.device;
     topics::Device device;
     device.set_state(report.state);
     device.set_stop_cause(report.stop_cause);
@@ -28,6 +29,8 @@ topics::Device shownDevice(const DeviceReport& report, const DeviceCapabilities*
     device.set_is_force_limited(report.flags & kDeviceFlagForceLimited);
     device.set_is_enabled(report.flags & kDeviceFlagEnabled);
     device.set_force_waits(report.flags & kDeviceFlagForceWaits);
+    device.set_coupling_share(record.coupling_share);
+    device.set_rotation_share(record.rotation_share);
     if (!capabilities) return device;
     device.set_name(readableName(capabilities->name));
     device.set_kind(capabilities->kind);

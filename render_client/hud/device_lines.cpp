@@ -1,5 +1,7 @@
 #include "render_client/hud/device_lines.h"
 
+#include <cstdio>
+
 #include "common/device_messages/device_messages.h"
 #include "render_client/hud/figure_text.h"
 
@@ -51,6 +53,19 @@ void addWhatItWaitsFor(SafetyState state, const topics::Device& device, std::vec
         rows.push_back({"", "press the switch anew", HudTone::kWarning});
 }
 
+// A device that could not hold the scene's coupling quietly gets a softer one (docs/stability.md).
+void addWhatWasGivenUp(const topics::Device& device, std::vector<HudRow>& rows) {
+    constexpr double kAllButAll = 0.995;
+    const auto add = [&](const char* what, double share) {
+        if (!(share > 0 && share < kAllButAll)) return;
+        char text[kLongestRow + 1];
+        std::snprintf(text, sizeof text, "%s at %.*f %%", what, share < 0.1 ? 1 : 0, share * 100);
+        rows.push_back({"", text});
+    };
+    add("stiffness", device.coupling_share());
+    add("turning stiffness", device.rotation_share());
+}
+
 }  // namespace
 
 std::vector<HudRow> deviceRows(const topics::Device& device, const topics::ToolState* tool) {
@@ -62,6 +77,7 @@ std::vector<HudRow> deviceRows(const topics::Device& device, const topics::ToolS
                               toneOf(state)}};
     if (rows.front().tone == HudTone::kAlarm) addCause(state, cause, device.fault_code(), rows);
     if (state == SafetyState::kReady || state == SafetyState::kPaused) addWhatItWaitsFor(state, device, rows);
+    if (state == SafetyState::kEngaged) addWhatWasGivenUp(device, rows);
     return rows;
 }
 

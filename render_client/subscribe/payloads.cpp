@@ -95,7 +95,7 @@ bool isUsable(const topics::ToolState& state) {
 // States and causes of a later version are shown as unknown.
 bool isUsable(const topics::Device& device) {
     return isSane(device.max_force_n()) && device.max_force_n() >= 0 && isSane(device.max_torque_nmm()) &&
-           device.max_torque_nmm() >= 0;
+           device.max_torque_nmm() >= 0 && isSane(device.coupling_share()) && isSane(device.rotation_share());
 }
 
 bool isUsable(const topics::Status& status) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/device_messages/device_messages.h"
+#include "render_client/hud/figure_text.h"
 #include "render_client/hud/hud_lines.h"
 
 namespace bonemill {
@@ -33,6 +34,21 @@ TEST(DeviceLines, AnEngagedDeviceIsOneQuietLine) {
     rows = deviceRows(device, nullptr);
     EXPECT_EQ(rows[0].label, "Device");
     EXPECT_EQ(rows[0].value, "engaged, simulated");
+}
+
+TEST(DeviceLines, TellWhatStiffnessWasGivenUpForTheDevice) {
+    topics::Device device = deviceIn(SafetyState::kEngaged);
+    device.set_coupling_share(1);
+    device.set_rotation_share(1);
+    EXPECT_EQ(deviceRows(device, nullptr).size(), 1u);
+    device.set_coupling_share(0.452);
+    device.set_rotation_share(0.0314);
+    const auto rows = deviceRows(device, nullptr);
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_EQ(rows[1].value, "stiffness at 45 %");
+    EXPECT_EQ(rows[2].value, "turning stiffness at 3.1 %");
+    EXPECT_LE(rows[2].value.size(), kLongestRow);
+    EXPECT_EQ(deviceRows(deviceIn(SafetyState::kPaused), nullptr).size(), 1u);
 }
 
 TEST(DeviceLines, EveryStopIsRedAndSaysWhyAndWhatToDo) {

@@ -20,10 +20,14 @@ DeviceCapabilities touch() {
 }
 
 TEST(ShownDevice, HasWhatSampleAndCapabilitiesSay) {
-    const DeviceReport status{uint32_t(SafetyState::kReady), uint32_t(StopCause::kSpeed), 0,
-                              kDeviceFlagSimulated | kDeviceFlagForceWaits};
+    TickRecord record{};
+    record.device = {uint32_t(SafetyState::kReady), uint32_t(StopCause::kSpeed), 0,
+                     kDeviceFlagSimulated | kDeviceFlagForceWaits};
+    record.coupling_share = 0.4;
+    record.rotation_share = 0.03;
+    const DeviceReport& status = record.device;
     const DeviceCapabilities capabilities = touch();
-    const topics::Device device = shownDevice(status, &capabilities);
+    const topics::Device device = shownDevice(record, &capabilities);
     EXPECT_EQ(device.name(), "Touch");
     EXPECT_EQ(device.kind(), uint32_t(DeviceKind::kTouch));
     EXPECT_EQ(device.state(), status.state);
@@ -32,8 +36,10 @@ TEST(ShownDevice, HasWhatSampleAndCapabilitiesSay) {
     EXPECT_FALSE(device.is_enabled() || device.is_force_limited());
     EXPECT_EQ(device.abilities(), capabilities.abilities);
     EXPECT_EQ(device.max_force_n(), 3.3);
-    EXPECT_EQ(shownDevice(status, nullptr).name(), "");
-    EXPECT_EQ(shownDevice(status, nullptr).state(), status.state);
+    EXPECT_EQ(device.coupling_share(), 0.4);
+    EXPECT_EQ(device.rotation_share(), 0.03);
+    EXPECT_EQ(shownDevice(record, nullptr).name(), "");
+    EXPECT_EQ(shownDevice(record, nullptr).state(), status.state);
 }
 
 // The text and the figures come from another process and go to all viewers.
@@ -42,7 +48,7 @@ TEST(ShownDevice, GarbageThatIsPlausibleIsShownHarmlessly) {
     std::memcpy(odd.name, "a\n\xff\x1b[2Jb", 9);
     odd.max_force = odd.max_torque = std::numeric_limits<double>::max();
     ASSERT_TRUE(isPlausible(odd));
-    const topics::Device device = shownDevice({}, &odd);
+    const topics::Device device = shownDevice(TickRecord{}, &odd);
     EXPECT_EQ(device.name(), "a???[2Jb");
     EXPECT_LE(device.max_force_n(), 1e6);
     EXPECT_LE(device.max_torque_nmm(), 1e6);
