@@ -47,7 +47,7 @@ AccuracySettings presetSettings(Preset preset) noexcept {
                     ToolDistance::kAnalytic,
                     1,
                     Precision::kFloat,
-                    1,
+                    2,
                     true};
         case Preset::kBalanced:
             return {ContactLaw::kGradient,
@@ -57,7 +57,7 @@ AccuracySettings presetSettings(Preset preset) noexcept {
                     ToolDistance::kAnalytic,
                     2,
                     Precision::kFloat,
-                    4,
+                    6,
                     true};
         case Preset::kExact:
             return {ContactLaw::kGradient,
@@ -67,7 +67,7 @@ AccuracySettings presetSettings(Preset preset) noexcept {
                     ToolDistance::kAnalytic,
                     4,
                     Precision::kDouble,
-                    8,
+                    12,
                     true};
         case Preset::kProxy3Dof:
             return comparedLaw(ContactLaw::kProxy3Dof, 8);

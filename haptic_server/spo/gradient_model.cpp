@@ -11,9 +11,11 @@ namespace {
 // have one unit.
 constexpr double kRotationLength = 0.03;  // m
 constexpr double kSmallestReach = 1e-9;   // m: a shorter step is no step
-constexpr double kLeastMargin = 20e-6;    // m: what a hand moves in a millisecond when it works
-constexpr double kMotionGrowth = 2;       // of the reach from tick to tick
-constexpr int kMostCuts = 4;              // of a step that goes uphill
+constexpr double kShortestLesson =
+    1e-7;                               // m: over a shorter step the change of the forces is mostly rounding
+constexpr double kLeastMargin = 20e-6;  // m: what a hand moves in a millisecond when it works
+constexpr double kMotionGrowth = 2;     // of the reach from tick to tick
+constexpr int kMostCuts = 4;            // of a step that goes uphill
 // One cut leaves so much of a step's length: one that goes deep into a hard wall must become short.
 constexpr double kLongestCut = 0.5, kShortestCut = 0.05;
 constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;
@@ -24,7 +26,8 @@ constexpr double kFloatNoise = 1e-6, kDoubleNoise = 1e-13;
 // by a hole that is too narrow, it could not be drawn out.
 constexpr double kGrowth = 0.01;
 constexpr double kMostDepthToGrow = 0.05;
-constexpr double kFelt = 0.05;  // N, and N·m by kRotationLength: less is not felt
+// Forces out of balance, N, and torques by kRotationLength: less is not felt, and less is balance.
+constexpr double kFelt = 0.05, kBalance = 1e-4;
 constexpr size_t kMostCandidates = 65'536;
 
 Vector6d rotationScale() noexcept {
@@ -92,6 +95,7 @@ void GradientModel::setAccuracy(const AccuracySettings& settings) noexcept {
     most_point_tests_ = size_t(double(config_.most_point_tests) / field_->testCost());
     contact_.limitCandidates(most_point_tests_ / 4);
     contact_.forget();
+    curvature_.forget();
 }
 
 void GradientModel::setTool(const SpoTool& tool) noexcept {
@@ -151,6 +155,7 @@ void GradientModel::restart() noexcept {
     way_.forget();
     relaxing_.forget();
     contact_.forget();
+    curvature_.forget();
     lambda_ = 0;
     last_motion_.setZero();
     last_reach_ = 0;
@@ -202,14 +207,34 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
     return state;
 }
 
-// Solves (K + λ D) step = wrench (Gauss-Newton) in scaled rotations; zero if the matrix cannot be factored.
+double GradientModel::outOfBalance(const State& state) noexcept {
+    return rotationScale().cwiseProduct(stacked(state.total.wrench)).norm();
+}
+
+Matrix6d GradientModel::scaledStiffness(const State& state) noexcept {
+    const Vector6d scale = rotationScale();
+    return scale.asDiagonal() * state.total.stiffness * scale.asDiagonal();
+}
+
+void GradientModel::learnFrom(const State& before, const State& after) noexcept {
+    const Vector6d scale = rotationScale();
+    const Vector6d step = between(before.X_VT, after.X_VT);
+    if (reachOf(step) < kShortestLesson) return;
+    curvature_.learn(step.cwiseQuotient(scale),
+                     scale.cwiseProduct(stacked(before.total.wrench) - stacked(after.total.wrench)),
+                     scaledStiffness(after));
+}
+
+// Solves (K + S + λ D) step = wrench in scaled rotations, Gauss-Newton with what has been learnt of the
+// curvature if that has a lowest point; zero if the matrix cannot be factored.
 Vector6d GradientModel::newtonStep(const State& state) const noexcept {
     const Vector6d scale = rotationScale();
-    Matrix6d K = scale.asDiagonal() * state.total.stiffness * scale.asDiagonal();
+    Matrix6d K = scaledStiffness(state);
     K.diagonal().head<3>().array() += lambda_ * coupling_.translation_stiffness;
     K.diagonal().tail<3>().array() +=
         lambda_ * coupling_.rotation_stiffness / (kRotationLength * kRotationLength);
-    const Eigen::LLT<Matrix6d> factors(K);
+    Eigen::LLT<Matrix6d> factors(K + curvature_.matrix());
+    if (factors.info() != Eigen::Success) factors.compute(K);
     if (factors.info() != Eigen::Success) return Vector6d::Zero();
     const Vector6d scaled_wrench = scale.cwiseProduct(stacked(state.total.wrench));
     const Vector6d step = scale.cwiseProduct(factors.solve(scaled_wrench));
@@ -289,7 +314,7 @@ void GradientModel::goOn(State& state, const Tick& tick) noexcept {
 // matrix has no factors; the state is the last good one.
 bool GradientModel::descend(State& state, const Tick& tick) noexcept {
     if (!state.isFinite()) return false;
-    for (int n = 0; n < settings_.iterations; ++n) {
+    for (int n = 0; n < settings_.iterations && outOfBalance(state) > kBalance; ++n) {
         const Vector6d newton = newtonStep(state);
         if (newton.isZero(0)) return stacked(state.total.wrench).isZero(0);
         const uint32_t gatherings = gatherings_;
@@ -302,19 +327,31 @@ bool GradientModel::descend(State& state, const Tick& tick) noexcept {
         if (gatherings_ != gatherings)
             state = evaluate(state.X_VT, tick);  // the energy is that of other points now
         ++tick.out->iterations;
+        const State before = state;
         const bool has_moved = moveDown(state, step, tick);
         if (pointTestsLeft() == 0) {
             tick.out->has_contact_overflow = true;
             break;
         }
-        lambda_ = has_moved ? lambda_ / 10 : std::min(std::max(kFirstLambda, lambda_ * 10), kMostLambda);
-        if (lambda_ < kFirstLambda / 100) lambda_ = 0;
-        if (!has_moved) {
-            tick.out->has_stalled = rotationScale().cwiseProduct(stacked(state.total.wrench)).norm() > kFelt;
+        if (has_moved) {
+            learnFrom(before, state);
+            lambda_ = lambda_ > kFirstLambda / 10 ? lambda_ / 10 : 0;
+        } else if (!tryOtherwise(state, tick)) {
             break;
         }
     }
     return true;
+}
+
+// After a step that led uphill: what was learnt may be to blame, or it was too long. False: this tick ends.
+bool GradientModel::tryOtherwise(const State& state, const Tick& tick) noexcept {
+    if (!curvature_.isEmpty()) {
+        curvature_.forget();
+        return true;
+    }
+    lambda_ = std::min(std::max(kFirstLambda, lambda_ * 10), kMostLambda);
+    tick.out->has_stalled = outOfBalance(state) > kFelt;
+    return false;
 }
 
 SpoStep GradientModel::advance(const Pose& X_VT, const Pose& X_VT_device) noexcept {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "haptic_server/contact/gradient_contact.h"
+#include "haptic_server/spo/curvature_secant.h"
 #include "haptic_server/spo/gradient_config.h"
 #include "haptic_server/spo/spo_model.h"
 #include "haptic_server/tool/growing_field.h"
@@ -58,7 +59,12 @@ class GradientModel final : public SpoModel {
     State evaluate(const Pose& X_VT, const Tick& tick) noexcept;
     void goOn(State& state, const Tick& tick) noexcept;
     bool descend(State& state, const Tick& tick) noexcept;
+    bool tryOtherwise(const State& state, const Tick& tick) noexcept;
     void feel(const Pose& X_VT, const Tick& tick) noexcept;
+    // N; rotation in units of the solve.
+    static double outOfBalance(const State& state) noexcept;
+    static Matrix6d scaledStiffness(const State& state) noexcept;
+    void learnFrom(const State& before, const State& after) noexcept;
     Vector6d newtonStep(const State& state) const noexcept;
     Vector6d withinSpeed(const State& state, const Vector6d& newton, const Tick& tick) const noexcept;
     Vector6d limited(const State& state, const Vector6d& newton, const Tick& tick) noexcept;
@@ -91,6 +97,7 @@ class GradientModel final : public SpoModel {
     size_t point_tests_ = 0;       // in this tick
     ContinuousRotation way_;
     RelaxingSpring relaxing_;
+    CurvatureSecant curvature_;
     double lambda_ = 0;                        // Levenberg, share of the damping matrix
     Vector6d last_motion_ = Vector6d::Zero();  // of the last tick
     double last_reach_ = 0;                    // m, of that

@@ -1,6 +1,6 @@
-// No closed path of the device over bone that nobody mills gives the hand energy: 3000 random paths, other
-// ones in every run. BONEMILL_CLOSED_PATHS sets how many on each body in each preset (250). rapidcheck prints
-// the seed of a run; RC_PARAMS="seed=..." repeats it.
+// No closed path of the device over bone that nobody mills gives the hand energy: 2250 random paths, other
+// ones in every run. BONEMILL_CLOSED_PATHS sets how many on each body in each preset (250), in exact a
+// quarter of that. rapidcheck prints the seed of a run; RC_PARAMS="seed=..." repeats it.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
@@ -16,10 +16,10 @@ using namespace test;
 using Eigen::Vector3d;
 
 constexpr double kVoxel = 0.25e-3;
-constexpr double kAllowed = 1e-6;  // J that a path may give back,
-// or this share of the most that coupling and contact have stored: so much is left of solves that had not
-// ended.
-constexpr double kAllowedShare = 0.05;
+constexpr double kAllowed = 1e-6;  // J that a path may give back
+// The tool's waist at the edges of a slot has many rests, and snapping from one to another gains some energy,
+// the same in each preset (docs/stability.md). It stores up to 900 µJ there.
+constexpr double kAllowedInSlot = 20e-6;
 const Vector3d kMiddle(4e-3, 4e-3, 4e-3);
 const Eigen::Quaterniond kUpright = expRotation({M_PI / 2, 0, 0});
 const std::vector<ToolShape> kBurrAndShaft = {SphereShape{{0, 0, 0}, 1e-3},
@@ -44,6 +44,8 @@ double rough(const Vector3d& p) {
         uint32_t(voxel.x() * 73856093 ^ voxel.y() * 19349663 ^ voxel.z() * 83492791) * 2654435761u;
     return bumps(p) + 0.3e-3 * (double(hash >> 8) / double(1 << 24) - 0.5);
 }
+
+constexpr int kSlot = 2;
 
 const ContactScene& sceneOf(int body) {
     static const ContactScene kScenes[] = {
@@ -116,9 +118,14 @@ class EnergyPutIn {
 struct PathEnergy {
     // Both are J of the same run: how far they differ tells the quadrature's error.
     double every_tick, every_other_tick;
-    double most_stored;  // J
     bool has_touched;
 };
+
+// A tool that snaps may need more than one solve to come to rest again.
+constexpr int kMostSolves = 50;
+bool hasEnded(const SpoStep& step) {
+    return int(step.iterations) < AccuracySettings::kMostIterations && !step.is_motion_clamped;
+}
 
 PathEnergy run(const ContactScene& scene, Preset preset, const Path& path) {
     GradientConfig config;
@@ -130,17 +137,18 @@ PathEnergy run(const ContactScene& scene, Preset preset, const Path& path) {
     Pose spo = path.at(0);
     EnergyPutIn every_tick(spo), every_other_tick(spo);
     bool has_touched = false;
-    double most_stored = 0;
     for (int tick = 0; tick < path.ticks(); ++tick) {
         const Pose device = path.at(tick);
-        const SpoStep step = model.advance(spo, device);
-        spo = step.X_VT;
+        SpoStep step;
+        for (int n = 0; n == 0 || (n < kMostSolves && !hasEnded(step)); ++n) {
+            step = model.advance(spo, device);
+            spo = step.X_VT;
+        }
         has_touched = has_touched || step.contacts > 0;
-        most_stored = std::max(most_stored, model.energy());
         every_tick.add(device, step.wrench_hand_V);
         if (tick % 2 == 0) every_other_tick.add(device, step.wrench_hand_V);
     }
-    return {every_tick.energy(), every_other_tick.energy(), most_stored, has_touched};
+    return {every_tick.energy(), every_other_tick.energy(), has_touched};
 }
 
 // The sum over ticks must stand for the integral: a path is run with ever smaller steps until it does.
@@ -161,7 +169,7 @@ void expectPassive(Preset preset, int body, double& least, int& touching) {
     const PathEnergy energy = energyOf(sceneOf(body), preset, Path());
     touching += energy.has_touched;
     least = std::min(least, energy.every_tick);
-    RC_ASSERT(energy.every_tick >= -std::max(kAllowed, kAllowedShare * energy.most_stored));
+    RC_ASSERT(energy.every_tick >= -(body == kSlot ? kAllowedInSlot : kAllowed));
 }
 
 struct Run {
@@ -199,7 +207,7 @@ std::vector<Run> runs() {
     std::vector<Run> all;
     for (int body = 0; body < 4; ++body)
         for (const Preset preset : {Preset::kFast, Preset::kBalanced, Preset::kExact})
-            all.push_back({preset, body, paths});
+            all.push_back({preset, body, preset == Preset::kExact ? (paths + 3) / 4 : paths});
     return all;
 }
 
