@@ -17,6 +17,7 @@ constexpr double kTurnsPerSecond = 4000;
 constexpr double kPoolShare = 0.8;  // of the bricks that could have their turn in time
 constexpr size_t kMostBricks = 1024, kMostDeadBricks = 16384;
 constexpr size_t kLookupsPerStep = 4;  // of a brick's cubes in the volume
+constexpr size_t kLookupsOfHeat = 2;   // of them, that dead bone leaves to the bricks whose turn it is
 constexpr int64_t kMostBricksToRevisit = 512;
 constexpr size_t kMostDeadSeen = 256;  // bricks with dead cells that a step looks through for stale ones
 // They are in K: a brick whose border is warmer than that opens its neighbour; one that is cooler all over is
@@ -177,7 +178,7 @@ void HeatGrid::markDeadStale(size_t first, size_t end) noexcept {
 
 // Dead cells whose bone is gone are not counted any more, whether their brick is open or not.
 void HeatGrid::reviewDead() noexcept {
-    for (size_t n = 0; n < kMostDeadSeen && stale_dead_ > 0 && lookups_ > 0; ++n) {
+    for (size_t n = 0; n < kMostDeadSeen && stale_dead_ > 0 && lookups_ > kLookupsOfHeat; ++n) {
         next_dead_ = next_dead_ + 1 < dead_used_ ? next_dead_ + 1 : 0;
         DeadCells& dead = dead_pool_[next_dead_];
         if (!dead.is_stale) continue;

@@ -205,6 +205,26 @@ TEST(HeatGrid, DeadBoneThatIsGoneDoesNotCountThoughItIsCold) {
     EXPECT_EQ(heat.necroticVolume(), 0);
 }
 
+// A burr that cuts among dead bone makes all of it stale in every tick. No bone changes here, so that the
+// notes may change nothing either, but for when a brick has its turn.
+TEST(HeatGrid, HeatSpreadsWhileDeadBoneIsLookedUpAgain) {
+    const VoxelVolume bone = boneOf({32, 32, 32});
+    HeatGrid undisturbed(insulated(), bone, kDt), noted(insulated(), bone, kDt);
+    for (HeatGrid* heat : {&undisturbed, &noted}) {
+        for (int n = 0; n < 8; ++n)  // one cube in each of the eight bricks that meet here
+            heat->addHeat(cubeAt(15 + (n & 1), 15 + (n >> 1 & 1), 15 + (n >> 2)), Vector3d::Zero(), 5e-3);
+        run(*heat, 0.1);
+        EXPECT_GT(heat->necroticVolume(), 0);
+        for (int n = 0; n < 500; ++n) {
+            heat->addHeat(cubeAt(16, 16, 16), Vector3d::Zero(), 5e-5);
+            if (heat == &noted) heat->noteChange({{15, 15, 15}, {16, 16, 16}});
+            heat->step();
+        }
+    }
+    EXPECT_NEAR((noted.hottest() - kBody) / (undisturbed.hottest() - kBody), 1, 0.02);
+    EXPECT_NEAR(noted.storedHeat() / undisturbed.storedHeat(), 1, 1e-3);
+}
+
 // Cubes count once however often they are heated, also after their brick was given up meanwhile.
 TEST(HeatGrid, NecrosisIsCountedOnce) {
     const VoxelVolume bone = boneOf({32, 32, 32});
