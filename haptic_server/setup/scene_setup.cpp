@@ -114,6 +114,32 @@ void warnOfThinTool(Simulation& simulation, const scene::Scene& scene, const Sce
                                   " N; lower coupling.max_force_n or contact.thinnest_wall_mm");
 }
 
+// In m²: what a burr has in the bone when it is half in, a cylinder or cone with all of its far end.
+double areaHalfIn(const Burr& burr) {
+    if (burr.kind == BurrKind::kBall) return 2 * M_PI * burr.radius * burr.radius;
+    const double end = burr.kind == BurrKind::kCone ? burr.tip_radius : burr.radius;
+    return M_PI * (burr.radius + end) * burr.length / 2 + M_PI * end * end;
+}
+
+// A tick in which the solve takes long tests each contact point so often (drills of 5 mm: docs/realtime.md).
+constexpr double kTestsOfPoint = 13;
+
+void warnOfManyPoints(Simulation& simulation, const SceneTool& tool) {
+    const AccuracySettings& settings = simulation.accuracy;
+    if (settings.law != ContactLaw::kGradient) return;
+    const double voxel = std::cbrt(simulation.bone->volume.spacing().prod());
+    const double points = areaHalfIn(tool.burr) / std::pow(settings.shell_factor * voxel, 2);
+    const double affordable = double(simulation.tick.gradient.most_point_tests) /
+                              tool.built.model.field(settings).testCost() / kTestsOfPoint;
+    if (points <= affordable) return;
+    simulation.warnings.push_back(ofTool(simulation, tool) + "half in bone the burr touches some " +
+                                  textOf(std::round(points)) + " contact points, and a tick has time for " +
+                                  textOf(std::round(affordable)) +
+                                  ": coarser ones will be felt (coarser_shell); use voxels of " +
+                                  textOf(std::ceil(1e5 * voxel * std::sqrt(points / affordable)) / 100) +
+                                  " mm, a smaller burr or a slower loop");
+}
+
 // The tools lack what needs the volume.
 std::vector<SceneTool> buildTools(const LoadedScene& loaded) {
     const std::vector<std::string> names = toolNamesOf(loaded.scene);
@@ -138,6 +164,7 @@ void fitToolsToBone(Simulation& simulation, const scene::Scene& scene) {
         for (const std::string& warning : tool.built.warnings)
             simulation.warnings.push_back(ofTool(simulation, tool) + warning);
         warnOfCoarseShell(simulation, tool);
+        warnOfManyPoints(simulation, tool);
         warnOfThinTool(simulation, scene, tool);
     }
 }

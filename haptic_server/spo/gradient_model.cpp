@@ -21,13 +21,17 @@ constexpr double kLongestCut = 0.5, kShortestCut = 0.05;
 constexpr double kFirstLambda = 1e-2, kMostLambda = 1e6;
 // Rounding of the depths must not refuse a step. It makes this share of the energy, some 10 roundings each.
 constexpr double kFloatNoise = 1e-6, kDoubleNoise = 1e-13;
+// The rounding of a place is this share of the tool's reach.
+constexpr double kFloatRounding = 1.2e-7, kDoubleRounding = 2.2e-16;
 // A new tool grows by this much per time, m/s, which the hand feels as less than its coupling times that,
 // and only while it is not deeper in the bone than this share of its thinnest radius: squeezed more than that
 // by a hole that is too narrow, it could not be drawn out.
 constexpr double kGrowth = 0.01;
 constexpr double kMostDepthToGrow = 0.05;
-// Forces out of balance, N, and torques by kRotationLength: less is not felt, and less is balance.
-constexpr double kFelt = 0.05, kBalance = 1e-4;
+// Forces out of balance, N, and torques by kRotationLength: less is balance, and
+constexpr double kBalance = 1e-4;
+constexpr double kFelt = 0.05;             // less is not felt,
+constexpr double kFeltBesideForce = 0.01;  // nor is this share of the contact's force
 constexpr size_t kMostCandidates = 65'536;
 
 Vector6d rotationScale() noexcept {
@@ -198,7 +202,7 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
                                               ? contact_.evaluate<double>(*field_, X_VT)
                                               : contact_.evaluate<float>(*field_, X_VT);
     point_tests_ += contact_.candidateCount();
-    State state{X_VT, contact.term, 0, contact.contacts, contact.max_depth};
+    State state{X_VT, contact.term, 0, contact.contacts, contact.max_depth, contact.term.wrench.force.norm()};
     state.total += couplingEnergy(coupling_, X_VT, tick.X_VT_device, way_);
     state.total += relaxing_.energy(X_VT, tick.X_VT_device);
     state.stored = state.total.energy;
@@ -279,6 +283,14 @@ Vector6d GradientModel::limited(const State& state, const Vector6d& newton, cons
     return step * std::max(0.0, room() / reachOf(step));
 }
 
+// Returns whether what the step can gain is less than the rounding of the depths makes: a rise then says
+// nothing, and parts of the step would be tried in vain. All points of a flat end round alike.
+bool GradientModel::isLostInNoise(const State& state, const Vector6d& step) const noexcept {
+    const bool is_double = settings_.precision == Precision::kDouble;
+    const double of_depth = (is_double ? kDoubleRounding : kFloatRounding) * field_->reach();
+    return stacked(state.total.wrench).dot(step) <= of_depth * state.contact_force;
+}
+
 // Takes the step, or a part of it for which the energy falls. False: there is no such part, the state stays.
 bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept {
     const double noise = settings_.precision == Precision::kDouble ? kDoubleNoise : kFloatNoise;
@@ -290,6 +302,7 @@ bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tic
             state = next;
             return true;
         }
+        if (isLostInNoise(state, step)) return false;
         const double rise = next.total.energy - state.total.energy;
         const double deeper = (next.max_depth - state.max_depth) / reachOf(share * step);
         share = std::isfinite(rise) && slope > 0 ? shareAtMinimum(slope, share, rise, deeper)
@@ -350,7 +363,7 @@ bool GradientModel::tryOtherwise(const State& state, const Tick& tick) noexcept 
         return true;
     }
     lambda_ = std::min(std::max(kFirstLambda, lambda_ * 10), kMostLambda);
-    tick.out->has_stalled = outOfBalance(state) > kFelt;
+    tick.out->has_stalled = outOfBalance(state) > std::max(kFelt, kFeltBesideForce * state.contact_force);
     return false;
 }
 

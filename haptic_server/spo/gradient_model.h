@@ -44,6 +44,7 @@ class GradientModel final : public SpoModel {
         double stored = 0;  // of that, J: what neither the damping nor the effects hold
         uint32_t contacts = 0;
         double max_depth = 0;
+        double contact_force = 0;  // N
         bool isFinite() const noexcept;
     };
     // It stays the same during a tick.
@@ -68,6 +69,7 @@ class GradientModel final : public SpoModel {
     Vector6d newtonStep(const State& state) const noexcept;
     Vector6d withinSpeed(const State& state, const Vector6d& newton, const Tick& tick) const noexcept;
     Vector6d limited(const State& state, const Vector6d& newton, const Tick& tick) noexcept;
+    bool isLostInNoise(const State& state, const Vector6d& step) const noexcept;
     bool moveDown(State& state, const Vector6d& step, const Tick& tick) noexcept;
     static void dropTraces(SpoStep& step) noexcept;
     double reachOf(const Vector6d& step) const noexcept;

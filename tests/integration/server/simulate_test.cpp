@@ -141,6 +141,24 @@ TEST(Simulate, WarnsOfATipThatTheCouplingPushesThroughAWall) {
     EXPECT_EQ(warnings("0.6").find("thinnest part"), std::string::npos);
 }
 
+TEST(Simulate, WarnsOfABurrThatTouchesMorePointsThanATickHasTimeFor) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
+    writeFile(folder / "a.csv", plunge(0, 0, 20e-3, 20e-3, 2, 0, 0));
+    const auto warnings = [&](const std::string& length_mm) {
+        writeFile(folder / "s.textproto",
+                  "volume { path: \"slab.nrrd\" } tool { burr_kind: CYLINDER burr_radius_mm: 4 "
+                  "sdf_spacing_mm: 0.5 burr_length_mm: " +
+                      length_mm + " }");
+        const auto finished = run({"haptic_server", "simulate", "--scene", folder / "s.textproto",
+                                   "--trajectory", folder / "a.csv"});
+        EXPECT_EQ(finished.exit_code, 0) << finished.err;
+        return finished.err;
+    };
+    EXPECT_NE(warnings("30").find("coarser ones will be felt"), std::string::npos);
+    EXPECT_EQ(warnings("2").find("coarser ones will be felt"), std::string::npos);
+}
+
 TEST(Simulate, TraceHasTheDocumentedColumnsAndAddsUp) {
     const TemporaryFolder folder;
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);

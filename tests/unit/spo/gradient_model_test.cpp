@@ -282,6 +282,36 @@ TEST(GradientModel, ATickEndsSoonAfterItsBudgetWhateverItMeets) {
     }
 }
 
+// All points of a flat end round alike, so that the energy rises by its rounding where nothing is left to
+// gain: no part of such a step is worth a try.
+TEST(GradientModel, AFlatEndPressedHardEndsItsSolveWhereTheEnergysRoundingDoes) {
+    constexpr double kEnd = 2.5e-3, kHalf = 4e-3;
+    const ContactScene scene{cubeGeometry(49, 0.125e-3),
+                             halfSpace({3e-3, 3e-3, 3.01e-3}, Vector3d(0.004, 0.002, 1).normalized()),
+                             {CylinderShape{{0, -kHalf, 0}, {0, kHalf, 0}, kEnd}},
+                             {.levels = {{1}}}};
+    GradientConfig config;
+    config.coupling.translation_stiffness = 1e6;
+    config.coupling.rotation_stiffness = 100;
+    config.coupling.damping_time = 0;
+    const SpoTool drill{&scene.tool, {.radius = kEnd}, 1000};
+    GradientModel model(config, scene.world(), drill, 1e-3);
+    Pose spo{{3e-3, 3e-3, 3.01e-3 + kHalf}, kUpright};
+    double most_share = 0, force = 0;
+    int stalled = 0;
+    for (int n = 0; n < 400; ++n) {
+        const Vector3d pressed(3e-3, 3e-3, 3.01e-3 + kHalf - 0.37e-6 * n);
+        const SpoStep step = model.advance(spo, {pressed, kUpright});
+        stalled += step.has_stalled;
+        most_share = std::max(most_share, step.budget_share);
+        force = std::max(force, step.wrench_hand_V.force.z());
+        spo = step.X_VT;
+    }
+    EXPECT_LE(stalled, 1);
+    EXPECT_LT(most_share, 0.02);
+    EXPECT_GT(force, 100);
+}
+
 TEST(GradientModel, EnergyNeverRisesUnderAHandAtRest) {
     const ContactScene scene = flatScene(Vector3d(0.4, -0.2, 1).normalized());
     GradientModel model(GradientConfig{}, scene.world(), toolOf(scene), 1e-3);
