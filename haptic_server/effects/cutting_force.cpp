@@ -40,9 +40,9 @@ CuttingForce::Pull CuttingForce::pullOf(const EffectTick& tick) const noexcept {
         const Matrix3d tangential = Matrix3d::Identity() - n * n.transpose();
         const Vector3d by_turn = tangential * axis.cross(r), v_spin = spin * by_turn;
         const Vector3d v_tool = tangential * (tick.velocity_V + tick.angular_velocity_V.cross(r));
-        const double v_mean = std::sqrt((v_spin + v_tool).squaredNorm() + spin * spin * spread);
-        const double per_speed =
-            share * burr.friction * double(contact.force) / (v_mean + config_.slow_speed);
+        const double mean_square = (v_spin + v_tool).squaredNorm() + spin * spin * spread;
+        const double per_speed = share * burr.friction * double(contact.force) /
+                                 std::sqrt(mean_square + config_.slow_speed * config_.slow_speed);
         const double per_turn = per_speed * spin + held_per_moment * double(contact.force) / rho;
         const Vector3d force = -per_turn * by_turn;
         pull.of_spin.force += force;

@@ -1,8 +1,8 @@
 // This is the tangential force with which bone holds on to the turning burr, and its torque about the burr's
 // axis: the sixth degree of freedom. Each contact on the burr, of normal force F, rubs at the speed v_s = Ω a
 // × r + v (v the tool's own motion there, tangential parts) and pulls with
-//   F_t = −s μ_c F v_s / (|v_s| + v_ε),   |v_s| the mean over its patch (burr_speed.h),
-// so that about the axis M Ω = μ_c Σ F v_c · v_c / (v_c + v_ε), v_c = |Ω| ρ. s fades from 1 to 0 as
+//   F_t = −s μ_c F v_s / √(|v_s|² + v_ε²),   |v_s| the mean over its patch (burr_speed.h),
+// so that about the axis M Ω = μ_c Σ F v_c · v_c / √(v_c² + v_ε²), v_c = |Ω| ρ. s fades from 1 to 0 as
 // the burr comes to rest. What stands still sticks, and is surface_friction's; but a burr that a spindle
 // cannot turn passes the motor's torque on, by forces in the direction of the spin in proportion to F:
 //   F_t = −(1 − s) (L/Σ F ρ) F (a × r)/ρ,   L the spindle's axis_load.

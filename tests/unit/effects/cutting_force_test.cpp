@@ -37,11 +37,12 @@ TEST_F(CuttingForceTest, PullsAgainstTheSpinWithFrictionTimesForce) {
     contacts.add(bench.tool.burr.radius * out, -out, 4);
     const Wrench felt = feltAfterBegin().wrench;
     const double v = bench.tool.burr.speed * bench.tool.burr.radius;
-    EXPECT_LT((felt.force + 0.5 * 4 * v / (v + kPrompt.slow_speed) * axis.cross(out)).norm(), 1e-6);
+    EXPECT_LT((felt.force + 0.5 * 4 * v / std::hypot(v, kPrompt.slow_speed) * axis.cross(out)).norm(), 1e-6);
     EXPECT_NEAR(bench.tick.record.axis_torque, 0.5 * 4 * 1e-3, 1e-5);
 }
 
-// M Ω = μ_c Σ F v · v/(v + v_ε) holds for any contacts; with v_ε out of the way it is the power of friction.
+// M Ω = μ_c Σ F v · v/√(v² + v_ε²) holds for any contacts; with v_ε out of the way it is the power of
+// friction.
 TEST_F(CuttingForceTest, AxisTorqueTimesSpinIsThePowerOfFriction) {
     const Vector3d axis = bench.tick.axis();
     for (const double spin : {30.0, 4000.0, -4000.0}) {
@@ -55,7 +56,7 @@ TEST_F(CuttingForceTest, AxisTorqueTimesSpinIsThePowerOfFriction) {
             const double v = std::abs(spin) *
                              std::hypot(axis.cross(r).norm(), 2.0 / 3 * std::sqrt(contacts.areas[n] / M_PI));
             power += 0.5 * contacts.contacts[n].force * v;
-            with_slow += 0.5 * contacts.contacts[n].force * v * v / (v + kPrompt.slow_speed);
+            with_slow += 0.5 * contacts.contacts[n].force * v * v / std::hypot(v, kPrompt.slow_speed);
         }
         EXPECT_NEAR(-axis.dot(felt.torque) * spin, with_slow, 1e-5 * power);
         EXPECT_NEAR(bench.tick.record.axis_torque * std::abs(spin), with_slow, 1e-5 * power);
@@ -122,7 +123,72 @@ TEST_F(CuttingForceTest, PoleTurnsButDoesNotPull) {
     const Wrench felt = feltAfterBegin().wrench;
     const double v = bench.tool.burr.speed * rho;
     EXPECT_LT(felt.force.norm(), 1e-4);
-    EXPECT_NEAR(-felt.torque.dot(axis), 0.5 * 2 * rho * v / (v + kPrompt.slow_speed), 1e-8);
+    EXPECT_NEAR(-felt.torque.dot(axis), 0.5 * 2 * rho * v / std::hypot(v, kPrompt.slow_speed), 1e-8);
+}
+
+// A drill of 2.5 mm at 1000/min, whose rim has 131 mm/s.
+struct SlowDrillTest : CuttingForceTest {
+    static constexpr double kRim = 1.25e-3, kSpin = 1000 * 2 * M_PI / 60, kPressure = 2e6;
+
+    SlowDrillTest() { bench.tick.spin_speed = kSpin; }
+    // Bone presses on the band of a body of revolution between two circles (m, along the axis and off it), on
+    // half of it with the cosine of the angle or all around evenly. Returns ∫ p dA and ∫ μ p ρ dA.
+    struct Load {
+        double force = 0, moment = 0;
+    };
+    Load press(const Eigen::Vector2d& from, const Eigen::Vector2d& to, bool is_from_one_side) {
+        constexpr int kAlong = 40, kAround = 64;
+        const Vector3d axis = bench.tick.axis(), out = axis.unitOrthogonal(), side = axis.cross(out);
+        const Eigen::Vector2d way = to - from;
+        Load load;
+        for (int i = 0; i < kAlong; ++i)
+            for (int j = 0; j < kAround; ++j) {
+                const Eigen::Vector2d at = from + (i + 0.5) / kAlong * way;
+                const double angle = 2 * M_PI * (j + 0.5) / kAround;
+                const Vector3d radial = std::cos(angle) * out + std::sin(angle) * side;
+                const double area = way.norm() / kAlong * 2 * M_PI * at.y() / kAround;
+                const double share = is_from_one_side ? std::max(0.0, std::cos(angle)) : 1;
+                const Vector3d push = (way.y() * axis - way.x() * radial).normalized();
+                const double force = share * kPressure * area;
+                if (force > 0) contacts.add(at.x() * axis + at.y() * radial, push, force, area);
+                load.force += force;
+                load.moment += 0.5 * force * at.y();
+            }
+        return load;
+    }
+    double torqueAboutAxis() { return -bench.tick.axis().dot(feltAfterBegin().wrench.torque); }
+};
+
+// Its flutes cut along the whole side: M = ∫ μ p R dA, for p = p₀ cos over half of it 2 μ p₀ R² L.
+TEST_F(SlowDrillTest, TheSideOfACylinderCutsAtItsRadius) {
+    constexpr double kLength = 4e-3;
+    const Load load = press({0, kRim}, {kLength, kRim}, true);
+    const double expected = 0.5 * kPressure * 2 * kRim * kRim * kLength;
+    EXPECT_NEAR(load.moment / expected, 1, 1e-3);
+    EXPECT_NEAR(torqueAboutAxis() / expected, 1, 0.01);
+    // p₀ cos pushes with π/4 of p₀ over the section, and drags across that with μ times as much.
+    const Wrench felt = feltAfterBegin().wrench;
+    const Vector3d axis = bench.tick.axis(), across = axis.cross(axis.unitOrthogonal());
+    EXPECT_NEAR(-felt.force.dot(across) / (0.5 * M_PI / 2 * kPressure * kRim * kLength), 1, 0.01);
+}
+
+// M = ∫ μ p ρ dA = 2π/3 μ p (R³ − r³)/sin α, α the cone's angle to its axis.
+TEST_F(SlowDrillTest, AConeCutsAtTheRadiusOfEachPlace) {
+    constexpr double kTip = 0.4e-3, kLength = 3e-3;
+    press({0, kTip}, {kLength, kRim}, false);
+    const double slope = (kRim - kTip) / std::hypot(kRim - kTip, kLength);
+    const double expected = 0.5 * kPressure * 2 * M_PI / 3 * (std::pow(kRim, 3) - std::pow(kTip, 3)) / slope;
+    EXPECT_NEAR(torqueAboutAxis() / expected, 1, 0.02);
+}
+
+// A flat end cuts with two thirds of its radius, and not at all where its axis is.
+TEST_F(SlowDrillTest, AFlatEndCutsLittleAtItsMiddle) {
+    const Load whole = press({0, 0}, {0, kRim}, false);
+    EXPECT_NEAR(torqueAboutAxis() / (0.5 * whole.force * 2 / 3 * kRim), 1, 0.02);
+    contacts = {};
+    const Load middle = press({0, 0}, {0, kRim / 10}, false);
+    EXPECT_NEAR(middle.force / whole.force, 0.01, 1e-4);
+    EXPECT_LT(torqueAboutAxis(), 2e-3 * 0.5 * whole.force * 2 / 3 * kRim);
 }
 
 TEST_F(CuttingForceTest, FollowsAChangeOfLoadWithItsTimeConstant) {
