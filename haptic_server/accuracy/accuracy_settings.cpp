@@ -7,30 +7,36 @@
 
 namespace bonemill {
 namespace {
+// A law that is a preset of its own is called as that.
 constexpr std::string_view kNames[] = {"thesis_2012", "fast", "balanced",    "exact",
                                        "proxy_3dof",  "vps",  "penalty_sdf", "constraint"};
 static_assert(std::size(kNames) == kPresetCount);
 
 // One point per cell with exact distances; what else the law knows is `iterations`.
 AccuracySettings comparedLaw(ContactLaw law, int iterations) noexcept {
-    return {law, 1, 0, 0, ToolDistance::kAnalytic, 1, Precision::kFloat, iterations, iterations > 1};
+    return {.law = law,
+            .sample_spacing = 0,
+            .most_samples = 0,
+            .sdf_refinement = 1,
+            .iterations = iterations,
+            .continuous_collision = iterations > 1};
 }
 }  // namespace
 
 std::string_view lawName(ContactLaw law) noexcept {
     switch (law) {
-        case ContactLaw::kThesis2012:
-            return "thesis_2012";
         case ContactLaw::kGradient:
             return "gradient";
+        case ContactLaw::kThesis2012:
+            return presetName(Preset::kThesis2012);
         case ContactLaw::kProxy3Dof:
-            return "proxy_3dof";
+            return presetName(Preset::kProxy3Dof);
         case ContactLaw::kVps:
-            return "vps";
+            return presetName(Preset::kVps);
         case ContactLaw::kPenaltySdf:
-            return "penalty_sdf";
+            return presetName(Preset::kPenaltySdf);
         case ContactLaw::kConstraint:
-            return "constraint";
+            return presetName(Preset::kConstraint);
     }
     return "";
 }
@@ -38,37 +44,27 @@ std::string_view lawName(ContactLaw law) noexcept {
 AccuracySettings presetSettings(Preset preset) noexcept {
     switch (preset) {
         case Preset::kThesis2012:  // scaling factor 3 as in its demonstrations
-            return {ContactLaw::kThesis2012, 3, 0, 0, ToolDistance::kGrid, 1, Precision::kFloat, 1, false};
+            return {.law = ContactLaw::kThesis2012,
+                    .shell_factor = 3,
+                    .sample_spacing = 0,
+                    .most_samples = 0,
+                    .tool_distance = ToolDistance::kGrid,
+                    .sdf_refinement = 1,
+                    .iterations = 1,
+                    .continuous_collision = false};
         case Preset::kFast:
-            return {ContactLaw::kGradient,
-                    1,
-                    80 * kMicrometre,
-                    512,
-                    ToolDistance::kAnalytic,
-                    1,
-                    Precision::kFloat,
-                    2,
-                    true};
+            return {.sample_spacing = 80 * kMicrometre,
+                    .most_samples = 512,
+                    .sdf_refinement = 1,
+                    .iterations = 2};
         case Preset::kBalanced:
-            return {ContactLaw::kGradient,
-                    1,
-                    60 * kMicrometre,
-                    768,
-                    ToolDistance::kAnalytic,
-                    2,
-                    Precision::kFloat,
-                    6,
-                    true};
+            return {};
         case Preset::kExact:
-            return {ContactLaw::kGradient,
-                    1,
-                    30 * kMicrometre,
-                    4608,
-                    ToolDistance::kAnalytic,
-                    4,
-                    Precision::kDouble,
-                    12,
-                    true};
+            return {.sample_spacing = 30 * kMicrometre,
+                    .most_samples = 4608,
+                    .sdf_refinement = 4,
+                    .precision = Precision::kDouble,
+                    .iterations = 12};
         case Preset::kProxy3Dof:
             return comparedLaw(ContactLaw::kProxy3Dof, 8);
         case Preset::kVps:

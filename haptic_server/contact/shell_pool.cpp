@@ -46,7 +46,6 @@ void setBounds(ShellBlock& b, uint32_t count) noexcept {
         squared += (high - low) * (high - low);
     }
     b.radius = std::sqrt(squared) / 2;
-    b.largest_area = first(b.area).maxCoeff();
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ struct ShellBlock {
     float area[kCapacity];  // m²
     BlockKey key[kCapacity];
     uint32_t next;
-    // A sphere lies around the block's points (V, m); the area is the largest of theirs (m²).
-    float center[3], radius, largest_area;
+    // A sphere lies around the block's points (V, m).
+    float center[3], radius;
 };
 
 class ShellPool {

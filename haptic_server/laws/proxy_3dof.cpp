@@ -4,7 +4,7 @@ namespace bonemill {
 
 void Proxy3Dof::setTool(const SpoTool& tool) noexcept {
     ComparedLaw::setTool(tool);
-    ball_ = BallField(tool.burr.radius);
+    ball_.become(ballOf(tool));
 }
 
 SpoStep Proxy3Dof::advance(const Pose& X_VT, const Pose& X_VT_device) noexcept {

@@ -6,16 +6,16 @@
 // environments", SIGGRAPH 1997. docs/laws.md says what it is good for.
 #pragma once
 
-#include "haptic_server/laws/ball_field.h"
 #include "haptic_server/laws/blocked_motion.h"
 #include "haptic_server/laws/compared_law.h"
+#include "haptic_server/tool/shape_field.h"
 
 namespace bonemill {
 
 class Proxy3Dof final : public ComparedLaw {
   public:
     Proxy3Dof(const LawConfig& config, const SpoWorld& world, const SpoTool& tool, double dt)
-        : ComparedLaw(config, world, tool, dt), ball_(tool.burr.radius) {}
+        : ComparedLaw(config, world, tool, dt), ball_({ballOf(tool)}) {}
 
     SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override;
     void restart() noexcept override {
@@ -25,7 +25,11 @@ class Proxy3Dof final : public ComparedLaw {
     void setTool(const SpoTool& tool) noexcept override;
 
   private:
-    BallField ball_;
+    static SphereShape ballOf(const SpoTool& tool) noexcept {
+        return {Eigen::Vector3d::Zero(), tool.burr.radius};
+    }
+
+    ShapeField ball_;
     BlockedMotion motion_;
 };
 

@@ -60,7 +60,14 @@ ShapeField::ShapeField(const std::vector<ToolShape>& shapes) : ToolField(boxOf(s
     for (const ToolShape& shape : shapes) solids_.push_back(solidOf(shape));
 }
 
-ShapeField::Solid ShapeField::solidOf(const ToolShape& shape) {
+void ShapeField::become(const SphereShape& ball) noexcept {
+    setBox(boundingBox(ball));
+    setThinnestRadius(ball.radius);
+    solids_.resize(1);
+    solids_.front() = solidOf(ball);
+}
+
+ShapeField::Solid ShapeField::solidOf(const ToolShape& shape) noexcept {
     const auto between = [](bool is_round, const Vector3d& from, const Vector3d& to, double r0, double r1,
                             double edge_radius = 0) {
         const double length = (to - from).norm();

@@ -16,6 +16,9 @@ class ShapeField final : public ToolField {
     // There must be at least one checked shape; throws std::invalid_argument otherwise. It allocates.
     explicit ShapeField(const std::vector<ToolShape>& shapes);
 
+    // From now on it is this shape alone. It is RT-safe.
+    void become(const SphereShape& ball) noexcept;
+
     void distances(const PointBatch<float>& points_T, float* out) const noexcept override;
     void distances(const PointBatch<double>& points_T, double* out) const noexcept override;
     void sample(const PointBatch<float>& points_T, SampleBatch<float>& out) const noexcept override;
@@ -55,7 +58,7 @@ class ShapeField final : public ToolField {
                     Scalar(edge_radius)};
         }
     };
-    static Solid solidOf(const ToolShape& shape);
+    static Solid solidOf(const ToolShape& shape) noexcept;
     static ToolSample sampleRound(const Solid& solid, const Eigen::Vector3d& p_T) noexcept;
     static ToolSample sampleCone(const Solid& solid, const Eigen::Vector3d& p_T) noexcept;
     template <class Scalar>

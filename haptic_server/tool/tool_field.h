@@ -80,14 +80,17 @@ class ToolField {
     static constexpr double kRounding = 1e-7;  // m, of single precision some 0.1 m from T's origin
 
     ToolField(const Eigen::AlignedBox3d& box, double thinnest_radius) noexcept
-        : box_(box),
-          thinnest_radius_(thinnest_radius),
-          reach_(box.isEmpty() ? 0 : box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm()) {}
+        : box_(box), thinnest_radius_(thinnest_radius), reach_(reachOf(box)) {}
     ToolField(const ToolField&) = default;
     ToolField& operator=(const ToolField&) = default;
     void setThinnestRadius(double radius) noexcept { thinnest_radius_ = radius; }
+    void setBox(const Eigen::AlignedBox3d& box) noexcept { box_ = box, reach_ = reachOf(box); }
 
   private:
+    static double reachOf(const Eigen::AlignedBox3d& box) noexcept {
+        return box.isEmpty() ? 0 : box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm();
+    }
+
     Eigen::AlignedBox3d box_;
     double thinnest_radius_;
     double reach_;

@@ -18,17 +18,14 @@ inline std::vector<ShellLevel> levelsOf(const std::vector<int>& factors,
     return levels;
 }
 
-// These are all points of a leaf; each lies within its block, which knows its largest area.
+// These are all points of a leaf; each lies within its block.
 inline std::vector<ShellPoint> pointsOf(const PointShell& shell, int level, LeafId leaf) {
     std::vector<ShellPoint> points;
     shell.forEachBlock(level, leaf, [&](const ShellBlock& b, uint32_t count) {
-        float largest_area = 0;
         for (uint32_t i = 0; i < count; ++i) {
             points.push_back({{b.x[i], b.y[i], b.z[i]}, {b.nx[i], b.ny[i], b.nz[i]}, b.area[i], b.key[i]});
             EXPECT_LE((points.back().position - Eigen::Vector3f(b.center)).norm(), b.radius + 1e-8f);
-            largest_area = std::max(largest_area, b.area[i]);
         }
-        EXPECT_EQ(largest_area, b.largest_area);
     });
     return points;
 }

@@ -18,7 +18,30 @@ namespace {
 
 using test::expectSameBits;
 
-class VoxelKernels : public test::EveryLevel {};
+constexpr float kSpacing = 0.0973e-3f;  // no voxel exactly on a boundary
+
+class VoxelKernels : public test::EveryLevel {
+  protected:
+    // A plane of voxels that begins anywhere before a burr of 1 mm, which goes so far, m.
+    BurrPlane planeBesideAWay(float way, int amount) {
+        const float z = float(below(1000)) * 1e-6f;
+        return {.first_x = -float(below(20)) * kSpacing,
+                .step_x = kSpacing,
+                .first_y = -float(below(20)) * kSpacing,
+                .step_y = kSpacing,
+                .off_plane_squared = z * z,
+                .way_x = 0.6f,
+                .way_y = 0.48f,
+                .off_plane_along = 0.64f * z,
+                .way = way,
+                .radius = 1e-3f,
+                .slope = 1,
+                .reach_squared = 0.9e-3f * 0.9e-3f,
+                .core_squared = 0.9e-3f * 0.9e-3f,
+                .iso = 30000,
+                .amount = amount};
+    }
+};
 
 TEST_P(VoxelKernels, ContactSumsAreThoseOfPlainLoops) {
     const ContactFrame frame{{0, 0, 1, 0.8, 0.6, 0, -0.6, 0.8, 0}, {1e-4, 2e-4, -3e-4}, 0.2e-3};
@@ -65,28 +88,14 @@ double squaredFromWay(const BurrPlane& burr, double x, double y) {
 
 // A plane of a brick is compared with plain arithmetic in double.
 TEST_P(VoxelKernels, MilledPlanes) {
-    const float spacing = 0.0973e-3f;  // no voxel exactly on a boundary
     for (int round = 0; round < 300; ++round) {
         const int n = 1 + below(kBrickCells), rows = 1 + below(kBrickCells);
         std::vector<uint16_t> plane(kBrickStrideZ), out[2];
         for (uint16_t& d : plane) d = uint16_t(below(3) == 0 ? below(65536) : below(2) * 65535);
         const bool removes = round % 2, goes = round % 4 < 2;
-        const float z = float(below(1000)) * 1e-6f;
-        const BurrPlane burr{.first_x = -float(below(20)) * spacing,
-                             .step_x = spacing,
-                             .first_y = -float(below(20)) * spacing,
-                             .step_y = spacing,
-                             .off_plane_squared = z * z,
-                             .way_x = 0.6f,
-                             .way_y = 0.48f,
-                             .off_plane_along = 0.64f * z,
-                             .way = goes ? float(1 + below(900)) * 1e-6f : 0,
-                             .radius = 1e-3f,
-                             .slope = 30000 / spacing,
-                             .reach_squared = 1.1e-3f * 1.1e-3f,
-                             .core_squared = 0.9e-3f * 0.9e-3f,
-                             .iso = 30000,
-                             .amount = 1 + below(65535)};
+        BurrPlane burr = planeBesideAWay(goes ? float(1 + below(900)) * 1e-6f : 0, 1 + below(65535));
+        burr.slope = burr.iso / kSpacing;
+        burr.reach_squared = 1.1e-3f * 1.1e-3f;
         MilledPlane milled[2];
         for (const int which : {0, 1}) {
             out[which].assign(kBrickCells * kBrickCells, 7);
@@ -100,7 +109,7 @@ TEST_P(VoxelKernels, MilledPlanes) {
             const bool is_changed = milled[0].is_changed >> r & 1;
             bool is_any = false;
             for (int i = 0; i < n; ++i) {
-                const double x = burr.first_x + i * double(spacing), y = burr.first_y + r * double(spacing);
+                const double x = burr.first_x + i * double(kSpacing), y = burr.first_y + r * double(kSpacing);
                 const double squared = squaredFromWay(burr, x, y);
                 const double ramp =
                     burr.iso - (removes ? -1 : 1) * burr.slope * (std::sqrt(squared) - burr.radius);
@@ -129,28 +138,12 @@ TEST_P(VoxelKernels, MilledPlanes) {
 }
 
 TEST_P(VoxelKernels, LaidPlanes) {
-    const float spacing = 0.0973e-3f;
     for (int round = 0; round < 300; ++round) {
         const int n = 1 + below(kBrickCells), rows = 1 + below(kBrickCells);
         std::vector<uint16_t> plane(kBrickStrideZ), shall(kBrickStrideZ), out[2];
         for (uint16_t& d : plane) d = uint16_t(below(2) * below(65536));
         for (uint16_t& d : shall) d = uint16_t(below(2) * below(65536));
-        const float z = float(below(1000)) * 1e-6f;
-        const BurrPlane place{.first_x = -float(below(20)) * spacing,
-                              .step_x = spacing,
-                              .first_y = -float(below(20)) * spacing,
-                              .step_y = spacing,
-                              .off_plane_squared = z * z,
-                              .way_x = 0.6f,
-                              .way_y = 0.48f,
-                              .off_plane_along = 0.64f * z,
-                              .way = float(below(900)) * 1e-6f,
-                              .radius = 1e-3f,
-                              .slope = 1,
-                              .reach_squared = 0.9e-3f * 0.9e-3f,
-                              .core_squared = 0.9e-3f * 0.9e-3f,
-                              .iso = 30000,
-                              .amount = below(65536)};
+        const BurrPlane place = planeBesideAWay(float(below(900)) * 1e-6f, below(65536));
         LaidPlane laid[2];
         for (const int which : {0, 1}) {
             out[which].assign(kBrickCells * kBrickCells, 7);
@@ -162,7 +155,8 @@ TEST_P(VoxelKernels, LaidPlanes) {
         for (int r = 0; r < rows; ++r)
             for (int i = 0; i < n; ++i) {
                 const size_t at = size_t(r) * kBrickStrideY + size_t(i), to = size_t(r * kBrickCells + i);
-                const double x = place.first_x + i * double(spacing), y = place.first_y + r * double(spacing);
+                const double x = place.first_x + i * double(kSpacing),
+                             y = place.first_y + r * double(kSpacing);
                 const bool is_free = squaredFromWay(place, x, y) >= double(place.core_squared);
                 const int old = plane[at], end = is_free ? shall[at] : 0;
                 const int now = std::max(old, std::min(end, old + place.amount));
