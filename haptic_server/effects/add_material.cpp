@@ -42,7 +42,10 @@ ToolPlace AddMaterial::placeOf(const EffectTick& tick) noexcept {
         tool_ = tick.tool->model;
         tool_radius_ = thickestNear(*tool_, tick.tool->burr.radius);
     }
-    return {tick.X_VT.position, tick.X_VT.rotation * Eigen::Vector3d::UnitY(), tool_radius_};
+    return {.p_VB = tick.X_VT.position,
+            .axis_V = tick.X_VT.rotation * Eigen::Vector3d::UnitY(),
+            .radius = tool_radius_,
+            .way = std::min(longest_way_, (tick.X_VT.position - tick.X_VT_start.position).norm())};
 }
 
 void AddMaterial::mill(EffectTick& tick, BoneModel& bone, MillingResult& result) noexcept {
@@ -57,7 +60,7 @@ void AddMaterial::mill(EffectTick& tick, BoneModel& bone, MillingResult& result)
     }
     if (tick.is_add_wanted)
         deposit_.owe(bone.volume, {tick.X_VT_start.position, tick.X_VT.position, longest_way_}, radius);
-    if (deposit_.isOwing()) result.include(deposit_.lay(bone, placeOf(tick), tick.dt));
+    if (deposit_.isOwing()) result.include(deposit_.lay(bone, placeOf(tick), tick.dt, tick.is_add_wanted));
 }
 
 }  // namespace bonemill

@@ -20,11 +20,14 @@ double onTheMean(const VoxelVolume& volume, double burr_radius) noexcept {
     return burr_radius - 4.0 / 7 * BurrLimit::ampleSag(volume, burr_radius);
 }
 
+Eigen::Vector3i bricksOf(const VoxelVolume& volume) noexcept {
+    return (volume.dims().array() + 1) / kBrickCells + 1;
+}
+
 Eigen::Vector3i slotsPerAxis(const VoxelVolume& volume, const DepositConfig& config) noexcept {
     const double reach = BurrLimit(volume, config.largest_burr_radius, MillingShape::kSubVoxel, +1).reach();
     const Eigen::Array3d bricks = (2 * reach + config.longest_way) / (volume.spacing().array() * kBrickCells);
-    const Eigen::Array3i all = (volume.dims().array() + 1) / kBrickCells + 1;
-    return (bricks.ceil().cast<int>() + 1 + 2 * kBricksAround).min(all).matrix();
+    return (bricks.ceil().cast<int>() + 1 + 2 * kBricksAround).matrix().cwiseMin(bricksOf(volume));
 }
 
 }  // namespace
@@ -34,6 +37,8 @@ Deposit::Deposit(const BoneModel& bone, const DepositConfig& config)
       slots_per_axis_(slotsPerAxis(bone.volume, config)),
       slots_(size_t(slots_per_axis_.prod())),
       shall_(slots_.size() * kBrick),
+      before_(slots_.size() * kBrick),
+      falling_(bone.lattice, (slots_per_axis_ * kBrickCells).cwiseMin(bone.volume.dims()), config.most_cells),
       collector_(bone.lattice, (slots_per_axis_ * kBrickCells).cwiseMin(bone.volume.dims()),
                  config.most_cells) {}
 
@@ -43,10 +48,10 @@ size_t Deposit::slotOf(const Eigen::Vector3i& brick) const noexcept {
     return size_t(at.x() + n.x() * (at.y() + n.y() * at.z()));
 }
 
-Density* Deposit::shallOf(size_t slot, const Eigen::Vector3i& voxel) noexcept {
+size_t Deposit::placeOf(size_t slot, const Eigen::Vector3i& voxel) noexcept {
     const auto in_brick = [](int index) { return size_t((index + 1) & (kBrickCells - 1)); };
-    return &shall_[slot * kBrick + in_brick(voxel.x()) + kBrickStrideY * in_brick(voxel.y()) +
-                   kPlane * in_brick(voxel.z())];
+    return slot * kBrick + in_brick(voxel.x()) + kBrickStrideY * in_brick(voxel.y()) +
+           kPlane * in_brick(voxel.z());
 }
 
 void Deposit::clear(size_t slot) noexcept {
@@ -59,6 +64,7 @@ void Deposit::clear(size_t slot) noexcept {
 void Deposit::forget() noexcept {
     for (size_t slot = 0; used_count_ > 0; ++slot) clear(slot);
     carry_ = 0;
+    falling_.forgetTurn();
     collector_.forgetTurn();
 }
 
@@ -67,14 +73,22 @@ size_t Deposit::claim(const Eigen::Vector3i& brick) noexcept {
     if (slots_[slot].brick != brick) clear(slot);
     if (slots_[slot].owed.isEmpty()) ++used_count_;
     slots_[slot].brick = brick;
+    slots_[slot].is_settled = false;
     return slot;
 }
 
-// These bricks have slots of their own while the burr is here.
-IndexBox Deposit::window(const VoxelVolume& volume, const Eigen::Vector3d& p_VB) const noexcept {
+// So many bricks lie around the burr.
+IndexBox Deposit::around(const VoxelVolume& volume, const Eigen::Vector3d& p_VB) const noexcept {
     const Eigen::Array3d place = (p_VB.array() / volume.spacing().array() + 1) / kBrickCells;
     const Eigen::Array3d low = (place - slots_per_axis_.cast<double>().array() / 2 + 0.5).floor();
     const Eigen::Vector3i first = low.max(-1e6).min(1e6).cast<int>().matrix();
+    return {first, first + slots_per_axis_ - Eigen::Vector3i::Ones()};
+}
+
+// These bricks have slots of their own while the burr is here: as many of the volume's as there can be.
+IndexBox Deposit::window(const VoxelVolume& volume, const Eigen::Vector3d& p_VB) const noexcept {
+    const Eigen::Vector3i last = bricksOf(volume) - slots_per_axis_;
+    const Eigen::Vector3i first = around(volume, p_VB).min.cwiseMin(last).cwiseMax(0);
     return {first, first + slots_per_axis_ - Eigen::Vector3i::Ones()};
 }
 
@@ -100,57 +114,86 @@ void Deposit::raise(const VoxelVolume& volume, const IndexBox& part, const BurrW
     const size_t slot = claim(brickOf(part.min));
     const int count = part.max.x() - part.min.x() + 1, rows = part.max.y() - part.min.y() + 1;
     Density fresh[kBrickCells * kBrickCells];
-    Density* shall = shallOf(slot, part.min);
+    Density* shall = &shall_[placeOf(slot, part.min)];
+    Density* before = &before_[placeOf(slot, part.min)];
+    const Density* now = volume.ownerData() + volume.offset(part.min.x(), part.min.y(), part.min.z());
     slots_[slot].owed.include(part);
-    for (int k = part.min.z(); k <= part.max.z(); ++k, shall += kPlane) {
+    for (int k = part.min.z(); k <= part.max.z();
+         ++k, shall += kPlane, before += kPlane, now += VoxelVolume::kStrideZ) {
         const Eigen::Vector3d to_first =
             volume.spacing().cwiseProduct(Eigen::Vector3d(part.min.x(), part.min.y(), k)) - way.from();
         const BurrPlane burr = limit.plane(way, to_first, volume.spacing(), kMaxDensity);
         const MilledPlane raised = kernels().add_plane(burr, shall, count, rows, fresh);
-        for (int r = 0; r < rows; ++r)
-            if (raised.is_changed >> r & 1)
-                std::copy_n(fresh + kBrickCells * r, count, shall + kBrickStrideY * size_t(r));
+        for (int r = 0; r < rows; ++r) {
+            if (!(raised.is_changed >> r & 1)) continue;
+            const size_t row = kBrickStrideY * size_t(r);
+            for (int i = 0; i < count; ++i)
+                if (shall[row + size_t(i)] == 0)
+                    before[row + size_t(i)] = now[VoxelVolume::kStrideY * size_t(r) + size_t(i)];
+            std::copy_n(fresh + kBrickCells * r, count, shall + row);
+        }
     }
 }
 
-MillingResult Deposit::lay(BoneModel& bone, const ToolPlace& place, double dt) noexcept {
+MillingResult Deposit::lay(BoneModel& bone, const ToolPlace& place, double dt, bool is_stroke) noexcept {
     MillingResult result;
     if (!isOwing()) return result;
     const VoxelVolume& volume = bone.volume;
-    const IndexBox bricks = window(volume, place.p_VB);
-    dropOutside(bricks);
+    dropOutside(window(volume, place.p_VB));
     carry_ += config_.rate * dt;
     const int amount = int(std::min(carry_, double(kMaxDensity)));
     const double length =
         volume.spacing().cwiseProduct((slots_per_axis_ * kBrickCells).cast<double>()).norm();
     // No cell that the tool reaches into has a corner that rises.
-    const double free = place.radius + volume.spacing().norm();
+    const double free = place.radius + place.way + volume.spacing().norm();
     const Stroke stroke{BurrWay(place.p_VB + length * place.axis_V, place.p_VB, length),
-                        BurrLimit(volume, free, MillingShape::kVoxelCentres, -1), amount, bricks.grown(-1)};
+                        BurrLimit(volume, free, MillingShape::kVoxelCentres, -1), amount,
+                        around(volume, place.p_VB).grown(-1)};
     IndexBox owed;
     for (Slot& slot : slots_) {
         slot.is_left = false;
         owed.include(slot.owed);
     }
+    if (is_stroke) makeWay(bone, stroke, owed, result);
     const auto is_wanted = [](const DensityRange& range, const IndexBox&) { return range.min < kMaxDensity; };
     collector_.collect(
         bone.lattice, owed, is_wanted,
         [&](const IndexBox& voxels, int first_part, MillingResult& of_leaf) {
-            return collectLeaf(bone.volume, voxels, first_part, stroke, of_leaf);
+            return collectLeaf(bone.volume, voxels, first_part, [&](const IndexBox& part, Slot& slot) {
+                return slot.is_settled || raisePart(bone.volume, part, stroke, slot, of_leaf);
+            });
         },
         result);
     if (!collector_.isEmpty())
-        result.shell_is_complete = collector_.write(bone.volume, bone.lattice, bone.shell, +1);
+        result.shell_is_complete &= collector_.write(bone.volume, bone.lattice, bone.shell, +1);
     if (result.is_cut_short) return result;
     carry_ -= std::floor(carry_);
-    for (size_t slot = 0; slot < slots_.size(); ++slot)
-        if (!slots_[slot].is_left) clear(slot);
+    for (size_t slot = 0; slot < slots_.size(); ++slot) {
+        slots_[slot].is_settled = !slots_[slot].is_left;
+        if (!is_stroke && slots_[slot].is_settled) clear(slot);
+    }
     return result;
 }
 
+void Deposit::makeWay(BoneModel& bone, const Stroke& stroke, const IndexBox& owed,
+                      MillingResult& result) noexcept {
+    const auto is_wanted = [](const DensityRange& range, const IndexBox&) { return range.max > 0; };
+    falling_.collect(
+        bone.lattice, owed, is_wanted,
+        [&](const IndexBox& voxels, int first_part, MillingResult& of_leaf) {
+            return collectLeaf(bone.volume, voxels, first_part, [&](const IndexBox& part, Slot& slot) {
+                return lowerPart(bone.volume, part, stroke, slot, of_leaf);
+            });
+        },
+        result);
+    if (!falling_.isEmpty())
+        result.shell_is_complete = falling_.write(bone.volume, bone.lattice, bone.shell, -1);
+}
+
 // The parts of a leaf are those of its bricks.
-int Deposit::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part, const Stroke& stroke,
-                         MillingResult& of_leaf) noexcept {
+template <class CollectPart>
+int Deposit::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part,
+                         CollectPart&& collect_part) noexcept {
     int n = 0, left = ChangeCollector::kAllParts;
     volume.forEachOwnedPart(voxels, [&](const IndexBox& whole, size_t) {
         const int index = n++;
@@ -159,14 +202,59 @@ int Deposit::collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_
         Slot& slot = slots_[slotOf(brick)];
         if (slot.owed.isEmpty() || slot.brick != brick) return;
         const IndexBox part = whole.clamped(slot.owed.min, slot.owed.max);
-        if (!part.isEmpty() && !collectPart(volume, part, stroke, slot, of_leaf)) left = index;
+        if (!part.isEmpty() && !collect_part(part, slot)) left = index;
     });
     return left;
 }
 
+BurrPlane Deposit::planeOf(const VoxelVolume& volume, const Eigen::Vector3i& first, const Stroke& stroke,
+                           int amount) const noexcept {
+    const Eigen::Vector3d to_first =
+        volume.spacing().cwiseProduct(first.cast<double>()) - stroke.place.from();
+    return stroke.limit.plane(stroke.place, to_first, volume.spacing(), amount);
+}
+
 // Returns what ChangeCollector::takePart() says.
-bool Deposit::collectPart(VoxelVolume& volume, const IndexBox& part, const Stroke& stroke, Slot& slot,
-                          MillingResult& of_leaf) noexcept {
+bool Deposit::lowerPart(VoxelVolume& volume, const IndexBox& part, const Stroke& stroke, Slot& slot,
+                        MillingResult& of_leaf) noexcept {
+    const Eigen::Vector3d middle =
+        (part.min + part.max).cast<double>().cwiseProduct(volume.spacing()) / 2 - stroke.place.from();
+    const double half = ((part.max - part.min).cast<double>().cwiseProduct(volume.spacing())).norm() / 2;
+    const double along = std::clamp(middle.dot(stroke.place.direction()), 0.0, stroke.place.length());
+    if ((middle - along * stroke.place.direction()).norm() > stroke.limit.reach() + half) return true;
+    ChangedRuns& changed_rows = falling_.beginPart();
+    MillingResult of_part;
+    const int count = part.max.x() - part.min.x() + 1, rows = part.max.y() - part.min.y() + 1;
+    const Density* old = volume.ownerData() + volume.offset(part.min.x(), part.min.y(), part.min.z());
+    size_t kept = placeOf(size_t(&slot - slots_.data()), part.min);
+    Density fresh[kBrickCells * kBrickCells];
+    for (int k = part.min.z(); k <= part.max.z(); ++k, old += VoxelVolume::kStrideZ, kept += kPlane) {
+        const Eigen::Vector3i first(part.min.x(), part.min.y(), k);
+        const MilledPlane free =
+            kernels().remove_plane(planeOf(volume, first, stroke, int(kMaxDensity)), old, count, rows, fresh);
+        for (int r = 0; r < rows; ++r) {
+            if (!(free.is_changed >> r & 1)) continue;
+            const Density* row = old + VoxelVolume::kStrideY * size_t(r);
+            bool is_changed = false;
+            for (int i = 0; i < count; ++i) {
+                const size_t at = kept + kBrickStrideY * size_t(r) + size_t(i);
+                Density& now = fresh[kBrickCells * r + i];
+                if (now != row[i]) now = shall_[at] > 0 ? std::min(row[i], before_[at]) : row[i];
+                is_changed |= now != row[i];
+                of_part.removed_voxels += row[i] >= volume.iso() && now < volume.iso();
+            }
+            if (is_changed)
+                changed_rows.add(first + Eigen::Vector3i(0, r, 0), count, row, fresh + kBrickCells * r,
+                                 of_part.changed);
+        }
+    }
+    slot.is_settled &= of_part.changed.isEmpty();
+    return falling_.takePart(volume, size_t(part.count() / kLookedAtPerCell), of_part, of_leaf);
+}
+
+// Returns what ChangeCollector::takePart() says.
+bool Deposit::raisePart(VoxelVolume& volume, const IndexBox& part, const Stroke& stroke, Slot& slot,
+                        MillingResult& of_leaf) noexcept {
     ChangedRuns& changed_rows = collector_.beginPart();
     MillingResult of_part;
     const IndexBox& near = stroke.near;
@@ -174,14 +262,11 @@ bool Deposit::collectPart(VoxelVolume& volume, const IndexBox& part, const Strok
         (slot.brick.array() >= near.min.array()).all() && (slot.brick.array() <= near.max.array()).all();
     const int count = part.max.x() - part.min.x() + 1, rows = part.max.y() - part.min.y() + 1;
     const Density* old = volume.ownerData() + volume.offset(part.min.x(), part.min.y(), part.min.z());
-    const Density* shall = shallOf(size_t(&slot - slots_.data()), part.min);
+    const Density* shall = &shall_[placeOf(size_t(&slot - slots_.data()), part.min)];
     Density fresh[kBrickCells * kBrickCells];
     for (int k = part.min.z(); k <= part.max.z(); ++k, old += VoxelVolume::kStrideZ, shall += kPlane) {
         const Eigen::Vector3i first(part.min.x(), part.min.y(), k);
-        const Eigen::Vector3d to_first =
-            volume.spacing().cwiseProduct(first.cast<double>()) - stroke.place.from();
-        const BurrPlane place = stroke.limit.plane(stroke.place, to_first, volume.spacing(),
-                                                   is_near ? stroke.amount : int(kMaxDensity));
+        const BurrPlane place = planeOf(volume, first, stroke, is_near ? stroke.amount : int(kMaxDensity));
         const LaidPlane laid = kernels().lay_plane(place, shall, old, count, rows, fresh);
         slot.is_left |= laid.is_owed;
         for (int r = 0; r < rows; ++r)

@@ -5,7 +5,9 @@
 // A voxel shall have the density of a ramp across the surface of the swept capsules (burr_limit.h), the most
 // of all of them. It does not rise where the tool is nearer than the diagonal of a voxel: the surface between
 // voxels is then outside of the tool. The tool counts as the capsule of the burr's radius from its centre
-// along the shaft, so that a burr that has dived can move on sideways, too.
+// along the shaft, so that a burr that has dived can move on sideways, too. As long as the stroke lasts, what
+// has come makes way again where the tool comes back: those voxels fall to what they were, and are owed once
+// more. The bone below stays as firm as it was.
 //
 // The frame is V, the units are SI. Construction allocates; all else is RT-safe, for the tick thread only.
 #pragma once
@@ -31,6 +33,7 @@ struct ToolPlace {
     Eigen::Vector3d p_VB = Eigen::Vector3d::Zero();
     Eigen::Vector3d axis_V = Eigen::Vector3d::UnitY();  // unit, from the burr to the shaft
     double radius = 0;                                  // m: of the burr, or the shaft where that is thicker
+    double way = 0;                                     // m: that it goes in a tick
 };
 
 class Deposit {
@@ -39,8 +42,9 @@ class Deposit {
 
     // The burr goes this way, and what it sweeps is owed from now on.
     void owe(const VoxelVolume& volume, const BurrWay& way, double burr_radius) noexcept;
-    // Lays down what is owed and free. Call it in each tick that something is owed in.
-    MillingResult lay(BoneModel& bone, const ToolPlace& place, double dt) noexcept;
+    // Makes way for the tool if the stroke goes on, and lays down what is owed and free. Call it in each tick
+    // that something is owed in. When the stroke has ended, what was laid down stays.
+    MillingResult lay(BoneModel& bone, const ToolPlace& place, double dt, bool is_stroke) noexcept;
 
     bool isOwing() const noexcept { return used_count_ > 0; }
     void forget() noexcept;
@@ -52,8 +56,9 @@ class Deposit {
         kPlane * kBrickCells + kBrickStrideY;  // kernels read beyond the last row
     struct Slot {
         Eigen::Vector3i brick;
-        IndexBox owed;  // voxels of the brick; empty: the slot is free
-        bool is_left = false;
+        IndexBox owed;            // voxels of the brick; empty: the slot is free
+        bool is_left = false;     // there is something to lay in the next tick
+        bool is_settled = false;  // all of it lies there
     };
     struct Stroke {
         BurrWay place;
@@ -66,25 +71,34 @@ class Deposit {
         return (voxel.array() + 1).matrix().unaryExpr([](int u) { return u >> kBrickShift; });
     }
     size_t slotOf(const Eigen::Vector3i& brick) const noexcept;
-    Density* shallOf(size_t slot, const Eigen::Vector3i& voxel) noexcept;
+    static size_t placeOf(size_t slot, const Eigen::Vector3i& voxel) noexcept;
+    BurrPlane planeOf(const VoxelVolume& volume, const Eigen::Vector3i& first, const Stroke& stroke,
+                      int amount) const noexcept;
     void clear(size_t slot) noexcept;
     size_t claim(const Eigen::Vector3i& brick) noexcept;
+    IndexBox around(const VoxelVolume& volume, const Eigen::Vector3d& p_VB) const noexcept;
     IndexBox window(const VoxelVolume& volume, const Eigen::Vector3d& p_VB) const noexcept;
     void dropOutside(const IndexBox& bricks) noexcept;
     void raise(const VoxelVolume& volume, const IndexBox& part, const BurrWay& way,
                const BurrLimit& limit) noexcept;
-    int collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part, const Stroke& stroke,
-                    MillingResult& of_leaf) noexcept;
-    bool collectPart(VoxelVolume& volume, const IndexBox& part, const Stroke& stroke, Slot& slot,
-                     MillingResult& of_leaf) noexcept;
+    void makeWay(BoneModel& bone, const Stroke& stroke, const IndexBox& owed, MillingResult& result) noexcept;
+    // Calls collect_part(part, slot) for the parts of a leaf that are owed.
+    template <class CollectPart>
+    int collectLeaf(VoxelVolume& volume, const IndexBox& voxels, int first_part,
+                    CollectPart&& collect_part) noexcept;
+    bool lowerPart(VoxelVolume& volume, const IndexBox& part, const Stroke& stroke, Slot& slot,
+                   MillingResult& of_leaf) noexcept;
+    bool raisePart(VoxelVolume& volume, const IndexBox& part, const Stroke& stroke, Slot& slot,
+                   MillingResult& of_leaf) noexcept;
 
     DepositConfig config_;
     Eigen::Vector3i slots_per_axis_;  // a torus of bricks around the burr
     std::vector<Slot> slots_;
     std::vector<Density> shall_;
+    std::vector<Density> before_;  // of those that shall rise
     size_t used_count_ = 0;
     double carry_ = 0;  // counts
-    ChangeCollector collector_;
+    ChangeCollector falling_, collector_;
 };
 
 }  // namespace bonemill

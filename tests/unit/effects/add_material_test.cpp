@@ -87,6 +87,42 @@ TEST(AddMaterial, DoesNotMoveABurrThatIsPressedOnTheFace) {
     EXPECT_LT(lag_with, lag_without + 0.02e-3);
 }
 
+// As long as the button is held, the tool goes through what it has laid down, which makes way and comes
+// again.
+TEST(AddMaterial, MakesWayForAHandThatComesBackAlongItsOwnWay) {
+    for (const double speed : {10e-3, 100e-3}) {
+        MillingRig rig(freeForm(0.1e-3));
+        const Vector3d end = startOf(rig) + Vector3d(kTrack, 0, 0);
+        rig.feed(kTrack / speed, startOf(rig), {speed, 0, 0}, kButtonAdd);
+        rig.feed(0.1, end, Vector3d::Zero(), kButtonAdd);
+        rig.feed(kTrack / speed, end, {-speed, 0, 0}, kButtonAdd);
+        rig.feed(0.1, startOf(rig), Vector3d::Zero(), kButtonAdd);
+        EXPECT_LT(rig.largestLag(), 0.02e-3 + 1.2e-3 * speed) << speed;
+        lift(rig);
+        EXPECT_NEAR(addedVolume(rig) / capsule(rig.config), 1, 0.03) << speed;
+        EXPECT_TRUE(isClosed(rig)) << speed;
+    }
+}
+
+// What makes way is only what was laid down: the bone below is as firm as ever, and so is all when the button
+// is let go.
+TEST(AddMaterial, MakesWayOnlyForTheStrokeAndDownToTheBone) {
+    MillingRig rig(freeForm(0.1e-3));
+    const Vector3d velocity(10e-3, 0, 0), end = startOf(rig) + Vector3d(kTrack, 0, 0);
+    const Vector3d deeper(0, 0, -0.3e-3);
+    rig.feed(kTrack / 10e-3, startOf(rig), velocity, kButtonAdd);
+    rig.feed(0.1, end, 10 * deeper, kButtonAdd);
+    rig.feed(kTrack / 20e-3, end + deeper, -velocity, kButtonAdd);
+    EXPECT_GT(rig.position().z(), startOf(rig).z() - kAbove - 0.03e-3);
+    EXPECT_NEAR(rig.position().x(), rig.center().x(), 0.1e-3);
+    const Vector3d middle = rig.center() + Vector3d(0, 0, rig.config.burr.radius + kAbove);
+    const size_t let_go = rig.records.size();
+    rig.feed(0.1, middle, Vector3d::Zero(), 0);
+    EXPECT_LT(rig.largestLag(let_go + 50), 0.02e-3);
+    rig.feed(0.2, middle, -velocity, 0);
+    EXPECT_GT(rig.position().x(), middle.x() - 0.4e-3);
+}
+
 TEST(AddMaterial, ComesWhenTheToolGoesAlsoAfterTheButton) {
     MillingRig rig(freeForm(0.1e-3));
     const Vector3d place = rig.center() + Vector3d(0, 0, 1.2e-3);
