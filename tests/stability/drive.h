@@ -19,6 +19,13 @@ class Stepper : private TickIo {
 
     const TickRecord& step(const Pose& X_WT_device, uint32_t buttons = 0);
     void holdButtons(uint32_t buttons) noexcept { held_buttons_ = buttons; }
+    // The accuracy is this preset's from the end of the next step on, once its contact points are there.
+    void choose(Preset preset) noexcept { accuracy_.choose(AccuracySwitch::choiceOf(preset)); }
+    // Until this is called again the device is silent, and the force has this factor; or (1) it is there.
+    void fadeDevice(double stale_factor, bool is_stale) noexcept {
+        input_.stale_factor = stale_factor;
+        input_.is_stale = is_stale;
+    }
     // From the next step on the hand holds this one, which must outlive that step.
     void plugIn(const DeviceCapabilities* device) noexcept { input_.other_device = device; }
     const Wrench& wrenchOnHand() const noexcept { return wrench_; }

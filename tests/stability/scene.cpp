@@ -1,5 +1,7 @@
 #include "tests/stability/scene.h"
 
+#include <set>
+
 #include "haptic_server/volume/import/protected_distance.h"
 #include "tests/support/milling_config.h"
 
@@ -38,16 +40,25 @@ void layOut(FixedTickConfig& config, const BoneModel& bone) {
     config.tool.saturation_force *= kSoft;
 }
 
+ShellConfig shellOf(const AccuracySettings& accuracy, bool every_preset) {
+    ShellConfig shell{.levels = {{accuracy.shell_factor}}};
+    if (!every_preset) return shell;
+    std::set<int> factors{accuracy.shell_factor};
+    for (const Preset preset : allPresets())
+        if (const int factor = presetSettings(preset).shell_factor; factors.insert(factor).second)
+            shell.levels.push_back({factor});
+    return shell;
+}
+
 }  // namespace
 
 Scene::Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, double dt,
-             const std::function<void(FixedTickConfig&)>& edit)
+             const std::function<void(FixedTickConfig&)>& edit, bool every_preset)
     : config(configOf(variant, dt, edit)),
       device(variant.device),
       held_buttons(variant.held_buttons),
       averaged_ticks(config.effects.burr_vibration ? kVibrationTicks : 1),
-      bone(std::move(volume), Eigen::Vector3i::Constant(16),
-           ShellConfig{.levels = {{config.accuracy.shell_factor}}}),
+      bone(std::move(volume), Eigen::Vector3i::Constant(16), shellOf(config.accuracy, every_preset)),
       tool(std::move(test_tool.grid), test_tool.shapes, test_tool.thinnest_radius) {
     if (config.effects.material_stiffness || config.effects.virtual_fixture) layOut(config, bone);
 }

@@ -22,9 +22,10 @@ struct TestTool {
 };
 
 struct Scene {
-    // `edit` has the last word over the variant's settings.
+    // `edit` has the last word over the variant's settings. The bone has contact points for these, or, with
+    // `every_preset`, for all.
     Scene(VoxelVolume volume, TestTool test_tool, const Variant& variant, double dt = 1e-3,
-          const std::function<void(FixedTickConfig&)>& edit = {});
+          const std::function<void(FixedTickConfig&)>& edit = {}, bool every_preset = false);
 
     // Its tool is without a model; that is `tool`.
     FixedTickConfig config;
