@@ -191,7 +191,7 @@ void addContacts(const ContactFrame& frame, const float* __restrict x, const flo
         // Beyond the cap the secant keeps the matrix's direction.
         k[i] = depth > f.depth_cap ? pull[i] / depth : w;
         energy[i] = pull[i] * (depth - capped / 2);
-        depths[i] = depth;
+        depths[i] = w > 0 ? depth : 0;
     }
     const int padded = (count + kSumLanes - 1) / kSumLanes * kSumLanes;
     for (int i = count; i < padded; ++i) {

@@ -28,6 +28,9 @@ constexpr double kFloatRounding = 1.2e-7, kDoubleRounding = 2.2e-16;
 // by a hole that is too narrow, it could not be drawn out.
 constexpr double kGrowth = 0.01;
 constexpr double kMostDepthToGrow = 0.05;
+// Of the thinnest radius: where contact becomes so deep, and by so much deeper between two ticks in which the
+// tool has not moved, bone has appeared in the tool.
+constexpr double kDeepBone = GradientContact::kGuardFrom, kSuddenDepth = 0.2;
 // Forces out of balance, N, and torques by kRotationLength: less is balance, and
 constexpr double kBalance = 1e-4;
 constexpr double kFelt = 0.05;             // less is not felt,
@@ -144,9 +147,35 @@ void GradientModel::fitTool(const Tick& tick) noexcept {
     growing_.setOffset(0);
     useTool();
     gather(tick.X_VT_start, kLeastMargin, *tick.out);
-    growing_.setOffset(evaluate(tick.X_VT_start, tick).max_depth - last_depth_);
+    makeRoom(evaluate(tick.X_VT_start, tick).max_depth);
+}
+
+// Makes the tool, which is so deep in the bone, so much smaller that it is not deeper than in the last tick.
+void GradientModel::makeRoom(double depth) noexcept {
+    growing_.setOffset(growing_.offset() + depth - last_depth_);
     useTool();
     contact_.forget();
+}
+
+// Bone begins to count all at once for a tool whose middle comes out of it: out of the solid, or off a
+// needle. Felt whole it would throw the tool out, as far as its radius and as fast as it may move.
+bool GradientModel::hasBoneAppeared(const State& state) const noexcept {
+    const double thinnest = growing_.whole().thinnestRadius();
+    return knows_depth_ && state.max_depth > kDeepBone * thinnest &&
+           state.max_depth > last_depth_ + kSuddenDepth * thinnest;
+}
+
+// Returns the state before the first step.
+GradientModel::State GradientModel::begin(const Tick& tick) noexcept {
+    is_new_tool_ ? fitTool(tick) : growTool();
+    // What the last tick moved is a good guess of what this one will; a longer step gathers anew.
+    const double margin = std::min(trustRadius(), std::max(kLeastMargin, kMotionGrowth * last_reach_));
+    gather(tick.X_VT_start, margin, *tick.out);
+    const State state = evaluate(tick.X_VT_start, tick);
+    if (!hasBoneAppeared(state)) return state;
+    makeRoom(state.max_depth);
+    gather(tick.X_VT_start, margin, *tick.out);
+    return evaluate(tick.X_VT_start, tick);
 }
 
 void GradientModel::growTool() noexcept {
@@ -165,6 +194,7 @@ void GradientModel::restart() noexcept {
     last_reach_ = 0;
     is_new_tool_ = false;
     last_depth_ = 0;
+    knows_depth_ = false;
     useTool();
 }
 
@@ -371,11 +401,7 @@ SpoStep GradientModel::advance(const Pose& X_VT, const Pose& X_VT_device) noexce
     SpoStep out;
     const Tick tick{X_VT, X_VT_device, &out};
     point_tests_ = 0;
-    is_new_tool_ ? fitTool(tick) : growTool();
-    // What the last tick moved is a good guess of what this one will; a longer step gathers anew.
-    gather(tick.X_VT_start, std::min(trustRadius(), std::max(kLeastMargin, kMotionGrowth * last_reach_)),
-           out);
-    State state = evaluate(tick.X_VT_start, tick);
+    State state = begin(tick);
     goOn(state, tick);
     out.is_solved = descend(state, tick);
     X_VT_end_ = state.X_VT;
@@ -387,6 +413,7 @@ SpoStep GradientModel::advance(const Pose& X_VT, const Pose& X_VT_device) noexce
     out.budget_share = double(point_tests_) / double(most_point_tests_);
     out.max_penetration = state.max_depth;
     last_depth_ = state.max_depth;
+    knows_depth_ = true;
     feel(state.X_VT, tick);
     return out;
 }

@@ -21,7 +21,11 @@ class GradientModel final : public SpoModel {
 
     SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept override;
     void restart() noexcept override;
-    // A tool that was chosen where it had no room is still felt smaller than it is.
+    // Before the next advance() the bone is another one where the tool may be, and what it does to the tool
+    // is felt whole. It is RT-safe, for the tick thread only.
+    void expectOtherBone() noexcept { knows_depth_ = false; }
+    // A tool that was chosen, or has bone around it of a sudden, where it has no room is still felt smaller
+    // than it is.
     bool isToolGrowing() const noexcept { return growing_.offset() > 0; }
     void setAccuracy(const AccuracySettings& settings) noexcept override;
     void setTool(const SpoTool& tool) noexcept override;
@@ -56,6 +60,9 @@ class GradientModel final : public SpoModel {
     void saturate() noexcept;
     void fitTool(const Tick& tick) noexcept;
     void growTool() noexcept;
+    State begin(const Tick& tick) noexcept;
+    bool hasBoneAppeared(const State& state) const noexcept;
+    void makeRoom(double depth) noexcept;
     void gather(const Pose& X_VT, double margin, SpoStep& out) noexcept;
     State evaluate(const Pose& X_VT, const Tick& tick) noexcept;
     void goOn(State& state, const Tick& tick) noexcept;
@@ -89,7 +96,8 @@ class GradientModel final : public SpoModel {
     const ToolField* field_;  // of tool_, or growing_
     GrowingField growing_;
     bool is_new_tool_ = false;
-    double last_depth_ = 0;  // m
+    double last_depth_ = 0;     // m
+    bool knows_depth_ = false;  // last_depth_ is that of the tick before
     GradientContact contact_;
     SolveEnergy* effects_ = nullptr;
     Pose X_VT_end_;  // of the last advance()

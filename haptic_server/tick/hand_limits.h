@@ -15,8 +15,10 @@
 //    force or no torque: nobody can feel it go, so that it goes at once, and that is no limit that acted.
 // 3. The rate, when what the hand feels has changed at one stroke. A larger burr may find bone where the
 //    smaller one had room, restored bone may be where the tool is, another device may be held more stiffly,
-//    an equilibrium may be found again after ticks without one. The wrench then goes from the old one to the
-//    new one at kForceRate and kTorqueRate.
+//    an equilibrium may be found again after ticks without one, bone may give way when the pedal goes down,
+//    the hand may be elsewhere than where it was last heard of. The wrench then goes from the old one to the
+//    new one at kForceRate and kTorqueRate. This is for such events only: a limit on every tick's force would
+//    hold back what the bone gives, and make loops unstable.
 // 4. The factor of the stale ramp, 0 to 1. It comes last, so that no other limit can undo it: at 0 nothing is
 //    sent, whatever was computed. The rate does not see it, for it would take the ramp for a change of the
 //    wrench.
@@ -51,6 +53,7 @@ struct FeltStep {
     bool is_solved = true;  // false: there is no equilibrium, and the wrench says nothing
     Pose X_VT_device = {};
     double stale_factor = 1;
+    bool has_jumped = false;  // what X_VT_device has gone since the last step is no motion of the hand
 };
 
 class HandLimits {
@@ -111,7 +114,7 @@ class HandLimits {
         leaveOut(wrench);
         was_limited_ =
             limitLength(wrench.force, config_.max_force) | limitLength(wrench.torque, config_.max_torque);
-        if (!isChangeOver()) slowDown(wrench, step.X_VT_device);
+        if (!isChangeOver()) slowDown(wrench, step.has_jumped ? X_VT_device_ : step.X_VT_device);
         faded_for_ = 0;
         before_fading_ = wrench;
         return wrench;

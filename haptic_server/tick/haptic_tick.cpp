@@ -21,11 +21,14 @@ Eigen::Vector4d wxyz(const Eigen::Quaterniond& q) noexcept {
 }
 
 constexpr double kQuaternionNormSlack = 1e-2;
-constexpr double kFarthest = 1e3;  // m from W's origin: beyond any scan, and squares stay finite
 // New settings are prepared beside the old ones' work, after the force went out. A leaf of 16³ cells that is
 // full of surface takes some 0.1 ms, a thesis' leaf of 32³ up to 0.4 ms. Only leaves that were milled or
 // restored since are stale.
 constexpr int kLeavesPreparedPerTick = 1;
+
+Eigen::Vector3d middleOf(const VoxelVolume& volume) noexcept {
+    return 0.5 * volume.spacing().cwiseProduct(volume.dims().cast<double>());
+}
 
 SpoWorld worldOf(const BoneModel& bone) noexcept {
     return {bone.volume, bone.lattice, bone.shell};
@@ -54,7 +57,8 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
       hand_limits_(config.hand, handSideOf(config).spring, config.dt),
       hand_coupling_(config_),
       X_WV_(bone_.volume.geometry().X_WV),
-      X_VW_(X_WV_.inverse()) {
+      X_VW_(X_WV_.inverse()),
+      place_(middleOf(bone_.volume), config.workspace_scale, config.dt) {
     BONEMILL_ASSERT(config.dt > 0 && config.workspace_scale > 0 && config.most_milled_cells > 0);
     const AccuracySettings& settings = accuracy_.chosen();
     bone_.shell.prepare(bone_.volume, bone_.lattice, levelOf(bone_.shell, settings),
@@ -75,7 +79,7 @@ void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept 
         shell.prepare(bone_.volume, bone_.lattice, levelOf(shell, chosen), kLeavesPreparedPerTick);
     if (!is_complete) faults |= kFaultShellOverflow;
     if (!is_ready) return;
-    if (chosen.law != settings_.law) hand_limits_.beginSuddenChange();
+    hand_limits_.beginSuddenChange();
     takeUp(chosen);
 }
 
@@ -115,7 +119,7 @@ void HapticTick::useCoupling() noexcept {
 
 // The account begins anew whenever something else than hand and tool changes what is stored.
 void HapticTick::keepAccount(const SpoStep& step, const DeviceInput& input) noexcept {
-    const bool is_felt = has_pose_ && !input.is_stale && input.device.isEngaged();
+    const bool is_felt = !place_.isLost() && !input.is_stale && input.device.isEngaged();
     const bool says_something = is_felt && model_ == &gradient_ && !gradient_.isToolGrowing() &&
                                 !std::exchange(has_changed_suddenly_, false);
     if (says_something ? hand_coupling_.takeAccount(X_VT_device_, step) : hand_coupling_.passOver())
@@ -170,19 +174,29 @@ bool HapticTick::tick(TickIo& io) noexcept {
 }
 
 void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept {
-    Pose X_WT_device = input.X_WT_device;
-    const double norm = X_WT_device.rotation.norm();
-    if (!X_WT_device.isFinite() || !(std::abs(norm - 1) < kQuaternionNormSlack) ||
-        !(X_WT_device.position.cwiseAbs().maxCoeff() < kFarthest)) {
+    const bool is_first = !place_.hasPose();
+    if (!believe(input.X_WT_device, input.periods)) {
         faults |= kFaultBadDevicePose;
         return;  // the last good one stays
     }
-    X_WT_device.rotation.coeffs() /= norm;
-    const Pose X_VT_reading = X_VW_ * X_WT_device;
+    if (is_first)
+        X_VT_ = X_VT_device_;  // the simulated tool starts where the hand is
+    else if (place_.hasJumped())
+        hand_limits_.beginSuddenChange();
+}
+
+bool HapticTick::believe(Pose X_WT_sample, int periods) noexcept {
+    const double norm = X_WT_sample.rotation.norm();
+    if (!X_WT_sample.isFinite() || !(std::abs(norm - 1) < kQuaternionNormSlack)) {
+        place_.refuse(periods);
+        return false;
+    }
+    X_WT_sample.rotation.coeffs() /= norm;
+    const Pose X_VT_reading = X_VW_ * X_WT_sample;
+    if (!place_.take(X_VT_reading, periods)) return false;
     X_VT_device_ =
         model_ == &gradient_ ? estimate_.take(X_VT_reading, hand_coupling_.standsAlone()) : X_VT_reading;
-    if (!has_pose_) X_VT_ = X_VT_device_;  // the simulated tool starts where the hand is
-    has_pose_ = true;
+    return true;
 }
 
 void HapticTick::beginEffects(const DeviceInput& input) noexcept {
@@ -192,10 +206,13 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     EffectTick start;
     start.dt = config_.dt * input.periods;
     start.periods = input.periods;
-    start.may_mill = has_pose_ && !input.is_stale && input.device.isEngaged() &&
+    start.may_mill = !place_.isLost() && !input.is_stale && input.device.isEngaged() &&
                      !(history_ && history_->isMillingPaused());
     start.is_pedal_down = start.may_mill && remove && !add;
     start.is_add_wanted = start.may_mill && add && !remove;
+    if (start.is_pedal_down != was_pedal_down_ || start.is_add_wanted != was_add_wanted_)
+        hand_limits_.beginSuddenChange();
+    was_pedal_down_ = start.is_pedal_down, was_add_wanted_ = start.is_add_wanted;
     start.tool = &tools_[tool_];
     start.shape = model_ == &thesis_ ? MillingShape::kVoxelCentres : MillingShape::kSubVoxel;
     start.X_VT_start = X_VT_;
@@ -214,8 +231,9 @@ SpoStep HapticTick::moveAndFeel(const DeviceInput& input, uint32_t& faults) noex
     keepAccount(step, input);
     effects_.addToHand(step.wrench_hand_V);
     step.wrench_hand_V.torque /= config_.workspace_scale;  // hand_side.h
-    const bool is_felt = step.is_solved && has_pose_;      // before a pose nobody knows where the hand is
-    step.wrench_hand_V = hand_limits_.limit({step.wrench_hand_V, is_felt, X_VT_device_, input.stale_factor});
+    const bool is_felt = step.is_solved && !place_.isLost();
+    step.wrench_hand_V = hand_limits_.limit(
+        {step.wrench_hand_V, is_felt, X_VT_device_, input.stale_factor, place_.hasJumped()});
     if (hand_limits_.wasLimited()) faults |= kFaultForceClamped;
     return step;
 }
@@ -227,6 +245,7 @@ MillingResult HapticTick::mill(uint32_t& faults) noexcept {
     bool shell_is_complete = true;
     if (history_->restoreSome(bone_, shell_is_complete)) {
         hand_limits_.beginSuddenChange();
+        gradient_.expectOtherBone();
         effects_.restart(Restart::kBonePutBack);
         has_changed_suddenly_ = true;
     } else {

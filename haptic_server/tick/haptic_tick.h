@@ -18,6 +18,7 @@
 #include "haptic_server/tick/affordable_shell.h"
 #include "haptic_server/tick/hand_coupling.h"
 #include "haptic_server/tick/hand_estimate.h"
+#include "haptic_server/tick/hand_place.h"
 #include "haptic_server/tick/tick_config.h"
 #include "haptic_server/tick/tick_io.h"
 #include "haptic_server/tick/tool_switch.h"
@@ -57,6 +58,7 @@ class HapticTick {
     void keepAccount(const SpoStep& step, const DeviceInput& input) noexcept;
     void useCoupling() noexcept;
     void acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
+    bool believe(Pose X_WT_sample, int periods) noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
     SpoModel* modelOf(ContactLaw law) noexcept;
@@ -87,7 +89,8 @@ class HapticTick {
     Pose X_WV_, X_VW_;
     Pose X_VT_device_;
     Pose X_VT_;
-    bool has_pose_ = false;
+    HandPlace place_;
+    bool was_pedal_down_ = false, was_add_wanted_ = false;  // in the last tick
     bool has_changed_suddenly_ = false;  // what the simulated side stores, by no one's work
     uint64_t tick_ = 0;
     uint32_t latched_faults_ = 0;

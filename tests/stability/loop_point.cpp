@@ -99,7 +99,8 @@ LoopVerdict tryLoop(const LoopPoint& point, const Variant& variant, bool declare
         if (now > 0.9 * swing && n > 3) break;
         swing = now;
     }
-    LoopVerdict verdict{r.rms, r.torque_rms, 0, !r.is_finite || !r.is_touching};
+    const bool has_flown_off = loop.stepper.record().faults & kFaultBadDevicePose;
+    LoopVerdict verdict{r.rms, r.torque_rms, 0, !r.is_finite || !r.is_touching || has_flown_off};
     verdict.wall = loop.stepper.record().coupling_share * couplingFigures(scene.config).translation_stiffness;
     return verdict;
 }

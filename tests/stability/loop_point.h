@@ -40,7 +40,7 @@ const char* nameOf(LoopPlace place);
 struct LoopVerdict {
     double force_rms = 0, torque_rms = 0;  // of the last half second, N and N·m
     double wall = 0;                       // N/m: coupling's stiffness at the end
-    bool is_lost = false;                  // off the bone that it was pressed against, or not finite
+    bool is_lost = false;                  // off the bone, or the handle flew away, or not finite
     bool isQuiet() const noexcept { return !is_lost && force_rms <= kFeltForce && torque_rms <= kFeltTorque; }
 };
 

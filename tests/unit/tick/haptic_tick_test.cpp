@@ -93,7 +93,7 @@ TEST(HapticTick, SpeedLimitHoldsTheToolBack) {
     Bench bench;
     const Pose start = bench.atV(kStart);
     auto inputs = test::straightPath(start, start.position, 2, 0);
-    inputs[1].X_WT_device.position.x() += 0.05;
+    inputs[1].X_WT_device.position.x() += 2e-3;
     const auto records = bench.run(inputs);
     EXPECT_TRUE(records[1].faults & kFaultMotionClamped);
     const double moved = std::abs(records[1].p_WT[0] - records[0].p_WT[0]);

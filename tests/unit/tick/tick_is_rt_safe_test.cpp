@@ -126,7 +126,8 @@ TEST_F(TickIsRtSafe, WhileLevelsArePreparedAndTakenUp) {
 TEST_F(TickIsRtSafe, WhileFaultsHappen) {
     auto inputs = test::straightPath(at(6e-3), {4e-3, 4e-3, 5.5e-3}, 100, kButtonRemove);
     inputs[20].X_WT_device.position.setConstant(std::numeric_limits<double>::quiet_NaN());
-    inputs[30].X_WT_device.position.x() += 1;
+    inputs[30].X_WT_device.position.x() += 2e-3;  // quicker than the tool may move
+    inputs[35].X_WT_device.position.x() += 1;     // than any hand
     inputs[40].is_stale = true;
     inputs[50].X_WT_device.rotation.coeffs().setZero();
     expectQuiet(inputs);
