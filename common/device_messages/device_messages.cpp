@@ -37,6 +37,12 @@ bool isPlausible(const DeviceSample& sample) noexcept {
            sample.state < kSafetyStateCount && sample.stop_cause < kStopCauseCount;
 }
 
+bool isWithinReach(const DeviceSample& sample, const DeviceCapabilities& device) noexcept {
+    const double(&p)[3] = sample.p_DT;
+    const double most = 2 * device.workspace_radius;
+    return most == 0 || p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= most * most;
+}
+
 bool isPlausible(const WrenchCommand& command) noexcept {
     return isFinite(command.f_hand_D) && isFinite(command.t_hand_D);
 }

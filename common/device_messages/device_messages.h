@@ -132,6 +132,9 @@ inline constexpr double kLargestDeviceSpin = 1000.0;
 // Tells whether the server may act on it: it is finite, a rotation, within reach, and in a state that there
 // is.
 bool isPlausible(const DeviceSample& sample) noexcept;
+// Tells whether a plausible sample can be this device's: no device goes twice as far from its base as it
+// says, unless it says nothing.
+bool isWithinReach(const DeviceSample& sample, const DeviceCapabilities& device) noexcept;
 // Tells whether the daemon may act on it: it is finite. Limits are the business of the device's safety.
 bool isPlausible(const WrenchCommand& command) noexcept;
 // Tells whether the server may adapt to it: its text ends, its kind is known, and its figures are finite and

@@ -92,7 +92,7 @@ bool DeviceLinkIo::waitForFirstSample() noexcept {
 bool DeviceLinkIo::takeSample() noexcept {
     DeviceSample sample;
     if (!link_.readSample(sample) || sample.sequence == sequence_) return false;
-    if (!isPlausible(sample)) {
+    if (!isPlausible(sample) || (has_capabilities_ && !isWithinReach(sample, capabilities_))) {
         refuse();
         return false;
     }
@@ -143,7 +143,9 @@ int64_t DeviceLinkIo::write(const Wrench& wrench_hand_W) noexcept {
 }
 
 int64_t DeviceLinkIo::now() noexcept {
-    return monotonicNowNs();
+    const int64_t now = monotonicNowNs();
+    pace_.end(now);
+    return now;
 }
 
 void DeviceLinkIo::push(const TickRecord& record) noexcept {

@@ -102,6 +102,25 @@ TEST_F(DeviceLinkIoTest, ALateTickLivesThroughThePeriodsBeforeIt) {
     EXPECT_LE(input.periods, LivedPeriods::kMostNs / config_.period_ns);
 }
 
+// The device says how far it reaches; before it has, ten metres are believed.
+TEST_F(DeviceLinkIoTest, SamplesFarBeyondTheDevicesReachAreNotBelieved) {
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    daemon_.writeSample(sampleAt(0.5));
+    DeviceInput input;
+    ASSERT_TRUE(io.read(input));
+    EXPECT_NEAR(input.X_WT_device.position.x(), 0.6, 1e-12);
+    daemon_.writeCapabilities(device(3));  // it reaches 0.1 m
+    daemon_.writeSample(sampleAt(0.15));
+    ASSERT_TRUE(io.read(input));
+    EXPECT_NEAR(input.X_WT_device.position.x(), 0.25, 1e-12);
+    EXPECT_EQ(io.implausibleMessages(), 0u);
+    daemon_.writeSample(sampleAt(0.21));
+    ASSERT_TRUE(io.read(input));
+    EXPECT_NEAR(input.X_WT_device.position.x(), 0.25, 1e-12);
+    EXPECT_EQ(io.implausibleMessages(), 1u);
+    EXPECT_TRUE(input.faults & kFaultImplausibleDevice);
+}
+
 TEST_F(DeviceLinkIoTest, ImplausibleSamplesAndStampsAreNotBelieved) {
     DeviceLinkIo io(config_, server_, ring_, cuts_);
     daemon_.writeSample(sampleAt(0.002));

@@ -53,5 +53,30 @@ TEST(TickPace, AFloodIsHeldToThePeriodAndAClockThatIsATouchFasterIsNot) {
     }
 }
 
+// Samples wait for a tick that takes the whole period or more: it would never rest.
+TEST(TickPace, ALoopWhoseTicksFillTheirPeriodRestsForAFifthOfTheTime) {
+    for (const int64_t work : {kPeriod * 9 / 10, kPeriod, 5 * kPeriod}) {
+        TickPace pace(kPeriod);
+        int64_t now = 0, worked = 0;
+        while (now < 1000 * kPeriod) {
+            now = std::max(now, pace.earliestNs());
+            pace.begin(now);
+            now += work, worked += work;
+            pace.end(now);
+        }
+        EXPECT_LT(double(worked) / double(now), 0.81) << work;
+        EXPECT_GT(double(worked) / double(now), 0.79) << work;
+    }
+}
+
+TEST(TickPace, ATickThatLeavesAFifthOfItsPeriodIsNotHeldBackForARest) {
+    TickPace pace(kPeriod);
+    for (int64_t tick = 0; tick < 1000; ++tick) {
+        EXPECT_LE(pace.earliestNs(), tick * kPeriod) << tick;
+        pace.begin(tick * kPeriod);
+        pace.end(tick * kPeriod + kPeriod * 4 / 5);
+    }
+}
+
 }  // namespace
 }  // namespace bonemill
