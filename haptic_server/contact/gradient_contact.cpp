@@ -45,6 +45,7 @@ GradientContact::GradientContact(const GradientContactConfig& config, size_t mos
     : config_(config),
       candidates_(most_candidates),
       split_(most_candidates),
+      next_place_(most_candidates),
       lowest_(most_candidates),
       inverse_rate_(most_candidates) {}
 

@@ -145,9 +145,10 @@ class GradientContact {
     void cutPatch(const ShellView& bone, uint32_t candidate) noexcept;
     bool cutCell(const ShellView& bone, const Eigen::Vector3i& cell, uint32_t candidate,
                  uint8_t level) noexcept;
+    size_t countPieces() noexcept;
     void placePieces() noexcept;
     void movePlacesOntoSurface(const VoxelVolume& volume, size_t from) noexcept;
-    void fillHoles() noexcept;
+    void fillHoles(size_t coarse) noexcept;
     void startSweep(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
                     double allowed_depth) noexcept;
     double sweptShare(const ToolField& tool, const Pose& X_VT) const noexcept;
@@ -162,6 +163,7 @@ class GradientContact {
     std::vector<uint32_t>
         split_;  // ascending: the first split_count_ are candidates whose pieces take their place
     size_t split_count_ = 0;
+    std::vector<uint32_t> next_place_;  // per candidate that is cut: of its pieces, where the next one goes
     // A sweep needs how near each candidate may come, in m, and 1/(the most that the whole step can bring
     // it nearer).
     std::vector<float> lowest_, inverse_rate_;

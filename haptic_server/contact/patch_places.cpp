@@ -1,5 +1,6 @@
 // Samples the patches near the tool more finely.
 #include <algorithm>
+#include <utility>
 
 #include "haptic_server/contact/cell_corners.h"
 #include "haptic_server/contact/gradient_contact.h"
@@ -65,7 +66,7 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
     point_tests_ += pieces_.takePointTests();
     placePieces();
     movePlacesOntoSurface(bone.volume, coarse);
-    fillHoles();
+    fillHoles(coarse);
 }
 
 // Gives the triangles of a candidate's cells.
@@ -103,18 +104,32 @@ bool GradientContact::cutCell(const ShellView& bone, const Vector3i& cell, uint3
     return true;
 }
 
-// Puts the pieces' centroids, still on their triangles, at the end of the candidates.
+// Counts each patch's pieces, so that placePieces() puts them side by side. Returns how many there are.
+size_t GradientContact::countPieces() noexcept {
+    for (size_t n = 0; n < split_count_; ++n) next_place_[split_[n]] = 0;
+    pieces_.forEach([&](const SurfacePiece& piece) { ++next_place_[piece.patch]; });
+    uint32_t count = 0;
+    for (size_t n = 0; n < split_count_; ++n) count += std::exchange(next_place_[split_[n]], count);
+    return count;
+}
+
+// Puts the pieces' centroids, still on their triangles, behind the candidates, patch by patch. The first
+// ones, as many as patches were cut, come last: fillHoles() takes them from there.
 void GradientContact::placePieces() noexcept {
     Candidates& c = candidates_;
+    const size_t coarse = c.count, count = std::min(countPieces(), c.capacity() - coarse);
+    const size_t first = std::min(count, split_count_);
     pieces_.forEach([&](const SurfacePiece& piece) {
-        if (c.count == c.capacity()) return;
+        const size_t place = next_place_[piece.patch]++;
+        if (place >= count) return;
         const Vector3f center = piece.centroid();
-        const size_t to = c.count++;
+        const size_t to = coarse + (place < first ? place + count : place) - first;
         c.copy(piece.patch, to);
         c.x[to] = center.x(), c.y[to] = center.y(), c.z[to] = center.z();
         c.nearest[to] = piece.nearest;
         c.weight[to] *= piece.area / c.area[to];
     });
+    c.count = coarse + count;
 }
 
 void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t from) noexcept {
@@ -137,9 +152,20 @@ void GradientContact::movePlacesOntoSurface(const VoxelVolume& volume, size_t fr
                                  float(kReachOfPlace * volume.spacing().minCoeff()), int(c.count - from)});
 }
 
-// The last places take those of the patches that were cut, the last of these first.
-void GradientContact::fillHoles() noexcept {
-    for (size_t n = split_count_; n-- > 0;) candidates_.copy(--candidates_.count, split_[n]);
+// Closes the gap between the candidates that were not cut and the pieces, so that the pieces of a patch stay
+// side by side.
+void GradientContact::fillHoles(size_t coarse) noexcept {
+    Candidates& c = candidates_;
+    const size_t whole = coarse - split_count_;  // so many were not cut
+    size_t last = split_count_;
+    size_t from = coarse;
+    for (size_t n = 0; n < split_count_ && split_[n] < whole; ++n) {
+        while (last > 0 && split_[last - 1] == from - 1) --last, --from;
+        c.copy(--from, split_[n]);
+    }
+    const size_t first = std::min(c.count - coarse, split_count_);
+    for (size_t n = 0; n < first; ++n) c.copy(c.count - first + n, whole + n);
+    c.count -= split_count_;
 }
 
 }  // namespace bonemill
