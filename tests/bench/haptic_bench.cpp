@@ -5,6 +5,7 @@
 
 #include "common/user_error.h"
 #include "tests/bench/bench_effects.h"
+#include "tests/bench/bench_heavy.h"
 #include "tests/bench/bench_laws.h"
 #include "tests/bench/bench_load.h"
 #include "tests/bench/bench_loop.h"
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
     bench::addPresetsCommand(app);
     bench::addStreamCommand(app);
     bench::addEffectsCommand(app);
+    bench::addHeavyCommand(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
