@@ -1,5 +1,6 @@
 // Samples the patches near the tool more finely.
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "haptic_server/contact/cell_corners.h"
@@ -30,17 +31,30 @@ Vector3f crossing(const CellCorners& corners, int edge) noexcept {
     return at;
 }
 
-// Returns how far the trilinear surface is off the triangle, in m: a little more than it is at four places.
+using Places = Eigen::Array<float, 4, 1>;
+
+// Returns how far the trilinear surface is off the triangle, in m: a little more than it is at four places,
+// its centroid and the middles of its edges. Does what sampleField() does.
 float sagOf(const CellCorners& corners, const Vector3f (&at)[3], const Vector3f& inverse_spacing) noexcept {
     constexpr float kMore = 1.5f;
-    float sag = 0;
-    for (const Vector3f& place : {Vector3f((at[0] + at[1] + at[2]) / 3), Vector3f((at[0] + at[1]) / 2),
-                                  Vector3f((at[1] + at[2]) / 2), Vector3f((at[2] + at[0]) / 2)}) {
-        const FieldSample field = sampleField(corners, place);
-        const float rise = field.slope.cwiseProduct(inverse_spacing).norm();
-        if (rise > 0) sag = std::max(sag, std::abs(field.excess) / rise);
-    }
-    return kMore * sag;
+    const auto placesOf = [&](int axis) {
+        const float a = at[0][axis], b = at[1][axis], c = at[2][axis];
+        return Places((a + b + c) / 3, (a + b) / 2, (b + c) / 2, (c + a) / 2);
+    };
+    const Places x = placesOf(0), y = placesOf(1), z = placesOf(2);
+    const auto& e = corners.excess;
+    const Places on_x[4] = {e[0] + x * (e[1] - e[0]), e[2] + x * (e[3] - e[2]), e[4] + x * (e[5] - e[4]),
+                            e[6] + x * (e[7] - e[6])};
+    const Places dy_low = on_x[1] - on_x[0], dy_high = on_x[3] - on_x[2];
+    const Places low = on_x[0] + y * dy_low, dz = on_x[2] + y * dy_high - low;
+    const Places dx_low = (e[1] - e[0]) + y * ((e[3] - e[2]) - (e[1] - e[0]));
+    const Places dx_high = (e[5] - e[4]) + y * ((e[7] - e[6]) - (e[5] - e[4]));
+    const Places dx = dx_low + z * (dx_high - dx_low), dy = dy_low + z * (dy_high - dy_low);
+    const Places rise = ((dx * inverse_spacing.x()).square() + (dy * inverse_spacing.y()).square() +
+                         (dz * inverse_spacing.z()).square())
+                            .sqrt();
+    const Places sag = (low + z * dz).abs() / rise;
+    return kMore * (rise > 0).select(sag, 0.0f).maxCoeff();
 }
 
 }  // namespace
@@ -50,7 +64,7 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
     split_count_ = 0;
     patch_memory_.nextGathering();
     if (!(bone.sample_spacing > 0)) return;
-    pieces_.start(tool, X_VT, origin_, margin_, fineWithin());
+    pieces_.start(tool, X_VT, origin_, margin_, fineWithin(), bone.sample_spacing);
     const size_t coarse = candidates_.count;
     for (size_t i = 0; i < coarse; ++i)
         if (isCoarse(tool, i)) split_[split_count_++] = uint32_t(i);
@@ -59,7 +73,7 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
         return;
     }
     for (size_t n = 0; n < split_count_; ++n) cutPatch(bone, split_[n]);
-    const uint8_t level_of_new = pieces_.cut(bone.sample_spacing, size_t(bone.most_samples));
+    const uint8_t level_of_new = pieces_.cut(size_t(bone.most_samples));
     for (size_t n = 0; n < split_count_; ++n)
         if (uint8_t& level = patch_memory_.levelOf(candidates_.patch[split_[n]]); level == PatchMemory::kNew)
             level = level_of_new;
@@ -91,10 +105,15 @@ bool GradientContact::cutCell(const ShellView& bone, const Vector3i& cell, uint3
     const Vector3f base = (cell.cast<double>().cwiseProduct(spacing) - origin_).cast<float>();
     const Vector3f steps = spacing.cast<float>();
     const Vector3f inverse_steps = steps.cwiseInverse();
+    std::array<Vector3f, 12> on_edge;  // of those that the surface crosses
+    unsigned known = 0;
     for (int n = 0; n < triangles.count; ++n) {
         Vector3f at[3], corner_V[3];
         for (size_t c = 0; c < 3; ++c) {
-            at[c] = crossing(corners, triangles.edges[size_t(n)][c]);
+            const unsigned edge = triangles.edges[size_t(n)][c];
+            if (!(known >> edge & 1)) on_edge[edge] = crossing(corners, int(edge));
+            known |= 1u << edge;
+            at[c] = on_edge[edge];
             corner_V[c] = base + at[c].cwiseProduct(steps);
         }
         const float sag =
@@ -107,7 +126,7 @@ bool GradientContact::cutCell(const ShellView& bone, const Vector3i& cell, uint3
 // Counts each patch's pieces, so that placePieces() puts them side by side. Returns how many there are.
 size_t GradientContact::countPieces() noexcept {
     for (size_t n = 0; n < split_count_; ++n) next_place_[split_[n]] = 0;
-    pieces_.forEach([&](const SurfacePiece& piece) { ++next_place_[piece.patch]; });
+    pieces_.forEach([&](const FinishedPiece& piece) { ++next_place_[piece.patch]; });
     uint32_t count = 0;
     for (size_t n = 0; n < split_count_; ++n) count += std::exchange(next_place_[split_[n]], count);
     return count;
@@ -119,13 +138,12 @@ void GradientContact::placePieces() noexcept {
     Candidates& c = candidates_;
     const size_t coarse = c.count, count = std::min(countPieces(), c.capacity() - coarse);
     const size_t first = std::min(count, split_count_);
-    pieces_.forEach([&](const SurfacePiece& piece) {
+    pieces_.forEach([&](const FinishedPiece& piece) {
         const size_t place = next_place_[piece.patch]++;
         if (place >= count) return;
-        const Vector3f center = piece.centroid();
         const size_t to = coarse + (place < first ? place + count : place) - first;
         c.copy(piece.patch, to);
-        c.x[to] = center.x(), c.y[to] = center.y(), c.z[to] = center.z();
+        c.x[to] = piece.centroid.x(), c.y[to] = piece.centroid.y(), c.z[to] = piece.centroid.z();
         c.nearest[to] = piece.nearest;
         c.weight[to] *= piece.area / c.area[to];
     });

@@ -21,25 +21,31 @@ void findLongestEdge(SurfacePiece& piece) noexcept {
 }  // namespace
 
 SurfacePieces::SurfacePieces(size_t room)
-    : into_tool_(Pose{}, Eigen::Vector3d::Zero()), pieces_(room), next_(room) {}
+    : into_tool_(Pose{}, Eigen::Vector3d::Zero()), waiting_(room), next_(room), finished_(room) {
+    first_.fill(kNone);
+}
 
 void SurfacePieces::start(const ToolField& tool, const Pose& X_VT, const Eigen::Vector3d& origin_V,
-                          double margin, double fine_within) noexcept {
+                          double margin, double fine_within, double spacing) noexcept {
     tool_ = &tool;
     into_tool_ = IntoTool<float>(X_VT, origin_V);
     R_TV_ = X_VT.rotation.conjugate().toRotationMatrix().cast<float>();
     margin_ = float(margin);
     fine_within_ = float(fine_within);
-    count_ = next_count_ = 0;
+    per_spacing_squared_ = float(1 / (spacing * spacing));
+    first_.fill(kNone);
+    first_free_ = kNone;
+    used_ = 0;
+    finished_count_ = count_ = 0;
     fresh_count_ = 0;
 }
 
 bool SurfacePieces::add(const Vector3f corners[3], float sag, uint32_t patch, uint8_t level) noexcept {
-    if (next_count_ + size_t(fresh_count_) >= next_.size()) return false;
+    if (count_ + size_t(fresh_count_) >= finished_.size()) return false;
     const Vector3f across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     const float twice_area = across.norm();
     if (!(twice_area > 0)) return true;
-    SurfacePiece piece{};
+    SurfacePiece& piece = fresh_[fresh_count_++];
     std::copy_n(corners, 3, piece.corner.begin());
     piece.area = twice_area / 2;
     piece.normal_T = R_TV_ * (across / twice_area);
@@ -47,22 +53,15 @@ bool SurfacePieces::add(const Vector3f corners[3], float sag, uint32_t patch, ui
     piece.level = level;
     findLongestEdge(piece);
     piece.bend = sag / piece.longest_squared;
-    put(piece);
+    if (fresh_count_ == kFresh) sort();
     return true;
-}
-
-// Takes a new piece, whose distance is not known yet.
-void SurfacePieces::put(const SurfacePiece& piece) noexcept {
-    fresh_[fresh_count_] = piece;
-    if (++fresh_count_ == PointBatch<float>::kCapacity) sort();
 }
 
 // Drops those of the new pieces that the tool cannot reach.
 void SurfacePieces::sort() noexcept {
     // No point of a triangle is farther from its centroid than two thirds of its longest edge.
     constexpr float kReach = 2.0f / 3;
-    alignas(64) float x[PointBatch<float>::kCapacity], y[PointBatch<float>::kCapacity],
-        z[PointBatch<float>::kCapacity], nearest[PointBatch<float>::kCapacity];
+    alignas(64) float x[kFresh], y[kFresh], z[kFresh], nearest[kFresh];
     PieceBatch batch;
     for (int i = 0; i < fresh_count_; ++i) {
         const SurfacePiece& piece = fresh_[i];
@@ -76,70 +75,81 @@ void SurfacePieces::sort() noexcept {
     point_tests_ += size_t(fresh_count_);
     for (int i = 0; i < fresh_count_; ++i) {
         fresh_[i].nearest = nearest[i] - fresh_[i].bend * fresh_[i].longest_squared;
-        if (fresh_[i].nearest < margin_ && next_count_ < next_.size()) next_[next_count_++] = fresh_[i];
+        if (fresh_[i].nearest < margin_ && count_ < finished_.size()) keep(fresh_[i]);
     }
     fresh_count_ = 0;
 }
 
-bool SurfacePieces::isCoarse(const SurfacePiece& piece, const Round& round) const noexcept {
-    if (piece.longest_squared <= round.longest_squared) return false;
-    if (piece.level == PatchMemory::kNew ? !round.has_room : piece.level > round.level) return false;
+// Returns the first of the levels, from coarse to fine, at which the piece is too long.
+int SurfacePieces::levelToCut(const SurfacePiece& piece) const noexcept {
+    const float times = piece.longest_squared * per_spacing_squared_;
+    if (times <= 1) return kFinished;
+    const int level = std::min(std::ilogb(times), kLevels - 1);
+    if (piece.level != PatchMemory::kNew && piece.level > level) return kFinished;
     const float enough = shortEnough(*tool_, piece.nearest);
-    return piece.nearest < fine_within_ || piece.longest_squared > enough * enough;
+    return piece.nearest < fine_within_ || piece.longest_squared > enough * enough ? level : kFinished;
+}
+
+void SurfacePieces::keep(const SurfacePiece& piece) noexcept {
+    ++count_;
+    const int level = levelToCut(piece);
+    if (level == kFinished) return finish(piece);
+    const uint32_t place = first_free_ != kNone ? first_free_ : used_++;
+    if (place == first_free_) first_free_ = next_[place];
+    waiting_[place] = piece;
+    next_[place] = std::exchange(first_[size_t(level)], place);
+}
+
+void SurfacePieces::finish(const SurfacePiece& piece) noexcept {
+    finished_[finished_count_++] = {piece.centroid(), piece.area, piece.nearest, piece.patch};
 }
 
 void SurfacePieces::halve(const SurfacePiece& piece) noexcept {
+    if (fresh_count_ + 2 > kFresh) sort();
     const auto& ends = kEdge[piece.longest_edge];
     const Vector3f middle = (piece.corner[ends[0]] + piece.corner[ends[1]]) / 2;
     for (const size_t moved : {ends[1], ends[0]}) {
-        SurfacePiece half = piece;
+        SurfacePiece& half = fresh_[fresh_count_++];
+        half = piece;
         half.area = piece.area / 2;
         half.corner[moved] = middle;
         findLongestEdge(half);
-        put(half);
     }
 }
 
-// False: no piece was too long, or there was no room.
-bool SurfacePieces::cutOnce(const Round& round) noexcept {
-    bool has_cut = false;
-    next_count_ = 0;
-    for (size_t n = 0; n < count_; ++n) {
-        const size_t at_least = next_count_ + size_t(fresh_count_) + (count_ - n);
-        if (isCoarse(pieces_[n], round) && at_least < next_.size()) {
-            halve(pieces_[n]);
-            has_cut = true;
-        } else {
-            next_[next_count_++] = pieces_[n];
+// Cuts the pieces of this level until none is left there; without room those of new patches stay as they are.
+void SurfacePieces::cutAll(int level, bool has_room) noexcept {
+    while (first_[size_t(level)] != kNone) {
+        while (first_[size_t(level)] != kNone) {
+            const uint32_t place = take(level);
+            const SurfacePiece& piece = waiting_[place];
+            if ((piece.level == PatchMemory::kNew && !has_room) ||
+                count_ + size_t(fresh_count_) >= finished_.size()) {
+                finish(piece);
+            } else {
+                halve(piece);
+                --count_;
+            }
+            free(place);
         }
+        sort();
     }
-    takeNext();
-    return has_cut;
 }
 
-void SurfacePieces::takeNext() noexcept {
+uint8_t SurfacePieces::cut(size_t most) noexcept {
     sort();
-    std::swap(pieces_, next_);
-    count_ = std::exchange(next_count_, 0);
-}
-
-uint8_t SurfacePieces::cut(double spacing, size_t most) noexcept {
-    constexpr float kFinerSquared = 0.5f;
-    takeNext();
-    float longest = 0;
-    for (size_t n = 0; n < count_; ++n) longest = std::max(longest, pieces_[n].longest_squared);
-    Round round{float(spacing * spacing), 0, true};
-    for (; round.longest_squared < longest; round.longest_squared /= kFinerSquared) ++round.level;
-    int level_of_new = round.level;
-    while (round.level > 0 && count_ <= 4 * most) {
-        round.longest_squared *= kFinerSquared;
-        --round.level;
-        round.has_room = round.has_room && 2 * count_ <= most;
-        if (round.has_room) level_of_new = round.level;
-        while (cutOnce(round)) {
-        }
+    int level = kLevels - 1;
+    while (level >= 0 && first_[size_t(level)] == kNone) --level;
+    int level_of_new = level + 1;
+    bool has_room = true;
+    for (; level >= 0 && count_ <= 4 * most; --level) {
+        has_room = has_room && 2 * count_ <= most;
+        if (has_room) level_of_new = level;
+        cutAll(level, has_room);
     }
-    return uint8_t(std::min<int>(level_of_new, PatchMemory::kNew - 1));
+    for (; level >= 0; --level)
+        while (first_[size_t(level)] != kNone) finish(waiting_[take(level)]);
+    return uint8_t(level_of_new);
 }
 
 }  // namespace bonemill
