@@ -138,9 +138,7 @@ void SurfacePieces::cutAll(int level, bool has_room) noexcept {
 
 uint8_t SurfacePieces::cut(size_t most) noexcept {
     sort();
-    int level = kLevels - 1;
-    while (level >= 0 && first_[size_t(level)] == kNone) --level;
-    int level_of_new = level + 1;
+    int level_of_new = kLevels, level = kLevels - 1;
     bool has_room = true;
     for (; level >= 0 && count_ <= 4 * most; --level) {
         has_room = has_room && 2 * count_ <= most;
