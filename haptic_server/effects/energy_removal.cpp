@@ -91,20 +91,25 @@ size_t EnergyRemoval::regionOf(const EffectTick& tick, const SurfaceContact& con
     return size_t(at.x() + kRegionsPerAxis * (at.y() + kRegionsPerAxis * at.z()));
 }
 
-// The contacts of a patch follow each other.
+// The contacts of a patch follow each other. Together they have the area of the whole patch, each in
+// proportion to its own.
 void EnergyRemoval::weighRegions(const EffectTick& tick) noexcept {
     regions_.fill({});
-    PatchId last;
-    bool is_first = true;
-    for (size_t n = 0; n < tick.contacts.size(); ++n) {
-        if (!tick.is_on_burr[n]) continue;
-        const SurfaceContact& contact = tick.contacts[n];
-        Region& region = regions_[regionOf(tick, contact)];
-        region.force += double(contact.force);
-        const PatchId patch = tick.candidates->patch[contact.candidate];
-        if (is_first || patch != last) region.area += double(tick.candidates->area[contact.candidate]);
-        last = patch;
-        is_first = false;
+    const auto placeArea = [&](size_t n) { return double(tick.place_area[tick.contacts[n].candidate]); };
+    for (size_t n = 0, end = 0; n < tick.contacts.size(); n = end) {
+        const uint32_t candidate = tick.contacts[n].candidate;
+        const PatchId patch = tick.candidates->patch[candidate];
+        double touching = 0;
+        for (; end < tick.contacts.size() && tick.candidates->patch[tick.contacts[end].candidate] == patch;
+             ++end)
+            if (tick.is_on_burr[end]) touching += placeArea(end);
+        const double times = double(tick.candidates->area[candidate]) / touching;
+        for (size_t of_patch = n; of_patch < end; ++of_patch) {
+            if (!tick.is_on_burr[of_patch]) continue;
+            Region& region = regions_[regionOf(tick, tick.contacts[of_patch])];
+            region.force += double(tick.contacts[of_patch].force);
+            region.area += times * placeArea(of_patch);
+        }
     }
 }
 
