@@ -55,6 +55,7 @@ HeatGrid::HeatGrid(const HeatConfig& config, const VoxelVolume& bone, double dt)
     dead_directory_.assign(directory_.size(), kNone);
     const double in_time = kPoolShare * double(most_turns_) * longest_ / dt;
     pool_.resize(std::min({kMostBricks, size_t(std::max(1.0, in_time)), directory_.size()}));
+    hottest_.resize(pool_.size());
     dead_pool_.resize(std::min(kMostDeadBricks, directory_.size()));
     for (size_t n = pool_.size(); n > 0; --n) free_.push_back(uint32_t(n - 1));
     active_.reserve(pool_.size());
@@ -68,11 +69,16 @@ Eigen::Vector3i HeatGrid::cellAt(const Eigen::Vector3d& p_V) const noexcept {
     return place.floor().max(-kFar).min(kFar).cast<int>().matrix();
 }
 
+// Returns the voxel in the middle of this cube along one axis, or kOutside.
+int HeatGrid::voxelAt(int cell, int axis) const noexcept {
+    const double from_border = (cell + 0.5) * config_.cell;
+    const int voxel = int(std::floor(from_border / bone_.spacing()[axis]));
+    return voxel >= 0 && voxel < bone_.dims()[axis] ? voxel : kOutside;
+}
+
 bool HeatGrid::isBone(const Eigen::Vector3i& cell) const noexcept {
-    const Eigen::Array3d from_border = (cell.cast<double>().array() + 0.5) * config_.cell;
-    const Eigen::Vector3i voxel = (from_border / bone_.spacing().array()).floor().cast<int>();
-    if ((voxel.array() < 0).any() || (voxel.array() >= bone_.dims().array()).any()) return false;
-    return bone_.at(voxel.x(), voxel.y(), voxel.z()) >= bone_.iso();
+    const Eigen::Vector3i voxel(voxelAt(cell.x(), 0), voxelAt(cell.y(), 1), voxelAt(cell.z(), 2));
+    return voxel.minCoeff() != kOutside && bone_.at(voxel.x(), voxel.y(), voxel.z()) >= bone_.iso();
 }
 
 HeatGrid::Brick* HeatGrid::find(const Eigen::Vector3i& brick) noexcept {
@@ -90,6 +96,7 @@ HeatGrid::Brick* HeatGrid::findOrOpen(const Eigen::Vector3i& index) noexcept {
     directory_[directoryIndex(index)] = slot;
     Brick& brick = pool_[slot];
     brick = Brick{};
+    hottestOf(brick) = 0;
     brick.index = index;
     brick.opened = brick.last_time = now_;
     lookUpBone(brick);
@@ -100,14 +107,19 @@ void HeatGrid::lookUpBone(Brick& brick) noexcept {
     --lookups_;
     brick.is_stale = false;
     constexpr int kAround = kEdge + 2;
-    std::array<bool, kAround * kAround * kAround> is_bone;
-    const Eigen::Vector3i first = brick.index * kEdge;
+    std::array<bool, kAround * kAround * kAround> is_bone{};
     constexpr Eigen::Index kX = 1, kY = kAround, kZ = kAround * kAround;
-    for (int z = -1; z <= kEdge; ++z)
-        for (int y = -1; y <= kEdge; ++y)
-            for (int x = -1; x <= kEdge; ++x)
-                is_bone[size_t((x + 1) * kX + (y + 1) * kY + (z + 1) * kZ)] =
-                    isBone(first + Eigen::Vector3i(x, y, z));
+    int voxels[3][kAround];
+    for (int axis = 0; axis < 3; ++axis)
+        for (int n = 0; n < kAround; ++n) voxels[axis][n] = voxelAt(brick.index[axis] * kEdge + n - 1, axis);
+    for (int z = 0; z < kAround; ++z)
+        for (int y = 0; y < kAround; ++y) {
+            if (voxels[2][z] == kOutside || voxels[1][y] == kOutside) continue;
+            bool* row = &is_bone[size_t(y * kY + z * kZ)];
+            for (int x = 0; x < kAround; ++x)
+                row[x] = voxels[0][x] != kOutside &&
+                         bone_.at(voxels[0][x], voxels[1][y], voxels[2][z]) >= bone_.iso();
+        }
     forEachIndex(
         {Eigen::Vector3i::Zero(), Eigen::Vector3i::Constant(kEdge - 1)}, [&](const Eigen::Vector3i& c) {
             const bool* at = &is_bone[size_t((c.x() + 1) * kX + (c.y() + 1) * kY + (c.z() + 1) * kZ)];
@@ -128,7 +140,8 @@ bool HeatGrid::putInto(const Eigen::Vector3i& cell, double heat) noexcept {
     const int n = cellIndex(cell);
     if (!brick->is_bone[n]) return false;
     brick->excess[n] += float(heat / cell_capacity_);
-    brick->hottest = std::max(brick->hottest, brick->excess[n]);
+    float& hottest = hottestOf(*brick);
+    hottest = std::max(hottest, brick->excess[n]);
     return true;
 }
 
@@ -150,15 +163,10 @@ void HeatGrid::noteChange(const IndexBox& voxels) noexcept {
         return Eigen::Vector3i(cell.unaryExpr([](int v) { return v >> kShift; }));
     };
     const IndexBox box{brickOf(voxels.min, -1), brickOf(voxels.max, +1)};
-    for (const uint32_t slot : active_) {
-        Brick& brick = pool_[slot];
-        brick.is_stale |=
-            (brick.index.array() >= box.min.array()).all() && (brick.index.array() <= box.max.array()).all();
-    }
-    if (dead_used_ == 0) return;
-    if (box.count() > kMostBricksToRevisit) return markDeadStale(0, dead_used_);
+    if (box.count() > kMostBricksToRevisit) return noteChangeEverywhere();
     forEachIndex(box.clamped(Eigen::Vector3i::Zero(), bricks_.array() - 1),
                  [&](const Eigen::Vector3i& index) {
+                     if (Brick* brick = find(index)) brick->is_stale = true;
                      const uint32_t slot = dead_directory_[directoryIndex(index)];
                      if (slot != kNone) markDeadStale(slot, slot + 1);
                  });
@@ -281,7 +289,7 @@ void HeatGrid::cool(Brick& brick, double elapsed) noexcept {
     const float left_by_blood = float(pinned::exp(-config_.perfusion * elapsed));
     const Eigen::Vector3d first =
         (brick.index * kEdge).cast<double>() * config_.cell - bone_.spacing() / 2 - wet_center_V_;
-    brick.hottest = brick.coldest = 0;
+    float& hottest = hottestOf(brick) = brick.coldest = 0;
     for (int n = 0; n < kCells; ++n) {
         if (!brick.is_bone[n]) continue;
         float& excess = brick.excess[n];
@@ -295,7 +303,7 @@ void HeatGrid::cool(Brick& brick, double elapsed) noexcept {
                 excess *= dry[faces];
         }
         excess *= left_by_blood;
-        brick.hottest = std::max(brick.hottest, excess);
+        hottest = std::max(hottest, excess);
         brick.coldest = std::min(brick.coldest, excess);
     }
 }
@@ -335,7 +343,7 @@ void HeatGrid::removeDead(const Brick& brick, int cell) noexcept {
 }
 
 bool HeatGrid::isSettled(const Brick& brick) const noexcept {
-    return brick.hottest < kWarm && brick.coldest > kSettledCold && now_ - brick.opened > kShortestLife;
+    return hottestOf(brick) < kWarm && brick.coldest > kSettledCold && now_ - brick.opened > kShortestLife;
 }
 
 void HeatGrid::close(size_t place) noexcept {
@@ -355,7 +363,7 @@ double HeatGrid::temperatureAt(const Eigen::Vector3d& p_V) const noexcept {
 
 double HeatGrid::hottest() const noexcept {
     float excess = 0;
-    for (const uint32_t slot : active_) excess = std::max(excess, pool_[slot].hottest);
+    for (const uint32_t slot : active_) excess = std::max(excess, hottest_[slot]);
     return config_.body_temperature + double(excess);
 }
 

@@ -44,15 +44,15 @@ class HeatGrid {
   private:
     static constexpr int kShift = 3, kEdge = 1 << kShift, kCells = kEdge * kEdge * kEdge;
     static constexpr uint32_t kNone = ~uint32_t(0);
+    static constexpr int kOutside = -1;
 
     struct Brick {
         Eigen::Vector3i index = Eigen::Vector3i::Zero();
         double opened, last_time;  // s; up to the latter its faces are done
-        float hottest;             // above body temperature; of its bone
-        float coldest;
-        bool is_stale;           // whether cells are bone is to be looked up anew
-        float excess[kCells];    // temperature above the body's
-        float hot_time[kCells];  // s above necrosis without a break
+        float coldest;             // above body temperature; of its bone
+        bool is_stale;             // whether cells are bone is to be looked up anew
+        float excess[kCells];      // temperature above the body's
+        float hot_time[kCells];    // s above necrosis without a break
         uint8_t is_bone[kCells];
         uint8_t open_faces[kCells];  // of bone, towards air
     };
@@ -69,6 +69,7 @@ class HeatGrid {
         return (cell.x() & kMask) + kEdge * ((cell.y() & kMask) + kEdge * (cell.z() & kMask));
     }
     Eigen::Vector3i cellAt(const Eigen::Vector3d& p_V) const noexcept;
+    int voxelAt(int cell, int axis) const noexcept;
     bool isBone(const Eigen::Vector3i& cell) const noexcept;
     Brick* find(const Eigen::Vector3i& brick) noexcept;
     Brick* findOrOpen(const Eigen::Vector3i& brick) noexcept;
@@ -82,6 +83,8 @@ class HeatGrid {
     void removeDead(const Brick& brick, int cell) noexcept;
     void reviewDead() noexcept;
     void markDeadStale(size_t first, size_t end) noexcept;
+    float& hottestOf(const Brick& brick) noexcept { return hottest_[size_t(&brick - pool_.data())]; }
+    float hottestOf(const Brick& brick) const noexcept { return hottest_[size_t(&brick - pool_.data())]; }
     bool isSettled(const Brick& brick) const noexcept;
     void close(size_t place) noexcept;
 
@@ -104,6 +107,7 @@ class HeatGrid {
     double wet_radius_ = 0;
 
     std::vector<Brick> pool_;
+    std::vector<float> hottest_;  // of each brick of the pool, side by side, as every step asks for them
     std::vector<uint32_t> free_;
     std::vector<uint32_t> active_;
     std::vector<uint32_t> directory_;  // per brick: in pool_
