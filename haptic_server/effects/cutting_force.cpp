@@ -12,14 +12,34 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Adds D at r from the tool point, which is a force −D v against the motion v there.
-void addDamper(Matrix6d& damping, const Matrix3d& D, const Vector3d& r) noexcept {
-    const Matrix3d r_skew = skew(r);
-    damping.topLeftCorner<3, 3>() += D;
-    damping.topRightCorner<3, 3>() -= D * r_skew;
-    damping.bottomLeftCorner<3, 3>() += r_skew * D;
-    damping.bottomRightCorner<3, 3>() -= r_skew * D * r_skew;
-}
+// It is the sum of dampers, each of which is a force −d (I − n nᵀ) v at r from the tool point against the
+// motion v there. With w = (n, r × n) the twist's matrix is Σ d ([I, −r×; r×, −r×r×] − w wᵀ).
+class TangentialDampers {
+  public:
+    void add(double d, const Vector3d& r, const Vector3d& n) noexcept {
+        sum_ += d;
+        of_r_ += d * r;
+        of_rr_ += (d * r) * r.transpose();
+        Vector6d w;
+        w << n, r.cross(n);
+        of_w_.selfadjointView<Eigen::Upper>().rankUpdate(w, d);
+    }
+    Matrix6d damping() const noexcept {
+        Matrix6d all;
+        const Matrix3d r_skew = skew(of_r_);
+        all.topLeftCorner<3, 3>() = sum_ * Matrix3d::Identity();
+        all.topRightCorner<3, 3>() = -r_skew;
+        all.bottomLeftCorner<3, 3>() = r_skew;
+        all.bottomRightCorner<3, 3>() = of_rr_.trace() * Matrix3d::Identity() - of_rr_;
+        return all - Matrix6d(of_w_.selfadjointView<Eigen::Upper>());
+    }
+
+  private:
+    double sum_ = 0;
+    Vector3d of_r_ = Vector3d::Zero();
+    Matrix3d of_rr_ = Matrix3d::Zero();
+    Matrix6d of_w_ = Matrix6d::Zero();  // the upper half
+};
 
 }  // namespace
 
@@ -34,6 +54,7 @@ CuttingForce::Pull CuttingForce::pullOf(const EffectTick& tick) const noexcept {
     const double held_per_moment = moment > 0 ? (1 - share) * tick.axis_load / moment : 0;
     if (share == 0 && held_per_moment == 0) return pull;
     const Vector3d axis = tick.axis();
+    TangentialDampers dampers;
     forEachBurrContact(tick, [&](const SurfaceContact& contact, const Vector3d& r, double rho) {
         const double spread = patchSpread(double(tick.place_area[contact.candidate]));
         const Vector3d n = contact.push_V.cast<double>();
@@ -47,8 +68,9 @@ CuttingForce::Pull CuttingForce::pullOf(const EffectTick& tick) const noexcept {
         const Vector3d force = -per_turn * by_turn;
         pull.of_spin.force += force;
         pull.of_spin.torque += r.cross(force) - per_turn * spread * axis;
-        addDamper(pull.damping, per_speed * tangential, r);
+        dampers.add(per_speed, r, n);
     });
+    pull.damping = dampers.damping();
     return pull;
 }
 
