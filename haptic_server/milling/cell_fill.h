@@ -6,6 +6,8 @@
 // volumes add up to that of the closed surface.
 #pragma once
 
+#include <array>
+
 #include "haptic_server/contact/cell_corners.h"
 #include "haptic_server/volume/marching_cubes_table.h"
 
@@ -23,10 +25,17 @@ class CellFill {
         if (inside == 0xff) return 1;
         double fill = topFace(corners, inside >> 4);
         const CubeTriangles& cell = triangles_[inside];
+        std::array<Eigen::Vector3d, 12> on_edge;  // of those that the surface crosses
+        unsigned known = 0;
+        const auto at = [&](unsigned edge) -> const Eigen::Vector3d& {
+            if (!(known >> edge & 1)) on_edge[edge] = crossing(corners, int(edge));
+            known |= 1u << edge;
+            return on_edge[edge];
+        };
         for (size_t n = 0; n < cell.count; ++n) {
-            const Eigen::Vector3d a = crossing(corners, cell.edges[n][0]);
-            const Eigen::Vector3d b = crossing(corners, cell.edges[n][1]);
-            const Eigen::Vector3d c = crossing(corners, cell.edges[n][2]);
+            const Eigen::Vector3d& a = at(cell.edges[n][0]);
+            const Eigen::Vector3d& b = at(cell.edges[n][1]);
+            const Eigen::Vector3d& c = at(cell.edges[n][2]);
             const double area_z = ((b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x())) / 2;
             fill += (a.z() + b.z() + c.z()) / 3 * area_z;
         }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "haptic_server/contact/cell_corners.h"
@@ -68,6 +69,7 @@ SurfaceShift::SurfaceShift(const BoneModel& bone, double largest_reach, size_t m
       row_words_((size_.x() + kRowBits - 1) / kRowBits),
       asked_(size_t(row_words_) * size_t(size_.y()) * size_t(size_.z())),
       patches_(most_contacts),
+      near_(nodes_.size()),
       old_(size_t(size_.x() + VoxelVolume::kReadSlack)),
       fresh_(size_t(size_.x())),
       collector_(bone.lattice, size_, most_cells) {}
@@ -88,6 +90,7 @@ void SurfaceShift::begin(const BoneModel& bone, const Vector3d& p_VB) noexcept {
 void SurfaceShift::forget() noexcept {
     for (size_t n = 0; n < patch_count_; ++n) nodes_[patches_[n]].energy = nodes_[patches_[n]].depth = 0;
     patch_count_ = 0;
+    last_node_ = kNoNode;
     patch_cells_ = {};
     if (touched_.isEmpty()) return;
     for (int k = touched_.min.z(); k <= touched_.max.z(); ++k)
@@ -114,35 +117,43 @@ bool SurfaceShift::isInScratch(const Vector3i& voxel) const noexcept {
 }
 
 void SurfaceShift::add(const BoneModel& bone, PatchId patch, double energy, double depth) noexcept {
-    const Vector3i cell = bone.lattice.cellsOf(patch.leaf).min + patch.block.index() * blockOf(bone);
-    if (!isInScratch(cell)) return;
-    const size_t at = index(cell);
-    if (nodes_[at].depth == 0) {
-        if (patch_count_ == patches_.size()) return;
-        patches_[patch_count_++] = at;
+    if (last_node_ == kNoNode || patch != last_patch_) {
+        const Vector3i cell = bone.lattice.cellsOf(patch.leaf).min + patch.block.index() * blockOf(bone);
+        if (!isInScratch(cell)) return;
+        const size_t at = index(cell);
+        if (nodes_[at].depth == 0) {
+            if (patch_count_ == patches_.size()) return;
+            patches_[patch_count_++] = at;
+        }
+        patch_cells_.include(cell);
+        last_patch_ = patch;
+        last_node_ = at;
     }
-    nodes_[at].energy += float(energy);
-    nodes_[at].depth = std::max(nodes_[at].depth, float(depth));
-    patch_cells_.include(cell);
+    Node& node = nodes_[last_node_];
+    node.energy += float(energy);
+    node.depth = std::max(node.depth, float(depth));
 }
 
-// Calls visit(point V, area, node of its block) for the shell's points around those with energy.
-template <class Visit>
-void SurfaceShift::forEachPatch(const BoneModel& bone, Visit&& visit) const noexcept {
+// Lists the shell's points around those with energy.
+void SurfaceShift::findPatches(const BoneModel& bone) noexcept {
+    near_count_ = 0;
     const int factor = blockOf(bone);
     const IndexBox cells = patch_cells_.grown(2 * factor);
+    const IndexBox reachable{cells.min.cwiseMax(first_),
+                             cells.max.cwiseMin(first_ + size_ - Vector3i::Ones())};
     const auto has_surface = [iso = bone.volume.iso()](const DensityRange& range, const IndexBox&) {
         return range.min < iso && range.max >= iso;
     };
     bone.lattice.forEachLeaf(cells, has_surface, [&](LeafId leaf) {
         const Vector3i first = bone.lattice.cellsOf(leaf).min;
         bone.shell.forEachBlock(bone.shell.followed(), leaf, [&](const ShellBlock& b, uint32_t count) {
-            for (uint32_t n = 0; n < count; ++n) {
+            for (uint32_t n = 0; n < count && near_count_ < near_.size(); ++n) {
                 const Vector3i cell = first + b.key[n].index() * factor;
-                if ((cell.array() < cells.min.array()).any() || (cell.array() > cells.max.array()).any() ||
-                    !isInScratch(cell))
-                    continue;
-                visit(Vector3f(b.x[n], b.y[n], b.z[n]), b.area[n], nodes_[index(cell)]);
+                const bool is_near = (cell.array() >= reachable.min.array()).all() &&
+                                     (cell.array() <= reachable.max.array()).all();
+                if (is_near)
+                    near_[near_count_++] = {Vector3f(b.x[n], b.y[n], b.z[n]), b.area[n],
+                                            uint32_t(index(cell))};
             }
         });
     });
@@ -213,31 +224,33 @@ SurfaceShift::Span SurfaceShift::touchedIn(size_t row, int low, int high) const 
 void SurfaceShift::spreadWishes(const BoneModel& bone, const SpecificEnergy& u, double share,
                                 double most) noexcept {
     const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
-    forEachPatch(bone, [&](const Vector3f& point, float area, const Node& node) {
-        if (!(node.energy > 0)) return;
-        const Vector3i cell = point.cwiseProduct(inverse).array().floor().cast<int>();
+    for (const NearPatch& patch : std::span(near_).first(near_count_)) {
+        const Node& node = nodes_[patch.node];
+        if (!(node.energy > 0)) continue;
+        const float area = patch.area;
+        const Vector3i cell = patch.at.cwiseProduct(inverse).array().floor().cast<int>();
         const double wanted = share * double(node.energy) / (u.ofCell(cell) * double(area));
         is_too_fast_ |= wanted > most;
-        const Wish wish = wishOf(bone.volume, point, std::min({wanted, double(node.depth), most}));
+        const Wish wish = wishOf(bone.volume, patch.at, std::min({wanted, double(node.depth), most}));
         forEachVoxelAround(bone, wish.at, [&](const Vector3i& voxel, float hat) {
             touch(voxel);
             Node& to = nodes_[index(voxel)];
             to.drop += hat * area * wish.drop;
             to.weight += hat * area;
         });
-    });
+    }
 }
 
 // The surface that is to stay has its say, where the other one has.
 void SurfaceShift::spreadRest(const BoneModel& bone) noexcept {
     const Vector3f inverse = bone.volume.spacing().cwiseInverse().cast<float>();
-    forEachPatch(bone, [&](const Vector3f& point, float area, const Node& node) {
-        if (node.energy > 0) return;
-        forEachVoxelAround(bone, point.cwiseProduct(inverse), [&](const Vector3i& voxel, float hat) {
+    for (const NearPatch& patch : std::span(near_).first(near_count_)) {
+        if (nodes_[patch.node].energy > 0) continue;
+        forEachVoxelAround(bone, patch.at.cwiseProduct(inverse), [&](const Vector3i& voxel, float hat) {
             Node& to = nodes_[index(voxel)];
-            if (to.weight > 0) to.weight += hat * area;
+            if (to.weight > 0) to.weight += hat * patch.area;
         });
-    });
+    }
 }
 
 // Calls visit(cell, node) for the cells that have a touched voxel.
@@ -271,6 +284,7 @@ double SurfaceShift::apply(BoneModel& bone, const SpecificEnergy& u, double shar
                            MillingResult& result) noexcept {
     if (patch_count_ == 0 || !(share > 0)) return 0;
     is_too_fast_ = false;
+    findPatches(bone);
     spreadWishes(bone, u, share, kMostShift * double(ticks) * bone.volume.spacing().minCoeff());
     result.is_cut_short |= is_too_fast_;
     if (touched_.isEmpty()) return 0;

@@ -36,7 +36,8 @@ class SurfaceShift {
     // Begins a new tick with the burr's centre here.
     void begin(const BoneModel& bone, const Eigen::Vector3d& p_VB) noexcept;
     // Energy to be spent at one contact of this patch, J, and its depth, m: the patch
-    // recedes no farther than its deepest contact reaches.
+    // recedes no farther than its deepest contact reaches. It is quick when the contacts of a patch follow
+    // each other.
     void add(const BoneModel& bone, PatchId patch, double energy, double depth) noexcept;
     // Spends `share` of the energies. Returns what was spent, J.
     double apply(BoneModel& bone, const SpecificEnergy& u, double share, size_t ticks,
@@ -49,6 +50,12 @@ class SurfaceShift {
         float energy = 0, depth = 0;  // of the patch whose block begins at the cell
         float fill = 0;               // of the cell, before
     };
+    // It is a point of the shell near those with energy; `at` in m, V, and the node of its block.
+    struct NearPatch {
+        Eigen::Vector3f at;
+        float area;
+        uint32_t node;
+    };
     // A patch wishes that the densities around a place fall by so much.
     struct Wish {
         Eigen::Vector3f at;  // voxel steps
@@ -57,6 +64,7 @@ class SurfaceShift {
     // Something was asked of these voxels of a row, one bit each from the scratch box on.
     using RowBits = uint64_t;
     static constexpr int kRowBits = 64;
+    static constexpr size_t kNoNode = ~size_t(0);
     struct Span {  // of voxels along x; empty: low > high
         int low = 1, high = 0;
     };
@@ -73,8 +81,7 @@ class SurfaceShift {
     bool isInScratch(const Eigen::Vector3i& voxel) const noexcept;
     static int blockOf(const BoneModel& bone) noexcept;
 
-    template <class Visit>
-    void forEachPatch(const BoneModel& bone, Visit&& visit) const noexcept;
+    void findPatches(const BoneModel& bone) noexcept;
     template <class Visit>
     void forEachVoxelAround(const BoneModel& bone, const Eigen::Vector3f& at, Visit&& visit) const noexcept;
     template <class Visit>
@@ -101,6 +108,10 @@ class SurfaceShift {
     IndexBox touched_;             // all of those
     std::vector<size_t> patches_;  // nodes with energy; the first patch_count_
     size_t patch_count_ = 0;
+    PatchId last_patch_;  // of add(), and its node; kNoNode: none yet
+    size_t last_node_ = kNoNode;
+    std::vector<NearPatch> near_;  // the first near_count_
+    size_t near_count_ = 0;
     IndexBox patch_cells_;  // blocks of those begin in it
     std::vector<Density> old_, fresh_;
     ChangeCollector collector_;

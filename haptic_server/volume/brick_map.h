@@ -33,16 +33,20 @@ class BrickMap {
     // Calls visit(place) for those of a cell's eight corners that have one.
     template <class Visit>
     void forEachCorner(const Eigen::Vector3i& cell, Visit&& visit) const noexcept {
-        constexpr size_t kStep[3] = {1, kEdge, size_t(kEdge) * kEdge};
-        const bool is_in_one = cell.unaryExpr([](int v) { return v & (kEdge - 1); }).maxCoeff() < kEdge - 1 &&
-                               (cell.array() >= 0).all() && (cell.array() + 1 < dims_.array()).all();
-        const size_t first = is_in_one ? find(cell) : kNowhere;
-        if (is_in_one && first == kNowhere) return;
+        constexpr size_t kY = kEdge, kZ = size_t(kEdge) * kEdge;
+        constexpr size_t kCorners[8] = {0, 1, kY, kY + 1, kZ, kZ + 1, kZ + kY, kZ + kY + 1};
+        constexpr int kLast = kEdge - 1;
+        const bool is_in_one = (cell.x() & kLast) < kLast && (cell.y() & kLast) < kLast &&
+                               (cell.z() & kLast) < kLast && cell.x() + 1 < dims_.x() &&
+                               cell.y() + 1 < dims_.y() && cell.z() + 1 < dims_.z();
+        if (is_in_one) {
+            const size_t first = find(cell);
+            if (first == kNowhere) return;
+            for (const size_t corner : kCorners) visit(first + corner);
+            return;
+        }
         for (int corner = 0; corner < 8; ++corner) {
-            const Eigen::Vector3i off(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-            const size_t place = is_in_one ? first + size_t(off.x()) * kStep[0] + size_t(off.y()) * kStep[1] +
-                                                 size_t(off.z()) * kStep[2]
-                                           : find(cell + off);
+            const size_t place = find(cell + Eigen::Vector3i(corner & 1, corner >> 1 & 1, corner >> 2 & 1));
             if (place != kNowhere) visit(place);
         }
     }
