@@ -122,7 +122,7 @@ TEST(EdgeSlide, BalancedHasHardlyAnyFalseFriction) {
 }
 
 TEST(EdgeSlide, FastIsSmooth) {
-    expectToSlide(Preset::kFast, 0.1, 0.04);
+    expectToSlide(Preset::kFast, 0.05, 0.02);
 }
 
 // Balls far smaller than a voxel are felt everywhere, as strongly as they should be.
