@@ -1,5 +1,7 @@
 #include "tests/stability/jolt_bench.h"
 
+#include "tests/stability/hard_scenes.h"
+
 namespace bonemill::test {
 namespace {
 

@@ -3,12 +3,9 @@
 #pragma once
 
 #include <functional>
-#include <limits>
-#include <optional>
 
 #include "haptic_server/bone/bone_history.h"
 #include "tests/stability/drive.h"
-#include "tests/stability/hard_scenes.h"
 #include "tests/stability/jolts.h"
 
 namespace bonemill::test {

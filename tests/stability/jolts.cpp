@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "common/ipc/stale_ramp.h"
+#include "tests/stability/hard_scenes.h"
 #include "tests/stability/jolt_bench.h"
 #include "tests/support/typical_effects.h"
 

@@ -6,6 +6,7 @@
 
 #include <ostream>
 
+#include "tests/stability/hard_scenes.h"
 #include "tests/stability/jolt_bench.h"
 
 namespace bonemill::test {
