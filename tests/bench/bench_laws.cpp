@@ -47,7 +47,7 @@ std::vector<Touch> touches() {
         Eigen::Quaterniond(Eigen::AngleAxisd(kLean, kNormal.cross(kAlong).normalized())) * upright;
     return {{"ball", {SphereShape{{0, 0, 0}, kRadius}}, upright, kRadius},
             {"leaning_drill",
-             {CylinderShape{{0, 0, 0}, {0, 6e-3, 0}, kRadius}},
+             {CylinderShape{{0, 0, 0}, {0, 6e-3, 0}, kRadius, kEdgeRadius}},
              leaning,
              kRadius * std::sin(kLean)}};
 }
