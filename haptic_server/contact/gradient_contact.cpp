@@ -54,7 +54,7 @@ bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const
     margin_ = margin;
     origin_ = X_VT.position;
     const bool has_room = collect(bone, tool, X_VT, most_tests);
-    refine(bone, tool, X_VT);
+    refine(bone, tool, X_VT, most_tests);
     if (weights_) touching_stiffness_ *= weights_->scale(candidates_, origin_, tool, X_VT);
     guardFarSide(bone.volume, tool, X_VT);
     capStiffness(tool, X_VT);

@@ -78,6 +78,9 @@ class GradientContact {
         candidates_.most = std::min(most, candidates_.patch.size());
     }
 
+    // The last gathering has fewer samples than its view asked for, for `most_tests` has no time for more.
+    bool hasFewerSamples() const noexcept { return has_fewer_samples_; }
+
     // Forgets of the last gatherings how finely which patch was sampled. This is called when the shell level
     // or the sampling changes, or the tool is placed anew.
     void forget() noexcept { patch_memory_.forget(); }
@@ -108,6 +111,10 @@ class GradientContact {
 
   private:
     static constexpr size_t kMostPieces = 65536;
+    // What was sampled as finely as asked for may come to so many times most_samples.
+    static constexpr size_t kMostTimes = 4;
+    // To cut the surface into samples and to solve with them takes as long as so many point tests, each.
+    static constexpr size_t kTestsPerSample = 28;
     // A contact counts for the stiffness cap in proportion to its depth, so that a new one comes in smoothly.
     static constexpr double kFullShareDepth = 20e-6;  // m
     static double shareInContact(double distance) noexcept {
@@ -141,7 +148,7 @@ class GradientContact {
         const float near = candidates_.nearest[candidate];
         return near < float(fineWithin()) || SurfacePieces::shortEnough(tool, near) < float(patch_reach_);
     }
-    void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept;
+    void refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT, size_t most_tests) noexcept;
     void cutPatch(const ShellView& bone, uint32_t candidate) noexcept;
     bool cutCell(const ShellView& bone, const Eigen::Vector3i& cell, uint32_t candidate,
                  uint8_t level) noexcept;
@@ -163,6 +170,7 @@ class GradientContact {
     std::vector<uint32_t>
         split_;  // ascending: the first split_count_ are candidates whose pieces take their place
     size_t split_count_ = 0;
+    bool has_fewer_samples_ = false;
     std::vector<uint32_t> next_place_;  // per candidate that is cut: of its pieces, where the next one goes
     // A sweep needs how near each candidate may come, in m, and 1/(the most that the whole step can bring
     // it nearer).

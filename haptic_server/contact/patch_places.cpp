@@ -59,9 +59,12 @@ float sagOf(const CellCorners& corners, const Vector3f (&at)[3], const Vector3f&
 
 }  // namespace
 
-// The patches near the tool are sampled as finely as asked for, and as the number of samples allows.
-void GradientContact::refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT) noexcept {
+// The patches near the tool are sampled as finely as asked for, and as the number of samples and the time
+// allow.
+void GradientContact::refine(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
+                             size_t most_tests) noexcept {
     split_count_ = 0;
+    has_fewer_samples_ = false;
     patch_memory_.nextGathering();
     if (!(bone.sample_spacing > 0)) return;
     pieces_.start(tool, X_VT, origin_, margin_, fineWithin(), bone.sample_spacing);
@@ -73,7 +76,12 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
         return;
     }
     for (size_t n = 0; n < split_count_; ++n) cutPatch(bone, split_[n]);
-    const uint8_t level_of_new = pieces_.cut(size_t(bone.most_samples));
+    const size_t affordable = most_tests / kTestsPerSample, asked_for = size_t(bone.most_samples);
+    const size_t most_of_new = std::min(asked_for, affordable),
+                 most = std::min(kMostTimes * asked_for, affordable);
+    const uint8_t level_of_new = pieces_.cut(most_of_new, most);
+    has_fewer_samples_ = pieces_.isCoarse() && affordable < kMostTimes * asked_for &&
+                         (most_of_new < asked_for || pieces_.count() > most);
     for (size_t n = 0; n < split_count_; ++n)
         if (uint8_t& level = patch_memory_.levelOf(candidates_.patch[split_[n]]); level == PatchMemory::kNew)
             level = level_of_new;

@@ -126,6 +126,7 @@ void SurfacePieces::cutAll(int level, bool has_room) noexcept {
             if ((piece.level == PatchMemory::kNew && !has_room) ||
                 count_ + size_t(fresh_count_) >= finished_.size()) {
                 finish(piece);
+                is_coarse_ = true;
             } else {
                 halve(piece);
                 --count_;
@@ -136,17 +137,21 @@ void SurfacePieces::cutAll(int level, bool has_room) noexcept {
     }
 }
 
-uint8_t SurfacePieces::cut(size_t most) noexcept {
+uint8_t SurfacePieces::cut(size_t most_of_new, size_t most) noexcept {
     sort();
+    is_coarse_ = false;
     int level_of_new = kLevels, level = kLevels - 1;
     bool has_room = true;
-    for (; level >= 0 && count_ <= 4 * most; --level) {
-        has_room = has_room && 2 * count_ <= most;
+    for (; level >= 0 && count_ <= most; --level) {
+        has_room = has_room && 2 * count_ <= most_of_new;
         if (has_room) level_of_new = level;
         cutAll(level, has_room);
     }
     for (; level >= 0; --level)
-        while (first_[size_t(level)] != kNone) finish(waiting_[take(level)]);
+        while (first_[size_t(level)] != kNone) {
+            finish(waiting_[take(level)]);
+            is_coarse_ = true;
+        }
     return uint8_t(level_of_new);
 }
 

@@ -63,9 +63,12 @@ class SurfacePieces {
     // it.
     bool add(const Eigen::Vector3f corners[3], float sag, uint32_t patch, uint8_t level) noexcept;
     // Cuts all that was added, those of new patches to the spacing, or more coarsely, so that there are no
-    // more than about `most` pieces in all. Returns their level. Other patches are cut to theirs as long as
-    // there are not four times as many.
-    uint8_t cut(size_t most) noexcept;
+    // more than about most_of_new pieces in all. Returns their level. Other patches are cut to theirs as long
+    // as there are no more than about `most`.
+    uint8_t cut(size_t most_of_new, size_t most) noexcept;
+    size_t count() const noexcept { return finished_count_; }
+    // The last cut() left pieces that are too long.
+    bool isCoarse() const noexcept { return is_coarse_; }
 
     template <class Visit>
     void forEach(Visit&& visit) const noexcept {
@@ -104,7 +107,8 @@ class SurfacePieces {
     uint32_t first_free_ = kNone, used_ = 0;
     std::vector<FinishedPiece> finished_;
     size_t finished_count_ = 0;
-    size_t count_ = 0;            // finished or waiting
+    size_t count_ = 0;  // finished or waiting
+    bool is_coarse_ = false;
     SurfacePiece fresh_[kFresh];  // whose distances are looked at together
     int fresh_count_ = 0;
     size_t point_tests_ = 0;

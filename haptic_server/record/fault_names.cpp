@@ -37,6 +37,8 @@ const char* nameOf(uint32_t fault) {
             return "implausible_device";
         case kFaultEarlySamples:
             return "early_samples";
+        case kFaultFewerSamples:
+            return "fewer_samples";
     }
     return nullptr;
 }

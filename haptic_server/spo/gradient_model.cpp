@@ -223,6 +223,7 @@ void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexce
     const ShellView bone{world_.volume, world_.lattice,           world_.shell,
                          level_,        settings_.sample_spacing, settings_.most_samples};
     out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin, pointTestsLeft());
+    out.has_fewer_samples |= contact_.hasFewerSamples();
     out.candidates = uint32_t(contact_.candidateCount());
     point_tests_ += contact_.takePointTests();
 }

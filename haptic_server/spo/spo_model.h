@@ -39,6 +39,8 @@ struct SpoStep {
     bool is_motion_clamped = false;  // a speed limit or the trust radius acted
     // Forces that can be felt are out of balance, and no step was found that helps.
     bool has_stalled = false;
+    // There was no time for as many samples as the settings ask for.
+    bool has_fewer_samples = false;
     // There were more points near the tool than there is room or time for: the solve was cut short.
     bool has_contact_overflow = false;
 };

@@ -28,8 +28,9 @@ enum TickFault : uint32_t {
     kFaultStalled = 1u << 11,  // forces are out of balance, but no step towards it was found in this tick
     kFaultImplausibleDevice = 1u << 12,  // what device_daemon says cannot be: it was refused
     kFaultEarlySamples = 1u << 13,       // samples come faster than the loop's rate: the tick was held back
+    kFaultFewerSamples = 1u << 14,  // the contact is sampled less finely than asked for: there was no time
 };
-constexpr uint32_t kLastFault = kFaultEarlySamples;
+constexpr uint32_t kLastFault = kFaultFewerSamples;
 
 struct TickRecord {
     uint64_t tick;

@@ -226,6 +226,7 @@ SpoStep HapticTick::moveAndFeel(const DeviceInput& input, uint32_t& faults) noex
     if (!step.is_solved) faults |= kFaultSolve;
     if (step.is_motion_clamped) faults |= kFaultMotionClamped;
     if (step.has_stalled) faults |= kFaultStalled;
+    if (step.has_fewer_samples) faults |= kFaultFewerSamples;
     if (step.has_contact_overflow) faults |= kFaultContactOverflow;
     if (model_ == &gradient_ && gradient_.isToolGrowing()) hand_limits_.beginSuddenChange();
     keepAccount(step, input);

@@ -161,6 +161,32 @@ TEST(GradientContact, SaysWhenThereIsNoRoom) {
     EXPECT_LE(contact.candidateCount(), 50u);
 }
 
+// With less time there are fewer samples, which is said; the force hardly changes. With time they come back.
+TEST(GradientContact, SamplesLessFinelyWhenThereIsNoTime) {
+    const ContactScene scene(cubeGeometry(33, 0.25e-3), bumpyBody(), kBurrAndShaft);
+    const ToolField& tool = scene.tool.field({});
+    const ShellView view = scene.view();
+    Pose X_VT{{4e-3, 4e-3, 5e-3}};
+    GradientContact contact({});
+    constexpr double kMargin = 0.05e-3;
+    constexpr size_t kFew = 6000;  // point tests
+    const auto force = [&] { return contact.evaluate<double>(tool, X_VT).term.wrench.force; };
+    ASSERT_TRUE(contact.gather(view, tool, X_VT, kMargin));
+    EXPECT_FALSE(contact.hasFewerSamples());
+    const size_t all = contact.candidateCount();
+    const Vector3d of_all = force();
+    ASSERT_GT(of_all.norm(), 0.1);
+    contact.forget();
+    ASSERT_TRUE(contact.gather(view, tool, X_VT, kMargin, kFew));
+    EXPECT_TRUE(contact.hasFewerSamples());
+    EXPECT_LT(contact.candidateCount(), 0.7 * double(all));
+    EXPECT_LT((force() - of_all).norm(), 0.1 * of_all.norm());
+    contact.forget();
+    ASSERT_TRUE(contact.gather(view, tool, X_VT, kMargin));
+    EXPECT_FALSE(contact.hasFewerSamples());
+    EXPECT_EQ(contact.candidateCount(), all);
+}
+
 // The wall is thinner than the burr, and its far side lies inside the burr: the far side must not pull.
 TEST(GradientContact, TheFarSideOfAThinWallDoesNotPull) {
     const double top = 4.3e-3, thickness = 0.3e-3;
