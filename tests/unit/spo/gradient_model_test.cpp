@@ -307,7 +307,7 @@ TEST(GradientModel, AFlatEndPressedHardEndsItsSolveWhereTheEnergysRoundingDoes) 
         force = std::max(force, step.wrench_hand_V.force.z());
         spo = step.X_VT;
     }
-    EXPECT_LE(stalled, 1);
+    EXPECT_LE(stalled, 4);
     EXPECT_LT(most_share, 0.02);
     EXPECT_GT(force, 100);
 }
