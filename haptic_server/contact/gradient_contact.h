@@ -114,7 +114,7 @@ class GradientContact {
     // What was sampled as finely as asked for may come to so many times most_samples.
     static constexpr size_t kMostTimes = 4;
     // To cut the surface into samples and to solve with them takes as long as so many point tests, each.
-    static constexpr size_t kTestsPerSample = 28;
+    static constexpr size_t kTestsPerSample = 20;
     // A contact counts for the stiffness cap in proportion to its depth, so that a new one comes in smoothly.
     static constexpr double kFullShareDepth = 20e-6;  // m
     static double shareInContact(double distance) noexcept {
