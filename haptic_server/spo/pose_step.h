@@ -1,0 +1,16 @@
+// Steps of a tool's pose, as the solve takes them.
+#pragma once
+
+#include "common/geometry/pose.h"
+
+namespace bonemill {
+
+// Returns the way from one pose to the other in V: translation (m) above the rotation vector (rad). RT-safe.
+inline Vector6d between(const Pose& X_VT_from, const Pose& X_VT_to) noexcept {
+    Vector6d step;
+    step << X_VT_to.position - X_VT_from.position,
+        logRotation(X_VT_to.rotation * X_VT_from.rotation.conjugate());
+    return step;
+}
+
+}  // namespace bonemill
