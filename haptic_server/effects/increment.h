@@ -4,15 +4,13 @@
 
 #include <cmath>
 
-#include "common/geometry/pose.h"
+#include "common/geometry/pose_step.h"
 #include "common/math/pinned_math.h"
 
 namespace bonemill {
 
 struct Increment {
-    Increment(const Pose& from, const Pose& to) noexcept {
-        twist << to.position - from.position, logRotation(to.rotation * from.rotation.conjugate());
-    }
+    Increment(const Pose& from, const Pose& to) noexcept : twist(between(from, to)) {}
     auto translation() const noexcept { return twist.head<3>(); }  // m
     auto rotation() const noexcept { return twist.tail<3>(); }     // rad
 

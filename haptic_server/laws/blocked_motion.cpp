@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/pose_step.h"
+
 namespace bonemill {
 namespace {
 
@@ -22,13 +24,6 @@ double reachOf(const ToolField& tool, const Vector6d& motion) noexcept {
 double shareWithin(double most, const Eigen::Vector3d& way) noexcept {
     const double length = way.norm();
     return length <= most ? 1 : std::max(0.0, most) / length;
-}
-
-Vector6d wayTo(const Pose& X_VT, const Pose& X_VT_wanted) noexcept {
-    Vector6d way;
-    way << X_VT_wanted.position - X_VT.position,
-        logRotation(X_VT_wanted.rotation * X_VT.rotation.conjugate());
-    return way;
 }
 
 // A hand that turns too quickly does not hold the tool's place back: what is left of the tick is for the
@@ -89,7 +84,7 @@ Vector6d BlockedMotion::go(const SpoWorld& bone, int level, const ToolField& too
     double margin = std::max(least, kMarginGrowth * last_reach_), left = 0;
     for (int round = 0; round < wish.rounds; ++round) {
         if (turn_left <= 0) dropTurn(now);
-        Vector6d wanted = wayTo(X_VT, wish.X_VT);
+        Vector6d wanted = between(X_VT, wish.X_VT);
         if (!now.may_turn) wanted.tail<3>().setZero();
         if (left < least) {  // nothing is gathered, or the tool has gone as far as it was
             margin = std::min(margin, std::max(least, kMarginGrowth * reachOf(tool, wanted)));
@@ -118,7 +113,7 @@ Vector6d BlockedMotion::go(const SpoWorld& bone, int level, const ToolField& too
         if (share == 1 && most == 1) break;
     }
     out.candidates = uint32_t(points_.count());
-    last_reach_ = reachOf(tool, wayTo(X_VT_start, X_VT));
+    last_reach_ = reachOf(tool, between(X_VT_start, X_VT));
     return reaction;
 }
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/pose_step.h"
 #include "haptic_server/spo/gradient_model.h"
-#include "haptic_server/spo/pose_step.h"
 
 namespace bonemill {
 namespace {

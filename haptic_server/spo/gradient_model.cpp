@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptic_server/spo/pose_step.h"
+#include "common/geometry/pose_step.h"
 
 namespace bonemill {
 namespace {

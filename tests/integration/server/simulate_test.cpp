@@ -122,20 +122,26 @@ TEST(Simulate, TheHashDoesNotDependOnTheCpusInstructionSet) {
     for (const std::string& hash : hashes) EXPECT_EQ(hash, hashes.front());
 }
 
+// Returns what `simulate` says of a scene, on the trajectory a.csv of the folder.
+std::string warningsOf(const TemporaryFolder& folder, const std::string& scene) {
+    writeFile(folder / "s.textproto", scene);
+    const auto finished = run(
+        {"haptic_server", "simulate", "--scene", folder / "s.textproto", "--trajectory", folder / "a.csv"});
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    return finished.err;
+}
+
 TEST(Simulate, WarnsOfATipThatTheCouplingPushesThroughAWall) {
     const TemporaryFolder folder;
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
     writeFile(folder / "a.csv", plunge(0, 0, 3.3e-3, 3.2e-3, 10, 0, 0));
     const auto warnings = [&](const std::string& pin_radius_mm) {
-        writeFile(folder / "s.textproto",
-                  "effects { time_removal {} } volume { path: \"slab.nrrd\" } tool { shape { capsule { "
-                  "from_mm { y: 0 } "
-                  "to_mm { y: 8 } radius_mm: " +
-                      pin_radius_mm + " } } }");
-        const auto finished = run({"haptic_server", "simulate", "--scene", folder / "s.textproto",
-                                   "--trajectory", folder / "a.csv"});
-        EXPECT_EQ(finished.exit_code, 0) << finished.err;
-        return finished.err;
+        return warningsOf(
+            folder,
+            "effects { time_removal {} } volume { path: \"slab.nrrd\" } tool { shape { capsule { "
+            "from_mm { y: 0 } "
+            "to_mm { y: 8 } radius_mm: " +
+                pin_radius_mm + " } } }");
     };
     EXPECT_NE(warnings("0.1").find("the tool's thinnest part has a radius of 0.1 mm"), std::string::npos);
     EXPECT_EQ(warnings("0.6").find("thinnest part"), std::string::npos);
@@ -146,14 +152,10 @@ TEST(Simulate, WarnsOfABurrThatTouchesMorePointsThanATickHasTimeFor) {
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
     writeFile(folder / "a.csv", plunge(0, 0, 20e-3, 20e-3, 2, 0, 0));
     const auto warnings = [&](const std::string& length_mm) {
-        writeFile(folder / "s.textproto",
-                  "volume { path: \"slab.nrrd\" } tool { burr_kind: CYLINDER burr_radius_mm: 4 "
-                  "sdf_spacing_mm: 0.5 burr_length_mm: " +
-                      length_mm + " }");
-        const auto finished = run({"haptic_server", "simulate", "--scene", folder / "s.textproto",
-                                   "--trajectory", folder / "a.csv"});
-        EXPECT_EQ(finished.exit_code, 0) << finished.err;
-        return finished.err;
+        return warningsOf(folder,
+                          "volume { path: \"slab.nrrd\" } tool { burr_kind: CYLINDER burr_radius_mm: 4 "
+                          "sdf_spacing_mm: 0.5 burr_length_mm: " +
+                              length_mm + " }");
     };
     EXPECT_NE(warnings("30").find("coarser ones will be felt"), std::string::npos);
     EXPECT_EQ(warnings("2").find("coarser ones will be felt"), std::string::npos);

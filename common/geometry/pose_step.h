@@ -1,4 +1,4 @@
-// Steps of a tool's pose, as the solve takes them.
+// The way of a tool from one pose to another, as solves and effects take it.
 #pragma once
 
 #include "common/geometry/pose.h"
