@@ -42,6 +42,8 @@ bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     is_stale_ = ramp_.isStale();
     input.is_stale = is_stale_;
     input.X_WT_device = X_WT_device_;
+    input.is_repeated = sequence_ == told_sequence_;
+    told_sequence_ = sequence_;
     input.buttons = buttons_;
     input.device = device_;
     input.other_device = takeCapabilities() ? &capabilities_ : nullptr;

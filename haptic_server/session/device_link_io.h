@@ -83,6 +83,7 @@ class DeviceLinkIo final : public TickIo {
     bool has_capabilities_ = false;
     uint32_t faults_ = 0;          // TickFault bits for the tick that comes
     uint64_t sequence_ = 0;        // of the sample in use
+    uint64_t told_sequence_ = 0;   // of the sample that the last read() told
     int64_t sample_stamp_ns_ = 0;  // when its joints were read
     int64_t first_start_ns_ = 0;
     int64_t last_start_ns_ = 0;

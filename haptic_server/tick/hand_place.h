@@ -1,7 +1,8 @@
 // Judges whether the hand can be where a sample says. A sample that lies outside of any workspace, or is
 // farther from the last one believed than a hand could have gone since, is refused, and the hand counts as
 // being where it was. So a single false sample does nothing, and a hand that is taken to another place is
-// believed as soon as it could have got there.
+// believed as soon as it could have got there. A device that is late says nothing of its hand: the way it
+// could have gone grows meanwhile.
 //
 // Poses are in V, of the tool, which moves `workspace_scale` times as far as the hand. It is RT-safe, for the
 // tick thread only.
@@ -26,13 +27,14 @@ class HandPlace {
     // Takes a tick's sample, a pose; the tick before was `periods` ago. False: it is refused.
     bool take(const Pose& X_VT_sample, int periods) noexcept {
         const bool was_refused = refused_for_ > 0;
-        refused_for_ += dt_ * periods;
+        unheard_for_ += dt_ * periods;
         if (!isWithinReach(X_VT_sample)) {
+            refused_for_ += dt_ * periods;
             has_jumped_ = false;
             return false;
         }
         has_jumped_ = was_refused || !has_pose_;
-        refused_for_ = 0;
+        refused_for_ = unheard_for_ = 0;
         has_pose_ = true;
         X_VT_ = X_VT_sample;
         return true;
@@ -40,7 +42,15 @@ class HandPlace {
     // In this tick there was no pose.
     void refuse(int periods) noexcept {
         refused_for_ += dt_ * periods;
+        unheard_for_ += dt_ * periods;
         has_jumped_ = false;
+    }
+    // In this tick there was no new sample. Returns whether the last one was believed.
+    bool repeat(int periods) noexcept {
+        unheard_for_ += dt_ * periods;
+        if (refused_for_ > 0) refused_for_ += dt_ * periods;
+        has_jumped_ = false;
+        return has_pose_ && refused_for_ == 0;
     }
 
     bool hasPose() const noexcept { return has_pose_; }
@@ -56,13 +66,14 @@ class HandPlace {
         if (!has_pose_) return true;
         const double way = (X_VT.position - X_VT_.position).norm();
         const double turn = logRotation(X_VT.rotation * X_VT_.rotation.conjugate()).norm();
-        return way <= kMostSpeed * scale_ * refused_for_ && turn <= kMostSpin * refused_for_;
+        return way <= kMostSpeed * scale_ * unheard_for_ && turn <= kMostSpin * unheard_for_;
     }
 
     Eigen::Vector3d middle_;
     double scale_, dt_;
     Pose X_VT_;               // the last one believed
-    double refused_for_ = 0;  // s since then
+    double unheard_for_ = 0;  // s since then
+    double refused_for_ = 0;  // s since the tick before the first that was refused; 0: the last was believed
     bool has_pose_ = false;
     bool has_jumped_ = false;
 };

@@ -175,7 +175,7 @@ bool HapticTick::tick(TickIo& io) noexcept {
 
 void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept {
     const bool is_first = !place_.hasPose();
-    if (!believe(input.X_WT_device, input.periods)) {
+    if (!believe(input)) {
         faults |= kFaultBadDevicePose;
         return;  // the last good one stays
     }
@@ -185,15 +185,18 @@ void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept
         hand_limits_.beginSuddenChange();
 }
 
-bool HapticTick::believe(Pose X_WT_sample, int periods) noexcept {
+bool HapticTick::believe(const DeviceInput& input) noexcept {
+    Pose X_WT_sample = input.X_WT_device;
     const double norm = X_WT_sample.rotation.norm();
     if (!X_WT_sample.isFinite() || !(std::abs(norm - 1) < kQuaternionNormSlack)) {
-        place_.refuse(periods);
+        place_.refuse(input.periods);
         return false;
     }
     X_WT_sample.rotation.coeffs() /= norm;
     const Pose X_VT_reading = X_VW_ * X_WT_sample;
-    if (!place_.take(X_VT_reading, periods)) return false;
+    const bool is_believed = input.is_repeated ? place_.repeat(input.periods)  //
+                                               : place_.take(X_VT_reading, input.periods);
+    if (!is_believed) return false;
     X_VT_device_ =
         model_ == &gradient_ ? estimate_.take(X_VT_reading, hand_coupling_.standsAlone()) : X_VT_reading;
     return true;

@@ -58,7 +58,7 @@ class HapticTick {
     void keepAccount(const SpoStep& step, const DeviceInput& input) noexcept;
     void useCoupling() noexcept;
     void acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
-    bool believe(Pose X_WT_sample, int periods) noexcept;
+    bool believe(const DeviceInput& input) noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
     SpoModel* modelOf(ContactLaw law) noexcept;

@@ -72,9 +72,11 @@ TEST_F(DeviceLinkIoTest, SilenceTicksOnAndBecomesStale) {
     daemon_.writeSample(sampleAt(0));
     DeviceInput input;
     ASSERT_TRUE(io.read(input));
+    EXPECT_FALSE(input.is_repeated);
     const int64_t start = monotonicNowNs();
     while (!input.is_stale) {
         ASSERT_TRUE(io.read(input));
+        EXPECT_TRUE(input.is_repeated);
         ASSERT_LT(monotonicNowNs() - start, 10 * kNsPerSecond);
     }
     while (input.stale_factor > 0) {
@@ -85,6 +87,7 @@ TEST_F(DeviceLinkIoTest, SilenceTicksOnAndBecomesStale) {
     while (input.is_stale) {
         daemon_.writeSample(sampleAt(0.001));
         ASSERT_TRUE(io.read(input));
+        EXPECT_FALSE(input.is_repeated);
     }
     EXPECT_LT(input.stale_factor, 1);  // it fades in
 }

@@ -54,6 +54,24 @@ TEST(HandPlace, ASampleIsBelievedWhenAHandCouldHaveGotThere) {
     EXPECT_FALSE(late.hasJumped());
 }
 
+TEST(HandPlace, ALateDeviceMakesNoHandImplausible) {
+    HandPlace place(kBoneMiddle, 1, kPlaceDt);
+    EXPECT_FALSE(place.repeat(1));
+    place.take(placeAt(0), 1);
+    for (int n = 0; n < 11; ++n) {
+        EXPECT_TRUE(place.repeat(1));
+        EXPECT_FALSE(place.hasJumped());
+    }
+    EXPECT_TRUE(place.take(placeAt(0.035), 1));  // 12 ms on the way
+    EXPECT_FALSE(place.hasJumped());
+    // A false sample is not believed because nothing comes after it.
+    EXPECT_FALSE(place.take(placeAt(0.5), 1));
+    for (int n = 0; n < 500; ++n) EXPECT_FALSE(place.repeat(1)) << n;
+    EXPECT_TRUE(place.isLost());
+    EXPECT_TRUE(place.take(placeAt(0.5), 1));
+    EXPECT_TRUE(place.hasJumped());
+}
+
 TEST(HandPlace, NothingOutsideOfAnyWorkspaceIsEverBelieved) {
     HandPlace place(kBoneMiddle, 1, kPlaceDt);
     EXPECT_GT(ticksUntilBelieved(place, placeAt(11)), 1000);
