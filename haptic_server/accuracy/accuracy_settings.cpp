@@ -61,7 +61,7 @@ AccuracySettings presetSettings(Preset preset) noexcept {
             return {};
         case Preset::kExact:
             return {.sample_spacing = 30 * kMicrometre,
-                    .most_samples = 4608,
+                    .most_samples = 3072,
                     .sdf_refinement = 4,
                     .precision = Precision::kDouble,
                     .iterations = 12};

@@ -45,8 +45,9 @@ struct ShellView {
     const LeafLattice& lattice;
     const PointShell& shell;
     int level;
-    double sample_spacing;  // m, near the tool; 0: one sample per point
-    int most_samples;       // about as many near the tool; the spacing gives way
+    double sample_spacing;                 // m, near the tool; 0: one sample per point
+    int most_samples;                      // about as many near the tool; the spacing gives way
+    size_t affordable_samples = SIZE_MAX;  // there is time for so many
 };
 
 struct GradientContactResult {
@@ -78,7 +79,7 @@ class GradientContact {
         candidates_.most = std::min(most, candidates_.patch.size());
     }
 
-    // The last gathering has fewer samples than its view asked for, for `most_tests` has no time for more.
+    // The last gathering has fewer samples than its view asked for, for there is no time for more.
     bool hasFewerSamples() const noexcept { return has_fewer_samples_; }
 
     // Forgets of the last gatherings how finely which patch was sampled. This is called when the shell level
@@ -112,7 +113,7 @@ class GradientContact {
   private:
     static constexpr size_t kMostPieces = 65536;
     // What was sampled as finely as asked for may come to so many times most_samples.
-    static constexpr size_t kMostTimes = 4;
+    static constexpr size_t kMostTimes = 2;
     // To cut the surface into samples and to solve with them takes as long as so many point tests, each.
     static constexpr size_t kTestsPerSample = 20;
     // A contact counts for the stiffness cap in proportion to its depth, so that a new one comes in smoothly.

@@ -71,14 +71,16 @@ void GradientContact::refine(const ShellView& bone, const ToolField& tool, const
     const size_t coarse = candidates_.count;
     for (size_t i = 0; i < coarse; ++i)
         if (isCoarse(tool, i)) split_[split_count_++] = uint32_t(i);
-    if (2 * split_count_ > size_t(bone.most_samples)) {
-        split_count_ = 0;  // there are points enough
+    const size_t affordable = std::min(most_tests / kTestsPerSample, bone.affordable_samples);
+    const size_t asked_for = size_t(bone.most_samples);
+    const size_t most_of_new = std::min(asked_for, affordable),
+                 most = std::min(kMostTimes * asked_for, affordable);
+    if (2 * split_count_ > most_of_new) {  // there are points enough
+        has_fewer_samples_ = 2 * split_count_ <= asked_for;
+        split_count_ = 0;
         return;
     }
     for (size_t n = 0; n < split_count_; ++n) cutPatch(bone, split_[n]);
-    const size_t affordable = most_tests / kTestsPerSample, asked_for = size_t(bone.most_samples);
-    const size_t most_of_new = std::min(asked_for, affordable),
-                 most = std::min(kMostTimes * asked_for, affordable);
     const uint8_t level_of_new = pieces_.cut(most_of_new, most);
     has_fewer_samples_ = pieces_.isCoarse() && affordable < kMostTimes * asked_for &&
                          (most_of_new < asked_for || pieces_.count() > most);

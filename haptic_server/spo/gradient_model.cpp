@@ -165,8 +165,9 @@ double GradientModel::reachOf(const Vector6d& step) const noexcept {
 void GradientModel::gather(const Pose& X_VT, double margin, SpoStep& out) noexcept {
     ++gatherings_;
     X_VT_gathered_ = X_VT;
-    const ShellView bone{world_.volume, world_.lattice,           world_.shell,
-                         level_,        settings_.sample_spacing, settings_.most_samples};
+    const ShellView bone{
+        world_.volume,          world_.lattice,     world_.shell, level_, settings_.sample_spacing,
+        settings_.most_samples, affordable_samples_};
     out.has_contact_overflow |= !contact_.gather(bone, *field_, X_VT, margin, pointTestsLeft());
     out.has_fewer_samples |= contact_.hasFewerSamples();
     out.candidates = uint32_t(contact_.candidateCount());

@@ -32,6 +32,9 @@ class GradientModel final : public SpoModel {
     // Takes effect with the next advance(), whose coupling pulls with `most_pull` (N) at most, or with what
     // the tool carries if that is less. It is RT-safe, for the tick thread only.
     void setCoupling(const EnergyCouplingConfig& coupling, double most_pull) noexcept;
+    // From now on there is time for so many samples of the surface in a gathering. It is RT-safe, for the
+    // tick thread only.
+    void setAffordableSamples(size_t most) noexcept { affordable_samples_ = most; }
     void setEffects(ContactWeights* weights, SolveEnergy* energy) noexcept override;
     size_t listContacts(std::span<SurfaceContact> out) noexcept override;
 
@@ -103,6 +106,7 @@ class GradientModel final : public SpoModel {
     Pose X_VT_end_;  // of the last advance()
     Pose X_VT_gathered_;
     uint32_t gatherings_ = 0;
+    size_t affordable_samples_ = SIZE_MAX;
     size_t most_point_tests_ = 0;  // with this field
     size_t point_tests_ = 0;       // in this tick
     ContinuousRotation way_;

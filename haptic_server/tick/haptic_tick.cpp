@@ -49,6 +49,7 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
                 tools_[tool_], config.dt),
       model_(&gradient_),
       affordable_(config.dt),
+      sample_cap_(config.dt),
       effects_(makeEffects(config.effects, bone_,
                            {config.dt, tools_.largestBurrRadius(), tools_.largestBurrReach(),
                             gradient_.mostCandidates(), config.most_milled_cells,
@@ -166,6 +167,8 @@ bool HapticTick::tick(TickIo& io) noexcept {
     const int64_t end_ns = io.now();
     record.compute_ns = end_ns - input.start_ns;
     if (end_ns > input.deadline_ns) faults |= kFaultOverrun;
+    const double load = double(record.compute_ns) / double(input.deadline_ns - input.start_ns);
+    if (sample_cap_.after(load, step.candidates)) gradient_.setAffordableSamples(sample_cap_.most());
     record.faults = faults;
     latched_faults_ |= faults;
     io.push(record);

@@ -19,6 +19,7 @@
 #include "haptic_server/tick/hand_coupling.h"
 #include "haptic_server/tick/hand_estimate.h"
 #include "haptic_server/tick/hand_place.h"
+#include "haptic_server/tick/sample_cap.h"
 #include "haptic_server/tick/tick_config.h"
 #include "haptic_server/tick/tick_io.h"
 #include "haptic_server/tick/tool_switch.h"
@@ -82,6 +83,7 @@ class HapticTick {
     SpoModel* model_;  // thesis_, gradient_ or one of compared_
     AccuracySettings settings_;
     AffordableShell affordable_;
+    SampleCap sample_cap_;
     EffectHost effects_;
     HandLimits hand_limits_;
     HandCoupling hand_coupling_;
