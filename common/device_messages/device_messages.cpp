@@ -20,10 +20,18 @@ bool isFigure(double value) noexcept {
     return value >= 0 && std::isfinite(value);
 }
 
+// It is not known, or a handle's: bytes in a wrong order seldom are.
+bool isNoneOrWithin(double value, double least, double most) noexcept {
+    return value == 0 || (value >= least && value <= most);
+}
+
 bool isPlausible(const HandleDynamics& handle) noexcept {
-    return isFigure(handle.mass) && isFigure(handle.damping) && isFigure(handle.inertia) &&
-           isFigure(handle.angular_damping) && isFigure(handle.amplifier_time) && isFigure(handle.delay) &&
-           isFigure(handle.encoder_step) && isFigure(handle.encoder_angle);
+    constexpr double kMostTime = 1;  // s
+    return isNoneOrWithin(handle.mass, 1e-4, 1e3) && isNoneOrWithin(handle.inertia, 1e-9, 1e2) &&
+           isNoneOrWithin(handle.damping, 0, 1e5) && isNoneOrWithin(handle.angular_damping, 0, 1e4) &&
+           isNoneOrWithin(handle.amplifier_time, 0, kMostTime) &&
+           isNoneOrWithin(handle.delay, 0, kMostTime) && isNoneOrWithin(handle.encoder_step, 1e-12, 1e-2) &&
+           isNoneOrWithin(handle.encoder_angle, 1e-12, 1);
 }
 
 }  // namespace

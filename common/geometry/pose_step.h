@@ -13,4 +13,11 @@ inline Vector6d between(const Pose& X_VT_from, const Pose& X_VT_to) noexcept {
     return step;
 }
 
+// Returns force above torque: times a way from between(), about the pose's origin, it is the wrench's work.
+inline Vector6d stacked(const Wrench& wrench) noexcept {
+    Vector6d w;
+    w << wrench.force, wrench.torque;
+    return w;
+}
+
 }  // namespace bonemill

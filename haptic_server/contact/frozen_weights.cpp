@@ -42,8 +42,8 @@ void GradientContact::guardFarSide(const VoxelVolume& volume, const ToolField& t
 }
 
 void GradientContact::capStiffness(const ToolField& tool, const Pose& X_VT) noexcept {
-    if (touching_stiffness_ <= config_.stiffness_cap) return;
-    point_tests_ += 2 * kSampleTests * candidates_.count;
+    if (most_stiffness_ <= config_.stiffness_cap) return;
+    point_tests_ += kSampleTests * candidates_.count;
     const Pose X_TV = X_VT.inverse();
     Matrix3d stiffness = Matrix3d::Zero();  // T axes
     for (size_t i = 0; i < candidates_.count; ++i) {
@@ -51,6 +51,8 @@ void GradientContact::capStiffness(const ToolField& tool, const Pose& X_VT) noex
         const double weight = shareInContact(sample.distance) * double(candidates_.weight[i]);
         if (weight > 0) stiffness += weight * sample.gradient * sample.gradient.transpose();
     }
+    if (stiffness.trace() <= config_.stiffness_cap) return;
+    point_tests_ += kSampleTests * candidates_.count;
     for (size_t i = 0; i < candidates_.count; ++i) {
         const Vector3d g = tool.sample(X_TV * positionOf(i)).gradient;
         const double in_direction = g.dot(stiffness * g);

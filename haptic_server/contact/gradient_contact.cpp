@@ -55,10 +55,17 @@ bool GradientContact::gather(const ShellView& bone, const ToolField& tool, const
     origin_ = X_VT.position;
     const bool has_room = collect(bone, tool, X_VT, most_tests);
     refine(bone, tool, X_VT, most_tests);
-    if (weights_) touching_stiffness_ *= weights_->scale(candidates_, origin_, tool, X_VT);
+    sumStiffness();
+    if (weights_) most_stiffness_ *= weights_->scale(candidates_, origin_, tool, X_VT);
     guardFarSide(bone.volume, tool, X_VT);
     capStiffness(tool, X_VT);
     return has_room;
+}
+
+void GradientContact::sumStiffness() noexcept {
+    most_stiffness_ = 0;
+    for (size_t i = 0; i < candidates_.count; ++i)
+        most_stiffness_ += shareInContact(double(candidates_.nearest[i])) * double(candidates_.weight[i]);
 }
 
 bool GradientContact::collect(const ShellView& bone, const ToolField& tool, const Pose& X_VT,
@@ -67,7 +74,6 @@ bool GradientContact::collect(const ShellView& bone, const ToolField& tool, cons
     const double patch_diagonal = bone.shell.scalingFactor(bone.level) * spacing.norm();
     patch_reach_ = bone.sample_spacing > 0 ? kReachOfPatch * patch_diagonal : 0;
     candidates_.count = 0;
-    touching_stiffness_ = 0;
     deepest_ = 0;
     bool has_room = true;
     const Pose X_TV = X_VT.inverse();
@@ -144,9 +150,7 @@ bool GradientContact::addCandidates(const ShellBlock& block, LeafId leaf, int co
     const bool has_room =
         candidates_.add(block, selected, found, leaf, origin_, float(config_.stiffness_per_area), nearest);
     for (size_t n = before; n < candidates_.count; ++n) {
-        const double distance = double(at.distance[selected[n - before]]);
-        deepest_ = std::max(deepest_, -distance);
-        touching_stiffness_ += shareInContact(distance) * double(candidates_.weight[n]);
+        deepest_ = std::max(deepest_, -double(at.distance[selected[n - before]]));
     }
     return has_room;
 }

@@ -160,6 +160,7 @@ class GradientContact {
     void startSweep(const ToolField& tool, const Pose& X_VT, const Vector6d& step,
                     double allowed_depth) noexcept;
     double sweptShare(const ToolField& tool, const Pose& X_VT) const noexcept;
+    void sumStiffness() noexcept;
     void guardFarSide(const VoxelVolume& volume, const ToolField& tool, const Pose& X_VT) noexcept;
     void capStiffness(const ToolField& tool, const Pose& X_VT) noexcept;
 
@@ -177,8 +178,8 @@ class GradientContact {
     // it nearer).
     std::vector<float> lowest_, inverse_rate_;
     size_t point_tests_ = 0;
-    double touching_stiffness_ = 0;  // N/m: of the candidates in contact, all directions together
-    double deepest_ = 0;             // m
+    double most_stiffness_ = 0;  // N/m: those that may be in contact have no more, all directions together
+    double deepest_ = 0;         // m
     double margin_ = 0;
     double patch_reach_ = 0;  // m: no place of a patch is farther from its point; 0 without pieces
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // V: the tool point at the gathering

@@ -54,6 +54,9 @@ void BlockedMotion::takePlanes(const ToolField& tool, const Pose& X_VT, const Wi
         out.contacts += at.distance < kTouching;
         out.max_penetration = std::max(out.max_penetration, -at.distance);
     }
+    const double of_points = double(points_.count()) / kMostPoints,
+                 of_rows = double(planes_.count()) / kMostRows;
+    out.budget_share = std::max({out.budget_share, of_points, of_rows});
 }
 
 // Returns the share of the motion after which no point is deeper than it may be: all of it, or found by

@@ -38,12 +38,6 @@ Pose moved(const Pose& X_VT, const Vector6d& step) noexcept {
     return X_VT.incremented(step.head<3>(), step.tail<3>());
 }
 
-Vector6d stacked(const Wrench& wrench) noexcept {
-    Vector6d w;
-    w << wrench.force, wrench.torque;
-    return w;
-}
-
 // Returns the share of `step` that keeps so_far + step within `most`.
 double shareOf(double most, const Eigen::Vector3d& so_far, const Eigen::Vector3d& step) noexcept {
     if ((so_far + step).norm() <= most) return 1;
@@ -112,7 +106,9 @@ Vector6d GradientModel::withinSpeed(const State& state, const Vector6d& newton,
     step.head<3>() *= move;
     tick.out->is_motion_clamped |= turn < 1 || move < 1;
     const bool is_downhill = step.allFinite() && stacked(state.total.wrench).dot(step) > 0;
-    return is_downhill ? step : Vector6d(std::min(turn, move) * newton);
+    if (is_downhill) return step;
+    const double whole = shareOf(config_.max_speed * dt_, so_far.head<3>(), newton.head<3>());
+    return std::min(turn, whole) * newton;
 }
 
 // Limits the step to the speeds, then either to the sweep (continuous collision) or to the trust radius
@@ -148,7 +144,8 @@ bool GradientModel::moveDown(State& state, const Vector6d& step, const Tick& tic
     double share = 1;
     for (int n = 0; n <= kMostCuts && (n == 0 || pointTestsLeft() > 0); ++n) {
         const State next = evaluate(moved(state.X_VT, share * step), tick);
-        if (next.isFinite() && next.total.energy <= state.total.energy * (1 + noise)) {
+        if (next.isFinite() &&
+            next.total.energy <= state.total.energy + noise * std::abs(state.total.energy)) {
             state = next;
             return true;
         }
@@ -199,7 +196,7 @@ bool GradientModel::descend(State& state, const Tick& tick) noexcept {
         if (has_moved) {
             learnFrom(before, state);
             lambda_ = lambda_ > kFirstLambda / 10 ? lambda_ / 10 : 0;
-        } else if (!tryOtherwise(state, tick)) {
+        } else if (!tryOtherwise(state, tick, n + 1 == settings_.iterations)) {
             break;
         }
     }
@@ -207,12 +204,11 @@ bool GradientModel::descend(State& state, const Tick& tick) noexcept {
 }
 
 // After a step that led uphill: what was learnt may be to blame, or it was too long. False: this tick ends.
-bool GradientModel::tryOtherwise(const State& state, const Tick& tick) noexcept {
-    if (!curvature_.isEmpty()) {
-        curvature_.forget();
-        return true;
-    }
-    lambda_ = std::min(std::max(kFirstLambda, lambda_ * 10), kMostLambda);
+bool GradientModel::tryOtherwise(const State& state, const Tick& tick, bool is_last) noexcept {
+    const bool has_learnt = !curvature_.isEmpty();
+    curvature_.forget();
+    if (has_learnt && !is_last) return true;
+    if (!has_learnt) lambda_ = std::min(std::max(kFirstLambda, lambda_ * 10), kMostLambda);
     tick.out->has_stalled = outOfBalance(state) > std::max(kFelt, kFeltBesideForce * state.contact_force);
     return false;
 }

@@ -137,7 +137,7 @@ void GradientModel::restart() noexcept {
     lambda_ = 0;
     last_motion_.setZero();
     last_reach_ = 0;
-    is_new_tool_ = false;
+    is_new_tool_ = is_new_tool_ || isToolGrowing();
     last_depth_ = 0;
     knows_depth_ = false;
     useTool();
@@ -179,12 +179,20 @@ GradientModel::State GradientModel::evaluate(const Pose& X_VT, const Tick& tick)
                                               ? contact_.evaluate<double>(*field_, X_VT)
                                               : contact_.evaluate<float>(*field_, X_VT);
     point_tests_ += contact_.candidateCount();
-    State state{X_VT, contact.term, 0, contact.contacts, contact.max_depth, contact.term.wrench.force.norm()};
+    State state{.X_VT = X_VT,
+                .total = contact.term,
+                .contacts = contact.contacts,
+                .max_depth = contact.max_depth,
+                .contact_force = contact.term.wrench.force.norm()};
     state.total += couplingEnergy(coupling_, X_VT, tick.X_VT_device, way_);
     state.total += relaxing_.energy(X_VT, tick.X_VT_device);
     state.stored = state.total.energy;
     state.total += dampingEnergy(coupling_, X_VT, tick.X_VT_start, dt_);
-    if (effects_) state.total += effects_->at(X_VT);
+    if (effects_) {
+        const EnergyTerm effects = effects_->at(X_VT);
+        state.total += effects;
+        state.effects = effects.wrench;
+    }
     return state;
 }
 
@@ -193,6 +201,7 @@ SpoStep GradientModel::advance(const Pose& X_VT, const Pose& X_VT_device) noexce
     const Tick tick{X_VT, X_VT_device, &out};
     point_tests_ = 0;
     State state = begin(tick);
+    const Wrench effects_at_start = state.effects;
     goOn(state, tick);
     out.is_solved = descend(state, tick);
     X_VT_end_ = state.X_VT;
@@ -200,6 +209,7 @@ SpoStep GradientModel::advance(const Pose& X_VT, const Pose& X_VT_device) noexce
     last_reach_ = reachOf(last_motion_);
     energy_ = state.total.energy;
     out.stored_energy = state.stored;
+    out.effects_work = stacked(effects_at_start + state.effects).dot(last_motion_) / 2;
     out.contacts = state.contacts;
     out.budget_share = double(point_tests_) / double(most_point_tests_);
     out.max_penetration = state.max_depth;

@@ -48,7 +48,8 @@ class GradientModel final : public SpoModel {
     struct State {
         Pose X_VT;
         EnergyTerm total;
-        double stored = 0;  // of that, J: what neither the damping nor the effects hold
+        double stored = 0;    // of that, J: what neither the damping nor the effects hold
+        Wrench effects = {};  // of that: the effects'
         uint32_t contacts = 0;
         double max_depth = 0;
         double contact_force = 0;  // N
@@ -70,7 +71,7 @@ class GradientModel final : public SpoModel {
     State evaluate(const Pose& X_VT, const Tick& tick) noexcept;
     void goOn(State& state, const Tick& tick) noexcept;
     bool descend(State& state, const Tick& tick) noexcept;
-    bool tryOtherwise(const State& state, const Tick& tick) noexcept;
+    bool tryOtherwise(const State& state, const Tick& tick, bool is_last) noexcept;
     void feel(const Pose& X_VT, const Tick& tick) noexcept;
     // N; rotation in units of the solve.
     static double outOfBalance(const State& state) noexcept;

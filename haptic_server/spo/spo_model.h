@@ -1,5 +1,5 @@
-// Decides how the simulated tool (SPO) follows the hand and meets the bone: there is one interface for two
-// models. The scene chooses. All poses and wrenches are in V.
+// Decides how the simulated tool (SPO) follows the hand and meets the bone: there is one interface for all
+// contact laws. The scene chooses. All poses and wrenches are in V.
 #pragma once
 
 #include <cstdint>
@@ -28,10 +28,11 @@ struct SpoStep {
     Wrench wrench_hand_V;
     // Contact and springs hold this after the tick, J; a law without an energy says 0.
     double stored_energy = 0;
+    double effects_work = 0;  // J: that the effects' energies have done on the tool in this tick
     uint32_t contacts = 0;
     uint32_t candidates = 0;  // points that were tested in each iteration
     uint32_t iterations = 0;
-    double budget_share = 0;     // of the point tests that a tick may make
+    double budget_share = 0;     // of the point tests that a tick may make, or of the room for points
     double max_penetration = 0;  // m
     // False says that no finite equilibrium was found: the tool is at its last good pose, the
     // wrench says nothing.
@@ -51,7 +52,7 @@ class SpoModel {
     // Does one tick of length dt: the tool is at X_VT, and the hand holds it at X_VT_device. It is RT-safe,
     // for the tick thread only.
     virtual SpoStep advance(const Pose& X_VT, const Pose& X_VT_device) noexcept = 0;
-    // Forgets earlier ticks. It is called when the tool is placed anew and when the model becomes active.
+    // Forgets earlier ticks. It is called when the model becomes active.
     virtual void restart() noexcept = 0;
     // Takes effect with the next advance(). It is RT-safe, for the tick thread only.
     virtual void setAccuracy(const AccuracySettings& settings) noexcept = 0;

@@ -25,7 +25,8 @@ void HandCoupling::adaptTo(const DeviceCapabilities& device) noexcept {
     wished_ = fitted_ = side_.gradient;
     fit_ = DeviceFit(config_, wished_, device);
     is_fitted_ = fit_.isDone();
-    tank_.setDevice(device.handle, side_.spring, config_.workspace_scale);
+    tank_.setDevice(device.handle, side_.spring, config_.workspace_scale,
+                    {.force = side_.limits.max_force > 0, .torque = side_.limits.max_torque > 0});
     given_ = given_turns_ = 0;
     stands_alone_ = true;
     has_device_ = true;
@@ -49,10 +50,12 @@ bool HandCoupling::takeAccount(const Pose& X_VT_device, const SpoStep& step) noe
         tank_.fill();
         return is_another;
     }
-    Wrench felt = step.wrench_hand_V;
-    limitLength(felt.force, side_.limits.max_force);
-    limitLength(felt.torque, side_.limits.max_torque * config_.workspace_scale);
-    tank_.add(X_VT_device, step.stored_energy, felt);
+    PortStep port{X_VT_device, step.wrench_hand_V, step.stored_energy, step.effects_work};
+    const HandLimitsConfig& limits = side_.limits;
+    if (limits.max_force > 0) limitLength(port.wrench_hand_V.force, limits.max_force);
+    if (limits.max_torque > 0)
+        limitLength(port.wrench_hand_V.torque, limits.max_torque * config_.workspace_scale);
+    tank_.add(port);
     if (tank_.isEmpty()) {
         give(tank_.turnsMoreThanMoves());
         tank_.fill();

@@ -73,9 +73,9 @@ double AxisEstimate::trust() const noexcept {
 // At the tool the same force moves `scale` times as far, and the same turn takes the hand's torque.
 HandEstimate::HandEstimate(const HandleDynamics& handle, const HandSpring& spring, double scale,
                            double dt) noexcept
-    : translation_({handle.mass / scale, handle.damping / scale, handle.encoder_step * scale,
-                    spring.stiffness / scale},
-                   handle.amplifier_time, dt),
+    : translation_(
+          {handle.mass / scale, handle.damping / scale, handle.encoder_step * scale, spring.stiffness},
+          handle.amplifier_time, dt),
       rotation_({handle.inertia, handle.angular_damping, handle.encoder_angle, spring.rotation_stiffness},
                 handle.amplifier_time, dt),
       scale_(scale),
@@ -87,7 +87,8 @@ HandEstimate::HandEstimate(const HandleDynamics& handle, const HandSpring& sprin
 
 Pose HandEstimate::take(const Pose& X_VT_reading, bool stands_alone) noexcept {
     if (isIdle()) return X_VT_reading;
-    if (!has_pose_ || (X_VT_reading.position - X_VT_.position).norm() > farthest_) {
+    const double way_off = (X_VT_reading.position - X_VT_.position).norm();
+    if (!has_pose_ || !(way_off <= farthest_)) {
         has_pose_ = true;
         translation_.stop();
         rotation_.stop();

@@ -182,10 +182,12 @@ void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept
         faults |= kFaultBadDevicePose;
         return;  // the last good one stays
     }
-    if (is_first)
+    if (is_first) {
         X_VT_ = X_VT_device_;  // the simulated tool starts where the hand is
-    else if (place_.hasJumped())
+    } else if (place_.hasJumped()) {
         hand_limits_.beginSuddenChange();
+        has_changed_suddenly_ = true;
+    }
 }
 
 bool HapticTick::believe(const DeviceInput& input) noexcept {

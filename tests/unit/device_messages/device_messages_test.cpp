@@ -126,6 +126,31 @@ TEST(DeviceMessages, kindOfTheDeviceMustBeKnown) {
     }
 }
 
+TEST(DeviceMessages, whatMovesMustBeAHandles) {
+    DeviceCapabilities device{};
+    device.handle = {0.25, 2, 1e-4, 0.004, 0.3e-3, 1e-3, 5e-6, 1e-4};
+    ASSERT_TRUE(isPlausible(device));
+    const HandleDynamics handle = device.handle;
+    for (const auto figure :
+         {&HandleDynamics::mass, &HandleDynamics::damping, &HandleDynamics::inertia,
+          &HandleDynamics::angular_damping, &HandleDynamics::amplifier_time, &HandleDynamics::delay,
+          &HandleDynamics::encoder_step, &HandleDynamics::encoder_angle}) {
+        device.handle = handle;
+        device.handle.*figure = 0;
+        EXPECT_TRUE(isPlausible(device));
+        for (const double bad : {-1e-9, 1e7, kBad[0], kBad[1], kBad[2]}) {
+            device.handle.*figure = bad;
+            EXPECT_FALSE(isPlausible(device)) << bad;
+        }
+    }
+    for (const auto figure : {&HandleDynamics::mass, &HandleDynamics::inertia, &HandleDynamics::encoder_step,
+                              &HandleDynamics::encoder_angle}) {
+        device.handle = handle;
+        device.handle.*figure = 2.6e-319;  // 0.25 with its bytes in the wrong order
+        EXPECT_FALSE(isPlausible(device));
+    }
+}
+
 TEST(DeviceMessages, figuresOfTheDeviceMustBeFiniteAndNotNegative) {
     for (const auto figure :
          {&DeviceCapabilities::max_force, &DeviceCapabilities::max_torque, &DeviceCapabilities::max_stiffness,

@@ -21,8 +21,9 @@ struct Slide {
 };
 
 struct SlideFigures {
-    double friction = 0;  // largest tangential force per normal force
-    double step = 0;      // N, the largest change of the force in a tick
+    double friction = 0;    // largest tangential force per normal force
+    double step = 0;        // N, the largest change of the force in a tick
+    double least_load = 1;  // the least normal force per load
 };
 
 const std::vector<ToolShape> kDrill = {CylinderShape{{0, -4e-3, 0}, {0, 4e-3, 0}, 1.6e-3, kEdgeRadius},
@@ -83,7 +84,8 @@ SlideFigures slide(const Slide& s) {
         Vector3d f = R_VF.conjugate() * step.wrench_hand_V.force;
         if (tick > press + 20) {
             const Vector3d drag = -3 * s.speed * along_F;  // N·s/m of the coupling, in free air too
-            figures.friction = std::max(figures.friction, (f - drag).head<2>().norm() / f.z());
+            figures.friction = std::max(figures.friction, (f - drag).head<2>().norm() / std::abs(f.z()));
+            figures.least_load = std::min(figures.least_load, f.z() / s.load);
             figures.step = std::max(figures.step, (f - before).norm());
         }
         before = f;
@@ -107,6 +109,7 @@ void expectToSlide(Preset preset, double most_friction, double most_step) {
                 .shapes = seed % 3 == 2 ? kCone : kDrill};
         if (seed % 5 == 4) s.load = 0.5;
         const SlideFigures f = slide(s);
+        EXPECT_GE(f.least_load, 0.8) << "seed " << seed;
         EXPECT_LE(f.friction, most_friction)
             << "seed " << seed << ", voxel " << s.voxel << ", lean " << s.lean;
         EXPECT_LE(f.step, most_step) << "seed " << seed << ", voxel " << s.voxel << ", lean " << s.lean;
@@ -136,6 +139,7 @@ TEST(EdgeSlide, SmallBallsSlideOnLargeVoxels) {
                                               .load = 0.3,
                                               .seed = seed,
                                               .shapes = {SphereShape{Vector3d::Zero(), radius}}});
+                EXPECT_GE(f.least_load, 0.8) << presetName(preset) << radius;
                 EXPECT_LE(f.friction, preset == Preset::kFast ? 0.03 : 0.01) << presetName(preset) << radius;
                 EXPECT_LE(f.step, 0.02);
             }

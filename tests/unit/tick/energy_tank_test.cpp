@@ -8,6 +8,13 @@ namespace {
 
 constexpr double kTankPeriod = 1e-3, kTankSpring = 2000, kTankDepth = 2e-3;
 
+Pose movedBy(double x) {
+    return {{x, 0, 0}, Eigen::Quaterniond::Identity()};
+}
+Pose turnedBy(double angle) {
+    return {{0, 0, 0}, expRotation({angle, 0, 0})};
+}
+
 // The hand presses a spring that answers after `late` ticks to and fro, `times` times at 20 Hz.
 void swingOn(EnergyTank& tank, int late, int times) {
     const int period = 50;
@@ -16,17 +23,19 @@ void swingOn(EnergyTank& tank, int late, int times) {
     };
     for (int n = 0; n < times * period; ++n) {
         const double x = place(n), asked = place(n - late);
-        tank.add({{x, 0, 0}, Eigen::Quaterniond::Identity()}, kTankSpring * x * x / 2,
-                 {{-kTankSpring * asked, 0, 0}, {}});
+        tank.add({.X_VT_device = {{x, 0, 0}, Eigen::Quaterniond::Identity()},
+                  .wrench_hand_V = {{-kTankSpring * asked, 0, 0}, {}},
+                  .stored = kTankSpring * x * x / 2});
     }
 }
 
-EnergyTank tankOf(double damping) {
+EnergyTank tankOf(double damping, double delay = 0, const EnergyTank::Felt& felt = {}) {
     EnergyTank tank(kTankPeriod);
     HandleDynamics handle{};
     handle.mass = 0.1;
     handle.damping = damping;
-    tank.setDevice(handle, {}, 1);
+    handle.delay = delay;
+    tank.setDevice(handle, {}, 1, felt);
     return tank;
 }
 
@@ -55,25 +64,57 @@ TEST(EnergyTank, TheDevicesDampingPaysForIt) {
 
 TEST(EnergyTank, AForceThatOnlyTakesNeverEmptiesIt) {
     EnergyTank tank = tankOf(0);
-    for (int n = 0; n < 5000; ++n)
-        tank.add({{1e-5 * n, 0, 0}, Eigen::Quaterniond::Identity()}, 0, {{-3, 0, 0}, {}});
+    for (int n = 0; n < 5000; ++n) tank.add({movedBy(1e-5 * n), {{-3, 0, 0}, {}}});
     EXPECT_EQ(tank.content(), EnergyTank::kRoom);
 }
 
 TEST(EnergyTank, TorqueCountsLikewise) {
     EnergyTank tank = tankOf(0);
-    for (int n = 0; n < 100 && !tank.isEmpty(); ++n)
-        tank.add({{0, 0, 0}, expRotation({1e-3 * n, 0, 0})}, 0, {{}, {0.1, 0, 0}});
+    for (int n = 0; n < 100 && !tank.isEmpty(); ++n) tank.add({turnedBy(1e-3 * n), {{}, {0.1, 0, 0}}});
     EXPECT_TRUE(tank.isEmpty());
     EXPECT_TRUE(tank.turnsMoreThanMoves());
 }
 
 TEST(EnergyTank, FillingForgetsWhatWasStored) {
     EnergyTank tank = tankOf(0);
-    tank.add({}, 0, {});
+    tank.add({});
     tank.fill();
-    tank.add({}, 1, {});
+    tank.add({.stored = 1});
     EXPECT_EQ(tank.content(), EnergyTank::kRoom);
+}
+
+TEST(EnergyTank, FillingForgetsWhatWasFelt) {
+    EnergyTank tank = tankOf(0, 3e-3);
+    for (int n = 0; n < 20; ++n) tank.add({{}, {{10, 0, 0}, {}}});
+    tank.fill();
+    for (int n = 0; n < 20; ++n) tank.add({movedBy(50e-6 * n)});
+    EXPECT_EQ(tank.content(), EnergyTank::kRoom);
+}
+
+// It swings in the spring of a rotation whose torque the device does not give.
+TEST(EnergyTank, ATorqueThatNobodyFeelsMakesNoEnergy) {
+    constexpr double kTurnSpring = 0.5;  // N·m/rad
+    for (const bool is_felt : {false, true}) {
+        EnergyTank tank = tankOf(0, 3e-3, {.force = true, .torque = is_felt});
+        for (int n = 0; n < 2000; ++n) {
+            const double angle = 0.15 * std::sin(2 * M_PI * 5 * n * kTankPeriod);
+            tank.add({.X_VT_device = turnedBy(angle),
+                      .wrench_hand_V = {{}, {-kTurnSpring * angle, 0, 0}},
+                      .stored = kTurnSpring * angle * angle / 2});
+        }
+        EXPECT_EQ(tank.isEmpty(), is_felt);
+        EXPECT_EQ(tank.turnsMoreThanMoves(), is_felt);
+    }
+}
+
+// A spindle drives the tool along, and the tool the hand: the hand gets no more than the spindle gives.
+TEST(EnergyTank, WhatTheEffectsGiveWasNotMade) {
+    for (const double share : {1.0, 0.5}) {
+        EnergyTank tank = tankOf(0);
+        for (int n = 0; n < 2000; ++n)
+            tank.add({movedBy(1e-5 * n), {{3, 0, 0}, {}}, 0, n > 0 ? share * 3e-5 : 0});
+        EXPECT_EQ(tank.isEmpty(), share < 1);
+    }
 }
 
 }  // namespace

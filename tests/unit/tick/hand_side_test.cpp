@@ -111,6 +111,7 @@ TEST(HandSide, InAScaledWorkspaceTheHandFeelsTheDevicesStiffness) {
         EXPECT_LE(felt, 1000 * (1 + 1e-12)) << scale;
         EXPECT_LE(side.gradient.rotation_stiffness / scale, 0.2 * (1 + 1e-12)) << scale;
         EXPECT_LE(side.gradient.saturation_torque / scale, 0.05 * (1 + 1e-12)) << scale;
+        EXPECT_LE(side.spring.stiffness * scale, 1000 * (1 + 1e-12)) << scale;
         EXPECT_DOUBLE_EQ(side.spring.rotation_stiffness * scale,
                          std::max(side.gradient.rotation_stiffness, side.thesis.rotation_stiffness / 2))
             << scale;
