@@ -16,11 +16,7 @@ bool isWithin(const double (&v)[3], double most) noexcept {
     return std::abs(v[0]) <= most && std::abs(v[1]) <= most && std::abs(v[2]) <= most;
 }
 
-bool isFigure(double value) noexcept {
-    return value >= 0 && std::isfinite(value);
-}
-
-// It is not known, or a handle's: bytes in a wrong order seldom are.
+// It is zero, and then none or not known, or what a device can have: bytes in a wrong order seldom are.
 bool isNoneOrWithin(double value, double least, double most) noexcept {
     return value == 0 || (value >= least && value <= most);
 }
@@ -58,9 +54,11 @@ bool isPlausible(const WrenchCommand& command) noexcept {
 bool isPlausible(const DeviceCapabilities& capabilities) noexcept {
     const auto end = std::end(capabilities.name);
     return std::find(std::begin(capabilities.name), end, '\0') != end &&
-           capabilities.kind < kDeviceKindCount && isFigure(capabilities.max_force) &&
-           isFigure(capabilities.max_torque) && isFigure(capabilities.max_stiffness) &&
-           isFigure(capabilities.max_rotation_stiffness) && isFigure(capabilities.workspace_radius) &&
+           capabilities.kind < kDeviceKindCount && isNoneOrWithin(capabilities.max_force, 1e-9, 1e6) &&
+           isNoneOrWithin(capabilities.max_torque, 1e-9, 1e6) &&
+           isNoneOrWithin(capabilities.max_stiffness, 1e-9, 1e9) &&
+           isNoneOrWithin(capabilities.max_rotation_stiffness, 1e-9, 1e9) &&
+           isNoneOrWithin(capabilities.workspace_radius, 1e-9, 1e6) &&
            isPlausible(capabilities.handle);
 }
 

@@ -129,10 +129,18 @@ double wallForce(const GradientContactConfig& contact, double radius, double wal
                     contact.stiffness_cap * depth);
 }
 
+constexpr int kSprings = 2;  // the lasting and the relaxing one
+
+double mostCarried(const GradientContactConfig& contact, double radius) {
+    return wallForce(contact, radius, 4 * radius);
+}
+
 double saturationForceOf(const scene::Scene& scene, const scene::Tool& tool, double finest_spacing) {
-    return std::min(scene.coupling().max_force_n(),
-                    wallForce(contactConfigOf(scene.contact()), tool.burr_radius_mm() * kMillimetre,
-                              thinnestWall(scene, finest_spacing)));
+    const GradientContactConfig contact = contactConfigOf(scene.contact());
+    const double radius = tool.burr_radius_mm() * kMillimetre;
+    return std::min({scene.coupling().max_force_n(),
+                     wallForce(contact, radius, thinnestWall(scene, finest_spacing)),
+                     kOfCarried / kSprings * mostCarried(contact, radius)});
 }
 
 GradientConfig gradientConfigOf(const scene::Scene& scene) {

@@ -33,7 +33,13 @@ double thinnestWall(const scene::Scene& scene, double finest_spacing);
 // pull saturates there for the burr, so that no push goes through a wall of that thickness.
 double wallForce(const GradientContactConfig& contact, double radius, double wall);
 
-// The coupling pulls with at most this force while the tool is in use, in N.
+// A ball of this radius never carries more however deep it goes, in N: what wallForce() has at its maximum.
+double mostCarried(const GradientContactConfig& contact, double radius);
+
+// The coupling pulls with at most this force while the tool is in use, in N: what the wall carries, but with
+// its relaxing spring, which may pull as much again, no more than kOfCarried of what the ball ever does. A
+// burr that is not much larger than a voxel would else be pulled through solid bone.
+inline constexpr double kOfCarried = 0.8;
 double saturationForceOf(const scene::Scene& scene, const scene::Tool& tool, double finest_spacing);
 
 // These are contact, coupling and speed limits of the gradient law. What differs from tool to tool is

@@ -38,10 +38,19 @@ Pose moved(const Pose& X_VT, const Vector6d& step) noexcept {
     return X_VT.incremented(step.head<3>(), step.tail<3>());
 }
 
-// Returns the share of `step` that keeps so_far + step within `most`.
+// Returns the largest share of `step` that keeps so_far + step within `most`, or no farther out than it is.
 double shareOf(double most, const Eigen::Vector3d& so_far, const Eigen::Vector3d& step) noexcept {
     if ((so_far + step).norm() <= most) return 1;
-    return std::max(0.0, most - so_far.norm()) / step.norm();
+    const double outwards = so_far.dot(step), squared = step.squaredNorm();
+    const double room = std::max(0.0, most * most - so_far.squaredNorm());
+    return std::min(1.0, (std::sqrt(outwards * outwards + squared * room) - outwards) / squared);
+}
+
+// Returns the step from so_far to the place within `most` that is nearest to so_far + step.
+Eigen::Vector3d within(double most, const Eigen::Vector3d& so_far, const Eigen::Vector3d& step) noexcept {
+    const Eigen::Vector3d all = so_far + step;
+    const double length = all.norm();
+    return length <= most ? step : Eigen::Vector3d(most / length * all - so_far);
 }
 
 // Along a step the energy first falls by `slope` per share, and after `share` of it has risen by `rise`. This
@@ -94,21 +103,22 @@ Vector6d GradientModel::newtonStep(const State& state) const noexcept {
 Vector6d GradientModel::withinSpeed(const State& state, const Vector6d& newton,
                                     const Tick& tick) const noexcept {
     const Vector6d so_far = between(tick.X_VT_start, state.X_VT);
-    const double turn = shareOf(config_.max_angular_speed * dt_, so_far.tail<3>(), newton.tail<3>());
+    const double most_turn = config_.max_angular_speed * dt_, most_move = config_.max_speed * dt_;
     Vector6d step = newton;
-    if (turn < 1) {
+    step.tail<3>() = within(most_turn, so_far.tail<3>(), newton.tail<3>());
+    if (step.tail<3>() != newton.tail<3>()) {
         const Matrix6d& K = state.total.stiffness;
-        step.tail<3>() *= turn;
         step.head<3>() = K.topLeftCorner<3, 3>().llt().solve(
             Eigen::Vector3d(state.total.wrench.force - K.topRightCorner<3, 3>() * step.tail<3>()));
     }
-    const double move = shareOf(config_.max_speed * dt_, so_far.head<3>(), step.head<3>());
-    step.head<3>() *= move;
-    tick.out->is_motion_clamped |= turn < 1 || move < 1;
+    step.head<3>() = within(most_move, so_far.head<3>(), Eigen::Vector3d(step.head<3>()));
+    if (step == newton) return step;
+    tick.out->is_motion_clamped = true;
     const bool is_downhill = step.allFinite() && stacked(state.total.wrench).dot(step) > 0;
     if (is_downhill) return step;
-    const double whole = shareOf(config_.max_speed * dt_, so_far.head<3>(), newton.head<3>());
-    return std::min(turn, whole) * newton;
+    return std::min(shareOf(most_turn, so_far.tail<3>(), newton.tail<3>()),
+                    shareOf(most_move, so_far.head<3>(), newton.head<3>())) *
+           newton;
 }
 
 // Limits the step to the speeds, then either to the sweep (continuous collision) or to the trust radius

@@ -18,6 +18,8 @@ constexpr double kMostDepthToGrow = 0.05;
 // Of the thinnest radius: where contact becomes so deep, and by so much deeper between two ticks in which the
 // tool has not moved, bone has appeared in the tool.
 constexpr double kDeepBone = GradientContact::kGuardFrom, kSuddenDepth = 0.2;
+// m/s: at this speed the tool's damping would take all that it may be pulled with.
+constexpr double kSpeedHeldBack = 0.4;
 constexpr size_t kMostCandidates = 65'536;
 
 }  // namespace
@@ -32,11 +34,13 @@ GradientModel::GradientModel(const GradientConfig& config, const SpoWorld& world
     : config_(config),
       world_(world),
       tool_(tool),
+      wished_(config.coupling),
       coupling_{config.coupling, tool.saturation_force},
       dt_(dt),
       field_(&tool_.model->field(settings_)),
       contact_(config.contact, std::min(kMostCandidates, config.most_point_tests / 4)),
       relaxing_(coupling_, dt) {
+    saturate();
     setAccuracy(settings_);
 }
 
@@ -59,12 +63,15 @@ void GradientModel::setTool(const SpoTool& tool) noexcept {
 
 void GradientModel::setCoupling(const EnergyCouplingConfig& coupling, double most_pull) noexcept {
     most_pull_ = most_pull;
-    static_cast<EnergyCouplingConfig&>(coupling_) = coupling;
+    wished_ = coupling;
     saturate();
 }
 
 void GradientModel::saturate() noexcept {
-    coupling_.saturation_force = std::min(tool_.saturation_force, most_pull_);
+    const double most = std::min(tool_.saturation_force, most_pull_);
+    coupling_ = {wished_, most};
+    coupling_.damping_time =
+        std::min(wished_.damping_time, most / (kSpeedHeldBack * wished_.translation_stiffness));
     relaxing_.setCoupling(coupling_);
     lambda_ = 0;
 }

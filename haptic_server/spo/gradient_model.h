@@ -92,6 +92,7 @@ class GradientModel final : public SpoModel {
     GradientConfig config_;
     SpoWorld world_;
     SpoTool tool_;
+    EnergyCouplingConfig wished_;
     EnergyCoupling coupling_;  // of tool_
     double most_pull_ = std::numeric_limits<double>::infinity();
     double dt_;

@@ -156,9 +156,9 @@ TEST(DeviceMessages, figuresOfTheDeviceMustBeFiniteAndNotNegative) {
          {&DeviceCapabilities::max_force, &DeviceCapabilities::max_torque, &DeviceCapabilities::max_stiffness,
           &DeviceCapabilities::max_rotation_stiffness, &DeviceCapabilities::workspace_radius}) {
         DeviceCapabilities device{};
-        device.*figure = 1e6;
+        device.*figure = 10;
         EXPECT_TRUE(isPlausible(device));
-        for (const double bad : {-1e-9, kBad[0], kBad[1], kBad[2]}) {
+        for (const double bad : {-1e-9, 5e-324, 1e-300, 1e12, kBad[0], kBad[1], kBad[2]}) {
             device.*figure = bad;
             EXPECT_FALSE(isPlausible(device)) << bad;
         }

@@ -35,6 +35,25 @@ TEST(WallForce, IsBoundedByTheStiffnessCapAndByThinTools) {
     EXPECT_DOUBLE_EQ(wallForce(stiff, 0.1e-3, 1e-3), wallForce(stiff, 0.1e-3, 2e-3));
 }
 
+// A large burr pulls as hard as the wall of a voxel carries, a small one no harder than holds it off solid
+// bone.
+TEST(SaturationForce, LeavesASmallBurrRoom) {
+    scene::Scene scene;
+    scene.mutable_coupling()->set_max_force_n(1000);
+    const GradientContactConfig contact = gradientConfigOf(scene).contact;
+    for (const double voxel : {0.1e-3, 0.25e-3, 1e-3})
+        for (const double radius : {0.5, 1.0, 2.0, 5.0, 20.0}) {
+            scene::Tool tool;
+            tool.set_burr_radius_mm(radius * voxel / kMillimetre);
+            const double force = saturationForceOf(scene, tool, voxel);
+            EXPECT_LE(force, 0.41 * mostCarried(contact, radius * voxel)) << radius;
+            EXPECT_LE(force, wallForce(contact, radius * voxel, voxel)) << radius;
+            if (radius >= 5 && force < 999) {
+                EXPECT_DOUBLE_EQ(force, wallForce(contact, radius * voxel, voxel)) << radius;
+            }
+        }
+}
+
 TEST(ThinnestWall, IsTheScenesElseOneVoxel) {
     scene::Scene scene;
     EXPECT_DOUBLE_EQ(thinnestWall(scene, 0.3e-3), 0.3e-3);

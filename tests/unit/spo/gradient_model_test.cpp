@@ -312,6 +312,74 @@ TEST(GradientModel, AFlatEndPressedHardEndsItsSolveWhereTheEnergysRoundingDoes) 
     EXPECT_GT(force, 100);
 }
 
+// It turns as fast as it may until it has caught up, and then with the hand.
+TEST(GradientModel, AToolThatCatchesUpDoesNotTurnOn) {
+    const ContactScene scene = flatScene();
+    GradientConfig config;
+    config.max_angular_speed = 240 * kDegree;
+    config.coupling.damping_time = 0;
+    config.coupling.p_TG = {0, 0.1, 0};
+    for (const double hand_speed : {0.0, 90.0, 180.0}) {  // degrees/s
+        GradientModel model(config, scene.world(), toolOf(scene), 1e-3);
+        const Vector3d air = kAbove + Vector3d(0, 0, 5e-3);
+        Pose spo{air, kUpright};
+        double worst = 0;
+        for (int n = 0; n < 600; ++n) {
+            const double angle = (10 + hand_speed * n * 1e-3) * kDegree;
+            const Pose hand{air, expRotation({0.3 * angle, angle, -0.5 * angle}) * kUpright};
+            spo = model.advance(spo, hand).X_VT;
+            if (n > 550) worst = std::max(worst, spo.rotation.angularDistance(hand.rotation));
+        }
+        EXPECT_LT(worst, 0.01 * kDegree) << hand_speed;
+    }
+}
+
+// A ball is driven into solid bone, far beyond what it carries: it stays outside at any speed of the hand.
+// The scene's setup pulls with so much of what a ball ever carries (saturationForceOf()).
+TEST(GradientModel, ASmallBallStaysOutsideOfSolidBone) {
+    constexpr double kOfMost = 0.4;
+    for (const Preset preset : {Preset::kFast, Preset::kBalanced})
+        for (const double voxel : {0.125e-3, 0.5e-3})
+            for (const double voxels : {0.6, 0.8, 1.2, 2.0})
+                for (const double speed : {2e-3, 20e-3, 100e-3, 500e-3}) {
+                    const double radius = voxels * voxel, top = 15.3 * voxel;
+                    const ContactScene scene{cubeGeometry(25, voxel),
+                                             halfSpace({6e-3, 6e-3, top}, Vector3d::UnitZ()),
+                                             {SphereShape{{0, 0, 0}, radius}},
+                                             {.levels = {{1}}}};
+                    const GradientConfig config;
+                    const double most =
+                        4.0 / 27 * M_PI * config.contact.stiffness_per_area * std::pow(radius, 3);
+                    GradientModel model(config, scene.world(),
+                                        {&scene.tool, {.radius = radius}, kOfMost * most}, 1e-3);
+                    model.setAccuracy(presetSettings(preset));
+                    const Vector3d above(12.2 * voxel, 11.7 * voxel, top + radius + 0.1 * voxel);
+                    const int ticks = int(std::min(600.0, 2 * radius / (speed * 1e-3) + 100));
+                    Pose spo{above, kUpright};
+                    for (int n = 0; n < ticks; ++n)
+                        spo = model.advance(spo, {above - Vector3d(0, 0, speed * 1e-3 * n), kUpright}).X_VT;
+                    EXPECT_GT(spo.position.z(), top)
+                        << presetName(preset) << " " << voxel << " " << voxels << " " << speed;
+                }
+}
+
+// The less a tool may be pulled with, the less the air holds it back.
+TEST(GradientModel, AToolThatCarriesLittleFollowsInFreeAir) {
+    const ContactScene scene = flatScene();
+    for (const double most : {0.02, 0.2, 2.0}) {
+        GradientModel model({}, scene.world(), {&scene.tool, {.radius = kRadius}, most}, 1e-3);
+        const Vector3d air = kAbove + Vector3d(-0.05, 0, 5e-3);
+        Pose spo{air, kUpright};
+        double worst = 0;
+        for (int n = 0; n < 500; ++n) {
+            const Pose hand{air + Vector3d(200e-6 * n, 0, 0), kUpright};
+            spo = model.advance(spo, hand).X_VT;
+            worst = std::max(worst, (spo.position - hand.position).norm());
+        }
+        EXPECT_LT(worst, 0.25e-3) << most;
+    }
+}
+
 TEST(GradientModel, EnergyNeverRisesUnderAHandAtRest) {
     const ContactScene scene = flatScene(Vector3d(0.4, -0.2, 1).normalized());
     GradientModel model(GradientConfig{}, scene.world(), toolOf(scene), 1e-3);
