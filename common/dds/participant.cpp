@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 
+#include "common/dds/log_sink.h"
 #include "common/dds/network.h"
 #include "common/user_error.h"
 
@@ -45,6 +46,7 @@ std::shared_ptr<Domain> acquireDomain(uint32_t id) {
     const std::lock_guard lock(domains_mutex);
     std::shared_ptr<Domain> domain = domains[id].lock();
     if (!domain) {
+        limitCycloneLog();
         domain = std::make_shared<Domain>(
             id, chosen_configuration ? *chosen_configuration : networkConfiguration({}));
         domains[id] = domain;

@@ -35,6 +35,7 @@ constexpr size_t kRingRecords = 8192;  // 8 s at 1 kHz: a stalled disk loses not
 constexpr size_t kRingCuts = 8192;
 constexpr int kTickPriority = 80;
 constexpr auto kPublishPeriod = 5ms;
+constexpr auto kLookForOthers = 300ms;
 constexpr auto kRecordPeriod = 4ms;
 constexpr int64_t kWarmUpNs = kNsPerSecond;
 // At its end the session shows what was milled last. A bone that is not yet meshed, or a slow network, holds
@@ -84,6 +85,8 @@ class Server {
                     options.instructor_only),
           show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, io_,
                 commands_, options.stream_mbit_per_s * kMega / 8) {
+        if (const auto other = publisher_.findOther(kLookForOthers))
+            throw UserError(refusalText(*other, options.domain, options.session));
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
         for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     }

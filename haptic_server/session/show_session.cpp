@@ -1,5 +1,7 @@
 #include "haptic_server/session/show_session.h"
 
+#include <spdlog/spdlog.h>
+
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -8,6 +10,7 @@
 #include "common/rt/clock.h"
 #include "common/units.h"
 #include "haptic_server/record/fault_names.h"
+#include "haptic_server/session/order_text.h"
 #include "haptic_server/session/shown_device.h"
 #include "haptic_server/setup/scene_materials.h"
 
@@ -163,6 +166,15 @@ void ShowSession::carryOutCommands() {
 void ShowSession::answer(const topics::Command& command, const std::string& result) {
     publishStatus();
     publisher_.acknowledge(command, result);
+    log(command, result);
+}
+
+void ShowSession::log(const topics::Command& command, const std::string& result) {
+    const int64_t left_out = orders_logged_.ask(monotonicNowNs());
+    if (left_out < 0) return;
+    if (left_out > 0) spdlog::info("{} orders were not logged", left_out);
+    spdlog::info("order of {} {:016x}: {}: {}", topics::Viewer::Role_Name(command.role()), command.sender(),
+                 orderText(command), result);
 }
 
 void ShowSession::publishStatus() {

@@ -2,6 +2,8 @@
 // to the tick.
 #pragma once
 
+#include "common/log/log_limit.h"
+#include "common/units.h"
 #include "haptic_server/mesh/mesh_outbox.h"
 #include "haptic_server/publish/byte_budget.h"
 #include "haptic_server/publish/publisher.h"
@@ -36,6 +38,7 @@ class ShowSession {
     void publishSceneInfo();
     void carryOutCommands();
     void answer(const topics::Command& command, const std::string& result);
+    void log(const topics::Command& command, const std::string& result);
 
     Publisher& publisher_;
     std::string scene_name_;
@@ -52,6 +55,7 @@ class ShowSession {
     const std::vector<SceneTool>& tools_;
     topics::SceneInfo scene_info_;  // as last published
     topics::Command under_way_;     // that was begun and has not ended
+    LogLimit orders_logged_{20, 3 * kNsPerSecond};
     int64_t last_tool_state_ns_ = 0;
     int64_t last_status_ns_ = 0;
     bool has_changed_ = false;  // since the last status

@@ -172,7 +172,7 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
 ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     options.settings = viewSettings(raw.view);
     options.chooses_quality = raw.view.quality == "auto";
-    const bool only_looks = raw.command.empty() && dds::isLanProfile(options.network.profile);
+    const bool only_looks = dds::isLanProfile(options.network.profile);
     options.subscriber.role = raw.role     ? roleOf(*raw.role)
                               : only_looks ? topics::Viewer::VIEWER
                                            : topics::Viewer::OPERATOR;

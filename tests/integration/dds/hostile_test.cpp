@@ -46,6 +46,28 @@ TEST(HostilePayloads, AreCountedAndDroppedByClients) {
         client.pollUntil([&] { return client.subscriber.isComplete() && client.nodes.at(1).revision == 4; }));
 }
 
+TEST(OtherServer, IsFoundBySessionAndOnlyWhileItLives) {
+    using std::chrono::milliseconds;
+    const dds::Participant late(testDomain());
+    const uint32_t session = testSession();
+    EXPECT_FALSE(findOtherServer(late, session, milliseconds(100)));
+    {
+        Publisher first({.domain = testDomain(), .session = session, .epoch = 1'700'000'000'000'000'000});
+        topics::Status status;
+        status.set_scene("tooth\ncorridor");
+        ASSERT_TRUE(first.publishStatus(status));
+        const auto found = findOtherServer(late, session, milliseconds(5000));
+        ASSERT_TRUE(found);
+        EXPECT_EQ(found->scene, "tooth?corridor");
+        EXPECT_EQ(found->epoch_ns, 1'700'000'000'000'000'000u);
+        const std::string text = refusalText(*found, testDomain(), session);
+        EXPECT_NE(text.find("since 2023-11-1"), std::string::npos) << text;
+        EXPECT_NE(text.find("--session"), std::string::npos) << text;
+        EXPECT_FALSE(findOtherServer(late, session + 1, milliseconds(300)));
+    }
+    EXPECT_FALSE(findOtherServer(late, session, milliseconds(300)));
+}
+
 TEST(HostilePayloads, AreCountedAndDroppedByTheServer) {
     Publisher publisher({.domain = testDomain(), .session = testSession()});
     dds::Participant intruder(testDomain());

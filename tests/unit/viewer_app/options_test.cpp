@@ -37,7 +37,7 @@ TEST(Options, ANameOfOnesOwnAndTheRoleOfAnOperator) {
     for (const char* profile : {"lab", "classroom"}) {
         EXPECT_EQ(parse({"--profile", profile})->subscriber.role, topics::Viewer::VIEWER);
         EXPECT_EQ(parse({"--profile", profile, "--command", "accuracy fast"})->subscriber.role,
-                  topics::Viewer::OPERATOR);
+                  topics::Viewer::VIEWER);
         EXPECT_EQ(parse({"--profile", profile, "--role", "operator"})->subscriber.role,
                   topics::Viewer::OPERATOR);
     }

@@ -1,0 +1,35 @@
+// Lets so many messages into the log and counts the rest: anyone who can send a program packets could else
+// fill a disk. It is for one thread at a time.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+namespace bonemill {
+
+class LogLimit {
+  public:
+    // So many at once, and over a long time one every `every_ns`.
+    LogLimit(int at_once, int64_t every_ns) noexcept : most_(at_once), every_ns_(every_ns), left_(at_once) {}
+
+    // Returns how many messages were left out before this one, or -1: this one is left out as well.
+    int64_t ask(int64_t now_ns) noexcept {
+        left_ = std::min(most_, left_ + double(now_ns - last_ns_) / double(every_ns_));
+        last_ns_ = now_ns;
+        if (left_ < 1) {
+            ++left_out_;
+            return -1;
+        }
+        left_ -= 1;
+        return std::exchange(left_out_, 0);
+    }
+
+  private:
+    double most_;
+    int64_t every_ns_;
+    double left_;
+    int64_t left_out_ = 0, last_ns_ = 0;
+};
+
+}  // namespace bonemill
