@@ -21,6 +21,7 @@ class SceneChecker {
 
     void checkValues(const Message& message, const std::string& prefix, std::string_view outer_unit);
     void checkVolume(const scene::Scene& scene) const;
+    void checkAccuracy(const scene::Accuracy& accuracy) const;
     void checkTools(const scene::Scene& scene) const;
     void checkTool(const scene::Tool& tool, const std::string& path) const;
     void checkWaypoints(const scene::SimulatedOperator& simulated_operator) const;
@@ -142,6 +143,15 @@ void SceneChecker::checkVolume(const scene::Scene& scene) const {
         refuse("volume.iso_value", iso + " is above window_high = " + numberText(volume.window_high()));
 }
 
+void SceneChecker::checkAccuracy(const scene::Accuracy& accuracy) const {
+    constexpr double kFinestSpacing_um = 1;
+    const double spacing_um = accuracy.sample_spacing_um();
+    if (spacing_um > 0 && spacing_um < kFinestSpacing_um)
+        refuse("accuracy.sample_spacing_um",
+               "= " + numberText(spacing_um) + " is finer than " + numberText(kFinestSpacing_um) +
+                   " (µm): give that or more, or 0 for one sample per contact point");
+}
+
 void SceneChecker::checkTools(const scene::Scene& scene) const {
     const auto pathOf = [](int index) { return "tool[" + std::to_string(index) + "]"; };
     if (scene.tool_size() > kMostTools)
@@ -186,6 +196,7 @@ void checkScene(const ParsedScene& parsed, const std::string& name) {
     SceneChecker checker(parsed.lines, name);
     checker.checkValues(parsed.scene, "", {});
     checker.checkVolume(parsed.scene);
+    checker.checkAccuracy(parsed.scene.accuracy());
     checker.checkTools(parsed.scene);
     checker.checkWaypoints(parsed.scene.simulated_operator());
     const auto refuse = [&](const std::string& path, const std::string& why) { checker.refuse(path, why); };

@@ -83,7 +83,7 @@ void SurfacePieces::sort() noexcept {
 // Returns the first of the levels, from coarse to fine, at which the piece is too long.
 int SurfacePieces::levelToCut(const SurfacePiece& piece) const noexcept {
     const float times = piece.longest_squared * per_spacing_squared_;
-    if (times <= 1) return kFinished;
+    if (!(times > 1)) return kFinished;  // nor is a piece cut that has no length left
     const int level = std::min(std::ilogb(times), kLevels - 1);
     if (piece.level != PatchMemory::kNew && piece.level > level) return kFinished;
     const float enough = shortEnough(*tool_, piece.nearest);

@@ -110,6 +110,15 @@ TEST_F(SceneFile, valueOutsideItsRangeNamesFieldValueRangeAndUnit) {
               "s.textproto:1: field `device.p_WD_mm.z` = 1e+07 is outside -1000000 .. 1000000 (mm)");
 }
 
+TEST_F(SceneFile, samplesAreNotInfinitelyFine) {
+    const std::string path = "volume { path: 'v' }\naccuracy { sample_spacing_um: ";
+    for (const char* spacing : {"1e-14", "0.99"})
+        EXPECT_EQ(refusal(path + spacing + " }"),
+                  "s.textproto:2: field `accuracy.sample_spacing_um` = " + std::string(spacing) +
+                      " is finer than 1 (µm): give that or more, or 0 for one sample per contact point");
+    for (const char* spacing : {"0", "1"}) EXPECT_EQ(refusal(path + spacing + " }"), "accepted");
+}
+
 TEST_F(SceneFile, listElementsWithoutALineOfTheirOwnNameTheNearestLine) {
     EXPECT_EQ(
         refusal("volume { path: 'v' }\nsimulated_operator { waypoint: [ { time_s: 0 },\n { time_s: -5 } ] }"),

@@ -117,6 +117,16 @@ TEST(GradientContact, GatheringFindsAllThatAMotionCanTouch) {
     EXPECT_GT(near.evaluate<double>(tool, moved).contacts, 0u);
 }
 
+// Even one whose square is no float ends where the room for samples does.
+TEST(GradientContact, NoSpacingIsTooFine) {
+    const ContactScene scene(cubeGeometry(33, 0.25e-3), bumpyBody(), kBurrAndShaft);
+    const Pose X_VT{{4e-3, 4e-3, 4.8e-3}, expRotation({1.2, 0.1, 0})};
+    for (const double spacing : {1e-20, 1e-200}) {
+        const double force = scene.contactAt({}, {.sample_spacing = spacing}, X_VT).term.wrench.force.norm();
+        EXPECT_TRUE(force > 0 && std::isfinite(force)) << spacing;
+    }
+}
+
 // Whatever is skipped leaf by leaf and block by block, there are as many candidates as a test of
 // every point finds.
 TEST(GradientContact, CandidatesAreThePointsNearTheTool) {
