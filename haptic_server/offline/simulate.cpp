@@ -83,9 +83,8 @@ SimulateResult simulate(const SimulateOptions& options) {
     checkSpacing(rows, 1 / loaded.scene.loop().rate_hz(), options.trajectory);
     const size_t tool = options.tool.empty() ? 0 : toolIndexOf(toolNamesOf(loaded.scene), options.tool);
     requireWritable(options.save);
-    std::optional<TraceWriter> trace;
+    requireWritable(options.trace);
     const RecordedEffects recorded = recordedEffectsOf(loaded.scene.effects());
-    if (!options.trace.empty()) trace.emplace(options.trace, recorded);
     Simulation simulation = makeSimulation(loaded);
     for (const std::string& warning : simulation.warnings) spdlog::warn("{}", warning);
     BoneModel& bone = *simulation.bone;
@@ -99,6 +98,8 @@ SimulateResult simulate(const SimulateOptions& options) {
     HapticTick tick(simulation.tick, {bone}, {tools, accuracy});
     RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * double(kNsPerSecond))), recorded);
     StateHash hash;
+    std::optional<TraceWriter> trace;  // from here on nothing is refused that would cost the trace of before
+    if (!options.trace.empty()) trace.emplace(options.trace, recorded);
     runPath(tick, inputsOf(rows), [&](const TickRecord& record) {
         hash.addRecord(record, recorded);
         statistics.add(record);

@@ -6,10 +6,11 @@
 
 namespace bonemill {
 
-Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const std::string& trace_path,
-                   const RecordedEffects& recorded)
-    : ring_(ring), statistics_(period_ns, recorded), effects_(recorded) {
-    if (!trace_path.empty()) trace_.emplace(trace_path, recorded);
+Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded)
+    : ring_(ring), statistics_(period_ns, recorded), recorded_(recorded), effects_(recorded) {}
+
+void Recorder::openTrace(const std::string& path) {
+    if (!path.empty()) trace_.emplace(path, recorded_);
 }
 
 void Recorder::drain() {

@@ -26,11 +26,12 @@ struct LoopHealth {
 
 class Recorder {
   public:
-    // There is no trace if trace_path is empty. `recorded` says what the records hold of effects. Throws
-    // UserError when the trace cannot be created.
-    Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const std::string& trace_path,
-             const RecordedEffects& recorded = {});
+    // `recorded` says what the records hold of effects.
+    Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded = {});
 
+    // Before the first drain(), it begins a trace, which takes the place of the file that is there; an empty
+    // path is none. Throws UserError when it cannot be created.
+    void openTrace(const std::string& path);
     // The recorder thread takes what is in the ring, every few milliseconds.
     void drain();
     // Once the tick has ended this takes the rest and closes the trace. False: some of the trace is lost,
@@ -66,6 +67,7 @@ class Recorder {
 
     SpscRing<TickRecord>& ring_;
     RunStatistics statistics_;
+    RecordedEffects recorded_;
     std::optional<TraceWriter> trace_;
     LatencyHistogram window_;  // tick compute time in the second under way
     int64_t window_start_ns_ = 0;

@@ -76,7 +76,7 @@ class Server {
           cuts_(kRingCuts),
           io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), link_, ring_, cuts_),
           tick_(simulation_.tick, {*simulation_.bone, &history_}, {tools_, accuracy_}),
-          recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns, options.trace,
+          recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns,
                     recordedEffectsOf(loaded_.scene.effects())),
           publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
           bone_export_(history_, *simulation_.bone, options.export_dir),
@@ -95,6 +95,7 @@ class Server {
 
     int run() {
         startTick();
+        recorder_.openTrace(options_.trace);  // only now: a refused start leaves the trace of before
         std::jthread recorder([this](const std::stop_token& stop) {
             loop(stop, kRecordPeriod, [this] { recorder_.drain(); });
         });
@@ -312,6 +313,7 @@ class Server {
 }  // namespace
 
 int runServer(const ServerOptions& options) {
+    requireWritable(options.trace);
     requireWritable(options.report);
     requireWritable(options.save);
     dds::setNetwork(options.network);

@@ -162,6 +162,19 @@ TEST_F(BadInput, UnwritableOutputs) {
     refuse("--save-difference", "file.nii", ".nrrd");
 }
 
+TEST_F(BadInput, LeavesTheTraceOfBefore) {
+    writeFile(folder_ / "old.csv", "old");
+    const std::string gone = sceneOf("volume { path: \"gone.nrrd\" }");
+    expectRefused({"haptic_server", "simulate", "--scene", gone, "--trajectory", folder_ / "t.csv", "--trace",
+                   folder_ / "old.csv"},
+                  {"gone.nrrd"});
+    EXPECT_EQ(test::readFile(folder_ / "old.csv"), "old");
+    expectRefused({"haptic_server", "--scene", ball(), "--session", "941", "--best-effort-rt", "--trace",
+                   folder_ / "old.csv", "--export-dir", folder_ / "none"},
+                  {"no such folder"});
+    EXPECT_EQ(test::readFile(folder_ / "old.csv"), "old");
+}
+
 TEST_F(BadInput, WrongArguments) {
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{"haptic_server", "--wrong"},

@@ -34,7 +34,8 @@ class RecorderTest : public testing::Test {
 };
 
 TEST_F(RecorderTest, ATraceWithAllTicksIsWhole) {
-    Recorder recorder(ring_, kPeriodNs, trace_);
+    Recorder recorder(ring_, kPeriodNs);
+    recorder.openTrace(trace_);
     pushTicks(4);
     recorder.drain();
     pushTicks(4);
@@ -44,7 +45,7 @@ TEST_F(RecorderTest, ATraceWithAllTicksIsWhole) {
 }
 
 TEST_F(RecorderTest, EachChangeOfTheDeviceIsGivenOnce) {
-    Recorder recorder(ring_, kPeriodNs, "");
+    Recorder recorder(ring_, kPeriodNs);
     const auto push = [&](SafetyState state) {
         TickRecord record{};
         record.tick = tick_++;
@@ -62,7 +63,8 @@ TEST_F(RecorderTest, EachChangeOfTheDeviceIsGivenOnce) {
 }
 
 TEST_F(RecorderTest, ATraceThatLacksTicksIsNotWhole) {
-    Recorder recorder(ring_, kPeriodNs, trace_);
+    Recorder recorder(ring_, kPeriodNs);
+    recorder.openTrace(trace_);
     pushTicks(7);  // the ring has room for four
     recorder.drain();
     pushTicks(2);
@@ -72,14 +74,15 @@ TEST_F(RecorderTest, ATraceThatLacksTicksIsNotWhole) {
 }
 
 TEST_F(RecorderTest, ATraceOnAFullDiskIsNotWhole) {
-    Recorder recorder(ring_, kPeriodNs, "/dev/full");
+    Recorder recorder(ring_, kPeriodNs);
+    recorder.openTrace("/dev/full");
     pushTicks(1);
     EXPECT_FALSE(recorder.finish());
     EXPECT_EQ(recorder.statistics().lostRecords(), 0u);
 }
 
 TEST_F(RecorderTest, WithoutATraceNothingOfItIsLost) {
-    Recorder recorder(ring_, kPeriodNs, "");
+    Recorder recorder(ring_, kPeriodNs);
     pushTicks(7);
     EXPECT_TRUE(recorder.finish());
     EXPECT_EQ(recorder.statistics().lostRecords(), 3u);

@@ -11,7 +11,7 @@ class SessionCommandsTest : public testing::Test {
   protected:
     SessionCommandsTest()
         : ring_(16),
-          recorder_(ring_, 1'000'000, ""),
+          recorder_(ring_, 1'000'000),
           tool_(test::sphereToolModel(1e-3, 0.2e-3)),
           accuracy_(presetSettings(Preset::kBalanced)),
           tools_(std::vector<SpoTool>{{&tool_, {.radius = 1e-3}, 5}}, 0),

@@ -137,7 +137,7 @@ TEST(ShownEffects, TheStatusSaysHowCarefulTheSessionWas) {
 // Ticks come faster than tool states: none of their events may get lost, and no volume.
 TEST(Recorder, EventsAndVolumeOfAllTicksReachTheNextToolState) {
     SpscRing<TickRecord> ring(64);
-    Recorder recorder(ring, 1'000'000, "", {.burr = true, .protection = true});
+    Recorder recorder(ring, 1'000'000, {.burr = true, .protection = true});
     EXPECT_FALSE(recorder.takeSince());
     const auto tick = [&](uint64_t number, uint32_t events, double removed) {
         TickRecord record{};
