@@ -65,4 +65,15 @@ fs::path resolvePath(const LoadedScene& loaded, const std::string& path_in_scene
     return (loaded.directory / path_in_scene).lexically_normal();
 }
 
+std::vector<NamedFile> filesOf(const LoadedScene& loaded) {
+    std::vector<NamedFile> files{{"the scene", loaded.file}};
+    const auto add = [&](const std::string& field, const std::string& path) {
+        if (!path.empty()) files.push_back({"the scene's " + field, resolvePath(loaded, path)});
+    };
+    add("volume.path", loaded.scene.volume().path());
+    add("volume.label_path", loaded.scene.volume().label_path());
+    for (const scene::Tool& tool : loaded.scene.tool()) add("tool.mesh_path", tool.mesh_path());
+    return files;
+}
+
 }  // namespace bonemill

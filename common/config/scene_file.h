@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "common/config/scene_text.h"
+#include "common/require_apart.h"
 
 namespace bonemill {
 
@@ -27,5 +29,8 @@ uint64_t sceneHashOf(const scene::Scene& scene);
 // A path written in the scene points there: absolute paths stay, relative ones start at the
 // scene file's folder.
 std::filesystem::path resolvePath(const LoadedScene& loaded, const std::string& path_in_scene);
+
+// They are the scene itself and all that it names: whoever writes must spare them (requireApart()).
+std::vector<NamedFile> filesOf(const LoadedScene& loaded);
 
 }  // namespace bonemill

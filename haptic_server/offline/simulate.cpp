@@ -75,10 +75,18 @@ nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
             {"state_hash", hexText(hash.value())}};
 }
 
+void requireApart(const SimulateOptions& options, const LoadedScene& loaded) {
+    std::vector<NamedFile> written = filesOf(options.save), read = filesOf(loaded);
+    written.push_back({"--trace", options.trace});
+    read.push_back({"--trajectory", options.trajectory});
+    requireApart(written, read);
+}
+
 }  // namespace
 
 SimulateResult simulate(const SimulateOptions& options) {
     const LoadedScene loaded = loadScene(options.scene);
+    requireApart(options, loaded);
     const std::vector<TrajectoryRow> rows = readTrajectory(options.trajectory);
     checkSpacing(rows, 1 / loaded.scene.loop().rate_hz(), options.trajectory);
     const size_t tool = options.tool.empty() ? 0 : toolIndexOf(toolNamesOf(loaded.scene), options.tool);

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 
+#include "common/require_apart.h"
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/phantom/number_range.h"
@@ -28,6 +29,7 @@ struct VertebraArguments {
 };
 
 void makeVertebra(const VertebraArguments& arguments) {
+    requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
     const VertebraScan scan = scanVertebra(vertebraGrid(arguments.voxel_mm * kMillimetre));
     const std::vector<int16_t> hu = scan.ct.values.visit(
         [](const auto& samples) { return std::vector<int16_t>(samples.begin(), samples.end()); });
@@ -40,6 +42,7 @@ struct SkullArguments {
 };
 
 void makeSkullLabels(const SkullArguments& arguments) {
+    requireApart({{"--out", arguments.file}}, {{"--volume", arguments.volume}});
     const VolumeGeometry geometry = importVolume(arguments.volume).geometry;
     if (geometry.dims != kCraniumDims)
         throw UserError(

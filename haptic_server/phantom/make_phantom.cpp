@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "common/require_apart.h"
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/phantom/analytic_body.h"
@@ -111,6 +112,7 @@ BlockPhantom blockOf(const BlockArguments& arguments) {
 
 void makeBlock(const BlockArguments& arguments) {
     const BlockPhantom block = blockOf(arguments);
+    requireApart({{"--out", arguments.file}, {"--labels", arguments.labels}}, {});
     const VolumeGeometry grid = block.grid();
     writeGrid<int16_t>(arguments.file, grid,
                        [&](const Eigen::Vector3d& p_W) { return std::lround(block.hu(p_W)); });

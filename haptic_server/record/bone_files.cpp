@@ -31,6 +31,12 @@ void requireEnding(const std::string& path, std::initializer_list<const char*> e
 
 }  // namespace
 
+std::vector<NamedFile> filesOf(const SavePaths& paths) {
+    return {{"--save-volume", paths.volume},
+            {"--save-mesh", paths.mesh},
+            {"--save-difference", paths.difference}};
+}
+
 void requireWritable(const std::string& path) {
     if (path.empty()) return;
     requireNoPipe(path);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/require_apart.h"
 #include "haptic_server/mesh/mesh_check.h"
 #include "haptic_server/volume/leaf_lattice.h"
 #include "haptic_server/volume/voxel_volume.h"
@@ -17,6 +18,9 @@ struct SavePaths {
     std::string mesh;        // .stl or .ply
     std::string difference;  // .nrrd
 };
+
+// With the options that name them.
+std::vector<NamedFile> filesOf(const SavePaths& paths);
 
 // Called before a run, it throws UserError if the file could not be written after it; an empty path is fine.
 // It leaves things as they are.

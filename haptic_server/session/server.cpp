@@ -55,17 +55,33 @@ DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& l
     return config;
 }
 
-AccuracyFigures figuresOf(const ServerOptions& options) {
-    if (!options.accuracy.empty()) return readAccuracyFigures(options.accuracy);
+std::string accuracyFileOf(const ServerOptions& options) {
+    if (!options.accuracy.empty()) return options.accuracy;
     const std::string beside = accuracyFiguresOf(options.scene);
-    return std::filesystem::exists(beside) ? readAccuracyFigures(beside) : AccuracyFigures{};
+    return std::filesystem::exists(beside) ? beside : "";
+}
+
+AccuracyFigures figuresOf(const ServerOptions& options) {
+    const std::string file = accuracyFileOf(options);
+    return file.empty() ? AccuracyFigures{} : readAccuracyFigures(file);
+}
+
+// Loads the scene, which the files that the session writes must spare with all that it names.
+LoadedScene loadSceneOf(const ServerOptions& options) {
+    LoadedScene loaded = loadScene(options.scene);
+    std::vector<NamedFile> written = filesOf(options.save), read = filesOf(loaded);
+    written.push_back({"--trace", options.trace});
+    written.push_back({"--report", options.report});
+    read.push_back({"--accuracy", accuracyFileOf(options)});
+    requireApart(written, read);
+    return loaded;
 }
 
 class Server {
   public:
     explicit Server(const ServerOptions& options)
         : options_(options),
-          loaded_(loadScene(options.scene)),
+          loaded_(loadSceneOf(options)),
           simulation_(
               makeSimulation(loaded_)),  // forks to read the volume: before stop_signals_, link, threads
           link_(DeviceLink::create(options.session, LinkSide::kServer, sceneHashOf(loaded_.scene))),

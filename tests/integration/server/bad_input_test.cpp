@@ -162,6 +162,36 @@ TEST_F(BadInput, UnwritableOutputs) {
     refuse("--save-difference", "file.nii", ".nrrd");
 }
 
+TEST_F(BadInput, WritingOverWhatIsReadOrWritten) {
+    const std::string scene = ball(), path = folder_ / "t.csv", volume = folder_ / "ball.nrrd";
+    const std::string before = test::readFile(volume);
+    std::filesystem::create_symlink("t.csv", folder_ / "link.csv");
+    std::filesystem::create_hard_link(volume, folder_ / "hard.nrrd");
+    const auto refuse = [&](std::vector<std::string> more, const std::vector<std::string>& words) {
+        more.insert(more.begin(), {"haptic_server", "simulate", "--scene", scene, "--trajectory", path});
+        expectRefused(more, words);
+    };
+    refuse({"--trace", path}, {"--trace", "--trajectory", "another file"});
+    refuse({"--trace", folder_ / "link.csv"}, {"link.csv", "--trajectory"});
+    refuse({"--trace", scene}, {"--trace", "the scene"});
+    refuse({"--save-volume", volume}, {"--save-volume", "volume.path"});
+    refuse({"--save-difference", folder_ / "hard.nrrd"}, {"hard.nrrd", "volume.path"});
+    refuse({"--save-volume", folder_ / "a.nrrd", "--save-difference", folder_ / "./a.nrrd"},
+           {"--save-difference", "--save-volume"});
+    expectRefused({"haptic_server", "--scene", scene, "--session", "941", "--report", scene},
+                  {"--report", "the scene"});
+    expectRefused({"make_phantom", "block", "--out", folder_ / "a.nrrd", "--labels", folder_ / "a.nrrd"},
+                  {"--labels", "--out"});
+    EXPECT_EQ(test::readFile(volume), before);
+    EXPECT_NE(test::readFile(path), "");
+    EXPECT_NE(test::readFile(scene), "");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a.nrrd"));
+    const auto finished = run({"haptic_server", "simulate", "--scene", scene, "--trajectory", path, "--trace",
+                               "/dev/null", "--save-volume", folder_ / "a.nrrd", "--save-mesh",
+                               folder_ / "a.ply", "--save-difference", folder_ / "b.nrrd"});
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+}
+
 TEST_F(BadInput, LeavesTheTraceOfBefore) {
     writeFile(folder_ / "old.csv", "old");
     const std::string gone = sceneOf("volume { path: \"gone.nrrd\" }");
