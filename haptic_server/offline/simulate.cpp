@@ -90,7 +90,7 @@ SimulateResult simulate(const SimulateOptions& options) {
     const std::vector<TrajectoryRow> rows = readTrajectory(options.trajectory);
     checkSpacing(rows, 1 / loaded.scene.loop().rate_hz(), options.trajectory);
     const size_t tool = options.tool.empty() ? 0 : toolIndexOf(toolNamesOf(loaded.scene), options.tool);
-    requireWritable(options.save);
+    requireReplaceable(options.save);
     requireWritable(options.trace);
     const RecordedEffects recorded = recordedEffectsOf(loaded.scene.effects());
     Simulation simulation = makeSimulation(loaded);
@@ -121,9 +121,11 @@ SimulateResult simulate(const SimulateOptions& options) {
     const std::vector<NodeMesh> meshes = meshWholeBone(bone.volume, bone.lattice);
     const MeshCheck mesh = checkMesh(meshes, grid);
     const SavePaths& save = options.save;
-    files.write(save.volume, [&] { writeNrrd(save.volume, bone.volume); });
-    files.write(save.mesh, [&] { saveMesh(save.mesh, bone.volume, bone.lattice, meshes); });
-    files.write(save.difference, [&] { saveDifference(save.difference, *before, bone.volume); });
+    files.write(save.volume, [&](const std::string& path) { writeNrrd(path, bone.volume); });
+    files.write(save.mesh,
+                [&](const std::string& path) { saveMesh(path, bone.volume, bone.lattice, meshes); });
+    files.write(save.difference,
+                [&](const std::string& path) { saveDifference(path, *before, bone.volume); });
     nlohmann::json json = totals(statistics, hash);
     for (const auto& [key, value] : statistics.effects().figures()) json[key] = value;
     if (recorded.any()) json["warnings"] = statistics.effects().warnings(materialNamesOf(loaded.scene));

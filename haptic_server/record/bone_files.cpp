@@ -7,6 +7,7 @@
 
 #include "common/require_file.h"
 #include "common/user_error.h"
+#include "common/whole_file.h"
 #include "haptic_server/mesh/mesher.h"
 #include "haptic_server/mesh/ply.h"
 #include "haptic_server/mesh/stl.h"
@@ -46,11 +47,16 @@ void requireWritable(const std::string& path) {
     if (is_new) std::filesystem::remove(path);
 }
 
-void requireWritable(const SavePaths& paths) {
+void requireReplaceable(const std::string& path) {
+    requireWritable(path);
+    if (!path.empty()) WholeFile{path};
+}
+
+void requireReplaceable(const SavePaths& paths) {
     requireEnding(paths.mesh, {".stl", ".ply"}, "a surface is saved as .stl or .ply; name one of them");
     for (const std::string& path : {paths.volume, paths.difference})
         requireEnding(path, {".nrrd"}, "volumes are saved as .nrrd; name it so");
-    for (const std::string& path : {paths.volume, paths.mesh, paths.difference}) requireWritable(path);
+    for (const std::string& path : {paths.volume, paths.mesh, paths.difference}) requireReplaceable(path);
 }
 
 std::vector<NodeMesh> meshWholeBone(const VoxelVolume& volume, const LeafLattice& lattice) {

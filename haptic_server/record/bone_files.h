@@ -25,8 +25,10 @@ std::vector<NamedFile> filesOf(const SavePaths& paths);
 // Called before a run, it throws UserError if the file could not be written after it; an empty path is fine.
 // It leaves things as they are.
 void requireWritable(const std::string& path);
-// Does the same for all of them, and also throws if a name says another format.
-void requireWritable(const SavePaths& paths);
+// Does the same for what is written beside its place first (common/whole_file.h).
+void requireReplaceable(const std::string& path);
+// Does that for all of them, and also throws if a name says another format.
+void requireReplaceable(const SavePaths& paths);
 
 std::vector<NodeMesh> meshWholeBone(const VoxelVolume& volume, const LeafLattice& lattice);
 

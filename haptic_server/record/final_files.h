@@ -1,5 +1,5 @@
-// A run writes its files at its end with this, each on its own: one that fails must not cost the others.
-// One normal thread.
+// A run writes its files at its end with this, each on its own: one that fails must not cost the others, nor
+// the file of that name which was there before. One normal thread.
 #pragma once
 
 #include <exception>
@@ -7,16 +7,21 @@
 #include <utility>
 #include <vector>
 
+#include "common/whole_file.h"
+
 namespace bonemill {
 
 class FinalFiles {
   public:
-    // Calls write_file() unless the path is empty, and notes what it throws.
+    // Calls write_file(where) unless the path is empty, and notes what it throws; what it writes there gets
+    // the path.
     template <class WriteFile>
     void write(const std::string& path, WriteFile&& write_file) {
         if (path.empty()) return;
         try {
-            write_file();
+            WholeFile file(path);
+            write_file(file.part());
+            file.finish();
         } catch (const std::exception& error) {
             note(error.what());
         }

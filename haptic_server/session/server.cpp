@@ -266,11 +266,15 @@ class Server {
         const VoxelVolume& volume = simulation_.bone->volume;
         const LeafLattice& lattice = simulation_.bone->lattice;
         const SavePaths& save = options_.save;
-        files.write(save.volume, [&] { writeNrrd(save.volume, volume); });
-        files.write(save.mesh, [&] { saveMesh(save.mesh, volume, lattice, meshWholeBone(volume, lattice)); });
-        files.write(save.difference, [&] { saveDifference(save.difference, history_.scanned(), volume); });
-        files.write(options_.report,
-                    [&] { statistics.writeJson(options_.report, materialNamesOf(loaded_.scene)); });
+        files.write(save.volume, [&](const std::string& path) { writeNrrd(path, volume); });
+        files.write(save.mesh, [&](const std::string& path) {
+            saveMesh(path, volume, lattice, meshWholeBone(volume, lattice));
+        });
+        files.write(save.difference,
+                    [&](const std::string& path) { saveDifference(path, history_.scanned(), volume); });
+        files.write(options_.report, [&](const std::string& path) {
+            statistics.writeJson(path, materialNamesOf(loaded_.scene));
+        });
         for (const std::string& problem : files.problems()) spdlog::error("{}", problem);
         return files.problems().empty() && !has_failed_ ? 0 : 1;
     }
@@ -330,8 +334,8 @@ class Server {
 
 int runServer(const ServerOptions& options) {
     requireWritable(options.trace);
-    requireWritable(options.report);
-    requireWritable(options.save);
+    requireReplaceable(options.report);
+    requireReplaceable(options.save);
     dds::setNetwork(options.network);
     return Server(options).run();
 }

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <vector>
 
 #include "common/user_error.h"
+#include "common/whole_file.h"
 #include "haptic_server/record/bone_files.h"
 #include "haptic_server/session/repeated_text.h"
 #include "haptic_server/volume/import/nrrd_writer.h"
@@ -20,7 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr size_t kLongestName = 64;
 constexpr const char* kProbe = ".bonemill_export";
-constexpr const char* kPart = ".part_";  // no name of a result begins like that
 
 bool isName(const std::string& name) {
     const auto is_allowed = [](char c) {
@@ -42,32 +43,28 @@ struct Files {
     std::vector<fs::path> all() const { return {stl, ply, volume, difference}; }
 };
 
-// What is half written never has the name of a result.
+// All of them get their names, or none.
 class Writing {
   public:
     ~Writing() {
         std::error_code ignored;
-        for (const auto& [part, path] : parts_) fs::remove(part, ignored);
-        for (const fs::path& path : renamed_) fs::remove(path, ignored);
+        for (const fs::path& path : finished_) fs::remove(path, ignored);
     }
     void write(const fs::path& path, const std::function<void(const std::string&)>& save) {
-        fs::path part = path;
-        part.replace_filename(kPart + path.filename().string());
-        parts_.emplace_back(part, path);
-        save(part.string());
+        files_.emplace_back(path);
+        save(files_.back().part());
     }
     void finish() {
-        for (const auto& [part, path] : parts_) {
-            fs::rename(part, path);
-            renamed_.push_back(path);
+        for (WholeFile& file : files_) {
+            file.finish();
+            finished_.push_back(file.path());
         }
-        parts_.clear();
-        renamed_.clear();
+        finished_.clear();
     }
 
   private:
-    std::vector<std::pair<fs::path, fs::path>> parts_;
-    std::vector<fs::path> renamed_;  // while others are not
+    std::deque<WholeFile> files_;
+    std::vector<fs::path> finished_;  // while others are not
 };
 
 void writeAll(const Files& files, const VoxelVolume& volume, const VoxelVolume& scanned,

@@ -2,9 +2,8 @@
 
 #include <png.h>
 
-#include <system_error>
-
 #include "common/user_error.h"
+#include "common/whole_file.h"
 
 namespace bonemill {
 
@@ -14,16 +13,10 @@ void writePng(const Picture& picture, const std::filesystem::path& path) {
     header.width = png_uint_32(picture.width());
     header.height = png_uint_32(picture.height());
     header.format = PNG_FORMAT_RGB;
-    std::filesystem::path unfinished = path;
-    unfinished += ".part";
-    if (!png_image_write_to_file(&header, unfinished.c_str(), 0, picture.row(0), 0, nullptr)) {
-        std::error_code ignored;
-        std::filesystem::remove(unfinished, ignored);
+    WholeFile file(path);
+    if (!png_image_write_to_file(&header, file.part().c_str(), 0, picture.row(0), 0, nullptr))
         throw UserError("cannot write " + path.string() + ": " + header.message);
-    }
-    std::error_code failure;
-    std::filesystem::rename(unfinished, path, failure);
-    if (failure) throw UserError("cannot write " + path.string() + ": " + failure.message());
+    file.finish();
 }
 
 }  // namespace bonemill

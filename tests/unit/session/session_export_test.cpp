@@ -1,9 +1,12 @@
 #include "haptic_server/session/session_export.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "common/user_error.h"
@@ -134,16 +137,48 @@ TEST_F(SessionExportTest, WithoutAFolderEveryNameIsRefused) {
     EXPECT_THROW(SessionExport(ball_.history, ball_.bone, folder_ / "none"), UserError);
 }
 
+// No file of this process grows beyond so many bytes, as on a disk that is full.
+class FullDisk {
+  public:
+    explicit FullDisk(rlim_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FullDisk() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        signal(SIGXFSZ, handler_);
+    }
+
+  private:
+    rlimit before_{};
+    sighandler_t handler_;
+};
+
 TEST_F(SessionExportTest, AFullDiskFailsItAndLeavesNothing) {
     SessionExport bone_export(ball_.history, ball_.bone, folder_.path().string());
-    std::filesystem::create_symlink("/dev/full", folder_ / ".part_a.nrrd");
-    ASSERT_EQ(bone_export.begin("a"), std::nullopt);
-    const std::string answer = resultOf(bone_export);
-    EXPECT_EQ(answer.rfind("failed: ", 0), 0u) << answer;
-    EXPECT_NE(answer.find("part_a.nrrd"), std::string::npos) << answer;
+    {
+        const FullDisk full(1000);
+        ASSERT_EQ(bone_export.begin("a"), std::nullopt);
+        const std::string answer = resultOf(bone_export);
+        EXPECT_EQ(answer.rfind("failed: ", 0), 0u) << answer;
+        EXPECT_NE(answer.find("part_a.stl"), std::string::npos) << answer;
+    }
     EXPECT_TRUE(filesOf().empty());
     ASSERT_EQ(bone_export.begin("a"), std::nullopt);
     EXPECT_EQ(resultOf(bone_export), "done");
+}
+
+// Whoever may write into the folder leads no result over another file.
+TEST_F(SessionExportTest, APlantedLinkIsNotFollowed) {
+    SessionExport bone_export(ball_.history, ball_.bone, folder_.path().string());
+    const test::TemporaryFolder elsewhere;
+    std::ofstream(elsewhere / "mine") << "mine";
+    std::filesystem::create_symlink(elsewhere / "mine", folder_ / ".part_a.nrrd");
+    ASSERT_EQ(bone_export.begin("a"), std::nullopt);
+    EXPECT_EQ(resultOf(bone_export), "done");
+    EXPECT_EQ(std::filesystem::file_size(elsewhere / "mine"), 4u);
+    EXPECT_FALSE(std::filesystem::is_symlink(folder_ / "a.nrrd"));
 }
 
 TEST_F(SessionExportTest, ANameLikeThatOfAHalfWrittenFileIsSafe) {
@@ -157,12 +192,12 @@ TEST_F(SessionExportTest, ANameLikeThatOfAHalfWrittenFileIsSafe) {
 
 TEST(BoneFiles, AnEndingThatIsNoFormatIsRefusedBeforeTheRun) {
     const test::TemporaryFolder folder;
-    EXPECT_NO_THROW(requireWritable(SavePaths{folder / "a.nrrd", folder / "a.PLY", folder / "b.nrrd"}));
-    EXPECT_NO_THROW(requireWritable(SavePaths{"", folder / "a.stl", ""}));
-    EXPECT_THROW(requireWritable(SavePaths{"", folder / "a.obj", ""}), UserError);
-    EXPECT_THROW(requireWritable(SavePaths{folder / "a.nii", "", ""}), UserError);
-    EXPECT_THROW(requireWritable(SavePaths{"", "", folder / "a"}), UserError);
-    EXPECT_THROW(requireWritable(SavePaths{"", "", folder / "none/a.nrrd"}), UserError);
+    EXPECT_NO_THROW(requireReplaceable(SavePaths{folder / "a.nrrd", folder / "a.PLY", folder / "b.nrrd"}));
+    EXPECT_NO_THROW(requireReplaceable(SavePaths{"", folder / "a.stl", ""}));
+    EXPECT_THROW(requireReplaceable(SavePaths{"", folder / "a.obj", ""}), UserError);
+    EXPECT_THROW(requireReplaceable(SavePaths{folder / "a.nii", "", ""}), UserError);
+    EXPECT_THROW(requireReplaceable(SavePaths{"", "", folder / "a"}), UserError);
+    EXPECT_THROW(requireReplaceable(SavePaths{"", "", folder / "none/a.nrrd"}), UserError);
 }
 
 }  // namespace

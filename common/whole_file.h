@@ -1,0 +1,56 @@
+// A result that is whole or not there: it is written beside its place, as ".part_NAME", and takes the place
+// of the file of before when it is done. Links and devices are written to where they lead. It is not RT-safe.
+#pragma once
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string>
+
+#include "common/user_error.h"
+
+namespace bonemill {
+
+class WholeFile {
+  public:
+    // Makes the empty file to write to; what an earlier run left half written goes. Throws UserError.
+    explicit WholeFile(const std::filesystem::path& path) : path_(path), part_(path) {
+        std::error_code error;
+        const std::filesystem::file_status status = std::filesystem::symlink_status(path, error);
+        is_beside_ = !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
+        if (!is_beside_) return;
+        part_.replace_filename(".part_" + path.filename().string());
+        unlink(part_.c_str());
+        // Nobody else's file or link of that name is written to.
+        const int file = open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+        if (file < 0)
+            throw UserError(path.string() + ": cannot be written (" + part_.filename().string() + ": " +
+                            std::strerror(errno) + "); check that its folder exists and is yours");
+        close(file);
+    }
+    ~WholeFile() {
+        if (is_beside_ && !is_finished_) unlink(part_.c_str());
+    }
+    WholeFile(const WholeFile&) = delete;
+    WholeFile& operator=(const WholeFile&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+    // The content is to be written there, and closed, before finish().
+    std::string part() const { return part_.string(); }
+
+    // Throws std::filesystem::filesystem_error.
+    void finish() {
+        if (is_beside_) std::filesystem::rename(part_, path_);
+        is_finished_ = true;
+    }
+
+  private:
+    std::filesystem::path path_, part_;
+    bool is_beside_ = false;
+    bool is_finished_ = false;
+};
+
+}  // namespace bonemill
