@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "common/units.h"
+#include "common/user_error.h"
+
 namespace bonemill {
 namespace {
 
@@ -130,6 +133,7 @@ class FieldBuilder {
 
     std::unique_ptr<DistanceField> build(double reach, int64_t voxels_at_once) {
         const IndexBox box{marked_.min - halo_, marked_.max + halo_};
+        requireFew(box.count(), reach);
         auto field = std::make_unique<DistanceField>(box, spacing_, reach);
         const int layers = layersAtOnce(*field, voxels_at_once);
         for (int first = 0; first < field->layerCount(); first += layers)
@@ -138,15 +142,26 @@ class FieldBuilder {
     }
 
   private:
+    // Small voxels, far seen, would need the memory of many scans.
+    void requireFew(int64_t voxels, double reach) const {
+        constexpr int64_t kAlwaysFew = int64_t(1) << 27, kScans = 8;
+        if (voxels <= std::max(kAlwaysFew, kScans * properties_.dims().cast<int64_t>().prod())) return;
+        constexpr int64_t kMillion = 1'000'000;
+        throw UserError("protected structures: " + std::to_string(std::lround(reach * kPerMillimetre)) +
+                        " mm around them (distance and burr) are " + std::to_string(voxels / kMillion) +
+                        " million voxels; give effects.protected_structures.warning_distance_mm and "
+                        "effects.virtual_fixture.distance_mm less, or take a scan with larger voxels");
+    }
     MaterialId protectedAt(const Eigen::Vector3i& voxel) const {
         const MaterialId id = properties_.material(voxel);
         return materials_[id].is_protected ? id : kNoMaterial;
     }
+    // Halos make the work three times as much at most.
     int layersAtOnce(const DistanceField& field, int64_t voxels_at_once) const {
         const IndexBox one = field.layer(0);
         const int64_t slice = one.count() / (one.max.z() - one.min.z() + 1);
         const int64_t slices = voxels_at_once / slice - 2 * halo_.z();
-        return int(std::max<int64_t>(1, slices / BrickMap::kEdge));
+        return int(std::max<int64_t>(slices, halo_.z() + BrickMap::kEdge - 1) / BrickMap::kEdge);
     }
     void fill(DistanceField& field, int first, int count) {
         IndexBox box = field.layer(first);

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "common/user_error.h"
 #include "tests/support/test_bodies.h"
 
 namespace bonemill {
@@ -149,6 +150,14 @@ TEST(ProtectedDistance, slabsGiveTheSame) {
         ASSERT_EQ(whole->at(p).distance, slabs->at(p).distance);
         ASSERT_EQ(whole->at(p).nearest, slabs->at(p).nearest);
     });
+}
+
+TEST(ProtectedDistance, refusesAReachOfFarTooManyVoxels) {
+    const auto properties =
+        propertiesOf({16, 16, 16}, [](const Vector3i& v) { return MaterialId(v.x() == 8 ? 2 : 1); });
+    EXPECT_THROW(protectedDistance(properties, tableOf(1), Vector3d::Constant(0.125e-3), 52e-3), UserError);
+    EXPECT_THROW(protectedDistance(properties, tableOf(1), Vector3d::Constant(1e-6), 52e-3), UserError);
+    EXPECT_TRUE(protectedDistance(properties, tableOf(1), Vector3d::Constant(1e-3), 52e-3));
 }
 
 TEST(ProtectedDistance, isNullWithoutProtectedVoxels) {
