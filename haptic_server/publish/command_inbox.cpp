@@ -1,5 +1,7 @@
 #include "haptic_server/publish/command_inbox.h"
 
+#include <google/protobuf/stubs/logging.h>
+
 #include <algorithm>
 
 namespace bonemill {
@@ -11,6 +13,7 @@ constexpr size_t kMaxSenders = 1024;
 constexpr size_t kLongestPayload = 4096;
 
 bool parse(std::span<const uint8_t> payload, topics::Command& command) {
+    const google::protobuf::LogSilencer silencer;  // malformed commands are counted, not logged one by one
     if (payload.size() > kLongestPayload) return false;
     return command.ParseFromArray(payload.data(), static_cast<int>(payload.size()));
 }

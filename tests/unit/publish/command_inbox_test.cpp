@@ -108,6 +108,20 @@ TEST_F(CommandInboxTest, LongPayloadsAreMalformed) {
     EXPECT_EQ(inbox_.malformedCount(), 2u);
 }
 
+// A hostile sender must not fill the log: who takes commands says so once.
+TEST_F(CommandInboxTest, MalformedTextsAreNotLogged) {
+    topics::Command command;
+    command.set_sender(7);
+    command.set_sequence(1);
+    command.set_export_("name");
+    std::string bytes = command.SerializeAsString();
+    bytes.replace(bytes.find("name"), 4, "\xff\xfe\xff\xfe");
+    testing::internal::CaptureStderr();
+    for (int n = 0; n < 3; ++n) EXPECT_FALSE(receiveBytes(7, bytes).command);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(inbox_.malformedCount(), 3u);
+}
+
 TEST_F(CommandInboxTest, StillKnowsABusySenderAfterAFloodOfInventedOnes) {
     for (uint64_t invented = 1000; invented < 6000; ++invented) {
         const auto decision = receive(7, resetCommand(7, 1));
