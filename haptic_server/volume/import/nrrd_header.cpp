@@ -42,6 +42,18 @@ double mmPerUnit(const std::string& units, const std::filesystem::path& path) {
     throw UserError(path.string() + ": space units \"" + unit + "\" are not known; use mm, cm, m or um");
 }
 
+// The library takes vectors whose length is no number for 1 mm.
+void checkDirections(std::string text, const std::filesystem::path& path) {
+    constexpr double kFarTooLong = 1e100;
+    for (char& c : text)
+        if (c == '(' || c == ',' || c == ')') c = ' ';
+    std::istringstream words(text);
+    for (std::string word; words >> word;)
+        if (std::abs(std::strtod(word.c_str(), nullptr)) > kFarTooLong)
+            throw UserError(path.string() +
+                            ": the voxel spacing is not a sensible length; the header is damaged");
+}
+
 }  // namespace
 
 NrrdHeader readNrrdHeader(const std::filesystem::path& path) {
@@ -66,6 +78,7 @@ NrrdHeader readNrrdHeader(const std::filesystem::path& path) {
         const std::string name = fieldName(line.substr(0, colon)), value = trimmed(line.substr(colon + 1));
         if (name == "encoding") header.encoding = fieldName(value);
         if (name == "datafile") header.data_file = value;
+        if (name == "spacedirections") checkDirections(value, path);
         if (name == "spaceunits" || name == "units") header.mm_per_unit = mmPerUnit(value, path);
     }
     return header;

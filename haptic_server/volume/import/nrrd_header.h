@@ -18,7 +18,7 @@ struct NrrdHeader {
     std::optional<VolumeGeometry> exact_geometry;  // from nrrd_writer.h
 };
 
-// Reads at most 1 MiB. Throws UserError when it is no NRRD file or its units are not lengths.
+// Reads at most 1 MiB. Throws UserError when it is no NRRD file, or its units or directions are not lengths.
 NrrdHeader readNrrdHeader(const std::filesystem::path& path);
 
 inline constexpr const char* kNrrdGeometryKey = "bonemill geometry";

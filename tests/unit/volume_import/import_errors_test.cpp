@@ -120,5 +120,17 @@ TEST_F(ImportErrors, zeroSpacingIsRefused) {
     expectRefused("a.mha", nan, {"a.mha"});
 }
 
+TEST_F(ImportErrors, voxelsBeyondAllBoundsAreRefused) {
+    const std::string nrrd = sampleBytes("a.nrrd");
+    const size_t begin = nrrd.find("space directions:"), end = nrrd.find('\n', begin);
+    ASSERT_NE(end, std::string::npos);
+    for (const char* length : {"1e300", "-1e300", "inf", "1e100", "1e5", "1e-7", "0"})
+        expectRefused(
+            "a.nrrd",
+            std::string(nrrd).replace(begin, end - begin,
+                                      "space directions: (" + std::string(length) + ",0,0) (0,1,0) (0,0,1)"),
+            {"a.nrrd"});
+}
+
 }  // namespace
 }  // namespace bonemill
