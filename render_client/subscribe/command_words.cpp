@@ -92,6 +92,10 @@ std::string knownCommands() {
 }  // namespace
 
 std::string commandProblem(const std::string& text) {
+    constexpr size_t kLongest = 1024;  // a server drops what has more than 4 KiB without an answer
+    if (text.size() > kLongest)
+        return "a command of " + std::to_string(text.size()) + " letters is too long; " +
+               std::to_string(kLongest) + " at most";
     const auto [action, argument] = split(text);
     const CommandWord* const known = find(action);
     if (!known) return "'" + text + "' is no command; there are: " + knownCommands();

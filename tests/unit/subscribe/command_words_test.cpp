@@ -53,6 +53,7 @@ TEST_F(CommandWords, WhatIsNoCommandIsRefusedWithoutAServer) {
         EXPECT_NE(commandProblem(text), "") << text;
         EXPECT_THROW(of(text), UserError) << text;
     }
+    EXPECT_NE(commandProblem("export " + std::string(5000, 'a')), "");
     for (const char* text : {"tool anything at all", "restore last", "restore 12", "accuracy best"})
         EXPECT_EQ(commandProblem(text), "") << text;
 }
