@@ -82,7 +82,7 @@ BlockLayer layerOf(const std::string& text, bool is_last) {
     BlockLayer layer{};
     const bool is_read = CLI::detail::lexical_cast(thickness, layer.thickness) &&
                          CLI::detail::lexical_cast(hu, layer.hu) && std::isfinite(layer.thickness);
-    if (!is_read || !(layer.hu >= -1024 && layer.hu <= 30000))
+    if (!is_read || layer.thickness < 0 || !(layer.hu >= -1024 && layer.hu <= 30000))
         throw UserError("--layers " + text +
                         ": no layer; write THICKNESS_MM:HU, and HU alone for the last one");
     if (!is_last && !(layer.thickness > 0))

@@ -205,6 +205,12 @@ TEST_F(BadInput, LeavesTheTraceOfBefore) {
     EXPECT_EQ(test::readFile(folder_ / "old.csv"), "old");
 }
 
+TEST_F(BadInput, LayersThatAreNone) {
+    for (const char* layer : {"-1:5", "nan:5", "1:x", "5000000"})
+        expectRefused({"make_phantom", "block", "--out", folder_ / "x.nrrd", "--layers", layer},
+                      {"--layers", layer});
+}
+
 TEST_F(BadInput, WrongArguments) {
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{"haptic_server", "--wrong"},
