@@ -132,12 +132,20 @@ void mapRawValues(EffectConfigs& configs, const LoadedScene& loaded, const Densi
     const scene::EnergyRemoval& removal = loaded.scene.effects().energy_removal();
     if (!configs.energy_removal || !removal.has_reference_value()) return;
     const double share = (removal.reference_value() - mapping.low) / (mapping.high - mapping.low);
-    const std::string path = "effects.energy_removal.reference_value";
-    if (!(share > 0))
+    const auto refuse = [&](const std::string& why) {
+        const std::string path = "effects.energy_removal.reference_value";
         throw UserError(placeOf(loaded.file.string(), loaded.lines, path) + "field `" + path +
-                        "` = " + numberText(removal.reference_value()) +
-                        " is not above the lower end of the window, " + numberText(mapping.low) +
-                        ", which is no bone at all");
+                        "` = " + numberText(removal.reference_value()) + why);
+    };
+    if (!(share > 0))
+        refuse(" is not above the lower end of the window, " + numberText(mapping.low) +
+               ", which is no bone at all");
+    constexpr double kMostTimes = 1e6;
+    const double times = std::pow(share, -removal.density_exponent());
+    if (!(times <= kMostTimes && times >= 1 / kMostTimes))
+        refuse(" lets bone of the window's upper end, " + numberText(mapping.high) + ", take " +
+               numberText(times) +
+               " times its energy; give a value nearer to that, or a lower density_exponent");
     configs.energy_removal->reference_density = share * kMaxDensity;
 }
 

@@ -1,6 +1,7 @@
 // Reads what a scene says of a driven burr, in SI.
 #include <gtest/gtest.h>
 
+#include "common/user_error.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "tests/support/typical_effects.h"
 
@@ -43,6 +44,25 @@ TEST(SceneEffects, EnergyOfBoneRisesWithItsDensityUnlessTheSceneSaysOtherwise) {
     EXPECT_EQ(removal.reference_density, test::kEnergyRemoval.reference_density);
     EXPECT_EQ(removal.density_exponent, 1.5);
     EXPECT_EQ(removal.diamond_energy_factor, test::kEnergyRemoval.diamond_energy_factor);
+}
+
+TEST(SceneEffects, EnergiesThatNoBoneHasAreRefused) {
+    LoadedScene loaded;
+    scene::EnergyRemoval& removal = *loaded.scene.mutable_effects()->mutable_energy_removal();
+    const DensityMapping mapping{.low = 0, .high = 2000};
+    const auto densityOf = [&](double reference_value, double exponent) {
+        removal.set_reference_value(reference_value);
+        removal.set_density_exponent(exponent);
+        EffectConfigs configs = effectConfigsOf(loaded.scene);
+        mapRawValues(configs, loaded, mapping);
+        return configs.energy_removal->reference_density;
+    };
+    EXPECT_DOUBLE_EQ(densityOf(1000, 4), kMaxDensity / 2.0);
+    EXPECT_NO_THROW(densityOf(1e-300, 0));
+    EXPECT_THROW(densityOf(1e-300, 4), UserError);
+    EXPECT_THROW(densityOf(1, 2), UserError);
+    EXPECT_THROW(densityOf(1e6, 4), UserError);
+    EXPECT_THROW(densityOf(0, 1), UserError);
 }
 
 TEST(SceneEffects, RecordWhatTheyDeclare) {
