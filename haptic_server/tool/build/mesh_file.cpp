@@ -81,6 +81,16 @@ void keepOnlyLoader(Assimp::Importer& importer, const std::string& extension) {
     }
 }
 
+// The time that the library takes to cut up a face grows with the square of its corners, or faster.
+void checkFaces(const aiScene& scene, const std::string& name) {
+    constexpr unsigned kMostCorners = 1000;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+        for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f)
+            if (const unsigned corners = scene.mMeshes[m]->mFaces[f].mNumIndices; corners > kMostCorners)
+                throw UserError(name + ": has a face of " + std::to_string(corners) + " corners, more than " +
+                                std::to_string(kMostCorners) + "; export the tool's surface as triangles");
+}
+
 std::vector<Eigen::Vector3d> cornersOf(const aiScene& scene) {
     std::vector<Eigen::Vector3d> corners;
     for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
@@ -109,8 +119,11 @@ std::vector<Eigen::Vector3d> readMeshFile(const std::filesystem::path& path) {
 
     Assimp::Importer importer;
     keepOnlyLoader(importer, extension);
-    const aiScene* scene =
-        importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, extension.c_str());
+    const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str());
+    if (scene != nullptr) {
+        checkFaces(*scene, name);
+        scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+    }
     if (scene == nullptr)
         throw UserError(name + ": cannot be read as ." + extension + ": " + importer.GetErrorString() +
                         "; export the tool's mesh again");

@@ -105,6 +105,20 @@ TEST_F(MeshFile, HugeCount) {
     expectRefused(write("negative.obj", test::obj(kBox) + "f -1 -2 -4000\n"), "");
 }
 
+TEST_F(MeshFile, FacesOfVeryManyCorners) {
+    const auto disk = [](int corners) {
+        std::string points, face = "f";
+        for (int n = 0; n < corners; ++n) {
+            const double angle = 2 * M_PI * n / corners;
+            points += "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
+            face += " " + std::to_string(n + 1);
+        }
+        return points + face + "\n";
+    };
+    EXPECT_EQ(readMeshFile(write("disk.obj", disk(1000))).size(), 3u * 998);
+    expectRefused(write("disk.obj", disk(20000)), "has a face of 20000 corners, more than 1000");
+}
+
 TEST_F(MeshFile, Open) {
     TriangleSoup soup = kBox;
     soup.pop_back();
