@@ -30,6 +30,12 @@ enum class MillingShape : uint8_t {
 // Σ h_i² / (8 R), half as much again as the most that it can be in a cubic cell: no bone is left inside the
 // burr, which therefore moves on as soon as the rate lets it. The surface lies Σ h_i² / (14 R) outside of the
 // burr on the mean: 3 µm for a burr of 1 mm and voxels of 0.125 mm.
+//
+// That is for burrs of two voxels and more. For any R, the mean of the distances of a cell's corners is at
+// most the root of the mean of their squares, which is r² + Σ h_i² t_i (1 - t_i) for a place at distance r:
+// no interpolated distance in the burr exceeds sqrt(R² + Σ h_i² / 4). A burr that removes has a sphere of at
+// least this, though it may take more than its own volume, since bone that it could not cut would hold it up
+// for good.
 class BurrLimit {
   public:
     // The ramp ends here (in largest spacings outside the burr) also where a low or high iso-value would let
@@ -39,7 +45,10 @@ class BurrLimit {
     BurrLimit(const VoxelVolume& volume, double burr_radius, MillingShape shape, int direction) noexcept
         : radius_(burr_radius), iso_(volume.iso()) {
         const bool is_ramp = shape == MillingShape::kSubVoxel;
-        if (is_ramp) radius_ += ampleSag(volume, burr_radius);
+        if (is_ramp) {
+            radius_ += ampleSag(volume, burr_radius);
+            if (direction < 0) radius_ = std::max(radius_, mostInterpolated(volume, burr_radius));
+        }
         const double unit = volume.spacing().maxCoeff();
         const double below = iso_;
         const double above = kMaxDensity - iso_;
@@ -55,6 +64,11 @@ class BurrLimit {
     static double ampleSag(const VoxelVolume& volume, double burr_radius) noexcept {
         const double radius = std::max(burr_radius, 2 * volume.spacing().maxCoeff());
         return volume.spacing().squaredNorm() / (8 * radius);
+    }
+
+    // No place in a ball of this radius has a larger interpolated distance from its centre, m.
+    static double mostInterpolated(const VoxelVolume& volume, double radius) noexcept {
+        return std::sqrt(radius * radius + volume.spacing().squaredNorm() / 4);
     }
 
     // Voxels at this distance from the burr's centre or farther have no limit; m.

@@ -93,6 +93,39 @@ TEST(TimeRemoval, GoesAtItsOwnSpeedUnderAnyForce) {
     }
 }
 
+// Spacings as of a coarse tomography, in millimetres, and burrs about as large as such a voxel or smaller.
+const std::vector<Vector3d> kCoarse = {{1, 1, 1}, {0.4, 0.4, 1.2}, {1.2, 0.4, 0.4}, {0.957, 0.957, 1.5}};
+constexpr double kRadiiInVoxels[] = {0.3, 0.67, 1, 1.5};
+constexpr double kCoarseSpeed = 10e-3;  // m/s: of the burr at its rate
+
+RigConfig coarse(const Vector3d& spacing_mm, double radius_in_voxels) {
+    const double voxel = spacing_mm.maxCoeff() * 1e-3, radius = radius_in_voxels * voxel;
+    RigConfig config = timed(255 * kCoarseSpeed / (2 * radius));
+    config.spacing = spacing_mm * 1e-3;
+    config.burr.radius = radius;
+    config.surface = 6 * voxel + 2 * radius;
+    config.size = {9 * voxel + 2 * radius, 6 * voxel + 2 * radius, config.surface + 3 * voxel};
+    return config;
+}
+
+// Nothing of the bone stays in the burr that it could not cut: up to its speed the hand leads it like air.
+TEST(TimeRemoval, ABurrSmallerThanAVoxelIsHeldUpByNoBone) {
+    constexpr double kShareOfSpeed = 0.9, kFreeLag = 15e-6;  // m: what the coupling's damping makes, amply
+    for (const Vector3d& spacing_mm : kCoarse)
+        for (const double radius_in_voxels : kRadiiInVoxels)
+            for (const double depth_in_radii : {0.5, 1.5}) {
+                const RigConfig config = coarse(spacing_mm, radius_in_voxels);
+                MillingRig rig(config);
+                const double radius = config.burr.radius, depth = depth_in_radii * radius;
+                const double way = 3 * config.spacing.maxCoeff(), speed = kShareOfSpeed * kCoarseSpeed;
+                const Vector3d above = rig.center() + Vector3d(-way / 2, 0.21e-3, radius);
+                rig.feed(depth / speed, above, {0, 0, -speed});
+                rig.feed(way / speed, above - Vector3d(0, 0, depth), {speed, 0, 0});
+                EXPECT_LT(rig.largestLag(), kFreeLag) << "spacing " << spacing_mm.transpose() << " mm, R/h "
+                                                      << radius_in_voxels << ", depth/R " << depth_in_radii;
+            }
+}
+
 // On a machine that is late a tick comes for several periods.
 TEST(TimeRemoval, PeriodsWithoutATickAreNotLost) {
     double first = 0;

@@ -55,18 +55,19 @@ double limitAt(const VoxelVolume& volume, double d, int direction) {
 }
 
 // These are the largest distances from the sphere of the drawn surface's vertices and of the shell's points,
-// among those nearer to it than three voxels.
+// among those nearer to it than three voxels; and the farthest that any of them is inside.
 struct Offset {
-    double mesh = 0, shell = 0;
+    double mesh = 0, shell = 0, inside = 0;
     size_t vertices = 0, points = 0;
 };
 Offset offsetFromSphere(const BoneModel& bone, const Eigen::Vector3d& center, double radius) {
     Offset offset;
     const double near = 3 * bone.volume.spacing().maxCoeff();
     const auto see = [&](const Eigen::Vector3d& p, double& largest, size_t& count) {
-        const double off = std::abs((p - center).norm() - radius);
-        if (off > near) return;
-        largest = std::max(largest, off);
+        const double off = (p - center).norm() - radius;
+        if (std::abs(off) > near) return;
+        largest = std::max(largest, std::abs(off));
+        offset.inside = std::max(offset.inside, -off);
         ++count;
     };
     const MeshGrid grid(bone.volume, bone.lattice);
@@ -109,6 +110,38 @@ TEST_P(SubVoxelSphere, DwellingLeavesTheSphere) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Radii, SubVoxelSphere, testing::Values(8, 13));
+
+// The surface of the cavity that a burr leaves in full bone, in voxels: how far it reaches into the burr at
+// most.
+double reachIntoBurr(double radius_in_voxels, const Eigen::Vector3d& spacing, Density iso, uint32_t place) {
+    const double voxel = spacing.maxCoeff(), radius = radius_in_voxels * voxel;
+    const double side = 2 * radius + 9 * voxel;
+    BoneModel bone = cube(side, spacing, iso, kMaxDensity);
+    TimedMilling milling(atOnce(), bone.volume, bone.lattice, radius);
+    std::mt19937 random(place);
+    std::uniform_real_distribution<double> in_voxel(-0.5, 0.5);
+    Eigen::Vector3d center;
+    for (int axis = 0; axis < 3; ++axis) center[axis] = side / 2 + in_voxel(random) * spacing[axis];
+    for (int n = 0; n < 2; ++n) milling.apply(bone.volume, bone.lattice, bone.shell, center, -1, kTickTime);
+    const Offset offset = offsetFromSphere(bone, center, radius);
+    EXPECT_GT(offset.vertices, 0u);
+    EXPECT_GT(offset.points, 0u);
+    return offset.inside / voxel;
+}
+
+// Cells as large as the burr and larger have the surface where their corners put it: also then not inside of
+// the burr, where it would hold the burr up for good.
+TEST(SubVoxelMilling, LeavesNoBoneInABurrOfAnySize) {
+    const std::vector<Eigen::Vector3d> spacings = {
+        {1e-3, 1e-3, 1e-3}, {0.4e-3, 0.4e-3, 1.2e-3}, {0.957e-3, 0.957e-3, 1.5e-3}};
+    for (const Eigen::Vector3d& spacing : spacings)
+        for (const Density iso : kIsos)
+            for (const double radius_in_voxels : {0.3, 0.5, 1.0, 1.5, 2.0, 3.0})
+                for (uint32_t place = 0; place < 4; ++place)
+                    EXPECT_LT(reachIntoBurr(radius_in_voxels, spacing, iso, place), 0.01)
+                        << "R/h " << radius_in_voxels << ", iso " << iso << ", spacing "
+                        << spacing.transpose();
+}
 
 TEST(SubVoxelMilling, EveryVoxelEndsAtItsLimitAndNoneElsewhereChanges) {
     std::mt19937 random(2);
