@@ -37,7 +37,8 @@ struct ViewSettings {
     std::array<bool, kViewerEffects> hides_effects{};
     bool shows(ViewerEffect effect) const { return !hides_effects[size_t(effect)]; }
     bool show_hud = true;
-    bool show_watchers = true;
+    bool show_details = false;  // with the figures that matter to the task, all others
+    bool show_watchers = false;
     bool show_help = false;
 };
 

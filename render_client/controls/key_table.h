@@ -40,6 +40,7 @@ enum class Action {
     kWatchers,
     kPanel,
     kHud,
+    kDetails,
     kPoint,  // while the key is held
     kOrbitLeft,
     kOrbitRight,

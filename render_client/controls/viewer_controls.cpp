@@ -216,11 +216,14 @@ void ViewerControls::changeView(Action action) {
                 settings_.camera == CameraMode::kOrbit ? CameraMode::kEndoscope : CameraMode::kOrbit;
             return;
         case Action::kWatchers:
+            settings_.show_details = false;
             return toggle(settings_.show_watchers);
         case Action::kPanel:
             return toggle(is_panel_open_);
         case Action::kHud:
             return toggle(settings_.show_hud);
+        case Action::kDetails:
+            return switchDetails();
         case Action::kHelp:
             return toggle(settings_.show_help);
         case Action::kOrbitLeft:
@@ -238,6 +241,13 @@ void ViewerControls::changeView(Action action) {
         default:
             return;
     }
+}
+
+// Who asks for all figures wants to see them. Of two lists one is open, so that the bone stays in view.
+void ViewerControls::switchDetails() {
+    settings_.show_watchers = false;
+    settings_.show_details = !(settings_.show_hud && settings_.show_details);
+    settings_.show_hud = true;
 }
 
 void ViewerControls::switchCut(size_t axis) {

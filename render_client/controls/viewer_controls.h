@@ -72,6 +72,7 @@ class ViewerControls {
     void onMove(const MouseMoveEvent& event, int picture_height);
     void onDoubleClick(const MouseButtonEvent& event, Wishes& wishes);
     void changeView(Action action);
+    void switchDetails();
     void switchCut(size_t axis);
     void flipCut(size_t axis);
     void moveCut(double by);

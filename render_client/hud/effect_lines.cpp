@@ -24,11 +24,6 @@ std::string volumeText(double mm3) {
     return mm3 > 0 ? readableText(mm3, " mm\u00b3") : "none";
 }
 
-HudRow spindleRow(double spin_speed, uint32_t events) {
-    if (events & EffectState::SPINDLE_STALLED) return {"Spindle", "stalled", HudTone::kAlarm};
-    return {"Spindle", figureText(spin_speed / kRpm, 0, " rpm")};
-}
-
 HudRow temperatureRow(double celsius, uint32_t events) {
     const HudTone tone = events & EffectState::TOO_HOT ? HudTone::kAlarm
                          : celsius >= kWarm_c          ? HudTone::kWarning
@@ -36,8 +31,9 @@ HudRow temperatureRow(double celsius, uint32_t events) {
     return {"Hottest bone", figureText(celsius, 1, " \u00b0C"), tone};
 }
 
-// A negative distance means that the burr is in the structure.
+// A negative distance means that the burr is in the structure. The row stands where nothing is near, too.
 HudRow structureRow(const EffectState& state, const topics::SceneInfo* info, uint32_t events) {
+    if (!state.has_protected_distance_m()) return {"Protected", "far"};
     const double distance_mm = state.protected_distance_m() * kPerMillimetre;
     const HudTone tone = events & kHarm || distance_mm <= 0     ? HudTone::kAlarm
                          : events & EffectState::NEAR_PROTECTED ? HudTone::kWarning
@@ -54,18 +50,24 @@ std::string structureName(uint32_t protected_id, const topics::SceneInfo* info) 
     return name.empty() ? "material " + std::to_string(protected_id) : name;
 }
 
-std::vector<HudRow> effectRows(const EffectState& state, const topics::SceneInfo* info, uint32_t events) {
+std::vector<HudRow> effectTaskRows(const EffectState& state, const topics::SceneInfo* info, uint32_t events) {
     std::vector<HudRow> rows;
-    if (state.has_spin_speed()) rows.push_back(spindleRow(state.spin_speed(), events));
-    if (state.has_axis_torque_nm())
-        rows.push_back({"Load", readableText(state.axis_torque_nm() * kPerMilli, " N\u00b7mm")});
-    if (state.has_cutting_power_w()) rows.push_back({"Cutting", readableText(state.cutting_power_w(), " W")});
+    if (state.has_protected_distance_m() || state.has_damaged_mm3())
+        rows.push_back(structureRow(state, info, events));
+    if (state.has_damaged_mm3())
+        rows.push_back({"Damaged", volumeText(state.damaged_mm3()), toneOfVolume(state.damaged_mm3())});
     if (state.has_temperature_c()) rows.push_back(temperatureRow(state.temperature_c(), events));
     if (state.has_necrotic_mm3())
         rows.push_back({"Necrosis", volumeText(state.necrotic_mm3()), toneOfVolume(state.necrotic_mm3())});
-    if (state.has_protected_distance_m()) rows.push_back(structureRow(state, info, events));
-    if (state.has_damaged_mm3())
-        rows.push_back({"Damaged", volumeText(state.damaged_mm3()), toneOfVolume(state.damaged_mm3())});
+    return rows;
+}
+
+std::vector<HudRow> effectDetailRows(const EffectState& state) {
+    std::vector<HudRow> rows;
+    if (state.has_spin_speed()) rows.push_back({"Spindle", figureText(state.spin_speed() / kRpm, 0, " rpm")});
+    if (state.has_axis_torque_nm())
+        rows.push_back({"Load", readableText(state.axis_torque_nm() * kPerMilli, " N\u00b7mm")});
+    if (state.has_cutting_power_w()) rows.push_back({"Cutting", readableText(state.cutting_power_w(), " W")});
     return rows;
 }
 

@@ -10,10 +10,11 @@
 
 namespace bonemill {
 
-// Returns only what the scene's effects say. `events` are the EffectState.Event bits that are shown now;
-// `info` has the names of materials.
-std::vector<HudRow> effectRows(const topics::EffectState& state, const topics::SceneInfo* info,
-                               uint32_t events);
+// Both return only what the scene's effects say: how careful the trainee is, and what the motor does.
+// `events` are the EffectState.Event bits that are shown now; `info` has the names of materials.
+std::vector<HudRow> effectTaskRows(const topics::EffectState& state, const topics::SceneInfo* info,
+                                   uint32_t events);
+std::vector<HudRow> effectDetailRows(const topics::EffectState& state);
 
 // Returns what must not be overseen: protected structures and heat. `structure` is
 // numbered as EffectState.event_id.

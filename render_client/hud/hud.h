@@ -32,7 +32,8 @@ struct Hud {
     std::string title;
     std::string state;
     HudTone state_tone = HudTone::kPlain;
-    std::vector<HudRow> rows;
+    std::vector<HudRow> rows;      // what matters to the task
+    std::vector<HudRow> details;   // the rest; empty: folded
     std::vector<HudRow> watchers;  // empty: no list
     std::vector<HudRow> help;      // keys and what they do; empty: no help page
     std::optional<HudHint> hint;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "render_client/hud/figure_text.h"
 #include "render_client/hud/utf8.h"
 
 namespace bonemill {
@@ -26,6 +27,13 @@ void HudCanvas::text(float x, float y, std::string_view utf8, FontStyle style, c
         quad({x + g.x0, y + g.y0, x + g.x1, y + g.y1}, {g.u0, g.v0, g.u1, g.v1}, colour, {0, 0, kGlyph});
         x += g.advance;
     }
+}
+
+std::string HudCanvas::fitted(const std::string& utf8, FontStyle style, float most) const {
+    std::string text = utf8;
+    for (size_t signs = decodeUtf8(utf8).size(); signs > 1 && width(text, style) > most; --signs)
+        text = shortenedText(utf8, signs - 1);
+    return text;
 }
 
 void HudCanvas::quad(const std::array<float, 4>& rectangle, const std::array<float, 4>& uv,

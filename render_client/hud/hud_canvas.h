@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -27,6 +28,8 @@ class HudCanvas {
     // The height of the font (pixels) is the unit of the layout.
     float em() const { return font_.pixelHeight(); }
     float width(std::string_view utf8, FontStyle style) const { return font_.width(utf8, style); }
+    // Returns the text, cut short with an ellipsis where it is wider than so many pixels.
+    std::string fitted(const std::string& utf8, FontStyle style, float most) const;
 
     // Adds a box with rounded corners; a radius of 0 leaves them sharp.
     void box(float x, float y, float width, float height, float radius, const HudColour& colour);

@@ -2,56 +2,48 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <string_view>
 
 namespace bonemill {
 namespace {
 
 constexpr std::string_view kWatchersTitle = "Watching";
+constexpr float kFiguresWidth = 12.5f, kWatchersWidth = 20;  // of the text within, in units of its height
 
 // These distances are shared by all lists.
 struct Spacing {
     explicit Spacing(float em)
-        : margin(em * 1.1f), padding(em * 0.9f), line(em * 1.55f), gap(em * 1.4f), rounding(em * 0.6f) {}
+        : margin(em * 1.1f), padding(em * 0.9f), line(em * 1.5f), gap(em * 1.4f), rounding(em * 0.6f) {}
     float margin, padding, line, gap, rounding;
 };
 
-float innerWidth(const HudCanvas& canvas, const Hud& hud) {
-    const float em = canvas.em();
-    float labels = 0, values = 0;
-    for (const HudRow& row : hud.rows) {
-        labels = std::max(labels, canvas.width(row.label, FontStyle::kPlain));
-        values = std::max(values, canvas.width(row.value, FontStyle::kBold));
-    }
-    const float head = std::max(canvas.width(hud.title, FontStyle::kBold),
-                                em * 0.9f + canvas.width(hud.state, FontStyle::kPlain));
-    // A floor keeps the figures from breathing with every digit.
-    return std::max({head, labels + Spacing(em).gap + values, em * 13});
-}
-
 // Lays out title and state. Returns the base line of the state.
-float layOutHead(HudCanvas& canvas, const Hud& hud) {
+float layOutHead(HudCanvas& canvas, const Hud& hud, float inner) {
     const float em = canvas.em();
     const Spacing space(em);
     const float left = space.margin + space.padding, title = space.margin + space.padding * 0.7f + em;
-    canvas.text(left, title, hud.title, FontStyle::kBold, kHudTitleColour);
-    const float state = title + space.line, dot = em * 0.5f;
+    canvas.text(left, title, canvas.fitted(hud.title, FontStyle::kBold, inner), FontStyle::kBold,
+                kHudTitleColour);
+    const float state = title + space.line, dot = em * 0.5f, indent = em * 0.9f;
     canvas.box(left, state - em * 0.55f, dot, dot, dot / 2, colourOf(hud.state_tone));
-    canvas.text(left + em * 0.9f, state, hud.state, FontStyle::kPlain, kHudLabelColour);
+    canvas.text(left + indent, state, canvas.fitted(hud.state, FontStyle::kPlain, inner - indent),
+                FontStyle::kPlain, kHudLabelColour);
     return state;
 }
 
-void layOutRows(HudCanvas& canvas, const std::vector<HudRow>& rows, float base, float inner) {
-    const float em = canvas.em();
-    const Spacing space(em);
-    const float left = space.margin + space.padding;
-    canvas.box(left, base + em * 0.65f, inner, 1, 0, kHudLineColour);
-    base += em * 0.6f;
+// Labels begin at the left, values end at the right; the first row stands below `base`. A value that is too
+// wide is cut short.
+void layOutRows(HudCanvas& canvas, const std::vector<HudRow>& rows, float left, float right, float base) {
+    const Spacing space(canvas.em());
     for (const HudRow& row : rows) {
         base += space.line;
         canvas.text(left, base, row.label, FontStyle::kPlain, kHudLabelColour);
-        canvas.text(left + inner - canvas.width(row.value, FontStyle::kBold), base, row.value,
-                    FontStyle::kBold, colourOf(row.tone));
+        const float label =
+            row.label.empty() ? 0 : canvas.width(row.label, FontStyle::kPlain) + space.gap / 2;
+        const std::string value = canvas.fitted(row.value, FontStyle::kBold, right - left - label);
+        canvas.text(right - canvas.width(value, FontStyle::kBold), base, value, FontStyle::kBold,
+                    colourOf(row.tone));
     }
 }
 
@@ -65,31 +57,39 @@ void layOutBanner(HudCanvas& canvas, const HudNotice& notice, float bottom, floa
 
 }  // namespace
 
-HudCorner layOutFigures(HudCanvas& canvas, const Hud& hud) {
-    const float em = canvas.em();
+HudBox layOutFigures(HudCanvas& canvas, const Hud& hud) {
+    const float em = canvas.em(), inner = em * kFiguresWidth;
     const Spacing space(em);
-    const float inner = innerWidth(canvas, hud);
     const float head = space.line * 2 + em * 0.35f;
     const float body = hud.rows.empty() ? 0 : space.line * float(hud.rows.size()) + em * 0.5f;
-    const HudCorner corner{space.margin + inner + 2 * space.padding,
-                           space.margin + head + body + 1.4f * space.padding};
-    canvas.box(space.margin, space.margin, corner.right - space.margin, corner.bottom - space.margin,
-               space.rounding, kHudPanelColour);
-    const float base = layOutHead(canvas, hud);
-    if (!hud.rows.empty()) layOutRows(canvas, hud.rows, base, inner);
-    return corner;
+    const HudBox box{space.margin, space.margin, space.margin + inner + 2 * space.padding,
+                     space.margin + head + body + 1.4f * space.padding};
+    canvas.box(box.left, box.top, box.right - box.left, box.bottom - box.top, space.rounding,
+               kHudPanelColour);
+    const float state = layOutHead(canvas, hud, inner);
+    if (hud.rows.empty()) return box;
+    const float left = box.left + space.padding;
+    canvas.box(left, state + em * 0.65f, inner, 1, 0, kHudLineColour);
+    layOutRows(canvas, hud.rows, left, left + inner, state + em * 0.6f);
+    return box;
 }
 
-void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, const HudCorner& figures,
+HudBox layOutDetails(HudCanvas& canvas, const std::vector<HudRow>& details, const HudBox& figures) {
+    const Spacing space(canvas.em());
+    const HudBox box{
+        figures.left, figures.bottom + canvas.em() * 0.5f, figures.right,
+        figures.bottom + canvas.em() * 0.5f + space.line * float(details.size()) + space.padding};
+    canvas.box(box.left, box.top, box.right - box.left, box.bottom - box.top, space.rounding,
+               kHudPanelColour);
+    layOutRows(canvas, details, box.left + space.padding, box.right - space.padding,
+               box.top + space.padding * 0.2f);
+    return {figures.left, figures.top, figures.right, box.bottom};
+}
+
+void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, const HudBox& figures,
                     const PictureSize& picture) {
-    const float em = canvas.em(), picture_width = float(picture.width);
+    const float em = canvas.em(), picture_width = float(picture.width), inner = em * kWatchersWidth;
     const Spacing space(em);
-    float names = canvas.width(kWatchersTitle, FontStyle::kBold), values = 0;
-    for (const HudRow& row : watchers) {
-        names = std::max(names, canvas.width(row.label, FontStyle::kPlain));
-        values = std::max(values, canvas.width(row.value, FontStyle::kPlain));
-    }
-    const float inner = names + space.gap + values;
     const bool fits_beside = picture_width - 2 * space.margin - inner - 2 * space.padding > figures.right;
     const float left =
         fits_beside ? picture_width - space.margin - space.padding - inner : space.margin + space.padding;
@@ -100,8 +100,11 @@ void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, cons
     canvas.text(left, base, kWatchersTitle, FontStyle::kBold, kHudTitleColour);
     for (const HudRow& row : watchers) {
         base += space.line;
-        canvas.text(left, base, row.label, FontStyle::kPlain, kHudTitleColour);
-        canvas.text(right - canvas.width(row.value, FontStyle::kPlain), base, row.value, FontStyle::kPlain,
+        const std::string value = canvas.fitted(row.value, FontStyle::kPlain, inner * 0.75f);
+        const float value_width = canvas.width(value, FontStyle::kPlain);
+        canvas.text(left, base, canvas.fitted(row.label, FontStyle::kPlain, inner - value_width - space.gap),
+                    FontStyle::kPlain, kHudTitleColour);
+        canvas.text(right - value_width, base, value, FontStyle::kPlain,
                     row.tone == HudTone::kPlain ? kHudLabelColour : colourOf(row.tone));
     }
 }
@@ -119,8 +122,7 @@ void layOutScaleBar(HudCanvas& canvas, const ScaleBar& bar, double metres_per_pi
                 kHudScaleColour);
 }
 
-void layOutHint(HudCanvas& canvas, const HudHint& hint, const HudCorner& figures,
-                const PictureSize& picture) {
+void layOutHint(HudCanvas& canvas, const HudHint& hint, const HudBox& figures, const PictureSize& picture) {
     const float em = canvas.em();
     const Spacing space(em);
     const auto faded = [&](HudColour colour) {
@@ -152,7 +154,7 @@ void layOutNotice(HudCanvas& canvas, const HudNotice& notice, const PictureSize&
 
 void layOutAlert(HudCanvas& canvas, const HudNotice& alert, const PictureSize& picture) {
     const float em = canvas.em(), width = float(picture.width), height = float(picture.height);
-    const float thick = std::max(3.0f, em * 0.4f);
+    const float thick = std::max(3.0f, em * 0.2f);
     HudColour colour = colourOf(alert.tone);
     colour[3] = 0.85f;
     canvas.box(0, 0, width, thick, 0, colour);

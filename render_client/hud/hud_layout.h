@@ -17,16 +17,20 @@ struct PictureSize {
     int height = 0;
 };
 
-struct HudCorner {
-    float right, bottom;
+// What a list takes of the picture.
+struct HudBox {
+    float left, top, right, bottom;
 };
 
-// Puts the figures into the upper left corner. Returns the lower right corner of what they
-// take, margin included.
-HudCorner layOutFigures(HudCanvas& canvas, const Hud& hud);
+// Puts the figures that matter to the task into the upper left corner. The box is always of the same width:
+// what does not fit is cut short.
+HudBox layOutFigures(HudCanvas& canvas, const Hud& hud);
+// Puts the other figures below those of the task, as wide as they are; the canvas may have a smaller font.
+// Returns what both take.
+HudBox layOutDetails(HudCanvas& canvas, const std::vector<HudRow>& details, const HudBox& figures);
 
 // Puts the list of watchers at the upper right, or below the figures when there is no room beside them.
-void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, const HudCorner& figures,
+void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, const HudBox& figures,
                     const PictureSize& picture);
 
 // Puts the scale bar into the lower right corner.
@@ -34,7 +38,7 @@ void layOutScaleBar(HudCanvas& canvas, const ScaleBar& bar, double metres_per_pi
                     const PictureSize& picture);
 
 // Puts the hint into the lower left corner, or beside the figures when there is no room below them.
-void layOutHint(HudCanvas& canvas, const HudHint& hint, const HudCorner& figures, const PictureSize& picture);
+void layOutHint(HudCanvas& canvas, const HudHint& hint, const HudBox& figures, const PictureSize& picture);
 
 // A notice is a line in the middle of the lower edge. An alert is a line above it, with a border around the
 // picture: neither hides the other.

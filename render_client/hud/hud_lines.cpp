@@ -1,13 +1,7 @@
 #include "render_client/hud/hud_lines.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <utility>
-
-#include "common/units.h"
 #include "render_client/hud/burr_work.h"
-#include "render_client/hud/device_lines.h"
+#include "render_client/hud/detail_lines.h"
 #include "render_client/hud/effect_lines.h"
 #include "render_client/hud/figure_text.h"
 #include "render_client/hud/session_text.h"
@@ -16,16 +10,7 @@ namespace bonemill {
 namespace {
 
 constexpr size_t kLongestName = 24;
-constexpr int kMostWatchers = 8;  // rows of the list
-
-double norm(const google::protobuf::RepeatedField<double>& v) {
-    return v.size() == 3 ? std::hypot(v[0], v[1], v[2]) : std::nan("");
-}
-
-void addSessionRows(const topics::Status& status, std::vector<HudRow>& rows) {
-    if (status.ticks() > 0) rows.push_back({"Session", clockText(status.session_s())});
-    if (status.is_milling_paused()) rows.push_back({"Milling", "paused", HudTone::kWarning});
-}
+constexpr int kMostWatchers = 6;  // rows of the list
 
 void addToolNameRow(const topics::SceneInfo& info, std::vector<HudRow>& rows) {
     if (info.tool_names_size() < 2 || info.tool_index() >= uint32_t(info.tool_names_size())) return;
@@ -46,26 +31,11 @@ std::vector<HudRow> watcherRows(const std::vector<topics::Viewer>& watchers) {
     return rows;
 }
 
-void addLoopRows(const topics::Status& status, std::vector<HudRow>& rows) {
-    if (status.ticks() == 0) return rows.push_back({"Loop", "waits for a device", HudTone::kWarning});
-    rows.push_back({"Loop", figureText(status.rate_hz(), 1, " Hz")});
-    rows.push_back({"Tick p50 / p99", readableText(status.tick_p50_us(), "") + " / " +
-                                          readableText(status.tick_p99_us(), " \u00b5s")});
-}
-
-void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
-    // A preset is one word; all knobs take more than one line.
-    std::string label = "Accuracy";
-    for (const std::string& line : wrappedText(status.preset(), kLongestRow))
-        rows.push_back({std::exchange(label, ""), line});
-    rows.push_back({"Force error", status.has_accuracy_error()
-                                       ? readableText(status.force_error_percent(), " %") + ", " +
-                                             readableText(status.force_direction_error_deg(), "\u00b0")
-                                       : "not measured"});
-}
-
-HudRow burrRow(BurrWork work) {
-    switch (work) {
+// The worst that keeps the burr from milling comes first.
+HudRow burrRow(const topics::ToolState& tool, bool is_paused, uint32_t events) {
+    if (events & topics::EffectState::SPINDLE_STALLED) return {"Burr", "stalled", HudTone::kAlarm};
+    if (is_paused) return {"Burr", "paused", HudTone::kWarning};
+    switch (burrWorkOf(tool)) {
         case BurrWork::kRemoving:
             return {"Burr", "removing", HudTone::kWarning};
         case BurrWork::kAdding:
@@ -76,30 +46,25 @@ HudRow burrRow(BurrWork work) {
     return {"Burr", "idle"};
 }
 
-void addToolRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
-    rows.push_back({"Force", readableText(norm(tool.force_n()), " N")});
-    rows.push_back({"Torque", readableText(norm(tool.torque_nm()) * kPerMilli, " N\u00b7mm")});
-    rows.push_back({"Contacts", std::to_string(tool.contacts())});
-    rows.push_back(burrRow(burrWorkOf(tool)));
+std::vector<HudRow> taskRows(const HudInput& input) {
+    std::vector<HudRow> rows;
+    const topics::SceneInfo* const info = input.info ? &*input.info : nullptr;
+    if (info) addToolNameRow(*info, rows);
+    if (input.tool) {
+        rows.push_back({"Force", lengthText(input.tool->force_n(), 1, " N")});
+        rows.push_back(burrRow(*input.tool, input.status && input.status->is_milling_paused(), input.events));
+    }
+    if (input.status) rows.push_back({"Removed", readableText(input.status->removed_mm3(), " mm\u00b3")});
+    if (input.tool && input.tool->has_effects()) {
+        const auto more = effectTaskRows(input.tool->effects(), info, input.events);
+        rows.insert(rows.end(), more.begin(), more.end());
+    }
+    return rows;
 }
 
-void addEffectRows(const HudInput& input, std::vector<HudRow>& rows) {
-    const auto more = effectRows(input.tool->effects(), input.info ? &*input.info : nullptr, input.events);
-    rows.insert(rows.end(), more.begin(), more.end());
-}
-
-void addDeviceRows(const HudInput& input, std::vector<HudRow>& rows) {
-    const auto more = deviceRows(input.status->device(), input.tool ? &*input.tool : nullptr);
-    rows.insert(rows.end(), more.begin(), more.end());
-}
-
-void addFaultRow(const topics::Status& status, std::vector<HudRow>& rows) {
-    if (status.device_stale() && status.ticks() > 0)
-        rows.push_back({"Device", "no fresh samples", HudTone::kAlarm});
-    if (status.faults() == 0) return rows.push_back({"Faults", "none", HudTone::kGood});
-    char code[16];
-    std::snprintf(code, sizeof code, "0x%x", status.faults());
-    rows.push_back({"Faults", status.fault_text().empty() ? code : status.fault_text(), HudTone::kAlarm});
+std::string liveText(const HudInput& input) {
+    if (!input.status) return "live";
+    return input.status->ticks() > 0 ? "live, " + clockText(input.status->session_s()) : "waits for a device";
 }
 
 std::string stateText(const HudInput& input) {
@@ -112,17 +77,17 @@ std::string stateText(const HudInput& input) {
             return text + " nodes";
         }
         case Connection::kLive:
-            return "live, " + std::to_string(input.node_count) + " nodes";
+            return liveText(input);
         case Connection::kServerLost:
             return "server lost";
     }
     return "";
 }
 
-HudTone stateTone(Connection connection) {
-    switch (connection) {
+HudTone stateTone(const HudInput& input) {
+    switch (input.connection) {
         case Connection::kLive:
-            return HudTone::kGood;
+            return input.status && input.status->ticks() == 0 ? HudTone::kWarning : HudTone::kGood;
         case Connection::kReceiving:
         case Connection::kNoServer:
             return HudTone::kWarning;
@@ -144,26 +109,15 @@ Hud makeHud(const HudInput& input) {
                 : input.status                            ? input.status->scene()
                                                           : "bonemill";
     hud.state = stateText(input);
-    hud.state_tone = stateTone(input.connection);
+    hud.state_tone = stateTone(input);
     hud.notice = input.notice;
-    if (!input.show_help) hud.hint = input.hint;
     hud.alert = alertOf(input);
-    if (input.status) {
-        addSessionRows(*input.status, hud.rows);
-        addLoopRows(*input.status, hud.rows);
-        addAccuracyRows(*input.status, hud.rows);
-    }
-    if (input.info) addToolNameRow(*input.info, hud.rows);
-    if (input.tool) addToolRows(*input.tool, hud.rows);
-    if (input.tool && input.tool->has_effects()) addEffectRows(input, hud.rows);
-    if (input.status) {
-        hud.rows.push_back({"Removed", readableText(input.status->removed_mm3(), " mm\u00b3")});
-        if (input.status->has_device()) addDeviceRows(input, hud.rows);
-        addFaultRow(*input.status, hud.rows);
-    }
-    if (input.frame_rate_hz > 0) hud.rows.push_back({"Pictures", figureText(input.frame_rate_hz, 0, " Hz")});
-    if (input.show_watchers) hud.watchers = watcherRows(input.watchers);
+    hud.rows = taskRows(input);
+    if (input.show_details) hud.details = detailRows(input);
+    if (input.show_watchers && !input.show_details) hud.watchers = watcherRows(input.watchers);
     if (input.show_help) hud.help = input.help;
+    // Who has found the keys needs no hint.
+    if (!input.show_help && !input.show_watchers && !input.show_details) hud.hint = input.hint;
     return hud;
 }
 

@@ -1,6 +1,8 @@
 // These are the lines of the head-up display, from top to bottom: what each says, and when it is there.
-// Another line is a function of hud_lines.cpp that makeHud() calls, or of effect_lines.cpp when it tells of
-// an effect. The functions are pure; any thread may call them.
+// First come the figures that matter to the task; which lines they have depends on the scene alone, so that
+// they stand still. The rest (detail_lines.h) is folded. Another line is a function of hud_lines.cpp or
+// detail_lines.cpp, or of effect_lines.cpp when it tells of an effect. The functions are pure; any thread may
+// call them.
 #pragma once
 
 #include <optional>
@@ -27,7 +29,8 @@ struct HudInput {
     size_t node_count = 0;     // nodes the viewer holds
     double frame_rate_hz = 0;  // of this viewer; 0: not known
     std::vector<topics::Viewer> watchers;
-    bool show_watchers = true;
+    bool show_watchers = false;
+    bool show_details = false;  // instead of the watchers
     std::vector<HudRow> help;
     bool show_help = false;
     std::optional<HudHint> hint;

@@ -9,7 +9,8 @@
 namespace bonemill {
 namespace {
 
-constexpr float kFontPixels = 15;  // at ui_scale 1
+constexpr float kFontPixels = 15;   // at ui_scale 1
+constexpr float kListText = 0.75f;  // of that: whatever was asked for, or goes away by itself
 
 }  // namespace
 
@@ -57,18 +58,20 @@ const HudPainter::Font& HudPainter::fontOf(float pixel_height) {
 void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_per_pixel,
                        const PictureSize& picture, float ui_scale) {
     const FontAtlas& font = usualFont(ui_scale);
-    HudCanvas figures(font);
-    const HudCorner corner = layOutFigures(figures, hud);
-    if (!hud.watchers.empty()) layOutWatchers(figures, hud.watchers, corner, picture);
+    HudCanvas figures(font), lists(fontOf(std::round(kListText * font.pixelHeight())).atlas);
+    HudBox box = layOutFigures(figures, hud);
+    if (!hud.details.empty()) box = layOutDetails(lists, hud.details, box);
+    if (!hud.watchers.empty()) layOutWatchers(lists, hud.watchers, box, picture);
     layOutScaleBar(figures, scale_bar, metres_per_pixel, picture);
+    if (hud.hint) layOutHint(lists, *hud.hint, box, picture);
     draw(figures, picture);
+    draw(lists, picture);
     if (!hud.help.empty()) {
         HudCanvas help(fontOf(helpTextHeight(font, hud.help, picture)).atlas);
         layOutHelp(help, hud.help, picture);
         draw(help, picture);
     }
     HudCanvas notices(font);
-    if (hud.hint) layOutHint(notices, *hud.hint, corner, picture);
     if (hud.notice) layOutNotice(notices, *hud.notice, picture);
     if (hud.alert) layOutAlert(notices, *hud.alert, picture);
     draw(notices, picture);

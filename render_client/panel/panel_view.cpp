@@ -72,6 +72,8 @@ void PanelContent::buildSigns() {
         "Without shadows and smooth edges: for PCs without a graphics card");
     box("Figures", Action::kHud, settings_.show_hud, "What is written over the picture");
     ImGui::SameLine();
+    box("All", Action::kDetails, settings_.show_hud && settings_.show_details,
+        "Also how well the session runs");
     box("Watchers", Action::kWatchers, settings_.show_watchers, "Who is watching, over the picture");
     ImGui::SameLine();
     box("Help", Action::kHelp, settings_.show_help, "All keys, over the picture");

@@ -261,6 +261,7 @@ void RenderScene::paintHud(const Camera& camera, const PictureArea& area, float 
             hud_painter_.paintAlert(*alert, {area.width, area.height}, ui_scale);
         return;
     }
+    hud_input_.show_details = settings_.show_details;
     hud_input_.show_watchers = settings_.show_watchers;
     hud_input_.show_help = settings_.show_help;
     const double metres_per_pixel = camera.metresPerPixel(area.height);

@@ -125,6 +125,7 @@ TEST_F(Golden, ArrowAndPointer) {
 
 TEST_F(Golden, HudWithWatchers) {
     scene_->settings().show_hud = true;
+    scene_->settings().show_watchers = true;
     topics::Status status = test::makeStatus();
     status.set_session_s(3723);
     status.set_is_milling_paused(true);
@@ -160,7 +161,7 @@ TEST_F(Golden, MaterialsWithoutColoursArePlainBone) {
 TEST(GoldenFigures, OfEffectsWithAnAlert) {
     const OsmesaContext context(640, 480);
     RenderScene scene(context.gl());
-    scene.settings().show_hud = true;
+    scene.settings().show_details = true;
     topics::SceneInfo info = test::milledInfo();
     info.add_materials()->set_name("facial nerve");
     scene.setSceneInfo(info);

@@ -241,7 +241,7 @@ TEST_F(ScenePicture, TheGhostShowsOnlyADevicePoseThatDiffersVisibly) {
 TEST_F(ScenePicture, HudTextChangesPixelsAndOnlyInItsPanel) {
     showSphere();
     const Picture bare = draw();
-    scene_->settings().show_hud = true;
+    scene_->settings().show_hud = scene_->settings().show_details = true;
     scene_->setStatus(makeStatus());
     const Picture with_hud = draw();
     EXPECT_GT(countDifferent(bare, with_hud), 5000u);

@@ -49,6 +49,15 @@ TEST_F(Controls, KeysSwitchWhatIsSeenAndBack) {
     switches('Z', settings_.cuts[2].is_on);
     send(KeyEvent{Key::kTab, true, false, {}});
     EXPECT_FALSE(settings_.show_hud);
+    send(KeyEvent{Key::kTab, true, false, {true, false}});
+    EXPECT_TRUE(settings_.show_hud && settings_.show_details) << "who asks for all wants to see them";
+    type('W');
+    EXPECT_TRUE(settings_.show_watchers && !settings_.show_details) << "one list at a time";
+    send(KeyEvent{Key::kTab, true, false, {true, false}});
+    EXPECT_TRUE(settings_.show_details && !settings_.show_watchers);
+    send(KeyEvent{Key::kTab, true, false, {true, false}});
+    EXPECT_TRUE(settings_.show_hud);
+    EXPECT_FALSE(settings_.show_details);
     EXPECT_FALSE(controls_.isPanelOpen());
     type('M');
     EXPECT_TRUE(controls_.isPanelOpen());

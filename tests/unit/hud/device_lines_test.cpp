@@ -107,9 +107,10 @@ TEST(DeviceLines, TheToolsStateIsNewerAndUnknownStatesAreAlarms) {
 TEST(DeviceLines, AreThereOnlyWhereAServerTellsOfADevice) {
     HudInput input;
     input.status.emplace();
-    const size_t without = makeHud(input).rows.size();
+    input.show_details = true;
+    const size_t without = makeHud(input).details.size();
     *input.status->mutable_device() = deviceIn(SafetyState::kEngaged);
-    EXPECT_EQ(makeHud(input).rows.size(), without + 1);
+    EXPECT_EQ(makeHud(input).details.size(), without + 1);
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "render_client/hud/event_latch.h"
+#include "tests/support/hud_rows.h"
 
 namespace bonemill {
 namespace {
@@ -21,16 +21,13 @@ topics::SceneInfo infoWithNerve() {
     return info;
 }
 
-const HudRow* find(const std::vector<HudRow>& rows, const std::string& label) {
-    const auto row = std::ranges::find(rows, label, &HudRow::label);
-    return row == rows.end() ? nullptr : &*row;
-}
-
 TEST(EffectText, OnlyWhatTheSceneListsIsShown) {
-    EXPECT_TRUE(effectRows({}, nullptr, 0).empty());
+    EXPECT_TRUE(effectTaskRows({}, nullptr, 0).empty());
+    EXPECT_TRUE(effectDetailRows({}).empty());
     EffectState state;
     state.set_spin_speed(0);
-    const std::vector<HudRow> rows = effectRows(state, nullptr, 0);
+    EXPECT_TRUE(effectTaskRows(state, nullptr, 0).empty()) << "what the motor does is no figure of the task";
+    const std::vector<HudRow> rows = effectDetailRows(state);
     ASSERT_EQ(rows.size(), 1u);
     EXPECT_EQ(rows[0].label, "Spindle");
     EXPECT_EQ(rows[0].value, "0 rpm");
@@ -44,38 +41,41 @@ TEST(EffectText, FiguresHaveUnits) {
     state.set_temperature_c(38.26);
     state.set_necrotic_mm3(0);
     state.set_damaged_mm3(0.4);
-    const std::vector<HudRow> rows = effectRows(state, nullptr, 0);
-    EXPECT_EQ(find(rows, "Spindle")->value, "-4000 rpm");
-    EXPECT_EQ(find(rows, "Load")->value, "2.90 N\u00b7mm");
-    EXPECT_EQ(find(rows, "Cutting")->value, "18.0 W");
-    EXPECT_EQ(find(rows, "Hottest bone")->value, "38.3 \u00b0C");
-    EXPECT_EQ(find(rows, "Necrosis")->value, "none");
-    EXPECT_EQ(find(rows, "Necrosis")->tone, HudTone::kGood);
-    EXPECT_EQ(find(rows, "Damaged")->value, "0.40 mm\u00b3");
-    EXPECT_EQ(find(rows, "Damaged")->tone, HudTone::kAlarm);
+    const std::vector<HudRow> details = effectDetailRows(state);
+    EXPECT_EQ(test::findRow(details, "Spindle")->value, "-4000 rpm");
+    EXPECT_EQ(test::findRow(details, "Load")->value, "2.90 N\u00b7mm");
+    EXPECT_EQ(test::findRow(details, "Cutting")->value, "18.0 W");
+    const std::vector<HudRow> rows = effectTaskRows(state, nullptr, 0);
+    EXPECT_EQ(test::findRow(rows, "Hottest bone")->value, "38.3 \u00b0C");
+    EXPECT_EQ(test::findRow(rows, "Necrosis")->value, "none");
+    EXPECT_EQ(test::findRow(rows, "Necrosis")->tone, HudTone::kGood);
+    EXPECT_EQ(test::findRow(rows, "Damaged")->value, "0.40 mm\u00b3");
+    EXPECT_EQ(test::findRow(rows, "Damaged")->tone, HudTone::kAlarm);
 }
 
 TEST(EffectText, NothingHasNoSign) {
     EffectState state;
     state.set_axis_torque_nm(-4e-6);
-    EXPECT_EQ(find(effectRows(state, nullptr, 0), "Load")->value, "0.00 N\u00b7mm");
+    EXPECT_EQ(test::findRow(effectDetailRows(state), "Load")->value, "0.00 N\u00b7mm");
     state.set_axis_torque_nm(-6e-6);
-    EXPECT_EQ(find(effectRows(state, nullptr, 0), "Load")->value, "-0.01 N\u00b7mm");
+    EXPECT_EQ(test::findRow(effectDetailRows(state), "Load")->value, "-0.01 N\u00b7mm");
 }
 
-TEST(EffectText, AStalledSpindleSaysSo) {
+TEST(EffectText, WhatIsFarFromEveryStructureKeepsItsLine) {
     EffectState state;
-    state.set_spin_speed(0);
-    const HudRow row = effectRows(state, nullptr, EffectState::SPINDLE_STALLED).at(0);
-    EXPECT_EQ(row.value, "stalled");
-    EXPECT_EQ(row.tone, HudTone::kAlarm);
+    state.set_damaged_mm3(0);
+    const size_t far = effectTaskRows(state, nullptr, 0).size();
+    EXPECT_EQ(test::findRow(effectTaskRows(state, nullptr, 0), "Protected")->value, "far");
+    state.set_protected_distance_m(1e-3);
+    EXPECT_EQ(effectTaskRows(state, nullptr, 0).size(), far)
+        << "the list does not grow as the burr comes near";
 }
 
 TEST(EffectText, HeatWarnsBeforeItHarms) {
     EffectState state;
     const auto toneAt = [&](double celsius, uint32_t events) {
         state.set_temperature_c(celsius);
-        return effectRows(state, nullptr, events).at(0).tone;
+        return effectTaskRows(state, nullptr, events).at(0).tone;
     };
     EXPECT_EQ(toneAt(41.9, 0), HudTone::kPlain);
     EXPECT_EQ(toneAt(42, 0), HudTone::kWarning);
@@ -88,7 +88,7 @@ TEST(EffectText, TheNearestStructureByNameAndDistance) {
     state.set_protected_id(2);
     const auto rowAt = [&](double distance_m, uint32_t events) {
         state.set_protected_distance_m(distance_m);
-        return effectRows(state, &info, events).at(0);
+        return effectTaskRows(state, &info, events).at(0);
     };
     EXPECT_EQ(rowAt(4.2e-3, 0).label, "facial nerve");
     EXPECT_EQ(rowAt(4.2e-3, 0).value, "4.20 mm");
@@ -129,10 +129,10 @@ TEST(EffectText, TrainingInWords) {
     training.set_max_temperature_c(45);
     training.add_warnings("touched facial nerve");
     const std::vector<HudRow> rows = trainingRows(training);
-    EXPECT_EQ(find(rows, "Damaged")->value, "none");
-    EXPECT_EQ(find(rows, "Least distance")->tone, HudTone::kAlarm);
-    EXPECT_EQ(find(rows, "Hottest bone")->tone, HudTone::kWarning);
-    EXPECT_EQ(find(rows, "Necrosis"), nullptr);
+    EXPECT_EQ(test::findRow(rows, "Damaged")->value, "none");
+    EXPECT_EQ(test::findRow(rows, "Least distance")->tone, HudTone::kAlarm);
+    EXPECT_EQ(test::findRow(rows, "Hottest bone")->tone, HudTone::kWarning);
+    EXPECT_EQ(test::findRow(rows, "Necrosis"), nullptr);
     EXPECT_EQ(rows.back().value, "touched facial nerve");
 }
 

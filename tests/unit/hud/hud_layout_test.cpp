@@ -33,15 +33,40 @@ TEST_F(HudLayout, AnotherLineMakesTheFiguresTaller) {
     Hud hud;
     hud.title = "skull";
     hud.rows = {{"Force", "5.00 N"}};
-    const HudCorner one = layOutFigures(canvas_, hud);
+    const HudBox one = layOutFigures(canvas_, hud);
     hud.rows.push_back({"Torque", "12.0 N\u00b7mm"});
-    const HudCorner two = layOutFigures(canvas_, hud);
-    EXPECT_NEAR(two.bottom - one.bottom, 1.55f * kEm, 1e-3f);
-    EXPECT_EQ(two.right, one.right) << "short lines keep the width";
+    const HudBox two = layOutFigures(canvas_, hud);
+    EXPECT_NEAR(two.bottom - one.bottom, 1.5f * kEm, 1e-3f);
+}
+
+TEST_F(HudLayout, NoTextMakesTheFiguresWider) {
+    Hud hud;
+    hud.rows = {{"Force", "5.00 N"}};
+    const HudBox small = layOutFigures(canvas_, hud);
+    hud.title = hud.state = hud.rows[0].value = std::string(300, 'w');
+    const size_t first = canvas_.vertices().size();
+    const HudBox large = layOutFigures(canvas_, hud);
+    EXPECT_EQ(large.right, small.right);
+    EXPECT_EQ(large.bottom, small.bottom);
+    EXPECT_LE(extentSince(first).right, small.right + 1);
+    const HudBox with_details = layOutDetails(canvas_, {{"Loop", std::string(300, 'w')}}, small);
+    EXPECT_EQ(with_details.right, small.right);
+    EXPECT_GT(with_details.bottom, small.bottom);
+    EXPECT_LE(extentSince(first).right, small.right + 1);
+}
+
+TEST_F(HudLayout, ALongNameOfAWatcherIsCutShort) {
+    const HudBox figures{16, 16, 220, 300};
+    layOutWatchers(canvas_, watchers_, figures, {800, 600});
+    const float left = extentSince(0).left;
+    const size_t first = canvas_.vertices().size();
+    layOutWatchers(canvas_, {{std::string(99, 'w'), std::string(99, 'w')}}, figures, {800, 600});
+    EXPECT_EQ(extentSince(first).left, left);
+    EXPECT_LT(extentSince(first).right, 800);
 }
 
 TEST_F(HudLayout, WatchersStandBesideTheFiguresOrBelowThem) {
-    const HudCorner figures{220, 300};
+    const HudBox figures{16, 16, 220, 300};
     layOutWatchers(canvas_, watchers_, figures, {800, 600});
     EXPECT_GT(extentSince(0).left, figures.right);
     EXPECT_LT(extentSince(0).right, 800);
@@ -52,7 +77,7 @@ TEST_F(HudLayout, WatchersStandBesideTheFiguresOrBelowThem) {
 }
 
 TEST_F(HudLayout, AHintStandsBelowTheFiguresOrBesideThem) {
-    const HudCorner figures{220, 300};
+    const HudBox figures{16, 16, 220, 300};
     const HudHint hint{{{"Wheel", "deeper"}, {"G", "let go"}}, 0.25f};
     layOutHint(canvas_, hint, figures, {800, 600});
     EXPECT_LT(extentSince(0).left, figures.right);

@@ -2,17 +2,22 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <iterator>
 #include <limits>
+
+#include "tests/support/hud_rows.h"
 
 namespace bonemill {
 namespace {
 
 const HudRow* find(const Hud& hud, const std::string& label) {
-    const auto row =
-        std::find_if(hud.rows.begin(), hud.rows.end(), [&](const HudRow& r) { return r.label == label; });
-    return row == hud.rows.end() ? nullptr : &*row;
+    const HudRow* const row = test::findRow(hud.rows, label);
+    return row ? row : test::findRow(hud.details, label);
+}
+
+// Stays valid until the next call.
+const Hud& hudOf(const HudInput& input) {
+    static Hud hud;
+    return hud = makeHud(input);
 }
 
 HudInput liveInput() {
@@ -37,13 +42,14 @@ HudInput liveInput() {
     input.tool = tool;
     input.connection = Connection::kLive;
     input.node_count = 40;
+    input.show_details = true;
     return input;
 }
 
 TEST(Hud, ShowsWhatTheServerMeasuresWithUnits) {
     const Hud hud = makeHud(liveInput());
     EXPECT_EQ(hud.title, "skull");
-    EXPECT_EQ(hud.state, "live, 40 nodes");
+    EXPECT_EQ(hud.state, "live, 0:00:00");
     EXPECT_EQ(hud.state_tone, HudTone::kGood);
     ASSERT_TRUE(find(hud, "Loop"));
     EXPECT_EQ(find(hud, "Loop")->value, "999.8 Hz");
@@ -55,19 +61,55 @@ TEST(Hud, ShowsWhatTheServerMeasuresWithUnits) {
     EXPECT_EQ(find(hud, "Removed")->value, "12.3 mm\u00b3");
     EXPECT_EQ(find(hud, "Accuracy")->value, "thesis_2012");
     EXPECT_EQ(find(hud, "Faults")->value, "none");
+    EXPECT_EQ(find(hud, "Model")->value, "40 nodes");
 }
 
-TEST(Hud, AlarmsAboutFaultsAndAStaleDevice) {
+TEST(Hud, OnlyWhatMattersToTheTaskIsThereUntilTheRestIsAskedFor) {
+    HudInput input = liveInput();
+    input.tool->mutable_effects()->set_spin_speed(1);
+    input.tool->mutable_effects()->set_temperature_c(37);
+    input.show_details = false;
+    const Hud quiet = makeHud(input);
+    EXPECT_TRUE(quiet.details.empty());
+    std::vector<std::string> labels;
+    for (const HudRow& row : quiet.rows) labels.push_back(row.label);
+    EXPECT_EQ(labels, (std::vector<std::string>{"Force", "Burr", "Removed", "Hottest bone"}));
+    input.show_details = true;
+    EXPECT_EQ(makeHud(input).rows.size(), quiet.rows.size()) << "the rest stands below";
+    EXPECT_TRUE(test::findRow(makeHud(input).details, "Spindle"));
+}
+
+// No state of a session may move the figures that the trainee reads.
+TEST(Hud, TheTasksFiguresHaveTheSameLinesInEveryState) {
+    HudInput input = liveInput();
+    const size_t lines = makeHud(input).rows.size();
+    input.status->set_is_milling_paused(true);
+    input.status->set_faults(0xff);
+    input.status->set_fault_text("overrun, stale_device, solve");
+    input.status->set_device_stale(true);
+    input.status->set_preset(std::string(200, 'x') + " y z");
+    input.status->mutable_device()->set_state(6);
+    input.connection = Connection::kServerLost;
+    input.events = 0x1f;
+    EXPECT_EQ(makeHud(input).rows.size(), lines);
+}
+
+TEST(Hud, TheBurrSaysWhatKeepsItFromMilling) {
+    HudInput input = liveInput();
+    input.status->set_is_milling_paused(true);
+    EXPECT_EQ(find(hudOf(input), "Burr")->value, "paused");
+    EXPECT_EQ(find(hudOf(input), "Burr")->tone, HudTone::kWarning);
+    input.events = topics::EffectState::SPINDLE_STALLED;
+    EXPECT_EQ(find(hudOf(input), "Burr")->value, "stalled");
+    EXPECT_EQ(find(hudOf(input), "Burr")->tone, HudTone::kAlarm);
+}
+
+TEST(Hud, CountsTheFaultsOfTheSession) {
     HudInput input = liveInput();
     input.status->set_faults(0x22);
-    EXPECT_EQ(find(makeHud(input), "Faults")->value, "0x22");
-    EXPECT_EQ(find(makeHud(input), "Faults")->tone, HudTone::kAlarm);
-    input.status->set_fault_text("stale device");
-    EXPECT_EQ(find(makeHud(input), "Faults")->value, "stale device");
-    EXPECT_FALSE(find(makeHud(input), "Device"));
-    input.status->set_device_stale(true);
-    ASSERT_TRUE(find(makeHud(input), "Device"));
-    EXPECT_EQ(find(makeHud(input), "Device")->tone, HudTone::kAlarm);
+    const Hud hud = makeHud(input);
+    EXPECT_EQ(find(hud, "Faults")->value, "2");
+    EXPECT_EQ(find(hud, "Faults")->tone, HudTone::kWarning);
 }
 
 TEST(Hud, SaysHowItStandsWithTheServer) {
@@ -86,9 +128,12 @@ TEST(Hud, SaysHowItStandsWithTheServer) {
 TEST(Hud, ALoopThatNeverTickedHasNoNumbers) {
     HudInput input = liveInput();
     input.status->set_ticks(0);
-    EXPECT_EQ(find(makeHud(input), "Loop")->value, "waits for a device");
-    EXPECT_FALSE(find(makeHud(input), "Tick p50 / p99"));
-    EXPECT_EQ(find(makeHud(input), "Accuracy")->value, "thesis_2012");
+    const Hud hud = makeHud(input);
+    EXPECT_EQ(hud.state, "waits for a device");
+    EXPECT_EQ(hud.state_tone, HudTone::kWarning);
+    EXPECT_EQ(find(hud, "Loop")->value, "\u2013");
+    EXPECT_EQ(find(hud, "Tick p50 / p99")->value, "\u2013");
+    EXPECT_EQ(find(hudOf(input), "Accuracy")->value, "thesis_2012");
 }
 
 TEST(Hud, TheForceErrorIsTheServersOrNotMeasured) {
@@ -96,14 +141,13 @@ TEST(Hud, TheForceErrorIsTheServersOrNotMeasured) {
     input.status->set_preset("balanced");
     input.status->set_force_error_percent(0.8);
     input.status->set_force_direction_error_deg(0.4);
-    EXPECT_EQ(find(makeHud(input), "Force error")->value, "not measured")
-        << "figures that the server disowns";
+    EXPECT_EQ(find(hudOf(input), "Force error")->value, "not measured") << "figures that the server disowns";
     input.status->set_has_accuracy_error(true);
-    EXPECT_EQ(find(makeHud(input), "Accuracy")->value, "balanced");
-    EXPECT_EQ(find(makeHud(input), "Force error")->value, "0.80 %, 0.40\u00b0");
+    EXPECT_EQ(find(hudOf(input), "Accuracy")->value, "balanced");
+    EXPECT_EQ(find(hudOf(input), "Force error")->value, "0.80 %, 0.40\u00b0");
     input.status->set_force_error_percent(123.4);
     input.status->set_force_direction_error_deg(12.34);
-    EXPECT_EQ(find(makeHud(input), "Force error")->value, "123.4 %, 12.3\u00b0");
+    EXPECT_EQ(find(hudOf(input), "Force error")->value, "123.4 %, 12.3\u00b0");
 }
 
 TEST(Hud, LongSettingsTakeMoreThanOneLine) {
@@ -118,38 +162,39 @@ TEST(Hud, LongSettingsTakeMoreThanOneLine) {
     EXPECT_EQ(first[2].label, "Force error");
 }
 
-TEST(Hud, TheSessionsClockAndAPausedBurr) {
+TEST(Hud, TheSessionsClock) {
     HudInput input = liveInput();
-    EXPECT_EQ(find(makeHud(input), "Session")->value, "0:00:00");
-    EXPECT_FALSE(find(makeHud(input), "Milling"));
     input.status->set_session_s(3725.9);
-    input.status->set_is_milling_paused(true);
-    EXPECT_EQ(find(makeHud(input), "Session")->value, "1:02:05");
-    ASSERT_TRUE(find(makeHud(input), "Milling"));
-    EXPECT_EQ(find(makeHud(input), "Milling")->value, "paused");
-    EXPECT_EQ(find(makeHud(input), "Milling")->tone, HudTone::kWarning);
+    EXPECT_EQ(makeHud(input).state, "live, 1:02:05");
     input.status->set_session_s(std::numeric_limits<double>::quiet_NaN());
-    EXPECT_EQ(find(makeHud(input), "Session")->value, "\u2013");
-    input.status->set_ticks(0);
-    EXPECT_FALSE(find(makeHud(input), "Session"));
+    EXPECT_EQ(makeHud(input).state, "live, \u2013");
+}
+
+TEST(Hud, AllKnobsAreAtMostThreeLines) {
+    HudInput input = liveInput();
+    std::string knobs;
+    for (int i = 0; i < 30; ++i) knobs += "knob=17 ";
+    input.status->set_preset(knobs);
+    const Hud hud = makeHud(input);
+    EXPECT_EQ(find(hud, "Force error") - find(hud, "Accuracy"), 3);
 }
 
 TEST(Hud, TheToolsNameWhenThereIsAChoice) {
     HudInput input = liveInput();
     input.info->add_tool_names("round burr 4 mm");
-    EXPECT_FALSE(find(makeHud(input), "Tool"));
+    EXPECT_FALSE(find(hudOf(input), "Tool"));
     input.info->add_tool_names("round burr 2 mm");
     input.info->set_tool_index(1);
-    EXPECT_EQ(find(makeHud(input), "Tool")->value, "round burr 2 mm");
+    EXPECT_EQ(find(hudOf(input), "Tool")->value, "round burr 2 mm");
     input.info->set_tool_index(7);
-    EXPECT_FALSE(find(makeHud(input), "Tool"));
+    EXPECT_FALSE(find(hudOf(input), "Tool"));
 }
 
 TEST(Hud, TheViewersOwnFrameRate) {
     HudInput input = liveInput();
-    EXPECT_FALSE(find(makeHud(input), "Pictures"));
+    EXPECT_FALSE(find(hudOf(input), "Pictures"));
     input.frame_rate_hz = 59.7;
-    EXPECT_EQ(find(makeHud(input), "Pictures")->value, "60 Hz");
+    EXPECT_EQ(find(hudOf(input), "Pictures")->value, "60 Hz");
 }
 
 topics::Viewer watcher(const std::string& name) {
@@ -163,6 +208,8 @@ topics::Viewer watcher(const std::string& name) {
 TEST(Hud, WhoIsWatching) {
     HudInput input = liveInput();
     EXPECT_TRUE(makeHud(input).watchers.empty());
+    input.show_details = false;
+    input.show_watchers = true;
     input.watchers = {watcher("Anna"), watcher(""), watcher("Dr. Berg")};
     input.watchers[1].set_role(topics::Viewer::OPERATOR);
     input.watchers[1].set_is_complete(false);
@@ -176,20 +223,23 @@ TEST(Hud, WhoIsWatching) {
     EXPECT_EQ(rows[1].value, "operator, 30 Hz, incomplete");
     EXPECT_EQ(rows[1].tone, HudTone::kWarning);
     EXPECT_EQ(rows[2].value, "instructor, 30 Hz, holds the tool");
-    input.show_watchers = false;
-    EXPECT_TRUE(makeHud(input).watchers.empty());
+    input.show_details = true;
+    EXPECT_EQ(find(hudOf(input), "Watching")->value, "3");
+    EXPECT_TRUE(makeHud(input).watchers.empty()) << "one list at a time";
 }
 
 TEST(Hud, ALongListOfWatchersIsCut) {
     HudInput input = liveInput();
-    for (int i = 0; i < 8; ++i) input.watchers.push_back(watcher("w" + std::to_string(i)));
-    EXPECT_EQ(makeHud(input).watchers.size(), 8u);
-    EXPECT_EQ(makeHud(input).watchers.back().label, "w7");
-    for (int i = 8; i < 30; ++i) input.watchers.push_back(watcher("w" + std::to_string(i)));
+    input.show_details = false;
+    input.show_watchers = true;
+    for (int i = 0; i < 6; ++i) input.watchers.push_back(watcher("w" + std::to_string(i)));
+    EXPECT_EQ(makeHud(input).watchers.size(), 6u);
+    EXPECT_EQ(makeHud(input).watchers.back().label, "w5");
+    for (int i = 6; i < 30; ++i) input.watchers.push_back(watcher("w" + std::to_string(i)));
     const std::vector<HudRow> rows = makeHud(input).watchers;
-    ASSERT_EQ(rows.size(), 8u);
-    EXPECT_EQ(rows[6].label, "w6");
-    EXPECT_EQ(rows[7].label, "and 23 more");
+    ASSERT_EQ(rows.size(), 6u);
+    EXPECT_EQ(rows[4].label, "w4");
+    EXPECT_EQ(rows[5].label, "and 25 more");
 }
 
 TEST(Hud, ALongNameIsCutBetweenLetters) {
@@ -197,6 +247,8 @@ TEST(Hud, ALongNameIsCutBetweenLetters) {
     std::string name;
     for (int i = 0; i < 40; ++i) name += "\u00e4";
     input.watchers = {watcher(name)};
+    input.show_details = false;
+    input.show_watchers = true;
     std::string expected;
     for (int i = 0; i < 23; ++i) expected += "\u00e4";
     EXPECT_EQ(makeHud(input).watchers[0].label, expected + "\u2026");
@@ -217,8 +269,11 @@ TEST(Hud, AHintGivesWayToTheHelpPage) {
     input.hint = HudHint{{{"Wheel", "deeper"}}, 0.5f};
     ASSERT_TRUE(makeHud(input).hint);
     EXPECT_EQ(makeHud(input).hint->opacity, 0.5f);
-    input.show_help = true;
-    EXPECT_FALSE(makeHud(input).hint);
+    for (bool* const asked : {&input.show_help, &input.show_details, &input.show_watchers}) {
+        *asked = true;
+        EXPECT_FALSE(makeHud(input).hint) << "who has found the keys needs none";
+        *asked = false;
+    }
 }
 
 TEST(Hud, TheHelpPageIsShownOnRequest) {

@@ -100,7 +100,9 @@ TEST_F(PanelClicks, BoxesSwitchWhatIsSeen) {
     click("Figures (Tab)");
     EXPECT_FALSE(settings_.show_hud);
     click("Watchers (W)");
-    EXPECT_FALSE(settings_.show_watchers);
+    EXPECT_TRUE(settings_.show_watchers);
+    click("All (Shift+Tab)");
+    EXPECT_TRUE(settings_.show_details && settings_.show_hud);
     click("Help (H)");
     EXPECT_TRUE(settings_.show_help);
     click("Red/cyan");
