@@ -160,6 +160,7 @@ void Daemon::recordTick(const WrenchCommand* command) noexcept {
 
     progress_.is_server_there.store(loop_.isServerThere(), std::memory_order_relaxed);
     progress_.abilities.store(loop_.abilities(), std::memory_order_relaxed);
+    progress_.refused_figure.store(device_.refusedFigure(), std::memory_order_relaxed);
     progress_.fault_code.store(safety.faultCode(), std::memory_order_relaxed);
     progress_.cause.store(safety.cause(), std::memory_order_relaxed);
     progress_.state.store(safety.state(), std::memory_order_relaxed);
@@ -229,7 +230,11 @@ void Daemon::reportState(SafetyState& shown_state, StopCause& shown_cause) const
 }
 
 void Daemon::warnOfSilentDevice() const {
-    if (progress_.state == SafetyState::kDisconnected && !is_ending_)
+    if (progress_.state != SafetyState::kDisconnected || is_ending_) return;
+    if (const char* figure = progress_.refused_figure)
+        spdlog::warn("the device is refused for the {} that it describes itself with: mend it in its program",
+                     figure);
+    else
         spdlog::warn("the device does not answer: device_daemon --list says what is there");
 }
 

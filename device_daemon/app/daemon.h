@@ -37,6 +37,7 @@ class Daemon {
         std::atomic<StopCause> cause = StopCause::kNone;
         std::atomic<uint32_t> fault_code = 0;
         std::atomic<uint32_t> abilities = 0;  // DeviceAbility bits
+        std::atomic<const char*> refused_figure = nullptr;
         std::atomic<bool> is_finished = false;
     };
 

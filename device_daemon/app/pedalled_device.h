@@ -18,6 +18,7 @@ class PedalledDevice final : public HapticDevice {
 
     DeviceCapabilities capabilities() const noexcept override { return device_->capabilities(); }
     uint32_t capabilitiesVersion() const noexcept override { return device_->capabilitiesVersion(); }
+    const char* refusedFigure() const noexcept override { return device_->refusedFigure(); }
     bool hasClock() const noexcept override { return device_->hasClock(); }
     bool waitForSample(int64_t deadline_ns) noexcept override { return device_->waitForSample(deadline_ns); }
     bool read(double elapsed, DeviceReading& reading) noexcept override {

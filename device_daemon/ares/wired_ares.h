@@ -28,6 +28,7 @@ class WiredAres final : public HapticDevice {
     uint32_t capabilitiesVersion() const noexcept override {
         return ares_.capabilitiesVersion() + joints_.descriptionCount();
     }
+    const char* refusedFigure() const noexcept override { return joints_.session().refusedFigure(); }
     bool hasClock() const noexcept override { return ares_.hasClock(); }
     bool waitForSample(int64_t deadline_ns) noexcept override { return ares_.waitForSample(deadline_ns); }
     bool read(double elapsed, DeviceReading& reading) noexcept override;

@@ -27,6 +27,7 @@ class UdpPoseDevice final : public HapticDevice {
     uint32_t capabilitiesVersion() const noexcept override {
         return 1 + device_.session().descriptionCount();
     }
+    const char* refusedFigure() const noexcept override { return device_.session().refusedFigure(); }
     bool hasClock() const noexcept override { return true; }
     bool waitForSample(int64_t deadline_ns) noexcept override { return device_.waitForSample(deadline_ns); }
     bool read(double elapsed, DeviceReading& reading) noexcept override;

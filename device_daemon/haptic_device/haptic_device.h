@@ -55,6 +55,8 @@ class HapticDevice {
     // What the device can do. It may change when another one is plugged in; then the number does, too.
     virtual DeviceCapabilities capabilities() const noexcept = 0;
     virtual uint32_t capabilitiesVersion() const noexcept { return 1; }
+    // A literal: what the device says of itself that no device has, so that it counts as silent; else null.
+    virtual const char* refusedFigure() const noexcept { return nullptr; }
 
     // Tells whether the device gives the pace: waitForSample() wakes with each of its samples. Otherwise the
     // loop has its own timer, and does not call waitForSample().

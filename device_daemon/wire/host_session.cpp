@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 #include "common/device_messages/device_messages.h"
 
@@ -11,24 +12,39 @@ namespace {
 // A watchdog that is shorter than so many periods of the states would trip at once.
 constexpr uint64_t kPeriodsPerWatchdog = 2;
 
-bool hasPlausibleFigures(const Describe& d) noexcept {
-    for (const double figure : {d.max_force, d.max_torque, d.max_stiffness, d.max_rotation_stiffness,
-                                d.workspace_radius, d.max_actuator_force, d.encoder_step, d.stroke}) {
-        if (figure < 0) return false;
-    }
-    const bool has_watchdog = d.watchdog_us >= kShortestWatchdogUs && d.watchdog_us <= kLongestWatchdogUs;
-    const bool is_fast_enough = uint64_t(d.rate_hz) * d.watchdog_us >= kPeriodsPerWatchdog * 1'000'000;
-    return has_watchdog && is_fast_enough && d.kind < kDeviceKindCount;
+const char* negativeFigure(const Describe& d) noexcept {
+    const std::pair<const char*, double> figures[] = {{"max_force", d.max_force},
+                                                      {"max_torque", d.max_torque},
+                                                      {"max_stiffness", d.max_stiffness},
+                                                      {"max_rotation_stiffness", d.max_rotation_stiffness},
+                                                      {"workspace_radius", d.workspace_radius},
+                                                      {"max_actuator_force", d.max_actuator_force},
+                                                      {"encoder_step", d.encoder_step},
+                                                      {"stroke", d.stroke}};
+    for (const auto& [name, figure] : figures)
+        if (figure < 0) return name;
+    return nullptr;
 }
 
 // Joints have motors of their own; a pose has none.
 template <class Packets>
-bool isOfThisKind(const Describe& d) noexcept {
+const char* figureOfAnotherKind(const Describe& d) noexcept {
     if constexpr (std::is_same_v<Packets, JointPackets>) {
-        return d.max_actuator_force > 0 && d.stroke > 0;
+        if (d.stroke == 0) return "stroke";
+        return d.max_actuator_force == 0 ? "max_actuator_force" : nullptr;
     } else {
-        return d.max_actuator_force == 0;
+        return d.max_actuator_force != 0 ? "max_actuator_force" : nullptr;
     }
+}
+
+// Names the first field that no controller of this kind has; null: the description makes sense.
+template <class Packets>
+const char* implausibleFigure(const Describe& d) noexcept {
+    if (const char* figure = negativeFigure(d)) return figure;
+    if (d.watchdog_us < kShortestWatchdogUs || d.watchdog_us > kLongestWatchdogUs) return "watchdog_us";
+    if (uint64_t(d.rate_hz) * d.watchdog_us < kPeriodsPerWatchdog * 1'000'000) return "rate_hz";
+    if (d.kind >= kDeviceKindCount) return "kind";
+    return figureOfAnotherKind<Packets>(d);
 }
 
 }  // namespace
@@ -78,7 +94,8 @@ void HostSession<Packets>::takeDescription(std::span<const std::byte> bytes, int
         flow_.skip(description->header.sequence);
         return;
     }
-    if (!hasPlausibleFigures(*description) || !isOfThisKind<Packets>(*description)) {
+    refused_figure_ = implausibleFigure<Packets>(*description);
+    if (refused_figure_) {
         flow_.reject(false);
         return;
     }

@@ -46,6 +46,8 @@ class HostSession {
 
     // The controller has described itself in this session.
     bool isDescribed() const noexcept { return is_described_; }
+    // The field for which the newest description was refused; null: none was.
+    const char* refusedFigure() const noexcept { return refused_figure_; }
     // It is silent for longer than the watchdog, or there is none.
     bool isLost(int64_t now_ns) const noexcept;
     // Both directions have proved themselves in this session.
@@ -79,6 +81,7 @@ class HostSession {
     DescribeRequest request_{};
     bool is_described_ = false;
     bool has_state_ = false;
+    const char* refused_figure_ = nullptr;  // a literal
     uint32_t description_count_ = 0;
     uint64_t loss_count_ = 0;
     Describe description_{};

@@ -15,6 +15,7 @@
 #include "common/ipc/device_link.h"
 #include "common/rt/clock.h"
 #include "tests/support/process.h"
+#include "tests/unit/device_driver/wire_controller.h"
 
 namespace bonemill {
 namespace {
@@ -178,6 +179,21 @@ TEST_F(DeviceDaemonTest, WarnsOnceOfADeviceThatDoesNotAnswer) {
     const test::Finished heard =
         test::run(commandLine(file, {"--device", "pointer", "--wait-seconds", "2.5"}));
     EXPECT_EQ(heard.err.find("does not answer"), std::string::npos) << heard.err;
+}
+
+TEST_F(DeviceDaemonTest, NamesTheFigureForWhichABridgeIsRefused) {
+    wire::Describe description = test::testDescription();
+    description.max_torque = -1;
+    test::WireController<wire::PosePackets> bridge(description);
+    const std::string device = "bridge:127.0.0.1:" + std::to_string(bridge.link.local().port);
+    const std::jthread turns([&bridge](const std::stop_token& stop) {
+        for (; !stop.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(1)))
+            bridge.period();
+    });
+    const test::Finished finished =
+        test::run(commandLine(sceneFile(kShortScene), {"--device", device, "--wait-seconds", "2.5"}));
+    expectSays(finished, "warning the device is refused for the max_torque that it describes itself with:");
+    EXPECT_EQ(finished.err.find("does not answer"), std::string::npos) << finished.err;
 }
 
 TEST_F(DeviceDaemonTest, RefusesBadScenes) {

@@ -320,13 +320,17 @@ TEST(Sessions, TheHostChoosesTheWatchdogWithinBounds) {
 }
 
 TEST(Sessions, RefuseDescriptionsThatMakeNoSense) {
-    const std::function<void(Describe&)> damages[] = {
-        [](Describe& d) { d.watchdog_us = 1999; }, [](Describe& d) { d.watchdog_us = 30001; },
-        [](Describe& d) { d.rate_hz = 0; },        [](Describe& d) { d.rate_hz = 399; },
-        [](Describe& d) { d.kind = 99; },          [](Describe& d) { d.max_force = -1; },
-        [](Describe& d) { d.stroke = 0; },         [](Describe& d) { d.max_actuator_force = 0; },
+    const std::pair<const char*, std::function<void(Describe&)>> damages[] = {
+        {"watchdog_us", [](Describe& d) { d.watchdog_us = 1999; }},
+        {"watchdog_us", [](Describe& d) { d.watchdog_us = 30001; }},
+        {"rate_hz", [](Describe& d) { d.rate_hz = 0; }},
+        {"rate_hz", [](Describe& d) { d.rate_hz = 399; }},
+        {"kind", [](Describe& d) { d.kind = 99; }},
+        {"max_force", [](Describe& d) { d.max_force = -1; }},
+        {"stroke", [](Describe& d) { d.stroke = 0; }},
+        {"max_actuator_force", [](Describe& d) { d.max_actuator_force = 0; }},
     };
-    for (const auto& damage : damages) {
+    for (const auto& [figure, damage] : damages) {
         HostSession<JointPackets> host({.controller = test::kControllerPlace, .seed = 3});
         const DescribeRequest* request = host.requestDue(1);
         Describe description = test::aresDescription();
@@ -335,6 +339,7 @@ TEST(Sessions, RefuseDescriptionsThatMakeNoSense) {
         host.take(test::copyOf(description), test::kControllerPlace, 2);
         EXPECT_FALSE(host.isDescribed());
         EXPECT_EQ(host.statistics().rejected, 1u);
+        EXPECT_STREQ(host.refusedFigure(), figure);
     }
 }
 
@@ -344,10 +349,12 @@ TEST(Sessions, APoseHostDoesNotTakeJointsForAPose) {
     seal(description, host.requestDue(1)->header.session, 1);
     host.take(test::copyOf(description), test::kControllerPlace, 2);
     EXPECT_FALSE(host.isDescribed());
+    EXPECT_STREQ(host.refusedFigure(), "max_actuator_force");
     description.max_actuator_force = 0;
     seal(description, description.header.session, 2);
     host.take(test::copyOf(description), test::kControllerPlace, 3);
     EXPECT_TRUE(host.isDescribed());
+    EXPECT_EQ(host.refusedFigure(), nullptr);
 }
 
 }  // namespace
