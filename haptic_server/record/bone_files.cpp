@@ -44,7 +44,7 @@ void requireWritable(const std::string& path) {
     const bool is_new = !std::filesystem::exists(path);
     if (!std::ofstream(path, std::ios::app))
         throw UserError(path + ": cannot be written; check that its folder exists and is yours");
-    if (is_new) std::filesystem::remove(path);
+    if (is_new) std::filesystem::remove(std::filesystem::canonical(path));  // not the link that leads there
 }
 
 void requireReplaceable(const std::string& path) {

@@ -190,6 +190,14 @@ TEST_F(SessionExportTest, ANameLikeThatOfAHalfWrittenFileIsSafe) {
     EXPECT_EQ(filesOf().size(), 8u);
 }
 
+TEST(BoneFiles, AskingWhetherALinkCanBeWrittenLeavesItAsItIs) {
+    const test::TemporaryFolder folder;
+    std::filesystem::create_symlink("later.nrrd", folder / "link.nrrd");
+    requireReplaceable(folder / "link.nrrd");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.nrrd"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "later.nrrd"));
+}
+
 TEST(BoneFiles, AnEndingThatIsNoFormatIsRefusedBeforeTheRun) {
     const test::TemporaryFolder folder;
     EXPECT_NO_THROW(requireReplaceable(SavePaths{folder / "a.nrrd", folder / "a.PLY", folder / "b.nrrd"}));
