@@ -140,6 +140,27 @@ void warnOfManyPoints(Simulation& simulation, const SceneTool& tool) {
                                   " mm, a smaller burr or a slower loop");
 }
 
+// A groove half as deep as the burr's radius R is larger than what was swept by this times (voxel / R)², as
+// docs/effects.md (time_removal) has it measured.
+constexpr double kGrooveExcess = 1.3;
+constexpr double kMostGrooveExcess = 0.1;
+
+void warnOfCoarseVoxels(Simulation& simulation, const SceneTool& tool) {
+    const bool is_by_ramp = simulation.accuracy.law == ContactLaw::kGradient;
+    if (!simulation.tick.effects.time_removal || !is_by_ramp) return;
+    const double voxel = std::sqrt(simulation.bone->volume.spacing().squaredNorm() / 3);
+    const double radius = tool.burr.radius;
+    const double excess = kGrooveExcess * std::pow(voxel / radius, 2);
+    if (excess <= kMostGrooveExcess) return;
+    const double fine_voxel = radius * std::sqrt(kMostGrooveExcess / kGrooveExcess);
+    simulation.warnings.push_back(
+        ofTool(simulation, tool) + "voxels of " + textOf(std::round(voxel * 1e5) / 100) +
+        " mm are coarse for a burr of " + textOf(radius / kMillimetre) +
+        " mm radius: time_removal makes a groove half as deep as that larger by some " +
+        textOf(std::round(100 * excess)) + " %; with voxels of at most " +
+        textOf(std::floor(fine_voxel * 1e5) / 100) + " mm it is less than 10 %");
+}
+
 // The tools lack what needs the volume.
 std::vector<SceneTool> buildTools(const LoadedScene& loaded) {
     const std::vector<std::string> names = toolNamesOf(loaded.scene);
@@ -166,6 +187,7 @@ void fitToolsToBone(Simulation& simulation, const scene::Scene& scene) {
         warnOfCoarseShell(simulation, tool);
         warnOfManyPoints(simulation, tool);
         warnOfThinTool(simulation, scene, tool);
+        warnOfCoarseVoxels(simulation, tool);
     }
 }
 

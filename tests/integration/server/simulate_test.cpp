@@ -161,6 +161,26 @@ TEST(Simulate, WarnsOfABurrThatTouchesMorePointsThanATickHasTimeFor) {
     EXPECT_EQ(warnings("2").find("coarser ones will be felt"), std::string::npos);
 }
 
+TEST(Simulate, WarnsOfVoxelsTooCoarseForABurrThatRemovesByTime) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--voxel-mm", "0.25", "--dims", "64", "64", "64",
+                   "--out", folder / "slab.nrrd"})
+                  .exit_code,
+              0);
+    writeFile(folder / "a.csv", plunge(0, 0, 20e-3, 20e-3, 2, 0, 0));
+    const auto warnings = [&](const std::string& burr_radius_mm, const std::string& rest) {
+        return warningsOf(folder,
+                          "volume { path: \"slab.nrrd\" } tool { sdf_spacing_mm: 0.05 burr_radius_mm: " +
+                              burr_radius_mm + " } " + rest);
+    };
+    const std::string by_time = "effects { time_removal {} } ", coarse = "larger by some 23 %";
+    EXPECT_NE(warnings("0.6", by_time).find(coarse), std::string::npos);
+    EXPECT_EQ(warnings("1", by_time).find("larger by some"), std::string::npos);
+    EXPECT_EQ(warnings("0.6", "").find("larger by some"), std::string::npos);
+    EXPECT_EQ(warnings("0.6", by_time + "accuracy { preset: THESIS_2012 }").find("larger by some"),
+              std::string::npos);
+}
+
 TEST(Simulate, TraceHasTheDocumentedColumnsAndAddsUp) {
     const TemporaryFolder folder;
     ASSERT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder / "slab.nrrd"}).exit_code, 0);
