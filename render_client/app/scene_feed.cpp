@@ -61,8 +61,9 @@ void SceneFeed::updateConnection() {
     const bool has_server = subscriber_.hasServer();
     if (has_server && hasWholeModel()) complete_epoch_ = subscriber_.epoch();
     had_server_ = had_server_ || has_server;
-    scene_.setConnection(!has_server && had_server_ ? Connection::kServerLost
-                         : !has_server              ? Connection::kNoServer
+    scene_.setConnection(!has_server && subscriber_.hasEnded() ? Connection::kServerEnded
+                         : !has_server && had_server_          ? Connection::kServerLost
+                         : !has_server                         ? Connection::kNoServer
                          : complete_epoch_ != 0 && complete_epoch_ == subscriber_.epoch()
                              ? Connection::kLive
                              : Connection::kReceiving);

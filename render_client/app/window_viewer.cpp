@@ -151,6 +151,7 @@ class WindowViewer {
         if (subscriber.sceneInfo()) session.info = &*subscriber.sceneInfo();
         if (subscriber.status()) session.status = &*subscriber.status();
         session.others = subscriber.viewers();
+        session.faults = scene_.faults();
         return session;
     }
 

@@ -9,6 +9,7 @@
 
 #include "proto/topics.pb.h"
 #include "render_client/controls/key_table.h"
+#include "render_client/hud/fault_book.h"
 
 namespace bonemill {
 
@@ -21,6 +22,7 @@ struct SessionView {
     const topics::SceneInfo* info = nullptr;
     const topics::Status* status = nullptr;
     std::vector<topics::Viewer> others = {};
+    std::vector<FaultEntry> faults = {};  // of the session, the first one first
 };
 
 // Returns why this viewer may not do it, a sentence for the user; empty when it may.

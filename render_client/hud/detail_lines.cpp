@@ -1,6 +1,5 @@
 #include "render_client/hud/detail_lines.h"
 
-#include <bit>
 #include <iterator>
 #include <utility>
 
@@ -12,7 +11,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostAccuracyLines = 3;
+constexpr size_t kMostAccuracyLines = 2;
 
 void append(std::vector<HudRow> more, std::vector<HudRow>& rows) {
     rows.insert(rows.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
@@ -46,9 +45,9 @@ void addContactRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
     rows.push_back({"Contacts", std::to_string(tool.contacts())});
 }
 
-HudRow faultRow(const topics::Status& status) {
-    if (status.faults() == 0) return {"Faults", "none", HudTone::kGood};
-    return {"Faults", std::to_string(std::popcount(status.faults())), HudTone::kWarning};
+HudRow faultRow(size_t count) {
+    if (count == 0) return {"Faults", "none", HudTone::kGood};
+    return {"Faults", std::to_string(count) + ", see the panel", HudTone::kWarning};
 }
 
 }  // namespace
@@ -65,8 +64,7 @@ std::vector<HudRow> detailRows(const HudInput& input) {
     }
     if (input.status && input.status->has_device())
         append(deviceRows(input.status->device(), input.tool ? &*input.tool : nullptr), rows);
-    if (input.status) rows.push_back(faultRow(*input.status));
-    rows.push_back({"Model", std::to_string(input.node_count) + " nodes"});
+    rows.push_back(faultRow(input.fault_count));
     rows.push_back({"Watching", std::to_string(input.watchers.size())});
     if (input.frame_rate_hz > 0) rows.push_back({"Pictures", figureText(input.frame_rate_hz, 0, " Hz")});
     return rows;

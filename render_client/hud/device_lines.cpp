@@ -1,7 +1,5 @@
 #include "render_client/hud/device_lines.h"
 
-#include <cstdio>
-
 #include "common/device_messages/device_messages.h"
 #include "render_client/hud/figure_text.h"
 
@@ -34,51 +32,61 @@ std::string causeOf(StopCause cause, uint32_t fault_code) {
     return cause == StopCause::kDeviceFault ? text + " " + std::to_string(fault_code) : text;
 }
 
-void addCause(SafetyState state, StopCause cause, uint32_t fault_code, std::vector<HudRow>& rows) {
-    if (cause == StopCause::kNone) return;
-    const std::string text = causeOf(cause, fault_code);
-    if (text != nameOf(state)) rows.push_back({"", text, HudTone::kAlarm});
-    for (const std::string& line : wrappedText(whatToDo(cause), kLongestRow))
-        rows.push_back({"", line, HudTone::kAlarm});
+SafetyState stateOf(const topics::Device& device, const topics::ToolState* tool) {
+    return SafetyState(tool ? tool->device_state() : device.state());
+}
+
+std::string shownName(const topics::Device& device) {
+    const std::string name = shortenedText(device.name(), kLongestDeviceName);
+    return name.empty() ? "Device" : name;
 }
 
 // After a pause a switch that is still held counts as pressed no more.
-void addWhatItWaitsFor(SafetyState state, const topics::Device& device, std::vector<HudRow>& rows) {
+const char* whatItWaitsFor(SafetyState state, const topics::Device& device) {
     const bool has_switch = device.abilities() & kAbilityEnablingSwitch;
-    if (has_switch && !device.is_enabled())
-        rows.push_back({"", "hold the enabling switch", HudTone::kWarning});
-    if (device.force_waits())
-        rows.push_back({"", "move the tool away", HudTone::kWarning});
-    else if (has_switch && device.is_enabled() && state == SafetyState::kPaused)
-        rows.push_back({"", "press the switch anew", HudTone::kWarning});
+    if (has_switch && !device.is_enabled()) return "hold the enabling switch";
+    if (device.force_waits()) return "move the tool away";
+    return has_switch && state == SafetyState::kPaused ? "press the switch anew" : nullptr;
 }
 
 // A device that could not hold the scene's coupling quietly gets a softer one (docs/stability.md).
-void addWhatWasGivenUp(const topics::Device& device, std::vector<HudRow>& rows) {
+std::string stiffnessText(const topics::Device& device) {
     constexpr double kAllButAll = 0.995;
-    const auto add = [&](const char* what, double share) {
-        if (!(share > 0 && share < kAllButAll)) return;
-        char text[kLongestRow + 1];
-        std::snprintf(text, sizeof text, "%s at %.*f %%", what, share < 0.1 ? 1 : 0, share * 100);
-        rows.push_back({"", text});
+    const auto percent = [](double share) {
+        return share >= kAllButAll ? std::string("100 %")
+                                   : figureText(share * 100, share < 0.1 ? 1 : 0, " %");
     };
-    add("stiffness", device.coupling_share());
-    add("turning stiffness", device.rotation_share());
+    if (!(device.coupling_share() > 0) && !(device.rotation_share() > 0)) return kNoNumber;
+    return percent(device.coupling_share()) + ", turning " + percent(device.rotation_share());
 }
 
 }  // namespace
 
 std::vector<HudRow> deviceRows(const topics::Device& device, const topics::ToolState* tool) {
-    const auto state = SafetyState(tool ? tool->device_state() : device.state());
+    const SafetyState state = stateOf(device, tool);
+    return {{shownName(device), std::string(nameOf(state)) + (device.is_simulated() ? ", simulated" : ""),
+             toneOf(state)},
+            {"Stiffness", stiffnessText(device)}};
+}
+
+std::optional<HudNotice> deviceStop(const topics::Device& device, const topics::ToolState* tool) {
+    const SafetyState state = stateOf(device, tool);
+    if (toneOf(state) != HudTone::kAlarm) return std::nullopt;
     const auto cause = StopCause(tool ? tool->stop_cause() : device.stop_cause());
-    const std::string name = shortenedText(device.name(), kLongestDeviceName);
-    std::vector<HudRow> rows{{name.empty() ? "Device" : name,
-                              std::string(nameOf(state)) + (device.is_simulated() ? ", simulated" : ""),
-                              toneOf(state)}};
-    if (rows.front().tone == HudTone::kAlarm) addCause(state, cause, device.fault_code(), rows);
-    if (state == SafetyState::kReady || state == SafetyState::kPaused) addWhatItWaitsFor(state, device, rows);
-    if (state == SafetyState::kEngaged) addWhatWasGivenUp(device, rows);
-    return rows;
+    const std::string why = causeOf(cause, device.fault_code());
+    std::string text = shownName(device) + ": " + nameOf(state);
+    if (cause != StopCause::kNone && why != nameOf(state)) text += ", " + why;
+    text += ".";
+    if (cause != StopCause::kNone) text += std::string(" ") + whatToDo(cause);
+    return HudNotice{text, HudTone::kAlarm};
+}
+
+std::optional<HudNotice> deviceWait(const topics::Device& device, const topics::ToolState* tool) {
+    const SafetyState state = stateOf(device, tool);
+    if (state != SafetyState::kReady && state != SafetyState::kPaused) return std::nullopt;
+    const char* const what = whatItWaitsFor(state, device);
+    if (!what) return std::nullopt;
+    return HudNotice{shownName(device) + " is " + nameOf(state) + ": " + what + ".", HudTone::kWarning};
 }
 
 }  // namespace bonemill

@@ -20,6 +20,7 @@ struct HudRow {
 struct HudNotice {
     std::string text;
     HudTone tone = HudTone::kPlain;
+    float opacity = 1;
 };
 
 // The rows stand over the picture for a while: what the mouse does now.
@@ -38,7 +39,8 @@ struct Hud {
     std::vector<HudRow> help;      // keys and what they do; empty: no help page
     std::optional<HudHint> hint;
     std::optional<HudNotice> notice;
-    std::optional<HudNotice> alert;  // with a border around the picture
+    std::vector<HudNotice> messages;  // what stands in the way, and what to do
+    std::optional<HudNotice> alert;   // with a border around the picture
 };
 
 // The name stands beside a point of the picture; x and y are pixels from the upper left.

@@ -5,11 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "render_client/hud/figure_text.h"
+
 namespace bonemill {
 namespace {
 
 constexpr std::string_view kWatchersTitle = "Watching";
-constexpr float kFiguresWidth = 12.5f, kWatchersWidth = 20;  // of the text within, in units of its height
+constexpr float kFiguresWidth = 12.5f, kWatchersWidth = 20,
+                kWidestBanner = 48;  // of the text within, in units of its height
 
 // These distances are shared by all lists.
 struct Spacing {
@@ -47,12 +50,33 @@ void layOutRows(HudCanvas& canvas, const std::vector<HudRow>& rows, float left, 
     }
 }
 
-void layOutBanner(HudCanvas& canvas, const HudNotice& notice, float bottom, float picture_width) {
-    const float em = canvas.em(), padding = Spacing(em).padding, height = em * 2.2f;
-    const float text_width = canvas.width(notice.text, FontStyle::kBold);
-    const float left = std::round((picture_width - text_width) / 2), top = bottom - height;
-    canvas.box(left - padding, top, text_width + 2 * padding, height, Spacing(em).rounding, kHudPanelColour);
-    canvas.text(left, top + em * 1.45f, notice.text, FontStyle::kBold, colourOf(notice.tone));
+HudColour faded(HudColour colour, float opacity) {
+    colour[3] *= opacity;
+    return colour;
+}
+
+// The banner stands in the middle above `bottom`, in more than one line where it has to. Returns where it
+// begins.
+float layOutBanner(HudCanvas& canvas, const HudNotice& notice, FontStyle style, float bottom,
+                   float picture_width) {
+    constexpr float kUsualSign = 0.6f;  // width, in units of the height
+    const float em = canvas.em(), padding = Spacing(em).padding, line = em * 1.4f;
+    const float widest = std::min(picture_width - 4 * em, em * kWidestBanner);
+    const auto lines = wrappedText(notice.text, size_t(std::max(widest / (em * kUsualSign), 8.0f)));
+    float width = 0;
+    for (const std::string& text : lines)
+        width = std::max(width, std::min(canvas.width(text, style), widest));
+    const float height = line * float(lines.size()) + em * 0.6f, top = bottom - height;
+    const float left = std::round((picture_width - width) / 2);
+    canvas.box(left - padding, top, width + 2 * padding, height, Spacing(em).rounding,
+               faded(kHudPanelColour, notice.opacity));
+    float base = top + em * 1.35f;
+    for (const std::string& text : lines) {
+        canvas.text(left, base, canvas.fitted(text, style, widest), style,
+                    faded(colourOf(notice.tone), notice.opacity));
+        base += line;
+    }
+    return top;
 }
 
 }  // namespace
@@ -125,10 +149,6 @@ void layOutScaleBar(HudCanvas& canvas, const ScaleBar& bar, double metres_per_pi
 void layOutHint(HudCanvas& canvas, const HudHint& hint, const HudBox& figures, const PictureSize& picture) {
     const float em = canvas.em();
     const Spacing space(em);
-    const auto faded = [&](HudColour colour) {
-        colour[3] *= hint.opacity;
-        return colour;
-    };
     float labels = 0, values = 0;
     for (const HudRow& row : hint.rows) {
         labels = std::max(labels, canvas.width(row.label, FontStyle::kBold));
@@ -139,17 +159,19 @@ void layOutHint(HudCanvas& canvas, const HudHint& hint, const HudBox& figures, c
     const float edge = top > figures.bottom ? space.margin : figures.right + em * 0.6f;
     const float left = edge + space.padding;
     canvas.box(edge, top, labels + space.gap + values + 2 * space.padding, height, space.rounding,
-               faded(kHudPanelColour));
+               faded(kHudPanelColour, hint.opacity));
     float base = top + space.padding * 0.2f;
     for (const HudRow& row : hint.rows) {
         base += space.line;
-        canvas.text(left, base, row.label, FontStyle::kBold, faded(kHudTitleColour));
-        canvas.text(left + labels + space.gap, base, row.value, FontStyle::kPlain, faded(kHudLabelColour));
+        canvas.text(left, base, row.label, FontStyle::kBold, faded(kHudTitleColour, hint.opacity));
+        canvas.text(left + labels + space.gap, base, row.value, FontStyle::kPlain,
+                    faded(kHudLabelColour, hint.opacity));
     }
 }
 
 void layOutNotice(HudCanvas& canvas, const HudNotice& notice, const PictureSize& picture) {
-    layOutBanner(canvas, notice, float(picture.height) - canvas.em() * 1.1f, float(picture.width));
+    layOutBanner(canvas, notice, FontStyle::kBold, float(picture.height) - canvas.em() * 1.1f,
+                 float(picture.width));
 }
 
 void layOutAlert(HudCanvas& canvas, const HudNotice& alert, const PictureSize& picture) {
@@ -161,7 +183,14 @@ void layOutAlert(HudCanvas& canvas, const HudNotice& alert, const PictureSize& p
     canvas.box(0, height - thick, width, thick, 0, colour);
     canvas.box(0, thick, thick, height - 2 * thick, 0, colour);
     canvas.box(width - thick, thick, thick, height - 2 * thick, 0, colour);
-    layOutBanner(canvas, alert, height - em * 3.9f, width);
+    layOutBanner(canvas, alert, FontStyle::kBold, height - em * 3.9f, width);
+}
+
+void layOutMessages(HudCanvas& canvas, const std::vector<HudNotice>& messages, const PictureSize& picture) {
+    const float em = canvas.em();
+    float bottom = float(picture.height) - em * 7.6f;
+    for (auto message = messages.rbegin(); message != messages.rend(); ++message)
+        bottom = layOutBanner(canvas, *message, FontStyle::kPlain, bottom, float(picture.width)) - em * 0.4f;
 }
 
 void layOutLabel(HudCanvas& canvas, const HudLabel& label) {

@@ -44,6 +44,8 @@ void layOutHint(HudCanvas& canvas, const HudHint& hint, const HudBox& figures, c
 // picture: neither hides the other.
 void layOutNotice(HudCanvas& canvas, const HudNotice& notice, const PictureSize& picture);
 void layOutAlert(HudCanvas& canvas, const HudNotice& alert, const PictureSize& picture);
+// Puts the messages above both, the first one on top.
+void layOutMessages(HudCanvas& canvas, const std::vector<HudNotice>& messages, const PictureSize& picture);
 
 // Puts a name beside its point.
 void layOutLabel(HudCanvas& canvas, const HudLabel& label);

@@ -80,6 +80,8 @@ std::string stateText(const HudInput& input) {
             return liveText(input);
         case Connection::kServerLost:
             return "server lost";
+        case Connection::kServerEnded:
+            return "ended";
     }
     return "";
 }
@@ -93,6 +95,8 @@ HudTone stateTone(const HudInput& input) {
             return HudTone::kWarning;
         case Connection::kServerLost:
             return HudTone::kAlarm;
+        case Connection::kServerEnded:
+            break;
     }
     return HudTone::kPlain;
 }
@@ -111,6 +115,7 @@ Hud makeHud(const HudInput& input) {
     hud.state = stateText(input);
     hud.state_tone = stateTone(input);
     hud.notice = input.notice;
+    hud.messages = input.messages;
     hud.alert = alertOf(input);
     hud.rows = taskRows(input);
     if (input.show_details) hud.details = detailRows(input);

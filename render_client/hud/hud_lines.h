@@ -15,10 +15,11 @@ namespace bonemill {
 
 // It says how the viewer stands with its server.
 enum class Connection {
-    kNoServer,    // none found yet
-    kReceiving,   // the model is still arriving
-    kLive,        // the model is complete
-    kServerLost,  // there was one
+    kNoServer,     // none found yet
+    kReceiving,    // the model is still arriving
+    kLive,         // the model is complete
+    kServerLost,   // there was one, which has fallen silent
+    kServerEnded,  // there was one, which has left in order
 };
 
 struct HudInput {
@@ -35,8 +36,10 @@ struct HudInput {
     bool show_help = false;
     std::optional<HudHint> hint;
     std::optional<HudNotice> notice;
-    uint32_t events = 0;     // EffectState.Event bits that the trainee is to see now
-    uint32_t structure = 0;  // EffectState.event_id of those of protected structures
+    std::vector<HudNotice> messages;  // FaultBook::said()
+    size_t fault_count = 0;           // in the list of faults
+    uint32_t events = 0;              // EffectState.Event bits that the trainee is to see now
+    uint32_t structure = 0;           // EffectState.event_id of those of protected structures
 };
 
 Hud makeHud(const HudInput& input);

@@ -9,8 +9,10 @@
 namespace bonemill {
 namespace {
 
-constexpr float kFontPixels = 15;   // at ui_scale 1
-constexpr float kListText = 0.75f;  // of that: whatever was asked for, or goes away by itself
+constexpr float kFontPixels = 15;  // at ui_scale 1
+// Of that:
+constexpr float kListText = 0.75f;  // whatever was asked for, or goes away by itself
+constexpr float kMessageText = 0.87f;
 
 }  // namespace
 
@@ -71,10 +73,12 @@ void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_
         layOutHelp(help, hud.help, picture);
         draw(help, picture);
     }
-    HudCanvas notices(font);
-    if (hud.notice) layOutNotice(notices, *hud.notice, picture);
-    if (hud.alert) layOutAlert(notices, *hud.alert, picture);
-    draw(notices, picture);
+    HudCanvas messages(fontOf(std::round(kMessageText * font.pixelHeight())).atlas), alert(font);
+    layOutMessages(messages, hud.messages, picture);
+    if (hud.notice) layOutNotice(messages, *hud.notice, picture);
+    draw(messages, picture);
+    if (hud.alert) layOutAlert(alert, *hud.alert, picture);
+    draw(alert, picture);
 }
 
 void HudPainter::paintAlert(const HudNotice& alert, const PictureSize& picture, float ui_scale) {

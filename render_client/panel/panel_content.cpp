@@ -43,6 +43,10 @@ void PanelContent::build() {
         gap();
         if (isOpen("Training")) buildTraining();
     }
+    if (!session_.faults.empty()) {
+        gap();
+        if (isOpen("Faults")) buildFaults();
+    }
     gap();
     if (isOpen("Who is watching")) buildWatchers();
     ImGui::End();

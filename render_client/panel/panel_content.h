@@ -48,6 +48,7 @@ class PanelContent {
     void buildAccuracy();
     void buildEnd();
     void buildTraining();
+    void buildFaults();
     void buildWatchers();
 
     // Each control has a label, and says what it does in words while the mouse rests on it.

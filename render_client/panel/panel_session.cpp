@@ -120,6 +120,18 @@ void PanelContent::buildTraining() {
     }
 }
 
+void PanelContent::buildFaults() {
+    ImGui::PushTextWrapPos();
+    for (const FaultEntry& fault : session_.faults) {
+        std::string when = clockText(fault.first_s);
+        if (fault.count > 1)
+            when += " to " + clockText(fault.last_s) + ", " + std::to_string(fault.count) + " times";
+        sayQuietly(when + (fault.lasts ? ", lasts" : ""));
+        say(fault.text, fault.lasts ? fault.tone : HudTone::kPlain);
+    }
+    ImGui::PopTextWrapPos();
+}
+
 void PanelContent::buildWatchers() {
     const auto row = [this](const std::string& name, const topics::Viewer& watcher) {
         say(watcherName(name), HudTone::kPlain);

@@ -109,6 +109,20 @@ void RenderScene::setToolState(const topics::ToolState& tool) {
     takeEffectInput();
 }
 
+// Another run of the server has faults of its own.
+void RenderScene::setStatus(const topics::Status& status) {
+    if (hud_input_.status && hud_input_.status->epoch() != status.epoch()) faults_.clear();
+    hud_input_.status = status;
+}
+
+void RenderScene::lookForFaults() {
+    const FaultBook::Clock::time_point now = FaultBook::Clock::now();
+    const double session_s = hud_input_.status ? hud_input_.status->session_s() : 0;
+    faults_.observe(conditionsOf(hud_input_), session_s, now);
+    hud_input_.messages = faults_.said(now);
+    hud_input_.fault_count = faults_.faults().size();
+}
+
 void RenderScene::takeEffectInput() {
     if (!effects_ || !hud_input_.tool) return;
     const std::pair<uint64_t, uint64_t> state(hud_input_.tool->epoch(), hud_input_.tool->tick());
@@ -197,6 +211,7 @@ void RenderScene::draw(int width, int height, float ui_scale, GLuint target) {
     if (view_pending_) applyFirstView(double(is_divided ? width / 2 : width) / height);
     hud_input_.node_count = nodes_.nodeCount();
     hud_input_.events = events_.show(EventLatch::Clock::now());
+    lookForFaults();
     can_pick_ = settings_.stereo == StereoMode::kOff;
     FrameView view = makeView();
     view.effects = effectPicture();

@@ -17,6 +17,7 @@
 #include "render_client/effects/visual_effects.h"
 #include "render_client/gl/gl_api.h"
 #include "render_client/hud/event_latch.h"
+#include "render_client/hud/fault_book.h"
 #include "render_client/hud/hud_lines.h"
 #include "render_client/model/node_store.h"
 #include "render_client/model/tool_mesh.h"
@@ -44,7 +45,7 @@ class RenderScene {
     // The state may be the same one again. What its effects tell of events stays on the screen for a while;
     // visual effects take what was removed from each new one.
     void setToolState(const topics::ToolState& tool);
-    void setStatus(const topics::Status& status) { hud_input_.status = status; }
+    void setStatus(const topics::Status& status);
     void setConnection(Connection connection) { hud_input_.connection = connection; }
     // The notice is shown until it is replaced; nullopt takes it away.
     void setNotice(std::optional<HudNotice> notice) { hud_input_.notice = std::move(notice); }
@@ -94,6 +95,8 @@ class RenderScene {
     size_t triangleCount() const { return nodes_.triangleCount(); }
     size_t trianglesDrawn() const { return renderer_.trianglesDrawn(); }
     const UploadCount& uploads() const { return nodes_.uploads(); }
+    // Returns the faults of the session that pictures have shown.
+    std::vector<FaultEntry> faults() const { return faults_.faults(); }
     bool hasSceneInfo() const { return hud_input_.info.has_value(); }
 
     // The next draw() draws everything, in quick quality too: the same picture, only slower.
@@ -104,6 +107,7 @@ class RenderScene {
 
   private:
     void applyFirstView(double aspect);
+    void lookForFaults();
     void makeEffects(const topics::SceneInfo& info);
     void takeEffectInput();
     const EffectPicture* effectPicture();
@@ -140,6 +144,7 @@ class RenderScene {
     bool can_pick_ = false;
     std::optional<Eigen::Vector3d> pull_W_;
     EventLatch events_;
+    FaultBook faults_;
     std::vector<Eigen::Vector4f> palette_;
     const GlApi& gl_;
 };

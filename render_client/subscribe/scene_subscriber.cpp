@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <random>
+#include <utility>
 
 #include "render_client/subscribe/payloads.h"
 
@@ -55,6 +56,7 @@ SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
     takeNodes(max_nodes);
     takeToolState();
     takeViewers();
+    noteEnd();
     outbox_.step(CommandOutbox::Clock::now(), command_writer_.matchedReaders() > 0,
                  [this](const topics::Command& command) {
                      const std::string bytes = command.SerializeAsString();
@@ -186,9 +188,21 @@ bool SceneSubscriber::isComplete() const {
            status_->node_digest() == digest().value();
 }
 
+bool SceneSubscriber::isHeard() const {
+    return last_heard_ && std::chrono::steady_clock::now() - *last_heard_ < kServerTimeout;
+}
+
 bool SceneSubscriber::hasServer() const {
-    return last_heard_ && std::chrono::steady_clock::now() - *last_heard_ < kServerTimeout &&
-           status_reader_.matchedWriters() > 0;
+    return is_matched_ && isHeard();
+}
+
+void SceneSubscriber::noteEnd() {
+    const bool was_matched = std::exchange(is_matched_, status_reader_.matchedWriters() > 0);
+    if (is_matched_) {
+        has_ended_ = false;
+    } else if (was_matched) {
+        has_ended_ = isHeard();
+    }
 }
 
 }  // namespace bonemill

@@ -52,10 +52,13 @@ class SceneSubscriber {
     // Returns true when every node of the newest status is here, and no other. It is false in the short while
     // between a changed node and the status that counts it.
     bool isComplete() const;
-    // Returns true when a server of this session is there: it is matched, and something came from
-    // it within kServerTimeout.
+    // Returns true when a server of this session was there at the last poll(): it was matched, and something
+    // came from it within kServerTimeout.
     bool hasServer() const;
     static constexpr std::chrono::seconds kServerTimeout{3};
+    // Returns true when the server that was heard last took its leave: it went while it was still heard. One
+    // that crashed, or that the network lost, falls silent first.
+    bool hasEnded() const { return has_ended_; }
 
     // Queues a command (sender, role and sequence are filled in) and returns its sequence; poll() sends it.
     uint32_t sendCommand(topics::Command command);
@@ -85,6 +88,8 @@ class SceneSubscriber {
     void takeToolState();
     void takeViewers();
     bool enterEpoch(uint64_t epoch);
+    bool isHeard() const;
+    void noteEnd();
     void dropMalformed(const std::string& what);
 
     SubscriberOptions options_;
@@ -93,6 +98,8 @@ class SceneSubscriber {
     std::optional<topics::ToolState> tool_state_;
     std::optional<topics::Status> status_;
     std::optional<std::chrono::steady_clock::time_point> last_heard_;
+    bool has_ended_ = false;
+    bool is_matched_ = false;  // with a server's writer, at the last poll()
     struct HeardViewer {
         topics::Viewer viewer;
         std::chrono::steady_clock::time_point heard;

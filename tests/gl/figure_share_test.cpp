@@ -140,12 +140,17 @@ TEST_F(FigureShare, WhereTheSessionIsFaulty) {
     status_.mutable_device()->set_state(uint32_t(SafetyState::kProtectiveStop));
     status_.mutable_device()->set_stop_cause(uint32_t(StopCause::kEnergy));
     tool_ = toolWithEveryEffect(kEveryEvent);
+    tool_.set_device_state(uint32_t(SafetyState::kProtectiveStop));
+    tool_.set_stop_cause(uint32_t(StopCause::kEnergy));
     expectQuiet("faults");
+    scene_.settings().show_details = true;
+    scene_.setNotice(HudNotice{"accuracy exact: refused: the scene says accuracy.switchable: false", {}});
+    expectQuiet("faults with all figures and a notice");
 }
 
 TEST_F(FigureShare, HowEverItStandsWithTheServer) {
     for (const Connection connection :
-         {Connection::kNoServer, Connection::kReceiving, Connection::kServerLost}) {
+         {Connection::kNoServer, Connection::kReceiving, Connection::kServerLost, Connection::kServerEnded}) {
         connection_ = connection;
         expectQuiet("connection " + std::to_string(int(connection)));
     }

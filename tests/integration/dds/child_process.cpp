@@ -8,6 +8,7 @@
 
 #include <csignal>
 #include <stdexcept>
+#include <utility>
 
 #include "tests/support/dds_session.h"
 #include "tests/support/places.h"
@@ -36,8 +37,14 @@ ChildProcess::ChildProcess(const std::string& name) {
 
 ChildProcess::~ChildProcess() {
     kill();
-    close(to_child_);
+    if (to_child_ >= 0) close(to_child_);
     close(from_child_);
+}
+
+void ChildProcess::finish() {
+    close(std::exchange(to_child_, -1));
+    waitpid(pid_, nullptr, 0);
+    pid_ = -1;
 }
 
 void ChildProcess::kill() {

@@ -18,7 +18,8 @@ class ChildProcess {
     std::string readLine();
     bool tell(const std::string& line);
     std::string ask(const std::string& line);
-    void kill();  // SIGKILL
+    void finish();  // closes its stdin, and waits for its end
+    void kill();    // SIGKILL
 
   private:
     int pid_ = -1;

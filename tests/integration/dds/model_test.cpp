@@ -125,6 +125,20 @@ TEST(Topics, LostServerLeavesTheModelAndARestartedOneReplacesIt) {
     EXPECT_TRUE(client.subscriber.hasServer());
 }
 
+// A server that crashes cannot take its leave.
+TEST(Topics, AnOrderlyEndIsToldFromALostServer) {
+    ClientProbe client;
+    int nodes = 0;
+    for (const bool is_orderly : {true, false, true}) {
+        ChildProcess server("synthetic_server");
+        ASSERT_TRUE(client.pollUntilComplete(server.ask("nodes 0 " + std::to_string(++nodes) + " 2")));
+        EXPECT_FALSE(client.subscriber.hasEnded());
+        is_orderly ? server.finish() : server.kill();
+        ASSERT_TRUE(client.pollUntil([&] { return !client.subscriber.hasServer(); }));
+        EXPECT_EQ(client.subscriber.hasEnded(), is_orderly);
+    }
+}
+
 TEST(Topics, OtherSessionsOfTheDomainAreIgnored) {
     Publisher other({.domain = testDomain(), .session = testSession() + 1});
     ASSERT_TRUE(other.publishNodes(std::vector{syntheticNode(1000, 2)}).is_whole);

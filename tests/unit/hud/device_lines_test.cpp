@@ -16,80 +16,81 @@ topics::Device deviceIn(SafetyState state, StopCause cause = StopCause::kNone) {
     device.set_stop_cause(uint32_t(cause));
     return device;
 }
-std::string textOf(const std::vector<HudRow>& rows) {
-    std::string text;
-    for (const HudRow& row : rows) text += (text.empty() ? "" : " ") + row.value;
-    return text;
+std::string stopText(const topics::Device& device) {
+    const auto stop = deviceStop(device, nullptr);
+    return stop ? stop->text : "";
+}
+std::string waitText(const topics::Device& device) {
+    const auto wait = deviceWait(device, nullptr);
+    return wait ? wait->text : "";
 }
 
-TEST(DeviceLines, AnEngagedDeviceIsOneQuietLine) {
+TEST(DeviceLines, AreTheSameLinesInEveryState) {
     topics::Device device = deviceIn(SafetyState::kEngaged);
     auto rows = deviceRows(device, nullptr);
-    ASSERT_EQ(rows.size(), 1u);
+    ASSERT_EQ(rows.size(), 2u);
     EXPECT_EQ(rows[0].label, "Touch");
     EXPECT_EQ(rows[0].value, "engaged");
     EXPECT_EQ(rows[0].tone, HudTone::kPlain);
+    EXPECT_EQ(rows[1].value, "\u2013") << "the device says no word of it";
     device.set_is_simulated(true);
     device.clear_name();
     rows = deviceRows(device, nullptr);
     EXPECT_EQ(rows[0].label, "Device");
     EXPECT_EQ(rows[0].value, "engaged, simulated");
+    EXPECT_EQ(deviceRows(deviceIn(SafetyState::kFault, StopCause::kSpeed), nullptr).size(), 2u);
 }
 
 TEST(DeviceLines, TellWhatStiffnessWasGivenUpForTheDevice) {
     topics::Device device = deviceIn(SafetyState::kEngaged);
     device.set_coupling_share(1);
     device.set_rotation_share(1);
-    EXPECT_EQ(deviceRows(device, nullptr).size(), 1u);
+    EXPECT_EQ(deviceRows(device, nullptr)[1].value, "100 %, turning 100 %");
     device.set_coupling_share(0.452);
     device.set_rotation_share(0.0314);
-    const auto rows = deviceRows(device, nullptr);
-    ASSERT_EQ(rows.size(), 3u);
-    EXPECT_EQ(rows[1].value, "stiffness at 45 %");
-    EXPECT_EQ(rows[2].value, "turning stiffness at 3.1 %");
-    EXPECT_LE(rows[2].value.size(), kLongestRow);
-    EXPECT_EQ(deviceRows(deviceIn(SafetyState::kPaused), nullptr).size(), 1u);
+    EXPECT_EQ(deviceRows(device, nullptr)[1].value, "45 %, turning 3.1 %");
+    EXPECT_LE(deviceRows(device, nullptr)[1].value.size(), kLongestRow);
 }
 
 TEST(DeviceLines, EveryStopIsRedAndSaysWhyAndWhatToDo) {
     for (const SafetyState state : {SafetyState::kDisconnected, SafetyState::kProtectiveStop,
                                     SafetyState::kEmergencyStop, SafetyState::kFault})
         for (uint32_t cause = 1; cause < kStopCauseCount; ++cause) {
-            const auto rows = deviceRows(deviceIn(state, StopCause(cause)), nullptr);
-            EXPECT_EQ(rows[0].value, nameOf(state));
-            for (const HudRow& row : rows) {
-                EXPECT_EQ(row.tone, HudTone::kAlarm);
-                EXPECT_LE(row.value.size(), 32u) << row.value;
-            }
-            EXPECT_NE(textOf(rows).find(nameOf(StopCause(cause))), std::string::npos) << textOf(rows);
-            EXPECT_NE(textOf(rows).find(whatToDo(StopCause(cause))), std::string::npos) << textOf(rows);
+            const topics::Device device = deviceIn(state, StopCause(cause));
+            EXPECT_EQ(deviceRows(device, nullptr)[0].tone, HudTone::kAlarm);
+            EXPECT_EQ(deviceStop(device, nullptr)->tone, HudTone::kAlarm);
+            for (const std::string& part :
+                 {std::string("Touch: ") + nameOf(state), std::string(nameOf(StopCause(cause))),
+                  std::string(whatToDo(StopCause(cause)))})
+                EXPECT_NE(stopText(device).find(part), std::string::npos) << stopText(device);
         }
     topics::Device fault = deviceIn(SafetyState::kFault, StopCause::kDeviceFault);
     fault.set_fault_code(17);
-    EXPECT_EQ(deviceRows(fault, nullptr)[1].value, "device fault 17");
+    EXPECT_NE(stopText(fault).find("device fault 17"), std::string::npos) << stopText(fault);
+    EXPECT_EQ(stopText(deviceIn(SafetyState::kEmergencyStop)), "Touch: emergency stop.");
 }
 
-TEST(DeviceLines, BeforeItEngagesItIsAWarningAndACauseThatIsOverIsNotShown) {
+TEST(DeviceLines, BeforeItEngagesItIsAWarningAndACauseThatIsOverIsNotSaid) {
     for (const SafetyState state :
          {SafetyState::kConnected, SafetyState::kHoming, SafetyState::kReady, SafetyState::kPaused}) {
-        const auto rows = deviceRows(deviceIn(state, StopCause::kSpeed), nullptr);
-        ASSERT_EQ(rows.size(), 1u);
-        EXPECT_EQ(rows[0].tone, HudTone::kWarning);
+        const topics::Device device = deviceIn(state, StopCause::kSpeed);
+        EXPECT_EQ(deviceRows(device, nullptr)[0].tone, HudTone::kWarning);
+        EXPECT_EQ(stopText(device), "");
+        EXPECT_EQ(waitText(device), "");
     }
 }
 
 TEST(DeviceLines, ReadyAndPausedSayWhatTheyWaitFor) {
     for (const SafetyState state : {SafetyState::kReady, SafetyState::kPaused}) {
-        const std::string name = nameOf(state);
+        const std::string begin = std::string("Touch is ") + nameOf(state) + ": ";
         topics::Device waits = deviceIn(state);
         waits.set_force_waits(true);
-        EXPECT_EQ(textOf(deviceRows(waits, nullptr)), name + " move the tool away");
+        EXPECT_EQ(waitText(waits), begin + "move the tool away.");
         waits.set_force_waits(false);
         waits.set_abilities(kAbilityEnablingSwitch);
-        EXPECT_EQ(textOf(deviceRows(waits, nullptr)), name + " hold the enabling switch");
+        EXPECT_EQ(waitText(waits), begin + "hold the enabling switch.");
         waits.set_is_enabled(true);
-        const std::string anew = state == SafetyState::kPaused ? " press the switch anew" : "";
-        EXPECT_EQ(textOf(deviceRows(waits, nullptr)), name + anew);
+        EXPECT_EQ(waitText(waits), state == SafetyState::kPaused ? begin + "press the switch anew." : "");
     }
 }
 
@@ -99,7 +100,8 @@ TEST(DeviceLines, TheToolsStateIsNewerAndUnknownStatesAreAlarms) {
     tool.set_stop_cause(uint32_t(StopCause::kEmergencyStop));
     const auto rows = deviceRows(deviceIn(SafetyState::kEngaged), &tool);
     EXPECT_EQ(rows[0].value, "emergency stop");
-    EXPECT_EQ(textOf(rows), std::string("emergency stop ") + whatToDo(StopCause::kEmergencyStop));
+    EXPECT_EQ(deviceStop(deviceIn(SafetyState::kEngaged), &tool)->text,
+              std::string("Touch: emergency stop. ") + whatToDo(StopCause::kEmergencyStop));
     tool.set_device_state(1000);
     EXPECT_EQ(deviceRows(deviceIn(SafetyState::kEngaged), &tool)[0].tone, HudTone::kAlarm);
 }
@@ -110,7 +112,7 @@ TEST(DeviceLines, AreThereOnlyWhereAServerTellsOfADevice) {
     input.show_details = true;
     const size_t without = makeHud(input).details.size();
     *input.status->mutable_device() = deviceIn(SafetyState::kEngaged);
-    EXPECT_EQ(makeHud(input).details.size(), without + 1);
+    EXPECT_EQ(makeHud(input).details.size(), without + 2);
 }
 
 }  // namespace
