@@ -25,7 +25,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kMinimisedPause{50};
-constexpr std::chrono::seconds kNoticeTime{4};
+constexpr std::chrono::seconds kNoticeTime{int(ViewerControls::kAnswerTime)};
 
 // Shows over the picture, for a while, what the user should notice.
 class Notices {
@@ -152,6 +152,7 @@ class WindowViewer {
         if (subscriber.status()) session.status = &*subscriber.status();
         session.others = subscriber.viewers();
         session.faults = scene_.faults();
+        session.time_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
         return session;
     }
 

@@ -1,6 +1,7 @@
 #include "render_client/controls/session_view.h"
 
 #include "common/device_messages/device_messages.h"
+#include "render_client/hud/figure_text.h"
 
 namespace bonemill {
 namespace {
@@ -37,6 +38,25 @@ std::string whyNotCommand(const SessionView& session) {
     if (session.role == topics::Viewer::VIEWER) return "A viewer only looks: start with --role operator";
     if (!session.has_server) return "There is no server";
     return "";
+}
+
+// A checkpoint has the bone as it is when just as much was removed until then.
+std::string unsavedWork(const SessionView& session) {
+    if (!session.status || session.status->removed_mm3() == 0) return "";
+    for (const topics::Checkpoint& checkpoint : session.status->checkpoints())
+        if (checkpoint.removed_mm3() == session.status->removed_mm3()) return "";
+    return readableText(session.status->removed_mm3(), " mm\u00b3") + " are milled and in no checkpoint";
+}
+
+std::string questionBefore(const topics::Command& command, const SessionView& session) {
+    const bool replaces_bone = command.reset_volume() || command.has_restore_checkpoint();
+    const std::string lost = replaces_bone ? unsavedWork(session) : "";
+    if (lost.empty()) return "";
+    const std::string what = command.reset_volume()
+                                 ? "Put the bone back?"
+                                 : "Back to checkpoint " + std::to_string(command.restore_checkpoint()) + "?";
+    return what + " " + lost + ": once more does it, " + keyLabelOf(Action::kSaveCheckpoint) +
+           " saves them first";
 }
 
 bool isHeldByMouse(const SessionView& session) {

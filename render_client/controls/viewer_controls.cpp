@@ -179,12 +179,23 @@ void ViewerControls::act(Action action, const SessionView& session, Wishes& wish
     }
     CommandOrReason asked = commandOf(action, session);
     if (asked.command) {
-        wishes.commands.push_back(std::move(*asked.command));
+        request(*asked.command, session, wishes);
     } else if (!asked.why_not.empty()) {
         wishes.notice = HudNotice{asked.why_not, HudTone::kWarning};
     } else {
         changeView(action);
     }
+}
+
+// The question says what would be lost: with more milled it is another one.
+void ViewerControls::request(const topics::Command& command, const SessionView& session, Wishes& wishes) {
+    const std::string question = questionBefore(command, session);
+    const auto asked = std::exchange(asked_, std::nullopt);
+    const bool is_answer =
+        asked && asked->question == question && session.time_s - asked->time_s <= kAnswerTime;
+    if (question.empty() || is_answer) return wishes.commands.push_back(command);
+    asked_ = Asked{question, session.time_s};
+    wishes.notice = HudNotice{question, HudTone::kWarning};
 }
 
 void ViewerControls::changeView(Action action) {

@@ -42,6 +42,10 @@ class ViewerControls {
     // The mouse moved over the panel, which means nobody here.
     void passOver(const MouseMoveEvent& event);
     void act(Action action, const SessionView& session, Wishes& wishes);
+    // Asks the server for it. What would lose unsaved work is asked of the user first, and done when it is
+    // requested again within kAnswerTime and nothing more was milled.
+    void request(const topics::Command& command, const SessionView& session, Wishes& wishes);
+    static constexpr double kAnswerTime = 6;  // s
     // Turns around the target; the distance stays.
     void lookFrom(Side side);
 
@@ -90,6 +94,11 @@ class ViewerControls {
     PixelPoint mouse_;
     ToolHold hold_;
     std::optional<MouseButtonEvent> last_click_;
+    struct Asked {
+        std::string question;
+        double time_s;
+    };
+    std::optional<Asked> asked_;  // of the user, and not answered
 };
 
 }  // namespace bonemill

@@ -65,7 +65,7 @@ class PanelContent {
     void gap();
     void sayQuietly(const std::string& text);
     void say(const std::string& text, HudTone tone);
-    void send(topics::Command command) { wishes_.commands.push_back(std::move(command)); }
+    void send(const topics::Command& command) { controls_.request(command, session_, wishes_); }
     void act(Action action) { controls_.act(action, session_, wishes_); }
 
     ViewerControls& controls_;

@@ -53,7 +53,7 @@ void PanelContent::buildCheckpoints() {
         if (button(label, what.c_str())) {
             topics::Command command;
             command.set_restore_checkpoint(checkpoint->id());
-            send(std::move(command));
+            send(command);
         }
         ImGui::SameLine();
         say(clockText(checkpoint->session_s()), HudTone::kPlain);
@@ -72,7 +72,7 @@ void PanelContent::buildTools() {
             continue;
         topics::Command command;
         command.set_select_tool(uint32_t(i));
-        send(std::move(command));
+        send(command);
     }
 }
 
@@ -96,12 +96,11 @@ void PanelContent::buildEnd() {
         is_ending_ =
             button("End the session", why_not.empty() ? "Stops the server, for everybody" : why_not.c_str());
     } else {
-        say("End it for everybody?", HudTone::kWarning);
-        ImGui::SameLine();
-        if (button("End", "Stops the server")) {
+        say("Bone and checkpoints go with it. End it?", HudTone::kWarning);
+        if (button("End", "Stops the server, for everybody")) {
             topics::Command command;
             command.set_shut_down(true);
-            send(std::move(command));
+            send(command);
             is_ending_ = false;
         }
         ImGui::SameLine();

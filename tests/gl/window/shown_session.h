@@ -80,7 +80,11 @@ class ShownSession {
         commands_.push_back(command);
         if (command.has_pause_milling()) status_.set_is_milling_paused(command.pause_milling());
         if (command.has_set_accuracy()) status_.set_preset(command.set_accuracy());
-        if (command.has_save_checkpoint()) status_.add_checkpoints()->set_id(++last_checkpoint_);
+        if (command.has_save_checkpoint()) {
+            topics::Checkpoint& checkpoint = *status_.add_checkpoints();
+            checkpoint.set_id(++last_checkpoint_);
+            checkpoint.set_removed_mm3(status_.removed_mm3());
+        }
         if (!command.has_select_tool()) return;
         info_.set_tool_index(command.select_tool());
         info_.set_revision(info_.revision() + 1);

@@ -247,6 +247,9 @@ TEST_F(Window, MouseAndKeysMoveTheCamera) {
 TEST_F(Window, CommandsByKeyArrive) {
     WindowedViewer& viewer = start("me", "operator");
     key("c");
+    waitForLog(viewer, "Put the bone back? 12.3 mm\u00b3 are milled and in no checkpoint");
+    EXPECT_TRUE(session_.commands().empty());
+    key("c");
     EXPECT_TRUE(waitForCommand(1).reset_volume());
     EXPECT_EQ(session_.commands()[0].role(), Viewer::OPERATOR);
     key("u");
@@ -297,6 +300,8 @@ TEST_F(Window, ThePanelWorksByMouse) {
 
     panel.click("Pause milling (P)");
     EXPECT_TRUE(waitForCommand(1).pause_milling());
+    panel.click("Put the bone back (C)");
+    waitForLog(viewer, "once more does it");
     panel.click("Put the bone back (C)");
     EXPECT_TRUE(waitForCommand(2).reset_volume());
     panel.click("Save a checkpoint (K)");

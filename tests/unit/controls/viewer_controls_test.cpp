@@ -64,6 +64,48 @@ TEST_F(Controls, KeysSwitchWhatIsSeenAndBack) {
     EXPECT_TRUE(wishes_.commands.empty());
 }
 
+TEST_F(Controls, AskBeforeUnsavedWorkIsLost) {
+    topics::Checkpoint& checkpoint = *status_.add_checkpoints();
+    checkpoint.set_id(1);
+    checkpoint.set_removed_mm3(3);
+    status_.set_removed_mm3(5);
+    type('C');
+    EXPECT_TRUE(wishes_.commands.empty());
+    ASSERT_TRUE(wishes_.notice);
+    EXPECT_NE(wishes_.notice->text.find("5.00 mm\u00b3 are milled"), std::string::npos)
+        << wishes_.notice->text;
+    type('U');
+    EXPECT_TRUE(wishes_.commands.empty()) << "another question";
+    type('C');
+    EXPECT_TRUE(wishes_.commands.empty()) << "that was asked before the other one";
+    type('C');
+    ASSERT_EQ(wishes_.commands.size(), 1u);
+    EXPECT_TRUE(wishes_.commands[0].reset_volume());
+    type('C');
+    EXPECT_EQ(wishes_.commands.size(), 1u) << "an answer counts once";
+    session_.time_s += ViewerControls::kAnswerTime + 1;
+    type('C');
+    EXPECT_EQ(wishes_.commands.size(), 1u) << "a late answer is none";
+    status_.set_removed_mm3(6);
+    type('C');
+    EXPECT_EQ(wishes_.commands.size(), 1u) << "more would be lost than was asked about";
+}
+
+TEST_F(Controls, DoNotAskWhereNothingIsLost) {
+    type('C');
+    EXPECT_EQ(wishes_.commands.size(), 1u) << "nothing was milled";
+    topics::Checkpoint& checkpoint = *status_.add_checkpoints();
+    checkpoint.set_removed_mm3(5);
+    status_.set_removed_mm3(5);
+    type('C');
+    type('U');
+    EXPECT_EQ(wishes_.commands.size(), 3u) << "the checkpoint has it";
+    status_.set_removed_mm3(7);
+    type('K');
+    type('P');
+    EXPECT_EQ(wishes_.commands.size(), 5u) << "these lose nothing";
+}
+
 TEST_F(Controls, StereoGoesRoundThreeModes) {
     type('S');
     EXPECT_EQ(settings_.stereo, StereoMode::kSideBySide);

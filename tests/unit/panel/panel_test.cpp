@@ -181,6 +181,14 @@ TEST_F(PanelClicks, SessionButtonsAreCommands) {
     EXPECT_EQ(clickForCommand("As the scene file says (0)").set_accuracy(), "scene");
 }
 
+TEST_F(PanelClicks, ACheckpointIsAskedForTwiceOverUnsavedWork) {
+    status_.set_removed_mm3(5);
+    click("Back to 3");
+    EXPECT_TRUE(wishes_.commands.empty());
+    EXPECT_TRUE(wishes_.notice);
+    EXPECT_EQ(clickForCommand("Back to 3").restore_checkpoint(), 3u);
+}
+
 TEST_F(PanelClicks, ADeviceIsResetWhereThereIsOne) {
     layOut();
     EXPECT_FALSE(panel_.find("Reset the device (D)"));
