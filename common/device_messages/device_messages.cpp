@@ -58,8 +58,7 @@ bool isPlausible(const DeviceCapabilities& capabilities) noexcept {
            isNoneOrWithin(capabilities.max_torque, 1e-9, 1e6) &&
            isNoneOrWithin(capabilities.max_stiffness, 1e-9, 1e9) &&
            isNoneOrWithin(capabilities.max_rotation_stiffness, 1e-9, 1e9) &&
-           isNoneOrWithin(capabilities.workspace_radius, 1e-9, 1e6) &&
-           isPlausible(capabilities.handle);
+           isNoneOrWithin(capabilities.workspace_radius, 1e-9, 1e6) && isPlausible(capabilities.handle);
 }
 
 }  // namespace bonemill
