@@ -84,11 +84,13 @@ void HandFeed::tellDevice() {
 void HandFeed::showHand(const SessionView& session, Clock::time_point now) {
     const ToolHold& hold = controls_.toolHold();
     scene_.setPull(hold.isHolding() ? std::optional(hold.wish().position) : std::nullopt);
-    const float opacity = hold.isHolding() ? hintOpacity(now - begun_) : 0;
-    scene_.setHint(opacity > 0 ? std::optional(HudHint{hintRows(), opacity}) : std::nullopt);
-    scene_.setHelp(helpRows(hold.isHolding()         ? HelpFor::kHolding
-                            : isHeldByMouse(session) ? HelpFor::kMayHold
-                                                     : HelpFor::kLooking));
+    if (!started_) started_ = now;
+    const float opacity = hintOpacity(now - (hold.isHolding() ? begun_ : *started_));
+    scene_.setHint(opacity > 0 ? std::optional(HudHint{hold.isHolding() ? hintRows() : startRows(), opacity})
+                               : std::nullopt);
+    scene_.setHelp(helpGroups(hold.isHolding()         ? HelpFor::kHolding
+                              : isHeldByMouse(session) ? HelpFor::kMayHold
+                                                       : HelpFor::kLooking));
 }
 
 }  // namespace bonemill

@@ -42,7 +42,8 @@ class HandFeed {
     uint64_t offered_epoch_ = 0;  // run of the server in which the tool was offered last
     bool shows_model_ = false;    // the picture before showed the whole model
     bool was_holding_ = false;
-    Clock::time_point begun_;
+    Clock::time_point begun_;                   // the hold
+    std::optional<Clock::time_point> started_;  // the first picture
 };
 
 }  // namespace bonemill

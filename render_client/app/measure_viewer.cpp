@@ -7,6 +7,7 @@
 #include "common/rt/clock.h"
 #include "render_client/app/scene_feed.h"
 #include "render_client/app/stop_signal.h"
+#include "render_client/hud/text_scale.h"
 #include "render_client/offscreen/osmesa_context.h"
 #include "render_client/window/glfw_window.h"
 
@@ -39,7 +40,8 @@ Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const 
         feed.subscriber().waitForData(kLongestFrame);
         feed.update();
         const int64_t draw_ns = monotonicNowNs();
-        scene.draw(options.width, options.height, textScale(options.height));
+        scene.draw(options.width, options.height,
+                   textScale(options.width, options.height, options.settings.text_scale));
         gl.Finish();
         measured.render.record(monotonicNowNs() - draw_ns);
         measured.cuts.hasShown(realtimeNowNs());
@@ -55,7 +57,8 @@ void warmUp(const ClientOptions& options, const GlApi& gl, RenderScene& scene, S
     constexpr int kPictures = 3;
     for (int n = 0; n < kPictures; ++n) {
         feed.update();
-        scene.draw(options.width, options.height, textScale(options.height));
+        scene.draw(options.width, options.height,
+                   textScale(options.width, options.height, options.settings.text_scale));
         gl.Finish();
     }
 }

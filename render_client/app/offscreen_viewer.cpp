@@ -9,6 +9,7 @@
 #include "common/user_error.h"
 #include "render_client/app/scene_feed.h"
 #include "render_client/app/stop_signal.h"
+#include "render_client/hud/text_scale.h"
 #include "render_client/offscreen/osmesa_context.h"
 
 namespace bonemill {
@@ -65,6 +66,7 @@ void runOffscreen(const ClientOptions& options) {
     RenderScene scene(context.gl(), options.has_effects);
     scene.setViewWish(options.view);
     scene.settings() = options.settings;
+    scene.setSought(soughtOf(options));
     SceneFeed feed(options.subscriber, scene);
     feed.takePart();
     SoundFeed sound({.is_played = false, .wav = options.sound_wav});
@@ -83,7 +85,8 @@ void runOffscreen(const ClientOptions& options) {
         char name[32];
         std::snprintf(name, sizeof name, "frame_%04u.png", frame);
         const std::string description = describe(frame, name, scene, feed);
-        scene.draw(options.width, options.height, textScale(options.height));
+        scene.draw(options.width, options.height,
+                   textScale(options.width, options.height, options.settings.text_scale));
         writePng(context.read(), wish.directory / name);
         std::cout << description << std::endl;
     }

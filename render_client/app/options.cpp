@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "common/cli/command_line.h"
 #include "common/dds/network_cli.h"
@@ -211,9 +212,13 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
 
 }  // namespace
 
-float textScale(int height) {
-    constexpr float kReferenceHeight = 800, kSmallestText = 0.7f;
-    return std::max(float(height) / kReferenceHeight, kSmallestText);
+ServerSought soughtOf(const ClientOptions& options) {
+    const std::string& profile = options.network.profile;
+    const std::string shown = !profile.empty()                ? profile
+                              : std::getenv("CYCLONEDDS_URI") ? "as CYCLONEDDS_URI says"
+                                                              : "one-pc";
+    return {options.subscriber.session, options.subscriber.domain, shown, options.network.interface,
+            dds::isLanProfile(profile)};
 }
 
 std::string serverQuestion(const SubscriberOptions& subscriber) {

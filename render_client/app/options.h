@@ -10,6 +10,7 @@
 #include "common/dds/network.h"
 #include "render_client/camera/first_view.h"
 #include "render_client/camera/view_settings.h"
+#include "render_client/hud/waiting_page.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
 namespace bonemill {
@@ -55,8 +56,8 @@ struct ClientOptions {
     std::string log_level = "info";
 };
 
-// Returns the size of text in a picture of this height; it is 1 at 800 pixels.
-float textScale(int height);
+// Returns which server the viewer looks for, in words for the user.
+ServerSought soughtOf(const ClientOptions& options);
 
 // Returns what to ask a user to whom no server answers.
 std::string serverQuestion(const SubscriberOptions& subscriber);

@@ -57,7 +57,11 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
             ->check(CLI::IsMember({"auto", "full", "quick"}))
             ->capture_default_str();
     auto* no_hud = app.add_flag("--no-hud", raw.no_hud, "Nothing but the picture: no panel, list or scale");
-    view_options.insert(view_options.end(), {transparent, stereo, camera, quality, no_hud});
+    auto* text =
+        app.add_option("--text-scale", raw.text_scale, "Text so much larger than what suits the picture")
+            ->check(CLI::Range(ViewSettings::kLeastText, ViewSettings::kMostText))
+            ->type_name("FACTOR");
+    view_options.insert(view_options.end(), {transparent, stereo, camera, quality, no_hud, text});
     return view_options;
 }
 
@@ -73,6 +77,7 @@ ViewSettings viewSettings(const RawView& raw) {
     settings.camera = raw.camera == "endoscope" ? CameraMode::kEndoscope : CameraMode::kOrbit;
     settings.quality = raw.quality == "quick" ? Quality::kQuick : Quality::kFull;
     settings.show_hud = !raw.no_hud;
+    settings.text_scale = raw.text_scale.value_or(1);
     return settings;
 }
 

@@ -23,6 +23,7 @@ struct RawView {
     std::string stereo = "off";
     std::string camera = "orbit";
     std::string quality = "auto";
+    std::optional<double> text_scale;
     bool no_hud = false;
 };
 

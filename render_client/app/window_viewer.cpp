@@ -14,6 +14,7 @@
 #include "render_client/controls/frame_rate.h"
 #include "render_client/controls/viewer_controls.h"
 #include "render_client/hud/session_text.h"
+#include "render_client/hud/text_scale.h"
 #include "render_client/offscreen/read_picture.h"
 #include "render_client/panel/panel_painter.h"
 #include "render_client/subscribe/command_text.h"
@@ -101,6 +102,7 @@ class WindowViewer {
         spdlog::info("window, {}", window_.gl().describe());
         scene_.setViewWish(options.view);
         scene_.settings() = options.settings;
+        scene_.setSought(soughtOf(options));
         if (options.has_effects) feed_.sound(&sound_);
         if (options.chooses_quality && window_.gl().isSoftware()) scene_.settings().quality = Quality::kQuick;
     }
@@ -131,7 +133,7 @@ class WindowViewer {
         if (is_minimised) return pause();
         scene_.setWatchers(watchers(session));
         scene_.setFrameRate(frame_rate_.perSecond());
-        scene_.draw(width, height, window_.contentScale());
+        scene_.draw(width, height, scaleOfText(width, height));
         painter_.paint(panel_, width, height);
         if (wishes.save_picture) savePicture(width, height);
         window_.show();
@@ -156,10 +158,14 @@ class WindowViewer {
         return session;
     }
 
+    float scaleOfText(int width, int height) {
+        return textScale(width, height, scene_.settings().text_scale, window_.contentScale());
+    }
+
     void prepare(int width, int height) {
         const Clock::time_point now = Clock::now();
         const std::chrono::duration<double> seconds = now - std::exchange(last_picture_, now);
-        panel_.setPicture(width, height, window_.contentScale(), seconds.count());
+        panel_.setPicture(width, height, scaleOfText(width, height), seconds.count());
         hand_.lookAt(width, height);
     }
 

@@ -40,6 +40,8 @@ struct ViewSettings {
     bool show_details = false;  // with the figures that matter to the task, all others
     bool show_watchers = false;
     bool show_help = false;
+    double text_scale = 1;  // the user's own factor, kLeastText to kMostText
+    static constexpr double kLeastText = 0.5, kMostText = 4;
 };
 
 }  // namespace bonemill

@@ -1,5 +1,6 @@
 #include "render_client/controls/help_rows.h"
 
+#include <span>
 #include <string>
 
 #include "render_client/controls/key_table.h"
@@ -15,7 +16,7 @@ const HudRow kMouseWithTool[] = {
 
 // This is what ViewerControls makes of the mouse.
 const HudRow kMouse[] = {{"Left drag", "orbit"},
-                         {"Right drag, Shift+left drag", "pan"},
+                         {"Right drag", "pan, as Shift+left drag"},
                          {"Wheel", "zoom"},
                          {"Double click", "orbit around that point"},
                          {"Ctrl+left drag", "point (instructor)"}};
@@ -35,23 +36,42 @@ void addKeys(const Bindings& bindings, std::vector<HudRow>& rows, Wanted&& is_wa
     }
 }
 
-std::vector<HudRow> holdRows() {
-    std::vector<HudRow> rows(std::begin(kMouseWithTool), std::end(kMouseWithTool));
-    addKeys(keyTable(), rows, [](const KeyBinding& binding) { return binding.is_of_hold; });
-    return rows;
+bool isOfUse(const KeyBinding& binding, HelpFor whom) {
+    const bool begins_hold = binding.action == Action::kHoldTool;
+    return !binding.is_of_hold || whom == HelpFor::kHolding || (begins_hold && whom == HelpFor::kMayHold);
 }
+
+constexpr struct {
+    KeyGroup group;
+    const char* title;
+} kGroups[] = {{KeyGroup::kTool, "Tool in the mouse"},
+               {KeyGroup::kView, "View"},
+               {KeyGroup::kCuts, "Cut-planes"},
+               {KeyGroup::kSession, "Session"},
+               {KeyGroup::kScreen, "Screen"}};
 
 }  // namespace
 
-std::vector<HudRow> helpRows(HelpFor whom) {
-    std::vector<HudRow> rows =
-        whom == HelpFor::kHolding ? holdRows() : std::vector<HudRow>(std::begin(kMouse), std::end(kMouse));
-    addKeys(keyTable(), rows, [&](const KeyBinding& binding) {
-        const bool begins_hold = binding.action == Action::kHoldTool && whom == HelpFor::kMayHold;
-        return begins_hold || !binding.is_of_hold;
-    });
-    addKeys(signTable(), rows, [](const SignBinding&) { return true; });
-    return rows;
+std::vector<HelpGroup> helpGroups(HelpFor whom) {
+    const std::span<const HudRow> mouse =
+        whom == HelpFor::kHolding ? std::span<const HudRow>(kMouseWithTool) : std::span<const HudRow>(kMouse);
+    std::vector<HelpGroup> groups{{"Mouse", {mouse.begin(), mouse.end()}}};
+    for (const auto& [group, title] : kGroups) {
+        std::vector<HudRow> rows;
+        addKeys(keyTable(), rows, [&, g = group](const KeyBinding& binding) {
+            return groupOf(binding.action) == g && isOfUse(binding, whom);
+        });
+        addKeys(signTable(), rows,
+                [g = group](const SignBinding& binding) { return groupOf(binding.action) == g; });
+        if (!rows.empty()) groups.push_back({title, std::move(rows)});
+    }
+    return groups;
+}
+
+std::vector<HudRow> startRows() {
+    return {{keyLabelOf(Action::kHelp), "all keys"},
+            {keyLabelOf(Action::kPanel), "control panel"},
+            {keyLabelOf(Action::kDetails), "all figures"}};
 }
 
 std::vector<HudRow> hintRows() {
@@ -68,6 +88,7 @@ std::vector<HudRow> hintRows() {
             {"Middle", "orbit"},
             {keys({Action::kClutch}) + " held", "mouse for the camera"},
             {keys({Action::kHoldTool}), "let go"},
+            {keys({Action::kPanel}), "control panel"},
             {keys({Action::kHelp}), "all keys"}};
 }
 

@@ -10,9 +10,12 @@ namespace bonemill {
 // The session's tool is none of the mouse's business, could be held by it, or is held by it.
 enum class HelpFor { kLooking, kMayHold, kHolding };
 
-// Returns the mouse, then every key and sign of the table that is of use. Keys that do the same are one row,
-// parted by spaces.
-std::vector<HudRow> helpRows(HelpFor whom);
+// Returns the mouse, then every key and sign of the table that is of use, by what they are for. Keys that do
+// the same are one row, parted by spaces.
+std::vector<HelpGroup> helpGroups(HelpFor whom);
+
+// Returns where help and panel are, for a hint over the first pictures.
+std::vector<HudRow> startRows();
 
 // Returns in short what mouse and keys do to the tool that they hold, for a hint over the picture.
 std::vector<HudRow> hintRows();

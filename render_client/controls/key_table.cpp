@@ -46,6 +46,8 @@ constexpr KeyBinding kKeys[] = {
     {"Space", Key::kSpace, false, Action::kClutch, "mouse for the camera while held", false, true},
     {"I", keyOf('I'), false, Action::kToolDeeper, "tool deeper", true, true},
     {"O", keyOf('O'), false, Action::kToolNearer, "tool nearer", true, true},
+    {"J", keyOf('J'), false, Action::kLargerText, "larger text", true},
+    {"Shift+J", keyOf('J'), true, Action::kSmallerText, "smaller text", true},
     {"H", keyOf('H'), false, Action::kHelp, "this help"},
     {"F12", Key::kF12, false, Action::kSavePicture, "save the picture"},
     {"Esc", Key::kEscape, false, Action::kQuit, "quit"},
@@ -60,6 +62,18 @@ constexpr SignBinding kSigns[] = {
 };
 
 }  // namespace
+
+KeyGroup groupOf(Action action) {
+    const auto lies = [action](Action first, Action last) { return action >= first && action <= last; };
+    if (lies(Action::kCutX, Action::kCutHigher)) return KeyGroup::kCuts;
+    if (lies(Action::kPauseMilling, Action::kAccuracy4) || action == Action::kResetBone ||
+        action == Action::kPoint)
+        return KeyGroup::kSession;
+    if (lies(Action::kHoldTool, Action::kToolNearer)) return KeyGroup::kTool;
+    if (lies(Action::kWatchers, Action::kDetails) || lies(Action::kLargerText, Action::kQuit))
+        return KeyGroup::kScreen;
+    return KeyGroup::kView;
+}
 
 std::span<const KeyBinding> keyTable() {
     return kKeys;

@@ -55,10 +55,16 @@ enum class Action {
     kClutch,       // while the key is held
     kToolDeeper,
     kToolNearer,
+    kLargerText,
+    kSmallerText,
     kHelp,
     kSavePicture,
     kQuit,
 };
+
+// These belong together on the help page.
+enum class KeyGroup { kView, kCuts, kSession, kTool, kScreen };
+KeyGroup groupOf(Action action);
 
 struct KeyBinding {
     std::string_view label;  // what people call the key: "Shift+X"

@@ -11,6 +11,7 @@ constexpr double kOrbitPerHeight = 3.5;   // rad for a drag over the picture's h
 constexpr double kZoomPerStep = 0.9;      // distance factor of one notch of the wheel, or of + and -
 constexpr double kOrbitPerKey = 0.0873;   // rad, 5 degrees
 constexpr double kCutStep = 0.02;         // of the bone's box
+constexpr double kTextStep = 1.25;        // factor
 constexpr double kDoubleClickTime = 0.4;  // s
 constexpr double kDoubleClickRadius = 6;  // pixels
 
@@ -237,6 +238,10 @@ void ViewerControls::changeView(Action action) {
             return switchDetails();
         case Action::kHelp:
             return toggle(settings_.show_help);
+        case Action::kLargerText:
+            return scaleText(kTextStep);
+        case Action::kSmallerText:
+            return scaleText(1 / kTextStep);
         case Action::kOrbitLeft:
             return camera_.orbit(kOrbitPerKey, 0);
         case Action::kOrbitRight:
@@ -259,6 +264,11 @@ void ViewerControls::switchDetails() {
     settings_.show_watchers = false;
     settings_.show_details = !(settings_.show_hud && settings_.show_details);
     settings_.show_hud = true;
+}
+
+void ViewerControls::scaleText(double factor) {
+    settings_.text_scale =
+        std::clamp(settings_.text_scale * factor, ViewSettings::kLeastText, ViewSettings::kMostText);
 }
 
 void ViewerControls::switchCut(size_t axis) {

@@ -77,6 +77,7 @@ class ViewerControls {
     void onDoubleClick(const MouseButtonEvent& event, Wishes& wishes);
     void changeView(Action action);
     void switchDetails();
+    void scaleText(double factor);
     void switchCut(size_t axis);
     void flipCut(size_t axis);
     void moveCut(double by);

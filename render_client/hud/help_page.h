@@ -1,5 +1,6 @@
 // The help page lies over the picture. It has as many columns as the picture's height needs, in smaller text
-// where they are too wide. The functions are pure; any thread may call them.
+// where they are too wide; a group of keys stays in one column if it can. The functions are pure; any thread
+// may call them.
 #pragma once
 
 #include <vector>
@@ -9,9 +10,9 @@
 namespace bonemill {
 
 // Returns the height (pixels) of the font that the page needs: that of `font`, or less.
-float helpTextHeight(const FontAtlas& font, const std::vector<HudRow>& rows, const PictureSize& picture);
+float helpTextHeight(const FontAtlas& font, const std::vector<HelpGroup>& groups, const PictureSize& picture);
 
 // The page stands in the middle of the picture.
-void layOutHelp(HudCanvas& canvas, const std::vector<HudRow>& rows, const PictureSize& picture);
+void layOutHelp(HudCanvas& canvas, const std::vector<HelpGroup>& groups, const PictureSize& picture);
 
 }  // namespace bonemill

@@ -29,14 +29,28 @@ struct HudHint {
     float opacity = 1;
 };
 
-struct Hud {
+// Keys of the help page that belong together, and what they do.
+struct HelpGroup {
     std::string title;
+    std::vector<HudRow> rows;
+};
+
+// It stands in the middle of the picture while there is nothing else to see: facts, and sentences.
+struct HudPage {
+    std::string title;
+    std::vector<HudRow> rows;
+    std::vector<std::string> lines;
+};
+
+struct Hud {
+    std::string title;  // empty: no figures
     std::string state;
     HudTone state_tone = HudTone::kPlain;
     std::vector<HudRow> rows;      // what matters to the task
     std::vector<HudRow> details;   // the rest; empty: folded
     std::vector<HudRow> watchers;  // empty: no list
-    std::vector<HudRow> help;      // keys and what they do; empty: no help page
+    std::vector<HelpGroup> help;   // empty: no help page
+    std::optional<HudPage> page;   // there are no figures then
     std::optional<HudHint> hint;
     std::optional<HudNotice> notice;
     std::vector<HudNotice> messages;  // what stands in the way, and what to do

@@ -146,6 +146,33 @@ void layOutScaleBar(HudCanvas& canvas, const ScaleBar& bar, double metres_per_pi
                 kHudScaleColour);
 }
 
+void layOutPage(HudCanvas& canvas, const HudPage& page, const PictureSize& picture) {
+    const float em = canvas.em(), widest = float(picture.width) - 4 * em;
+    const Spacing space(em);
+    float text = canvas.width(page.title, FontStyle::kBold);
+    for (const std::string& line : page.lines) text = std::max(text, canvas.width(line, FontStyle::kPlain));
+    text = std::min(text, widest);
+    const size_t lines = 2 + page.rows.size() + page.lines.size();
+    const float width = text + 2 * space.padding, height = space.line * float(lines) + space.padding;
+    const float left = std::round((float(picture.width) - width) / 2),
+                top = std::round((float(picture.height) - height) / 2);
+    canvas.box(left, top, width, height, space.rounding, kHudPanelColour);
+    const float x = left + space.padding;
+    float base = top + space.padding * 0.4f + space.line;
+    canvas.text(x, base, page.title, FontStyle::kBold, colourOf(HudTone::kWarning));
+    for (const HudRow& row : page.rows) {
+        base += space.line;
+        canvas.text(x, base, row.label, FontStyle::kPlain, kHudLabelColour);
+        canvas.text(x + em * 6, base, row.value, FontStyle::kBold, colourOf(row.tone));
+    }
+    base += space.line * 0.5f;
+    for (const std::string& line : page.lines) {
+        base += space.line;
+        canvas.text(x, base, canvas.fitted(line, FontStyle::kPlain, text), FontStyle::kPlain,
+                    kHudLabelColour);
+    }
+}
+
 void layOutHint(HudCanvas& canvas, const HudHint& hint, const HudBox& figures, const PictureSize& picture) {
     const float em = canvas.em();
     const Spacing space(em);

@@ -37,6 +37,9 @@ void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, cons
 void layOutScaleBar(HudCanvas& canvas, const ScaleBar& bar, double metres_per_pixel,
                     const PictureSize& picture);
 
+// Puts the page into the middle of the picture.
+void layOutPage(HudCanvas& canvas, const HudPage& page, const PictureSize& picture);
+
 // Puts the hint into the lower left corner, or beside the figures when there is no room below them.
 void layOutHint(HudCanvas& canvas, const HudHint& hint, const HudBox& figures, const PictureSize& picture);
 

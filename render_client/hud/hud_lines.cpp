@@ -101,6 +101,13 @@ HudTone stateTone(const HudInput& input) {
     return HudTone::kPlain;
 }
 
+void showPage(HudPage page, Hud& hud) {
+    hud.page = std::move(page);
+    hud.title.clear();
+    hud.rows.clear();
+    hud.details.clear();
+}
+
 }  // namespace
 
 std::optional<HudNotice> alertOf(const HudInput& input) {
@@ -119,6 +126,7 @@ Hud makeHud(const HudInput& input) {
     hud.alert = alertOf(input);
     hud.rows = taskRows(input);
     if (input.show_details) hud.details = detailRows(input);
+    if (input.connection == Connection::kNoServer && input.sought) showPage(waitingPage(*input.sought), hud);
     if (input.show_watchers && !input.show_details) hud.watchers = watcherRows(input.watchers);
     if (input.show_help) hud.help = input.help;
     // Who has found the keys needs no hint.

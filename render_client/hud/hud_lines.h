@@ -10,6 +10,7 @@
 
 #include "proto/topics.pb.h"
 #include "render_client/hud/hud.h"
+#include "render_client/hud/waiting_page.h"
 
 namespace bonemill {
 
@@ -32,7 +33,8 @@ struct HudInput {
     std::vector<topics::Viewer> watchers;
     bool show_watchers = false;
     bool show_details = false;  // instead of the watchers
-    std::vector<HudRow> help;
+    std::vector<HelpGroup> help;
+    std::optional<ServerSought> sought;
     bool show_help = false;
     std::optional<HudHint> hint;
     std::optional<HudNotice> notice;

@@ -55,8 +55,10 @@ class RenderScene {
     // Takes what stands over the picture of what the mouse does; nullopt takes it away.
     void setHint(std::optional<HudHint> hint) { hud_input_.hint = std::move(hint); }
 
-    // Takes the rows of the help page: keys and what they do. There is no page before the first call.
-    void setHelp(std::vector<HudRow> rows) { hud_input_.help = std::move(rows); }
+    // Takes the help page: keys and what they do. There is no page before the first call.
+    void setHelp(std::vector<HelpGroup> groups) { hud_input_.help = std::move(groups); }
+    // Takes which server the viewer waits for, to be said while there was none yet.
+    void setSought(ServerSought sought) { hud_input_.sought = std::move(sought); }
 
     // Takes the pictures per second of this viewer over the last second; 0 means not known.
     void setFrameRate(double frame_rate_hz) { hud_input_.frame_rate_hz = frame_rate_hz; }

@@ -154,6 +154,20 @@ TEST_F(FigureShare, HowEverItStandsWithTheServer) {
         connection_ = connection;
         expectQuiet("connection " + std::to_string(int(connection)));
     }
+    connection_ = Connection::kNoServer;
+    scene_.setSought({1, 0, "classroom", "eth7", true});
+    scene_.setHint(HudHint{startRows()});
+    expectQuiet("waiting");
+}
+
+TEST_F(FigureShare, WithTheHintOnMouseAndKeys) {
+    scene_.setHint(HudHint{hintRows()});
+    tool_ = toolWithEveryEffect(kEveryEvent);
+    scene_.setNotice(
+        HudNotice{"Put the bone back? 12.3 mm\u00b3 are milled and in no checkpoint: once more does "
+                  "it, K saves them first",
+                  {}});
+    expectQuiet("hint");
 }
 
 }  // namespace

@@ -214,7 +214,7 @@ TEST_F(Golden, TheComparisonSeesAMissingColour) {
 TEST_F(Golden, HelpPage) {
     scene_->settings().show_hud = true;
     scene_->settings().show_help = true;
-    scene_->setHelp(helpRows(HelpFor::kLooking));
+    scene_->setHelp(helpGroups(HelpFor::kLooking));
     EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "help"), "");
 }
 

@@ -255,13 +255,13 @@ TEST_F(ScenePicture, HudTextChangesPixelsAndOnlyInItsPanel) {
 }
 
 TEST_F(ScenePicture, TheHelpPageFitsThePicture) {
-    const std::array<int, 3> sizes[] = {
-        {1280, 800, 1}, {640, 800, 1}, {640, 400, 1}, {1280, 800, 2}, {480, 360, 1}};
+    const std::array<int, 3> sizes[] = {{1280, 800, 1}, {640, 800, 1}, {640, 400, 1},
+                                        {1280, 800, 2}, {480, 360, 1}, {480, 300, 1}};
     for (const auto& [width, height, ui_scale] : sizes) {
         scene_.reset();
         OsmesaContext context(width, height);
         RenderScene scene(context.gl());
-        scene.setHelp(helpRows(HelpFor::kLooking));
+        scene.setHelp(helpGroups(HelpFor::kLooking));
         const auto draw = [&, w = width, h = height, scale = ui_scale] {
             scene.draw(w, h, float(scale));
             return context.read();

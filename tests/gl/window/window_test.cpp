@@ -7,6 +7,7 @@
 #include <functional>
 #include <thread>
 
+#include "render_client/hud/text_scale.h"
 #include "render_client/subscribe/scene_subscriber.h"
 #include "tests/gl/golden.h"
 #include "tests/gl/window/shown_session.h"
@@ -162,7 +163,7 @@ class PanelTwin : test::ControlledPanel {
     }
     // The mouse stands on the panel, where it touches no control.
     void rest() {
-        constexpr PixelPoint kTitle{kWidth - 40, 24};
+        constexpr PixelPoint kTitle{kWidth - 40, 18};
         display_.type({"mousemove", number(kTitle.x), number(kTitle.y)});
         sendAndLayOut(MouseMoveEvent{kTitle});
     }
@@ -170,12 +171,12 @@ class PanelTwin : test::ControlledPanel {
   private:
     void sendAndLayOut(const WindowEvent& event) {
         send(event);
-        layOut(kWidth, kHeight);
+        layOut(kWidth, kHeight, textScale(kWidth, kHeight));
     }
     void lookAtSession() {
         info_ = shown_.info();
         status_ = shown_.status();
-        layOut(kWidth, kHeight);
+        layOut(kWidth, kHeight, textScale(kWidth, kHeight));
     }
 
     const VirtualDisplay& display_;

@@ -21,8 +21,9 @@ bool names(const HudRow& row, std::string_view key) {
 
 std::vector<std::string> meaningsOf(std::string_view key, HelpFor whom = HelpFor::kHolding) {
     std::vector<std::string> meanings;
-    for (const HudRow& row : helpRows(whom))
-        if (names(row, key)) meanings.push_back(row.value);
+    for (const HelpGroup& group : helpGroups(whom))
+        for (const HudRow& row : group.rows)
+            if (names(row, key)) meanings.push_back(row.value);
     return meanings;
 }
 
@@ -46,10 +47,37 @@ TEST(HelpRows, WhatHoldsTheToolIsThereOnlyWhereAMouseCanHoldIt) {
 }
 
 TEST(HelpRows, KeysThatDoTheSameShareARow) {
-    const std::vector<HudRow> rows = helpRows(HelpFor::kLooking);
+    std::vector<std::string> labels;
+    for (const HelpGroup& group : helpGroups(HelpFor::kLooking))
+        for (const HudRow& row : group.rows) labels.push_back(row.label);
     for (const char* keys : {"X Y Z", "Shift+X Shift+Y Shift+Z", "Left Right Up Down", "[ ]", "+ = -"})
-        EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [&](const HudRow& r) { return r.label == keys; }))
-            << keys;
+        EXPECT_NE(std::ranges::find(labels, keys), labels.end()) << keys;
+}
+
+TEST(HelpRows, GroupsSayWhatKeysAreFor) {
+    const auto groups = helpGroups(HelpFor::kLooking);
+    const auto groupOfKey = [&](std::string_view key) -> std::string {
+        for (const HelpGroup& group : groups)
+            for (const HudRow& row : group.rows)
+                if (names(row, key)) return group.title;
+        return "";
+    };
+    EXPECT_EQ(groupOfKey("T"), "View");
+    EXPECT_EQ(groupOfKey("-"), "View");
+    EXPECT_EQ(groupOfKey("]"), "Cut-planes");
+    EXPECT_EQ(groupOfKey("C"), "Session");
+    EXPECT_EQ(groupOfKey("4"), "Session");
+    EXPECT_EQ(groupOfKey("M"), "Screen");
+    EXPECT_EQ(groupOfKey("Esc"), "Screen");
+    EXPECT_EQ(groups.size(), 5u) << "no tool to hold";
+    EXPECT_EQ(helpGroups(HelpFor::kMayHold).size(), 6u);
+}
+
+TEST(HelpRows, TheFirstHintNamesHelpAndPanel) {
+    const auto rows = startRows();
+    ASSERT_GE(rows.size(), 2u);
+    EXPECT_EQ(rows[0].label, keyLabelOf(Action::kHelp));
+    EXPECT_EQ(rows[1].label, keyLabelOf(Action::kPanel));
 }
 
 TEST(HelpRows, TheDigitsSayWhichAccuracyTheyAskFor) {

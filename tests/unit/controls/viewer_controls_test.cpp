@@ -106,6 +106,17 @@ TEST_F(Controls, DoNotAskWhereNothingIsLost) {
     EXPECT_EQ(wishes_.commands.size(), 5u) << "these lose nothing";
 }
 
+TEST_F(Controls, AKeyMakesTextLargerWithinBounds) {
+    type('J');
+    EXPECT_GT(settings_.text_scale, 1.2);
+    type('J', true);
+    EXPECT_NEAR(settings_.text_scale, 1, 1e-12);
+    for (int i = 0; i < 50; ++i) type('J');
+    EXPECT_EQ(settings_.text_scale, ViewSettings::kMostText);
+    for (int i = 0; i < 50; ++i) type('J', true);
+    EXPECT_EQ(settings_.text_scale, ViewSettings::kLeastText);
+}
+
 TEST_F(Controls, StereoGoesRoundThreeModes) {
     type('S');
     EXPECT_EQ(settings_.stereo, StereoMode::kSideBySide);

@@ -89,11 +89,11 @@ TEST_F(HudLayout, AHintStandsBelowTheFiguresOrBesideThem) {
 }
 
 TEST_F(HudLayout, TheHelpPageGetsSmallerTextWhereItWouldNotFit) {
-    std::vector<HudRow> rows;
-    for (int i = 0; i < 40; ++i) rows.push_back({"Shift+X", "cut away the other side"});
-    EXPECT_EQ(helpTextHeight(font_, rows, {1600, 1200}), kEm);
-    EXPECT_LT(helpTextHeight(font_, rows, {480, 360}), kEm);
-    layOutHelp(canvas_, rows, {1600, 1200});
+    const std::vector<HudRow> rows(8, HudRow{"Shift+X", "cut away the other side"});
+    const std::vector<HelpGroup> groups(5, HelpGroup{"Cut-planes", rows});
+    EXPECT_EQ(helpTextHeight(font_, groups, {1600, 1200}), kEm);
+    EXPECT_LT(helpTextHeight(font_, groups, {480, 360}), kEm);
+    layOutHelp(canvas_, groups, {1600, 1200});
     EXPECT_GT(extentSince(0).left, 0);
     EXPECT_LT(extentSince(0).right, 1600);
 }

@@ -277,11 +277,32 @@ TEST(Hud, AHintGivesWayToTheHelpPage) {
 
 TEST(Hud, TheHelpPageIsShownOnRequest) {
     HudInput input;
-    input.help = {{"H", "help"}};
+    input.help = {{"Screen", {{"H", "help"}}}};
     EXPECT_TRUE(makeHud(input).help.empty());
     input.show_help = true;
     ASSERT_EQ(makeHud(input).help.size(), 1u);
-    EXPECT_EQ(makeHud(input).help[0].label, "H");
+    EXPECT_EQ(makeHud(input).help[0].rows[0].label, "H");
+}
+
+TEST(Hud, WaitingNamesTheServerAndWhatToTry) {
+    HudInput input;
+    input.sought = ServerSought{7, 3, "one-pc", "", false};
+    const HudPage page = makeHud(input).page.value();
+    EXPECT_EQ(test::findRow(page.rows, "Session")->value, "7");
+    EXPECT_EQ(test::findRow(page.rows, "Domain")->value, "3");
+    EXPECT_EQ(test::findRow(page.rows, "Profile")->value, "one-pc");
+    EXPECT_FALSE(test::findRow(page.rows, "Interface"));
+    EXPECT_GE(page.lines.size(), 2u);
+    EXPECT_TRUE(makeHud(input).title.empty()) << "there are no figures yet";
+    input.sought->is_on_lan = true;
+    input.sought->interface = "eth7";
+    EXPECT_EQ(test::findRow(makeHud(input).page->rows, "Interface")->value, "eth7");
+    EXPECT_NE(makeHud(input).page->lines.back().find("check-network"), std::string::npos);
+    for (const Connection connection : {Connection::kReceiving, Connection::kLive, Connection::kServerLost}) {
+        input.connection = connection;
+        EXPECT_FALSE(makeHud(input).page);
+        EXPECT_FALSE(makeHud(input).title.empty());
+    }
 }
 
 TEST(Hud, NumbersThatAreNoneBecomeADash) {

@@ -1,0 +1,21 @@
+// Says which server a viewer waits for, and what to try. The function is pure; any thread may call it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "render_client/hud/hud.h"
+
+namespace bonemill {
+
+struct ServerSought {
+    uint32_t session = 1;
+    uint32_t domain = 0;
+    std::string profile;     // as the user knows it: one-pc, lab, ...
+    std::string interface;   // empty: none was chosen
+    bool is_on_lan = false;  // the server may run on another PC
+};
+
+HudPage waitingPage(const ServerSought& sought);
+
+}  // namespace bonemill
