@@ -101,11 +101,11 @@ HudTone stateTone(const HudInput& input) {
     return HudTone::kPlain;
 }
 
-void showPage(HudPage page, Hud& hud) {
-    hud.page = std::move(page);
+void removeFigures(Hud& hud) {
     hud.title.clear();
     hud.rows.clear();
     hud.details.clear();
+    hud.watchers.clear();
 }
 
 }  // namespace
@@ -126,11 +126,13 @@ Hud makeHud(const HudInput& input) {
     hud.alert = alertOf(input);
     hud.rows = taskRows(input);
     if (input.show_details) hud.details = detailRows(input);
-    if (input.connection == Connection::kNoServer && input.sought) showPage(waitingPage(*input.sought), hud);
     if (input.show_watchers && !input.show_details) hud.watchers = watcherRows(input.watchers);
     if (input.show_help) hud.help = input.help;
     // Who has found the keys needs no hint.
     if (!input.show_help && !input.show_watchers && !input.show_details) hud.hint = input.hint;
+    if (input.connection == Connection::kNoServer && input.sought) hud.page = waitingPage(*input.sought);
+    if (input.is_in_eyes) hud.hint.reset();
+    if (input.is_in_eyes || hud.page) removeFigures(hud);
     return hud;
 }
 

@@ -33,6 +33,9 @@ struct HudInput {
     std::vector<topics::Viewer> watchers;
     bool show_watchers = false;
     bool show_details = false;  // instead of the watchers
+    // The display is drawn into each eye's picture: figures would lie before the bone, and take half of it.
+    // There is only what was asked for, and what must not be overseen.
+    bool is_in_eyes = false;
     std::vector<HelpGroup> help;
     std::optional<ServerSought> sought;
     bool show_help = false;

@@ -280,7 +280,9 @@ void RenderScene::paintHud(const Camera& camera, const PictureArea& area, float 
     hud_input_.show_watchers = settings_.show_watchers;
     hud_input_.show_help = settings_.show_help;
     const double metres_per_pixel = camera.metresPerPixel(area.height);
-    const ScaleBar bar = hasSceneInfo() ? makeScaleBar(metres_per_pixel, 0.2 * area.width) : ScaleBar{};
+    hud_input_.is_in_eyes = settings_.stereo == StereoMode::kSideBySide;
+    const bool has_bar = hasSceneInfo() && !hud_input_.is_in_eyes;
+    const ScaleBar bar = has_bar ? makeScaleBar(metres_per_pixel, 0.2 * area.width) : ScaleBar{};
     hud_painter_.paint(makeHud(hud_input_), bar, metres_per_pixel, {area.width, area.height}, ui_scale);
 }
 

@@ -43,6 +43,7 @@ class FigureShare : public testing::Test {
   protected:
     FigureShare() : context_(kShareWidth, kShareHeight), scene_(context_.gl()) {
         scene_.settings().quality = Quality::kQuick;
+        scene_.settings().show_force = false;
         info_ = test::makeSceneInfo("milled block", {0, 0, 0}, {0.01, 0.01, 0.01});
         info_.add_tool_names("round burr 6 mm");
         info_.add_tool_names("round burr 3 mm");
@@ -62,8 +63,8 @@ class FigureShare : public testing::Test {
     }
     // Returns which part of the picture's pixels differs from the picture without any figures.
     double share() {
-        if (!bare_) bare_ = draw(false);
         scene_.setSceneInfo(info_);
+        if (!bare_) bare_ = draw(false);
         scene_.setStatus(status_);
         tool_.set_tick(++tick_);
         scene_.setToolState(tool_);
@@ -146,6 +147,9 @@ TEST_F(FigureShare, WhereTheSessionIsFaulty) {
     scene_.settings().show_details = true;
     scene_.setNotice(HudNotice{"accuracy exact: refused: the scene says accuracy.switchable: false", {}});
     expectQuiet("faults with all figures and a notice");
+    scene_.settings().stereo = StereoMode::kSideBySide;
+    bare_.reset();
+    expectQuiet("faults in both eyes");
 }
 
 TEST_F(FigureShare, HowEverItStandsWithTheServer) {
@@ -158,6 +162,13 @@ TEST_F(FigureShare, HowEverItStandsWithTheServer) {
     scene_.setSought({1, 0, "classroom", "eth7", true});
     scene_.setHint(HudHint{startRows()});
     expectQuiet("waiting");
+}
+
+TEST_F(FigureShare, IsNothingInSideBySideStereo) {
+    scene_.settings().stereo = StereoMode::kSideBySide;
+    EXPECT_EQ(share(), 0);
+    tool_ = toolWithEveryEffect(kEveryEvent);
+    expectQuiet("an alert for both eyes");
 }
 
 TEST_F(FigureShare, WithTheHintOnMouseAndKeys) {

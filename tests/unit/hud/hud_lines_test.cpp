@@ -305,6 +305,26 @@ TEST(Hud, WaitingNamesTheServerAndWhatToTry) {
     }
 }
 
+TEST(Hud, EachEyeSeesOnlyWhatMustNotBeOverseen) {
+    HudInput input = liveInput();
+    input.is_in_eyes = true;
+    input.watchers = {watcher("Anna")};
+    input.hint = HudHint{{{"Wheel", "deeper"}}, 1};
+    input.notice = HudNotice{"accuracy fast: done", HudTone::kGood};
+    input.messages = {{"The device sends nothing.", HudTone::kAlarm}};
+    input.events = topics::EffectState::TOO_HOT;
+    Hud hud = makeHud(input);
+    EXPECT_TRUE(hud.title.empty() && hud.rows.empty() && hud.details.empty() && !hud.hint);
+    EXPECT_TRUE(hud.notice && hud.alert);
+    EXPECT_EQ(hud.messages.size(), 1u);
+    input.show_details = false;
+    input.show_watchers = true;
+    EXPECT_TRUE(makeHud(input).watchers.empty());
+    input.show_help = true;
+    input.help = {{"Screen", {{"H", "help"}}}};
+    EXPECT_FALSE(makeHud(input).help.empty()) << "it was asked for";
+}
+
 TEST(Hud, NumbersThatAreNoneBecomeADash) {
     HudInput input = liveInput();
     input.status->set_rate_hz(std::numeric_limits<double>::quiet_NaN());

@@ -106,14 +106,26 @@ TEST(Options, ACommandIsAModeOfItsOwn) {
     EXPECT_FALSE(parse({})->command);
 }
 
+TEST(Options, TheServerThatIsSoughtIsNamed) {
+    const ServerSought sought =
+        soughtOf(*parse({"--session", "4", "--domain", "2", "--profile", "lab", "--interface", "eth0"}));
+    EXPECT_EQ(sought.session, 4u);
+    EXPECT_EQ(sought.domain, 2u);
+    EXPECT_EQ(sought.profile, "lab");
+    EXPECT_EQ(sought.interface, "eth0");
+    EXPECT_TRUE(sought.is_on_lan);
+    EXPECT_FALSE(soughtOf(*parse({})).is_on_lan);
+}
+
 TEST(Options, WhatIsShownAtTheStart) {
     const ViewSettings plain = parse({})->settings;
     EXPECT_FALSE(plain.cuts[0].is_on || plain.cuts[1].is_on || plain.cuts[2].is_on);
     EXPECT_FALSE(plain.is_transparent);
     EXPECT_TRUE(plain.show_hud);
-    const ViewSettings all = parse({"--cut-x", "0.25", "--cut-z", "0.5", "--flip-z", "--transparent", "0.2",
-                                    "--stereo", "anaglyph", "--camera", "endoscope", "--no-hud"})
-                                 ->settings;
+    const ViewSettings all =
+        parse({"--cut-x", "0.25", "--cut-z", "0.5", "--flip-z", "--transparent", "0.2", "--stereo",
+               "anaglyph", "--camera", "endoscope", "--no-hud", "--text-scale", "2"})
+            ->settings;
     EXPECT_TRUE(all.cuts[0].is_on && !all.cuts[1].is_on && all.cuts[2].is_on);
     EXPECT_DOUBLE_EQ(all.cuts[0].position, 0.25);
     EXPECT_FALSE(all.cuts[0].is_flipped);
@@ -123,6 +135,9 @@ TEST(Options, WhatIsShownAtTheStart) {
     EXPECT_EQ(all.stereo, StereoMode::kAnaglyph);
     EXPECT_EQ(all.camera, CameraMode::kEndoscope);
     EXPECT_FALSE(all.show_hud);
+    EXPECT_EQ(plain.text_scale, 1);
+    EXPECT_EQ(all.text_scale, 2);
+    EXPECT_THROW(parse({"--text-scale", "9"}), UserError);
     EXPECT_EQ(parse({"--stereo", "side-by-side"})->settings.stereo, StereoMode::kSideBySide);
     const ViewSettings by_default = parse({"--transparent"})->settings;
     EXPECT_TRUE(by_default.is_transparent);
