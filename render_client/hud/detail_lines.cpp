@@ -41,7 +41,8 @@ void addAccuracyRows(const topics::Status& status, std::vector<HudRow>& rows) {
 }
 
 void addContactRows(const topics::ToolState& tool, std::vector<HudRow>& rows) {
-    rows.push_back({"Torque", lengthText(tool.torque_nm(), kPerMilli, " N\u00b7mm")});
+    const auto& torque = tool.torque_nm();
+    rows.push_back({"Torque", lengthText({torque.data(), size_t(torque.size())}, kPerMilli, " N\u00b7mm")});
     rows.push_back({"Contacts", std::to_string(tool.contacts())});
 }
 

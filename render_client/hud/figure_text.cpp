@@ -34,7 +34,7 @@ std::string readableText(double value, const char* unit) {
     return figureText(value, magnitude < 10 ? 2 : magnitude < 1000 ? 1 : 0, unit);
 }
 
-std::string lengthText(const google::protobuf::RepeatedField<double>& v, double scale, const char* unit) {
+std::string lengthText(std::span<const double> v, double scale, const char* unit) {
     return v.size() == 3 ? readableText(std::hypot(v[0], v[1], v[2]) * scale, unit) : kNoNumber;
 }
 

@@ -1,8 +1,7 @@
 // The figures over the picture show numbers and names so. The functions are pure; any thread may call them.
 #pragma once
 
-#include <google/protobuf/repeated_field.h>
-
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,7 +15,7 @@ std::string figureText(double value, int decimals, const char* unit);
 // Returns the number with three significant digits or so, whatever its size, and its unit.
 std::string readableText(double value, const char* unit);
 // Returns the length of a vector of three numbers, times `scale`, likewise; a dash for what is no vector.
-std::string lengthText(const google::protobuf::RepeatedField<double>& v, double scale, const char* unit);
+std::string lengthText(std::span<const double> v, double scale, const char* unit);
 // Returns at most so many signs (UTF-8), the last one an ellipsis if some are left out.
 std::string shortenedText(const std::string& text, size_t most);
 // A row has room for so many characters.

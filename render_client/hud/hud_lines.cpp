@@ -51,7 +51,8 @@ std::vector<HudRow> taskRows(const HudInput& input) {
     const topics::SceneInfo* const info = input.info ? &*input.info : nullptr;
     if (info) addToolNameRow(*info, rows);
     if (input.tool) {
-        rows.push_back({"Force", lengthText(input.tool->force_n(), 1, " N")});
+        const auto& force = input.tool->force_n();
+        rows.push_back({"Force", lengthText({force.data(), size_t(force.size())}, 1, " N")});
         rows.push_back(burrRow(*input.tool, input.status && input.status->is_milling_paused(), input.events));
     }
     if (input.status) rows.push_back({"Removed", readableText(input.status->removed_mm3(), " mm\u00b3")});

@@ -62,6 +62,27 @@ TEST_F(PanelPicture, TrainingIsShownWhereTheSceneTeachesCare) {
     EXPECT_GT(countDifferent(draw(), without, 300, kWidth), 20u);
 }
 
+TEST_F(PanelPicture, FaultsAreListedOnceThereAreSome) {
+    switchPanel();
+    const auto lookAtItsEnd = [this] {
+        for (int n = 0; n < 3; ++n) draw();
+        send(MouseMoveEvent{{500, 300}});
+        for (int n = 0; n < 60; ++n) send(ScrollEvent{-1});
+        return draw();
+    };
+    const Picture without = lookAtItsEnd();
+    session_.faults = {{"The device sends nothing.", HudTone::kAlarm, 12, 34, 3, true}};
+    const Picture with_faults = lookAtItsEnd();
+    size_t red = 0;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 300; x < kWidth; ++x) {
+            const auto p = with_faults.at(x, y);
+            red += p[0] > 150 && p[1] < 120 && p[2] < 120;
+        }
+    EXPECT_GT(countDifferent(with_faults, without, 300, kWidth), 100u);
+    EXPECT_GT(red, 50u) << "it lasts";
+}
+
 TEST_F(PanelPicture, ABoxShowsWhatIsSet) {
     switchPanel();
     const Picture before = draw();
