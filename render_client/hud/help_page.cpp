@@ -47,7 +47,7 @@ size_t longestOf(const std::vector<Lines>& columns) {
 std::vector<Lines> balancedLines(const std::vector<HelpGroup>& groups, float em, int picture_height) {
     const float room = std::max(float(picture_height) - 2 * em * kPadding - em, em * kLine);
     auto columns = splitLines(groups, std::max(size_t(room / (em * kLine)), size_t(2)));
-    for (size_t most = longestOf(columns) - 1; most >= 2; --most) {
+    for (size_t most = longestOf(columns); most-- > 2;) {
         auto lower = splitLines(groups, most);
         if (lower.size() > columns.size()) break;
         columns = std::move(lower);

@@ -30,9 +30,11 @@ void HudCanvas::text(float x, float y, std::string_view utf8, FontStyle style, c
 }
 
 std::string HudCanvas::fitted(const std::string& utf8, FontStyle style, float most) const {
-    std::string text = utf8;
-    for (size_t signs = decodeUtf8(utf8).size(); signs > 1 && width(text, style) > most; --signs)
-        text = shortenedText(utf8, signs - 1);
+    constexpr size_t kMostSigns = 160;  // no line of a picture is longer
+    const std::string start = shortenedText(utf8, kMostSigns);
+    std::string text = start;
+    for (size_t signs = decodeUtf8(start).size(); signs > 1 && width(text, style) > most; --signs)
+        text = shortenedText(start, signs - 1);
     return text;
 }
 
