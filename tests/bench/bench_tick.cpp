@@ -12,6 +12,7 @@
 #include "tests/bench/bench_output.h"
 #include "tests/bench/half_block.h"
 #include "tests/bench/leaf_cells.h"
+#include "tests/bench/neighbour.h"
 #include "tests/support/scripted_io.h"
 #include "tests/support/typical_effects.h"
 
@@ -54,7 +55,7 @@ void addTickCommand(CLI::App& app) {
         double voxel_mm = 0.096, burr_radius_mm = 3;
         std::string preset = "balanced", json;
         bool is_still = false;
-        int runs = 1;
+        int runs = 1, neighbour_mb = 0;
     };
     auto o = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("tick", "whole ticks of a burr that mills a flat block");
@@ -64,6 +65,10 @@ void addTickCommand(CLI::App& app) {
     command->add_option("--preset", o->preset, "One of " + presetNames());
     command->add_option("--ticks", o->tick_case.ticks)->check(CLI::Range(1000, 1'000'000));
     command->add_option("--runs", o->runs, "repeat, and take each figure's median")->check(CLI::Range(1, 99));
+    command
+        ->add_option("--neighbour-mb", o->neighbour_mb,
+                     "beside the tick another thread goes through so much memory, as fast as it can")
+        ->check(CLI::Range(0, 4096));
     command->add_flag("--no-mill", o->is_still, "press and slide only, without any effect");
     addJsonOption(*command, o->json);
     command->callback([o] {
@@ -73,6 +78,7 @@ void addTickCommand(CLI::App& app) {
         o->tick_case.spacing = o->voxel_mm * kMillimetre;
         o->tick_case.burr_radius = o->burr_radius_mm * kMillimetre;
         o->tick_case.mills = !o->is_still;
+        const Neighbour neighbour(size_t(o->neighbour_mb) << 20);
         std::vector<nlohmann::json> runs;
         Table table({"tick, us", "mean", "p50", "p99", "p99.9", "max"});
         for (int n = 1; n <= o->runs; ++n) {

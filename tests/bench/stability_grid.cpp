@@ -6,10 +6,10 @@
 // --undeclared it says nothing.
 //
 //   stability_grid [--out DIR] [--variant NAME] [--undeclared] [--coarse]
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
-#include <cstring>
 #include <thread>
 
 #include "tests/bench/stability_plot.h"
@@ -103,21 +103,21 @@ void printSummary(const std::vector<GridRow>& rows) {
 
 int main(int argc, char** argv) {
     using namespace bonemill::test;
-    const auto has = [&](const char* option) {
-        return std::any_of(argv + 1, argv + argc, [&](const char* a) { return !std::strcmp(a, option); });
-    };
-    const auto valueOf = [&](const char* option) -> const char* {
-        for (int i = 1; i + 1 < argc; ++i)
-            if (!std::strcmp(argv[i], option)) return argv[i + 1];
-        return nullptr;
-    };
+    std::vector<std::string> names;
+    for (const Variant& variant : allVariants()) names.push_back(variant.name);
     std::vector<std::string> variants{"thesis_2012", "balanced"};
-    if (const char* only = valueOf("--variant")) variants = {only};
+    std::string out;
+    bool is_coarse = false, is_undeclared = false;
+    CLI::App app("where the closed loop never comes to rest: devices, ways and hands (9 minutes)");
+    app.add_option("--out", out, "Folder for stability_grid.csv, .gp and .png");
+    app.add_option("--variant", variants, "These only")->check(CLI::IsMember(names));
+    app.add_flag("--undeclared", is_undeclared, "The device says nothing");
+    app.add_flag("--coarse", is_coarse, "Fewer points");
+    CLI11_PARSE(app, argc, argv);
     std::vector<GridRow> rows;
     for (const std::string& variant : variants)
-        for (const GridRow& row : pointsOf(has("--coarse") ? kCoarse : kWhole, variant)) rows.push_back(row);
-    tryAll(rows, !has("--undeclared"));
+        for (const GridRow& row : pointsOf(is_coarse ? kCoarse : kWhole, variant)) rows.push_back(row);
+    tryAll(rows, !is_undeclared);
     printSummary(rows);
-    const char* out = valueOf("--out");
-    return out && !writeGrid(out, rows) ? 1 : 0;
+    return !out.empty() && !writeGrid(out, rows) ? 1 : 0;
 }
