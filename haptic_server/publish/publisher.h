@@ -20,7 +20,6 @@
 #include "common/mesh/mesh_codec.h"
 #include "common/rt/latency_histogram.h"
 #include "haptic_server/publish/command_inbox.h"
-#include "haptic_server/publish/other_server.h"
 #include "haptic_server/telemetry/tick_record.h"
 #include "proto/topics.pb.h"
 
@@ -36,11 +35,6 @@ class Publisher {
   public:
     // Throws UserError when the DDS domain cannot be joined.
     explicit Publisher(const PublisherOptions& options);
-
-    // Looks for another server of the session before anything is published: findOtherServer().
-    std::optional<OtherServer> findOther(std::chrono::milliseconds patience) const {
-        return findOtherServer(participant_, session_, patience);
-    }
 
     struct Written {
         size_t bytes = 0;      // payloads of the nodes

@@ -15,6 +15,7 @@
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/mesh/mesh_rounds.h"
+#include "haptic_server/publish/other_server.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/record/final_files.h"
 #include "haptic_server/session/device_link_io.h"
@@ -77,6 +78,13 @@ LoadedScene loadSceneOf(const ServerOptions& options) {
     return loaded;
 }
 
+// Throws UserError if the session has a server: that is asked before this one shows anything.
+PublisherOptions publisherOptionsOf(const ServerOptions& options) {
+    if (const auto other = findOtherServer(dds::Participant(options.domain), options.session, kLookForOthers))
+        throw UserError(refusalText(*other, options.domain, options.session));
+    return {.domain = options.domain, .session = options.session, .epoch = 0};
+}
+
 class Server {
   public:
     explicit Server(const ServerOptions& options)
@@ -94,15 +102,13 @@ class Server {
           tick_(simulation_.tick, {*simulation_.bone, &history_}, {tools_, accuracy_}),
           recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns,
                     recordedEffectsOf(loaded_.scene.effects())),
-          publisher_({.domain = options.domain, .session = options.session, .epoch = 0}),
+          publisher_(publisherOptionsOf(options)),
           bone_export_(history_, *simulation_.bone, options.export_dir),
           commands_(loaded_.scene, *simulation_.bone, recorder_,
                     {history_, accuracy_, tools_, stop_requested_, bone_export_, io_.resetOrders()},
                     options.instructor_only),
           show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, io_,
                 commands_, options.stream_mbit_per_s * kMega / 8) {
-        if (const auto other = publisher_.findOther(kLookForOthers))
-            throw UserError(refusalText(*other, options.domain, options.session));
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
         for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     }

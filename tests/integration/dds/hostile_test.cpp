@@ -2,6 +2,7 @@
 
 #include <thread>
 
+#include "haptic_server/publish/other_server.h"
 #include "haptic_server/publish/publisher.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/synthetic_nodes.h"
