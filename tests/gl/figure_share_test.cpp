@@ -22,20 +22,9 @@ constexpr int kShareWidth = 1280, kShareHeight = 800;
 constexpr double kMostShare = 1.0 / 6;
 constexpr uint32_t kEveryEvent = 0x1f;
 
-// Every figure that effects can send is there, so the list is as long as it gets.
-topics::ToolState toolWithEveryEffect(uint32_t events) {
-    topics::ToolState tool = test::makeToolState(test::toolInCavity(), test::toolInCavity(), 1);
-    topics::EffectState& effects = *tool.mutable_effects();
-    effects.set_events(events);
-    effects.set_spin_speed(2000);
-    effects.set_axis_torque_nm(2.9e-3);
-    effects.set_cutting_power_w(5.8);
-    effects.set_temperature_c(48.1);
-    effects.set_necrotic_mm3(0.12);
-    effects.set_protected_id(1);
-    effects.set_event_id(1);
-    effects.set_protected_distance_m(0.8e-3);
-    effects.set_damaged_mm3(0.1);
+topics::ToolState toolWithDamage(uint32_t events) {
+    topics::ToolState tool = test::toolWithEveryEffect(events);
+    tool.mutable_effects()->set_damaged_mm3(0.1);
     return tool;
 }
 
@@ -50,7 +39,7 @@ class FigureShare : public testing::Test {
         info_.add_materials()->set_name("facial nerve");
         status_ = test::makeStatus();
         status_.set_session_s(3723);
-        tool_ = toolWithEveryEffect(0);
+        tool_ = toolWithDamage(0);
         for (int i = 0; i < 20; ++i)
             watchers_.push_back(
                 test::makeWatcher("student " + std::to_string(i), topics::Viewer::OPERATOR, 30));
@@ -124,7 +113,7 @@ TEST_F(FigureShare, WithTheRestUnfolded) {
     status_.mutable_device()->set_name("Touch");
     status_.mutable_device()->set_state(uint32_t(SafetyState::kEngaged));
     expectQuiet("all figures");
-    tool_ = toolWithEveryEffect(kEveryEvent);
+    tool_ = toolWithDamage(kEveryEvent);
     scene_.setNotice(HudNotice{"accuracy exact: refused: the scene says accuracy.switchable: false", {}});
     expectQuiet("all figures with an alert");
     scene_.settings().show_details = false;
@@ -140,7 +129,7 @@ TEST_F(FigureShare, WhereTheSessionIsFaulty) {
     status_.mutable_device()->set_name("Touch");
     status_.mutable_device()->set_state(uint32_t(SafetyState::kProtectiveStop));
     status_.mutable_device()->set_stop_cause(uint32_t(StopCause::kEnergy));
-    tool_ = toolWithEveryEffect(kEveryEvent);
+    tool_ = toolWithDamage(kEveryEvent);
     tool_.set_device_state(uint32_t(SafetyState::kProtectiveStop));
     tool_.set_stop_cause(uint32_t(StopCause::kEnergy));
     expectQuiet("faults");
@@ -167,13 +156,13 @@ TEST_F(FigureShare, HowEverItStandsWithTheServer) {
 TEST_F(FigureShare, IsNothingInSideBySideStereo) {
     scene_.settings().stereo = StereoMode::kSideBySide;
     EXPECT_EQ(share(), 0);
-    tool_ = toolWithEveryEffect(kEveryEvent);
+    tool_ = toolWithDamage(kEveryEvent);
     expectQuiet("an alert for both eyes");
 }
 
 TEST_F(FigureShare, WithTheHintOnMouseAndKeys) {
     scene_.setHint(HudHint{hintRows()});
-    tool_ = toolWithEveryEffect(kEveryEvent);
+    tool_ = toolWithDamage(kEveryEvent);
     scene_.setNotice(
         HudNotice{"Put the bone back? 12.3 mm\u00b3 are milled and in no checkpoint: once more does "
                   "it, K saves them first",

@@ -168,19 +168,8 @@ TEST(GoldenFigures, OfEffectsWithAnAlert) {
     for (const NodeMesh& node : test::milledBlock()) scene.setNode(node);
     scene.setConnection(Connection::kLive);
     scene.setStatus(test::makeStatus());
-    topics::ToolState tool = test::makeToolState(test::toolInCavity(), test::toolInCavity(), 1);
-    topics::EffectState& effects = *tool.mutable_effects();
-    effects.set_events(topics::EffectState::NEAR_PROTECTED | topics::EffectState::TOO_HOT);
-    effects.set_spin_speed(2000);
-    effects.set_axis_torque_nm(2.9e-3);
-    effects.set_cutting_power_w(5.8);
-    effects.set_temperature_c(48.1);
-    effects.set_necrotic_mm3(0.12);
-    effects.set_protected_id(1);
-    effects.set_event_id(1);
-    effects.set_protected_distance_m(0.8e-3);
-    effects.set_damaged_mm3(0);
-    scene.setToolState(tool);
+    scene.setToolState(
+        test::toolWithEveryEffect(topics::EffectState::NEAR_PROTECTED | topics::EffectState::TOO_HOT));
     scene.setNotice(HudNotice{"Picture saved", HudTone::kGood});
     scene.draw(640, 480, kUiScale);
     EXPECT_EQ(test::goldenProblem(context.read(), "effects_hud"), "");

@@ -84,4 +84,21 @@ inline topics::Viewer makeWatcher(const std::string& name, topics::Viewer::Role 
     return viewer;
 }
 
+// Every figure that effects can send is there, and nothing is damaged.
+inline topics::ToolState toolWithEveryEffect(uint32_t events) {
+    topics::ToolState tool = makeToolState(toolInCavity(), toolInCavity(), 1);
+    topics::EffectState& effects = *tool.mutable_effects();
+    effects.set_events(events);
+    effects.set_spin_speed(2000);
+    effects.set_axis_torque_nm(2.9e-3);
+    effects.set_cutting_power_w(5.8);
+    effects.set_temperature_c(48.1);
+    effects.set_necrotic_mm3(0.12);
+    effects.set_protected_id(1);
+    effects.set_event_id(1);
+    effects.set_protected_distance_m(0.8e-3);
+    effects.set_damaged_mm3(0);
+    return tool;
+}
+
 }  // namespace bonemill::test

@@ -97,18 +97,11 @@ TEST(DeviceChange, TheCouplingIsNoStifferThanTheDeviceHolds) {
     }
 }
 
-// The fit goes on beside the ticks. ARES' own figures leave everything as the scene says.
+// The fit goes on beside the ticks.
 TEST(DeviceChange, ADeviceThatSaysWhatItIsLikeIsHeldByWhatItCarries) {
     constexpr int kFitTicks = 500;
     DeviceCapabilities device = deviceOf(40, 1, 0);
-    device.handle = {.mass = 0.25,
-                     .damping = 2,
-                     .inertia = 1e-4,
-                     .angular_damping = 0.004,
-                     .amplifier_time = 0.3e-3,
-                     .delay = 1e-3,
-                     .encoder_step = 5e-6,
-                     .encoder_angle = 1e-4};
+    device.handle = test::kSteadyHandle;
     ToolBench bench(1);
     const TickRecord usual = bench.run(held(kFitTicks, &device)).back();
     EXPECT_EQ(usual.coupling_share, 1);

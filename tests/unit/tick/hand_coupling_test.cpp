@@ -14,24 +14,16 @@ using test::ToolBench;
 
 constexpr double kUpHere = test::kBenchTop + 0.2e-3;  // z of a hand that presses a burr of 1 mm
 
-// An arm that carries the scene's whole stiffness by itself.
-DeviceCapabilities steadyArm(double max_torque = 1) {
+DeviceCapabilities steadyArm() {
     DeviceCapabilities arm{.name = "arm",
                            .kind = uint32_t(DeviceKind::kUnknown),
-                           .abilities = kAbilityForce | (max_torque > 0 ? uint32_t(kAbilityTorque) : 0),
+                           .abilities = kAbilityForce | kAbilityTorque,
                            .max_force = 40,
-                           .max_torque = max_torque,
+                           .max_torque = 1,
                            .max_stiffness = 0,
                            .max_rotation_stiffness = 0,
                            .workspace_radius = 0.1};
-    arm.handle = {.mass = 0.25,
-                  .damping = 2,
-                  .inertia = 1e-4,
-                  .angular_damping = 0.004,
-                  .amplifier_time = 0.3e-3,
-                  .delay = 1e-3,
-                  .encoder_step = 5e-6,
-                  .encoder_angle = 1e-4};
+    arm.handle = test::kSteadyHandle;
     return arm;
 }
 

@@ -10,6 +10,16 @@ namespace bonemill::test {
 
 inline constexpr double kBurrs[] = {0.5e-3, 1e-3, 1.5e-3};  // radius, m
 
+// ARES' own figures: they carry the whole stiffness of a scene.
+inline constexpr HandleDynamics kSteadyHandle{.mass = 0.25,
+                                              .damping = 2,
+                                              .inertia = 1e-4,
+                                              .angular_damping = 0.004,
+                                              .amplifier_time = 0.3e-3,
+                                              .delay = 1e-3,
+                                              .encoder_step = 5e-6,
+                                              .encoder_angle = 1e-4};
+
 struct ToolBench {
     static constexpr size_t kTicksPerTool = 120;
 
