@@ -20,8 +20,6 @@ constexpr double kAllowed = 1e-6;  // J that a path may give back
 // The tool's waist at the edges of a slot has many rests, and snapping from one to another gains some energy,
 // the same in each preset (docs/stability.md). It stores up to 900 µJ there.
 constexpr double kAllowedInSlot = 20e-6;
-// So has a burr on rough bone, seldom: one of some thousand paths gave back 1.3 µJ.
-constexpr double kAllowedOnRough = 4e-6;
 const Vector3d kMiddle(4e-3, 4e-3, 4e-3);
 const Eigen::Quaterniond kUpright = expRotation({M_PI / 2, 0, 0});
 const std::vector<ToolShape> kBurrAndShaft = {SphereShape{{0, 0, 0}, 1e-3},
@@ -52,7 +50,7 @@ double rough(const Vector3d& p) {
     return bumps(p) + 0.3e-3 * (double(hash >> 8) / double(1 << 24) - 0.5);
 }
 
-constexpr int kSlot = 2, kRough = 3;
+constexpr int kSlot = 2;
 
 const ContactScene& sceneOf(int body) {
     static const ContactScene kScenes[] = {
@@ -73,7 +71,7 @@ double fraction() {
 // It goes out of the air into the bone, through a few random places and back, smoothly.
 struct Path {
     static constexpr int kPlaces = 2, kRest = 5;
-    static constexpr int kCoarse = 120, kFine = 960;  // ticks per leg of some mm
+    static constexpr int kCoarse = 120, kFine = 960, kFinest = 7680;  // ticks per leg of some mm
     int ticks_per_leg = kCoarse;
     Vector3d place[kPlaces + 2];
     Vector3d turn[kPlaces + 2];
@@ -160,25 +158,28 @@ PathEnergy run(const ContactScene& scene, Preset preset, const Path& path) {
     return {every_tick.energy(), every_other_tick.energy(), has_touched};
 }
 
-// The sum over ticks must stand for the integral: a path is run with ever smaller steps until it does.
-PathEnergy energyOf(const ContactScene& scene, Preset preset, Path path) {
-    PathEnergy energy = run(scene, preset, path);
+// The sum over ticks must stand for the integral: a path is run with ever smaller steps until it does. Where a
+// tool snaps over an edge the sum errs by half the jump times the step, to either side: a path that seems to give
+// energy is run with the finest steps before that is believed. In the slot nearly all snap, and the bound is wide.
+PathEnergy energyOf(int body, Preset preset, Path path) {
+    PathEnergy energy = run(sceneOf(body), preset, path);
+    const auto seemsToGive = [&] { return energy.every_tick < -0.5 * kAllowed; };
     const auto isSettled = [&] {
-        return std::abs(energy.every_tick - energy.every_other_tick) < 0.75 * kAllowed &&
-               energy.every_tick > -0.5 * kAllowed;
+        return std::abs(energy.every_tick - energy.every_other_tick) < 0.75 * kAllowed && !seemsToGive();
     };
-    while (!isSettled() && path.ticks_per_leg < Path::kFine) {
+    while ((!isSettled() && path.ticks_per_leg < Path::kFine) ||
+           (body != kSlot && seemsToGive() && path.ticks_per_leg < Path::kFinest)) {
         path.ticks_per_leg *= 2;
-        energy = run(scene, preset, path);
+        energy = run(sceneOf(body), preset, path);
     }
     return energy;
 }
 
 void expectPassive(Preset preset, int body, double& least, int& touching) {
-    const PathEnergy energy = energyOf(sceneOf(body), preset, Path());
+    const PathEnergy energy = energyOf(body, preset, Path());
     touching += energy.has_touched;
     least = std::min(least, energy.every_tick);
-    const double allowed = body == kSlot ? kAllowedInSlot : body == kRough ? kAllowedOnRough : kAllowed;
+    const double allowed = body == kSlot ? kAllowedInSlot : kAllowed;
     RC_ASSERT(energy.every_tick >= -allowed);
 }
 
