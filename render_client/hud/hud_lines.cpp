@@ -1,5 +1,7 @@
 #include "render_client/hud/hud_lines.h"
 
+#include <cmath>
+
 #include "render_client/hud/burr_work.h"
 #include "render_client/hud/detail_lines.h"
 #include "render_client/hud/effect_lines.h"
@@ -46,6 +48,10 @@ HudRow burrRow(const topics::ToolState& tool, bool is_paused, uint32_t events) {
     return {"Burr", "idle"};
 }
 
+HudRow volumeRow(double removed_mm3) {
+    return {removed_mm3 < 0 ? "Added" : "Removed", readableText(std::abs(removed_mm3), " mm\u00b3")};
+}
+
 std::vector<HudRow> taskRows(const HudInput& input) {
     std::vector<HudRow> rows;
     const topics::SceneInfo* const info = input.info ? &*input.info : nullptr;
@@ -55,7 +61,7 @@ std::vector<HudRow> taskRows(const HudInput& input) {
         rows.push_back({"Force", lengthText({force.data(), size_t(force.size())}, 1, " N")});
         rows.push_back(burrRow(*input.tool, input.status && input.status->is_milling_paused(), input.events));
     }
-    if (input.status) rows.push_back({"Removed", readableText(input.status->removed_mm3(), " mm\u00b3")});
+    if (input.status) rows.push_back(volumeRow(input.status->removed_mm3()));
     if (input.tool && input.tool->has_effects()) {
         const auto more = effectTaskRows(input.tool->effects(), info, input.events);
         rows.insert(rows.end(), more.begin(), more.end());

@@ -63,6 +63,13 @@ TEST(Hud, ShowsWhatTheServerMeasuresWithUnits) {
     EXPECT_EQ(find(hud, "Faults")->value, "none");
 }
 
+TEST(Hud, MoreThanWasThereIsCalledAdded) {
+    HudInput input = liveInput();
+    input.status->set_removed_mm3(-12.345);
+    EXPECT_EQ(find(makeHud(input), "Added")->value, "12.3 mm\u00b3");
+    EXPECT_FALSE(find(makeHud(input), "Removed"));
+}
+
 TEST(Hud, OnlyWhatMattersToTheTaskIsThereUntilTheRestIsAskedFor) {
     HudInput input = liveInput();
     input.tool->mutable_effects()->set_spin_speed(1);
