@@ -158,9 +158,10 @@ PathEnergy run(const ContactScene& scene, Preset preset, const Path& path) {
     return {every_tick.energy(), every_other_tick.energy(), has_touched};
 }
 
-// The sum over ticks must stand for the integral: a path is run with ever smaller steps until it does. Where a
-// tool snaps over an edge the sum errs by half the jump times the step, to either side: a path that seems to give
-// energy is run with the finest steps before that is believed. In the slot nearly all snap, and the bound is wide.
+// The sum over ticks must stand for the integral: a path is run with ever smaller steps until it does. Where
+// a tool snaps over an edge the sum errs by half the jump times the step, to either side: a path that seems
+// to give energy is run with the finest steps before that is believed. In the slot nearly all snap, and the
+// bound is wide.
 PathEnergy energyOf(int body, Preset preset, Path path) {
     PathEnergy energy = run(sceneOf(body), preset, path);
     const auto seemsToGive = [&] { return energy.every_tick < -0.5 * kAllowed; };
