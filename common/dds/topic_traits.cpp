@@ -54,6 +54,11 @@ TopicDescription describeTopic<StatusSample>() {
 }
 
 template <>
+TopicDescription describeTopic<LessonSample>() {
+    return {"bonemill_lesson", &bonemill_dds_LessonSample_desc, stateQos()};
+}
+
+template <>
 TopicDescription describeTopic<ViewerSample>() {
     return {"bonemill_viewer", &bonemill_dds_ViewerSample_desc, streamQos(1)};
 }

@@ -1,4 +1,4 @@
-// Lists the seven topics: name, type descriptor and quality of service of each envelope of proto/topics.idl.
+// Lists the eight topics: name, type descriptor and quality of service of each envelope of proto/topics.idl.
 #pragma once
 
 #include <topics.h>
@@ -11,6 +11,7 @@ using NodeMeshSample = bonemill_dds_NodeMeshSample;
 using SceneInfoSample = bonemill_dds_SceneInfoSample;
 using ToolStateSample = bonemill_dds_ToolStateSample;
 using StatusSample = bonemill_dds_StatusSample;
+using LessonSample = bonemill_dds_LessonSample;
 using ViewerSample = bonemill_dds_ViewerSample;
 using HandPointerSample = bonemill_dds_HandPointerSample;
 using CommandSample = bonemill_dds_CommandSample;
@@ -35,6 +36,8 @@ template <>
 TopicDescription describeTopic<ToolStateSample>();
 template <>
 TopicDescription describeTopic<StatusSample>();
+template <>
+TopicDescription describeTopic<LessonSample>();
 template <>
 TopicDescription describeTopic<ViewerSample>();
 template <>

@@ -61,6 +61,7 @@ Publisher::Publisher(const PublisherOptions& options)
       scene_info_writer_(participant_),
       tool_state_writer_(participant_),
       status_writer_(participant_),
+      lesson_writer_(participant_),
       command_reader_(participant_) {}
 
 bool Publisher::isNewer(const NodeMesh& mesh) const {
@@ -143,6 +144,11 @@ bool Publisher::writeStatus() {
     status_.set_node_count(digest_.count());
     status_.set_node_digest(digest_.value());
     return writeMessage(status_writer_, session_, status_);
+}
+
+bool Publisher::publishLesson(topics::Lesson lesson) {
+    lesson.set_epoch(epoch_);
+    return writeMessage(lesson_writer_, session_, lesson);
 }
 
 std::vector<topics::Command> Publisher::takeCommands() {

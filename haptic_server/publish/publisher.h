@@ -1,4 +1,4 @@
-// haptic_server shows its clients everything through this, and hears what they ask of it: the five topics
+// haptic_server shows its clients everything through this, and hears what they ask of it: the six topics
 // of one session.
 //
 // The publisher thread owns it and alone calls its members, never the tick (a write can take milliseconds).
@@ -55,6 +55,9 @@ class Publisher {
     // publishes nothing for 3 s: call at least once per second, and right after the last of a group of nodes.
     bool publishStatus(topics::Status status);
 
+    // The epoch is filled in.
+    bool publishLesson(topics::Lesson lesson);
+
     // These commands have arrived, each valid and new; carry each out and acknowledge() it. What is invalid
     // is answered or counted here.
     std::vector<topics::Command> takeCommands();
@@ -96,6 +99,7 @@ class Publisher {
     dds::Writer<dds::SceneInfoSample> scene_info_writer_;
     dds::Writer<dds::ToolStateSample> tool_state_writer_;
     dds::Writer<dds::StatusSample> status_writer_;
+    dds::Writer<dds::LessonSample> lesson_writer_;
     dds::Reader<dds::CommandSample> command_reader_;
 };
 

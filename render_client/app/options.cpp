@@ -140,7 +140,8 @@ void addCommandOptions(CLI::App& app, RawOptions& raw, CLI::Option* offscreen,
                "--command", raw.command,
                "No viewer: ask the server for \"reset\", \"pause\", \"resume\", \"tool NAME-or-number\", "
                "\"checkpoint\", \"restore NUMBER-or-last\", \"accuracy NAME\", \"export NAME\", "
-               "\"reset-device\" or \"shutdown\", print what it answers and stop")
+               "\"reset-device\", \"scene ID\", \"start TRAINEE\", \"stop\" or \"shutdown\", print what it "
+               "answers and stop")
             ->check(commandProblem)
             ->type_name("TEXT")
             ->excludes(offscreen);

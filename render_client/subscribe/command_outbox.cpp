@@ -8,10 +8,15 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kTimeout = 5s;
-constexpr auto kExportTimeout = 300s;  // a large scan on a slow disk
+constexpr auto kLongTimeout = 300s;  // a large scan on a slow disk
 // A first command can be lost while the two sides discover each other; the server carries a
 // repeated one out once.
 constexpr auto kRepeatAfter = 500ms;
+
+bool takesLong(const topics::Command& command) {
+    return command.action_case() == topics::Command::kExport ||
+           command.action_case() == topics::Command::kChooseScene;
+}
 
 }  // namespace
 
@@ -35,8 +40,8 @@ void CommandOutbox::step(Clock::time_point now, bool is_connected,
                          const std::function<void(const topics::Command&)>& write) {
     if (waiting_.empty()) return;
     if (!started_) started_ = now;
-    const bool is_long = written_ && waiting_.front().action_case() == topics::Command::kExport;
-    if (now - *started_ >= (is_long ? kExportTimeout : kTimeout)) {
+    const bool is_long = written_ && takesLong(waiting_.front());
+    if (now - *started_ >= (is_long ? kLongTimeout : kTimeout)) {
         finish(false, written_ ? "the server did not answer" : "no server");
         return;
     }

@@ -24,6 +24,12 @@ std::string commandText(const topics::Command& command) {
             return "export " + command.export_();
         case topics::Command::kResetDevice:
             return "reset the device";
+        case topics::Command::kChooseScene:
+            return "scene " + command.choose_scene();
+        case topics::Command::kStartAttempt:
+            return "attempt of " + command.start_attempt();
+        case topics::Command::kStopAttempt:
+            return "end the attempt";
         case topics::Command::ACTION_NOT_SET:
             break;
     }

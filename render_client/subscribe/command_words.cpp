@@ -70,6 +70,10 @@ constexpr CommandWord kWords[] = {
      [](Command& c, const std::string& name, const Session&) { c.set_set_accuracy(name); }},
     {"export", "NAME", [](Command& c, const std::string& name, const Session&) { c.set_export_(name); }},
     {"reset-device", "", [](Command& c, const std::string&, const Session&) { c.set_reset_device(true); }},
+    {"scene", "ID", [](Command& c, const std::string& id, const Session&) { c.set_choose_scene(id); }},
+    {"start", "TRAINEE",
+     [](Command& c, const std::string& trainee, const Session&) { c.set_start_attempt(trainee); }},
+    {"stop", "", [](Command& c, const std::string&, const Session&) { c.set_stop_attempt(true); }},
     {"shutdown", "", [](Command& c, const std::string&, const Session&) { c.set_shut_down(true); }},
 };
 

@@ -1,5 +1,5 @@
 // People write commands so: reset, pause, resume, tool NAME (or its number), checkpoint, restore N (or last),
-// accuracy NAME, export NAME, reset-device, shutdown.
+// accuracy NAME, export NAME, reset-device, scene ID, start TRAINEE, stop, shutdown.
 #pragma once
 
 #include <string>

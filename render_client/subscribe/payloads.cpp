@@ -21,6 +21,10 @@ constexpr double kLongestSession = 1e9;  // s
 constexpr int kMostCheckpoints = 64;
 constexpr int kMostTools = 64;  // far more than a scene may have
 constexpr int kMostWarnings = 64;
+constexpr int kMostScenes = 64;
+constexpr size_t kMostPictureBytes = 64u << 10;
+constexpr int kMostAttempts = 256;
+constexpr int kMostStructures = 64;
 
 template <class Field>
 bool isFinite(const Field& field) {
@@ -114,6 +118,24 @@ bool isUsable(const topics::Status& status) {
            isUsable(status.device());
 }
 
+bool isUsable(const topics::SceneChoice& scene) {
+    return !scene.id().empty() && scene.id().size() <= kLongestName && scene.tools_size() <= kMostTools &&
+           isTime(scene.expected_s()) && scene.picture().size() <= kMostPictureBytes;
+}
+
+bool isUsable(const topics::Attempt& attempt) {
+    return isTime(attempt.time_s()) && isSane(attempt.removed_mm3()) && isSane(attempt.max_force_n()) &&
+           attempt.max_force_n() >= 0 && isUsable(attempt.training()) &&
+           attempt.structures_touched_size() <= kMostStructures;
+}
+
+bool isUsable(const topics::Lesson& lesson) {
+    const auto is_usable = [](const auto& part) { return isUsable(part); };
+    return lesson.scenes_size() <= kMostScenes && lesson.attempts_size() <= kMostAttempts &&
+           std::ranges::all_of(lesson.scenes(), is_usable) &&
+           std::ranges::all_of(lesson.attempts(), is_usable);
+}
+
 bool isUsable(const topics::Viewer& viewer) {
     return std::isfinite(viewer.frame_rate_hz()) && viewer.frame_rate_hz() >= 0 &&
            (viewer.pointer_m().empty() || isVector(viewer.pointer_m())) &&
@@ -147,8 +169,30 @@ constexpr size_t mostBytes(const topics::ToolState*) {
 constexpr size_t mostBytes(const topics::Status*) {
     return 64u << 10;
 }
+constexpr size_t mostBytes(const topics::Lesson*) {
+    return 8u << 20;
+}
 constexpr size_t mostBytes(const topics::Viewer*) {
     return 4u << 10;
+}
+
+void keepShownText(topics::Training& training) {
+    for (std::string& warning : *training.mutable_warnings()) warning = shownText(warning, kLongestText);
+}
+
+void keepShownText(topics::SceneChoice& scene) {
+    scene.set_id(shownName(scene.id()));
+    scene.set_title(shownName(scene.title()));
+    scene.set_task(shownText(scene.task(), kLongestText));
+    scene.set_problem(shownText(scene.problem(), kLongestText));
+    for (std::string& tool : *scene.mutable_tools()) tool = shownName(tool);
+}
+
+void keepShownText(topics::Attempt& attempt) {
+    attempt.set_trainee(shownName(attempt.trainee()));
+    attempt.set_scene_id(shownName(attempt.scene_id()));
+    if (attempt.has_training()) keepShownText(*attempt.mutable_training());
+    for (std::string& name : *attempt.mutable_structures_touched()) name = shownName(name);
 }
 
 template <class Message>
@@ -203,10 +247,20 @@ std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {
                               status->mutable_last_command_result()})
         *text = shownText(*text, kLongestText);
     if (status->has_device()) status->mutable_device()->set_name(shownName(status->device().name()));
-    if (status->has_training())
-        for (std::string& warning : *status->mutable_training()->mutable_warnings())
-            warning = shownText(warning, kLongestText);
+    if (status->has_training()) keepShownText(*status->mutable_training());
     return status;
+}
+
+std::optional<topics::Lesson> parseLesson(std::span<const uint8_t> payload) {
+    std::optional<topics::Lesson> lesson = parseOfEpoch<topics::Lesson>(payload);
+    if (!lesson) return lesson;
+    lesson->DiscardUnknownFields();
+    for (std::string* name :
+         {lesson->mutable_scene_id(), lesson->mutable_trainee(), lesson->mutable_changing_to()})
+        *name = shownName(*name);
+    for (topics::SceneChoice& scene : *lesson->mutable_scenes()) keepShownText(scene);
+    for (topics::Attempt& attempt : *lesson->mutable_attempts()) keepShownText(attempt);
+    return lesson;
 }
 
 std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint64_t sender) {

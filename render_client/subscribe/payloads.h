@@ -19,6 +19,9 @@ std::optional<DecodedNode> parseNode(std::span<const uint8_t> payload, uint32_t 
 std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload);
 std::optional<topics::ToolState> parseToolState(std::span<const uint8_t> payload);
 std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload);
+// Names and texts are cut to what stands on a screen; there are 64 scenes at most, with pictures of at most
+// 64 KiB, and 256 attempts.
+std::optional<topics::Lesson> parseLesson(std::span<const uint8_t> payload);
 // `sender` is that of the sample's envelope. The name is cut to 64 bytes of printable UTF-8; only an
 // instructor points.
 std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint64_t sender);

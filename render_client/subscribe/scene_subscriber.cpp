@@ -38,6 +38,7 @@ SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
       scene_info_reader_(participant_),
       tool_state_reader_(participant_),
       status_reader_(participant_),
+      lesson_reader_(participant_),
       viewer_reader_(participant_),
       viewer_writer_(participant_),
       hand_(participant_, options.session, outbox_.sender(), options.role),
@@ -47,12 +48,14 @@ SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
     wait_set_.add(scene_info_reader_.handle());
     wait_set_.add(tool_state_reader_.handle());
     wait_set_.add(status_reader_.handle());
+    wait_set_.add(lesson_reader_.handle());
     wait_set_.add(viewer_reader_.handle());
 }
 
 SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
     takeSceneInfo();
     takeStatus();
+    takeLesson();
     takeNodes(max_nodes);
     takeToolState();
     takeViewers();
@@ -78,6 +81,16 @@ void SceneSubscriber::takeStatus() {
                             if (!enterEpoch(status->epoch())) return;
                             outbox_.acknowledge(*status);
                             status_ = std::move(status);
+                        });
+}
+
+void SceneSubscriber::takeLesson() {
+    lesson_reader_.take(kMaxSmallSamples,
+                        [this](const dds::LessonSample& sample, const dds::SampleInfo& info) {
+                            if (!info.has_data || sample.session != options_.session) return;
+                            std::optional<topics::Lesson> lesson = parseLesson(dds::payloadOf(sample));
+                            if (!lesson) return dropMalformed("lesson");
+                            if (enterEpoch(lesson->epoch())) lesson_ = std::move(lesson);
                         });
 }
 
@@ -172,6 +185,7 @@ bool SceneSubscriber::enterEpoch(uint64_t epoch) {
         scene_info_.reset();
         tool_state_.reset();
         status_.reset();
+        lesson_.reset();
     }
     last_heard_ = std::chrono::steady_clock::now();
     return true;

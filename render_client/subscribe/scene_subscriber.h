@@ -48,6 +48,8 @@ class SceneSubscriber {
     // What its effects count since the state before, they count here since the poll() before.
     const std::optional<topics::ToolState>& toolState() const noexcept { return tool_state_; }
     const std::optional<topics::Status>& status() const noexcept { return status_; }
+    // A server that shows another scene tells it anew.
+    const std::optional<topics::Lesson>& lesson() const noexcept { return lesson_; }
 
     // Returns true when every node of the newest status is here, and no other. It is false in the short while
     // between a changed node and the status that counts it.
@@ -83,6 +85,7 @@ class SceneSubscriber {
 
   private:
     void takeStatus();
+    void takeLesson();
     void takeSceneInfo();
     void takeNodes(size_t max_nodes);
     void takeToolState();
@@ -97,6 +100,7 @@ class SceneSubscriber {
     std::optional<topics::SceneInfo> scene_info_;
     std::optional<topics::ToolState> tool_state_;
     std::optional<topics::Status> status_;
+    std::optional<topics::Lesson> lesson_;
     std::optional<std::chrono::steady_clock::time_point> last_heard_;
     bool has_ended_ = false;
     bool is_matched_ = false;  // with a server's writer, at the last poll()
@@ -113,6 +117,7 @@ class SceneSubscriber {
     dds::Reader<dds::SceneInfoSample> scene_info_reader_;
     dds::Reader<dds::ToolStateSample> tool_state_reader_;
     dds::Reader<dds::StatusSample> status_reader_;
+    dds::Reader<dds::LessonSample> lesson_reader_;
     dds::Reader<dds::ViewerSample> viewer_reader_;
     dds::Writer<dds::ViewerSample> viewer_writer_;
     HandSpeaker hand_;

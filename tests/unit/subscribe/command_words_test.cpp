@@ -29,6 +29,9 @@ TEST_F(CommandWords, EachWordIsItsCommand) {
     EXPECT_TRUE(of(" checkpoint ").save_checkpoint());
     EXPECT_TRUE(of("reset-device").reset_device());
     EXPECT_TRUE(of("shutdown").shut_down());
+    EXPECT_EQ(of("scene tooth_cavity").choose_scene(), "tooth_cavity");
+    EXPECT_EQ(of("start Ann Lee").start_attempt(), "Ann Lee");
+    EXPECT_TRUE(of("stop").stop_attempt());
     EXPECT_EQ(of("accuracy fast").set_accuracy(), "fast");
     EXPECT_EQ(of("export after lunch").export_(), "after lunch");
 }
@@ -48,8 +51,9 @@ TEST_F(CommandWords, ToolsAndCheckpointsAreThoseOfTheSession) {
 }
 
 TEST_F(CommandWords, WhatIsNoCommandIsRefusedWithoutAServer) {
-    for (const char* text : {"", " ", "explode", "pause now", "tool", "restore", "restore first",
-                             "restore -1", "restore 4294967296", "accuracy", "export", "Reset"}) {
+    for (const char* text :
+         {"", " ", "explode", "pause now", "tool", "restore", "restore first", "restore -1",
+          "restore 4294967296", "accuracy", "export", "scene", "start", "stop it", "Reset"}) {
         EXPECT_NE(commandProblem(text), "") << text;
         EXPECT_THROW(of(text), UserError) << text;
     }

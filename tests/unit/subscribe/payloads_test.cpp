@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 
 #include "common/mesh/mesh_codec.h"
@@ -202,6 +203,59 @@ TEST(Payloads, StatusIsChecked) {
     status.clear_device();
     status.set_rate_hz(std::numeric_limits<double>::infinity());
     EXPECT_FALSE(isAccepted(&parseStatus, status));
+}
+
+topics::Lesson validLesson() {
+    topics::Lesson lesson;
+    lesson.set_epoch(1);
+    topics::SceneChoice& scene = *lesson.add_scenes();
+    scene.set_id("tooth_cavity");
+    scene.add_tools("round bur");
+    scene.set_expected_s(300);
+    scene.set_picture(std::string(64 << 10, 'p'));
+    topics::Attempt& attempt = *lesson.add_attempts();
+    attempt.set_trainee("Ann\n" + std::string(200, 'n'));
+    attempt.set_time_s(12);
+    attempt.mutable_training()->set_damaged_mm3(1);
+    attempt.add_structures_touched("nerve\x1b[2J");
+    return lesson;
+}
+
+TEST(Payloads, LessonComesThroughWithTextsThatCanBeShown) {
+    const auto parsed = parseLesson(bytesOf(validLesson().SerializeAsString()));
+    ASSERT_TRUE(parsed);
+    EXPECT_EQ(parsed->scenes(0).id(), "tooth_cavity");
+    EXPECT_EQ(parsed->attempts(0).trainee(), "Ann" + std::string(61, 'n'));
+    EXPECT_EQ(parsed->attempts(0).structures_touched(0), "nerve[2J");
+}
+
+TEST(Payloads, LessonIsChecked) {
+    const auto is_accepted = [](const std::function<void(topics::Lesson&)>& change) {
+        topics::Lesson lesson = validLesson();
+        change(lesson);
+        return isAccepted(&parseLesson, lesson);
+    };
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(is_accepted([](topics::Lesson&) {}));
+    EXPECT_FALSE(is_accepted([](topics::Lesson& l) { l.set_epoch(0); }));
+    EXPECT_FALSE(is_accepted([](topics::Lesson& l) { l.mutable_scenes(0)->clear_id(); }));
+    EXPECT_FALSE(is_accepted([](topics::Lesson& l) { l.mutable_scenes(0)->set_expected_s(kNan); }));
+    EXPECT_FALSE(
+        is_accepted([](topics::Lesson& l) { l.mutable_scenes(0)->mutable_picture()->push_back(0); }));
+    EXPECT_FALSE(is_accepted([](topics::Lesson& l) { l.mutable_attempts(0)->set_time_s(-1); }));
+    EXPECT_FALSE(is_accepted([](topics::Lesson& l) { l.mutable_attempts(0)->set_removed_mm3(kNan); }));
+    EXPECT_FALSE(is_accepted([](topics::Lesson& l) { l.mutable_attempts(0)->set_max_force_n(1e9); }));
+    EXPECT_FALSE(is_accepted(
+        [](topics::Lesson& l) { l.mutable_attempts(0)->mutable_training()->set_max_temperature_c(kNan); }));
+    EXPECT_FALSE(is_accepted([](topics::Lesson& l) {
+        for (int n = 0; n < 64; ++n) *l.add_scenes() = topics::SceneChoice(l.scenes(0));
+    }));
+    EXPECT_FALSE(is_accepted([](topics::Lesson& l) {
+        for (int n = 0; n < 256; ++n) l.add_attempts();
+    }));
+    EXPECT_FALSE(is_accepted([](topics::Lesson& l) {
+        for (int n = 0; n < 64; ++n) l.mutable_attempts(0)->add_structures_touched("x");
+    }));
 }
 
 TEST(Payloads, WhoOnlyLooksHoldsNothing) {
