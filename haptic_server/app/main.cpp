@@ -10,6 +10,7 @@
 #include "haptic_server/offline/describe_scene.h"
 #include "haptic_server/offline/simulate.h"
 #include "haptic_server/session/server.h"
+#include "haptic_server/volume/import/import_program.h"
 
 namespace bonemill {
 namespace {
@@ -91,6 +92,9 @@ int serveLive(const Options& options) {
 }
 
 int serve(int argc, char** argv) {
+    // A path may look like an option, so that no parser of options sees it.
+    if (argc == 4 && std::string(argv[1]) == kReadVolumeWord) runReaderProgram(argv[2], {argv[3]});
+    setReaderProgram("/proc/self/exe");
     CLI::App app("Haptic bone-milling server", "haptic_server");
     Options options;
     addServerOptions(app, options.server);

@@ -29,18 +29,29 @@ constexpr size_t kNameBytes = 4096;
 
 char* file_being_read = nullptr;  // shared with the child
 
+void mapName(int file) {
+    void* page = mmap(nullptr, kNameBytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    if (page != MAP_FAILED) file_being_read = static_cast<char*>(page);
+}
+
+// Without memory for it, messages name the volume's path.
 class SharedName {
   public:
-    SharedName() {
-        void* page = mmap(nullptr, kNameBytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-        if (page != MAP_FAILED) file_being_read = static_cast<char*>(page);
+    SharedName() : file_(memfd_create("file_being_read", MFD_CLOEXEC)) {
+        if (file_ >= 0 && ftruncate(file_, kNameBytes) == 0) mapName(file_);
     }
     ~SharedName() {
         if (file_being_read) munmap(file_being_read, kNameBytes);
         file_being_read = nullptr;
+        if (file_ >= 0) close(file_);
     }
     SharedName(const SharedName&) = delete;
     SharedName& operator=(const SharedName&) = delete;
+
+    int file() const { return file_; }
+
+  private:
+    int file_;
 };
 
 class Pipe {
@@ -231,8 +242,9 @@ bool receive(Incoming& from, RawVolume& raw, std::string& error) {
     return receiveValues(from, head, raw.values);
 }
 
-[[noreturn]] void runChild(int file, const std::filesystem::path& path,
-                           const std::function<RawVolume()>& read) {
+}  // namespace
+
+void readAsChild(int file, const std::filesystem::path& path, const std::function<RawVolume()>& read) {
     for (const int number : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT})
         signal(number, SIG_DFL);
     sigset_t all;
@@ -257,6 +269,8 @@ bool receive(Incoming& from, RawVolume& raw, std::string& error) {
     _exit(0);  // no destructor of the parent's objects may run twice
 }
 
+namespace {
+
 std::string secondsText(std::chrono::milliseconds time) {
     char text[32];
     std::snprintf(text, sizeof text, "%g", std::chrono::duration<double>(time).count());
@@ -273,14 +287,27 @@ void noteFileBeingRead(const std::filesystem::path& file) noexcept {
     if (file_being_read) std::strncpy(file_being_read, file.c_str(), kNameBytes - 1);
 }
 
+void shareNameOfFileBeingRead(int file) {
+    mapName(file);
+}
+
 RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read,
                         std::chrono::milliseconds most) {
+    const auto start = [&](int file, int) {
+        std::fflush(nullptr);  // or the child might write what is still buffered a second time
+        const pid_t child = fork();
+        if (child == 0) readAsChild(file, path, read);
+        return child;
+    };
+    return importFrom(path, start, most);
+}
+
+RawVolume importFrom(const std::filesystem::path& path, const StartReader& start,
+                     std::chrono::milliseconds most) {
     const SharedName name;
     Pipe pipe;
-    std::fflush(nullptr);  // or the child might write what is still buffered a second time
-    const pid_t child = fork();
+    const pid_t child = start(pipe.end(1), name.file());
     if (child < 0) throw UserError("cannot start a process to read " + path.string() + "; memory is short");
-    if (child == 0) runChild(pipe.end(1), path, read);
     pipe.closeEnd(1);
     Incoming incoming(pipe.end(0), most);
     RawVolume raw;

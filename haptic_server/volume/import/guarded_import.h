@@ -3,8 +3,11 @@
 // Debian builds GDCM with its assertions on, and ITK's linear algebra aborts on numbers that are not finite:
 // a damaged file can end the process that reads it. The child hands the volume over through a pipe, giving
 // back the memory of what is through, writes nothing to stderr, and is ended when it hangs or takes all
-// memory. Start-up only: forks, so best before other threads run.
+// memory. It is for one thread at a time. A child that is forked from a process with threads can hang, which
+// is why a program with threads starts a reader of its own instead (import_program.h).
 #pragma once
+
+#include <sys/types.h>
 
 #include <chrono>
 #include <filesystem>
@@ -22,5 +25,17 @@ inline constexpr std::chrono::milliseconds kMostImportTime = std::chrono::minute
 // reading when it died or when `most` had gone by (file_being_read.h; `path`, if it did not say).
 RawVolume importGuarded(const std::filesystem::path& path, const std::function<RawVolume()>& read,
                         std::chrono::milliseconds most = kMostImportTime);
+
+// Starts a process that calls readAsChild(), and returns its number, or -1. Its arguments are the ends for
+// the child: the pipe, and memory for the name of the file that it reads.
+using StartReader = std::function<pid_t(int pipe, int name)>;
+RawVolume importFrom(const std::filesystem::path& path, const StartReader& start,
+                     std::chrono::milliseconds most = kMostImportTime);
+
+// For the child: hands over what `read` returns, or why not, and ends the process.
+[[noreturn]] void readAsChild(int pipe, const std::filesystem::path& path,
+                              const std::function<RawVolume()>& read);
+// For a child that was not forked: noteFileBeingRead() writes there.
+void shareNameOfFileBeingRead(int name);
 
 }  // namespace bonemill

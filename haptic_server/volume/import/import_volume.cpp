@@ -6,6 +6,7 @@
 #include "common/user_error.h"
 #include "haptic_server/volume/import/dicom_folder.h"
 #include "haptic_server/volume/import/guarded_import.h"
+#include "haptic_server/volume/import/import_program.h"
 #include "haptic_server/volume/import/inv3_project.h"
 #include "haptic_server/volume/import/volume_file.h"
 
@@ -49,6 +50,7 @@ void describeNonFinite(RawVolume& raw) {
 }  // namespace
 
 RawVolume importVolume(const std::filesystem::path& path, const ImportOptions& options) {
+    if (hasReaderProgram()) return importByProgram(path, options);
     return importGuarded(path, [&] { return importVolumeHere(path, options); });
 }
 

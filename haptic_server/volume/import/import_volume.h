@@ -7,9 +7,9 @@
 //   .inv3                 InVesalius project
 //   .dcm                  one multi-frame DICOM file
 //
-// Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up only:
-// allocates and forks (guarded_import.h), so best before other threads run; not RT-safe, not for two threads
-// at once.
+// Lengths in m, world frame W = LPS of the file (x to the patient's left, y back, z up). Start-up
+// only: allocates, and starts a process that reads (guarded_import.h, import_program.h); not RT-safe, not for
+// two threads at once.
 #pragma once
 
 #include <filesystem>

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "haptic_server/volume/import/file_being_read.h"
+#include "haptic_server/volume/import/import_program.h"
 #include "tests/unit/volume_import/expect_user_error.h"
 
 namespace bonemill {
@@ -92,6 +93,15 @@ TEST(GuardedImport, deathOfTheReaderNamesTheFileItWasAt) {
     };
     expectUserError([&] { importGuarded("folder", readAndDie); }, {"folder/slice7", "damaged"});
     expectUserError([] { importGuarded("file", []() -> RawVolume { _exit(0); }); }, {"file", "ended early"});
+}
+
+TEST(GuardedImport, aReaderProgramThatDoesNotReadIsToldOf) {
+    setReaderProgram("/bin/false");
+    expectUserError([] { importVolume("folder/a.nrrd"); }, {"folder/a.nrrd", "ended early"});
+    setReaderProgram("/nowhere/reader");
+    expectUserError([] { importVolume("folder/a.nrrd"); }, {"folder/a.nrrd", "cannot start"});
+    setReaderProgram("");
+    EXPECT_FALSE(hasReaderProgram());
 }
 
 }  // namespace

@@ -1,0 +1,60 @@
+#include "haptic_server/volume/import/import_program.h"
+
+#include <spawn.h>
+#include <unistd.h>
+
+#include <string>
+#include <vector>
+
+#include "common/user_error.h"
+#include "haptic_server/volume/import/guarded_import.h"
+
+namespace bonemill {
+namespace {
+
+// The reader finds the ends of the pipe and of the name there.
+constexpr int kPipe = 3, kName = 4;
+
+std::string reader_program;  // empty: none
+
+// With CLOEXEC ends above those numbers nothing else of this process's files is left open in the reader.
+pid_t spawnReader(std::vector<std::string> words, int pipe, int name) {
+    std::vector<char*> raw;
+    for (std::string& word : words) raw.push_back(word.data());
+    raw.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    // The copies go through numbers that neither end can have.
+    constexpr int kFarPipe = 200, kFarName = 201;
+    posix_spawn_file_actions_adddup2(&actions, pipe, kFarPipe);
+    if (name >= 0) posix_spawn_file_actions_adddup2(&actions, name, kFarName);
+    posix_spawn_file_actions_adddup2(&actions, kFarPipe, kPipe);
+    if (name >= 0) posix_spawn_file_actions_adddup2(&actions, kFarName, kName);
+    posix_spawn_file_actions_addclosefrom_np(&actions, kName + (name >= 0 ? 1 : 0));
+    pid_t child = -1;
+    if (posix_spawn(&child, words[0].c_str(), &actions, nullptr, raw.data(), environ) != 0) child = -1;
+    posix_spawn_file_actions_destroy(&actions);
+    return child;
+}
+
+}  // namespace
+
+void setReaderProgram(const std::string& program) {
+    reader_program = program;
+}
+
+bool hasReaderProgram() {
+    return !reader_program.empty();
+}
+
+RawVolume importByProgram(const std::filesystem::path& path, const ImportOptions& options) {
+    std::vector<std::string> words{reader_program, kReadVolumeWord, path.string(), options.series_uid};
+    return importFrom(path, [&](int pipe, int name) { return spawnReader(words, pipe, name); });
+}
+
+void runReaderProgram(const std::filesystem::path& path, const ImportOptions& options) {
+    shareNameOfFileBeingRead(kName);
+    readAsChild(kPipe, path, [&] { return importVolumeHere(path, options); });
+}
+
+}  // namespace bonemill
