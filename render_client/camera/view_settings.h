@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 namespace bonemill {
 
@@ -23,6 +24,27 @@ struct CutPlane {
 enum class ViewerEffect : uint8_t { kBoneDust, kBleeding, kIrrigation, kBurrSpin, kMillingSound };
 constexpr size_t kViewerEffects = size_t(ViewerEffect::kMillingSound) + 1;
 
+// Grey goes from black at level - width / 2 to white at level + width / 2, in the scan's values (HU of a CT).
+struct GreyWindow {
+    double width = 1;
+    double level = 0;
+    bool operator==(const GreyWindow&) const = default;
+};
+
+// This shows the scan's grey values instead of the bone's colour.
+enum class CtShown { kNowhere, kOnCuts, kOnCutsAndMilled };
+
+struct SliceSettings {
+    bool are_shown = false;  // the three panes
+    // Each pane, across W's x (sagittal), y (coronal), z (axial), shows the slice there (m, W); empty: the
+    // one through the tool.
+    std::array<std::optional<double>, 3> positions;
+    double zoom = 1;  // of the panes; 1 shows the whole scan
+    static constexpr double kMostZoom = 16;
+    std::optional<GreyWindow> window;  // empty: what suits the scan
+    CtShown ct = CtShown::kOnCuts;
+};
+
 struct ViewSettings {
     static constexpr double kDefaultOpacity = 0.35;
 
@@ -32,6 +54,7 @@ struct ViewSettings {
     bool is_transparent = false;
     double opacity = kDefaultOpacity;  // of the transparent bone
     std::array<CutPlane, 3> cuts;      // across W's x (sagittal), y (coronal), z (axial)
+    SliceSettings slices;
     bool show_force = true;
     // The places are those of ViewerEffect; only those that the scene lists are seen.
     std::array<bool, kViewerEffects> hides_effects{};
