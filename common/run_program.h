@@ -3,7 +3,10 @@
 
 #include <exception>
 #include <iostream>
+#include <new>
+#include <system_error>
 
+#include "common/process_limits.h"
 #include "common/user_error.h"
 
 namespace bonemill {
@@ -12,10 +15,22 @@ namespace bonemill {
 template <class Body>
 int runProgram(Body&& body) {
     try {
+        requireFileHandles();
         return body();
     } catch (const UserError& error) {
         std::cerr << "error: " << error.what() << std::endl;
         return kUserErrorExitCode;
+    } catch (const std::bad_alloc&) {
+        std::cerr << "error: there is not enough memory; close other programs, or type: ulimit -v unlimited"
+                  << std::endl;
+        return 1;
+    } catch (const std::system_error& error) {
+        const bool is_of_thread = error.code() == std::errc::resource_unavailable_try_again;
+        std::cerr << "error: "
+                  << (is_of_thread ? "this PC grants no more threads or memory; see ulimit -u and ulimit -v"
+                                   : error.what())
+                  << std::endl;
+        return 1;
     } catch (const std::exception& error) {
         std::cerr << "error: " << error.what() << std::endl;
         return 1;

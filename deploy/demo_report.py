@@ -271,10 +271,10 @@ def machine_lines(report):
         f"load average at the end {host['load_average_1min']}.",
         "",
     ]
-    if report["best_effort_rt"]:
+    if not report["has_real_time"]:
         lines.append(
-            "**This machine did not grant real-time scheduling or locked memory: everything ran with "
-            "`--best-effort-rt`, as one process among others.**"
+            "**This machine did not grant real-time scheduling or locked memory: everything ran with"
+            "out them, as one process among others.**"
         )
     else:
         lines.append("The loops of haptic_server and device_daemon ran under SCHED_FIFO with locked memory.")
@@ -372,7 +372,6 @@ def write_markdown(out, report):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", required=True, type=pathlib.Path, help="folder with traces and logs/")
-    parser.add_argument("--best-effort-rt", action="store_true", help="the programs ran without real time")
     parser.add_argument("--seconds", type=float, help="the runs were cut to so many seconds")
     parser.add_argument("names", nargs="+", help="runs, as in trace_NAME.csv")
     arguments = parser.parse_args()
@@ -384,7 +383,7 @@ def main():
     report = {
         "date": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
         "machine": machine(),
-        "best_effort_rt": arguments.best_effort_rt,
+        "has_real_time": not any(remark.startswith("going on without") for run in runs for remark in run["real_time_remarks"]),
         "cut_to_s": arguments.seconds,
         "runs": runs,
     }

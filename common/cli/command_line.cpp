@@ -2,16 +2,21 @@
 
 #include <iostream>
 
+#include "common/cli/version.h"
 #include "common/user_error.h"
 
 namespace bonemill {
 
 bool parseCommandLine(CLI::App& app, int argc, const char* const* argv, const std::string& program) {
+    app.set_version_flag("--version", program + " " + versionText(), "Print the version and end");
     try {
         app.parse(argc, argv);
         return true;
     } catch (const CLI::CallForHelp&) {
         std::cout << app.help();
+        return false;
+    } catch (const CLI::CallForVersion&) {
+        std::cout << app.version() << '\n';
         return false;
     } catch (const CLI::ParseError& error) {
         throw UserError(std::string(error.what()) + " (see " + program + " --help)");
@@ -22,9 +27,9 @@ void addLogLevelOption(CLI::App& app, std::string& log_level) {
     app.add_option("--log-level", log_level, "trace, debug, info, warn, error or off")->capture_default_str();
 }
 
-void addRealtimeOptions(CLI::App& app, const std::string& loop, bool& best_effort, int& core) {
+void addRealtimeOptions(CLI::App& app, const std::string& loop, bool& is_strict, int& core) {
     constexpr int kMostCores = 4096;
-    app.add_flag("--best-effort-rt", best_effort, "Go on without real-time scheduling and locked memory");
+    app.add_flag("--strict-rt", is_strict, "Refuse to go on without real-time scheduling and locked memory");
     app.add_option("--rt-core", core, "Processor core for " + loop + " (-1: any)")
         ->check(CLI::Range(-1, kMostCores - 1))
         ->capture_default_str();

@@ -8,6 +8,7 @@
 
 #include "common/config/scene_check.h"
 #include "common/config/scene_text.h"
+#include "common/text_encoding.h"
 #include "common/user_error.h"
 
 namespace bonemill {
@@ -36,6 +37,7 @@ std::string readSceneText(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::string text(size, '\0');
     if (!stream.read(text.data(), std::streamsize(size))) throw fail("scene file cannot be read");
+    requireUtf8(text, file.string());
     return text;
 }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <regex>
+#include <set>
 #include <vector>
 
 #include "common/user_error.h"
@@ -49,6 +50,28 @@ std::string knownFieldsHint(const Descriptor& type, const std::string& unknown_n
     return nearest.empty() ? "; known here: " + all : "; did you mean `" + nearest + "`?";
 }
 
+void collectChoices(const Descriptor& type, const std::string& field_name, std::set<std::string>& seen,
+                    std::string& choices) {
+    if (!seen.insert(type.full_name()).second) return;
+    for (int i = 0; i < type.field_count(); ++i) {
+        const FieldDescriptor& field = *type.field(i);
+        if (field.message_type()) collectChoices(*field.message_type(), field_name, seen, choices);
+        if (field.name() != field_name || !field.enum_type() ||
+            !seen.insert(field.enum_type()->full_name()).second)
+            continue;
+        for (int value = 0; value < field.enum_type()->value_count(); ++value)
+            choices += (choices.empty() ? "" : ", ") + field.enum_type()->value(value)->name();
+    }
+}
+
+// Names the choices of every field of this name: the parser does not say in which message it stands.
+std::string choicesOf(const std::string& field_name) {
+    std::set<std::string> seen;
+    std::string choices;
+    collectChoices(*scene::Scene::descriptor(), field_name, seen, choices);
+    return choices;
+}
+
 class FirstError : public google::protobuf::io::ErrorCollector {
   public:
     void AddError(int line, int /*column*/, const std::string& message) override {
@@ -59,6 +82,11 @@ class FirstError : public google::protobuf::io::ErrorCollector {
 
   private:
     static std::string explained(const std::string& message) {
+        static const std::regex kNoValue(
+            "Unknown enumeration value of \"([^\"]+)\" for field \"([^\"]+)\"\\.?");
+        std::smatch value;
+        if (std::regex_match(message, value, kNoValue))
+            return "`" + value[2].str() + "` knows no " + value[1].str() + "; choose " + choicesOf(value[2]);
         static const std::regex kNoField("Message type \"([^\"]+)\" has no field named \"([^\"]+)\"\\.?");
         std::smatch match;
         if (!std::regex_match(message, match, kNoField)) return message;

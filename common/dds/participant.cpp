@@ -8,6 +8,7 @@
 
 #include "common/dds/log_sink.h"
 #include "common/dds/network.h"
+#include "common/process_limits.h"
 #include "common/user_error.h"
 
 #ifdef __SANITIZE_THREAD__
@@ -37,6 +38,9 @@ class Domain {
 
 namespace {
 
+// Cyclone aborts the program where it cannot start its threads, with stacks of 8 MiB each.
+constexpr size_t kDomainBytes = size_t(160) << 20;
+
 // The mutex spans creation and deletion: a domain being deleted must be gone before it is created again.
 std::mutex domains_mutex;
 std::optional<std::string> chosen_configuration;  // guarded by domains_mutex
@@ -46,6 +50,7 @@ std::shared_ptr<Domain> acquireDomain(uint32_t id) {
     const std::lock_guard lock(domains_mutex);
     std::shared_ptr<Domain> domain = domains[id].lock();
     if (!domain) {
+        requireMemory(kDomainBytes, "the network");
         limitCycloneLog();
         domain = std::make_shared<Domain>(
             id, chosen_configuration ? *chosen_configuration : networkConfiguration({}));

@@ -24,7 +24,11 @@ void setUpLog(const std::string& program, const std::string& level) {
 
 void logRealtime(const RealtimeReport& report) {
     for (const std::string& advice : report.advice) spdlog::info("real time: {}", advice);
-    for (const std::string& missing : report.missing) spdlog::warn("real time: {}", missing);
+    if (report.missing.empty()) return;
+    std::string lacks;
+    for (const std::string& missing : report.missing) lacks += " " + missing;
+    spdlog::warn("real time: going on without, good for a look (deploy/check-realtime says what to type):{}",
+                 lacks);
 }
 
 }  // namespace bonemill

@@ -1,7 +1,7 @@
 // Makes the calling thread as real-time as this machine allows, and says in plain sentences what is missing.
 //
 // It is for start-up only, since it makes system calls and allocates. Nothing throws: the caller decides what
-// a missing permission means (`--best-effort-rt`).
+// a missing permission means (`--strict-rt`).
 #pragma once
 
 #include <cstddef>

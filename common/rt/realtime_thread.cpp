@@ -18,7 +18,7 @@ struct Started {
 std::string refusalOf(const std::string& what, const RealtimeReport& report) {
     std::string message = "this machine does not let " + what + " be real-time:";
     for (const std::string& missing : report.missing) message += " " + missing;
-    return message + " Read docs/realtime.md, or go on without guarantees with --best-effort-rt.";
+    return message + " Type deploy/check-realtime, which says what to do, or leave out --strict-rt.";
 }
 
 }  // namespace
@@ -38,9 +38,9 @@ RealtimeThread::RealtimeThread(const RealtimeThreadConfig& config, std::function
     Started thread = started.get();
     id_ = thread.id;
     report.append(thread.report);
-    const bool is_accepted = report.missing.empty() || config.best_effort;
+    const bool is_accepted = report.missing.empty() || !config.is_strict;
     try {
-        tell(report);
+        if (is_accepted) tell(report);
     } catch (...) {
         permission.set_value(false);  // or nobody could stop the thread that is left
         throw;

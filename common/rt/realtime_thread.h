@@ -14,8 +14,8 @@ namespace bonemill {
 
 struct RealtimeThreadConfig {
     RealtimeRequest request;
-    bool best_effort = false;  // go on without what the machine does not grant
-    std::string what = {};     // of messages: "the haptic loop"
+    bool is_strict = false;  // do not go on without what the machine does not grant
+    std::string what = {};   // of messages: "the haptic loop"
 };
 
 class RealtimeThread {
@@ -23,9 +23,9 @@ class RealtimeThread {
     RealtimeThread() = default;
 
     // Locks the memory of the process, starts the thread, makes it real-time, and lets `work` begin when
-    // all of that is granted or best effort is enough. `tell` is called once with what the machine says,
-    // in the calling thread. Throws UserError, before `work` has begun, when something is missing
-    // without best effort.
+    // all of that is granted or nobody insists on it. `tell` is called once with what the machine says, in
+    // the calling thread. Throws UserError, before `work` has begun, when something is missing and it is
+    // strict; then the error says what, and `tell` is not called.
     RealtimeThread(const RealtimeThreadConfig& config, std::function<void()> work,
                    const std::function<void(const RealtimeReport&)>& tell);
 

@@ -5,8 +5,8 @@
 
 readonly restart_after_s=2 most_restarts=3
 declare -A title=([server]=haptic_server [device]=device_daemon [viewer]=render_client)
-declare -A pid=() started_s=() due_s=() asked_real_time=() restarts=([server]=0 [device]=0 [viewer]=0)
-real_time=() end_code=""
+declare -A pid=() started_s=() due_s=() restarts=([server]=0 [device]=0 [viewer]=0)
+end_code=""
 
 run_session() {
     find_scene "${operand:-tooth_corridor}"
@@ -15,7 +15,7 @@ run_session() {
     make_log_folder
     say "session $number of $scene_name; logs in $logs"
     make_phantoms
-    choose_real_time
+    ask_real_time
     choose_viewer
     # What the shell itself notes, as "Killed", goes to a log: the user hears of it in our words.
     exec {terminal}>&2 2>>"$logs/bonemill.log"
@@ -44,13 +44,9 @@ make_log_folder() {
     fail "no log folder can be made in $parent"
 }
 
-choose_real_time() {
-    "$share/check-realtime" >/dev/null 2>&1 || without_real_time
-}
-without_real_time() {
-    [[ ${#real_time[@]} -eq 0 ]] || return 0
-    real_time=(--best-effort-rt)
-    say "this PC does not grant real time: going on without, good for a look (bonemill doctor says what to type)"
+ask_real_time() {
+    "$share/check-realtime" >/dev/null 2>&1 ||
+        say "this PC does not grant real time: going on without, good for a look (bonemill doctor says what to type)"
 }
 
 choose_viewer() {
@@ -64,12 +60,12 @@ choose_viewer() {
 command_of() {
     case $1 in
         server)
-            words=("$bin/haptic_server" --scene "$scene" --session "$number" --until-device-leaves "${real_time[@]}")
+            words=("$bin/haptic_server" --scene "$scene" --session "$number" --until-device-leaves)
             mapfile -t -O "${#words[@]}" words < <(network_words)
             [[ $flags != *" --instructor-only "* ]] || words+=(--instructor-only)
             words+=("${extra[@]}") ;;
         device)
-            words=("$bin/device_daemon" --scene "$scene" --session "$number" "${real_time[@]}")
+            words=("$bin/device_daemon" --scene "$scene" --session "$number")
             words+=(--device "${option[device]:-auto}" --stop-dir "$logs")
             mapfile -t -O "${#words[@]}" words < <(network_words)
             [[ $flags != *" --no-enabling-switch "* ]] || words+=(--no-enabling-switch)
@@ -91,7 +87,6 @@ launch() {
         >>"$logs/$1.log" 2>&1 </dev/null 9>&- {never}<&- {terminal}>&- {device_words}<&- &
     pid[$1]=$!
     started_s[$1]=$SECONDS
-    [[ ${#real_time[@]} -eq 0 ]] && asked_real_time[$1]=true || asked_real_time[$1]=false
     unset "due_s[$1]"
     write_session
 }
@@ -148,16 +143,13 @@ has_ended() {
         viewer:0) end_because 0 "the window was closed" ;;
         server:0) end_because 0 "the hand has finished, or somebody has ended haptic_server" ;;
         device:0) end_because 0 "the hand has finished, or somebody has ended device_daemon" ;;
-        *:2) if lacks_real_time "$role"; then without_real_time; launch "$role"; else end_with_error "$role" "$code"; fi ;;
+        *:2) end_with_error "$role" "$code" ;;
         *) restart "$role" "$code" ;;
     esac
 }
 
 complain() { printf 'bonemill: %s\n' "$*" >&"$terminal" || true; }
 end_because() { end_code=$1; say "$2: session $number ends"; }
-
-# What was granted on paper may still be refused, as in a container.
-lacks_real_time() { [[ ${asked_real_time[$1]} == true ]] && grep -q -e --best-effort-rt "$logs/$1.log"; }
 
 end_with_error() {  # ROLE CODE
     local what

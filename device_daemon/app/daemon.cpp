@@ -43,7 +43,7 @@ Daemon::Daemon(const DeviceSetup& setup, const DaemonOptions& options, HapticDev
 void Daemon::run() {
     RealtimeThread loop_thread(
         {.request = {.core = options_.core},
-         .best_effort = options_.best_effort_realtime,
+         .is_strict = options_.is_strict_realtime,
          .what = "the device loop"},
         [this] { runLoop(); }, logRealtime);
     // A stop that came last is written when nothing more can come.

@@ -21,7 +21,7 @@ class Daemon {
            ChildProgram* program, const StopSignals& stop_signals);
 
     // Blocks until the device leaves, or --seconds or a signal ends it, and the force has ramped to zero.
-    // Throws UserError when there is no real-time scheduling and no --best-effort-rt, when nobody answered
+    // Throws UserError when there is no real-time scheduling with --strict-rt, when nobody answered
     // within --wait-seconds, or when the device is not the scene's.
     void run();
 

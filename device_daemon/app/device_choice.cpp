@@ -48,8 +48,11 @@ ChosenDevice simulated(const DeviceSetup& setup, const DaemonOptions& options) {
     std::vector<std::string> words{"--scene", options.scene, "--log-level", options.log_level};
     if (options.seconds) words.insert(words.end(), {"--seconds", std::to_string(*options.seconds)});
     if (options.hold) words.push_back("--hold");
-    // Without real time its host may be late now and then, and nobody is hurt by it.
-    if (options.best_effort_realtime) words.insert(words.end(), {"--best-effort-rt", "--watchdog-ms", "30"});
+    // Its host may be late now and then, and nobody is hurt by it.
+    if (options.is_strict_realtime)
+        words.push_back("--strict-rt");
+    else
+        words.insert(words.end(), {"--watchdog-ms", "30"});
     OwnProgram own("ares_emulator", words);
     auto device = std::make_unique<WiredAres>(setup.simulated_ares, std::move(own.wire));
     return {std::move(own.program), std::move(device), true};

@@ -1,6 +1,7 @@
 #include "device_daemon/app/options.h"
 
 #include "common/cli/command_line.h"
+#include "common/cli/number_range.h"
 #include "common/dds/network_cli.h"
 #include "common/user_error.h"
 #include "device_daemon/app/device_choice.h"
@@ -23,11 +24,11 @@ std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
         ->capture_default_str();
     dds::addNetworkOptions(app, options.network);
     app.add_option("--seconds", options.seconds, "Leave after so many s with haptic_server")
-        ->check(CLI::PositiveNumber);
+        ->check(within(1e-3, kMostSeconds));
     app.add_option(
            "--wait-seconds", options.wait_seconds,
            "Leave with an error if haptic_server has not answered after so many s (default: wait for ever)")
-        ->check(CLI::PositiveNumber);
+        ->check(within(1e-3, kMostSeconds));
     app.add_flag("--hold", options.hold, "The scripted hand rests at its last waypoint instead of leaving");
     app.add_flag("!--no-enabling-switch", options.has_enabling_switch,
                  "The device has no switch that must be held: it engages by itself while the force is small");
@@ -39,7 +40,7 @@ std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
     app.add_option("--stop-dir", options.stop_dir,
                    "Folder for the last two seconds before every stop, as CSV files")
         ->capture_default_str();
-    addRealtimeOptions(app, "the device loop", options.best_effort_realtime, options.core);
+    addRealtimeOptions(app, "the device loop", options.is_strict_realtime, options.core);
     addLogLevelOption(app, options.log_level);
     if (!parseCommandLine(app, argc, argv, "device_daemon")) return std::nullopt;
     if (options.scene.empty() && !options.list)

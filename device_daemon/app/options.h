@@ -25,7 +25,7 @@ struct DaemonOptions {
     bool list = false;
     std::string pedal;  // a path in /dev/input; empty: none
     std::filesystem::path stop_dir;
-    bool best_effort_realtime = false;
+    bool is_strict_realtime = false;
     int core = coreFromLast(1);  // haptic_server's tick has the last
     std::string log_level = "info";
 };

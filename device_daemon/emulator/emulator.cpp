@@ -59,7 +59,7 @@ Emulator::Emulator(const Scenario& scenario, const EmulatorOptions& options, con
 void Emulator::run() {
     RealtimeThread loop_thread(
         {.request = {.core = options_.core},
-         .best_effort = options_.best_effort_realtime,
+         .is_strict = options_.is_strict_realtime,
          .what = "the controller's loop"},
         [this] { runLoop(); }, logRealtime);
     watch();

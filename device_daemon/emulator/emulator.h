@@ -23,7 +23,7 @@ class Emulator {
     wire::Endpoint local() const noexcept { return socket_.local(); }
 
     // Blocks until the scenario, --seconds or a signal ends it and the host has switched off. Throws
-    // UserError when there is no real-time scheduling and no --best-effort-rt.
+    // UserError when there is no real-time scheduling with --strict-rt.
     void run();
 
     const EmulatorStatistics& statistics() const noexcept { return statistics_; }

@@ -1,6 +1,7 @@
 #include "device_daemon/emulator/options.h"
 
 #include "common/cli/command_line.h"
+#include "common/cli/number_range.h"
 #include "common/user_error.h"
 
 namespace bonemill {
@@ -18,18 +19,18 @@ std::optional<EmulatorOptions> parseOptions(int argc, char** argv) {
     app.add_option("--host-port", options.host_port,
                    "Listen to nobody but this port of this PC (0: to any host)");
     app.add_option("--rate", options.rate_hz, "States per second (default: the scene's loop.rate_hz)")
-        ->check(CLI::Range(100.0, 10000.0));
+        ->check(within(100, 10000));
     app.add_option("--seconds", options.seconds, "Leave after this much of the scenario, in s")
-        ->check(CLI::PositiveNumber);
+        ->check(within(1e-3, kMostSeconds));
     app.add_flag("--hold", options.hold, "Rest at the last waypoint instead of leaving");
     app.add_option("--watchdog-ms", options.watchdog_ms,
                    "The motors brake when the host is silent for so long, unless it asks for another time")
-        ->check(CLI::Range(2.0, 30.0))
+        ->check(within(2, 30))
         ->capture_default_str();
     app.add_flag("--unhomed", options.is_unhomed, "Begin with a zero that must be found");
     app.add_option("--fault", faults, "A fault to have (see below)");
     app.add_option("--seed", options.seed, "Chooses the packets that faults befall")->capture_default_str();
-    addRealtimeOptions(app, "the controller's loop", options.best_effort_realtime, options.core);
+    addRealtimeOptions(app, "the controller's loop", options.is_strict_realtime, options.core);
     addLogLevelOption(app, options.log_level);
     addParentOption(app, options.parent);
     if (!parseCommandLine(app, argc, argv, "ares_emulator")) return std::nullopt;

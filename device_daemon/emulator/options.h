@@ -22,7 +22,7 @@ struct EmulatorOptions {
     bool is_unhomed = false;
     std::vector<FaultSpec> faults;
     uint32_t seed = 1;
-    bool best_effort_realtime = false;
+    bool is_strict_realtime = false;
     int core = -1;  // any
     std::string log_level = "info";
     std::optional<int> parent;  // process to end with

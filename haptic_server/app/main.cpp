@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "common/cli/command_line.h"
+#include "common/cli/number_range.h"
 #include "common/dds/network_cli.h"
 #include "common/log/log.h"
 #include "common/run_program.h"
@@ -28,13 +29,14 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
     app.add_option("--domain", server.domain, "DDS domain, 0 to 230");
     dds::addNetworkOptions(app, server.network);
     app.add_option("--seconds", server.seconds,
-                   "stop this long after the first tick; 0: run until SIGINT or SIGTERM");
+                   "stop this long after the first tick; 0: run until SIGINT or SIGTERM")
+        ->check(within(0, kMostSeconds));
     app.add_option(
         "--accuracy", server.accuracy,
         "accuracy.json of accuracy-report, to show errors; default: SCENE.accuracy.json if it exists");
     app.add_option("--stream-mbit-per-s", server.stream_mbit_per_s,
                    "node meshes take this much of the network at most, those nearest to the burr first")
-        ->check(CLI::Range(0.1, 10000.0))
+        ->check(within(0.1, 10000))
         ->capture_default_str();
     app.add_option("--trace", server.trace, "write one CSV line per tick");
     app.add_option("--report", server.report, "write the run's statistics as JSON");
@@ -45,7 +47,7 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
                  "stop when device_daemon shuts down in order");
     app.add_flag("--instructor-only", server.instructor_only,
                  "carry out commands of instructors only, for examinations");
-    addRealtimeOptions(app, "the haptic thread", server.best_effort_rt, server.rt_core);
+    addRealtimeOptions(app, "the haptic thread", server.is_strict_realtime, server.rt_core);
 }
 
 void addSimulateOptions(CLI::App& app, SimulateOptions& simulate) {
@@ -66,7 +68,7 @@ void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
         ->required();
     app.add_option("--budget-us", report.budget_us,
                    "propose the most accurate setting whose ticks (p99.9) fit this many microseconds")
-        ->check(CLI::PositiveNumber);
+        ->check(within(1e-3, 1e6));
 }
 
 struct Options {

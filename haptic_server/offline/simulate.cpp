@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -52,6 +53,22 @@ void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::
     }
 }
 
+// Throws UserError where no row comes near the bone: then lengths are in another unit or frame, and nothing
+// is cut.
+void checkReach(const std::vector<TrajectoryRow>& rows, const VoxelVolume& volume, const std::string& file) {
+    constexpr double kFar = 1;  // m
+    const Eigen::Vector3d high_V = volume.spacing().cwiseProduct(volume.dims().cast<double>());
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const TrajectoryRow& row : rows) {
+        const Eigen::Vector3d p_V = volume.geometry().X_WV.inverse() * row.X_WT.position;
+        const Eigen::Vector3d p_inside_V = p_V.cwiseMax(0).cwiseMin(high_V);
+        nearest = std::min(nearest, (p_V - p_inside_V).norm());
+    }
+    if (nearest < kFar) return;
+    throw UserError("trajectory " + file + ": never comes nearer than " + std::to_string(nearest) +
+                    " m to the bone; px_m, py_m and pz_m are metres in the frame W, not millimetres");
+}
+
 nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
     const auto us = microsecondsOfNs;
     const LatencyHistogram& compute = statistics.tickCompute();
@@ -96,6 +113,7 @@ SimulateResult simulate(const SimulateOptions& options) {
     Simulation simulation = makeSimulation(loaded);
     for (const std::string& warning : simulation.warnings) spdlog::warn("{}", warning);
     BoneModel& bone = *simulation.bone;
+    checkReach(rows, bone.volume, options.trajectory);
     const MeshGrid grid(bone.volume, bone.lattice);
     const double volume_before = meshVolume(meshWholeBone(bone.volume, bone.lattice), grid);
     std::optional<VoxelVolume> before;

@@ -3,10 +3,10 @@
 #include <iostream>
 #include <memory>
 
+#include "common/cli/number_range.h"
 #include "common/require_apart.h"
 #include "common/units.h"
 #include "common/user_error.h"
-#include "haptic_server/phantom/number_range.h"
 #include "haptic_server/phantom/skull_labels.h"
 #include "haptic_server/phantom/vertebra_phantom.h"
 #include "haptic_server/volume/import/import_volume.h"

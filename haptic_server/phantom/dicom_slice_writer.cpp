@@ -8,7 +8,21 @@
 
 namespace bonemill {
 
+namespace {
+
+// GDCM aborts the program where the disk is full.
+void requireSpace(const std::filesystem::path& path, const CtSlice& slice) {
+    constexpr uintmax_t kHeaderBytes = 64 << 10;
+    std::error_code error;
+    const std::filesystem::space_info space = std::filesystem::space(path.parent_path(), error);
+    if (!error && space.available < slice.hu.size() * sizeof(slice.hu[0]) + kHeaderBytes)
+        throw UserError("cannot write " + path.string() + ": the disk is full");
+}
+
+}  // namespace
+
 void writeCtSlice(const std::filesystem::path& path, const CtSlice& slice) {
+    requireSpace(path, slice);
     gdcm::Trace::WarningOff();  // GDCM warns of elements that it then adds itself
     const auto io = itk::GDCMImageIO::New();
     io->SetFileName(path.string());

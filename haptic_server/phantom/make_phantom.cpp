@@ -6,14 +6,16 @@
 #include <limits>
 #include <numbers>
 
+#include "common/cli/command_line.h"
+#include "common/cli/number_range.h"
 #include "common/require_apart.h"
+#include "common/run_program.h"
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/phantom/analytic_body.h"
 #include "haptic_server/phantom/anatomy_commands.h"
 #include "haptic_server/phantom/block_phantom.h"
 #include "haptic_server/phantom/dicom_series_writer.h"
-#include "haptic_server/phantom/number_range.h"
 #include "haptic_server/phantom/tooth_phantom.h"
 #include "haptic_server/volume/import/nrrd_stream.h"
 
@@ -240,17 +242,10 @@ int run(int argc, char** argv) {
     addBody(app, body);
     addAnatomyCommands(app);
     app.require_subcommand(1);
-    try {
-        app.parse(argc, argv);
-        if (app.got_subcommand("tooth")) makeTooth(tooth);
-        if (app.got_subcommand("block")) makeBlock(block);
-        if (app.got_subcommand("body")) makeBody(body);
-    } catch (const CLI::Success& success) {
-        return app.exit(success);
-    } catch (const std::exception& error) {  // CLI::ParseError, UserError, std::bad_alloc
-        std::cerr << "error: " << error.what() << "\n";
-        return kUserErrorExitCode;
-    }
+    if (!parseCommandLine(app, argc, argv, "make_phantom")) return 0;
+    if (app.got_subcommand("tooth")) makeTooth(tooth);
+    if (app.got_subcommand("block")) makeBlock(block);
+    if (app.got_subcommand("body")) makeBody(body);
     return 0;
 }
 
@@ -258,5 +253,5 @@ int run(int argc, char** argv) {
 }  // namespace bonemill
 
 int main(int argc, char** argv) {
-    return bonemill::run(argc, argv);
+    return bonemill::runProgram([&] { return bonemill::run(argc, argv); });
 }

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "common/require_file.h"
+#include "common/text_encoding.h"
 #include "common/user_error.h"
 
 namespace bonemill {
@@ -73,8 +74,7 @@ class Reader {
 
     void readHeader() {
         if (!nextLine()) fail("is empty: it needs the header t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons");
-        constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-        if (line_.starts_with(kByteOrderMark)) line_.erase(0, kByteOrderMark.size());
+        requireUtf8(line_, "trajectory " + name_);
         split(line_, cells_);
         header_size_ = cells_.size();
         for (size_t column = 0; column < kColumnCount; ++column) {

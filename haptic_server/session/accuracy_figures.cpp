@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "common/require_file.h"
+#include "common/text_encoding.h"
 #include "common/user_error.h"
 
 namespace bonemill {
@@ -13,9 +15,11 @@ AccuracyFigures readAccuracyFigures(const std::string& file) {
     requireFile(file);
     std::ifstream stream(file);
     if (!stream) throw UserError(file + ": cannot be read");
+    std::string text(std::istreambuf_iterator<char>(stream), {});
+    requireUtf8(text, file);
     try {
         AccuracyFigures figures;
-        const nlohmann::json json = nlohmann::json::parse(stream);
+        const nlohmann::json json = nlohmann::json::parse(text);
         for (const auto& [name, figure] : json.at("settings").items())
             figures[name] = {figure.at("force_error_percent").get<double>(),
                              figure.at("direction_error_deg").get<double>()};

@@ -144,7 +144,7 @@ class Server {
     void startTick() {
         tick_thread_ = RealtimeThread(
             {.request = {kTickPriority, options_.rt_core},
-             .best_effort = options_.best_effort_rt,
+             .is_strict = options_.is_strict_realtime,
              .what = "the haptic loop"},
             [this] {
                 while (tick_.tick(io_)) {

@@ -23,13 +23,13 @@ struct ServerOptions {
     SavePaths save;
     std::string export_dir;         // where clients' export commands write; empty: they are refused
     int rt_core = coreFromLast(0);  // of the tick thread; kAnyCore (-1) leaves the choice to the kernel
-    bool best_effort_rt = false;
+    bool is_strict_realtime = false;
     bool instructor_only = false;      // others may look, not command
     bool until_device_leaves = false;  // end when the daemon shuts down in order
 };
 
 // Runs until told to stop; returns the process' exit code. Throws UserError at start-up, also when real-time
-// permissions are missing and best_effort_rt is not set. Files are written also after SIGINT, SIGTERM or
+// permissions are missing and is_strict_realtime is set. Files are written also after SIGINT, SIGTERM or
 // SIGHUP.
 int runServer(const ServerOptions& options);
 

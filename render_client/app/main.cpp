@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "common/log/log.h"
+#include "common/process_limits.h"
 #include "common/run_program.h"
 #include "render_client/app/measure_viewer.h"
 #include "render_client/app/offscreen_viewer.h"
@@ -12,6 +13,9 @@
 namespace bonemill {
 namespace {
 
+// Mesa crashes where it gets no memory to draw and to compile shaders in.
+constexpr size_t kPictureBytes = size_t(1) << 30;
+
 int view(int argc, char** argv) {
     const auto options = parseOptions(argc, argv);
     if (!options) return 0;
@@ -19,6 +23,7 @@ int view(int argc, char** argv) {
     dds::setNetwork(options->network);
     catchStopSignals();
     if (options->command) return runSendCommand(*options);
+    requireMemory(kPictureBytes, "the pictures");
     if (options->measure) {
         runMeasurement(*options);
     } else if (options->offscreen) {

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "common/cli/command_line.h"
+#include "common/cli/number_range.h"
 #include "common/dds/network_cli.h"
 #include "common/units.h"
 #include "common/user_error.h"
@@ -100,14 +101,14 @@ void addPictureOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
 
 void addCameraOptions(CLI::App& app, RawOptions& raw) {
     app.add_option("--camera-azimuth-deg", raw.azimuth_deg, "Eye: 0 in front of the patient, 90 at the left")
-        ->check(CLI::Range(-360.0, 360.0));
+        ->check(within(-360, 360));
     app.add_option("--camera-elevation-deg", raw.elevation_deg, "Eye above the horizon")
-        ->check(CLI::Range(-89.0, 89.0));
+        ->check(within(-89, 89));
     app.add_option("--camera-distance-mm", raw.distance_mm, "Eye to target")
-        ->check(CLI::Range(OrbitCamera::kMinDistance / kMillimetre, OrbitCamera::kMaxDistance / kMillimetre));
+        ->check(within(OrbitCamera::kMinDistance / kMillimetre, OrbitCamera::kMaxDistance / kMillimetre));
     app.add_option("--camera-target-mm", raw.target_mm, "Point to look at, world frame")
         ->expected(3)
-        ->check(CLI::Range(-1e6, 1e6))
+        ->check(within(-1e6, 1e6))
         ->type_name("X Y Z");
 }
 

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "common/cli/number_range.h"
+
 namespace bonemill {
 namespace {
 
@@ -14,7 +16,7 @@ void addCutOptions(CLI::App& app, RawView& raw, std::vector<CLI::Option*>& view_
         auto* cut = app.add_option(cut_name, raw.cuts[axis],
                                    std::string("Cut-plane that hides ") + kHidden[axis] +
                                        ", from the low (0) to the high end (1) of the bone")
-                        ->check(CLI::Range(0.0, 1.0))
+                        ->check(within(0, 1))
                         ->type_name("POSITION");
         auto* flip = app.add_flag(std::string("--flip-") + kAxes[axis], raw.flips[axis],
                                   "Hides the other side of " + cut_name)
@@ -42,7 +44,7 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
                                },
                                "Transparent bone, of this opacity, 0 to 1 (default " + opacityText() + ")")
                             ->expected(0, 1)
-                            ->check(CLI::Range(0.0, 1.0))
+                            ->check(within(0, 1))
                             ->type_name("[OPACITY]");
     auto* stereo = app.add_option("--stereo", raw.stereo, "off, side-by-side or anaglyph (red-cyan glasses)")
                        ->check(CLI::IsMember({"off", "side-by-side", "anaglyph"}))
@@ -59,7 +61,7 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
     auto* no_hud = app.add_flag("--no-hud", raw.no_hud, "Nothing but the picture: no panel, list or scale");
     auto* text =
         app.add_option("--text-scale", raw.text_scale, "Text so much larger than what suits the picture")
-            ->check(CLI::Range(ViewSettings::kLeastText, ViewSettings::kMostText))
+            ->check(within(ViewSettings::kLeastText, ViewSettings::kMostText))
             ->type_name("FACTOR");
     view_options.insert(view_options.end(), {transparent, stereo, camera, quality, no_hud, text});
     return view_options;

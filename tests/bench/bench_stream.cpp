@@ -161,8 +161,7 @@ class Session {
   private:
     static std::vector<std::string> arguments(const std::string& program, const std::string& scene,
                                               const std::vector<std::string>& more) {
-        std::vector<std::string> words{
-            program, "--scene", scene, "--best-effort-rt", "--session", std::to_string(testSession())};
+        std::vector<std::string> words{program, "--scene", scene, "--session", std::to_string(testSession())};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }

@@ -41,11 +41,10 @@ class Threads {
     void run(const std::function<void(const std::atomic<bool>&)>& answer, const std::function<void()>& ask) {
         std::atomic<bool> is_over = false;
         RealtimeThread answering(
-            {.request = {.core = answering_core_}, .best_effort = true, .what = "the answer"},
-            [&] { answer(is_over); }, [&](const RealtimeReport& r) { note(r); });
-        RealtimeThread asking(
-            {.request = {.core = asking_core_}, .best_effort = true, .what = "the question"}, ask,
-            [](const RealtimeReport&) {});
+            {.request = {.core = answering_core_}, .what = "the answer"}, [&] { answer(is_over); },
+            [&](const RealtimeReport& r) { note(r); });
+        RealtimeThread asking({.request = {.core = asking_core_}, .what = "the question"}, ask,
+                              [](const RealtimeReport&) {});
         asking.join();
         is_over = true;
     }

@@ -12,7 +12,7 @@ namespace bonemill::bridge {
 // Starts it; `tell` gets what the machine does not grant. Throws UserError when that is too little.
 inline RealtimeThread startArmLoop(const BridgeOptions& options, const Tell& tell,
                                    std::function<void()> loop) {
-    return RealtimeThread({{.core = options.core}, options.best_effort_realtime, "the arm's loop"},
+    return RealtimeThread({{.core = options.core}, options.is_strict_realtime, "the arm's loop"},
                           std::move(loop), [&tell](const RealtimeReport& report) {
                               for (const std::string& missing : report.missing) tell(missing);
                           });

@@ -1,6 +1,9 @@
 #include "device_daemon/bridge/common/bridge_options.h"
 
+#include <filesystem>
+
 #include "common/cli/command_line.h"
+#include "common/cli/number_range.h"
 
 namespace bonemill::bridge {
 namespace {
@@ -14,7 +17,7 @@ void addOptions(CLI::App& app, BridgeOptions& options) {
     app.add_option("--library", options.library, "The vendor's library, if it is not where it is searched");
     app.add_option("--device", options.device, "Number or name of the arm; default: the first");
     app.add_option("--max-force-n", options.max_force, "Give no more than this; default: what the arm can")
-        ->check(CLI::PositiveNumber);
+        ->check(within(1e-3, 1e3));
     app.add_flag("--probe", options.probe,
                  "Load the library, open the arm, say what there is and leave; gives no force");
     CLI::Option* self_test = app.add_flag("--self-test", options.self_test,
@@ -22,10 +25,10 @@ void addOptions(CLI::App& app, BridgeOptions& options) {
     app.add_flag("--ramp", options.ramp, "With --self-test: push up with 0.5 N and back, after you typed yes")
         ->needs(self_test);
     app.add_option("--seconds", options.seconds, "How long the self-test lasts")
-        ->check(CLI::Range(0.1, 3600.0))
+        ->check(within(0.1, 3600))
         ->needs(self_test)
         ->capture_default_str();
-    addRealtimeOptions(app, "the arm's loop", options.best_effort_realtime, options.core);
+    addRealtimeOptions(app, "the arm's loop", options.is_strict_realtime, options.core);
     addParentOption(app, options.parent);
 }
 
@@ -37,7 +40,7 @@ std::optional<BridgeOptions> parseBridgeOptions(int argc, char** argv, const std
     CLI::App app{about};
     addOptions(app, options);
     if (add) add(app);
-    if (!parseCommandLine(app, argc, argv, "the bridge's")) return std::nullopt;
+    if (!parseCommandLine(app, argc, argv, std::filesystem::path(argv[0]).filename())) return std::nullopt;
     return options;
 }
 

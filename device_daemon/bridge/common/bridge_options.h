@@ -20,7 +20,7 @@ struct BridgeOptions {
     bool self_test = false;
     bool ramp = false;
     double seconds = 5;  // of the self-test
-    bool best_effort_realtime = false;
+    bool is_strict_realtime = false;
     int core = -1;
     std::optional<int> parent;  // process to end with
 };

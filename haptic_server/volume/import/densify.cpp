@@ -52,7 +52,7 @@ DensityMapping chooseMapping(const RawVolume& raw, const DensityWindow& window) 
     mapping.iso = mapping.density(mapping.iso_value);
     if (mapping.iso == 0 || mapping.iso == kMaxDensity)
         throw UserError(std::string("the ") + (mapping.is_iso_proposed ? "proposed " : "") + "iso-value " +
-                        number(mapping.iso_value) + " is not inside the density window " + window_text +
+                        number(mapping.iso_value) + " is not well inside the density window " + window_text +
                         "; set iso_value, window_low and window_high in the scene");
     return mapping;
 }

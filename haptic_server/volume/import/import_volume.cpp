@@ -24,10 +24,17 @@ bool endsWith(const std::string& text, const std::string& ending) {
            text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
+// The scenes of deploy/scenes read what deploy/make-phantoms puts into build/data.
+bool isPhantom(const std::filesystem::path& path) {
+    const std::filesystem::path folder = path.lexically_normal().parent_path();
+    return folder.filename() == "data" && folder.parent_path().filename() == "build";
+}
+
 RawVolume importByType(const std::filesystem::path& path, const ImportOptions& options) {
     std::error_code error;
     if (!std::filesystem::exists(path, error))
-        throw UserError(path.string() + ": no such file or folder; check the path of the volume");
+        throw UserError(path.string() + ": no such file or folder; " +
+                        (isPhantom(path) ? "deploy/make-phantoms makes it" : "check the path of the volume"));
     requireFile(path);
     if (std::filesystem::is_directory(path, error)) return importDicomFolder(path, options.series_uid);
     const std::string name = lowerCase(path.filename().string());

@@ -9,6 +9,7 @@
 
 #include "common/units.h"
 #include "common/user_error.h"
+#include "common/whole_file.h"
 #include "haptic_server/volume/import/deflater.h"
 #include "haptic_server/volume/import/nrrd_header.h"
 
@@ -52,7 +53,7 @@ template <class T>
 class NrrdStream<T>::File {
   public:
     File(const std::filesystem::path& path, const std::string& header, NrrdEncoding encoding)
-        : path_(path), file_(path, std::ios::binary | std::ios::trunc) {
+        : whole_(path), file_(whole_.part(), std::ios::binary | std::ios::trunc) {
         file_.write(header.data(), std::streamsize(header.size()));
         if (encoding == NrrdEncoding::kGzip) deflater_ = std::make_unique<Deflater>();
     }
@@ -69,13 +70,13 @@ class NrrdStream<T>::File {
     void close(bool is_full) {
         if (deflater_) deflater_->write({}, Z_FINISH, file_);
         file_.close();
-        if (!file_)
-            throw UserError("cannot write " + path_.string() + "; check that the folder exists and has room");
-        if (!is_full) throw UserError(path_.string() + ": too few or too many values for the volume");
+        if (!file_) throw UserError("cannot write " + whole_.path().string() + "; is its disk full?");
+        if (!is_full) throw UserError(whole_.path().string() + ": too few or too many values for the volume");
+        whole_.finish();
     }
 
   private:
-    std::filesystem::path path_;
+    WholeFile whole_;
     std::ofstream file_;
     std::unique_ptr<Deflater> deflater_;
 };

@@ -32,8 +32,7 @@ MouseSession::MouseSession() {
               "device { p_WD_mm { x: 0 y: 0.1 z: 6 } q_WD { w: 0.70710678 x: 0.70710678 } }\n");
     const auto start = [&](const std::vector<std::string>& more) {
         std::vector<std::string> words = more;
-        words.insert(words.end(),
-                     {"--scene", scene, "--session", session, "--domain", domain, "--best-effort-rt"});
+        words.insert(words.end(), {"--scene", scene, "--session", session, "--domain", domain});
         return std::make_unique<Process>(words);
     };
     server_ = start({"haptic_server", "--report", folder_ / "report.json"});

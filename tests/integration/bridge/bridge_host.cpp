@@ -131,7 +131,7 @@ std::vector<std::string> bridgeCommand(const std::string& program, const std::st
                                        const std::string& words, const std::string& record_file,
                                        const std::vector<std::string>& more) {
     std::vector<std::string> command{"/usr/bin/env", "STAND_IN=" + words, "STAND_IN_RECORD=" + record_file,
-                                     binDir() + "/" + program, "--best-effort-rt"};
+                                     binDir() + "/" + program};
     if (!library.empty()) command.insert(command.end(), {"--library", helperDir() + "/" + library});
     command.insert(command.end(), more.begin(), more.end());
     return command;

@@ -22,10 +22,6 @@ name=${0##*/} folder=${0%/*}/..
 if [[ $1 == --help || $1 == --list ]]; then cat "$folder/$name.help"; exit; fi
 trap 'echo "end $name" >>"$folder/events"; exit "$(cat "$folder/$name.end" 2>/dev/null || echo 0)"' TERM
 echo "start $name $$ $*" >>"$folder/events"
-if [[ -e $folder/refuse_real_time && " $* " != *" --best-effort-rt "* ]]; then
-    echo "error: no real time; --best-effort-rt goes on without"
-    exit 2
-fi
 [[ ! -e $folder/$name.says ]] || cat "$folder/$name.says"
 while [[ ! -e $folder/$name.leave ]]; do sleep 0.02; done
 exit "$(cat "$folder/$name.leave")"

@@ -232,24 +232,6 @@ TEST_F(Bonemill, WhatTheDeviceWarnsOfIsSaid) {
     EXPECT_FALSE(has(session.outSoFar(), "phase mill"));
 }
 
-// Real time may be granted on paper and refused in fact, as in a container.
-TEST_F(Bonemill, RealTimeThatIsRefusedIsDoneWithout) {
-    test::writeFile(rig_.folder() / "refuse_real_time", "");
-    Process session(startWords({"--no-viewer"}));
-    for (const std::string name : {"haptic_server", "device_daemon"})
-        EXPECT_TRUE(waitFor([&] {
-            const std::string events = rig_.events();
-            const size_t newest = events.rfind("start " + name);
-            return newest != std::string::npos &&
-                   has(events.substr(newest, events.find('\n', newest) - newest), " --best-effort-rt");
-        })) << rig_.events();
-    session.signal(SIGTERM);
-    const Finished finished = session.wait();
-    EXPECT_EQ(finished.exit_code, 0) << finished.err;
-    EXPECT_TRUE(has(finished.out, "does not grant real time: going on without")) << finished.out;
-    EXPECT_FALSE(has(finished.out, "started again")) << finished.out;
-}
-
 TEST_F(Bonemill, AServerThatFailsAtItsEndIsTold) {
     test::writeFile(rig_.folder() / "haptic_server.end", "1");
     Process session(startWords({"--no-viewer"}));

@@ -65,15 +65,14 @@ class DeviceChaos : public testing::Test {
     }
     void startServer() {
         server_.reset();
-        server_ = std::make_unique<Process>(
-            std::vector<std::string>{"haptic_server", "--scene", folder_ / "s.textproto", "--session",
-                                     session_, "--domain", domain_, "--best-effort-rt"});
+        server_ = std::make_unique<Process>(std::vector<std::string>{
+            "haptic_server", "--scene", folder_ / "s.textproto", "--session", session_, "--domain", domain_});
     }
     void startDaemon() {
         daemon_.reset();
         daemon_ = std::make_unique<Process>(std::vector<std::string>{
             daemon_program_, "--device", "simulated", "--scene", folder_ / "s.textproto", "--session",
-            session_, "--best-effort-rt", "--stop-dir", folder_ / "stops"});
+            session_, "--stop-dir", folder_ / "stops"});
     }
     // The wire is watched meanwhile. It returns false when the condition never held.
     bool watchUntil(const std::function<bool()>& condition, std::chrono::seconds limit = 40s) {

@@ -100,9 +100,9 @@ class LiveLoop : public testing::Test {
                                   scene.waypoints + "}\n");
         Process server({"haptic_server", "--scene", file, "--session", session, "--domain",
                         std::to_string(testDomain()), "--trace", folder_ / "trace.csv", "--report",
-                        folder_ / "report.json", "--until-device-leaves", "--best-effort-rt"});
+                        folder_ / "report.json", "--until-device-leaves"});
         Process daemon({"device_daemon", "--device", "simulated", "--scene", file, "--session", session,
-                        "--stop-dir", folder_ / "stops", "--best-effort-rt"});
+                        "--stop-dir", folder_ / "stops"});
         test::waitFor([&] { return !daemon.isRunning(); }, 30s);
         if (daemon.isRunning()) daemon.signal(SIGTERM);
         const test::Finished hand = daemon.wait(), felt = server.wait();

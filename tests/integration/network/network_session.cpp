@@ -45,16 +45,15 @@ void NetworkSession::writeScene() const {
 
 void NetworkSession::startServer(const Words& network) {
     writeScene();
-    server_ =
-        haptics_pc_->start(joined(Words{"haptic_server", "--scene", folder_ / "scene.textproto", "--session",
-                                        session_, "--best-effort-rt", "--report", folder_ / "report.json"},
-                                  network));
+    server_ = haptics_pc_->start(joined(Words{"haptic_server", "--scene", folder_ / "scene.textproto",
+                                              "--session", session_, "--report", folder_ / "report.json"},
+                                        network));
 }
 
 void NetworkSession::startMilling(int seconds) {
     daemon_ =
         haptics_pc_->start({"device_daemon", "--device", "simulated", "--scene", folder_ / "scene.textproto",
-                            "--session", session_, "--best-effort-rt", "--seconds", std::to_string(seconds)});
+                            "--session", session_, "--seconds", std::to_string(seconds)});
 }
 
 void NetworkSession::waitForDevice() {

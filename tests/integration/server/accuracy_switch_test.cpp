@@ -48,13 +48,12 @@ class AccuracySwitching : public testing::Test {
                       waypoint(300, end_mm, false) + "}\n");
     }
     std::vector<std::string> server() const {
-        return {
-            "haptic_server", "--scene",  folder_ / "s.textproto", "--session",       session(), "--domain",
-            domain(),        "--report", folder_ / "report.json", "--best-effort-rt"};
+        return {"haptic_server", "--scene",  folder_ / "s.textproto", "--session", session(), "--domain",
+                domain(),        "--report", folder_ / "report.json"};
     }
     std::vector<std::string> daemon() const {
         return {"device_daemon",         "--device",  "simulated", "--scene",
-                folder_ / "s.textproto", "--session", session(),   "--best-effort-rt"};
+                folder_ / "s.textproto", "--session", session()};
     }
     static Finished setAccuracy(const std::string& name) {
         return run(

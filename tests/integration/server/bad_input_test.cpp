@@ -199,8 +199,8 @@ TEST_F(BadInput, LeavesTheTraceOfBefore) {
                    folder_ / "old.csv"},
                   {"gone.nrrd"});
     EXPECT_EQ(test::readFile(folder_ / "old.csv"), "old");
-    expectRefused({"haptic_server", "--scene", ball(), "--session", "941", "--best-effort-rt", "--trace",
-                   folder_ / "old.csv", "--export-dir", folder_ / "none"},
+    expectRefused({"haptic_server", "--scene", ball(), "--session", "941", "--trace", folder_ / "old.csv",
+                   "--export-dir", folder_ / "none"},
                   {"no such folder"});
     EXPECT_EQ(test::readFile(folder_ / "old.csv"), "old");
 }

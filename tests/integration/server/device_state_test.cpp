@@ -80,9 +80,8 @@ class DeviceStateOfASession : public testing::Test {
                         "device { p_WD_mm { x: 0 y: 0.1 z: 2.3 } q_WD { w: 0.70710678 x: 0.70710678 } }\n");
     }
     std::vector<std::string> server() const {
-        return {
-            "haptic_server", "--scene",  folder_ / "s.textproto", "--session",       session(), "--domain",
-            domain(),        "--report", folder_ / "report.json", "--best-effort-rt"};
+        return {"haptic_server", "--scene",  folder_ / "s.textproto", "--session", session(), "--domain",
+                domain(),        "--report", folder_ / "report.json"};
     }
     static std::string session() { return std::to_string(testSession()); }
     static std::string domain() { return std::to_string(testDomain()); }

@@ -57,15 +57,15 @@ class Instructor : public testing::Test {
                             waypoint(300, -1, true) + "}\n");
     }
     std::vector<std::string> server(const std::vector<std::string>& more) const {
-        std::vector<std::string> arguments{"haptic_server", "--scene",         folder_ / "s.textproto",
-                                           "--session",     session(),         "--domain",
-                                           domain(),        "--best-effort-rt"};
+        std::vector<std::string> arguments{"haptic_server", "--scene", folder_ / "s.textproto",
+                                           "--session",     session(), "--domain",
+                                           domain()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
     }
     std::vector<std::string> daemon() const {
         return {"device_daemon",         "--device",  "simulated", "--scene",
-                folder_ / "s.textproto", "--session", session(),   "--best-effort-rt"};
+                folder_ / "s.textproto", "--session", session()};
     }
     static Finished command(const std::string& text, const std::string& role = "operator") {
         return run({"render_client", "--command", text, "--role", role, "--session", session(), "--domain",

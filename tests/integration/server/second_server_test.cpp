@@ -21,7 +21,7 @@ TEST(SecondServer, IsRefusedBeforeItShowsAnything) {
     ASSERT_TRUE(first.publishStatus(status));
     const auto second = test::run({"haptic_server", "--scene", folder / "scene.textproto", "--domain",
                                    std::to_string(testDomain()), "--session", std::to_string(testSession()),
-                                   "--seconds", "1", "--best-effort-rt"});
+                                   "--seconds", "1"});
     EXPECT_EQ(second.exit_code, 2) << second.err;
     EXPECT_NE(second.err.find("has a server already, with the scene 'first'"), std::string::npos)
         << second.err;

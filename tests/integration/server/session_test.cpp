@@ -48,15 +48,15 @@ class Session : public testing::Test {
                       "}\n");
     }
     std::vector<std::string> server(const std::vector<std::string>& more = {}) {
-        std::vector<std::string> arguments{
-            "haptic_server", "--scene",  folder_ / "s.textproto", "--session",       session_, "--domain",
-            domain_,         "--report", folder_ / "report.json", "--best-effort-rt"};
+        std::vector<std::string> arguments{"haptic_server", "--scene",  folder_ / "s.textproto",
+                                           "--session",     session_,   "--domain",
+                                           domain_,         "--report", folder_ / "report.json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
     }
     std::vector<std::string> daemon() {
         return {"device_daemon",         "--device",  "simulated", "--scene",
-                folder_ / "s.textproto", "--session", session_,    "--best-effort-rt"};
+                folder_ / "s.textproto", "--session", session_};
     }
     std::vector<std::string> client(const std::string& out, int frames, int interval_ms) {
         return {"render_client",
@@ -235,14 +235,23 @@ TEST_F(Session, AKilledDaemonRampsTheForceDownAndANewOneGoesOn) {
 TEST_F(Session, WithoutPermissionTheServerSaysWhatIsMissing) {
     const std::string drop =
         geteuid() == 0 ? "setpriv --bounding-set=-sys_nice,-ipc_lock --inh-caps=-sys_nice,-ipc_lock " : "";
-    const auto finished =
-        run({"/bin/sh", "-c",
-             "ulimit -r 0; ulimit -l 64; exec " + drop + test::binDir() + "/haptic_server --scene " +
-                 (folder_ / "s.textproto") + " --session " + session_ + " --domain " + domain_});
+    const std::string server = "ulimit -r 0; ulimit -l 64; exec " + drop + test::binDir() +
+                               "/haptic_server --scene " + (folder_ / "s.textproto") + " --session " +
+                               session_ + " --domain " + domain_;
+    test::Process going_on({"/bin/sh", "-c", server});
+    EXPECT_TRUE(
+        test::waitFor([&] { return going_on.errSoFar().find("waits for a device") != std::string::npos; }));
+    going_on.signal(SIGTERM);
+    const std::string said = going_on.wait().err, words = "real time: going on without";
+    const size_t once = said.find(words);
+    ASSERT_NE(once, std::string::npos) << said;
+    EXPECT_EQ(said.find(words, once + 1), std::string::npos) << said;
+    EXPECT_NE(said.find("deploy/check-realtime"), std::string::npos) << said;
+    const auto finished = run({"/bin/sh", "-c", server + " --strict-rt"});
     EXPECT_EQ(finished.exit_code, 2) << finished.err;
     const size_t error = finished.err.find("error: ");
     ASSERT_NE(error, std::string::npos) << finished.err;
-    for (const char* words : {"Memory is not locked", "No SCHED_FIFO", "--best-effort-rt"})
+    for (const char* words : {"Memory is not locked", "No SCHED_FIFO", "--strict-rt"})
         EXPECT_NE(finished.err.find(words, error), std::string::npos) << words << " in: " << finished.err;
 }
 

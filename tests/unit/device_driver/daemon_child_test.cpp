@@ -31,8 +31,7 @@ class DaemonChildTest : public testing::Test {
                 "--scene",
                 scene_file_,
                 "--session",
-                std::to_string(100000 + getpid()),
-                "--best-effort-rt"};
+                std::to_string(100000 + getpid())};
     }
     // Of all processes that were started with this test's scene; what has ended has no words any more.
     int running() const {

@@ -30,8 +30,8 @@ class DeviceDaemonTest : public testing::Test {
     // With further words after these.
     std::vector<std::string> commandLine(const std::string& scene_file,
                                          const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> words{"device_daemon",    "--scene",   scene_file,
-                                       "--best-effort-rt", "--session", std::to_string(session_)};
+        std::vector<std::string> words{"device_daemon", "--scene", scene_file, "--session",
+                                       std::to_string(session_)};
         words.insert(words.end(), more.begin(), more.end());
         if (std::find(more.begin(), more.end(), "--device") == more.end())
             words.insert(words.end(), {"--device", "simulated"});
@@ -216,7 +216,7 @@ TEST_F(DeviceDaemonTest, RefusesBadScenes) {
 
 TEST_F(DeviceDaemonTest, RefusesAControllerThatHasNotTheAresOfTheScene) {
     const std::string other = std::string(kLongScene) + "device { stroke_mm: 140 max_actuator_force_n: 30 }";
-    test::Process controller({"ares_emulator", "--scene", sceneFile(other), "--best-effort-rt"});
+    test::Process controller({"ares_emulator", "--scene", sceneFile(other)});
     const std::string device = deviceOf(controller);
     const test::Finished finished =
         test::run(commandLine(sceneFile(kLongScene), {"--device", device, "--wait-seconds", "20"}));
@@ -230,8 +230,7 @@ TEST_F(DeviceDaemonTest, RefusesAControllerThatHasNotTheAresOfTheScene) {
 TEST_F(DeviceDaemonTest, WritesAStopThatCameJustBeforeItsEnd) {
     const test::TemporaryFolder stops;
     const std::string file = sceneFile(kLongScene);
-    test::Process controller(
-        {"ares_emulator", "--scene", file, "--best-effort-rt", "--fault", "emergency-stop"});
+    test::Process controller({"ares_emulator", "--scene", file, "--fault", "emergency-stop"});
     const std::string device = deviceOf(controller);
     test::Process daemon(commandLine(file, {"--device", device, "--stop-dir", stops.path()}));
     WallServer server(session_, file);

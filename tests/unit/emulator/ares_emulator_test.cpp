@@ -37,7 +37,7 @@ class AresEmulatorTest : public testing::Test {
     std::unique_ptr<test::Process> start(const char* scene, const std::vector<std::string>& more = {}) {
         const std::string file = folder_.path() / "scene.textproto";
         test::writeFile(file, scene);
-        std::vector<std::string> words{"ares_emulator", "--scene", file, "--best-effort-rt"};
+        std::vector<std::string> words{"ares_emulator", "--scene", file};
         words.insert(words.end(), more.begin(), more.end());
         return std::make_unique<test::Process>(words);
     }

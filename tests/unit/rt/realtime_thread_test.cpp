@@ -13,11 +13,11 @@ namespace {
 // No machine has it, so that something is always missing.
 constexpr int kNoSuchCore = 100'000;
 
-TEST(RealtimeThread, withoutBestEffortNoWorkBeginsWhereSomethingIsMissing) {
+TEST(RealtimeThread, whenStrictNoWorkBeginsWhereSomethingIsMissing) {
     bool has_begun = false, was_told = false;
     const auto start = [&] {
         RealtimeThread(
-            {.request = {.priority = 10, .core = kNoSuchCore}, .what = "the test's loop"},
+            {.request = {.priority = 10, .core = kNoSuchCore}, .is_strict = true, .what = "the test's loop"},
             [&] { has_begun = true; }, [&](const RealtimeReport&) { was_told = true; });
     };
     try {
@@ -25,29 +25,29 @@ TEST(RealtimeThread, withoutBestEffortNoWorkBeginsWhereSomethingIsMissing) {
         FAIL() << "it is real-time without its core";
     } catch (const UserError& error) {
         const std::string message = error.what();
-        for (const char* word : {"the test's loop", "no core 100000", "--best-effort-rt"})
+        for (const char* word : {"the test's loop", "no core 100000", "deploy/check-realtime", "--strict-rt"})
             EXPECT_NE(message.find(word), std::string::npos) << word << " in: " << message;
     }
     EXPECT_FALSE(has_begun);
-    EXPECT_TRUE(was_told);
+    EXPECT_FALSE(was_told) << "the error says it";
 }
 
 TEST(RealtimeThread, whereTellingFailsNoWorkBegins) {
     bool has_begun = false;
     const auto start = [&] {
         RealtimeThread(
-            {.request = {.priority = 10, .core = kNoSuchCore}, .best_effort = true},
-            [&] { has_begun = true; }, [](const RealtimeReport&) { throw std::runtime_error("no paper"); });
+            {.request = {.priority = 10, .core = kNoSuchCore}}, [&] { has_begun = true; },
+            [](const RealtimeReport&) { throw std::runtime_error("no paper"); });
     };
     EXPECT_THROW(start(), std::runtime_error);
     EXPECT_FALSE(has_begun);
 }
 
-TEST(RealtimeThread, withBestEffortItWorksAndSaysWhatIsMissing) {
+TEST(RealtimeThread, otherwiseItWorksAndSaysWhatIsMissing) {
     pid_t worker = -1;
     std::vector<std::string> missing;
     RealtimeThread thread(
-        {.request = {.priority = 10, .core = kNoSuchCore}, .best_effort = true}, [&] { worker = gettid(); },
+        {.request = {.priority = 10, .core = kNoSuchCore}}, [&] { worker = gettid(); },
         [&](const RealtimeReport& report) { missing = report.missing; });
     thread.join();
     EXPECT_EQ(worker, thread.id());

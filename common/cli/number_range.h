@@ -1,9 +1,11 @@
-// Checks the bounds of a number on the command line. CLI::Range would let NaN pass.
+// Checks the bounds of a number on the command line. CLI::Range and CLI::PositiveNumber would let NaN pass.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace bonemill {
+
+inline constexpr double kMostSeconds = 1e7;  // 115 days, which still fits into 64 bits of nanoseconds
 
 inline CLI::Validator within(double low, double high) {
     return {[=](std::string& text) -> std::string {
