@@ -44,6 +44,11 @@ TopicDescription describeTopic<SceneInfoSample>() {
 }
 
 template <>
+TopicDescription describeTopic<StructureMeshSample>() {
+    return {"bonemill_structure_mesh", &bonemill_dds_StructureMeshSample_desc, stateQos()};
+}
+
+template <>
 TopicDescription describeTopic<ToolStateSample>() {
     return {"bonemill_tool_state", &bonemill_dds_ToolStateSample_desc, streamQos(kQueuedToolStates)};
 }

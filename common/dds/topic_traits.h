@@ -1,4 +1,4 @@
-// Lists the eight topics: name, type descriptor and quality of service of each envelope of proto/topics.idl.
+// Lists the topics: name, type descriptor and quality of service of each envelope of proto/topics.idl.
 #pragma once
 
 #include <topics.h>
@@ -9,6 +9,7 @@ namespace bonemill::dds {
 
 using NodeMeshSample = bonemill_dds_NodeMeshSample;
 using SceneInfoSample = bonemill_dds_SceneInfoSample;
+using StructureMeshSample = bonemill_dds_StructureMeshSample;
 using ToolStateSample = bonemill_dds_ToolStateSample;
 using StatusSample = bonemill_dds_StatusSample;
 using LessonSample = bonemill_dds_LessonSample;
@@ -32,6 +33,8 @@ template <>
 TopicDescription describeTopic<NodeMeshSample>();
 template <>
 TopicDescription describeTopic<SceneInfoSample>();
+template <>
+TopicDescription describeTopic<StructureMeshSample>();
 template <>
 TopicDescription describeTopic<ToolStateSample>();
 template <>

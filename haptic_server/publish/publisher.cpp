@@ -59,6 +59,7 @@ Publisher::Publisher(const PublisherOptions& options)
       participant_(options.domain),
       node_writer_(participant_),
       scene_info_writer_(participant_),
+      structure_writer_(participant_),
       tool_state_writer_(participant_),
       status_writer_(participant_),
       lesson_writer_(participant_),
@@ -123,6 +124,19 @@ bool Publisher::removeNode(const NodeMesh& mesh) {
 bool Publisher::publishSceneInfo(topics::SceneInfo info) {
     info.set_epoch(epoch_);
     return writeMessage(scene_info_writer_, session_, info);
+}
+
+bool Publisher::publishStructure(const NodeMesh& mesh, double warning_distance_m) {
+    topics::StructureMesh structure;
+    structure.set_epoch(epoch_);
+    structure.set_surface(encodeNodeMesh(mesh, {.epoch = epoch_}).bytes);
+    structure.set_warning_distance_m(warning_distance_m);
+    const std::string bytes = structure.SerializeAsString();
+    dds::StructureMeshSample sample{};
+    sample.session = session_;
+    sample.structure = mesh.leaf;
+    dds::setPayload(sample, bytes);
+    return structure_writer_.write(sample);
 }
 
 bool Publisher::publishToolState(const TickRecord& record, std::optional<topics::EffectState> effects) {

@@ -1,5 +1,5 @@
-// haptic_server shows its clients everything through this, and hears what they ask of it: the six topics
-// of one session.
+// haptic_server shows its clients everything through this, and hears what they ask of it: its topics of one
+// session.
 //
 // The publisher thread owns it and alone calls its members, never the tick (a write can take milliseconds).
 // No reader, however slow, gone or killed, blocks a write. Nothing is disposed when the publisher goes:
@@ -48,6 +48,8 @@ class Publisher {
 
     // The epoch is filled in.
     bool publishSceneInfo(topics::SceneInfo info);
+    // The mesh's leaf is the structure (topics::StructureMesh).
+    bool publishStructure(const NodeMesh& mesh, double warning_distance_m);
     // Tool states are best effort, for 60 to 100 calls per second; the time stamp is that of the call.
     // `effects` are the scene's, if it has such that say something.
     bool publishToolState(const TickRecord& record, std::optional<topics::EffectState> effects = {});
@@ -97,6 +99,7 @@ class Publisher {
     dds::Participant participant_;
     dds::Writer<dds::NodeMeshSample> node_writer_;
     dds::Writer<dds::SceneInfoSample> scene_info_writer_;
+    dds::Writer<dds::StructureMeshSample> structure_writer_;
     dds::Writer<dds::ToolStateSample> tool_state_writer_;
     dds::Writer<dds::StatusSample> status_writer_;
     dds::Writer<dds::LessonSample> lesson_writer_;

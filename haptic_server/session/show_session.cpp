@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -9,6 +10,7 @@
 #include "common/config/scene_geometry.h"
 #include "common/rt/clock.h"
 #include "common/units.h"
+#include "haptic_server/mesh/structure_mesher.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/session/order_text.h"
 #include "haptic_server/session/shown_device.h"
@@ -77,16 +79,31 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     return info;
 }
 
+// It is for people, and must not keep the session waiting. Nothing is under way without structures.
+std::future<std::vector<NodeMesh>> meshingStructures(const Simulation& simulation) {
+    const EffectConfigs& effects = simulation.tick.effects;
+    const bool are_there =
+        std::ranges::any_of(effects.materials, [](const MaterialProperties& m) { return m.is_protected; });
+    if (!effects.properties || !are_there) return {};
+    return std::async(std::launch::async, [properties = effects.properties, materials = effects.materials,
+                                           spacing = simulation.bone->volume.spacing()] {
+        return meshStructures(*properties, materials, spacing);
+    });
+}
+
 }  // namespace
 
 ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                          const AccuracyFigures& figures, MeshOutbox& outbox, Recorder& recorder,
                          const DeviceLinkIo& device, SessionCommands& commands, double bytes_per_s)
     : publisher_(publisher),
+      scene_(scene),
       scene_name_(scene.name()),
       outbox_(outbox),
       budget_(bytes_per_s),
       X_VW_(simulation.bone->volume.geometry().X_WV.inverse()),
+      warning_distance_(warningDistanceOf(scene.effects())),
+      structures_(meshingStructures(simulation)),
       recorder_(recorder),
       device_(device),
       commands_(commands),
@@ -104,11 +121,13 @@ void ShowSession::publishSceneInfo() {
     scene_info_.set_tool_index(uint32_t(tool));
     scene_info_.set_burr_radius_m(tools_[tool].burr.radius);
     fillTool(tools_[tool].surface, scene_info_.mutable_tool());
+    describeBurr(scene_, tools_[tool].burr, scene_info_);
     publisher_.publishSceneInfo(scene_info_);
 }
 
 void ShowSession::round() {
     has_changed_ |= publishNodes();
+    publishStructures();
     const int64_t now_ns = monotonicNowNs();
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
     carryOutCommands();
@@ -150,6 +169,13 @@ bool ShowSession::publishNodes() {
     return !groups.empty();
 }
 
+void ShowSession::publishStructures() {
+    if (!structures_.valid() || structures_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+        return;
+    for (const NodeMesh& mesh : structures_.get()) publisher_.publishStructure(mesh, warning_distance_);
+    has_changed_ = true;
+}
+
 // Who reads that a command is done finds what it did in the same status.
 void ShowSession::carryOutCommands() {
     for (const topics::Command& command : publisher_.takeCommands()) {
@@ -183,7 +209,7 @@ void ShowSession::publishStatus() {
     const LoopHealth health = recorder_.health();
     topics::Status status;
     status.set_scene(scene_name_);
-    status.set_is_model_partial(!is_whole_);
+    status.set_is_model_partial(!is_whole_ || structures_.valid());
     status.set_preset(settingsName(commands_.accuracy().chosen()));
     // accuracy-report measures with the first tool.
     const auto figure = commands_.tools().chosen() == 0 ? figures_.find(status.preset()) : figures_.end();

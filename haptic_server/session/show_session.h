@@ -2,6 +2,8 @@
 // to the tick.
 #pragma once
 
+#include <future>
+
 #include "common/log/log_limit.h"
 #include "common/units.h"
 #include "haptic_server/mesh/mesh_outbox.h"
@@ -18,8 +20,8 @@ namespace bonemill {
 
 class ShowSession {
   public:
-    // Publishes the scene at once. Node meshes take at most `bytes_per_s`. References must
-    // outlive this object.
+    // Publishes the scene at once; the protected structures follow with some round(). Node meshes take at
+    // most `bytes_per_s`. References must outlive this object.
     ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                 const AccuracyFigures& figures, MeshOutbox& outbox, Recorder& recorder,
                 const DeviceLinkIo& device, SessionCommands& commands, double bytes_per_s);
@@ -33,6 +35,7 @@ class ShowSession {
 
   private:
     bool publishNodes();
+    void publishStructures();
     void publishToolState(int64_t now_ns);
     void publishStatus();
     void publishSceneInfo();
@@ -41,11 +44,14 @@ class ShowSession {
     void log(const topics::Command& command, const std::string& result);
 
     Publisher& publisher_;
+    const scene::Scene& scene_;
     std::string scene_name_;
     MeshOutbox& outbox_;
     ByteBudget budget_;
     Pose X_VW_;
-    bool is_whole_ = false;  // all of the bone has been published
+    bool is_whole_ = false;                          // all of the bone has been published
+    double warning_distance_;                        // m, of structures
+    std::future<std::vector<NodeMesh>> structures_;  // under way, on a thread of its own; then invalid
     Recorder& recorder_;
     const DeviceLinkIo& device_;
     SessionCommands& commands_;

@@ -5,6 +5,7 @@
 
 #include "common/config/viewer_effects.h"
 #include "common/units.h"
+#include "haptic_server/effects/burr_probes.h"
 #include "haptic_server/setup/scene_effects.h"
 
 namespace bonemill {
@@ -45,6 +46,22 @@ void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info) {
         if (material.has_color()) *shown.mutable_color() = material.color();
         if (material.is_protected()) shown.set_is_protected(true);
     }
+}
+
+void describeBurr(const scene::Scene& scene, const Burr& burr, topics::SceneInfo& info) {
+    info.clear_burr_balls_m();
+    if (std::ranges::none_of(scene.material(), [](const auto& m) { return m.is_protected(); })) return;
+    for (const BurrProbe& probe : BurrProbes(burr)) {
+        for (const double coordinate : probe.center_T) info.add_burr_balls_m(float(coordinate));
+        info.add_burr_balls_m(float(probe.radius));
+    }
+}
+
+double warningDistanceOf(const scene::Effects& effects) {
+    const bool is_fixture_only = effects.has_virtual_fixture() && !effects.has_protected_structures();
+    return (is_fixture_only ? effects.virtual_fixture().distance_mm()
+                            : effects.protected_structures().warning_distance_mm()) *
+           kMillimetre;
 }
 
 ShownEffects::ShownEffects(const scene::Effects& effects)

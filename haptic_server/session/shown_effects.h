@@ -8,6 +8,7 @@
 #include "haptic_server/record/effect_statistics.h"
 #include "haptic_server/record/event_sum.h"
 #include "haptic_server/telemetry/recorded_effects.h"
+#include "haptic_server/tool/burr.h"
 #include "proto/scene.pb.h"
 #include "proto/topics.pb.h"
 
@@ -15,6 +16,14 @@ namespace bonemill {
 
 // Says what viewers have to know of effects and materials, and nothing if the scene lists none.
 void describeToViewers(const scene::Scene& scene, topics::SceneInfo& info);
+
+// Puts there from where on the burr the distance to protected structures is measured; nothing in a scene
+// without any.
+void describeBurr(const scene::Scene& scene, const Burr& burr, topics::SceneInfo& info);
+
+// The trainee is warned at this distance (m) of a structure: what the scene says, or else what it could have
+// said.
+double warningDistanceOf(const scene::Effects& effects);
 
 // This makes the effects part of the tool states of a session.
 class ShownEffects {

@@ -25,6 +25,8 @@ constexpr int kMostScenes = 64;
 constexpr size_t kMostPictureBytes = 64u << 10;
 constexpr int kMostAttempts = 256;
 constexpr int kMostStructures = 64;
+constexpr int kMostBurrBalls = 64;             // far more than stand for any burr
+constexpr double kLongestWarningDistance = 1;  // m
 
 template <class Field>
 bool isFinite(const Field& field) {
@@ -67,12 +69,21 @@ bool isUsable(const topics::Camera& camera) {
            camera.distance_m() >= 0 && isSane(camera.azimuth_rad()) && isSane(camera.elevation_rad());
 }
 
+bool areBalls(const google::protobuf::RepeatedField<float>& numbers) {
+    return numbers.size() % 4 == 0 && numbers.size() <= 4 * kMostBurrBalls &&
+           std::ranges::all_of(numbers, isSane);
+}
+
+bool isUsable(const topics::StructureMesh& structure) {
+    return structure.warning_distance_m() > 0 && structure.warning_distance_m() <= kLongestWarningDistance;
+}
+
 bool isUsable(const topics::SceneInfo& info) {
     return isVector(info.p_wv_m()) && isQuaternion(info.q_wv()) && isVector(info.bone_min_m()) &&
            isVector(info.bone_max_m()) && isSane(info.burr_radius_m()) && info.burr_radius_m() >= 0 &&
            info.tool_names_size() <= kMostTools && isDrawable(info.tool()) && isUsable(info.camera()) &&
-           info.materials_size() <= kMostShownMaterials && isWithinRanges(info.viewer_effects()) &&
-           std::ranges::all_of(info.materials(), isWithinRanges);
+           info.materials_size() <= kMostShownMaterials && areBalls(info.burr_balls_m()) &&
+           isWithinRanges(info.viewer_effects()) && std::ranges::all_of(info.materials(), isWithinRanges);
 }
 
 bool isUsable(const topics::EffectState& state) {
@@ -163,6 +174,9 @@ std::string shownName(const std::string& name) {
 constexpr size_t mostBytes(const topics::SceneInfo*) {
     return 64u << 20;
 }
+constexpr size_t mostBytes(const topics::StructureMesh*) {
+    return 4u << 20;
+}
 constexpr size_t mostBytes(const topics::ToolState*) {
     return 4u << 10;
 }
@@ -221,6 +235,16 @@ std::optional<DecodedNode> parseNode(std::span<const uint8_t> payload, uint32_t 
     if (!node || node->mesh.isEmpty() || node->mesh.revision != revision || node->tag.epoch == 0)
         return std::nullopt;
     return node;
+}
+
+std::optional<StructureSurface> parseStructure(std::span<const uint8_t> payload, uint32_t structure) {
+    const auto message = parseOfEpoch<topics::StructureMesh>(payload);
+    if (!message || structure == 0 || structure > uint32_t(kMostShownMaterials)) return std::nullopt;
+    std::optional<DecodedNode> node = decodeNodeMesh(message->surface(), structure);
+    if (!node || node->mesh.isEmpty() || node->tag.epoch != message->epoch() ||
+        std::max(node->mesh.vertices.size(), node->mesh.indices.size() / 3) > kMostStructureVertices)
+        return std::nullopt;
+    return StructureSurface{std::move(node->mesh), message->warning_distance_m(), message->epoch()};
 }
 
 std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload) {

@@ -14,6 +14,18 @@ namespace bonemill {
 // The node has at least one triangle. `leaf` and `revision` are those of the sample's envelope.
 std::optional<DecodedNode> parseNode(std::span<const uint8_t> payload, uint32_t leaf, uint32_t revision);
 
+// It is a protected structure's surface, as it was scanned.
+struct StructureSurface {
+    NodeMesh mesh;                // its leaf is the structure: 1 + its index in SceneInfo.materials
+    double warning_distance = 0;  // m, above 0
+    uint64_t epoch = 0;
+};
+inline constexpr size_t kMostStructureVertices = 100000;
+
+// It has at least one triangle, and no more than kMostStructureVertices; `structure` is that of the sample's
+// envelope.
+std::optional<StructureSurface> parseStructure(std::span<const uint8_t> payload, uint32_t structure);
+
 // Vectors have their length, numbers are finite, quaternions are of unit length, the tool's triangles name
 // vertices; of effects and materials only what scene_parts.h keeps, within the ranges of scene files.
 std::optional<topics::SceneInfo> parseSceneInfo(std::span<const uint8_t> payload);

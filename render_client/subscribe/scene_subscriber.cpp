@@ -5,8 +5,6 @@
 #include <random>
 #include <utility>
 
-#include "render_client/subscribe/payloads.h"
-
 namespace bonemill {
 namespace {
 
@@ -36,6 +34,7 @@ SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
       participant_(options.domain),
       node_reader_(participant_),
       scene_info_reader_(participant_),
+      structure_reader_(participant_),
       tool_state_reader_(participant_),
       status_reader_(participant_),
       lesson_reader_(participant_),
@@ -46,6 +45,7 @@ SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
       wait_set_(participant_) {
     wait_set_.add(node_reader_.handle());
     wait_set_.add(scene_info_reader_.handle());
+    wait_set_.add(structure_reader_.handle());
     wait_set_.add(tool_state_reader_.handle());
     wait_set_.add(status_reader_.handle());
     wait_set_.add(lesson_reader_.handle());
@@ -56,6 +56,7 @@ SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
     takeSceneInfo();
     takeStatus();
     takeLesson();
+    takeStructures();
     takeNodes(max_nodes);
     takeToolState();
     takeViewers();
@@ -104,6 +105,18 @@ void SceneSubscriber::takeSceneInfo() {
             if (scene_info_ && scene_info->revision() < scene_info_->revision()) return;
             scene_info_ = std::move(scene_info);
         });
+}
+
+void SceneSubscriber::takeStructures() {
+    structure_reader_.take(kMaxSmallSamples, [this](const dds::StructureMeshSample& sample,
+                                                    const dds::SampleInfo& info) {
+        if (!info.has_data || sample.session != options_.session) return;
+        std::optional<StructureSurface> structure = parseStructure(dds::payloadOf(sample), sample.structure);
+        if (!structure) return dropMalformed("structure " + std::to_string(sample.structure));
+        if (!enterEpoch(structure->epoch)) return;
+        structures_[sample.structure] = std::move(*structure);
+        ++structure_changes_;
+    });
 }
 
 void SceneSubscriber::takeToolState() {
@@ -186,6 +199,8 @@ bool SceneSubscriber::enterEpoch(uint64_t epoch) {
         tool_state_.reset();
         status_.reset();
         lesson_.reset();
+        structure_changes_ += !structures_.empty();
+        structures_.clear();
     }
     last_heard_ = std::chrono::steady_clock::now();
     return true;

@@ -19,6 +19,7 @@
 #include "proto/topics.pb.h"
 #include "render_client/subscribe/command_outbox.h"
 #include "render_client/subscribe/hand_speaker.h"
+#include "render_client/subscribe/payloads.h"
 #include "render_client/subscribe/scene_model.h"
 
 namespace bonemill {
@@ -50,6 +51,10 @@ class SceneSubscriber {
     const std::optional<topics::Status>& status() const noexcept { return status_; }
     // A server that shows another scene tells it anew.
     const std::optional<topics::Lesson>& lesson() const noexcept { return lesson_; }
+
+    // The protected structures of the current server run, by their number. The count changes with them.
+    const std::map<uint32_t, StructureSurface>& structures() const noexcept { return structures_; }
+    uint64_t structureChanges() const noexcept { return structure_changes_; }
 
     // Returns true when every node of the newest status is here, and no other. It is false in the short while
     // between a changed node and the status that counts it.
@@ -88,6 +93,7 @@ class SceneSubscriber {
     void takeLesson();
     void takeSceneInfo();
     void takeNodes(size_t max_nodes);
+    void takeStructures();
     void takeToolState();
     void takeViewers();
     bool enterEpoch(uint64_t epoch);
@@ -101,6 +107,8 @@ class SceneSubscriber {
     std::optional<topics::ToolState> tool_state_;
     std::optional<topics::Status> status_;
     std::optional<topics::Lesson> lesson_;
+    std::map<uint32_t, StructureSurface> structures_;
+    uint64_t structure_changes_ = 0;
     std::optional<std::chrono::steady_clock::time_point> last_heard_;
     bool has_ended_ = false;
     bool is_matched_ = false;  // with a server's writer, at the last poll()
@@ -115,6 +123,7 @@ class SceneSubscriber {
     dds::Participant participant_;
     dds::Reader<dds::NodeMeshSample> node_reader_;
     dds::Reader<dds::SceneInfoSample> scene_info_reader_;
+    dds::Reader<dds::StructureMeshSample> structure_reader_;
     dds::Reader<dds::ToolStateSample> tool_state_reader_;
     dds::Reader<dds::StatusSample> status_reader_;
     dds::Reader<dds::LessonSample> lesson_reader_;

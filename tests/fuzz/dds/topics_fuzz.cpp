@@ -2,6 +2,7 @@
 // speak), and what is accepted holds the promises that the renderer relies on.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <random>
 
@@ -50,8 +51,46 @@ TEST(TopicsFuzz, NodeMesh) {
     });
 }
 
+TEST(TopicsFuzz, StructureMesh) {
+    topics::StructureMesh structure;
+    structure.set_epoch(42);
+    structure.set_surface(encodeNodeMesh(syntheticNode(3, 1), {.epoch = 42}).bytes);
+    structure.set_warning_distance_m(2e-3);
+    const std::string valid = structure.SerializeAsString();
+    fuzz(valid, [](Bytes bytes) {
+        const auto parsed = parseStructure(bytes, 3);
+        if (!parsed) return false;
+        EXPECT_FALSE(parsed->mesh.isEmpty());
+        EXPECT_EQ(parsed->mesh.leaf, 3u);
+        EXPECT_LE(parsed->mesh.vertices.size(), kMostStructureVertices);
+        for (const uint32_t index : parsed->mesh.indices) EXPECT_LT(index, parsed->mesh.vertices.size());
+        EXPECT_TRUE(parsed->mesh.origin.allFinite() && parsed->mesh.step.allFinite());
+        EXPECT_TRUE(parsed->warning_distance > 0 && parsed->warning_distance <= 1);
+        return true;
+    });
+    const auto parsed = [&](const topics::StructureMesh& message, uint32_t id) {
+        const std::string bytes = message.SerializeAsString();
+        return parseStructure({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}, id).has_value();
+    };
+    EXPECT_TRUE(parsed(structure, 255));
+    EXPECT_FALSE(parsed(structure, 0)) << "no material";
+    EXPECT_FALSE(parsed(structure, 256)) << "more than a scene has";
+    topics::StructureMesh other = structure;
+    other.set_epoch(43);
+    EXPECT_FALSE(parsed(other, 3)) << "the surface of another run";
+    other = structure;
+    other.set_surface(encodeNodeMesh(syntheticNode(3, 1, 150000), {.epoch = 42}).bytes);
+    EXPECT_FALSE(parsed(other, 3)) << "too large to be searched";
+    for (const double distance : {0.0, -1.0, 1e300, std::nan("")}) {
+        other = structure;
+        other.set_warning_distance_m(distance);
+        EXPECT_FALSE(parsed(other, 3)) << distance;
+    }
+}
+
 topics::SceneInfo sceneInfoWithEffects() {
     topics::SceneInfo info = syntheticSceneInfo();
+    for (const float number : {0.f, 1e-3f, 0.f, 5e-4f}) info.add_burr_balls_m(number);
     info.mutable_viewer_effects()->mutable_bone_dust()->set_drag_time_ms(40);
     info.mutable_viewer_effects()->mutable_bone_dust()->set_most_grains(100);
     info.mutable_viewer_effects()->mutable_milling_sound()->set_idle_level(0.5);
@@ -86,6 +125,8 @@ TEST(TopicsFuzz, SceneInfo) {
             EXPECT_LE(material.name().size(), 64u);
         }
         EXPECT_FALSE(info->viewer_effects().has_energy_removal());
+        EXPECT_EQ(info->burr_balls_m_size() % 4, 0);
+        for (const float number : info->burr_balls_m()) EXPECT_TRUE(std::isfinite(number));
         return true;
     });
 }

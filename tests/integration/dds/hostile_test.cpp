@@ -29,6 +29,7 @@ TEST(HostilePayloads, AreCountedAndDroppedByClients) {
     dds::Writer<dds::NodeMeshSample> nodes(intruder);
     dds::Writer<dds::SceneInfoSample> scene_infos(intruder);
     dds::Writer<dds::StatusSample> statuses(intruder);
+    dds::Writer<dds::StructureMeshSample> structures(intruder);
     const std::string bytes = "\xff\x01 this is no message";
     const std::string nothing;
     auto node = garbage<dds::NodeMeshSample>(bytes);
@@ -38,7 +39,12 @@ TEST(HostilePayloads, AreCountedAndDroppedByClients) {
     ASSERT_TRUE(scene_infos.write(garbage<dds::SceneInfoSample>(bytes)));
     ASSERT_TRUE(statuses.write(garbage<dds::StatusSample>(bytes)));
 
-    ASSERT_TRUE(client.pollUntil([&] { return client.subscriber.malformedSamples() >= 6; }));
+    auto structure = garbage<dds::StructureMeshSample>(bytes);
+    structure.structure = 1;
+    ASSERT_TRUE(structures.write(structure));
+
+    ASSERT_TRUE(client.pollUntil([&] { return client.subscriber.malformedSamples() >= 7; }));
+    EXPECT_TRUE(client.subscriber.structures().empty());
     EXPECT_EQ(client.nodes.size(), 1u);
     EXPECT_TRUE(client.subscriber.isComplete());
     ASSERT_TRUE(publisher.publishNodes(std::vector{syntheticNode(1, 4)}).is_whole);

@@ -162,5 +162,26 @@ TEST(Publisher, IgnoresMeshesThatAreNotNewerAndCountsOnlyNodesWithAMesh) {
     EXPECT_EQ(publisher.digest(), NodeDigest());
 }
 
+// They are published once, so a late viewer must find them, and a new run must replace them.
+TEST(Structures, ComeToALateViewerAndGoWithTheirRun) {
+    const uint64_t epoch = 1'700'000'000'000'000'000;
+    auto first = std::make_unique<Publisher>(
+        PublisherOptions{.domain = testDomain(), .session = testSession(), .epoch = epoch});
+    ASSERT_TRUE(first->publishStructure(syntheticNode(2, 1), 2e-3));
+    ASSERT_TRUE(first->publishStructure(syntheticNode(5, 1), 2e-3));
+    ClientProbe late;
+    ASSERT_TRUE(late.pollUntil([&] { return late.subscriber.structures().size() == 2; }));
+    const StructureSurface& structure = late.subscriber.structures().at(2);
+    EXPECT_EQ(structure.mesh.indices.size(), syntheticNode(2, 1).indices.size());
+    EXPECT_EQ(structure.warning_distance, 2e-3);
+    const uint64_t changes = late.subscriber.structureChanges();
+    first.reset();
+    Publisher second({.domain = testDomain(), .session = testSession(), .epoch = epoch + 1});
+    ASSERT_TRUE(second.publishStructure(syntheticNode(5, 1), 3e-3));
+    ASSERT_TRUE(late.pollUntil([&] { return late.subscriber.structures().size() == 1; }));
+    EXPECT_EQ(late.subscriber.structures().at(5).warning_distance, 3e-3);
+    EXPECT_NE(late.subscriber.structureChanges(), changes);
+}
+
 }  // namespace
 }  // namespace bonemill

@@ -1,0 +1,209 @@
+#include "haptic_server/mesh/structure_mesher.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+
+#include "haptic_server/volume/marching_cubes_table.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int64_t kMostSamples = int64_t(1)
+                                 << 25;  // of a structure's box; a larger one is looked at coarsely
+constexpr float kMostMoved = 0.5f;       // voxels per axis, by smoothing
+constexpr float kSimplified = 0.06f;     // voxels that the surface may move by fewer triangles
+// A pass shrinks by the first factor and grows by the second: what bends slower than 1/kShrink + 1/kGrow
+// tells stays as it is.
+constexpr int kPasses = 60;
+constexpr float kShrink = 0.5f, kGrow = -0.508f;
+
+struct Surface {
+    std::vector<Eigen::Vector3f> positions;  // V, m
+    std::vector<uint32_t> indices;
+};
+
+std::array<IndexBox, kMostMaterials + 1> boxesOf(const BoneProperties& properties) {
+    std::array<IndexBox, kMostMaterials + 1> boxes;
+    const BrickMap bricks(properties.dims());
+    forEachIndex({Eigen::Vector3i::Zero(), bricks.bricksPerAxis().array() - 1},
+                 [&](const Eigen::Vector3i& brick) {
+                     const IndexBox voxels = bricks.voxelsOf(brick);
+                     if (properties.placeOf(voxels.min) == BrickMap::kNowhere) return;
+                     forEachIndex(voxels, [&](const Eigen::Vector3i& voxel) {
+                         boxes[properties.material(voxel)].include(voxel);
+                     });
+                 });
+    return boxes;
+}
+
+// Finds the surface between samples, every so many voxels, of one material and all others.
+class StructureSurface {
+  public:
+    StructureSurface(const BoneProperties& properties, MaterialId material, const IndexBox& box,
+                     const Eigen::Vector3d& spacing)
+        : stride_(strideOf(box)),
+          first_(box.min.array() - stride_),
+          size_((box.max - box.min) / stride_ + Eigen::Vector3i::Constant(4)),
+          step_((spacing * stride_).cast<float>()),
+          inside_(size_t(size_.cast<int64_t>().prod())) {
+        size_t at = 0;
+        forEachIndex({Eigen::Vector3i::Zero(), size_.array() - 1}, [&](const Eigen::Vector3i& sample) {
+            inside_[at++] = properties.material(first_ + stride_ * sample) == material;
+        });
+    }
+
+    const Eigen::Vector3f& step() const { return step_; }
+
+    Surface make() {
+        forEachIndex({Eigen::Vector3i::Zero(), size_.array() - 2}, [&](const Eigen::Vector3i& cell) {
+            int config = 0;
+            const size_t low = indexOf(cell);
+            for (int corner = 0; corner < 8; ++corner)
+                config |= int(inside_[low + cornerOffset(corner)]) << corner;
+            if (config == 0 || config == 255) return;
+            const CubeTriangles& triangles = cubeTriangles()[size_t(config)];
+            for (int t = 0; t < triangles.count; ++t)
+                for (const uint8_t edge : triangles.edges[size_t(t)])
+                    surface_.indices.push_back(vertexOn(cell, kCubeEdges[edge]));
+        });
+        return std::move(surface_);
+    }
+
+  private:
+    static int strideOf(const IndexBox& box) {
+        int stride = 1;
+        while (box.count() / (int64_t(stride) * stride * stride) > kMostSamples) ++stride;
+        return stride;
+    }
+    size_t indexOf(const Eigen::Vector3i& at) const {
+        return size_t(at.x()) + size_t(size_.x()) * (size_t(at.y()) + size_t(size_.y()) * size_t(at.z()));
+    }
+    size_t cornerOffset(int corner) const { return indexOf({corner & 1, corner >> 1 & 1, corner >> 2 & 1}); }
+    uint32_t vertexOn(const Eigen::Vector3i& cell, const CubeEdge& edge) {
+        const size_t place = indexOf(cell) + cornerOffset(edge.low_corner);
+        const auto [found, is_new] =
+            vertex_of_edge_.try_emplace(3 * place + edge.axis, uint32_t(surface_.positions.size()));
+        if (is_new) {
+            const int c = edge.low_corner;
+            Eigen::Vector3f sample = (cell + Eigen::Vector3i(c & 1, c >> 1 & 1, c >> 2 & 1)).cast<float>();
+            sample[edge.axis] += 0.5f;
+            const Eigen::Vector3f origin = first_.cast<float>().cwiseProduct(step_ / float(stride_));
+            surface_.positions.push_back(origin + sample.cwiseProduct(step_));
+        }
+        return found->second;
+    }
+
+    int stride_;
+    Eigen::Vector3i first_, size_;
+    Eigen::Vector3f step_;
+    std::vector<bool> inside_;
+    std::unordered_map<size_t, uint32_t> vertex_of_edge_;
+    Surface surface_;
+};
+
+// Each vertex has its neighbours in a row of `neighbours`, one per triangle: the surface is closed.
+struct Neighbours {
+    std::vector<uint32_t> first, neighbours;
+
+    explicit Neighbours(const Surface& surface) : first(surface.positions.size() + 1, 0) {
+        for (const uint32_t index : surface.indices) ++first[index + 1];
+        for (size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+        neighbours.resize(surface.indices.size());
+        std::vector<uint32_t> next(first.begin(), first.end() - 1);
+        for (size_t t = 0; t < surface.indices.size(); t += 3)
+            for (size_t corner = 0; corner < 3; ++corner)
+                neighbours[next[surface.indices[t + corner]]++] = surface.indices[t + (corner + 1) % 3];
+    }
+};
+
+void smooth(Surface& surface, const Eigen::Vector3f& step) {
+    const Neighbours around(surface);
+    const std::vector<Eigen::Vector3f> start = surface.positions;
+    std::vector<Eigen::Vector3f> moved(start.size());
+    const Eigen::Array3f most = kMostMoved * step.array();
+    for (int pass = 0; pass < 2 * kPasses; ++pass) {
+        const float factor = pass % 2 == 0 ? kShrink : kGrow;
+        for (size_t v = 0; v < start.size(); ++v) {
+            Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+            for (uint32_t n = around.first[v]; n < around.first[v + 1]; ++n)
+                sum += surface.positions[around.neighbours[n]];
+            const Eigen::Vector3f& p = surface.positions[v];
+            const Eigen::Vector3f middle = sum / float(around.first[v + 1] - around.first[v]);
+            const Eigen::Array3f away = (p + factor * (middle - p) - start[v]).array();
+            moved[v] = start[v] + away.max(-most).min(most).matrix();
+        }
+        surface.positions.swap(moved);
+    }
+}
+
+std::vector<Eigen::Vector3f> normalsOf(const Surface& surface) {
+    std::vector<Eigen::Vector3f> normals(surface.positions.size(), Eigen::Vector3f::Zero());
+    for (size_t t = 0; t < surface.indices.size(); t += 3) {
+        const uint32_t* corner = &surface.indices[t];
+        const Eigen::Vector3f& a = surface.positions[corner[0]];
+        const Eigen::Vector3f area =
+            (surface.positions[corner[1]] - a).cross(surface.positions[corner[2]] - a);
+        for (int i = 0; i < 3; ++i) normals[corner[i]] += area;
+    }
+    for (Eigen::Vector3f& normal : normals)
+        normal = normal.squaredNorm() > 0 ? normal.normalized() : Eigen::Vector3f::UnitZ();
+    return normals;
+}
+
+void simplify(Surface& surface, float most_moved) {
+    const auto reduce = [&surface](size_t triangles, float error) {
+        std::vector<uint32_t> fewer(surface.indices.size());
+        fewer.resize(meshopt_simplify(fewer.data(), surface.indices.data(), surface.indices.size(),
+                                      surface.positions[0].data(), surface.positions.size(),
+                                      sizeof(Eigen::Vector3f), 3 * triangles, error));
+        if (!fewer.empty()) surface.indices = std::move(fewer);
+    };
+    const float scale =
+        meshopt_simplifyScale(surface.positions[0].data(), surface.positions.size(), sizeof(Eigen::Vector3f));
+    reduce(0, most_moved / scale);
+    if (surface.indices.size() > 3 * kMostStructureTriangles) reduce(kMostStructureTriangles, 1);
+}
+
+NodeMesh packed(MaterialId material, const Surface& surface, const std::vector<Eigen::Vector3f>& normals) {
+    constexpr float kSteps = 65535;
+    Eigen::AlignedBox3f box;
+    for (const Eigen::Vector3f& p : surface.positions) box.extend(p);
+    NodeMesh mesh;
+    mesh.leaf = material;
+    mesh.revision = 1;
+    mesh.origin = box.min();
+    mesh.step.setConstant(box.sizes().maxCoeff() / kSteps);
+    mesh.indices = surface.indices;
+    for (size_t v = 0; v < surface.positions.size(); ++v) {
+        const Eigen::Array3f at = (surface.positions[v] - mesh.origin).array() / mesh.step.array();
+        const Eigen::Array3i steps = (at + 0.5f).max(0.0f).min(kSteps).cast<int>();
+        const OctahedralNormal normal = encodeNormal(normals[v]);
+        mesh.vertices.push_back(
+            {uint16_t(steps.x()), uint16_t(steps.y()), uint16_t(steps.z()), normal.u, normal.v});
+    }
+    return mesh;
+}
+
+}  // namespace
+
+std::vector<NodeMesh> meshStructures(const BoneProperties& properties, const MaterialTable& materials,
+                                     const Eigen::Vector3d& spacing) {
+    const auto boxes = boxesOf(properties);
+    std::vector<NodeMesh> meshes;
+    for (size_t id = 1; id < materials.size(); ++id) {
+        if (!materials[id].is_protected || boxes[id].isEmpty()) continue;
+        StructureSurface samples(properties, MaterialId(id), boxes[id], spacing);
+        Surface surface = samples.make();
+        if (surface.indices.empty()) continue;
+        smooth(surface, samples.step());
+        const std::vector<Eigen::Vector3f> normals = normalsOf(surface);
+        simplify(surface, kSimplified * samples.step().minCoeff());
+        meshes.push_back(packed(MaterialId(id), surface, normals));
+    }
+    return meshes;
+}
+
+}  // namespace bonemill
