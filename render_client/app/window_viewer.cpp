@@ -134,7 +134,7 @@ class WindowViewer {
         scene_.setWatchers(watchers(session));
         scene_.setFrameRate(frame_rate_.perSecond());
         scene_.draw(width, height, scaleOfText(width, height));
-        painter_.paint(panel_, width, height);
+        painter_.paint(panel_, scene_.viewWidth(width, height), height);
         if (wishes.save_picture) savePicture(width, height);
         window_.show();
         frame_rate_.countPicture(Clock::now());
@@ -165,8 +165,9 @@ class WindowViewer {
     void prepare(int width, int height) {
         const Clock::time_point now = Clock::now();
         const std::chrono::duration<double> seconds = now - std::exchange(last_picture_, now);
-        panel_.setPicture(width, height, scaleOfText(width, height), seconds.count());
-        hand_.lookAt(width, height);
+        const int view_width = scene_.viewWidth(width, height);
+        panel_.setPicture(view_width, height, scaleOfText(width, height), seconds.count());
+        hand_.lookAt(view_width, height);
     }
 
     void takeInput(int height, const SessionView& session, Wishes& wishes) {

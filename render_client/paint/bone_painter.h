@@ -16,6 +16,7 @@
 
 #include "render_client/model/material_palette.h"
 #include "render_client/model/node_store.h"
+#include "render_client/paint/ct_faces.h"
 #include "render_client/paint/film_painter.h"
 #include "render_client/paint/frame.h"
 
@@ -37,6 +38,8 @@ class BonePainter {
     void setPalette(const std::vector<Eigen::Vector4f>& colours);
     // From now on bone is drawn with this film, or as it is when null. The film must outlive its use.
     void setFilm(const FilmPainter* film) { film_ = film; }
+    // From now on the faces of cuts show the scan, or are plain when null. They must outlive their use.
+    void setFaces(const CtFaces* faces) { faces_ = faces; }
 
     // Returns how many bone triangles were inside the view volume of the last picture.
     size_t trianglesDrawn() const { return triangles_drawn_; }
@@ -65,6 +68,7 @@ class BonePainter {
     };
     std::unique_ptr<Coloured> coloured_;  // null: bone's own colour
     const FilmPainter* film_ = nullptr;
+    const CtFaces* faces_ = nullptr;
     size_t triangles_drawn_ = 0;
 };
 

@@ -130,7 +130,21 @@ uniform float grain_size;          // m
 uniform float opacity;
 out vec4 colour;
 
+#ifdef CT
+uniform sampler2D ct_x, ct_y, ct_z;  // of the cut across W's x, y, z: density where it is known; whether it is
+uniform mat4 ct_from_model[3];       // to the textures' (u, v)
+uniform vec2 grey_of_density;        // factor, and what is added
+
+vec2 ctAt(int cut, vec3 p_M) {
+    vec2 at = (ct_from_model[cut] * vec4(p_M, 1.0)).xy;
+    if (cut == 0) return textureLod(ct_x, at, 0.0).rg;
+    if (cut == 1) return textureLod(ct_y, at, 0.0).rg;
+    return textureLod(ct_z, at, 0.0).rg;
+}
+#endif
+
 void main() {
+    int cut = 0;
     vec3 ray = vec3((uv * 2.0 - 1.0) * tangents + vec2(shift, 0.0), -1.0);
     float entry = near_far.x;
     vec3 normal = vec3(0.0);
@@ -140,6 +154,7 @@ void main() {
         if (closing > 0.0 && crossing > entry) {
             entry = crossing;
             normal = -cut_planes[i].xyz;
+            cut = i;
         }
     }
     if (normal == vec3(0.0)) discard;  // the eye is inside the bone
@@ -165,6 +180,12 @@ void main() {
     // A section is read by its outline, not by its tilt towards the light.
     light = mix(light, vec3(1.25), 0.35);
     colour = vec4(toneMap(albedo * light * falloff(p_C) * 0.56), opacity);
+#ifdef CT
+    // Grey is as the window says, whatever the light; a shadow is hinted at.
+    vec2 ct = ctAt(cut, p_M);
+    float grey = clamp(ct.r / max(ct.g, 1e-3) * grey_of_density.x + grey_of_density.y, 0.0, 1.0);
+    colour.rgb = mix(colour.rgb, vec3(grey * mix(0.72, 1.0, visible)), smoothstep(0.0, 0.5, ct.g));
+#endif
     vec4 clip = clip_from_camera * vec4(p_C, 1.0);
     gl_FragDepth = clip.z / clip.w * 0.5 + 0.5;
 }

@@ -101,6 +101,12 @@ void HudPainter::paintLabels(const std::vector<HudLabel>& labels, const PictureS
     draw(canvas, picture);
 }
 
+void HudPainter::paintPanes(const std::vector<HudPane>& panes, const PictureSize& picture, float ui_scale) {
+    HudCanvas canvas(fontOf(std::round(kListText * usualFont(ui_scale).pixelHeight())).atlas);
+    for (const HudPane& pane : panes) layOutPane(canvas, pane);
+    draw(canvas, picture);
+}
+
 void HudPainter::draw(const HudCanvas& canvas, const PictureSize& picture) {
     const std::vector<HudCanvas::Vertex>& vertices = canvas.vertices();
     if (vertices.empty()) return;

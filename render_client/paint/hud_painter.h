@@ -9,6 +9,7 @@
 #include "render_client/gl/gl_object.h"
 #include "render_client/gl/program.h"
 #include "render_client/hud/hud_layout.h"
+#include "render_client/hud/pane_layout.h"
 
 namespace bonemill {
 
@@ -26,6 +27,9 @@ class HudPainter {
 
     // Draws names beside points of the picture.
     void paintLabels(const std::vector<HudLabel>& labels, const PictureSize& picture, float ui_scale);
+
+    // Writes on the panes with slices through the scan.
+    void paintPanes(const std::vector<HudPane>& panes, const PictureSize& picture, float ui_scale);
 
   private:
     struct Font {

@@ -43,7 +43,7 @@ void SceneRenderer::draw(const FrameView& view, NodeStore& nodes, const ToolMesh
     }
     if (film_) {
         bone_.setFilm(view.effects->shows_blood || view.effects->shows_water ? film_.get() : nullptr);
-        film_changed_.extend(film_->update(*view.effects));
+        look_changed_.extend(film_->update(*view.effects));
     }
     const bool is_quick = view.quality == Quality::kQuick;
     nodes.trackChanges(is_quick);
@@ -87,7 +87,7 @@ void SceneRenderer::drawQuick(const Frame& frame, const FrameView& view, NodeSto
                               const ToolMesh& tool, const PictureArea& area, GLuint target) {
     const PixelBox whole = PixelBox::whole(area.width, area.height);
     const PictureChanges::Dirty dirty = changes_.next(
-        frame, area.width, area.height, nodes.takeChanged().merged(std::exchange(film_changed_, {})),
+        frame, area.width, area.height, nodes.takeChanged().merged(std::exchange(look_changed_, {})),
         movingPixels(frame, view, tool));
     PixelBox part =
         dirty.all.isEmpty() ? dirty.all : dirty.all.grown(FramePasses::reach(area.height)).within(whole);

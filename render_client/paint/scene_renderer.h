@@ -45,6 +45,10 @@ class SceneRenderer {
     void setPalette(const std::vector<Eigen::Vector4f>& colours);
     // Makes what a scene's effects need to be drawn, and nothing else. Throws GlError.
     void prepare(const EffectNeeds& needs);
+    // As BonePainter::setFaces().
+    void setFaces(const CtFaces* faces) { bone_.setFaces(faces); }
+    // Bone looks different in that box (V) from the next picture on.
+    void hasChanged(const Eigen::AlignedBox3f& box_V) { look_changed_.extend(box_V); }
     // The next picture is drawn whole, also in quick quality.
     void drawWholeNext() { changes_.forget(); }
 
@@ -86,7 +90,7 @@ class SceneRenderer {
     std::unique_ptr<ParticlePainter> particles_;
     std::unique_ptr<RenderTargets> targets_;
     PictureChanges changes_;            // quick quality
-    Eigen::AlignedBox3f film_changed_;  // since the last quick picture
+    Eigen::AlignedBox3f look_changed_;  // since the last quick picture, and no triangle with it
     Camera last_camera_;                // of the last picture, for pick()
     Eigen::Vector2f last_near_far_ = Eigen::Vector2f::Zero();
 };

@@ -13,7 +13,7 @@ extern const char kNoise[];     // after kLighting, before those of bone and cap
 // its materials' colours.
 extern const char kMeshVertex[];
 extern const char kBoneFragment[];  // with `#define FILM`: blood and water lie on it
-extern const char kCapFragment[];   // the face of a cut
+extern const char kCapFragment[];   // the face of a cut; with `#define CT`: the scan's grey values on it
 
 // tool_shaders.cpp draws tool and ghost. Vertex attribute 0 is the position (T, m), 1 the normal.
 extern const char kToolVertex[];
@@ -37,6 +37,9 @@ extern const char kParticleFragment[];
 // marker_shaders.cpp draws the force arrow and the pointers.
 extern const char kMarkerVertex[];
 extern const char kMarkerFragment[];
+
+// slice_shaders.cpp draws a pane with a slice through the scan.
+extern const char kSliceFragment[];
 
 // hud_shaders.cpp draws boxes and glyphs over the picture.
 extern const char kHudVertex[];

@@ -46,6 +46,7 @@ RenderScene::RenderScene(const GlApi& gl, bool has_effects)
       renderer_(gl),
       anaglyph_(gl),
       hud_painter_(gl),
+      ct_(gl),
       gl_(gl) {}
 
 void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
@@ -206,13 +207,15 @@ void RenderScene::showTool(FrameView& view) const {
     view.is_lit_from_eye = true;
 }
 
-void RenderScene::draw(int width, int height, float ui_scale, GLuint target) {
+void RenderScene::draw(int full_width, int height, float ui_scale, GLuint target) {
+    const int width = viewWidth(full_width, height);
     const bool is_divided = settings_.stereo == StereoMode::kSideBySide;
     if (view_pending_) applyFirstView(double(is_divided ? width / 2 : width) / height);
     hud_input_.node_count = nodes_.nodeCount();
     hud_input_.events = events_.show(EventLatch::Clock::now());
     lookForFaults();
     can_pick_ = settings_.stereo == StereoMode::kOff;
+    updateCt(full_width, height);
     FrameView view = makeView();
     view.effects = effectPicture();
     const PictureArea whole{0, width, height};
@@ -228,7 +231,23 @@ void RenderScene::draw(int width, int height, float ui_scale, GLuint target) {
             drawAnaglyph(view, width, height, ui_scale, target);
             break;
     }
+    paintPanes(full_width, height, ui_scale, target);
     gl_.check("drawing the head-up display");
+}
+
+void RenderScene::updateCt(int width, int height) {
+    CtShow::View view{settings_, X_WV_, bone_W(), std::nullopt, width, height};
+    if (hud_input_.tool)
+        if (const auto X_WT = readPose(hud_input_.tool->p_wt_m(), hud_input_.tool->q_wt()))
+            view.burr = SliceBurr{X_WT->position, burrRadius()};
+    renderer_.hasChanged(ct_.update(view));
+    renderer_.setFaces(ct_.faces());
+}
+
+void RenderScene::paintPanes(int width, int height, float ui_scale, GLuint target) {
+    if (!ct_.panes()) return;
+    ct_.paintPanes(target);
+    hud_painter_.paintPanes(ct_.texts(), {width, height}, ui_scale);
 }
 
 std::optional<Eigen::Vector3d> RenderScene::pick(int x, int y) const {

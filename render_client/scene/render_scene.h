@@ -24,6 +24,7 @@
 #include "render_client/paint/anaglyph.h"
 #include "render_client/paint/hud_painter.h"
 #include "render_client/paint/scene_renderer.h"
+#include "render_client/scene/ct_show.h"
 
 namespace bonemill {
 
@@ -93,6 +94,14 @@ class RenderScene {
     // Returns where the device's hand is, if a tool state has told.
     std::optional<Pose> devicePose() const;
 
+    // Takes the scan's densities, and says which of them are wanted. It has a scene's grid or none.
+    DensityStore& densities() { return ct_.store(); }
+    // Returns the panes of the last picture; nothing while none are shown.
+    const CtShow& ct() const { return ct_; }
+    // Returns how many columns of a picture of this size (pixels) the bone has; panes stand at the right of
+    // it.
+    int viewWidth(int width, int height) const { return width - paneColumns(settings_, width, height); }
+
     size_t nodeCount() const { return nodes_.nodeCount(); }
     size_t triangleCount() const { return nodes_.triangleCount(); }
     size_t trianglesDrawn() const { return renderer_.trianglesDrawn(); }
@@ -116,6 +125,8 @@ class RenderScene {
     bool followsTool() const;
     FrameView makeView() const;
     void showTool(FrameView& view) const;
+    void updateCt(int width, int height);
+    void paintPanes(int width, int height, float ui_scale, GLuint target);
     void drawEye(FrameView view, const Camera& camera, const PictureArea& area, float ui_scale,
                  GLuint target);
     void drawSideBySide(const FrameView& view, int width, int height, float ui_scale, GLuint target);
@@ -129,6 +140,7 @@ class RenderScene {
     SceneRenderer renderer_;
     Anaglyph anaglyph_;
     HudPainter hud_painter_;
+    CtShow ct_;
     HudInput hud_input_;
     bool awaits_info_ = true;  // nothing has told the scene of this run of the server yet
     // These came before the scene info said whether effects need them.

@@ -84,16 +84,29 @@ SlicePlane slicePlane(const Pose& X_WV, size_t axis, const Vector3d& middle_W, d
     return plane;
 }
 
+// The pixels of a scan that does not lie oblique are its voxels, so that nothing is blurred.
 SlicePlane facePlane(const DensityGrid& grid, const Pose& X_WV, size_t axis, double position_W,
                      const Eigen::AlignedBox3d& box_W, int most) {
     const SliceView& view = sliceViewOf(axis);
-    const double across = std::abs(view.right_W.dot(box_W.sizes())),
-                 along = std::abs(view.down_W.dot(box_W.sizes()));
-    const double step = std::max(grid.spacing_m.minCoeff(), std::max(across, along) / (most - 2));
     Vector3d middle_W = box_W.center();
     middle_W[Eigen::Index(axis)] = position_W;
-    return slicePlane(X_WV, axis, middle_W, step, int(std::ceil(across / step)) + 2,
-                      int(std::ceil(along / step)) + 2);
+    double steps[2];
+    int pixels[2];
+    for (const int side : {0, 1}) {
+        Eigen::Index along = 0;
+        (side == 0 ? view.right_W : view.down_W).cwiseAbs().maxCoeff(&along);
+        const double extent = box_W.sizes()[along];
+        steps[side] = std::max(sliceStep(grid, X_WV, size_t(along)), extent / (most - 4));
+        pixels[side] = 2 * int(std::ceil(extent / steps[side] / 2)) + 3;  // odd: a voxel is in the middle
+        middle_W[along] = nearestSlice(grid, X_WV, size_t(along), middle_W[along]);
+    }
+    SlicePlane plane = slicePlane(X_WV, axis, middle_W, 1, 1, 1);
+    plane.right_V *= steps[0];
+    plane.down_V *= steps[1];
+    plane.width = pixels[0];
+    plane.height = pixels[1];
+    plane.corner_V -= (plane.width - 1) / 2 * plane.right_V + (plane.height - 1) / 2 * plane.down_V;
+    return plane;
 }
 
 std::vector<uint32_t> bricksOf(const DensityGrid& grid, const SlicePlane& plane) {

@@ -43,8 +43,8 @@ double nearestSlice(const DensityGrid& grid, const Pose& X_WV, size_t axis, doub
 SlicePlane slicePlane(const Pose& X_WV, size_t axis, const Eigen::Vector3d& middle_W, double metres_per_pixel,
                       int width, int height);
 
-// Returns the plane across that axis of W that covers the box in steps of about a voxel, with at most
-// `most` pixels per side.
+// Returns the plane across that axis of W that covers the box in steps of a voxel, or larger ones where
+// that took more than `most` pixels per side.
 SlicePlane facePlane(const DensityGrid& grid, const Pose& X_WV, size_t axis, double position_W,
                      const Eigen::AlignedBox3d& box_W, int most);
 

@@ -69,15 +69,30 @@ TEST(SlicePlane, AsksForTheBricksThatItShows) {
 
 TEST(SlicePlane, AFaceCoversTheBoxInStepsOfAVoxel) {
     const SlicedVolume volume;
-    const Pose X_WV = test::turned({0.5, -0.3, 0.9});
-    const Eigen::AlignedBox3d box = scanBox_W(volume.grid, X_WV);
-    const SlicePlane fine = facePlane(volume.grid, X_WV, 1, box.center().y(), box, 4096);
-    EXPECT_NEAR(fine.right_V.norm(), 4e-4, 1e-12);
-    EXPECT_GE(fine.width * fine.right_V.norm(), box.sizes().x());
-    EXPECT_GE(fine.height * fine.down_V.norm(), box.sizes().z());
-    const SlicePlane coarse = facePlane(volume.grid, X_WV, 1, box.center().y(), box, 20);
-    EXPECT_LE(std::max(coarse.width, coarse.height), 20);
-    EXPECT_NEAR((X_WV * fine.corner_V).y(), box.center().y(), 1e-12);
+    for (const Vector3d& rotation : {Vector3d(0, 0, 0), Vector3d(0.5, -0.3, 0.9)}) {
+        const Pose X_WV = test::turned(rotation);
+        const Eigen::AlignedBox3d box = scanBox_W(volume.grid, X_WV);
+        const SlicePlane fine = facePlane(volume.grid, X_WV, 1, box.center().y(), box, 4096);
+        EXPECT_NEAR(fine.right_V.norm(), sliceStep(volume.grid, X_WV, 0), 1e-12);
+        EXPECT_NEAR(fine.down_V.norm(), sliceStep(volume.grid, X_WV, 2), 1e-12);
+        for (const auto& [column, row] : {std::pair(0, 0), std::pair(fine.width - 1, fine.height - 1)}) {
+            const Vector3d corner_W = X_WV * (fine.corner_V + column * fine.right_V + row * fine.down_V);
+            EXPECT_NEAR(corner_W.y(), box.center().y(), 1e-12);
+            const double beyond_x = column == 0 ? box.min().x() - corner_W.x() : corner_W.x() - box.max().x();
+            const double beyond_z = row == 0 ? corner_W.z() - box.max().z() : box.min().z() - corner_W.z();
+            EXPECT_GE(std::min(beyond_x, beyond_z), 0);
+            EXPECT_LE(std::max(beyond_x, beyond_z), 3 * 7e-4);
+        }
+        const SlicePlane coarse = facePlane(volume.grid, X_WV, 1, box.center().y(), box, 20);
+        EXPECT_LE(std::max(coarse.width, coarse.height), 20);
+        EXPECT_GE(coarse.width * coarse.right_V.norm(), box.sizes().x());
+    }
+    // The pixels are the scan's own voxels.
+    const Eigen::AlignedBox3d part(Vector3d(3e-3, 1e-3, 2e-3), Vector3d(9e-3, 7e-3, 8e-3));
+    const SlicePlane plane = facePlane(volume.grid, Pose(), 2, 5e-3, part, 4096);
+    const Vector3d voxel = (plane.corner_V - volume.grid.origin_m).cwiseQuotient(volume.grid.spacing_m);
+    EXPECT_NEAR(voxel.x(), std::round(voxel.x()), 1e-9);
+    EXPECT_NEAR(voxel.y(), std::round(voxel.y()), 1e-9);
 }
 
 }  // namespace

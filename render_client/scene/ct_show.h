@@ -1,0 +1,83 @@
+// Shows the scan: three panes with slices, and grey values on the faces of cuts. It asks the store for the
+// bricks that this takes, and for none where nothing of it is shown.
+//
+// It belongs to the thread of the context. The frames are W (world) and V (volume); the units are m.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "render_client/camera/cut_planes.h"
+#include "render_client/densities/density_store.h"
+#include "render_client/hud/pane_layout.h"
+#include "render_client/paint/ct_faces.h"
+#include "render_client/paint/slice_painter.h"
+#include "render_client/slices/panes.h"
+
+namespace bonemill {
+
+class CtShow {
+  public:
+    explicit CtShow(const GlApi& gl) : gl_(gl) {}
+
+    DensityStore& store() { return store_; }
+
+    struct View {
+        const ViewSettings& settings;
+        Pose X_WV;
+        Eigen::AlignedBox3d bone_W;  // empty: nothing is known
+        std::optional<SliceBurr> burr;
+        int width, height;  // of the whole picture, pixels
+    };
+    // Brings panes and faces up to date, and wants what they show. Returns the box (V) in which faces look
+    // different now. Throws GlError when the driver refuses a shader or a texture.
+    Eigen::AlignedBox3f update(const View& view);
+
+    // Returns what the faces of cuts show; null where they are plain.
+    const CtFaces* faces() const { return shows_faces_ ? faces_.get() : nullptr; }
+
+    // Draws the panes of the last update() into their columns of the picture (`target`), if there are any.
+    void paintPanes(GLuint target) const;
+    // Returns what is written on them.
+    std::vector<HudPane> texts() const;
+
+    // Returns the panes of the last update(), for the mouse; none are shown while it is empty.
+    const std::optional<std::array<Pane, 3>>& panes() const { return panes_; }
+    // Returns the window in force, if there is a scan.
+    std::optional<GreyWindow> window() const { return window_; }
+
+  private:
+    // One plane through the scan, and what of it was there when it was looked at last.
+    struct Slice {
+        SlicePlane plane;
+        std::vector<uint32_t> bricks;
+        SliceImage image;
+        uint64_t changes = 0;
+        bool is_known = false;
+    };
+    // Returns true when the image is another one now.
+    bool look(Slice& slice, const SlicePlane& plane);
+    void updatePanes(const View& view);
+    Eigen::AlignedBox3f updateFaces(const View& view);
+    void showNoGrid(const View& view);
+    void wantAll();
+    const DensitySampler& sampler();
+
+    const GlApi& gl_;
+    DensityStore store_;
+    std::optional<DensityGrid> grid_;        // of the last update
+    std::optional<DensitySampler> sampler_;  // of this update
+    std::unique_ptr<SlicePainter> painter_;
+    std::unique_ptr<CtFaces> faces_;
+    bool shows_faces_ = false;
+    std::optional<std::array<Pane, 3>> panes_;
+    std::array<bool, 3> are_scrolled_{};
+    std::array<std::optional<Slice>, 3> pane_slices_, face_slices_;
+    std::array<std::optional<GreyWindow>, 3> painted_;  // the window that each pane's pixels have
+    std::optional<GreyWindow> window_;
+    int columns_ = 0, width_ = 0, height_ = 0;
+};
+
+}  // namespace bonemill
