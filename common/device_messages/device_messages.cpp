@@ -61,4 +61,11 @@ bool isPlausible(const DeviceCapabilities& capabilities) noexcept {
            isNoneOrWithin(capabilities.workspace_radius, 1e-9, 1e6) && isPlausible(capabilities.handle);
 }
 
+bool isPlausible(const SceneNotice& notice) noexcept {
+    const char* const end = std::find(std::begin(notice.path), std::end(notice.path), '\0');
+    const auto is_control = [](char c) { return (unsigned char)c < ' ' || c == 127; };
+    return notice.revision != 0 && notice.path[0] == '/' && end != std::end(notice.path) &&
+           std::none_of(std::begin(notice.path), end, is_control);
+}
+
 }  // namespace bonemill

@@ -1,4 +1,4 @@
-// device_daemon and haptic_server say this to each other through shared memory (layout 3).
+// device_daemon and haptic_server say this to each other through shared memory (layout 4).
 //
 // The frames are D, the device's base, and T, the tool frame of the handle. Units are m, N, N·m; stamps are
 // CLOCK_MONOTONIC ns of this machine. Everything here is RT-safe.
@@ -25,6 +25,9 @@ struct DeviceSample {
     uint32_t stop_cause;   // StopCause: the first one since the last reset
     uint32_t fault_code;   // the device's own number, with StopCause::kDeviceFault
     uint32_t reset_count;  // how often the device was reset
+    // It was measured with this scene's device and scale (SceneNotice::revision); 0 before any.
+    uint32_t scene_revision;
+    uint32_t reserved;
 };
 
 struct WrenchCommand {
@@ -34,7 +37,16 @@ struct WrenchCommand {
     double t_hand_D[3];         // on the hand, about the handle's tool point
     uint64_t answers_sequence;  // of the DeviceSample this wrench answers
     uint32_t reset_orders;      // counts a user's orders to reset the device; a new number is a new order
+    uint32_t scene_revision;    // as in DeviceSample: each side ignores what belongs to another scene
+};
+
+// The server says so which scene is in force. The daemon reads the file, and goes by it only if it is the one
+// that the server has read.
+struct SceneNotice {
+    uint64_t hash;      // sceneHashOf()
+    uint32_t revision;  // 1, 2, ...: set by the link; a new number is a new scene, or a server started anew
     uint32_t reserved;
+    char path[1024];  // absolute; ends with 0
 };
 
 // This is what moves with the handle, and how late the device is. The server fits the coupling to it
@@ -102,16 +114,18 @@ enum DeviceAbility : uint32_t {
 };
 
 static_assert(std::is_trivially_copyable_v<DeviceSample> && std::is_standard_layout_v<DeviceSample>);
-static_assert(sizeof(DeviceSample) == 144 && offsetof(DeviceSample, p_DT) == 16 &&
+static_assert(sizeof(DeviceSample) == 152 && offsetof(DeviceSample, p_DT) == 16 &&
               offsetof(DeviceSample, q_DT) == 40 && offsetof(DeviceSample, v_DT) == 72 &&
               offsetof(DeviceSample, w_DT) == 96 && offsetof(DeviceSample, buttons) == 120 &&
               offsetof(DeviceSample, flags) == 124 && offsetof(DeviceSample, state) == 128 &&
               offsetof(DeviceSample, stop_cause) == 132 && offsetof(DeviceSample, fault_code) == 136 &&
-              offsetof(DeviceSample, reset_count) == 140);
+              offsetof(DeviceSample, reset_count) == 140 && offsetof(DeviceSample, scene_revision) == 144);
 static_assert(std::is_trivially_copyable_v<WrenchCommand> && std::is_standard_layout_v<WrenchCommand>);
 static_assert(sizeof(WrenchCommand) == 80 && offsetof(WrenchCommand, f_hand_D) == 16 &&
               offsetof(WrenchCommand, t_hand_D) == 40 && offsetof(WrenchCommand, answers_sequence) == 64 &&
-              offsetof(WrenchCommand, reset_orders) == 72);
+              offsetof(WrenchCommand, reset_orders) == 72 && offsetof(WrenchCommand, scene_revision) == 76);
+static_assert(std::is_trivially_copyable_v<SceneNotice> && std::is_standard_layout_v<SceneNotice>);
+static_assert(sizeof(SceneNotice) == 1040 && offsetof(SceneNotice, path) == 16);
 static_assert(std::is_trivially_copyable_v<DeviceCapabilities> &&
               std::is_standard_layout_v<DeviceCapabilities>);
 static_assert(sizeof(HandleDynamics) == 64 && sizeof(DeviceCapabilities) == 160 &&
@@ -140,5 +154,7 @@ bool isPlausible(const WrenchCommand& command) noexcept;
 // Tells whether the server may adapt to it: its text ends, its kind is known, and its figures are finite and
 // not negative.
 bool isPlausible(const DeviceCapabilities& capabilities) noexcept;
+// Tells whether the daemon may look for the file: its path is absolute, ends, and can stand in a log.
+bool isPlausible(const SceneNotice& notice) noexcept;
 
 }  // namespace bonemill

@@ -14,6 +14,7 @@
 #include "common/ipc/link_layout.h"
 #include "common/rt/clock.h"
 #include "common/units.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {
@@ -98,19 +99,9 @@ class Setup {
     bool owns_side_;
 };
 
-LinkSegment joinPeer(const LinkPlace& place, LinkSide side, uint64_t scene_hash) {
-    LinkSegment memory = LinkSegment::join(place, side);
-    const LinkSide peer = peerOf(side);
-    if (slotOf(*memory, peer).scene_hash.load(std::memory_order_relaxed) != scene_hash) {
-        place.refuse(std::string(programOf(peer)) + " has read another scene than this " + programOf(side) +
-                     ": start both with the same --scene, or choose another --session");
-    }
-    return memory;
-}
-
 }  // namespace
 
-DeviceLink DeviceLink::create(uint32_t session, LinkSide side, uint64_t scene_hash) {
+DeviceLink DeviceLink::create(uint32_t session, LinkSide side) {
     const LinkPlace place(session);
     const LinkSemaphores semaphores = beginSetup(place, monotonicNowNs() + kPatience_ns);
     Setup setup(semaphores, side);
@@ -120,8 +111,7 @@ DeviceLink DeviceLink::create(uint32_t session, LinkSide side, uint64_t scene_ha
                      ") uses it; stop that one or choose another --session");
     }
     LinkSegment memory =
-        semaphores.isTaken(peerOf(side)) ? joinPeer(place, side, scene_hash) : LinkSegment::make(place);
-    slotOf(*memory, side).scene_hash.store(scene_hash, std::memory_order_relaxed);
+        semaphores.isTaken(peerOf(side)) ? LinkSegment::join(place, side) : LinkSegment::make(place);
     setup.leaveSideToLink();
     return {side, semaphores, std::move(memory)};
 }
@@ -176,6 +166,28 @@ bool DeviceLink::readCapabilities(DeviceCapabilities& capabilities) noexcept {
         return false;
     capabilities_version_ = version;
     capabilities = newest;
+    return true;
+}
+
+uint32_t DeviceLink::announceScene(const std::string& absolute_path, uint64_t hash) {
+    SceneNotice notice{};
+    if (absolute_path.size() >= sizeof notice.path)
+        throw UserError(absolute_path + ": the path is too long for device_daemon to be told of; " +
+                        std::to_string(sizeof notice.path - 1) + " letters at most");
+    memory_->scene.value.tryRead(notice);
+    const uint32_t revision = notice.revision + 1 == 0 ? 1 : notice.revision + 1;
+    notice = {};
+    notice.hash = hash;
+    notice.revision = revision;
+    std::copy(absolute_path.begin(), absolute_path.end(), notice.path);
+    memory_->scene.value.write(notice);
+    return revision;
+}
+
+bool DeviceLink::readScene(SceneNotice& notice) const noexcept {
+    SceneNotice newest;
+    if (!memory_->scene.value.tryRead(newest) || !isPlausible(newest)) return false;
+    notice = newest;
     return true;
 }
 

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "common/device_messages/device_messages.h"
 #include "common/ipc/link_segment.h"
@@ -27,9 +28,9 @@ class DeviceLink {
   public:
     // Creates the memory or attaches to it: a living peer's content is kept, that of the dead makes way for
     // empty memory. Throws UserError when what lies there is another user's, open to others or no link's, the
-    // peer was built with another layout or has read another scene, a living process has taken this side, or
+    // peer was built with another layout, a living process has taken this side, or
     // one is stuck while it starts.
-    static DeviceLink create(uint32_t session, LinkSide side, uint64_t scene_hash);
+    static DeviceLink create(uint32_t session, LinkSide side);
 
     DeviceLink(DeviceLink&&) noexcept = default;
     DeviceLink& operator=(DeviceLink&&) = delete;
@@ -56,6 +57,13 @@ class DeviceLink {
     // call.
     void writeCapabilities(const DeviceCapabilities& capabilities) noexcept;
     bool readCapabilities(DeviceCapabilities& capabilities) noexcept;
+
+    // For the server: says that this scene is in force, and returns its revision. Throws UserError if the
+    // path is too long. It is not RT-safe; any one thread may call it beside the tick.
+    uint32_t announceScene(const std::string& absolute_path, uint64_t hash);
+    // For the daemon: reads what was announced last; false if nothing plausible was. Any thread may call it
+    // beside the loop.
+    bool readScene(SceneNotice& notice) const noexcept;
 
     // Says "this process runs" where there is nothing to write. Every write beats, too.
     void beat(int64_t now_ns) noexcept;

@@ -15,7 +15,7 @@
 namespace bonemill {
 
 inline constexpr uint64_t kLinkMagic = 0x4b4e494c4c494d42;  // "BMILLINK" in memory
-inline constexpr uint32_t kLinkLayoutVersion = 3;
+inline constexpr uint32_t kLinkLayoutVersion = 4;
 
 // The set of semaphores with the memory's key: 0 is free, 1 is held.
 enum LinkSemaphore : unsigned short { kSetupSemaphore = 0, kServerSemaphore = 1, kDaemonSemaphore = 2 };
@@ -30,7 +30,6 @@ struct LinkHeader {
 struct LinkPeer {
     std::atomic<int64_t> heartbeat_ns;
     std::atomic<uint64_t> last_sequence;  // of what this side wrote; a restarted process counts on from it
-    std::atomic<uint64_t> scene_hash;     // of the scene that this side has read
 };
 
 template <class T>
@@ -46,14 +45,15 @@ struct LinkMemory {
     LinkChannel<DeviceSample> sample;
     LinkChannel<WrenchCommand> command;
     LinkChannel<DeviceCapabilities> capabilities;
+    LinkChannel<SceneNotice> scene;
 };
 static_assert(std::is_standard_layout_v<LinkMemory>);
 static_assert(sizeof(LinkHeader) == 16 && offsetof(LinkHeader, layout_version) == 8 &&
               offsetof(LinkHeader, size) == 12);
-static_assert(sizeof(LinkPeer) == 24 && sizeof(LinkChannel<DeviceSample>) == 192);
+static_assert(sizeof(LinkPeer) == 16 && sizeof(LinkChannel<DeviceSample>) == 192);
 static_assert(offsetof(LinkMemory, header) == 0 && offsetof(LinkMemory, server) == 16 &&
-              offsetof(LinkMemory, daemon) == 40 && offsetof(LinkMemory, sample) == 64 &&
+              offsetof(LinkMemory, daemon) == 32 && offsetof(LinkMemory, sample) == 64 &&
               offsetof(LinkMemory, command) == 256 && offsetof(LinkMemory, capabilities) == 384 &&
-              sizeof(LinkMemory) == 576);
+              offsetof(LinkMemory, scene) == 576 && sizeof(LinkMemory) == 1664);
 
 }  // namespace bonemill

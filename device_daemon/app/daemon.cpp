@@ -29,18 +29,21 @@ DeviceLoopConfig loopConfigOf(const DeviceSetup& setup, const DaemonOptions& opt
 
 }  // namespace
 
-Daemon::Daemon(const DeviceSetup& setup, const DaemonOptions& options, HapticDevice& device,
-               ChildProgram* program, const StopSignals& stop_signals)
-    : setup_(setup),
+Daemon::Daemon(const FollowedScene& scene, const DaemonOptions& options, HapticDevice& device,
+               ChildProgram* program, const StopSignals& stop_signals, DeviceLink& link,
+               LoopStatistics& statistics)
+    : scene_(scene),
       options_(options),
       device_(device),
       program_(program),
       stop_signals_(stop_signals),
-      loop_(device, loopConfigOf(setup, options)),
-      link_(DeviceLink::create(options.session, LinkSide::kDaemon, setup.scene_hash)),
-      period_ns_(std::llround(kNsPerSecond / setup.rate_hz)) {}
+      loop_(device, loopConfigOf(scene.setup, options)),
+      link_(link),
+      period_ns_(std::llround(kNsPerSecond / scene.setup.rate_hz)),
+      scene_revision_(scene.revision),
+      statistics_(statistics) {}
 
-void Daemon::run() {
+Daemon::End Daemon::run() {
     RealtimeThread loop_thread(
         {.request = {.core = options_.core},
          .is_strict = options_.is_strict_realtime,
@@ -59,6 +62,7 @@ void Daemon::run() {
         throw;
     }
     end();
+    return is_scene_over_ && !should_stop_ ? End::kOtherScene : End::kLeft;
 }
 
 void Daemon::runLoop() {
@@ -82,11 +86,11 @@ void Daemon::runLoop() {
             is_ending_ = true;  // what happens now is its own doing
         }
     }
-    sayGoodbye();
+    if (!is_scene_over_ || should_stop_) sayGoodbye();
     loop_.blackBox().finish();
-    statistics_.wall_time = secondsOfNs(monotonicNowNs() - start_ns);
-    statistics_.missed_periods = timer.missedPeriods();
-    statistics_.unheard_periods = loop_.unheardPeriods();
+    statistics_.wall_time += secondsOfNs(monotonicNowNs() - start_ns);
+    statistics_.missed_periods += timer.missedPeriods();
+    statistics_.unheard_periods += loop_.unheardPeriods();
     statistics_.final_state = nameOf(loop_.safety().state());
     progress_.is_finished = true;
 }
@@ -98,7 +102,8 @@ void Daemon::tick(int64_t instant_ns, double elapsed) noexcept {
     DeviceSample sample;
     if (loop_.read(woke_ns, elapsed, sample)) publish(sample);
     WrenchCommand command;
-    const bool has_command = link_.readCommand(command);
+    const bool has_command = link_.readCommand(command) &&
+                             command.scene_revision == scene_revision_.load(std::memory_order_relaxed);
     if (has_command) noteAttached(command);
     // What an earlier run left in the memory answers earlier samples.
     const bool is_for_us = has_command && progress_.is_attached.load(std::memory_order_relaxed);
@@ -120,6 +125,7 @@ void Daemon::publish(DeviceSample& sample) noexcept {
         capabilities_version_ = device_.capabilitiesVersion();
         link_.writeCapabilities(device_.capabilities());
     }
+    sample.scene_revision = scene_revision_.load(std::memory_order_relaxed);
     last_sequence_ = link_.writeSample(sample);
     last_sample_ = sample;
     if (first_sequence_ == 0) first_sequence_ = last_sequence_;
@@ -137,7 +143,7 @@ void Daemon::noteAttached(const WrenchCommand& command) noexcept {
     const bool answers_this_run = first_sequence_ != 0 && command.answers_sequence >= first_sequence_ &&
                                   command.answers_sequence <= last_sequence_;
     if (!answers_this_run || progress_.is_attached.load(std::memory_order_relaxed)) return;
-    attached_ns_ = monotonicNowNs();
+    if (statistics_.attached_ns == 0) statistics_.attached_ns = monotonicNowNs();
     progress_.is_attached.store(true, std::memory_order_relaxed);
 }
 
@@ -167,14 +173,14 @@ void Daemon::recordTick(const WrenchCommand* command) noexcept {
 }
 
 bool Daemon::shouldEnd() const noexcept {
-    const bool is_over = options_.seconds && attached_ns_ != 0 &&
-                         secondsOfNs(monotonicNowNs() - attached_ns_) > *options_.seconds;
+    const bool is_over = options_.seconds && statistics_.attached_ns != 0 &&
+                         secondsOfNs(monotonicNowNs() - statistics_.attached_ns) > *options_.seconds;
     return is_over || should_stop_.load(std::memory_order_relaxed) ||
-           (loop_.reading().status & kStatusLeaving);
+           is_scene_over_.load(std::memory_order_relaxed) || (loop_.reading().status & kStatusLeaving);
 }
 
 void Daemon::watch() {
-    spdlog::info("device loop runs at {} Hz, session {}; waiting for haptic_server", setup_.rate_hz,
+    spdlog::info("device loop runs at {} Hz, session {}; waiting for haptic_server", scene_.setup.rate_hz,
                  options_.session);
     const double give_up_s = options_.wait_seconds.value_or(kForEver);
     const int64_t start_ns = monotonicNowNs();
@@ -186,6 +192,7 @@ void Daemon::watch() {
             spdlog::info("stopping: force ramps to zero");
             should_stop_ = true;
         }
+        lookForOtherScene();
         if (const std::string why = device_.refusal(); !why.empty()) throw UserError(why);
         if (!is_ending_) reportState(shown_state, shown_cause);
         if (!is_silence_said && monotonicNowNs() - start_ns > kLongestSilenceNs) {
@@ -202,6 +209,18 @@ void Daemon::watch() {
                 options_.session));
         }
     }
+}
+
+// A server that is started anew announces the same scene once more, and nothing changes.
+void Daemon::lookForOtherScene() {
+    SceneNotice notice;
+    if (is_scene_over_ || !link_.readScene(notice) || notice.revision == scene_revision_) return;
+    if (notice.hash == scene_.hash) {
+        scene_revision_ = notice.revision;
+        return;
+    }
+    spdlog::info("haptic_server changes to {}: force ramps to zero", notice.path);
+    is_scene_over_ = true;
 }
 
 void Daemon::reportServer(bool& was_there) const {

@@ -6,26 +6,26 @@
 #include "common/ipc/device_link.h"
 #include "common/rt/stop_signals.h"
 #include "device_daemon/app/child_program.h"
-#include "device_daemon/app/device_setup.h"
 #include "device_daemon/app/loop_statistics.h"
 #include "device_daemon/app/options.h"
+#include "device_daemon/app/scene_follower.h"
 #include "device_daemon/loop/device_loop.h"
 
 namespace bonemill {
 
 class Daemon {
   public:
-    // `device`, `program`, which may be null, and `stop_signals` must outlive the daemon. Throws UserError
-    // when the session is taken or a permission is missing, among others.
-    Daemon(const DeviceSetup& setup, const DaemonOptions& options, HapticDevice& device,
-           ChildProgram* program, const StopSignals& stop_signals);
+    // What the references name, and `program`, which may be null, must outlive the daemon. `scene` is the one
+    // that `setup` was made of. `statistics` go on from what they are.
+    Daemon(const FollowedScene& scene, const DaemonOptions& options, HapticDevice& device,
+           ChildProgram* program, const StopSignals& stop_signals, DeviceLink& link,
+           LoopStatistics& statistics);
 
-    // Blocks until the device leaves, or --seconds or a signal ends it, and the force has ramped to zero.
-    // Throws UserError when there is no real-time scheduling with --strict-rt, when nobody answered
-    // within --wait-seconds, or when the device is not the scene's.
-    void run();
-
-    const LoopStatistics& statistics() const noexcept { return statistics_; }
+    enum class End { kLeft, kOtherScene };
+    // Blocks until the device leaves, --seconds or a signal ends it, or haptic_server has another scene, and
+    // the force has ramped to zero. Throws UserError when there is no real-time scheduling with --strict-rt,
+    // when nobody answered within --wait-seconds, or when the device is not the scene's.
+    End run();
 
   private:
     // The loop writes it and the watcher reads it. Each value is complete in itself, so relaxed
@@ -50,30 +50,32 @@ class Daemon {
     bool shouldEnd() const noexcept;
 
     void watch();
+    void lookForOtherScene();
     void reportServer(bool& was_there) const;
     void reportState(SafetyState& shown_state, StopCause& shown_cause) const;
     void warnOfSilentDevice() const;
     void warnOfMissingSwitch() const;
     void writeBlackBox();
 
-    DeviceSetup setup_;
+    FollowedScene scene_;
     DaemonOptions options_;
     HapticDevice& device_;
     ChildProgram* program_;
     const StopSignals& stop_signals_;
     DeviceLoop loop_;
-    DeviceLink link_;
+    DeviceLink& link_;
     int64_t period_ns_;
+    std::atomic<uint32_t> scene_revision_;  // the watcher may find a new one for the same scene
     uint32_t capabilities_version_ = 0;
-    int64_t publish_at_ns_ = 0;  // when the next sample is due
-    int64_t attached_ns_ = 0;
+    int64_t publish_at_ns_ = 0;    // when the next sample is due
     uint64_t first_sequence_ = 0;  // of this run's samples; 0 before the first
     DeviceSample last_sample_{};
     uint64_t last_sequence_ = 0;
-    LoopStatistics statistics_;
+    LoopStatistics& statistics_;
     Progress progress_;
     std::atomic<bool> should_stop_ = false;
     std::atomic<bool> is_ending_ = false;
+    std::atomic<bool> is_scene_over_ = false;
 };
 
 }  // namespace bonemill

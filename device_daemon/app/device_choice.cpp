@@ -44,8 +44,8 @@ struct OwnProgram {
     std::unique_ptr<ChildProgram> program;
 };
 
-ChosenDevice simulated(const DeviceSetup& setup, const DaemonOptions& options) {
-    std::vector<std::string> words{"--scene", options.scene, "--log-level", options.log_level};
+ChosenDevice simulated(const FollowedScene& scene, const DaemonOptions& options) {
+    std::vector<std::string> words{"--scene", scene.file, "--log-level", options.log_level};
     if (options.seconds) words.insert(words.end(), {"--seconds", std::to_string(*options.seconds)});
     if (options.hold) words.push_back("--hold");
     // Its host may be late now and then, and nobody is hurt by it.
@@ -54,14 +54,14 @@ ChosenDevice simulated(const DeviceSetup& setup, const DaemonOptions& options) {
     else
         words.insert(words.end(), {"--watchdog-ms", "30"});
     OwnProgram own("ares_emulator", words);
-    auto device = std::make_unique<WiredAres>(setup.simulated_ares, std::move(own.wire));
+    auto device = std::make_unique<WiredAres>(scene.setup.simulated_ares, std::move(own.wire));
     return {std::move(own.program), std::move(device), true};
 }
 
 ChosenDevice bridged(const std::string& program_name) {
     OwnProgram own(program_name, {});
     auto device = std::make_unique<UdpPoseDevice>(std::move(own.wire));
-    return {std::move(own.program), std::move(device)};
+    return {.program = std::move(own.program), .device = std::move(device), .is_of_scene = false};
 }
 
 ChosenDevice pointer(const DeviceSetup& setup, const DaemonOptions& options) {
@@ -73,17 +73,21 @@ ChosenDevice pointer(const DeviceSetup& setup, const DaemonOptions& options) {
 }
 
 // Only some kinds take an address or a path behind their name.
-ChosenDevice deviceOf(const std::string& word, const DeviceSetup& setup, const DaemonOptions& options) {
+ChosenDevice deviceOf(const std::string& word, const FollowedScene& scene, const DaemonOptions& options) {
+    const DeviceSetup& setup = scene.setup;
     const std::string kind = word.substr(0, word.find(':'));
     const std::string place = kind.size() < word.size() ? word.substr(kind.size() + 1) : "";
     spdlog::info("the hand is {}", word);
     if (kind == "ares") return {nullptr, std::make_unique<WiredAres>(setup.ares, wireTo(kind, place))};
-    if (kind == "bridge") return {nullptr, std::make_unique<UdpPoseDevice>(wireTo(kind, place))};
+    if (kind == "bridge")
+        return {.program = nullptr,
+                .device = std::make_unique<UdpPoseDevice>(wireTo(kind, place)),
+                .is_of_scene = false};
     if (kind == "gamepad")
         return {nullptr, std::make_unique<GamepadDevice>(setup.rates, setup.X_DT_start, gamepadAt(place))};
     if (!place.empty())
         throw UserError("--device " + word + ": only ares, bridge and gamepad take more than a word");
-    if (kind == "simulated") return simulated(setup, options);
+    if (kind == "simulated") return simulated(scene, options);
     if (kind == "force-dimension") return bridged("bonemill_bridge_force_dimension");
     if (kind == "touch") return bridged("bonemill_bridge_touch");
     if (kind == "haply") return bridged("bonemill_bridge_haply");
@@ -104,9 +108,9 @@ const char* deviceChoices() {
            "viewer)";
 }
 
-ChosenDevice chooseDevice(const DeviceSetup& setup, const DaemonOptions& options) {
+ChosenDevice chooseDevice(const FollowedScene& scene, const DaemonOptions& options) {
     ChosenDevice chosen =
-        deviceOf(options.device == "auto" ? bestOf(foundDevices()) : options.device, setup, options);
+        deviceOf(options.device == "auto" ? bestOf(foundDevices()) : options.device, scene, options);
     if (!options.pedal.empty())
         chosen.device = std::make_unique<PedalledDevice>(std::move(chosen.device), options.pedal);
     return chosen;

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "device_daemon/app/child_program.h"
-#include "device_daemon/app/device_setup.h"
 #include "device_daemon/app/options.h"
+#include "device_daemon/app/scene_follower.h"
 #include "device_daemon/haptic_device/haptic_device.h"
 
 namespace bonemill {
@@ -18,9 +18,10 @@ struct ChosenDevice {
     std::unique_ptr<ChildProgram> program;  // emulator or bridge that belongs to it; null without
     std::unique_ptr<HapticDevice> device;
     bool leaves_by_itself = false;  // it keeps to --seconds and the scenario's end
+    bool is_of_scene = true;        // another scene needs another one; false: it describes itself
 };
 
 // Throws UserError for a word that names no device, and for a device that is not there.
-ChosenDevice chooseDevice(const DeviceSetup& setup, const DaemonOptions& options);
+ChosenDevice chooseDevice(const FollowedScene& scene, const DaemonOptions& options);
 
 }  // namespace bonemill

@@ -1,6 +1,5 @@
 #include "device_daemon/app/device_setup.h"
 
-#include "common/config/scene_file.h"
 #include "common/config/scene_geometry.h"
 #include "common/config/scene_handle.h"
 #include "common/geometry/view_axes.h"
@@ -62,8 +61,7 @@ DeviceSetup deviceSetupOf(const scene::Scene& scene) {
     const Pose X_WD = poseOf(scene.device());
     const double scale = scene.device().workspace_scale();
     const Pose X_DT_start = startOf(scene.simulated_operator(), X_WD, scale);
-    return {.scene_hash = sceneHashOf(scene),
-            .rate_hz = scene.loop().rate_hz(),
+    return {.rate_hz = scene.loop().rate_hz(),
             .X_WD = X_WD,
             .workspace_scale = scale,
             .X_DT_start = X_DT_start,

@@ -9,7 +9,6 @@
 namespace bonemill {
 
 struct DeviceSetup {
-    uint64_t scene_hash;
     double rate_hz;
     Pose X_WD;
     double workspace_scale;

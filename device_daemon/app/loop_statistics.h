@@ -15,6 +15,7 @@ struct LoopStatistics {
     LatencyHistogram period;          // between two starts of the loop's work
     LatencyHistogram wakeup_latency;  // from the instant that the loop's own timer promised to its work
     LatencyHistogram compute_time;    // from there to the wrench written
+    int64_t attached_ns = 0;          // CLOCK_MONOTONIC of the first answer of haptic_server; 0 before
     uint64_t attached_ticks = 0;      // with a haptic_server that answers
     uint64_t late_answers = 0;   // attached ticks whose newest wrench does not answer the previous sample
     uint64_t engaged_ticks = 0;  // the hand felt what was computed

@@ -1,7 +1,7 @@
 // device_daemon is the device side of the simulator (docs/device.md).
 #include <iostream>
+#include <optional>
 
-#include "common/config/scene_file.h"
 #include "common/log/log.h"
 #include "common/rt/stop_signals.h"
 #include "common/run_program.h"
@@ -14,36 +14,43 @@
 namespace bonemill {
 namespace {
 
-DeviceSetup loadSetup(const std::string& file) {
-    const LoadedScene loaded = loadScene(file);
-    try {
-        return deviceSetupOf(loaded.scene);
-    } catch (const UserError& error) {
-        throw UserError(file + ": " + error.what());
+// Each scene has its own loop; what the device is and has found out stays unless the scene says what it is.
+void serve(const DaemonOptions& options, SceneFollower& scenes, DeviceLink& link,
+           const StopSignals& stop_signals) {
+    LoopStatistics statistics;
+    std::optional<ChosenDevice> chosen;
+    std::string device_words;
+    while (const std::optional<FollowedScene> scene = scenes.next()) {
+        if (chosen && chosen->is_of_scene) chosen.reset();
+        if (!chosen) chosen = chooseDevice(*scene, options);
+        DaemonOptions of_run = options;
+        if (chosen->leaves_by_itself) of_run.seconds.reset();
+        Daemon daemon(*scene, of_run, *chosen->device, chosen->program.get(), stop_signals, link, statistics);
+        if (daemon.run() == Daemon::End::kLeft) break;
     }
+    if (chosen && chosen->program) device_words = chosen->program->finish();
+    std::cout << jsonLineOf(statistics, device_words) << std::endl;
 }
 
 int runDaemon(int argc, char** argv) {
-    auto options = parseOptions(argc, argv);
+    const auto options = parseOptions(argc, argv);
     if (!options) return 0;
     if (options->list) {
         std::cout << deviceTable(foundDevices()) << std::flush;
         return 0;
     }
     setUpLog("device_daemon", options->log_level);
-    const DeviceSetup setup = loadSetup(options->scene);
+    std::optional<FollowedScene> own;
+    if (!options->scene.empty()) own = followedSceneOf(options->scene);
     if (options->describe) {
-        std::cout << describe(setup.ares) << std::flush;
+        std::cout << describe(own->setup.ares) << std::flush;
         return 0;
     }
     const StopSignals stop_signals;
     dds::setNetwork(options->network);
-    const ChosenDevice chosen = chooseDevice(setup, *options);
-    if (chosen.leaves_by_itself) options->seconds.reset();
-    Daemon daemon(setup, *options, *chosen.device, chosen.program.get(), stop_signals);
-    daemon.run();
-    const std::string device_words = chosen.program ? chosen.program->finish() : "";
-    std::cout << jsonLineOf(daemon.statistics(), device_words) << std::endl;
+    DeviceLink link = DeviceLink::create(options->session, LinkSide::kDaemon);
+    SceneFollower scenes(std::move(own), *options, link, stop_signals);
+    serve(*options, scenes, link, stop_signals);
     return 0;
 }
 

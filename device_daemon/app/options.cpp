@@ -14,7 +14,10 @@ std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
     options.stop_dir = defaultStopDir();
     CLI::App app{
         "Gives haptic_server the hand: reads the haptic device, and gives it the force, within its limits."};
-    app.add_option("--scene", options.scene, "Scene file (.textproto)");
+    app.add_option("--scene", options.scene,
+                   "Scene file (.textproto) for as long as no haptic_server says which scene is in force; "
+                   "without it the "
+                   "daemon waits for that");
     app.add_option("--device", options.device, deviceChoices())->capture_default_str();
     app.add_option("--session", options.session, "Number that haptic_server was started with")
         ->capture_default_str();
@@ -43,8 +46,8 @@ std::optional<DaemonOptions> parseOptions(int argc, char** argv) {
     addRealtimeOptions(app, "the device loop", options.is_strict_realtime, options.core);
     addLogLevelOption(app, options.log_level);
     if (!parseCommandLine(app, argc, argv, "device_daemon")) return std::nullopt;
-    if (options.scene.empty() && !options.list)
-        throw UserError("no scene given: --scene FILE (see device_daemon --help)");
+    if (options.scene.empty() && options.describe)
+        throw UserError("--describe needs a scene: --scene FILE (see device_daemon --help)");
     return options;
 }
 

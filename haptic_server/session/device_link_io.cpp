@@ -38,7 +38,7 @@ bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     const bool is_first = first_start_ns_ == 0;
     const int64_t due = is_first ? 0 : waitForDue();
     const int64_t start = monotonicNowNs();
-    input.stale_factor = ramp_.update(start, sample_stamp_ns_);
+    input.stale_factor = ramp_.update(start, sample_stamp_ns_) * fadedTo(start);
     is_stale_ = ramp_.isStale();
     input.is_stale = is_stale_;
     input.X_WT_device = X_WT_device_;
@@ -57,6 +57,18 @@ bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     last_start_ns_ = start;
     pace_.begin(start);
     return true;
+}
+
+double DeviceLinkIo::fadedTo(int64_t now_ns) noexcept {
+    if (!is_fading_.load(std::memory_order_relaxed)) {
+        has_faded_.store(false, std::memory_order_relaxed);
+        return 1;
+    }
+    if (fade_start_ns_ == 0) fade_start_ns_ = now_ns;
+    const double whole_ns = double(std::max(kFadeNs, config_.ramp.ramp_down_ns));
+    const double factor = std::max(0.0, 1 - double(now_ns - fade_start_ns_) / whole_ns);
+    is_faded_ = factor == 0;
+    return factor;
 }
 
 int64_t DeviceLinkIo::waitForDue() noexcept {
@@ -83,7 +95,7 @@ int64_t DeviceLinkIo::holdBack() noexcept {
 
 bool DeviceLinkIo::waitForFirstSample() noexcept {
     while (sequence_ == 0) {
-        if (is_stopping_.load(std::memory_order_relaxed)) return false;
+        if (is_stopping_.load(std::memory_order_relaxed) || hasDeviceLeft()) return false;
         const int64_t now = monotonicNowNs();
         link_.beat(now);
         if (link_.waitForSample(now + kStopCheckNs) && !takeSample()) sleepUntil(now + config_.period_ns);
@@ -94,6 +106,10 @@ bool DeviceLinkIo::waitForFirstSample() noexcept {
 bool DeviceLinkIo::takeSample() noexcept {
     DeviceSample sample;
     if (!link_.readSample(sample) || sample.sequence == sequence_) return false;
+    if (sample.scene_revision != config_.scene_revision) {
+        if (sample.flags & kDeviceFlagLeaving) has_device_left_.store(true, std::memory_order_relaxed);
+        return false;
+    }
     if (!isPlausible(sample) || (has_capabilities_ && !isWithinReach(sample, capabilities_))) {
         refuse();
         return false;
@@ -140,7 +156,9 @@ int64_t DeviceLinkIo::write(const Wrench& wrench_hand_W) noexcept {
     Eigen::Map<Eigen::Vector3d>(command.t_hand_D) = wrench_hand_D.torque;
     command.answers_sequence = sequence_;
     command.reset_orders = reset_orders_.load(std::memory_order_relaxed);
+    command.scene_revision = config_.scene_revision;
     link_.writeCommand(command);
+    if (is_faded_) has_faded_.store(true, std::memory_order_relaxed);
     return monotonicNowNs();
 }
 

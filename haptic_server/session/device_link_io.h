@@ -20,6 +20,8 @@ struct DeviceLinkIoConfig {
     Pose X_WD;
     double workspace_scale = 1;     // the tool moves so many times as far as the handle
     bool ends_with_device = false;  // end the session when the device leaves in order
+    uint32_t scene_revision =
+        0;  // DeviceLink::announceScene(): samples of another scene's device do not count
 };
 
 // All members but the constructor and stop() belong to the tick thread and are RT-safe; read() waits.
@@ -36,6 +38,14 @@ class DeviceLinkIo final : public TickIo {
     int64_t write(const Wrench& wrench_hand_W) noexcept override;
     int64_t now() noexcept override;
     void push(const TickRecord& record) noexcept override;
+
+    // Any thread may order the force to fade, as before another scene; it does not come back.
+    void fadeOut() noexcept { is_fading_.store(true, std::memory_order_relaxed); }
+    // Any thread may ask whether the last wrench was zero for that; true also before the first tick.
+    bool hasFadedOut() const noexcept { return has_faded_.load(std::memory_order_relaxed); }
+    // It takes so long, or as long as the ramp of a silent device if that is longer: 25 N leave with 0.17
+    // N/ms.
+    static constexpr int64_t kFadeNs = 150'000'000;
 
     // Any thread may call it, also a signal handler: read() returns false within kStopCheckNs.
     void stop() noexcept { is_stopping_.store(true, std::memory_order_relaxed); }
@@ -60,6 +70,7 @@ class DeviceLinkIo final : public TickIo {
 
   private:
     bool waitForFirstSample() noexcept;
+    double fadedTo(int64_t now_ns) noexcept;  // 1 to 0
     // Waits for the next tick and returns the instant that should have woken it.
     int64_t waitForDue() noexcept;
     // Sleeps until a tick may start. Returns that instant, or 0 if it has come already.
@@ -88,7 +99,11 @@ class DeviceLinkIo final : public TickIo {
     int64_t first_start_ns_ = 0;
     int64_t last_start_ns_ = 0;
     bool is_stale_ = false;
+    int64_t fade_start_ns_ = 0;
+    bool is_faded_ = false;  // in this tick
     std::atomic<bool> is_stopping_{false};
+    std::atomic<bool> is_fading_{false};
+    std::atomic<bool> has_faded_{true};
     std::atomic<bool> has_device_left_{false};
     std::atomic<uint64_t> implausible_{0};
     std::atomic<uint64_t> early_{0};

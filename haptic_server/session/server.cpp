@@ -45,8 +45,9 @@ constexpr int64_t kLastMeshingNs = kNsPerSecond / 2;
 constexpr int64_t kLastPublishingNs = kNsPerSecond / 2;
 
 DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& loop,
-                              const Simulation& simulation) {
+                              const Simulation& simulation, uint32_t scene_revision) {
     DeviceLinkIoConfig config;
+    config.scene_revision = scene_revision;
     config.ends_with_device = options.until_device_leaves;
     config.period_ns = int64_t(std::llround(double(kNsPerSecond) / loop.rate_hz()));
     config.ramp.stale_after_ns = nsOfMilliseconds(loop.stale_after_ms());
@@ -92,15 +93,18 @@ class Server {
           loaded_(loadSceneOf(options)),
           simulation_(
               makeSimulation(loaded_)),  // forks to read the volume: before stop_signals_, link, threads
-          link_(DeviceLink::create(options.session, LinkSide::kServer, sceneHashOf(loaded_.scene))),
+          link_(DeviceLink::create(options.session, LinkSide::kServer)),
           history_(*simulation_.bone),
           accuracy_(simulation_.accuracy),
           tools_(simulation_.spoTools()),
           ring_(kRingRecords),
           cuts_(kRingCuts),
-          io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), link_, ring_, cuts_),
+          io_(ioConfigOf(options, loaded_.scene.loop(), simulation_,
+                         link_.announceScene(std::filesystem::absolute(options.scene).lexically_normal(),
+                                             sceneHashOf(loaded_.scene))),
+              link_, ring_, cuts_),
           tick_(simulation_.tick, {*simulation_.bone, &history_}, {tools_, accuracy_}),
-          recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns,
+          recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_, 0).period_ns,
                     recordedEffectsOf(loaded_.scene.effects())),
           publisher_(publisherOptionsOf(options)),
           bone_export_(history_, *simulation_.bone, options.export_dir),

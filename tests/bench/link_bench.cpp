@@ -151,8 +151,8 @@ void overTheWire(Threads& threads, int64_t period_ns, double rate_hz, int exchan
 // The daemon writes its samples; the server answers each as it comes.
 void throughSharedMemory(Threads& threads, int64_t period_ns, int exchanges, LinkRun& run) {
     const auto session = uint32_t(getpid());
-    DeviceLink server = DeviceLink::create(session, LinkSide::kServer, 1);
-    DeviceLink daemon = DeviceLink::create(session, LinkSide::kDaemon, 1);
+    DeviceLink server = DeviceLink::create(session, LinkSide::kServer);
+    DeviceLink daemon = DeviceLink::create(session, LinkSide::kDaemon);
     const auto answer = [&](const std::atomic<bool>& is_over) {
         while (!is_over) {
             DeviceSample sample;

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "common/config/scene_file.h"
 #include "common/ipc/device_link.h"
 #include "common/rt/clock.h"
 #include "tests/integration/dds/client_probe.h"
@@ -32,8 +31,8 @@ constexpr DeviceCapabilities kTestArm{.name = "test arm",
 // 1000 times per second.
 class FakeDevice {
   public:
-    explicit FakeDevice(uint64_t scene_hash)
-        : link_(DeviceLink::create(testSession(), LinkSide::kDaemon, scene_hash)),
+    FakeDevice()
+        : link_(DeviceLink::create(testSession(), LinkSide::kDaemon)),
           thread_([this](const std::stop_token& stop) { live(stop); }) {}
 
     std::atomic<SafetyState> state{SafetyState::kReady};
@@ -56,6 +55,7 @@ class FakeDevice {
             sample.state = uint32_t(state.load());
             sample.stop_cause = uint32_t(cause.load());
             sample.flags = kDeviceFlagSimulated;
+            if (SceneNotice scene; link_.readScene(scene)) sample.scene_revision = scene.revision;
             link_.writeSample(sample);
             WrenchCommand command;
             if (!link_.readCommand(command)) continue;
@@ -102,7 +102,7 @@ TEST_F(DeviceStateOfASession, IsShownActedOnLoggedAndReported) {
     Process server_process(server());
     ASSERT_TRUE(probe_.pollUntil([this] { return probe_.subscriber.status().has_value(); }));
     EXPECT_FALSE(status().has_device()) << "there was none yet";
-    FakeDevice device(sceneHashOf(loadScene(folder_ / "s.textproto").scene));
+    FakeDevice device;
 
     ASSERT_TRUE(isShown(SafetyState::kReady));
     EXPECT_EQ(status().device().name(), "test arm");

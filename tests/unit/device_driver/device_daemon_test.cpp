@@ -64,13 +64,20 @@ simulated_operator {
 // Answers every sample with a spring that resists z < 0 of the handle.
 class WallServer {
   public:
-    WallServer(uint32_t session, const std::string& scene_file)
-        : link_(DeviceLink::create(session, LinkSide::kServer, sceneHashOf(loadScene(scene_file).scene))),
+    // With a scene file it says that this scene is in force.
+    explicit WallServer(uint32_t session, const std::string& scene_file = "")
+        : link_(DeviceLink::create(session, LinkSide::kServer)),
+          revision_at_start_(scene_file.empty() ? 0 : announce(scene_file)),
           thread_([this](const std::stop_token& stop) {
               while (!stop.stop_requested()) answerNext();
           }) {}
 
     uint64_t answers() const { return answers_; }
+    uint32_t announce(const std::string& scene_file) {
+        return link_.announceScene(scene_file, sceneHashOf(loadScene(scene_file).scene));
+    }
+    // The newest sample is of a device of that scene.
+    bool isFollowed(uint32_t revision) const { return sample_revision_ == revision; }
     // A sample has said that the device was stopped.
     bool hasSeenStop() const { return has_seen_stop_; }
     // Answers no more, and returns the flags of the newest sample.
@@ -86,15 +93,19 @@ class WallServer {
         if (!link_.waitForSample(monotonicNowNs() + 10 * kNsPerMillisecond) || !link_.readSample(sample))
             return;
         if (sample.stop_cause != 0) has_seen_stop_ = true;
+        sample_revision_ = sample.scene_revision;
         WrenchCommand command{};
         command.stamp_ns = monotonicNowNs();
         command.answers_sequence = sample.sequence;
+        command.scene_revision = sample.scene_revision;
         command.f_hand_D[2] = sample.p_DT[2] < 0 ? -1000 * sample.p_DT[2] : 0;
         link_.writeCommand(command);
         ++answers_;
     }
 
     DeviceLink link_;
+    uint32_t revision_at_start_;
+    std::atomic<uint32_t> sample_revision_{0};
     std::atomic<uint64_t> answers_{0};
     std::atomic<bool> has_seen_stop_{false};
     std::jthread thread_;
@@ -130,13 +141,47 @@ void expectSays(const test::Finished& finished, const std::string& text) {
 TEST_F(DeviceDaemonTest, PlaysTheScenarioWithAServerAndLeaves) {
     const std::string file = sceneFile(kShortScene);
     test::Process daemon(commandLine(file));
-    WallServer server(session_, file);
+    WallServer server(session_);
     const test::Finished finished = daemon.wait();
     EXPECT_GT(server.answers(), 0u);
     EXPECT_TRUE(server.end() & kDeviceFlagLeaving);
     EXPECT_EQ(finished.exit_code, 0) << allOf(finished);
     expectSays(finished, "\"final_phase\":\"done\"");
     expectNoStopsButOfABusyMachine(finished);
+}
+
+TEST_F(DeviceDaemonTest, TakesTheServersSceneAndFollowsItsChange) {
+    const std::string first = sceneFile(kLongScene);
+    const test::TemporaryFolder elsewhere;
+    const std::string second = elsewhere / "second.textproto";
+    test::writeFile(second, kShortScene);
+    std::vector<std::string> words = commandLine(first);
+    words.erase(words.begin() + 1, words.begin() + 3);  // no --scene
+    test::Process daemon(words);
+    WallServer server(session_, first);
+    ASSERT_TRUE(test::waitFor([&] { return server.isFollowed(1) && server.answers() > 50; }));
+    EXPECT_EQ(server.announce(first), 2u);
+    ASSERT_TRUE(test::waitFor([&] { return server.isFollowed(2); })) << "the same scene needs no change";
+    EXPECT_EQ(daemon.errSoFar().find("changes to"), std::string::npos) << daemon.errSoFar();
+    EXPECT_EQ(server.announce(second), 3u);
+    const test::Finished finished = daemon.wait();
+    EXPECT_TRUE(server.isFollowed(3));
+    EXPECT_TRUE(server.end() & kDeviceFlagLeaving);
+    EXPECT_EQ(finished.exit_code, 0) << allOf(finished);
+    expectSays(finished, "haptic_server changes to " + second);
+    expectSays(finished, "\"final_phase\":\"done\"");
+}
+
+TEST_F(DeviceDaemonTest, WaitsForASceneFileThatIsTheServers) {
+    const std::string file = sceneFile(kShortScene);
+    test::Process daemon(commandLine(file));
+    DeviceLink server = DeviceLink::create(session_, LinkSide::kServer);
+    server.announceScene(file, 12345);
+    EXPECT_TRUE(test::waitFor([&] {
+        return daemon.errSoFar().find("has changed since haptic_server read it") != std::string::npos;
+    }));
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(daemon.wait().exit_code, 0);
 }
 
 // However seldom it runs, it has the time to get there.
@@ -149,7 +194,7 @@ TEST_F(DeviceDaemonTest, SaysTheFirstAndTheLastPhaseAndLeavesWhenToldTo) {
     for (const auto& [scene, options, phase] : cases) {
         const std::string file = sceneFile(scene);
         test::Process daemon(commandLine(file, options));
-        WallServer server(session_, file);
+        WallServer server(session_);
         EXPECT_TRUE(test::waitFor([&] {
             const std::string said = daemon.outSoFar() + daemon.errSoFar();
             return said.find("phase " + phase) != std::string::npos && server.answers() > 50;
@@ -233,7 +278,7 @@ TEST_F(DeviceDaemonTest, WritesAStopThatCameJustBeforeItsEnd) {
     test::Process controller({"ares_emulator", "--scene", file, "--fault", "emergency-stop"});
     const std::string device = deviceOf(controller);
     test::Process daemon(commandLine(file, {"--device", device, "--stop-dir", stops.path()}));
-    WallServer server(session_, file);
+    WallServer server(session_);
     ASSERT_TRUE(test::waitFor([&] {
         for (int i = 0; i < 20 && !server.hasSeenStop(); ++i) usleep(1000);
         return server.hasSeenStop();
@@ -250,7 +295,7 @@ TEST_F(DeviceDaemonTest, WritesAStopThatCameJustBeforeItsEnd) {
 
 TEST_F(DeviceDaemonTest, RefusesBadOptions) {
     const std::vector<std::string> cases[] = {
-        {}, {"--scene"}, {"--scene", "x", "--seconds", "-1"}, {"--scene", "x", "--nonsense"}};
+        {"--describe"}, {"--scene"}, {"--scene", "x", "--seconds", "-1"}, {"--scene", "x", "--nonsense"}};
     for (std::vector<std::string> words : cases) {
         words.insert(words.begin(), "device_daemon");
         const test::Finished finished = test::run(words);

@@ -1,6 +1,7 @@
 // Who may start on a link, and what becomes of what lies there.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -72,25 +73,45 @@ TEST(LinkStart, aTakenSideIsRefusedAndGoesOn) {
     }
 }
 
-TEST(LinkStart, anotherSceneThanTheLivingPeersIsRefused) {
-    for (const LinkSide first : kSides) {
-        const TestSession session;
-        const DeviceLink living = session.open(first, 7);
-        const std::string refusal = session.refusalOf(peerOf(first), 8);
-        EXPECT_TRUE(says(refusal, std::string(programOf(first)) + " has read another scene")) << refusal;
-        EXPECT_TRUE(says(refusal, "start both with the same --scene")) << refusal;
-        EXPECT_FALSE(living.peerIsAlive());
-        { const DeviceLink peer = session.open(peerOf(first), 7); }
-        EXPECT_FALSE(session.refusalOf(peerOf(first), 8).empty());
+TEST(LinkStart, theDaemonLearnsWhichSceneIsInForce) {
+    const TestSession session;
+    DeviceLink daemon = session.open(LinkSide::kDaemon);
+    SceneNotice notice{};
+    EXPECT_FALSE(daemon.readScene(notice));
+    {
+        DeviceLink server = session.open(LinkSide::kServer);
+        EXPECT_EQ(server.announceScene("/scenes/tooth.textproto", 7), 1u);
+        ASSERT_TRUE(daemon.readScene(notice));
+        EXPECT_EQ(notice.revision, 1u);
+        EXPECT_EQ(notice.hash, 7u);
+        EXPECT_STREQ(notice.path, "/scenes/tooth.textproto");
+        EXPECT_THROW(server.announceScene("/" + std::string(1023, 'a'), 8), UserError);
     }
+    DeviceLink again = session.open(LinkSide::kServer);
+    EXPECT_EQ(again.announceScene("/s", 7), 2u) << "a server that is started anew counts on";
+    ASSERT_TRUE(daemon.readScene(notice));
+    EXPECT_STREQ(notice.path, "/s");
 }
 
-TEST(LinkStart, aPeerThatHasLeftForbidsNoScene) {
+TEST(LinkStart, aSceneThatNobodyCanMeanIsNotBelieved) {
     const TestSession session;
-    const DeviceLink server = session.open(LinkSide::kServer, 7);
-    { const DeviceLink daemon = session.open(LinkSide::kDaemon, 7); }
-    EXPECT_FALSE(session.refusalOf(LinkSide::kServer, 7).empty());
-    EXPECT_EQ(session.refusalOf(LinkSide::kDaemon, 7), "");
+    DeviceLink server = session.open(LinkSide::kServer);
+    const DeviceLink daemon = session.open(LinkSide::kDaemon);
+    server.announceScene("/scenes/tooth.textproto", 7);
+    SceneNotice notice{};
+    ASSERT_TRUE(daemon.readScene(notice));
+    const RawMemory memory(session);
+    unsigned char* path =
+        std::search(memory.bytes(), memory.bytes() + sizeof(LinkMemory), notice.path, notice.path + 7);
+    for (const char bad : {'s', '\x1b', '\n'}) {
+        path[bad == 's' ? 0 : 1] = (unsigned char)bad;
+        EXPECT_FALSE(daemon.readScene(notice)) << int(bad);
+        std::memcpy(path, "/scenes", 7);
+    }
+    ASSERT_TRUE(daemon.readScene(notice));
+    std::memset(path, 'a', sizeof notice.path);
+    path[0] = '/';
+    EXPECT_FALSE(daemon.readScene(notice)) << "it does not end";
 }
 
 TEST(LinkStart, memoryOfTheDeadIsTakenOverEmpty) {
@@ -186,7 +207,7 @@ TEST(LinkStart, whoIsStuckInTheSetUpKeepsNobodyFromLeaving) {
 TEST(LinkStart, theSessionWithoutAKeyIsRefused) {
     const uint32_t session = uint32_t(linkKeyOf(0));
     ASSERT_EQ(linkKeyOf(session), IPC_PRIVATE);
-    EXPECT_THROW(DeviceLink::create(session, LinkSide::kServer, 1), UserError);
+    EXPECT_THROW(DeviceLink::create(session, LinkSide::kServer), UserError);
 }
 
 }  // namespace

@@ -32,13 +32,11 @@ class TestSession {
     bool hasMemory() const { return shmget(key(), 0, 0) >= 0; }
     bool hasSemaphores() const { return semget(key(), 0, 0) >= 0; }
 
-    DeviceLink open(LinkSide side, uint64_t scene_hash = 1) const {
-        return DeviceLink::create(number_, side, scene_hash);
-    }
+    DeviceLink open(LinkSide side) const { return DeviceLink::create(number_, side); }
     // Returns the refusal, or "" without one.
-    std::string refusalOf(LinkSide side, uint64_t scene_hash = 1) const {
+    std::string refusalOf(LinkSide side) const {
         try {
-            open(side, scene_hash);
+            open(side);
         } catch (const UserError& error) {
             return error.what();
         }

@@ -16,8 +16,8 @@ namespace {
 class DeviceLinkIoTest : public testing::Test {
   protected:
     DeviceLinkIoTest()
-        : server_(DeviceLink::create(kSession + uint32_t(getpid()), LinkSide::kServer, 1)),
-          daemon_(DeviceLink::create(kSession + uint32_t(getpid()), LinkSide::kDaemon, 1)),
+        : server_(DeviceLink::create(kSession + uint32_t(getpid()), LinkSide::kServer)),
+          daemon_(DeviceLink::create(kSession + uint32_t(getpid()), LinkSide::kDaemon)),
           ring_(64),
           cuts_(64) {
         config_.X_WD = {{0.1, 0.2, 0.3}, Eigen::Quaterniond(M_SQRT1_2, M_SQRT1_2, 0, 0)};
@@ -49,6 +49,52 @@ class DeviceLinkIoTest : public testing::Test {
     SpscRing<Cut> cuts_;
     DeviceLinkIoConfig config_;
 };
+
+TEST_F(DeviceLinkIoTest, SamplesOfAnotherScenesDeviceDoNotCount) {
+    config_.scene_revision = 2;
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    DeviceSample of_other_scene = sampleAt(0.5);
+    of_other_scene.scene_revision = 1;
+    DeviceSample own = sampleAt(0.01);
+    own.scene_revision = 2;
+    daemon_.writeSample(own);
+    DeviceInput input;
+    ASSERT_TRUE(io.read(input));
+    daemon_.writeSample(of_other_scene);
+    ASSERT_TRUE(io.read(input));
+    EXPECT_NEAR(input.X_WT_device.position.x(), 0.11, 1e-15);
+    EXPECT_EQ(io.implausibleMessages(), 0u) << "it is no fault";
+    io.write({});
+    WrenchCommand command{};
+    ASSERT_TRUE(daemon_.readCommand(command));
+    EXPECT_EQ(command.scene_revision, 2u);
+}
+
+TEST_F(DeviceLinkIoTest, ForceFadesOutWhenItIsToldTo) {
+    config_.ramp.stale_after_ns = 100 * kNsPerSecond;  // a busy machine is no silence
+    DeviceLinkIo io(config_, server_, ring_, cuts_);
+    EXPECT_TRUE(io.hasFadedOut()) << "there was no force yet";
+    const auto factor = [&] {
+        daemon_.writeSample(sampleAt(0));
+        DeviceInput input;
+        EXPECT_TRUE(io.read(input));
+        io.write({});
+        return input.stale_factor;
+    };
+    const int64_t start = monotonicNowNs();
+    while (factor() < 1) EXPECT_LT(monotonicNowNs() - start, 10 * kNsPerSecond);
+    EXPECT_FALSE(io.hasFadedOut());
+    io.fadeOut();
+    const int64_t fade_start = monotonicNowNs();
+    double before = 1;
+    while (!io.hasFadedOut()) {
+        const double now = factor();
+        EXPECT_LE(now, before);
+        EXPECT_GE(now, 1 - double(monotonicNowNs() - fade_start) / double(DeviceLinkIo::kFadeNs));
+        before = now;
+    }
+    EXPECT_EQ(factor(), 0) << "it does not come back";
+}
 
 TEST_F(DeviceLinkIoTest, PoseAndWrenchChangeFrames) {
     DeviceLinkIo io(config_, server_, ring_, cuts_);
