@@ -1,0 +1,63 @@
+// Turns a brick of densities into bytes on the wire and back, without loss: as scanned, and what has changed
+// since. A brick has edge³ voxels, x fastest. It is not RT-safe (it allocates); an object is for one thread.
+//
+// Scanned: where all densities stand on a ladder of equal steps, as those of a scan in whole HU do, they are
+// coded as steps. What the neighbours do not foretell goes through zstd, low bytes before high bytes.
+// Change: per voxel, whether it is as scanned, air or neither, and the densities of the last.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bonemill {
+
+inline constexpr int kMostBrickEdge = 64;
+
+class DensityEncoder {
+  public:
+    // The ladder has this many steps from 0 to 65535, 1 to 65535: for a scan in whole numbers those of its
+    // window. A brick that does not stand on it costs more bytes.
+    explicit DensityEncoder(uint16_t steps);
+    ~DensityEncoder();
+
+    // `densities` has edge³ values; edge is 1 to kMostBrickEdge.
+    std::string scanned(std::span<const uint16_t> densities, int edge);
+    // Both are of the same brick. It is empty if they are the same.
+    std::string change(std::span<const uint16_t> scanned, std::span<const uint16_t> present);
+
+  private:
+    bool standOn(uint16_t steps, std::span<const uint16_t> densities);
+    void compress(std::string& out);
+
+    struct Zstd;
+    std::unique_ptr<Zstd> zstd_;
+    uint16_t steps_;
+    std::vector<uint16_t> numbers_;  // of the steps
+    std::string plain_;
+};
+
+// It takes any bytes: it never throws on them, and never allocates more than some bytes per voxel.
+class DensityDecoder {
+  public:
+    DensityDecoder();
+    ~DensityDecoder();
+
+    // Returns nothing for what is no brick of this edge.
+    std::optional<std::vector<uint16_t>> scanned(std::string_view bytes, int edge);
+    // Returns the densities now.
+    std::optional<std::vector<uint16_t>> present(std::string_view bytes, std::span<const uint16_t> scanned);
+
+  private:
+    bool decompress(std::string_view bytes, size_t least, size_t most);
+
+    struct Zstd;
+    std::unique_ptr<Zstd> zstd_;
+    std::vector<uint8_t> plain_;
+};
+
+}  // namespace bonemill
