@@ -25,6 +25,13 @@ Qos streamQos(int depth) {
     return qos;
 }
 
+// Who is there gets the newest sample of every key; who comes later asks for it.
+Qos answerQos() {
+    Qos qos;
+    qos.reliable(kMaxBlocking).keepLast(1).disposeOnRequestOnly();
+    return qos;
+}
+
 Qos commandQos() {
     Qos qos;
     qos.reliable(kMaxBlocking).keepAll(kMaxQueuedCommands);
@@ -76,6 +83,16 @@ TopicDescription describeTopic<HandPointerSample>() {
 template <>
 TopicDescription describeTopic<CommandSample>() {
     return {"bonemill_command", &bonemill_dds_CommandSample_desc, commandQos()};
+}
+
+template <>
+TopicDescription describeTopic<DensityBrickSample>() {
+    return {"bonemill_density_brick", &bonemill_dds_DensityBrickSample_desc, answerQos()};
+}
+
+template <>
+TopicDescription describeTopic<DensityWishSample>() {
+    return {"bonemill_density_wish", &bonemill_dds_DensityWishSample_desc, streamQos(1)};
 }
 
 }  // namespace bonemill::dds

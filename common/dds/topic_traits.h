@@ -16,6 +16,8 @@ using LessonSample = bonemill_dds_LessonSample;
 using ViewerSample = bonemill_dds_ViewerSample;
 using HandPointerSample = bonemill_dds_HandPointerSample;
 using CommandSample = bonemill_dds_CommandSample;
+using DensityBrickSample = bonemill_dds_DensityBrickSample;
+using DensityWishSample = bonemill_dds_DensityWishSample;
 
 struct TopicDescription {
     const char* name;  // of static storage
@@ -47,5 +49,9 @@ template <>
 TopicDescription describeTopic<HandPointerSample>();
 template <>
 TopicDescription describeTopic<CommandSample>();
+template <>
+TopicDescription describeTopic<DensityBrickSample>();
+template <>
+TopicDescription describeTopic<DensityWishSample>();
 
 }  // namespace bonemill::dds

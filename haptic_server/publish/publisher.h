@@ -69,7 +69,9 @@ class Publisher {
     // Says how long the writes of nodes took.
     const LatencyHistogram& writeTimes() const noexcept { return write_times_; }
 
+    uint32_t session() const noexcept { return session_; }
     uint64_t epoch() const noexcept { return epoch_; }
+    const dds::Participant& participant() const noexcept { return participant_; }
     const NodeDigest& digest() const noexcept { return digest_; }
     uint64_t malformedCommands() const noexcept { return inbox_.malformedCount(); }
 

@@ -111,7 +111,7 @@ class Server {
           commands_(loaded_.scene, *simulation_.bone, recorder_,
                     {history_, accuracy_, tools_, stop_requested_, bone_export_, io_.resetOrders()},
                     options.instructor_only),
-          show_(publisher_, loaded_.scene, simulation_, figuresOf(options), outbox_, recorder_, io_,
+          show_(publisher_, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_, io_,
                 commands_, options.stream_mbit_per_s * kMega / 8) {
         for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
         for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);

@@ -21,6 +21,8 @@ namespace {
 
 constexpr int64_t kToolStatePeriodNs = 9 * kNsPerMillisecond;
 constexpr int64_t kStatusPeriodNs = 250 * kNsPerMillisecond;
+// Densities may take so much of the stream's bytes.
+constexpr double kDensityShare = 0.25;
 constexpr int64_t kStatusAfterChangeNs = 20 * kNsPerMillisecond;
 
 template <class Repeated, class Vector>
@@ -61,6 +63,10 @@ Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
     return box;
 }
 
+DensityScale scaleOf(const DensityMapping& mapping) {
+    return {mapping.low, mapping.high, mapping.iso_value};
+}
+
 // The tool in use is still missing in it.
 topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulation) {
     topics::SceneInfo info;
@@ -94,13 +100,15 @@ std::future<std::vector<NodeMesh>> meshingStructures(const Simulation& simulatio
 }  // namespace
 
 ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
-                         const AccuracyFigures& figures, MeshOutbox& outbox, Recorder& recorder,
-                         const DeviceLinkIo& device, SessionCommands& commands, double bytes_per_s)
+                         const BoneHistory& history, const AccuracyFigures& figures, MeshOutbox& outbox,
+                         Recorder& recorder, const DeviceLinkIo& device, SessionCommands& commands,
+                         double bytes_per_s)
     : publisher_(publisher),
       scene_(scene),
       scene_name_(scene.name()),
       outbox_(outbox),
       budget_(bytes_per_s),
+      density_budget_(bytes_per_s * kDensityShare),
       X_VW_(simulation.bone->volume.geometry().X_WV.inverse()),
       warning_distance_(warningDistanceOf(scene.effects())),
       structures_(meshingStructures(simulation)),
@@ -111,7 +119,11 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
       effects_(scene.effects()),
       material_names_(materialNamesOf(scene)),
       tools_(simulation.tools),
+      density_source_(*simulation.bone, history),
+      densities_(publisher.participant(), publisher.session(), publisher.epoch(), density_source_,
+                 scaleOf(simulation.mapping)),
       scene_info_(sceneInfo(scene, simulation)) {
+    *scene_info_.mutable_densities() = densityGridOf(density_source_, scaleOf(simulation.mapping));
     publishSceneInfo();
 }
 
@@ -131,6 +143,7 @@ void ShowSession::round() {
     const int64_t now_ns = monotonicNowNs();
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
     carryOutCommands();
+    publishDensities();
     if (now_ns - last_status_ns_ > (has_changed_ ? kStatusAfterChangeNs : kStatusPeriodNs)) publishStatus();
 }
 
@@ -174,6 +187,15 @@ void ShowSession::publishStructures() {
         return;
     for (const NodeMesh& mesh : structures_.get()) publisher_.publishStructure(mesh, warning_distance_);
     has_changed_ = true;
+}
+
+// They come after all nodes: while a node waits nothing is left of the budget.
+void ShowSession::publishDensities() {
+    const int64_t now_ns = monotonicNowNs();
+    const int64_t most = std::min(budget_.available(now_ns), density_budget_.available(now_ns));
+    const size_t charged = densities_.round(now_ns, most);
+    budget_.spend(charged);
+    density_budget_.spend(charged);
 }
 
 // Who reads that a command is done finds what it did in the same status.

@@ -6,6 +6,7 @@
 
 #include "common/log/log_limit.h"
 #include "common/units.h"
+#include "haptic_server/densities/density_publisher.h"
 #include "haptic_server/mesh/mesh_outbox.h"
 #include "haptic_server/publish/byte_budget.h"
 #include "haptic_server/publish/publisher.h"
@@ -20,11 +21,13 @@ namespace bonemill {
 
 class ShowSession {
   public:
-    // Publishes the scene at once; the protected structures follow with some round(). Node meshes take at
-    // most `bytes_per_s`. References must outlive this object.
+    // Publishes the scene at once; the protected structures follow with some round(). Node meshes and densities
+    // take at most `bytes_per_s`, the latter a part of what the former leave. References must outlive this
+    // object.
     ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
-                const AccuracyFigures& figures, MeshOutbox& outbox, Recorder& recorder,
-                const DeviceLinkIo& device, SessionCommands& commands, double bytes_per_s);
+                const BoneHistory& history, const AccuracyFigures& figures, MeshOutbox& outbox,
+                Recorder& recorder, const DeviceLinkIo& device, SessionCommands& commands,
+                double bytes_per_s);
 
     // The publisher thread makes one round about 200 times per second.
     void round();
@@ -36,6 +39,7 @@ class ShowSession {
   private:
     bool publishNodes();
     void publishStructures();
+    void publishDensities();
     void publishToolState(int64_t now_ns);
     void publishStatus();
     void publishSceneInfo();
@@ -47,7 +51,7 @@ class ShowSession {
     const scene::Scene& scene_;
     std::string scene_name_;
     MeshOutbox& outbox_;
-    ByteBudget budget_;
+    ByteBudget budget_, density_budget_;
     Pose X_VW_;
     bool is_whole_ = false;                          // all of the bone has been published
     double warning_distance_;                        // m, of structures
@@ -59,6 +63,8 @@ class ShowSession {
     ShownEffects effects_;
     std::vector<std::string> material_names_;
     const std::vector<SceneTool>& tools_;
+    DensitySource density_source_;
+    DensityPublisher densities_;
     topics::SceneInfo scene_info_;  // as last published
     topics::Command under_way_;     // that was begun and has not ended
     LogLimit orders_logged_{20, 3 * kNsPerSecond};

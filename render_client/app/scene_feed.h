@@ -41,6 +41,9 @@ class SceneFeed {
 
     SceneSubscriber& subscriber() { return subscriber_; }
 
+    // The scan's densities come in here while someone wants them (DensityStore::want()).
+    DensityStore& densities() { return densities_; }
+
   private:
     bool hasWholeModel() const { return subscriber_.isComplete() && nodes_.refusedCount() == 0; }
     void showSceneInfo();
@@ -51,6 +54,7 @@ class SceneFeed {
     SceneSubscriber subscriber_;
     RenderScene& scene_;
     NodeIntake nodes_;
+    DensityStore densities_;
     CutToScreen* cuts_ = nullptr;
     SoundFeed* sound_ = nullptr;
     std::chrono::steady_clock::time_point advanced_ = std::chrono::steady_clock::now();

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/config/viewer_effects.h"
+#include "render_client/subscribe/density_payloads.h"
 #include "render_client/subscribe/scene_parts.h"
 
 namespace bonemill {
@@ -83,6 +84,7 @@ bool isUsable(const topics::SceneInfo& info) {
            isVector(info.bone_max_m()) && isSane(info.burr_radius_m()) && info.burr_radius_m() >= 0 &&
            info.tool_names_size() <= kMostTools && isDrawable(info.tool()) && isUsable(info.camera()) &&
            info.materials_size() <= kMostShownMaterials && areBalls(info.burr_balls_m()) &&
+            (!info.has_densities() || isUsableGrid(info.densities())) &&
            isWithinRanges(info.viewer_effects()) && std::ranges::all_of(info.materials(), isWithinRanges);
 }
 

@@ -5,6 +5,8 @@
 #include <random>
 #include <utility>
 
+#include "common/rt/clock.h"
+
 namespace bonemill {
 namespace {
 
@@ -41,6 +43,7 @@ SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
       viewer_reader_(participant_),
       viewer_writer_(participant_),
       hand_(participant_, options.session, outbox_.sender(), options.role),
+      density_feed_(participant_, options.session, outbox_.sender()),
       command_writer_(participant_),
       wait_set_(participant_) {
     wait_set_.add(node_reader_.handle());
@@ -71,6 +74,11 @@ SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
                      command_writer_.write(sample);
                  });
     return model_.takeChanges(SceneModel::Clock::now());
+}
+
+void SceneSubscriber::followDensities(DensityStore& densities) {
+    density_feed_.update(densities, scene_info_, epoch(), monotonicNowNs(),
+                         [this](const std::string& what) { dropMalformed(what); });
 }
 
 void SceneSubscriber::takeStatus() {

@@ -18,6 +18,7 @@
 #include "common/dds/wait_set.h"
 #include "proto/topics.pb.h"
 #include "render_client/subscribe/command_outbox.h"
+#include "render_client/subscribe/density_feed.h"
 #include "render_client/subscribe/hand_speaker.h"
 #include "render_client/subscribe/payloads.h"
 #include "render_client/subscribe/scene_model.h"
@@ -84,6 +85,11 @@ class SceneSubscriber {
     std::vector<topics::Viewer> viewers() const;
     static constexpr std::chrono::seconds kViewerTimeout{4};
 
+    // Brings the densities that the store wants into it: after each poll(). The viewers of a store that wants
+    // none pay nothing.
+    void followDensities(DensityStore& densities);
+    const DensityFeed& densityFeed() const noexcept { return density_feed_; }
+
     uint64_t epoch() const noexcept { return model_.epoch(); }
     const NodeDigest& digest() const noexcept { return model_.digest(); }
     uint64_t malformedSamples() const noexcept { return malformed_count_; }
@@ -130,6 +136,7 @@ class SceneSubscriber {
     dds::Reader<dds::ViewerSample> viewer_reader_;
     dds::Writer<dds::ViewerSample> viewer_writer_;
     HandSpeaker hand_;
+    DensityFeed density_feed_;
     dds::Writer<dds::CommandSample> command_writer_;
     dds::WaitSet wait_set_;
 };

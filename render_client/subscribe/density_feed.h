@@ -1,0 +1,59 @@
+// Brings the densities that a viewer wants from the server into its DensityStore, and keeps them up to date.
+//
+// One thread, that of the store. A viewer that wants none has no reader, sends nothing and hears nothing: all
+// begins with the first wish, and ends some time after the last.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "common/dds/endpoint.h"
+#include "common/density/density_codec.h"
+#include "proto/topics.pb.h"
+#include "render_client/densities/density_store.h"
+
+namespace bonemill {
+
+class DensityFeed {
+  public:
+    static constexpr int64_t kWishPeriod_ns = 100'000'000;   // while what it says changes
+    static constexpr int64_t kRepeat_ns = 1'000'000'000;     // it is said again
+    static constexpr int64_t kFarewell_ns = 10'000'000'000;  // with nothing wanted for so long it stops
+
+    // The participant must outlive this object.
+    DensityFeed(const dds::Participant& participant, uint32_t session, uint64_t sender)
+        : participant_(participant), session_(session), sender_(sender) {}
+
+    // Takes what has arrived, and says what the store wants. `info` is the newest of the server's run `epoch`
+    // (0: none); another run empties the store. `drop` is told of what makes no sense. It never waits.
+    void update(DensityStore& store, const std::optional<topics::SceneInfo>& info, uint64_t epoch,
+                int64_t now_ns, const std::function<void(const std::string&)>& drop);
+
+    bool isListening() const { return reader_.has_value(); }
+    uint64_t takenBricks() const { return taken_bricks_; }
+
+  private:
+    void follow(DensityStore& store, const std::optional<topics::SceneInfo>& info, uint64_t epoch);
+    void take(DensityStore& store, const std::function<void(const std::string&)>& drop);
+    bool apply(DensityStore& store, uint32_t brick, const topics::DensityBrick& message);
+    bool isAir(uint32_t brick) const;
+    topics::DensityWish wishOf(DensityStore& store);
+    void say(DensityStore& store, int64_t now_ns);
+
+    const dds::Participant& participant_;
+    uint32_t session_;
+    uint64_t sender_;
+    uint64_t epoch_ = 0;
+    std::string air_;  // DensityGrid.air
+    DensityDecoder decoder_;
+    std::vector<uint32_t> wished_;  // as said last, ascending
+    std::string said_;
+    int64_t said_ns_ = 0;
+    int64_t wanted_ns_ = 0;  // when anything was wanted last
+    uint64_t taken_bricks_ = 0;
+    std::optional<dds::Reader<dds::DensityBrickSample>> reader_;
+    std::optional<dds::Writer<dds::DensityWishSample>> writer_;
+};
+
+}  // namespace bonemill
