@@ -1,12 +1,15 @@
 #include "render_client/app/view_options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "common/cli/number_range.h"
 
 namespace bonemill {
 namespace {
+
+constexpr double kNarrowestWindow = 1;
 
 void addCutOptions(CLI::App& app, RawView& raw, std::vector<CLI::Option*>& view_options) {
     constexpr const char* kAxes[] = {"x", "y", "z"};
@@ -63,6 +66,17 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
         app.add_option("--text-scale", raw.text_scale, "Text so much larger than what suits the picture")
             ->check(within(ViewSettings::kLeastText, ViewSettings::kMostText))
             ->type_name("FACTOR");
+    auto* slices = app.add_flag("--slices", raw.slices, "Three slices through the scan beside the picture");
+    auto* scan = app.add_option("--scan-on", raw.scan_on,
+                                "Where bone shows the scan's grey values: off, cuts, or milled (and cuts)")
+                     ->check(CLI::IsMember({"off", "cuts", "milled"}))
+                     ->capture_default_str();
+    auto* window = app.add_option("--grey-window", raw.grey_window,
+                                  "Width and level of the grey values, as the scan has them (HU)")
+                       ->expected(2)
+                       ->check(CLI::Range(-1e6, 1e6))
+                       ->type_name("WIDTH LEVEL");
+    view_options.insert(view_options.end(), {slices, scan, window});
     view_options.insert(view_options.end(), {transparent, stereo, camera, quality, no_hud, text});
     return view_options;
 }
@@ -78,6 +92,13 @@ ViewSettings viewSettings(const RawView& raw) {
                                                    : StereoMode::kOff;
     settings.camera = raw.camera == "endoscope" ? CameraMode::kEndoscope : CameraMode::kOrbit;
     settings.quality = raw.quality == "quick" ? Quality::kQuick : Quality::kFull;
+    settings.slices.are_shown = raw.slices;
+    settings.slices.ct = raw.scan_on == "off"      ? CtShown::kNowhere
+                         : raw.scan_on == "milled" ? CtShown::kOnCutsAndMilled
+                                                   : CtShown::kOnCuts;
+    if (raw.grey_window.size() == 2)
+        settings.slices.window =
+            GreyWindow{std::max(raw.grey_window[0], kNarrowestWindow), raw.grey_window[1]};
     settings.show_hud = !raw.no_hud;
     settings.text_scale = raw.text_scale.value_or(1);
     return settings;

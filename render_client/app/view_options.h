@@ -25,6 +25,9 @@ struct RawView {
     std::string quality = "auto";
     std::optional<double> text_scale;
     bool no_hud = false;
+    bool slices = false;
+    std::string scan_on = "cuts";
+    std::vector<double> grey_window;  // width, level
 };
 
 // Returns the options, for those that exclude them. `raw` must outlive the parsing.

@@ -168,6 +168,7 @@ class WindowViewer {
         const int view_width = scene_.viewWidth(width, height);
         panel_.setPicture(view_width, height, scaleOfText(width, height), seconds.count());
         hand_.lookAt(view_width, height);
+        controls_.paneMouse().lookAt(scene_.seenPanes());
     }
 
     void takeInput(int height, const SessionView& session, Wishes& wishes) {

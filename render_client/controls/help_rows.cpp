@@ -21,6 +21,12 @@ const HudRow kMouse[] = {{"Left drag", "orbit"},
                          {"Double click", "orbit around that point"},
                          {"Ctrl+left drag", "point (instructor)"}};
 
+// This is what PaneMouse makes of it.
+const HudRow kMouseOverSlices[] = {{"Wheel", "scroll"},
+                                   {"Left drag", "window, level"},
+                                   {"Right drag", "zoom"},
+                                   {"Double click", "as at the start"}};
+
 template <class Bindings, class Wanted>
 void addKeys(const Bindings& bindings, std::vector<HudRow>& rows, Wanted&& is_wanted) {
     std::string last;
@@ -46,7 +52,7 @@ constexpr struct {
     const char* title;
 } kGroups[] = {{KeyGroup::kTool, "Tool in the mouse"},
                {KeyGroup::kView, "View"},
-               {KeyGroup::kCuts, "Cut-planes"},
+               {KeyGroup::kCuts, "Cut-planes, scan"},
                {KeyGroup::kSession, "Session"},
                {KeyGroup::kScreen, "Screen"}};
 
@@ -64,6 +70,9 @@ std::vector<HelpGroup> helpGroups(HelpFor whom) {
         addKeys(signTable(), rows,
                 [g = group](const SignBinding& binding) { return groupOf(binding.action) == g; });
         if (!rows.empty()) groups.push_back({title, std::move(rows)});
+        if (group == KeyGroup::kCuts)
+            groups.push_back(
+                {"Mouse over a slice", {std::begin(kMouseOverSlices), std::end(kMouseOverSlices)}});
     }
     return groups;
 }

@@ -16,6 +16,8 @@ constexpr KeyBinding kKeys[] = {
     {"Shift+X", keyOf('X'), true, Action::kFlipX, "cut away the other side"},
     {"Shift+Y", keyOf('Y'), true, Action::kFlipY, "cut away the other side"},
     {"Shift+Z", keyOf('Z'), true, Action::kFlipZ, "cut away the other side"},
+    {"Shift+G", keyOf('G'), true, Action::kScanOnBone, "scan on cuts, on milled bone, off"},
+    {"Shift+S", keyOf('S'), true, Action::kSlices, "slices through the scan"},
     {"T", keyOf('T'), false, Action::kTransparency, "transparent bone"},
     {"S", keyOf('S'), false, Action::kStereo, "stereo: side by side, red/cyan, off"},
     {"Q", keyOf('Q'), false, Action::kQuickDrawing, "quick drawing"},
@@ -65,7 +67,7 @@ constexpr SignBinding kSigns[] = {
 
 KeyGroup groupOf(Action action) {
     const auto lies = [action](Action first, Action last) { return action >= first && action <= last; };
-    if (lies(Action::kCutX, Action::kCutHigher)) return KeyGroup::kCuts;
+    if (lies(Action::kCutX, Action::kSlices)) return KeyGroup::kCuts;
     if (lies(Action::kPauseMilling, Action::kAccuracy4) || action == Action::kResetBone ||
         action == Action::kPoint)
         return KeyGroup::kSession;

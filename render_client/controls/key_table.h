@@ -23,6 +23,8 @@ enum class Action {
     kFlipZ,
     kCutLower,
     kCutHigher,
+    kScanOnBone,
+    kSlices,
     kTransparency,
     kStereo,
     kQuickDrawing,

@@ -34,6 +34,10 @@ StereoMode nextStereo(StereoMode mode) {
     return StereoMode::kOff;
 }
 
+CtShown nextCt(CtShown shown) {
+    return CtShown((int(shown) + 1) % (int(CtShown::kOnCutsAndMilled) + 1));
+}
+
 // W is LPS: x to the patient's left, y to the back, z to the head.
 Eigen::Vector3d directionOf(Side side) {
     switch (side) {
@@ -64,6 +68,10 @@ Eigen::Vector3d towardsEyeAt(OrbitCamera camera, double azimuth) {
 
 void ViewerControls::handle(const WindowEvent& event, int picture_height, const SessionView& session,
                             Wishes& wishes) {
+    if (pane_mouse_.handle(event, drag_ != Drag::kNone, settings_.slices)) {
+        if (const auto* move = std::get_if<MouseMoveEvent>(&event)) passOver(*move);
+        return;
+    }
     if (hold_.handle(event, drag_ != Drag::kNone)) return;
     std::visit(Overloaded{[&](const KeyEvent& e) { onKey(e, session, wishes); },
                           [&](const TextEvent& e) {
@@ -216,6 +224,11 @@ void ViewerControls::changeView(Action action) {
             return moveCut(-kCutStep);
         case Action::kCutHigher:
             return moveCut(kCutStep);
+        case Action::kScanOnBone:
+            settings_.slices.ct = nextCt(settings_.slices.ct);
+            return;
+        case Action::kSlices:
+            return toggle(settings_.slices.are_shown);
         case Action::kTransparency:
             return toggle(settings_.is_transparent);
         case Action::kStereo:

@@ -12,6 +12,7 @@
 #include "render_client/camera/orbit_camera.h"
 #include "render_client/camera/view_settings.h"
 #include "render_client/controls/key_table.h"
+#include "render_client/controls/pane_mouse.h"
 #include "render_client/controls/session_view.h"
 #include "render_client/controls/tool_hold.h"
 #include "render_client/hud/hud.h"
@@ -52,6 +53,7 @@ class ViewerControls {
     void showEffect(ViewerEffect effect, bool is_shown) {
         settings_.hides_effects[size_t(effect)] = !is_shown;
     }
+    void showScan(CtShown where) { settings_.slices.ct = where; }
     void setStereo(StereoMode mode) { settings_.stereo = mode; }
     // Makes bone transparent, of this opacity from 0 to 1.
     void setOpacity(double opacity);
@@ -63,6 +65,8 @@ class ViewerControls {
     const OrbitCamera& camera() const { return camera_; }
     // The owner begins the hold, and tells it which picture the user sees.
     ToolHold& toolHold() { return hold_; }
+    // The owner tells it which panes the user sees.
+    PaneMouse& paneMouse() { return pane_mouse_; }
     const ToolHold& toolHold() const { return hold_; }
     bool isPanelOpen() const { return is_panel_open_; }
     // Returns where the user points with the laser now.
@@ -94,6 +98,7 @@ class ViewerControls {
     MouseButton drag_button_ = MouseButton::kLeft;
     PixelPoint mouse_;
     ToolHold hold_;
+    PaneMouse pane_mouse_;
     std::optional<MouseButtonEvent> last_click_;
     struct Asked {
         std::string question;

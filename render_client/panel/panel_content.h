@@ -36,6 +36,7 @@ class PanelContent {
     void buildSides();
     void buildTransparency();
     void buildCuts();
+    void buildScan();
     void buildStereo();
     void buildSigns();
     bool hasEffects() const;

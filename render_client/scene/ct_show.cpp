@@ -145,6 +145,11 @@ void CtShow::paintPanes(GLuint target) const {
     if (panes_) painter_->paint(*panes_, columns_, width_, height_, target);
 }
 
+std::optional<SeenPanes> CtShow::seenPanes() const {
+    if (!panes_ || !grid_) return std::nullopt;
+    return SeenPanes{*panes_, *grid_, *window_};
+}
+
 std::vector<HudPane> CtShow::texts() const {
     constexpr const char* kAxes[] = {"x", "y", "z"};
     std::vector<HudPane> texts;

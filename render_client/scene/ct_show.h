@@ -43,10 +43,9 @@ class CtShow {
     // Returns what is written on them.
     std::vector<HudPane> texts() const;
 
-    // Returns the panes of the last update(), for the mouse; none are shown while it is empty.
-    const std::optional<std::array<Pane, 3>>& panes() const { return panes_; }
-    // Returns the window in force, if there is a scan.
-    std::optional<GreyWindow> window() const { return window_; }
+    bool hasPanes() const { return panes_.has_value(); }
+    // Returns what the panes of the last update() show; nothing without a scan.
+    std::optional<SeenPanes> seenPanes() const;
 
   private:
     // One plane through the scan, and what of it was there when it was looked at last.

@@ -245,7 +245,7 @@ void RenderScene::updateCt(int width, int height) {
 }
 
 void RenderScene::paintPanes(int width, int height, float ui_scale, GLuint target) {
-    if (!ct_.panes()) return;
+    if (!ct_.hasPanes()) return;
     ct_.paintPanes(target);
     hud_painter_.paintPanes(ct_.texts(), {width, height}, ui_scale);
 }

@@ -96,8 +96,8 @@ class RenderScene {
 
     // Takes the scan's densities, and says which of them are wanted. It has a scene's grid or none.
     DensityStore& densities() { return ct_.store(); }
-    // Returns the panes of the last picture; nothing while none are shown.
-    const CtShow& ct() const { return ct_; }
+    // Returns the slices that the last picture showed beside the bone; nothing while there are none.
+    std::optional<SeenPanes> seenPanes() const { return ct_.seenPanes(); }
     // Returns how many columns of a picture of this size (pixels) the bone has; panes stand at the right of
     // it.
     int viewWidth(int width, int height) const { return width - paneColumns(settings_, width, height); }

@@ -49,6 +49,9 @@ Pane makePane(const DensityGrid& grid, const Pose& X_WV, const SliceSettings& se
     pane.axis = axis;
     pane.rect = rect;
     pane.position_W = nearestSlice(grid, X_WV, axis, settings.positions[axis].value_or(focus_W[i]));
+    pane.slice_step = sliceStep(grid, X_WV, axis);
+    pane.first_slice_W = nearestSlice(grid, X_WV, axis, box_W.min()[i]);
+    pane.last_slice_W = nearestSlice(grid, X_WV, axis, box_W.max()[i]);
     const double across = std::abs(view.right_W.dot(box_W.sizes())),
                  along = std::abs(view.down_W.dot(box_W.sizes()));
     pane.metres_per_pixel =

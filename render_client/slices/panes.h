@@ -40,7 +40,8 @@ struct Pane {
     size_t axis = 0;
     PaneRect rect;
     SlicePlane plane;
-    double position_W = 0;  // m, along the axis
+    double position_W = 0;                                       // m, along the axis
+    double slice_step = 0, first_slice_W = 0, last_slice_W = 0;  // m: how it can be scrolled
     double metres_per_pixel = 1;
     std::optional<Eigen::Vector2d> cross;  // where the burr's centre is, in the pane or beside it
     double circle = 0;                     // radius of the burr where the plane cuts it; 0: it does not
@@ -48,5 +49,12 @@ struct Pane {
 
 Pane makePane(const DensityGrid& grid, const Pose& X_WV, const SliceSettings& settings, size_t axis,
               const PaneRect& rect, const std::optional<SliceBurr>& burr);
+
+// What the user sees in them.
+struct SeenPanes {
+    std::array<Pane, 3> panes;
+    DensityGrid grid;
+    GreyWindow window;
+};
 
 }  // namespace bonemill

@@ -64,13 +64,13 @@ TEST(HelpRows, GroupsSayWhatKeysAreFor) {
     };
     EXPECT_EQ(groupOfKey("T"), "View");
     EXPECT_EQ(groupOfKey("-"), "View");
-    EXPECT_EQ(groupOfKey("]"), "Cut-planes");
+    EXPECT_EQ(groupOfKey("]"), "Cut-planes, scan");
     EXPECT_EQ(groupOfKey("C"), "Session");
     EXPECT_EQ(groupOfKey("4"), "Session");
     EXPECT_EQ(groupOfKey("M"), "Screen");
     EXPECT_EQ(groupOfKey("Esc"), "Screen");
-    EXPECT_EQ(groups.size(), 5u) << "no tool to hold";
-    EXPECT_EQ(helpGroups(HelpFor::kMayHold).size(), 6u);
+    EXPECT_EQ(groups.size(), 6u) << "no tool to hold";
+    EXPECT_EQ(helpGroups(HelpFor::kMayHold).size(), 7u);
 }
 
 TEST(HelpRows, TheFirstHintNamesHelpAndPanel) {

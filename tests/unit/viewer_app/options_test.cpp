@@ -145,6 +145,22 @@ TEST(Options, WhatIsShownAtTheStart) {
     EXPECT_TRUE(parse({"--transparent", "--offscreen", "--out", "p"})->offscreen);
 }
 
+TEST(Options, WhatIsShownOfTheScanAtTheStart) {
+    const SliceSettings plain = parse({})->settings.slices;
+    EXPECT_FALSE(plain.are_shown || plain.window);
+    EXPECT_EQ(plain.ct, CtShown::kOnCuts);
+    const SliceSettings all =
+        parse({"--slices", "--scan-on", "milled", "--grey-window", "2000", "-500"})->settings.slices;
+    EXPECT_TRUE(all.are_shown);
+    EXPECT_EQ(all.ct, CtShown::kOnCutsAndMilled);
+    EXPECT_EQ(all.window, (GreyWindow{2000, -500}));
+    EXPECT_EQ(parse({"--scan-on", "off"})->settings.slices.ct, CtShown::kNowhere);
+    EXPECT_GT(parse({"--grey-window", "-5", "0"})->settings.slices.window->width, 0);
+    EXPECT_THROW(parse({"--scan-on", "walls"}), UserError);
+    EXPECT_THROW(parse({"--grey-window", "2000"}), UserError);
+    EXPECT_THROW(parse({"--command", "reset", "--slices"}), UserError);
+}
+
 TEST(Options, RefusesViewsThatMakeNoSense) {
     EXPECT_THROW(parse({"--cut-x"}), UserError);
     EXPECT_THROW(parse({"--cut-x", "1.5"}), UserError);
