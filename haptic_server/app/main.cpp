@@ -25,6 +25,9 @@ void addSaveOptions(CLI::App& app, SavePaths& save) {
 
 void addServerOptions(CLI::App& app, ServerOptions& server) {
     app.add_option("--scene", server.scene, "scene file (.textproto)");
+    app.add_option(
+        "--scenes", server.scene_folders,
+        "folder of scenes that clients can choose from, may be given again; default: that of --scene");
     app.add_option("--session", server.session, "session number: names the device link and the topics");
     app.add_option("--domain", server.domain, "DDS domain, 0 to 230");
     dds::addNetworkOptions(app, server.network);
@@ -43,6 +46,9 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
     addSaveOptions(app, server.save);
     app.add_option("--export-dir", server.export_dir,
                    "folder for what clients' export commands write while the session runs");
+    app.add_option(
+        "--class-table", server.class_table,
+        "CSV file to which each attempt of a trainee adds a line; default: class.csv in --export-dir");
     app.add_flag("--until-device-leaves", server.until_device_leaves,
                  "stop when device_daemon shuts down in order");
     app.add_flag("--instructor-only", server.instructor_only,
@@ -74,6 +80,7 @@ void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
 struct Options {
     std::string log_level = "info";
     bool describe = false;
+    bool list_scenes = false;
     ServerOptions server;
     SimulateOptions simulate;
     AccuracyReportOptions report;
@@ -87,7 +94,14 @@ int simulateInOrder(const SimulateOptions& options) {
 }
 
 int serveLive(const Options& options) {
-    if (options.server.scene.empty()) throw UserError("no scene given; use --scene FILE (see deploy/scenes)");
+    const bool has_folders = !options.server.scene_folders.empty();
+    if (options.server.scene.empty() && (!has_folders || options.describe))
+        throw UserError("no scene given; use --scene FILE (see deploy/scenes)" +
+                        std::string(options.describe ? "" : ", or --scenes FOLDER"));
+    if (options.list_scenes) {
+        std::cout << listScenesOf(options.server);
+        return 0;
+    }
     if (!options.describe) return runServer(options.server);
     std::cout << describeScene(options.server.scene);
     return 0;
@@ -101,6 +115,7 @@ int serve(int argc, char** argv) {
     Options options;
     addServerOptions(app, options.server);
     app.add_flag("--describe-scene", options.describe, "print what the scene says and what runs, then stop");
+    app.add_flag("--list-scenes", options.list_scenes, "print which scenes can be chosen, then stop");
     addLogLevelOption(app, options.log_level);
     CLI::App* const simulate_command =
         app.add_subcommand("simulate", "run a recorded trajectory as fast as possible, deterministic");

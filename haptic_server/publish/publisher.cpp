@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "common/rt/clock.h"
 
@@ -64,6 +65,28 @@ Publisher::Publisher(const PublisherOptions& options)
       status_writer_(participant_),
       lesson_writer_(participant_),
       command_reader_(participant_) {}
+
+// Nodes and structures of the run before are removed for those who join later.
+void Publisher::beginRun() {
+    epoch_ = std::max(static_cast<uint64_t>(unixTime_ns()), epoch_ + 1);
+    status_.clear_training();
+    status_.clear_checkpoints();
+    for (const auto& [leaf, node] : std::exchange(nodes_, {})) {
+        if (node.content == 0) continue;
+        dds::NodeMeshSample key{};
+        key.session = session_;
+        key.node = leaf;
+        node_writer_.dispose(key);
+    }
+    for (const uint32_t structure : std::exchange(structures_, {})) {
+        dds::StructureMeshSample key{};
+        key.session = session_;
+        key.structure = structure;
+        structure_writer_.dispose(key);
+    }
+    digest_ = NodeDigest();
+    write_times_ = {};
+}
 
 bool Publisher::isNewer(const NodeMesh& mesh) const {
     const auto known = nodes_.find(mesh.leaf);
@@ -136,6 +159,7 @@ bool Publisher::publishStructure(const NodeMesh& mesh, double warning_distance_m
     sample.session = session_;
     sample.structure = mesh.leaf;
     dds::setPayload(sample, bytes);
+    structures_.push_back(mesh.leaf);
     return structure_writer_.write(sample);
 }
 

@@ -36,6 +36,10 @@ class Publisher {
     // Throws UserError when the DDS domain cannot be joined.
     explicit Publisher(const PublisherOptions& options);
 
+    // Begins another run, as a restarted server does, with a later epoch and an empty model: clients drop the
+    // model that they have. The numbers of commands and batches go on, and so does who was answered what.
+    void beginRun();
+
     struct Written {
         size_t bytes = 0;      // payloads of the nodes
         bool is_whole = true;  // false: DDS refused some, and the clients keep those older meshes
@@ -66,7 +70,7 @@ class Publisher {
     // Tells the sender, through Status at once, how the command ended: "done" or "refused: <why>".
     void acknowledge(const topics::Command& command, const std::string& result);
 
-    // Says how long the writes of nodes took.
+    // Says how long the writes of nodes took in this run.
     const LatencyHistogram& writeTimes() const noexcept { return write_times_; }
 
     uint32_t session() const noexcept { return session_; }
@@ -92,6 +96,7 @@ class Publisher {
     uint32_t session_;
     uint64_t epoch_;
     std::unordered_map<uint32_t, Node> nodes_;
+    std::vector<uint32_t> structures_;  // written in this run
     NodeDigest digest_;
     uint64_t batch_ = 0;
     LatencyHistogram write_times_;

@@ -80,4 +80,12 @@ std::vector<std::string> EffectStatistics::warnings(const std::vector<std::strin
     return warnings;
 }
 
+std::vector<std::string> EffectStatistics::touched(const std::vector<std::string>& materials) const {
+    std::vector<std::string> names;
+    for (size_t id = 0; id < events_of_.size(); ++id)
+        if (events_of_[id] & (kEventProtectedTouched | kEventProtectedDamaged))
+            names.push_back(nameOf(id, materials));
+    return names;
+}
+
 }  // namespace bonemill

@@ -35,6 +35,8 @@ class EffectStatistics {
     std::vector<std::pair<std::string, double>> figures() const;
     // Each warning comes once, in words; `materials` are the materials' names in the scene's order.
     std::vector<std::string> warnings(const std::vector<std::string>& materials) const;
+    // The protected structures that the burr touched, by name.
+    std::vector<std::string> touched(const std::vector<std::string>& materials) const;
 
   private:
     void book(uint32_t event, size_t structure, const EffectRecord& record) noexcept;

@@ -30,6 +30,9 @@ class DeviceLinkIo final : public TickIo {
     DeviceLinkIo(const DeviceLinkIoConfig& config, DeviceLink& link, SpscRing<TickRecord>& telemetry,
                  SpscRing<Cut>& cuts);
 
+    // Before the first read(): DeviceLink::announceScene() has given the scene this number.
+    void beginScene(uint32_t revision) noexcept { config_.scene_revision = revision; }
+
     // Wakes on a new device sample, but no earlier than TickPace allows. When the device is silent it wakes
     // by itself: two periods after the last tick, and every period once the device counts as stale. Before
     // the very first sample there is nothing to simulate: it only waits. False after stop(), and when the

@@ -1,5 +1,7 @@
 #include "haptic_server/session/recorder.h"
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <utility>
 
 #include "common/rt/clock.h"
@@ -19,11 +21,13 @@ void Recorder::drain() {
     EventSum events;
     double removed = 0;
     const size_t known_changes = statistics_.device().kept().size();
+    takeUpAttempt();
     while (ring_.tryPop(record)) {
         any = true;
         statistics_.add(record);
         if (trace_) trace_->write(record);
         addToWindow(record);
+        addToAttempt(record);
         events.add(record.effects);
         removed += record.removed;
     }
@@ -38,6 +42,36 @@ void Recorder::drain() {
     health_.ticks = statistics_.ticks();
     health_.dropped_ticks = statistics_.droppedTicks();
     health_.faults = statistics_.faults();
+    if (!is_attempt_asked_) shown_attempt_ = attempt_;
+}
+
+void Recorder::beginAttempt() {
+    const std::lock_guard lock(mutex_);
+    is_attempt_asked_ = true;
+    shown_attempt_ = {.max_force = 0, .effects = EffectStatistics(recorded_)};
+}
+
+void Recorder::takeUpAttempt() {
+    const std::lock_guard lock(mutex_);
+    if (!std::exchange(is_attempt_asked_, false)) return;
+    attempt_ = shown_attempt_;
+    before_attempt_.reset();
+}
+
+// What is damaged and dead counts since the session's start.
+void Recorder::addToAttempt(const TickRecord& record) noexcept {
+    if (!before_attempt_) before_attempt_ = record.effects;
+    const Eigen::Map<const Eigen::Vector3d> force(record.f_hand_W);
+    attempt_.max_force = std::max(attempt_.max_force, force.norm());
+    EffectRecord effects = record.effects;
+    effects.damaged_volume = std::max(0.0f, effects.damaged_volume - before_attempt_->damaged_volume);
+    effects.necrotic_volume = std::max(0.0f, effects.necrotic_volume - before_attempt_->necrotic_volume);
+    attempt_.effects.add(effects);
+}
+
+AttemptFigures Recorder::attempt() const {
+    const std::lock_guard lock(mutex_);
+    return shown_attempt_;
 }
 
 void Recorder::addToWindow(const TickRecord& record) {

@@ -24,6 +24,12 @@ struct LoopHealth {
     uint32_t faults = 0;
 };
 
+// What the ticks of an attempt told.
+struct AttemptFigures {
+    double max_force = 0;  // N, of the wrench on the hand
+    EffectStatistics effects;
+};
+
 class Recorder {
   public:
     // `recorded` says what the records hold of effects.
@@ -51,6 +57,9 @@ class Recorder {
     std::vector<DeviceChange> takeDeviceChanges();
     EffectStatistics effects() const;
     LoopHealth health() const;
+    // Any normal thread begins an attempt: its figures count from the next records on.
+    void beginAttempt();
+    AttemptFigures attempt() const;
     // This is called before finish() and says what the tick thread's page faults were after its first second.
     void setPageFaults(const PageFaults& faults) { statistics_.setPageFaults(faults); }
     // The mesher thread says at its end how long the ticks' cuts waited for the publisher.
@@ -64,6 +73,8 @@ class Recorder {
 
   private:
     void addToWindow(const TickRecord& record);
+    void takeUpAttempt();
+    void addToAttempt(const TickRecord& record) noexcept;
 
     SpscRing<TickRecord>& ring_;
     RunStatistics statistics_;
@@ -71,6 +82,9 @@ class Recorder {
     std::optional<TraceWriter> trace_;
     LatencyHistogram window_;  // tick compute time in the second under way
     int64_t window_start_ns_ = 0;
+    AttemptFigures attempt_;
+    // What was damaged and dead before the attempt; nothing before its first record.
+    std::optional<EffectRecord> before_attempt_;
     mutable std::mutex mutex_;  // guards what is below
     std::optional<TickRecord> latest_;
     EventSum new_events_;  // since takeSince()
@@ -78,6 +92,8 @@ class Recorder {
     std::vector<DeviceChange> new_device_changes_;  // since takeDeviceChanges()
     EffectStatistics effects_;                      // as of latest_
     LoopHealth health_;
+    AttemptFigures shown_attempt_;   // as of latest_
+    bool is_attempt_asked_ = false;  // by beginAttempt()
 };
 
 }  // namespace bonemill

@@ -2,82 +2,30 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <thread>
+#include <future>
+#include <iostream>
 
-#include "common/log/log.h"
 #include "common/rt/clock.h"
-#include "common/rt/realtime_thread.h"
 #include "common/rt/stop_signals.h"
-#include "common/units.h"
 #include "common/user_error.h"
-#include "haptic_server/mesh/mesh_rounds.h"
 #include "haptic_server/publish/other_server.h"
-#include "haptic_server/record/fault_names.h"
-#include "haptic_server/record/final_files.h"
-#include "haptic_server/session/device_link_io.h"
-#include "haptic_server/session/show_session.h"
-#include "haptic_server/session/shown_device.h"
-#include "haptic_server/setup/coupling_text.h"
-#include "haptic_server/setup/scene_effects.h"
-#include "haptic_server/setup/scene_materials.h"
-#include "haptic_server/tick/haptic_tick.h"
-#include "haptic_server/volume/import/nrrd_writer.h"
+#include "haptic_server/session/lesson_book.h"
+#include "haptic_server/session/scene_folder.h"
+#include "haptic_server/session/scene_run.h"
 
 namespace bonemill {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr size_t kRingRecords = 8192;  // 8 s at 1 kHz: a stalled disk loses nothing
-constexpr size_t kRingCuts = 8192;
-constexpr int kTickPriority = 80;
-constexpr auto kPublishPeriod = 5ms;
 constexpr auto kLookForOthers = 300ms;
-constexpr auto kRecordPeriod = 4ms;
-constexpr int64_t kWarmUpNs = kNsPerSecond;
-// At its end the session shows what was milled last. A bone that is not yet meshed, or a slow network, holds
-// it for no longer than this.
-constexpr int64_t kLastMeshingNs = kNsPerSecond / 2;
-constexpr int64_t kLastPublishingNs = kNsPerSecond / 2;
-
-DeviceLinkIoConfig ioConfigOf(const ServerOptions& options, const scene::Loop& loop,
-                              const Simulation& simulation, uint32_t scene_revision) {
-    DeviceLinkIoConfig config;
-    config.scene_revision = scene_revision;
-    config.ends_with_device = options.until_device_leaves;
-    config.period_ns = int64_t(std::llround(double(kNsPerSecond) / loop.rate_hz()));
-    config.ramp.stale_after_ns = nsOfMilliseconds(loop.stale_after_ms());
-    config.ramp.ramp_down_ns = nsOfMilliseconds(loop.ramp_ms());
-    config.X_WD = simulation.X_WD;
-    config.workspace_scale = simulation.tick.workspace_scale;
-    return config;
-}
-
-std::string accuracyFileOf(const ServerOptions& options) {
-    if (!options.accuracy.empty()) return options.accuracy;
-    const std::string beside = accuracyFiguresOf(options.scene);
-    return std::filesystem::exists(beside) ? beside : "";
-}
-
-AccuracyFigures figuresOf(const ServerOptions& options) {
-    const std::string file = accuracyFileOf(options);
-    return file.empty() ? AccuracyFigures{} : readAccuracyFigures(file);
-}
-
-// Loads the scene, which the files that the session writes must spare with all that it names.
-LoadedScene loadSceneOf(const ServerOptions& options) {
-    LoadedScene loaded = loadScene(options.scene);
-    std::vector<NamedFile> written = filesOf(options.save), read = filesOf(loaded);
-    written.push_back({"--trace", options.trace});
-    written.push_back({"--report", options.report});
-    read.push_back({"--accuracy", accuracyFileOf(options)});
-    requireApart(written, read);
-    return loaded;
-}
+constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
+// A loop that waits for a device has no force; one that hangs must not keep the next scene away.
+constexpr int64_t kLongestFadeNs = kNsPerSecond;
 
 // Throws UserError if the session has a server: that is asked before this one shows anything.
 PublisherOptions publisherOptionsOf(const ServerOptions& options) {
@@ -86,268 +34,185 @@ PublisherOptions publisherOptionsOf(const ServerOptions& options) {
     return {.domain = options.domain, .session = options.session, .epoch = 0};
 }
 
+// "out/trace.csv" becomes "out/trace_2.csv" for the second scene of a session. Devices stay.
+std::string numbered(const std::string& path, int number) {
+    std::error_code error;
+    if (path.empty() || number == 1 ||
+        (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)))
+        return path;
+    std::filesystem::path file(path);
+    file.replace_filename(file.stem().string() + "_" + std::to_string(number) + file.extension().string());
+    return file.string();
+}
+
+// The options of the session's n-th scene.
+ServerOptions optionsOf(const ServerOptions& session, const std::string& scene, int number) {
+    ServerOptions options = session;
+    options.scene = scene;
+    if (number > 1) options.accuracy.clear();  // it was measured in the first one
+    for (std::string* path : {&options.trace, &options.report, &options.save.volume, &options.save.mesh,
+                              &options.save.difference})
+        *path = numbered(*path, number);
+    return options;
+}
+
+// The process: it has one scene after the other.
 class Server {
   public:
-    explicit Server(const ServerOptions& options)
-        : options_(options),
-          loaded_(loadSceneOf(options)),
-          simulation_(
-              makeSimulation(loaded_)),  // forks to read the volume: before stop_signals_, link, threads
-          link_(DeviceLink::create(options.session, LinkSide::kServer)),
-          history_(*simulation_.bone),
-          accuracy_(simulation_.accuracy),
-          tools_(simulation_.spoTools()),
-          ring_(kRingRecords),
-          cuts_(kRingCuts),
-          io_(ioConfigOf(options, loaded_.scene.loop(), simulation_,
-                         link_.announceScene(std::filesystem::absolute(options.scene).lexically_normal(),
-                                             sceneHashOf(loaded_.scene))),
-              link_, ring_, cuts_),
-          tick_(simulation_.tick, {*simulation_.bone, &history_}, {tools_, accuracy_}),
-          recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_, 0).period_ns,
-                    recordedEffectsOf(loaded_.scene.effects())),
-          publisher_(publisherOptionsOf(options)),
-          bone_export_(history_, *simulation_.bone, options.export_dir),
-          commands_(loaded_.scene, *simulation_.bone, recorder_,
-                    {history_, accuracy_, tools_, stop_requested_, bone_export_, io_.resetOrders()},
-                    options.instructor_only),
-          show_(publisher_, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_, io_,
-                commands_, options.stream_mbit_per_s * kMega / 8) {
-        for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
-        for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
-    }
-
-    ~Server() { io_.stop(); }  // whatever happened: the tick thread must be able to end before it is joined
+    Server(const ServerOptions& options, std::vector<ListedScene> scenes)
+        : Server(options, std::move(scenes), loadFirst(options)) {}
 
     int run() {
-        startTick();
-        recorder_.openTrace(options_.trace);  // only now: a refused start leaves the trace of before
-        std::jthread recorder([this](const std::stop_token& stop) {
-            loop(stop, kRecordPeriod, [this] { recorder_.drain(); });
-        });
-        std::jthread mesher([this](const std::stop_token& stop) { meshUntil(stop); });
-        std::jthread publisher(
-            [this](const std::stop_token& stop) { loop(stop, kPublishPeriod, [this] { publishRound(); }); });
+        run_->start();
         waitForTheEnd();
-        io_.stop();
-        tick_thread_.join();
-        recorder = {};
-        publisher = {};
-        // No tick and no command comes any more: what was being put back is in the files and in the picture.
-        history_.restoreAll(*simulation_.bone);
-        mesher = {};
-        endOnFailure([this] { show_.finish(monotonicNowNs() + kLastPublishingNs); });
-        published_.writes = publisher_.writeTimes();
-        published_.nodes = publisher_.digest().count();
-        published_.digest = publisher_.digest().value();
-        recorder_.setPublished(published_);
-        return finish();
+        loading_ = {};  // waits for what is being read
+        run_->end(true);
+        are_files_whole_ &= run_->writeFiles();
+        run_.reset();
+        return are_files_whole_ && !has_failed_ ? 0 : 1;
     }
 
   private:
-    void startTick() {
-        tick_thread_ = RealtimeThread(
-            {.request = {kTickPriority, options_.rt_core},
-             .is_strict = options_.is_strict_realtime,
-             .what = "the haptic loop"},
-            [this] {
-                while (tick_.tick(io_)) {
-                }
-            },
-            logRealtime);
+    struct Loaded {
+        LoadedScene scene;
+        Simulation simulation;
+    };
+    static Loaded loadFirst(const ServerOptions& options) {
+        LoadedScene scene = loadSceneOf(options);
+        Simulation simulation = makeSimulation(scene);
+        return {std::move(scene), std::move(simulation)};
     }
 
-    // A thread works until it is told to stop.
-    template <class Work>
-    void loop(const std::stop_token& stop, std::chrono::microseconds period, Work work) {
-        endOnFailure([&] {
-            while (!stop.stop_requested()) {
-                work();
-                std::this_thread::sleep_for(period);
-            }
-        });
-    }
+    Server(const ServerOptions& options, std::vector<ListedScene> scenes, Loaded first)
+        : options_(options),
+          link_(DeviceLink::create(options.session, LinkSide::kServer)),
+          publisher_(publisherOptionsOf(options)),
+          lesson_(std::move(scenes), ClassTable(options.class_table)),
+          run_(std::make_unique<SceneRun>(optionsOf(options, options.scene, scenes_run_),
+                                          std::move(first.scene), std::move(first.simulation), parts())) {}
 
-    // A failure ends the session in order, with its files.
-    template <class Work>
-    void endOnFailure(Work work) {
-        try {
-            work();
-        } catch (const std::exception& error) {
-            spdlog::error("{}: the session ends", error.what());
-            has_failed_ = true;
-            stop_requested_ = true;
+    ServerParts parts() { return {link_, publisher_, lesson_, stop_requested_, has_failed_}; }
+
+    bool isOver() {
+        if (const int signal = stop_signals_.await(kLookEveryNs)) {
+            spdlog::info("SIG{} received: shutting down", sigabbrev_np(signal));
+            return true;
         }
-    }
-
-    void publishRound() {
-        const int64_t start_ns = monotonicNowNs();
-        show_.round();
-        published_.rounds.record(monotonicNowNs() - start_ns);
-    }
-
-    void meshUntil(const std::stop_token& stop) {
-        const bool are_wanted = wantsVertexMaterials(loaded_.scene);
-        MeshRounds rounds(simulation_.bone->volume, simulation_.bone->lattice, cuts_,
-                          are_wanted ? simulation_.tick.effects.properties.get() : nullptr);
-        const auto put = [this](NodeGroup&& group) { outbox_.put(std::move(group), monotonicNowNs()); };
-        const auto markWhole = [&] {
-            if (rounds.hasMeshedAll()) outbox_.markWhole(monotonicNowNs());
-        };
-        loop(stop, MeshRounds::kPeriod, [&] {
-            for (bool is_more = true; is_more && !stop.stop_requested(); markWhole())
-                is_more = rounds.round(put);
-        });
-        endOnFailure([&] {
-            rounds.finish(put, monotonicNowNs() + kLastMeshingNs);
-            markWhole();
-        });
-        recorder_.setCutToPublisher(rounds.cutToSink());
-    }
-
-    // The faults are counted again and again, for the tick thread, and its numbers with it, may be gone
-    // at the end.
-    void countPageFaults(int64_t first_tick_ns) {
-        const std::optional<PageFaults> now = pageFaultsOf(tick_thread_.id());
-        if (!now || monotonicNowNs() - first_tick_ns < kWarmUpNs) return;
-        if (!warm_) warm_ = now;
-        recorder_.setPageFaults({now->minor - warm_->minor, now->major - warm_->major});
-    }
-
-    // A daemon that tells of one device after the other does not fill the log.
-    void tellOfCapabilities() {
-        DeviceCapabilities device;
-        if (!io_.capabilities(device)) return;
-        const std::string text = deviceText(device);
-        if (text == device_ || devices_told_ == DeviceHistory::kMostKept) return;
-        spdlog::info("the device is {}; {}", text, couplingText(simulation_.tick, device));
-        device_ = text;
-        ++devices_told_;
-    }
-
-    // Each change of the device is told of once, and so is that it cannot be trusted.
-    void tellOfDevice() {
-        tellOfCapabilities();
-        for (const DeviceChange& change : recorder_.takeDeviceChanges())
-            spdlog::log(change.now.stop_cause == uint32_t(StopCause::kNone) ? spdlog::level::info
-                                                                            : spdlog::level::warn,
-                        "the device: {}", deviceText(change.now));
-        if (io_.implausibleMessages() > 0 && !std::exchange(has_told_of_implausible_, true))
-            spdlog::warn("device_daemon says what cannot be; it is refused, and more of it only counted");
-        if (io_.earlySamples() > 0 && !std::exchange(has_told_of_early_, true))
-            spdlog::warn("samples come faster than loop.rate_hz; the loop keeps its rate");
+        if (run_->hasDeviceLeft()) {
+            spdlog::info("the device has left: session ends");
+            return true;
+        }
+        if (run_->hasTicked() && first_tick_ns_ == 0) first_tick_ns_ = monotonicNowNs();
+        return first_tick_ns_ != 0 && options_.seconds > 0 &&
+               secondsOfNs(monotonicNowNs() - first_tick_ns_) > options_.seconds;
     }
 
     void waitForTheEnd() {
-        spdlog::info("session {} of scene '{}' waits for a device", options_.session, loaded_.scene.name());
-        int64_t first_tick_ns = 0;
         while (!stop_requested_) {
-            constexpr int64_t kLookEveryNs = 50 * kNsPerMillisecond;
-            if (const int signal = stop_signals_.await(kLookEveryNs)) {
-                spdlog::info("SIG{} received: shutting down", sigabbrev_np(signal));
-                return;
-            }
-            if (io_.hasDeviceLeft()) {
-                spdlog::info("the device has left: session ends");
-                return;
-            }
-            if (!first_tick_ns && recorder_.health().ticks > 0) {
-                first_tick_ns = monotonicNowNs();
-                spdlog::info("the device is there: the loop runs");
-            }
-            if (first_tick_ns) countPageFaults(first_tick_ns);
-            tellOfDevice();
-            if (first_tick_ns && options_.seconds > 0 &&
-                secondsOfNs(monotonicNowNs() - first_tick_ns) > options_.seconds)
-                return;
+            if (isOver()) return;
+            run_->lookAfter();
+            if (!loading_.valid())
+                beginChange();
+            else if (loading_.wait_for(0s) == std::future_status::ready)
+                endChange();
         }
         if (!has_failed_) spdlog::info("shut down by a client's command");
     }
 
-    int finish() {
-        FinalFiles files;
-        if (!recorder_.finish()) files.note(traceProblem());
-        tellOfDevice();
-        const RunStatistics& statistics = recorder_.statistics();
-        logClosing(statistics);
-        logDistrust();
-        for (const std::string& warning : statistics.effects().warnings(materialNamesOf(loaded_.scene)))
-            spdlog::warn("effects warned: {}", warning);
-        const VoxelVolume& volume = simulation_.bone->volume;
-        const LeafLattice& lattice = simulation_.bone->lattice;
-        const SavePaths& save = options_.save;
-        files.write(save.volume, [&](const std::string& path) { writeNrrd(path, volume); });
-        files.write(save.mesh, [&](const std::string& path) {
-            saveMesh(path, volume, lattice, meshWholeBone(volume, lattice));
-        });
-        files.write(save.difference,
-                    [&](const std::string& path) { saveDifference(path, history_.scanned(), volume); });
-        files.write(options_.report, [&](const std::string& path) {
-            statistics.writeJson(path, materialNamesOf(loaded_.scene));
-        });
-        for (const std::string& problem : files.problems()) spdlog::error("{}", problem);
-        return files.problems().empty() && !has_failed_ ? 0 : 1;
+    // The scene in force goes on while another one is read.
+    void beginChange() {
+        std::optional<LessonBook::SceneOrder> order = lesson_.takeOrder();
+        if (!order) return;
+        order_ = std::move(*order);
+        order_ns_ = monotonicNowNs();
+        loading_ = std::async(std::launch::async,
+                              [this, options = optionsOf(options_, order_.file, scenes_run_ + 1)] {
+                                  Loaded loaded = loadFirst(options);
+                                  return std::make_unique<SceneRun>(options, std::move(loaded.scene),
+                                                                    std::move(loaded.simulation), parts());
+                              });
     }
 
-    std::string traceProblem() const {
-        const uint64_t lost = recorder_.statistics().lostRecords();
-        if (lost == 0) return options_.trace + ": part of the trace could not be written (disk full?)";
-        return options_.trace + ": the trace lacks " + std::to_string(lost) +
-               " ticks, which came faster than they could be written (disk slow or full?)";
+    void endChange() {
+        try {
+            std::unique_ptr<SceneRun> next = loading_.get();
+            changeTo(std::move(next));
+            lesson_.answerOrder(order_.command, "done");
+        } catch (const UserError& error) {
+            refuseChange(error.what());
+        } catch (const std::bad_alloc&) {
+            refuseChange("there is not enough memory for a second scene beside the one in force");
+        }
     }
 
-    void logDistrust() const {
-        if (io_.implausibleMessages() + io_.earlySamples() == 0) return;
-        spdlog::warn(
-            "{} messages of device_daemon were refused, {} ticks held back for samples that came early",
-            io_.implausibleMessages(), io_.earlySamples());
+    void refuseChange(const std::string& why) {
+        spdlog::warn("the scene stays: {}", why);
+        lesson_.answerOrder(order_.command, "refused: " + why);
     }
 
-    static void logClosing(const RunStatistics& statistics) {
-        const uint64_t lost = statistics.lostRecords();
-        spdlog::info("{} ticks, {:.1f} Hz, tick p99 {:.1f} us, {} dropped, {}faults: {}", statistics.ticks(),
-                     statistics.meanRateHz(),
-                     microsecondsOfNs(double(statistics.tickCompute().percentileNs(99))),
-                     statistics.droppedTicks(), lost == 0 ? "" : std::to_string(lost) + " records lost, ",
-                     faultNames(statistics.faults()));
+    // From the force of the one to that of the other; what the one leaves behind is written when the other
+    // runs.
+    void changeTo(std::unique_ptr<SceneRun> next) {
+        const int64_t loaded_ns = monotonicNowNs();
+        run_->fadeOut();
+        while (!run_->hasFadedOut() && monotonicNowNs() - loaded_ns < kLongestFadeNs)
+            std::this_thread::sleep_for(1ms);
+        run_->end(false);
+        publisher_.beginRun();
+        std::swap(run_, next);
+        ++scenes_run_;
+        run_->start();
+        spdlog::info("another scene: {:.2f} s to load, {:.2f} s to change",
+                     secondsOfNs(loaded_ns - order_ns_), secondsOfNs(monotonicNowNs() - loaded_ns));
+        are_files_whole_ &= next->writeFiles();
     }
 
     ServerOptions options_;
-    LoadedScene loaded_;
-    Simulation simulation_;
     StopSignals stop_signals_;
     DeviceLink link_;
-    BoneHistory history_;
-    AccuracySwitch accuracy_;
-    ToolSwitch tools_;
-    SpscRing<TickRecord> ring_;
-    SpscRing<Cut> cuts_;
-    DeviceLinkIo io_;
-    HapticTick tick_;
-    Recorder recorder_;
-    MeshOutbox outbox_;
     std::atomic<bool> stop_requested_{false};
     std::atomic<bool> has_failed_{false};
     Publisher publisher_;
-    SessionExport bone_export_;
-    SessionCommands commands_;
-    ShowSession show_;
-    PublishFigures published_;  // publisher thread's until it is joined
-    std::string device_;        // as told last
-    size_t devices_told_ = 0;
-    bool has_told_of_implausible_ = false, has_told_of_early_ = false;
-    std::optional<PageFaults> warm_;  // of the tick thread, when it had run for kWarmUpNs
-    RealtimeThread tick_thread_;
+    LessonBook lesson_;
+    int scenes_run_ = 1;
+    std::unique_ptr<SceneRun> run_;
+    LessonBook::SceneOrder order_;
+    int64_t order_ns_ = 0;
+    int64_t first_tick_ns_ = 0;
+    bool are_files_whole_ = true;
+    std::future<std::unique_ptr<SceneRun>> loading_;  // reads what is above: it goes first
 };
+
+// The folders that were named, or else that of the scene.
+std::vector<std::string> foldersOf(const ServerOptions& options) {
+    if (!options.scene_folders.empty() || options.scene.empty()) return options.scene_folders;
+    const std::filesystem::path folder = std::filesystem::path(options.scene).parent_path();
+    return {folder.empty() ? "." : folder.string()};
+}
 
 }  // namespace
 
-int runServer(const ServerOptions& options) {
+std::string listScenesOf(const ServerOptions& options) {
+    return sceneTable(listScenes(foldersOf(options)));
+}
+
+int runServer(const ServerOptions& given) {
+    ServerOptions options = given;
     requireWritable(options.trace);
     requireReplaceable(options.report);
     requireReplaceable(options.save);
     dds::setNetwork(options.network);
-    return Server(options).run();
+    if (options.class_table.empty() && !options.export_dir.empty())
+        options.class_table = (std::filesystem::path(options.export_dir) / "class.csv").string();
+    std::vector<ListedScene> scenes = listScenes(foldersOf(options));
+    if (options.scene.empty()) {
+        const auto first = std::find_if(scenes.begin(), scenes.end(),
+                                        [](const ListedScene& s) { return s.choice.problem().empty(); });
+        if (first == scenes.end())
+            throw UserError("no scene in --scenes can be loaded:\n" + sceneTable(scenes));
+        options.scene = first->file;
+    }
+    return Server(options, std::move(scenes)).run();
 }
 
 }  // namespace bonemill

@@ -1,8 +1,10 @@
-// The live server runs tick, mesher, publisher and recorder threads around one bone.
+// The live server: one process, and in it one scene after the other, each with tick, mesher, publisher and
+// recorder threads around its bone (scene_run.h).
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "common/dds/network.h"
 #include "common/rt/realtime.h"
@@ -11,7 +13,8 @@
 namespace bonemill {
 
 struct ServerOptions {
-    std::string scene;
+    std::string scene;  // the first one; empty: the first of the folders that can be loaded
+    std::vector<std::string> scene_folders;  // of scenes to choose from; none: the folder of `scene`
     uint32_t session = 1;
     uint32_t domain = 0;
     dds::NetworkOptions network;
@@ -21,7 +24,8 @@ struct ServerOptions {
     std::string trace;     // files to write; empty: none
     std::string report;
     SavePaths save;
-    std::string export_dir;         // where clients' export commands write; empty: they are refused
+    std::string class_table;  // CSV, one line per attempt; empty: class.csv in export_dir, if there is one
+    std::string export_dir;   // where clients' export commands write; empty: they are refused
     int rt_core = coreFromLast(0);  // of the tick thread; kAnyCore (-1) leaves the choice to the kernel
     bool is_strict_realtime = false;
     bool instructor_only = false;      // others may look, not command
@@ -30,7 +34,10 @@ struct ServerOptions {
 
 // Runs until told to stop; returns the process' exit code. Throws UserError at start-up, also when real-time
 // permissions are missing and is_strict_realtime is set. Files are written also after SIGINT, SIGTERM or
-// SIGHUP.
+// SIGHUP. Those of the second scene and later ones have a number before their ending: trace_2.csv.
 int runServer(const ServerOptions& options);
+
+// Returns the table of the scenes that can be chosen (scene_folder.h). Throws UserError.
+std::string listScenesOf(const ServerOptions& options);
 
 }  // namespace bonemill

@@ -18,6 +18,8 @@ bool asksForNothing(const topics::Command& command) {
             return !command.shut_down();
         case topics::Command::kResetDevice:
             return !command.reset_device();
+        case topics::Command::kStopAttempt:
+            return !command.stop_attempt();
         default:
             return false;
     }
@@ -61,6 +63,12 @@ std::optional<std::string> SessionCommands::carryOut(const topics::Command& comm
         case topics::Command::kResetDevice:
             controls_.reset_orders.fetch_add(1, std::memory_order_relaxed);
             return "done";
+        case topics::Command::kChooseScene:
+            return controls_.lesson.orderScene(command);
+        case topics::Command::kStartAttempt:
+            return controls_.attempts.start(command.start_attempt());
+        case topics::Command::kStopAttempt:
+            return controls_.attempts.stop();
         default:
             return "refused: this server does not know the action";
     }

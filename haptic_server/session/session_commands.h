@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "haptic_server/bone/checkpoints.h"
+#include "haptic_server/session/attempt_keeper.h"
+#include "haptic_server/session/lesson_book.h"
 #include "haptic_server/session/recorder.h"
 #include "haptic_server/session/session_export.h"
 #include "haptic_server/setup/scene_setup.h"
@@ -25,6 +27,8 @@ struct SessionControls {
     std::atomic<bool>& stop_requested;
     SessionExport& bone_export;
     std::atomic<uint32_t>& reset_orders;  // counts the orders to reset the device
+    LessonBook& lesson;
+    AttemptKeeper& attempts;
 };
 
 class SessionCommands {
@@ -38,6 +42,9 @@ class SessionCommands {
     std::optional<std::string> carryOut(const topics::Command& command);
     // This is how the command that was begun has ended, once it has: "done" or "failed: <why>".
     std::optional<std::string> takeResult() { return controls_.bone_export.takeResult(); }
+    void waitForResult() { controls_.bone_export.wait(); }
+    LessonBook& lesson() noexcept { return controls_.lesson; }
+    AttemptKeeper& attempts() noexcept { return controls_.attempts; }
     // Fills in the session clock, the pause, the checkpoints and what the bone has lost.
     void describe(topics::Status& status) const;
     const ToolSwitch& tools() const noexcept { return controls_.tools; }

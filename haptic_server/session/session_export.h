@@ -24,6 +24,10 @@ class SessionExport {
     // There is one answer when the export under way has ended: "done" or "failed: <why>". After a failure
     // none of its files is left.
     std::optional<std::string> takeResult();
+    // Waits for the end of the export under way, if there is one.
+    void wait() {
+        if (result_.valid()) result_.wait();
+    }
 
   private:
     BoneHistory& history_;

@@ -120,11 +120,21 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
       material_names_(materialNamesOf(scene)),
       tools_(simulation.tools),
       density_source_(*simulation.bone, history),
-      densities_(publisher.participant(), publisher.session(), publisher.epoch(), density_source_,
-                 scaleOf(simulation.mapping)),
+      density_scale_(scaleOf(simulation.mapping)),
       scene_info_(sceneInfo(scene, simulation)) {
-    *scene_info_.mutable_densities() = densityGridOf(density_source_, scaleOf(simulation.mapping));
+    *scene_info_.mutable_densities() = densityGridOf(density_source_, density_scale_);
+}
+
+void ShowSession::begin() {
+    densities_.emplace(publisher_.participant(), publisher_.session(), publisher_.epoch(), density_source_,
+                       density_scale_);
     publishSceneInfo();
+    publishLesson();
+}
+
+void ShowSession::publishLesson() {
+    if (std::optional<topics::Lesson> lesson = commands_.lesson().takeChanged())
+        publisher_.publishLesson(std::move(*lesson));
 }
 
 void ShowSession::publishSceneInfo() {
@@ -142,8 +152,10 @@ void ShowSession::round() {
     publishStructures();
     const int64_t now_ns = monotonicNowNs();
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
+    commands_.attempts().round();
     carryOutCommands();
     publishDensities();
+    publishLesson();
     if (now_ns - last_status_ns_ > (has_changed_ ? kStatusAfterChangeNs : kStatusPeriodNs)) publishStatus();
 }
 
@@ -153,7 +165,19 @@ void ShowSession::finish(int64_t until_ns) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));  // the budget grows
         publishNodes();
     }
+    publishLesson();
     publishStatus();
+}
+
+void ShowSession::endAttempt() {
+    if (commands_.lesson().isAttemptRunning()) commands_.attempts().stop();
+}
+
+void ShowSession::leaveAnswers() {
+    if (!under_way_) return;
+    commands_.waitForResult();
+    commands_.lesson().answerLater(*under_way_,
+                                   commands_.takeResult().value_or("failed: the scene has ended"));
 }
 
 void ShowSession::publishToolState(int64_t now_ns) {
@@ -193,7 +217,7 @@ void ShowSession::publishStructures() {
 void ShowSession::publishDensities() {
     const int64_t now_ns = monotonicNowNs();
     const int64_t most = std::min(budget_.available(now_ns), density_budget_.available(now_ns));
-    const size_t charged = densities_.round(now_ns, most);
+    const size_t charged = densities_->round(now_ns, most);
     budget_.spend(charged);
     density_budget_.spend(charged);
 }
@@ -205,10 +229,11 @@ void ShowSession::carryOutCommands() {
         if (commands_.tools().chosen() != scene_info_.tool_index()) publishSceneInfo();
         if (result)
             answer(command, *result);
-        else
+        else if (command.action_case() == topics::Command::kExport)
             under_way_ = command;
     }
-    if (const auto result = commands_.takeResult()) answer(under_way_, *result);
+    if (const auto result = commands_.takeResult()) answer(*std::exchange(under_way_, std::nullopt), *result);
+    for (const auto& [command, result] : commands_.lesson().takeAnswers()) answer(command, result);
 }
 
 void ShowSession::answer(const topics::Command& command, const std::string& result) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <future>
+#include <optional>
 
 #include "common/log/log_limit.h"
 #include "common/units.h"
@@ -21,13 +22,15 @@ namespace bonemill {
 
 class ShowSession {
   public:
-    // Publishes the scene at once; the protected structures follow with some round(). Node meshes and densities
-    // take at most `bytes_per_s`, the latter a part of what the former leave. References must outlive this
-    // object.
+    // Node meshes and densities take at most `bytes_per_s`, the latter a part of what the former leave.
+    // References must outlive this object.
     ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                 const BoneHistory& history, const AccuracyFigures& figures, MeshOutbox& outbox,
                 Recorder& recorder, const DeviceLinkIo& device, SessionCommands& commands,
                 double bytes_per_s);
+
+    // Publishes the scene, before the first round; the protected structures follow with some round().
+    void begin();
 
     // The publisher thread makes one round about 200 times per second.
     void round();
@@ -36,6 +39,11 @@ class ShowSession {
     // that wait, until this instant (CLOCK_MONOTONIC) at most, and the status that counts them.
     void finish(int64_t until_ns);
 
+    // Whoever has joined the publisher thread ends the attempt under way, and shows it, or leaves to the next
+    // scene's what clients still wait for.
+    void endAttempt();
+    void leaveAnswers();
+
   private:
     bool publishNodes();
     void publishStructures();
@@ -43,6 +51,7 @@ class ShowSession {
     void publishToolState(int64_t now_ns);
     void publishStatus();
     void publishSceneInfo();
+    void publishLesson();
     void carryOutCommands();
     void answer(const topics::Command& command, const std::string& result);
     void log(const topics::Command& command, const std::string& result);
@@ -64,9 +73,10 @@ class ShowSession {
     std::vector<std::string> material_names_;
     const std::vector<SceneTool>& tools_;
     DensitySource density_source_;
-    DensityPublisher densities_;
-    topics::SceneInfo scene_info_;  // as last published
-    topics::Command under_way_;     // that was begun and has not ended
+    DensityScale density_scale_;
+    std::optional<DensityPublisher> densities_;  // since begin(), of that epoch
+    topics::SceneInfo scene_info_;               // as last published
+    std::optional<topics::Command> under_way_;   // an export that was begun and has not ended
     LogLimit orders_logged_{20, 3 * kNsPerSecond};
     int64_t last_tool_state_ns_ = 0;
     int64_t last_status_ns_ = 0;

@@ -94,8 +94,20 @@ topics::EffectState ShownEffects::at(const EffectRecord& newest, const EventSum&
 
 void ShownEffects::describe(const EffectStatistics& statistics, const std::vector<std::string>& materials,
                             topics::Status& status) const {
-    if (!recorded_.heat && !recorded_.protection) return;
-    topics::Training& training = *status.mutable_training();
+    if (hasTraining()) fill(statistics, materials, *status.mutable_training());
+}
+
+void ShownEffects::describe(const EffectStatistics& statistics, const std::vector<std::string>& materials,
+                            topics::Attempt& attempt) const {
+    if (hasTraining()) fill(statistics, materials, *attempt.mutable_training());
+    constexpr size_t kMostStructures = 64;  // a viewer takes no more
+    for (std::string& name : statistics.touched(materials))
+        if (size_t(attempt.structures_touched_size()) < kMostStructures)
+            attempt.add_structures_touched(std::move(name));
+}
+
+void ShownEffects::fill(const EffectStatistics& statistics, const std::vector<std::string>& materials,
+                        topics::Training& training) const {
     if (recorded_.protection) {
         training.set_damaged_mm3(statistics.damaged() * kPerCubicMillimetre);
         training.set_max_protected_force_n(statistics.maxProtectedForce());

@@ -36,8 +36,15 @@ class ShownEffects {
     // Says nothing without protected_structures and thermal.
     void describe(const EffectStatistics& statistics, const std::vector<std::string>& materials,
                   topics::Status& status) const;
+    // The same for an attempt.
+    void describe(const EffectStatistics& statistics, const std::vector<std::string>& materials,
+                  topics::Attempt& attempt) const;
 
   private:
+    bool hasTraining() const noexcept { return recorded_.heat || recorded_.protection; }
+    void fill(const EffectStatistics& statistics, const std::vector<std::string>& materials,
+              topics::Training& training) const;
+
     RecordedEffects recorded_;
     bool is_seen_ = false;  // a viewer has effects that follow the burr
 };

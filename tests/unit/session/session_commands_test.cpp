@@ -16,8 +16,36 @@ class SessionCommandsTest : public testing::Test {
           accuracy_(presetSettings(Preset::kBalanced)),
           tools_(std::vector<SpoTool>{{&tool_, {.radius = 1e-3}, 5}}, 0),
           bone_export_(ball_.history, ball_.bone, ""),
-          commands_(sceneOf(), ball_.bone, recorder_,
-                    {ball_.history, accuracy_, tools_, stop_requested_, bone_export_, reset_orders_}, false) {
+          attempts_(lesson_, recorder_, ball_.history, ball_.bone.volume.voxelVolume(), sceneOf()),
+          commands_(sceneOf(), ball_.bone, recorder_, controls(), false) {}
+
+    static std::vector<ListedScene> listed() {
+        ListedScene scene{.choice = {}, .file = "/scenes/tooth.textproto"};
+        scene.choice.set_id("tooth");
+        return {scene};
+    }
+    SessionControls controls() {
+        return {ball_.history, accuracy_,     tools_,  stop_requested_,
+                bone_export_,  reset_orders_, lesson_, attempts_};
+    }
+    std::string order(topics::Command command, topics::Viewer::Role role = topics::Viewer::OPERATOR) {
+        command.set_role(role);
+        return commands_.carryOut(command).value_or("nothing said");
+    }
+    static topics::Command startOf(const std::string& trainee) {
+        topics::Command command;
+        command.set_start_attempt(trainee);
+        return command;
+    }
+    static topics::Command stop() {
+        topics::Command command;
+        command.set_stop_attempt(true);
+        return command;
+    }
+    static topics::Command choiceOf(const std::string& id) {
+        topics::Command command;
+        command.set_choose_scene(id);
+        return command;
     }
 
     static scene::Scene sceneOf() {
@@ -41,8 +69,81 @@ class SessionCommandsTest : public testing::Test {
     std::atomic<bool> stop_requested_{false};
     SessionExport bone_export_;
     std::atomic<uint32_t> reset_orders_{0};
+    LessonBook lesson_{listed(), ClassTable("")};
+    AttemptKeeper attempts_;
     SessionCommands commands_;
 };
+
+TEST_F(SessionCommandsTest, WhoOnlyLooksChoosesNoSceneAndBeginsNoAttempt) {
+    for (const topics::Command& command : {choiceOf("tooth"), startOf("Ann"), stop()})
+        EXPECT_EQ(order(command, topics::Viewer::VIEWER),
+                  "refused: a viewer only looks; start with --role operator");
+    EXPECT_FALSE(lesson_.takeOrder());
+    EXPECT_FALSE(lesson_.isAttemptRunning());
+}
+
+TEST_F(SessionCommandsTest, ASceneIsOrderedOnceAndAnsweredWhenItIsThere) {
+    EXPECT_EQ(order(choiceOf("skull\n")),
+              "refused: there is no scene 'skull?'; haptic_server --list-scenes shows which there are");
+    EXPECT_EQ(order(choiceOf("tooth")), "nothing said");
+    EXPECT_EQ(lesson_.takeChanged()->changing_to(), "tooth");
+    EXPECT_EQ(order(choiceOf("tooth")), "refused: the scene tooth is on its way; wait for it");
+    const auto taken = lesson_.takeOrder();
+    ASSERT_TRUE(taken);
+    EXPECT_EQ(taken->file, "/scenes/tooth.textproto");
+    EXPECT_EQ(order(choiceOf("tooth")), "refused: the scene tooth is on its way; wait for it");
+    lesson_.answerOrder(taken->command, "refused: no such volume");
+    EXPECT_EQ(lesson_.takeAnswers().at(0).second, "refused: no such volume");
+    EXPECT_TRUE(lesson_.takeAnswers().empty());
+    EXPECT_EQ(lesson_.takeChanged()->changing_to(), "");
+    EXPECT_EQ(order(choiceOf("tooth")), "nothing said");
+}
+
+TEST_F(SessionCommandsTest, AnAttemptCountsFromZeroAndIsListed) {
+    TickRecord before{};
+    before.f_hand_W[2] = 9;
+    ring_.tryPush(before);
+    recorder_.drain();
+    EXPECT_EQ(order(stop()), "refused: no attempt is under way");
+    ball_.history.pauseMilling(true);
+    EXPECT_EQ(order(startOf("Ann")), "done");
+    EXPECT_FALSE(ball_.history.isMillingPaused());
+    TickRecord record{};
+    record.f_hand_W[0] = 3;
+    record.f_hand_W[1] = 4;
+    ring_.tryPush(record);
+    recorder_.drain();
+    EXPECT_TRUE(lesson_.takeChanged()->is_running());
+    EXPECT_EQ(order(startOf("Bob \xc3\xa4")), "done") << "ends the one under way";
+    EXPECT_EQ(order(stop()), "done");
+    const auto lesson = lesson_.takeChanged();
+    ASSERT_EQ(lesson->attempts_size(), 2);
+    EXPECT_FALSE(lesson->is_running());
+    EXPECT_EQ(lesson->trainee(), "Bob \xc3\xa4");
+    EXPECT_EQ(lesson->attempts(0).trainee(), "Ann");
+    EXPECT_EQ(lesson->attempts(0).number(), 1u);
+    EXPECT_DOUBLE_EQ(lesson->attempts(0).max_force_n(), 5);
+    EXPECT_EQ(lesson->attempts(1).number(), 2u);
+    EXPECT_EQ(lesson->attempts(1).max_force_n(), 0);
+}
+
+TEST_F(SessionCommandsTest, TraineesHaveNamesThatCanBeShown) {
+    for (const std::string& name : {std::string(), std::string("  "), std::string(49, 'x'),
+                                    std::string("a\nb"), std::string("\x1b[2J"), std::string("a\xc2\x85")})
+        EXPECT_EQ(order(startOf(name)).rfind("refused: ", 0), 0u) << name;
+    EXPECT_FALSE(lesson_.isAttemptRunning());
+    EXPECT_EQ(order(startOf("=1+2")), "done");
+}
+
+TEST_F(SessionCommandsTest, OfAttemptsTheOldestAreForgotten) {
+    for (int n = 0; n < LessonBook::kMostAttempts + 3; ++n) {
+        lesson_.beginAttempt("Ann");
+        lesson_.endAttempt({});
+    }
+    const auto lesson = lesson_.takeChanged();
+    EXPECT_EQ(lesson->attempts_size(), LessonBook::kMostAttempts);
+    EXPECT_EQ(lesson->attempts(0).number(), 4u);
+}
 
 const std::string kPresets = "; " + presetNames() + " or scene";
 
@@ -55,9 +156,7 @@ TEST_F(SessionCommandsTest, AnotherLawIsRefusedWhereAnEffectNeedsTheGradientLaw)
     EXPECT_EQ(setAccuracy("thesis_2012"), "done");
     scene::Scene scene = sceneOf();
     scene.mutable_effects()->mutable_energy_removal();
-    SessionCommands commands(scene, ball_.bone, recorder_,
-                             {ball_.history, accuracy_, tools_, stop_requested_, bone_export_, reset_orders_},
-                             false);
+    SessionCommands commands(scene, ball_.bone, recorder_, controls(), false);
     topics::Command command;
     command.set_role(topics::Viewer::OPERATOR);
     for (const std::string law : {"thesis_2012", "proxy_3dof"}) {
@@ -72,8 +171,9 @@ TEST_F(SessionCommandsTest, AnotherLawIsRefusedWhereAnEffectNeedsTheGradientLaw)
 
 TEST_F(SessionCommandsTest, WhatIsFalseIsRefusedAndNotDone) {
     constexpr void (topics::Command::*kActions[])(bool) = {
-        &topics::Command::set_reset_volume, &topics::Command::set_save_checkpoint,
-        &topics::Command::set_shut_down, &topics::Command::set_reset_device};
+        &topics::Command::set_stop_attempt, &topics::Command::set_reset_volume,
+        &topics::Command::set_save_checkpoint, &topics::Command::set_shut_down,
+        &topics::Command::set_reset_device};
     for (const auto set : kActions) {
         topics::Command command;
         command.set_role(topics::Viewer::INSTRUCTOR);

@@ -1,0 +1,154 @@
+#include "haptic_server/session/class_table.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+
+#include "common/rt/clock.h"
+#include "common/user_error.h"
+
+namespace bonemill {
+namespace {
+
+// The open file, for one writer at a time.
+class TableFile {
+  public:
+    explicit TableFile(const std::string& path)
+        : path_(path), file_(open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0666)) {
+        if (file_ < 0) fail(std::strerror(errno));
+        struct stat status {};
+        if (fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
+            close(file_);
+            refuse("is no file");
+        }
+        while (flock(file_, LOCK_EX) != 0 && errno == EINTR) {
+        }
+    }
+    ~TableFile() {
+        if (file_ >= 0) close(file_);
+    }
+    TableFile(const TableFile&) = delete;
+    TableFile& operator=(const TableFile&) = delete;
+
+    off_t size() const { return lseek(file_, 0, SEEK_END); }
+    std::string read(off_t from, size_t count) const {
+        std::string text(count, '\0');
+        const ssize_t got = pread(file_, text.data(), count, from);
+        text.resize(size_t(got > 0 ? got : 0));
+        return text;
+    }
+    // All of it, or the file stays as it is.
+    void append(const std::string& text) const {
+        const off_t before = size();
+        size_t done = 0;
+        while (done < text.size()) {
+            const ssize_t got = write(file_, text.data() + done, text.size() - done);
+            if (got < 0 && errno == EINTR) continue;
+            if (got <= 0) undo(before, got < 0 ? errno : ENOSPC);
+            done += size_t(got);
+        }
+        if (fsync(file_) != 0) undo(before, errno);
+    }
+    void requireTable() const {
+        const std::string header = std::string(kClassTableHeader) + "\n";
+        if (size() > 0 && read(0, header.size()) != header)
+            refuse("is there and has other columns than a class table; name another file");
+    }
+
+  private:
+    [[noreturn]] void undo(off_t size, int error) const {
+        const bool is_undone = ftruncate(file_, size) == 0;
+        fail(std::string(std::strerror(error)) + (is_undone ? "" : "; its last line is not whole"));
+    }
+    [[noreturn]] void refuse(const std::string& why) const {
+        throw UserError("--class-table " + path_ + ": " + why);
+    }
+    [[noreturn]] void fail(const std::string& why) const {
+        throw UserError(path_ + ": cannot be written: " + why);
+    }
+
+    std::string path_;
+    int file_;
+};
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+std::string utcText(int64_t stamp_ns) {
+    const time_t seconds = stamp_ns / kNsPerSecond;
+    tm utc{};
+    gmtime_r(&seconds, &utc);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text;
+}
+
+template <class Texts>
+std::string joined(const Texts& texts) {
+    std::string all;
+    for (const std::string& text : texts) all += (all.empty() ? "" : "; ") + text;
+    return all;
+}
+
+}  // namespace
+
+std::string csvText(const std::string& text) {
+    std::string field = "\"";
+    if (!text.empty() && std::strchr("=+-@\t\r", text[0])) field += '\'';
+    for (const char c : text) {
+        if (c == '"') field += '"';
+        field += (unsigned char)c < ' ' ? ' ' : c;
+    }
+    return field + '"';
+}
+
+std::string classTableLine(const topics::Attempt& attempt) {
+    const topics::Training& training = attempt.training();
+    const auto ifAny = [](bool is_there, double value) { return is_there ? number(value) : std::string(); };
+    return std::to_string(attempt.number()) + ',' + utcText(attempt.start_stamp_ns()) + ',' +
+           csvText(attempt.trainee()) + ',' + csvText(attempt.scene_id()) + ',' + number(attempt.time_s()) +
+           ',' + number(attempt.removed_mm3()) + ',' + number(attempt.max_force_n()) + ',' +
+           ifAny(training.has_damaged_mm3(), training.damaged_mm3()) + ',' +
+           ifAny(training.has_least_distance_mm(), training.least_distance_mm()) + ',' +
+           ifAny(training.has_max_protected_force_n(), training.max_protected_force_n()) + ',' +
+           ifAny(training.has_necrotic_mm3(), training.necrotic_mm3()) + ',' +
+           ifAny(training.has_max_temperature_c(), training.max_temperature_c()) + ',' +
+           csvText(joined(attempt.structures_touched())) + ',' + csvText(joined(training.warnings()));
+}
+
+ClassTable::ClassTable(std::string path) : path_(std::move(path)) {
+    if (path_.empty()) return;
+    try {
+        TableFile(path_).requireTable();
+    } catch (const UserError& error) {
+        const std::string text = error.what();
+        throw UserError(text.rfind("--class-table", 0) == 0 ? text : "--class-table " + text);
+    }
+}
+
+std::string ClassTable::append(const topics::Attempt& attempt) const {
+    if (path_.empty()) return "";
+    try {
+        const TableFile file(path_);
+        file.requireTable();
+        const off_t size = file.size();
+        std::string text;
+        if (size == 0) text = std::string(kClassTableHeader) + "\n";
+        if (size > 0 && file.read(size - 1, 1) != "\n") text = "\n";  // somebody's last line has no end
+        file.append(text + classTableLine(attempt) + "\n");
+        return "";
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+}
+
+}  // namespace bonemill

@@ -1,0 +1,121 @@
+#include "haptic_server/session/lesson_book.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "haptic_server/session/repeated_text.h"
+
+namespace bonemill {
+namespace {
+
+int64_t nowUnixNs() {
+    const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(since_epoch).count();
+}
+
+}  // namespace
+
+LessonBook::LessonBook(std::vector<ListedScene> scenes, ClassTable table)
+    : scenes_(std::move(scenes)), table_(std::move(table)) {
+    for (const ListedScene& scene : scenes_) *lesson_.add_scenes() = scene.choice;
+}
+
+std::optional<topics::Lesson> LessonBook::takeChanged() {
+    const std::lock_guard lock(mutex_);
+    if (!std::exchange(has_changed_, false)) return std::nullopt;
+    return lesson_;
+}
+
+void LessonBook::enterScene(const std::string& file) {
+    const std::lock_guard lock(mutex_);
+    lesson_.set_scene_id(idOfScene(scenes_, file));
+    has_changed_ = true;
+}
+
+std::optional<std::string> LessonBook::orderScene(const topics::Command& command) {
+    const std::lock_guard lock(mutex_);
+    const std::string& id = command.choose_scene();
+    const auto scene = std::find_if(scenes_.begin(), scenes_.end(),
+                                    [&](const ListedScene& s) { return s.choice.id() == id; });
+    if (scene == scenes_.end())
+        return "refused: there is no scene '" + repeatedText(id) +
+               "'; haptic_server --list-scenes shows which there are";
+    if (!lesson_.changing_to().empty())
+        return "refused: the scene " + lesson_.changing_to() + " is on its way; wait for it";
+    lesson_.set_changing_to(id);
+    has_changed_ = true;
+    order_ = SceneOrder{command, scene->file};
+    return std::nullopt;
+}
+
+std::optional<LessonBook::SceneOrder> LessonBook::takeOrder() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(order_, std::nullopt);
+}
+
+void LessonBook::answerOrder(const topics::Command& command, const std::string& result) {
+    const std::lock_guard lock(mutex_);
+    lesson_.clear_changing_to();
+    has_changed_ = true;
+    answers_.emplace_back(command, result);
+}
+
+void LessonBook::answerLater(const topics::Command& command, const std::string& result) {
+    const std::lock_guard lock(mutex_);
+    answers_.emplace_back(command, result);
+}
+
+std::vector<std::pair<topics::Command, std::string>> LessonBook::takeAnswers() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(answers_, {});
+}
+
+// What Protobuf has parsed is UTF-8.
+std::string LessonBook::traineeProblem(const std::string& trainee) {
+    if (trainee.find_first_not_of(' ') == std::string::npos)
+        return "refused: give the trainee's name or number";
+    if (trainee.size() > kLongestTrainee)
+        return "refused: the trainee's name has " + std::to_string(trainee.size()) + " bytes; " +
+               std::to_string(kLongestTrainee) + " at most";
+    for (size_t i = 0; i < trainee.size(); ++i) {
+        const auto c = (unsigned char)trainee[i];
+        const bool is_c1 = c == 0xc2 && i + 1 < trainee.size() && (unsigned char)trainee[i + 1] < 0xa0;
+        if (c < ' ' || c == 0x7f || is_c1)
+            return "refused: the name '" + repeatedText(trainee) + "' has characters that cannot be printed";
+    }
+    return "";
+}
+
+void LessonBook::beginAttempt(const std::string& trainee) {
+    const std::lock_guard lock(mutex_);
+    ++attempts_begun_;
+    lesson_.set_is_running(true);
+    lesson_.set_trainee(trainee);
+    lesson_.set_start_stamp_ns(nowUnixNs());
+    has_changed_ = true;
+}
+
+bool LessonBook::isAttemptRunning() const {
+    const std::lock_guard lock(mutex_);
+    return lesson_.is_running();
+}
+
+std::string LessonBook::endAttempt(topics::Attempt attempt) {
+    const std::lock_guard lock(mutex_);
+    lesson_.set_is_running(false);
+    attempt.set_number(attempts_begun_);
+    attempt.set_trainee(lesson_.trainee());
+    attempt.set_scene_id(lesson_.scene_id());
+    attempt.set_start_stamp_ns(lesson_.start_stamp_ns());
+    const std::string problem = table_.append(attempt);
+    if (!problem.empty()) spdlog::error("attempt {} is not in the class table: {}", attempts_begun_, problem);
+    auto& attempts = *lesson_.mutable_attempts();
+    if (attempts.size() == kMostAttempts) attempts.DeleteSubrange(0, 1);
+    *attempts.Add() = std::move(attempt);
+    has_changed_ = true;
+    return problem;
+}
+
+}  // namespace bonemill

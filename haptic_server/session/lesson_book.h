@@ -1,0 +1,66 @@
+// What the server can teach, teaches, and how attempts went: it lives as long as the process, and scenes come
+// and go.
+//
+// Any normal thread may call it. It takes a mutex, so it is not for the tick.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "haptic_server/session/class_table.h"
+#include "haptic_server/session/scene_folder.h"
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+class LessonBook {
+  public:
+    static constexpr int kMostAttempts = 256;
+    static constexpr size_t kLongestTrainee = 48;  // bytes
+
+    LessonBook(std::vector<ListedScene> scenes, ClassTable table);
+
+    // The publisher thread asks what is to be shown, once per change; the epoch is still missing.
+    std::optional<topics::Lesson> takeChanged();
+    // The scene of this file is in force now: it is told anew.
+    void enterScene(const std::string& file);
+
+    // A client asks for another scene. The answer is the refusal, or nothing: then it comes with
+    // takeAnswers().
+    std::optional<std::string> orderScene(const topics::Command& command);
+    struct SceneOrder {
+        topics::Command command;
+        std::string file;
+    };
+    // The order is whoever's takes it; there is none other until it is answered.
+    std::optional<SceneOrder> takeOrder();
+    void answerOrder(const topics::Command& command, const std::string& result);
+    // A command that the scene that has ended can no longer answer.
+    void answerLater(const topics::Command& command, const std::string& result);
+    std::vector<std::pair<topics::Command, std::string>> takeAnswers();
+
+    // Says why the name cannot be a trainee's, or "".
+    static std::string traineeProblem(const std::string& trainee);
+    void beginAttempt(const std::string& trainee);
+    bool isAttemptRunning() const;
+    // Takes the attempt's figures; name, number, scene and start are filled in. Returns what kept it from the
+    // class table, or "".
+    std::string endAttempt(topics::Attempt attempt);
+
+  private:
+    mutable std::mutex mutex_;
+    std::vector<ListedScene> scenes_;
+    ClassTable table_;
+    topics::Lesson lesson_;
+    bool has_changed_ = true;
+    uint32_t attempts_begun_ = 0;
+    std::optional<SceneOrder> order_;  // not yet taken
+    std::vector<std::pair<topics::Command, std::string>> answers_;
+};
+
+}  // namespace bonemill

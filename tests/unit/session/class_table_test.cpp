@@ -1,0 +1,87 @@
+#include "haptic_server/session/class_table.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include "common/user_error.h"
+#include "tests/support/process.h"
+
+namespace bonemill {
+namespace {
+
+topics::Attempt attemptOf(const std::string& trainee) {
+    topics::Attempt attempt;
+    attempt.set_number(3);
+    attempt.set_trainee(trainee);
+    attempt.set_scene_id("tooth_cavity");
+    attempt.set_start_stamp_ns(1'700'000'000'000'000'000);
+    attempt.set_time_s(61.5);
+    attempt.set_removed_mm3(12.25);
+    attempt.set_max_force_n(4);
+    attempt.mutable_training()->set_damaged_mm3(0);
+    attempt.add_structures_touched("pulp");
+    attempt.add_structures_touched("nerve, left");
+    return attempt;
+}
+
+class ClassTableTest : public testing::Test {
+  protected:
+    std::string path() const { return folder_ / "class.csv"; }
+    std::string content() const { return test::readFile(path()); }
+    const test::TemporaryFolder folder_;
+};
+
+const std::string kHeader = std::string(kClassTableHeader) + "\n";
+const std::string kAnn =
+    "3,2023-11-14T22:13:20Z,\"Ann\",\"tooth_cavity\",61.5,12.25,4,0,,,,,\"pulp; nerve, left\",\"\"\n";
+
+TEST_F(ClassTableTest, EachAttemptIsAWholeLineBelowTheHeader) {
+    const ClassTable table(path());
+    EXPECT_EQ(table.append(attemptOf("Ann")), "");
+    EXPECT_EQ(content(), kHeader + kAnn);
+    EXPECT_EQ(ClassTable(path()).append(attemptOf("Ann")), "");
+    EXPECT_EQ(content(), kHeader + kAnn + kAnn);
+}
+
+TEST_F(ClassTableTest, NoNameIsAFormulaOrBreaksALine) {
+    EXPECT_EQ(csvText("Ann \"the\" drill"), "\"Ann \"\"the\"\" drill\"");
+    for (const std::string text : {"=1+2", "+1", "-1", "@SUM(A1)"})
+        EXPECT_EQ(csvText(text), "\"'" + text + "\"");
+    EXPECT_EQ(csvText("a\nb\rc"), "\"a b c\"");
+}
+
+TEST_F(ClassTableTest, AnotherFileIsNotTouched) {
+    test::writeFile(path(), "grades of 2026\n");
+    EXPECT_THROW(ClassTable{path()}, UserError);
+    EXPECT_EQ(content(), "grades of 2026\n");
+    EXPECT_THROW(ClassTable(folder_ / "no folder/class.csv"), UserError);
+    ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+    EXPECT_THROW(ClassTable(folder_ / "pipe"), UserError);
+    EXPECT_THROW(ClassTable("/dev/null"), UserError);
+}
+
+TEST_F(ClassTableTest, ALineWithoutItsEndIsNotContinued) {
+    test::writeFile(path(), kHeader + "1,somebody's");
+    EXPECT_EQ(ClassTable(path()).append(attemptOf("Ann")), "");
+    EXPECT_EQ(content(), kHeader + "1,somebody's\n" + kAnn);
+}
+
+TEST_F(ClassTableTest, AFullDiskIsToldOfAndLeavesWholeLines) {
+    const ClassTable table(path());
+    ASSERT_EQ(table.append(attemptOf("Ann")), "");
+    const std::string before = content();
+    const rlimit full{before.size() + 10, RLIM_INFINITY};
+    rlimit unlimited{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+    signal(SIGXFSZ, SIG_IGN);
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+    const std::string problem = table.append(attemptOf("Bob"));
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &unlimited), 0);
+    EXPECT_NE(problem.find("cannot be written"), std::string::npos) << problem;
+    EXPECT_EQ(content(), before);
+}
+
+}  // namespace
+}  // namespace bonemill
