@@ -4,13 +4,16 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <map>
 
 #include "common/user_error.h"
+#include "common/whole_file.h"
 #include "render_client/app/hand_feed.h"
 #include "render_client/app/scene_feed.h"
 #include "render_client/app/stop_signal.h"
 #include "render_client/controls/announce_clock.h"
+#include "render_client/controls/attempts_csv.h"
 #include "render_client/controls/frame_rate.h"
 #include "render_client/controls/viewer_controls.h"
 #include "render_client/hud/session_text.h"
@@ -71,11 +74,11 @@ class Attendance {
     std::map<uint64_t, std::string> here_;  // names by sender
 };
 
-// Returns the first free name in the current folder.
-std::filesystem::path nextPictureName() {
+// Returns the first free name in the current folder. `format` has one %d.
+std::filesystem::path nextName(const char* format) {
     for (int number = 1;; ++number) {
-        char name[32];
-        std::snprintf(name, sizeof name, "bonemill_%04d.png", number);
+        char name[64];
+        std::snprintf(name, sizeof name, format, number);
         if (!std::filesystem::exists(name)) return name;
     }
 }
@@ -136,6 +139,7 @@ class WindowViewer {
         scene_.draw(width, height, scaleOfText(width, height));
         painter_.paint(panel_, scene_.viewWidth(width, height), height);
         if (wishes.save_picture) savePicture(width, height);
+        if (wishes.save_attempts && session.lesson) saveAttempts(*session.lesson);
         window_.show();
         frame_rate_.countPicture(Clock::now());
     }
@@ -152,6 +156,7 @@ class WindowViewer {
         session.frame_rate_hz = frame_rate_.perSecond();
         if (subscriber.sceneInfo()) session.info = &*subscriber.sceneInfo();
         if (subscriber.status()) session.status = &*subscriber.status();
+        if (subscriber.lesson()) session.lesson = &*subscriber.lesson();
         session.others = subscriber.viewers();
         session.faults = scene_.faults();
         session.time_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
@@ -218,10 +223,25 @@ class WindowViewer {
 
     void savePicture(int width, int height) {
         try {
-            const std::filesystem::path name = nextPictureName();
+            const std::filesystem::path name = nextName("bonemill_%04d.png");
             writePng(readPicture(window_.gl(), width, height), name);
             notices_.show({"Picture saved: " + name.string(), HudTone::kGood});
         } catch (const UserError& error) {
+            notices_.show({error.what(), HudTone::kWarning});
+        }
+    }
+
+    void saveAttempts(const topics::Lesson& lesson) {
+        try {
+            WholeFile file(nextName("bonemill_attempts_%04d.csv"));
+            std::ofstream stream(file.part(), std::ios::binary);
+            stream << attemptsCsv(lesson);
+            stream.close();
+            if (!stream) throw UserError("cannot write " + file.path().string() + "; is the disk full?");
+            file.finish();
+            notices_.show(
+                {"Attempts saved: " + std::filesystem::absolute(file.path()).string(), HudTone::kGood});
+        } catch (const std::exception& error) {
             notices_.show({error.what(), HudTone::kWarning});
         }
     }

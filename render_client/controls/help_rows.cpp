@@ -44,6 +44,7 @@ void addKeys(const Bindings& bindings, std::vector<HudRow>& rows, Wanted&& is_wa
 
 bool isOfUse(const KeyBinding& binding, HelpFor whom) {
     const bool begins_hold = binding.action == Action::kHoldTool;
+    if (binding.is_of_lesson) return false;
     return !binding.is_of_hold || whom == HelpFor::kHolding || (begins_hold && whom == HelpFor::kMayHold);
 }
 

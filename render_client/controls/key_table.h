@@ -34,6 +34,9 @@ enum class Action {
     kLastCheckpoint,
     kNextTool,
     kResetDevice,
+    kNextScene,  // this and the two below are of use in a lesson
+    kTrainee,
+    kStopAttempt,
     kAccuracyScene,
     kAccuracy1,
     kAccuracy2,
@@ -73,9 +76,10 @@ struct KeyBinding {
     Key key;
     bool with_shift;
     Action action;
-    std::string_view meaning;  // neighbours with the same one share a row of the help page
-    bool repeats = false;      // it acts again while the key is held
-    bool is_of_hold = false;   // it is of use only where a mouse can hold the tool
+    std::string_view meaning;   // neighbours with the same one share a row of the help page
+    bool repeats = false;       // it acts again while the key is held
+    bool is_of_hold = false;    // it is of use only where a mouse can hold the tool
+    bool is_of_lesson = false;  // it is of use in a lesson, whose part of the panel names it
 };
 
 // Signs such as [ and + are bound by the text they make: where they lie differs from layout to layout.

@@ -32,6 +32,29 @@ CommandOrReason nextTool(const SessionView& session) {
     return {command, ""};
 }
 
+// The one after the scene in force, of those that can be chosen.
+CommandOrReason nextScene(const SessionView& session) {
+    const int count = session.lesson ? session.lesson->scenes_size() : 0;
+    int now = count - 1;
+    for (int n = 0; n < count; ++n)
+        if (session.lesson->scenes(n).id() == session.lesson->scene_id()) now = n;
+    for (int step = 1; step <= count; ++step) {
+        const topics::SceneChoice& scene = session.lesson->scenes((now + step) % count);
+        if (!scene.problem().empty() || scene.id() == session.lesson->scene_id()) continue;
+        topics::Command command;
+        command.set_choose_scene(scene.id());
+        return {command, ""};
+    }
+    return refuse("there is no other scene to choose");
+}
+
+CommandOrReason stopAttempt(const SessionView& session) {
+    if (!session.lesson || !session.lesson->is_running()) return refuse("no attempt is under way");
+    topics::Command command;
+    command.set_stop_attempt(true);
+    return {command, ""};
+}
+
 }  // namespace
 
 std::string whyNotCommand(const SessionView& session) {
@@ -49,10 +72,15 @@ std::string unsavedWork(const SessionView& session) {
 }
 
 std::string questionBefore(const topics::Command& command, const SessionView& session) {
-    const bool replaces_bone = command.reset_volume() || command.has_restore_checkpoint();
+    if (command.has_choose_scene() && session.status && session.status->removed_mm3() > 0)
+        return "Change the scene? " + readableText(session.status->removed_mm3(), " mm\u00b3") +
+               " are milled and go with this one: once more does it";
+    const bool starts = command.has_start_attempt();
+    const bool replaces_bone = starts || command.reset_volume() || command.has_restore_checkpoint();
     const std::string lost = replaces_bone ? unsavedWork(session) : "";
     if (lost.empty()) return "";
-    const std::string what = command.reset_volume()
+    const std::string what = starts ? "Start on whole bone?"
+                             : command.reset_volume()
                                  ? "Put the bone back?"
                                  : "Back to checkpoint " + std::to_string(command.restore_checkpoint()) + "?";
     return what + " " + lost + ": once more does it, " + keyLabelOf(Action::kSaveCheckpoint) +
@@ -107,6 +135,12 @@ CommandOrReason commandOf(Action action, const SessionView& session) {
             break;
         case Action::kNextTool:
             asked = nextTool(session);
+            break;
+        case Action::kNextScene:
+            asked = nextScene(session);
+            break;
+        case Action::kStopAttempt:
+            asked = stopAttempt(session);
             break;
         case Action::kResetDevice:
             command.set_reset_device(true);

@@ -22,6 +22,7 @@ struct SessionView {
     double time_s = 0;         // any clock that goes on: when was the user asked?
     const topics::SceneInfo* info = nullptr;
     const topics::Status* status = nullptr;
+    const topics::Lesson* lesson = nullptr;
     std::vector<topics::Viewer> others = {};
     std::vector<FaultEntry> faults = {};  // of the session, the first one first
 };

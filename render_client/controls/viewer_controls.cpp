@@ -177,6 +177,10 @@ void ViewerControls::act(Action action, const SessionView& session, Wishes& wish
             return;
         case Action::kHoldTool:
             return switchHold(session, wishes);
+        case Action::kTrainee:
+            is_panel_open_ = wishes.type_trainee = session.lesson != nullptr;
+            if (!session.lesson) wishes.notice = HudNotice{"This server gives no lesson", HudTone::kWarning};
+            return;
         case Action::kSavePicture:
             wishes.save_picture = true;
             return;

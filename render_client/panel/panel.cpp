@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "render_client/hud/font_files.h"
+#include "render_client/panel/lesson_cards.h"
 #include "render_client/panel/panel_content.h"
 
 namespace bonemill {
@@ -120,7 +122,7 @@ void Panel::feed(const WindowEvent& event) {
 bool Panel::handle(const WindowEvent& event, ViewerControls& controls, const SessionView& session,
                    Wishes& wishes) {
     feed(event);
-    if (!controls.isPanelOpen()) {
+    if (!controls.isPanelOpen() && !lesson_.isOnScreen(session)) {
         ImGui::GetIO().MouseWheel = 0;
         ImGui::GetIO().ClearInputCharacters();
         return false;
@@ -133,13 +135,16 @@ bool Panel::handle(const WindowEvent& event, ViewerControls& controls, const Ses
 }
 
 void Panel::layOut(ViewerControls& controls, const SessionView& session, Wishes& wishes) {
+    lesson_.follow(session);
+    if (session.lesson) pictures_.follow(*session.lesson);
+    if (wishes.type_trainee) lesson_.wants_keyboard = true;
     const bool is_open = controls.isPanelOpen();
-    const int frames = is_open && !was_open_ ? kFramesToSettle : is_open ? 1 : 0;
+    const bool was_drawn = std::exchange(is_drawn_, is_open || lesson_.isOnScreen(session));
+    const bool is_new = (is_open && !was_open_) || (is_drawn_ && !was_drawn);
+    const int frames = is_new ? kFramesToSettle : is_drawn_ ? 1 : 0;
     was_open_ = is_open;
-    if (!is_open) {
-        places_.clear();
-        is_ending_ = false;
-    }
+    if (!is_open) is_ending_ = false;
+    if (!is_drawn_) places_.clear();
     for (int i = 0; i < frames; ++i) frame(i + 1 == frames ? pending_seconds_ : 0, controls, session, wishes);
 }
 
@@ -148,7 +153,10 @@ void Panel::frame(double seconds, ViewerControls& controls, const SessionView& s
     ImGui::GetIO().DeltaTime = float(std::max(seconds, kShortestFrame));
     ImGui::NewFrame();
     places_.clear();
-    PanelContent(controls, session, wishes, places_, is_ending_, scale_).build();
+    if (controls.isPanelOpen())
+        PanelContent(controls, session, wishes, places_, is_ending_, lesson_, pictures_.all(), scale_)
+            .build();
+    if (lesson_.isOnScreen(session)) LessonCards(controls, session, wishes, lesson_, places_, scale_).build();
     ImGui::Render();
 }
 
@@ -159,7 +167,7 @@ std::optional<PixelPoint> Panel::find(const std::string& label) const {
 
 const ImDrawData* Panel::drawData() const {
     ImGui::SetCurrentContext(context_.get());
-    return was_open_ ? ImGui::GetDrawData() : nullptr;
+    return is_drawn_ ? ImGui::GetDrawData() : nullptr;
 }
 
 }  // namespace bonemill

@@ -12,6 +12,8 @@
 #include <string>
 
 #include "render_client/controls/viewer_controls.h"
+#include "render_client/panel/lesson_draft.h"
+#include "render_client/panel/scene_pictures.h"
 
 struct ImDrawData;
 struct ImGuiContext;
@@ -39,8 +41,8 @@ class Panel {
     // Returns where to click on the button, box or slider with this label, if it can be seen.
     std::optional<PixelPoint> find(const std::string& label) const;
 
-    // Returns what to draw; null while the panel is closed. It is valid until the next call of
-    // setPicture() or handle().
+    // Returns what to draw; null while the panel is closed and no lesson shows anything. It is valid until
+    // the next call of setPicture() or handle().
     const ImDrawData* drawData() const;
     // The font's pixels have 8 bits each; the number changes with them.
     struct FontPixels {
@@ -50,6 +52,8 @@ class Panel {
         int version;
     };
     FontPixels fontPixels() const;
+    // What the drawing names by a texture's number that is not 0 is the picture of this number.
+    const std::map<std::string, ScenePicture>& pictures() const { return pictures_.all(); }
 
   private:
     struct Destroy {
@@ -65,7 +69,10 @@ class Panel {
     int font_version_ = 0;
     double pending_seconds_ = 0;
     bool was_open_ = false;
+    bool is_drawn_ = false;   // the panel, or something of a lesson
     bool is_ending_ = false;  // the session's end was asked for and waits to be confirmed
+    LessonDraft lesson_;
+    ScenePictures pictures_;
 };
 
 }  // namespace bonemill

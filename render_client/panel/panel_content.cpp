@@ -32,6 +32,10 @@ void PanelContent::build() {
         if (isOpen("Tool in the mouse")) buildHold();
         gap();
     }
+    if (session_.lesson && session_.lesson->scenes_size() > 0) {
+        if (isOpen("Lesson")) buildLesson();
+        gap();
+    }
     if (isOpen("View")) buildView();
     gap();
     if (hasEffects()) {

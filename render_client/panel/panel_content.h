@@ -9,6 +9,8 @@
 #include "render_client/camera/view_settings.h"
 #include "render_client/controls/viewer_controls.h"
 #include "render_client/hud/hud_colours.h"
+#include "render_client/panel/lesson_draft.h"
+#include "render_client/panel/scene_pictures.h"
 
 namespace bonemill {
 
@@ -17,13 +19,16 @@ class PanelContent {
     // Everything must outlive the object. `places` takes where each control is; `is_ending` says whether the
     // end of the session waits to be confirmed.
     PanelContent(ViewerControls& controls, const SessionView& session, Wishes& wishes,
-                 std::map<std::string, PixelPoint>& places, bool& is_ending, float scale)
+                 std::map<std::string, PixelPoint>& places, bool& is_ending, LessonDraft& draft,
+                 const std::map<std::string, ScenePicture>& pictures, float scale)
         : controls_(controls),
           settings_(controls.settings()),
           session_(session),
           wishes_(wishes),
           places_(places),
           is_ending_(is_ending),
+          draft_(draft),
+          pictures_(pictures),
           scale_(scale) {}
 
     // It is called between ImGui::NewFrame() and ImGui::Render().
@@ -42,6 +47,12 @@ class PanelContent {
     bool hasEffects() const;
     bool isListed(ViewerEffect effect) const;
     void buildEffects();
+    // These teach (panel_lesson.cpp).
+    void buildLesson();
+    void buildTrainee(const topics::Lesson& lesson);
+    void startAttempt(const topics::Lesson& lesson);
+    void buildScene(const topics::Lesson& lesson, const topics::SceneChoice& scene);
+    void buildAttempts(const topics::Lesson& lesson);
     // These say how the session goes (panel_session.cpp).
     void buildSession();
     void buildCheckpoints();
@@ -75,6 +86,8 @@ class PanelContent {
     Wishes& wishes_;
     std::map<std::string, PixelPoint>& places_;
     bool& is_ending_;
+    LessonDraft& draft_;
+    const std::map<std::string, ScenePicture>& pictures_;
     float scale_;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <set>
 
 namespace bonemill {
 namespace {
@@ -27,9 +28,11 @@ constexpr char kFragmentShader[] = R"(
 in vec2 font_uv;
 in vec4 tint;
 uniform sampler2D font;
+uniform bool is_picture;
 out vec4 colour;
 void main() {
-    colour = vec4(tint.rgb, tint.a * texture(font, font_uv).r);
+    vec4 texel = texture(font, font_uv);
+    colour = is_picture ? tint * texel : vec4(tint.rgb, tint.a * texel.r);
 }
 )";
 
@@ -57,6 +60,29 @@ PanelPainter::PanelPainter(const GlApi& gl)
     gl_.BindVertexArray(0);
 }
 
+void PanelPainter::uploadPictures(const Panel& panel) {
+    std::set<int> wanted;
+    for (const auto& [id, picture] : panel.pictures()) {
+        if (picture.number == 0) continue;
+        wanted.insert(picture.number);
+        if (pictures_.contains(picture.number)) continue;
+        GlTexture& texture = pictures_.try_emplace(picture.number, gl_).first->second;
+        gl_.BindTexture(GL_TEXTURE_2D, texture.name());
+        gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+        gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, picture.width, picture.height, 0, GL_RGBA,
+                       GL_UNSIGNED_BYTE, picture.rgba.data());
+        smooth();
+    }
+    std::erase_if(pictures_, [&](const auto& entry) { return !wanted.contains(entry.first); });
+}
+
+void PanelPainter::smooth() {
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
 void PanelPainter::uploadFont(const Panel::FontPixels& font) {
     gl_.BindTexture(GL_TEXTURE_2D, font_.name());
     if (font.version == font_version_) return;
@@ -64,10 +90,7 @@ void PanelPainter::uploadFont(const Panel::FontPixels& font) {
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, font.width, font.height, 0, GL_RED, GL_UNSIGNED_BYTE,
                    font.pixels);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    smooth();
 }
 
 void PanelPainter::prepare(int width, int height) {
@@ -88,6 +111,7 @@ void PanelPainter::paint(const Panel& panel, int width, int height) {
     const ImDrawData* drawing = panel.drawData();
     if (!drawing) return;
     gl_.ActiveTexture(GL_TEXTURE0);
+    uploadPictures(panel);
     uploadFont(panel.fontPixels());
     prepare(width, height);
     for (int i = 0; i < drawing->CmdListsCount; ++i) {
@@ -102,6 +126,10 @@ void PanelPainter::paint(const Panel& panel, int width, int height) {
             if (right <= left || bottom <= top) continue;
             gl_.Scissor(GLint(left), GLint(float(height) - bottom), GLsizei(right - left),
                         GLsizei(bottom - top));
+            const auto picture = pictures_.find(int(intptr_t(command.GetTexID())));
+            program_.set("is_picture", int(picture != pictures_.end()));
+            gl_.BindTexture(GL_TEXTURE_2D,
+                            picture != pictures_.end() ? picture->second.name() : font_.name());
             static_assert(sizeof(ImDrawIdx) == 2);
             gl_.DrawElements(GL_TRIANGLES, GLsizei(command.ElemCount), GL_UNSIGNED_SHORT,
                              reinterpret_cast<const void*>(size_t(command.IdxOffset) * sizeof(ImDrawIdx)));

@@ -4,6 +4,8 @@
 // and scissors off.
 #pragma once
 
+#include <map>
+
 #include "render_client/gl/gl_object.h"
 #include "render_client/gl/program.h"
 #include "render_client/panel/panel.h"
@@ -20,6 +22,8 @@ class PanelPainter {
 
   private:
     void uploadFont(const Panel::FontPixels& font);
+    void smooth();
+    void uploadPictures(const Panel& panel);
     void prepare(int width, int height);
 
     const GlApi& gl_;
@@ -28,7 +32,8 @@ class PanelPainter {
     GlBuffer vertices_;
     GlBuffer indices_;
     GlTexture font_;
-    int font_version_ = 0;  // of the pixels in the texture; 0: none
+    std::map<int, GlTexture> pictures_;  // by number
+    int font_version_ = 0;               // of the pixels in the texture; 0: none
 };
 
 }  // namespace bonemill

@@ -1,0 +1,116 @@
+#include "render_client/panel/lesson_cards.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "render_client/hud/effect_lines.h"
+#include "render_client/hud/figure_text.h"
+#include "render_client/hud/hud_colours.h"
+#include "render_client/hud/session_text.h"
+
+namespace bonemill {
+namespace {
+
+constexpr float kCardWidth = 300, kCardMargin = 14;  // pixels at scale 1
+constexpr float kWidestCard = 0.34f;                 // of the picture
+constexpr ImGuiWindowFlags kCard = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
+
+ImVec4 colourOfCard(const HudColour& colour) {
+    return {colour[0], colour[1], colour[2], colour[3]};
+}
+
+std::vector<HudRow> rowsOf(const topics::Attempt& attempt) {
+    std::string touched;
+    for (const std::string& name : attempt.structures_touched())
+        touched += (touched.empty() ? "" : ", ") + name;
+    std::vector<HudRow> rows{{"Time", clockText(attempt.time_s())},
+                             {"Removed", readableText(attempt.removed_mm3(), " mm\u00b3")},
+                             {"Highest force", readableText(attempt.max_force_n(), " N")},
+                             {"Touched", touched.empty() ? "nothing to spare" : touched,
+                              touched.empty() ? HudTone::kGood : HudTone::kAlarm}};
+    topics::Training figures = attempt.training();
+    figures.clear_warnings();
+    for (HudRow& row : trainingRows(figures)) rows.push_back(std::move(row));
+    return rows;
+}
+
+// A window of this width at this part of the picture, which is also the part of itself that lies there.
+void place(float x, float y, float width) {
+    const ImVec2 picture = ImGui::GetIO().DisplaySize;
+    const auto inside = [](float part, float size, float margin) {
+        return margin + part * (size - 2 * margin);
+    };
+    ImGui::SetNextWindowPos(ImVec2(inside(x, picture.x, kCardMargin), inside(y, picture.y, kCardMargin)),
+                            ImGuiCond_Always, ImVec2(x, y));
+    if (width > 0) ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, picture.y * 0.6f));
+}
+
+}  // namespace
+
+void LessonCards::build() {
+    buildTop();
+    if (const topics::Attempt* attempt = draft_.summary(session_)) buildSummary(*attempt);
+    if (!controls_.isPanelOpen()) buildHandle();
+}
+
+void LessonCards::buildTop() {
+    const topics::Lesson& lesson = *session_.lesson;
+    const topics::SceneChoice* const scene = sceneOf(lesson, lesson.scene_id());
+    const bool is_changing = !lesson.changing_to().empty();
+    const float opacity = is_changing ? 1 : draft_.taskOpacity(session_.time_s);
+    if (opacity <= 0 || (!is_changing && (!scene || scene->task().empty()))) return;
+    const float width = std::min(kCardWidth * 1.4f * scale_, ImGui::GetIO().DisplaySize.x * kWidestCard);
+    place(0.5f, 0, width);
+    ImGui::PushStyleVar(ImGuiStyleVar_Alpha, opacity);
+    ImGui::Begin("##task", nullptr, kCard | ImGuiWindowFlags_NoInputs);
+    ImGui::PushTextWrapPos();
+    if (is_changing) {
+        ImGui::Text("Changing to %s \u2026", titleOf(lesson, lesson.changing_to()).c_str());
+    } else {
+        ImGui::TextColored(colourOfCard(kHudLabelColour), "%s", titleOf(lesson, scene->id()).c_str());
+        ImGui::TextUnformatted(scene->task().c_str());
+    }
+    ImGui::PopTextWrapPos();
+    ImGui::End();
+    ImGui::PopStyleVar();
+}
+
+void LessonCards::buildSummary(const topics::Attempt& attempt) {
+    place(0, 1, std::min(kCardWidth * scale_, ImGui::GetIO().DisplaySize.x * kWidestCard));
+    ImGui::Begin("##summary", nullptr, kCard);
+    ImGui::PushTextWrapPos();
+    ImGui::Text("Attempt %u: %s", attempt.number(), attempt.trainee().c_str());
+    ImGui::TextColored(colourOfCard(kHudLabelColour), "%s",
+                       titleOf(*session_.lesson, attempt.scene_id()).c_str());
+    for (const HudRow& row : rowsOf(attempt)) {
+        ImGui::TextColored(colourOfCard(kHudLabelColour), "%s", row.label.c_str());
+        ImGui::SameLine(ImGui::GetWindowWidth() * 0.5f);
+        ImGui::TextColored(colourOfCard(colourOf(row.tone)), "%s", row.value.c_str());
+    }
+    ImGui::PopTextWrapPos();
+    if (button("Close")) draft_.closeSummary();
+    ImGui::SameLine();
+    if (button("All attempts as CSV")) wishes_.save_attempts = true;
+    ImGui::End();
+}
+
+// The mouse alone opens the panel here.
+void LessonCards::buildHandle() {
+    place(1, 0.5f, 0);
+    ImGui::Begin("##lesson", nullptr, kCard);
+    if (button(withKey("Lesson", Action::kPanel).c_str())) controls_.act(Action::kPanel, session_, wishes_);
+    ImGui::End();
+}
+
+bool LessonCards::button(const char* label) {
+    const bool is_pressed = ImGui::Button(label);
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    places_[label] = {low.x + (high.y - low.y) / 2, (low.y + high.y) / 2};
+    return is_pressed;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,44 @@
+#include "render_client/panel/lesson_draft.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace bonemill {
+
+void LessonDraft::follow(const SessionView& session) {
+    if (!session.lesson) return;
+    const topics::Lesson& lesson = *session.lesson;
+    const uint32_t last = lesson.attempts().empty() ? 0 : lesson.attempts().rbegin()->number();
+    const uint64_t epoch = std::exchange(epoch_, lesson.epoch());
+    const bool is_new_scene = std::exchange(scene_id_, lesson.scene_id()) != lesson.scene_id();
+    const bool was_running = std::exchange(was_running_, lesson.is_running());
+    const uint32_t last_before = std::exchange(last_attempt_, last);
+    if ((is_new_scene || !was_running) && (is_new_scene || lesson.is_running()))
+        task_since_s_ = session.time_s;
+    if (lesson.is_running() && !was_running) summary_ = 0;
+    if (epoch == lesson.epoch() && last > last_before) summary_ = last;
+}
+
+float LessonDraft::taskOpacity(double time_s) const {
+    if (!task_since_s_) return 0;
+    return float(std::clamp((kTaskTime - (time_s - *task_since_s_)) / kFadeTime, 0.0, 1.0));
+}
+
+const topics::Attempt* LessonDraft::summary(const SessionView& session) const {
+    if (!session.lesson || summary_ == 0) return nullptr;
+    for (const topics::Attempt& attempt : session.lesson->attempts())
+        if (attempt.number() == summary_) return &attempt;
+    return nullptr;
+}
+
+const topics::SceneChoice* sceneOf(const topics::Lesson& lesson, const std::string& id) {
+    const auto scene = std::ranges::find(lesson.scenes(), id, [](const auto& choice) { return choice.id(); });
+    return scene == lesson.scenes().end() ? nullptr : &*scene;
+}
+
+std::string titleOf(const topics::Lesson& lesson, const std::string& id) {
+    const topics::SceneChoice* const scene = sceneOf(lesson, id);
+    return scene && !scene->title().empty() ? scene->title() : id;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,90 @@
+// Looks at a lesson's pixels: the list of scenes with their pictures, and the summary of an attempt.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "render_client/offscreen/osmesa_context.h"
+#include "render_client/panel/panel_painter.h"
+#include "tests/gl/golden.h"
+#include "tests/support/class_lesson.h"
+#include "tests/support/controlled_panel.h"
+#include "tests/support/process.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int kScreenWidth = 1280, kScreenHeight = 800;
+
+std::string scenePng() {
+    Picture picture(160, 120);
+    for (int y = 0; y < 120; ++y)
+        for (int x = 0; x < 160; ++x) {
+            uint8_t* const pixel = picture.row(y) + 3 * x;
+            pixel[0] = uint8_t(x + 60);
+            pixel[1] = uint8_t(2 * y);
+            pixel[2] = 40;
+        }
+    const test::TemporaryFolder folder;
+    writePng(picture, folder.path() / "scene.png");
+    return test::readFile(folder / "scene.png");
+}
+
+class LessonPicture : public testing::Test, protected test::ControlledPanel {
+  protected:
+    LessonPicture() {
+        for (int n : {0, 1}) lesson_.mutable_scenes(n)->set_picture(scenePng());
+        session_.lesson = &lesson_;
+        session_.time_s = 100;
+    }
+    // Draws it over a mid-grey picture.
+    Picture draw() {
+        for (int n = 0; n < 3; ++n) layOut(kScreenWidth, kScreenHeight);
+        const GlApi& gl = context_.gl();
+        gl.ClearColor(0.5f, 0.5f, 0.5f, 1);
+        gl.Clear(GL_COLOR_BUFFER_BIT);
+        painter_.paint(panel_, kScreenWidth, kScreenHeight);
+        return context_.read();
+    }
+    void endAttempt() {
+        draw();
+        session_.time_s += 100;
+        *lesson_.add_attempts() = lesson_.attempts(1);
+        lesson_.mutable_attempts(2)->set_number(3);
+    }
+
+    topics::Lesson lesson_ = test::makeLesson();
+    OsmesaContext context_{kScreenWidth, kScreenHeight};
+    PanelPainter painter_{context_.gl()};
+};
+
+double coveredShare(const Picture& picture) {
+    size_t count = 0;
+    for (int y = 0; y < picture.height(); ++y)
+        for (int x = 0; x < picture.width(); ++x) count += picture.at(x, y) != picture.at(640, 500);
+    return double(count) / (kScreenWidth * kScreenHeight);
+}
+
+TEST_F(LessonPicture, TheListOfScenes) {
+    switchPanel();
+    EXPECT_EQ(test::goldenProblem(draw(), "lesson_scenes"), "");
+}
+
+TEST_F(LessonPicture, TheSummaryOfAnAttempt) {
+    endAttempt();
+    EXPECT_EQ(test::goldenProblem(draw(), "lesson_summary"), "");
+}
+
+// Figures and messages take a tenth, as the quiet screen has them; a sixth is the most.
+TEST_F(LessonPicture, WhatStandsOverThePictureIsSmall) {
+    EXPECT_LT(coveredShare(draw()), 0.05) << "task and handle";
+    endAttempt();
+    const double summary = coveredShare(draw());
+    EXPECT_GT(summary, 0.01);
+    EXPECT_LT(summary, 1.0 / 6 - 0.06) << "with figures of 6 % it stays below a sixth";
+    lesson_.set_changing_to("pedicle");
+    EXPECT_LT(coveredShare(draw()), 1.0 / 6 - 0.06);
+}
+
+}  // namespace
+}  // namespace bonemill

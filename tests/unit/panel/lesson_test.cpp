@@ -1,0 +1,196 @@
+// Clicks through a class: scenes, trainees, attempts and their summary, without OpenGL.
+#include <gtest/gtest.h>
+
+#include "tests/support/class_lesson.h"
+#include "tests/support/controlled_panel.h"
+
+namespace bonemill {
+namespace {
+
+class LessonClicks : public testing::Test, protected test::ControlledPanel {
+  protected:
+    LessonClicks() {
+        session_.lesson = &lesson_;
+        layOut();
+    }
+    void layOut() { ControlledPanel::layOut(1280, 1000); }
+    bool isThere(const std::string& label) {
+        layOut();
+        return panel_.find(label).has_value();
+    }
+    void click(const std::string& label) {
+        layOut();
+        const auto place = panel_.find(label);
+        ASSERT_TRUE(place) << "no control '" << label << "' can be seen";
+        wishes_ = {};
+        send(MouseMoveEvent{*place});
+        EXPECT_TRUE(send(MouseButtonEvent{MouseButton::kLeft, true, *place, {}, 0}));
+        EXPECT_TRUE(send(MouseButtonEvent{MouseButton::kLeft, false, *place, {}, 0}));
+        layOut();
+    }
+    topics::Command command() const {
+        return wishes_.commands.empty() ? topics::Command() : wishes_.commands.back();
+    }
+    void type(const std::string& text) {
+        for (const char sign : text) send(TextEvent{char32_t(sign)});
+    }
+    void press(Key key, Modifiers held = {}) {
+        send(KeyEvent{key, true, false, held});
+        send(KeyEvent{key, false, false, {}});
+    }
+
+    topics::Lesson lesson_ = test::makeLesson();
+};
+
+TEST_F(LessonClicks, TheMouseAloneOpensThePanelAndChooses) {
+    click("Lesson (M)");
+    EXPECT_TRUE(controls_.isPanelOpen());
+    click("Pedicle of a vertebra");
+    EXPECT_EQ(command().choose_scene(), "pedicle");
+    click("Cavity in a molar");
+    EXPECT_TRUE(wishes_.commands.empty()) << "it is the scene in force";
+    click("Mastoid");
+    EXPECT_TRUE(wishes_.commands.empty()) << "it has a problem";
+}
+
+TEST_F(LessonClicks, WithoutALessonThereIsNothingOfIt) {
+    session_.lesson = nullptr;
+    EXPECT_FALSE(isThere("Lesson (M)"));
+    EXPECT_EQ(panel_.drawData(), nullptr);
+    switchPanel();
+    EXPECT_FALSE(isThere("Start"));
+    EXPECT_TRUE(isThere("First view (R)"));
+}
+
+TEST_F(LessonClicks, ASceneIsLostOnlyAfterAQuestion) {
+    switchPanel();
+    status_.set_removed_mm3(4);
+    click("Pedicle of a vertebra");
+    EXPECT_TRUE(wishes_.commands.empty());
+    ASSERT_TRUE(wishes_.notice);
+    EXPECT_NE(wishes_.notice->text.find("once more does it"), std::string::npos);
+    click("Pedicle of a vertebra");
+    EXPECT_EQ(command().choose_scene(), "pedicle");
+}
+
+TEST_F(LessonClicks, TheKeyAsksForANameAndEnterStarts) {
+    controls_.act(Action::kTrainee, session_, wishes_);
+    layOut();
+    wishes_ = {};
+    layOut();
+    type("Cleo");
+    press(Key::kEnter);
+    EXPECT_EQ(command().start_attempt(), "Cleo");
+    // Letters typed were none of the viewer's keys, and are again after the start.
+    EXPECT_EQ(settings_.stereo, StereoMode::kOff);
+}
+
+TEST_F(LessonClicks, WhoHasNoNameIsCounted) {
+    switchPanel();
+    click("Start");
+    EXPECT_EQ(command().start_attempt(), "3");
+}
+
+TEST_F(LessonClicks, AnAttemptIsPausedStoppedAndFollowedByTheNext) {
+    switchPanel();
+    click("Stop (Shift+E)");
+    EXPECT_TRUE(wishes_.commands.empty()) << "none is under way";
+    lesson_.set_is_running(true);
+    click("Pause (P)");
+    EXPECT_TRUE(command().pause_milling());
+    click("Stop (Shift+E)");
+    EXPECT_TRUE(command().stop_attempt());
+    click("Next trainee");
+    EXPECT_TRUE(command().stop_attempt());
+    lesson_.set_is_running(false);
+    layOut();
+    type("Dora");
+    press(Key::kEnter);
+    EXPECT_EQ(command().start_attempt(), "Dora");
+}
+
+TEST_F(LessonClicks, KeysDoTheSame) {
+    controls_.act(Action::kNextScene, session_, wishes_);
+    EXPECT_EQ(command().choose_scene(), "pedicle");
+    lesson_.set_scene_id("pedicle");
+    wishes_ = {};
+    controls_.act(Action::kNextScene, session_, wishes_);
+    EXPECT_EQ(command().choose_scene(), "cavity") << "the third has a problem";
+    wishes_ = {};
+    controls_.act(Action::kStopAttempt, session_, wishes_);
+    EXPECT_TRUE(wishes_.commands.empty());
+    EXPECT_TRUE(wishes_.notice);
+    lesson_.set_is_running(true);
+    controls_.act(Action::kStopAttempt, session_, wishes_);
+    EXPECT_TRUE(command().stop_attempt());
+}
+
+TEST_F(LessonClicks, AViewerSeesAndDoesNotPress) {
+    session_.role = topics::Viewer::VIEWER;
+    lesson_.set_is_running(true);
+    switchPanel();
+    for (const char* label : {"Pedicle of a vertebra", "Start", "Pause (P)", "Stop (Shift+E)"}) {
+        click(label);
+        EXPECT_TRUE(wishes_.commands.empty()) << label;
+    }
+    controls_.act(Action::kNextScene, session_, wishes_);
+    EXPECT_TRUE(wishes_.commands.empty());
+    ASSERT_TRUE(wishes_.notice);
+    EXPECT_NE(wishes_.notice->text.find("--role operator"), std::string::npos);
+    click("Save as CSV");
+    EXPECT_TRUE(wishes_.save_attempts) << "reading is allowed";
+}
+
+TEST_F(LessonClicks, TheSummaryComesWithTheEndOfAnAttemptAndGoes) {
+    EXPECT_FALSE(isThere("Close")) << "attempts from before are old news";
+    lesson_.set_is_running(true);
+    layOut();
+    lesson_.set_is_running(false);
+    *lesson_.add_attempts() = lesson_.attempts(1);
+    lesson_.mutable_attempts(2)->set_number(3);
+    EXPECT_TRUE(isThere("Close"));
+    click("All attempts as CSV");
+    EXPECT_TRUE(wishes_.save_attempts);
+    click("Close");
+    EXPECT_FALSE(isThere("Close"));
+    lesson_.mutable_attempts(2)->set_number(4);
+    EXPECT_TRUE(isThere("Close"));
+    lesson_.set_is_running(true);
+    EXPECT_FALSE(isThere("Close")) << "the next one has begun";
+}
+
+TEST(LessonDraft, TheTaskFadesAfterAWhileAndComesWithTheNextAttempt) {
+    topics::Lesson lesson = test::makeLesson();
+    SessionView session;
+    session.lesson = &lesson;
+    session.time_s = 100;
+    LessonDraft draft;
+    EXPECT_EQ(draft.taskOpacity(100), 0);
+    draft.follow(session);
+    EXPECT_EQ(draft.taskOpacity(101), 1) << "a new scene";
+    EXPECT_EQ(draft.taskOpacity(113), 0);
+    session.time_s = 200;
+    draft.follow(session);
+    EXPECT_EQ(draft.taskOpacity(200), 0) << "the same one";
+    lesson.set_is_running(true);
+    draft.follow(session);
+    EXPECT_EQ(draft.taskOpacity(200), 1);
+    EXPECT_GT(draft.taskOpacity(211), 0);
+    EXPECT_LT(draft.taskOpacity(211), 1);
+}
+
+TEST(ScenePictures, WhatIsNoPictureIsLeftOut) {
+    topics::Lesson lesson = test::makeLesson();
+    lesson.mutable_scenes(0)->set_picture("not a picture");
+    lesson.mutable_scenes(1)->set_picture("\x89PNG\r\n\x1a\n and then nothing");
+    ScenePictures pictures;
+    pictures.follow(lesson);
+    EXPECT_EQ(pictures.all().size(), 3u);
+    for (const auto& [id, picture] : pictures.all()) EXPECT_EQ(picture.number, 0) << id;
+    lesson.mutable_scenes()->DeleteSubrange(1, 2);
+    pictures.follow(lesson);
+    EXPECT_EQ(pictures.all().size(), 1u);
+}
+
+}  // namespace
+}  // namespace bonemill
