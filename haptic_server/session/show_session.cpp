@@ -51,6 +51,19 @@ void fillTool(const TriangleSurface& surface, topics::TriangleMesh* out) {
     for (const uint32_t index : surface.indices) out->add_indices(index);
 }
 
+topics::SceneInfo::Handpiece shownHandpiece(scene::Tool::Handpiece handpiece) {
+    switch (handpiece) {
+        case scene::Tool::STRAIGHT:
+            return topics::SceneInfo::STRAIGHT;
+        case scene::Tool::CONTRA_ANGLE:
+            return topics::SceneInfo::CONTRA_ANGLE;
+        case scene::Tool::DRILL_GUIDE:
+            return topics::SceneInfo::DRILL_GUIDE;
+        default:
+            return topics::SceneInfo::NO_HANDPIECE;
+    }
+}
+
 // The camera has to show this box of all leaves with surface, in V.
 Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
     Eigen::AlignedBox3d box;
@@ -78,6 +91,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     const Eigen::AlignedBox3d box = boneBox(*simulation.bone);
     assign(info.mutable_bone_min_m(), box.min());
     assign(info.mutable_bone_max_m(), box.max());
+    info.set_lacks_patient_axes(simulation.lacks_patient_axes);
     for (const SceneTool& tool : simulation.tools) info.add_tool_names(tool.name);
     fillCamera(scene.camera(), info.mutable_camera());
     describeToViewers(scene, info);
@@ -142,6 +156,7 @@ void ShowSession::publishSceneInfo() {
     scene_info_.set_revision(scene_info_.revision() + 1);
     scene_info_.set_tool_index(uint32_t(tool));
     scene_info_.set_burr_radius_m(tools_[tool].burr.radius);
+    scene_info_.set_handpiece(shownHandpiece(tools_[tool].handpiece));
     fillTool(tools_[tool].surface, scene_info_.mutable_tool());
     describeBurr(scene_, tools_[tool].burr, scene_info_);
     publisher_.publishSceneInfo(scene_info_);

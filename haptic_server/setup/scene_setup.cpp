@@ -18,6 +18,7 @@ namespace bonemill {
 namespace {
 
 constexpr int kDefaultLeafCells = 16;
+constexpr double kLongestDentalTool = 30e-3;  // m from the burr's centre to the shaft's end
 constexpr double kMostOverload =
     3;  // a shaft of half the burr's radius is common, and leans more than it pokes
 
@@ -167,11 +168,13 @@ std::vector<SceneTool> buildTools(const LoadedScene& loaded) {
     std::vector<SceneTool> tools;
     for (const scene::Tool* tool : toolsOf(loaded.scene)) {
         const ToolConfig config = toolConfigOf(loaded, *tool);
+        const TriangleSurface surface = toolSurface(config);
         tools.push_back({.name = names[tools.size()],
                          .built = buildTool(config, sdfRefinementsOf(loaded.scene, *tool)),
-                         .surface = toolSurface(config),
+                         .surface = surface,
                          .burr = burrOf(*tool),
-                         .saturation_force = 0});
+                         .saturation_force = 0,
+                         .handpiece = handpieceOf(*tool, surface)});
     }
     return tools;
 }
@@ -225,6 +228,14 @@ std::vector<SpoTool> Simulation::spoTools() const {
     return all;
 }
 
+scene::Tool::Handpiece handpieceOf(const scene::Tool& tool, const TriangleSurface& surface) {
+    if (tool.handpiece() != scene::Tool::AUTOMATIC) return tool.handpiece();
+    if (!tool.mesh_path().empty()) return scene::Tool::NONE;
+    float end = 0;
+    for (const Eigen::Vector3f& p : surface.positions) end = std::max(end, p.y());
+    return end < kLongestDentalTool ? scene::Tool::CONTRA_ANGLE : scene::Tool::STRAIGHT;
+}
+
 TickConfig tickConfigOf(const scene::Scene& scene) {
     TickConfig config;
     config.gradient = gradientConfigOf(scene);
@@ -272,6 +283,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
                           .warnings = {}};
     RawVolume raw = importVolume(resolvePath(loaded, scene.volume().path()), {scene.volume().series_uid()});
     simulation.remarks.push_back(raw.description);
+    simulation.lacks_patient_axes = raw.lacks_patient_axes;
     simulation.mapping = chooseMapping(raw, windowOf(scene.volume()));
     if (simulation.mapping.is_iso_proposed)
         simulation.remarks.push_back("no volume.iso_value in the scene: " +

@@ -21,7 +21,8 @@ struct SceneTool {
     BuiltTool built;
     TriangleSurface surface;
     Burr burr;
-    double saturation_force;  // N
+    double saturation_force;           // N
+    scene::Tool::Handpiece handpiece;  // never AUTOMATIC
 };
 
 struct Simulation {
@@ -30,6 +31,7 @@ struct Simulation {
     std::unique_ptr<BoneModel> bone;
     DensityMapping mapping;
     std::vector<SceneTool> tools;       // at least one
+    bool lacks_patient_axes = false;    // RawVolume
     Pose X_WD;                          // device base in the world
     std::vector<std::string> remarks;   // for people: what was read or proposed
     std::vector<std::string> warnings;  // what the user would better change in the scene
@@ -42,6 +44,9 @@ struct Simulation {
 
 // Imports the volume, builds tree, shell and tools. Throws UserError.
 Simulation makeSimulation(const LoadedScene& loaded);
+
+// Returns what the scene chooses, or the kind that suits a tool with this surface; never AUTOMATIC.
+scene::Tool::Handpiece handpieceOf(const scene::Tool& tool, const TriangleSurface& surface);
 
 TickConfig tickConfigOf(const scene::Scene& scene);
 ToolConfig toolConfigOf(const LoadedScene& loaded, const scene::Tool& tool);

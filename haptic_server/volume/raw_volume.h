@@ -24,6 +24,8 @@ struct RawVolume {
     RawValues values;            // x fastest; HU for calibrated CT; may hold NaN
     std::string description;     // for people: format, series, what was repaired
     bool is_hounsfield = false;  // values are calibrated HU (CT with rescale, air near -1000)
+    bool lacks_patient_axes =
+        false;  // the file does not say how the patient lay: W is LPS by assumption only
 };
 
 }  // namespace bonemill

@@ -52,15 +52,19 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
     auto* stereo = app.add_option("--stereo", raw.stereo, "off, side-by-side or anaglyph (red-cyan glasses)")
                        ->check(CLI::IsMember({"off", "side-by-side", "anaglyph"}))
                        ->capture_default_str();
-    auto* camera = app.add_option("--camera", raw.camera, "orbit, or endoscope: rides on the tool")
-                       ->check(CLI::IsMember({"orbit", "endoscope"}))
-                       ->capture_default_str();
+    auto* camera =
+        app.add_option("--camera", raw.camera, "orbit; endoscope: rides on the tool; microscope: round field")
+            ->check(CLI::IsMember({"orbit", "endoscope", "microscope"}))
+            ->capture_default_str();
+    auto* blur = app.add_flag("--depth-of-field", raw.has_depth_of_field,
+                              "The microscope blurs what it is not focused on");
     auto* quality =
         app.add_option("--quality", raw.quality,
                        "full; quick: without shadow and antialiasing, draws only what changed; auto: "
                        "quick in a window without a graphics card")
             ->check(CLI::IsMember({"auto", "full", "quick"}))
             ->capture_default_str();
+    auto* no_handpiece = app.add_flag("--no-handpiece", raw.no_handpiece, "The tool without its handpiece");
     auto* no_hud = app.add_flag("--no-hud", raw.no_hud, "Nothing but the picture: no panel, list or scale");
     auto* text =
         app.add_option("--text-scale", raw.text_scale, "Text so much larger than what suits the picture")
@@ -74,10 +78,11 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
     auto* window = app.add_option("--grey-window", raw.grey_window,
                                   "Width and level of the grey values, as the scan has them (HU)")
                        ->expected(2)
-                       ->check(CLI::Range(-1e6, 1e6))
+                       ->check(within(-1e6, 1e6))
                        ->type_name("WIDTH LEVEL");
     view_options.insert(view_options.end(), {slices, scan, window});
-    view_options.insert(view_options.end(), {transparent, stereo, camera, quality, no_hud, text});
+    view_options.insert(view_options.end(),
+                        {transparent, stereo, camera, blur, quality, no_handpiece, no_hud, text});
     return view_options;
 }
 
@@ -90,7 +95,10 @@ ViewSettings viewSettings(const RawView& raw) {
     settings.stereo = raw.stereo == "side-by-side" ? StereoMode::kSideBySide
                       : raw.stereo == "anaglyph"   ? StereoMode::kAnaglyph
                                                    : StereoMode::kOff;
-    settings.camera = raw.camera == "endoscope" ? CameraMode::kEndoscope : CameraMode::kOrbit;
+    settings.camera = raw.camera == "endoscope"    ? CameraMode::kEndoscope
+                      : raw.camera == "microscope" ? CameraMode::kMicroscope
+                                                   : CameraMode::kOrbit;
+    settings.has_depth_of_field = raw.has_depth_of_field;
     settings.quality = raw.quality == "quick" ? Quality::kQuick : Quality::kFull;
     settings.slices.are_shown = raw.slices;
     settings.slices.ct = raw.scan_on == "off"      ? CtShown::kNowhere
@@ -99,6 +107,7 @@ ViewSettings viewSettings(const RawView& raw) {
     if (raw.grey_window.size() == 2)
         settings.slices.window =
             GreyWindow{std::max(raw.grey_window[0], kNarrowestWindow), raw.grey_window[1]};
+    settings.show_handpiece = !raw.no_handpiece;
     settings.show_hud = !raw.no_hud;
     settings.text_scale = raw.text_scale.value_or(1);
     return settings;

@@ -22,8 +22,10 @@ struct RawView {
     bool is_transparent = false;
     std::string stereo = "off";
     std::string camera = "orbit";
+    bool has_depth_of_field = false;
     std::string quality = "auto";
     std::optional<double> text_scale;
+    bool no_handpiece = false;
     bool no_hud = false;
     bool slices = false;
     std::string scan_on = "cuts";

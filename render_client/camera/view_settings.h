@@ -7,7 +7,7 @@
 
 namespace bonemill {
 
-enum class CameraMode { kOrbit, kEndoscope };
+enum class CameraMode { kOrbit, kEndoscope, kMicroscope };
 // kQuick leaves out shadow and antialiasing, and draws only what changed while the view rests. It is meant
 // for OpenGL in software.
 enum class Quality { kFull, kQuick };
@@ -49,6 +49,7 @@ struct ViewSettings {
     static constexpr double kDefaultOpacity = 0.35;
 
     CameraMode camera = CameraMode::kOrbit;
+    bool has_depth_of_field = false;  // of the microscope
     Quality quality = Quality::kFull;
     StereoMode stereo = StereoMode::kOff;
     bool is_transparent = false;
@@ -56,6 +57,7 @@ struct ViewSettings {
     std::array<CutPlane, 3> cuts;      // across W's x (sagittal), y (coronal), z (axial)
     SliceSettings slices;
     bool show_force = true;
+    bool show_handpiece = true;
     // The places are those of ViewerEffect; only those that the scene lists are seen.
     std::array<bool, kViewerEffects> hides_effects{};
     bool shows(ViewerEffect effect) const { return !hides_effects[size_t(effect)]; }

@@ -22,6 +22,7 @@ constexpr KeyBinding kKeys[] = {
     {"S", keyOf('S'), false, Action::kStereo, "stereo: side by side, red/cyan, off"},
     {"Q", keyOf('Q'), false, Action::kQuickDrawing, "quick drawing"},
     {"E", keyOf('E'), false, Action::kEndoscope, "endoscope"},
+    {"Shift+E", keyOf('E'), true, Action::kMicroscope, "microscope"},
     {"P", keyOf('P'), false, Action::kPauseMilling, "pause milling, go on"},
     {"K", keyOf('K'), false, Action::kSaveCheckpoint, "save a checkpoint"},
     {"U", keyOf('U'), false, Action::kLastCheckpoint, "back to the last checkpoint"},

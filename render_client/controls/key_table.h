@@ -29,6 +29,7 @@ enum class Action {
     kStereo,
     kQuickDrawing,
     kEndoscope,
+    kMicroscope,
     kPauseMilling,
     kSaveCheckpoint,
     kLastCheckpoint,

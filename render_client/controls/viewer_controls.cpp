@@ -241,9 +241,9 @@ void ViewerControls::changeView(Action action) {
             settings_.quality = settings_.quality == Quality::kFull ? Quality::kQuick : Quality::kFull;
             return;
         case Action::kEndoscope:
-            settings_.camera =
-                settings_.camera == CameraMode::kOrbit ? CameraMode::kEndoscope : CameraMode::kOrbit;
-            return;
+            return switchCamera(CameraMode::kEndoscope);
+        case Action::kMicroscope:
+            return switchCamera(CameraMode::kMicroscope);
         case Action::kWatchers:
             settings_.show_details = false;
             return toggle(settings_.show_watchers);
@@ -286,6 +286,10 @@ void ViewerControls::switchDetails() {
 void ViewerControls::scaleText(double factor) {
     settings_.text_scale =
         std::clamp(settings_.text_scale * factor, ViewSettings::kLeastText, ViewSettings::kMostText);
+}
+
+void ViewerControls::switchCamera(CameraMode mode) {
+    settings_.camera = settings_.camera == mode ? CameraMode::kOrbit : mode;
 }
 
 void ViewerControls::switchCut(size_t axis) {

@@ -56,6 +56,8 @@ class ViewerControls {
         settings_.hides_effects[size_t(effect)] = !is_shown;
     }
     void showScan(CtShown where) { settings_.slices.ct = where; }
+    void showHandpiece(bool is_shown) { settings_.show_handpiece = is_shown; }
+    void setDepthOfField(bool is_on) { settings_.has_depth_of_field = is_on; }
     void setStereo(StereoMode mode) { settings_.stereo = mode; }
     // Makes bone transparent, of this opacity from 0 to 1.
     void setOpacity(double opacity);
@@ -84,6 +86,7 @@ class ViewerControls {
     void changeView(Action action);
     void switchDetails();
     void scaleText(double factor);
+    void switchCamera(CameraMode mode);
     void switchCut(size_t axis);
     void flipCut(size_t axis);
     void moveCut(double by);

@@ -2,6 +2,7 @@
 // for any thread.
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,12 @@ struct HudPage {
     std::vector<std::string> lines;
 };
 
+// The columns are axes as the camera sees them: x right, y up, z towards the eye.
+struct OrientationAxes {
+    Eigen::Matrix3f R_CA = Eigen::Matrix3f::Identity();
+    bool are_patients = true;  // A is W, which is LPS; otherwise A is V
+};
+
 struct Hud {
     std::string title;  // empty: no figures
     std::string state;
@@ -55,6 +62,7 @@ struct Hud {
     std::optional<HudNotice> notice;
     std::vector<HudNotice> messages;  // what stands in the way, and what to do
     std::optional<HudNotice> alert;   // with a border around the picture
+    std::optional<OrientationAxes> orientation;
 };
 
 // The name stands beside a point of the picture; x and y are pixels from the upper left.

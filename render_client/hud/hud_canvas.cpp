@@ -20,6 +20,22 @@ void HudCanvas::box(float x, float y, float width, float height, float radius, c
          {half_width, half_height, radius});
 }
 
+void HudCanvas::line(const Eigen::Vector2f& from, const Eigen::Vector2f& to, float thickness,
+                     const HudColour& colour) {
+    const Eigen::Vector2f half = (to - from) / 2, middle = (from + to) / 2;
+    const float half_length = half.norm(), half_width = thickness / 2;
+    if (half_length <= 0) return;
+    const Eigen::Vector2f along = half / half_length, across(-along.y(), along.x());
+    const auto corner = [&](float u, float v) {
+        const Eigen::Vector2f p = middle + u * along + v * across;
+        return Vertex{p.x(),     p.y(),     u,           v,          colour[0], colour[1],
+                      colour[2], colour[3], half_length, half_width, 0};
+    };
+    const float u = half_length + kEdge, v = half_width + kEdge;
+    const Vertex corners[] = {corner(-u, -v), corner(u, -v), corner(-u, v), corner(u, v)};
+    for (const int i : {0, 2, 1, 1, 2, 3}) vertices_.push_back(corners[i]);
+}
+
 void HudCanvas::text(float x, float y, std::string_view utf8, FontStyle style, const HudColour& colour) {
     y = std::round(y);
     for (const uint32_t code_point : decodeUtf8(utf8)) {

@@ -2,6 +2,7 @@
 // pixels from the picture's upper left corner. It is a plain value, for one thread.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <string>
 #include <string_view>
@@ -33,6 +34,9 @@ class HudCanvas {
 
     // Adds a box with rounded corners; a radius of 0 leaves them sharp.
     void box(float x, float y, float width, float height, float radius, const HudColour& colour);
+    // Adds a straight line with flat ends.
+    void line(const Eigen::Vector2f& from, const Eigen::Vector2f& to, float thickness,
+              const HudColour& colour);
     // Adds the text from x on; y is the base line.
     void text(float x, float y, std::string_view utf8, FontStyle style, const HudColour& colour);
 

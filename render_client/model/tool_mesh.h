@@ -13,20 +13,23 @@ class ToolMesh {
   public:
     explicit ToolMesh(const GlApi& gl) : gl_(gl), layout_(gl), vertices_(gl), indices_(gl) {}
 
-    // Throws std::invalid_argument when the lists do not fit together; the old mesh stays then.
-    void set(const topics::TriangleMesh& mesh);
+    // Takes the tool, and which handpiece holds it. Throws std::invalid_argument when the lists do not fit
+    // together; the old mesh stays then.
+    void set(const topics::TriangleMesh& tool, topics::SceneInfo::Handpiece handpiece);
 
-    bool isEmpty() const { return index_count_ == 0; }
-    const Eigen::AlignedBox3f& box() const { return box_; }  // T, m; empty without a mesh
-    void draw() const;
+    bool isEmpty() const { return tool_indices_ == 0; }
+    // Returns the box around the tool, or around all; T, m; empty without a mesh.
+    const Eigen::AlignedBox3f& box() const { return box_; }
+    const Eigen::AlignedBox3f& box(bool with_handpiece) const { return with_handpiece ? full_box_ : box_; }
+    void draw(bool with_handpiece = false) const;
 
   private:
     const GlApi& gl_;
     GlVertexArray layout_;
     GlBuffer vertices_;
     GlBuffer indices_;
-    GLsizei index_count_ = 0;
-    Eigen::AlignedBox3f box_;
+    GLsizei tool_indices_ = 0, all_indices_ = 0;  // the tool's come first
+    Eigen::AlignedBox3f box_, full_box_;
 };
 
 }  // namespace bonemill

@@ -12,6 +12,8 @@ constexpr double kGhostDistance = 1.5e-4;  // m
 constexpr double kGhostAngle = 0.03;       // rad
 // So many half picture diagonals at the target does the shadow map cover when one is close.
 constexpr double kShownBeyondView = 2.0;
+constexpr double kFieldRadius = 0.48;    // of the shorter side of the picture
+constexpr double kBlur = 0.06;           // of the picture's height, one picture height away from the focus
 constexpr double kReach = 1.7;           // of the distance to the focus
 constexpr double kSmallestScene = 1e-3;  // m, radius
 constexpr double kSmallestBone = 1e-4;   // m, radius
@@ -34,11 +36,22 @@ void extendBy(Eigen::AlignedBox3d& box_W, const Pose& X_WA, const Box& box_A) {
     }
 }
 
+// Towards the key light (C), of any length. A microscope's light comes in beside the eyepieces.
+Eigen::Vector3d directionOf(LightRig light) {
+    switch (light) {
+        case LightRig::kEndoscope:
+            return {-0.22, 0.32, 1.0};
+        case LightRig::kMicroscope:
+            return {-0.04, 0.08, 1.0};
+        case LightRig::kRoom:
+            break;
+    }
+    return {-0.55, 0.70, 0.62};
+}
+
 // The light's shadow map covers the sphere.
-KeyLight aimKeyLight(const Camera& camera, bool is_lit_from_eye, const Sphere& lit_W) {
-    const Eigen::Vector3d key_C =
-        (is_lit_from_eye ? Eigen::Vector3d(-0.22, 0.32, 1.0) : Eigen::Vector3d(-0.55, 0.70, 0.62))
-            .normalized();
+KeyLight aimKeyLight(const Camera& camera, LightRig light, const Sphere& lit_W) {
+    const Eigen::Vector3d key_C = directionOf(light).normalized();
     const double half_size = std::max(lit_W.radius, kSmallestBone);
     Eigen::Matrix3d R_LC;
     R_LC.row(2) = -key_C;  // depth grows away from the light
@@ -50,7 +63,7 @@ KeyLight aimKeyLight(const Camera& camera, bool is_lit_from_eye, const Sphere& l
     shadow_from_camera.topRightCorner<3, 1>() = -(R_LC * center_C) / half_size;
     return {key_C.cast<float>(), shadow_from_camera.cast<float>(),
             float(2 * half_size / RenderTargets::kShadowSize),
-            is_lit_from_eye ? float(kReach * camera.focus) : 0};
+            light == LightRig::kEndoscope ? float(kReach * camera.focus) : 0};
 }
 
 }  // namespace
@@ -107,14 +120,17 @@ Frame Frame::make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, doub
     const double tangent = camera.halfTangent();
     frame.tangents = Eigen::Vector2d(tangent * aspect, tangent).cast<float>();
     frame.shift = float(camera.shift);
+    frame.field_radius = view.is_field_round ? float(kFieldRadius * std::min(aspect, 1.0)) : 0;
+    frame.focus = float(camera.focus);
+    frame.blur_per_m = view.has_depth_of_field ? float(kBlur / (2 * camera.focus * tangent)) : 0;
     frame.bone_radius = float(std::max(bone.radius, kSmallestBone));
     frame.bone_V = view.bone_V.cast<float>();
     frame.cuts_V = transformed(view.cuts_W, matrixOf(view.X_WV.inverse()));
     frame.cuts_C = transformed(view.cuts_W, X_CW);
 
     const double shown = kShownBeyondView * camera.focus * tangent * std::hypot(1.0, aspect);
-    frame.key = aimKeyLight(camera, view.is_lit_from_eye,
-                            shown < bone.radius ? Sphere{camera.target_W(), shown} : bone);
+    frame.key =
+        aimKeyLight(camera, view.light, shown < bone.radius ? Sphere{camera.target_W(), shown} : bone);
     return frame;
 }
 

@@ -23,9 +23,15 @@ struct Pull {
     double newtons;  // force on the hand
 };
 
+// The room's light comes from the upper left, an instrument's from beside the eye: an endoscope's fades with
+// distance, a microscope's comes along the line of sight from afar.
+enum class LightRig { kRoom, kEndoscope, kMicroscope };
+
 struct FrameView {
     Camera camera;
-    bool is_lit_from_eye = false;  // an endoscope's light, instead of one from the upper left
+    LightRig light = LightRig::kRoom;
+    bool is_field_round = false;      // dark outside of a circle, as through an instrument
+    bool has_depth_of_field = false;  // what is not at the camera's focus is blurred
     Pose X_WV;
     Eigen::AlignedBox3d bone_V;  // the bone at start; empty: nothing known yet
     double burr_radius = 0;
@@ -33,6 +39,7 @@ struct FrameView {
     std::optional<Pose> X_WT_device;       // where the hand is; drawn when it differs visibly
     std::optional<Eigen::Vector3d> f_T_W;  // the arrow's force, N
     std::optional<Pull> pull;              // of a mouse that holds the tool
+    bool shows_handpiece = true;
     BurrWork burr_work = BurrWork::kIdle;
     CutPlanes cuts_W;
     std::optional<double> bone_opacity;  // empty: opaque
@@ -64,6 +71,9 @@ struct Frame {
     Eigen::AlignedBox3f bone_V;
     CutPlanes cuts_V, cuts_C;
 
+    float field_radius;  // of the round field, in picture heights; 0: all of the picture is seen
+    float focus;         // Camera::focus, m
+    float blur_per_m;    // picture heights per m of depth away from the focus; 0: all is sharp
     bool has_shadow;
     Eigen::Matrix4f cull_from_V;  // bone outside of this clip space need not be drawn
 

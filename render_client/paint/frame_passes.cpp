@@ -9,7 +9,10 @@ namespace {
 
 constexpr double kOcclusionRadius = 0.10;   // of the bone's radius
 constexpr float kOcclusionPicture = 0.06f;  // the radius is at most this part of the picture's height
+constexpr float kMostBlur = 0.015f;         // of the picture's height
 constexpr int kFilterReach = 8;             // pixels that the composite's filter looks beyond
+
+static_assert(kMostBlur < kOcclusionPicture, "or the blur would reach further than reach() says");
 
 }  // namespace
 
@@ -61,6 +64,10 @@ void FramePasses::compose(const Frame& frame, const RenderTargets& targets, int 
     composite_.set("occlusion_map", 2);
     composite_.set("near_far", frame.near_far);
     composite_.set("depth_tolerance", 0.5f * float(kOcclusionRadius) * frame.bone_radius);
+    composite_.set("field_radius", frame.field_radius);
+    composite_.set("focus", frame.focus);
+    composite_.set("blur_per_m", frame.blur_per_m);
+    composite_.set("most_blur", kMostBlur);
     drawFullScreen();
     gl_.ActiveTexture(GL_TEXTURE0);
 }

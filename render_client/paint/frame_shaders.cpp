@@ -104,15 +104,57 @@ uniform sampler2D depth_map;
 uniform sampler2D occlusion_map;
 uniform vec2 near_far;
 uniform float depth_tolerance;  // m
+uniform float field_radius;     // of the round field, in picture heights; 0: all of the picture is seen
+uniform float focus;            // m
+uniform float blur_per_m;       // in picture heights; 0: all is sharp
+uniform float most_blur;        // in picture heights
 out vec4 colour;
+
+float depthOf(float stored) {
+    float z = stored * 2.0 - 1.0;
+    return 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - z * (near_far.y - near_far.x));
+}
+
+// The radius of the disc that a point becomes, in pixels.
+float blurAt(ivec2 texel, ivec2 size) {
+    float stored = texelFetch(depth_map, clamp(texel, ivec2(0), size - 1), 0).r;
+    if (stored >= 1.0) return 0.0;  // the background has nothing to blur
+    float depth = depthOf(stored);
+    return min(abs(depth - focus) * blur_per_m, most_blur) * float(size.y);
+}
+
+// Takes from the disc around a pixel what is blurred that far itself, so that nothing sharp bleeds out.
+vec3 blurred(vec3 sharp, ivec2 texel) {
+    ivec2 size = textureSize(depth_map, 0);
+    float radius = blurAt(texel, size);
+    if (radius < 0.7) return sharp;
+    vec3 sum = sharp;
+    float weights = 1.0;
+    for (int i = 0; i < 24; ++i) {
+        float along = sqrt((float(i) + 0.5) / 24.0) * radius, angle = float(i) * 2.3999632;
+        ivec2 other = clamp(texel + ivec2(round(along * vec2(cos(angle), sin(angle)))), ivec2(0), size - 1);
+        float weight = smoothstep(along - 1.0, along + 1.0, blurAt(other, size));
+        sum += weight * texelFetch(colour_map, other, 0).rgb;
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+// What an instrument shows is a disc that darkens towards its rim.
+vec3 inRoundField(vec3 shaded, vec2 size) {
+    float away = length((uv - 0.5) * size) / size.y;
+    float rim = 1.0 - 0.45 * smoothstep(0.55, 1.0, away / field_radius);
+    return mix(shaded * rim, vec3(0.012), smoothstep(field_radius - 1.0 / size.y, field_radius + 1.0 / size.y, away));
+}
 
 void main() {
     vec3 shaded = texture(colour_map, uv).rgb;
-    vec2 pixel = uv * vec2(textureSize(depth_map, 0));
+    vec2 size = vec2(textureSize(depth_map, 0));
+    vec2 pixel = uv * size;
     float stored = texelFetch(depth_map, ivec2(pixel), 0).r;
+    if (blur_per_m > 0.0) shaded = blurred(shaded, ivec2(pixel));
     if (stored < 1.0) {
-        float z = stored * 2.0 - 1.0;
-        float depth = 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - z * (near_far.y - near_far.x));
+        float depth = depthOf(stored);
         ivec2 limit = textureSize(occlusion_map, 0) - 1;
         ivec2 base = ivec2(floor(pixel * 0.5 - 0.5)) - 1;
         float sum = 0.0, weights = 1e-4;
@@ -127,6 +169,7 @@ void main() {
         // Crevices of bone keep a warm tint instead of turning grey.
         shaded *= mix(vec3(0.24, 0.15, 0.11), vec3(1.0), occlusion);
     }
+    if (field_radius > 0.0) shaded = inRoundField(shaded, size);
     colour = vec4(shaded, 1.0);
 }
 )";

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "render_client/hud/help_page.h"
+#include "render_client/hud/orientation_marker.h"
 #include "render_client/paint/shaders.h"
 
 namespace bonemill {
@@ -72,6 +73,7 @@ void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_
     if (!hud.details.empty()) box = layOutDetails(lists, hud.details, box);
     if (!hud.watchers.empty()) layOutWatchers(lists, hud.watchers, box, picture);
     layOutScaleBar(figures, scale_bar, metres_per_pixel, picture);
+    if (hud.orientation) layOutOrientation(lists, *hud.orientation, picture);
     if (hud.hint) layOutHint(lists, *hud.hint, box, picture);
     draw(figures, picture);
     draw(lists, picture);

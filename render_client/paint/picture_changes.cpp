@@ -20,7 +20,8 @@ void append(std::vector<float>& signature, const Matrix& matrix) {
 }
 
 std::vector<float> signatureOf(const Frame& frame, int width, int height) {
-    std::vector<float> signature{float(width), float(height), frame.bone_radius, frame.key.reach};
+    std::vector<float> signature{float(width),       float(height), frame.bone_radius, frame.key.reach,
+                                 frame.field_radius, frame.focus,   frame.blur_per_m};
     append(signature, frame.clip_from_camera);
     append(signature, frame.X_CV);
     append(signature, frame.key.direction);

@@ -47,9 +47,9 @@ void SceneRenderer::draw(const FrameView& view, NodeStore& nodes, const ToolMesh
     }
     const bool is_quick = view.quality == Quality::kQuick;
     nodes.trackChanges(is_quick);
-    const DepthRange needed = Frame::neededRange(view, tool.box());
+    const DepthRange needed = Frame::neededRange(view, tool.box(view.shows_handpiece));
     const DepthRange range = is_quick ? changes_.range(view.camera, needed) : needed;
-    const Frame frame = Frame::make(view, tool.box(), area.aspect(), range);
+    const Frame frame = Frame::make(view, tool.box(view.shows_handpiece), area.aspect(), range);
     last_camera_ = view.camera;
     last_near_far_ = frame.near_far;
 
@@ -161,7 +161,7 @@ PixelBox SceneRenderer::movingPixels(const Frame& frame, const FrameView& view, 
         moving =
             moving.joined(pixels(ParticlePainter::box(frame, view.effects->particles, targets_->height()),
                                  Eigen::Matrix4f::Identity()));
-    if (frame.X_CT) moving = moving.joined(pixels(tool.box(), *frame.X_CT));
+    if (frame.X_CT) moving = moving.joined(pixels(tool.box(view.shows_handpiece), *frame.X_CT));
     if (frame.X_CT_device) moving = moving.joined(pixels(tool.box(), *frame.X_CT_device));
     return moving;
 }
@@ -198,7 +198,7 @@ void SceneRenderer::drawShadowMap(const Frame& frame, const FrameView& view, con
     gl_.DepthMask(GL_TRUE);
     gl_.Enable(GL_DEPTH_CLAMP);  // casters between the light and the map's near plane still cast
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
-    if (view.is_lit_from_eye) gl_.Enable(GL_CLIP_DISTANCE0 + kEyePlane);
+    if (view.light != LightRig::kRoom) gl_.Enable(GL_CLIP_DISTANCE0 + kEyePlane);
     shadow_.use();
     const auto aim = [&](const Eigen::Matrix4f& camera_from_model) {
         const Eigen::Matrix4f shadow_from_model = frame.key.shadow_from_camera * camera_from_model;

@@ -49,7 +49,7 @@ void ToolPainter::drawTool(const Frame& frame, const FrameView& view, const Tool
         program.set("spin_sweep", view.effects->turn->sweep);
         program.set("flutes", view.effects->turn->flutes);
     }
-    tool.draw();
+    tool.draw(view.shows_handpiece);
 }
 
 // The ghost is seen through the bone too, but fainter there: the hand usually is inside when the tool is

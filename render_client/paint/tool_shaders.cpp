@@ -53,6 +53,8 @@ vec2 sweptGroove(float phase) {
 
 // The metal mirrors a photographer's tent: bright panels over a dark studio.
 vec3 studio(vec3 direction) {
+    if (light_reach > 0.0)  // within a body there is an endoscope's own light, and what the bone throws back
+        return vec3(0.16, 0.13, 0.11) + smoothstep(0.55, 0.95, dot(direction, key_direction)) * kKeyColour * 0.5;
     float panel = smoothstep(0.35, 0.75, dot(direction, key_direction));
     float strip = smoothstep(0.80, 0.93, dot(direction, kFillDirection));
     float horizon = smoothstep(-0.25, 0.35, direction.y);
@@ -87,7 +89,7 @@ void main() {
     float visible = keyVisibility(p_C, normal);
     vec3 diffuse = kKeyColour * max(dot(normal, key_direction), 0.0) * visible + hemisphere(normal);
     float fresnel = pow(1.0 - max(dot(normal, to_eye), 0.0), 5.0);
-    vec3 shaded = metal * (mirror * mix(0.45, 0.75, visible) + diffuse * 0.16) + fresnel * 0.5;
+    vec3 shaded = metal * (mirror * mix(0.45, 0.75, visible) + diffuse * 0.16) + fresnel * (light_reach > 0.0 ? 0.05 : 0.5);
     shaded *= 1.0 - 0.65 * groove - 0.25 * shaft_cut * (1.0 - burr);
 #ifdef SPIN
     // What turns too fast shows rings about the axis.
@@ -96,7 +98,7 @@ void main() {
 #endif
     shaded *= 1.0 - 0.55 * burr * min(dot(milling_glow, vec3(1.0)), 1.0);  // leave room for the glow
     shaded += milling_glow * burr * (0.40 + 0.9 * pow(1.0 - max(dot(normal, to_eye), 0.0), 1.5)) * (1.0 - 0.6 * groove);
-    colour = vec4(toneMap(shaded), 1.0);
+    colour = vec4(toneMap(shaded * min(falloff(p_C), 1.0)), 1.0);
 }
 )";
 

@@ -28,6 +28,12 @@ void PanelContent::buildView() {
     buildSides();
     box("Endoscope", Action::kEndoscope, settings_.camera == CameraMode::kEndoscope,
         "Looks along the tool past its burr, instead of from around the bone");
+    ImGui::SameLine();
+    box("Microscope", Action::kMicroscope, settings_.camera == CameraMode::kMicroscope,
+        "A round field, lit along the line of sight; the wheel magnifies");
+    if (settings_.camera == CameraMode::kMicroscope &&
+        box("Depth of field", settings_.has_depth_of_field, "Blurs what the microscope is not focused on"))
+        controls_.setDepthOfField(!settings_.has_depth_of_field);
     gap();
     buildTransparency();
     gap();
@@ -71,6 +77,9 @@ void PanelContent::buildSigns() {
     ImGui::SameLine();
     box("Quick drawing", Action::kQuickDrawing, settings_.quality == Quality::kQuick,
         "Without shadows and smooth edges: for PCs without a graphics card");
+    if (session_.info && session_.info->handpiece() != topics::SceneInfo::NO_HANDPIECE &&
+        box("Handpiece", settings_.show_handpiece, "Behind the tool's shaft; it is only drawn"))
+        controls_.showHandpiece(!settings_.show_handpiece);
     box("Figures", Action::kHud, settings_.show_hud, "What is written over the picture");
     ImGui::SameLine();
     box("All", Action::kDetails, settings_.show_hud && settings_.show_details,

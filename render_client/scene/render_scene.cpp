@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "render_client/camera/endoscope.h"
+#include "render_client/camera/microscope.h"
 #include "render_client/effects/wire_pose.h"
 
 namespace bonemill {
@@ -56,7 +57,7 @@ void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     const auto low = readVector(info.bone_min_m());
     const auto high = readVector(info.bone_max_m());
     if (!X_WV || !low || !high) throw std::invalid_argument("scene info without a pose or a box of the bone");
-    tool_.set(info.tool());
+    tool_.set(info.tool(), info.handpiece());
     X_WV_ = *X_WV;
     bone_V_ = Eigen::AlignedBox3d(*low, *high);
     if (!old || old->name() != info.name()) view_pending_ = true;
@@ -190,8 +191,16 @@ FrameView RenderScene::makeView() const {
     if (hud_input_.info) view.burr_radius = hud_input_.info->burr_radius_m();
     for (const topics::Viewer& watcher : hud_input_.watchers)
         if (const auto pointer = pointerOf(watcher)) view.pointers_W.push_back(*pointer);
+    if (settings_.camera == CameraMode::kMicroscope) lookThroughMicroscope(view);
     if (hud_input_.tool) showTool(view);
     return view;
+}
+
+void RenderScene::lookThroughMicroscope(FrameView& view) const {
+    view.camera = microscopeCamera(view.camera);
+    view.light = LightRig::kMicroscope;
+    view.is_field_round = true;
+    view.has_depth_of_field = settings_.has_depth_of_field;
 }
 
 void RenderScene::showTool(FrameView& view) const {
@@ -199,12 +208,14 @@ void RenderScene::showTool(FrameView& view) const {
     view.X_WT = readPose(tool.p_wt_m(), tool.q_wt());
     view.X_WT_device = readPose(tool.p_wt_device_m(), tool.q_wt_device());
     view.burr_work = burrWorkOf(tool);
+    view.shows_handpiece = settings_.show_handpiece;
     const auto force_W = readVector(tool.force_n());
     if (settings_.show_force) view.f_T_W = force_W;
     if (pull_W_ && force_W) view.pull = Pull{*pull_W_, force_W->norm()};
     if (!followsTool()) return;
     view.camera = endoscopeCamera(*view.X_WT, view.burr_radius);
-    view.is_lit_from_eye = true;
+    view.light = LightRig::kEndoscope;
+    view.is_field_round = true;
 }
 
 void RenderScene::draw(int full_width, int height, float ui_scale, GLuint target) {
@@ -288,6 +299,13 @@ void RenderScene::drawAnaglyph(const FrameView& view, int width, int height, flo
     paintHud(view.camera, whole, ui_scale);
 }
 
+OrientationAxes RenderScene::orientationOf(const Camera& camera) const {
+    const bool are_patients = !hud_input_.info->lacks_patient_axes();
+    const Eigen::Matrix3d R_CW = camera.R_WC.transpose();
+    if (are_patients) return {R_CW.cast<float>(), true};
+    return {(R_CW * X_WV_.rotation.toRotationMatrix()).cast<float>(), false};
+}
+
 // Needs the framebuffer bound and the viewport set, as the renderer leaves them.
 void RenderScene::paintHud(const Camera& camera, const PictureArea& area, float ui_scale) {
     if (!settings_.show_hud) {
@@ -302,7 +320,9 @@ void RenderScene::paintHud(const Camera& camera, const PictureArea& area, float 
     hud_input_.is_in_eyes = settings_.stereo == StereoMode::kSideBySide;
     const bool has_bar = hasSceneInfo() && !hud_input_.is_in_eyes;
     const ScaleBar bar = has_bar ? makeScaleBar(metres_per_pixel, 0.2 * area.width) : ScaleBar{};
-    hud_painter_.paint(makeHud(hud_input_), bar, metres_per_pixel, {area.width, area.height}, ui_scale);
+    Hud hud = makeHud(hud_input_);
+    if (hasSceneInfo()) hud.orientation = orientationOf(camera);
+    hud_painter_.paint(hud, bar, metres_per_pixel, {area.width, area.height}, ui_scale);
 }
 
 void RenderScene::paintNames(const FrameView& view, const PictureArea& area, float ui_scale) {

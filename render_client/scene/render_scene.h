@@ -124,6 +124,7 @@ class RenderScene {
     const EffectPicture* effectPicture();
     bool followsTool() const;
     FrameView makeView() const;
+    void lookThroughMicroscope(FrameView& view) const;
     void showTool(FrameView& view) const;
     void updateCt(int width, int height);
     void paintPanes(int width, int height, float ui_scale, GLuint target);
@@ -131,6 +132,7 @@ class RenderScene {
                  GLuint target);
     void drawSideBySide(const FrameView& view, int width, int height, float ui_scale, GLuint target);
     void drawAnaglyph(const FrameView& view, int width, int height, float ui_scale, GLuint target);
+    OrientationAxes orientationOf(const Camera& camera) const;
     void paintHud(const Camera& camera, const PictureArea& area, float ui_scale);
     void paintNames(const FrameView& view, const PictureArea& area, float ui_scale);
 

@@ -106,6 +106,44 @@ TEST_F(Golden, Endoscope) {
     EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "endoscope"), "");
 }
 
+TEST_F(Golden, Microscope) {
+    scene_->settings().camera = CameraMode::kMicroscope;
+    EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "microscope"), "");
+}
+
+TEST_F(Golden, MicroscopeWithDepthOfField) {
+    scene_->settings().camera = CameraMode::kMicroscope;
+    scene_->settings().has_depth_of_field = true;
+    EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "microscope_blurred"), "");
+    EXPECT_TRUE(
+        test::compare(test::readGolden("microscope"), test::readGolden("microscope_blurred")).isVisible());
+}
+
+TEST_F(Golden, Handpieces) {
+    for (const auto& [kind, name] : {std::pair(topics::SceneInfo::STRAIGHT, "handpiece_straight"),
+                                     std::pair(topics::SceneInfo::CONTRA_ANGLE, "handpiece_contra_angle"),
+                                     std::pair(topics::SceneInfo::DRILL_GUIDE, "handpiece_drill_guide")}) {
+        begin(context_.gl());
+        scene_->setViewWish({.target_W = {}, .distance = 0.12, .azimuth = -1.0, .elevation = {}});
+        topics::SceneInfo info = test::milledInfo();
+        info.set_handpiece(kind);
+        test::showMilledBlock(*scene_);
+        info.set_revision(1);
+        scene_->setSceneInfo(info);
+        EXPECT_EQ(test::goldenProblem(draw(), name), "");
+        scene_->settings().show_handpiece = false;
+        EXPECT_TRUE(test::compare(draw(), test::readGolden(name)).isVisible());
+    }
+}
+
+TEST_F(Golden, OrientationMarkerOfAVolumeWithoutPatient) {
+    scene_->settings().show_hud = true;
+    topics::SceneInfo info = test::milledInfo();
+    info.set_lacks_patient_axes(true);
+    scene_->setSceneInfo(info);
+    EXPECT_EQ(test::goldenProblem(draw(), "volume_axes"), "");
+}
+
 TEST_F(Golden, ArrowAndPointer) {
     scene_->settings().show_force = true;
     topics::Viewer instructor = test::makeWatcher("Dr. Berg", topics::Viewer::INSTRUCTOR, 60);
@@ -228,6 +266,16 @@ TEST_F(Golden, TheComparisonSeesAMissingShadow) {
 
 TEST_F(Golden, TheComparisonSeesMissingOcclusion) {
     expectSeen("endoscope", {{"float occlusion = sum / weights;", "float occlusion = 1.0;"}},
+               [this] { scene_->settings().camera = CameraMode::kEndoscope; });
+}
+
+TEST_F(Golden, TheComparisonSeesAMissingRoundField) {
+    expectSeen("microscope", {{"if (field_radius > 0.0) shaded =", "if (field_radius > 1e9) shaded ="}},
+               [this] { scene_->settings().camera = CameraMode::kMicroscope; });
+}
+
+TEST_F(Golden, TheComparisonSeesAnEndoscopeWithoutItsLightsFalloff) {
+    expectSeen("endoscope", {{"if (light_reach <= 0.0) return 1.0;", "return 1.0;"}},
                [this] { scene_->settings().camera = CameraMode::kEndoscope; });
 }
 

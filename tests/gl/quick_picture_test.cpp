@@ -113,6 +113,12 @@ TEST_F(QuickPicture, FollowsTheViewToo) {
     changeNodes();
     moveTool();
     expectWhole("endoscope, moved");
+    scene_.settings().camera = CameraMode::kMicroscope;
+    scene_.settings().has_depth_of_field = true;
+    expectWhole("microscope");
+    changeNodes();
+    moveTool();
+    expectWhole("microscope, moved");
     scene_.clearNodes();
     expectWhole("no bone");
 }

@@ -135,6 +135,7 @@ bool writeAll(int file, const void* bytes, size_t count) {
 struct Head {
     bool is_volume;
     bool is_hounsfield;
+    bool lacks_patient_axes;
     int32_t dims[3];
     double spacing[3];
     double position[3];
@@ -204,6 +205,7 @@ void sendVolume(int file, RawVolume raw) {
     Head head{};
     head.is_volume = true;
     head.is_hounsfield = raw.is_hounsfield;
+    head.lacks_patient_axes = raw.lacks_patient_axes;
     std::copy_n(raw.geometry.dims.data(), 3, head.dims);
     std::copy_n(raw.geometry.spacing.data(), 3, head.spacing);
     std::copy_n(raw.geometry.X_WV.position.data(), 3, head.position);
@@ -235,6 +237,7 @@ bool receive(Incoming& from, RawVolume& raw, std::string& error) {
     }
     raw.description = text;
     raw.is_hounsfield = head.is_hounsfield;
+    raw.lacks_patient_axes = head.lacks_patient_axes;
     raw.geometry.dims = Eigen::Map<const Eigen::Vector3i>(head.dims);
     raw.geometry.spacing = Eigen::Map<const Eigen::Vector3d>(head.spacing);
     raw.geometry.X_WV.position = Eigen::Map<const Eigen::Vector3d>(head.position);

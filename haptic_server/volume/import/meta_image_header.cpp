@@ -22,6 +22,11 @@ bool isTrue(const std::string& text) {
     return !text.empty() && (text[0] == 'T' || text[0] == 't' || text[0] == '1');
 }
 
+// The sides are letters such as RAI; "???" stands for none.
+bool namesPatientSides(const std::string& text) {
+    return text.size() == 3 && text.find_first_not_of("RLAPSI") == std::string::npos;
+}
+
 int countOf(const std::string& text) {
     std::istringstream words(text);
     int count = 0;
@@ -78,6 +83,7 @@ MetaImageHeader readMetaImageHeader(const std::filesystem::path& path) {
     checkCounts(fields, file_name);
     MetaImageHeader header;
     header.bytes = bytes;
+    header.has_patient_space = namesPatientSides(fields["AnatomicalOrientation"]);
     header.is_compressed = isTrue(fields["CompressedData"]);
     if (header.is_compressed) header.packed_bytes = packedBytes(fields["CompressedDataSize"], file_name);
     const std::string& data = fields["ElementDataFile"];

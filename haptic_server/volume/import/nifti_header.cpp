@@ -20,6 +20,8 @@ constexpr size_t kHeaderBytes = 348;
 constexpr size_t kDimOffset = 40;
 constexpr size_t kPixdimOffset = 76;
 constexpr size_t kVoxOffsetOffset = 108;
+constexpr size_t kQformCodeOffset = 252;
+constexpr size_t kSformCodeOffset = 254;
 constexpr size_t kQuaternOffset = 256;
 constexpr size_t kSformEnd = 328;
 constexpr size_t kMagicOffset = 344;
@@ -63,7 +65,7 @@ bool isGeometryFinite(const Header& header) {
 
 }  // namespace
 
-uint64_t readNiftiDataOffset(const std::filesystem::path& path) {
+NiftiHeader readNiftiHeader(const std::filesystem::path& path) {
     const Header header(path);
     const std::string file = path.string();
     if (!header.isComplete())
@@ -83,7 +85,9 @@ uint64_t readNiftiDataOffset(const std::filesystem::path& path) {
     if (!(data_offset >= float(kHeaderBytes) && double(data_offset) < kMaxExtensionBytes))
         throw UserError(file +
                         ": its NIfTI header puts the voxels at an impossible place; the file is damaged");
-    return uint64_t(data_offset);
+    const bool has_patient_space =
+        header.at<int16_t>(kQformCodeOffset) > 0 || header.at<int16_t>(kSformCodeOffset) > 0;
+    return {uint64_t(data_offset), has_patient_space};
 }
 
 }  // namespace bonemill

@@ -42,6 +42,18 @@ double mmPerUnit(const std::string& units, const std::filesystem::path& path) {
     throw UserError(path.string() + ": space units \"" + unit + "\" are not known; use mm, cm, m or um");
 }
 
+// These spaces have the patient's sides as axes, also with time as a fourth; others are the scanner's or
+// nobody's.
+bool isPatientSpace(const std::string& space) {
+    std::string name = fieldName(space);
+    if (name.ends_with("-time")) name.resize(name.size() - 5);
+    if (name.size() == 4 && name.back() == 't') name.pop_back();  // RAST
+    for (const char* known : {"ras", "las", "lps", "right-anterior-superior", "left-anterior-superior",
+                              "left-posterior-superior"})
+        if (name == known) return true;
+    return false;
+}
+
 // The library takes vectors whose length is no number for 1 mm.
 void checkDirections(std::string text, const std::filesystem::path& path) {
     constexpr double kFarTooLong = 1e100;
@@ -76,6 +88,7 @@ NrrdHeader readNrrdHeader(const std::filesystem::path& path) {
             continue;
         }
         const std::string name = fieldName(line.substr(0, colon)), value = trimmed(line.substr(colon + 1));
+        if (name == "space") header.has_patient_space = isPatientSpace(value);
         if (name == "encoding") header.encoding = fieldName(value);
         if (name == "datafile") header.data_file = value;
         if (name == "spacedirections") checkDirections(value, path);

@@ -19,6 +19,7 @@ struct FileFacts {
     std::string format;
     std::optional<StoredData> data;  // nothing: spread over several files
     double mm_per_unit = 1;
+    bool has_patient_space = true;
 };
 
 // Axes of one voxel beyond the third do not make it less of a volume.
@@ -56,6 +57,7 @@ RawVolume readThrough(ItkFormat format, const std::filesystem::path& path, const
     raw.values.reserve(size_t(voxels));
     image.appendValues(raw.values);
     const bool flipped = makeRightHanded(frameOf(header, facts.mm_per_unit), file, raw.geometry, raw.values);
+    raw.lacks_patient_axes = !facts.has_patient_space;
     raw.description = facts.format + (flipped ? ", left-handed: third axis reversed" : "");
     return raw;
 }
@@ -71,7 +73,7 @@ bool isOneFile(const std::string& name) {
 
 RawVolume importNrrd(const std::filesystem::path& path) {
     const NrrdHeader header = readNrrdHeader(path);
-    FileFacts facts{"NRRD", StoredData{path, header.bytes}, header.mm_per_unit};
+    FileFacts facts{"NRRD", StoredData{path, header.bytes}, header.mm_per_unit, header.has_patient_space};
     if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
     // ITK's NRRD library finds short gzip data itself.
     if (header.encoding != "raw") facts.data->packing = Packing::kOther;
@@ -83,15 +85,15 @@ RawVolume importNrrd(const std::filesystem::path& path) {
 }
 
 RawVolume importNifti(const std::filesystem::path& path) {
-    const uint64_t begin = readNiftiDataOffset(path);
-    if (path.extension() == ".gz")
-        return readThrough(ItkFormat::kNifti, path, {"NIfTI", StoredData{path, 0, Packing::kDeflate, begin}});
-    return readThrough(ItkFormat::kNifti, path, {"NIfTI", StoredData{path, begin}});
+    const NiftiHeader header = readNiftiHeader(path);
+    FileFacts facts{"NIfTI", StoredData{path, header.data_offset}, 1, header.has_patient_space};
+    if (path.extension() == ".gz") facts.data = StoredData{path, 0, Packing::kDeflate, header.data_offset};
+    return readThrough(ItkFormat::kNifti, path, facts);
 }
 
 RawVolume importMetaImage(const std::filesystem::path& path) {
     const MetaImageHeader header = readMetaImageHeader(path);
-    FileFacts facts{"MetaImage", StoredData{path, header.bytes}};
+    FileFacts facts{"MetaImage", StoredData{path, header.bytes}, 1, header.has_patient_space};
     if (!header.data_file.empty()) facts.data = StoredData{path.parent_path() / header.data_file};
     if (header.packed_bytes > 0)
         checkStoredBytes(header.packed_bytes, countStoredBytes(*facts.data, header.packed_bytes),

@@ -130,6 +130,17 @@ TEST_F(Controls, StereoGoesRoundThreeModes) {
     EXPECT_EQ(settings_.camera, CameraMode::kOrbit);
 }
 
+TEST_F(Controls, OneCameraTakesTheOthersPlace) {
+    type('E');
+    type('E', true);
+    EXPECT_EQ(settings_.camera, CameraMode::kMicroscope);
+    type('E');
+    EXPECT_EQ(settings_.camera, CameraMode::kEndoscope);
+    type('E', true);
+    type('E', true);
+    EXPECT_EQ(settings_.camera, CameraMode::kOrbit);
+}
+
 TEST_F(Controls, BracketsMoveTheCutThatWasSwitchedLastWithinTheBone) {
     type('X');
     type('Z');

@@ -91,6 +91,13 @@ TEST_F(PanelClicks, BoxesSwitchWhatIsSeen) {
     EXPECT_FALSE(settings_.is_transparent);
     click("Endoscope (E)");
     EXPECT_EQ(settings_.camera, CameraMode::kEndoscope);
+    click("Microscope (Shift+E)");
+    EXPECT_EQ(settings_.camera, CameraMode::kMicroscope);
+    click("Depth of field");
+    EXPECT_TRUE(settings_.has_depth_of_field);
+    click("Depth of field");
+    EXPECT_FALSE(settings_.has_depth_of_field);
+    click("Microscope (Shift+E)");
     click("Force arrow (F)");
     EXPECT_FALSE(settings_.show_force);
     click("Quick drawing (Q)");

@@ -6,6 +6,25 @@
 namespace bonemill {
 namespace {
 
+TriangleSurface surfaceOfLength(float length) {
+    TriangleSurface surface;
+    surface.positions = {{0, -0.001f, 0}, {0.001f, length, 0}};
+    return surface;
+}
+
+TEST(HandpieceOfATool, SuitsItsLengthUnlessTheSceneChooses) {
+    scene::Tool tool;
+    EXPECT_EQ(handpieceOf(tool, surfaceOfLength(0.016f)), scene::Tool::CONTRA_ANGLE);
+    EXPECT_EQ(handpieceOf(tool, surfaceOfLength(0.055f)), scene::Tool::STRAIGHT);
+    tool.set_handpiece(scene::Tool::DRILL_GUIDE);
+    EXPECT_EQ(handpieceOf(tool, surfaceOfLength(0.016f)), scene::Tool::DRILL_GUIDE);
+    tool.set_handpiece(scene::Tool::NONE);
+    EXPECT_EQ(handpieceOf(tool, surfaceOfLength(0.055f)), scene::Tool::NONE);
+    tool.clear_handpiece();
+    tool.set_mesh_path("whole_tool.stl");
+    EXPECT_EQ(handpieceOf(tool, surfaceOfLength(0.055f)), scene::Tool::NONE) << "a mesh is the whole tool";
+}
+
 // What the budgets allow follows from the rate (tests/unit/tick/tick_budget_test.cpp).
 TEST(TickConfigOfAScene, DefaultsOfTheSceneAreTheDefaultsOfTheCode) {
     const TickConfig scene = tickConfigOf(scene::Scene{});

@@ -138,6 +138,10 @@ TEST(Options, WhatIsShownAtTheStart) {
     EXPECT_EQ(plain.text_scale, 1);
     EXPECT_EQ(all.text_scale, 2);
     EXPECT_THROW(parse({"--text-scale", "9"}), UserError);
+    EXPECT_FALSE(plain.has_depth_of_field);
+    const ViewSettings microscope = parse({"--camera", "microscope", "--depth-of-field"})->settings;
+    EXPECT_EQ(microscope.camera, CameraMode::kMicroscope);
+    EXPECT_TRUE(microscope.has_depth_of_field);
     EXPECT_EQ(parse({"--stereo", "side-by-side"})->settings.stereo, StereoMode::kSideBySide);
     const ViewSettings by_default = parse({"--transparent"})->settings;
     EXPECT_TRUE(by_default.is_transparent);

@@ -62,6 +62,26 @@ TEST(Nrrd, rightAnteriorSuperiorBecomesLps) {
     EXPECT_NO_THROW(expectSamePlaces(importVolume(folder / "a.nrrd"), lps));
 }
 
+TEST(Nrrd, aSpaceThatIsNoPatientsIsToldApart) {
+    const test::TemporaryFolder folder;
+    for (const auto& [space, lacks] :
+         {std::pair("left-posterior-superior", false), std::pair("LPS", false), std::pair("RAS", false),
+          std::pair("scanner-xyz", true), std::pair("3D-right-handed", true)}) {
+        writeNrrdFile(folder / "a.nrrd", SampleVolume(), {}, space);
+        EXPECT_EQ(importVolume(folder / "a.nrrd").lacks_patient_axes, lacks) << space;
+    }
+}
+
+TEST(Nifti, withoutQformAndSformNothingIsKnownOfThePatient) {
+    const test::TemporaryFolder folder;
+    writeNiftiFile(folder / "a.nii", SampleVolume(), {});
+    EXPECT_FALSE(importVolume(folder / "a.nii").lacks_patient_axes);
+    std::string bytes = readBytes(folder / "a.nii");
+    std::fill_n(bytes.begin() + 252, 4, '\0');  // qform_code and sform_code
+    writeBytes(folder / "a.nii", bytes);
+    EXPECT_TRUE(importVolume(folder / "a.nii").lacks_patient_axes);
+}
+
 TEST(Nrrd, leftHandedFileIsSaidToBeFlipped) {
     const test::TemporaryFolder folder;
     writeNrrdFile(folder / "a.nrrd", leftHandedSample(), {});
