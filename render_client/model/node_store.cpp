@@ -36,6 +36,8 @@ void NodeStore::set(const NodeMesh& mesh) {
               GlBuffer(gl_),
               GlBuffer(gl_),
               std::nullopt,
+              std::nullopt,
+              0,
               boxOf(mesh),
               mesh.origin,
               mesh.step,
@@ -59,7 +61,7 @@ void NodeStore::set(const NodeMesh& mesh) {
     if (!mesh.materials.empty()) uploadMaterials(mesh.materials, node);
     gl_.BindVertexArray(0);
     if (tracks_changes_) changed_.extend(changeTo(mesh, node.box));
-    if (tracks_changes_) node.mesh = mesh;
+    if (tracks_changes_ || mesh.revision != 0) node.mesh = mesh;
     nodes_.insert_or_assign(mesh.leaf, std::move(node));
 }
 
@@ -72,6 +74,22 @@ void NodeStore::uploadMaterials(const std::vector<uint8_t>& materials, Node& nod
     gl_.VertexAttribPointer(2, 1, GL_UNSIGNED_BYTE, GL_FALSE, 1, nullptr);
     gl_.EnableVertexAttribArray(2);
     uploads_.bytes += materials.size();
+}
+
+void NodeStore::setScan(uint32_t leaf, const std::vector<VertexScan>& scan, uint64_t stamp) {
+    const auto known = nodes_.find(leaf);
+    if (known == nodes_.end()) return;
+    Node& node = known->second;
+    if (!node.scan) node.scan.emplace(gl_);
+    node.scan_stamp = stamp;
+    gl_.BindVertexArray(node.layout.name());
+    gl_.BindBuffer(GL_ARRAY_BUFFER, node.scan->name());
+    gl_.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(scan.size() * sizeof(VertexScan)), scan.data(),
+                   GL_DYNAMIC_DRAW);
+    gl_.VertexAttribPointer(3, 2, GL_UNSIGNED_SHORT, GL_TRUE, sizeof(VertexScan), nullptr);
+    gl_.EnableVertexAttribArray(3);
+    gl_.BindVertexArray(0);
+    changed_.extend(node.box);
 }
 
 Eigen::AlignedBox3f NodeStore::changeTo(const NodeMesh& mesh, const Eigen::AlignedBox3f& box) const {

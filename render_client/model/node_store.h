@@ -39,6 +39,21 @@ class NodeStore {
     // Returns the box (V, m) around the triangles that came or went since the last call.
     Eigen::AlignedBox3f takeChanged() { return std::exchange(changed_, {}); }
 
+    // What the scan measured at a vertex, and whether milling opened it there: 0, or 65535 for yes.
+    struct VertexScan {
+        uint16_t density;
+        uint16_t is_milled;
+    };
+    // Calls visit(mesh, box, stamp) for each node whose surface is not the scan's any more; the stamp is that
+    // of setScan(), 0 since the mesh came.
+    template <class Visit>
+    void visitMilled(Visit&& visit) const {
+        for (const auto& [leaf, node] : nodes_)
+            if (node.mesh && node.mesh->revision != 0) visit(*node.mesh, node.box, node.scan_stamp);
+    }
+    // Gives each vertex of that node what the scan measured, until another mesh comes.
+    void setScan(uint32_t leaf, const std::vector<VertexScan>& scan, uint64_t stamp);
+
     // Draws what may be inside the view volume of clip_from_V with the program in use (uniforms origin and
     // step). Returns the number of triangles drawn.
     size_t draw(const Program& program, const Eigen::Matrix4f& clip_from_V) const;
@@ -49,11 +64,14 @@ class NodeStore {
         GlBuffer vertices;
         GlBuffer indices;
         std::optional<GlBuffer> materials;
+        std::optional<GlBuffer> scan;
+        uint64_t scan_stamp = 0;
         Eigen::AlignedBox3f box;  // V, m
         Eigen::Vector3f origin;   // V, m
         Eigen::Vector3f step;     // V, m
         GLsizei index_count;
-        std::optional<NodeMesh> mesh;  // what the buffers hold, while changes are tracked
+        std::optional<NodeMesh>
+            mesh;  // what the buffers hold, while changes are tracked or once it was milled
     };
     void remove(uint32_t leaf);
     void uploadMaterials(const std::vector<uint8_t>& materials, Node& node);

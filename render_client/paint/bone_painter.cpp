@@ -85,6 +85,8 @@ void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint
     surface.set("grain_size", float(kGrain) * frame.bone_radius);
     surface.set("opacity", look.opacity);
     surface.set("inside_colour", look.inside);
+    surface.set("shows_scan", milled_grey_ ? 1 : 0);
+    surface.set("grey_of_density", milled_grey_.value_or(Eigen::Vector2f::UnitX()));
     if (coloured_) coloured_->palette.setUniforms(surface);
     if (film_) film_->setUniforms();
     triangles_drawn_ = nodes.draw(surface, frame.cull_from_V);

@@ -13,6 +13,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "render_client/model/material_palette.h"
 #include "render_client/model/node_store.h"
@@ -40,6 +41,11 @@ class BonePainter {
     void setFilm(const FilmPainter* film) { film_ = film; }
     // From now on the faces of cuts show the scan, or are plain when null. They must outlive their use.
     void setFaces(const CtFaces* faces) { faces_ = faces; }
+    // From now on milled bone has the grey of what the scan measured there (greyOfDensity()), or its own
+    // colour.
+    void setMilledGrey(const std::optional<Eigen::Vector2f>& grey_of_density) {
+        milled_grey_ = grey_of_density;
+    }
 
     // Returns how many bone triangles were inside the view volume of the last picture.
     size_t trianglesDrawn() const { return triangles_drawn_; }
@@ -69,6 +75,7 @@ class BonePainter {
     std::unique_ptr<Coloured> coloured_;  // null: bone's own colour
     const FilmPainter* film_ = nullptr;
     const CtFaces* faces_ = nullptr;
+    std::optional<Eigen::Vector2f> milled_grey_;
     size_t triangles_drawn_ = 0;
 };
 

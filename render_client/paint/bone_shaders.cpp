@@ -15,9 +15,11 @@ uniform vec3 step;
 uniform mat4 camera_from_model;
 uniform mat4 clip_from_camera;
 uniform vec4 cut_planes[3];  // model frame: shown where dot(plane, (p, 1)) >= 0
+layout(location = 3) in vec2 scan;  // its density (0 to 1) where milling opened the bone; whether it did
 out vec3 p_C;
 out vec3 n_C;
 out vec3 p_M;
+out vec2 scanned;
 out float gl_ClipDistance[3];
 invariant gl_Position;  // a layer is found by its depth first and then drawn where the depth is equal
 
@@ -33,6 +35,7 @@ void main() {
     n_C = mat3(camera_from_model) * unitVector(octahedral / 127.0);
     gl_Position = clip_from_camera * vec4(p_C, 1.0);
     for (int i = 0; i < 3; ++i) gl_ClipDistance[i] = dot(cut_planes[i], vec4(p_M, 1.0));
+    scanned = vec2(scan.x * scan.y, scan.y);
 #ifdef MATERIALS
     material_colour = texelFetch(palette, ivec2(int(material), 0), 0);
 #endif
@@ -43,6 +46,9 @@ const char kBoneFragment[] = R"(
 in vec3 p_C;
 in vec3 n_C;
 in vec3 p_M;
+in vec2 scanned;
+uniform vec2 grey_of_density;  // of the scan: factor, and what is added
+uniform bool shows_scan;
 uniform float grain_size;    // m, of the faint mottling
 uniform vec2 opacity;        // facing the eye, and the part of the rest that the outline adds
 uniform vec3 inside_colour;  // linear
@@ -75,6 +81,10 @@ void main() {
 #ifdef MATERIALS
     albedo = albedo * (1.0 - material_colour.a) + material_colour.rgb * mix(0.88, 1.12, mottling);
 #endif
+    if (shows_scan && scanned.y > 0.0) {
+        float grey = clamp(scanned.x / scanned.y * grey_of_density.x + grey_of_density.y, 0.0, 1.0);
+        albedo = mix(albedo, vec3(pow(grey, 2.2)), scanned.y);
+    }
     if (inside) albedo = inside_colour;
     vec3 sheen = vec3(0.0);
 #ifdef FILM

@@ -116,10 +116,7 @@ Eigen::AlignedBox3f CtFaces::remove(size_t axis) {
 }
 
 Eigen::AlignedBox3f CtFaces::setWindow(const DensityGrid& grid, const GreyWindow& window) {
-    const double black = densityOf(grid, window.level - window.width / 2),
-                 white = densityOf(grid, window.level + window.width / 2);
-    // The shader's densities go from 0 to 1.
-    const Eigen::Vector2f grey(float(65535 / (white - black)), float(-black / (white - black)));
+    const Eigen::Vector2f grey = greyOfDensity(grid, window).cast<float>();
     Eigen::AlignedBox3f changed;
     if (std::exchange(grey_of_density_, grey) == grey) return changed;
     for (const auto& face : faces_)

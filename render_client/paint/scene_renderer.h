@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "render_client/gl/program.h"
 #include "render_client/model/node_store.h"
@@ -47,6 +48,11 @@ class SceneRenderer {
     void prepare(const EffectNeeds& needs);
     // As BonePainter::setFaces().
     void setFaces(const CtFaces* faces) { bone_.setFaces(faces); }
+    // As BonePainter::setMilledGrey().
+    void setMilledGrey(const std::optional<Eigen::Vector2f>& grey_of_density) {
+        if (std::exchange(milled_grey_, grey_of_density) != grey_of_density) changes_.forget();
+        bone_.setMilledGrey(grey_of_density);
+    }
     // Bone looks different in that box (V) from the next picture on.
     void hasChanged(const Eigen::AlignedBox3f& box_V) { look_changed_.extend(box_V); }
     // The next picture is drawn whole, also in quick quality.
@@ -91,7 +97,8 @@ class SceneRenderer {
     std::unique_ptr<RenderTargets> targets_;
     PictureChanges changes_;            // quick quality
     Eigen::AlignedBox3f look_changed_;  // since the last quick picture, and no triangle with it
-    Camera last_camera_;                // of the last picture, for pick()
+    std::optional<Eigen::Vector2f> milled_grey_;
+    Camera last_camera_;  // of the last picture, for pick()
     Eigen::Vector2f last_near_far_ = Eigen::Vector2f::Zero();
 };
 

@@ -9,8 +9,8 @@ extern const char kLighting[];  // before the fragment shaders of bone, cap, too
 extern const char kNoise[];     // after kLighting, before those of bone and cap
 
 // bone_shaders.cpp draws bone and cap. Vertex attribute 0 of a mesh is the position (quantisation steps),
-// 1 the normal (octahedral, ±127), 2 the material. With `#define MATERIALS` before both shaders, bone has
-// its materials' colours.
+// 1 the normal (octahedral, ±127), 2 the material, 3 what the scan measured. With `#define MATERIALS` before
+// both shaders, bone has its materials' colours.
 extern const char kMeshVertex[];
 extern const char kBoneFragment[];  // with `#define FILM`: blood and water lie on it
 extern const char kCapFragment[];   // the face of a cut; with `#define CT`: the scan's grey values on it

@@ -20,7 +20,7 @@ std::string millimetres(const char* axis, double metres) {
 
 }  // namespace
 
-Eigen::AlignedBox3f CtShow::update(const View& view) {
+Eigen::AlignedBox3f CtShow::update(const View& view, NodeStore& nodes) {
     width_ = view.width;
     height_ = view.height;
     columns_ = paneColumns(view.settings, view.width, view.height);
@@ -34,6 +34,7 @@ Eigen::AlignedBox3f CtShow::update(const View& view) {
     if (grid) window_ = view.settings.slices.window.value_or(startWindow(*grid));
     updatePanes(view);
     const Eigen::AlignedBox3f changed = updateFaces(view);
+    updateMilled(view, nodes);
     sampler_.reset();
     wantAll();
     return changed;
@@ -106,6 +107,13 @@ Eigen::AlignedBox3f CtShow::updateFaces(const View& view) {
     return changed;
 }
 
+void CtShow::updateMilled(const View& view, NodeStore& nodes) {
+    milled_grey_.reset();
+    if (view.settings.slices.ct != CtShown::kOnCutsAndMilled || !grid_) return milled_.clear();
+    milled_.update(sampler(), store_, nodes);
+    milled_grey_ = greyOfDensity(*grid_, *window_).cast<float>();
+}
+
 bool CtShow::look(Slice& slice, const SlicePlane& plane) {
     if (slice.is_known && slice.plane == plane && slice.changes == store_.changes()) return false;
     if (!slice.is_known || slice.plane != plane) {
@@ -131,6 +139,7 @@ void CtShow::wantAll() {
     for (const auto* slices : {&pane_slices_, &face_slices_})
         for (const auto& slice : *slices)
             if (slice) lists.push_back(&slice->bricks);
+    lists.push_back(&milled_.bricks());
     std::vector<uint32_t> wanted;
     std::unordered_set<uint32_t> known;
     size_t longest = 0;

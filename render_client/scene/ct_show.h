@@ -14,6 +14,7 @@
 #include "render_client/hud/pane_layout.h"
 #include "render_client/paint/ct_faces.h"
 #include "render_client/paint/slice_painter.h"
+#include "render_client/scene/milled_scan.h"
 #include "render_client/slices/panes.h"
 
 namespace bonemill {
@@ -31,12 +32,15 @@ class CtShow {
         std::optional<SliceBurr> burr;
         int width, height;  // of the whole picture, pixels
     };
-    // Brings panes and faces up to date, and wants what they show. Returns the box (V) in which faces look
-    // different now. Throws GlError when the driver refuses a shader or a texture.
-    Eigen::AlignedBox3f update(const View& view);
+    // Brings panes, faces and milled nodes up to date, and wants what they show. Returns the box (V) in which
+    // faces look different now. Throws GlError when the driver refuses a shader or a texture.
+    Eigen::AlignedBox3f update(const View& view, NodeStore& nodes);
 
     // Returns what the faces of cuts show; null where they are plain.
     const CtFaces* faces() const { return shows_faces_ ? faces_.get() : nullptr; }
+
+    // Returns what makes grey of the scan's densities on milled bone; nothing where it has its own colour.
+    std::optional<Eigen::Vector2f> milledGrey() const { return milled_grey_; }
 
     // Draws the panes of the last update() into their columns of the picture (`target`), if there are any.
     void paintPanes(GLuint target) const;
@@ -60,6 +64,7 @@ class CtShow {
     bool look(Slice& slice, const SlicePlane& plane);
     void updatePanes(const View& view);
     Eigen::AlignedBox3f updateFaces(const View& view);
+    void updateMilled(const View& view, NodeStore& nodes);
     void showNoGrid(const View& view);
     void wantAll();
     const DensitySampler& sampler();
@@ -71,6 +76,8 @@ class CtShow {
     std::unique_ptr<SlicePainter> painter_;
     std::unique_ptr<CtFaces> faces_;
     bool shows_faces_ = false;
+    MilledScan milled_;
+    std::optional<Eigen::Vector2f> milled_grey_;
     std::optional<std::array<Pane, 3>> panes_;
     std::array<bool, 3> are_scrolled_{};
     std::array<std::optional<Slice>, 3> pane_slices_, face_slices_;

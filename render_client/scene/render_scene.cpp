@@ -251,8 +251,9 @@ void RenderScene::updateCt(int width, int height) {
     if (hud_input_.tool)
         if (const auto X_WT = readPose(hud_input_.tool->p_wt_m(), hud_input_.tool->q_wt()))
             view.burr = SliceBurr{X_WT->position, burrRadius()};
-    renderer_.hasChanged(ct_.update(view));
+    renderer_.hasChanged(ct_.update(view, nodes_));
     renderer_.setFaces(ct_.faces());
+    renderer_.setMilledGrey(ct_.milledGrey());
 }
 
 void RenderScene::paintPanes(int width, int height, float ui_scale, GLuint target) {

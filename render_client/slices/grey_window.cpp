@@ -36,6 +36,12 @@ std::vector<uint8_t> greyTable(const DensityGrid& grid, const GreyWindow& window
     return table;
 }
 
+Eigen::Vector2d greyOfDensity(const DensityGrid& grid, const GreyWindow& window) {
+    const double black = densityOf(grid, window.level - window.width / 2) / kMostDensity,
+                 white = densityOf(grid, window.level + window.width / 2) / kMostDensity;
+    return {1 / (white - black), -black / (white - black)};
+}
+
 GreyWindow startWindow(const DensityGrid& grid) {
     const double high = grid.value_at_65535;
     const double low =

@@ -20,6 +20,10 @@ double greyOf(const GreyWindow& window, double value);
 // Returns the grey of every density, 0 to 255.
 std::vector<uint8_t> greyTable(const DensityGrid& grid, const GreyWindow& window);
 
+// Returns factor and summand that make grey, 0 to 1 where it is not beyond, of a density that goes from 0
+// to 1.
+Eigen::Vector2d greyOfDensity(const DensityGrid& grid, const GreyWindow& window);
+
 // Returns the window that shows bone in the upper two thirds of grey and what is softer below, as far as the
 // scan's range goes.
 GreyWindow startWindow(const DensityGrid& grid);

@@ -109,6 +109,24 @@ SlicePlane facePlane(const DensityGrid& grid, const Pose& X_WV, size_t axis, dou
     return plane;
 }
 
+std::vector<uint32_t> bricksIn(const DensityGrid& grid, const Eigen::AlignedBox3d& box_V) {
+    const auto voxelAt = [&](const Vector3d& p_V, double beyond) -> Eigen::Vector3i {
+        const Vector3d voxel =
+            (p_V - grid.origin_m).cwiseQuotient(grid.spacing_m) + Vector3d::Constant(beyond);
+        const Vector3d last = (grid.voxels.array() - 1).cast<double>();
+        return voxel.cwiseMax(0).cwiseMin(last).cast<int>();
+    };
+    std::vector<uint32_t> bricks;
+    if (box_V.isEmpty()) return bricks;
+    const Eigen::Vector3i low = voxelAt(box_V.min(), 0) / grid.brick_edge,
+                          high = voxelAt(box_V.max(), 1) / grid.brick_edge;
+    for (int k = low.z(); k <= high.z(); ++k)
+        for (int j = low.y(); j <= high.y(); ++j)
+            for (int i = low.x(); i <= high.x(); ++i)
+                bricks.push_back(brickOf(grid, grid.brick_edge * Eigen::Vector3i(i, j, k)));
+    return bricks;
+}
+
 std::vector<uint32_t> bricksOf(const DensityGrid& grid, const SlicePlane& plane) {
     const auto voxels = [&](const Vector3d& v) { return v.cwiseQuotient(grid.spacing_m).eval(); };
     const Vector3d right = voxels(plane.right_V), down = voxels(plane.down_V);

@@ -51,4 +51,7 @@ SlicePlane facePlane(const DensityGrid& grid, const Pose& X_WV, size_t axis, dou
 // Returns the bricks that hold voxels of the picture, nearest to its middle first; seldom one too many.
 std::vector<uint32_t> bricksOf(const DensityGrid& grid, const SlicePlane& plane);
 
+// Returns the bricks that hold voxels around points of the box (V, m).
+std::vector<uint32_t> bricksIn(const DensityGrid& grid, const Eigen::AlignedBox3d& box_V);
+
 }  // namespace bonemill

@@ -33,7 +33,7 @@ class CtPicture : public testing::Test {
     }
     // Draws the milled block with that scan behind it.
     Picture drawScanned(const test::ScanParts& parts = {}) {
-        test::showMilledBlock(*scene_);
+        if (!scene_->hasSceneInfo()) test::showMilledBlock(*scene_);
         DensityStore& store = scene_->densities();
         store.setGrid(test::blockGrid());
         for (uint32_t brick = 0; brick < uint32_t(brickCount(test::blockGrid())); ++brick)
@@ -151,6 +151,30 @@ TEST_F(CtPicture, TheFaceShowsTheDensityOfThePlace) {
     EXPECT_LT(wrong, compared / 50);
 }
 
+// The cavity of the block is milled; its outside is the scan's own surface, also of nodes that changed.
+TEST_F(CtPicture, MilledWallsShowWhatTheScanMeasured) {
+    const auto drawMilled = [&] {
+        test::showMilledBlock(*scene_);
+        for (NodeMesh node : test::milledBlock()) {
+            node.revision = 2;
+            scene_->setNode(node);
+        }
+        scene_->setToolState({});
+        return drawScanned();
+    };
+    scene_->settings().slices.ct = CtShown::kOnCutsAndMilled;
+    const Picture milled = drawMilled();
+    EXPECT_EQ(test::goldenProblem(milled, "ct_milled"), "");
+    EXPECT_FALSE(scene_->densities().wanted().empty());
+    scene_->settings().slices.ct = CtShown::kOnCuts;
+    expectSeen(draw(), "ct_milled");
+    EXPECT_TRUE(scene_->densities().wanted().empty());
+    begin(context_.gl());
+    scene_->settings().slices.ct = CtShown::kOnCutsAndMilled;
+    scene_->settings().slices.window = GreyWindow{1500, 1200};
+    expectSeen(drawMilled(), "ct_milled");
+}
+
 TEST_F(CtPicture, WhatIsNotShownIsNotWanted) {
     test::showMilledBlock(*scene_);
     DensityStore& store = scene_->densities();
@@ -222,6 +246,17 @@ TEST_F(CtPicture, QuickDrawingFollowsBricksAndWindow) {
     expectAnother("another window");
     scene_->settings().cuts[0].position = 0.4;
     expectAnother("another plane");
+    for (NodeMesh node : test::milledBlock()) {
+        node.revision = 2;
+        scene_->setNode(node);
+    }
+    scene_->settings().slices.ct = CtShown::kOnCutsAndMilled;
+    expectWhole("milled nodes, not all of whose bricks are there");
+    for (uint32_t brick = 0; brick < uint32_t(brickCount(test::blockGrid())); ++brick)
+        store.put(brick, test::blockBrick(brick, {}));
+    before = draw();
+    scene_->settings().slices.window = GreyWindow{2500, 700};
+    expectAnother("milled nodes in another window");
     scene_->settings().slices.ct = CtShown::kNowhere;
     expectAnother("plain");
     store.clear();
