@@ -9,9 +9,11 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
 
 #include "common/rt/clock.h"
 #include "common/user_error.h"
+#include "haptic_server/record/bone_files.h"
 
 namespace bonemill {
 namespace {
@@ -128,6 +130,10 @@ std::string classTableLine(const topics::Attempt& attempt) {
 ClassTable::ClassTable(std::string path) : path_(std::move(path)) {
     if (path_.empty()) return;
     try {
+        if (!std::filesystem::exists(path_)) {
+            requireWritable(path_);
+            return;
+        }
         TableFile(path_).requireTable();
     } catch (const UserError& error) {
         const std::string text = error.what();
