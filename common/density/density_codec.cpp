@@ -12,17 +12,19 @@ namespace {
 
 enum Kind : uint8_t { kUniform, kCoded };           // of a scanned brick: its first byte
 enum Voxel : uint8_t { kAsScanned, kAir, kOther };  // of a change
-constexpr size_t kHeader = 3;                       // kind, then density or steps, low byte first
-constexpr int kLevel = 1;                           // higher ones gain 2 % and take several times as long
-constexpr uint16_t kFinest = 65535;                 // steps: every density is one
+constexpr size_t kUniformSize = 3;
+constexpr size_t kHeader = 5;        // kind, steps, the density beside the ladder; low bytes first
+constexpr int kLevel = 1;            // higher ones gain 2 % and take several times as long
+constexpr uint16_t kFinest = 65535;  // steps: every density is one
 
 size_t voxelsOf(int edge) {
     return size_t(edge) * size_t(edge) * size_t(edge);
 }
 
-// Both sides compute it by the same IEEE operations, so a density that comes back once always does.
+// Both sides compute it by the same IEEE operations, so a density that comes back once always does. The
+// import computes densities of whole HU by the same ones (DensityMapping): halves are rounded alike.
 uint16_t densityAt(uint16_t step, uint16_t steps) {
-    return uint16_t(step * (65535.0 / steps) + 0.5);
+    return uint16_t(step / double(steps) * 65535.0 + 0.5);
 }
 uint16_t stepOf(uint16_t density, uint16_t steps) {
     return uint16_t(density * (steps / 65535.0) + 0.5);
@@ -54,8 +56,12 @@ void forEachVoxel(int edge, Visit&& visit) {
             for (int x = 0; x < edge; ++x) visit(n++, x, y, z);
 }
 
-std::string headerOf(Kind kind, uint16_t number) {
-    return {char(kind), char(number & 0xff), char(number >> 8)};
+void append(std::string& bytes, uint16_t number) {
+    bytes += char(number & 0xff);
+    bytes += char(number >> 8);
+}
+uint16_t numberAt(std::string_view bytes, size_t place) {
+    return uint16_t(uint8_t(bytes[place]) | uint8_t(bytes[place + 1]) << 8);
 }
 
 }  // namespace
@@ -76,14 +82,18 @@ DensityEncoder::DensityEncoder(uint16_t steps) : zstd_(std::make_unique<Zstd>())
 }
 DensityEncoder::~DensityEncoder() = default;
 
-bool DensityEncoder::standOn(uint16_t steps, std::span<const uint16_t> densities) {
+int DensityEncoder::standOn(uint16_t steps, std::span<const uint16_t> densities) {
     numbers_.resize(densities.size());
-    bool are_exact = true;
+    int beside = 0;
+    odd_ = 0;
     for (size_t n = 0; n < densities.size(); ++n) {
         numbers_[n] = stepOf(densities[n], steps);
-        are_exact &= densityAt(numbers_[n], steps) == densities[n];
+        if (densityAt(numbers_[n], steps) == densities[n]) continue;
+        if (beside == 0) odd_ = densities[n];
+        beside = beside == 0 || (beside == 1 && odd_ == densities[n]) ? 1 : 2;
+        numbers_[n] = uint16_t(steps + 1);
     }
-    return are_exact;
+    return beside;
 }
 
 void DensityEncoder::compress(std::string& out) {
@@ -98,9 +108,12 @@ void DensityEncoder::compress(std::string& out) {
 std::string DensityEncoder::scanned(std::span<const uint16_t> densities, int edge) {
     BONEMILL_ASSERT(edge >= 1 && edge <= kMostBrickEdge && densities.size() == voxelsOf(edge));
     const uint16_t first = densities[0];
-    if (std::ranges::all_of(densities, [first](uint16_t density) { return density == first; }))
-        return headerOf(kUniform, first);
-    const uint16_t steps = standOn(steps_, densities) ? steps_ : kFinest;
+    if (std::ranges::all_of(densities, [first](uint16_t density) { return density == first; })) {
+        std::string out(1, char(kUniform));
+        append(out, first);
+        return out;
+    }
+    const uint16_t steps = standOn(steps_, densities) <= 1 ? steps_ : kFinest;
     if (steps != steps_) standOn(steps, densities);
     plain_.resize(2 * densities.size());
     forEachVoxel(edge, [&](size_t n, int x, int y, int z) {
@@ -109,7 +122,9 @@ std::string DensityEncoder::scanned(std::span<const uint16_t> densities, int edg
         plain_[n] = char(rest & 0xff);
         plain_[n + densities.size()] = char(rest >> 8);
     });
-    std::string out = headerOf(kCoded, steps);
+    std::string out(1, char(kCoded));
+    append(out, steps);
+    append(out, odd_);
     compress(out);
     return out;
 }
@@ -149,11 +164,12 @@ bool DensityDecoder::decompress(std::string_view bytes, size_t least, size_t mos
 }
 
 std::optional<std::vector<uint16_t>> DensityDecoder::scanned(std::string_view bytes, int edge) {
-    if (edge < 1 || edge > kMostBrickEdge || bytes.size() < kHeader) return {};
+    if (edge < 1 || edge > kMostBrickEdge || bytes.size() < kUniformSize) return {};
     const size_t count = voxelsOf(edge);
-    const auto number = uint16_t(uint8_t(bytes[1]) | uint8_t(bytes[2]) << 8);
-    if (bytes[0] == kUniform && bytes.size() == kHeader) return std::vector<uint16_t>(count, number);
-    if (bytes[0] != kCoded || number == 0 || !decompress(bytes.substr(kHeader), 2 * count, 2 * count))
+    const uint16_t steps = numberAt(bytes, 1);
+    if (bytes[0] == kUniform && bytes.size() == kUniformSize) return std::vector<uint16_t>(count, steps);
+    if (bytes[0] != kCoded || bytes.size() < kHeader || steps == 0 ||
+        !decompress(bytes.substr(kHeader), 2 * count, 2 * count))
         return {};
     std::vector<uint16_t> densities(count);
     uint16_t highest = 0;
@@ -163,8 +179,9 @@ std::optional<std::vector<uint16_t>> DensityDecoder::scanned(std::string_view by
         *step = uint16_t(foretold(step, x, y, z, edge) + unfolded(rest));
         highest = std::max(highest, *step);
     });
-    if (highest > number) return {};
-    for (uint16_t& step : densities) step = densityAt(step, number);
+    const uint16_t odd = numberAt(bytes, 3);
+    if (highest > steps + 1) return {};
+    for (uint16_t& step : densities) step = step > steps ? odd : densityAt(step, steps);
     return densities;
 }
 

@@ -2,8 +2,9 @@
 // since. A brick has edge³ voxels, x fastest. It is not RT-safe (it allocates); an object is for one thread.
 //
 // Scanned: where all densities stand on a ladder of equal steps, as those of a scan in whole HU do, they are
-// coded as steps. What the neighbours do not foretell goes through zstd, low bytes before high bytes.
-// Change: per voxel, whether it is as scanned, air or neither, and the densities of the last.
+// coded as steps; one density beside the ladder may be among them (the import gives one to small pieces that
+// it removes). What the neighbours do not foretell goes through zstd, low bytes before high bytes. Change:
+// per voxel, whether it is as scanned, air or neither, and the densities of the last.
 #pragma once
 
 #include <cstdint>
@@ -31,13 +32,15 @@ class DensityEncoder {
     std::string change(std::span<const uint16_t> scanned, std::span<const uint16_t> present);
 
   private:
-    bool standOn(uint16_t steps, std::span<const uint16_t> densities);
+    // Returns the number of densities beside the ladder that it found, 2 at most.
+    int standOn(uint16_t steps, std::span<const uint16_t> densities);
     void compress(std::string& out);
 
     struct Zstd;
     std::unique_ptr<Zstd> zstd_;
     uint16_t steps_;
-    std::vector<uint16_t> numbers_;  // of the steps
+    std::vector<uint16_t> numbers_;  // of the steps, and `steps` + 1 for odd_
+    uint16_t odd_ = 0;               // stands beside the ladder
     std::string plain_;
 };
 

@@ -20,7 +20,9 @@ TEST(DensityCodec, GivesRandomBricksBackExactly) {
         Densities scanned = test::ctBrick(edge, random);
         if (round % 3 == 1)
             for (uint16_t& density : scanned) density = uint16_t(random());
-        if (round % 3 == 2) scanned[random() % scanned.size()] ^= uint16_t(1u << random() % 16);
+        if (round % 3 == 2)
+            for (uint32_t odd = random() % 3; odd > 0; --odd)
+                scanned[random() % scanned.size()] ^= uint16_t(1 + random() % 30);
         DensityEncoder encoder(round % 2 == 0 ? test::kCtWindow : uint16_t(1 + random() % 65535));
         EXPECT_EQ(decoder.scanned(encoder.scanned(scanned, edge), edge), scanned);
         const Densities present = test::milledBrick(scanned, random);
@@ -36,7 +38,10 @@ TEST(DensityCodec, StandsOnEveryLadder) {
         Densities scanned(kVoxels);
         for (size_t n = 0; n < kVoxels; ++n)
             scanned[n] = uint16_t(std::lround(double(n % size_t(steps + 1)) / steps * 65535));
-        EXPECT_EQ(decoder.scanned(encoder.scanned(scanned, kEdge), kEdge), scanned) << steps;
+        const std::string bytes = encoder.scanned(scanned, kEdge);
+        EXPECT_EQ(decoder.scanned(bytes, kEdge), scanned) << steps;
+        EXPECT_EQ(uint8_t(bytes[1]) + 256 * uint8_t(bytes[2]), steps)
+            << "it is on the ladder, ends of it included";
     }
 }
 
@@ -49,6 +54,9 @@ TEST(DensityCodec, SpendsLittleOnWhatIsPlain) {
     const size_t size = encoder.scanned(scanned, kEdge).size();
     EXPECT_LT(size, kVoxels) << "noise of 12 HU takes 5.6 bits";
     EXPECT_LT(size, without_ladder.scanned(scanned, kEdge).size() * 3 / 4);
+    Densities with_pieces = scanned;  // that the import removed
+    for (size_t n = 1000; n < 1500; ++n) with_pieces[n] = 9999;
+    EXPECT_LT(encoder.scanned(with_pieces, kEdge).size(), size + 100);
     EXPECT_TRUE(encoder.change(scanned, scanned).empty());
     Densities present = scanned;
     std::fill_n(present.begin(), kVoxels / 2, uint16_t(0));
