@@ -14,7 +14,7 @@ void SceneFeed::update() {
     for (const SceneModel::Change& change : changes.nodes)
         if (nodes_.set(change.mesh) && cuts_) cuts_->willShow(change.cut_stamp_ns);
     showSceneInfo();
-    subscriber_.followDensities(densities_);
+    subscriber_.followDensities(scene_.densities());
     if (subscriber_.toolState()) scene_.setToolState(*subscriber_.toolState());
     if (subscriber_.status()) scene_.setStatus(*subscriber_.status());
     advanceEffects();

@@ -41,9 +41,6 @@ class SceneFeed {
 
     SceneSubscriber& subscriber() { return subscriber_; }
 
-    // The scan's densities come in here while someone wants them (DensityStore::want()).
-    DensityStore& densities() { return densities_; }
-
   private:
     bool hasWholeModel() const { return subscriber_.isComplete() && nodes_.refusedCount() == 0; }
     void showSceneInfo();
@@ -54,7 +51,6 @@ class SceneFeed {
     SceneSubscriber subscriber_;
     RenderScene& scene_;
     NodeIntake nodes_;
-    DensityStore densities_;
     CutToScreen* cuts_ = nullptr;
     SoundFeed* sound_ = nullptr;
     std::chrono::steady_clock::time_point advanced_ = std::chrono::steady_clock::now();

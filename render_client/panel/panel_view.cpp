@@ -135,12 +135,11 @@ void PanelContent::buildScan() {
     const CtShown ct = settings_.slices.ct;
     box("Slices", Action::kSlices, settings_.slices.are_shown,
         "Three slices through the scan at the burr, beside the picture");
-    ImGui::SameLine();
     if (box(withKey("Scan on cuts", Action::kScanOnBone), ct != CtShown::kNowhere,
             "Cut faces show the scan's grey values"))
         controls_.showScan(ct == CtShown::kNowhere ? CtShown::kOnCuts : CtShown::kNowhere);
     ImGui::SameLine();
-    if (box("milled", ct == CtShown::kOnCutsAndMilled, "Milled bone shows what the scan measured there"))
+    if (box("Milled", ct == CtShown::kOnCutsAndMilled, "Milled bone shows what the scan measured there"))
         controls_.showScan(ct == CtShown::kOnCutsAndMilled ? CtShown::kOnCuts : CtShown::kOnCutsAndMilled);
 }
 

@@ -1,6 +1,7 @@
 // Window and level turn the scan's values into grey. The functions are pure; any thread may call them.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <string>
 #include <vector>
