@@ -224,7 +224,13 @@ bool ShowSession::publishNodes() {
 void ShowSession::publishStructures() {
     if (!structures_.valid() || structures_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
         return;
-    for (const NodeMesh& mesh : structures_.get()) publisher_.publishStructure(mesh, warning_distance_);
+    size_t triangles = 0;
+    const std::vector<NodeMesh> meshes = structures_.get();
+    for (const NodeMesh& mesh : meshes) {
+        publisher_.publishStructure(mesh, warning_distance_);
+        triangles += mesh.indices.size() / 3;
+    }
+    spdlog::info("{} protected structures are shown, with {} triangles", meshes.size(), triangles);
     has_changed_ = true;
 }
 

@@ -15,6 +15,7 @@ void SceneFeed::update() {
         if (nodes_.set(change.mesh) && cuts_) cuts_->willShow(change.cut_stamp_ns);
     showSceneInfo();
     subscriber_.followDensities(scene_.densities());
+    showStructures();
     if (subscriber_.toolState()) scene_.setToolState(*subscriber_.toolState());
     if (subscriber_.status()) scene_.setStatus(*subscriber_.status());
     advanceEffects();
@@ -31,6 +32,14 @@ void SceneFeed::showSceneInfo() {
     } catch (const std::invalid_argument& error) {
         spdlog::warn("the server sent a scene that cannot be shown: {}", error.what());
     }
+}
+
+void SceneFeed::showStructures() {
+    const uint64_t changes = subscriber_.structureChanges();
+    if (std::exchange(shown_structures_, changes) == changes) return;
+    scene_.clearStructures();
+    for (const auto& [id, structure] : subscriber_.structures())
+        scene_.setStructure(structure.mesh, structure.warning_distance);
 }
 
 void SceneFeed::advanceEffects() {

@@ -49,6 +49,13 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
                             ->expected(0, 1)
                             ->check(within(0, 1))
                             ->type_name("[OPACITY]");
+    auto* structures =
+        app.add_option("--structures", raw.structures,
+                       "Protected structures are seen through-bone, only where exposed, or off")
+            ->check(CLI::IsMember({"through-bone", "exposed", "off"}))
+            ->capture_default_str();
+    auto* thickness = app.add_flag("--thickness", raw.thickness,
+                                   "Bone has the colour of its distance to the next protected structure");
     auto* stereo = app.add_option("--stereo", raw.stereo, "off, side-by-side or anaglyph (red-cyan glasses)")
                        ->check(CLI::IsMember({"off", "side-by-side", "anaglyph"}))
                        ->capture_default_str();
@@ -80,7 +87,7 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
                        ->expected(2)
                        ->check(within(-1e6, 1e6))
                        ->type_name("WIDTH LEVEL");
-    view_options.insert(view_options.end(), {slices, scan, window});
+    view_options.insert(view_options.end(), {slices, scan, window, structures, thickness});
     view_options.insert(view_options.end(),
                         {transparent, stereo, camera, blur, quality, no_handpiece, no_hud, text});
     return view_options;
@@ -92,6 +99,10 @@ ViewSettings viewSettings(const RawView& raw) {
         if (raw.cuts[axis]) settings.cuts[axis] = {true, *raw.cuts[axis], raw.flips[axis]};
     settings.is_transparent = raw.is_transparent;
     settings.opacity = raw.opacity.value_or(ViewSettings::kDefaultOpacity);
+    settings.structures.fill(raw.structures == "off"       ? StructureMode::kOff
+                             : raw.structures == "exposed" ? StructureMode::kExposedOnly
+                                                           : StructureMode::kThroughBone);
+    settings.show_thickness = raw.thickness;
     settings.stereo = raw.stereo == "side-by-side" ? StereoMode::kSideBySide
                       : raw.stereo == "anaglyph"   ? StereoMode::kAnaglyph
                                                    : StereoMode::kOff;

@@ -24,6 +24,8 @@ struct RawView {
     std::string camera = "orbit";
     bool has_depth_of_field = false;
     std::string quality = "auto";
+    std::string structures = "through-bone";
+    bool thickness = false;
     std::optional<double> text_scale;
     bool no_handpiece = false;
     bool no_hud = false;

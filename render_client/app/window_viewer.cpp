@@ -135,6 +135,7 @@ class WindowViewer {
         notices_.removeOld();
         if (is_minimised) return pause();
         scene_.setWatchers(watchers(session));
+        scene_.setMouse(mouseOverScene(width, height));
         scene_.setFrameRate(frame_rate_.perSecond());
         scene_.draw(width, height, scaleOfText(width, height));
         painter_.paint(panel_, scene_.viewWidth(width, height), height);
@@ -180,6 +181,7 @@ class WindowViewer {
         for (const WindowEvent& event : window_.takeEvents()) {
             const bool is_panels = panel_.handle(event, controls_, session, wishes);
             const auto* move = std::get_if<MouseMoveEvent>(&event);
+            if (move) is_over_panel_ = is_panels;
             if (is_panels && move) {
                 controls_.passOver(*move);
             } else if (!is_panels || isRelease(event)) {
@@ -198,6 +200,14 @@ class WindowViewer {
     }
 
     std::optional<Eigen::Vector3d> pick(const PixelPoint& at) { return scene_.pick(int(at.x), int(at.y)); }
+
+    // The panel hides what lies under it, and a mouse that does something else asks for no name.
+    std::optional<std::pair<int, int>> mouseOverScene(int width, int height) {
+        const auto at = controls_.hovering();
+        if (!at || is_over_panel_ || at->x < 0 || at->y < 0 || at->x >= width || at->y >= height)
+            return std::nullopt;
+        return std::pair(int(at->x), int(at->y));
+    }
 
     void announce() {
         const auto at = controls_.pointing();
@@ -263,6 +273,7 @@ class WindowViewer {
     Clock::time_point last_picture_ = Clock::now();
     bool was_holding_ = false;  // as announced last
     bool has_quit_ = false;
+    bool is_over_panel_ = false;  // the mouse
 };
 
 }  // namespace

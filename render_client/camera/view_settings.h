@@ -45,6 +45,11 @@ struct SliceSettings {
     CtShown ct = CtShown::kOnCuts;
 };
 
+// How a protected structure is seen; the places of ViewSettings::structures are 1 + its index in
+// SceneInfo.materials.
+enum class StructureMode : uint8_t { kThroughBone, kExposedOnly, kOff };
+constexpr size_t kMostStructures = 256;
+
 struct ViewSettings {
     static constexpr double kDefaultOpacity = 0.35;
 
@@ -61,6 +66,9 @@ struct ViewSettings {
     // The places are those of ViewerEffect; only those that the scene lists are seen.
     std::array<bool, kViewerEffects> hides_effects{};
     bool shows(ViewerEffect effect) const { return !hides_effects[size_t(effect)]; }
+    std::array<StructureMode, kMostStructures> structures{};
+    bool show_clearance = true;   // the line from the burr to the nearest structure
+    bool show_thickness = false;  // bone has the colour of its distance to the next structure
     bool show_hud = true;
     bool show_details = false;  // with the figures that matter to the task, all others
     bool show_watchers = false;

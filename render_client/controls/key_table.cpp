@@ -19,6 +19,8 @@ constexpr KeyBinding kKeys[] = {
     {"Shift+G", keyOf('G'), true, Action::kScanOnBone, "scan on cuts, on milled bone, off"},
     {"Shift+S", keyOf('S'), true, Action::kSlices, "slices through the scan"},
     {"T", keyOf('T'), false, Action::kTransparency, "transparent bone"},
+    {"Shift+T", keyOf('T'), true, Action::kStructures, "structures: through bone, exposed, off"},
+    {"Shift+D", keyOf('D'), true, Action::kThickness, "thickness of bone over structures"},
     {"S", keyOf('S'), false, Action::kStereo, "stereo: side by side, red/cyan, off"},
     {"Q", keyOf('Q'), false, Action::kQuickDrawing, "quick drawing"},
     {"E", keyOf('E'), false, Action::kEndoscope, "endoscope"},

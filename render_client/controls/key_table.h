@@ -26,6 +26,8 @@ enum class Action {
     kScanOnBone,
     kSlices,
     kTransparency,
+    kStructures,
+    kThickness,
     kStereo,
     kQuickDrawing,
     kEndoscope,

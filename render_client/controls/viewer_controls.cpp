@@ -38,6 +38,10 @@ CtShown nextCt(CtShown shown) {
     return CtShown((int(shown) + 1) % (int(CtShown::kOnCutsAndMilled) + 1));
 }
 
+StructureMode nextMode(StructureMode mode) {
+    return StructureMode((int(mode) + 1) % (int(StructureMode::kOff) + 1));
+}
+
 // W is LPS: x to the patient's left, y to the back, z to the head.
 Eigen::Vector3d directionOf(Side side) {
     switch (side) {
@@ -154,6 +158,11 @@ std::optional<PixelPoint> ViewerControls::pointing() const {
     return std::nullopt;
 }
 
+std::optional<PixelPoint> ViewerControls::hovering() const {
+    if (drag_ != Drag::kNone || hold_.isHolding()) return std::nullopt;
+    return mouse_;
+}
+
 bool ViewerControls::mayPoint(const SessionView& session, Wishes& wishes) const {
     std::string why_not = whyNotPoint(session);
     if (why_not.empty()) why_not = whyNoPlace();
@@ -235,6 +244,10 @@ void ViewerControls::changeView(Action action) {
             return toggle(settings_.slices.are_shown);
         case Action::kTransparency:
             return toggle(settings_.is_transparent);
+        case Action::kStructures:
+            return settings_.structures.fill(nextMode(settings_.structures[0]));
+        case Action::kThickness:
+            return toggle(settings_.show_thickness);
         case Action::kStereo:
             return setStereo(nextStereo(settings_.stereo));
         case Action::kQuickDrawing:

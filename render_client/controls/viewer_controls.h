@@ -60,6 +60,9 @@ class ViewerControls {
     void setDepthOfField(bool is_on) { settings_.has_depth_of_field = is_on; }
     void setStereo(StereoMode mode) { settings_.stereo = mode; }
     // Makes bone transparent, of this opacity from 0 to 1.
+    // Lets this structure be seen so; the number is 1 + its index in SceneInfo.materials.
+    void showStructure(size_t structure, StructureMode mode) { settings_.structures.at(structure) = mode; }
+    void showClearance(bool is_shown) { settings_.show_clearance = is_shown; }
     void setOpacity(double opacity);
     // Moves the cut to this place, from the low (0) to the high end (1) of the bone's box along W's axis (0
     // to 2). The cut is switched on and becomes the one that [ and ] move.
@@ -75,6 +78,8 @@ class ViewerControls {
     bool isPanelOpen() const { return is_panel_open_; }
     // Returns where the user points with the laser now.
     std::optional<PixelPoint> pointing() const;
+    // Returns where the mouse rests or moves, while it holds no tool and drags nothing.
+    std::optional<PixelPoint> hovering() const;
 
   private:
     enum class Drag { kNone, kOrbit, kPan, kPoint };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,13 @@ struct OrientationAxes {
     bool are_patients = true;  // A is W, which is LPS; otherwise A is V
 };
 
+// Says which distance a colour stands for, from left to right.
+struct HudLegend {
+    std::string title;
+    std::vector<std::array<float, 3>> colours;  // sRGB
+    std::string low, high;                      // what the first and the last one stand for
+};
+
 struct Hud {
     std::string title;  // empty: no figures
     std::string state;
@@ -57,7 +65,8 @@ struct Hud {
     std::vector<HudRow> details;   // the rest; empty: folded
     std::vector<HudRow> watchers;  // empty: no list
     std::vector<HelpGroup> help;   // empty: no help page
-    std::optional<HudPage> page;   // there are no figures then
+    std::optional<HudLegend> legend;
+    std::optional<HudPage> page;  // there are no figures then
     std::optional<HudHint> hint;
     std::optional<HudNotice> notice;
     std::vector<HudNotice> messages;  // what stands in the way, and what to do
@@ -70,6 +79,7 @@ struct HudLabel {
     float x = 0;
     float y = 0;
     std::string text;
+    bool is_of_pointer = false;  // an instructor's
 };
 
 }  // namespace bonemill

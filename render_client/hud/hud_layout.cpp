@@ -146,6 +146,30 @@ void layOutScaleBar(HudCanvas& canvas, const ScaleBar& bar, double metres_per_pi
                 kHudScaleColour);
 }
 
+void layOutLegend(HudCanvas& canvas, const HudLegend& legend, const PictureSize& picture) {
+    constexpr int kSteps = 24;  // between two colours
+    const float em = canvas.em(), wide = em * 13, gap = em * 0.5f;
+    const float left = float(picture.width) - em * 2.1f - wide, top = float(picture.height) - em * 6.4f;
+    canvas.box(left - gap, top - em * 1.5f, wide + 2 * gap, em * 3.9f, em * 0.4f, kHudPanelColour);
+    canvas.text(left, top - em * 0.45f, canvas.fitted(legend.title, FontStyle::kBold, wide), FontStyle::kBold,
+                kHudTitleColour);
+    const size_t spans = legend.colours.size() - 1;
+    const float step = wide / float(kSteps * spans);
+    for (size_t n = 0; n < kSteps * spans; ++n) {
+        const size_t low = n / kSteps;
+        const float share = float(n % kSteps) / kSteps;
+        HudColour colour{0, 0, 0, 1};
+        for (size_t i = 0; i < 3; ++i)
+            colour[i] =
+                legend.colours[low][i] + share * (legend.colours[low + 1][i] - legend.colours[low][i]);
+        canvas.box(left + step * float(n), top, wide - step * float(n), em * 0.7f, 0, colour);
+    }
+    const float base = top + em * 1.8f;
+    canvas.text(left, base, legend.low, FontStyle::kPlain, kHudScaleColour);
+    canvas.text(left + wide - canvas.width(legend.high, FontStyle::kPlain), base, legend.high,
+                FontStyle::kPlain, kHudScaleColour);
+}
+
 void layOutPage(HudCanvas& canvas, const HudPage& page, const PictureSize& picture) {
     const float em = canvas.em(), widest = float(picture.width) - 4 * em;
     const Spacing space(em);
@@ -225,7 +249,8 @@ void layOutLabel(HudCanvas& canvas, const HudLabel& label) {
     const float padding = em * 0.45f, left = std::round(label.x) + em * 1.7f;
     const float top = std::round(label.y) - em * 0.75f;
     canvas.box(left - padding, top, text_width + 2 * padding, em * 1.5f, em * 0.4f, kHudPanelColour);
-    canvas.text(left, top + em * 1.08f, label.text, FontStyle::kBold, kHudPointerNameColour);
+    canvas.text(left, top + em * 1.08f, label.text, FontStyle::kBold,
+                label.is_of_pointer ? kHudPointerNameColour : kHudTitleColour);
 }
 
 }  // namespace bonemill

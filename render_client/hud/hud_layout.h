@@ -37,6 +37,9 @@ void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, cons
 void layOutScaleBar(HudCanvas& canvas, const ScaleBar& bar, double metres_per_pixel,
                     const PictureSize& picture);
 
+// Puts the legend above the scale bar.
+void layOutLegend(HudCanvas& canvas, const HudLegend& legend, const PictureSize& picture);
+
 // Puts the page into the middle of the picture.
 void layOutPage(HudCanvas& canvas, const HudPage& page, const PictureSize& picture);
 

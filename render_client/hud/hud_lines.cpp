@@ -131,6 +131,7 @@ Hud makeHud(const HudInput& input) {
     hud.notice = input.notice;
     hud.messages = input.messages;
     hud.alert = alertOf(input);
+    hud.legend = input.legend;
     hud.rows = taskRows(input);
     if (input.show_details) hud.details = detailRows(input);
     if (input.show_watchers && !input.show_details) hud.watchers = watcherRows(input.watchers);

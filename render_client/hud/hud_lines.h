@@ -39,6 +39,7 @@ struct HudInput {
     std::vector<HelpGroup> help;
     std::optional<ServerSought> sought;
     bool show_help = false;
+    std::optional<HudLegend> legend;
     std::optional<HudHint> hint;
     std::optional<HudNotice> notice;
     std::vector<HudNotice> messages;  // FaultBook::said()

@@ -77,7 +77,10 @@ void BonePainter::drawTransparent(const Frame& frame, const NodeStore& nodes, GL
 void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture,
                               const Look& look) {
     const ClipPlanes clip(gl_, frame.cuts_V);
-    const Program& surface = film_ ? film_->surface() : coloured_ ? coloured_->surface : surface_;
+    const Program& surface = thickness_  ? thickness_->surface()
+                             : film_     ? film_->surface()
+                             : coloured_ ? coloured_->surface
+                                         : surface_;
     surface.use();
     frame.setLight(gl_, surface, shadow_texture);
     setCutPlanes(surface, frame.cuts_V);
@@ -87,8 +90,12 @@ void BonePainter::drawSurface(const Frame& frame, const NodeStore& nodes, GLuint
     surface.set("inside_colour", look.inside);
     surface.set("shows_scan", milled_grey_ ? 1 : 0);
     surface.set("grey_of_density", milled_grey_.value_or(Eigen::Vector2f::UnitX()));
-    if (coloured_) coloured_->palette.setUniforms(surface);
-    if (film_) film_->setUniforms();
+    if (thickness_) {
+        thickness_->setUniforms();
+    } else {
+        if (coloured_) coloured_->palette.setUniforms(surface);
+        if (film_) film_->setUniforms();
+    }
     triangles_drawn_ = nodes.draw(surface, frame.cull_from_V);
 }
 

@@ -20,6 +20,7 @@
 #include "render_client/paint/ct_faces.h"
 #include "render_client/paint/film_painter.h"
 #include "render_client/paint/frame.h"
+#include "render_client/paint/thickness_painter.h"
 
 namespace bonemill {
 
@@ -46,6 +47,10 @@ class BonePainter {
     void setMilledGrey(const std::optional<Eigen::Vector2f>& grey_of_density) {
         milled_grey_ = grey_of_density;
     }
+
+    // From now on bone shows how far it is to the next structure, or no longer when null. It must outlive its
+    // use.
+    void setThickness(const ThicknessPainter* thickness) { thickness_ = thickness; }
 
     // Returns how many bone triangles were inside the view volume of the last picture.
     size_t trianglesDrawn() const { return triangles_drawn_; }
@@ -76,6 +81,7 @@ class BonePainter {
     const FilmPainter* film_ = nullptr;
     const CtFaces* faces_ = nullptr;
     std::optional<Eigen::Vector2f> milled_grey_;
+    const ThicknessPainter* thickness_ = nullptr;
     size_t triangles_drawn_ = 0;
 };
 

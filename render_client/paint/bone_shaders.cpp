@@ -10,6 +10,12 @@ layout(location = 2) in float material;  // 1 + index in the scene's list, 0: no
 uniform sampler2D palette;               // per material: linear colour; alpha 0: it has none
 out vec4 material_colour;
 #endif
+#ifdef THICKNESS
+uniform sampler3D thickness;     // share of the reach
+uniform vec3 thickness_first;    // V, m: of the texture's first corner
+uniform vec3 thickness_extent;   // m: of the texture
+out float share_to_structure;
+#endif
 uniform vec3 origin;
 uniform vec3 step;
 uniform mat4 camera_from_model;
@@ -39,6 +45,11 @@ void main() {
 #ifdef MATERIALS
     material_colour = texelFetch(palette, ivec2(int(material), 0), 0);
 #endif
+#ifdef THICKNESS
+    vec3 at = (p_M - thickness_first) / thickness_extent;
+    bool is_near = all(greaterThan(at, vec3(0.0))) && all(lessThan(at, vec3(1.0)));
+    share_to_structure = is_near ? textureLod(thickness, at, 0.0).r : 1.0;
+#endif
 }
 )";
 
@@ -56,6 +67,17 @@ uniform vec3 inside_colour;  // linear
 in vec4 material_colour;  // colour times alpha, alpha
 #endif
 out vec4 colour;
+
+#ifdef THICKNESS
+in float share_to_structure;
+uniform vec3 thickness_colours[5];  // linear, from 0 to the reach
+
+vec3 thicknessColour(float share) {
+    float at = clamp(share, 0.0, 1.0) * 4.0;
+    int low = min(int(at), 3);
+    return mix(thickness_colours[low], thickness_colours[low + 1], at - float(low));
+}
+#endif
 
 #ifdef FILM
 uniform sampler3D film;            // blood, water; repeats
@@ -85,6 +107,9 @@ void main() {
         float grey = clamp(scanned.x / scanned.y * grey_of_density.x + grey_of_density.y, 0.0, 1.0);
         albedo = mix(albedo, vec3(pow(grey, 2.2)), scanned.y);
     }
+#ifdef THICKNESS
+    albedo = mix(thicknessColour(share_to_structure), albedo, smoothstep(0.85, 1.0, share_to_structure));
+#endif
     if (inside) albedo = inside_colour;
     vec3 sheen = vec3(0.0);
 #ifdef FILM

@@ -98,6 +98,7 @@ Eigen::AlignedBox3d boneIn(const FrameView& view) {
 
 DepthRange Frame::neededRange(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {
     Eigen::AlignedBox3d everything_W = boneIn(view);
+    extendBy(everything_W, view.X_WV, view.structures_V);
     if (showsTool(view, tool_T)) extendBy(everything_W, *view.X_WT, tool_T);
     if (showsGhost(view, tool_T)) extendBy(everything_W, *view.X_WT_device, tool_T);
     const Sphere all = around(everything_W);

@@ -27,6 +27,22 @@ struct Pull {
 // distance, a microscope's comes along the line of sight from afar.
 enum class LightRig { kRoom, kEndoscope, kMicroscope };
 
+// A protected structure is drawn so.
+struct StructureLook {
+    uint32_t structure = 0;                            // 1 + its index in SceneInfo.materials
+    Eigen::Vector3f colour = Eigen::Vector3f::Zero();  // linear
+    StructureMode mode = StructureMode::kThroughBone;
+    float glow = 0;  // 0 to 1: the burr is near
+    bool operator==(const StructureLook&) const = default;
+};
+
+// The burr is so near to a structure.
+struct ClearanceLine {
+    Eigen::Vector3d burr_W, structure_W;
+    Eigen::Vector3f colour;
+    double distance;  // m
+};
+
 struct FrameView {
     Camera camera;
     LightRig light = LightRig::kRoom;
@@ -43,6 +59,10 @@ struct FrameView {
     BurrWork burr_work = BurrWork::kIdle;
     CutPlanes cuts_W;
     std::optional<double> bone_opacity;  // empty: opaque
+    std::vector<StructureLook> structures;
+    Eigen::AlignedBox3d structures_V;  // around them
+    std::optional<ClearanceLine> clearance;
+    bool shows_thickness = false;
     std::vector<Eigen::Vector3d> pointers_W;
     Quality quality = Quality::kFull;
     const EffectPicture* effects = nullptr;  // null: the scene lists none

@@ -74,6 +74,7 @@ void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_
     if (!hud.watchers.empty()) layOutWatchers(lists, hud.watchers, box, picture);
     layOutScaleBar(figures, scale_bar, metres_per_pixel, picture);
     if (hud.orientation) layOutOrientation(lists, *hud.orientation, picture);
+    if (hud.legend) layOutLegend(lists, *hud.legend, picture);
     if (hud.hint) layOutHint(lists, *hud.hint, box, picture);
     draw(figures, picture);
     draw(lists, picture);

@@ -24,6 +24,7 @@ constexpr float kRingWidth = 0.0045f;
 constexpr float kGlow = 0.036f;
 constexpr float kPullLine = 0.0038f;
 constexpr float kPullRing = 0.014f;
+constexpr float kClearanceLine = 0.0024f;
 constexpr float kShortestPull = 0.006f;
 constexpr int kSides = 32;
 constexpr float kHiddenStrength = 0.35f;
@@ -100,6 +101,7 @@ MarkerPainter::MarkerPainter(const GlApi& gl)
 void MarkerPainter::draw(const Frame& frame, const FrameView& view) {
     vertices_.clear();
     addPullLine(frame, view);
+    addClearanceLine(frame, view);
     flush(frame, GL_BACK);
     addArrow(frame, view);
     flush(frame, GL_BACK);
@@ -111,6 +113,7 @@ void MarkerPainter::draw(const Frame& frame, const FrameView& view) {
 Eigen::AlignedBox3f MarkerPainter::box(const Frame& frame, const FrameView& view) {
     vertices_.clear();
     addPullLine(frame, view);
+    addClearanceLine(frame, view);
     addArrow(frame, view);
     addPullRing(frame, view);
     addPointers(frame, view);
@@ -126,6 +129,21 @@ void MarkerPainter::addPullLine(const Frame& frame, const FrameView& view) {
     if (!ends) return;
     const float radius = kPullLine * heightAt(frame, ends->wish_C);
     addCone(ends->tool_C, ends->wish_C - ends->tool_C, radius, radius, ends->colour);
+}
+
+void MarkerPainter::addClearanceLine(const Frame& frame, const FrameView& view) {
+    if (!view.clearance) return;
+    const Eigen::Matrix4f X_CW = view.camera.X_CW();
+    const auto inCamera = [&](const Eigen::Vector3d& p_W) {
+        return Eigen::Vector3f((X_CW * p_W.cast<float>().homogeneous()).head<3>());
+    };
+    const Eigen::Vector3f burr_C = inCamera(view.clearance->burr_W);
+    const Eigen::Vector3f structure_C = inCamera(view.clearance->structure_W);
+    if (std::min(-burr_C.z(), -structure_C.z()) <= frame.near_far.x()) return;
+    const float radius = kClearanceLine * heightAt(frame, structure_C);
+    if ((structure_C - burr_C).norm() < radius) return;
+    addCone(burr_C, structure_C - burr_C, radius, radius, view.clearance->colour);
+    addDisc(structure_C, (burr_C - structure_C).normalized(), 3 * radius, view.clearance->colour);
 }
 
 void MarkerPainter::addPullRing(const Frame& frame, const FrameView& view) {

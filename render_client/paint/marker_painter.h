@@ -1,6 +1,6 @@
 // Draws signs into the scene: the contact force as an arrow, the pull of a mouse as a line from the tool to a
-// ring where it is wanted, instructors' pointers as glowing dots in rings.
-// What lies behind bone or tool shines through, fainter.
+// ring where it is wanted, the way from the burr to the nearest structure, instructors' pointers as glowing
+// dots in rings. What lies behind bone or tool shines through, fainter.
 //
 // It belongs to the thread of the context. The frames are C (camera) and W (world); the unit is m.
 #pragma once
@@ -37,6 +37,7 @@ class MarkerPainter {
         Eigen::Vector4f colour;
     };
     void addPullLine(const Frame& frame, const FrameView& view);
+    void addClearanceLine(const Frame& frame, const FrameView& view);
     void addPullRing(const Frame& frame, const FrameView& view);
     void addArrow(const Frame& frame, const FrameView& view);
     // Adds the part of a cone between two radii, with its lower end at `base` (C).

@@ -18,7 +18,8 @@ SceneRenderer::SceneRenderer(const GlApi& gl)
       tool_(gl),
       markers_(gl),
       passes_(gl),
-      shadow_(gl, "shadow", shaders::kShadowVertex, shaders::kDepthFragment) {}
+      shadow_(gl, "shadow", shaders::kShadowVertex, shaders::kDepthFragment),
+      structures_(gl) {}
 
 void SceneRenderer::setPalette(const std::vector<Eigen::Vector4f>& colours) {
     bone_.setPalette(colours);
@@ -41,6 +42,7 @@ void SceneRenderer::draw(const FrameView& view, NodeStore& nodes, const ToolMesh
         targets_ = std::make_unique<RenderTargets>(gl_, area.width, area.height, view.quality);
         changes_.forget();
     }
+    chooseSurface(view);
     if (film_) {
         bone_.setFilm(view.effects->shows_blood || view.effects->shows_water ? film_.get() : nullptr);
         look_changed_.extend(film_->update(*view.effects));
@@ -58,6 +60,17 @@ void SceneRenderer::draw(const FrameView& view, NodeStore& nodes, const ToolMesh
     is_quick ? drawQuick(frame, view, nodes, tool, area, target)
              : drawFull(frame, view, nodes, tool, area, target);
     gl_.check("drawing the scene");
+}
+
+void SceneRenderer::setThickness(const ThicknessField& field) {
+    bone_.setThickness(nullptr);
+    thickness_ = std::make_unique<ThicknessPainter>(gl_, field);
+    changes_.forget();
+}
+
+void SceneRenderer::chooseSurface(const FrameView& view) {
+    bone_.setThickness(view.shows_thickness ? thickness_.get() : nullptr);
+    if (std::exchange(shows_thickness_, view.shows_thickness) != view.shows_thickness) changes_.forget();
 }
 
 void SceneRenderer::drawFull(const Frame& frame, const FrameView& view, const NodeStore& nodes,
@@ -86,9 +99,11 @@ void SceneRenderer::drawOver(const Frame& frame, const FrameView& view, const To
 void SceneRenderer::drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes,
                               const ToolMesh& tool, const PictureArea& area, GLuint target) {
     const PixelBox whole = PixelBox::whole(area.width, area.height);
-    const PictureChanges::Dirty dirty = changes_.next(
-        frame, area.width, area.height, nodes.takeChanged().merged(std::exchange(look_changed_, {})),
-        movingPixels(frame, view, tool));
+    const PictureChanges::Dirty dirty = changes_.next(frame, area.width, area.height,
+                                                      nodes.takeChanged()
+                                                          .merged(std::exchange(look_changed_, {}))
+                                                          .merged(structures_.takeChanged(view.structures)),
+                                                      movingPixels(frame, view, tool));
     PixelBox part =
         dirty.all.isEmpty() ? dirty.all : dirty.all.grown(FramePasses::reach(area.height)).within(whole);
     gl_.Viewport(0, 0, area.width, area.height);
@@ -98,7 +113,7 @@ void SceneRenderer::drawQuick(const Frame& frame, const FrameView& view, NodeSto
         part = whole;
         drawAllSolids(frame, view, nodes, tool);
     } else if (!part.isEmpty()) {
-        drawKeptBone(frame, nodes, dirty.bone);
+        drawKeptBone(frame, view, nodes, dirty.bone);
         drawToolOverKeptBone(frame, view, tool, part);
     }
     if (!part.isEmpty()) finishQuick(frame, view, tool, part);
@@ -142,7 +157,8 @@ void SceneRenderer::showFinished(const PictureArea& area, GLuint target) const {
     gl_.Viewport(area.x, 0, area.width, area.height);
 }
 
-void SceneRenderer::drawKeptBone(Frame frame, const NodeStore& nodes, const PixelBox& part) {
+void SceneRenderer::drawKeptBone(Frame frame, const FrameView& view, const NodeStore& nodes,
+                                 const PixelBox& part) {
     if (part.isEmpty()) return;
     scissor(part);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, targets_->bone());
@@ -150,6 +166,7 @@ void SceneRenderer::drawKeptBone(Frame frame, const NodeStore& nodes, const Pixe
     passes_.drawBackground();
     frame.cull_from_V = part.zoom(targets_->width(), targets_->height()) * frame.cull_from_V;
     bone_.drawOpaque(frame, nodes, targets_->shadowTexture());
+    structures_.draw(frame, view.structures, targets_->shadowTexture());
 }
 
 PixelBox SceneRenderer::movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool) {
@@ -225,8 +242,12 @@ void SceneRenderer::drawSolids(const Frame& frame, const FrameView& view, const 
                                const ToolMesh& tool) {
     const auto draw_tool = [&] { tool_.drawTool(frame, view, tool, targets_->shadowTexture()); };
     if (view.bone_opacity)
-        return bone_.drawTransparent(frame, nodes, targets_->shadowTexture(), *view.bone_opacity, draw_tool);
+        return bone_.drawTransparent(frame, nodes, targets_->shadowTexture(), *view.bone_opacity, [&] {
+            structures_.drawSolid(frame, view.structures, targets_->shadowTexture());
+            draw_tool();
+        });
     bone_.drawOpaque(frame, nodes, targets_->shadowTexture());
+    structures_.draw(frame, view.structures, targets_->shadowTexture());
     draw_tool();
 }
 

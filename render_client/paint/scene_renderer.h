@@ -18,6 +18,7 @@
 #include "render_client/paint/particle_painter.h"
 #include "render_client/paint/picture_changes.h"
 #include "render_client/paint/render_targets.h"
+#include "render_client/paint/structure_painter.h"
 #include "render_client/paint/tool_painter.h"
 
 namespace bonemill {
@@ -44,6 +45,11 @@ class SceneRenderer {
               GLuint target);
     // Passes the colours on to the bone, as BonePainter::setPalette().
     void setPalette(const std::vector<Eigen::Vector4f>& colours);
+    // Replaces the surface of the protected structure that the mesh's leaf names. Throws GlError.
+    void setStructure(const NodeMesh& mesh) { structures_.set(mesh); }
+    void clearStructures() { structures_.clear(); }
+    // Views that show thickness take it from here. Throws GlError.
+    void setThickness(const ThicknessField& field);
     // Makes what a scene's effects need to be drawn, and nothing else. Throws GlError.
     void prepare(const EffectNeeds& needs);
     // As BonePainter::setFaces().
@@ -62,6 +68,11 @@ class SceneRenderer {
     // upper left corner; nothing over the background.
     std::optional<Eigen::Vector3d> pick(int x, int y) const;
 
+    // Returns the width and height of the last picture, pixels; 0 before the first.
+    Eigen::Vector2i pictureSize() const {
+        return targets_ ? Eigen::Vector2i(targets_->width(), targets_->height()) : Eigen::Vector2i::Zero();
+    }
+
     // Returns how many bone triangles were inside the view volume of the last picture.
     size_t trianglesDrawn() const { return bone_.trianglesDrawn(); }
 
@@ -72,7 +83,7 @@ class SceneRenderer {
                    const PictureArea& area, GLuint target);
     void drawAllSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes,
                        const ToolMesh& tool);
-    void drawKeptBone(Frame frame, const NodeStore& nodes, const PixelBox& part);
+    void drawKeptBone(Frame frame, const FrameView& view, const NodeStore& nodes, const PixelBox& part);
     void drawToolOverKeptBone(const Frame& frame, const FrameView& view, const ToolMesh& tool,
                               const PixelBox& part);
     void finishQuick(const Frame& frame, const FrameView& view, const ToolMesh& tool, const PixelBox& part);
@@ -81,6 +92,7 @@ class SceneRenderer {
     void scissor(const PixelBox& part) const;
     void drawShadowMap(const Frame& frame, const FrameView& view, const NodeStore& nodes,
                        const ToolMesh& tool) const;
+    void chooseSurface(const FrameView& view);
     void drawSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes, const ToolMesh& tool);
     void drawOver(const Frame& frame, const FrameView& view, const ToolMesh& tool);
     void drawParticles(const Frame& frame, const FrameView& view);
@@ -91,6 +103,9 @@ class SceneRenderer {
     MarkerPainter markers_;
     FramePasses passes_;
     Program shadow_;
+    StructurePainter structures_;
+    std::unique_ptr<ThicknessPainter> thickness_;
+    bool shows_thickness_ = false;  // in the last picture
     bool has_materials_ = false;
     std::unique_ptr<FilmPainter> film_;
     std::unique_ptr<ParticlePainter> particles_;

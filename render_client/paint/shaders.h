@@ -10,10 +10,15 @@ extern const char kNoise[];     // after kLighting, before those of bone and cap
 
 // bone_shaders.cpp draws bone and cap. Vertex attribute 0 of a mesh is the position (quantisation steps),
 // 1 the normal (octahedral, ±127), 2 the material, 3 what the scan measured. With `#define MATERIALS` before
-// both shaders, bone has its materials' colours.
+// both shaders, bone has its materials' colours; with `#define THICKNESS` the colour of its distance to the
+// next structure.
 extern const char kMeshVertex[];
 extern const char kBoneFragment[];  // with `#define FILM`: blood and water lie on it
 extern const char kCapFragment[];   // the face of a cut; with `#define CT`: the scan's grey values on it
+
+// structure_shaders.cpp draws protected structures, of meshes as bone has them.
+extern const char kStructureFragment[];  // after kLighting
+extern const char kSectionFragment[];    // after kLighting: a structure that a cut has opened
 
 // tool_shaders.cpp draws tool and ghost. Vertex attribute 0 is the position (T, m), 1 the normal.
 extern const char kToolVertex[];

@@ -38,6 +38,10 @@ void PanelContent::build() {
     }
     if (isOpen("View")) buildView();
     gap();
+    if (hasStructures()) {
+        if (isOpen("Structures")) buildStructures();
+        gap();
+    }
     if (hasEffects()) {
         if (isOpen("Effects")) buildEffects();
         gap();

@@ -44,6 +44,9 @@ class PanelContent {
     void buildScan();
     void buildStereo();
     void buildSigns();
+    // These say which structures are seen, and how (panel_structures.cpp).
+    bool hasStructures() const;
+    void buildStructures();
     bool hasEffects() const;
     bool isListed(ViewerEffect effect) const;
     void buildEffects();

@@ -1,11 +1,14 @@
 #include "render_client/scene/render_scene.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
+#include "common/units.h"
 #include "render_client/camera/endoscope.h"
 #include "render_client/camera/microscope.h"
 #include "render_client/effects/wire_pose.h"
+#include "render_client/hud/figure_text.h"
 
 namespace bonemill {
 namespace {
@@ -62,6 +65,7 @@ void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     bone_V_ = Eigen::AlignedBox3d(*low, *high);
     if (!old || old->name() != info.name()) view_pending_ = true;
     hud_input_.info = info;
+    structures_.setInfo(info);
     awaits_info_ = false;
     std::vector<Eigen::Vector4f> palette = paletteOf(info);
     if (palette != palette_) renderer_.setPalette(palette);
@@ -90,6 +94,18 @@ void RenderScene::setNode(const NodeMesh& mesh) {
     nodes_.set(mesh);  // throws when it contradicts itself: then nobody gets it
     if (effects_) effects_->setNode(mesh);
     if (has_effects_ && awaits_info_) early_nodes_.insert_or_assign(mesh.leaf, mesh);
+}
+
+void RenderScene::setStructure(const NodeMesh& mesh, double warning_distance) {
+    renderer_.setStructure(mesh);
+    structures_.set(mesh, warning_distance);
+    is_thickness_ready_ = false;
+}
+
+void RenderScene::clearStructures() {
+    renderer_.clearStructures();
+    structures_.clear();
+    is_thickness_ready_ = false;
 }
 
 // Another run of the server has begun, of which nothing is known yet.
@@ -193,6 +209,7 @@ FrameView RenderScene::makeView() const {
         if (const auto pointer = pointerOf(watcher)) view.pointers_W.push_back(*pointer);
     if (settings_.camera == CameraMode::kMicroscope) lookThroughMicroscope(view);
     if (hud_input_.tool) showTool(view);
+    structures_.show(settings_, view);
     return view;
 }
 
@@ -229,9 +246,11 @@ void RenderScene::draw(int full_width, int height, float ui_scale, GLuint target
     updateCt(full_width, height);
     FrameView view = makeView();
     view.effects = effectPicture();
+    prepareThickness(view);
     const PictureArea whole{0, width, height};
     switch (settings_.stereo) {
         case StereoMode::kOff:
+            last_view_ = view;
             drawEye(view, view.camera, whole, ui_scale, target);
             paintHud(view.camera, whole, ui_scale);
             break;
@@ -265,6 +284,35 @@ void RenderScene::paintPanes(int width, int height, float ui_scale, GLuint targe
 std::optional<Eigen::Vector3d> RenderScene::pick(int x, int y) const {
     if (!can_pick_) return std::nullopt;
     return renderer_.pick(x, y);
+}
+
+// The field is made when it is first wanted.
+void RenderScene::prepareThickness(const FrameView& view) {
+    hud_input_.legend.reset();
+    if (!view.shows_thickness) return;
+    hud_input_.legend = structures_.legend();
+    if (std::exchange(is_thickness_ready_, true)) return;
+    const StructureSet& structures = structures_.structures();
+    renderer_.setThickness(thicknessField(structures, structures.largestWarningDistance()));
+}
+
+std::string RenderScene::structureAt(int x, int y) const {
+    const auto size = renderer_.pictureSize();
+    if (!can_pick_ || last_view_.structures.empty() || x < 0 || y < 0 || x >= size.x() || y >= size.y())
+        return "";
+    const Camera& camera = last_view_.camera;
+    const double tangent = camera.halfTangent(), height = size.y();
+    const Eigen::Vector3d ray_C(((2 * x + 1) - size.x()) / height * tangent + camera.shift,
+                                (1 - (2 * y + 1) / height) * tangent, -1);
+    const auto bone_W = renderer_.pick(x, y);
+    const double bone_at = bone_W ? (*bone_W - camera.eye_W).norm() : std::numeric_limits<double>::max();
+    return structures_.nameAlong(camera.eye_W, camera.R_WC * ray_C, bone_at, last_view_);
+}
+
+void RenderScene::nameMouse(const PictureArea& area, std::vector<HudLabel>& labels) const {
+    if (!mouse_ || !can_pick_ || area.x != 0) return;
+    const std::string name = structureAt(mouse_->first, mouse_->second);
+    if (!name.empty()) labels.push_back({float(mouse_->first), float(mouse_->second), name});
 }
 
 // Names stand in each eye's picture, so that they have the depth of what they name.
@@ -328,15 +376,25 @@ void RenderScene::paintHud(const Camera& camera, const PictureArea& area, float 
 
 void RenderScene::paintNames(const FrameView& view, const PictureArea& area, float ui_scale) {
     std::vector<HudLabel> labels;
-    for (const topics::Viewer& watcher : hud_input_.watchers) {
-        const auto pointer = pointerOf(watcher);
-        if (!pointer || watcher.name().empty()) continue;
-        const Eigen::Vector3d p_C = view.camera.R_WC.transpose() * (*pointer - view.camera.eye_W);
-        if (p_C.z() >= 0) continue;
+    const auto add = [&](const Eigen::Vector3d& p_W, const std::string& text, bool is_of_pointer) {
+        const Eigen::Vector3d p_C = view.camera.R_WC.transpose() * (p_W - view.camera.eye_W);
+        if (p_C.z() >= 0 || text.empty()) return;
         const double pixels = area.height / (2 * view.camera.halfTangent() * -p_C.z());
         const double right = area.width / 2.0 + (p_C.x() + view.camera.shift * p_C.z()) * pixels;
-        labels.push_back({float(right), float(area.height / 2.0 - p_C.y() * pixels), watcher.name()});
+        labels.push_back({float(right), float(area.height / 2.0 - p_C.y() * pixels), text, is_of_pointer});
+    };
+    for (const topics::Viewer& watcher : hud_input_.watchers) {
+        const auto pointer = pointerOf(watcher);
+        if (!pointer) continue;
+        const Eigen::Vector3d way = *pointer - view.camera.eye_W;
+        const std::string structure = structures_.nameAlong(view.camera.eye_W, way, way.norm(), view);
+        add(*pointer, watcher.name() + (watcher.name().empty() || structure.empty() ? "" : ": ") + structure,
+            true);
     }
+    if (view.clearance && settings_.show_hud)
+        add((view.clearance->burr_W + view.clearance->structure_W) / 2,
+            readableText(std::max(view.clearance->distance, 0.0) * kPerMillimetre, " mm"), false);
+    nameMouse(area, labels);
     if (!labels.empty()) hud_painter_.paintLabels(labels, {area.width, area.height}, ui_scale);
 }
 

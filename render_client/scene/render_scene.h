@@ -25,6 +25,7 @@
 #include "render_client/paint/hud_painter.h"
 #include "render_client/paint/scene_renderer.h"
 #include "render_client/scene/ct_show.h"
+#include "render_client/scene/structure_view.h"
 
 namespace bonemill {
 
@@ -38,6 +39,11 @@ class RenderScene {
     // contradicts itself.
     void setNode(const NodeMesh& mesh);
     void clearNodes();
+
+    // Replaces the protected structure that the mesh's leaf names; the distance is in m. Throws
+    // std::invalid_argument on a mesh that contradicts itself.
+    void setStructure(const NodeMesh& mesh, double warning_distance);
+    void clearStructures();
 
     // The first scene, and every scene of another name, resets the view; a newer revision of the same one
     // brings another tool. An older revision of the same epoch changes nothing. Throws std::invalid_argument
@@ -77,6 +83,13 @@ class RenderScene {
     // left: of transparent bone the outer surface, of cut bone also the cut. There is none over the
     // background, outside the picture, in stereo and before the first picture.
     std::optional<Eigen::Vector3d> pick(int x, int y) const;
+
+    // Takes the pixel (from the upper left) where the user's mouse is: what structure is seen there is told
+    // by name. nullopt takes it away.
+    void setMouse(const std::optional<std::pair<int, int>>& at) { mouse_ = at; }
+    // Returns the name of the structure under that pixel of the last picture; empty where pick() finds no
+    // place, and none is seen.
+    std::string structureAt(int x, int y) const;
 
     // Lets the visual effects go on by this time (s).
     void advance(double seconds) {
@@ -134,6 +147,8 @@ class RenderScene {
     void drawAnaglyph(const FrameView& view, int width, int height, float ui_scale, GLuint target);
     OrientationAxes orientationOf(const Camera& camera) const;
     void paintHud(const Camera& camera, const PictureArea& area, float ui_scale);
+    void prepareThickness(const FrameView& view);
+    void nameMouse(const PictureArea& area, std::vector<HudLabel>& labels) const;
     void paintNames(const FrameView& view, const PictureArea& area, float ui_scale);
 
     const bool has_effects_;
@@ -161,6 +176,10 @@ class RenderScene {
     std::optional<Eigen::Vector3d> pull_W_;
     EventLatch events_;
     FaultBook faults_;
+    StructureView structures_;
+    bool is_thickness_ready_ = false;
+    std::optional<std::pair<int, int>> mouse_;
+    FrameView last_view_;  // of the last picture without stereo
     std::vector<Eigen::Vector4f> palette_;
     const GlApi& gl_;
 };

@@ -1,0 +1,219 @@
+// Compares pictures of protected structures with those in the repository, proves that a missing one is seen,
+// and checks what names and quick drawing must do.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "render_client/offscreen/osmesa_context.h"
+#include "tests/gl/altered_shaders.h"
+#include "tests/gl/golden.h"
+#include "tests/gl/milled_scene.h"
+#include "tests/support/structure_shapes.h"
+
+namespace bonemill {
+namespace {
+
+constexpr int kStructureWidth = 480, kStructureHeight = 300;
+constexpr uint32_t kNerve = 1, kSinus = 2;
+constexpr double kStructureWarning = 2.5e-3;
+// The nerve lies in the floor of the cavity, the sinus behind whole bone.
+const Eigen::Vector3d kNerveCenter = test::kCavityCenter + Eigen::Vector3d(-0.0008, 0.0016, -0.0006);
+const Eigen::Vector3d kSinusCenter = test::kBlockCenter + Eigen::Vector3d(-0.0022, -0.0022, -0.0022);
+
+class StructurePictures : public testing::Test {
+  protected:
+    StructurePictures() : context_(kStructureWidth, kStructureHeight) { begin(context_.gl()); }
+
+    void begin(const GlApi& gl) {
+        scene_.reset();
+        scene_ = std::make_unique<RenderScene>(gl);
+        scene_->settings().show_hud = false;
+        scene_->settings().show_force = false;
+        topics::SceneInfo info = test::milledInfo();
+        for (const char* name : {"facial nerve", "sigmoid sinus"}) {
+            info.add_materials()->set_name(name);
+            info.mutable_materials()->rbegin()->set_is_protected(true);
+        }
+        scene_->setSceneInfo(info);
+        for (const NodeMesh& node : test::milledBlock()) scene_->setNode(node);
+        scene_->setConnection(Connection::kLive);
+    }
+    void showNerve() {
+        scene_->setStructure(test::ballStructure(kNerve, kNerveCenter, 0.0012), kStructureWarning);
+    }
+    void showSinus() {
+        scene_->setStructure(test::ballStructure(kSinus, kSinusCenter, 0.0016), kStructureWarning);
+    }
+    void showBoth() {
+        showNerve();
+        showSinus();
+    }
+    // The burr's surface is so far from the nerve, on the way out of the cavity.
+    void putBurr(double distance) {
+        const Eigen::Vector3d out = Eigen::Vector3d(0.25, -0.6, 0.8).normalized();
+        Pose X_WT = test::toolInCavity();
+        X_WT.position = kNerveCenter + (0.0012 + test::kBurrRadius + distance) * out;
+        scene_->setToolState(test::makeToolState(X_WT, X_WT, 1));
+    }
+    Picture draw() {
+        scene_->draw(kStructureWidth, kStructureHeight, 0.75f);
+        return context_.read();
+    }
+    static bool isGolden(const Picture& picture, const std::string& name) {
+        return !test::compare(picture, test::readGolden(name)).isVisible();
+    }
+    template <class Prepare>
+    void expectAlterationSeen(const std::string& golden, const test::Alteration& alteration,
+                              Prepare&& prepare) {
+        const GlApi altered = test::alterShaders(context_.gl(), {alteration});
+        begin(altered);
+        prepare();
+        const Picture picture = draw();
+        EXPECT_GT(test::alterationsDone(), 0) << "the shaders have changed: " << alteration.what;
+        EXPECT_FALSE(isGolden(picture, golden)) << golden << " with altered " << alteration.what;
+        scene_.reset();
+    }
+    // The middle of a structure in the picture, pixels.
+    std::pair<int, int> pixelOf(const Eigen::Vector3d& p_W) const {
+        const Camera camera = scene_->viewCamera();
+        const Eigen::Vector3d p_C = camera.R_WC.transpose() * (p_W - camera.eye_W);
+        const double pixels = kStructureHeight / (2 * camera.halfTangent() * -p_C.z());
+        return {int(kStructureWidth / 2.0 + p_C.x() * pixels),
+                int(kStructureHeight / 2.0 - p_C.y() * pixels)};
+    }
+    std::string nameOver(const Eigen::Vector3d& p_W) const {
+        const auto [x, y] = pixelOf(p_W);
+        return scene_->structureAt(x, y);
+    }
+
+    OsmesaContext context_;
+    std::unique_ptr<RenderScene> scene_;
+};
+
+TEST_F(StructurePictures, BehindBoneAndExposed) {
+    showBoth();
+    EXPECT_EQ(test::goldenProblem(draw(), "structures"), "");
+}
+
+TEST_F(StructurePictures, OnlyWhereExposed) {
+    showBoth();
+    scene_->settings().structures.fill(StructureMode::kExposedOnly);
+    EXPECT_EQ(test::goldenProblem(draw(), "structures_exposed"), "");
+}
+
+TEST_F(StructurePictures, Thickness) {
+    showBoth();
+    scene_->settings().show_thickness = true;
+    scene_->settings().show_hud = true;
+    EXPECT_EQ(test::goldenProblem(draw(), "structures_thickness"), "");
+}
+
+TEST_F(StructurePictures, DistanceLineOfABurrThatIsNear) {
+    showBoth();
+    putBurr(1.2e-3);
+    scene_->settings().show_hud = true;
+    EXPECT_EQ(test::goldenProblem(draw(), "structures_distance"), "");
+}
+
+TEST_F(StructurePictures, CutAndTransparentAndStereo) {
+    showBoth();
+    scene_->settings().cuts[0] = {true, 0.36, false};
+    scene_->setViewWish({.target_W = {}, .distance = {}, .azimuth = 0.9, .elevation = {}});
+    EXPECT_EQ(test::goldenProblem(draw(), "structures_cut"), "");
+    scene_->settings().cuts[0].is_on = false;
+    scene_->settings().is_transparent = true;
+    EXPECT_EQ(test::goldenProblem(draw(), "structures_transparent"), "");
+    scene_->settings().is_transparent = false;
+    scene_->settings().stereo = StereoMode::kSideBySide;
+    EXPECT_EQ(test::goldenProblem(draw(), "structures_stereo"), "");
+}
+
+TEST_F(StructurePictures, TheComparisonSeesAMissingOne) {
+    showNerve();
+    EXPECT_FALSE(isGolden(draw(), "structures")) << "no sinus";
+    scene_->clearStructures();
+    showSinus();
+    EXPECT_FALSE(isGolden(draw(), "structures")) << "no nerve";
+    EXPECT_FALSE(isGolden(draw(), "structures_exposed"));
+    scene_->settings().show_thickness = true;
+    EXPECT_FALSE(isGolden(draw(), "structures_thickness")) << "no nerve under the bone";
+    expectAlterationSeen("structures", {"if (is_behind) {", "if (is_behind) { discard;"},
+                         [&] { showBoth(); });
+    expectAlterationSeen("structures_exposed",
+                         {"if (!gl_FrontFacing) {", "if (!gl_FrontFacing || !is_behind) {"}, [&] {
+                             showBoth();
+                             scene_->settings().structures.fill(StructureMode::kExposedOnly);
+                         });
+    expectAlterationSeen("structures_thickness", {"textureLod(thickness, at, 0.0).r", "1.0"}, [&] {
+        showBoth();
+        scene_->settings().show_thickness = true;
+        scene_->settings().show_hud = true;
+    });
+}
+
+TEST_F(StructurePictures, WhatIsOffLeavesNoTrace) {
+    const Picture without = draw();
+    showBoth();
+    EXPECT_FALSE(draw() == without);
+    scene_->settings().structures.fill(StructureMode::kOff);
+    EXPECT_TRUE(draw() == without) << "off";
+    scene_->settings().structures.fill(StructureMode::kThroughBone);
+    scene_->clearStructures();
+    EXPECT_TRUE(draw() == without) << "another scene";
+}
+
+// The burr comes near, so that structures light up step by step, and goes.
+TEST_F(StructurePictures, QuickIsTheOneThatIsDrawnWhole) {
+    scene_->settings().quality = Quality::kQuick;
+    draw();
+    showBoth();
+    for (int n = 0; n < 14; ++n) {
+        putBurr(4e-3 - 5e-4 * (n < 8 ? n : 14 - n));
+        if (n == 3) scene_->settings().structures[kSinus] = StructureMode::kOff;
+        if (n == 5) scene_->settings().show_thickness = true;
+        if (n == 9) scene_->settings().structures[kSinus] = StructureMode::kThroughBone;
+        if (n == 11) scene_->settings().show_thickness = false;
+        if (n == 12) scene_->clearStructures();
+        const Picture kept = draw();
+        scene_->drawWholeNext();
+        EXPECT_TRUE(kept == draw()) << "picture " << n;
+    }
+}
+
+TEST_F(StructurePictures, NamesAreToldOfWhatIsSeen) {
+    EXPECT_EQ(nameOver(kSinusCenter), "") << "before the first picture";
+    showBoth();
+    draw();
+    EXPECT_EQ(nameOver(kSinusCenter), "sigmoid sinus");
+    EXPECT_EQ(nameOver(kNerveCenter), "facial nerve");
+    EXPECT_EQ(nameOver(test::kBlockCenter + Eigen::Vector3d(0, 0, 0.004)), "") << "bone alone";
+    EXPECT_EQ(scene_->structureAt(-1, 5), "");
+    EXPECT_EQ(scene_->structureAt(5, kStructureHeight), "");
+    scene_->settings().structures.fill(StructureMode::kExposedOnly);
+    draw();
+    EXPECT_EQ(nameOver(kSinusCenter), "") << "behind bone";
+    EXPECT_EQ(nameOver(kNerveCenter), "facial nerve") << "exposed";
+    scene_->settings().structures[kNerve] = StructureMode::kOff;
+    draw();
+    EXPECT_EQ(nameOver(kNerveCenter), "");
+}
+
+TEST_F(StructurePictures, TheMouseAndAnInstructorsPointerTellNames) {
+    showBoth();
+    const Picture without = draw();
+    scene_->setMouse(pixelOf(kSinusCenter));
+    EXPECT_FALSE(draw() == without);
+    scene_->setMouse(pixelOf(test::kBlockCenter + Eigen::Vector3d(0, 0, 0.004)));
+    EXPECT_TRUE(draw() == without);
+    topics::Viewer instructor = test::makeWatcher("Dr. Berg", topics::Viewer::INSTRUCTOR, 60);
+    const auto [x, y] = pixelOf(kSinusCenter);
+    test::setVector(*scene_->pick(x, y), instructor.mutable_pointer_m());
+    scene_->setWatchers({instructor});
+    const Picture named = draw();
+    scene_->settings().structures.fill(StructureMode::kOff);
+    scene_->clearStructures();
+    EXPECT_FALSE(draw() == named);
+}
+
+}  // namespace
+}  // namespace bonemill
