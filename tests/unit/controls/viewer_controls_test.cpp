@@ -141,6 +141,34 @@ TEST_F(Controls, OneCameraTakesTheOthersPlace) {
     EXPECT_EQ(settings_.camera, CameraMode::kOrbit);
 }
 
+TEST_F(Controls, StructuresGoRoundThreeModesAndEachHasItsOwn) {
+    constexpr size_t kNerve = 3;
+    controls_.showStructure(kNerve, StructureMode::kOff);
+    EXPECT_EQ(settings_.structures[kNerve], StructureMode::kOff);
+    EXPECT_EQ(settings_.structures[kNerve + 1], StructureMode::kThroughBone);
+    for (const StructureMode mode :
+         {StructureMode::kExposedOnly, StructureMode::kOff, StructureMode::kThroughBone}) {
+        type('T', true);
+        for (const StructureMode shown : settings_.structures) EXPECT_EQ(shown, mode);
+    }
+    EXPECT_FALSE(settings_.is_transparent);
+    type('D', true);
+    EXPECT_TRUE(settings_.show_thickness);
+    type('D', true);
+    EXPECT_FALSE(settings_.show_thickness);
+    EXPECT_TRUE(wishes_.commands.empty());
+}
+
+TEST_F(Controls, TheMouseHoversWhileItDragsNothing) {
+    send(MouseMoveEvent{{120, 90}});
+    ASSERT_TRUE(controls_.hovering());
+    EXPECT_EQ(controls_.hovering()->x, 120);
+    press(120, 90);
+    EXPECT_FALSE(controls_.hovering());
+    release(120, 90);
+    EXPECT_TRUE(controls_.hovering());
+}
+
 TEST_F(Controls, BracketsMoveTheCutThatWasSwitchedLastWithinTheBone) {
     type('X');
     type('Z');

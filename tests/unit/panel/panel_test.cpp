@@ -80,6 +80,29 @@ TEST_F(PanelClicks, TheToolIsOfferedWhereAMouseHoldsIt) {
     EXPECT_FALSE(wishes_.hold_tool) << "another viewer has it";
 }
 
+TEST_F(PanelClicks, StructuresAreListedWhereTheSceneProtectsSome) {
+    layOut();
+    EXPECT_FALSE(panel_.find("facial nerve"));
+    info_.add_materials()->set_name("cortical bone");
+    info_.add_materials()->set_name("facial nerve");
+    info_.mutable_materials(1)->set_is_protected(true);
+    layOut();
+    EXPECT_FALSE(panel_.find("cortical bone"));
+    constexpr size_t kNerve = 2;
+    click("through bone");
+    EXPECT_EQ(settings_.structures[kNerve], StructureMode::kExposedOnly);
+    click("facial nerve");
+    EXPECT_EQ(settings_.structures[kNerve], StructureMode::kOff);
+    click("facial nerve");
+    EXPECT_EQ(settings_.structures[kNerve], StructureMode::kThroughBone);
+    click("All (Shift+T)");
+    EXPECT_EQ(settings_.structures[kNerve], StructureMode::kExposedOnly);
+    click("Thickness (Shift+D)");
+    EXPECT_TRUE(settings_.show_thickness);
+    click("Distance line");
+    EXPECT_FALSE(settings_.show_clearance);
+}
+
 TEST_F(PanelClicks, BoxesSwitchWhatIsSeen) {
     click("Cut Y");
     EXPECT_TRUE(settings_.cuts[1].is_on);
