@@ -92,6 +92,38 @@ int AnyReader::matchedWriters() const {
     return static_cast<int>(status.current_count);
 }
 
+bool AnyReader::isMatched(uint64_t writer) const {
+    std::array<dds_instance_handle_t, kBatch> writers;
+    const int32_t count = dds_get_matched_publications(reader_.handle(), writers.data(), writers.size());
+    if (count > int32_t(writers.size())) return true;  // too many to look through
+    return std::find(writers.begin(), writers.begin() + std::max(count, 0), writer) !=
+           writers.begin() + std::max(count, 0);
+}
+
+// Cyclone tells it of each participant, in the properties of its QoS.
+std::string AnyReader::hostOf(uint64_t writer) const {
+    dds_builtintopic_endpoint_t* const endpoint = dds_get_matched_publication_data(reader_.handle(), writer);
+    if (!endpoint) return "";
+    const dds_instance_handle_t owner = endpoint->participant_instance_handle;
+    dds_builtintopic_free_endpoint(endpoint);
+    const int32_t participant = dds_get_participant(reader_.handle());
+    const Entity people(
+        requireEntity(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr),
+                      "reader of participants"));
+    void* sample = nullptr;
+    dds_sample_info_t info;
+    std::string host;
+    if (dds_read_instance(people.handle(), &sample, &info, 1, 1, owner) > 0) {
+        char* name = nullptr;
+        if (info.valid_data && dds_qget_prop(static_cast<const dds_builtintopic_participant_t*>(sample)->qos,
+                                             "__Hostname", &name))
+            host = name;
+        dds_free(name);
+        dds_return_loan(people.handle(), &sample, 1);
+    }
+    return host;
+}
+
 AnyReader::Batch::Batch(int32_t reader, size_t max_samples) : reader_(reader) {
     const size_t wanted = std::min(max_samples, kBatch);
     std::array<dds_sample_info_t, kBatch> infos;

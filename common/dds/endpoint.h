@@ -66,6 +66,8 @@ class AnyReader {
 
     int32_t handle() const noexcept { return reader_.handle(); }
     int matchedWriters() const;
+    bool isMatched(uint64_t writer) const;
+    std::string hostOf(uint64_t writer) const;
 
   private:
     Entity topic_;
@@ -110,6 +112,10 @@ class Reader {
 
     int32_t handle() const noexcept { return reader_.handle(); }
     int matchedWriters() const { return reader_.matchedWriters(); }
+    // Takes a SampleInfo::writer; it is matched until it leaves, or is silent for longer than the lease.
+    bool isMatched(uint64_t writer) const { return reader_.isMatched(writer); }
+    // Returns the name of the PC that a matched writer runs on; empty if it is not told.
+    std::string hostOf(uint64_t writer) const { return reader_.hostOf(writer); }
 
   private:
     AnyReader reader_;

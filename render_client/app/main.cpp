@@ -4,6 +4,7 @@
 #include "common/log/log.h"
 #include "common/process_limits.h"
 #include "common/run_program.h"
+#include "render_client/app/list_sessions.h"
 #include "render_client/app/measure_viewer.h"
 #include "render_client/app/offscreen_viewer.h"
 #include "render_client/app/send_command.h"
@@ -22,6 +23,7 @@ int view(int argc, char** argv) {
     setUpLog("render_client", options->log_level);
     dds::setNetwork(options->network);
     catchStopSignals();
+    if (options->lists_sessions) return runListSessions(*options);
     if (options->command) return runSendCommand(*options);
     requireMemory(kPictureBytes, "the pictures");
     if (options->measure) {

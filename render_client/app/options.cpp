@@ -24,6 +24,7 @@ constexpr int kMaxSize = 8192;  // pixels; every OpenGL 3.3 driver in use can do
 
 // Here is what the command line holds before units are converted.
 struct RawOptions {
+    CLI::Option* session = nullptr;
     bool offscreen = false;
     OffscreenOptions offscreen_options;
     uint32_t interval_ms = uint32_t(OffscreenOptions().interval.count());
@@ -74,8 +75,11 @@ void addSessionOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     app.add_option("--domain", options.subscriber.domain, "DDS domain of the server")
         ->check(CLI::Range(uint32_t{0}, dds::kMaxDomain))
         ->capture_default_str();
-    app.add_option("--session", options.subscriber.session, "Number that haptic_server was started with")
-        ->capture_default_str();
+    raw.session = app.add_option("--session", options.subscriber.session,
+                                 "Number that haptic_server was started with (default 1; a window takes the "
+                                 "only session there is, or lets choose)");
+    app.add_flag("--list", options.lists_sessions, "Print the sessions that are there, and end")
+        ->excludes(raw.session);
     dds::addNetworkOptions(app, options.network);
     app.add_option("--name", options.subscriber.name, "What the others read in their list of viewers")
         ->capture_default_str();
@@ -179,6 +183,8 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     options.subscriber.role = raw.role     ? roleOf(*raw.role)
                               : only_looks ? topics::Viewer::VIEWER
                                            : topics::Viewer::OPERATOR;
+    options.chooses_session =
+        raw.session->count() == 0 && !raw.offscreen && !raw.measure_s && raw.command.empty();
     if (!raw.size.empty()) parseSize(raw.size, options);
     if (raw.azimuth_deg) options.view.azimuth = *raw.azimuth_deg * kDegree;
     if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegree;
@@ -219,8 +225,8 @@ ServerSought soughtOf(const ClientOptions& options) {
     const std::string shown = !profile.empty()                ? profile
                               : std::getenv("CYCLONEDDS_URI") ? "as CYCLONEDDS_URI says"
                                                               : "one-pc";
-    return {options.subscriber.session, options.subscriber.domain, shown, options.network.interface,
-            dds::isLanProfile(profile)};
+    return {options.subscriber.session, options.subscriber.domain,  shown,
+            options.network.interface,  dds::isLanProfile(profile), options.chooses_session};
 }
 
 std::string serverQuestion(const SubscriberOptions& subscriber) {

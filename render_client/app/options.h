@@ -41,6 +41,9 @@ struct MeasureOptions {
 
 struct ClientOptions {
     SubscriberOptions subscriber;
+    bool chooses_session =
+        false;  // none was given: a window takes the only one, or offers those that are there
+    bool lists_sessions = false;  // prints them instead
     dds::NetworkOptions network;
     ViewWish view;
     ViewSettings settings;            // what is shown at the start

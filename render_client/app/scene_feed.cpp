@@ -69,6 +69,7 @@ bool SceneFeed::isComplete() const {
 // complete once is called live from then on.
 void SceneFeed::updateConnection() {
     const bool has_server = subscriber_.hasServer();
+    scene_.setOtherServer(subscriber_.otherServer());
     if (has_server && hasWholeModel()) complete_epoch_ = subscriber_.epoch();
     had_server_ = had_server_ || has_server;
     scene_.setConnection(!has_server && subscriber_.hasEnded() ? Connection::kServerEnded

@@ -21,6 +21,7 @@
 #include "render_client/offscreen/read_picture.h"
 #include "render_client/panel/panel_painter.h"
 #include "render_client/subscribe/command_text.h"
+#include "render_client/subscribe/session_list.h"
 #include "render_client/window/glfw_window.h"
 
 namespace bonemill {
@@ -29,6 +30,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kMinimisedPause{50};
+constexpr uint32_t kNoSession = UINT32_MAX;  // no server is asked for it
 constexpr std::chrono::seconds kNoticeTime{int(ViewerControls::kAnswerTime)};
 
 // Shows over the picture, for a while, what the user should notice.
@@ -107,16 +109,20 @@ class WindowViewer {
         scene_.settings() = options.settings;
         scene_.setSought(soughtOf(options));
         if (options.has_effects) feed_.sound(&sound_);
+        if (options.chooses_session) sessions_.emplace(options.subscriber.domain);
         if (options.chooses_quality && window_.gl().isSoftware()) scene_.settings().quality = Quality::kQuick;
     }
 
-    void run() {
-        while (!window_.shouldClose() && !stopRequested() && !has_quit_) step();
+    // Returns the session to go on with in another window; none at the end.
+    std::optional<uint32_t> run() {
+        while (!window_.shouldClose() && !stopRequested() && !has_quit_ && !chosen_) step();
         sound_.finish();
+        return chosen_;
     }
 
   private:
     void step() {
+        lookForSessions();
         feed_.update();
         const int width = window_.pixelWidth(), height = window_.pixelHeight();
         const bool is_minimised = width == 0 || height == 0;
@@ -145,6 +151,21 @@ class WindowViewer {
         frame_rate_.countPicture(Clock::now());
     }
 
+    // The only session is joined once it has been the only one for a while; of several the user chooses.
+    void lookForSessions() {
+        constexpr std::chrono::seconds kAlone{1};
+        if (!sessions_) return;
+        sessions_->poll();
+        const std::vector<ListedSession> heard = sessions_->sessions();
+        const Clock::time_point now = Clock::now();
+        if (heard.size() != 1) alone_since_ = now;
+        if (heard.size() == 1 && now - alone_since_ >= kAlone) chosen_ = heard[0].session;
+        offered_.clear();
+        if (heard.size() < 2) return;
+        for (const ListedSession& session : heard)
+            offered_.push_back({session.session, sessionText(session)});
+    }
+
     void pause() { feed_.updateUntil(Clock::now() + kMinimisedPause, stopRequested); }
 
     SessionView lookAtSession() {
@@ -160,6 +181,7 @@ class WindowViewer {
         if (subscriber.lesson()) session.lesson = &*subscriber.lesson();
         session.others = subscriber.viewers();
         session.faults = scene_.faults();
+        session.offered = offered_;
         session.time_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
         return session;
     }
@@ -197,6 +219,7 @@ class WindowViewer {
             if (const auto p_W = pick(*wishes.centre_at)) scene_.camera().target_W = *p_W;
         if (wishes.notice) notices_.show(*wishes.notice);
         has_quit_ = has_quit_ || wishes.quit;
+        if (wishes.session) chosen_ = wishes.session;
     }
 
     std::optional<Eigen::Vector3d> pick(const PixelPoint& at) { return scene_.pick(int(at.x), int(at.y)); }
@@ -274,12 +297,22 @@ class WindowViewer {
     bool was_holding_ = false;  // as announced last
     bool has_quit_ = false;
     bool is_over_panel_ = false;  // the mouse
+    std::optional<SessionList> sessions_;  // where none was asked for
+    std::vector<OfferedSession> offered_;
+    Clock::time_point alone_since_ = Clock::now();
+    std::optional<uint32_t> chosen_;  // to be joined
 };
 
 }  // namespace
 
 void runWindow(const ClientOptions& options) {
-    WindowViewer(options).run();
+    ClientOptions chosen = options;
+    if (options.chooses_session) chosen.subscriber.session = kNoSession;
+    while (const std::optional<uint32_t> session = WindowViewer(chosen).run()) {
+        spdlog::info("session {}", *session);
+        chosen.subscriber.session = *session;
+        chosen.chooses_session = false;
+    }
 }
 
 }  // namespace bonemill

@@ -13,6 +13,12 @@
 
 namespace bonemill {
 
+// A session that can be joined, where none was asked for.
+struct OfferedSession {
+    uint32_t number = 0;
+    std::string text;  // for people
+};
+
 struct SessionView {
     std::string name;  // of this viewer
     topics::Viewer::Role role = topics::Viewer::OPERATOR;
@@ -24,7 +30,8 @@ struct SessionView {
     const topics::Status* status = nullptr;
     const topics::Lesson* lesson = nullptr;
     std::vector<topics::Viewer> others = {};
-    std::vector<FaultEntry> faults = {};  // of the session, the first one first
+    std::vector<OfferedSession> offered = {};  // to choose from; empty: nothing to choose
+    std::vector<FaultEntry> faults = {};       // of the session, the first one first
 };
 
 // Returns why this viewer may not do it, a sentence for the user; empty when it may.

@@ -27,8 +27,9 @@ struct Wishes {
     std::optional<PixelPoint> centre_at;  // orbit around the surface there from now on
     std::optional<HudNotice> notice;      // why something was not done
     bool save_picture = false;
-    bool save_attempts = false;  // of the lesson, as CSV
-    bool type_trainee = false;   // in the panel
+    bool save_attempts = false;       // of the lesson, as CSV
+    bool type_trainee = false;        // in the panel
+    std::optional<uint32_t> session;  // to be joined, of those that are offered
     bool quit = false;
 };
 

@@ -44,6 +44,11 @@ void addDevice(const HudInput& input, std::vector<Condition>& conditions) {
 std::vector<Condition> conditionsOf(const HudInput& input) {
     std::vector<Condition> conditions;
     addConnection(input.connection, conditions);
+    if (input.other_server)
+        conditions.push_back({"other_server",
+                              "Another server gives this session, with the scene '" + *input.other_server +
+                                  "'. The picture stays with the first: end one of the two.",
+                              HudTone::kWarning});
     const bool is_there = input.connection == Connection::kReceiving || input.connection == Connection::kLive;
     if (!input.status || !is_there) return conditions;  // what a server said last is no news of it
     addDevice(input, conditions);

@@ -28,8 +28,9 @@ struct HudInput {
     std::optional<topics::Status> status;
     std::optional<topics::ToolState> tool;
     Connection connection = Connection::kNoServer;
-    size_t node_count = 0;     // nodes the viewer holds
-    double frame_rate_hz = 0;  // of this viewer; 0: not known
+    std::optional<std::string> other_server;  // what a second server of the session calls its scene
+    size_t node_count = 0;                    // nodes the viewer holds
+    double frame_rate_hz = 0;                 // of this viewer; 0: not known
     std::vector<topics::Viewer> watchers;
     bool show_watchers = false;
     bool show_details = false;  // instead of the watchers

@@ -3,12 +3,13 @@
 namespace bonemill {
 
 HudPage waitingPage(const ServerSought& sought) {
-    HudPage page{"Waiting for a haptic_server",
-                 {{"Session", std::to_string(sought.session)},
-                  {"Domain", std::to_string(sought.domain)},
-                  {"Profile", sought.profile}},
-                 {"Is one running? deploy/bonemill start begins a session.",
-                  "It must have been started with the same --session, --domain and --profile."}};
+    HudPage page{
+        "Waiting for a haptic_server",
+        {{"Session", sought.is_any_session ? "the only one there is" : std::to_string(sought.session)},
+         {"Domain", std::to_string(sought.domain)},
+         {"Profile", sought.profile}},
+        {"Is one running? deploy/bonemill start begins a session.",
+         "It must have been started with the same --session, --domain and --profile."}};
     if (!sought.is_on_lan) {
         page.lines.push_back("One on another PC is found with --profile lab or classroom only.");
         return page;

@@ -11,9 +11,10 @@ namespace bonemill {
 struct ServerSought {
     uint32_t session = 1;
     uint32_t domain = 0;
-    std::string profile;     // as the user knows it: one-pc, lab, ...
-    std::string interface;   // empty: none was chosen
-    bool is_on_lan = false;  // the server may run on another PC
+    std::string profile;          // as the user knows it: one-pc, lab, ...
+    std::string interface;        // empty: none was chosen
+    bool is_on_lan = false;       // the server may run on another PC
+    bool is_any_session = false;  // the number does not count
 };
 
 HudPage waitingPage(const ServerSought& sought);

@@ -9,6 +9,7 @@
 #include "render_client/hud/font_files.h"
 #include "render_client/panel/lesson_cards.h"
 #include "render_client/panel/panel_content.h"
+#include "render_client/panel/session_choice.h"
 
 namespace bonemill {
 namespace {
@@ -122,7 +123,11 @@ void Panel::feed(const WindowEvent& event) {
 bool Panel::handle(const WindowEvent& event, ViewerControls& controls, const SessionView& session,
                    Wishes& wishes) {
     feed(event);
-    if (!controls.isPanelOpen() && !lesson_.isOnScreen(session)) {
+    if (const auto chosen = sessionOfKey(event, session)) {
+        wishes.session = chosen;
+        return true;
+    }
+    if (!isWanted(controls, session)) {
         ImGui::GetIO().MouseWheel = 0;
         ImGui::GetIO().ClearInputCharacters();
         return false;
@@ -134,12 +139,16 @@ bool Panel::handle(const WindowEvent& event, ViewerControls& controls, const Ses
     return is_keyboard ? wanted_keyboard : ImGui::GetIO().WantCaptureMouse;
 }
 
+bool Panel::isWanted(const ViewerControls& controls, const SessionView& session) const {
+    return controls.isPanelOpen() || lesson_.isOnScreen(session) || !session.offered.empty();
+}
+
 void Panel::layOut(ViewerControls& controls, const SessionView& session, Wishes& wishes) {
     lesson_.follow(session);
     if (session.lesson) pictures_.follow(*session.lesson);
     if (wishes.type_trainee) lesson_.wants_keyboard = true;
     const bool is_open = controls.isPanelOpen();
-    const bool was_drawn = std::exchange(is_drawn_, is_open || lesson_.isOnScreen(session));
+    const bool was_drawn = std::exchange(is_drawn_, isWanted(controls, session));
     const bool is_new = (is_open && !was_open_) || (is_drawn_ && !was_drawn);
     const int frames = is_new ? kFramesToSettle : is_drawn_ ? 1 : 0;
     was_open_ = is_open;
@@ -157,6 +166,7 @@ void Panel::frame(double seconds, ViewerControls& controls, const SessionView& s
         PanelContent(controls, session, wishes, places_, is_ending_, lesson_, pictures_.all(), scale_)
             .build();
     if (lesson_.isOnScreen(session)) LessonCards(controls, session, wishes, lesson_, places_, scale_).build();
+    if (!session.offered.empty()) buildSessionChoice(session, wishes, places_, scale_);
     ImGui::Render();
 }
 

@@ -62,6 +62,7 @@ class Panel {
     void feed(const WindowEvent& event);
     void frame(double seconds, ViewerControls& controls, const SessionView& session, Wishes& wishes);
     void setScale(float scale);
+    bool isWanted(const ViewerControls& controls, const SessionView& session) const;
 
     std::unique_ptr<ImGuiContext, Destroy> context_;
     std::map<std::string, PixelPoint> places_;  // of the controls that can be seen, by label
@@ -69,7 +70,7 @@ class Panel {
     int font_version_ = 0;
     double pending_seconds_ = 0;
     bool was_open_ = false;
-    bool is_drawn_ = false;   // the panel, or something of a lesson
+    bool is_drawn_ = false;   // the panel, or something else
     bool is_ending_ = false;  // the session's end was asked for and waits to be confirmed
     LessonDraft lesson_;
     ScenePictures pictures_;

@@ -54,6 +54,8 @@ class RenderScene {
     void setToolState(const topics::ToolState& tool);
     void setStatus(const topics::Status& status);
     void setConnection(Connection connection) { hud_input_.connection = connection; }
+    // Takes what a second server of the session calls its scene; nullopt where there is none.
+    void setOtherServer(std::optional<std::string> scene) { hud_input_.other_server = std::move(scene); }
     // The notice is shown until it is replaced; nullopt takes it away.
     void setNotice(std::optional<HudNotice> notice) { hud_input_.notice = std::move(notice); }
 

@@ -84,7 +84,7 @@ bool isUsable(const topics::SceneInfo& info) {
            isVector(info.bone_max_m()) && isSane(info.burr_radius_m()) && info.burr_radius_m() >= 0 &&
            info.tool_names_size() <= kMostTools && isDrawable(info.tool()) && isUsable(info.camera()) &&
            info.materials_size() <= kMostShownMaterials && areBalls(info.burr_balls_m()) &&
-            (!info.has_densities() || isUsableGrid(info.densities())) &&
+           (!info.has_densities() || isUsableGrid(info.densities())) &&
            isWithinRanges(info.viewer_effects()) && std::ranges::all_of(info.materials(), isWithinRanges);
 }
 

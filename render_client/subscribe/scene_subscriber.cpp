@@ -34,28 +34,15 @@ SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
     : options_(options),
       outbox_(randomSender()),
       participant_(options.domain),
-      node_reader_(participant_),
-      scene_info_reader_(participant_),
-      structure_reader_(participant_),
-      tool_state_reader_(participant_),
-      status_reader_(participant_),
-      lesson_reader_(participant_),
       viewer_reader_(participant_),
+      servers_(std::make_unique<ServerReaders>(participant_, viewer_reader_.handle())),
       viewer_writer_(participant_),
       hand_(participant_, options.session, outbox_.sender(), options.role),
       density_feed_(participant_, options.session, outbox_.sender()),
-      command_writer_(participant_),
-      wait_set_(participant_) {
-    wait_set_.add(node_reader_.handle());
-    wait_set_.add(scene_info_reader_.handle());
-    wait_set_.add(structure_reader_.handle());
-    wait_set_.add(tool_state_reader_.handle());
-    wait_set_.add(status_reader_.handle());
-    wait_set_.add(lesson_reader_.handle());
-    wait_set_.add(viewer_reader_.handle());
-}
+      command_writer_(participant_) {}
 
 SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
+    if (choice_.hasRefused() && !isServerAlive()) readAnew();
     takeSceneInfo();
     takeStatus();
     takeLesson();
@@ -82,46 +69,50 @@ void SceneSubscriber::followDensities(DensityStore& densities) {
 }
 
 void SceneSubscriber::takeStatus() {
-    status_reader_.take(kMaxSmallSamples,
-                        [this](const dds::StatusSample& sample, const dds::SampleInfo& info) {
-                            if (!info.has_data || sample.session != options_.session) return;
-                            std::optional<topics::Status> status = parseStatus(dds::payloadOf(sample));
-                            if (!status) return dropMalformed("status");
-                            if (!enterEpoch(status->epoch())) return;
-                            outbox_.acknowledge(*status);
-                            status_ = std::move(status);
-                        });
+    servers_->status.take(kMaxSmallSamples,
+                          [this](const dds::StatusSample& sample, const dds::SampleInfo& info) {
+                              if (!info.has_data || sample.session != options_.session) return;
+                              std::optional<topics::Status> status = parseStatus(dds::payloadOf(sample));
+                              if (!status) return dropMalformed("status");
+                              if (!enterEpoch(status->epoch(), info.writer)) {
+                                  other_scene_ = status->scene();
+                                  return;
+                              }
+                              status_writer_ = info.writer;
+                              outbox_.acknowledge(*status);
+                              status_ = std::move(status);
+                          });
 }
 
 void SceneSubscriber::takeLesson() {
-    lesson_reader_.take(kMaxSmallSamples,
-                        [this](const dds::LessonSample& sample, const dds::SampleInfo& info) {
-                            if (!info.has_data || sample.session != options_.session) return;
-                            std::optional<topics::Lesson> lesson = parseLesson(dds::payloadOf(sample));
-                            if (!lesson) return dropMalformed("lesson");
-                            if (enterEpoch(lesson->epoch())) lesson_ = std::move(lesson);
-                        });
+    servers_->lesson.take(kMaxSmallSamples,
+                          [this](const dds::LessonSample& sample, const dds::SampleInfo& info) {
+                              if (!info.has_data || sample.session != options_.session) return;
+                              std::optional<topics::Lesson> lesson = parseLesson(dds::payloadOf(sample));
+                              if (!lesson) return dropMalformed("lesson");
+                              if (enterEpoch(lesson->epoch(), info.writer)) lesson_ = std::move(lesson);
+                          });
 }
 
 void SceneSubscriber::takeSceneInfo() {
-    scene_info_reader_.take(
+    servers_->scene_info.take(
         kMaxSmallSamples, [this](const dds::SceneInfoSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != options_.session) return;
             std::optional<topics::SceneInfo> scene_info = parseSceneInfo(dds::payloadOf(sample));
             if (!scene_info) return dropMalformed("scene info");
-            if (!enterEpoch(scene_info->epoch())) return;
+            if (!enterEpoch(scene_info->epoch(), info.writer)) return;
             if (scene_info_ && scene_info->revision() < scene_info_->revision()) return;
             scene_info_ = std::move(scene_info);
         });
 }
 
 void SceneSubscriber::takeStructures() {
-    structure_reader_.take(kMaxSmallSamples, [this](const dds::StructureMeshSample& sample,
-                                                    const dds::SampleInfo& info) {
+    servers_->structures.take(kMaxSmallSamples, [this](const dds::StructureMeshSample& sample,
+                                                       const dds::SampleInfo& info) {
         if (!info.has_data || sample.session != options_.session) return;
         std::optional<StructureSurface> structure = parseStructure(dds::payloadOf(sample), sample.structure);
         if (!structure) return dropMalformed("structure " + std::to_string(sample.structure));
-        if (!enterEpoch(structure->epoch)) return;
+        if (!enterEpoch(structure->epoch, info.writer)) return;
         structures_[sample.structure] = std::move(*structure);
         ++structure_changes_;
     });
@@ -129,12 +120,12 @@ void SceneSubscriber::takeStructures() {
 
 void SceneSubscriber::takeToolState() {
     std::optional<topics::EffectState> counted;
-    tool_state_reader_.take(
+    servers_->tool_state.take(
         kMaxSmallSamples, [&](const dds::ToolStateSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != options_.session) return;
             std::optional<topics::ToolState> state = parseToolState(dds::payloadOf(sample));
             if (!state) return dropMalformed("tool state");
-            if (!enterEpoch(state->epoch())) return;
+            if (!enterEpoch(state->epoch(), info.writer)) return;
             if (tool_state_ && state->tick() < tool_state_->tick()) return;
             if (!tool_state_) counted.reset();  // another run of the server
             if (counted && state->has_effects()) addCounts(*counted, *state->mutable_effects());
@@ -185,21 +176,26 @@ std::vector<topics::Viewer> SceneSubscriber::viewers() const {
 }
 
 void SceneSubscriber::takeNodes(size_t max_nodes) {
-    node_reader_.take(max_nodes, [this](const dds::NodeMeshSample& sample, const dds::SampleInfo& info) {
+    servers_->nodes.take(max_nodes, [this](const dds::NodeMeshSample& sample, const dds::SampleInfo& info) {
         if (sample.session != options_.session) return;
         // Of a key that was written and then disposed only the older sample may be left, marked as disposed.
-        if (info.is_disposed) return model_.removeNode(sample.node, info.writer);
+        if (info.is_disposed) {
+            if (!choice_.isOther(info.writer)) model_.removeNode(sample.node, info.writer);
+            return;
+        }
         if (!info.has_data) return;
         std::optional<DecodedNode> node = parseNode(dds::payloadOf(sample), sample.node, sample.revision);
         if (!node) return dropMalformed("node mesh " + std::to_string(sample.node));
-        enterEpoch(node->tag.epoch);
+        if (!enterEpoch(node->tag.epoch, info.writer) && choice_.isOther(info.writer)) return;
         // The model takes nodes of an older run too: it remembers their writer, whose late
         // removals must not count.
         model_.applyNode(std::move(*node), info.writer, SceneModel::Clock::now());
     });
 }
 
-bool SceneSubscriber::enterEpoch(uint64_t epoch) {
+bool SceneSubscriber::enterEpoch(uint64_t epoch, uint64_t writer) {
+    const auto now = ServerChoice::Clock::now();
+    if (choice_.judge(epoch, writer, isServerAlive(), now) != ServerChoice::Verdict::kOurs) return false;
     const uint64_t epoch_before = model_.epoch();
     if (!model_.enterEpoch(epoch)) return false;
     if (model_.epoch() != epoch_before) {
@@ -209,9 +205,26 @@ bool SceneSubscriber::enterEpoch(uint64_t epoch) {
         lesson_.reset();
         structure_changes_ += !structures_.empty();
         structures_.clear();
+        status_writer_ = 0;
     }
     last_heard_ = std::chrono::steady_clock::now();
     return true;
+}
+
+// What the newer server showed meanwhile was refused, and DDS gives it to new readers only.
+void SceneSubscriber::readAnew() {
+    servers_ = std::make_unique<ServerReaders>(participant_, viewer_reader_.handle());
+    choice_.forgetWriters();
+    status_writer_ = 0;
+    last_heard_.reset();
+}
+
+bool SceneSubscriber::isServerAlive() const {
+    return isHeard() && (status_writer_ == 0 || servers_->status.isMatched(status_writer_));
+}
+
+std::optional<std::string> SceneSubscriber::otherServer() const {
+    return choice_.hasOther(ServerChoice::Clock::now()) ? std::optional(other_scene_) : std::nullopt;
 }
 
 void SceneSubscriber::dropMalformed(const std::string& what) {
@@ -234,7 +247,7 @@ bool SceneSubscriber::hasServer() const {
 }
 
 void SceneSubscriber::noteEnd() {
-    const bool was_matched = std::exchange(is_matched_, status_reader_.matchedWriters() > 0);
+    const bool was_matched = std::exchange(is_matched_, servers_->status.matchedWriters() > 0);
     if (is_matched_) {
         has_ended_ = false;
     } else if (was_matched) {

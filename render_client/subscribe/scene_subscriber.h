@@ -3,25 +3,27 @@
 //
 // One thread (the render thread): poll() takes what has arrived and never waits. Bytes that do not make sense
 // are dropped, counted, and at first named in the log; what comes with them arrives. A server that leaves
-// changes nothing in the model; one that restarts replaces it.
+// changes nothing in the model; one that restarts replaces it, and a second one beside it does not.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/dds/endpoint.h"
-#include "common/dds/wait_set.h"
 #include "proto/topics.pb.h"
 #include "render_client/subscribe/command_outbox.h"
 #include "render_client/subscribe/density_feed.h"
 #include "render_client/subscribe/hand_speaker.h"
 #include "render_client/subscribe/payloads.h"
 #include "render_client/subscribe/scene_model.h"
+#include "render_client/subscribe/server_choice.h"
+#include "render_client/subscribe/server_readers.h"
 
 namespace bonemill {
 
@@ -43,7 +45,7 @@ class SceneSubscriber {
     // call), sends the commands that are due, and returns the nodes that changed since the last call.
     SceneModel::Changes poll(size_t max_nodes = kAllNodes);
     // Returns true when poll() has something to take, false when `timeout` passed before.
-    bool waitForData(std::chrono::nanoseconds timeout) const { return wait_set_.wait(timeout); }
+    bool waitForData(std::chrono::nanoseconds timeout) const { return servers_->wait_set.wait(timeout); }
 
     // These are the newest ones of the current server run; there is nothing before the first.
     const std::optional<topics::SceneInfo>& sceneInfo() const noexcept { return scene_info_; }
@@ -67,6 +69,9 @@ class SceneSubscriber {
     // Returns true when the server that was heard last took its leave: it went while it was still heard. One
     // that crashed, or that the network lost, falls silent first.
     bool hasEnded() const { return has_ended_; }
+    // Returns what another server of this session calls its scene, while there is one: of two, the one that
+    // was here first is shown for as long as it lives.
+    std::optional<std::string> otherServer() const;
 
     // Queues a command (sender, role and sequence are filled in) and returns its sequence; poll() sends it.
     uint32_t sendCommand(topics::Command command);
@@ -102,13 +107,18 @@ class SceneSubscriber {
     void takeStructures();
     void takeToolState();
     void takeViewers();
-    bool enterEpoch(uint64_t epoch);
+    bool enterEpoch(uint64_t epoch, uint64_t writer);
+    bool isServerAlive() const;
+    void readAnew();
     bool isHeard() const;
     void noteEnd();
     void dropMalformed(const std::string& what);
 
     SubscriberOptions options_;
     SceneModel model_;
+    ServerChoice choice_;
+    uint64_t status_writer_ = 0;  // of our server; 0: not known yet
+    std::string other_scene_;     // what another server of the session shows
     std::optional<topics::SceneInfo> scene_info_;
     std::optional<topics::ToolState> tool_state_;
     std::optional<topics::Status> status_;
@@ -127,18 +137,12 @@ class SceneSubscriber {
     CommandOutbox outbox_;
 
     dds::Participant participant_;
-    dds::Reader<dds::NodeMeshSample> node_reader_;
-    dds::Reader<dds::SceneInfoSample> scene_info_reader_;
-    dds::Reader<dds::StructureMeshSample> structure_reader_;
-    dds::Reader<dds::ToolStateSample> tool_state_reader_;
-    dds::Reader<dds::StatusSample> status_reader_;
-    dds::Reader<dds::LessonSample> lesson_reader_;
     dds::Reader<dds::ViewerSample> viewer_reader_;
+    std::unique_ptr<ServerReaders> servers_;
     dds::Writer<dds::ViewerSample> viewer_writer_;
     HandSpeaker hand_;
     DensityFeed density_feed_;
     dds::Writer<dds::CommandSample> command_writer_;
-    dds::WaitSet wait_set_;
 };
 
 }  // namespace bonemill

@@ -1,4 +1,5 @@
-// Looks at a lesson's pixels: the list of scenes with their pictures, and the summary of an attempt.
+// Looks at a lesson's pixels: the list of scenes with their pictures, and the summary of an attempt; and at
+// the sessions to choose from.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -68,6 +69,13 @@ double coveredShare(const Picture& picture) {
 TEST_F(LessonPicture, TheListOfScenes) {
     switchPanel();
     EXPECT_EQ(test::goldenProblem(draw(), "lesson_scenes"), "");
+}
+
+TEST_F(LessonPicture, SessionsToChooseFrom) {
+    session_.lesson = nullptr;
+    session_.offered = {{4, "session 4: tooth_corridor since 14:05:09 on lab-pc-2"},
+                        {9, "session 9: skull since 14:07:30 on lab-pc-3"}};
+    EXPECT_EQ(test::goldenProblem(draw(), "session_choice"), "");
 }
 
 TEST_F(LessonPicture, TheSummaryOfAnAttempt) {

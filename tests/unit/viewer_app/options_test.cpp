@@ -24,6 +24,16 @@ TEST(Options, AWindowByDefault) {
     EXPECT_FALSE(options->view.target_W);
 }
 
+TEST(Options, AWindowWithoutASessionChoosesOne) {
+    EXPECT_TRUE(parse({})->chooses_session);
+    EXPECT_TRUE(soughtOf(*parse({})).is_any_session);
+    EXPECT_FALSE(parse({"--session", "1"})->chooses_session);
+    EXPECT_FALSE(parse({"--offscreen", "--out", "pictures"})->chooses_session);
+    EXPECT_FALSE(parse({"--command", "pause"})->chooses_session);
+    EXPECT_TRUE(parse({"--list", "--domain", "3"})->lists_sessions);
+    EXPECT_THROW(parse({"--list", "--session", "3"}), UserError);
+}
+
 TEST(Options, ANameOfOnesOwnAndTheRoleOfAnOperator) {
     const auto options = parse({});
     ASSERT_TRUE(options);
