@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "haptic_server/volume/density_gradient.h"
+#include "haptic_server/mesh/smooth_gradient.h"
 #include "haptic_server/volume/marching_cubes_table.h"
 
 namespace bonemill {
@@ -157,9 +157,7 @@ MaterialId LeafMesher::materialUnder(const Eigen::Vector3i& inside, size_t corne
 }
 
 Eigen::Vector3f LeafMesher::gradientAt(const Eigen::Vector3i& voxel, size_t corner) const noexcept {
-    return densityGradient(voxel, volume_.dims(), inverse_spacing_, [&](int axis, int step) {
-        return density_[size_t(ptrdiff_t(corner) + step * ptrdiff_t(stride_[axis]))];
-    });
+    return smoothGradient(voxel, volume_.dims(), inverse_spacing_, density_.data() + corner, stride_);
 }
 
 NodeMesh meshLeaf(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf) {

@@ -3,7 +3,7 @@
 //
 // A vertex lies where the density, interpolated linearly along its edge, equals the iso-value, rounded to the
 // steps of MeshGrid and kept one step away from both voxels, so that vertices of different edges never
-// coincide. Its normal is minus the density gradient (VoxelVolume::gradient), interpolated by the same
+// coincide. Its normal is minus the density's smoothed gradient (smooth_gradient.h), interpolated by the same
 // fraction. Position and normal depend only on the voxels around the edge, in integer or IEEE single
 // arithmetic: the leaves that share an edge get the same vertex, bit for bit. A voxel is inside the bone when
 // its density >= iso.

@@ -59,6 +59,7 @@ void ToolMesh::set(const topics::TriangleMesh& tool, topics::SceneInfo::Handpiec
     gl_.EnableVertexAttribArray(0);
     gl_.EnableVertexAttribArray(1);
     gl_.BindVertexArray(0);
+    ++revision_;
     tool_indices_ = GLsizei(tool.indices_size());
     all_indices_ = GLsizei(indices.size());
 }

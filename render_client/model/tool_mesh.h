@@ -17,6 +17,8 @@ class ToolMesh {
     // together; the old mesh stays then.
     void set(const topics::TriangleMesh& tool, topics::SceneInfo::Handpiece handpiece);
 
+    uint32_t revision() const { return revision_; }  // counts the tools that were set
+
     bool isEmpty() const { return tool_indices_ == 0; }
     // Returns the box around the tool, or around all; T, m; empty without a mesh.
     const Eigen::AlignedBox3f& box() const { return box_; }
@@ -28,6 +30,7 @@ class ToolMesh {
     GlVertexArray layout_;
     GlBuffer vertices_;
     GlBuffer indices_;
+    uint32_t revision_ = 0;
     GLsizei tool_indices_ = 0, all_indices_ = 0;  // the tool's come first
     Eigen::AlignedBox3f box_, full_box_;
 };

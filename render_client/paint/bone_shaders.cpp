@@ -112,12 +112,14 @@ void main() {
 #endif
     if (inside) albedo = inside_colour;
     vec3 sheen = vec3(0.0);
+    float wetness = 0.0;
 #ifdef FILM
     vec2 lying = inside ? vec2(0.0) : filmAt(p_M);
     if (lying.x + lying.y > 0.0) {  // noise is dear
         float fine = valueNoise(p_M / film_period * 150.0), coarse = valueNoise(p_M / film_period * 48.0 + 5.0);
         float blood = smoothstep(0.10, 0.46, lying.x * (0.55 + 0.55 * fine + 0.45 * coarse));
         float wet = max(smoothstep(0.05, 0.7, lying.y * (0.7 + 0.6 * coarse)), 0.75 * blood);
+        wetness = wet;
         albedo = mix(albedo * (1.0 - 0.34 * wet), blood_colour * (0.75 + 0.45 * coarse), 0.95 * blood);
         // The film's own surface is smoother than bone, but ripples.
         vec3 ripple = vec3(fine, coarse, valueNoise(p_M / film_period * 90.0 + 9.0)) - 0.5;
@@ -140,7 +142,9 @@ void main() {
     light += vec3(0.34, 0.13, 0.05) * key * (1.0 - visible);
 
     vec3 half_way = normalize(key_direction + to_eye);
-    float gloss = pow(max(dot(normal, half_way), 0.0), 42.0) * 0.34 * visible * step(0.0, facing);
+    // Dry bone is matt: a broad, faint shine. A wet one has the film's narrow highlight.
+    float mirrored = max(dot(normal, half_way), 0.0);
+    float gloss = mix(pow(mirrored, 14.0) * 0.11, pow(mirrored, 90.0) * 1.1, wetness) * visible * step(0.0, facing);
     float rim = pow(1.0 - max(dot(normal, to_eye), 0.0), 4.0) * (0.35 + 0.65 * max(normal.y, 0.0));
     float outline = pow(1.0 - max(dot(normal, to_eye), 0.0), 2.0);
     vec3 shaded = albedo * light * 0.56 + kKeyColour * gloss * 0.4 + kRimColour * rim * 0.16;

@@ -12,6 +12,9 @@ constexpr double kGhostDistance = 1.5e-4;  // m
 constexpr double kGhostAngle = 0.03;       // rad
 // So many half picture diagonals at the target does the shadow map cover when one is close.
 constexpr double kShownBeyondView = 2.0;
+constexpr float kShadowReach = 4;    // in burr radii, so are the two below
+constexpr float kShadowedShaft = 5;  // length
+constexpr float kShadowedThickness = 0.5f;
 constexpr double kFieldRadius = 0.48;    // of the shorter side of the picture
 constexpr double kBlur = 0.06;           // of the picture's height, one picture height away from the focus
 constexpr double kReach = 1.7;           // of the distance to the focus
@@ -88,6 +91,16 @@ bool showsTool(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {
 bool showsGhost(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {
     return showsTool(view, tool_T) && view.X_WT_device && isGhostVisible(*view.X_WT, *view.X_WT_device);
 }
+// The shaft is as thick as the tool's box is aside, at most as the burr.
+ToolShadow shadowOf(const FrameView& view, const Eigen::Matrix4f& X_CT, const Eigen::AlignedBox3f& tool_T) {
+    const auto radius = float(view.burr_radius);
+    const float length = std::clamp(tool_T.max().y(), 0.0f, kShadowedShaft * radius);
+    const auto place = [&](float y) -> Eigen::Vector3f {
+        return X_CT.topLeftCorner<3, 3>() * Eigen::Vector3f(0, y, 0) + X_CT.topRightCorner<3, 1>();
+    };
+    return {place(0), place(length), radius, kShadowedThickness * radius, kShadowReach * radius};
+}
+
 Eigen::AlignedBox3d boneIn(const FrameView& view) {
     Eigen::AlignedBox3d box_W;
     extendBy(box_W, view.X_WV, view.bone_V);
@@ -95,6 +108,18 @@ Eigen::AlignedBox3d boneIn(const FrameView& view) {
 }
 
 }  // namespace
+
+Eigen::AlignedBox3f ToolShadow::box(const Eigen::Vector3f& key_direction) const {
+    Eigen::AlignedBox3f box;
+    const float room = 1.1f * std::max(burr_radius, shaft_radius) + 0.1f * reach;  // the shadow widens
+    for (const Eigen::Vector3f& end : {burr, shaft})
+        for (const float along : {0.0f, -reach}) {
+            const Eigen::Vector3f p = end + along * key_direction;
+            box.extend(Eigen::Vector3f(p.array() - room));
+            box.extend(Eigen::Vector3f(p.array() + room));
+        }
+    return box;
+}
 
 DepthRange Frame::neededRange(const FrameView& view, const Eigen::AlignedBox3f& tool_T) {
     Eigen::AlignedBox3d everything_W = boneIn(view);
@@ -132,6 +157,7 @@ Frame Frame::make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, doub
     const double shown = kShownBeyondView * camera.focus * tangent * std::hypot(1.0, aspect);
     frame.key =
         aimKeyLight(camera, view.light, shown < bone.radius ? Sphere{camera.target_W(), shown} : bone);
+    if (frame.X_CT && !frame.has_shadow) frame.tool_shadow = shadowOf(view, *frame.X_CT, tool_T);
     return frame;
 }
 

@@ -78,6 +78,17 @@ struct KeyLight {
     float reach;  // m from the eye to where an endoscope's light is as bright; 0: it is the room's
 };
 
+// The part of the tool that casts a shadow where there is no shadow map: the burr as a ball and a piece of
+// the shaft behind it, in C.
+struct ToolShadow {
+    Eigen::Vector3f burr;
+    Eigen::Vector3f shaft;  // the piece's end
+    float burr_radius, shaft_radius;
+    float reach;  // m along the light, beyond it there is none
+    // Returns what the tool and its shadow take (C).
+    Eigen::AlignedBox3f box(const Eigen::Vector3f& key_direction) const;
+};
+
 struct Frame {
     Eigen::Matrix4f X_CV;
     Eigen::Matrix4f clip_from_camera;
@@ -95,7 +106,8 @@ struct Frame {
     float focus;         // Camera::focus, m
     float blur_per_m;    // picture heights per m of depth away from the focus; 0: all is sharp
     bool has_shadow;
-    Eigen::Matrix4f cull_from_V;  // bone outside of this clip space need not be drawn
+    std::optional<ToolShadow> tool_shadow;  // in quick quality
+    Eigen::Matrix4f cull_from_V;            // bone outside of this clip space need not be drawn
 
     // tool_T is the tool's box, empty without one. The range must hold neededRange().
     static Frame make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, double aspect,

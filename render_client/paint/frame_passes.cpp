@@ -1,6 +1,7 @@
 #include "render_client/paint/frame_passes.h"
 
 #include <cmath>
+#include <string>
 
 #include "render_client/paint/shaders.h"
 
@@ -21,6 +22,9 @@ FramePasses::FramePasses(const GlApi& gl)
       background_(gl, "background", shaders::kFullScreenVertex, shaders::kBackgroundFragment),
       occlusion_(gl, "occlusion", shaders::kFullScreenVertex, shaders::kOcclusionFragment),
       composite_(gl, "composite", shaders::kFullScreenVertex, shaders::kCompositeFragment),
+      instrument_(gl, "composite of an instrument", shaders::kFullScreenVertex,
+                  std::string("#define INSTRUMENT\n") + shaders::kCompositeFragment),
+      tool_shadow_(gl, "shadow of the tool", shaders::kFullScreenVertex, shaders::kToolShadowFragment),
       no_attributes_(gl) {}
 
 int FramePasses::reach(int height) {
@@ -58,18 +62,43 @@ void FramePasses::compose(const Frame& frame, const RenderTargets& targets, int 
         gl_.ActiveTexture(GL_TEXTURE0 + unit);
         gl_.BindTexture(GL_TEXTURE_2D, textures[unit]);
     }
-    composite_.use();
-    composite_.set("colour_map", 0);
-    composite_.set("depth_map", 1);
-    composite_.set("occlusion_map", 2);
-    composite_.set("near_far", frame.near_far);
-    composite_.set("depth_tolerance", 0.5f * float(kOcclusionRadius) * frame.bone_radius);
-    composite_.set("field_radius", frame.field_radius);
-    composite_.set("focus", frame.focus);
-    composite_.set("blur_per_m", frame.blur_per_m);
-    composite_.set("most_blur", kMostBlur);
+    const bool is_plain = frame.field_radius <= 0 && frame.blur_per_m <= 0;
+    const Program& composite = is_plain ? composite_ : instrument_;
+    composite.use();
+    composite.set("colour_map", 0);
+    composite.set("depth_map", 1);
+    composite.set("occlusion_map", 2);
+    composite.set("near_far", frame.near_far);
+    composite.set("depth_tolerance", 0.5f * float(kOcclusionRadius) * frame.bone_radius);
+    if (!is_plain) {
+        composite.set("field_radius", frame.field_radius);
+        composite.set("focus", frame.focus);
+        composite.set("blur_per_m", frame.blur_per_m);
+        composite.set("most_blur", kMostBlur);
+    }
     drawFullScreen();
     gl_.ActiveTexture(GL_TEXTURE0);
+}
+
+void FramePasses::drawToolShadow(const Frame& frame, const RenderTargets& targets, GLuint target) const {
+    const ToolShadow& shadow = *frame.tool_shadow;
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
+    gl_.ActiveTexture(GL_TEXTURE0);
+    gl_.BindTexture(GL_TEXTURE_2D, targets.depthTexture());
+    tool_shadow_.use();
+    tool_shadow_.set("depth_map", 0);
+    tool_shadow_.set("near_far", frame.near_far);
+    tool_shadow_.set("tangents", frame.tangents);
+    tool_shadow_.set("shift", frame.shift);
+    tool_shadow_.set("key_direction", frame.key.direction);
+    tool_shadow_.set("burr", shadow.burr);
+    tool_shadow_.set("shaft", shadow.shaft);
+    tool_shadow_.set("radii", Eigen::Vector2f(shadow.burr_radius, shadow.shaft_radius));
+    tool_shadow_.set("reach", shadow.reach);
+    gl_.Enable(GL_BLEND);
+    gl_.BlendFunc(GL_DST_COLOR, GL_ZERO);
+    drawFullScreen();
+    gl_.Disable(GL_BLEND);
 }
 
 void FramePasses::drawFullScreen() const {

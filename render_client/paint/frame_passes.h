@@ -23,6 +23,10 @@ class FramePasses {
     // Puts the finished picture (without figures) into `target`, from column x on.
     void compose(const Frame& frame, const RenderTargets& targets, int x, GLuint target) const;
 
+    // Darkens what lies in the shadow of a frame's tool_shadow in the finished picture in `target`, a
+    // framebuffer of its size without depth.
+    void drawToolShadow(const Frame& frame, const RenderTargets& targets, GLuint target) const;
+
     // Returns how many pixels beyond a changed one these passes may look different, in a
     // picture of this height.
     static int reach(int height);
@@ -31,7 +35,7 @@ class FramePasses {
     void drawFullScreen() const;
 
     const GlApi& gl_;
-    Program background_, occlusion_, composite_;
+    Program background_, occlusion_, composite_, instrument_, tool_shadow_;
     GlVertexArray no_attributes_;
 };
 

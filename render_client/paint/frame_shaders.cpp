@@ -104,10 +104,12 @@ uniform sampler2D depth_map;
 uniform sampler2D occlusion_map;
 uniform vec2 near_far;
 uniform float depth_tolerance;  // m
+#ifdef INSTRUMENT
 uniform float field_radius;     // of the round field, in picture heights; 0: all of the picture is seen
 uniform float focus;            // m
 uniform float blur_per_m;       // in picture heights; 0: all is sharp
 uniform float most_blur;        // in picture heights
+#endif
 out vec4 colour;
 
 float depthOf(float stored) {
@@ -115,6 +117,7 @@ float depthOf(float stored) {
     return 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - z * (near_far.y - near_far.x));
 }
 
+#ifdef INSTRUMENT
 // The radius of the disc that a point becomes, in pixels.
 float blurAt(ivec2 texel, ivec2 size) {
     float stored = texelFetch(depth_map, clamp(texel, ivec2(0), size - 1), 0).r;
@@ -146,13 +149,16 @@ vec3 inRoundField(vec3 shaded, vec2 size) {
     float rim = 1.0 - 0.45 * smoothstep(0.55, 1.0, away / field_radius);
     return mix(shaded * rim, vec3(0.012), smoothstep(field_radius - 1.0 / size.y, field_radius + 1.0 / size.y, away));
 }
+#endif
 
 void main() {
     vec3 shaded = texture(colour_map, uv).rgb;
     vec2 size = vec2(textureSize(depth_map, 0));
     vec2 pixel = uv * size;
     float stored = texelFetch(depth_map, ivec2(pixel), 0).r;
+#ifdef INSTRUMENT
     if (blur_per_m > 0.0) shaded = blurred(shaded, ivec2(pixel));
+#endif
     if (stored < 1.0) {
         float depth = depthOf(stored);
         ivec2 limit = textureSize(occlusion_map, 0) - 1;
@@ -169,8 +175,60 @@ void main() {
         // Crevices of bone keep a warm tint instead of turning grey.
         shaded *= mix(vec3(0.24, 0.15, 0.11), vec3(1.0), occlusion);
     }
+#ifdef INSTRUMENT
     if (field_radius > 0.0) shaded = inRoundField(shaded, size);
+#endif
     colour = vec4(shaded, 1.0);
+}
+)";
+
+// What the tool keeps from the light is multiplied into the finished picture.
+const char kToolShadowFragment[] = R"(
+in vec2 uv;
+uniform sampler2D depth_map;
+uniform vec2 near_far;
+uniform vec2 tangents;       // of the half field of view, x and y
+uniform float shift;         // x / depth of the picture's middle
+uniform vec3 key_direction;  // C, towards the light
+uniform vec3 burr, shaft;    // C: the burr's centre and the end of a piece of the shaft
+uniform vec2 radii;          // m, of burr and shaft
+uniform float reach;         // m
+out vec4 colour;
+
+vec3 positionOf(ivec2 texel, vec2 size) {
+    float z = texelFetch(depth_map, clamp(texel, ivec2(0), ivec2(size) - 1), 0).r * 2.0 - 1.0;
+    float depth = 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - z * (near_far.y - near_far.x));
+    vec2 ndc = (vec2(texel) + 0.5) / size * 2.0 - 1.0;
+    return vec3((ndc * tangents + vec2(shift, 0.0)) * depth, -depth);
+}
+
+// How much of the light a rod from a to b keeps away from p: all where the ray to the light meets it near p, less
+// farther away. The rod itself has none of its own.
+float shadowOfRod(vec3 p, vec3 a, vec3 b, float radius) {
+    vec3 along = b - a, to_p = p - a;
+    float squared = dot(along, along), slope = dot(along, key_direction), forward = dot(key_direction, to_p);
+    float on_rod = clamp(dot(along, to_p) / squared, 0.0, 1.0);
+    if (length(to_p - on_rod * along) < 1.04 * radius) return 0.0;
+    float at = clamp((dot(along, to_p) - forward * slope) / max(squared - slope * slope, 1e-4 * squared), 0.0, 1.0);
+    float ray = max(at * slope - forward, 0.0);
+    at = clamp((dot(along, to_p) + ray * slope) / squared, 0.0, 1.0);
+    float gap = length(to_p + ray * key_direction - at * along) - radius;
+    float soft = 0.10 * radius + 0.10 * ray;
+    return (1.0 - smoothstep(-soft, soft, gap)) * (1.0 - smoothstep(0.4, 1.0, ray / reach));
+}
+
+void main() {
+    vec2 size = vec2(textureSize(depth_map, 0));
+    ivec2 texel = ivec2(gl_FragCoord.xy);
+    if (texelFetch(depth_map, texel, 0).r >= 1.0) discard;
+    vec3 p = positionOf(texel, size);
+    float shadow = max(shadowOfRod(p, burr, mix(burr, shaft, 1e-3), radii.x), shadowOfRod(p, burr, shaft, radii.y));
+    if (shadow <= 0.0) discard;
+    vec3 right = positionOf(texel + ivec2(1, 0), size) - p, left = p - positionOf(texel - ivec2(1, 0), size);
+    vec3 up = positionOf(texel + ivec2(0, 1), size) - p, down = p - positionOf(texel - ivec2(0, 1), size);
+    vec3 normal = normalize(cross(abs(right.z) < abs(left.z) ? right : left, abs(up.z) < abs(down.z) ? up : down));
+    shadow *= smoothstep(0.0, 0.25, dot(normal, key_direction));
+    colour = vec4(mix(vec3(1.0), vec3(0.55, 0.50, 0.46), shadow), 1.0);
 }
 )";
 

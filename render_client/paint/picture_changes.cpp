@@ -45,7 +45,10 @@ DepthRange PictureChanges::range(const Camera& camera, const DepthRange& needed)
 }
 
 PictureChanges::Dirty PictureChanges::next(const Frame& frame, int width, int height,
-                                           const Eigen::AlignedBox3f& changed_V, const PixelBox& moving) {
+                                           const Eigen::AlignedBox3f& changed_V, const PixelBox& moving,
+                                           std::vector<float> still_like) {
+    const bool stands_still = !still_like.empty() && still_like == still_like_;
+    still_like_ = std::move(still_like);
     const PixelBox moved = std::exchange(moving_, moving);
     const PixelBox whole = PixelBox::whole(width, height);
     std::vector<float> signature = signatureOf(frame, width, height);
@@ -54,6 +57,7 @@ PictureChanges::Dirty PictureChanges::next(const Frame& frame, int width, int he
         return {whole, whole};
     }
     const PixelBox bone = PixelBox::around(changed_V, frame.clip_from_camera * frame.X_CV, width, height);
+    if (stands_still) return {bone, bone};
     return {bone, bone.joined(moved).joined(moving)};
 }
 

@@ -20,9 +20,10 @@ class PictureChanges {
 
     // Returns what the next picture of this size must draw: all of it when anything but nodes and
     // moving things has changed. changed_V is the box around the nodes that changed, `moving` are the
-    // pixels of what moves now.
+    // pixels of what moves now, and still_like are numbers that are the same only while all of it stands
+    // still as it is (empty: it does not).
     Dirty next(const Frame& frame, int width, int height, const Eigen::AlignedBox3f& changed_V,
-               const PixelBox& moving);
+               const PixelBox& moving, std::vector<float> still_like);
 
     // The next picture is drawn whole.
     void forget() { signature_.clear(); }
@@ -31,7 +32,8 @@ class PictureChanges {
     std::vector<float> signature_;  // of the last view
     Camera camera_;
     DepthRange range_;
-    PixelBox moving_;  // in the last picture
+    PixelBox moving_;                // in the last picture
+    std::vector<float> still_like_;  // likewise
 };
 
 }  // namespace bonemill

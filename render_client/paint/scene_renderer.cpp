@@ -99,11 +99,12 @@ void SceneRenderer::drawOver(const Frame& frame, const FrameView& view, const To
 void SceneRenderer::drawQuick(const Frame& frame, const FrameView& view, NodeStore& nodes,
                               const ToolMesh& tool, const PictureArea& area, GLuint target) {
     const PixelBox whole = PixelBox::whole(area.width, area.height);
-    const PictureChanges::Dirty dirty = changes_.next(frame, area.width, area.height,
-                                                      nodes.takeChanged()
-                                                          .merged(std::exchange(look_changed_, {}))
-                                                          .merged(structures_.takeChanged(view.structures)),
-                                                      movingPixels(frame, view, tool));
+    const PictureChanges::Dirty dirty =
+        changes_.next(frame, area.width, area.height,
+                      nodes.takeChanged()
+                          .merged(std::exchange(look_changed_, {}))
+                          .merged(structures_.takeChanged(view.structures)),
+                      movingPixels(frame, view, tool), stillLike(frame, view, tool));
     PixelBox part =
         dirty.all.isEmpty() ? dirty.all : dirty.all.grown(FramePasses::reach(area.height)).within(whole);
     gl_.Viewport(0, 0, area.width, area.height);
@@ -146,6 +147,11 @@ void SceneRenderer::finishQuick(const Frame& frame, const FrameView& view, const
     passes_.drawOcclusion(frame, *targets_);
     scissor(part);
     passes_.compose(frame, *targets_, 0, targets_->finished());
+    if (!frame.tool_shadow) return;
+    const PixelBox shadowed = shadowPixels(frame).within(part);
+    if (shadowed.isEmpty()) return;
+    scissor(shadowed);
+    passes_.drawToolShadow(frame, *targets_, targets_->finished());
 }
 
 void SceneRenderer::showFinished(const PictureArea& area, GLuint target) const {
@@ -169,6 +175,11 @@ void SceneRenderer::drawKeptBone(Frame frame, const FrameView& view, const NodeS
     structures_.draw(frame, view.structures, targets_->shadowTexture());
 }
 
+PixelBox SceneRenderer::shadowPixels(const Frame& frame) const {
+    return PixelBox::around(frame.tool_shadow->box(frame.key.direction), frame.clip_from_camera,
+                            targets_->width(), targets_->height());
+}
+
 PixelBox SceneRenderer::movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool) {
     const auto pixels = [&](const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& X_CB) {
         return PixelBox::around(box, frame.clip_from_camera * X_CB, targets_->width(), targets_->height());
@@ -178,9 +189,33 @@ PixelBox SceneRenderer::movingPixels(const Frame& frame, const FrameView& view, 
         moving =
             moving.joined(pixels(ParticlePainter::box(frame, view.effects->particles, targets_->height()),
                                  Eigen::Matrix4f::Identity()));
+    if (frame.tool_shadow) moving = moving.joined(shadowPixels(frame));
     if (frame.X_CT) moving = moving.joined(pixels(tool.box(view.shows_handpiece), *frame.X_CT));
     if (frame.X_CT_device) moving = moving.joined(pixels(tool.box(), *frame.X_CT_device));
     return moving;
+}
+
+// Says how what moves stands, in numbers; nothing while particles fly or the burr's flutes turn.
+std::vector<float> SceneRenderer::stillLike(const Frame& frame, const FrameView& view, const ToolMesh& tool) {
+    const bool has_effects = view.effects && (view.effects->turn || !view.effects->particles.empty());
+    if (has_effects) return {};
+    std::vector<float> numbers{float(view.burr_work), float(view.burr_radius), float(tool.revision()),
+                               float(view.pointers_W.size()), float(view.pull.has_value())};
+    const auto append = [&numbers](const auto& matrix) {
+        const auto f = matrix.template cast<float>().eval();
+        numbers.insert(numbers.end(), f.data(), f.data() + f.size());
+    };
+    for (const auto& pose : {frame.X_CT, frame.X_CT_device}) {
+        numbers.push_back(float(pose.has_value()));
+        if (pose) append(*pose);
+    }
+    append(view.f_T_W.value_or(Eigen::Vector3d::Zero()));
+    if (view.pull) append(view.pull->wish_W);
+    if (view.pull) numbers.push_back(float(view.pull->newtons));
+    for (const Eigen::Vector3d& pointer : view.pointers_W) append(pointer);
+    if (view.clearance) append(view.clearance->burr_W);
+    if (view.clearance) append(view.clearance->structure_W);
+    return numbers;
 }
 
 void SceneRenderer::drawParticles(const Frame& frame, const FrameView& view) {

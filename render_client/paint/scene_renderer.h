@@ -88,7 +88,9 @@ class SceneRenderer {
                               const PixelBox& part);
     void finishQuick(const Frame& frame, const FrameView& view, const ToolMesh& tool, const PixelBox& part);
     void showFinished(const PictureArea& area, GLuint target) const;
+    PixelBox shadowPixels(const Frame& frame) const;
     PixelBox movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool);
+    static std::vector<float> stillLike(const Frame& frame, const FrameView& view, const ToolMesh& tool);
     void scissor(const PixelBox& part) const;
     void drawShadowMap(const Frame& frame, const FrameView& view, const NodeStore& nodes,
                        const ToolMesh& tool) const;

@@ -32,7 +32,8 @@ extern const char
     kFullScreenVertex[];  // makes a triangle over all of the picture from 3 vertices without attributes
 extern const char kBackgroundFragment[];
 extern const char kOcclusionFragment[];
-extern const char kCompositeFragment[];
+extern const char kCompositeFragment[];  // with `#define INSTRUMENT`: a round field, depth of field
+extern const char kToolShadowFragment[];
 extern const char kAnaglyphFragment[];
 
 // particle_shaders.cpp draws grains and drops.

@@ -225,7 +225,7 @@ void RenderScene::showTool(FrameView& view) const {
     view.X_WT = readPose(tool.p_wt_m(), tool.q_wt());
     view.X_WT_device = readPose(tool.p_wt_device_m(), tool.q_wt_device());
     view.burr_work = burrWorkOf(tool);
-    view.shows_handpiece = settings_.show_handpiece;
+    view.shows_handpiece = settings_.show_handpiece && settings_.quality == Quality::kFull;
     const auto force_W = readVector(tool.force_n());
     if (settings_.show_force) view.f_T_W = force_W;
     if (pull_W_ && force_W) view.pull = Pull{*pull_W_, force_W->norm()};

@@ -61,6 +61,24 @@ class Golden : public testing::Test {
         scene_.reset();
     }
 
+    void prepareShadow() { scene_->settings().quality = Quality::kQuick; }
+    static Pose toolBeforeBone() {
+        Pose X_WT = test::toolInCavity();
+        X_WT.position = test::kBlockCenter + Eigen::Vector3d(-0.0022, -0.0062, 0.0032);
+        return X_WT;
+    }
+    // Draws the same with an altered shader.
+    void expectUnlike(const std::string& golden, const Alteration& alteration) {
+        const GlApi altered = test::alterShaders(context_.gl(), {alteration});
+        begin(altered);
+        ASSERT_GT(test::alterationsDone(), 0) << "the shaders have changed: " << alteration.what;
+        prepareShadow();
+        test::showMilledBlock(*scene_);
+        scene_->setToolState(test::makeToolState(toolBeforeBone(), toolBeforeBone(), 0));
+        EXPECT_TRUE(test::compare(draw(), test::readGolden(golden)).isVisible());
+        scene_.reset();
+    }
+
     OsmesaContext context_;
     std::unique_ptr<RenderScene> scene_;
 };
@@ -117,6 +135,16 @@ TEST_F(Golden, MicroscopeWithDepthOfField) {
     EXPECT_EQ(test::goldenProblem(drawMilledBlock(), "microscope_blurred"), "");
     EXPECT_TRUE(
         test::compare(test::readGolden("microscope"), test::readGolden("microscope_blurred")).isVisible());
+}
+
+// The burr hangs before the bone, between it and the light.
+TEST_F(Golden, QuickDrawingHasAShadowOfTheTool) {
+    prepareShadow();
+    drawMilledBlock();
+    scene_->setToolState(test::makeToolState(toolBeforeBone(), toolBeforeBone(), 0));
+    EXPECT_EQ(test::goldenProblem(draw(), "quick_shadow"), "");
+    expectUnlike("quick_shadow",
+                 {"smoothstep(0.4, 1.0, ray / reach)", "smoothstep(-2.0, -1.0, ray / reach)"});
 }
 
 TEST_F(Golden, Handpieces) {

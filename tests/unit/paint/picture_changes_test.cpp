@@ -15,10 +15,11 @@ class PictureChangesTest : public testing::Test {
         view_.camera = OrbitCamera().view();
         view_.bone_V = {Eigen::Vector3d::Constant(-0.05), Eigen::Vector3d::Constant(0.05)};
     }
-    PictureChanges::Dirty next(const Eigen::AlignedBox3f& changed_V, const PixelBox& moving) {
+    PictureChanges::Dirty next(const Eigen::AlignedBox3f& changed_V, const PixelBox& moving,
+                               std::vector<float> still_like = {}) {
         const DepthRange range = changes_.range(view_.camera, Frame::neededRange(view_, {}));
         const Frame frame = Frame::make(view_, {}, double(kChangesWidth) / kChangesHeight, range);
-        return changes_.next(frame, kChangesWidth, kChangesHeight, changed_V, moving);
+        return changes_.next(frame, kChangesWidth, kChangesHeight, changed_V, moving, std::move(still_like));
     }
 
     const PixelBox whole_ = PixelBox::whole(kChangesWidth, kChangesHeight);
@@ -40,6 +41,17 @@ TEST_F(PictureChangesTest, OnlyWhatChangedAndWhatMovesOfARestingView) {
     EXPECT_LT(dirty.bone.width(), kChangesWidth / 4);
     EXPECT_EQ(dirty.all, dirty.bone.joined(there));
     EXPECT_TRUE(next({}, {}).all.isEmpty());
+}
+
+TEST_F(PictureChangesTest, NothingOfWhatStandsStill) {
+    const PixelBox here{10, 10, 20, 20};
+    next({}, here, {1, 2});
+    EXPECT_TRUE(next({}, here, {1, 2}).all.isEmpty());
+    EXPECT_EQ(next({}, here, {1, 3}).all, here) << "it has moved within its box";
+    EXPECT_EQ(next({}, here).all, here) << "nothing is known of it";
+    EXPECT_EQ(next({}, here, {1, 3}).all, here);
+    changes_.forget();
+    EXPECT_EQ(next({}, here, {1, 3}).all, whole_);
 }
 
 TEST_F(PictureChangesTest, AllAfterAChangeOfTheView) {
