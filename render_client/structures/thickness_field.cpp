@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace bonemill {
 namespace {
@@ -19,8 +20,12 @@ ThicknessField thicknessField(const StructureSet& structures, double reach) {
     const Eigen::Vector3f margin = Eigen::Vector3f::Constant(field.reach);
     const Eigen::Vector3f wide = box.sizes() + 2 * margin;
     field.first_V = box.min() - margin;
-    field.step = std::max(kFinest, 1.05f * std::cbrt(wide.prod() / float(ThicknessField::kMostSamples)));
-    field.size = (wide / field.step).array().ceil().cast<int>().matrix() + Eigen::Vector3i::Ones();
+    field.step = std::max(kFinest, wide.maxCoeff() / float(ThicknessField::kMostPerAxis - 2));
+    const auto sizeOf = [&wide](float step) {
+        return Eigen::Vector3i((wide / step).array().ceil().cast<int>().matrix() + Eigen::Vector3i::Ones());
+    };
+    while (sizeOf(field.step).cast<int64_t>().prod() > ThicknessField::kMostSamples) field.step *= 1.05f;
+    field.size = sizeOf(field.step);
     field.shares.assign(size_t(field.size.prod()), 255);
     const Eigen::Vector3i blocks = (field.size.array() + kBlock - 1) / kBlock;
     const float half = 0.5f * std::sqrt(3.0f) * float(kBlock) * field.step;

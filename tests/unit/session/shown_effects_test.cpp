@@ -39,6 +39,32 @@ EffectRecord busyRecord() {
     return record;
 }
 
+TEST(ShownEffects, ViewersAreToldFromWhereOnTheBurrDistancesAreMeasured) {
+    Burr burr;
+    burr.radius = 1e-3;
+    topics::SceneInfo info;
+    describeBurr(sceneOf("material { name: 'enamel' }"), burr, info);
+    EXPECT_EQ(info.burr_balls_m_size(), 0) << "nothing to protect";
+    const scene::Scene scene = sceneOf("material { name: 'pulp' is_protected: true }");
+    describeBurr(scene, burr, info);
+    ASSERT_EQ(info.burr_balls_m_size(), 4);
+    EXPECT_FLOAT_EQ(info.burr_balls_m(3), 1e-3f);
+    burr.kind = BurrKind::kCylinder;
+    burr.length = 4e-3;
+    describeBurr(scene, burr, info);
+    EXPECT_GT(info.burr_balls_m_size(), 4 * 16) << "balls and both rims";
+    EXPECT_EQ(info.burr_balls_m_size() % 4, 0);
+}
+
+TEST(ShownEffects, TheWarningDistanceIsTheScenesOrTheFixtures) {
+    EXPECT_DOUBLE_EQ(warningDistanceOf(effectsOf("protected_structures { warning_distance_mm: 4 }")), 4e-3);
+    EXPECT_DOUBLE_EQ(warningDistanceOf(effectsOf("virtual_fixture { distance_mm: 0.5 }")), 0.5e-3);
+    EXPECT_DOUBLE_EQ(
+        warningDistanceOf(effectsOf("virtual_fixture {} protected_structures { warning_distance_mm: 3 }")),
+        3e-3);
+    EXPECT_DOUBLE_EQ(warningDistanceOf(effectsOf("")), 2e-3);
+}
+
 TEST(ShownEffects, ASceneWithoutThemShowsNothing) {
     for (const char* text : {"", "time_removal {}", "time_removal {} add_material {}",
                              "surface_friction {} virtual_fixture {}"}) {

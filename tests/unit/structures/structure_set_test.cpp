@@ -170,5 +170,19 @@ TEST(ThicknessField, IsTheDistanceToTheNextStructure) {
     EXPECT_TRUE(thicknessField({}, kWarning).shares.empty());
 }
 
+TEST(ThicknessField, IsBoundedHoweverLargeAStructureIs) {
+    for (const Vector3d& size :
+         {Vector3d(1e5, 1e-3, 1e-3), Vector3d(1e5, 1e5, 1e-3), Vector3d(1e-9, 1e-9, 1e-9)}) {
+        NodeMesh mesh = test::ballStructure(1, Vector3d::Zero(), 1);
+        mesh.step = (size / 65535).cast<float>();
+        StructureSet structures;
+        structures.set(mesh, kWarning);
+        const ThicknessField field = thicknessField(structures, kWarning);
+        EXPECT_LE(field.size.cast<int64_t>().prod(), ThicknessField::kMostSamples) << size.transpose();
+        EXPECT_LE(field.size.maxCoeff(), ThicknessField::kMostPerAxis) << size.transpose();
+        EXPECT_EQ(field.shares.size(), size_t(field.size.prod()));
+    }
+}
+
 }  // namespace
 }  // namespace bonemill
