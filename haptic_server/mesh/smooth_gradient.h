@@ -6,8 +6,6 @@
 // (tests/unit/mesh/smooth_gradient_test.cpp).
 #pragma once
 
-#include <Eigen/Core>
-
 #include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill {
