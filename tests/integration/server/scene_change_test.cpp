@@ -194,7 +194,9 @@ TEST_F(SceneChange, ReachesViewersAndTheHandAtOnceWithoutAStepOfForce) {
         EXPECT_GT(force.most, 0.1) << name;
         EXPECT_LT(force.largest_step, 0.3) << name;
         EXPECT_LT(force.first, 0.01) << name << ": it fades in";
-        if (std::string(name) != "trace_3.csv") EXPECT_LT(force.last, 0.01) << name << ": it fades out";
+        if (std::string(name) != "trace_3.csv") {
+            EXPECT_LT(force.last, 0.01) << name << ": it fades out";
+        }
     }
     const std::string table = test::readFile(folder_ / "class.csv");
     EXPECT_EQ(table.find(std::string(kClassTableHeader) + "\n1,"), 0u) << table;

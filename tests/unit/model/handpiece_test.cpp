@@ -60,7 +60,9 @@ TEST(Handpiece, ASleeveLeavesTheShaftFree) {
     const topics::TriangleMesh mesh = makeHandpiece(topics::SceneInfo::DRILL_GUIDE, kShaft);
     for (uint32_t n = 0; n < uint32_t(mesh.vertices_m_size()) / 3; ++n) {
         const Eigen::Vector3f p = vertex(mesh.vertices_m(), n);
-        if (p.y() < 0.85f * kShaft.y) EXPECT_GT(std::hypot(p.x(), p.z()), kShaft.radius);
+        if (p.y() < 0.85f * kShaft.y) {
+            EXPECT_GT(std::hypot(p.x(), p.z()), kShaft.radius);
+        }
     }
 }
 
