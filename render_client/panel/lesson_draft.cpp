@@ -9,14 +9,14 @@ void LessonDraft::follow(const SessionView& session) {
     if (!session.lesson) return;
     const topics::Lesson& lesson = *session.lesson;
     const uint32_t last = lesson.attempts().empty() ? 0 : lesson.attempts().rbegin()->number();
-    const uint64_t epoch = std::exchange(epoch_, lesson.epoch());
+    const bool has_looked = std::exchange(has_looked_, true);
     const bool is_new_scene = std::exchange(scene_id_, lesson.scene_id()) != lesson.scene_id();
     const bool was_running = std::exchange(was_running_, lesson.is_running());
     const uint32_t last_before = std::exchange(last_attempt_, last);
     if ((is_new_scene || !was_running) && (is_new_scene || lesson.is_running()))
         task_since_s_ = session.time_s;
     if (lesson.is_running() && !was_running) summary_ = 0;
-    if (epoch == lesson.epoch() && last > last_before) summary_ = last;
+    if (has_looked && last > last_before) summary_ = last;
 }
 
 float LessonDraft::taskOpacity(double time_s) const {

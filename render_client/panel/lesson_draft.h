@@ -33,7 +33,7 @@ class LessonDraft {
   private:
     static constexpr double kTaskTime = 12, kFadeTime = 2;  // s
 
-    uint64_t epoch_ = 0;
+    bool has_looked_ = false;
     std::string scene_id_;
     bool was_running_ = false;
     uint32_t last_attempt_ = 0;  // that was told

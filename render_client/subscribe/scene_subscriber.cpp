@@ -42,7 +42,12 @@ SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
       command_writer_(participant_) {}
 
 SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
-    if (choice_.hasRefused() && !isServerAlive()) readAnew();
+    if (choice_.hasLost()) readAnew();
+    if (choice_.hasRefused() && !isServerAlive()) {
+        readAnew();
+        status_writer_ = 0;
+        last_heard_.reset();
+    }
     takeSceneInfo();
     takeStatus();
     takeLesson();
@@ -211,12 +216,10 @@ bool SceneSubscriber::enterEpoch(uint64_t epoch, uint64_t writer) {
     return true;
 }
 
-// What the newer server showed meanwhile was refused, and DDS gives it to new readers only.
+// What was refused meanwhile, DDS gives to new readers only.
 void SceneSubscriber::readAnew() {
     servers_ = std::make_unique<ServerReaders>(participant_, viewer_reader_.handle());
     choice_.forgetWriters();
-    status_writer_ = 0;
-    last_heard_.reset();
 }
 
 bool SceneSubscriber::isServerAlive() const {

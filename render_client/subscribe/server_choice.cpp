@@ -16,6 +16,7 @@ ServerChoice::Verdict ServerChoice::judge(uint64_t epoch, uint64_t writer, bool 
         }
         epoch_ = epoch;
         if (!is_same_server) before_ = std::exchange(ours_, {});
+        has_lost_ = is_same_server && has_refused_;
         others_.clear();
     }
     if (epoch < epoch_) {
@@ -30,7 +31,7 @@ void ServerChoice::forgetWriters() {
     ours_.clear();
     before_.clear();
     others_.clear();
-    has_refused_ = false;
+    has_refused_ = has_lost_ = false;
 }
 
 void ServerChoice::hearOther(Clock::time_point now) {

@@ -27,6 +27,8 @@ class ServerChoice {
     bool isOther(uint64_t writer) const { return others_.contains(writer); }
     // Messages of a newer server were refused: they must be asked for again before it can be shown.
     bool hasRefused() const { return has_refused_; }
+    // Messages of our own server were refused: its writers were not all known when it began a new epoch.
+    bool hasLost() const { return has_lost_; }
     // The readers are new, and so are the writers' numbers; who answers is not known yet.
     void forgetWriters();
     // Another server of the session was heard for a while, and just now.
@@ -41,6 +43,7 @@ class ServerChoice {
     uint64_t epoch_ = 0;
     std::set<uint64_t> ours_, before_, others_;  // writers: of our server, of the run before, of others
     bool has_refused_ = false;
+    bool has_lost_ = false;
     std::optional<Clock::time_point> other_since_, other_last_;
 };
 

@@ -29,6 +29,19 @@ TEST(ServerChoice, AServerMayBeginANewEpoch) {
     EXPECT_FALSE(choice.hasRefused());
 }
 
+// A writer that was silent before is only known to be ours once another one has begun the epoch.
+TEST(ServerChoice, WhatOurOwnServerWasRefusedIsAskedForAgain) {
+    ServerChoice choice;
+    choice.judge(10, 1, false, kStart);
+    EXPECT_EQ(choice.judge(20, 2, true, kStart), Verdict::kOther);
+    EXPECT_FALSE(choice.hasLost());
+    EXPECT_EQ(choice.judge(20, 1, true, kStart), Verdict::kOurs);
+    EXPECT_TRUE(choice.hasLost());
+    choice.forgetWriters();
+    EXPECT_FALSE(choice.hasLost() || choice.hasRefused());
+    EXPECT_EQ(choice.judge(20, 2, true, kStart), Verdict::kOurs);
+}
+
 TEST(ServerChoice, AnotherIsToldOnceItLasts) {
     ServerChoice choice;
     choice.judge(20, 1, false, kStart);
