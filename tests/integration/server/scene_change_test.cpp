@@ -86,13 +86,11 @@ class SceneChange : public testing::Test {
                 "--trace",
                 folder_ / "trace.csv",
                 "--class-table",
-                folder_ / "class.csv",
-                "--best-effort-rt"};
+                folder_ / "class.csv"};
     }
     static std::vector<std::string> daemon() {
-        return {"device_daemon",   "--device",  "simulated",
-                "--hold",          "--session", std::to_string(testSession()),
-                "--best-effort-rt"};
+        return {"device_daemon", "--device",  "simulated",
+                "--hold",        "--session", std::to_string(testSession())};
     }
 
     template <class Condition>
@@ -210,8 +208,7 @@ TEST_F(SceneChange, ScenesAreListedAndTheFirstGoodOneIsTaken) {
     EXPECT_NE(list.out.find("Task b"), std::string::npos) << list.out;
     EXPECT_NE(list.out.find("cannot be chosen: "), std::string::npos) << list.out;
     Process server_process({"haptic_server", "--scenes", folder_.path(), "--session",
-                            std::to_string(testSession()), "--domain", std::to_string(testDomain()),
-                            "--best-effort-rt"});
+                            std::to_string(testSession()), "--domain", std::to_string(testDomain())});
     ASSERT_TRUE(one_.pollUntil([&] { return one_.subscriber.lesson() && one_.subscriber.status(); }));
     EXPECT_EQ(one_.subscriber.lesson()->scene_id(), "a");
     server_process.signal(SIGTERM);
