@@ -296,7 +296,7 @@ class WindowViewer {
     Clock::time_point last_picture_ = Clock::now();
     bool was_holding_ = false;  // as announced last
     bool has_quit_ = false;
-    bool is_over_panel_ = false;  // the mouse
+    bool is_over_panel_ = false;           // the mouse
     std::optional<SessionList> sessions_;  // where none was asked for
     std::vector<OfferedSession> offered_;
     Clock::time_point alone_since_ = Clock::now();
