@@ -1,7 +1,7 @@
 #include "haptic_server/session/recorder.h"
 
-#include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/rt/clock.h"
@@ -61,8 +61,8 @@ void Recorder::takeUpAttempt() {
 // What is damaged and dead counts since the session's start.
 void Recorder::addToAttempt(const TickRecord& record) noexcept {
     if (!before_attempt_) before_attempt_ = record.effects;
-    const Eigen::Map<const Eigen::Vector3d> force(record.f_hand_W);
-    attempt_.max_force = std::max(attempt_.max_force, force.norm());
+    const double(&force)[3] = record.f_hand_W;
+    attempt_.max_force = std::max(attempt_.max_force, std::hypot(force[0], force[1], force[2]));
     EffectRecord effects = record.effects;
     effects.damaged_volume = std::max(0.0f, effects.damaged_volume - before_attempt_->damaged_volume);
     effects.necrotic_volume = std::max(0.0f, effects.necrotic_volume - before_attempt_->necrotic_volume);
