@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "common/user_error.h"
+#include "tests/bench/bench_densities.h"
 #include "tests/bench/bench_effects.h"
 #include "tests/bench/bench_heavy.h"
 #include "tests/bench/bench_laws.h"
@@ -31,6 +32,7 @@ int main(int argc, char** argv) {
     bench::addStreamCommand(app);
     bench::addEffectsCommand(app);
     bench::addHeavyCommand(app);
+    bench::addDensitiesCommand(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
