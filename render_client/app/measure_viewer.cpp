@@ -82,6 +82,8 @@ void measure(const ClientOptions& options, const GlApi& gl) {
     SceneFeed feed(options.subscriber, scene);
     waitUntilComplete(feed, options.subscriber, options.measure->timeout);
     warmUp(options, gl, scene, feed);
+    waitForScan(feed, scene, options.measure->timeout);
+    warmUp(options, gl, scene, feed);
     const UploadCount before = scene.uploads();
     const Measured measured = drawFor(options.measure->time, options, gl, scene, feed);
     const UploadCount after = scene.uploads();

@@ -56,6 +56,11 @@ std::string describe(uint32_t frame, const std::string& file, const RenderScene&
     return line + warnings + "}";
 }
 
+void draw(RenderScene& scene, const ClientOptions& options) {
+    scene.draw(options.width, options.height,
+               textScale(options.width, options.height, options.settings.text_scale));
+}
+
 }  // namespace
 
 void runOffscreen(const ClientOptions& options) {
@@ -75,6 +80,10 @@ void runOffscreen(const ClientOptions& options) {
     Clock::time_point due = Clock::now() + wish.interval;
     if (wish.wait_complete) {
         waitUntilComplete(feed, options.subscriber, wish.timeout);
+        if (options.settings.showsScan()) {
+            draw(scene, options);  // now it is known what is wanted of the scan
+            waitForScan(feed, scene, wish.timeout);
+        }
         due = Clock::now();
     }
     for (uint32_t frame = 0; frame < wish.frames; ++frame) {
@@ -85,8 +94,7 @@ void runOffscreen(const ClientOptions& options) {
         char name[32];
         std::snprintf(name, sizeof name, "frame_%04u.png", frame);
         const std::string description = describe(frame, name, scene, feed);
-        scene.draw(options.width, options.height,
-                   textScale(options.width, options.height, options.settings.text_scale));
+        draw(scene, options);
         writePng(context.read(), wish.directory / name);
         std::cout << description << std::endl;
     }

@@ -88,4 +88,9 @@ void waitUntilComplete(SceneFeed& feed, const SubscriberOptions& options, std::c
                              " s: " + serverQuestion(options));
 }
 
+void waitForScan(SceneFeed& feed, RenderScene& scene, std::chrono::seconds timeout) {
+    feed.updateUntil(std::chrono::steady_clock::now() + timeout,
+                     [&] { return scene.densities().hasAllWanted() || stopRequested(); });
+}
+
 }  // namespace bonemill

@@ -67,6 +67,10 @@ class SceneFeed {
 // was not complete in time.
 void waitUntilComplete(SceneFeed& feed, const SubscriberOptions& options, std::chrono::seconds timeout);
 
+// Returns when all of the scan that the last picture wanted has arrived, at once where it wanted none; early
+// after a stop signal or this time.
+void waitForScan(SceneFeed& feed, RenderScene& scene, std::chrono::seconds timeout);
+
 template <class Stop>
 void SceneFeed::updateUntil(std::chrono::steady_clock::time_point end, Stop&& stop) {
     constexpr std::chrono::milliseconds kSlice{20};  // how late `stop` may be noticed

@@ -61,6 +61,12 @@ struct ViewSettings {
     double opacity = kDefaultOpacity;  // of the transparent bone
     std::array<CutPlane, 3> cuts;      // across W's x (sagittal), y (coronal), z (axial)
     SliceSettings slices;
+    // Part of the scan may be seen, in slices or on cuts or milled bone.
+    bool showsScan() const {
+        const bool is_cut = cuts[0].is_on || cuts[1].is_on || cuts[2].is_on;
+        return slices.are_shown || slices.ct == CtShown::kOnCutsAndMilled ||
+               (slices.ct == CtShown::kOnCuts && is_cut);
+    }
     bool show_force = true;
     bool show_handpiece = true;
     // The places are those of ViewerEffect; only those that the scene lists are seen.

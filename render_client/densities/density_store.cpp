@@ -71,6 +71,10 @@ std::optional<DensityStore::Place> DensityStore::placeOf(const Eigen::Vector3i& 
     return Place{brick, size_t(at.x() + edge * (at.y() + edge * at.z()))};
 }
 
+bool DensityStore::hasAllWanted() const {
+    return std::ranges::all_of(wanted_, [this](uint32_t brick) { return find(brick) != nullptr; });
+}
+
 std::optional<uint16_t> DensityStore::scannedAt(const Eigen::Vector3i& voxel) const {
     const auto place = placeOf(voxel);
     if (!place) return {};

@@ -46,6 +46,8 @@ class DensityStore {
     // store.
     const DensityBrick* find(uint32_t brick) const;
 
+    bool hasAllWanted() const;
+
     // It counts everything that came or went.
     uint64_t changes() const { return changes_; }
     size_t bytes() const { return bytes_; }
