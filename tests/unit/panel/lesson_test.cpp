@@ -93,12 +93,12 @@ TEST_F(LessonClicks, WhoHasNoNameIsCounted) {
 
 TEST_F(LessonClicks, AnAttemptIsPausedStoppedAndFollowedByTheNext) {
     switchPanel();
-    click("Stop (Shift+E)");
+    click("Stop (Shift+F)");
     EXPECT_TRUE(wishes_.commands.empty()) << "none is under way";
     lesson_.set_is_running(true);
     click("Pause (P)");
     EXPECT_TRUE(command().pause_milling());
-    click("Stop (Shift+E)");
+    click("Stop (Shift+F)");
     EXPECT_TRUE(command().stop_attempt());
     click("Next trainee");
     EXPECT_TRUE(command().stop_attempt());
@@ -129,7 +129,7 @@ TEST_F(LessonClicks, AViewerSeesAndDoesNotPress) {
     session_.role = topics::Viewer::VIEWER;
     lesson_.set_is_running(true);
     switchPanel();
-    for (const char* label : {"Pedicle of a vertebra", "Start", "Pause (P)", "Stop (Shift+E)"}) {
+    for (const char* label : {"Pedicle of a vertebra", "Start", "Pause (P)", "Stop (Shift+F)"}) {
         click(label);
         EXPECT_TRUE(wishes_.commands.empty()) << label;
     }
