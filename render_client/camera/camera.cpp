@@ -19,6 +19,12 @@ Camera movedRight(Camera camera, double distance) {
 
 }  // namespace
 
+Eigen::Vector3d Camera::rayThrough(int x, int y, int width, int height) const {
+    const double tangent_per_pixel = halfTangent() / height;
+    return R_WC * Eigen::Vector3d((2 * x + 1 - width) * tangent_per_pixel + shift,
+                                  (height - 2 * y - 1) * tangent_per_pixel, -1);
+}
+
 double Camera::halfTangent() const {
     return std::tan(field_of_view / 2);
 }

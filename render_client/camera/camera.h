@@ -34,6 +34,9 @@ struct Camera {
 
     // Returns the metres that one pixel spans at the focus, in a picture of this height (pixels).
     double metresPerPixel(int height) const;
+
+    // Returns the way to what is seen in the middle of a pixel (y down) 1 m in front of the eye, in W.
+    Eigen::Vector3d rayThrough(int x, int y, int width, int height) const;
 };
 
 // The two eyes stand beside this camera. Their screens have no parallax at its focus.

@@ -76,6 +76,17 @@ float pageWidth(const std::vector<Column>& columns, float em) {
 
 }  // namespace
 
+std::vector<HelpGroup> helpThatFits(const FontAtlas& font, std::vector<HelpGroup> groups,
+                                    const PictureSize& picture) {
+    const auto fits = [&] {
+        const auto columns = columnsOf(font, balancedLines(groups, kSmallestText, picture.height));
+        return pageWidth(columns, font.pixelHeight()) * kSmallestText / font.pixelHeight() <=
+               float(picture.width) - kSmallestText;
+    };
+    while (groups.size() > 1 && !fits()) groups.pop_back();
+    return groups;
+}
+
 // Widths grow with the height of the text; that is near enough.
 float helpTextHeight(const FontAtlas& font, const std::vector<HelpGroup>& groups,
                      const PictureSize& picture) {

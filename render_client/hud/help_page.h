@@ -9,6 +9,10 @@
 
 namespace bonemill {
 
+// Returns the groups without the last ones for which the picture is too small even in the smallest text.
+std::vector<HelpGroup> helpThatFits(const FontAtlas& font, std::vector<HelpGroup> groups,
+                                    const PictureSize& picture);
+
 // Returns the height (pixels) of the font that the page needs: that of `font`, or less.
 float helpTextHeight(const FontAtlas& font, const std::vector<HelpGroup>& groups, const PictureSize& picture);
 

@@ -79,8 +79,9 @@ void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_
     draw(figures, picture);
     draw(lists, picture);
     if (!hud.help.empty()) {
-        HudCanvas help(fontOf(helpTextHeight(font, hud.help, picture)).atlas);
-        layOutHelp(help, hud.help, picture);
+        const auto groups = helpThatFits(font, hud.help, picture);
+        HudCanvas help(fontOf(helpTextHeight(font, groups, picture)).atlas);
+        layOutHelp(help, groups, picture);
         draw(help, picture);
     }
     HudCanvas messages(fontOf(std::round(kMessageText * font.pixelHeight())).atlas), alert(font);

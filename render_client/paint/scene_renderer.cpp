@@ -233,11 +233,7 @@ std::optional<Eigen::Vector3d> SceneRenderer::pick(int x, int y) const {
     if (!stored) return std::nullopt;
     const double near = last_near_far_.x(), far = last_near_far_.y();
     const double depth = 2 * near * far / (near + far - (2.0 * *stored - 1) * (far - near));
-    const double tangent = last_camera_.halfTangent();
-    const double aspect = double(targets_->width()) / targets_->height();
-    const double right = (2 * (x + 0.5) / targets_->width() - 1) * tangent * aspect + last_camera_.shift;
-    const double up = (1 - 2 * (y + 0.5) / targets_->height()) * tangent;
-    return last_camera_.eye_W + last_camera_.R_WC * (depth * Eigen::Vector3d(right, up, -1));
+    return last_camera_.eye_W + depth * last_camera_.rayThrough(x, y, targets_->width(), targets_->height());
 }
 
 // Transparent bone casts no shadow: what is seen through it would be dark.

@@ -301,12 +301,10 @@ std::string RenderScene::structureAt(int x, int y) const {
     if (!can_pick_ || last_view_.structures.empty() || x < 0 || y < 0 || x >= size.x() || y >= size.y())
         return "";
     const Camera& camera = last_view_.camera;
-    const double tangent = camera.halfTangent(), height = size.y();
-    const Eigen::Vector3d ray_C(((2 * x + 1) - size.x()) / height * tangent + camera.shift,
-                                (1 - (2 * y + 1) / height) * tangent, -1);
     const auto bone_W = renderer_.pick(x, y);
     const double bone_at = bone_W ? (*bone_W - camera.eye_W).norm() : std::numeric_limits<double>::max();
-    return structures_.nameAlong(camera.eye_W, camera.R_WC * ray_C, bone_at, last_view_);
+    return structures_.nameAlong(camera.eye_W, camera.rayThrough(x, y, size.x(), size.y()), bone_at,
+                                 last_view_);
 }
 
 void RenderScene::nameMouse(const PictureArea& area, std::vector<HudLabel>& labels) const {

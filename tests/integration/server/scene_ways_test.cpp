@@ -82,7 +82,7 @@ void expectWellFormed(const scene::Scene& scene, const std::string& name) {
 void SceneWays::expectRuns(const LoadedScene& loaded) {
     const Scenario scenario = scenarioOf(loaded.scene);  // throws if the device cannot go that way
     EXPECT_GE(scenario.path.duration(), 5);
-    EXPECT_LE(scenario.path.duration(), 25);
+    EXPECT_LE(scenario.path.duration(), 45);
     const std::string trajectory = folder_ / "way.csv";
     writeTrajectory(scenario, deviceSetupOf(loaded.scene).X_WD, trajectory);
     const auto run =

@@ -98,6 +98,17 @@ TEST_F(HudLayout, TheHelpPageGetsSmallerTextWhereItWouldNotFit) {
     EXPECT_LT(extentSince(0).right, 1600);
 }
 
+TEST_F(HudLayout, AHelpPageThatFitsInNoTextLeavesItsLastGroupsOut) {
+    const std::vector<HudRow> rows(8, HudRow{"Shift+X", "cut away the other side"});
+    const std::vector<HelpGroup> groups(40, HelpGroup{"Cut-planes", rows});
+    const PictureSize small{480, 300};
+    const auto fitting = helpThatFits(font_, groups, small);
+    EXPECT_GT(fitting.size(), 1u);
+    EXPECT_LT(fitting.size(), groups.size());
+    EXPECT_EQ(helpThatFits(font_, {groups[0]}, small).size(), 1u);
+    EXPECT_EQ(helpThatFits(font_, groups, {16000, 1200}).size(), groups.size());
+}
+
 TEST(FontAtlas, AnUnknownSignIsAQuestionMark) {
     const FontAtlas font(kEm);
     EXPECT_EQ(font.glyph(0x1f600, FontStyle::kPlain).u0, font.glyph('?', FontStyle::kPlain).u0);
