@@ -6,12 +6,10 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 
-#include "common/rt/clock.h"
+#include "common/lesson/attempts_csv.h"
 #include "common/user_error.h"
 #include "haptic_server/record/bone_files.h"
 
@@ -58,7 +56,7 @@ class TableFile {
         if (fsync(file_) != 0) undo(before, errno);
     }
     void requireTable() const {
-        const std::string header = std::string(kClassTableHeader) + "\n";
+        const std::string header = std::string(kAttemptsHeader) + "\n";
         if (size() > 0 && read(0, header.size()) != header)
             refuse("is there and has other columns than a class table; name another file");
     }
@@ -79,53 +77,7 @@ class TableFile {
     int file_;
 };
 
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
-}
-
-std::string utcText(int64_t stamp_ns) {
-    const time_t seconds = stamp_ns / kNsPerSecond;
-    tm utc{};
-    gmtime_r(&seconds, &utc);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    return text;
-}
-
-template <class Texts>
-std::string joined(const Texts& texts) {
-    std::string all;
-    for (const std::string& text : texts) all += (all.empty() ? "" : "; ") + text;
-    return all;
-}
-
 }  // namespace
-
-std::string csvText(const std::string& text) {
-    std::string field = "\"";
-    if (!text.empty() && std::strchr("=+-@\t\r", text[0])) field += '\'';
-    for (const char c : text) {
-        if (c == '"') field += '"';
-        field += (unsigned char)c < ' ' ? ' ' : c;
-    }
-    return field + '"';
-}
-
-std::string classTableLine(const topics::Attempt& attempt) {
-    const topics::Training& training = attempt.training();
-    const auto ifAny = [](bool is_there, double value) { return is_there ? number(value) : std::string(); };
-    return std::to_string(attempt.number()) + ',' + utcText(attempt.start_stamp_ns()) + ',' +
-           csvText(attempt.trainee()) + ',' + csvText(attempt.scene_id()) + ',' + number(attempt.time_s()) +
-           ',' + number(attempt.removed_mm3()) + ',' + number(attempt.max_force_n()) + ',' +
-           ifAny(training.has_damaged_mm3(), training.damaged_mm3()) + ',' +
-           ifAny(training.has_least_distance_mm(), training.least_distance_mm()) + ',' +
-           ifAny(training.has_max_protected_force_n(), training.max_protected_force_n()) + ',' +
-           ifAny(training.has_necrotic_mm3(), training.necrotic_mm3()) + ',' +
-           ifAny(training.has_max_temperature_c(), training.max_temperature_c()) + ',' +
-           csvText(joined(attempt.structures_touched())) + ',' + csvText(joined(training.warnings()));
-}
 
 ClassTable::ClassTable(std::string path) : path_(std::move(path)) {
     if (path_.empty()) return;
@@ -148,9 +100,9 @@ std::string ClassTable::append(const topics::Attempt& attempt) const {
         file.requireTable();
         const off_t size = file.size();
         std::string text;
-        if (size == 0) text = std::string(kClassTableHeader) + "\n";
+        if (size == 0) text = std::string(kAttemptsHeader) + "\n";
         if (size > 0 && file.read(size - 1, 1) != "\n") text = "\n";  // somebody's last line has no end
-        file.append(text + classTableLine(attempt) + "\n");
+        file.append(text + attemptLine(attempt) + "\n");
         return "";
     } catch (const std::exception& error) {
         return error.what();

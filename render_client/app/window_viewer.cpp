@@ -7,13 +7,13 @@
 #include <fstream>
 #include <map>
 
+#include "common/lesson/attempts_csv.h"
 #include "common/user_error.h"
 #include "common/whole_file.h"
 #include "render_client/app/hand_feed.h"
 #include "render_client/app/scene_feed.h"
 #include "render_client/app/stop_signal.h"
 #include "render_client/controls/announce_clock.h"
-#include "render_client/controls/attempts_csv.h"
 #include "render_client/controls/frame_rate.h"
 #include "render_client/controls/viewer_controls.h"
 #include "render_client/hud/session_text.h"

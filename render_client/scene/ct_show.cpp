@@ -159,21 +159,21 @@ std::optional<SeenPanes> CtShow::seenPanes() const {
     return SeenPanes{*panes_, *grid_, *window_};
 }
 
-std::vector<HudPane> CtShow::texts() const {
+std::vector<HudPane> CtShow::texts(bool are_patients_axes) const {
     constexpr const char* kAxes[] = {"x", "y", "z"};
     std::vector<HudPane> texts;
     if (!panes_) return texts;
     for (const Pane& pane : *panes_) {
-        const SliceView& view = sliceViewOf(pane.axis);
+        const SliceLabels& labels = sliceLabelsOf(pane.axis, are_patients_axes);
         HudPane text{float(pane.rect.x),
                      float(pane.rect.y),
                      float(pane.rect.width),
                      float(pane.rect.height),
-                     view.title,
-                     view.left,
-                     view.right,
-                     view.top,
-                     view.bottom,
+                     labels.title,
+                     labels.left,
+                     labels.right,
+                     labels.top,
+                     labels.bottom,
                      "",
                      "",
                      false,

@@ -44,8 +44,8 @@ class CtShow {
 
     // Draws the panes of the last update() into their columns of the picture (`target`), if there are any.
     void paintPanes(GLuint target) const;
-    // Returns what is written on them.
-    std::vector<HudPane> texts() const;
+    // Returns what is written on them: sides of the patient, or W's axes.
+    std::vector<HudPane> texts(bool are_patients_axes) const;
 
     bool hasPanes() const { return panes_.has_value(); }
     // Returns what the panes of the last update() show; nothing without a scan.

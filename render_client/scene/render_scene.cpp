@@ -278,7 +278,7 @@ void RenderScene::updateCt(int width, int height) {
 void RenderScene::paintPanes(int width, int height, float ui_scale, GLuint target) {
     if (!ct_.hasPanes()) return;
     ct_.paintPanes(target);
-    hud_painter_.paintPanes(ct_.texts(), {width, height}, ui_scale);
+    hud_painter_.paintPanes(ct_.texts(hasPatientAxes()), {width, height}, ui_scale);
 }
 
 std::optional<Eigen::Vector3d> RenderScene::pick(int x, int y) const {
@@ -347,7 +347,7 @@ void RenderScene::drawAnaglyph(const FrameView& view, int width, int height, flo
 }
 
 OrientationAxes RenderScene::orientationOf(const Camera& camera) const {
-    const bool are_patients = !hud_input_.info->lacks_patient_axes();
+    const bool are_patients = hasPatientAxes();
     const Eigen::Matrix3d R_CW = camera.R_WC.transpose();
     if (are_patients) return {R_CW.cast<float>(), true};
     return {(R_CW * X_WV_.rotation.toRotationMatrix()).cast<float>(), false};

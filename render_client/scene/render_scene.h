@@ -147,6 +147,8 @@ class RenderScene {
                  GLuint target);
     void drawSideBySide(const FrameView& view, int width, int height, float ui_scale, GLuint target);
     void drawAnaglyph(const FrameView& view, int width, int height, float ui_scale, GLuint target);
+    // W is the patient's LPS, as far as is known.
+    bool hasPatientAxes() const { return !hud_input_.info || !hud_input_.info->lacks_patient_axes(); }
     OrientationAxes orientationOf(const Camera& camera) const;
     void paintHud(const Camera& camera, const PictureArea& area, float ui_scale);
     void prepareThickness(const FrameView& view);

@@ -12,10 +12,15 @@ using Eigen::Vector3d;
 constexpr double kSlack = 1e-6;  // voxels: a plane that lies on voxels needs none of the next layer
 
 const SliceView kViews[] = {
-    {Vector3d::UnitY(), -Vector3d::UnitZ(), "Sagittal", "A", "P", "H", "F"},
-    {Vector3d::UnitX(), -Vector3d::UnitZ(), "Coronal", "R", "L", "H", "F"},
-    {Vector3d::UnitX(), Vector3d::UnitY(), "Axial", "R", "L", "A", "P"},
+    {Vector3d::UnitY(), -Vector3d::UnitZ()},
+    {Vector3d::UnitX(), -Vector3d::UnitZ()},
+    {Vector3d::UnitX(), Vector3d::UnitY()},
 };
+constexpr SliceLabels kOfPatient[] = {
+    {"Sagittal", "A", "P", "S", "I"}, {"Coronal", "R", "L", "S", "I"}, {"Axial", "R", "L", "A", "P"}};
+constexpr SliceLabels kOfScan[] = {{"Across x", "-y", "+y", "+z", "-z"},
+                                   {"Across y", "-x", "+x", "+z", "-z"},
+                                   {"Across z", "-x", "+x", "-y", "+y"}};
 
 // Returns the axis of V that lies most along this one of W.
 Eigen::Index axisInVolume(const Pose& X_WV, size_t axis) {
@@ -46,6 +51,10 @@ bool reaches(const BrickBox& box, const Vector3d& direction, const Vector3d& mid
 
 const SliceView& sliceViewOf(size_t axis) {
     return kViews[axis];
+}
+
+const SliceLabels& sliceLabelsOf(size_t axis, bool are_patients_axes) {
+    return are_patients_axes ? kOfPatient[axis] : kOfScan[axis];
 }
 
 Eigen::AlignedBox3d scanBox_W(const DensityGrid& grid, const Pose& X_WV) {

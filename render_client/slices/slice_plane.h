@@ -24,12 +24,16 @@ struct SlicePlane {
 // coronal one from the front, a sagittal one from the patient's left.
 struct SliceView {
     Eigen::Vector3d right_W, down_W;
-    const char* title;
-    // What lies at the picture's edges: right, left, anterior, posterior, head, foot.
-    const char *left, *right, *top, *bottom;
 };
 // The axis is W's x (0, sagittal), y (1, coronal) or z (2, axial).
 const SliceView& sliceViewOf(size_t axis);
+
+// Says what lies at the picture's edges: the patient's right, left, anterior, posterior, superior, inferior,
+// or W's axes where the scan's file does not say how the patient lay.
+struct SliceLabels {
+    const char *title, *left, *right, *top, *bottom;
+};
+const SliceLabels& sliceLabelsOf(size_t axis, bool are_patients_axes);
 
 // Returns the box (W, m) around all that voxels of the scan fill.
 Eigen::AlignedBox3d scanBox_W(const DensityGrid& grid, const Pose& X_WV);

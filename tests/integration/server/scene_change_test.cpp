@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "common/device_messages/device_state.h"
-#include "haptic_server/session/class_table.h"
+#include "common/lesson/attempts_csv.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/process.h"
 
@@ -197,7 +197,7 @@ TEST_F(SceneChange, ReachesViewersAndTheHandAtOnceWithoutAStepOfForce) {
         }
     }
     const std::string table = test::readFile(folder_ / "class.csv");
-    EXPECT_EQ(table.find(std::string(kClassTableHeader) + "\n1,"), 0u) << table;
+    EXPECT_EQ(table.find(std::string(kAttemptsHeader) + "\n1,"), 0u) << table;
     EXPECT_NE(table.find(",\"'=Ann\",\"a\","), std::string::npos) << table;
 }
 

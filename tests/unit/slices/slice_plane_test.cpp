@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
+#include <string>
 
 #include "render_client/slices/slice_image.h"
 #include "tests/unit/slices/sliced_volume.h"
@@ -64,6 +66,23 @@ TEST(SlicePlane, AsksForTheBricksThatItShows) {
             for (const uint32_t brick : bricks)
                 layers.insert(firstVoxelOf(volume.grid, brick)[Eigen::Index(axis)]);
             EXPECT_EQ(layers.size(), 1u) << "axis " << axis;
+        }
+}
+
+TEST(SlicePlane, ItsEdgesNameWhatLiesThere) {
+    const std::map<std::string, Vector3d> directions = {
+        {"L", Vector3d::UnitX()},   {"R", -Vector3d::UnitX()},  {"P", Vector3d::UnitY()},
+        {"A", -Vector3d::UnitY()},  {"S", Vector3d::UnitZ()},   {"I", -Vector3d::UnitZ()},
+        {"+x", Vector3d::UnitX()},  {"-x", -Vector3d::UnitX()}, {"+y", Vector3d::UnitY()},
+        {"-y", -Vector3d::UnitY()}, {"+z", Vector3d::UnitZ()},  {"-z", -Vector3d::UnitZ()}};
+    for (size_t axis = 0; axis < 3; ++axis)
+        for (const bool are_patients : {true, false}) {
+            const SliceView& view = sliceViewOf(axis);
+            const SliceLabels& labels = sliceLabelsOf(axis, are_patients);
+            EXPECT_EQ(directions.at(labels.right), view.right_W) << labels.title;
+            EXPECT_EQ(directions.at(labels.left), -view.right_W) << labels.title;
+            EXPECT_EQ(directions.at(labels.bottom), view.down_W) << labels.title;
+            EXPECT_EQ(directions.at(labels.top), -view.down_W) << labels.title;
         }
 }
 

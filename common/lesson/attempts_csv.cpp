@@ -1,0 +1,65 @@
+#include "common/lesson/attempts_csv.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+
+namespace bonemill {
+namespace {
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+std::string utcText(int64_t stamp_ns) {
+    const std::time_t seconds = std::time_t(stamp_ns / 1'000'000'000);
+    std::tm utc{};
+    char text[32] = "";
+    if (stamp_ns > 0 && gmtime_r(&seconds, &utc))
+        std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text;
+}
+
+template <class Texts>
+std::string joined(const Texts& texts) {
+    std::string all;
+    for (const std::string& text : texts) all += (all.empty() ? "" : "; ") + text;
+    return all;
+}
+
+}  // namespace
+
+std::string csvText(const std::string& text) {
+    std::string field = "\"";
+    if (!text.empty() && std::strchr("=+-@\t\r", text[0])) field += '\'';
+    for (const char c : text) {
+        if (c == '"') field += '"';
+        field += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    }
+    return field + '"';
+}
+
+std::string attemptLine(const topics::Attempt& attempt) {
+    const topics::Training& training = attempt.training();
+    const auto ifAny = [](bool is_there, double value) { return is_there ? number(value) : std::string(); };
+    return std::to_string(attempt.number()) + ',' + utcText(attempt.start_stamp_ns()) + ',' +
+           csvText(attempt.trainee()) + ',' + csvText(attempt.scene_id()) + ',' + number(attempt.time_s()) +
+           ',' + number(attempt.removed_mm3()) + ',' + number(attempt.max_force_n()) + ',' +
+           ifAny(training.has_damaged_mm3(), training.damaged_mm3()) + ',' +
+           ifAny(training.has_least_distance_mm(), training.least_distance_mm()) + ',' +
+           ifAny(training.has_max_protected_force_n(), training.max_protected_force_n()) + ',' +
+           ifAny(training.has_necrotic_mm3(), training.necrotic_mm3()) + ',' +
+           ifAny(training.has_max_temperature_c(), training.max_temperature_c()) + ',' +
+           csvText(joined(attempt.structures_touched())) + ',' + csvText(joined(training.warnings()));
+}
+
+std::string attemptsCsv(const topics::Lesson& lesson) {
+    std::string text = std::string(kAttemptsHeader) + "\n";
+    for (const topics::Attempt& attempt : lesson.attempts()) text += attemptLine(attempt) + "\n";
+    return text;
+}
+
+}  // namespace bonemill

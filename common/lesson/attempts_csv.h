@@ -1,0 +1,25 @@
+// Writes how a class' attempts went as text for a spreadsheet, the same in the server's class table and in
+// what a viewer saves. The functions are pure; any thread may call them.
+#pragma once
+
+#include <string>
+
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+// Makes one field of it. A spreadsheet takes what begins with = + - or @ for a formula, so an apostrophe goes
+// before.
+std::string csvText(const std::string& text);
+
+inline constexpr char kAttemptsHeader[] =
+    "number,start_utc,trainee,scene,time_s,removed_mm3,max_force_n,damaged_mm3,least_distance_mm,"
+    "max_protected_force_n,necrotic_mm3,max_temperature_c,structures_touched,warnings";
+
+// Makes one line without its end, as UTF-8: kAttemptsHeader has the columns. What is not known stays empty.
+std::string attemptLine(const topics::Attempt& attempt);
+
+// Makes the whole table, with its header.
+std::string attemptsCsv(const topics::Lesson& lesson);
+
+}  // namespace bonemill

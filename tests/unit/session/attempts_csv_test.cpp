@@ -1,0 +1,33 @@
+#include "common/lesson/attempts_csv.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/class_lesson.h"
+
+namespace bonemill {
+namespace {
+
+TEST(AttemptsCsv, HasALinePerAttemptBelowTheHeader) {
+    const std::string text = attemptsCsv(test::makeLesson());
+    EXPECT_EQ(text,
+              std::string(kAttemptsHeader) +
+                  "\n1,2026-11-23T19:00:00Z,\"Anna\",\"cavity\",151,12.34,5.1,,,,0.2,48.5,\"\",\"\"\n"
+                  "2,2026-11-23T19:00:00Z,\"'=Ben\",\"cavity\",151,12.34,5.1,,,,0.2,48.5,\"pulp\",\"\"\n");
+    EXPECT_EQ(attemptsCsv({}), std::string(kAttemptsHeader) + "\n");
+}
+
+TEST(AttemptsCsv, NoNameIsAFormulaOrBreaksItsLine) {
+    EXPECT_EQ(csvText("Ann \"the\" drill"), "\"Ann \"\"the\"\" drill\"");
+    for (const std::string text : {"=1+2", "+1", "-1", "@SUM(A1)"})
+        EXPECT_EQ(csvText(text), "\"'" + text + "\"");
+    EXPECT_EQ(csvText("a\nb\rc"), "\"a b c\"");
+}
+
+TEST(AttemptsCsv, ATimeThatIsNotKnownStaysEmpty) {
+    topics::Attempt attempt;
+    attempt.set_start_stamp_ns(-1);
+    EXPECT_EQ(attemptLine(attempt).find("0,,"), 0u);
+}
+
+}  // namespace
+}  // namespace bonemill
