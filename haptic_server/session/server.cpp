@@ -202,7 +202,7 @@ int runServer(const ServerOptions& given) {
     requireReplaceable(options.report);
     requireReplaceable(options.save);
     dds::setNetwork(options.network);
-    if (options.class_table.empty() && !options.export_dir.empty())
+    if (options.class_table.empty() && std::filesystem::is_directory(options.export_dir))
         options.class_table = (std::filesystem::path(options.export_dir) / "class.csv").string();
     std::vector<ListedScene> scenes = listScenes(foldersOf(options));
     if (options.scene.empty()) {
