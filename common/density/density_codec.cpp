@@ -23,11 +23,12 @@ size_t voxelsOf(int edge) {
 
 // Both sides compute it by the same IEEE operations, so a density that comes back once always does. The
 // import computes densities of whole HU by the same ones (DensityMapping): halves are rounded alike.
+constexpr double kHalf = 0.5;
 uint16_t densityAt(uint16_t step, uint16_t steps) {
-    return uint16_t(step / double(steps) * 65535.0 + 0.5);
+    return uint16_t(step / double(steps) * 65535.0 + kHalf);
 }
 uint16_t stepOf(uint16_t density, uint16_t steps) {
-    return uint16_t(density * (steps / 65535.0) + 0.5);
+    return uint16_t(density * (steps / 65535.0) + kHalf);
 }
 
 // Small numbers of either sign become small ones.

@@ -56,7 +56,7 @@ void CtShow::updatePanes(const View& view) {
         pane = makePane(*store_.grid(), view.X_WV, view.settings.slices, axis, rects[axis], view.burr);
         are_scrolled_[axis] = view.settings.slices.positions[axis].has_value();
         if (!pane_slices_[axis]) pane_slices_[axis].emplace();
-        Slice& slice = *pane_slices_[axis];
+        ShownSlice& slice = *pane_slices_[axis];
         if (!look(slice, pane.plane) && painted_[axis] == window_) continue;
         painted_[axis] = window_;
         painter_->setPixels(axis, coloursOf(slice.image, *store_.grid(), *window_), slice.image.width,
@@ -89,7 +89,7 @@ Eigen::AlignedBox3f CtShow::updateFaces(const View& view) {
     Eigen::AlignedBox3f changed;
     if (!faces_) return changed;
     for (size_t axis = 0; axis < 3; ++axis) {
-        std::optional<Slice>& slice = face_slices_[axis];
+        std::optional<ShownSlice>& slice = face_slices_[axis];
         if (!shows_faces_ || !cuts.is_on[axis]) {
             changed.extend(faces_->remove(axis));
             slice.reset();
@@ -114,7 +114,7 @@ void CtShow::updateMilled(const View& view, NodeStore& nodes) {
     milled_grey_ = greyOfDensity(*grid_, *window_).cast<float>();
 }
 
-bool CtShow::look(Slice& slice, const SlicePlane& plane) {
+bool CtShow::look(ShownSlice& slice, const SlicePlane& plane) {
     if (slice.is_known && slice.plane == plane && slice.changes == store_.changes()) return false;
     if (!slice.is_known || slice.plane != plane) {
         slice.plane = plane;

@@ -19,6 +19,15 @@
 
 namespace bonemill {
 
+// One plane through the scan, and what of it was there when it was looked at last.
+struct ShownSlice {
+    SlicePlane plane;
+    std::vector<uint32_t> bricks;
+    SliceImage image;
+    uint64_t changes = 0;
+    bool is_known = false;
+};
+
 class CtShow {
   public:
     explicit CtShow(const GlApi& gl) : gl_(gl) {}
@@ -52,16 +61,8 @@ class CtShow {
     std::optional<SeenPanes> seenPanes() const;
 
   private:
-    // One plane through the scan, and what of it was there when it was looked at last.
-    struct Slice {
-        SlicePlane plane;
-        std::vector<uint32_t> bricks;
-        SliceImage image;
-        uint64_t changes = 0;
-        bool is_known = false;
-    };
     // Returns true when the image is another one now.
-    bool look(Slice& slice, const SlicePlane& plane);
+    bool look(ShownSlice& slice, const SlicePlane& plane);
     void updatePanes(const View& view);
     Eigen::AlignedBox3f updateFaces(const View& view);
     void updateMilled(const View& view, NodeStore& nodes);
@@ -80,7 +81,7 @@ class CtShow {
     std::optional<Eigen::Vector2f> milled_grey_;
     std::optional<std::array<Pane, 3>> panes_;
     std::array<bool, 3> are_scrolled_{};
-    std::array<std::optional<Slice>, 3> pane_slices_, face_slices_;
+    std::array<std::optional<ShownSlice>, 3> pane_slices_, face_slices_;
     std::array<std::optional<GreyWindow>, 3> painted_;  // the window that each pane's pixels have
     std::optional<GreyWindow> window_;
     int columns_ = 0, width_ = 0, height_ = 0;

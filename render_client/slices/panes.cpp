@@ -42,7 +42,7 @@ std::array<PaneRect, 3> paneRects(const ViewSettings& settings, int width, int h
 Pane makePane(const DensityGrid& grid, const Pose& X_WV, const SliceSettings& settings, size_t axis,
               const PaneRect& rect, const std::optional<SliceBurr>& burr) {
     const SliceView& view = sliceViewOf(axis);
-    const Eigen::AlignedBox3d box_W = scanBox_W(grid, X_WV);
+    const Eigen::AlignedBox3d box_W = scanBox(grid, X_WV);
     const Vector3d focus_W = burr ? burr->p_W : Vector3d(box_W.center());
     const Eigen::Index i = Eigen::Index(axis);
     Pane pane;

@@ -57,7 +57,7 @@ const SliceLabels& sliceLabelsOf(size_t axis, bool are_patients_axes) {
     return are_patients_axes ? kOfPatient[axis] : kOfScan[axis];
 }
 
-Eigen::AlignedBox3d scanBox_W(const DensityGrid& grid, const Pose& X_WV) {
+Eigen::AlignedBox3d scanBox(const DensityGrid& grid, const Pose& X_WV) {
     const Eigen::AlignedBox3d box_V(
         grid.origin_m - grid.spacing_m / 2,
         grid.origin_m + grid.spacing_m.cwiseProduct((grid.voxels.cast<double>().array() - 0.5).matrix()));
@@ -73,7 +73,7 @@ double sliceStep(const DensityGrid& grid, const Pose& X_WV, size_t axis) {
 double nearestSlice(const DensityGrid& grid, const Pose& X_WV, size_t axis, double position_W) {
     const Eigen::Index i = Eigen::Index(axis);
     const double step = sliceStep(grid, X_WV, axis), first = (X_WV * grid.origin_m)[i];
-    const Eigen::AlignedBox3d box_W = scanBox_W(grid, X_WV);
+    const Eigen::AlignedBox3d box_W = scanBox(grid, X_WV);
     const double inside = std::clamp(position_W, box_W.min()[i] + step / 2,
                                      std::max(box_W.max()[i] - step / 2, box_W.min()[i] + step / 2));
     return first + std::round((inside - first) / step) * step;

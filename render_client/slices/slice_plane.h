@@ -36,7 +36,7 @@ struct SliceLabels {
 const SliceLabels& sliceLabelsOf(size_t axis, bool are_patients_axes);
 
 // Returns the box (W, m) around all that voxels of the scan fill.
-Eigen::AlignedBox3d scanBox_W(const DensityGrid& grid, const Pose& X_WV);
+Eigen::AlignedBox3d scanBox(const DensityGrid& grid, const Pose& X_WV);
 
 // Returns the place (W, m, along the axis) of the scan's own slice that is nearest, and the distance of its
 // slices along that axis. A scan that lies oblique in W has none, but steps as large.

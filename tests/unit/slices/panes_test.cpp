@@ -49,7 +49,7 @@ TEST(Panes, ThereAreNoneUnlessWantedAndNeverBeforeOneEye) {
 TEST(Panes, FollowTheBurrUntilTheyAreScrolled) {
     const SlicedVolume volume;
     SliceSettings settings;
-    const SliceBurr burr{scanBox_W(volume.grid, Pose()).center() + Vector3d(1e-3, 2e-3, 3e-3), 1.5e-3};
+    const SliceBurr burr{scanBox(volume.grid, Pose()).center() + Vector3d(1e-3, 2e-3, 3e-3), 1.5e-3};
     for (size_t axis = 0; axis < 3; ++axis) {
         const auto pane = [&] {
             return makePane(volume.grid, Pose(), settings, axis, {0, 0, 200, 200}, burr);
@@ -69,7 +69,7 @@ TEST(Panes, FollowTheBurrUntilTheyAreScrolled) {
 TEST(Panes, ZoomInAroundTheBurr) {
     const SlicedVolume volume;
     SliceSettings settings;
-    const Eigen::AlignedBox3d box = scanBox_W(volume.grid, Pose());
+    const Eigen::AlignedBox3d box = scanBox(volume.grid, Pose());
     const PaneRect rect{0, 0, 200, 200};
     for (const double zoom : {1.0, 2.0, 8.0, 16.0})
         for (const Vector3d& part : {Vector3d(0.5, 0.5, 0.5), Vector3d(0.02, 0.97, 0.5), Vector3d(1, 0, 0)})

@@ -57,7 +57,7 @@ int wrongPixels(const Pose& X_WV, double zoom, int count, Against against) {
     volume.putAll(store);
     SliceSettings settings;
     settings.zoom = zoom;
-    const Eigen::AlignedBox3d box_W = scanBox_W(volume.grid, X_WV);
+    const Eigen::AlignedBox3d box_W = scanBox(volume.grid, X_WV);
     const SliceBurr burr{box_W.center() + 0.1 * box_W.sizes(), 2e-3};
     std::mt19937 random(11);
     int wrong = 0;
@@ -101,7 +101,7 @@ TEST(SliceImage, WhatHasNotArrivedSaysSo) {
     const SlicedVolume volume;
     DensityStore store;
     store.setGrid(volume.grid);
-    const Eigen::AlignedBox3d box_W = scanBox_W(volume.grid, Pose());
+    const Eigen::AlignedBox3d box_W = scanBox(volume.grid, Pose());
     const double middle = nearestSlice(volume.grid, Pose(), 2, box_W.center().z());
     const SlicePlane plane = facePlane(volume.grid, Pose(), 2, middle, box_W, 500);
     const auto countOf = [&](SliceState state) {

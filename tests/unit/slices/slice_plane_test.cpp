@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 using test::SlicedVolume;
 
 SlicePlane throughTheMiddle(const DensityGrid& grid, const Pose& X_WV, size_t axis, int edge) {
-    const Eigen::AlignedBox3d box = scanBox_W(grid, X_WV);
+    const Eigen::AlignedBox3d box = scanBox(grid, X_WV);
     Vector3d middle = box.center();
     middle[Eigen::Index(axis)] = nearestSlice(grid, X_WV, axis, middle[Eigen::Index(axis)]);
     return slicePlane(X_WV, axis, middle, box.sizes().maxCoeff() / edge, edge, edge);
@@ -24,7 +24,7 @@ SlicePlane throughTheMiddle(const DensityGrid& grid, const Pose& X_WV, size_t ax
 
 TEST(SlicePlane, TheScanIsWhatItsVoxelsFill) {
     const SlicedVolume volume;
-    const Eigen::AlignedBox3d box = scanBox_W(volume.grid, Pose());
+    const Eigen::AlignedBox3d box = scanBox(volume.grid, Pose());
     EXPECT_LT((box.min() - Vector3d(0.8e-3, -2.25e-3, 0.15e-3)).norm(), 1e-12);
     EXPECT_LT((box.sizes() - Vector3d(37 * 4e-4, 29 * 5e-4, 23 * 7e-4)).norm(), 1e-12);
 }
@@ -90,7 +90,7 @@ TEST(SlicePlane, AFaceCoversTheBoxInStepsOfAVoxel) {
     const SlicedVolume volume;
     for (const Vector3d& rotation : {Vector3d(0, 0, 0), Vector3d(0.5, -0.3, 0.9)}) {
         const Pose X_WV = test::turned(rotation);
-        const Eigen::AlignedBox3d box = scanBox_W(volume.grid, X_WV);
+        const Eigen::AlignedBox3d box = scanBox(volume.grid, X_WV);
         const SlicePlane fine = facePlane(volume.grid, X_WV, 1, box.center().y(), box, 4096);
         EXPECT_NEAR(fine.right_V.norm(), sliceStep(volume.grid, X_WV, 0), 1e-12);
         EXPECT_NEAR(fine.down_V.norm(), sliceStep(volume.grid, X_WV, 2), 1e-12);
