@@ -180,6 +180,7 @@ uint32_t DeviceLink::announceScene(const std::string& absolute_path, uint64_t ha
     notice.hash = hash;
     notice.revision = revision;
     std::copy(absolute_path.begin(), absolute_path.end(), notice.path);
+    capabilities_version_ = 0;  // who reads for the new scene knows no device yet
     memory_->scene.value.write(notice);
     return revision;
 }

@@ -44,7 +44,7 @@ bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     input.X_WT_device = X_WT_device_;
     input.is_repeated = sequence_ == told_sequence_;
     told_sequence_ = sequence_;
-    input.buttons = buttons_;
+    input.buttons = fade_start_ns_ == 0 ? buttons_ : 0;  // nobody mills what resists no more
     input.device = device_;
     input.other_device = takeCapabilities() ? &capabilities_ : nullptr;
     input.faults = std::exchange(faults_, 0);

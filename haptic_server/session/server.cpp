@@ -56,6 +56,12 @@ ServerOptions optionsOf(const ServerOptions& session, const std::string& scene, 
     return options;
 }
 
+void requireFilesCanBeWritten(const ServerOptions& options) {
+    requireWritable(options.trace);
+    requireReplaceable(options.report);
+    requireReplaceable(options.save);
+}
+
 // The process: it has one scene after the other.
 class Server {
   public:
@@ -65,9 +71,9 @@ class Server {
     int run() {
         run_->start();
         waitForTheEnd();
-        loading_ = {};  // waits for what is being read
         run_->end(true);
         are_files_whole_ &= run_->writeFiles();
+        loading_ = {};  // waits for what is being read
         run_.reset();
         return are_files_whole_ && !has_failed_ ? 0 : 1;
     }
@@ -125,24 +131,29 @@ class Server {
         if (!order) return;
         order_ = std::move(*order);
         order_ns_ = monotonicNowNs();
-        loading_ = std::async(std::launch::async,
-                              [this, options = optionsOf(options_, order_.file, scenes_run_ + 1)] {
-                                  Loaded loaded = loadFirst(options);
-                                  return std::make_unique<SceneRun>(options, std::move(loaded.scene),
-                                                                    std::move(loaded.simulation), parts());
-                              });
+        try {
+            loading_ = std::async(
+                std::launch::async, [this, options = optionsOf(options_, order_.file, scenes_run_ + 1)] {
+                    requireFilesCanBeWritten(options);
+                    Loaded loaded = loadFirst(options);
+                    return std::make_unique<SceneRun>(options, std::move(loaded.scene),
+                                                      std::move(loaded.simulation), parts());
+                });
+        } catch (const std::exception& error) {
+            refuseChange(error.what());
+        }
     }
 
     void endChange() {
+        std::unique_ptr<SceneRun> next;
         try {
-            std::unique_ptr<SceneRun> next = loading_.get();
-            changeTo(std::move(next));
-            lesson_.answerOrder(order_.command, "done");
-        } catch (const UserError& error) {
-            refuseChange(error.what());
+            next = loading_.get();
         } catch (const std::bad_alloc&) {
-            refuseChange("there is not enough memory for a second scene beside the one in force");
+            return refuseChange("there is not enough memory for a second scene beside the one in force");
+        } catch (const std::exception& error) {
+            return refuseChange(error.what());
         }
+        changeTo(std::move(next));
     }
 
     void refuseChange(const std::string& why) {
@@ -161,10 +172,24 @@ class Server {
         publisher_.beginRun();
         std::swap(run_, next);
         ++scenes_run_;
-        run_->start();
+        startChanged();
         spdlog::info("another scene: {:.2f} s to load, {:.2f} s to change",
                      secondsOfNs(loaded_ns - order_ns_), secondsOfNs(monotonicNowNs() - loaded_ns));
         are_files_whole_ &= next->writeFiles();
+    }
+
+    // There is no way back to the scene of before: a failure ends the session in order, with the files of
+    // both.
+    void startChanged() {
+        try {
+            run_->start();
+            lesson_.answerOrder(order_.command, "done");
+        } catch (const std::exception& error) {
+            spdlog::error("{}: the session ends", error.what());
+            lesson_.answerOrder(order_.command, std::string("refused: ") + error.what());
+            has_failed_ = true;
+            stop_requested_ = true;
+        }
     }
 
     ServerOptions options_;
@@ -198,9 +223,7 @@ std::string listScenesOf(const ServerOptions& options) {
 
 int runServer(const ServerOptions& given) {
     ServerOptions options = given;
-    requireWritable(options.trace);
-    requireReplaceable(options.report);
-    requireReplaceable(options.save);
+    requireFilesCanBeWritten(options);
     dds::setNetwork(options.network);
     if (options.class_table.empty() && std::filesystem::is_directory(options.export_dir))
         options.class_table = (std::filesystem::path(options.export_dir) / "class.csv").string();

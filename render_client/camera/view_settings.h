@@ -81,6 +81,14 @@ struct ViewSettings {
     bool show_help = false;
     double text_scale = 1;  // the user's own factor, kLeastText to kMostText
     static constexpr double kLeastText = 0.5, kMostText = 4;
+
+    // Forgets what was chosen of one scene's scan and structures and means something else in the next one.
+    void forgetScene() {
+        structures.fill(structures[0]);
+        slices.positions = {};
+        slices.zoom = 1;
+        slices.window.reset();
+    }
 };
 
 }  // namespace bonemill

@@ -31,7 +31,7 @@ ScenePicture decoded(const std::string& png) {
 void ScenePictures::follow(const topics::Lesson& lesson) {
     std::set<std::string> known;
     for (const topics::SceneChoice& scene : lesson.scenes()) {
-        known.insert(scene.id());
+        if (!known.insert(scene.id()).second) continue;  // two of one name would take turns
         ScenePicture& picture = pictures_[scene.id()];
         if (picture.png == scene.picture()) continue;
         picture = decoded(scene.picture());

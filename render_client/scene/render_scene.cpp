@@ -64,6 +64,7 @@ void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     X_WV_ = *X_WV;
     bone_V_ = Eigen::AlignedBox3d(*low, *high);
     if (!old || old->name() != info.name()) view_pending_ = true;
+    if (old && old->name() != info.name()) settings_.forgetScene();
     hud_input_.info = info;
     structures_.setInfo(info);
     awaits_info_ = false;

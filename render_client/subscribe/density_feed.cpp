@@ -36,7 +36,9 @@ void DensityFeed::follow(DensityStore& store, const std::optional<topics::SceneI
         wished_.clear();
     }
     if (!info || !info->has_densities()) return;
-    store.setGrid(densityGridOf(info->densities()));
+    const DensityGrid grid = densityGridOf(info->densities());
+    if (store.grid() != grid) wished_.clear();  // its numbers are of other bricks
+    store.setGrid(grid);
     air_ = info->densities().air();
 }
 

@@ -11,7 +11,8 @@ namespace bonemill {
 namespace {
 
 constexpr uint32_t kMostVoxelsPerAxis = 16384;
-constexpr int64_t kMostBricks = 1 << 22;
+constexpr int64_t kMostBricks = 1 << 20;  // of a server's 16³ voxels, a scan of 1600³
+constexpr uint32_t kLeastBrickEdge = 8;
 constexpr double kMostSpacing_m = 1;
 constexpr double kFurthestOrigin_m = 1e3;
 constexpr double kLargestValue = 1e6;
@@ -36,7 +37,7 @@ bool isUsableGrid(const topics::DensityGrid& grid) {
     const auto is_place = [](double m) { return isBetween(m, -kFurthestOrigin_m, kFurthestOrigin_m); };
     const auto is_value = [](double value) { return isBetween(value, -kLargestValue, kLargestValue); };
     if (grid.voxels_size() != 3 || grid.spacing_m_size() != 3 || grid.origin_m_size() != 3 ||
-        grid.brick_edge() < 1 || grid.brick_edge() > uint32_t(kMostBrickEdge) ||
+        grid.brick_edge() < kLeastBrickEdge || grid.brick_edge() > uint32_t(kMostBrickEdge) ||
         !std::ranges::all_of(grid.voxels(), is_count) || !std::ranges::all_of(grid.spacing_m(), is_spacing) ||
         !std::ranges::all_of(grid.origin_m(), is_place))
         return false;

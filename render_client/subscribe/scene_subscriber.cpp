@@ -191,7 +191,9 @@ void SceneSubscriber::takeNodes(size_t max_nodes) {
         if (!info.has_data) return;
         std::optional<DecodedNode> node = parseNode(dds::payloadOf(sample), sample.node, sample.revision);
         if (!node) return dropMalformed("node mesh " + std::to_string(sample.node));
-        if (!enterEpoch(node->tag.epoch, info.writer) && choice_.isOther(info.writer)) return;
+        if (!enterEpoch(node->tag.epoch, info.writer) &&
+            (choice_.isOther(info.writer) || node->tag.epoch > model_.epoch()))
+            return;
         // The model takes nodes of an older run too: it remembers their writer, whose late
         // removals must not count.
         model_.applyNode(std::move(*node), info.writer, SceneModel::Clock::now());

@@ -8,6 +8,8 @@
 namespace bonemill {
 
 void SessionList::poll() {
+    const auto now = std::chrono::steady_clock::now();
+    std::erase_if(heard_, [now](const auto& entry) { return now - entry.second.at >= kTimeout; });
     reader_.take(kMostSessions, [this](const dds::StatusSample& sample, const dds::SampleInfo& info) {
         if (!info.has_data) return;
         const std::optional<topics::Status> status = parseStatus(dds::payloadOf(sample));

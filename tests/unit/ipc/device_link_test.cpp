@@ -116,6 +116,9 @@ TEST(DeviceLink, capabilitiesAreReadOnceEach) {
         EXPECT_EQ(read.max_force, force);
         EXPECT_FALSE(server.readCapabilities(read));
     }
+    server.announceScene("/scenes/tooth.textproto", 7);
+    EXPECT_TRUE(server.readCapabilities(read)) << "the next scene knows no device yet";
+    EXPECT_FALSE(server.readCapabilities(read));
 }
 
 TEST(DeviceLink, knowsItsPeer) {

@@ -74,9 +74,9 @@ TEST_F(DeviceLinkIoTest, ForceFadesOutWhenItIsToldTo) {
     config_.ramp.stale_after_ns = 100 * kNsPerSecond;  // a busy machine is no silence
     DeviceLinkIo io(config_, server_, ring_, cuts_);
     EXPECT_TRUE(io.hasFadedOut()) << "there was no force yet";
+    DeviceInput input;
     const auto factor = [&] {
         daemon_.writeSample(sampleAt(0));
-        DeviceInput input;
         EXPECT_TRUE(io.read(input));
         io.write({});
         return input.stale_factor;
@@ -84,12 +84,14 @@ TEST_F(DeviceLinkIoTest, ForceFadesOutWhenItIsToldTo) {
     const int64_t start = monotonicNowNs();
     while (factor() < 1) EXPECT_LT(monotonicNowNs() - start, 10 * kNsPerSecond);
     EXPECT_FALSE(io.hasFadedOut());
+    EXPECT_EQ(input.buttons, kButtonRemove);
     io.fadeOut();
     const int64_t fade_start = monotonicNowNs();
     double before = 1;
     while (!io.hasFadedOut()) {
         const double now = factor();
         EXPECT_LE(now, before);
+        EXPECT_EQ(input.buttons, 0u) << "what resists no more is not milled";
         EXPECT_GE(now, 1 - double(monotonicNowNs() - fade_start) / double(DeviceLinkIo::kFadeNs));
         before = now;
     }

@@ -1,0 +1,24 @@
+#include "render_client/camera/view_settings.h"
+
+#include <gtest/gtest.h>
+
+namespace bonemill {
+namespace {
+
+TEST(ViewSettings, WhatWasChosenOfOneScenesAnatomyIsForgottenInTheNext) {
+    ViewSettings settings;
+    settings.structures.fill(StructureMode::kExposedOnly);
+    settings.structures[3] = StructureMode::kOff;
+    settings.slices.are_shown = true;
+    settings.slices.positions[1] = 0.07;
+    settings.slices.zoom = 4;
+    settings.slices.window = GreyWindow{2000, 800};
+    settings.forgetScene();
+    EXPECT_EQ(settings.structures[3], StructureMode::kExposedOnly) << "as all others are";
+    EXPECT_FALSE(settings.slices.positions[1] || settings.slices.window);
+    EXPECT_EQ(settings.slices.zoom, 1);
+    EXPECT_TRUE(settings.slices.are_shown);
+}
+
+}  // namespace
+}  // namespace bonemill
