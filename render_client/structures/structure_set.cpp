@@ -6,7 +6,7 @@ namespace bonemill {
 namespace {
 
 // What lies deep in a structure is far from its surface, and yet not far from the structure.
-std::optional<SurfacePlace> nearestOf(const TriangleTree& tree, const Eigen::Vector3f& p_V, float within) {
+std::optional<NearestPlace> nearestOf(const TriangleTree& tree, const Eigen::Vector3f& p_V, float within) {
     return tree.nearest(p_V, tree.box().contains(p_V) ? TriangleTree::kAnyDistance : within);
 }
 

@@ -123,13 +123,13 @@ void TriangleTree::lookIn(uint32_t at, const Vector3f& p_V, Closest& closest) co
     }
 }
 
-std::optional<SurfacePlace> TriangleTree::nearest(const Vector3f& p_V, float within) const {
+std::optional<NearestPlace> TriangleTree::nearest(const Vector3f& p_V, float within) const {
     if (nodes_.empty()) return std::nullopt;
     const float limit = within < kAnyDistance ? within * within : kAnyDistance;
     Closest closest{limit, UINT32_MAX, Vector3f::Zero()};
     lookIn(0, p_V, closest);
     if (closest.triangle == UINT32_MAX) return std::nullopt;
-    SurfacePlace place{Vector3f::Zero(), std::sqrt(closest.squared)};
+    NearestPlace place{Vector3f::Zero(), std::sqrt(closest.squared)};
     Vector3f normal = Vector3f::Zero();
     for (int i = 0; i < 3; ++i) {
         const uint32_t corner = triangles_[closest.triangle].corners[size_t(i)];

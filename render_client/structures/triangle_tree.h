@@ -13,7 +13,7 @@
 
 namespace bonemill {
 
-struct SurfacePlace {
+struct NearestPlace {
     Eigen::Vector3f p_V;
     float distance;  // m, negative for a point within the closed surface
 };
@@ -28,7 +28,7 @@ class TriangleTree {
     const Eigen::AlignedBox3f& box() const { return box_; }
 
     // There is none at `within` or farther.
-    std::optional<SurfacePlace> nearest(const Eigen::Vector3f& p_V, float within = kAnyDistance) const;
+    std::optional<NearestPlace> nearest(const Eigen::Vector3f& p_V, float within = kAnyDistance) const;
     // Returns how many times the direction's length it is to the first triangle, seen from either side;
     // there is none at `within` or farther.
     std::optional<float> firstHit(const Eigen::Vector3f& from_V, const Eigen::Vector3f& direction_V,
