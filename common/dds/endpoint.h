@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -20,16 +21,19 @@ struct SampleInfo {
     bool has_data = false;     // false: only the key fields of the sample are set
     bool is_disposed = false;  // the key is gone on purpose; a writer that merely left does not dispose
     uint64_t writer = 0;       // who wrote or disposed
+    bool is_new_key = false;   // it is the first sample of its key
 };
 
 class AnyWriter {
   public:
     AnyWriter(const Participant& participant, const TopicDescription& description);
 
-    // It is false when DDS refused; the first refusal is logged.
+    // It is false when DDS refused; the first refusal is logged, but not that this program may not write
+    // there (isAllowed()).
     bool write(const void* sample);
     bool dispose(const void* sample);
     int matchedReaders() const;
+    bool isAllowed() const noexcept { return writer_.handle() > 0; }
 
   private:
     bool check(int32_t result, const char* action);
@@ -68,6 +72,8 @@ class AnyReader {
     int matchedWriters() const;
     bool isMatched(uint64_t writer) const;
     std::string hostOf(uint64_t writer) const;
+    uint64_t participantOf(uint64_t writer) const;
+    std::optional<GuidPrefix> ownerOf(uint64_t writer) const;
 
   private:
     Entity topic_;
@@ -84,6 +90,8 @@ class Writer {
     // learns it.
     bool dispose(const Sample& sample) { return writer_.dispose(&sample); }
     int matchedReaders() const { return writer_.matchedReaders(); }
+    // It is false when this program's identity (--secure) may not write there: then nothing is ever written.
+    bool isAllowed() const noexcept { return writer_.isAllowed(); }
 
   private:
     AnyWriter writer_;
@@ -103,6 +111,7 @@ class Reader {
             const AnyReader::Batch batch(reader_.handle(), max_samples - taken);
             if (batch.size() == 0) break;
             for (size_t i = 0; i < batch.size(); ++i) {
+                new_keys_ += batch.info(i).is_new_key;
                 handle(*static_cast<const Sample*>(batch.sample(i)), batch.info(i));
             }
             taken += batch.size();
@@ -110,15 +119,26 @@ class Reader {
         return taken;
     }
 
+    // Cyclone keeps every key that a writer ever used for as long as that writer lives. Whoever hears
+    // strangers makes the reader anew when it has heard too many, and forgets them all.
+    size_t newKeys() const noexcept { return new_keys_; }
+
     int32_t handle() const noexcept { return reader_.handle(); }
     int matchedWriters() const { return reader_.matchedWriters(); }
     // Takes a SampleInfo::writer; it is matched until it leaves, or is silent for longer than the lease.
     bool isMatched(uint64_t writer) const { return reader_.isMatched(writer); }
     // Returns the name of the PC that a matched writer runs on; empty if it is not told.
     std::string hostOf(uint64_t writer) const { return reader_.hostOf(writer); }
+    // Returns a number that all writers of a participant share and those of no other one do, also when it is
+    // matched anew; 0 if the writer is not matched.
+    uint64_t participantOf(uint64_t writer) const { return reader_.participantOf(writer); }
+    // Returns what the GUID of a matched writer's participant begins with. With --secure it proves who that
+    // is.
+    std::optional<GuidPrefix> ownerOf(uint64_t writer) const { return reader_.ownerOf(writer); }
 
   private:
     AnyReader reader_;
+    size_t new_keys_ = 0;
 };
 
 // Lets the sample's payload point at `bytes`, which must outlive the write; nothing is copied.

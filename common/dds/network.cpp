@@ -11,6 +11,7 @@
 #include "common/dds/network_interfaces.h"
 #include "common/dds/participant.h"
 #include "common/require_file.h"
+#include "common/security/security_folder.h"
 #include "common/user_error.h"
 #include "profiles.h"
 
@@ -99,6 +100,18 @@ std::string peerFragment(const std::vector<std::string>& peers) {
     return text + "</Peers></Discovery></Domain></CycloneDDS>";
 }
 
+// Who starts a viewer as the server would be a server for all others.
+void requirePart(const SecurityFolder& security, NetworkPart part) {
+    const Identity& self = security.self();
+    const NetworkPart made_for = self.role == "server"   ? NetworkPart::kServer
+                                 : self.role == "device" ? NetworkPart::kDevice
+                                                         : NetworkPart::kViewer;
+    if (part == made_for) return;
+    constexpr const char* kWanted[] = {"the folder server", "the folder device", "a person's folder"};
+    throw UserError("--secure " + security.folder().string() + ": this is " + self.name + "'s folder (" +
+                    self.role + "); this program needs " + kWanted[size_t(part)]);
+}
+
 }  // namespace
 
 bool isLanProfile(const std::string& profile) {
@@ -120,8 +133,26 @@ std::string networkConfiguration(const NetworkOptions& options) {
     return replaced(text, kPriorityPlace, kAboveLoopback) + peerFragment(options.peers);
 }
 
-void setNetwork(const NetworkOptions& options) {
+bool isOnePc(const std::string& configuration) {
+    return configuration == kOnePcProfile;
+}
+
+bool isOpenToOthers(const NetworkOptions& options) {
+    const bool is_one_pc = options.profile == "one-pc" || (options.profile.empty() && !isSetInEnvironment());
+    return options.secure.empty() && !is_one_pc;
+}
+
+std::optional<Identity> identityOf(const NetworkOptions& options) {
+    if (options.secure.empty()) return std::nullopt;
+    return SecurityFolder(options.secure).self();
+}
+
+void setNetwork(const NetworkOptions& options, NetworkPart part) {
     Participant::setConfiguration(networkConfiguration(options));
+    std::optional<SecurityFolder> security;
+    if (!options.secure.empty()) security.emplace(options.secure);
+    if (security) requirePart(*security, part);
+    Participant::setSecurity(std::move(security));
 }
 
 }  // namespace bonemill::dds

@@ -18,6 +18,9 @@ inline void addNetworkOptions(CLI::App& app, NetworkOptions& network) {
         ->type_name("ADDRESS")
         ->expected(1)
         ->take_all();
+    app.add_option("--secure", network.secure,
+                   "folder of deploy/security/make-session: only its people can join (docs/security.md)")
+        ->type_name("DIR");
 }
 
 }  // namespace bonemill::dds

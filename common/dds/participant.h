@@ -5,9 +5,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/dds/entity.h"
+#include "common/security/security_folder.h"
 
 namespace bonemill::dds {
 
@@ -18,7 +20,7 @@ class Domain;
 
 class Participant {
   public:
-    // Throws UserError when the domain cannot be joined.
+    // Throws UserError when the domain cannot be joined, or when security was asked for and is not in force.
     explicit Participant(uint32_t domain);
     Participant(Participant&&) noexcept;
 
@@ -26,6 +28,9 @@ class Participant {
 
     // It holds for domains joined from now on; see setNetwork().
     static void setConfiguration(std::string configuration);
+
+    // Participants made from now on prove who they are, with this folder; without one they prove nothing.
+    static void setSecurity(std::optional<SecurityFolder> security);
 
     int32_t handle() const noexcept { return entity_.handle(); }
 

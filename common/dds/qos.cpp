@@ -44,6 +44,11 @@ Qos& Qos::atMostKeys(int max_keys) {
     return *this;
 }
 
+Qos& Qos::property(const std::string& name, const std::string& value) {
+    dds_qset_prop(qos_.get(), name.c_str(), value.c_str());
+    return *this;
+}
+
 Qos& Qos::disposeOnRequestOnly() {
     dds_qset_writer_data_lifecycle(qos_.get(), false);
     return *this;

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <memory>
+#include <string>
 
 struct dds_qos;
 
@@ -26,6 +27,7 @@ class Qos {
     Qos& atMostKeys(int max_keys);
     // A writer that leaves disposes nothing: clients keep what they have.
     Qos& disposeOnRequestOnly();
+    Qos& property(const std::string& name, const std::string& value);
 
     const dds_qos* get() const noexcept { return qos_.get(); }
 

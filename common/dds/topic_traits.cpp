@@ -71,6 +71,11 @@ TopicDescription describeTopic<LessonSample>() {
 }
 
 template <>
+TopicDescription describeTopic<RemarkSample>() {
+    return {"bonemill_remark", &bonemill_dds_RemarkSample_desc, stateQos()};
+}
+
+template <>
 TopicDescription describeTopic<ViewerSample>() {
     return {"bonemill_viewer", &bonemill_dds_ViewerSample_desc, streamQos(1)};
 }

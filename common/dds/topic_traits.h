@@ -13,6 +13,7 @@ using StructureMeshSample = bonemill_dds_StructureMeshSample;
 using ToolStateSample = bonemill_dds_ToolStateSample;
 using StatusSample = bonemill_dds_StatusSample;
 using LessonSample = bonemill_dds_LessonSample;
+using RemarkSample = bonemill_dds_RemarkSample;
 using ViewerSample = bonemill_dds_ViewerSample;
 using HandPointerSample = bonemill_dds_HandPointerSample;
 using CommandSample = bonemill_dds_CommandSample;
@@ -43,6 +44,8 @@ template <>
 TopicDescription describeTopic<StatusSample>();
 template <>
 TopicDescription describeTopic<LessonSample>();
+template <>
+TopicDescription describeTopic<RemarkSample>();
 template <>
 TopicDescription describeTopic<ViewerSample>();
 template <>

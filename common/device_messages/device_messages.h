@@ -1,4 +1,4 @@
-// device_daemon and haptic_server say this to each other through shared memory (layout 4).
+// device_daemon and haptic_server say this to each other through shared memory (layout 5).
 //
 // The frames are D, the device's base, and T, the tool frame of the handle. Units are m, N, N·m; stamps are
 // CLOCK_MONOTONIC ns of this machine. Everything here is RT-safe.
@@ -27,7 +27,9 @@ struct DeviceSample {
     uint32_t reset_count;  // how often the device was reset
     // It was measured with this scene's device and scale (SceneNotice::revision); 0 before any.
     uint32_t scene_revision;
-    uint32_t reserved;
+    // Counts how often a handle that is only numbers was put somewhere, without a way there: with a new
+    // number the simulated tool goes along, if there is no bone.
+    uint32_t placements;
 };
 
 struct WrenchCommand {
@@ -45,7 +47,9 @@ struct WrenchCommand {
 struct SceneNotice {
     uint64_t hash;      // sceneHashOf()
     uint32_t revision;  // 1, 2, ...: set by the link; a new number is a new scene, or a server started anew
-    uint32_t reserved;
+    // Counts the beginnings and the ends of attempts: odd while one is under way. Set by the link.
+    uint32_t attempt_changes;
+    uint64_t epoch;   // that viewers know the server's run by; 0: not told
     char path[1024];  // absolute; ends with 0
 };
 
@@ -119,13 +123,15 @@ static_assert(sizeof(DeviceSample) == 152 && offsetof(DeviceSample, p_DT) == 16 
               offsetof(DeviceSample, w_DT) == 96 && offsetof(DeviceSample, buttons) == 120 &&
               offsetof(DeviceSample, flags) == 124 && offsetof(DeviceSample, state) == 128 &&
               offsetof(DeviceSample, stop_cause) == 132 && offsetof(DeviceSample, fault_code) == 136 &&
-              offsetof(DeviceSample, reset_count) == 140 && offsetof(DeviceSample, scene_revision) == 144);
+              offsetof(DeviceSample, reset_count) == 140 && offsetof(DeviceSample, scene_revision) == 144 &&
+              offsetof(DeviceSample, placements) == 148);
 static_assert(std::is_trivially_copyable_v<WrenchCommand> && std::is_standard_layout_v<WrenchCommand>);
 static_assert(sizeof(WrenchCommand) == 80 && offsetof(WrenchCommand, f_hand_D) == 16 &&
               offsetof(WrenchCommand, t_hand_D) == 40 && offsetof(WrenchCommand, answers_sequence) == 64 &&
               offsetof(WrenchCommand, reset_orders) == 72 && offsetof(WrenchCommand, scene_revision) == 76);
 static_assert(std::is_trivially_copyable_v<SceneNotice> && std::is_standard_layout_v<SceneNotice>);
-static_assert(sizeof(SceneNotice) == 1040 && offsetof(SceneNotice, path) == 16);
+static_assert(sizeof(SceneNotice) == 1048 && offsetof(SceneNotice, attempt_changes) == 12 &&
+              offsetof(SceneNotice, epoch) == 16 && offsetof(SceneNotice, path) == 24);
 static_assert(std::is_trivially_copyable_v<DeviceCapabilities> &&
               std::is_standard_layout_v<DeviceCapabilities>);
 static_assert(sizeof(HandleDynamics) == 64 && sizeof(DeviceCapabilities) == 160 &&

@@ -169,20 +169,32 @@ bool DeviceLink::readCapabilities(DeviceCapabilities& capabilities) noexcept {
     return true;
 }
 
-uint32_t DeviceLink::announceScene(const std::string& absolute_path, uint64_t hash) {
+uint32_t DeviceLink::announceScene(const std::string& absolute_path, uint64_t hash, uint64_t epoch) {
     SceneNotice notice{};
     if (absolute_path.size() >= sizeof notice.path)
         throw UserError(absolute_path + ": the path is too long for device_daemon to be told of; " +
                         std::to_string(sizeof notice.path - 1) + " letters at most");
     memory_->scene.value.tryRead(notice);
     const uint32_t revision = notice.revision + 1 == 0 ? 1 : notice.revision + 1;
+    const uint32_t attempt_changes = notice.attempt_changes + notice.attempt_changes % 2;
     notice = {};
     notice.hash = hash;
+    notice.epoch = epoch;
     notice.revision = revision;
+    notice.attempt_changes = attempt_changes;
     std::copy(absolute_path.begin(), absolute_path.end(), notice.path);
     capabilities_version_ = 0;  // who reads for the new scene knows no device yet
     memory_->scene.value.write(notice);
     return revision;
+}
+
+void DeviceLink::announceAttempt(bool begins) {
+    SceneNotice notice{};
+    if (!memory_->scene.value.tryRead(notice) || notice.revision == 0) return;
+    const bool is_running = notice.attempt_changes % 2 == 1;
+    if (!begins && !is_running) return;
+    notice.attempt_changes += begins && is_running ? 2 : 1;
+    memory_->scene.value.write(notice);
 }
 
 bool DeviceLink::readScene(SceneNotice& notice) const noexcept {

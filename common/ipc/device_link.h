@@ -60,7 +60,10 @@ class DeviceLink {
 
     // For the server: says that this scene is in force, and returns its revision. Throws UserError if the
     // path is too long. It is not RT-safe; any one thread may call it beside the tick.
-    uint32_t announceScene(const std::string& absolute_path, uint64_t hash);
+    uint32_t announceScene(const std::string& absolute_path, uint64_t hash, uint64_t epoch = 0);
+    // For the server: says that an attempt begins, or that the one under way ends, in the scene that was
+    // announced. It is not RT-safe; any one thread may call it beside the tick.
+    void announceAttempt(bool begins);
     // For the daemon: reads what was announced last; false if nothing plausible was. Any thread may call it
     // beside the loop.
     bool readScene(SceneNotice& notice) const noexcept;

@@ -42,23 +42,36 @@ std::string csvText(const std::string& text) {
     return field + '"';
 }
 
-std::string attemptLine(const topics::Attempt& attempt) {
+std::string sceneTitle(const topics::Lesson& lesson, const std::string& id) {
+    for (const topics::SceneChoice& scene : lesson.scenes())
+        if (scene.id() == id && !scene.title().empty()) return scene.title();
+    return id;
+}
+
+std::string attemptLine(const topics::Attempt& attempt, const std::string& scene) {
     const topics::Training& training = attempt.training();
+    const bool has_structures = training.has_damaged_mm3() || training.has_least_distance_mm() ||
+                                training.has_max_protected_force_n();
+    const auto orNone = [](bool is_measured, const std::string& text) {
+        return text.empty() && is_measured ? std::string("none") : text;
+    };
     const auto ifAny = [](bool is_there, double value) { return is_there ? number(value) : std::string(); };
     return std::to_string(attempt.number()) + ',' + utcText(attempt.start_stamp_ns()) + ',' +
-           csvText(attempt.trainee()) + ',' + csvText(attempt.scene_id()) + ',' + number(attempt.time_s()) +
-           ',' + number(attempt.removed_mm3()) + ',' + number(attempt.max_force_n()) + ',' +
+           csvText(attempt.trainee()) + ',' + csvText(scene) + ',' + number(attempt.time_s()) + ',' +
+           number(attempt.removed_mm3()) + ',' + number(attempt.max_force_n()) + ',' +
            ifAny(training.has_damaged_mm3(), training.damaged_mm3()) + ',' +
-           ifAny(training.has_least_distance_mm(), training.least_distance_mm()) + ',' +
-           ifAny(training.has_max_protected_force_n(), training.max_protected_force_n()) + ',' +
+           orNone(has_structures, ifAny(training.has_least_distance_mm(), training.least_distance_mm())) +
+           ',' + ifAny(training.has_max_protected_force_n(), training.max_protected_force_n()) + ',' +
            ifAny(training.has_necrotic_mm3(), training.necrotic_mm3()) + ',' +
            ifAny(training.has_max_temperature_c(), training.max_temperature_c()) + ',' +
-           csvText(joined(attempt.structures_touched())) + ',' + csvText(joined(training.warnings()));
+           csvText(orNone(has_structures, joined(attempt.structures_touched()))) + ',' +
+           csvText(orNone(attempt.has_training(), joined(training.warnings())));
 }
 
 std::string attemptsCsv(const topics::Lesson& lesson) {
     std::string text = std::string(kAttemptsHeader) + "\n";
-    for (const topics::Attempt& attempt : lesson.attempts()) text += attemptLine(attempt) + "\n";
+    for (const topics::Attempt& attempt : lesson.attempts())
+        text += attemptLine(attempt, sceneTitle(lesson, attempt.scene_id())) + "\n";
     return text;
 }
 

@@ -126,6 +126,10 @@ void ChildProgram::lookAfter() {
     start();
 }
 
+void ChildProgram::tell(HandOrder order) noexcept {
+    if (does_listen_ && pid_ > 0) tellHand(pid_, order);
+}
+
 std::string ChildProgram::finish() {
     if (!hasEnded()) kill(pid_, SIGTERM);
     for (const int64_t deadline_ns = monotonicNowNs() + kEndNs; !hasEnded();) {

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "common/hand_order.h"
+
 namespace bonemill {
 
 // Returns the path of a program of ours. Throws UserError when it is missing.
@@ -21,6 +23,10 @@ class ChildProgram {
     // Starts `name`, which lies beside this program or one folder above, with these words and --port. Throws
     // UserError when it is not there, ends at once (its last words go along) or says no port.
     ChildProgram(const std::string& name, std::vector<std::string> words);
+    // From now on it hears tell(): the program listens to such orders.
+    void listens() noexcept { does_listen_ = true; }
+    // Nothing happens where the program does not listen.
+    void tell(HandOrder order) noexcept;
     ChildProgram(const ChildProgram&) = delete;
     ChildProgram& operator=(const ChildProgram&) = delete;
     // Asks it to end, and ends it after two seconds.
@@ -43,6 +49,7 @@ class ChildProgram {
     std::vector<std::string> words_;
     uint16_t port_ = 0;
     pid_t pid_ = -1;
+    bool does_listen_ = false;
     int output_ = -1;
     int exit_status_ = 0;
     int64_t ended_ns_ = 0;

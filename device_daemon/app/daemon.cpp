@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "common/log/log.h"
 #include "common/rt/clock.h"
@@ -30,18 +31,20 @@ DeviceLoopConfig loopConfigOf(const DeviceSetup& setup, const DaemonOptions& opt
 }  // namespace
 
 Daemon::Daemon(const FollowedScene& scene, const DaemonOptions& options, HapticDevice& device,
-               ChildProgram* program, const StopSignals& stop_signals, DeviceLink& link,
-               LoopStatistics& statistics)
+               ChildProgram* program, const StopSignals& stop_signals, DeviceLink& link, DaemonMemory& memory)
     : scene_(scene),
       options_(options),
       device_(device),
       program_(program),
       stop_signals_(stop_signals),
-      loop_(device, loopConfigOf(scene.setup, options)),
+      loop_(device, loopConfigOf(scene.setup, options), memory.stop),
       link_(link),
       period_ns_(std::llround(kNsPerSecond / scene.setup.rate_hz)),
       scene_revision_(scene.revision),
-      statistics_(statistics) {}
+      memory_(memory),
+      statistics_(memory.statistics) {
+    progress_.cause = memory.stop.cause;  // it is counted already
+}
 
 Daemon::End Daemon::run() {
     RealtimeThread loop_thread(
@@ -86,12 +89,13 @@ void Daemon::runLoop() {
             is_ending_ = true;  // what happens now is its own doing
         }
     }
-    if (!is_scene_over_ || should_stop_) sayGoodbye();
+    if (!is_scene_over_ || should_stop_) sayGoodbye(link_, memory_);
     loop_.blackBox().finish();
     statistics_.wall_time += secondsOfNs(monotonicNowNs() - start_ns);
     statistics_.missed_periods += timer.missedPeriods();
     statistics_.unheard_periods += loop_.unheardPeriods();
     statistics_.final_state = nameOf(loop_.safety().state());
+    memory_.stop = loop_.safety().latch();
     progress_.is_finished = true;
 }
 
@@ -127,16 +131,8 @@ void Daemon::publish(DeviceSample& sample) noexcept {
     }
     sample.scene_revision = scene_revision_.load(std::memory_order_relaxed);
     last_sequence_ = link_.writeSample(sample);
-    last_sample_ = sample;
+    memory_.last_sample = sample;
     if (first_sequence_ == 0) first_sequence_ = last_sequence_;
-}
-
-// Lets the server tell an orderly end from a fault.
-void Daemon::sayGoodbye() noexcept {
-    if (first_sequence_ == 0) return;
-    last_sample_.stamp_ns = monotonicNowNs();
-    last_sample_.flags |= kDeviceFlagLeaving;
-    link_.writeSample(last_sample_);
 }
 
 void Daemon::noteAttached(const WrenchCommand& command) noexcept {
@@ -192,7 +188,7 @@ void Daemon::watch() {
             spdlog::info("stopping: force ramps to zero");
             should_stop_ = true;
         }
-        lookForOtherScene();
+        lookForNotice();
         if (const std::string why = device_.refusal(); !why.empty()) throw UserError(why);
         if (!is_ending_) reportState(shown_state, shown_cause);
         if (!is_silence_said && monotonicNowNs() - start_ns > kLongestSilenceNs) {
@@ -212,15 +208,28 @@ void Daemon::watch() {
 }
 
 // A server that is started anew announces the same scene once more, and nothing changes.
-void Daemon::lookForOtherScene() {
+void Daemon::lookForNotice() {
     SceneNotice notice;
-    if (is_scene_over_ || !link_.readScene(notice) || notice.revision == scene_revision_) return;
+    if (is_scene_over_ || !link_.readScene(notice)) return;
+    if (notice.revision == scene_revision_) return followAttempts(notice);
+    attempt_changes_.reset();
     if (notice.hash == scene_.hash) {
         scene_revision_ = notice.revision;
+        device_.followRun(notice.epoch);
         return;
     }
     spdlog::info("haptic_server changes to {}: force ramps to zero", notice.path);
     is_scene_over_ = true;
+}
+
+// Nothing has happened before the first look at a scene.
+void Daemon::followAttempts(const SceneNotice& notice) {
+    const std::optional<uint32_t> before = std::exchange(attempt_changes_, notice.attempt_changes);
+    if (!before || *before == notice.attempt_changes) return;
+    const bool is_running = notice.attempt_changes % 2 == 1;
+    spdlog::info("an attempt {}", is_running ? "begins" : "has ended");
+    if (is_running) device_.beginAttempt();
+    if (program_) program_->tell(is_running ? HandOrder::kBeginAnew : HandOrder::kRest);
 }
 
 void Daemon::reportServer(bool& was_there) const {

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 
 #include "common/ipc/device_link.h"
 #include "common/rt/stop_signals.h"
 #include "device_daemon/app/child_program.h"
-#include "device_daemon/app/loop_statistics.h"
+#include "device_daemon/app/daemon_memory.h"
 #include "device_daemon/app/options.h"
 #include "device_daemon/app/scene_follower.h"
 #include "device_daemon/loop/device_loop.h"
@@ -16,10 +17,9 @@ namespace bonemill {
 class Daemon {
   public:
     // What the references name, and `program`, which may be null, must outlive the daemon. `scene` is the one
-    // that `setup` was made of. `statistics` go on from what they are.
+    // that `setup` was made of. What `memory` holds goes on from what it is.
     Daemon(const FollowedScene& scene, const DaemonOptions& options, HapticDevice& device,
-           ChildProgram* program, const StopSignals& stop_signals, DeviceLink& link,
-           LoopStatistics& statistics);
+           ChildProgram* program, const StopSignals& stop_signals, DeviceLink& link, DaemonMemory& memory);
 
     enum class End { kLeft, kOtherScene };
     // Blocks until the device leaves, --seconds or a signal ends it, or haptic_server has another scene, and
@@ -44,13 +44,13 @@ class Daemon {
     void runLoop();
     void tick(int64_t instant_ns, double elapsed) noexcept;
     void publish(DeviceSample& sample) noexcept;
-    void sayGoodbye() noexcept;
     void noteAttached(const WrenchCommand& command) noexcept;
     void recordTick(const WrenchCommand* command) noexcept;
     bool shouldEnd() const noexcept;
 
     void watch();
-    void lookForOtherScene();
+    void lookForNotice();
+    void followAttempts(const SceneNotice& notice);
     void reportServer(bool& was_there) const;
     void reportState(SafetyState& shown_state, StopCause& shown_cause) const;
     void warnOfSilentDevice() const;
@@ -65,13 +65,14 @@ class Daemon {
     DeviceLoop loop_;
     DeviceLink& link_;
     int64_t period_ns_;
-    std::atomic<uint32_t> scene_revision_;  // the watcher may find a new one for the same scene
+    std::atomic<uint32_t> scene_revision_;     // the watcher may find a new one for the same scene
+    std::optional<uint32_t> attempt_changes_;  // SceneNotice, as seen last
     uint32_t capabilities_version_ = 0;
     int64_t publish_at_ns_ = 0;    // when the next sample is due
     uint64_t first_sequence_ = 0;  // of this run's samples; 0 before the first
-    DeviceSample last_sample_{};
     uint64_t last_sequence_ = 0;
-    LoopStatistics& statistics_;
+    DaemonMemory& memory_;
+    LoopStatistics& statistics_;  // memory_'s
     Progress progress_;
     std::atomic<bool> should_stop_ = false;
     std::atomic<bool> is_ending_ = false;

@@ -54,6 +54,7 @@ ChosenDevice simulated(const FollowedScene& scene, const DaemonOptions& options)
     else
         words.insert(words.end(), {"--watchdog-ms", "30"});
     OwnProgram own("ares_emulator", words);
+    own.program->listens();
     auto device = std::make_unique<WiredAres>(scene.setup.simulated_ares, std::move(own.wire));
     return {std::move(own.program), std::move(device), true};
 }
@@ -64,9 +65,11 @@ ChosenDevice bridged(const std::string& program_name) {
     return {.program = std::move(own.program), .device = std::move(device), .is_of_scene = false};
 }
 
-ChosenDevice pointer(const DeviceSetup& setup, const DaemonOptions& options) {
+ChosenDevice pointer(const FollowedScene& scene, const DaemonOptions& options) {
+    const DeviceSetup& setup = scene.setup;
     return {nullptr, std::make_unique<PointerDevice>(PointerConfig{.domain = options.domain,
                                                                    .session = options.session,
+                                                                   .epoch = scene.epoch,
                                                                    .X_WD = setup.X_WD,
                                                                    .workspace_scale = setup.workspace_scale,
                                                                    .X_DT_start = setup.X_DT_start})};
@@ -93,7 +96,7 @@ ChosenDevice deviceOf(const std::string& word, const FollowedScene& scene, const
     if (kind == "haply") return bridged("bonemill_bridge_haply");
     if (kind == "spacemouse")
         return {nullptr, std::make_unique<SpaceMouseDevice>(setup.rates, setup.X_DT_start)};
-    if (kind == "pointer") return pointer(setup, options);
+    if (kind == "pointer") return pointer(scene, options);
     throw UserError("--device " + word + ": there is no such device (see device_daemon --help)");
 }
 

@@ -1,4 +1,6 @@
 // device_daemon is the device side of the simulator (docs/device.md).
+#include <sys/stat.h>
+
 #include <iostream>
 #include <optional>
 
@@ -14,10 +16,18 @@
 namespace bonemill {
 namespace {
 
+// It ends with a goodbye wherever it ends, also while it waits for the next scene.
+struct Leaving {
+    DeviceLink& link;
+    DaemonMemory& memory;
+    ~Leaving() { sayGoodbye(link, memory); }
+};
+
 // Each scene has its own loop; what the device is and has found out stays unless the scene says what it is.
 void serve(const DaemonOptions& options, SceneFollower& scenes, DeviceLink& link,
            const StopSignals& stop_signals) {
-    LoopStatistics statistics;
+    DaemonMemory memory;
+    const Leaving leaving{link, memory};
     std::optional<ChosenDevice> chosen;
     std::string device_words;
     while (const std::optional<FollowedScene> scene = scenes.next()) {
@@ -25,11 +35,11 @@ void serve(const DaemonOptions& options, SceneFollower& scenes, DeviceLink& link
         if (!chosen) chosen = chooseDevice(*scene, options);
         DaemonOptions of_run = options;
         if (chosen->leaves_by_itself) of_run.seconds.reset();
-        Daemon daemon(*scene, of_run, *chosen->device, chosen->program.get(), stop_signals, link, statistics);
+        Daemon daemon(*scene, of_run, *chosen->device, chosen->program.get(), stop_signals, link, memory);
         if (daemon.run() == Daemon::End::kLeft) break;
     }
     if (chosen && chosen->program) device_words = chosen->program->finish();
-    std::cout << jsonLineOf(statistics, device_words) << std::endl;
+    std::cout << jsonLineOf(memory.statistics, device_words) << std::endl;
 }
 
 int runDaemon(int argc, char** argv) {
@@ -46,8 +56,9 @@ int runDaemon(int argc, char** argv) {
         std::cout << describe(own->setup.ares) << std::flush;
         return 0;
     }
+    umask(S_IRWXG | S_IRWXO);  // what a stop leaves behind is its user's alone
     const StopSignals stop_signals;
-    dds::setNetwork(options->network);
+    dds::setNetwork(options->network, dds::NetworkPart::kDevice);
     DeviceLink link = DeviceLink::create(options->session, LinkSide::kDaemon);
     SceneFollower scenes(std::move(own), *options, link, stop_signals);
     serve(*options, scenes, link, stop_signals);

@@ -27,6 +27,8 @@ class PedalledDevice final : public HapticDevice {
         return is_heard;
     }
     void write(const DeviceOrder& order) noexcept override { device_->write(order); }
+    void beginAttempt() noexcept override { device_->beginAttempt(); }
+    void followRun(uint64_t epoch) noexcept override { device_->followRun(epoch); }
     std::string refusal() const override { return device_->refusal(); }
 
   private:

@@ -23,6 +23,7 @@ FollowedScene followedSceneOf(const std::string& file) {
         return {.file = file,
                 .hash = sceneHashOf(loaded.scene),
                 .revision = 0,
+                .epoch = 0,
                 .setup = deviceSetupOf(loaded.scene)};
     } catch (const UserError& error) {
         throw UserError(file + ": " + error.what());
@@ -55,6 +56,7 @@ std::optional<FollowedScene> SceneFollower::takeAnnounced() {
     if (own_ && notice.hash == own_->hash) {
         FollowedScene scene = *own_;
         scene.revision = notice.revision;
+        scene.epoch = notice.epoch;
         return scene;
     }
     try {
@@ -65,6 +67,7 @@ std::optional<FollowedScene> SceneFollower::takeAnnounced() {
                 ": has changed since haptic_server read it; choose the scene again, or start the server "
                 "anew");
         scene.revision = notice.revision;
+        scene.epoch = notice.epoch;
         spdlog::info("the scene is haptic_server's, {}", scene.file);
         return scene;
     } catch (const UserError& error) {

@@ -17,6 +17,7 @@ struct FollowedScene {
     std::string file;
     uint64_t hash = 0;      // sceneHashOf()
     uint32_t revision = 0;  // SceneNotice; 0: the daemon's own
+    uint64_t epoch = 0;     // likewise
     DeviceSetup setup;
 };
 

@@ -67,14 +67,15 @@ void AresEmulator::moveSliders(const Vector6d& q_links) noexcept {
 }
 
 void AresEmulator::moveHand(double h) noexcept {
-    if (scenario_runs_ && retreat_ == 0) {
+    const bool draws_back = !scenario_runs_ || is_going_back_;
+    if (!draws_back && retreat_ == 0) {
         state_.scenario_time += h;
         state_.target = path_.at(state_.scenario_time);
         return;
     }
     if (state_.scenario_time == 0) return;
     const double step = h / kRetreatTime;
-    const double next = std::clamp(retreat_ + (scenario_runs_ ? -step : step), 0.0, 1.0);
+    const double next = std::clamp(retreat_ + (draws_back ? step : -step), 0.0, 1.0);
     const double rate = 6 * next * (1 - next) * (next - retreat_) / h;
     retreat_ = next;
     const HandTarget there = path_.at(state_.scenario_time);
@@ -87,6 +88,9 @@ void AresEmulator::moveHand(double h) noexcept {
                      .w_DT = rate * turn,
                      .buttons = 0,
                      .waypoint = there.waypoint};
+    if (!is_going_back_ || retreat_ < 1) return;
+    is_going_back_ = false;
+    state_.scenario_time = retreat_ = 0;
 }
 
 void AresEmulator::substep(double h, const Vector6d& actuator_forces) noexcept {

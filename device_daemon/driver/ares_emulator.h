@@ -65,6 +65,8 @@ class AresEmulator final : public JointDevice {
     // Holds the scenario's time; the hand lets the buttons go and draws the handle back to where the path
     // starts, as a person does who feels nothing any more. When the scenario goes on it first returns.
     void pauseScenario() noexcept { scenario_runs_ = false; }
+    // The scenario's time goes back to its beginning, once the hand has drawn back as in a pause.
+    void beginAnew() noexcept { is_going_back_ = state_.scenario_time > 0; }
 
     // Shorts the motors' windings or opens them again: shorted, they brake every motion. The amplifiers must
     // then be told to give nothing.
@@ -101,7 +103,8 @@ class AresEmulator final : public JointDevice {
     Vector6d slider_offsets_ = Vector6d::Zero();  // m, from the links, within the play
     Vector6d q_links_ = Vector6d::Zero();         // m, where the links were read last
     bool scenario_runs_ = false;
-    double retreat_ = 0;  // way of the hand back to the start, 0 to 1
+    double retreat_ = 0;          // way of the hand back to the start, 0 to 1
+    bool is_going_back_ = false;  // to the scenario's beginning
     bool is_braked_ = false;
     EmulatorState state_;
 };

@@ -94,7 +94,7 @@ void EmulatedController::period(int64_t now_ns, wire::JointState& state) noexcep
         was_engaged_ = true;
         first_engaged_ns_ = now_ns;
     }
-    if (is_engaged && !is_leaving_)
+    if (is_engaged && !is_leaving_ && !is_resting_)
         plant_.startScenario();
     else
         plant_.pauseScenario();
@@ -106,6 +106,11 @@ void EmulatedController::period(int64_t now_ns, wire::JointState& state) noexcep
     state.mode = is_on ? session_.newestCommand().mode : uint8_t(wire::kModeNone);
     readEncoders(now_ns, state);
     tellAxes(now_ns, state);
+}
+
+void EmulatedController::beginAnew() noexcept {
+    is_resting_ = false;
+    plant_.beginAnew();
 }
 
 bool EmulatedController::isEngaged(int64_t now_ns) const noexcept {

@@ -35,6 +35,11 @@ class EmulatedController {
     // One period: the world lives until now, and the state to be sent, but for its seal, is filled in.
     void period(int64_t now_ns, wire::JointState& state) noexcept;
 
+    // The hand does its script anew, once it has drawn back to where that starts.
+    void beginAnew() noexcept;
+    // The hand draws back to where its script starts, and rests there until beginAnew().
+    void rest() noexcept { is_resting_ = true; }
+
     // From now on the states say that the controller ends in order, and the scenario rests.
     void leave() noexcept { is_leaving_ = true; }
 
@@ -66,6 +71,7 @@ class EmulatedController {
     bool is_homing_ = false;
     int64_t homing_since_ns_ = 0;
     bool is_leaving_ = false;
+    bool is_resting_ = false;
     bool was_engaged_ = false;
     int64_t first_engaged_ns_ = 0;
 };

@@ -123,6 +123,7 @@ void Emulator::tick(int64_t now_ns) noexcept {
     const RtScope no_heap_no_locks;
     takeDatagrams(now_ns);
     deliverCommands(now_ns);
+    obeyHandOrder();
     wire::JointState state;
     controller_.period(now_ns, state);
     auto& session = controller_.session();
@@ -132,6 +133,12 @@ void Emulator::tick(int64_t now_ns) noexcept {
     }
     deliverStates(now_ns);
     record();
+}
+
+void Emulator::obeyHandOrder() noexcept {
+    const HandOrder order = hand_order_.exchange(HandOrder::kNone, std::memory_order_relaxed);
+    if (order == HandOrder::kBeginAnew) controller_.beginAnew();
+    if (order == HandOrder::kRest) controller_.rest();
 }
 
 void Emulator::record() noexcept {
@@ -184,7 +191,16 @@ void Emulator::watch() {
             spdlog::info("stopping: the host is told to switch off");
             should_stop_ = true;
         }
+        hearHandOrders();
         reportProgress(shown_waypoint, shown_fault);
+    }
+}
+
+// Of several the newest counts.
+void Emulator::hearHandOrders() {
+    for (HandOrder order = takeHandOrder(); order != HandOrder::kNone; order = takeHandOrder()) {
+        spdlog::info("the hand {}", order == HandOrder::kBeginAnew ? "begins anew" : "rests");
+        hand_order_ = order;
     }
 }
 

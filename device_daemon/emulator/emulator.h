@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "common/hand_order.h"
 #include "common/rt/stop_signals.h"
 #include "device_daemon/emulator/emulated_controller.h"
 #include "device_daemon/emulator/emulator_statistics.h"
@@ -16,8 +17,8 @@ namespace bonemill {
 
 class Emulator {
   public:
-    // Listens from now on. `stop_signals` must outlive the emulator. Throws UserError when the address is not
-    // free, or the watchdog is too short for the rate.
+    // Listens from now on. listenToHandOrders() was called; `stop_signals` must outlive the emulator. Throws
+    // UserError when the address is not free, or the watchdog is too short for the rate.
     Emulator(const Scenario& scenario, const EmulatorOptions& options, const StopSignals& stop_signals);
 
     wire::Endpoint local() const noexcept { return socket_.local(); }
@@ -45,12 +46,14 @@ class Emulator {
     void deliverCommands(int64_t now_ns) noexcept;
     void deliverStates(int64_t now_ns) noexcept;
     void tick(int64_t now_ns) noexcept;
+    void obeyHandOrder() noexcept;
     void record() noexcept;
     bool shouldEnd() const noexcept;
     bool hasLeft(int64_t now_ns) noexcept;
     void finish(int64_t start_ns, uint64_t missed_periods);
 
     void watch();
+    void hearHandOrders();
     void reportProgress(int& shown_waypoint, uint32_t& shown_fault) const;
     std::string phase() const;
 
@@ -67,6 +70,7 @@ class Emulator {
     int64_t leaving_since_ns_ = 0;  // 0: not yet
     EmulatorStatistics statistics_;
     Progress progress_;
+    std::atomic<HandOrder> hand_order_ = HandOrder::kNone;  // from the watcher to the loop
     std::atomic<bool> should_stop_ = false;
 };
 

@@ -3,6 +3,7 @@
 
 #include "common/config/scene_file.h"
 #include "common/end_with_parent.h"
+#include "common/hand_order.h"
 #include "common/log/log.h"
 #include "common/rt/stop_signals.h"
 #include "common/run_program.h"
@@ -28,6 +29,7 @@ int emulate(int argc, char** argv) {
     setUpLog("ares_emulator", options->log_level);
     const Scenario scenario = loadScenario(options->scene);
     const StopSignals stop_signals;
+    listenToHandOrders();
     Emulator emulator(scenario, *options, stop_signals);
     std::cout << "listening on " << wire::textOf(emulator.local()) << std::endl;
     emulator.run();

@@ -38,6 +38,7 @@ struct DeviceReading {
     Wrench applied_D;                                // that, on the hand
     double applied_share = 1;                        // of the order, that the device has its motors give
     double load = 0;                                 // of the hottest motor: 0 cold, 1 as hot as it may get
+    uint32_t placements = 0;                         // DeviceSample: of a handle that is only numbers
 };
 
 // The loop asks this of the device in every period.
@@ -69,6 +70,14 @@ class HapticDevice {
     virtual bool read(double elapsed, DeviceReading& reading) noexcept = 0;
     // Holds from now on until the next call.
     virtual void write(const DeviceOrder& order) noexcept = 0;
+
+    // A trainee's attempt begins: a handle that is only numbers stands where the scene begins again. Another
+    // thread than the loop's may say so at any time.
+    virtual void beginAttempt() noexcept {}
+
+    // The server's run, as viewers know it, is this one: what they ask for in another is old. Another thread
+    // than the loop's may say so at any time.
+    virtual void followRun(uint64_t) noexcept {}
 
     // Says why this device must never be used with this scene, and what to do; empty where nothing speaks
     // against it. Another thread than the loop's may ask at any time; it allocates.

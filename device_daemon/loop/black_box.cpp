@@ -40,7 +40,8 @@ constexpr char kColumns[] =
 
 }  // namespace
 
-BlackBox::BlackBox() : records_((kBeforeNs + kAfterNs) / kShortestPeriodNs + 10) {}
+BlackBox::BlackBox(StopCause before)
+    : records_((kBeforeNs + kAfterNs) / kShortestPeriodNs + 10), last_cause_(before) {}
 
 void BlackBox::record(const BlackBoxRecord& record, StopCause cause) noexcept {
     if (isFull()) return;

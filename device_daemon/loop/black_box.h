@@ -31,7 +31,8 @@ class BlackBox {
     // Of a device that is faster, only one record in so long a time is kept.
     static constexpr int64_t kShortestPeriodNs = 100 * kNsPerMicrosecond;
 
-    BlackBox();
+    // `before` is the cause of a stop that an earlier box has written.
+    explicit BlackBox(StopCause before = StopCause::kNone);
 
     // `cause` is what holds the device now; a new one is a stop.
     void record(const BlackBoxRecord& record, StopCause cause) noexcept;
@@ -55,7 +56,7 @@ class BlackBox {
     int64_t due_ns_ = 0;        // of the next record that is kept
     bool is_stopping_ = false;  // a stop has come, and what is after it still comes
     int64_t stop_ns_ = 0;
-    StopCause last_cause_ = StopCause::kNone;
+    StopCause last_cause_;
     StopCause stop_cause_ = StopCause::kNone;  // of the stop under way
     std::atomic<bool> is_full_ = false;
 };

@@ -16,8 +16,12 @@ void store(const Eigen::Vector3d& vector, double (&out)[3]) noexcept {
 
 }  // namespace
 
-DeviceLoop::DeviceLoop(HapticDevice& device, const DeviceLoopConfig& config)
-    : device_(device), config_(config), limiter_(config.wrench), states_(config.states, config.motion) {
+DeviceLoop::DeviceLoop(HapticDevice& device, const DeviceLoopConfig& config, const SafetyLatch& latch)
+    : device_(device),
+      config_(config),
+      limiter_(config.wrench),
+      states_(config.states, config.motion, latch),
+      black_box_(latch.cause) {
     adaptToDevice();
 }
 
@@ -77,6 +81,7 @@ void DeviceLoop::fill(DeviceSample& sample) const noexcept {
     sample.stop_cause = uint32_t(states_.cause());
     sample.fault_code = states_.faultCode();
     sample.reset_count = states_.resetCount();
+    sample.placements = reading_.placements;
     if (abilities_ & kAbilitySimulated) sample.flags |= kDeviceFlagSimulated;
     if (limiter_.events() != kWrenchNotLimited && given_factor_ > 0) sample.flags |= kDeviceFlagForceLimited;
     if (reading_.status & kStatusEnabled) sample.flags |= kDeviceFlagEnabled;

@@ -23,8 +23,8 @@ struct DeviceLoopConfig {
 
 class DeviceLoop {
   public:
-    // `device` must outlive the loop. Allocates the black box.
-    DeviceLoop(HapticDevice& device, const DeviceLoopConfig& config);
+    // `device` must outlive the loop, which begins in the stop of `latch`. Allocates the black box.
+    DeviceLoop(HapticDevice& device, const DeviceLoopConfig& config, const SafetyLatch& latch = {});
 
     // Reads the device, `elapsed` s after the last period. False says that no pose was ever heard, and there
     // is nothing to publish. A device that has fallen silent shows its last pose, with the stamp of then.

@@ -34,6 +34,7 @@ std::optional<HandWish> parseHandWish(std::span<const uint8_t> payload, uint64_t
         return std::nullopt;
     HandWish wish;
     wish.sender = sender;
+    wish.epoch = message.epoch();
     wish.sequence = message.sequence();
     wish.is_holding = message.is_holding();
     wish.may_hold =
@@ -42,6 +43,7 @@ std::optional<HandWish> parseHandWish(std::span<const uint8_t> payload, uint64_t
     const auto X_WT = poseIn(message);
     if (!X_WT) return std::nullopt;
     wish.X_WT = *X_WT;
+    wish.placements = message.placements();
     wish.buttons = message.buttons() & (kButtonRemove | kButtonAdd);
     return wish;
 }

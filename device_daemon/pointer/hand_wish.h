@@ -12,11 +12,14 @@ namespace bonemill {
 
 struct HandWish {
     uint64_t sender = 0;
+    uint64_t epoch = 0;  // the server's run that the viewer shows
     uint32_t sequence = 0;
     bool may_hold = false;  // its role lets it
     bool is_holding = false;
     Pose X_WT;             // of the tool point; meaningless unless is_holding
     uint32_t buttons = 0;  // Button bits
+    // A number that is new says that the tool is put there, without a way there; 0 says nothing.
+    uint32_t placements = 0;
 };
 
 // `sender` is that of the sample's envelope. Nothing comes of bytes that make no sense.

@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include <chrono>
+#include <utility>
 
 #include "common/rt/clock.h"
 
@@ -21,6 +22,7 @@ constexpr int64_t kNamedAtOnce = 100, kNameEveryNs = kNsPerSecond;
 PointerDevice::PointerDevice(const PointerConfig& config)
     : config_(config),
       X_DW_(config.X_WD.inverse()),
+      epoch_(config.epoch),
       handle_(config.X_DT_start),
       participant_(config.domain),
       reader_(participant_),
@@ -42,6 +44,7 @@ bool PointerDevice::read(double elapsed, DeviceReading& reading) noexcept {
     follow(elapsed);
     handle_.advance(elapsed, wrench_hand_D_);
     reading = readingOf(handle_, wrench_hand_D_, buttons_);
+    reading.placements = placements_;
     if (is_held_) reading.status |= kStatusEnabled;
     return true;
 }
@@ -50,7 +53,14 @@ void PointerDevice::write(const DeviceOrder& order) noexcept {
     wrench_hand_D_ = feltWrench(order);
 }
 
+void PointerDevice::place(const Pose& X_DT) noexcept {
+    handle_.place(X_DT);
+    ++placements_;
+}
+
 void PointerDevice::follow(double elapsed) noexcept {
+    const uint32_t attempts = attempts_.load(std::memory_order_relaxed);
+    if (std::exchange(seen_attempts_, attempts) != attempts) place(config_.X_DT_start);
     HeldWish wish;
     uint32_t version = seen_version_;
     age_ += elapsed;
@@ -61,7 +71,9 @@ void PointerDevice::follow(double elapsed) noexcept {
         is_held_ = true;
         buttons_ = wish.buttons;
         const auto& [w, x, y, z] = wish.q_DT;
-        handle_.want({Eigen::Vector3d(wish.p_DT.data()), Eigen::Quaterniond(w, x, y, z)});
+        const Pose X_DT{Eigen::Vector3d(wish.p_DT.data()), Eigen::Quaterniond(w, x, y, z)};
+        const bool is_sudden = std::exchange(seen_placements_, wish.placements) != wish.placements;
+        is_sudden ? place(X_DT) : handle_.want(X_DT);
     }
     if (age_ > kButtonSilence) buttons_ = 0;
     if (is_held_ && age_ > kHoldSilence) letGo();
@@ -89,6 +101,8 @@ void PointerDevice::takeWishes() {
                              spdlog::warn("dropped a malformed wish of viewer {}", sample.sender);
                          return;
                      }
+                     const uint64_t epoch = epoch_.load(std::memory_order_relaxed);
+                     if (wish->is_holding && epoch != 0 && wish->epoch != epoch) return;
                      const int64_t now_ns = monotonicNowNs();
                      const auto before = holder_.holder(now_ns);
                      if (!holder_.take(*wish, now_ns)) return;
@@ -107,14 +121,23 @@ void PointerDevice::nameChange(const std::optional<uint64_t>& before, const std:
         spdlog::info("viewer {} lets the tool go", *before);
 }
 
+// A wish that is lost between thread and loop loses no placement: the loop compares counts.
 void PointerDevice::publish(const HandWish& wish) noexcept {
+    const bool is_placed = wish.is_holding && wish.placements != 0 &&
+                           (wish.sender != placed_by_ || wish.placements != placed_as_);
+    if (is_placed) {
+        placed_by_ = wish.sender;
+        placed_as_ = wish.placements;
+        ++wished_placements_;
+    }
     const Pose X_DT = X_DW_ * wish.X_WT;
     const Eigen::Vector3d p_DT = X_DT.position / config_.workspace_scale;
     const Eigen::Quaterniond& q = X_DT.rotation;
     newest_.write({.p_DT = {p_DT.x(), p_DT.y(), p_DT.z()},
                    .q_DT = {q.w(), q.x(), q.y(), q.z()},
                    .buttons = wish.buttons,
-                   .is_held = wish.is_holding});
+                   .is_held = wish.is_holding,
+                   .placements = wished_placements_});
 }
 
 }  // namespace bonemill

@@ -44,6 +44,11 @@ bool SafetyStates::isStopped() const noexcept {
     return severityOf(state_) > 0;
 }
 
+SafetyLatch SafetyStates::latch() const noexcept {
+    if (!isStopped()) return {.reset_count = reset_count_};
+    return {.state = state_, .cause = cause_, .fault_code = fault_code_, .reset_count = reset_count_};
+}
+
 void SafetyStates::update(const SafetyInput& input) noexcept {
     const double dt = std::max(input.dt, 0.0);
     has_reset_ = false;
@@ -92,8 +97,10 @@ void SafetyStates::stop(StopCause cause, uint32_t fault_code) noexcept {
 void SafetyStates::takeReset(const SafetyInput& input, StopCause active) noexcept {
     const bool is_pressed = input.has_status && (input.reading.status & kStatusResetPressed);
     const bool is_new = input.is_reset_ordered || (is_pressed && !was_reset_pressed_);
-    // Nobody resets an emergency stop ahead of closing its chain.
-    reset_for_ = active == StopCause::kEmergencyStop ? 0 : is_new ? kResetTime : reset_for_ - input.dt;
+    // Nobody resets an emergency stop ahead of closing its chain. With a closed one the drive may still keep
+    // the fault: it is asked to clear it.
+    const bool is_chain_open = input.reading.status & kStatusEmergencyStop;
+    reset_for_ = is_chain_open ? 0 : is_new ? kResetTime : reset_for_ - input.dt;
     if (reset_for_ <= 0) return;
     asked_for_ = is_new ? kResetEvery : asked_for_ + input.dt;
     if (asked_for_ >= kResetEvery) {

@@ -36,6 +36,14 @@ struct SafetyInput {
     bool is_reset_ordered = false;  // by a user, in this period
 };
 
+// What a loop leaves to the next one: a stop that nobody has reset, if there is one, and the count of resets.
+struct SafetyLatch {
+    SafetyState state = SafetyState::kDisconnected;  // that of a stop, or this one
+    StopCause cause = StopCause::kNone;
+    uint32_t fault_code = 0;
+    uint32_t reset_count = 0;
+};
+
 class SafetyStates {
   public:
     static constexpr double kStopTime = 0.01;  // s: short, and still no kick
@@ -47,8 +55,14 @@ class SafetyStates {
     static constexpr double kWarmTime = 1;
     static constexpr double kLongestStep = 5e-3;  // s, of a ramp upwards, after a pause of the loop
 
-    explicit SafetyStates(const SafetyConfig& config = {}, const MotionLimits& limits = {}) noexcept
-        : config_(config), watch_(limits) {}
+    explicit SafetyStates(const SafetyConfig& config = {}, const MotionLimits& limits = {},
+                          const SafetyLatch& latch = {}) noexcept
+        : config_(config),
+          watch_(limits),
+          state_(latch.state),
+          cause_(latch.cause),
+          fault_code_(latch.fault_code),
+          reset_count_(latch.reset_count) {}
 
     void setMotionLimits(const MotionLimits& limits) noexcept { watch_.setLimits(limits); }
     void setNeedsEnablingSwitch(bool is_needed) noexcept { config_.needs_enabling_switch = is_needed; }
@@ -61,6 +75,7 @@ class SafetyStates {
     StopCause cause() const noexcept { return cause_; }
     uint32_t faultCode() const noexcept { return fault_code_; }
     uint32_t resetCount() const noexcept { return reset_count_; }
+    SafetyLatch latch() const noexcept;
     // Of the commanded wrench: 0 to 1.
     double factor() const noexcept { return factor_ * warm_share_; }
     // The switch is held and everything is there, but the wrench is not small.
@@ -81,10 +96,10 @@ class SafetyStates {
 
     SafetyConfig config_;
     MotionWatch watch_;
-    SafetyState state_ = SafetyState::kDisconnected;
-    StopCause cause_ = StopCause::kNone;
-    uint32_t fault_code_ = 0;
-    uint32_t reset_count_ = 0;
+    SafetyState state_;
+    StopCause cause_;
+    uint32_t fault_code_;
+    uint32_t reset_count_;
     double silent_for_ = 1e9;  // s
     bool was_enabled_ =
         true;  // the switch, in the last period: what is held from the start is not a fresh press

@@ -16,7 +16,7 @@ DeviceCapabilities handleCapabilities(DeviceKind kind, std::string_view name) no
 }
 
 Wrench feltWrench(const DeviceOrder& order) noexcept {
-    return order.is_engaged && order.wrench_hand_D.isFinite() ? order.wrench_hand_D : Wrench{};
+    return order.wrench_hand_D.isFinite() ? order.wrench_hand_D : Wrench{};
 }
 
 DeviceReading readingOf(const VirtualHandle& handle, const Wrench& felt_D, uint32_t buttons) noexcept {

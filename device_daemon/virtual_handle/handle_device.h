@@ -17,7 +17,8 @@ inline constexpr double kMaxHandleTorque = 0.15;  // N·m
 // A name that is too long is cut.
 DeviceCapabilities handleCapabilities(DeviceKind kind, std::string_view name) noexcept;
 
-// What the hand feels of an order: nothing before it is engaged.
+// What the hand feels of an order. Before it is engaged there is nothing to feel, and afterwards it fades:
+// such a handle never feels anything but what is ordered.
 Wrench feltWrench(const DeviceOrder& order) noexcept;
 
 // `felt_D` is what the handle has felt since the last reading.

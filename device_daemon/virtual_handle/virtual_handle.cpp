@@ -24,6 +24,13 @@ void VirtualHandle::want(const Pose& X_DT) noexcept {
     motion_.want({bounded(X_DT.position, kReach), X_DT.rotation});
 }
 
+void VirtualHandle::place(const Pose& X_DT) noexcept {
+    X_DT_ = {bounded(X_DT.position, kReach), X_DT.rotation};
+    motion_ = MotionFilter(X_DT_);
+    v_DT_.setZero();
+    w_DT_.setZero();
+}
+
 void VirtualHandle::advance(double elapsed, const Wrench& wrench_D) noexcept {
     if (!(elapsed > 0)) return;
     const double dt = std::min(elapsed, kLongestElapsed);

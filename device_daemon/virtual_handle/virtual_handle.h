@@ -36,6 +36,8 @@ class VirtualHandle {
     // The hand wants the handle there from now on. The wish may come in steps; it is finite, and what lies
     // beyond kReach is drawn in.
     void want(const Pose& X_DT) noexcept;
+    // The hand has it there of a sudden, at rest, and wants it there. As want() otherwise.
+    void place(const Pose& X_DT) noexcept;
     // The hand wants it where it is now.
     void letGo() noexcept { motion_.want(X_DT_); }
     // Moves the handle by `elapsed` under this wrench on the hand; what is not finite counts as none.

@@ -1,4 +1,6 @@
 // haptic_server owns the bone, runs the haptic loop, shows the result to all clients.
+#include <sys/stat.h>
+
 #include <iostream>
 
 #include "common/cli/command_line.h"
@@ -102,7 +104,10 @@ int serveLive(const Options& options) {
         std::cout << listScenesOf(options.server);
         return 0;
     }
-    if (!options.describe) return runServer(options.server);
+    if (!options.describe) {
+        umask(S_IRWXG | S_IRWXO);  // what a session leaves says who did what: it is its user's alone
+        return runServer(options.server);
+    }
     std::cout << describeScene(options.server.scene);
     return 0;
 }

@@ -118,14 +118,15 @@ VoxelVolume BoneHistory::volumeOf(const BoneSnapshot& snapshot, const LeafLattic
     return volume;
 }
 
-void BoneHistory::restore(std::shared_ptr<const BoneSnapshot> snapshot) {
-    if (isRestoring() && snapshot == orders_.back()->target) return;
+uint64_t BoneHistory::restore(std::shared_ptr<const BoneSnapshot> snapshot) {
+    if (isRestoring() && snapshot == orders_.back()->target) return orders_.back()->number;
     const uint64_t number = orders_.back()->number + 1;
     orders_.push_back(std::make_unique<const Order>(Order{number, std::move(snapshot)}));
     const Order* replaced = next_order_.exchange(orders_.back().get(), std::memory_order_release);
     if (replaced) orders_.erase(orders_.end() - 2);  // the tick has never seen it
     const uint64_t taken_up = taken_up_.load(std::memory_order_acquire);
     while (orders_.front()->number < taken_up) orders_.pop_front();
+    return number;
 }
 
 bool BoneHistory::beginWrite() noexcept {

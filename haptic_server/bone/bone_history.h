@@ -40,12 +40,15 @@ class BoneHistory {
     // which it is.
     std::shared_ptr<const BoneSnapshot> snapshot(const BoneModel& bone);
     // Keeper: puts the bone back to this snapshot, or (null) to the scanned bone, instead of to what is on
-    // its way, if anything is. Asked again for the one that is on its way, it goes on with that.
-    void restore(std::shared_ptr<const BoneSnapshot> snapshot = nullptr);
+    // its way, if anything is. Asked again for the one that is on its way, it goes on with that. Returns the
+    // order's number, which grows with each: it is done once finishedOrder() is not below.
+    uint64_t restore(std::shared_ptr<const BoneSnapshot> snapshot = nullptr);
+    // Keeper: the number of the newest order to put the bone back; 0: none.
+    uint64_t newestOrder() const noexcept { return orders_.back()->number; }
     // Keeper: the tick is not yet done with the last restore().
-    bool isRestoring() const noexcept {
-        return finished_.load(std::memory_order_acquire) != orders_.back()->number;
-    }
+    bool isRestoring() const noexcept { return finishedOrder() != newestOrder(); }
+    // Any: the number of the newest order to put the bone back that the tick is done with; 0: none.
+    uint64_t finishedOrder() const noexcept { return finished_.load(std::memory_order_acquire); }
 
     // Tick: opens the part of a tick that changes voxels. False means not now: a snapshot is being taken, and
     // there must be no endWrite().
@@ -56,6 +59,8 @@ class BoneHistory {
     // means that there is nothing to restore. Otherwise `shell_is_complete` says whether the point-shell pool
     // had room.
     bool restoreSome(BoneModel& bone, bool& shell_is_complete) noexcept;
+    // Tick: what restoreSome() has last worked at is the way to the scanned bone.
+    bool isTargetScanned() const noexcept { return !order_->target; }
     // Whoever runs no tick beside it: all of the last restore() that is still to do, at once.
     void restoreAll(BoneModel& bone) noexcept;
 

@@ -68,7 +68,9 @@ inline double burrSlack(const ToolField& tool) noexcept {
     return kRim + 2 * tool.distanceError();
 }
 
-enum class Restart { kOtherTool, kOtherLaw, kBonePutBack };
+// Bone that is put back restarts the effects in every tick in which it is on its way: to the scan, or to
+// (kBonePutBack) a checkpoint.
+enum class Restart { kOtherTool, kOtherLaw, kBonePutBack, kScanPutBack };
 
 class HapticEffect {
   public:
@@ -85,7 +87,8 @@ class HapticEffect {
 
     uint32_t needs() const noexcept { return needs_; }
 
-    // Forgets what came before, the contacts above all.
+    // Forgets what came before, the contacts above all; with kScanPutBack all that was done to the bone, and
+    // finish() of the same tick notes nothing more of it.
     virtual void restart(Restart) noexcept {}
     virtual void begin(EffectTick&) noexcept {}
     // This is ContactWeights::scale() for one effect.

@@ -167,7 +167,7 @@ void HeatGrid::noteChange(const IndexBox& voxels) noexcept {
     forEachIndex(box.clamped(Eigen::Vector3i::Zero(), bricks_.array() - 1),
                  [&](const Eigen::Vector3i& index) {
                      if (Brick* brick = find(index)) brick->is_stale = true;
-                     const uint32_t slot = dead_directory_[directoryIndex(index)];
+                     const uint32_t slot = deadSlotOf(index);
                      if (slot != kNone) markDeadStale(slot, slot + 1);
                  });
 }
@@ -175,6 +175,18 @@ void HeatGrid::noteChange(const IndexBox& voxels) noexcept {
 void HeatGrid::noteChangeEverywhere() noexcept {
     for (const uint32_t slot : active_) pool_[slot].is_stale = true;
     markDeadStale(0, dead_used_);
+}
+
+void HeatGrid::forget() noexcept {
+    while (!active_.empty()) close(active_.size() - 1);
+    turns_due_ = 0;
+    next_ = 0;
+    dead_used_ = dead_count_ = stale_dead_ = next_dead_ = 0;
+}
+
+uint32_t HeatGrid::deadSlotOf(const Eigen::Vector3i& brick) const noexcept {
+    const uint32_t slot = dead_directory_[directoryIndex(brick)];
+    return slot < dead_used_ && dead_pool_[slot].brick == brick ? slot : kNone;
 }
 
 void HeatGrid::markDeadStale(size_t first, size_t end) noexcept {
@@ -321,11 +333,11 @@ void HeatGrid::harm(Brick& brick, double elapsed) noexcept {
 }
 
 void HeatGrid::markDead(Brick& brick, int cell) noexcept {
-    uint32_t& slot = dead_directory_[directoryIndex(brick.index)];
+    uint32_t slot = deadSlotOf(brick.index);
     if (slot == kNone) {
         if (dead_used_ == dead_pool_.size()) return;
-        slot = uint32_t(dead_used_++);
-        dead_pool_[slot].brick = brick.index;
+        slot = dead_directory_[directoryIndex(brick.index)] = uint32_t(dead_used_++);
+        dead_pool_[slot] = {.bits = {}, .brick = brick.index, .is_stale = false};
     }
     uint64_t& bits = dead_pool_[slot].bits[cell / 64];
     const uint64_t bit = uint64_t(1) << (cell % 64);
@@ -334,7 +346,7 @@ void HeatGrid::markDead(Brick& brick, int cell) noexcept {
 }
 
 void HeatGrid::removeDead(const Brick& brick, int cell) noexcept {
-    const uint32_t slot = dead_directory_[directoryIndex(brick.index)];
+    const uint32_t slot = deadSlotOf(brick.index);
     if (slot == kNone) return;
     uint64_t& bits = dead_pool_[slot].bits[cell / 64];
     const uint64_t bit = uint64_t(1) << (cell % 64);

@@ -27,6 +27,8 @@ class HeatGrid {
     // Voxels in this box may have become bone or air. What is cut away takes its heat with it.
     void noteChange(const IndexBox& voxels) noexcept;
     void noteChangeEverywhere() noexcept;
+    // All bone is as warm as the body again, and none is dead. Time and irrigation go on.
+    void forget() noexcept;
     // From now on the bone's surface is irrigated within `radius` (m) of here; 0 means nowhere.
     void irrigate(const Eigen::Vector3d& center_V, double radius) noexcept;
     // Time goes on by dt.
@@ -81,6 +83,7 @@ class HeatGrid {
     void harm(Brick& brick, double elapsed) noexcept;
     void markDead(Brick& brick, int cell) noexcept;
     void removeDead(const Brick& brick, int cell) noexcept;
+    uint32_t deadSlotOf(const Eigen::Vector3i& brick) const noexcept;
     void reviewDead() noexcept;
     void markDeadStale(size_t first, size_t end) noexcept;
     float& hottestOf(const Brick& brick) noexcept { return hottest_[size_t(&brick - pool_.data())]; }
@@ -111,7 +114,8 @@ class HeatGrid {
     std::vector<uint32_t> free_;
     std::vector<uint32_t> active_;
     std::vector<uint32_t> directory_;  // per brick: in pool_
-    // Dead cells outlive their brick's memory with a bit each.
+    // Dead cells outlive their brick's memory with a bit each. A slot in the directory counts only while it
+    // is in use by that brick (deadSlotOf()), so that all are forgotten at once.
     struct DeadCells {
         uint64_t bits[kCells / 64];
         Eigen::Vector3i brick;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "haptic_server/effects/voxel_inside.h"
 
@@ -30,11 +31,19 @@ ProtectedStructures::ProtectedStructures(const ProtectedStructuresConfig& config
     for (size_t id = 0; id < all.materials.size(); ++id) is_protected_[id] = all.materials[id].is_protected;
 }
 
+void ProtectedStructures::restart(Restart why) noexcept {
+    if (why != Restart::kScanPutBack) return;
+    is_damaged_.forget();
+    damaged_ = 0;
+    is_put_back_ = true;
+}
+
 void ProtectedStructures::finish(EffectTick& tick) noexcept {
     const NearestStructure nearest = nearestStructure(*field_, BurrProbes(tick.tool->burr), tick.X_VT);
     const Pressed pressed = pressedOn(tick);
+    const bool is_whole = !std::exchange(is_put_back_, false);
     // It is near enough for voxels to be lost: the burr's limit in the bone lies a little outside of it.
-    const bool is_reached = nearest.distance < bone_.volume.spacing().norm();
+    const bool is_reached = is_whole && nearest.distance < bone_.volume.spacing().norm();
     const Destroyed destroyed =
         is_reached && (isCutting(tick) || tick.is_pedal_down) ? countDamage(tick) : Destroyed{};
     damaged_ += destroyed.voxels;
@@ -110,8 +119,8 @@ void ProtectedStructures::damageInRow(const EffectTick& tick, const Pose& X_TV, 
     forEachIndex(row, [&](const Eigen::Vector3i& voxel) {
         const size_t place = properties_->placeOf(voxel);
         if (place == BrickMap::kNowhere || !isProtected(properties_->materialAt(place))) return;
-        if (is_damaged_[place] || !isDestroyed(tick, X_TV, voxel, place)) return;
-        is_damaged_[place] = true;
+        if (is_damaged_.has(place) || !isDestroyed(tick, X_TV, voxel, place)) return;
+        is_damaged_.set(place);
         ++destroyed.voxels;
         destroyed.material = properties_->materialAt(place);
     });

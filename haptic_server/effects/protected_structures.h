@@ -2,13 +2,13 @@
 // them was destroyed. Changes nothing.
 //
 // Damaged is a voxel of a protected material once a turning burr has covered its centre, or it has lost its
-// bone. It counts once, and stays damaged though the bone be put back: what is counted is what was done in
-// the session.
+// bone. It counts once, until the scan is put back; to go back to a checkpoint undoes no damage.
 #pragma once
 
 #include "haptic_server/effects/burr_probes.h"
 #include "haptic_server/effects/effect_configs.h"
 #include "haptic_server/effects/haptic_effect.h"
+#include "haptic_server/effects/place_marks.h"
 
 namespace bonemill {
 
@@ -17,6 +17,7 @@ class ProtectedStructures final : public HapticEffect {
     // Keeps a reference to the bone.
     ProtectedStructures(const ProtectedStructuresConfig& config, const EffectConfigs& all,
                         const BoneModel& bone);
+    void restart(Restart why) noexcept override;
     void finish(EffectTick& tick) noexcept override;
 
   private:
@@ -42,9 +43,10 @@ class ProtectedStructures final : public HapticEffect {
     std::shared_ptr<const DistanceField> field_;
     const BoneModel& bone_;
     std::array<bool, kMostMaterials + 1> is_protected_{};
-    std::vector<bool> is_damaged_;    // by place in properties_
+    PlaceMarks is_damaged_;           // by place in properties_
     Eigen::Vector2i next_row_{0, 0};  // y, z: where the last tick's search ended
     size_t damaged_ = 0;              // voxels
+    bool is_put_back_ = false;        // in this tick: the bone is on its way to the scan
 };
 
 }  // namespace bonemill

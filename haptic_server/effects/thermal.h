@@ -15,6 +15,7 @@ class Thermal final : public HapticEffect {
     Thermal(const ThermalConfig& config, const BoneModel& bone, double dt);
     void restart(Restart why) noexcept override {
         if (why == Restart::kBonePutBack) heat_.noteChangeEverywhere();
+        if (why == Restart::kScanPutBack) heat_.forget();
     }
     void mill(EffectTick&, BoneModel&, MillingResult& result) noexcept override {
         heat_.noteChange(result.changed);

@@ -13,6 +13,8 @@ namespace {
 
 // A flood of commands must not keep the publisher thread from publishing.
 constexpr size_t kMaxCommandsPerCall = 1024;
+// So many senders are heard before all are forgotten: who is honest repeats a command that gets lost.
+constexpr size_t kMostKeys = 16384;
 
 int64_t unixTime_ns() {
     const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
@@ -64,7 +66,11 @@ Publisher::Publisher(const PublisherOptions& options)
       tool_state_writer_(participant_),
       status_writer_(participant_),
       lesson_writer_(participant_),
-      command_reader_(participant_) {}
+      command_reader_(participant_) {
+    if (options.secure.empty()) return;
+    people_.emplace(options.secure);
+    proven_senders_.emplace([this](const GuidPrefix& prefix) { return people_->find(prefix); });
+}
 
 // Nodes and structures of the run before are removed for those who join later.
 void Publisher::beginRun() {
@@ -99,9 +105,12 @@ Publisher::Written Publisher::publishNodes(std::span<const NodeMesh> meshes, int
     const auto has_surface = [this](const NodeMesh& mesh) { return !mesh.isEmpty() && isNewer(mesh); };
     NodeTag tag{epoch_, ++batch_, uint32_t(std::ranges::count_if(meshes, has_surface)), 0};
     if (oldest_cut_ns != 0) tag.cut_stamp_ns = unixTime_ns() - (monotonicNowNs() - oldest_cut_ns);
-    Written written;
+    // Clients wait for the last of them: first all are coded, then all are written.
+    std::vector<std::pair<const NodeMesh*, EncodedNode>> coded;
     for (const NodeMesh& mesh : meshes)
-        if (has_surface(mesh)) written.is_whole &= writeNode(mesh, tag, written.bytes);
+        if (has_surface(mesh)) coded.emplace_back(&mesh, encodeNodeMesh(mesh, tag));
+    Written written;
+    for (const auto& [mesh, encoded] : coded) written.is_whole &= writeNode(*mesh, encoded, written.bytes);
     for (const NodeMesh& mesh : meshes)
         if (mesh.isEmpty() && isNewer(mesh)) written.is_whole &= removeNode(mesh);
     return written;
@@ -115,8 +124,7 @@ bool Publisher::timed(Write&& write) {
     return is_written;
 }
 
-bool Publisher::writeNode(const NodeMesh& mesh, const NodeTag& tag, size_t& bytes) {
-    const EncodedNode encoded = encodeNodeMesh(mesh, tag);
+bool Publisher::writeNode(const NodeMesh& mesh, const EncodedNode& encoded, size_t& bytes) {
     dds::NodeMeshSample sample{};
     sample.session = session_;
     sample.node = mesh.leaf;
@@ -192,17 +200,36 @@ bool Publisher::publishLesson(topics::Lesson lesson) {
 std::vector<topics::Command> Publisher::takeCommands() {
     std::vector<topics::Command> commands;
     const uint64_t malformed_before = inbox_.malformedCount();
-    command_reader_.take(
+    if (command_reader_->newKeys() > kMostKeys) command_reader_.emplace(participant_);
+    command_reader_->take(
         kMaxCommandsPerCall, [&](const dds::CommandSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != session_) return;
+            const std::optional<GuidPrefix> participant =
+                proven_senders_ ? command_reader_->ownerOf(info.writer) : std::nullopt;
+            if (!mayBeTaken(sample, participant)) return;
             CommandInbox::Decision decision = inbox_.receive(sample.sender, dds::payloadOf(sample));
             if (decision.acknowledgement) show(*decision.acknowledgement);
-            if (decision.command) commands.push_back(std::move(*decision.command));
+            if (!decision.command) return;
+            if (participant) proven_senders_->identify(*decision.command, *participant);
+            commands.push_back(std::move(*decision.command));
         });
     if (malformed_before == 0 && inbox_.malformedCount() > 0) {
         spdlog::warn("dropped a malformed command; more of them are only counted");
     }
     return commands;
+}
+
+bool Publisher::mayBeTaken(const dds::CommandSample& sample, const std::optional<GuidPrefix>& participant) {
+    if (!proven_senders_ || (participant && proven_senders_->mayUse(sample.sender, *participant)))
+        return true;
+    if (++foreign_commands_ == 1)
+        spdlog::warn(
+            "dropped a command with the sender number of somebody else; more of them are only counted");
+    return false;
+}
+
+std::string Publisher::proofOf(const topics::Command& command) const {
+    return proven_senders_ ? proven_senders_->proofOf(command) : "by its own word";
 }
 
 void Publisher::acknowledge(const topics::Command& command, const std::string& result) {

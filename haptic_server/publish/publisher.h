@@ -20,6 +20,7 @@
 #include "common/mesh/mesh_codec.h"
 #include "common/rt/latency_histogram.h"
 #include "haptic_server/publish/command_inbox.h"
+#include "haptic_server/publish/proven_senders.h"
 #include "haptic_server/telemetry/tick_record.h"
 #include "proto/topics.pb.h"
 
@@ -29,6 +30,8 @@ struct PublisherOptions {
     uint32_t domain = 0;   // DDS domain, 0 to dds::kMaxDomain
     uint32_t session = 1;  // one server per session; clients name the same
     uint64_t epoch = 0;    // unix ns, later than that of any earlier server of the session; 0: now
+    std::string
+        secure;  // folder of --secure: its people are known by their certificates; empty: by their word
 };
 
 class Publisher {
@@ -65,8 +68,10 @@ class Publisher {
     bool publishLesson(topics::Lesson lesson);
 
     // These commands have arrived, each valid and new; carry each out and acknowledge() it. What is invalid
-    // is answered or counted here.
+    // is answered or counted here. With security their role and name are what the sender's certificate says.
     std::vector<topics::Command> takeCommands();
+    // Says why it is believed who has sent it: "proven", "by its own word", "says gateway NAME".
+    std::string proofOf(const topics::Command& command) const;
     // Tells the sender, through Status at once, how the command ended: "done" or "refused: <why>".
     void acknowledge(const topics::Command& command, const std::string& result);
 
@@ -86,12 +91,14 @@ class Publisher {
         bool was_written = false;
     };
     bool isNewer(const NodeMesh& mesh) const;
-    bool writeNode(const NodeMesh& mesh, const NodeTag& tag, size_t& bytes);
+    bool writeNode(const NodeMesh& mesh, const EncodedNode& encoded, size_t& bytes);
     bool removeNode(const NodeMesh& mesh);
     template <class Write>
     bool timed(Write&& write);
     bool writeStatus();
     void show(const CommandAcknowledgement& acknowledgement);
+    // Returns false for a command whose sender is not known, or not the one that it says, where that counts.
+    bool mayBeTaken(const dds::CommandSample& sample, const std::optional<GuidPrefix>& participant);
 
     uint32_t session_;
     uint64_t epoch_;
@@ -102,6 +109,9 @@ class Publisher {
     LatencyHistogram write_times_;
     topics::Status status_;  // as last published
     CommandInbox inbox_;
+    uint64_t foreign_commands_ = 0;
+    std::optional<People> people_;                 // with security
+    std::optional<ProvenSenders> proven_senders_;  // with security
 
     dds::Participant participant_;
     dds::Writer<dds::NodeMeshSample> node_writer_;
@@ -110,7 +120,7 @@ class Publisher {
     dds::Writer<dds::ToolStateSample> tool_state_writer_;
     dds::Writer<dds::StatusSample> status_writer_;
     dds::Writer<dds::LessonSample> lesson_writer_;
-    dds::Reader<dds::CommandSample> command_reader_;
+    std::optional<dds::Reader<dds::CommandSample>> command_reader_;
 };
 
 }  // namespace bonemill

@@ -2,6 +2,8 @@
 // to the publisher thread, or to whoever has joined it.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,25 +16,36 @@ namespace bonemill {
 
 class AttemptKeeper {
   public:
-    // References must outlive this object.
-    AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history, double voxel_volume,
-                  const scene::Scene& scene);
+    // A shorter attempt that removed nothing was begun by mistake: it counts as none.
+    static constexpr double kShortest = 2;  // s
 
-    // The answer is "done", or "refused: <why>". The bone goes back to the scan, and milling goes on.
-    std::string start(const std::string& trainee);
-    // "done", "refused: <why>", or "failed: <why>" if the attempt has ended but is not in the class table.
-    std::string stop();
+    // References must outlive this object. `tell_device` is told when an attempt begins (true) and when the
+    // one under way ends without another.
+    AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history, double voxel_volume,
+                  const scene::Scene& scene, std::function<void(bool begins)> tell_device = {});
+
+    // The answer is "done", or "refused: <why>". The bone goes back to the scan, and milling goes on. Where
+    // an attempt that is recorded ends with the order, the answer comes with LessonBook::takeAnswers().
+    std::optional<std::string> start(const topics::Command& order);
+    // Likewise; milling is paused until it is resumed, or another attempt begins.
+    std::optional<std::string> stop(const topics::Command& order);
+    // Ends the attempt under way, if there is one, without an order.
+    void stop();
+    // The bone was put back by an order. Outside of an attempt figures count from there.
+    void noteRestored();
     // Counts the time, which rests while milling is paused: call at least some times per second.
     void round();
 
   private:
-    std::string end();
+    // Returns true if the order is answered when the attempt is in the class table.
+    bool end(const std::optional<topics::Command>& order);
 
     LessonBook& book_;
     Recorder& recorder_;
     BoneHistory& history_;
     double voxel_mm3_;
     ShownEffects effects_;
+    std::function<void(bool begins)> tell_device_;
     std::vector<std::string> material_names_;
     double time_s_ = 0;
     int64_t counted_ns_ = 0;  // CLOCK_MONOTONIC until which it is counted

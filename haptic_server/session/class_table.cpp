@@ -16,19 +16,21 @@
 namespace bonemill {
 namespace {
 
+constexpr int kLockTries = 100;
+constexpr int kLockPauseUs = 20'000;
+
 // The open file, for one writer at a time.
 class TableFile {
   public:
     explicit TableFile(const std::string& path)
-        : path_(path), file_(open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0666)) {
+        : path_(path), file_(open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0600)) {
         if (file_ < 0) fail(std::strerror(errno));
         struct stat status {};
         if (fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
             close(file_);
             refuse("is no file");
         }
-        while (flock(file_, LOCK_EX) != 0 && errno == EINTR) {
-        }
+        lock();
     }
     ~TableFile() {
         if (file_ >= 0) close(file_);
@@ -62,6 +64,17 @@ class TableFile {
     }
 
   private:
+    // Another server may write, and another program may hold the file as long as it likes.
+    void lock() {
+        for (int tries = 0; flock(file_, LOCK_EX | LOCK_NB) != 0; ++tries) {
+            if (tries < kLockTries) {
+                usleep(kLockPauseUs);
+                continue;
+            }
+            close(file_);
+            fail("another program keeps it locked");
+        }
+    }
     [[noreturn]] void undo(off_t size, int error) const {
         const bool is_undone = ftruncate(file_, size) == 0;
         fail(std::string(std::strerror(error)) + (is_undone ? "" : "; its last line is not whole"));
@@ -93,7 +106,7 @@ ClassTable::ClassTable(std::string path) : path_(std::move(path)) {
     }
 }
 
-std::string ClassTable::append(const topics::Attempt& attempt) const {
+std::string ClassTable::append(const topics::Attempt& attempt, const std::string& scene) const {
     if (path_.empty()) return "";
     try {
         const TableFile file(path_);
@@ -102,7 +115,7 @@ std::string ClassTable::append(const topics::Attempt& attempt) const {
         std::string text;
         if (size == 0) text = std::string(kAttemptsHeader) + "\n";
         if (size > 0 && file.read(size - 1, 1) != "\n") text = "\n";  // somebody's last line has no end
-        file.append(text + attemptLine(attempt) + "\n");
+        file.append(text + attemptLine(attempt, scene) + "\n");
         return "";
     } catch (const std::exception& error) {
         return error.what();

@@ -17,8 +17,9 @@ class ClassTable {
     // else than a class table.
     explicit ClassTable(std::string path);
 
+    bool hasFile() const noexcept { return !path_.empty(); }
     // Returns why the line is not there (disk full, among others), or "".
-    std::string append(const topics::Attempt& attempt) const;
+    std::string append(const topics::Attempt& attempt, const std::string& scene) const;
 
   private:
     std::string path_;

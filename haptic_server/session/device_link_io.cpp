@@ -45,6 +45,7 @@ bool DeviceLinkIo::read(DeviceInput& input) noexcept {
     input.is_repeated = sequence_ == told_sequence_;
     told_sequence_ = sequence_;
     input.buttons = fade_start_ns_ == 0 ? buttons_ : 0;  // nobody mills what resists no more
+    input.placements = placements_;
     input.device = device_;
     input.other_device = takeCapabilities() ? &capabilities_ : nullptr;
     input.faults = std::exchange(faults_, 0);
@@ -118,6 +119,7 @@ bool DeviceLinkIo::takeSample() noexcept {
     const Eigen::Quaterniond q_DT(sample.q_DT[0], sample.q_DT[1], sample.q_DT[2], sample.q_DT[3]);
     X_WT_device_ = config_.X_WD * Pose{config_.workspace_scale * p_DT, q_DT.normalized()};
     buttons_ = sample.buttons;
+    placements_ = sample.placements;
     device_ = {sample.state, sample.stop_cause, sample.fault_code, sample.flags};
     sequence_ = sample.sequence;
     if (sample.flags & kDeviceFlagLeaving) has_device_left_.store(true, std::memory_order_relaxed);

@@ -92,6 +92,7 @@ class DeviceLinkIo final : public TickIo {
     LivedPeriods lived_;
     Pose X_WT_device_;
     uint32_t buttons_ = 0;
+    uint32_t placements_ = 0;
     DeviceReport device_;
     DeviceCapabilities capabilities_{};  // of the device in use
     bool has_capabilities_ = false;

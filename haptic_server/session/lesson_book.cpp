@@ -5,10 +5,18 @@
 #include <algorithm>
 #include <chrono>
 
+#include "common/lesson/attempts_csv.h"
 #include "haptic_server/session/repeated_text.h"
 
 namespace bonemill {
 namespace {
+
+std::string answerTo(const topics::Command& order, const std::string& problem) {
+    if (problem.empty()) return "done";
+    const bool is_of_another = order.action_case() == topics::Command::kStartAttempt;
+    return std::string("failed: ") + (is_of_another ? "the attempt before" : "it") +
+           " is not in the class table: " + problem;
+}
 
 int64_t nowUnixNs() {
     const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
@@ -69,6 +77,8 @@ void LessonBook::answerLater(const topics::Command& command, const std::string& 
 
 std::vector<std::pair<topics::Command, std::string>> LessonBook::takeAnswers() {
     const std::lock_guard lock(mutex_);
+    for (const TableWriter::Written& written : table_.takeWritten())
+        answers_.emplace_back(written.order, answerTo(written.order, written.problem));
     return std::exchange(answers_, {});
 }
 
@@ -102,20 +112,29 @@ bool LessonBook::isAttemptRunning() const {
     return lesson_.is_running();
 }
 
-std::string LessonBook::endAttempt(topics::Attempt attempt) {
+void LessonBook::dropAttempt() {
+    const std::lock_guard lock(mutex_);
+    --attempts_begun_;
+    lesson_.set_is_running(false);
+    has_changed_ = true;
+}
+
+void LessonBook::endAttempt(topics::Attempt attempt, const std::optional<topics::Command>& order) {
     const std::lock_guard lock(mutex_);
     lesson_.set_is_running(false);
     attempt.set_number(attempts_begun_);
     attempt.set_trainee(lesson_.trainee());
     attempt.set_scene_id(lesson_.scene_id());
     attempt.set_start_stamp_ns(lesson_.start_stamp_ns());
-    const std::string problem = table_.append(attempt);
-    if (!problem.empty()) spdlog::error("attempt {} is not in the class table: {}", attempts_begun_, problem);
+    if (!table_.write(attempt, sceneTitle(lesson_, attempt.scene_id()), order)) {
+        const std::string problem = "too many lines wait for its disk, which hangs";
+        spdlog::error("attempt {} is not in the class table: {}", attempts_begun_, problem);
+        if (order) answers_.emplace_back(*order, answerTo(*order, problem));
+    }
     auto& attempts = *lesson_.mutable_attempts();
     if (attempts.size() == kMostAttempts) attempts.DeleteSubrange(0, 1);
     *attempts.Add() = std::move(attempt);
     has_changed_ = true;
-    return problem;
 }
 
 }  // namespace bonemill

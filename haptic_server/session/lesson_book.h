@@ -14,6 +14,7 @@
 
 #include "haptic_server/session/class_table.h"
 #include "haptic_server/session/scene_folder.h"
+#include "haptic_server/session/table_writer.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
@@ -48,14 +49,16 @@ class LessonBook {
     static std::string traineeProblem(const std::string& trainee);
     void beginAttempt(const std::string& trainee);
     bool isAttemptRunning() const;
-    // Takes the attempt's figures; name, number, scene and start are filled in. Returns what kept it from the
-    // class table, or "".
-    std::string endAttempt(topics::Attempt attempt);
+    // The attempt under way ends as if it had never begun.
+    void dropAttempt();
+    // Takes the attempt's figures; name, number, scene and start are filled in. It goes into the class table;
+    // `order` is answered with takeAnswers() when it is there, or with what kept it from there.
+    void endAttempt(topics::Attempt attempt, const std::optional<topics::Command>& order = {});
 
   private:
     mutable std::mutex mutex_;
     std::vector<ListedScene> scenes_;
-    ClassTable table_;
+    TableWriter table_;
     topics::Lesson lesson_;
     bool has_changed_ = true;
     uint32_t attempts_begun_ = 0;

@@ -1,6 +1,9 @@
-// Says in the log what a client ordered. It is for the publisher thread.
+// Says in the log who ordered what. It is for the publisher thread.
 #pragma once
 
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
 #include <string>
 
 #include "haptic_server/session/repeated_text.h"
@@ -19,7 +22,18 @@ inline std::string orderText(const topics::Command& command) {
         return field->name() + " " + repeatedText(reflection->GetString(command, field));
     if (field->type() == FieldDescriptor::TYPE_UINT32)
         return field->name() + " " + std::to_string(reflection->GetUInt32(command, field));
+    if (field->type() == FieldDescriptor::TYPE_MESSAGE) return field->name();
     return reflection->GetBool(command, field) ? field->name() : field->name() + " false";
+}
+
+// Returns "Anna (instructor, proven)", or the sender's number where it has no name.
+inline std::string senderText(const topics::Command& command, const std::string& proof) {
+    std::string role = topics::Viewer::Role_Name(command.role());
+    std::transform(role.begin(), role.end(), role.begin(), [](char c) { return char(c | 0x20); });
+    char number[17] = "";
+    std::snprintf(number, sizeof number, "%016" PRIx64, command.sender());
+    return (command.name().empty() ? number : repeatedText(command.name())) + " (" + role + ", " + proof +
+           ")";
 }
 
 }  // namespace bonemill

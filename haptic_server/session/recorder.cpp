@@ -9,7 +9,11 @@
 namespace bonemill {
 
 Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded)
-    : ring_(ring), statistics_(period_ns, recorded), recorded_(recorded), effects_(recorded) {}
+    : ring_(ring),
+      statistics_(period_ns, recorded),
+      recorded_(recorded),
+      attempt_{.max_force = 0, .effects = EffectStatistics(recorded)},
+      shown_attempt_(attempt_) {}
 
 void Recorder::openTrace(const std::string& path) {
     if (!path.empty()) trace_.emplace(path, recorded_);
@@ -38,35 +42,30 @@ void Recorder::drain() {
     new_removed_ += removed;
     const auto changes = statistics_.device().kept().subspan(known_changes);
     new_device_changes_.insert(new_device_changes_.end(), changes.begin(), changes.end());
-    if (effects_.recorded().any()) effects_ = statistics_.effects();
     health_.ticks = statistics_.ticks();
     health_.dropped_ticks = statistics_.droppedTicks();
     health_.faults = statistics_.faults();
-    if (!is_attempt_asked_) shown_attempt_ = attempt_;
+    if (!asked_bone_order_) shown_attempt_ = attempt_;
 }
 
-void Recorder::beginAttempt() {
+void Recorder::beginAttempt(uint64_t bone_order) {
     const std::lock_guard lock(mutex_);
-    is_attempt_asked_ = true;
+    asked_bone_order_ = bone_order;
     shown_attempt_ = {.max_force = 0, .effects = EffectStatistics(recorded_)};
 }
 
 void Recorder::takeUpAttempt() {
     const std::lock_guard lock(mutex_);
-    if (!std::exchange(is_attempt_asked_, false)) return;
+    if (!asked_bone_order_) return;
+    bone_order_ = *std::exchange(asked_bone_order_, std::nullopt);
     attempt_ = shown_attempt_;
-    before_attempt_.reset();
 }
 
-// What is damaged and dead counts since the session's start.
 void Recorder::addToAttempt(const TickRecord& record) noexcept {
-    if (!before_attempt_) before_attempt_ = record.effects;
+    if (record.bone_order < bone_order_) return;
     const double(&force)[3] = record.f_hand_W;
     attempt_.max_force = std::max(attempt_.max_force, std::hypot(force[0], force[1], force[2]));
-    EffectRecord effects = record.effects;
-    effects.damaged_volume = std::max(0.0f, effects.damaged_volume - before_attempt_->damaged_volume);
-    effects.necrotic_volume = std::max(0.0f, effects.necrotic_volume - before_attempt_->necrotic_volume);
-    attempt_.effects.add(effects);
+    attempt_.effects.add(record.effects);
 }
 
 AttemptFigures Recorder::attempt() const {
@@ -111,11 +110,6 @@ std::optional<Recorder::Since> Recorder::takeSince() {
 std::vector<DeviceChange> Recorder::takeDeviceChanges() {
     const std::lock_guard lock(mutex_);
     return std::exchange(new_device_changes_, {});
-}
-
-EffectStatistics Recorder::effects() const {
-    const std::lock_guard lock(mutex_);
-    return effects_;
 }
 
 LoopHealth Recorder::health() const {

@@ -24,7 +24,7 @@ struct LoopHealth {
     uint32_t faults = 0;
 };
 
-// What the ticks of an attempt told.
+// What the ticks of an attempt told; before the first one, those of the session.
 struct AttemptFigures {
     double max_force = 0;  // N, of the wrench on the hand
     EffectStatistics effects;
@@ -55,10 +55,10 @@ class Recorder {
     std::optional<Since> takeSince();
     // These changes of the device are new since the call before.
     std::vector<DeviceChange> takeDeviceChanges();
-    EffectStatistics effects() const;
     LoopHealth health() const;
-    // Any normal thread begins an attempt: its figures count from the next records on.
-    void beginAttempt();
+    // Any normal thread begins an attempt: its figures count from the first record on that says that this
+    // order to put the bone back is done. Then nothing is damaged or dead any more.
+    void beginAttempt(uint64_t bone_order);
     AttemptFigures attempt() const;
     // This is called before finish() and says what the tick thread's page faults were after its first second.
     void setPageFaults(const PageFaults& faults) { statistics_.setPageFaults(faults); }
@@ -83,17 +83,15 @@ class Recorder {
     LatencyHistogram window_;  // tick compute time in the second under way
     int64_t window_start_ns_ = 0;
     AttemptFigures attempt_;
-    // What was damaged and dead before the attempt; nothing before its first record.
-    std::optional<EffectRecord> before_attempt_;
+    uint64_t bone_order_ = 0;   // the attempt's
     mutable std::mutex mutex_;  // guards what is below
     std::optional<TickRecord> latest_;
     EventSum new_events_;  // since takeSince()
     double new_removed_ = 0;
     std::vector<DeviceChange> new_device_changes_;  // since takeDeviceChanges()
-    EffectStatistics effects_;                      // as of latest_
     LoopHealth health_;
-    AttemptFigures shown_attempt_;   // as of latest_
-    bool is_attempt_asked_ = false;  // by beginAttempt()
+    AttemptFigures shown_attempt_;              // as of latest_
+    std::optional<uint64_t> asked_bone_order_;  // by beginAttempt()
 };
 
 }  // namespace bonemill

@@ -11,6 +11,7 @@
 #include "common/config/scene_tools.h"
 #include "common/units.h"
 #include "common/user_error.h"
+#include "haptic_server/session/accuracy_figures.h"
 #include "haptic_server/session/repeated_text.h"
 
 namespace bonemill {
@@ -54,8 +55,13 @@ std::string missingOf(const LoadedScene& loaded) {
     return "";
 }
 
-void describe(const fs::path& file, topics::SceneChoice& choice) {
+void describe(const fs::path& file, ListedScene& listed) {
     const LoadedScene loaded = loadScene(file);
+    topics::SceneChoice& choice = listed.choice;
+    for (NamedFile& read : filesOf(loaded)) {
+        read.name += " of " + choice.id();
+        listed.files.push_back(std::move(read));
+    }
     const scene::Scene& scene = loaded.scene;
     choice.set_title(!scene.title().empty()  ? scene.title()
                      : !scene.name().empty() ? scene.name()
@@ -68,11 +74,14 @@ void describe(const fs::path& file, topics::SceneChoice& choice) {
 
 ListedScene listed(const fs::path& file) {
     ListedScene scene{.choice = {}, .file = file.string()};
+    scene.files = {{"the scene file", file},
+                   {"the scene's picture", fs::path(file).replace_extension(".png")},
+                   {"the scene's figures", accuracyFiguresOf(file.string())}};
     scene.choice.set_id(file.stem().string());
     scene.choice.set_title(scene.choice.id());
     scene.choice.set_picture(pictureOf(fs::path(file).replace_extension(".png")));
     try {
-        describe(file, scene.choice);
+        describe(file, scene);
     } catch (const std::exception& error) {
         scene.choice.set_problem(error.what());
     }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/require_apart.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
@@ -15,6 +16,7 @@ namespace bonemill {
 struct ListedScene {
     topics::SceneChoice choice;
     std::string file;
+    std::vector<NamedFile> files = {};  // all that the scene reads
 };
 
 // So many are listed at most; viewers take no more.

@@ -94,10 +94,11 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
       recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns,
                 recordedEffectsOf(loaded_.scene.effects())),
       bone_export_(history_, *simulation_.bone, options.export_dir),
-      attempts_(parts.lesson, recorder_, history_, simulation_.bone->volume.voxelVolume(), loaded_.scene),
+      attempts_(parts.lesson, recorder_, history_, simulation_.bone->volume.voxelVolume(), loaded_.scene,
+                [this](bool begins) { parts_.link.announceAttempt(begins); }),
       commands_(loaded_.scene, *simulation_.bone, recorder_,
                 {history_, accuracy_, tools_, parts.stop_requested, bone_export_, io_.resetOrders(),
-                 parts.lesson, attempts_},
+                 parts.lesson, attempts_, parts.limits},
                 options.instructor_only),
       show_(parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,
             io_, commands_, options.stream_mbit_per_s * kMega / 8) {
@@ -112,7 +113,7 @@ SceneRun::~SceneRun() {
 
 void SceneRun::start() {
     const std::string file = std::filesystem::absolute(options_.scene).lexically_normal();
-    io_.beginScene(parts_.link.announceScene(file, sceneHashOf(loaded_.scene)));
+    io_.beginScene(parts_.link.announceScene(file, sceneHashOf(loaded_.scene), parts_.publisher.epoch()));
     parts_.lesson.enterScene(options_.scene);
     show_.begin();
     startTick();

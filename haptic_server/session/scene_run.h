@@ -26,6 +26,7 @@ struct ServerParts {
     DeviceLink& link;
     Publisher& publisher;
     LessonBook& lesson;
+    OrderLimits& limits;
     std::atomic<bool>& stop_requested;
     std::atomic<bool>& has_failed;
 };

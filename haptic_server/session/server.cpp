@@ -14,6 +14,8 @@
 #include "common/user_error.h"
 #include "haptic_server/publish/other_server.h"
 #include "haptic_server/session/lesson_book.h"
+#include "haptic_server/session/order_limits.h"
+#include "haptic_server/session/result_files.h"
 #include "haptic_server/session/scene_folder.h"
 #include "haptic_server/session/scene_run.h"
 
@@ -22,38 +24,22 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLookForOthers = 300ms;
+constexpr auto kLookForOthers = 300ms, kLookForSecuredOthers = 1500ms;  // who must prove itself takes longer
 constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 // A loop that waits for a device has no force; one that hangs must not keep the next scene away.
 constexpr int64_t kLongestFadeNs = kNsPerSecond;
 
 // Throws UserError if the session has a server: that is asked before this one shows anything.
 PublisherOptions publisherOptionsOf(const ServerOptions& options) {
-    if (const auto other = findOtherServer(dds::Participant(options.domain), options.session, kLookForOthers))
+    const auto patience = options.network.secure.empty() ? kLookForOthers : kLookForSecuredOthers;
+    if (const auto other = findOtherServer(dds::Participant(options.domain), options.session, patience))
         throw UserError(refusalText(*other, options.domain, options.session));
-    return {.domain = options.domain, .session = options.session, .epoch = 0};
-}
-
-// "out/trace.csv" becomes "out/trace_2.csv" for the second scene of a session. Devices stay.
-std::string numbered(const std::string& path, int number) {
-    std::error_code error;
-    if (path.empty() || number == 1 ||
-        (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)))
-        return path;
-    std::filesystem::path file(path);
-    file.replace_filename(file.stem().string() + "_" + std::to_string(number) + file.extension().string());
-    return file.string();
-}
-
-// The options of the session's n-th scene.
-ServerOptions optionsOf(const ServerOptions& session, const std::string& scene, int number) {
-    ServerOptions options = session;
-    options.scene = scene;
-    if (number > 1) options.accuracy.clear();  // it was measured in the first one
-    for (std::string* path : {&options.trace, &options.report, &options.save.volume, &options.save.mesh,
-                              &options.save.difference})
-        *path = numbered(*path, number);
-    return options;
+    if (dds::isOpenToOthers(options.network))
+        spdlog::warn(
+            "anyone in this network can watch this session and command it; --secure closes it "
+            "(docs/security.md)");
+    return {
+        .domain = options.domain, .session = options.session, .epoch = 0, .secure = options.network.secure};
 }
 
 void requireFilesCanBeWritten(const ServerOptions& options) {
@@ -93,11 +79,19 @@ class Server {
         : options_(options),
           link_(DeviceLink::create(options.session, LinkSide::kServer)),
           publisher_(publisherOptionsOf(options)),
+          results_(options, inputsOf(scenes, first.scene)),
           lesson_(std::move(scenes), ClassTable(options.class_table)),
-          run_(std::make_unique<SceneRun>(optionsOf(options, options.scene, scenes_run_),
-                                          std::move(first.scene), std::move(first.simulation), parts())) {}
+          run_(std::make_unique<SceneRun>(results_.first(), std::move(first.scene),
+                                          std::move(first.simulation), parts())) {}
 
-    ServerParts parts() { return {link_, publisher_, lesson_, stop_requested_, has_failed_}; }
+    // Of all scenes that can be chosen.
+    static std::vector<NamedFile> inputsOf(const std::vector<ListedScene>& scenes, const LoadedScene& first) {
+        std::vector<NamedFile> inputs = filesOf(first);
+        for (const ListedScene& scene : scenes)
+            inputs.insert(inputs.end(), scene.files.begin(), scene.files.end());
+        return inputs;
+    }
+    ServerParts parts() { return {link_, publisher_, lesson_, limits_, stop_requested_, has_failed_}; }
 
     bool isOver() {
         if (const int signal = stop_signals_.await(kLookEveryNs)) {
@@ -132,13 +126,13 @@ class Server {
         order_ = std::move(*order);
         order_ns_ = monotonicNowNs();
         try {
-            loading_ = std::async(
-                std::launch::async, [this, options = optionsOf(options_, order_.file, scenes_run_ + 1)] {
-                    requireFilesCanBeWritten(options);
-                    Loaded loaded = loadFirst(options);
-                    return std::make_unique<SceneRun>(options, std::move(loaded.scene),
-                                                      std::move(loaded.simulation), parts());
-                });
+            next_options_ = results_.next(order_.file);
+            loading_ = std::async(std::launch::async, [this, options = next_options_] {
+                requireFilesCanBeWritten(options);
+                Loaded loaded = loadFirst(options);
+                return std::make_unique<SceneRun>(options, std::move(loaded.scene),
+                                                  std::move(loaded.simulation), parts());
+            });
         } catch (const std::exception& error) {
             refuseChange(error.what());
         }
@@ -171,7 +165,7 @@ class Server {
         run_->end(false);
         publisher_.beginRun();
         std::swap(run_, next);
-        ++scenes_run_;
+        results_.take(next_options_);
         startChanged();
         spdlog::info("another scene: {:.2f} s to load, {:.2f} s to change",
                      secondsOfNs(loaded_ns - order_ns_), secondsOfNs(monotonicNowNs() - loaded_ns));
@@ -198,8 +192,10 @@ class Server {
     std::atomic<bool> stop_requested_{false};
     std::atomic<bool> has_failed_{false};
     Publisher publisher_;
+    ResultFiles results_;
+    ServerOptions next_options_;  // of the scene that is being loaded
     LessonBook lesson_;
-    int scenes_run_ = 1;
+    OrderLimits limits_;
     std::unique_ptr<SceneRun> run_;
     LessonBook::SceneOrder order_;
     int64_t order_ns_ = 0;
@@ -224,7 +220,7 @@ std::string listScenesOf(const ServerOptions& options) {
 int runServer(const ServerOptions& given) {
     ServerOptions options = given;
     requireFilesCanBeWritten(options);
-    dds::setNetwork(options.network);
+    dds::setNetwork(options.network, dds::NetworkPart::kServer);
     if (options.class_table.empty() && std::filesystem::is_directory(options.export_dir))
         options.class_table = (std::filesystem::path(options.export_dir) / "class.csv").string();
     std::vector<ListedScene> scenes = listScenes(foldersOf(options));

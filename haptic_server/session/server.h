@@ -13,7 +13,8 @@
 namespace bonemill {
 
 struct ServerOptions {
-    std::string scene;  // the first one; empty: the first of the folders that can be loaded
+    std::string scene;     // the first one; empty: the first of the folders that can be loaded
+    int scene_number = 1;  // in the names of its files
     std::vector<std::string> scene_folders;  // of scenes to choose from; none: the folder of `scene`
     uint32_t session = 1;
     uint32_t domain = 0;
@@ -34,7 +35,7 @@ struct ServerOptions {
 
 // Runs until told to stop; returns the process' exit code. Throws UserError at start-up, also when real-time
 // permissions are missing and is_strict_realtime is set. Files are written also after SIGINT, SIGTERM or
-// SIGHUP. Those of the second scene and later ones have a number before their ending: trace_2.csv.
+// SIGHUP. Those of the second scene and later ones have a number before their ending (result_files.h).
 int runServer(const ServerOptions& options);
 
 // Returns the table of the scenes that can be chosen (scene_folder.h). Throws UserError.

@@ -1,8 +1,10 @@
 #include "haptic_server/session/session_commands.h"
 
 #include "common/config/effect_check.h"
+#include "common/rt/clock.h"
 #include "common/units.h"
 #include "haptic_server/session/repeated_text.h"
+#include "haptic_server/session/role_rules.h"
 
 namespace bonemill {
 namespace {
@@ -40,6 +42,8 @@ SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bon
 std::optional<std::string> SessionCommands::carryOut(const topics::Command& command) {
     if (const std::string refusal = refusalOf(command); !refusal.empty()) return refusal;
     if (asksForNothing(command)) return "refused: a command that is false asks for nothing; send true";
+    if (std::string refusal = controls_.limits.refusalOf(command, monotonicNowNs()); !refusal.empty())
+        return refusal;
     switch (command.action_case()) {
         case topics::Command::kResetVolume:
             return restore(Checkpoints::kScannedBone);
@@ -66,9 +70,9 @@ std::optional<std::string> SessionCommands::carryOut(const topics::Command& comm
         case topics::Command::kChooseScene:
             return controls_.lesson.orderScene(command);
         case topics::Command::kStartAttempt:
-            return controls_.attempts.start(command.start_attempt());
+            return controls_.attempts.start(command);
         case topics::Command::kStopAttempt:
-            return controls_.attempts.stop();
+            return controls_.attempts.stop(command);
         default:
             return "refused: this server does not know the action";
     }
@@ -76,15 +80,9 @@ std::optional<std::string> SessionCommands::carryOut(const topics::Command& comm
 
 // The refusal is empty if the role allows the command.
 std::string SessionCommands::refusalOf(const topics::Command& command) const {
-    if (command.role() == topics::Viewer::INSTRUCTOR) return "";
-    if (only_instructors_)
-        return "refused: only instructors command this session (--instructor-only); start with --role "
-               "instructor";
-    if (command.role() != topics::Viewer::OPERATOR)
-        return "refused: a viewer only looks; start with --role operator";
-    if (command.action_case() == topics::Command::kShutDown)
-        return "refused: only an instructor ends the session; start with --role instructor";
-    return "";
+    if (only_instructors_ && command.role() != topics::Viewer::INSTRUCTOR)
+        return "refused: only instructors command this session (--instructor-only)";
+    return std::string(refusalOfRole(command.role(), command.action_case()));
 }
 
 std::string SessionCommands::setAccuracy(const std::string& name) {
@@ -108,7 +106,10 @@ std::string SessionCommands::selectTool(uint32_t index) {
 }
 
 std::string SessionCommands::restore(uint32_t checkpoint) {
-    if (checkpoints_.restore(checkpoint)) return "done";
+    if (checkpoints_.restore(checkpoint)) {
+        controls_.attempts.noteRestored();
+        return "done";
+    }
     return "refused: there is no checkpoint " + std::to_string(checkpoint) +
            (checkpoints_.kept().empty()
                 ? "; none is saved"
@@ -124,6 +125,7 @@ double SessionCommands::sessionS() const {
 void SessionCommands::describe(topics::Status& status) const {
     status.set_session_s(sessionS());
     status.set_is_milling_paused(controls_.history.isMillingPaused());
+    status.set_bone_restores(controls_.history.newestOrder());
     status.set_removed_mm3(double(controls_.history.missingVoxels()) * voxel_mm3_);
     for (const Checkpoints::Checkpoint& kept : checkpoints_.kept()) {
         topics::Checkpoint* checkpoint = status.add_checkpoints();

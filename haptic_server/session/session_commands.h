@@ -10,6 +10,7 @@
 #include "haptic_server/bone/checkpoints.h"
 #include "haptic_server/session/attempt_keeper.h"
 #include "haptic_server/session/lesson_book.h"
+#include "haptic_server/session/order_limits.h"
 #include "haptic_server/session/recorder.h"
 #include "haptic_server/session/session_export.h"
 #include "haptic_server/setup/scene_setup.h"
@@ -29,6 +30,7 @@ struct SessionControls {
     std::atomic<uint32_t>& reset_orders;  // counts the orders to reset the device
     LessonBook& lesson;
     AttemptKeeper& attempts;
+    OrderLimits& limits;
 };
 
 class SessionCommands {

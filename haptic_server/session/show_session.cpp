@@ -185,7 +185,7 @@ void ShowSession::finish(int64_t until_ns) {
 }
 
 void ShowSession::endAttempt() {
-    if (commands_.lesson().isAttemptRunning()) commands_.attempts().stop();
+    commands_.attempts().stop();
 }
 
 void ShowSession::leaveAnswers() {
@@ -221,11 +221,21 @@ bool ShowSession::publishNodes() {
     return !groups.empty();
 }
 
+// They are for people: what goes wrong there must not end the session.
+std::vector<NodeMesh> ShowSession::takeStructures() {
+    try {
+        return structures_.get();
+    } catch (const std::exception& error) {
+        spdlog::error("protected structures cannot be shown: {}", error.what());
+        return {};
+    }
+}
+
 void ShowSession::publishStructures() {
     if (!structures_.valid() || structures_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
         return;
     size_t triangles = 0;
-    const std::vector<NodeMesh> meshes = structures_.get();
+    const std::vector<NodeMesh> meshes = takeStructures();
     for (const NodeMesh& mesh : meshes) {
         publisher_.publishStructure(mesh, warning_distance_);
         triangles += mesh.indices.size() / 3;
@@ -267,8 +277,8 @@ void ShowSession::log(const topics::Command& command, const std::string& result)
     const int64_t left_out = orders_logged_.ask(monotonicNowNs());
     if (left_out < 0) return;
     if (left_out > 0) spdlog::info("{} orders were not logged", left_out);
-    spdlog::info("order of {} {:016x}: {}: {}", topics::Viewer::Role_Name(command.role()), command.sender(),
-                 orderText(command), result);
+    spdlog::info("order of {}: {}: {}", senderText(command, publisher_.proofOf(command)), orderText(command),
+                 result);
 }
 
 void ShowSession::publishStatus() {
@@ -295,7 +305,7 @@ void ShowSession::publishStatus() {
     status.set_faults(health.faults);
     status.set_fault_text(faultNames(health.faults));
     commands_.describe(status);
-    effects_.describe(recorder_.effects(), material_names_, status);
+    effects_.describe(recorder_.attempt().effects, material_names_, status);
     const auto latest = recorder_.latest();
     status.set_device_stale(!latest || (latest->faults & kFaultStaleDevice));
     if (latest) {

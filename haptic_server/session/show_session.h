@@ -46,6 +46,7 @@ class ShowSession {
 
   private:
     bool publishNodes();
+    std::vector<NodeMesh> takeStructures();
     void publishStructures();
     void publishDensities();
     void publishToolState(int64_t now_ns);

@@ -57,6 +57,7 @@ struct TickRecord {
     uint32_t added_voxels;    // voxels that rose to the iso-value or above in this tick
     uint32_t buttons;         // Button bits
     uint32_t faults;          // TickFault bits of this tick
+    uint64_t bone_order;      // to put the bone back: the newest that is done (BoneHistory::finishedOrder())
     Cut cut;                  // the voxels milled in this tick
     EffectRecord effects;
     DeviceReport device;

@@ -53,6 +53,9 @@ class HandPlace {
         return has_pose_ && refused_for_ == 0;
     }
 
+    // The next sample may be anywhere: the hand was put there.
+    void expectAny() noexcept { has_pose_ = false; }
+
     bool hasPose() const noexcept { return has_pose_; }
     // Tells whether the hand is of a sudden where it is now: its sample is the first that is believed, or the
     // first after others that were not.

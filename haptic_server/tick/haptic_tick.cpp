@@ -178,16 +178,57 @@ bool HapticTick::tick(TickIo& io) noexcept {
 
 void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept {
     const bool is_first = !place_.hasPose();
+    const bool is_placed = !is_first && std::exchange(placements_, input.placements) != input.placements;
+    if (is_first) placements_ = input.placements;
+    if (is_placed) place_.expectAny();
     if (!believe(input)) {
         faults |= kFaultBadDevicePose;
         return;  // the last good one stays
     }
     if (is_first) {
         X_VT_ = X_VT_device_;  // the simulated tool starts where the hand is
+    } else if (is_placed) {
+        placeTool();
     } else if (place_.hasJumped()) {
         hand_limits_.beginSuddenChange();
         has_changed_suddenly_ = true;
     }
+}
+
+// The hand was put where it is without a way there, and the simulated tool goes along: by its own way it
+// might be caught behind bone. In bone it has no place; then it begins beside it, on the side that its shaft
+// comes from.
+void HapticTick::placeTool() noexcept {
+    constexpr int kMostSteps = 64;  // of a burr's radius: some cm
+    Pose X_VT = X_VT_device_;
+    const Eigen::Vector3d step = tools_[tool_].burr.radius * (X_VT.rotation * Eigen::Vector3d::UnitY());
+    int steps = 0;
+    for (; steps < kMostSteps && isInBone(X_VT); ++steps) X_VT.position += step;
+    hand_limits_.beginSuddenChange();
+    has_changed_suddenly_ = true;
+    if (steps == kMostSteps) return;  // it comes as it can
+    X_VT_ = X_VT;
+    model_->restart();
+    gradient_.expectOtherBone();
+    effects_.restart(Restart::kOtherLaw);
+}
+
+// Looks at the burr's middle and at six places on it.
+bool HapticTick::isInBone(const Pose& X_VT) const noexcept {
+    const VoxelVolume& volume = bone_.volume;
+    const double radius = tools_[tool_].burr.radius;
+    for (int i = -1; i < 6; ++i) {
+        const Eigen::Vector3d offset =
+            i < 0 ? Eigen::Vector3d::Zero().eval()
+                  : ((i % 2 ? -radius : radius) * Eigen::Vector3d::Unit(i / 2)).eval();
+        const Eigen::Array3d place =
+            ((X_VT.position + offset).cwiseQuotient(volume.spacing())).array().round();
+        const bool is_inside = (place >= 0).all() && (place < volume.dims().array().cast<double>()).all();
+        if (!is_inside) continue;
+        const Eigen::Vector3i voxel = place.cast<int>();
+        if (volume.at(voxel.x(), voxel.y(), voxel.z()) >= volume.iso()) return true;
+    }
+    return false;
 }
 
 bool HapticTick::believe(const DeviceInput& input) noexcept {
@@ -255,7 +296,7 @@ MillingResult HapticTick::mill(uint32_t& faults) noexcept {
     if (history_->restoreSome(bone_, shell_is_complete)) {
         hand_limits_.beginSuddenChange();
         gradient_.expectOtherBone();
-        effects_.restart(Restart::kBonePutBack);
+        effects_.restart(history_->isTargetScanned() ? Restart::kScanPutBack : Restart::kBonePutBack);
         has_changed_suddenly_ = true;
     } else {
         milled = millWithEffects(faults);
@@ -300,6 +341,7 @@ TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step)
     record.rotation_share = hand_coupling_.rotationShare();
     record.buttons = input.buttons;
     record.device = input.device;
+    record.bone_order = history_ ? history_->finishedOrder() : 0;
     return record;
 }
 

@@ -60,6 +60,8 @@ class HapticTick {
     void useCoupling() noexcept;
     void acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
     bool believe(const DeviceInput& input) noexcept;
+    void placeTool() noexcept;
+    bool isInBone(const Pose& X_VT) const noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
     SpoModel* modelOf(ContactLaw law) noexcept;
@@ -92,6 +94,7 @@ class HapticTick {
     Pose X_VT_device_;
     Pose X_VT_;
     HandPlace place_;
+    uint32_t placements_ = 0;                               // of the hand, that were followed
     bool was_pedal_down_ = false, was_add_wanted_ = false;  // in the last tick
     bool has_changed_suddenly_ = false;  // what the simulated side stores, by no one's work
     uint64_t tick_ = 0;

@@ -13,6 +13,7 @@ struct DeviceInput {
     Pose X_WT_device;          // where the hand really holds the tool
     bool is_repeated = false;  // no sample came since the last tick: the pose is the one of before
     uint32_t buttons = 0;      // Button bits
+    uint32_t placements = 0;   // DeviceSample: a new number puts the simulated tool where the hand is
     DeviceReport device;       // nothing is milled but while it is engaged
     // Another device is there than in the ticks before, and this is what it can do. It is good until the next
     // read(); null says that nothing has changed.

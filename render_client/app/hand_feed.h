@@ -1,11 +1,13 @@
 // The tool in this viewer's mouse: begins to hold it, tells the device where it is wanted, and lets the
-// user see how. It belongs to the thread of the OpenGL context.
+// user see how. In another scene and in a new attempt, which begin with the tool elsewhere, the hold rests
+// until the bone is there. It belongs to the thread of the OpenGL context.
 #pragma once
 
 #include <chrono>
 #include <optional>
 #include <string>
 
+#include "render_client/controls/hold_watch.h"
 #include "render_client/controls/viewer_controls.h"
 #include "render_client/scene/render_scene.h"
 #include "render_client/subscribe/scene_subscriber.h"
@@ -23,12 +25,15 @@ class HandFeed {
 
     // Once per picture, before its events: the mouse means what the user has seen.
     void lookAt(int width, int height);
-    // Once per picture, after its events; `begin` says that the user asks for the tool now. Returns why the
-    // tool that was to be held by itself is not, a sentence for the user; mostly empty.
-    std::string update(const SessionView& session, bool begin, Clock::time_point now);
+    // Once per picture, after its events; `begin` says that the user asks for the tool now. Returns what the
+    // user should notice; mostly nothing.
+    std::optional<HudNotice> update(const SessionView& session, bool begin, Clock::time_point now);
 
   private:
-    bool isOffered(const SessionView& session);
+    void rest(const SessionView& session, Clock::time_point now);
+    bool isOffered(const SessionView& session, bool has_seen_bone);
+    bool goesOn(bool has_seen_bone, Clock::time_point now) const;
+    std::optional<HudNotice> watch(const SessionView& session, Clock::time_point now);
     void begin(bool is_at_cursor, Clock::time_point now);
     Eigen::Vector3d surfaceInView(bool is_at_cursor) const;
     void tellDevice();
@@ -42,8 +47,14 @@ class HandFeed {
     uint64_t offered_epoch_ = 0;  // run of the server in which the tool was offered last
     bool shows_model_ = false;    // the picture before showed the whole model
     bool was_holding_ = false;
+    uint64_t seen_epoch_ = 0;
+    int64_t seen_attempt_ns_ = 0;                  // start of the newest attempt
+    std::optional<Clock::time_point> goes_on_at_;  // the hold that rests in a new scene or attempt
+    uint32_t placements_ = 0;                      // that the device was asked for
+    HoldWatch watch_;
     Clock::time_point begun_;                   // the hold
     std::optional<Clock::time_point> started_;  // the first picture
+    std::optional<Clock::time_point> milled_;   // first, in the mouse
 };
 
 }  // namespace bonemill

@@ -4,10 +4,12 @@
 #include "common/log/log.h"
 #include "common/process_limits.h"
 #include "common/run_program.h"
+#include "render_client/app/connect_gateway.h"
 #include "render_client/app/list_sessions.h"
 #include "render_client/app/measure_viewer.h"
 #include "render_client/app/offscreen_viewer.h"
 #include "render_client/app/send_command.h"
+#include "render_client/app/serve_gateway.h"
 #include "render_client/app/stop_signal.h"
 #include "render_client/app/window_viewer.h"
 
@@ -18,12 +20,14 @@ namespace {
 constexpr size_t kPictureBytes = size_t(1) << 30;
 
 int view(int argc, char** argv) {
-    const auto options = parseOptions(argc, argv);
+    auto options = parseOptions(argc, argv);
     if (!options) return 0;
     setUpLog("render_client", options->log_level);
     dds::setNetwork(options->network);
     catchStopSignals();
+    if (options->connect) connectToGateway(*options);
     if (options->lists_sessions) return runListSessions(*options);
+    if (options->serve) return runGateway(*options);
     if (options->command) return runSendCommand(*options);
     requireMemory(kPictureBytes, "the pictures");
     if (options->measure) {

@@ -12,6 +12,8 @@
 #include "common/dds/network_cli.h"
 #include "common/units.h"
 #include "common/user_error.h"
+#include "render_client/app/connect_options.h"
+#include "render_client/app/serve_options.h"
 #include "render_client/app/view_options.h"
 #include "render_client/hud/session_text.h"
 #include "render_client/subscribe/command_words.h"
@@ -25,6 +27,7 @@ constexpr int kMaxSize = 8192;  // pixels; every OpenGL 3.3 driver in use can do
 // Here is what the command line holds before units are converted.
 struct RawOptions {
     CLI::Option* session = nullptr;
+    CLI::Option* name = nullptr;
     bool offscreen = false;
     OffscreenOptions offscreen_options;
     uint32_t interval_ms = uint32_t(OffscreenOptions().interval.count());
@@ -37,6 +40,8 @@ struct RawOptions {
     std::optional<double> azimuth_deg, elevation_deg, distance_mm;
     std::vector<double> target_mm;
     RawView view;
+    RawServe serve;
+    RawConnect connect;
 };
 
 std::vector<std::string> roleNames() {
@@ -71,24 +76,31 @@ void parseSize(const std::string& text, ClientOptions& options) {
     options.height = height;
 }
 
-void addSessionOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
-    app.add_option("--domain", options.subscriber.domain, "DDS domain of the server")
-        ->check(CLI::Range(uint32_t{0}, dds::kMaxDomain))
-        ->capture_default_str();
+// Returns the options of DDS.
+std::vector<CLI::Option*> addSessionOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
+    CLI::Option* const domain =
+        app.add_option("--domain", options.subscriber.domain, "DDS domain of the server")
+            ->check(CLI::Range(uint32_t{0}, dds::kMaxDomain))
+            ->capture_default_str();
     raw.session = app.add_option("--session", options.subscriber.session,
                                  "Number that haptic_server was started with (default 1; a window takes the "
                                  "only session there is, or lets choose)");
-    app.add_flag("--list", options.lists_sessions, "Print the sessions that are there, and end")
-        ->excludes(raw.session);
+    CLI::Option* const list =
+        app.add_flag("--list", options.lists_sessions, "Print the sessions that are there, and end")
+            ->excludes(raw.session);
     dds::addNetworkOptions(app, options.network);
-    app.add_option("--name", options.subscriber.name, "What the others read in their list of viewers")
-        ->capture_default_str();
-    app.add_option(
-           "--role", raw.role,
-           "viewer: only looks; operator: also commands; instructor: also points and ends the session "
-           "(default operator; viewer under the profiles lab and classroom)")
-        ->check(CLI::IsMember(roleNames()));
+    raw.name =
+        app.add_option("--name", options.subscriber.name, "What the others read in their list of viewers")
+            ->capture_default_str();
+    CLI::Option* const role =
+        app.add_option(
+               "--role", raw.role,
+               "viewer: only looks; operator: also commands; instructor: also points and ends the session; "
+               "examiner: commands lesson and files (default operator; viewer under the profiles lab and "
+               "classroom; with --secure what the identity says)")
+            ->check(CLI::IsMember(roleNames()));
     addLogLevelOption(app, options.log_level);
+    return {raw.session, domain, list, role};
 }
 
 void addPictureOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
@@ -138,8 +150,9 @@ CLI::Option* addOffscreenOptions(CLI::App& app, RawOptions& raw) {
     return offscreen;
 }
 
-void addCommandOptions(CLI::App& app, RawOptions& raw, CLI::Option* offscreen,
-                       const std::vector<CLI::Option*>& view_options) {
+// Returns the options that say what to do instead of a window.
+std::vector<CLI::Option*> addCommandOptions(CLI::App& app, RawOptions& raw, CLI::Option* offscreen,
+                                            const std::vector<CLI::Option*>& view_options) {
     auto* command =
         app.add_option(
                "--command", raw.command,
@@ -166,14 +179,32 @@ void addCommandOptions(CLI::App& app, RawOptions& raw, CLI::Option* offscreen,
                    "(default " +
                        std::to_string(kDefaultTimeout.count()) + ")")
         ->check(CLI::Range(1u, 86400u));
+    return {offscreen, command, measure};
 }
 
 void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     const std::vector<CLI::Option*> view_options = addViewOptions(app, raw.view);
-    addSessionOptions(app, raw, options);
+    std::vector<CLI::Option*> of_dds = addSessionOptions(app, raw, options);
     addPictureOptions(app, raw, options);
     addCameraOptions(app, raw);
-    addCommandOptions(app, raw, addOffscreenOptions(app, raw), view_options);
+    std::vector<CLI::Option*> no_window =
+        addCommandOptions(app, raw, addOffscreenOptions(app, raw), view_options);
+    no_window.insert(no_window.end(), view_options.begin(), view_options.end());
+    of_dds.push_back(addServeOptions(app, raw.serve, no_window));
+    addConnectOptions(app, raw.connect, of_dds);
+}
+
+// With --secure the server asks the certificate who this is; what the viewer says of itself is the same.
+void takeOver(const Identity& identity, const RawOptions& raw, ClientOptions& options) {
+    if (raw.name->count() == 0) options.subscriber.name = identity.name;
+    if (identity.role == "gateway") return;
+    const std::string certified = identity.role == "observer" ? "viewer" : identity.role;
+    const std::vector<std::string> names = roleNames();
+    if (std::ranges::find(names, certified) == names.end()) return;  // not a viewer's folder: setNetwork()
+    if (raw.role && *raw.role != certified)
+        throw UserError("--role " + *raw.role + ": the identity of --secure is " + identity.name + "'s, " +
+                        identity.role + "; leave --role out");
+    options.subscriber.role = roleOf(certified);
 }
 
 ClientOptions convert(const RawOptions& raw, ClientOptions options) {
@@ -183,8 +214,9 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     options.subscriber.role = raw.role     ? roleOf(*raw.role)
                               : only_looks ? topics::Viewer::VIEWER
                                            : topics::Viewer::OPERATOR;
-    options.chooses_session =
-        raw.session->count() == 0 && !raw.offscreen && !raw.measure_s && raw.command.empty();
+    if (const auto identity = dds::identityOf(options.network)) takeOver(*identity, raw, options);
+    options.chooses_session = raw.session->count() == 0 && !raw.connect.link && !raw.offscreen &&
+                              !raw.measure_s && raw.command.empty();
     if (!raw.size.empty()) parseSize(raw.size, options);
     if (raw.azimuth_deg) options.view.azimuth = *raw.azimuth_deg * kDegree;
     if (raw.elevation_deg) options.view.elevation = *raw.elevation_deg * kDegree;
@@ -209,27 +241,47 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     }
     if (options.holds_tool && (raw.offscreen || raw.measure_s || !raw.command.empty()))
         throw UserError("--hold-tool needs a window: leave out --offscreen, --measure-s and --command");
-    if (options.holds_tool && options.subscriber.role == topics::Viewer::VIEWER)
+    if (options.holds_tool && options.subscriber.role != topics::Viewer::OPERATOR &&
+        options.subscriber.role != topics::Viewer::INSTRUCTOR)
         throw UserError("--hold-tool needs --role operator or instructor: a viewer only looks");
     if (!options.sound_wav.empty() && (!options.has_effects || raw.measure_s || !raw.command.empty()))
         throw UserError(
             "--sound-wav needs a viewer with effects: leave out --no-effects, --measure-s and --command");
     if (!raw.command.empty()) options.command = CommandOptions{raw.command, timeout};
+    options.connect = connectOptions(raw.connect);
+    options.serve = serveOptions(raw.serve);
+    if (options.serve) {
+        options.serve->domain = options.subscriber.domain;
+        options.serve->session = options.subscriber.session;
+    }
     return options;
 }
 
 }  // namespace
 
 ServerSought soughtOf(const ClientOptions& options) {
+    if (options.subscriber.remote) {
+        ServerSought sought;
+        sought.gateway = options.subscriber.remote->name();
+        return sought;
+    }
     const std::string& profile = options.network.profile;
     const std::string shown = !profile.empty()                ? profile
                               : std::getenv("CYCLONEDDS_URI") ? "as CYCLONEDDS_URI says"
                                                               : "one-pc";
-    return {options.subscriber.session, options.subscriber.domain,  shown,
-            options.network.interface,  dds::isLanProfile(profile), options.chooses_session};
+    return {.session = options.subscriber.session,
+            .domain = options.subscriber.domain,
+            .profile = shown,
+            .interface = options.network.interface,
+            .is_on_lan = dds::isLanProfile(profile),
+            .is_any_session = options.chooses_session,
+            .lock = !options.network.secure.empty()        ? HudLock::kClosed
+                    : dds::isOpenToOthers(options.network) ? HudLock::kOpen
+                                                           : HudLock::kNone};
 }
 
 std::string serverQuestion(const SubscriberOptions& subscriber) {
+    if (subscriber.remote) return "does the gateway " + subscriber.remote->name() + " hear a haptic_server?";
     return "is a haptic_server running in domain " + std::to_string(subscriber.domain) + ", session " +
            std::to_string(subscriber.session) + "?";
 }

@@ -8,8 +8,10 @@
 #include <string>
 
 #include "common/dds/network.h"
+#include "render_client/app/connect_options.h"
 #include "render_client/camera/first_view.h"
 #include "render_client/camera/view_settings.h"
+#include "render_client/gateway/gateway_options.h"
 #include "render_client/hud/waiting_page.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
@@ -56,6 +58,8 @@ struct ClientOptions {
     std::optional<OffscreenOptions> offscreen;  // none given: a window
     std::optional<CommandOptions> command;
     std::optional<MeasureOptions> measure;
+    std::optional<ConnectOptions> connect;         // instead of DDS
+    std::optional<gateway::GatewayOptions> serve;  // instead of a viewer
     std::string log_level = "info";
 };
 

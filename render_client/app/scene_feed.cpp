@@ -36,10 +36,12 @@ void SceneFeed::showSceneInfo() {
 
 void SceneFeed::showStructures() {
     const uint64_t changes = subscriber_.structureChanges();
-    if (std::exchange(shown_structures_, changes) == changes) return;
-    scene_.clearStructures();
+    const uint64_t shown = std::exchange(shown_structures_, changes);
+    if (shown == changes) return;
+    if (std::exchange(structures_epoch_, subscriber_.epoch()) != subscriber_.epoch())
+        scene_.clearStructures();
     for (const auto& [id, structure] : subscriber_.structures())
-        scene_.setStructure(structure.mesh, structure.warning_distance);
+        if (structure.change > shown) scene_.setStructure(structure.mesh, structure.warning_distance);
 }
 
 void SceneFeed::advanceEffects() {

@@ -14,7 +14,9 @@
 #include "render_client/app/scene_feed.h"
 #include "render_client/app/stop_signal.h"
 #include "render_client/controls/announce_clock.h"
+#include "render_client/controls/done_text.h"
 #include "render_client/controls/frame_rate.h"
+#include "render_client/controls/help_rows.h"
 #include "render_client/controls/viewer_controls.h"
 #include "render_client/hud/session_text.h"
 #include "render_client/hud/text_scale.h"
@@ -31,7 +33,11 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kMinimisedPause{50};
 constexpr uint32_t kNoSession = UINT32_MAX;  // no server is asked for it
-constexpr std::chrono::seconds kNoticeTime{int(ViewerControls::kAnswerTime)};
+constexpr std::chrono::seconds kNoticeTime{6};
+
+const topics::Lesson* lessonOf(const SceneSubscriber& subscriber) {
+    return subscriber.lesson() ? &*subscriber.lesson() : nullptr;
+}
 
 // Shows over the picture, for a while, what the user should notice.
 class Notices {
@@ -46,7 +52,8 @@ class Notices {
     }
     void showOutcomes(SceneSubscriber& subscriber) {
         for (const CommandOutcome& outcome : subscriber.takeOutcomes())
-            show({outcomeText(outcome), outcome.isDone() ? HudTone::kGood : HudTone::kWarning});
+            outcome.isDone() ? show({doneText(outcome.command, lessonOf(subscriber)), HudTone::kGood})
+                             : show({outcomeText(outcome), HudTone::kWarning});
     }
     void removeOld() {
         if (Clock::now() >= end_) scene_.setNotice(std::nullopt);
@@ -132,8 +139,7 @@ class WindowViewer {
         takeInput(height, session, wishes);
         if (!is_minimised) panel_.layOut(controls_, session, wishes);
         carryOut(wishes);
-        const std::string why_not = hand_.update(session, wishes.hold_tool, Clock::now());
-        if (!why_not.empty()) notices_.show({why_not, HudTone::kWarning});
+        if (const auto notice = hand_.update(session, wishes.hold_tool, Clock::now())) notices_.show(*notice);
         window_.showCrosshair(controls_.toolHold().isHolding());
         announce();
         attendance_.update(session.others);
@@ -143,8 +149,10 @@ class WindowViewer {
         scene_.setWatchers(watchers(session));
         scene_.setMouse(mouseOverScene(width, height));
         scene_.setFrameRate(frame_rate_.perSecond());
+        scene_.setModes(modeTexts(scene_.settings()));
+        scene_.setTitle(session.lesson ? sceneTitle(*session.lesson, session.lesson->scene_id()) : "");
         scene_.draw(width, height, scaleOfText(width, height));
-        painter_.paint(panel_, scene_.viewWidth(width, height), height);
+        painter_.paint(panel_, width, height);
         if (wishes.save_picture) savePicture(width, height);
         if (wishes.save_attempts && session.lesson) saveAttempts(*session.lesson);
         window_.show();
@@ -178,11 +186,13 @@ class WindowViewer {
         session.frame_rate_hz = frame_rate_.perSecond();
         if (subscriber.sceneInfo()) session.info = &*subscriber.sceneInfo();
         if (subscriber.status()) session.status = &*subscriber.status();
-        if (subscriber.lesson()) session.lesson = &*subscriber.lesson();
+        session.lesson = lessonOf(subscriber);
         session.others = subscriber.viewers();
         session.faults = scene_.faults();
         session.offered = offered_;
         session.time_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+        session.realtime_ns =
+            std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
         return session;
     }
 
@@ -194,7 +204,7 @@ class WindowViewer {
         const Clock::time_point now = Clock::now();
         const std::chrono::duration<double> seconds = now - std::exchange(last_picture_, now);
         const int view_width = scene_.viewWidth(width, height);
-        panel_.setPicture(view_width, height, scaleOfText(width, height), seconds.count());
+        panel_.setPicture(width, height, view_width, scaleOfText(width, height), seconds.count());
         hand_.lookAt(view_width, height);
         controls_.paneMouse().lookAt(scene_.seenPanes());
     }
@@ -218,6 +228,7 @@ class WindowViewer {
         if (wishes.centre_at)
             if (const auto p_W = pick(*wishes.centre_at)) scene_.camera().target_W = *p_W;
         if (wishes.notice) notices_.show(*wishes.notice);
+        if (!wishes.asked.empty()) spdlog::info("asked: {}", wishes.asked);
         has_quit_ = has_quit_ || wishes.quit;
         if (wishes.session) chosen_ = wishes.session;
     }

@@ -82,8 +82,10 @@ struct ViewSettings {
     double text_scale = 1;  // the user's own factor, kLeastText to kMostText
     static constexpr double kLeastText = 0.5, kMostText = 4;
 
-    // Forgets what was chosen of one scene's scan and structures and means something else in the next one.
+    // Forgets what was chosen of one scene's bone, scan and structures and means something else in the next
+    // one.
     void forgetScene() {
+        cuts = {};
         structures.fill(structures[0]);
         slices.positions = {};
         slices.zoom = 1;

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 
 #include "render_client/controls/key_table.h"
 
@@ -42,9 +43,9 @@ void addKeys(const Bindings& bindings, std::vector<HudRow>& rows, Wanted&& is_wa
     }
 }
 
-bool isOfUse(const KeyBinding& binding, HelpFor whom) {
+bool isOfUse(const KeyBinding& binding, HelpFor whom, bool has_lesson) {
     const bool begins_hold = binding.action == Action::kHoldTool;
-    if (binding.is_of_lesson) return false;
+    if (binding.is_of_lesson) return has_lesson;
     return !binding.is_of_hold || whom == HelpFor::kHolding || (begins_hold && whom == HelpFor::kMayHold);
 }
 
@@ -59,14 +60,14 @@ constexpr struct {
 
 }  // namespace
 
-std::vector<HelpGroup> helpGroups(HelpFor whom) {
+std::vector<HelpGroup> helpGroups(HelpFor whom, bool has_lesson) {
     const std::span<const HudRow> mouse =
         whom == HelpFor::kHolding ? std::span<const HudRow>(kMouseWithTool) : std::span<const HudRow>(kMouse);
     std::vector<HelpGroup> groups{{"Mouse", {mouse.begin(), mouse.end()}}};
     for (const auto& [group, title] : kGroups) {
         std::vector<HudRow> rows;
         addKeys(keyTable(), rows, [&, g = group](const KeyBinding& binding) {
-            return groupOf(binding.action) == g && isOfUse(binding, whom);
+            return groupOf(binding.action) == g && isOfUse(binding, whom, has_lesson);
         });
         addKeys(signTable(), rows,
                 [g = group](const SignBinding& binding) { return groupOf(binding.action) == g; });
@@ -82,6 +83,19 @@ std::vector<HudRow> startRows() {
     return {{keyLabelOf(Action::kHelp), "all keys"},
             {keyLabelOf(Action::kPanel), "control panel"},
             {keyLabelOf(Action::kDetails), "all figures"}};
+}
+
+std::vector<std::string> modeTexts(const ViewSettings& settings) {
+    std::vector<std::string> modes;
+    const auto add = [&](const std::string& text, Action action, const char* leave) {
+        modes.push_back(text + " (" + keyLabelOf(action) + ": " + leave + ")");
+    };
+    if (settings.camera == CameraMode::kEndoscope) add("Endoscope", Action::kEndoscope, "back");
+    if (settings.camera == CameraMode::kMicroscope) add("Microscope", Action::kMicroscope, "back");
+    for (const auto& [axis, action] :
+         {std::pair(0, Action::kCutX), std::pair(1, Action::kCutY), std::pair(2, Action::kCutZ)})
+        if (settings.cuts[size_t(axis)].is_on) add("Cut " + keyLabelOf(action) + " on", action, "off");
+    return modes;
 }
 
 std::vector<HudRow> hintRows() {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "render_client/camera/view_settings.h"
 #include "render_client/hud/hud.h"
 
 namespace bonemill {
@@ -11,11 +12,15 @@ namespace bonemill {
 enum class HelpFor { kLooking, kMayHold, kHolding };
 
 // Returns the mouse, then every key and sign of the table that is of use, by what they are for. Keys that do
-// the same are one row, parted by spaces.
-std::vector<HelpGroup> helpGroups(HelpFor whom);
+// the same are one row, parted by spaces. Those of a lesson are among them where the server gives one.
+std::vector<HelpGroup> helpGroups(HelpFor whom, bool has_lesson = false);
 
 // Returns where help and panel are, for a hint over the first pictures.
 std::vector<HudRow> startRows();
+
+// Returns how the bone is looked at, where that is not the usual way, each with the key that leaves it: "Cut
+// Y on (Y: off)".
+std::vector<std::string> modeTexts(const ViewSettings& settings);
 
 // Returns in short what mouse and keys do to the tool that they hold, for a hint over the picture.
 std::vector<HudRow> hintRows();

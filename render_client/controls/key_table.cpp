@@ -59,7 +59,7 @@ constexpr KeyBinding kKeys[] = {
     {"Shift+J", keyOf('J'), true, Action::kSmallerText, "smaller text", true},
     {"H", keyOf('H'), false, Action::kHelp, "this help"},
     {"F12", Key::kF12, false, Action::kSavePicture, "save the picture"},
-    {"Esc", Key::kEscape, false, Action::kQuit, "quit"},
+    {"Esc", Key::kEscape, false, Action::kQuit, "leave the help; quit"},
 };
 
 constexpr SignBinding kSigns[] = {

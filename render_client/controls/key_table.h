@@ -82,7 +82,7 @@ struct KeyBinding {
     std::string_view meaning;   // neighbours with the same one share a row of the help page
     bool repeats = false;       // it acts again while the key is held
     bool is_of_hold = false;    // it is of use only where a mouse can hold the tool
-    bool is_of_lesson = false;  // it is of use in a lesson, whose part of the panel names it
+    bool is_of_lesson = false;  // it is of use in a lesson
 };
 
 // Signs such as [ and + are bound by the text they make: where they lie differs from layout to layout.

@@ -1,7 +1,6 @@
 #include "render_client/controls/session_view.h"
 
 #include "common/device_messages/device_messages.h"
-#include "render_client/hud/figure_text.h"
 
 namespace bonemill {
 namespace {
@@ -63,30 +62,6 @@ std::string whyNotCommand(const SessionView& session) {
     return "";
 }
 
-// A checkpoint has the bone as it is when just as much was removed until then.
-std::string unsavedWork(const SessionView& session) {
-    if (!session.status || session.status->removed_mm3() == 0) return "";
-    for (const topics::Checkpoint& checkpoint : session.status->checkpoints())
-        if (checkpoint.removed_mm3() == session.status->removed_mm3()) return "";
-    return readableText(session.status->removed_mm3(), " mm\u00b3") + " are milled and in no checkpoint";
-}
-
-std::string questionBefore(const topics::Command& command, const SessionView& session) {
-    if (command.has_choose_scene() && session.status && session.status->removed_mm3() > 0)
-        return "Change the scene? " + readableText(session.status->removed_mm3(), " mm\u00b3") +
-               " are milled and go with this one: once more does it";
-    const bool starts = command.has_start_attempt();
-    const bool replaces_bone = starts || command.reset_volume() || command.has_restore_checkpoint();
-    const std::string lost = replaces_bone ? unsavedWork(session) : "";
-    if (lost.empty()) return "";
-    const std::string what = starts ? "Start on whole bone?"
-                             : command.reset_volume()
-                                 ? "Put the bone back?"
-                                 : "Back to checkpoint " + std::to_string(command.restore_checkpoint()) + "?";
-    return what + " " + lost + ": once more does it, " + keyLabelOf(Action::kSaveCheckpoint) +
-           " saves them first";
-}
-
 bool isHeldByMouse(const SessionView& session) {
     return session.status && session.status->has_device() &&
            session.status->device().kind() == uint32_t(DeviceKind::kPointer);
@@ -95,6 +70,7 @@ bool isHeldByMouse(const SessionView& session) {
 std::string whyNotHold(const SessionView& session) {
     const std::string why_not = whyNotCommand(session);
     if (!why_not.empty()) return why_not;
+    if (session.role == topics::Viewer::EXAMINER) return "An examiner leaves the tool to others";
     for (const topics::Viewer& other : session.others)
         if (other.is_holding())
             return (other.name().empty() ? "Another viewer" : other.name()) + " holds the tool";

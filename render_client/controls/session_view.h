@@ -25,7 +25,8 @@ struct SessionView {
     bool has_server = false;
     bool is_complete = false;  // this viewer shows the server's whole model
     double frame_rate_hz = 0;  // of this viewer
-    double time_s = 0;         // any clock that goes on: when was the user asked?
+    double time_s = 0;         // any clock that goes on
+    int64_t realtime_ns = 0;   // CLOCK_REALTIME of this PC
     const topics::SceneInfo* info = nullptr;
     const topics::Status* status = nullptr;
     const topics::Lesson* lesson = nullptr;
@@ -39,13 +40,6 @@ std::string whyNotCommand(const SessionView& session);
 std::string whyNotHold(const SessionView& session);
 std::string whyNotPoint(const SessionView& session);
 std::string whyNotEndSession(const SessionView& session);
-
-// Returns what would be lost with the bone as it is now, for a question to the user; empty when nothing is
-// milled, or when a checkpoint has it.
-std::string unsavedWork(const SessionView& session);
-
-// Returns what to ask the user before this command; empty when nothing is lost by it.
-std::string questionBefore(const topics::Command& command, const SessionView& session);
 
 // The session's tool is held by a mouse (device_daemon --device pointer).
 bool isHeldByMouse(const SessionView& session);

@@ -33,10 +33,22 @@ double PictureView::depthOf(const Eigen::Vector3d& p_W) const {
     return (p_W - camera.eye_W).dot(camera.forward_W());
 }
 
-void ToolHold::begin(const Pose& X_WT, double burr_radius, bool comes_to_cursor) {
+void ToolHold::lookAt(const PictureView& view) {
+    const bool is_other = view.camera.eye_W != view_.camera.eye_W || view.camera.R_WC != view_.camera.R_WC ||
+                          view.width != view_.width || view.height != view_.height;
+    if (is_other) aside_ = {};
+    view_ = view;
+}
+
+void ToolHold::passOver(const PixelPoint& to) {
+    mouse_ = to;
+    aside_ = {};
+}
+
+void ToolHold::begin(const Pose& X_WT, double burr_radius) {
     X_WT_ = X_WT;
     burr_radius_ = burr_radius;
-    comes_to_cursor_ = comes_to_cursor;
+    aside_ = {};
     held_ = {};
     is_holding_ = true;
 }
@@ -106,8 +118,8 @@ double ToolHold::depth() const {
 }
 
 void ToolHold::follow(const PixelPoint& from, const PixelPoint& to) {
-    if (std::exchange(comes_to_cursor_, false)) {
-        X_WT_.position = view_.pointAt(to, depth());
+    if (view_.has_places) {
+        X_WT_.position = view_.pointAt({to.x + aside_.x, to.y + aside_.y}, depth());
     } else {
         X_WT_.position += view_.pointAt(to, depth()) - view_.pointAt(from, depth());
     }
@@ -116,6 +128,7 @@ void ToolHold::follow(const PixelPoint& from, const PixelPoint& to) {
 // What the user sees of the tool's near side goes with the mouse.
 void ToolHold::turn(const PixelPoint& from, const PixelPoint& to) {
     const Eigen::Vector3d turn_C(to.y - from.y, to.x - from.x, 0);
+    aside_ = {aside_.x + from.x - to.x, aside_.y + from.y - to.y};
     X_WT_ = X_WT_.incremented(Eigen::Vector3d::Zero(),
                               view_.camera.R_WC * (kTurnPerHeight / view_.height * turn_C));
 }

@@ -2,8 +2,10 @@
 //
 // The cursor moves the tool across the plane of the picture that goes through the tool, so that the tool
 // stays under it; the wheel moves it along the line of sight, also under the cursor. While the clutch is held
-// the tool stays where it is, and the mouse is the camera's. So it does while the camera is dragged:
-// afterwards the tool goes as far as the cursor, from where it is.
+// the tool stays where it is, and the mouse is the camera's. So it does while the camera is dragged, and
+// while the cursor is elsewhere: with the next move the tool is under the cursor again. Where the tool was
+// turned with the mouse it goes as far as the cursor until the camera moves: turning must not pull it out of
+// its hole.
 //
 // Frames are W and C (camera.h); units are m, rad and pixels. It belongs to the render thread and never
 // throws.
@@ -22,6 +24,9 @@ struct PictureView {
     Camera camera;
     int width = 1;  // pixels
     int height = 1;
+    // The cursor is somewhere in the scene: not in stereo, nor where the camera rides on the tool. Otherwise
+    // the tool goes as far as the cursor.
+    bool has_places = true;
 
     // Returns the point (W) at this depth in front of the eye that is seen at that pixel.
     Eigen::Vector3d pointAt(const PixelPoint& pixel, double depth) const;
@@ -36,11 +41,11 @@ class ToolHold {
     static constexpr double kTurnPerHeight = 3.5;  // rad for a drag over the picture's height
 
     // From now on the user looks at this.
-    void lookAt(const PictureView& view) { view_ = view; }
+    void lookAt(const PictureView& view);
 
     // Takes the tool, which shall be there. If it is not under the cursor, it comes there with the first
-    // move, unless the cursor's place means nothing (stereo).
-    void begin(const Pose& X_WT, double burr_radius, bool comes_to_cursor);
+    // move.
+    void begin(const Pose& X_WT, double burr_radius);
     void letGo();
     bool isHolding() const { return is_holding_; }
 
@@ -48,7 +53,7 @@ class ToolHold {
     // is dragged the cursor does not move the tool.
     bool handle(const WindowEvent& event, bool is_camera_dragged);
     // The cursor is there now, and did not mean the tool on its way.
-    void passOver(const PixelPoint& to) { mouse_ = to; }
+    void passOver(const PixelPoint& to);
 
     // Returns where the user wants the tool point.
     const Pose& wish() const { return X_WT_; }
@@ -70,7 +75,7 @@ class ToolHold {
     double burr_radius_ = 0;
     std::optional<PixelPoint> mouse_;
     bool is_holding_ = false;
-    bool comes_to_cursor_ = false;
+    PixelPoint aside_;  // from the cursor to where the tool is seen, since it was turned with the mouse
     struct Held {
         bool mill_button = false, mill_key = false;
         bool add_button = false, add_key = false;

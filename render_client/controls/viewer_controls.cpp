@@ -159,8 +159,8 @@ std::optional<PixelPoint> ViewerControls::pointing() const {
 }
 
 std::optional<PixelPoint> ViewerControls::hovering() const {
-    if (drag_ != Drag::kNone || hold_.isHolding()) return std::nullopt;
-    return mouse_;
+    if (drag_ != Drag::kNone || hold_.buttons() != 0) return std::nullopt;
+    return hold_.isHolding() ? hold_.cursor() : mouse_;
 }
 
 bool ViewerControls::mayPoint(const SessionView& session, Wishes& wishes) const {
@@ -194,7 +194,7 @@ void ViewerControls::act(Action action, const SessionView& session, Wishes& wish
             wishes.save_picture = true;
             return;
         case Action::kQuit:
-            wishes.quit = true;
+            if (!std::exchange(settings_.show_help, false)) want({Deed::Kind::kQuit}, session, wishes);
             return;
         default:
             break;
@@ -209,15 +209,54 @@ void ViewerControls::act(Action action, const SessionView& session, Wishes& wish
     }
 }
 
-// The question says what would be lost: with more milled it is another one.
-void ViewerControls::request(const topics::Command& command, const SessionView& session, Wishes& wishes) {
-    const std::string question = questionBefore(command, session);
+void ViewerControls::want(const Deed& deed, const SessionView& session, Wishes& wishes) {
+    if (isSecondStart(deed, session)) return;
+    const std::optional<Question> question = questionBefore(deed, session);
     const auto asked = std::exchange(asked_, std::nullopt);
-    const bool is_answer =
-        asked && asked->question == question && session.time_s - asked->time_s <= kAnswerTime;
-    if (question.empty() || is_answer) return wishes.commands.push_back(command);
-    asked_ = Asked{question, session.time_s};
-    wishes.notice = HudNotice{question, HudTone::kWarning};
+    if (!question || (asked && isSame(*asked, deed))) return carryOut(deed, session, wishes);
+    asked_ = deed;
+    wishes.asked = question->text;
+}
+
+bool ViewerControls::isSecondStart(const Deed& deed, const SessionView& session) const {
+    return deed.command.has_start_attempt() && last_start_s_ && session.time_s - *last_start_s_ < kStartTime;
+}
+
+void ViewerControls::carryOut(const Deed& deed, const SessionView& session, Wishes& wishes) {
+    topics::Command extra;
+    switch (deed.kind) {
+        case Deed::Kind::kCommand:
+            extra.set_save_checkpoint(true);
+            if (wantsCheckpointBefore(deed, session)) wishes.commands.push_back(extra);
+            wishes.commands.push_back(deed.command);
+            if (deed.command.has_start_attempt()) last_start_s_ = session.time_s;
+            return;
+        case Deed::Kind::kNextTrainee:
+            extra.set_stop_attempt(true);
+            if (session.lesson && session.lesson->is_running()) wishes.commands.push_back(extra);
+            wishes.next_trainee = true;
+            return;
+        case Deed::Kind::kQuit:
+            wishes.quit = true;
+            return;
+    }
+}
+
+std::optional<Question> ViewerControls::question(const SessionView& session) const {
+    return asked_ ? questionBefore(*asked_, session) : std::nullopt;
+}
+
+void ViewerControls::answer(Answer answer, const SessionView& session, Wishes& wishes) {
+    const auto asked = std::exchange(asked_, std::nullopt);
+    if (!asked || answer == Answer::kNo) return;
+    topics::Command save;
+    save.set_save_checkpoint(true);
+    if (answer == Answer::kSaveFirst) wishes.commands.push_back(save);
+    carryOut(*asked, session, wishes);
+}
+
+void ViewerControls::dropIdleQuestion(const SessionView& session) {
+    if (!question(session)) asked_.reset();
 }
 
 void ViewerControls::changeView(Action action) {

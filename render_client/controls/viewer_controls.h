@@ -13,6 +13,7 @@
 #include "render_client/camera/view_settings.h"
 #include "render_client/controls/key_table.h"
 #include "render_client/controls/pane_mouse.h"
+#include "render_client/controls/question.h"
 #include "render_client/controls/session_view.h"
 #include "render_client/controls/tool_hold.h"
 #include "render_client/hud/hud.h"
@@ -29,6 +30,8 @@ struct Wishes {
     bool save_picture = false;
     bool save_attempts = false;       // of the lesson, as CSV
     bool type_trainee = false;        // in the panel
+    bool next_trainee = false;        // in the panel: another name
+    std::string asked;                // a question was put to the user, for the log
     std::optional<uint32_t> session;  // to be joined, of those that are offered
     bool quit = false;
 };
@@ -46,10 +49,22 @@ class ViewerControls {
     // The mouse moved over the panel, which means nobody here.
     void passOver(const MouseMoveEvent& event);
     void act(Action action, const SessionView& session, Wishes& wishes);
-    // Asks the server for it. What would lose unsaved work is asked of the user first, and done when it is
-    // requested again within kAnswerTime and nothing more was milled.
-    void request(const topics::Command& command, const SessionView& session, Wishes& wishes);
-    static constexpr double kAnswerTime = 6;  // s
+    // Asks the server for it.
+    void request(const topics::Command& command, const SessionView& session, Wishes& wishes) {
+        want({Deed::Kind::kCommand, command}, session, wishes);
+    }
+    // Does it, or first asks the user where something would be lost. The question stands until it is
+    // answered; to want the same once more means yes. A second start of an attempt within kStartTime is none:
+    // a double click.
+    void want(const Deed& deed, const SessionView& session, Wishes& wishes);
+    static constexpr double kStartTime = 2;  // s
+
+    // Returns the question that stands.
+    std::optional<Question> question(const SessionView& session) const;
+    enum class Answer { kYes, kNo, kSaveFirst };
+    void answer(Answer answer, const SessionView& session, Wishes& wishes);
+    // Drops a question about what would be lost no more.
+    void dropIdleQuestion(const SessionView& session);
     // Turns around the target; the distance stays.
     void lookFrom(Side side);
 
@@ -79,7 +94,7 @@ class ViewerControls {
     bool isPanelOpen() const { return is_panel_open_; }
     // Returns where the user points with the laser now.
     std::optional<PixelPoint> pointing() const;
-    // Returns where the mouse rests or moves, while it holds no tool and drags nothing.
+    // Returns where the mouse rests or moves, also with the tool, while it drags and mills nothing.
     std::optional<PixelPoint> hovering() const;
 
   private:
@@ -89,6 +104,8 @@ class ViewerControls {
     void onButton(const MouseButtonEvent& event, const SessionView& session, Wishes& wishes);
     void onMove(const MouseMoveEvent& event, int picture_height);
     void onDoubleClick(const MouseButtonEvent& event, Wishes& wishes);
+    bool isSecondStart(const Deed& deed, const SessionView& session) const;
+    void carryOut(const Deed& deed, const SessionView& session, Wishes& wishes);
     void changeView(Action action);
     void switchDetails();
     void scaleText(double factor);
@@ -111,11 +128,8 @@ class ViewerControls {
     ToolHold hold_;
     PaneMouse pane_mouse_;
     std::optional<MouseButtonEvent> last_click_;
-    struct Asked {
-        std::string question;
-        double time_s;
-    };
-    std::optional<Asked> asked_;  // of the user, and not answered
+    std::optional<Deed> asked_;           // of the user, and not answered
+    std::optional<double> last_start_s_;  // of an attempt, by SessionView::time_s
 };
 
 }  // namespace bonemill

@@ -60,6 +60,10 @@ void VisualEffects::setNode(const NodeMesh& mesh) {
 
 void VisualEffects::clear() {
     surface_.clear();
+    forget();
+}
+
+void VisualEffects::forget() {
     trail_.clear();
     if (dust_) dust_->clear();
     if (bleeding_) bleeding_->clear();

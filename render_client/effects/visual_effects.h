@@ -30,8 +30,10 @@ class VisualEffects {
     void take(const EffectInput& input);
     // A node's mesh came or changed; an empty one removes it.
     void setNode(const NodeMesh& mesh);
-    // The bone is another one. Where it is put back, dust and blood stay for their time.
+    // The bone is another one.
     void clear();
+    // The bone was put back: blood, water and dust on it are forgotten.
+    void forget();
     void advance(double dt);
 
     const SurfaceFilm* film() const { return film_ ? &*film_ : nullptr; }

@@ -39,6 +39,14 @@ void addDevice(const HudInput& input, std::vector<Condition>& conditions) {
     if (const auto wait = deviceWait(device, tool)) conditions.push_back({"wait", wait->text, wait->tone});
 }
 
+// Who presses the pedal wonders.
+void addPause(const HudInput& input, std::vector<Condition>& conditions) {
+    const bool is_asked = input.tool && input.tool->buttons() != 0;
+    if (is_asked && input.status->is_milling_paused())
+        conditions.push_back(
+            {"paused", "Milling is paused: P goes on, Start begins the next attempt.", HudTone::kWarning});
+}
+
 }  // namespace
 
 std::vector<Condition> conditionsOf(const HudInput& input) {
@@ -52,6 +60,7 @@ std::vector<Condition> conditionsOf(const HudInput& input) {
     const bool is_there = input.connection == Connection::kReceiving || input.connection == Connection::kLive;
     if (!input.status || !is_there) return conditions;  // what a server said last is no news of it
     addDevice(input, conditions);
+    addPause(input, conditions);
     addTickFaults(*input.status, conditions);
     return conditions;
 }

@@ -42,11 +42,35 @@ std::string shownName(const topics::Device& device) {
 }
 
 // After a pause a switch that is still held counts as pressed no more.
+std::string theDevice(const topics::Device& device) {
+    return "The " + (device.name().empty() ? std::string("device") : device.name());
+}
+
+const char* stopVerb(SafetyState state) {
+    switch (state) {
+        case SafetyState::kDisconnected:
+            return " is not connected";
+        case SafetyState::kEmergencyStop:
+            return " is in emergency stop";
+        case SafetyState::kFault:
+            return " is out of order";
+        default:
+            return " has stopped";
+    }
+}
+
+// A mouse has neither cable nor motors.
+std::string adviceFor(const topics::Device& device, StopCause cause) {
+    if (cause == StopCause::kNone) return "";
+    if (device.kind() == uint32_t(DeviceKind::kPointer)) return " Reset it, let it go and take it again.";
+    return std::string(" ") + whatToDo(cause);
+}
+
 const char* whatItWaitsFor(SafetyState state, const topics::Device& device) {
     const bool has_switch = device.abilities() & kAbilityEnablingSwitch;
     if (has_switch && !device.is_enabled()) return "hold the enabling switch";
-    if (device.force_waits()) return "move the tool away";
-    return has_switch && state == SafetyState::kPaused ? "press the switch anew" : nullptr;
+    if (device.force_waits()) return "move the tool away from the bone";
+    return has_switch && state == SafetyState::kPaused ? "let the switch go and press it again" : nullptr;
 }
 
 // A device that could not hold the scene's coupling quietly gets a softer one (docs/stability.md).
@@ -74,11 +98,10 @@ std::optional<HudNotice> deviceStop(const topics::Device& device, const topics::
     if (toneOf(state) != HudTone::kAlarm) return std::nullopt;
     const auto cause = StopCause(tool ? tool->stop_cause() : device.stop_cause());
     const std::string why = causeOf(cause, device.fault_code());
-    std::string text = shownName(device) + ": " + nameOf(state);
-    if (cause != StopCause::kNone && why != nameOf(state)) text += ", " + why;
-    text += ".";
-    if (cause != StopCause::kNone) text += std::string(" ") + whatToDo(cause);
-    return HudNotice{text, HudTone::kAlarm};
+    const bool is_mouse = device.kind() == uint32_t(DeviceKind::kPointer);
+    std::string text = theDevice(device) + stopVerb(state);
+    if (cause != StopCause::kNone && why != nameOf(state) && !is_mouse) text += ": " + why;
+    return HudNotice{text + "." + adviceFor(device, cause), HudTone::kAlarm};
 }
 
 std::optional<HudNotice> deviceWait(const topics::Device& device, const topics::ToolState* tool) {
@@ -86,7 +109,7 @@ std::optional<HudNotice> deviceWait(const topics::Device& device, const topics::
     if (state != SafetyState::kReady && state != SafetyState::kPaused) return std::nullopt;
     const char* const what = whatItWaitsFor(state, device);
     if (!what) return std::nullopt;
-    return HudNotice{shownName(device) + " is " + nameOf(state) + ": " + what + ".", HudTone::kWarning};
+    return HudNotice{theDevice(device) + " is " + nameOf(state) + ": " + what + ".", HudTone::kWarning};
 }
 
 }  // namespace bonemill

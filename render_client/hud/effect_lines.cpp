@@ -91,15 +91,17 @@ std::vector<HudRow> trainingRows(const topics::Training& training) {
     if (training.has_damaged_mm3())
         rows.push_back({"Damaged", volumeText(training.damaged_mm3()), toneOfVolume(training.damaged_mm3())});
     if (training.has_least_distance_mm())
-        rows.push_back({"Least distance", readableText(training.least_distance_mm(), " mm"),
+        rows.push_back({"Least distance to a protected structure",
+                        readableText(training.least_distance_mm(), " mm"),
                         training.least_distance_mm() <= 0 ? HudTone::kAlarm : HudTone::kPlain});
     if (training.has_max_protected_force_n())
-        rows.push_back({"Largest force on it", readableText(training.max_protected_force_n(), " N")});
+        rows.push_back(
+            {"Largest force on a protected structure", readableText(training.max_protected_force_n(), " N")});
     if (training.has_necrotic_mm3())
         rows.push_back(
             {"Necrosis", volumeText(training.necrotic_mm3()), toneOfVolume(training.necrotic_mm3())});
     if (training.has_max_temperature_c())
-        rows.push_back({"Hottest bone", figureText(training.max_temperature_c(), 1, " \u00b0C"),
+        rows.push_back({"Hottest bone so far", figureText(training.max_temperature_c(), 1, " \u00b0C"),
                         training.max_temperature_c() >= kWarm_c ? HudTone::kWarning : HudTone::kPlain});
     for (const std::string& warning : training.warnings()) rows.push_back({"", warning, HudTone::kWarning});
     return rows;

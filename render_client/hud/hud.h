@@ -57,14 +57,21 @@ struct HudLegend {
     std::string low, high;                      // what the first and the last one stand for
 };
 
+// It says whether strangers can join the session: an open or a closed lock, or none where nobody else can
+// come at all.
+enum class HudLock { kNone, kOpen, kClosed };
+
 struct Hud {
     std::string title;  // empty: no figures
+    HudLock lock = HudLock::kNone;
     std::string state;
     HudTone state_tone = HudTone::kPlain;
     std::vector<HudRow> rows;      // what matters to the task
     std::vector<HudRow> details;   // the rest; empty: folded
     std::vector<HudRow> watchers;  // empty: no list
-    std::vector<HelpGroup> help;   // empty: no help page
+    // How the bone is looked at, where that is not the usual way, and how to leave it.
+    std::vector<std::string> modes;
+    std::vector<HelpGroup> help;  // empty: no help page
     std::optional<HudLegend> legend;
     std::optional<HudPage> page;  // there are no figures then
     std::optional<HudHint> hint;

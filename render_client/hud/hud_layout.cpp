@@ -21,6 +21,20 @@ struct Spacing {
     float margin, padding, line, gap, rounding;
 };
 
+constexpr float kLockWidth = 0.62f;  // em
+
+// A padlock of boxes, for the font has none; an open one has its shackle pulled out on the right.
+void layOutLock(HudCanvas& canvas, float left, float base, bool is_open) {
+    const float em = canvas.em(), width = em * kLockWidth, body = em * 0.42f, bar = em * 0.1f;
+    const HudColour& colour = colourOf(is_open ? HudTone::kWarning : HudTone::kGood);
+    const float top = base - body, leg = em * (is_open ? 0.42f : 0.3f);
+    canvas.box(left, top, width, body, em * 0.08f, colour);
+    canvas.box(left + bar, top - leg, bar, leg, 0, colour);
+    canvas.box(left + bar, top - leg, width - 2 * bar, bar, 0, colour);
+    const float right_leg = is_open ? em * 0.2f : leg;
+    canvas.box(left + width - 2 * bar, top - leg, bar, right_leg, 0, colour);
+}
+
 // Lays out title and state. Returns the base line of the state.
 float layOutHead(HudCanvas& canvas, const Hud& hud, float inner) {
     const float em = canvas.em();
@@ -29,9 +43,12 @@ float layOutHead(HudCanvas& canvas, const Hud& hud, float inner) {
     canvas.text(left, title, canvas.fitted(hud.title, FontStyle::kBold, inner), FontStyle::kBold,
                 kHudTitleColour);
     const float state = title + space.line, dot = em * 0.5f, indent = em * 0.9f;
+    if (hud.lock != HudLock::kNone)
+        layOutLock(canvas, left + inner - em * kLockWidth, state, hud.lock == HudLock::kOpen);
     canvas.box(left, state - em * 0.55f, dot, dot, dot / 2, colourOf(hud.state_tone));
-    canvas.text(left + indent, state, canvas.fitted(hud.state, FontStyle::kPlain, inner - indent),
-                FontStyle::kPlain, kHudLabelColour);
+    const float room = inner - indent - (hud.lock == HudLock::kNone ? 0 : em * (kLockWidth + 0.5f));
+    canvas.text(left + indent, state, canvas.fitted(hud.state, FontStyle::kPlain, room), FontStyle::kPlain,
+                kHudLabelColour);
     return state;
 }
 
@@ -108,6 +125,19 @@ HudBox layOutDetails(HudCanvas& canvas, const std::vector<HudRow>& details, cons
     layOutRows(canvas, details, box.left + space.padding, box.right - space.padding,
                box.top + space.padding * 0.2f);
     return {figures.left, figures.top, figures.right, box.bottom};
+}
+
+void layOutModes(HudCanvas& canvas, const std::vector<std::string>& modes, const HudBox& figures) {
+    const Spacing space(canvas.em());
+    float top = std::max(figures.bottom + canvas.em() * 0.5f, space.margin);
+    for (const std::string& mode : modes) {
+        const float width = canvas.width(mode, FontStyle::kBold) + 2 * space.padding;
+        canvas.box(space.margin, top, width, space.line + space.padding * 0.6f, space.rounding,
+                   kHudPanelColour);
+        canvas.text(space.margin + space.padding, top + space.line, mode, FontStyle::kBold,
+                    colourOf(HudTone::kWarning));
+        top += space.line + space.padding;
+    }
 }
 
 void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, const HudBox& figures,

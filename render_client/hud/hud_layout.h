@@ -30,6 +30,8 @@ HudBox layOutFigures(HudCanvas& canvas, const Hud& hud);
 HudBox layOutDetails(HudCanvas& canvas, const std::vector<HudRow>& details, const HudBox& figures);
 
 // Puts the list of watchers at the upper right, or below the figures when there is no room beside them.
+// One below the other, under the figures.
+void layOutModes(HudCanvas& canvas, const std::vector<std::string>& modes, const HudBox& figures);
 void layOutWatchers(HudCanvas& canvas, const std::vector<HudRow>& watchers, const HudBox& figures,
                     const PictureSize& picture);
 

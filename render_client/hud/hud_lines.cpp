@@ -1,8 +1,10 @@
 #include "render_client/hud/hud_lines.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render_client/hud/burr_work.h"
+#include "render_client/hud/conditions.h"
 #include "render_client/hud/detail_lines.h"
 #include "render_client/hud/effect_lines.h"
 #include "render_client/hud/figure_text.h"
@@ -79,9 +81,9 @@ std::string stateText(const HudInput& input) {
         case Connection::kNoServer:
             return "waiting for a server";
         case Connection::kReceiving: {
-            std::string text = "receiving " + std::to_string(input.node_count);
-            if (input.status) text += " of " + std::to_string(input.status->node_count());
-            return text + " nodes";
+            if (!input.status || input.status->node_count() == 0) return "loading";
+            const uint64_t percent = 100 * uint64_t(input.node_count) / input.status->node_count();
+            return "loading " + std::to_string(std::min<uint64_t>(percent, 100)) + " %";
         }
         case Connection::kLive:
             return liveText(input);
@@ -93,10 +95,18 @@ std::string stateText(const HudInput& input) {
     return "";
 }
 
+// Live is only as good as what stands in its way now.
+HudTone liveTone(const HudInput& input) {
+    HudTone tone = input.status && input.status->ticks() == 0 ? HudTone::kWarning : HudTone::kGood;
+    for (const Condition& condition : conditionsOf(input))
+        if (condition.lasts) tone = std::max(tone, condition.tone);
+    return tone;
+}
+
 HudTone stateTone(const HudInput& input) {
     switch (input.connection) {
         case Connection::kLive:
-            return input.status && input.status->ticks() == 0 ? HudTone::kWarning : HudTone::kGood;
+            return liveTone(input);
         case Connection::kReceiving:
         case Connection::kNoServer:
             return HudTone::kWarning;
@@ -113,6 +123,7 @@ void removeFigures(Hud& hud) {
     hud.rows.clear();
     hud.details.clear();
     hud.watchers.clear();
+    hud.modes.clear();
 }
 
 }  // namespace
@@ -123,15 +134,18 @@ std::optional<HudNotice> alertOf(const HudInput& input) {
 
 Hud makeHud(const HudInput& input) {
     Hud hud;
-    hud.title = input.info && !input.info->name().empty() ? input.info->name()
-                : input.status                            ? input.status->scene()
-                                                          : "bonemill";
+    hud.title = !input.title.empty()                        ? input.title
+                : input.info && !input.info->name().empty() ? input.info->name()
+                : input.status                              ? input.status->scene()
+                                                            : "bonemill";
     hud.state = stateText(input);
     hud.state_tone = stateTone(input);
+    if (input.sought) hud.lock = input.sought->lock;
     hud.notice = input.notice;
     hud.messages = input.messages;
     hud.alert = alertOf(input);
     hud.legend = input.legend;
+    hud.modes = input.modes;
     hud.rows = taskRows(input);
     if (input.show_details) hud.details = detailRows(input);
     if (input.show_watchers && !input.show_details) hud.watchers = watcherRows(input.watchers);

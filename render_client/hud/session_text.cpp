@@ -16,6 +16,8 @@ std::string roleName(topics::Viewer::Role role) {
             return "operator";
         case topics::Viewer::INSTRUCTOR:
             return "instructor";
+        case topics::Viewer::EXAMINER:
+            return "examiner";
         default:
             return "?";
     }
@@ -26,8 +28,9 @@ std::string watcherName(const std::string& name) {
 }
 
 std::string watcherText(const topics::Viewer& watcher) {
-    return roleName(watcher.role()) + ", " + figureText(watcher.frame_rate_hz(), 0, " Hz") +
-           (watcher.is_holding() ? ", holds the tool" : "") + (watcher.is_complete() ? "" : ", incomplete");
+    return roleName(watcher.role()) + (watcher.link().empty() ? "" : " by " + watcher.link()) + ", " +
+           figureText(watcher.frame_rate_hz(), 0, " Hz") + (watcher.is_holding() ? ", holds the tool" : "") +
+           (watcher.is_complete() ? "" : ", incomplete");
 }
 
 std::string clockText(double seconds) {

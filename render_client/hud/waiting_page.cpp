@@ -3,6 +3,10 @@
 namespace bonemill {
 
 HudPage waitingPage(const ServerSought& sought) {
+    if (!sought.gateway.empty())
+        return {"Waiting for a haptic_server",
+                {{"Gateway", sought.gateway}},
+                {"The gateway hears no server. Whoever started it knows of which session it is."}};
     HudPage page{
         "Waiting for a haptic_server",
         {{"Session", sought.is_any_session ? "the only one there is" : std::to_string(sought.session)},

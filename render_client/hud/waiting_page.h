@@ -15,6 +15,8 @@ struct ServerSought {
     std::string interface;        // empty: none was chosen
     bool is_on_lan = false;       // the server may run on another PC
     bool is_any_session = false;  // the number does not count
+    std::string gateway = {};     // not empty: it is the gateway that looks for the server
+    HudLock lock = HudLock::kNone;
 };
 
 HudPage waitingPage(const ServerSought& sought);

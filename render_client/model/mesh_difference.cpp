@@ -42,10 +42,6 @@ std::vector<Triangle> sortedTriangles(const NodeMesh& mesh) {
     return triangles;
 }
 
-Eigen::Vector3f positionOf(const NodeMesh& mesh, const PackedVertex& v) {
-    return mesh.origin + mesh.step.cwiseProduct(Eigen::Vector3f(v.x, v.y, v.z));
-}
-
 }  // namespace
 
 Eigen::AlignedBox3f boxOf(const NodeMesh& mesh) {

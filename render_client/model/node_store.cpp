@@ -8,19 +8,24 @@
 namespace bonemill {
 namespace {
 
-// No part of the box can be seen when all its corners lie beyond one face of the view volume.
-bool mayBeVisible(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_from_model) {
+enum class Sight { kOutside, kPartly, kInside };
+
+// Nothing of the box can be seen when all its corners lie beyond one face of the view volume, and all of it
+// lies inside when none does.
+Sight sightOf(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& clip_from_model) {
     Eigen::Matrix<float, 4, 8> corners;
     for (int i = 0; i < 8; ++i) {
         const auto corner = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(i));
         corners.col(i) = clip_from_model * corner.homogeneous();
     }
+    bool is_inside = true;
     for (int axis = 0; axis < 3; ++axis) {
         const auto value = corners.row(axis).array();
         const auto w = corners.row(3).array();
-        if ((value > w).all() || (value < -w).all()) return false;
+        if ((value > w).all() || (value < -w).all()) return Sight::kOutside;
+        is_inside = is_inside && (value <= w).all() && (value >= -w).all();
     }
-    return true;
+    return is_inside ? Sight::kInside : Sight::kPartly;
 }
 
 }  // namespace
@@ -32,6 +37,7 @@ void NodeStore::set(const NodeMesh& mesh) {
     }
     if (!mesh.materials.empty() && mesh.materials.size() != mesh.vertices.size())
         throw std::invalid_argument("node " + std::to_string(mesh.leaf) + ": not one material per vertex");
+    SortedTriangles sorted = sortedByPlace(mesh);
     Node node{GlVertexArray(gl_),
               GlBuffer(gl_),
               GlBuffer(gl_),
@@ -42,6 +48,7 @@ void NodeStore::set(const NodeMesh& mesh) {
               mesh.origin,
               mesh.step,
               GLsizei(mesh.indices.size()),
+              std::move(sorted.parts),
               {}};
     gl_.BindVertexArray(node.layout.name());
     gl_.BindBuffer(GL_ARRAY_BUFFER, node.vertices.name());
@@ -49,7 +56,7 @@ void NodeStore::set(const NodeMesh& mesh) {
     gl_.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(vertex_bytes), mesh.vertices.data(), GL_DYNAMIC_DRAW);
     gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, node.indices.name());
     const size_t index_bytes = mesh.indices.size() * sizeof(uint32_t);
-    gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, GLsizeiptr(index_bytes), mesh.indices.data(), GL_DYNAMIC_DRAW);
+    gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, GLsizeiptr(index_bytes), sorted.indices.data(), GL_DYNAMIC_DRAW);
     ++uploads_.nodes;
     uploads_.bytes += vertex_bytes + index_bytes;
     constexpr GLsizei kStride = sizeof(PackedVertex);
@@ -122,15 +129,37 @@ size_t NodeStore::draw(const Program& program, const Eigen::Matrix4f& clip_from_
     const GLint step = program.uniform("step");
     size_t triangles = 0;
     for (const auto& [leaf, node] : nodes_) {
-        if (!mayBeVisible(node.box, clip_from_V)) continue;
+        const Sight sight = sightOf(node.box, clip_from_V);
+        if (sight == Sight::kOutside) continue;
         program.set(origin, node.origin);
         program.set(step, node.step);
         gl_.BindVertexArray(node.layout.name());
-        gl_.DrawElements(GL_TRIANGLES, node.index_count, GL_UNSIGNED_INT, nullptr);
-        triangles += size_t(node.index_count) / 3;
+        triangles += sight == Sight::kInside ? drawRun(0, node.index_count) : drawParts(node, clip_from_V);
     }
     gl_.BindVertexArray(0);
     return triangles;
+}
+
+// Parts that lie side by side in the buffer are drawn at once.
+size_t NodeStore::drawParts(const Node& node, const Eigen::Matrix4f& clip_from_V) const {
+    size_t triangles = 0;
+    uint32_t first = 0, end = 0;
+    for (const NodePart& part : node.parts) {
+        if (sightOf(part.box, clip_from_V) == Sight::kOutside) continue;
+        if (part.first != end) {
+            triangles += drawRun(first, end - first);
+            first = part.first;
+        }
+        end = part.first + part.count;
+    }
+    return triangles + drawRun(first, end - first);
+}
+
+size_t NodeStore::drawRun(size_t first_index, size_t count) const {
+    if (count > 0)
+        gl_.DrawElements(GL_TRIANGLES, GLsizei(count), GL_UNSIGNED_INT,
+                         reinterpret_cast<const void*>(first_index * sizeof(uint32_t)));
+    return count / 3;
 }
 
 }  // namespace bonemill

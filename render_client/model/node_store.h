@@ -12,6 +12,7 @@
 #include "common/geometry/node_mesh.h"
 #include "render_client/gl/gl_object.h"
 #include "render_client/gl/program.h"
+#include "render_client/model/node_parts.h"
 
 namespace bonemill {
 
@@ -70,10 +71,13 @@ class NodeStore {
         Eigen::Vector3f origin;   // V, m
         Eigen::Vector3f step;     // V, m
         GLsizei index_count;
+        std::vector<NodePart> parts;
         std::optional<NodeMesh>
             mesh;  // what the buffers hold, while changes are tracked or once it was milled
     };
     void remove(uint32_t leaf);
+    size_t drawParts(const Node& node, const Eigen::Matrix4f& clip_from_V) const;
+    size_t drawRun(size_t first_index, size_t count) const;
     void uploadMaterials(const std::vector<uint8_t>& materials, Node& node);
     Eigen::AlignedBox3f changeTo(const NodeMesh& mesh, const Eigen::AlignedBox3f& box) const;
 

@@ -23,6 +23,12 @@ struct Pull {
     double newtons;  // force on the hand
 };
 
+// The burr hangs in front of the bone: along the line of sight this is behind it, so far from its surface.
+struct BurrGap {
+    Eigen::Vector3d surface_W;
+    double distance;  // m
+};
+
 // The room's light comes from the upper left, an instrument's from beside the eye: an endoscope's fades with
 // distance, a microscope's comes along the line of sight from afar.
 enum class LightRig { kRoom, kEndoscope, kMicroscope };
@@ -55,6 +61,7 @@ struct FrameView {
     std::optional<Pose> X_WT_device;       // where the hand is; drawn when it differs visibly
     std::optional<Eigen::Vector3d> f_T_W;  // the arrow's force, N
     std::optional<Pull> pull;              // of a mouse that holds the tool
+    std::optional<BurrGap> gap;            // likewise
     bool shows_handpiece = true;
     BurrWork burr_work = BurrWork::kIdle;
     CutPlanes cuts_W;

@@ -71,6 +71,7 @@ void HudPainter::paint(const Hud& hud, const ScaleBar& scale_bar, double metres_
     if (!hud.title.empty()) box = layOutFigures(figures, hud);
     if (hud.page) layOutPage(figures, *hud.page, picture);
     if (!hud.details.empty()) box = layOutDetails(lists, hud.details, box);
+    layOutModes(lists, hud.modes, box);
     if (!hud.watchers.empty()) layOutWatchers(lists, hud.watchers, box, picture);
     layOutScaleBar(figures, scale_bar, metres_per_pixel, picture);
     if (hud.orientation) layOutOrientation(lists, *hud.orientation, picture);

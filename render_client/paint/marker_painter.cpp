@@ -26,11 +26,14 @@ constexpr float kPullLine = 0.0038f;
 constexpr float kPullRing = 0.014f;
 constexpr float kClearanceLine = 0.0024f;
 constexpr float kShortestPull = 0.006f;
+constexpr float kGapRing = 0.005f;    // width
+constexpr double kGapOpening = 0.35;  // of the gap, that the ring is wider than the burr
 constexpr int kSides = 32;
 constexpr float kHiddenStrength = 0.35f;
 
 const Eigen::Vector3f kPointerColour(1.0f, 0.16f, 0.72f);
 const Eigen::Vector3f kIdlePullColour(0.7f, 0.75f, 0.8f);
+const Eigen::Vector4f kGapColour(0.15f, 0.75f, 1.0f, 0.9f);
 
 Eigen::Vector4f withAlpha(const Eigen::Vector3f& colour, float alpha) {
     return {colour.x(), colour.y(), colour.z(), alpha};
@@ -81,6 +84,10 @@ ForceLook forceLook(double newtons) {
     return look;
 }
 
+double gapRingRadius(const FrameView& view) {
+    return view.burr_radius + kGapOpening * view.gap->distance;
+}
+
 MarkerPainter::MarkerPainter(const GlApi& gl)
     : gl_(gl),
       program_(gl, "marker", shaders::kMarkerVertex, shaders::kMarkerFragment),
@@ -105,6 +112,7 @@ void MarkerPainter::draw(const Frame& frame, const FrameView& view) {
     flush(frame, GL_BACK);
     addArrow(frame, view);
     flush(frame, GL_BACK);
+    addGapRing(frame, view);
     addPullRing(frame, view);
     addPointers(frame, view);
     flush(frame, 0);
@@ -115,6 +123,7 @@ Eigen::AlignedBox3f MarkerPainter::box(const Frame& frame, const FrameView& view
     addPullLine(frame, view);
     addClearanceLine(frame, view);
     addArrow(frame, view);
+    addGapRing(frame, view);
     addPullRing(frame, view);
     addPointers(frame, view);
     Eigen::AlignedBox3f box;
@@ -144,6 +153,18 @@ void MarkerPainter::addClearanceLine(const Frame& frame, const FrameView& view) 
     if ((structure_C - burr_C).norm() < radius) return;
     addCone(burr_C, structure_C - burr_C, radius, radius, view.clearance->colour);
     addDisc(structure_C, (burr_C - structure_C).normalized(), 3 * radius, view.clearance->colour);
+}
+
+void MarkerPainter::addGapRing(const Frame& frame, const FrameView& view) {
+    if (!view.gap) return;
+    const Eigen::Vector3f p_C =
+        (view.camera.R_WC.transpose() * (view.gap->surface_W - view.camera.eye_W)).cast<float>();
+    if (-p_C.z() <= frame.near_far.x()) return;
+    const float width = kGapRing * heightAt(frame, p_C);
+    const auto inner = float(gapRingRadius(view));
+    // A little nearer than the surface, whose bends would swallow it.
+    const Eigen::Vector3f near_C = p_C * (1 - std::min(0.5f, inner / p_C.norm()));
+    addRing(near_C, inner, inner + width, kGapColour, kGapColour);
 }
 
 void MarkerPainter::addPullRing(const Frame& frame, const FrameView& view) {

@@ -1,6 +1,7 @@
 // Draws signs into the scene: the contact force as an arrow, the pull of a mouse as a line from the tool to a
-// ring where it is wanted, the way from the burr to the nearest structure, instructors' pointers as glowing
-// dots in rings. What lies behind bone or tool shines through, fainter.
+// ring where it is wanted, a ring on the bone behind its burr that closes as the burr comes nearer, the way
+// from the burr to the nearest structure, instructors' pointers as glowing dots in rings. What lies behind
+// bone or tool shines through, fainter.
 //
 // It belongs to the thread of the context. The frames are C (camera) and W (world); the unit is m.
 #pragma once
@@ -20,6 +21,10 @@ struct ForceLook {
 };
 ForceLook forceLook(double newtons);
 
+// The ring behind a burr that hangs in front of the bone (m): as wide as the burr where that touches, and
+// wider the farther the burr is away. `view` has a gap.
+double gapRingRadius(const FrameView& view);
+
 class MarkerPainter {
   public:
     explicit MarkerPainter(const GlApi& gl);
@@ -38,6 +43,7 @@ class MarkerPainter {
     };
     void addPullLine(const Frame& frame, const FrameView& view);
     void addClearanceLine(const Frame& frame, const FrameView& view);
+    void addGapRing(const Frame& frame, const FrameView& view);
     void addPullRing(const Frame& frame, const FrameView& view);
     void addArrow(const Frame& frame, const FrameView& view);
     // Adds the part of a cone between two radii, with its lower end at `base` (C).

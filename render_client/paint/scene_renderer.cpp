@@ -212,6 +212,8 @@ std::vector<float> SceneRenderer::stillLike(const Frame& frame, const FrameView&
     append(view.f_T_W.value_or(Eigen::Vector3d::Zero()));
     if (view.pull) append(view.pull->wish_W);
     if (view.pull) numbers.push_back(float(view.pull->newtons));
+    if (view.gap) append(view.gap->surface_W);
+    if (view.gap) numbers.push_back(float(view.gap->distance));
     for (const Eigen::Vector3d& pointer : view.pointers_W) append(pointer);
     if (view.clearance) append(view.clearance->burr_W);
     if (view.clearance) append(view.clearance->structure_W);

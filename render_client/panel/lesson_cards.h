@@ -14,19 +14,21 @@ class LessonCards {
   public:
     // Everything must outlive the object; the session has a lesson. `places` takes where each control is.
     LessonCards(ViewerControls& controls, const SessionView& session, Wishes& wishes, LessonDraft& draft,
-                std::map<std::string, PixelPoint>& places, float scale)
+                std::map<std::string, PixelPoint>& places, float scale, float view_width)
         : controls_(controls),
           session_(session),
           wishes_(wishes),
           draft_(draft),
           places_(places),
-          scale_(scale) {}
+          scale_(scale),
+          view_width_(view_width) {}
 
     // It is called between ImGui::NewFrame() and ImGui::Render().
     void build();
 
   private:
     void buildTop();
+    void sayClock(double attempt_s);
     void buildSummary(const topics::Attempt& attempt);
     void buildHandle();
     bool button(const char* label);
@@ -37,6 +39,7 @@ class LessonCards {
     LessonDraft& draft_;
     std::map<std::string, PixelPoint>& places_;
     float scale_;
+    float view_width_;  // pixels
 };
 
 }  // namespace bonemill

@@ -15,8 +15,26 @@ void LessonDraft::follow(const SessionView& session) {
     const uint32_t last_before = std::exchange(last_attempt_, last);
     if ((is_new_scene || !was_running) && (is_new_scene || lesson.is_running()))
         task_since_s_ = session.time_s;
+    countTime(session, has_looked);
+    scrolls_to_top = scrolls_to_top || (has_looked && is_new_scene);
     if (lesson.is_running() && !was_running) summary_ = 0;
-    if (has_looked && last > last_before) summary_ = last;
+    if (has_looked && last > last_before) summary_ = lesson.is_running() ? 0 : last;
+}
+
+void LessonDraft::countTime(const SessionView& session, bool has_looked) {
+    const topics::Lesson& lesson = *session.lesson;
+    const double passed = session.time_s - std::exchange(counted_s_, session.time_s);
+    if (!lesson.is_running()) return attempt_s_.reset();
+    const bool begins =
+        std::exchange(start_stamp_ns_, lesson.start_stamp_ns()) != lesson.start_stamp_ns() || !attempt_s_;
+    const bool is_paused = session.status && session.status->is_milling_paused();
+    if (begins) {
+        const double since_s = double(session.realtime_ns - lesson.start_stamp_ns()) * 1e-9;
+        attempt_s_ = has_looked ? 0 : std::max(since_s, 0.0);
+        leaves_keyboard = std::exchange(has_entered, false);
+    } else if (!is_paused) {
+        *attempt_s_ += passed;
+    }
 }
 
 float LessonDraft::taskOpacity(double time_s) const {
@@ -36,9 +54,9 @@ const topics::SceneChoice* sceneOf(const topics::Lesson& lesson, const std::stri
     return scene == lesson.scenes().end() ? nullptr : &*scene;
 }
 
-std::string titleOf(const topics::Lesson& lesson, const std::string& id) {
-    const topics::SceneChoice* const scene = sceneOf(lesson, id);
-    return scene && !scene->title().empty() ? scene->title() : id;
+std::string panelTitle(const SessionView& session) {
+    const bool teaches = session.lesson && session.lesson->scenes_size() > 0;
+    return withKey(teaches ? "Lesson" : "Controls", Action::kPanel);
 }
 
 }  // namespace bonemill

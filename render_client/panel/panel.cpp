@@ -9,6 +9,7 @@
 #include "render_client/hud/font_files.h"
 #include "render_client/panel/lesson_cards.h"
 #include "render_client/panel/panel_content.h"
+#include "render_client/panel/question_box.h"
 #include "render_client/panel/session_choice.h"
 
 namespace bonemill {
@@ -52,6 +53,11 @@ ImGuiStyle makeStyle(float scale) {
     return style;
 }
 
+// The help page takes the place of the panel and of what a lesson shows.
+bool isHelpInFront(const ViewerControls& controls) {
+    return controls.settings().show_help && controls.settings().show_hud;
+}
+
 }  // namespace
 
 void Panel::Destroy::operator()(ImGuiContext* context) const {
@@ -92,7 +98,8 @@ Panel::FontPixels Panel::fontPixels() const {
     return font;
 }
 
-void Panel::setPicture(int width, int height, float scale, double seconds) {
+void Panel::setPicture(int width, int height, int view_width, float scale, double seconds) {
+    view_width_ = float(view_width);
     setScale(scale);
     ImGui::SetCurrentContext(context_.get());
     ImGui::GetIO().DisplaySize = ImVec2(float(width), float(height));
@@ -122,6 +129,15 @@ void Panel::feed(const WindowEvent& event) {
 // event is known before the next one.
 bool Panel::handle(const WindowEvent& event, ViewerControls& controls, const SessionView& session,
                    Wishes& wishes) {
+    if (const auto answer = answerOfKey(event); answer && controls.question(session)) {
+        controls.answer(*answer, session, wishes);
+        return true;
+    }
+    const auto* const button = std::get_if<MouseButtonEvent>(&event);
+    if (isHelpInFront(controls) && controls.isPanelOpen() && !controls.question(session) && button) {
+        if (button->is_down) controls.act(Action::kHelp, session, wishes);  // the panel is back
+        return true;
+    }
     feed(event);
     if (const auto chosen = sessionOfKey(event, session)) {
         wishes.session = chosen;
@@ -140,13 +156,16 @@ bool Panel::handle(const WindowEvent& event, ViewerControls& controls, const Ses
 }
 
 bool Panel::isWanted(const ViewerControls& controls, const SessionView& session) const {
-    return controls.isPanelOpen() || lesson_.isOnScreen(session) || !session.offered.empty();
+    if (!session.offered.empty() || controls.question(session)) return true;
+    return !isHelpInFront(controls) && (controls.isPanelOpen() || lesson_.isOnScreen(session));
 }
 
 void Panel::layOut(ViewerControls& controls, const SessionView& session, Wishes& wishes) {
     lesson_.follow(session);
+    controls.dropIdleQuestion(session);
     if (session.lesson) pictures_.follow(*session.lesson);
-    if (wishes.type_trainee) lesson_.wants_keyboard = true;
+    if (wishes.next_trainee) lesson_.trainee.fill(0);
+    if (wishes.type_trainee || wishes.next_trainee) lesson_.wants_keyboard = true;
     const bool is_open = controls.isPanelOpen();
     const bool was_drawn = std::exchange(is_drawn_, isWanted(controls, session));
     const bool is_new = (is_open && !was_open_) || (is_drawn_ && !was_drawn);
@@ -162,11 +181,16 @@ void Panel::frame(double seconds, ViewerControls& controls, const SessionView& s
     ImGui::GetIO().DeltaTime = float(std::max(seconds, kShortestFrame));
     ImGui::NewFrame();
     places_.clear();
-    if (controls.isPanelOpen())
-        PanelContent(controls, session, wishes, places_, is_ending_, lesson_, pictures_.all(), scale_)
+    if (std::exchange(lesson_.leaves_keyboard, false)) ImGui::SetWindowFocus(nullptr);
+    const bool is_bare = isHelpInFront(controls);
+    if (controls.isPanelOpen() && !is_bare)
+        PanelContent(controls, session, wishes, places_, is_ending_, lesson_, pictures_.all(), scale_,
+                     view_width_)
             .build();
-    if (lesson_.isOnScreen(session)) LessonCards(controls, session, wishes, lesson_, places_, scale_).build();
+    if (lesson_.isOnScreen(session) && !is_bare)
+        LessonCards(controls, session, wishes, lesson_, places_, scale_, view_width_).build();
     if (!session.offered.empty()) buildSessionChoice(session, wishes, places_, scale_);
+    buildQuestion(controls, session, wishes, places_, scale_, view_width_);
     ImGui::Render();
 }
 

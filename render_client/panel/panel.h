@@ -28,9 +28,10 @@ class Panel {
     Panel& operator=(const Panel&) = delete;
     ~Panel();
 
-    // Takes the size (pixels) of the picture to come, how much larger than usual its text is, and the time
-    // (s) since the picture before. It is called before the events of the picture.
-    void setPicture(int width, int height, float scale, double seconds);
+    // Takes the size (pixels) of the picture to come, how much of its width the view of the bone has, beside
+    // which nothing but the button is put that opens the panel, how much larger than usual its text is, and
+    // the time (s) since the picture before. It is called before the events of the picture.
+    void setPicture(int width, int height, int view_width, float scale, double seconds);
     // Passes an event on to the panel, which changes settings and wishes. Returns true when the event was
     // meant for the panel and nobody else is to act on it.
     bool handle(const WindowEvent& event, ViewerControls& controls, const SessionView& session,
@@ -67,6 +68,7 @@ class Panel {
     std::unique_ptr<ImGuiContext, Destroy> context_;
     std::map<std::string, PixelPoint> places_;  // of the controls that can be seen, by label
     float scale_ = 0;
+    float view_width_ = 0;
     int font_version_ = 0;
     double pending_seconds_ = 0;
     bool was_open_ = false;

@@ -3,12 +3,10 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace bonemill {
 namespace {
-
-constexpr float kWidth = 330;  // pixels at scale 1
-constexpr float kMargin = 14;  // pixels at scale 1 to the picture's edge
 
 bool isOpen(const char* title) {
     return ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
@@ -22,12 +20,13 @@ ImVec4 imColour(const HudColour& colour) {
 
 void PanelContent::build() {
     const ImVec2 picture = ImGui::GetIO().DisplaySize;
-    const float width = std::min(kWidth * scale_, picture.x), margin = kMargin * scale_;
-    ImGui::SetNextWindowPos(ImVec2(picture.x - margin, margin), ImGuiCond_Always, ImVec2(1, 0));
+    const float width = std::min(kWidth * scale_, view_width_), margin = kMargin * scale_;
+    ImGui::SetNextWindowPos(ImVec2(view_width_ - margin, margin), ImGuiCond_Always, ImVec2(1, 0));
     ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, picture.y - 2 * margin));
-    ImGui::Begin(withKey("Controls", Action::kPanel).c_str(), nullptr,
+    ImGui::Begin((title() + "###panel").c_str(), nullptr,
                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoSavedSettings);
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    if (std::exchange(draft_.scrolls_to_top, false)) ImGui::SetScrollY(0);
     if (controls_.toolHold().isHolding() || isHeldByMouse(session_)) {
         if (isOpen("Tool in the mouse")) buildHold();
         gap();
@@ -60,6 +59,11 @@ void PanelContent::build() {
     ImGui::End();
 }
 
+// The button that opens the panel is called so, too.
+std::string PanelContent::title() const {
+    return panelTitle(session_);
+}
+
 void PanelContent::gap() {
     ImGui::Dummy(ImVec2(0, ImGui::GetStyle().ItemSpacing.y));
 }
@@ -77,7 +81,22 @@ void PanelContent::note(const std::string& label, const char* what) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     const ImVec2 place(low.x + (high.y - low.y) / 2, (low.y + high.y) / 2);
     if (ImGui::IsRectVisible(place, ImVec2(place.x + 1, place.y + 1))) places_[label] = {place.x, place.y};
-    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", what);
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) explain(what);
+}
+
+// It stands beside the panel, where it covers none of the neighbours.
+void PanelContent::explain(const std::string& text) {
+    constexpr float kWidest = 22;  // letters' heights
+    const ImVec2 panel = ImGui::GetWindowPos();
+    const float widest = std::min(kWidest * ImGui::GetFontSize(), panel.x - 4 * scale_);
+    if (widest > 6 * ImGui::GetFontSize())
+        ImGui::SetNextWindowPos(ImVec2(panel.x - 4 * scale_, ImGui::GetItemRectMin().y), ImGuiCond_Always,
+                                ImVec2(1, 0));
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(std::max(widest, 12 * ImGui::GetFontSize()));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
 }
 
 bool PanelContent::button(const std::string& label, const char* what) {

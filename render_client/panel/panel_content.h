@@ -16,11 +16,14 @@ namespace bonemill {
 
 class PanelContent {
   public:
+    // Pixels at scale 1: the panel's width, and its distance to the picture's edge.
+    static constexpr float kWidth = 330, kMargin = 14;
+
     // Everything must outlive the object. `places` takes where each control is; `is_ending` says whether the
     // end of the session waits to be confirmed.
     PanelContent(ViewerControls& controls, const SessionView& session, Wishes& wishes,
                  std::map<std::string, PixelPoint>& places, bool& is_ending, LessonDraft& draft,
-                 const std::map<std::string, ScenePicture>& pictures, float scale)
+                 const std::map<std::string, ScenePicture>& pictures, float scale, float view_width)
         : controls_(controls),
           settings_(controls.settings()),
           session_(session),
@@ -29,7 +32,8 @@ class PanelContent {
           is_ending_(is_ending),
           draft_(draft),
           pictures_(pictures),
-          scale_(scale) {}
+          scale_(scale),
+          view_width_(view_width) {}
 
     // It is called between ImGui::NewFrame() and ImGui::Render().
     void build();
@@ -39,6 +43,7 @@ class PanelContent {
     void buildView();
     void buildHold();
     void buildSides();
+    bool hasPatientAxes() const;
     void buildTransparency();
     void buildCuts();
     void buildScan();
@@ -52,10 +57,13 @@ class PanelContent {
     void buildEffects();
     // These teach (panel_lesson.cpp).
     void buildLesson();
+    std::string title() const;
     void buildTrainee(const topics::Lesson& lesson);
     void startAttempt(const topics::Lesson& lesson);
     void buildScene(const topics::Lesson& lesson, const topics::SceneChoice& scene);
+    bool isRowClicked(const std::string& name);
     void buildAttempts(const topics::Lesson& lesson);
+    void buildAttempt(const topics::Lesson& lesson, const topics::Attempt& attempt);
     // These say how the session goes (panel_session.cpp).
     void buildSession();
     void buildCheckpoints();
@@ -76,6 +84,7 @@ class PanelContent {
     void button(const char* text, Action action, const char* what);
     void box(const char* text, Action action, bool is_on, const char* what);
     void note(const std::string& label, const char* what);
+    void explain(const std::string& text);
 
     void gap();
     void sayQuietly(const std::string& text);
@@ -92,6 +101,7 @@ class PanelContent {
     LessonDraft& draft_;
     const std::map<std::string, ScenePicture>& pictures_;
     float scale_;
+    float view_width_;  // pixels
 };
 
 }  // namespace bonemill

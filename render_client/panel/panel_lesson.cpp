@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/lesson/attempts_csv.h"
 #include "render_client/hud/figure_text.h"
 #include "render_client/hud/session_text.h"
 #include "render_client/panel/panel_content.h"
@@ -12,7 +13,17 @@ namespace bonemill {
 namespace {
 
 constexpr float kPictureWidth = 92, kPictureHeight = 69;  // pixels at scale 1
-constexpr int kRowsOfTable = 8;
+constexpr float kFolded = 0.5f;                           // of the picture, where the text is folded
+constexpr int kRowsOfTable = 4;
+constexpr float kColumnWidth = 4.3f;  // letters' heights
+
+constexpr struct {
+    const char* title;
+    const char* what;
+} kColumns[] = {{"Trainee,\nexercise", "Who tried, and what"},
+                {"Time,\nremoved", "Time without pauses; bone that was removed"},
+                {"Force,\ndistance", "Highest force on the hand; least distance to a protected structure"},
+                {"Damage", "Volume of protected structures that was damaged"}};
 
 std::string detailsOf(const topics::SceneChoice& scene) {
     std::string text;
@@ -35,14 +46,16 @@ void PanelContent::buildLesson() {
     }
     ImGui::BeginDisabled(!why_not.empty());
     buildTrainee(lesson);
-    gap();
-    sayQuietly("Scene (" + keyLabelOf(Action::kNextScene) + ": the next one)");
-    for (const topics::SceneChoice& scene : lesson.scenes()) buildScene(lesson, scene);
     ImGui::EndDisabled();
     if (!lesson.attempts().empty()) {
         gap();
         buildAttempts(lesson);
     }
+    gap();
+    ImGui::BeginDisabled(!why_not.empty());
+    sayQuietly("Exercise (" + keyLabelOf(Action::kNextScene) + ": the next one)");
+    for (const topics::SceneChoice& scene : lesson.scenes()) buildScene(lesson, scene);
+    ImGui::EndDisabled();
 }
 
 void PanelContent::buildTrainee(const topics::Lesson& lesson) {
@@ -54,6 +67,7 @@ void PanelContent::buildTrainee(const topics::Lesson& lesson) {
         draft_.trainee.size(), ImGuiInputTextFlags_EnterReturnsTrue);
     note("##trainee", "Who tries; Enter starts the attempt");
     ImGui::PopItemWidth();
+    if (is_entered) draft_.has_entered = draft_.wants_keyboard = true;
     const bool is_started =
         button("Start", "On whole bone, with the clock at zero; an attempt under way ends") || is_entered;
     if (is_started) startAttempt(lesson);
@@ -64,11 +78,8 @@ void PanelContent::buildTrainee(const topics::Lesson& lesson) {
     button("Stop", Action::kStopAttempt, "Ends the attempt, and shows how it went");
     ImGui::EndDisabled();
     ImGui::SameLine();
-    if (button("Next trainee", "Ends an attempt under way, and asks for the next name")) {
-        if (lesson.is_running()) act(Action::kStopAttempt);
-        draft_.trainee.fill(0);
-        draft_.wants_keyboard = true;
-    }
+    if (button("Next trainee", "Ends an attempt under way, and asks for the next name"))
+        controls_.want({Deed::Kind::kNextTrainee}, session_, wishes_);
     if (lesson.is_running()) say(lesson.trainee() + " is at it", HudTone::kGood);
 }
 
@@ -82,63 +93,106 @@ void PanelContent::startAttempt(const topics::Lesson& lesson) {
     send(command);
 }
 
+// Only the scene in force is told of in full; of the others the mouse that rests on one asks.
 void PanelContent::buildScene(const topics::Lesson& lesson, const topics::SceneChoice& scene) {
-    const bool is_chosen = scene.id() == lesson.scene_id();
+    const bool is_chosen = scene.id() == lesson.scene_id(), is_possible = scene.problem().empty();
+    const std::string title = sceneTitle(lesson, scene.id()), details = detailsOf(scene);
     ImGui::PushID(scene.id().c_str());
-    const ImVec2 size(kPictureWidth * scale_, kPictureHeight * scale_);
+    ImGui::BeginGroup();
+    const float size = is_chosen ? scale_ : scale_ * kFolded;
     const auto picture = pictures_.find(scene.id());
     if (picture != pictures_.end() && picture->second.number > 0) {
-        ImGui::Image(ImTextureID(intptr_t(picture->second.number)), size);
+        ImGui::Image(ImTextureID(intptr_t(picture->second.number)),
+                     ImVec2(kPictureWidth * size, kPictureHeight * size));
     } else {
-        ImGui::Dummy(size);
+        ImGui::Dummy(ImVec2(kPictureWidth * size, kPictureHeight * size));
     }
     ImGui::SameLine();
     ImGui::BeginGroup();
-    ImGui::BeginDisabled(!scene.problem().empty());
-    const std::string title = scene.title().empty() ? scene.id() : scene.title();
-    const bool is_pressed = ImGui::RadioButton(title.c_str(), is_chosen);
-    note(title, scene.problem().empty() ? "Teach this scene" : scene.problem().c_str());
-    if (is_pressed && !is_chosen) {
+    ImGui::BeginDisabled(!is_possible);
+    ImGui::RadioButton(title.c_str(), is_chosen);
+    ImGui::EndDisabled();
+    ImGui::PushTextWrapPos();
+    if (is_chosen && !scene.task().empty()) say(scene.task(), HudTone::kPlain);
+    if (is_chosen && !details.empty()) sayQuietly(details);
+    if (!is_possible) say(scene.problem(), HudTone::kWarning);
+    ImGui::PopTextWrapPos();
+    ImGui::EndGroup();
+    ImGui::EndGroup();
+    if (isRowClicked(title) && is_possible && !is_chosen && whyNotCommand(session_).empty()) {
         topics::Command command;
         command.set_choose_scene(scene.id());
         send(command);
     }
-    ImGui::EndDisabled();
-    ImGui::PushTextWrapPos();
-    if (!scene.task().empty()) say(scene.task(), HudTone::kPlain);
-    const std::string details = detailsOf(scene);
-    if (!details.empty()) sayQuietly(details);
-    if (!scene.problem().empty()) say(scene.problem(), HudTone::kWarning);
-    ImGui::PopTextWrapPos();
-    ImGui::EndGroup();
+    if (!is_chosen && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        explain(title + "\n" + scene.task() + "\n" + details);
     ImGui::PopID();
+}
+
+// The last group is a row, which is clicked wherever the mouse goes down and up in it.
+bool PanelContent::isRowClicked(const std::string& name) {
+    const ImVec2 low = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
+    const ImVec2 high(ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x, end.y);
+    const ImVec2 place(low.x + 4 * scale_, low.y + 4 * scale_);
+    if (ImGui::IsRectVisible(place, ImVec2(place.x + 1, place.y + 1))) places_[name] = {place.x, place.y};
+    const ImVec2 pressed = ImGui::GetIO().MouseClickedPos[0];
+    const bool began_here =
+        pressed.x >= low.x && pressed.x < high.x && pressed.y >= low.y && pressed.y < high.y;
+    return ImGui::IsMouseReleased(0) && began_here && ImGui::IsMouseHoveringRect(low, high) &&
+           ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
 }
 
 void PanelContent::buildAttempts(const topics::Lesson& lesson) {
     sayQuietly("Attempts of this class");
-    const int rows = std::min(lesson.attempts_size(), kRowsOfTable) + 1;
-    const ImVec2 size(0, ImGui::GetTextLineHeightWithSpacing() * (float(rows) + 0.5f));
-    const ImGuiTableFlags flags =
-        ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingStretchProp;
-    if (ImGui::BeginTable("attempts", 5, flags, size)) {
-        for (const char* title : {"", "Trainee", "Time", "Removed", "Force"}) ImGui::TableSetupColumn(title);
-        ImGui::TableHeadersRow();
-        const auto cell = [](const std::string& text) {
+    const int rows = 2 * (std::min(lesson.attempts_size(), kRowsOfTable) + 1);
+    const ImVec2 size(0, ImGui::GetTextLineHeight() * (float(rows) + 0.5f * float(rows) / 2));
+    const ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY;
+    if (ImGui::BeginTable("attempts", 4, flags, size)) {
+        ImGui::TableSetupScrollFreeze(0, 1);
+        ImGui::TableSetupColumn("who", ImGuiTableColumnFlags_WidthStretch);
+        for (const char* name : {"time", "force", "damage"})
+            ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthFixed,
+                                    kColumnWidth * ImGui::GetFontSize());
+        ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+        for (const auto& [title, what] : kColumns) {
             ImGui::TableNextColumn();
-            ImGui::TextUnformatted(text.c_str());
-        };
-        for (auto attempt = lesson.attempts().rbegin(); attempt != lesson.attempts().rend(); ++attempt) {
-            cell(std::to_string(attempt->number()));
-            cell(attempt->trainee());
-            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", titleOf(lesson, attempt->scene_id()).c_str());
-            cell(clockText(attempt->time_s()));
-            cell(readableText(attempt->removed_mm3(), " mm\u00b3"));
-            cell(readableText(attempt->max_force_n(), " N"));
+            ImGui::TextUnformatted(title);
+            note(title, what);
         }
+        for (auto attempt = lesson.attempts().rbegin(); attempt != lesson.attempts().rend(); ++attempt)
+            buildAttempt(lesson, *attempt);
         ImGui::EndTable();
     }
     if (button("Save as CSV", "Writes all figures of these attempts into a file here, for a spreadsheet"))
         wishes_.save_attempts = true;
+}
+
+void PanelContent::buildAttempt(const topics::Lesson& lesson, const topics::Attempt& attempt) {
+    const topics::Training& training = attempt.training();
+    const std::string scene = sceneTitle(lesson, attempt.scene_id());
+    const std::string number = std::to_string(attempt.number());
+    const auto cell = [](const std::string& first, const std::string& second) {
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted((first + "\n" + second).c_str());
+    };
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    const std::string label = "Attempt " + number;
+    const ImVec2 corner = ImGui::GetCursorPos();
+    if (ImGui::Selectable(("##" + label).c_str(), false, ImGuiSelectableFlags_SpanAllColumns,
+                          ImVec2(0, 2 * ImGui::GetTextLineHeight())))
+        draft_.showSummary(attempt.number());
+    const std::string what = number + ". " + attempt.trainee() + ": " + scene + "\nA click shows how it went";
+    note(label, what.c_str());
+    ImGui::SetCursorPos(corner);
+    ImGui::TextUnformatted((number + "  " + attempt.trainee() + "\n" + scene).c_str());
+    cell(clockText(attempt.time_s()), readableText(attempt.removed_mm3(), " mm\u00b3"));
+    cell(readableText(attempt.max_force_n(), " N"),
+         training.has_least_distance_mm() ? readableText(training.least_distance_mm(), " mm") : kNoNumber);
+    cell(!training.has_damaged_mm3()  ? kNoNumber
+         : training.damaged_mm3() > 0 ? readableText(training.damaged_mm3(), " mm\u00b3")
+                                      : "none",
+         "");
 }
 
 }  // namespace bonemill

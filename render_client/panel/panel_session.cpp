@@ -112,8 +112,11 @@ void PanelContent::buildEnd() {
 void PanelContent::buildTraining() {
     for (const HudRow& row : trainingRows(session_.status->training())) {
         if (!row.label.empty()) {
+            const float middle = ImGui::GetContentRegionAvail().x * 0.55f;
+            ImGui::PushTextWrapPos(middle);
             sayQuietly(row.label);
-            ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.55f);
+            ImGui::PopTextWrapPos();
+            ImGui::SameLine(middle);
         }
         say(row.value, row.tone);
     }

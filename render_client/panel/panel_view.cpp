@@ -24,6 +24,9 @@ constexpr struct {
 }  // namespace
 
 void PanelContent::buildView() {
+    sayQuietly("Cut open");
+    buildCuts();
+    gap();
     button("First view", Action::kFirstView, "Back to the view that the scene starts with");
     buildSides();
     box("Endoscope", Action::kEndoscope, settings_.camera == CameraMode::kEndoscope,
@@ -37,7 +40,6 @@ void PanelContent::buildView() {
     gap();
     buildTransparency();
     gap();
-    buildCuts();
     buildScan();
     gap();
     buildStereo();
@@ -89,20 +91,27 @@ void PanelContent::buildSigns() {
     box("Help", Action::kHelp, settings_.show_help, "All keys, over the picture");
 }
 
+bool PanelContent::hasPatientAxes() const {
+    return !session_.info || !session_.info->lacks_patient_axes();
+}
+
 void PanelContent::buildSides() {
     constexpr struct {
-        const char* label;
         Side side;
-        const char* what;
-    } kSides[] = {{"Front", Side::kFront, "From the patient's front"},
-                  {"Back", Side::kBack, "From the patient's back"},
-                  {"Left", Side::kLeft, "From the patient's left"},
-                  {"Right", Side::kRight, "From the patient's right"},
-                  {"Top", Side::kTop, "From above the patient's head"},
-                  {"Below", Side::kBottom, "From the patient's feet"}};
+        const char *label, *what;            // of the patient
+        const char *axis_label, *axis_what;  // where it is not known how the patient lay
+    } kSides[] = {{Side::kFront, "Front", "From the patient's front", "-y", "From where y is least"},
+                  {Side::kBack, "Back", "From the patient's back", "+y", "From where y is most"},
+                  {Side::kLeft, "Left", "From the patient's left", "+x", "From where x is most"},
+                  {Side::kRight, "Right", "From the patient's right", "-x", "From where x is least"},
+                  {Side::kTop, "Top", "From above the patient's head", "+z", "From where z is most"},
+                  {Side::kBottom, "Below", "From the patient's feet", "-z", "From where z is least"}};
+    const bool are_patients = hasPatientAxes();
     for (const auto& side : kSides) {
         if (side.side != Side::kFront) ImGui::SameLine();
-        if (button(side.label, side.what)) controls_.lookFrom(side.side);
+        const bool is_pressed =
+            are_patients ? button(side.label, side.what) : button(side.axis_label, side.axis_what);
+        if (is_pressed) controls_.lookFrom(side.side);
     }
 }
 
@@ -111,14 +120,18 @@ void PanelContent::buildCuts() {
         const char* label;
         const char* flip;
         const char* position;
-        const char* what;
-    } kCuts[] = {{"Cut X", "Flip##x", "##cut x", "Sagittal plane: hides the bone on the patient's left"},
-                 {"Cut Y", "Flip##y", "##cut y", "Coronal plane: hides the bone at the back"},
-                 {"Cut Z", "Flip##z", "##cut z", "Axial plane: hides the bone above"}};
+        const char *what, *axis_what;
+    } kCuts[] = {{"Cut X", "Flip##x", "##cut x", "Sagittal plane: hides the bone on the patient's left",
+                  "Plane across x: hides the bone where x is more"},
+                 {"Cut Y", "Flip##y", "##cut y", "Coronal plane: hides the bone at the back",
+                  "Plane across y: hides the bone where y is more"},
+                 {"Cut Z", "Flip##z", "##cut z", "Axial plane: hides the bone above",
+                  "Plane across z: hides the bone where z is more"}};
     for (size_t axis = 0; axis < std::size(kCuts); ++axis) {
         const auto& cut = kCuts[axis];
         const CutPlane& plane = settings_.cuts[axis];
-        if (box(cut.label, plane.is_on, cut.what)) act(Action(int(Action::kCutX) + int(axis)));
+        if (box(cut.label, plane.is_on, hasPatientAxes() ? cut.what : cut.axis_what))
+            act(Action(int(Action::kCutX) + int(axis)));
         ImGui::SameLine();
         if (box(cut.flip, plane.is_flipped, "Hides the other side"))
             act(Action(int(Action::kFlipX) + int(axis)));

@@ -159,6 +159,14 @@ std::optional<SeenPanes> CtShow::seenPanes() const {
     return SeenPanes{*panes_, *grid_, *window_};
 }
 
+// A few bricks that come anew, as bone is milled, are not worth a word.
+bool CtShow::isLoading(const std::optional<ShownSlice>& slice) {
+    constexpr int kShare = 4;
+    if (!slice) return true;
+    const auto& state = slice->image.state;
+    return kShare * size_t(std::ranges::count(state, SliceState::kLoading)) > state.size();
+}
+
 std::vector<HudPane> CtShow::texts(bool are_patients_axes) const {
     constexpr const char* kAxes[] = {"x", "y", "z"};
     std::vector<HudPane> texts;
@@ -182,8 +190,9 @@ std::vector<HudPane> CtShow::texts(bool are_patients_axes) const {
             text.window = textOf(*window_);
             text.place = millimetres(kAxes[pane.axis], pane.position_W);
             text.is_scrolled = are_scrolled_[pane.axis];
+            if (isLoading(pane_slices_[pane.axis])) text.problem = "loading";
         } else {
-            text.problem = "no scan from this server";
+            text.problem = "no scan from this server yet";
         }
         texts.push_back(std::move(text));
     }

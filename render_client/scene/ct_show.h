@@ -62,6 +62,7 @@ class CtShow {
 
   private:
     // Returns true when the image is another one now.
+    static bool isLoading(const std::optional<ShownSlice>& slice);
     bool look(ShownSlice& slice, const SlicePlane& plane);
     void updatePanes(const View& view);
     Eigen::AlignedBox3f updateFaces(const View& view);

@@ -9,6 +9,7 @@
 #include "render_client/camera/microscope.h"
 #include "render_client/effects/wire_pose.h"
 #include "render_client/hud/figure_text.h"
+#include "render_client/scene/burr_gap.h"
 
 namespace bonemill {
 namespace {
@@ -115,6 +116,9 @@ void RenderScene::clearNodes() {
     early_nodes_.clear();
     awaits_info_ = true;
     nodes_.clear();
+    hud_input_.tool.reset();
+    hud_input_.status.reset();
+    faults_.clear();
 }
 
 void RenderScene::setToolState(const topics::ToolState& tool) {
@@ -130,7 +134,11 @@ void RenderScene::setToolState(const topics::ToolState& tool) {
 
 // Another run of the server has faults of its own.
 void RenderScene::setStatus(const topics::Status& status) {
-    if (hud_input_.status && hud_input_.status->epoch() != status.epoch()) faults_.clear();
+    const auto& old = hud_input_.status;
+    if (old && old->epoch() != status.epoch())
+        faults_.clear();
+    else if (old && effects_ && old->bone_restores() != status.bone_restores())
+        effects_->forget();
     hud_input_.status = status;
 }
 
@@ -187,6 +195,11 @@ Eigen::AlignedBox3d RenderScene::bone_W() const {
     return boxIn(X_WV_, bone_V_);
 }
 
+std::optional<Pose> RenderScene::toolPose() const {
+    if (!hud_input_.tool) return std::nullopt;
+    return readPose(hud_input_.tool->p_wt_m(), hud_input_.tool->q_wt());
+}
+
 std::optional<Pose> RenderScene::devicePose() const {
     if (!hud_input_.tool) return std::nullopt;
     return readPose(hud_input_.tool->p_wt_device_m(), hud_input_.tool->q_wt_device());
@@ -230,6 +243,10 @@ void RenderScene::showTool(FrameView& view) const {
     const auto force_W = readVector(tool.force_n());
     if (settings_.show_force) view.f_T_W = force_W;
     if (pull_W_ && force_W) view.pull = Pull{*pull_W_, force_W->norm()};
+    const auto pick = [this](int x, int y) { return renderer_.pick(x, y); };
+    if (pull_W_ && can_pick_ && view.X_WT && tool.contacts() == 0 && !followsTool())
+        if (const auto gap = burrGap(last_view_, renderer_.pictureSize(), pick))
+            view.gap = behindBurr(view, *gap);
     if (!followsTool()) return;
     view.camera = endoscopeCamera(*view.X_WT, view.burr_radius);
     view.light = LightRig::kEndoscope;
@@ -322,31 +339,6 @@ void RenderScene::drawEye(FrameView view, const Camera& camera, const PictureAre
     paintNames(view, area, ui_scale);
 }
 
-void RenderScene::drawSideBySide(const FrameView& view, int width, int height, float ui_scale,
-                                 GLuint target) {
-    const StereoPair eyes = stereoPair(view.camera);
-    const int half = width / 2;
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, target);
-    gl_.ClearColor(0, 0, 0, 1);
-    gl_.Clear(GL_COLOR_BUFFER_BIT);  // the last column of an odd width belongs to neither eye
-    for (const auto& [camera, x] : {std::pair{eyes.left, 0}, std::pair{eyes.right, half}}) {
-        const PictureArea area{x, half, height};
-        drawEye(view, camera, area, ui_scale, target);
-        paintHud(camera, area, ui_scale);
-    }
-    gl_.Viewport(0, 0, width, height);
-}
-
-void RenderScene::drawAnaglyph(const FrameView& view, int width, int height, float ui_scale, GLuint target) {
-    const StereoPair eyes = stereoPair(view.camera);
-    const PictureArea whole{0, width, height};
-    anaglyph_.resize(width, height);
-    drawEye(view, eyes.left, whole, ui_scale, anaglyph_.left());
-    drawEye(view, eyes.right, whole, ui_scale, anaglyph_.right());
-    anaglyph_.combine(target);
-    paintHud(view.camera, whole, ui_scale);
-}
-
 OrientationAxes RenderScene::orientationOf(const Camera& camera) const {
     const bool are_patients = hasPatientAxes();
     const Eigen::Matrix3d R_CW = camera.R_WC.transpose();
@@ -393,6 +385,9 @@ void RenderScene::paintNames(const FrameView& view, const PictureArea& area, flo
     if (view.clearance && settings_.show_hud)
         add((view.clearance->burr_W + view.clearance->structure_W) / 2,
             readableText(std::max(view.clearance->distance, 0.0) * kPerMillimetre, " mm"), false);
+    if (view.gap && settings_.show_hud)
+        add(view.gap->surface_W + gapRingRadius(view) * view.camera.R_WC.col(0),
+            readableText(view.gap->distance * kPerMillimetre, " mm to the bone"), false);
     nameMouse(area, labels);
     if (!labels.empty()) hud_painter_.paintLabels(labels, {area.width, area.height}, ui_scale);
 }

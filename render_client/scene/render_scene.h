@@ -59,6 +59,11 @@ class RenderScene {
     // The notice is shown until it is replaced; nullopt takes it away.
     void setNotice(std::optional<HudNotice> notice) { hud_input_.notice = std::move(notice); }
 
+    // Takes what people call the scene in a lesson; empty where there is none.
+    void setTitle(std::string title) { hud_input_.title = std::move(title); }
+    // Takes how the bone is looked at, where that is not the usual way, and how to leave it.
+    void setModes(std::vector<std::string> modes) { hud_input_.modes = std::move(modes); }
+
     // Takes where the user's mouse wants the tool point (W); nullopt while it holds no tool.
     void setPull(const std::optional<Eigen::Vector3d>& wish_W) { pull_W_ = wish_W; }
     // Takes what stands over the picture of what the mouse does; nullopt takes it away.
@@ -106,6 +111,11 @@ class RenderScene {
     Eigen::AlignedBox3d bone_W() const;
     // Returns that of the tool in use, m; 0 while nothing is known.
     double burrRadius() const { return hud_input_.info ? hud_input_.info->burr_radius_m() : 0; }
+    // Returns where the simulated tool is, if a tool state has told, and with how many contacts.
+    std::optional<Pose> toolPose() const;
+    uint32_t contacts() const { return hud_input_.tool ? hud_input_.tool->contacts() : 0; }
+    // The camera of the next picture rides on the tool.
+    bool followsTool() const;
     // Returns where the device's hand is, if a tool state has told.
     std::optional<Pose> devicePose() const;
 
@@ -137,7 +147,6 @@ class RenderScene {
     void makeEffects(const topics::SceneInfo& info);
     void takeEffectInput();
     const EffectPicture* effectPicture();
-    bool followsTool() const;
     FrameView makeView() const;
     void lookThroughMicroscope(FrameView& view) const;
     void showTool(FrameView& view) const;

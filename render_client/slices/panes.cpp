@@ -43,7 +43,8 @@ Pane makePane(const DensityGrid& grid, const Pose& X_WV, const SliceSettings& se
               const PaneRect& rect, const std::optional<SliceBurr>& burr) {
     const SliceView& view = sliceViewOf(axis);
     const Eigen::AlignedBox3d box_W = scanBox(grid, X_WV);
-    const Vector3d focus_W = burr ? burr->p_W : Vector3d(box_W.center());
+    const bool is_burr_in_scan = burr && box_W.contains(burr->p_W);
+    const Vector3d focus_W = is_burr_in_scan ? burr->p_W : Vector3d(box_W.center());
     const Eigen::Index i = Eigen::Index(axis);
     Pane pane;
     pane.axis = axis;

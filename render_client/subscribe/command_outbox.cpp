@@ -27,6 +27,10 @@ uint32_t CommandOutbox::enqueue(topics::Command command) {
     return last_sequence_;
 }
 
+void CommandOutbox::refuseAll(const std::string& why) {
+    while (!waiting_.empty()) finish(true, why);
+}
+
 void CommandOutbox::acknowledge(const topics::Status& status) {
     if (waiting_.empty() || status.last_command_sender() != sender_ ||
         status.last_command_sequence() != waiting_.front().sequence())

@@ -33,6 +33,8 @@ class CommandOutbox {
 
     // Fills in sender and sequence; returns the sequence.
     uint32_t enqueue(topics::Command command);
+    // Answers all that wait itself: this viewer may not command.
+    void refuseAll(const std::string& why);
     // Takes the server's last acknowledgement; those of other senders are ignored.
     void acknowledge(const topics::Status& status);
     // Gives up on the command under way after its timeout; else passes it to `write` when it is due. A

@@ -18,8 +18,8 @@ void DensityFeed::update(DensityStore& store, const std::optional<topics::SceneI
     follow(store, info, epoch);
     if (!store.wanted().empty()) {
         wanted_ns_ = now_ns;
-        if (!reader_) reader_.emplace(participant_);
-        if (!writer_) writer_.emplace(participant_);
+        if (!reader_) reader_.emplace(wire_);
+        if (!writer_) writer_.emplace(wire_);
     }
     if (!reader_) return;
     take(store, drop);

@@ -8,10 +8,10 @@
 #include <optional>
 #include <string>
 
-#include "common/dds/endpoint.h"
 #include "common/density/density_codec.h"
 #include "proto/topics.pb.h"
 #include "render_client/densities/density_store.h"
+#include "render_client/subscribe/wire.h"
 
 namespace bonemill {
 
@@ -21,9 +21,9 @@ class DensityFeed {
     static constexpr int64_t kRepeat_ns = 1'000'000'000;     // it is said again
     static constexpr int64_t kFarewell_ns = 10'000'000'000;  // with nothing wanted for so long it stops
 
-    // The participant must outlive this object.
-    DensityFeed(const dds::Participant& participant, uint32_t session, uint64_t sender)
-        : participant_(participant), session_(session), sender_(sender) {}
+    // What the wire names must outlive this object.
+    DensityFeed(const Wire& wire, uint32_t session, uint64_t sender)
+        : wire_(wire), session_(session), sender_(sender) {}
 
     // Takes what has arrived, and says what the store wants. `info` is the newest of the server's run `epoch`
     // (0: none); another run empties the store. `drop` is told of what makes no sense. It never waits.
@@ -41,7 +41,7 @@ class DensityFeed {
     topics::DensityWish wishOf(DensityStore& store);
     void say(DensityStore& store, int64_t now_ns);
 
-    const dds::Participant& participant_;
+    const Wire wire_;
     uint32_t session_;
     uint64_t sender_;
     uint64_t epoch_ = 0;
@@ -52,8 +52,8 @@ class DensityFeed {
     int64_t said_ns_ = 0;
     int64_t wanted_ns_ = 0;  // when anything was wanted last
     uint64_t taken_bricks_ = 0;
-    std::optional<dds::Reader<dds::DensityBrickSample>> reader_;
-    std::optional<dds::Writer<dds::DensityWishSample>> writer_;
+    std::optional<Inlet<dds::DensityBrickSample>> reader_;
+    std::optional<Outlet<dds::DensityWishSample>> writer_;
 };
 
 }  // namespace bonemill

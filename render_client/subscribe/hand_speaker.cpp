@@ -4,9 +4,15 @@
 
 namespace bonemill {
 
-HandSpeaker::HandSpeaker(const dds::Participant& participant, uint32_t session, uint64_t sender,
-                         topics::Viewer::Role role)
-    : session_(session), sender_(sender), role_(role), writer_(participant) {}
+HandSpeaker::HandSpeaker(const Wire& wire, uint32_t session, uint64_t sender, topics::Viewer::Role role,
+                         uint32_t first_wish)
+    : session_(session), sender_(sender), role_(role), writer_(wire), sequence_(first_wish - 1) {}
+
+uint32_t HandSpeaker::nextWish() {
+    constexpr uint32_t kLastWords = 3;
+    const std::lock_guard lock(mutex_);
+    return sequence_ + kLastWords;
+}
 
 HandSpeaker::~HandSpeaker() {
     if (!thread_.joinable()) return;
@@ -18,12 +24,13 @@ HandSpeaker::~HandSpeaker() {
     thread_.join();
 }
 
-void HandSpeaker::want(const Pose& X_WT, uint32_t buttons, uint64_t epoch) {
+void HandSpeaker::want(const Pose& X_WT, uint32_t buttons, uint32_t placements, uint64_t epoch) {
     topics::HandPointer message;
     message.mutable_p_wt_m()->Assign(X_WT.position.begin(), X_WT.position.end());
     const Eigen::Quaterniond& q = X_WT.rotation;
     for (const double part : {q.w(), q.x(), q.y(), q.z()}) message.add_q_wt(part);
     message.set_buttons(buttons);
+    message.set_placements(placements);
     message.set_is_holding(true);
     say(std::move(message), epoch);
     if (!thread_.joinable()) thread_ = std::thread([this] { speak(); });

@@ -10,9 +10,9 @@
 #include <mutex>
 #include <thread>
 
-#include "common/dds/endpoint.h"
 #include "common/geometry/pose.h"
 #include "proto/topics.pb.h"
+#include "render_client/subscribe/wire.h"
 
 namespace bonemill {
 
@@ -23,16 +23,20 @@ class HandSpeaker {
     static constexpr std::chrono::milliseconds kFarewell{
         500};  // letting go is repeated: a message may be lost
 
-    // Says so as this sender and role. The participant must outlive the object.
-    HandSpeaker(const dds::Participant& participant, uint32_t session, uint64_t sender,
-                topics::Viewer::Role role);
+    // Says so as this sender and role, in messages that are counted from `first_wish`. What the wire names
+    // must outlive the object.
+    HandSpeaker(const Wire& wire, uint32_t session, uint64_t sender, topics::Viewer::Role role,
+                uint32_t first_wish = 1);
     // Lets go.
     ~HandSpeaker();
 
     // The tool point is wanted there, with these Button bits, by a viewer that shows this run of the server.
-    void want(const Pose& X_WT, uint32_t buttons, uint64_t epoch);
+    // A new number of placements asks for it there without a way there.
+    void want(const Pose& X_WT, uint32_t buttons, uint32_t placements, uint64_t epoch);
     // The tool is held no more.
     void letGo(uint64_t epoch);
+    // Returns a number that no message of this object has reached yet, nor will with its last words.
+    uint32_t nextWish();
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -43,13 +47,13 @@ class HandSpeaker {
     const uint32_t session_;
     const uint64_t sender_;
     const topics::Viewer::Role role_;
-    dds::Writer<dds::HandPointerSample> writer_;
+    Outlet<dds::HandPointerSample> writer_;
     std::mutex mutex_;
     std::condition_variable changed_;
     // The mutex guards these.
     topics::HandPointer message_;
     Clock::time_point said_;
-    uint32_t sequence_ = 0;
+    uint32_t sequence_;
     bool has_news_ = false;
     bool should_stop_ = false;
 

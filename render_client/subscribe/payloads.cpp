@@ -294,8 +294,10 @@ std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint
     if (!viewer || viewer->sender() != sender || sender == 0) return std::nullopt;
     viewer->DiscardUnknownFields();
     viewer->set_name(shownName(viewer->name()));
+    viewer->set_link(shownName(viewer->link()));
     if (viewer->role() != topics::Viewer::INSTRUCTOR) viewer->clear_pointer_m();
-    if (viewer->role() == topics::Viewer::VIEWER) viewer->clear_is_holding();
+    if (viewer->role() != topics::Viewer::OPERATOR && viewer->role() != topics::Viewer::INSTRUCTOR)
+        viewer->clear_is_holding();
     return viewer;
 }
 

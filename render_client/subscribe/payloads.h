@@ -19,8 +19,11 @@ struct StructureSurface {
     NodeMesh mesh;                // its leaf is the structure: 1 + its index in SceneInfo.materials
     double warning_distance = 0;  // m, above 0
     uint64_t epoch = 0;
+    uint64_t change = 0;  // SceneSubscriber::structureChanges() when it came
 };
 inline constexpr size_t kMostStructureVertices = 100000;
+// All structures of a session together have no more triangles.
+inline constexpr size_t kMostTrianglesOfStructures = 1000000;
 
 // It has at least one triangle, and no more than kMostStructureVertices; `structure` is that of the sample's
 // envelope.

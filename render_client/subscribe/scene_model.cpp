@@ -1,45 +1,50 @@
 #include "render_client/subscribe/scene_model.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace bonemill {
-namespace {
 
-// This is far more than any bone has; it bounds what invented ones can take.
-constexpr size_t kMostNodes = size_t(1) << 20;
-
-}  // namespace
-
-bool SceneModel::enterEpoch(uint64_t epoch) {
-    if (epoch <= epoch_) return epoch == epoch_;
+void SceneModel::begin(uint64_t epoch) {
+    if (epoch == epoch_) return;
     if (epoch_ != 0) {
         changes_.is_cleared = true;
         changes_.nodes.clear();
         nodes_.clear();
         waiting_.clear();
-        writer_epochs_.clear();
+        triangles_ = waiting_triangles_ = 0;
         digest_ = NodeDigest();
     }
     epoch_ = epoch;
+    leaf_count_ = std::numeric_limits<uint32_t>::max();
     batch_ = 0;
     batch_nodes_ = 0;
-    return true;
 }
 
-void SceneModel::applyNode(DecodedNode&& node, uint64_t writer, Clock::time_point now) {
-    if (nodes_.size() >= kMostNodes && !nodes_.contains(node.mesh.leaf)) return;
-    writer_epochs_[writer] = node.tag.epoch;
-    if (!enterEpoch(node.tag.epoch)) return;
+bool SceneModel::hasRoomFor(const NodeMesh& mesh) const {
+    const auto known = nodes_.find(mesh.leaf);
+    const bool is_new = known == nodes_.end();
+    const size_t others = triangles_ + waiting_triangles_ - (is_new ? 0 : known->second.triangles);
+    return mesh.leaf < leaf_count_ && others + mesh.indices.size() / 3 <= kMostTriangles &&
+           (!is_new || nodes_.size() + waiting_.size() < kMostNodes);
+}
+
+bool SceneModel::applyNode(DecodedNode&& node, Clock::time_point now) {
+    if (node.tag.epoch != epoch_) return true;
+    if (!hasRoomFor(node.mesh)) return false;
     if (node.tag.batch > batch_) {
         batch_ = node.tag.batch;
         batch_nodes_ = node.tag.batch_nodes;
     } else if (node.tag.batch < batch_ && waiting_.empty()) {
-        return show(std::move(node));  // sent again after an interruption
+        show(std::move(node));  // sent again after an interruption
+        return true;
     }
     if (waiting_.empty()) waiting_since_ = now;
+    waiting_triangles_ += node.mesh.indices.size() / 3;
     waiting_.push_back(std::move(node));
     if (isNewestWhole()) release();
+    return true;
 }
 
 bool SceneModel::isNewestWhole() const {
@@ -50,6 +55,7 @@ bool SceneModel::isNewestWhole() const {
 }
 
 void SceneModel::release() {
+    waiting_triangles_ = 0;
     for (DecodedNode& node : std::exchange(waiting_, {}))
         node.mesh.isEmpty() ? hide(node.mesh.leaf) : show(std::move(node));
 }
@@ -60,16 +66,21 @@ void SceneModel::show(DecodedNode&& node) {
     if (known != nodes_.end()) {
         if (node.mesh.revision <= known->second.revision) return;
         digest_.remove(leaf, known->second.content);
+        triangles_ -= known->second.triangles;
     }
     digest_.add(leaf, node.content);
-    nodes_[leaf] = {node.mesh.revision, node.content};
+    const size_t triangles = node.mesh.indices.size() / 3;
+    triangles_ += triangles;
+    nodes_[leaf] = {node.mesh.revision, node.content, triangles};
     changes_.nodes.push_back({std::move(node.mesh), node.tag.cut_stamp_ns});
 }
 
-void SceneModel::removeNode(uint32_t leaf, uint64_t writer) {
-    const auto writer_epoch = writer_epochs_.find(writer);
-    if (writer_epoch != writer_epochs_.end() && writer_epoch->second < epoch_) return;
+void SceneModel::removeNode(uint32_t leaf) {
     if (waiting_.empty()) return hide(leaf);
+    if (!nodes_.contains(leaf) && std::ranges::none_of(waiting_, [leaf](const DecodedNode& node) {
+            return node.mesh.leaf == leaf && !node.mesh.isEmpty();
+        }))
+        return;
     DecodedNode removal;
     removal.mesh.leaf = leaf;
     waiting_.push_back(std::move(removal));
@@ -79,6 +90,7 @@ void SceneModel::hide(uint32_t leaf) {
     const auto known = nodes_.find(leaf);
     if (known == nodes_.end()) return;
     digest_.remove(leaf, known->second.content);
+    triangles_ -= known->second.triangles;
     nodes_.erase(known);
     Change removal;
     removal.mesh.leaf = leaf;

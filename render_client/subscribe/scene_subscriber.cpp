@@ -3,9 +3,12 @@
 #include <spdlog/spdlog.h>
 
 #include <random>
+#include <thread>
+#include <type_traits>
 #include <utility>
 
 #include "common/rt/clock.h"
+#include "common/user_error.h"
 
 namespace bonemill {
 namespace {
@@ -13,7 +16,9 @@ namespace {
 // Few samples per session are kept, so more than this many at once is a flood of foreign sessions.
 constexpr size_t kMaxSmallSamples = 256;
 constexpr uint64_t kMostNamed = 16;  // malformed samples in the log: a hostile peer must not fill it
-constexpr size_t kMaxViewers = 256;  // bounds what invented senders can take
+// Who did not poll for so long has slept, and silence in its sleep says nothing.
+constexpr std::chrono::seconds kSleep{1};
+constexpr std::chrono::seconds kReadAnewAgain{2};
 
 uint64_t randomSender() {
     std::random_device device;
@@ -32,105 +37,118 @@ void addCounts(const topics::EffectState& before, topics::EffectState& now) {
 
 SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
     : options_(options),
+      patience_(options.rejoin_after),
       outbox_(randomSender()),
-      participant_(options.domain),
-      viewer_reader_(participant_),
-      servers_(std::make_unique<ServerReaders>(participant_, viewer_reader_.handle())),
-      viewer_writer_(participant_),
-      hand_(participant_, options.session, outbox_.sender(), options.role),
-      density_feed_(participant_, options.session, outbox_.sender()),
-      command_writer_(participant_) {}
+      link_(std::make_unique<SessionLink>(options.domain, options.remote.get(), options.session,
+                                          outbox_.sender(), options.role, next_wish_)) {}
 
 SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
-    if (choice_.hasLost()) readAnew();
-    if (choice_.hasRefused() && !isServerAlive()) {
-        readAnew();
-        status_writer_ = 0;
-        last_heard_.reset();
-    }
-    takeSceneInfo();
+    noteTime();
+    if (link_) takeAll(max_nodes);
+    rejoinIfDeaf();
+    return model_.takeChanges(SceneModel::Clock::now());
+}
+
+void SceneSubscriber::takeAll(size_t max_nodes) {
     takeStatus();
+    readAnewIfDue();
+    takeSceneInfo();
     takeLesson();
     takeStructures();
     takeNodes(max_nodes);
     takeToolState();
     takeViewers();
     noteEnd();
-    outbox_.step(CommandOutbox::Clock::now(), command_writer_.matchedReaders() > 0,
+    if (!link_->command_writer.isAllowed()) outbox_.refuseAll("refused: the identity of --secure only looks");
+    outbox_.step(CommandOutbox::Clock::now(), link_->command_writer.matchedReaders() > 0,
                  [this](const topics::Command& command) {
                      const std::string bytes = command.SerializeAsString();
                      dds::CommandSample sample{};
                      sample.session = options_.session;
                      sample.sender = command.sender();
                      dds::setPayload(sample, bytes);
-                     command_writer_.write(sample);
+                     link_->command_writer.write(sample);
                  });
-    return model_.takeChanges(SceneModel::Clock::now());
+}
+
+bool SceneSubscriber::waitForData(std::chrono::nanoseconds timeout) const {
+    if (link_) return link_->servers->wait(timeout);
+    std::this_thread::sleep_for(timeout);
+    return false;
 }
 
 void SceneSubscriber::followDensities(DensityStore& densities) {
-    density_feed_.update(densities, scene_info_, epoch(), monotonicNowNs(),
-                         [this](const std::string& what) { dropMalformed(what); });
+    if (!link_) return;
+    link_->density_feed.update(densities, scene_info_, epoch(), monotonicNowNs(),
+                               [this](const std::string& what) { dropMalformed(what); });
 }
 
 void SceneSubscriber::takeStatus() {
-    servers_->status.take(kMaxSmallSamples,
-                          [this](const dds::StatusSample& sample, const dds::SampleInfo& info) {
-                              if (!info.has_data || sample.session != options_.session) return;
-                              std::optional<topics::Status> status = parseStatus(dds::payloadOf(sample));
-                              if (!status) return dropMalformed("status");
-                              if (!enterEpoch(status->epoch(), info.writer)) {
-                                  other_scene_ = status->scene();
-                                  return;
-                              }
-                              status_writer_ = info.writer;
-                              outbox_.acknowledge(*status);
-                              status_ = std::move(status);
-                          });
+    link_->servers->status.take(
+        kMaxSmallSamples, [this](const dds::StatusSample& sample, const dds::SampleInfo& info) {
+            if (!info.has_data || sample.session != options_.session) return;
+            std::optional<topics::Status> status = parseStatus(dds::payloadOf(sample));
+            if (!status) return dropMalformed("status");
+            if (!accept(status->epoch(), link_->servers->status, info.writer)) {
+                other_scene_ = status->scene();
+                return;
+            }
+            status_writer_ = info.writer;
+            outbox_.acknowledge(*status);
+            status_ = std::move(status);
+        });
 }
 
 void SceneSubscriber::takeLesson() {
-    servers_->lesson.take(kMaxSmallSamples,
-                          [this](const dds::LessonSample& sample, const dds::SampleInfo& info) {
-                              if (!info.has_data || sample.session != options_.session) return;
-                              std::optional<topics::Lesson> lesson = parseLesson(dds::payloadOf(sample));
-                              if (!lesson) return dropMalformed("lesson");
-                              if (enterEpoch(lesson->epoch(), info.writer)) lesson_ = std::move(lesson);
-                          });
+    link_->servers->lesson.take(
+        kMaxSmallSamples, [this](const dds::LessonSample& sample, const dds::SampleInfo& info) {
+            if (!info.has_data || sample.session != options_.session) return;
+            std::optional<topics::Lesson> lesson = parseLesson(dds::payloadOf(sample));
+            if (!lesson) return dropMalformed("lesson");
+            if (accept(lesson->epoch(), link_->servers->lesson, info.writer)) lesson_ = std::move(lesson);
+        });
 }
 
 void SceneSubscriber::takeSceneInfo() {
-    servers_->scene_info.take(
+    link_->servers->scene_info.take(
         kMaxSmallSamples, [this](const dds::SceneInfoSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != options_.session) return;
             std::optional<topics::SceneInfo> scene_info = parseSceneInfo(dds::payloadOf(sample));
             if (!scene_info) return dropMalformed("scene info");
-            if (!enterEpoch(scene_info->epoch(), info.writer)) return;
+            if (!accept(scene_info->epoch(), link_->servers->scene_info, info.writer)) return;
             if (scene_info_ && scene_info->revision() < scene_info_->revision()) return;
             scene_info_ = std::move(scene_info);
+            if (scene_info_->leaf_count() > 0) model_.setLeafCount(scene_info_->leaf_count());
         });
 }
 
 void SceneSubscriber::takeStructures() {
-    servers_->structures.take(kMaxSmallSamples, [this](const dds::StructureMeshSample& sample,
-                                                       const dds::SampleInfo& info) {
+    link_->servers->structures.take(kMaxSmallSamples, [this](const dds::StructureMeshSample& sample,
+                                                             const dds::SampleInfo& info) {
         if (!info.has_data || sample.session != options_.session) return;
         std::optional<StructureSurface> structure = parseStructure(dds::payloadOf(sample), sample.structure);
         if (!structure) return dropMalformed("structure " + std::to_string(sample.structure));
-        if (!enterEpoch(structure->epoch, info.writer)) return;
+        if (!accept(structure->epoch, link_->servers->structures, info.writer)) return;
+        const auto known = structures_.find(sample.structure);
+        const size_t triangles = structure->mesh.indices.size() / 3;
+        const size_t others =
+            structure_triangles_ - (known == structures_.end() ? 0 : known->second.mesh.indices.size() / 3);
+        if (others + triangles > kMostTrianglesOfStructures)
+            return dropMalformed("structure " + std::to_string(sample.structure) + ", which is one too many");
+        structure_triangles_ = others + triangles;
+        structure->change = ++structure_changes_;
         structures_[sample.structure] = std::move(*structure);
-        ++structure_changes_;
     });
 }
 
 void SceneSubscriber::takeToolState() {
     std::optional<topics::EffectState> counted;
-    servers_->tool_state.take(
+    link_->servers->tool_state.take(
         kMaxSmallSamples, [&](const dds::ToolStateSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != options_.session) return;
             std::optional<topics::ToolState> state = parseToolState(dds::payloadOf(sample));
             if (!state) return dropMalformed("tool state");
-            if (!enterEpoch(state->epoch(), info.writer)) return;
+            if (!accept(state->epoch(), link_->servers->tool_state, info.writer)) return;
             if (tool_state_ && state->tick() < tool_state_->tick()) return;
             if (!tool_state_) counted.reset();  // another run of the server
             if (counted && state->has_effects()) addCounts(*counted, *state->mutable_effects());
@@ -140,19 +158,21 @@ void SceneSubscriber::takeToolState() {
 }
 
 void SceneSubscriber::takeViewers() {
-    const auto now = std::chrono::steady_clock::now();
-    viewer_reader_.take(kMaxSmallSamples, [&](const dds::ViewerSample& sample, const dds::SampleInfo& info) {
-        if (!info.has_data || sample.session != options_.session || sample.sender == outbox_.sender()) return;
-        std::optional<topics::Viewer> viewer = parseViewer(dds::payloadOf(sample), sample.sender);
-        if (!viewer) return dropMalformed("viewer " + std::to_string(sample.sender));
-        if (viewers_.size() < kMaxViewers || viewers_.contains(sample.sender))
-            viewers_[sample.sender] = {std::move(*viewer), now};
-    });
-    std::erase_if(viewers_, [now](const auto& v) { return now - v.second.heard > kViewerTimeout; });
+    const auto now = ViewerList::Clock::now();
+    link_->viewer_reader.take(
+        kMaxSmallSamples, [&](const dds::ViewerSample& sample, const dds::SampleInfo& info) {
+            if (!info.has_data || sample.session != options_.session || sample.sender == outbox_.sender())
+                return;
+            std::optional<topics::Viewer> viewer = parseViewer(dds::payloadOf(sample), sample.sender);
+            if (!viewer) return dropMalformed("viewer " + std::to_string(sample.sender));
+            viewers_.hear(std::move(*viewer), info.writer, now);
+        });
+    viewers_.forgetSilent(now);
 }
 
 void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W,
                                bool is_holding) {
+    if (!link_) return;
     topics::Viewer viewer;
     viewer.set_sender(outbox_.sender());
     viewer.set_name(options_.name);
@@ -166,66 +186,111 @@ void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::
     sample.session = options_.session;
     sample.sender = viewer.sender();
     dds::setPayload(sample, bytes);
-    viewer_writer_.write(sample);
+    link_->viewer_writer.write(sample);
 }
 
 uint32_t SceneSubscriber::sendCommand(topics::Command command) {
     command.set_role(options_.role);
+    command.set_name(options_.name);
     return outbox_.enqueue(std::move(command));
 }
 
-std::vector<topics::Viewer> SceneSubscriber::viewers() const {
-    std::vector<topics::Viewer> viewers;
-    for (const auto& [sender, heard] : viewers_) viewers.push_back(heard.viewer);
-    return viewers;
-}
-
 void SceneSubscriber::takeNodes(size_t max_nodes) {
-    servers_->nodes.take(max_nodes, [this](const dds::NodeMeshSample& sample, const dds::SampleInfo& info) {
-        if (sample.session != options_.session) return;
-        // Of a key that was written and then disposed only the older sample may be left, marked as disposed.
-        if (info.is_disposed) {
-            if (!choice_.isOther(info.writer)) model_.removeNode(sample.node, info.writer);
-            return;
-        }
-        if (!info.has_data) return;
-        std::optional<DecodedNode> node = parseNode(dds::payloadOf(sample), sample.node, sample.revision);
-        if (!node) return dropMalformed("node mesh " + std::to_string(sample.node));
-        if (!enterEpoch(node->tag.epoch, info.writer) &&
-            (choice_.isOther(info.writer) || node->tag.epoch > model_.epoch()))
-            return;
-        // The model takes nodes of an older run too: it remembers their writer, whose late
-        // removals must not count.
-        model_.applyNode(std::move(*node), info.writer, SceneModel::Clock::now());
-    });
+    link_->servers->nodes.take(
+        max_nodes, [this](const dds::NodeMeshSample& sample, const dds::SampleInfo& info) {
+            if (sample.session != options_.session) return;
+            // Of a key that was written and then disposed only the older sample may be left, marked as
+            // disposed.
+            if (info.is_disposed) {
+                const uint64_t participant = link_->servers->nodes.participantOf(info.writer);
+                if (choice_.isOurs(server_numbers_.of(participant, info.writer)))
+                    model_.removeNode(sample.node);
+                return;
+            }
+            if (!info.has_data) return;
+            std::optional<DecodedNode> node = parseNode(dds::payloadOf(sample), sample.node, sample.revision);
+            if (!node) return dropMalformed("node mesh " + std::to_string(sample.node));
+            if (!accept(node->tag.epoch, link_->servers->nodes, info.writer)) return;
+            if (!model_.applyNode(std::move(*node), SceneModel::Clock::now()))
+                dropMalformed("node mesh " + std::to_string(sample.node) + ", which is one too many");
+        });
 }
 
-bool SceneSubscriber::enterEpoch(uint64_t epoch, uint64_t writer) {
+template <class Sample>
+bool SceneSubscriber::accept(uint64_t epoch, const Inlet<Sample>& reader, uint64_t writer) {
     const auto now = ServerChoice::Clock::now();
-    if (choice_.judge(epoch, writer, isServerAlive(), now) != ServerChoice::Verdict::kOurs) return false;
-    const uint64_t epoch_before = model_.epoch();
-    if (!model_.enterEpoch(epoch)) return false;
-    if (model_.epoch() != epoch_before) {
-        scene_info_.reset();
-        tool_state_.reset();
-        status_.reset();
-        lesson_.reset();
-        structure_changes_ += !structures_.empty();
-        structures_.clear();
-        status_writer_ = 0;
-    }
-    last_heard_ = std::chrono::steady_clock::now();
+    const bool is_status = std::is_same_v<Sample, dds::StatusSample>;
+    const ServerChoice::Message message{epoch, server_numbers_.of(reader.participantOf(writer), writer),
+                                        is_status};
+    const bool was_ours = choice_.isOurs(message.server);
+    if (choice_.judge(message, isServerAlive(), now) != ServerChoice::Verdict::kOurs) return false;
+    if (!was_ours || epoch != model_.epoch()) beginRun();
+    last_heard_ = now;
+    patience_ = options_.rejoin_after;
     return true;
 }
 
-// What was refused meanwhile, DDS gives to new readers only.
-void SceneSubscriber::readAnew() {
-    servers_ = std::make_unique<ServerReaders>(participant_, viewer_reader_.handle());
-    choice_.forgetWriters();
+void SceneSubscriber::beginRun() {
+    model_.begin(choice_.epoch());
+    scene_info_.reset();
+    tool_state_.reset();
+    status_.reset();
+    lesson_.reset();
+    structure_changes_ += !structures_.empty();
+    structures_.clear();
+    structure_triangles_ = 0;
+    status_writer_ = 0;
+}
+
+// What was refused before it was known to be our server's is read anew, and so is what may be shown when ours
+// is gone; the latter not again and again.
+void SceneSubscriber::readAnewIfDue() {
+    const auto now = std::chrono::steady_clock::now();
+    const bool is_due = !read_anew_ || now - *read_anew_ > kReadAnewAgain;
+    const bool has_candidate = is_due && choice_.hasCandidate() && !isServerAlive();
+    if (!choice_.takeLost() && !has_candidate) return;
+    if (has_candidate) read_anew_ = now;
+    link_->readAnew();
+    choice_.forgetRefused();
+}
+
+// A reader may have become deaf; so may one that waits for its first server. Gateways are reached anew by
+// themselves.
+void SceneSubscriber::rejoinIfDeaf() {
+    if (options_.remote) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - std::max(joined_, last_heard_.value_or(joined_)) < patience_) return;
+    patience_ = std::min<std::chrono::milliseconds>(2 * patience_, kLongestSilence);
+    joined_ = now;
+    ++rejoinings_;
+    if (link_) next_wish_ = link_->hand.nextWish();
+    link_.reset();  // before the new one, or Cyclone would go on with what it has of this domain
+    join();
+    server_numbers_.clear();
+    status_writer_ = 0;
+    choice_.forgetRefused();
+}
+
+void SceneSubscriber::join() {
+    try {
+        link_ = std::make_unique<SessionLink>(options_.domain, nullptr, options_.session, outbox_.sender(),
+                                              options_.role, next_wish_);
+    } catch (const UserError& error) {
+        is_matched_ = false;
+        spdlog::warn("the session cannot be joined anew: {}", error.what());
+    }
+}
+
+void SceneSubscriber::noteTime() {
+    const auto now = std::chrono::steady_clock::now();
+    const auto before = std::exchange(polled_, now);
+    if (!before || now - *before < kSleep) return;
+    joined_ += now - *before;
+    if (last_heard_) *last_heard_ += now - *before;
 }
 
 bool SceneSubscriber::isServerAlive() const {
-    return isHeard() && (status_writer_ == 0 || servers_->status.isMatched(status_writer_));
+    return isHeard() && (status_writer_ == 0 || link_->servers->status.isMatched(status_writer_));
 }
 
 std::optional<std::string> SceneSubscriber::otherServer() const {
@@ -252,11 +317,11 @@ bool SceneSubscriber::hasServer() const {
 }
 
 void SceneSubscriber::noteEnd() {
-    const bool was_matched = std::exchange(is_matched_, servers_->status.matchedWriters() > 0);
+    const bool was_matched = std::exchange(is_matched_, link_->servers->status.matchedWriters() > 0);
     if (is_matched_) {
         has_ended_ = false;
     } else if (was_matched) {
-        has_ended_ = isHeard();
+        has_ended_ = isHeard() && !link_->isCut();
     }
 }
 

@@ -15,15 +15,14 @@
 #include <string>
 #include <vector>
 
-#include "common/dds/endpoint.h"
 #include "proto/topics.pb.h"
 #include "render_client/subscribe/command_outbox.h"
-#include "render_client/subscribe/density_feed.h"
-#include "render_client/subscribe/hand_speaker.h"
 #include "render_client/subscribe/payloads.h"
 #include "render_client/subscribe/scene_model.h"
 #include "render_client/subscribe/server_choice.h"
-#include "render_client/subscribe/server_readers.h"
+#include "render_client/subscribe/server_numbers.h"
+#include "render_client/subscribe/session_link.h"
+#include "render_client/subscribe/viewer_list.h"
 
 namespace bonemill {
 
@@ -32,6 +31,11 @@ struct SubscriberOptions {
     uint32_t session = 1;   // that of the server
     std::string name = {};  // of who watches, for the others' lists
     topics::Viewer::Role role = topics::Viewer::OPERATOR;
+    // After so much silence, then twice as much and so on up to kLongestSilence, it joins anew.
+    std::chrono::milliseconds rejoin_after{6000};
+    // The gateway that the session is reached through; none: by DDS. Then name and role are the gateway's to
+    // say.
+    std::shared_ptr<RemoteSession> remote = {};
 };
 
 class SceneSubscriber {
@@ -45,7 +49,7 @@ class SceneSubscriber {
     // call), sends the commands that are due, and returns the nodes that changed since the last call.
     SceneModel::Changes poll(size_t max_nodes = kAllNodes);
     // Returns true when poll() has something to take, false when `timeout` passed before.
-    bool waitForData(std::chrono::nanoseconds timeout) const { return servers_->wait_set.wait(timeout); }
+    bool waitForData(std::chrono::nanoseconds timeout) const;
 
     // These are the newest ones of the current server run; there is nothing before the first.
     const std::optional<topics::SceneInfo>& sceneInfo() const noexcept { return scene_info_; }
@@ -55,7 +59,8 @@ class SceneSubscriber {
     // A server that shows another scene tells it anew.
     const std::optional<topics::Lesson>& lesson() const noexcept { return lesson_; }
 
-    // The protected structures of the current server run, by their number. The count changes with them.
+    // The protected structures of the current server run, by their number. The count changes with them;
+    // structures with a larger one in StructureSurface::change came since.
     const std::map<uint32_t, StructureSurface>& structures() const noexcept { return structures_; }
     uint64_t structureChanges() const noexcept { return structure_changes_; }
 
@@ -84,22 +89,30 @@ class SceneSubscriber {
     void announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W,
                   bool is_holding = false);
     // Says where the mouse of this viewer wants the tool point: with every picture while it holds the tool.
-    void wantTool(const Pose& X_WT, uint32_t buttons) { hand_.want(X_WT, buttons, epoch()); }
-    void letToolGo() { hand_.letGo(epoch()); }
-    // Returns the other viewers of the session, heard within kViewerTimeout, by sender.
-    std::vector<topics::Viewer> viewers() const;
-    static constexpr std::chrono::seconds kViewerTimeout{4};
+    void wantTool(const Pose& X_WT, uint32_t buttons, uint32_t placements) {
+        if (link_) link_->hand.want(X_WT, buttons, placements, epoch());
+    }
+    void letToolGo() {
+        if (link_) link_->hand.letGo(epoch());
+    }
+    // Returns the other viewers of the session, heard within ViewerList::kTimeout, by sender.
+    std::vector<topics::Viewer> viewers() const { return viewers_.viewers(); }
 
     // Brings the densities that the store wants into it: after each poll(). The viewers of a store that wants
     // none pay nothing.
     void followDensities(DensityStore& densities);
-    const DensityFeed& densityFeed() const noexcept { return density_feed_; }
+    const DensityFeed& densityFeed() const noexcept { return link_->density_feed; }
 
     uint64_t epoch() const noexcept { return model_.epoch(); }
     const NodeDigest& digest() const noexcept { return model_.digest(); }
     uint64_t malformedSamples() const noexcept { return malformed_count_; }
+    // While no server is heard it joins the domain anew, with a fresh participant: a reader that became deaf
+    // hears again. Returns how often it did.
+    uint64_t rejoinings() const noexcept { return rejoinings_; }
+    static constexpr std::chrono::seconds kLongestSilence{30};
 
   private:
+    void takeAll(size_t max_nodes);
     void takeStatus();
     void takeLesson();
     void takeSceneInfo();
@@ -107,9 +120,15 @@ class SceneSubscriber {
     void takeStructures();
     void takeToolState();
     void takeViewers();
-    bool enterEpoch(uint64_t epoch, uint64_t writer);
+    // Returns whether a message of this epoch from this writer, as `reader` knows it, is our server's.
+    template <class Sample>
+    bool accept(uint64_t epoch, const Inlet<Sample>& reader, uint64_t writer);
+    void beginRun();
+    void noteTime();
     bool isServerAlive() const;
-    void readAnew();
+    void readAnewIfDue();
+    void rejoinIfDeaf();
+    void join();
     bool isHeard() const;
     void noteEnd();
     void dropMalformed(const std::string& what);
@@ -125,24 +144,21 @@ class SceneSubscriber {
     std::optional<topics::Lesson> lesson_;
     std::map<uint32_t, StructureSurface> structures_;
     uint64_t structure_changes_ = 0;
+    size_t structure_triangles_ = 0;
     std::optional<std::chrono::steady_clock::time_point> last_heard_;
     bool has_ended_ = false;
     bool is_matched_ = false;  // with a server's writer, at the last poll()
-    struct HeardViewer {
-        topics::Viewer viewer;
-        std::chrono::steady_clock::time_point heard;
-    };
-    std::map<uint64_t, HeardViewer> viewers_;  // by sender
+    ViewerList viewers_;
+    ServerNumbers server_numbers_;
+    std::optional<std::chrono::steady_clock::time_point> polled_, read_anew_;
+    std::chrono::steady_clock::time_point joined_ = std::chrono::steady_clock::now();
+    std::chrono::milliseconds patience_;
+    uint64_t rejoinings_ = 0;
+    uint32_t next_wish_ = 1;  // HandSpeaker
     uint64_t malformed_count_ = 0;
     CommandOutbox outbox_;
 
-    dds::Participant participant_;
-    dds::Reader<dds::ViewerSample> viewer_reader_;
-    std::unique_ptr<ServerReaders> servers_;
-    dds::Writer<dds::ViewerSample> viewer_writer_;
-    HandSpeaker hand_;
-    DensityFeed density_feed_;
-    dds::Writer<dds::CommandSample> command_writer_;
+    std::unique_ptr<SessionLink> link_;  // none while joining anew fails
 };
 
 }  // namespace bonemill

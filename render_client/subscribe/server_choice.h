@@ -1,12 +1,13 @@
 // Which server's messages a viewer takes, where more than one gives the same session: two halves of a network
-// that had been apart, or a stranger. The viewer stays with the one it has for as long as that one lives. For
-// one thread.
+// that had been apart, or a stranger. A server is its DDS participant: all its writers are one. The viewer
+// stays with the one it has for as long as that one lives; then it takes another that speaks as a server
+// does, by Status, whatever its epoch. For one thread.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <optional>
-#include <set>
 
 namespace bonemill {
 
@@ -14,36 +15,46 @@ class ServerChoice {
   public:
     using Clock = std::chrono::steady_clock;
     enum class Verdict {
-        kOurs,   // of the server that is shown from now on
-        kOlder,  // of a run before it, or of a server that is older
-        kOther,  // of a newer server, while ours lives
+        kOurs,   // of the server that is shown from now on, in epoch()
+        kOlder,  // of a run of it that is over
+        kOther,  // of another server
+    };
+    struct Message {
+        uint64_t epoch = 0;   // unix ns, > 0
+        uint64_t server = 0;  // who wrote it (dds::Reader::participantOf)
+        bool is_status = false;
     };
 
-    // Judges a message of this epoch (unix ns, > 0) from this writer (dds::SampleInfo::writer); `is_alive`
-    // says whether the server that is shown lives. One that begins a new epoch is known by its writers.
-    Verdict judge(uint64_t epoch, uint64_t writer, bool is_alive, Clock::time_point now);
+    // `is_alive` says whether the server that is shown lives.
+    Verdict judge(const Message& message, bool is_alive, Clock::time_point now);
 
-    // What this writer removes is not ours.
-    bool isOther(uint64_t writer) const { return others_.contains(writer); }
-    // Messages of a newer server were refused: they must be asked for again before it can be shown.
-    bool hasRefused() const { return has_refused_; }
-    // Messages of our own server were refused: its writers were not all known when it began a new epoch.
-    bool hasLost() const { return has_lost_; }
-    // The readers are new, and so are the writers' numbers; who answers is not known yet.
-    void forgetWriters();
+    bool isOurs(uint64_t server) const { return has_server_ && server == ours_; }
+    uint64_t epoch() const { return epoch_; }  // 0: none yet
+    // Returns, once, whether messages of the server that is shown now were refused before.
+    bool takeLost();
+    // Returns whether another server spoke and was refused, which may be shown when ours is gone.
+    bool hasCandidate() const;
+    // The readers are new: what was refused comes again.
+    void forgetRefused();
     // Another server of the session was heard for a while, and just now.
     bool hasOther(Clock::time_point now) const;
 
   private:
     static constexpr std::chrono::seconds kOtherFor{1}, kOtherUntil{3};
-    static constexpr size_t kMostWriters = 256;  // bounds what invented ones can take
+    static constexpr size_t kMostOthers = 64;  // bounds what invented ones can take
+    struct Other {
+        bool speaks = false;  // by Status
+        bool was_refused = false;
+    };
 
-    void hearOther(Clock::time_point now);
+    bool mayTake(const Message& message, bool is_alive) const;
+    void take(const Message& message);
+    void refuse(const Message& message, Clock::time_point now);
 
+    bool has_server_ = false, has_spoken_ = false, has_lost_ = false;
+    uint64_t ours_ = 0;
     uint64_t epoch_ = 0;
-    std::set<uint64_t> ours_, before_, others_;  // writers: of our server, of the run before, of others
-    bool has_refused_ = false;
-    bool has_lost_ = false;
+    std::map<uint64_t, Other> others_;
     std::optional<Clock::time_point> other_since_, other_last_;
 };
 

@@ -2,33 +2,47 @@
 // once more.
 #pragma once
 
-#include "common/dds/endpoint.h"
+#include <chrono>
+#include <optional>
+
 #include "common/dds/wait_set.h"
+#include "render_client/subscribe/wire.h"
 
 namespace bonemill {
 
-struct ServerReaders {
+class ServerReaders {
+  public:
     // Joins `also`, another reader, to the wait. Throws UserError.
-    ServerReaders(const dds::Participant& participant, int32_t also)
-        : nodes(participant),
-          scene_info(participant),
-          structures(participant),
-          tool_state(participant),
-          status(participant),
-          lesson(participant),
-          wait_set(participant) {
+    ServerReaders(const Wire& wire, int32_t also)
+        : nodes(wire),
+          scene_info(wire),
+          structures(wire),
+          tool_state(wire),
+          status(wire),
+          lesson(wire),
+          remote_(wire.remote) {
+        if (remote_) return;
+        wait_set_.emplace(*wire.participant);
         for (const int32_t reader : {nodes.handle(), scene_info.handle(), structures.handle(),
                                      tool_state.handle(), status.handle(), lesson.handle(), also})
-            wait_set.add(reader);
+            wait_set_->add(reader);
     }
 
-    dds::Reader<dds::NodeMeshSample> nodes;
-    dds::Reader<dds::SceneInfoSample> scene_info;
-    dds::Reader<dds::StructureMeshSample> structures;
-    dds::Reader<dds::ToolStateSample> tool_state;
-    dds::Reader<dds::StatusSample> status;
-    dds::Reader<dds::LessonSample> lesson;
-    dds::WaitSet wait_set;  // the last member: it waits for the others
+    // Returns true when something can be taken, false when `timeout` passed before.
+    bool wait(std::chrono::nanoseconds timeout) const {
+        return remote_ ? remote_->wait(timeout) : wait_set_->wait(timeout);
+    }
+
+    Inlet<dds::NodeMeshSample> nodes;
+    Inlet<dds::SceneInfoSample> scene_info;
+    Inlet<dds::StructureMeshSample> structures;
+    Inlet<dds::ToolStateSample> tool_state;
+    Inlet<dds::StatusSample> status;
+    Inlet<dds::LessonSample> lesson;
+
+  private:
+    RemoteSession* remote_;
+    std::optional<dds::WaitSet> wait_set_;  // the last member: it waits for the others
 };
 
 }  // namespace bonemill

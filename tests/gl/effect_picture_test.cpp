@@ -85,6 +85,23 @@ TEST_F(EffectPictures, Bleeding) {
     EXPECT_EQ(test::goldenProblem(draw(), "effect_bleeding"), "");
 }
 
+TEST_F(EffectPictures, BoneThatIsPutBackHasNoBloodOnIt) {
+    scene::Effects wish;
+    wish.mutable_bleeding()->set_delay_s(0);
+    wish.mutable_bleeding()->set_seep_per_s(2);
+    mill(wish);
+    leave(1.5);
+    topics::Status status;
+    scene_->setStatus(status);
+    const Picture bloody = draw();
+    status.set_removed_mm3(1);
+    scene_->setStatus(status);
+    EXPECT_TRUE(draw() == bloody);
+    status.set_bone_restores(1);
+    scene_->setStatus(status);
+    EXPECT_FALSE(draw() == bloody);
+}
+
 TEST_F(EffectPictures, Irrigation) {
     scene::Effects wish;
     wish.mutable_irrigation();

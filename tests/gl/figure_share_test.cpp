@@ -165,8 +165,8 @@ TEST_F(FigureShare, WithTheHintOnMouseAndKeys) {
     scene_.setHint(HudHint{hintRows()});
     tool_ = toolWithDamage(kEveryEvent);
     scene_.setNotice(
-        HudNotice{"Put the bone back? 12.3 mm\u00b3 are milled and in no checkpoint: once more does "
-                  "it, K saves them first",
+        HudNotice{"ARES emulator holds the tool: device_daemon --device pointer gives it to the mouse, when "
+                  "it is started anew",
                   {}});
     expectQuiet("hint");
 }

@@ -59,8 +59,10 @@ TEST_F(NodeIntakeTest, WhatCannotBeDrawnDoesNotReachTheEffectsEither) {
 TEST_F(NodeIntakeTest, AnotherRunOfTheServerBeginsAnew) {
     intake_.set(nodes_[1]);
     intake_.set(broken(nodes_[0]));
+    scene_.setToolState(test::makeToolState(test::toolInCavity(), test::toolInCavity(), 1));
     intake_.clear();
     EXPECT_EQ(scene_.nodeCount(), 0u);
+    EXPECT_FALSE(scene_.devicePose()) << "figures of the run before are none of this one's";
     EXPECT_EQ(intake_.refusedCount(), 0u);
 }
 

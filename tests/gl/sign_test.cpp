@@ -52,6 +52,39 @@ TEST_F(ViewMode, AMouseThatHoldsTheToolHasALineToItInTheColourOfTheForce) {
     EXPECT_EQ(countDifferent(none, draw_with(behind_eye, 5)), 0u);
 }
 
+// Nothing else in the picture says how near it is.
+TEST_F(ViewMode, ABurrThatHangsInFrontOfTheBoneHasARingOnItThatClosesAsItComesNearer) {
+    showMilledBlock(*scene_);
+    scene_->settings().show_force = false;
+    for (const Quality quality : {Quality::kQuick, Quality::kFull}) {
+        scene_->settings().quality = quality;
+        const auto ring_of = [&](double gap, uint32_t contacts) {
+            Pose X_WT = toolInCavity();
+            X_WT.position += (0.003 + gap) * scene_->camera().towardsEye_W();
+            topics::ToolState tool = makeToolState(X_WT, X_WT, 0);
+            tool.set_contacts(contacts);
+            scene_->setToolState(tool);
+            scene_->setPull(std::nullopt);
+            draw();
+            const Picture without = draw();
+            scene_->setPull(X_WT.position);
+            const Picture with = draw();
+            // How far from the burr the ring is seen.
+            const Pixel burr = project(scene_->viewCamera(), X_WT.position, kWidth, kHeight);
+            double farthest = 0;
+            for (int y = 0; y < kHeight; ++y)
+                for (int x = 0; x < kWidth; ++x)
+                    if (std::abs(with.at(x, y)[0] - without.at(x, y)[0]) > 20)
+                        farthest = std::max(farthest, std::hypot(x - burr.x, y - burr.y));
+            return farthest;
+        };
+        const double near = ring_of(0, 0), far = ring_of(0.004, 0);
+        EXPECT_GT(near, 5) << int(quality);
+        EXPECT_GT(far, 1.2 * near) << int(quality);
+        EXPECT_EQ(ring_of(0.002, 3), 0) << "it touches";
+    }
+}
+
 TEST_F(ViewMode, OnlyInstructorsPointAndAlsoFromBehindBone) {
     showSphere();
     const Picture bare = draw();

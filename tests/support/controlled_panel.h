@@ -11,7 +11,7 @@ class ControlledPanel : protected ControlledViewer {
     void switchPanel() { controls_.act(Action::kPanel, session_, wishes_); }
     // The panel is laid out in a picture of this size (pixels).
     void layOut(int width, int height, float scale = 1) {
-        panel_.setPicture(width, height, scale, 0.02);
+        panel_.setPicture(width, height, width, scale, 0.02);
         panel_.layOut(controls_, session_, wishes_);
     }
     bool send(const WindowEvent& event) { return panel_.handle(event, controls_, session_, wishes_); }

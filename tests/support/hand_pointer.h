@@ -31,8 +31,10 @@ class PointingViewer {
         : sender_(sender), participant_(testDomain()), writer_(participant_) {}
 
     int readers() const { return writer_.matchedReaders(); }
-    void want(const Pose& X_WT, uint32_t buttons = 0) {
-        send(handPointer(sender_, ++sequence_, X_WT, buttons).SerializeAsString());
+    void want(const Pose& X_WT, uint32_t buttons = 0, uint32_t placements = 0) {
+        topics::HandPointer message = handPointer(sender_, ++sequence_, X_WT, buttons);
+        message.set_placements(placements);
+        send(message.SerializeAsString());
     }
     void letGo() {
         topics::HandPointer message = handPointer(sender_, ++sequence_, Pose{});

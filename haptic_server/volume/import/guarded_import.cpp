@@ -18,6 +18,7 @@
 #include <type_traits>
 
 #include "common/user_error.h"
+#include "haptic_server/volume/import/confine_reader.h"
 #include "haptic_server/volume/import/file_being_read.h"
 #include "haptic_server/volume/import/import_limits.h"
 
@@ -261,6 +262,7 @@ void readAsChild(int file, const std::filesystem::path& path, const std::functio
     dup2(nowhere, STDERR_FILENO);  // the libraries' chatter would stand between the user and the one message
     dup2(nowhere, STDOUT_FILENO);
     try {
+        confineReader();
         sendVolume(file, read());
     } catch (const std::bad_alloc&) {
         sendError(file, path.string() + ": there is not enough memory to read it; crop or resample it");

@@ -83,6 +83,15 @@ TEST_F(LessonPicture, TheSummaryOfAnAttempt) {
     EXPECT_EQ(test::goldenProblem(draw(), "lesson_summary"), "");
 }
 
+TEST_F(LessonPicture, AQuestionInTheMiddle) {
+    status_.set_removed_mm3(4.97);
+    lesson_.set_is_running(true);
+    lesson_.set_trainee("Anna");
+    controls_.act(Action::kNextScene, session_, wishes_);
+    switchPanel();
+    EXPECT_EQ(test::goldenProblem(draw(), "question"), "");
+}
+
 // Figures and messages take a tenth, as the quiet screen has them; a sixth is the most.
 TEST_F(LessonPicture, WhatStandsOverThePictureIsSmall) {
     EXPECT_LT(coveredShare(draw()), 0.05) << "task and handle";

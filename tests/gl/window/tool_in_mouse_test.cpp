@@ -98,10 +98,10 @@ TEST_F(ToolInMouse, TheWindowTellsTheDeviceWhatTheMouseWants) {
     })) << "the wheel moves along the line of sight";
     display_.type({"keydown", "space", "mousemove", "100", "100"});
     display_.type({"keyup", "space", "mousemove_relative", "30", "0"});
-    EXPECT_TRUE(waitForWish([&](const HandWish& w) { return isUnder(w, {330, 100}); })) << "the clutch";
+    EXPECT_TRUE(waitForWish([&](const HandWish& w) { return isUnder(w, {130, 100}); })) << "the clutch";
     display_.type({"mousedown", "3", "mousemove_relative", "60", "0", "mouseup", "3"});
     EXPECT_TRUE(waitForWish([&](const HandWish& w) {
-        return w.X_WT.rotation.angularDistance(before.rotation) > 0.3 && isUnder(w, {330, 100});
+        return w.X_WT.rotation.angularDistance(before.rotation) > 0.3 && isUnder(w, {130, 100});
     })) << "the right button turns";
     display_.type({"key", "g"});
     EXPECT_TRUE(waitForWish([](const HandWish& w) { return !w.is_holding; }));
@@ -169,6 +169,25 @@ TEST_F(ToolInMouse, MillsTheBoneOfALiveSession) {
     })) << "a viewer that hangs mills no more";
     session.viewer().signal(SIGCONT);
     display_.type({"mouseup", "1"});
+    // The picture that was under way when the viewer was stopped still tells of the button.
+    EXPECT_TRUE(waitForWish([](const HandWish& w) { return w.is_holding && w.buttons == 0; }));
+    EXPECT_TRUE(waitFor([&] {
+        observer.poll();
+        return observer.toolState() && observer.toolState()->buttons() == 0;
+    }));
+
+    const uint32_t placements = wishes_.newest()->placements;
+    topics::Command start;
+    start.set_start_attempt("Ann");
+    observer.sendCommand(start);
+    EXPECT_TRUE(waitFor([&] {
+        observer.poll();
+        return wishes_.newest() && wishes_.newest()->is_holding && wishes_.newest()->placements > placements;
+    })) << "the mouse takes the tool anew: "
+        << session.whatDaemonSaid();
+    EXPECT_TRUE(waitFor([&] { return force() < 0.01 && removed() == 0; }))
+        << "in front of the whole bone: " << force() << " N, " << removed() << " mm3; "
+        << session.whatDaemonSaid();
     const test::MouseSession::Ended ended = session.end();
     for (const test::Finished& program : {ended.viewer, ended.daemon, ended.server})
         EXPECT_EQ(program.exit_code, 0) << program.err;

@@ -217,6 +217,8 @@ TEST_F(Window, EveryModeByKeyLooksAsItDid) {
     key("m");
     EXPECT_LT(differentShare(look(viewer), plain), kNoChange) << "everything is switched off again";
     key("Escape");
+    waitForLog(viewer, "Close this viewer?");
+    key("Return");
     EXPECT_EQ(viewer.process().wait(30s).exit_code, 0);
 }
 
@@ -257,14 +259,14 @@ TEST_F(Window, CommandsByKeyArrive) {
     waitForLog(viewer, "there is no checkpoint yet");
     key("k");
     EXPECT_TRUE(waitForCommand(2).save_checkpoint());
-    waitForLog(viewer, "save a checkpoint: done");
+    waitForLog(viewer, "A checkpoint is saved");
     key("u");
     EXPECT_EQ(waitForCommand(3).restore_checkpoint(), 1u);
     key("n");
     EXPECT_EQ(waitForCommand(4).select_tool(), 1u);
     key("p");
     EXPECT_TRUE(waitForCommand(5).pause_milling());
-    waitForLog(viewer, "pause milling: done");
+    waitForLog(viewer, "Milling pauses");
     key("p");
     const topics::Command go_on = waitForCommand(6);
     EXPECT_TRUE(go_on.has_pause_milling() && !go_on.pause_milling());
@@ -302,12 +304,12 @@ TEST_F(Window, ThePanelWorksByMouse) {
     panel.click("Pause milling (P)");
     EXPECT_TRUE(waitForCommand(1).pause_milling());
     panel.click("Put the bone back (C)");
-    waitForLog(viewer, "once more does it");
+    waitForLog(viewer, "Put the bone back? 12.3 mm\u00b3 are milled and in no checkpoint");
     panel.click("Put the bone back (C)");
     EXPECT_TRUE(waitForCommand(2).reset_volume());
     panel.click("Save a checkpoint (K)");
     EXPECT_TRUE(waitForCommand(3).save_checkpoint());
-    waitForLog(viewer, "save a checkpoint: done");
+    waitForLog(viewer, "A checkpoint is saved");
     panel.click("Back to 1");
     EXPECT_EQ(waitForCommand(4).restore_checkpoint(), 1u);
     panel.click("3 mm##tool 1");

@@ -29,6 +29,7 @@ struct DensityServer {
         topics::SceneInfo info = syntheticSceneInfo();
         *info.mutable_densities() = densityGridOf(source, kCtScale);
         EXPECT_TRUE(publisher.publishSceneInfo(info));
+        EXPECT_TRUE(publisher.publishStatus({}));
     }
 };
 

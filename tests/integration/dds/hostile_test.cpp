@@ -1,9 +1,15 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <fstream>
+#include <memory>
 #include <thread>
 
+#include "common/mesh/mesh_codec.h"
 #include "haptic_server/publish/other_server.h"
 #include "haptic_server/publish/publisher.h"
+#include "tests/integration/dds/child_process.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/synthetic_nodes.h"
 
@@ -53,6 +59,136 @@ TEST(HostilePayloads, AreCountedAndDroppedByClients) {
         client.pollUntil([&] { return client.subscriber.isComplete() && client.nodes.at(1).revision == 4; }));
 }
 
+// Nodes of a stranger who says that it is the server.
+class Forger {
+  public:
+    void write(uint32_t leaf, uint64_t epoch) {
+        const std::string bytes = encodeNodeMesh(syntheticNode(leaf, 7), {.epoch = epoch}).bytes;
+        auto sample = garbage<dds::NodeMeshSample>(bytes);
+        sample.node = leaf;
+        sample.revision = 7;
+        EXPECT_TRUE(nodes_.write(sample));
+    }
+    void remove(uint32_t leaf) {
+        dds::NodeMeshSample key{};
+        key.session = testSession();
+        key.node = leaf;
+        EXPECT_TRUE(nodes_.dispose(key));
+    }
+
+  private:
+    dds::Participant participant_{testDomain()};
+    dds::Writer<dds::NodeMeshSample> nodes_{participant_};
+};
+
+TEST(HostilePayloads, ForgedNodesBlankNoViewerNotEvenOverARestart) {
+    constexpr uint64_t kEpoch = 1'700'000'000'000'000'000;
+    auto server = std::make_unique<Publisher>(
+        PublisherOptions{.domain = testDomain(), .session = testSession(), .epoch = kEpoch});
+    ASSERT_TRUE(server->publishNodes(std::vector{syntheticNode(1, 2)}).is_whole);
+    ASSERT_TRUE(server->publishStatus({}));
+    ClientProbe client;
+    ASSERT_TRUE(client.pollUntil([&] { return client.subscriber.isComplete(); }));
+
+    Forger forger;
+    const auto forge = [&] {
+        forger.write(1, UINT64_MAX);
+        forger.write(2, kEpoch);
+        forger.remove(1);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        client.poll();
+    };
+    for (int n = 0; n < 20; ++n) forge();
+    EXPECT_EQ(client.subscriber.epoch(), kEpoch);
+    EXPECT_EQ(client.nodes.size(), 1u);
+    EXPECT_TRUE(client.nodes.contains(1));
+    server.reset();
+    for (int n = 0; n < 20; ++n) forge();
+    EXPECT_EQ(client.clearings, 0u) << "what was there last is shown on";
+
+    server = std::make_unique<Publisher>(
+        PublisherOptions{.domain = testDomain(), .session = testSession(), .epoch = kEpoch + 1});
+    ASSERT_TRUE(server->publishNodes(std::vector{syntheticNode(3, 2)}).is_whole);
+    ASSERT_TRUE(server->publishStatus({}));
+    ASSERT_TRUE(client.pollUntil(
+        [&] { return client.subscriber.epoch() == kEpoch + 1 && client.subscriber.isComplete(); }));
+    EXPECT_EQ(client.clearings, 1u);
+    EXPECT_TRUE(client.nodes.contains(3));
+}
+
+TEST(HostilePayloads, AForgedStatusSilencesNoClient) {
+    Publisher server({.domain = testDomain(), .session = testSession()});
+    ClientProbe client;
+    const auto statusIsThere = [&] { return client.subscriber.status().has_value(); };
+    ASSERT_TRUE(server.publishStatus({}));
+    ASSERT_TRUE(client.pollUntil(statusIsThere));
+    topics::Command command;
+    command.set_save_checkpoint(true);
+    const uint32_t first = client.subscriber.sendCommand(command);
+    topics::Command heard;
+    ASSERT_TRUE(client.pollUntil([&] {
+        for (const topics::Command& c : server.takeCommands()) heard = c;
+        return heard.sequence() == first;
+    }));
+    dds::Participant intruder(testDomain());
+    dds::Writer<dds::StatusSample> statuses(intruder);
+    topics::Status forged;
+    forged.set_epoch(server.epoch());
+    forged.set_last_command_sender(heard.sender());
+    for (const uint32_t sequence : {first, UINT32_MAX}) {
+        forged.set_last_command_sequence(sequence);
+        forged.set_last_command_result("done");
+        const std::string bytes = forged.SerializeAsString();
+        for (int n = 0; n < 10; ++n) {
+            ASSERT_TRUE(statuses.write(garbage<dds::StatusSample>(bytes)));
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            client.poll();
+        }
+    }
+    EXPECT_TRUE(client.subscriber.takeOutcomes().empty()) << "a stranger cannot say how it ended";
+    server.acknowledge(heard, "refused: no");
+    std::vector<CommandOutcome> outcomes;
+    ASSERT_TRUE(client.pollUntil([&] {
+        outcomes = client.subscriber.takeOutcomes();
+        return !outcomes.empty();
+    }));
+    EXPECT_EQ(outcomes[0].result, "refused: no");
+}
+
+TEST(Deafness, AViewerThatHearsNothingJoinsAnew) {
+    using std::chrono::milliseconds;
+    SceneSubscriber viewer(
+        {.domain = testDomain(), .session = testSession(), .rejoin_after = milliseconds(100)});
+    const auto end = std::chrono::steady_clock::now() + milliseconds(1000);
+    while (std::chrono::steady_clock::now() < end) {
+        viewer.poll();
+        viewer.waitForData(milliseconds(10));
+    }
+    EXPECT_GE(viewer.rejoinings(), 2u);
+    EXPECT_LE(viewer.rejoinings(), 3u) << "after 100, 300, 700 ms";
+    Publisher server({.domain = testDomain(), .session = testSession()});
+    const auto isHeard = [&] {
+        viewer.poll();
+        viewer.waitForData(milliseconds(10));
+        return server.publishStatus({}) && viewer.hasServer();
+    };
+    for (int n = 0; n < 1000 && !isHeard(); ++n) {
+    }
+    ASSERT_TRUE(viewer.hasServer());
+    const uint64_t rejoinings = viewer.rejoinings();
+    topics::Command command;
+    command.set_save_checkpoint(true);
+    viewer.sendCommand(command);
+    bool has_heard = false;
+    for (int n = 0; n < 1000 && !has_heard; ++n) {
+        EXPECT_TRUE(isHeard());
+        has_heard = !server.takeCommands().empty();
+    }
+    EXPECT_TRUE(has_heard);
+    for (int n = 0; n < 30; ++n) EXPECT_TRUE(isHeard());
+    EXPECT_EQ(viewer.rejoinings(), rejoinings) << "a server is heard";
+}
+
 TEST(OtherServer, IsFoundBySessionAndOnlyWhileItLives) {
     using std::chrono::milliseconds;
     const dds::Participant late(testDomain());
@@ -73,6 +209,35 @@ TEST(OtherServer, IsFoundBySessionAndOnlyWhileItLives) {
         EXPECT_FALSE(findOtherServer(late, session + 1, milliseconds(300)));
     }
     EXPECT_FALSE(findOtherServer(late, session, milliseconds(300)));
+}
+
+size_t residentBytes() {
+    size_t total = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> total >> resident;
+    return resident * size_t(sysconf(_SC_PAGESIZE));
+}
+
+// DDS keeps a key for as long as its writer lives.
+TEST(HostileSenders, TakeNoMemoryAndHonestOnesAreHeard) {
+    Publisher publisher({.domain = testDomain(), .session = testSession()});
+    ChildProcess intruder("synthetic_intruder");
+    const size_t before = residentBytes();
+    std::atomic<bool> is_done = false;
+    std::thread asking([&] {
+        EXPECT_EQ(intruder.ask("100000"), "done");
+        is_done = true;
+    });
+    while (!is_done) publisher.takeCommands();
+    asking.join();
+    publisher.takeCommands();
+    EXPECT_GT(publisher.malformedCommands(), 10'000u);
+    EXPECT_LT(double(residentBytes()) - double(before), 25e6);
+
+    ClientProbe client;
+    topics::Command pause;
+    pause.set_pause_milling(true);
+    client.subscriber.sendCommand(pause);
+    EXPECT_TRUE(client.pollUntil([&] { return !publisher.takeCommands().empty(); }));
 }
 
 TEST(HostilePayloads, AreCountedAndDroppedByTheServer) {

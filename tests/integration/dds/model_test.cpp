@@ -174,10 +174,16 @@ TEST(Structures, ComeToALateViewerAndGoWithTheirRun) {
     const StructureSurface& structure = late.subscriber.structures().at(2);
     EXPECT_EQ(structure.mesh.indices.size(), syntheticNode(2, 1).indices.size());
     EXPECT_EQ(structure.warning_distance, 2e-3);
-    const uint64_t changes = late.subscriber.structureChanges();
+    uint64_t changes = late.subscriber.structureChanges();
+    ASSERT_TRUE(first->publishStructure(syntheticNode(5, 1), 1e-3));
+    ASSERT_TRUE(late.pollUntil([&] { return late.subscriber.structureChanges() != changes; }));
+    EXPECT_GT(late.subscriber.structures().at(5).change, changes);
+    EXPECT_LE(late.subscriber.structures().at(2).change, changes) << "this one is as it was";
+    changes = late.subscriber.structureChanges();
     first.reset();
     Publisher second({.domain = testDomain(), .session = testSession(), .epoch = epoch + 1});
     ASSERT_TRUE(second.publishStructure(syntheticNode(5, 1), 3e-3));
+    ASSERT_TRUE(second.publishStatus({}));
     ASSERT_TRUE(late.pollUntil([&] { return late.subscriber.structures().size() == 1; }));
     EXPECT_EQ(late.subscriber.structures().at(5).warning_distance, 3e-3);
     EXPECT_NE(late.subscriber.structureChanges(), changes);

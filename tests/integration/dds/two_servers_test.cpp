@@ -66,6 +66,52 @@ TEST(TwoServers, TheViewerStaysWithTheOneItHasAndTellsOfTheOther) {
     EXPECT_EQ(viewer.epoch(), kSecondEpoch);
 }
 
+TEST(TwoServers, AnOlderOneThatLivesFollowsANewerThatHasGone) {
+    SceneSubscriber viewer({.domain = testDomain(), .session = testSession(), .name = "viewer"});
+    auto newer = std::make_unique<Publisher>(
+        PublisherOptions{.domain = testDomain(), .session = testSession(), .epoch = kSecondEpoch});
+    const auto shows = [&](const std::string& scene) {
+        return viewer.status() && viewer.status()->scene() == scene;
+    };
+    ASSERT_TRUE(pollUntil(
+        viewer, [&] { return shows("newer"); }, [&] { newer->publishStatus(statusOf("newer")); }));
+    Publisher older({.domain = testDomain(), .session = testSession(), .epoch = kFirstEpoch});
+    ASSERT_TRUE(pollUntil(
+        viewer, [&] { return viewer.otherServer().has_value(); },
+        [&] {
+            newer->publishStatus(statusOf("newer"));
+            older.publishStatus(statusOf("older"));
+        }));
+    EXPECT_EQ(viewer.epoch(), kSecondEpoch);
+    newer.reset();
+    ASSERT_TRUE(pollUntil(viewer, [&] { return shows("older"); }));
+    EXPECT_EQ(viewer.epoch(), kFirstEpoch);
+}
+
+TEST(TwoServers, AViewerThatSleptKeepsItsServer) {
+    SceneSubscriber viewer({.domain = testDomain(), .session = testSession(), .name = "viewer"});
+    Publisher first({.domain = testDomain(), .session = testSession(), .epoch = kFirstEpoch});
+    ASSERT_TRUE(pollUntil(
+        viewer, [&] { return viewer.status().has_value(); },
+        [&] { first.publishStatus(statusOf("first")); }));
+    Publisher second({.domain = testDomain(), .session = testSession(), .epoch = kSecondEpoch});
+    for (int n = 0; n < 10; ++n) {  // the second one is refused
+        second.publishStatus(statusOf("second"));
+        viewer.poll();
+        std::this_thread::sleep_for(20ms);
+    }
+    std::this_thread::sleep_for(SceneSubscriber::kServerTimeout + 100ms);
+    first.publishStatus(statusOf("first"));
+    second.publishStatus(statusOf("second"));
+    std::this_thread::sleep_for(50ms);
+    for (int n = 0; n < 5; ++n) {
+        viewer.poll();
+        ASSERT_EQ(viewer.epoch(), kFirstEpoch);
+        std::this_thread::sleep_for(20ms);
+    }
+    EXPECT_TRUE(viewer.hasServer());
+}
+
 TEST(SessionList, NamesEverySessionWithSceneStartAndHost) {
     SessionList list(testDomain());
     Publisher one({.domain = testDomain(), .session = testSession(), .epoch = kFirstEpoch});

@@ -1,4 +1,10 @@
 // Uses each profile with real programs on several PCs; all viewers end with the server's model.
+#include <arpa/inet.h>
+#include <sys/socket.h>
+
+#include <cerrno>
+#include <sstream>
+
 #include "tests/integration/network/network_session.h"
 #include "tests/support/places.h"
 
@@ -50,6 +56,36 @@ TEST_F(Profiles, OnePcServesItsOwnViewersAndNobodyElse) {
     expectAllConverge({}, {{haptics_pc_.get(), {}}, {haptics_pc_.get(), {"--profile", "one-pc"}}});
     EXPECT_EQ(newest(*stranger)["changes"], 0);
     EXPECT_EQ(newest(*lab_stranger)["changes"], 0);
+}
+
+// A port that nobody listens to for this sender is answered as closed.
+TEST_F(Profiles, OnOnePcNoPortIsOpenToOthers) {
+    const Host other = network_->addHost();
+    // The kernel says so six times, and then once per second.
+    const auto unlimited =
+        haptics_pc_->start({"/bin/sh", "-c", "echo 0 > /proc/sys/net/ipv4/icmp_ratelimit"})->wait();
+    ASSERT_EQ(unlimited.exit_code, 0) << unlimited.err;
+    startServer({});
+    const auto own = probe(*haptics_pc_, {});
+    ASSERT_TRUE(waitFor([&] { return isWhole(*own); })) << own->errSoFar();
+    std::istringstream table(test::readFile("/proc/" + std::to_string(own->pid()) + "/net/udp"));
+    std::string line, number, local;
+    std::getline(table, line);
+    int ports = 0;
+    const test::Descriptor stranger = other.udpSocket(4000);
+    for (; std::getline(table, line); ++ports) {
+        std::istringstream(line) >> number >> local;
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_port = htons(uint16_t(std::stoi(local.substr(local.find(':') + 1), nullptr, 16)));
+        inet_pton(AF_INET, haptics_pc_->address().c_str(), &address.sin_addr);
+        ASSERT_EQ(connect(stranger.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+        char byte = 0;
+        ASSERT_EQ(send(stranger.number(), &byte, 1, 0), 1);
+        ASSERT_EQ(recv(stranger.number(), &byte, 1, 0), -1);
+        EXPECT_EQ(errno, ECONNREFUSED) << "open: " << line;
+    }
+    EXPECT_GE(ports, 4);
 }
 
 TEST_F(Profiles, LabServesItsOwnAndOtherPcs) {

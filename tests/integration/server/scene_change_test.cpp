@@ -5,11 +5,13 @@
 #include <signal.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "common/device_messages/device_state.h"
 #include "common/lesson/attempts_csv.h"
+#include "haptic_server/session/attempt_keeper.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/process.h"
 
@@ -149,6 +151,10 @@ TEST_F(SceneChange, ReachesViewersAndTheHandAtOnceWithoutAStepOfForce) {
     EXPECT_NE(one_.subscriber.lesson()->scenes(2).problem(), "") << "it is broken";
     EXPECT_EQ(answerTo([](topics::Command& c) { c.set_start_attempt("=Ann"); }), "done");
     ASSERT_TRUE(waitForBoth([](const SceneSubscriber& viewer) { return viewer.lesson()->is_running(); }));
+    const double start_s = one_.subscriber.status()->session_s();
+    ASSERT_TRUE(waitForBoth([&](const SceneSubscriber& viewer) {
+        return viewer.status()->session_s() > start_s + AttemptKeeper::kShortest;
+    }));
 
     const uint64_t epoch_of_a = one_.subscriber.epoch();
     const auto begin = std::chrono::steady_clock::now();
@@ -196,9 +202,38 @@ TEST_F(SceneChange, ReachesViewersAndTheHandAtOnceWithoutAStepOfForce) {
             EXPECT_LT(force.last, 0.01) << name << ": it fades out";
         }
     }
+    for (const char* name : {"trace.csv", "trace_2.csv", "class.csv"}) {
+        EXPECT_EQ(std::filesystem::status(folder_ / name).permissions(),
+                  std::filesystem::perms::owner_read | std::filesystem::perms::owner_write)
+            << name;
+    }
     const std::string table = test::readFile(folder_ / "class.csv");
     EXPECT_EQ(table.find(std::string(kAttemptsHeader) + "\n1,"), 0u) << table;
-    EXPECT_NE(table.find(",\"'=Ann\",\"a\","), std::string::npos) << table;
+    EXPECT_NE(table.find(",\"'=Ann\",\"Task a\","), std::string::npos) << table;
+}
+
+// What the hand did before belongs to no attempt.
+TEST_F(SceneChange, TheSimulatedHandBeginsAnewWithAnAttemptAndRestsAfterIt) {
+    Process server_process(server()), daemon_process(daemon());
+    ASSERT_TRUE(isFelt("a")) << stateOf(one_.subscriber) << "; " << stateOf(two_.subscriber);
+    // It rubs in its guides: it does not come all the way back.
+    const auto isAtItsStart = [](const SceneSubscriber& viewer) {
+        return viewer.toolState() && viewer.toolState()->p_wt_m(2) > 3.04e-3;
+    };
+    const auto start = +[](topics::Command& c) { c.set_start_attempt("Ann"); };
+    EXPECT_EQ(answerTo(start), "done");
+    EXPECT_TRUE(waitForBoth(isAtItsStart)) << stateOf(one_.subscriber);
+    EXPECT_TRUE(isFelt("a")) << stateOf(one_.subscriber);
+    EXPECT_EQ(answerTo(start), "done");
+    EXPECT_TRUE(waitForBoth(isAtItsStart)) << "once more: " << stateOf(one_.subscriber);
+    EXPECT_TRUE(isFelt("a"));
+    EXPECT_EQ(answerTo([](topics::Command& c) { c.set_stop_attempt(true); }), "done");
+    EXPECT_TRUE(waitForBoth(isAtItsStart)) << "it rests: " << stateOf(one_.subscriber);
+    server_process.signal(SIGTERM);
+    EXPECT_EQ(server_process.wait().exit_code, 0);
+    const TracedForce force = forceIn(folder_ / "trace.csv");
+    EXPECT_GT(force.most, 0.1);
+    EXPECT_LT(force.largest_step, 0.3);
 }
 
 TEST_F(SceneChange, ScenesAreListedAndTheFirstGoodOneIsTaken) {

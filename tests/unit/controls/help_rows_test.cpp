@@ -27,6 +27,16 @@ std::vector<std::string> meaningsOf(std::string_view key, HelpFor whom = HelpFor
     return meanings;
 }
 
+TEST(HelpRows, ModesSayWhichKeyLeavesThem) {
+    ViewSettings settings;
+    EXPECT_TRUE(modeTexts(settings).empty());
+    settings.cuts[1].is_on = true;
+    settings.camera = CameraMode::kEndoscope;
+    EXPECT_EQ(modeTexts(settings), (std::vector<std::string>{"Endoscope (E: back)", "Cut Y on (Y: off)"}));
+    settings.camera = CameraMode::kMicroscope;
+    EXPECT_EQ(modeTexts(settings)[0], "Microscope (Shift+E: back)");
+}
+
 TEST(HelpRows, NameEveryKeyOfTheTableOnceWithItsMeaning) {
     const auto expect_named = [](const auto& binding) {
         EXPECT_FALSE(binding.meaning.empty()) << binding.label;
@@ -40,8 +50,7 @@ TEST(HelpRows, NameEveryKeyOfTheTableOnceWithItsMeaning) {
 TEST(HelpRows, WhatHoldsTheToolIsThereOnlyWhereAMouseCanHoldIt) {
     for (const KeyBinding& binding : keyTable()) {
         if (binding.is_of_lesson) {
-            EXPECT_TRUE(meaningsOf(binding.label).empty())
-                << binding.label << ": the lesson's panel names it";
+            EXPECT_TRUE(meaningsOf(binding.label).empty()) << binding.label << ": there is no lesson";
             continue;
         }
         const bool begins = binding.action == Action::kHoldTool;
@@ -50,6 +59,14 @@ TEST(HelpRows, WhatHoldsTheToolIsThereOnlyWhereAMouseCanHoldIt) {
             << binding.label;
     }
     EXPECT_EQ(hintRows().back().label, keyLabelOf(Action::kHelp));
+}
+
+TEST(HelpRows, ALessonsKeysAreThereInALesson) {
+    std::string all;
+    for (const HelpGroup& group : helpGroups(HelpFor::kLooking, true))
+        for (const HudRow& row : group.rows) all += row.label + "; ";
+    for (const KeyBinding& binding : keyTable())
+        EXPECT_TRUE(!binding.is_of_lesson || all.find(binding.label) != std::string::npos) << binding.label;
 }
 
 TEST(HelpRows, KeysThatDoTheSameShareARow) {

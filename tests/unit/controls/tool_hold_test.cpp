@@ -9,6 +9,7 @@
 
 #include "common/device_messages/device_messages.h"
 #include "render_client/camera/orbit_camera.h"
+#include "render_client/controls/hold_watch.h"
 #include "tests/support/controlled_viewer.h"
 
 namespace bonemill {
@@ -79,7 +80,7 @@ TEST(ToolHold, TheToolStaysUnderTheCursorAtEveryCameraAndDepth) {
         const PictureView view = anyView(random);
         ToolHold hold;
         hold.lookAt(view);
-        hold.begin({view.camera.target_W(), expRotation({0.1, 0.2, 0.3})}, kBurr, true);
+        hold.begin({view.camera.target_W(), expRotation({0.1, 0.2, 0.3})}, kBurr);
         const double depth = view.depthOf(hold.wish().position);
         for (int k = 0; k < 5; ++k) {
             const PixelPoint cursor = anyPixel(random);
@@ -100,7 +101,7 @@ TEST(ToolHold, TheWheelMovesAlongTheSightByPartsOfTheBurr) {
     const PictureView view = viewOf(0.5, 0.4, 0.2);
     ToolHold hold;
     hold.lookAt(view);
-    hold.begin(at(view.camera.target_W()), kBurr, true);
+    hold.begin(at(view.camera.target_W()), kBurr);
     const double far = (hold.wish().position - view.camera.eye_W).norm();
     const auto distance = [&] { return (hold.wish().position - view.camera.eye_W).norm() - far; };
     EXPECT_TRUE(hold.handle(ScrollEvent{2}, false));
@@ -118,7 +119,7 @@ TEST(ToolHold, TheClutchKeepsThePoseAndGivesTheMouseToTheCamera) {
     const PictureView view = viewOf(0.5, 0.4, 0.2);
     ToolHold hold;
     hold.lookAt(view);
-    hold.begin(at(view.camera.target_W()), kBurr, true);
+    hold.begin(at(view.camera.target_W()), kBurr);
     moveTo(hold, {300, 300});
     const Eigen::Vector3d before = hold.wish().position;
     key(hold, Key::kSpace);
@@ -130,13 +131,13 @@ TEST(ToolHold, TheClutchKeepsThePoseAndGivesTheMouseToTheCamera) {
     EXPECT_EQ(hold.wish().position, before);
     key(hold, Key::kSpace, false);
     moveTo(hold, {710, 100});
-    expectAt(view.pixelOf(hold.wish().position), {310, 300}, "it goes as far as the cursor");
+    expectAt(view.pixelOf(hold.wish().position), {710, 100}, "it is under the cursor again");
 }
 
 TEST(ToolHold, ADraggedCameraLeavesTheToolWhereItIs) {
     ToolHold hold;
     hold.lookAt(viewOf(0.5, 0.4, 0.2));
-    hold.begin(at({0.01, -0.02, 0.03}), kBurr, false);
+    hold.begin(at({0.01, -0.02, 0.03}), kBurr);
     const Eigen::Vector3d before = hold.wish().position;
     for (int i = 0; i < 10; ++i) {
         hold.lookAt(viewOf(0.5 + 0.1 * i, 0.4, 0.2));
@@ -145,15 +146,42 @@ TEST(ToolHold, ADraggedCameraLeavesTheToolWhereItIs) {
     EXPECT_EQ(hold.wish().position, before);
     hold.passOver({5, 5});
     EXPECT_EQ(hold.wish().position, before) << "the panel has the cursor";
-    moveTo(hold, {5, 5});
-    EXPECT_LT((hold.wish().position - before).norm(), 1e-12);
+}
+
+// A pupil saw it 670 pixels aside.
+TEST(ToolHold, AfterOrbitZoomAndPanelTheToolComesUnderTheCursor) {
+    ToolHold hold;
+    PictureView view = viewOf(0.5, 0.4, 0.2);
+    const auto expectUnder = [&](const PixelPoint& cursor, const char* what) {
+        const double depth = view.depthOf(hold.wish().position);
+        moveTo(hold, cursor);
+        expectAt(view.pixelOf(hold.wish().position), cursor, what);
+        EXPECT_NEAR(view.depthOf(hold.wish().position), depth, 1e-9);
+    };
+    hold.lookAt(view);
+    hold.begin(at(view.camera.target_W()), kBurr);
+    expectUnder({300, 300}, "held");
+    view = viewOf(1.1, 0.2, 0.2);
+    hold.lookAt(view);
+    hold.handle(MouseMoveEvent{{500, 350}}, true);
+    expectUnder({505, 350}, "orbited");
+    view = viewOf(1.1, 0.2, 0.1);
+    hold.lookAt(view);
+    expectUnder({506, 350}, "zoomed");
+    hold.passOver({850, 100});
+    expectUnder({700, 200}, "back from the panel");
+    view.has_places = false;
+    hold.lookAt(view);
+    const PixelPoint before = view.pixelOf(hold.wish().position);
+    moveTo(hold, {710, 190});
+    expectAt(view.pixelOf(hold.wish().position), {before.x + 10, before.y - 10}, "in stereo as far");
 }
 
 TEST(ToolHold, ButtonsAndKeysMillAndAdd) {
     ToolHold hold;
     press(hold, MouseButton::kLeft);
     EXPECT_EQ(hold.buttons(), 0u) << "it holds no tool";
-    hold.begin({}, kBurr, true);
+    hold.begin({}, kBurr);
     EXPECT_EQ(hold.buttons(), 0u);
     press(hold, MouseButton::kLeft);
     EXPECT_EQ(hold.buttons(), uint32_t{kButtonRemove});
@@ -177,7 +205,7 @@ TEST(ToolHold, ARightDragTurnsTheToolOnTheSpot) {
     const PictureView view = viewOf(0, 0, 0.2);  // looks along +y, x to the left
     ToolHold hold;
     hold.lookAt(view);
-    hold.begin({view.camera.target_W(), Eigen::Quaterniond::Identity()}, kBurr, false);
+    hold.begin({view.camera.target_W(), Eigen::Quaterniond::Identity()}, kBurr);
     moveTo(hold, {400, 300});
     const Eigen::Vector3d before = hold.wish().position;
     press(hold, MouseButton::kRight);
@@ -189,9 +217,68 @@ TEST(ToolHold, ARightDragTurnsTheToolOnTheSpot) {
     key(hold, keyOf('V'));
     moveTo(hold, {400, 300});
     EXPECT_LT(logRotation(hold.wish().rotation).norm(), 1e-9) << "and back, by key";
+    EXPECT_EQ(hold.wish().position, before);
+    moveTo(hold, {430, 300});
     key(hold, keyOf('V'), false);
-    moveTo(hold, {410, 300});
-    EXPECT_GT((hold.wish().position - before).norm(), 1e-6);
+    const PixelPoint seen = view.pixelOf(before);
+    moveTo(hold, {440, 300});
+    expectAt(view.pixelOf(hold.wish().position), {seen.x + 10, seen.y}, "it stays in its hole");
+}
+
+TEST(HoldWatch, AToolThatTheBoneHasCaughtIsFreedAndThenOnlyTheUserCanHelp) {
+    using Advice = HoldWatch::Advice;
+    HoldWatch watch;
+    HoldWatch::Sight sight{.now = 100, .burr_radius = 1e-3, .from_wish = 5e-3};
+    const auto adviceWithin = [&](double seconds) {
+        for (const double end = sight.now + seconds; sight.now < end; sight.now += 0.02)
+            if (const Advice advice = watch.look(sight); advice != Advice::kNone) return advice;
+        return Advice::kNone;
+    };
+    EXPECT_EQ(adviceWithin(10), Advice::kNone) << "it presses on the bone";
+    sight.from_wish = 8e-3;
+    sight.presses = sight.touches = true;
+    EXPECT_EQ(adviceWithin(10), Advice::kNone) << "it mills its way";
+    sight.presses = false;
+    EXPECT_EQ(adviceWithin(1.9), Advice::kNone);
+    sight.from_wish = 1e-3;
+    EXPECT_EQ(adviceWithin(0.1), Advice::kNone);
+    sight.from_wish = 8e-3;
+    EXPECT_EQ(adviceWithin(1.9), Advice::kNone);
+    EXPECT_EQ(adviceWithin(0.2), Advice::kFree);
+    EXPECT_EQ(adviceWithin(2.1), Advice::kFree);
+    EXPECT_EQ(adviceWithin(2.1), Advice::kHelp);
+    EXPECT_EQ(adviceWithin(20), Advice::kNone) << "it is said once";
+    sight.from_wish = 0;
+    EXPECT_EQ(adviceWithin(0.1), Advice::kNone);
+    sight.from_wish = 8e-3;
+    sight.now += 60;
+    EXPECT_EQ(adviceWithin(1.9), Advice::kNone) << "nobody looked meanwhile";
+    EXPECT_EQ(adviceWithin(0.2), Advice::kFree);
+}
+
+TEST(HoldWatch, WhoMillsInTheAirIsToldOnceHowToComeNearer) {
+    using Advice = HoldWatch::Advice;
+    HoldWatch watch;
+    HoldWatch::Sight sight{.now = 100, .burr_radius = 1e-3, .presses = true};
+    const auto adviceWithin = [&](double seconds) {
+        for (const double end = sight.now + seconds; sight.now < end; sight.now += 0.02)
+            if (const Advice advice = watch.look(sight); advice != Advice::kNone) return advice;
+        return Advice::kNone;
+    };
+    EXPECT_EQ(adviceWithin(1.5), Advice::kNone);
+    sight.touches = true;
+    EXPECT_EQ(adviceWithin(0.1), Advice::kNone);
+    sight.touches = false;
+    EXPECT_EQ(adviceWithin(1.9), Advice::kNone);
+    EXPECT_EQ(adviceWithin(0.2), Advice::kTouch);
+    EXPECT_EQ(adviceWithin(9), Advice::kNone);
+    sight.presses = false;
+    EXPECT_EQ(adviceWithin(0.1), Advice::kNone);
+    sight.presses = true;
+    sight.can_mill = false;
+    EXPECT_EQ(adviceWithin(5), Advice::kNone) << "it is paused";
+    sight.can_mill = true;
+    EXPECT_EQ(adviceWithin(2.1), Advice::kTouch);
 }
 
 TEST(ToolHold, BeginsInFrontOfTheSurfaceWithTheHandOnTheUsersSide) {
@@ -230,7 +317,7 @@ class HoldByControls : public testing::Test, protected test::ControlledViewer {
         type('G');
         EXPECT_TRUE(wishes_.hold_tool);
         controls_.toolHold().lookAt({camera_.view(), kHoldWidth, kHoldHeight});
-        controls_.toolHold().begin(at(camera_.target_W), kBurr, true);
+        controls_.toolHold().begin(at(camera_.target_W), kBurr);
     }
 };
 

@@ -64,48 +64,6 @@ TEST_F(Controls, KeysSwitchWhatIsSeenAndBack) {
     EXPECT_TRUE(wishes_.commands.empty());
 }
 
-TEST_F(Controls, AskBeforeUnsavedWorkIsLost) {
-    topics::Checkpoint& checkpoint = *status_.add_checkpoints();
-    checkpoint.set_id(1);
-    checkpoint.set_removed_mm3(3);
-    status_.set_removed_mm3(5);
-    type('C');
-    EXPECT_TRUE(wishes_.commands.empty());
-    ASSERT_TRUE(wishes_.notice);
-    EXPECT_NE(wishes_.notice->text.find("5.00 mm\u00b3 are milled"), std::string::npos)
-        << wishes_.notice->text;
-    type('U');
-    EXPECT_TRUE(wishes_.commands.empty()) << "another question";
-    type('C');
-    EXPECT_TRUE(wishes_.commands.empty()) << "that was asked before the other one";
-    type('C');
-    ASSERT_EQ(wishes_.commands.size(), 1u);
-    EXPECT_TRUE(wishes_.commands[0].reset_volume());
-    type('C');
-    EXPECT_EQ(wishes_.commands.size(), 1u) << "an answer counts once";
-    session_.time_s += ViewerControls::kAnswerTime + 1;
-    type('C');
-    EXPECT_EQ(wishes_.commands.size(), 1u) << "a late answer is none";
-    status_.set_removed_mm3(6);
-    type('C');
-    EXPECT_EQ(wishes_.commands.size(), 1u) << "more would be lost than was asked about";
-}
-
-TEST_F(Controls, DoNotAskWhereNothingIsLost) {
-    type('C');
-    EXPECT_EQ(wishes_.commands.size(), 1u) << "nothing was milled";
-    topics::Checkpoint& checkpoint = *status_.add_checkpoints();
-    checkpoint.set_removed_mm3(5);
-    status_.set_removed_mm3(5);
-    type('C');
-    type('U');
-    EXPECT_EQ(wishes_.commands.size(), 3u) << "the checkpoint has it";
-    status_.set_removed_mm3(7);
-    type('K');
-    type('P');
-    EXPECT_EQ(wishes_.commands.size(), 5u) << "these lose nothing";
-}
-
 TEST_F(Controls, AKeyMakesTextLargerWithinBounds) {
     type('J');
     EXPECT_GT(settings_.text_scale, 1.2);
@@ -167,6 +125,12 @@ TEST_F(Controls, TheMouseHoversWhileItDragsNothing) {
     EXPECT_FALSE(controls_.hovering());
     release(120, 90);
     EXPECT_TRUE(controls_.hovering());
+    controls_.toolHold().begin({}, 1e-3);
+    send(MouseMoveEvent{{150, 80}});
+    ASSERT_TRUE(controls_.hovering()) << "structures have names for who holds the tool, too";
+    EXPECT_EQ(controls_.hovering()->x, 150);
+    press(150, 80);
+    EXPECT_FALSE(controls_.hovering()) << "it mills";
 }
 
 TEST_F(Controls, BracketsMoveTheCutThatWasSwitchedLastWithinTheBone) {
@@ -337,6 +301,7 @@ TEST_F(Controls, TheRestIsForTheOwner) {
     send(KeyEvent{Key::kF12, true, false, {}});
     EXPECT_TRUE(wishes_.save_picture);
     EXPECT_FALSE(wishes_.quit);
+    send(KeyEvent{Key::kEscape, true, false, {}});
     send(KeyEvent{Key::kEscape, true, false, {}});
     EXPECT_TRUE(wishes_.quit);
 }

@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
+#include <net/if.h>
 #include <spdlog/sinks/ringbuffer_sink.h>
 #include <spdlog/spdlog.h>
+#include <sys/socket.h>
 
+#include <filesystem>
 #include <map>
 #include <thread>
 
@@ -69,6 +72,23 @@ TEST_F(DdsTest, LateReaderGetsTheNewestSamplePerKeyAndDisposedKeys) {
     seen.erase(3);
     seen.erase(99);
     for (const auto& [node, text] : seen) EXPECT_EQ(text, "newest") << node;
+}
+
+// What is tied to a device has its index, whatever address it is bound to.
+TEST_F(DdsTest, OnOnePcEverySocketIsTiedToTheLoopback) {
+    int tied = 0;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+        const int descriptor = std::stoi(entry.path().filename().string());
+        int type = 0, domain = 0, device = 0;
+        socklen_t size = sizeof type;
+        if (getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &size) != 0 || type != SOCK_DGRAM) continue;
+        ASSERT_EQ(getsockopt(descriptor, SOL_SOCKET, SO_DOMAIN, &domain, &size), 0);
+        if (domain != AF_INET) continue;
+        ASSERT_EQ(getsockopt(descriptor, SOL_SOCKET, SO_BINDTOIFINDEX, &device, &size), 0);
+        EXPECT_EQ(device, int(if_nametoindex("lo")));
+        ++tied;
+    }
+    EXPECT_GE(tied, 2);
 }
 
 TEST_F(DdsTest, WriterThatLeavesDoesNotDispose) {

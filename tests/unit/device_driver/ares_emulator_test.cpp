@@ -246,6 +246,34 @@ TEST(AresEmulator, APausedScenarioHoldsItsTimeAndTheHandDrawsBack) {
     EXPECT_NEAR(emulator.state().scenario_time, 0.75, 2e-3);
 }
 
+TEST(AresEmulator, AScenarioThatBeginsAnewDoesSoFromWhereItStarts) {
+    AresEmulator emulator(
+        AresKinematics{}, {}, {},
+        OperatorPath({{0, Pose{}, 1}, {1, {{0.01, 0, 0}, Eigen::Quaterniond::Identity()}, 1}}));
+    emulator.beginAnew();
+    emulator.startScenario();
+    push(emulator, {}, 0.8);
+    EXPECT_NEAR(emulator.state().scenario_time, 0.8, 1e-9) << "it had not begun";
+    emulator.beginAnew();
+    double largest_step = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const Eigen::Vector3d before = emulator.state().target.X_DT.position;
+        push(emulator, {}, 1e-3);
+        largest_step = std::max(largest_step, (emulator.state().target.X_DT.position - before).norm());
+        if (i < 690) EXPECT_EQ(emulator.state().target.buttons, 0u);
+    }
+    EXPECT_LT(largest_step, 2.5e-5) << "no jump";
+    EXPECT_NEAR(emulator.state().scenario_time, 0.3, 2e-3);
+    EXPECT_EQ(emulator.state().target.buttons, 1u);
+    emulator.pauseScenario();
+    push(emulator, {}, 1);
+    emulator.beginAnew();
+    push(emulator, {}, 0.1);
+    emulator.startScenario();
+    push(emulator, {}, 0.1);
+    EXPECT_NEAR(emulator.state().scenario_time, 0.1, 2e-3) << "it was there already";
+}
+
 TEST(AresEmulator, SaysHowFastItsSlidersMove) {
     AresEmulator emulator(AresKinematics{}, {}, noHand(), OperatorPath());
     push(emulator, {{1, 0, 2}, Eigen::Vector3d::Zero()}, 0.05);

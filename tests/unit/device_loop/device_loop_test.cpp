@@ -51,6 +51,36 @@ TEST(DeviceLoop, GivesNoForceBeforeItIsEngaged) {
     EXPECT_TRUE(rig.device.order.is_engaged);
 }
 
+// As with another scene, whose loop is a new one.
+TEST(DeviceLoop, AStopOutlivesTheLoopUntilSomebodyResets) {
+    LoopRig before;
+    before.engage();
+    before.device.reading.fault = StopCause::kDeviceFault;
+    before.device.reading.fault_code = 7;
+    before.step();
+    ASSERT_EQ(before.state(), SafetyState::kFault);
+
+    LoopRig rig({}, before.loop.safety().latch());
+    rig.engage();
+    EXPECT_EQ(rig.state(), SafetyState::kFault);
+    EXPECT_EQ(rig.cause(), StopCause::kDeviceFault);
+    EXPECT_EQ(rig.sample.fault_code, 7u);
+    EXPECT_EQ(rig.force(), 0);
+    rig.run(0.2);
+    EXPECT_FALSE(rig.loop.blackBox().isFull()) << "that stop is written already";
+
+    rig.server = [](WrenchCommand& c) {
+        LoopRig::setForce(c, 10);
+        c.reset_orders = 1;
+    };
+    rig.run(0.1);
+    EXPECT_EQ(rig.sample.reset_count, 1u);
+    rig.engage();
+    EXPECT_EQ(rig.state(), SafetyState::kEngaged);
+    EXPECT_EQ(LoopRig({}, rig.loop.safety().latch()).state(), SafetyState::kDisconnected);
+    EXPECT_EQ(rig.loop.safety().latch().reset_count, 1u);
+}
+
 TEST(DeviceLoop, TheMotorsStayOffWithoutAServer) {
     LoopRig rig;
     rig.is_server_there = false;

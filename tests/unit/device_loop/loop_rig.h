@@ -14,7 +14,8 @@ class LoopRig {
     static constexpr double kPeriod = 1e-3;  // s
     static constexpr int64_t kPeriodNs = 1'000'000;
 
-    explicit LoopRig(const DeviceLoopConfig& config = {}) : loop(device, config) {}
+    explicit LoopRig(const DeviceLoopConfig& config = {}, const SafetyLatch& latch = {})
+        : loop(device, config, latch) {}
 
     // One period: reading, sample, the server's answer to the sample before, order.
     void step() {

@@ -28,6 +28,10 @@ TEST(HandWish, SaysWhatTheMessageSays) {
     EXPECT_EQ(wish->buttons, uint32_t{kButtonAdd}) << "unknown buttons are none";
     EXPECT_LT((wish->X_WT.position - kSomewhere.position).norm(), 1e-12);
     EXPECT_LT(wish->X_WT.rotation.angularDistance(kSomewhere.rotation), 1e-7);
+    EXPECT_EQ(wish->placements, 0u);
+    topics::HandPointer placed = test::handPointer(7, 4, kSomewhere);
+    placed.set_placements(5);
+    EXPECT_EQ(parsed(placed)->placements, 5u);
 }
 
 TEST(HandWish, LettingGoNeedsNoPose) {

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "common/rt/clock.h"
+#include "device_daemon/loop/device_loop.h"
 #include "tests/support/hand_pointer.h"
 #include "tests/support/process.h"
 
@@ -103,9 +104,91 @@ TEST_F(Pointer, TheWrenchPushesTheHandle) {
     run(1);
     EXPECT_NEAR(reading_.X_DT.position.z() - kStart.position.z(), 3 / VirtualHand{}.stiffness, 1e-5);
     EXPECT_EQ(reading_.applied_D.force.z(), 3);
-    device_.write({.wrench_hand_D = wrench_, .is_wanted = true, .is_engaged = false});
+    device_.write({.wrench_hand_D = {{0, 0, 2}, {0, 0, 0}}, .is_wanted = true, .is_engaged = false});
     device_.read(kPeriod, reading_);
-    EXPECT_EQ(reading_.applied_D.force.z(), 0) << "it is not engaged";
+    EXPECT_EQ(reading_.applied_D.force.z(), 2)
+        << "it fades after a pause: a mouse has no motors that could fail";
+}
+
+TEST_F(Pointer, AWishWithANewPlacementIsThereAtOnceForEachViewer) {
+    test::PointingViewer first(1), second(2);
+    connect(first);
+    connect(second);
+    const auto whereIs = [&] { return Eigen::Vector3d((kX_WD * reading_.X_DT).position); };
+    const auto wantPlaced = [&](test::PointingViewer& viewer, const Pose& X_WT, uint32_t number) {
+        const uint32_t before = reading_.placements;
+        return test::waitFor([&] {
+            viewer.want(X_WT, 0, number);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            device_.read(kPeriod, reading_);
+            return reading_.placements != before;
+        });
+    };
+    wrench_.force = {0, 0, 1};
+    run(0.2);
+    EXPECT_EQ(reading_.placements, 0u);
+    ASSERT_TRUE(wantPlaced(first, at(0.10, 0.02, 0), 1));
+    EXPECT_LT((whereIs() - Eigen::Vector3d(0.10, 0.02, 0)).norm(), 1e-4);
+    EXPECT_LT(reading_.v_DT.norm(), 0.01);
+    first.want(at(0.05, 0.02, 0), 0, 1);
+    run(0.02);
+    EXPECT_EQ(reading_.placements, 1u) << "it goes there";
+    ASSERT_TRUE(wantPlaced(first, at(0.00, 0.02, 0), 2));
+    EXPECT_LT((whereIs() - Eigen::Vector3d(0.00, 0.02, 0)).norm(), 1e-4);
+    first.letGo();
+    ASSERT_TRUE(wantPlaced(second, at(0.10, 0.06, 0), 2)) << "numbers are each viewer's own";
+    EXPECT_EQ(reading_.placements, 3u);
+}
+
+// The tool was held by the bone with all that the hand has when the server fell silent.
+TEST_F(Pointer, AForceThatFadesIsNoFaultOfMotors) {
+    DeviceLoop loop(device_, {.wrench = {}, .motion = {}, .states = {.ramp_time = 0.3}});
+    DeviceSample sample;
+    WrenchCommand command{};
+    int64_t now_ns = kNsPerSecond;
+    for (int i = 0; i < 3000; ++i) {
+        now_ns += kNsPerMillisecond;
+        ASSERT_TRUE(loop.read(now_ns, kPeriod, sample));
+        if (i < 2000) command.stamp_ns = now_ns;
+        command.f_hand_D[2] = i < 1000 ? 0 : 8;
+        loop.write(&command, now_ns);
+        if (i == 1990) {
+            EXPECT_EQ(loop.safety().state(), SafetyState::kEngaged);
+            EXPECT_NEAR(loop.given().force.z(), 8, 1e-6);
+        }
+        ASSERT_NE(loop.safety().state(), SafetyState::kFault)
+            << nameOf(loop.safety().cause()) << ", period " << i;
+    }
+    EXPECT_EQ(loop.given().force.norm(), 0);
+}
+
+// A viewer does not know of another scene at once, and what it wants until then is of the old one.
+TEST_F(Pointer, WishesOfAnotherRunOfTheServerDoNotCount) {
+    test::PointingViewer viewer(1);  // it shows run 1
+    connect(viewer);
+    device_.followRun(2);
+    for (int i = 0; i < 20; ++i) {
+        viewer.want(at(0.10, 0.02, 0), kButtonRemove, 5);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        run(0.01);
+    }
+    EXPECT_FALSE(isHeld());
+    EXPECT_EQ(reading_.placements, 0u);
+    EXPECT_EQ(device_.malformedWishes(), 0u);
+    device_.followRun(1);
+    wantUntilHeld(viewer, at(0.10, 0.02, 0), kButtonRemove);
+}
+
+TEST_F(Pointer, AnAttemptBeginsWhereTheSceneDoes) {
+    test::PointingViewer viewer(1);
+    connect(viewer);
+    wantUntilHeld(viewer, at(0.10, 0.02, 0), 0);
+    run(0.5);
+    ASSERT_GT((reading_.X_DT.position - kStart.position).norm(), 0.03);
+    device_.beginAttempt();
+    run(kPeriod);
+    EXPECT_LT((reading_.X_DT.position - kStart.position).norm(), 1e-4);
+    EXPECT_EQ(reading_.placements, 1u);
 }
 
 TEST_F(Pointer, SilenceReleasesTheButtonsAndThenTheTool) {

@@ -72,6 +72,36 @@ TEST(ProtectedStructures, DamageIsTheVolumeThatTheBurrSwept) {
               float(last_damage));
 }
 
+// The burr stays where it has done its damage, so that lost bone would count again while it is on its way
+// back.
+TEST(ProtectedStructures, DamageIsForgottenWithTheScannedBoneAndNotWithACheckpoint) {
+    ProtectedBench bench(layer(2.5e-3, 7e-3));
+    BoneHistory history(bench.bone);
+    FixedTick tick = bench.makeTick(&history);
+    const Vector3d end(kMiddle, kMiddle, kTop + kBurr - 0.8e-3);
+    const auto milling = straightPath(TissueBench::at({kMiddle, kMiddle, 6.2e-3}), end, 400, kButtonRemove);
+    const auto standing = straightPath(TissueBench::at(end), end, 100, 0);
+    const auto damaged = [&](const std::vector<DeviceInput>& inputs) {
+        return bench.run(tick, inputs).back().effects.damaged_volume;
+    };
+    const auto whole = history.snapshot(bench.bone);
+    const float first = damaged(milling);
+    EXPECT_GT(first, 0);
+    const uint64_t to_checkpoint = history.restore(whole);
+    EXPECT_EQ(damaged(standing), first);
+    EXPECT_EQ(history.finishedOrder(), to_checkpoint);
+    damaged(milling);
+    const uint64_t to_scan = history.restore();
+    EXPECT_GT(to_scan, to_checkpoint);
+    for (const TickRecord& record : bench.run(tick, standing)) {
+        EXPECT_EQ(record.effects.damaged_volume, 0);
+        EXPECT_FALSE(record.effects.events & kEventProtectedDamaged);
+    }
+    EXPECT_EQ(history.missingVoxels(), 0);
+    EXPECT_EQ(bench.run(tick, standing).back().bone_order, to_scan);
+    EXPECT_NEAR(damaged(milling) / first, 1, 0.1) << "it counts anew";
+}
+
 TEST(ProtectedStructures, ABurrThatStandsStillHarmsNothing) {
     ProtectedBench bench(layer(3.5e-3, 7e-3));  // up into the air above the bone
     FixedTick tick = bench.makeTick();

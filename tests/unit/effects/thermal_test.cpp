@@ -58,6 +58,25 @@ TEST(Thermal, TooHotIsToldAndCounted) {
     FAIL() << "nothing has died";
 }
 
+TEST(Thermal, TheScannedBoneIsColdAndAliveAgain) {
+    HotBench bench;
+    bench.config.effects.thermal->heat_share = 0.2;
+    BoneHistory history(bench.bone);
+    FixedTick tick = bench.makeTick(&history);
+    const Pose start{{4e-3, 4e-3, kTop + kBurr + 0.1e-3}, expRotation({M_PI / 4, 0, 0})};
+    auto rubbing = straightPath(start, start.position - Vector3d(0, 0, 0.6e-3), 100, kButtonRemove);
+    rubbing.insert(rubbing.end(), 1000, rubbing.back());
+    const EffectRecord hot = bench.run(tick, rubbing).back().effects;
+    EXPECT_GT(hot.necrotic_volume, 0);
+    history.restore();
+    for (const TickRecord& record : bench.run(tick, straightPath(start, start.position, 10, 0))) {
+        EXPECT_EQ(record.effects.temperature, 37);
+        EXPECT_EQ(record.effects.necrotic_volume, 0);
+        EXPECT_EQ(record.effects.events, 0u);
+    }
+    EXPECT_GT(bench.run(tick, rubbing).back().effects.necrotic_volume, 0.9f * hot.necrotic_volume);
+}
+
 TEST(Thermal, IrrigationKeepsTheBoneCooler) {
     const auto hottest = [](double transfer) {
         HotBench bench;

@@ -37,9 +37,9 @@ struct TissueBench {
             protectedDistance(*effects.properties, effects.materials, bone.volume.spacing(), reach);
     }
     static Pose at(const Eigen::Vector3d& p_V) { return {p_V, Eigen::Quaterniond::Identity()}; }
-    FixedTick makeTick() {
+    FixedTick makeTick(BoneHistory* history = nullptr) {
         config.tool.model = &tool;
-        return {config, bone};
+        return {config, bone, history};
     }
     std::vector<TickRecord> run(FixedTick& tick, const std::vector<DeviceInput>& inputs) {
         return lead(tick, inputs);

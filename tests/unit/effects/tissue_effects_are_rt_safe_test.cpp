@@ -22,7 +22,8 @@ TEST(TissueEffectsAreRtSafe, WhileMillingThroughAllOfThem) {
     effects.virtual_fixture->hand_force_scale = 0.5;
     effects.protected_structures = test::kProtectedStructures;
     bench.config.tool.burr.speed = 3000;
-    FixedTick tick = bench.makeTick();
+    BoneHistory history(bench.bone);
+    FixedTick tick = bench.makeTick(&history);
     ScriptedIo io(
         straightPath(TissueBench::at({4e-3, 4e-3, 6.2e-3}), {4e-3, 4e-3, 2e-3}, 1500, kButtonRemove));
     RtProbe probe;
@@ -33,6 +34,15 @@ TEST(TissueEffectsAreRtSafe, WhileMillingThroughAllOfThem) {
     const EffectRecord& last = io.records.back().effects;
     EXPECT_GT(last.damaged_volume, 0);
     EXPECT_GT(last.temperature, 37);
+
+    history.restore();
+    ScriptedIo back(straightPath(TissueBench::at({4e-3, 4e-3, 2e-3}), {4e-3, 4e-3, 2e-3}, 100, 0));
+    RtProbe forgets;
+    tick.run(back);
+    forgets.stop();
+    EXPECT_EQ(forgets.heapCalls(), 0u) << forgets.firstCall();
+    EXPECT_EQ(forgets.lockCalls(), 0u) << forgets.firstCall();
+    EXPECT_EQ(back.records.back().effects.damaged_volume, 0);
 }
 
 }  // namespace

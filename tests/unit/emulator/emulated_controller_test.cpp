@@ -83,6 +83,25 @@ struct Session {
     float force = 0;
 };
 
+TEST(EmulatedController, TheHandRestsAndBeginsAnewAsItIsTold) {
+    Session session;
+    session.run(1.5);
+    ASSERT_GT(session.height(), 8e-3);
+    session.controller.rest();
+    session.run(1.5);
+    EXPECT_TRUE(session.isEngaged());
+    EXPECT_LT(session.height(), 1e-3);
+    EXPECT_FALSE(session.state.inputs & (kButtonRemove << wire::kFirstButtonInput));
+    session.controller.beginAnew();
+    session.run(0.5);
+    EXPECT_TRUE(session.state.inputs & (kButtonRemove << wire::kFirstButtonInput));
+    EXPECT_NEAR(session.controller.plant().scenario_time, 0.5, 5e-3);
+    session.controller.beginAnew();
+    session.run(2);
+    EXPECT_GT(session.height(), 8e-3);
+    EXPECT_NEAR(session.controller.plant().scenario_time, 1.3, 5e-3);
+}
+
 TEST(EmulatedController, PlaysItsScenarioWhileTheHostEngages) {
     Session session;
     session.run(0.1);

@@ -41,6 +41,20 @@ TEST(Conditions, AnOrderlyEndIsNoFaultAndNotRed) {
     EXPECT_EQ(makeHud(input).state_tone, HudTone::kPlain);
 }
 
+TEST(Conditions, WhoMillsInAPauseIsToldWhatGoesOn) {
+    HudInput input = runningSession();
+    input.status->set_is_milling_paused(true);
+    input.tool.emplace();
+    EXPECT_TRUE(conditionsOf(input).empty()) << "the figures say it";
+    input.tool->set_buttons(kButtonRemove);
+    const auto conditions = conditionsOf(input);
+    ASSERT_EQ(conditions.size(), 1u);
+    EXPECT_NE(conditions[0].text.find("P goes on"), std::string::npos);
+    EXPECT_FALSE(conditions[0].is_fault);
+    input.status->set_is_milling_paused(false);
+    EXPECT_TRUE(conditionsOf(input).empty());
+}
+
 TEST(Conditions, AServerThatFallsSilentIsAFault) {
     HudInput input = runningSession();
     input.connection = Connection::kServerLost;
@@ -84,6 +98,10 @@ TEST(Conditions, AStopIsAFaultAndAWaitIsNone) {
     EXPECT_FALSE(findCondition(conditions, "stop"));
     ASSERT_TRUE(findCondition(conditions, "wait"));
     EXPECT_FALSE(findCondition(conditions, "wait")->is_fault);
+    EXPECT_EQ(makeHud(input).state_tone, HudTone::kWarning)
+        << "live is only as good as what stands in its way";
+    device.set_state(uint32_t(SafetyState::kProtectiveStop));
+    EXPECT_EQ(makeHud(input).state_tone, HudTone::kAlarm);
 }
 
 TEST(FaultWords, EveryFaultOfTheServerHasWords) {

@@ -59,15 +59,30 @@ TEST(DeviceLines, EveryStopIsRedAndSaysWhyAndWhatToDo) {
             const topics::Device device = deviceIn(state, StopCause(cause));
             EXPECT_EQ(deviceRows(device, nullptr)[0].tone, HudTone::kAlarm);
             EXPECT_EQ(deviceStop(device, nullptr)->tone, HudTone::kAlarm);
-            for (const std::string& part :
-                 {std::string("Touch: ") + nameOf(state), std::string(nameOf(StopCause(cause))),
-                  std::string(whatToDo(StopCause(cause)))})
+            std::vector<std::string> parts{"The Touch ", whatToDo(StopCause(cause))};
+            if (std::string(nameOf(StopCause(cause))) != nameOf(state))
+                parts.push_back(nameOf(StopCause(cause)));
+            for (const std::string& part : parts)
                 EXPECT_NE(stopText(device).find(part), std::string::npos) << stopText(device);
         }
     topics::Device fault = deviceIn(SafetyState::kFault, StopCause::kDeviceFault);
     fault.set_fault_code(17);
     EXPECT_NE(stopText(fault).find("device fault 17"), std::string::npos) << stopText(fault);
-    EXPECT_EQ(stopText(deviceIn(SafetyState::kEmergencyStop)), "Touch: emergency stop.");
+    EXPECT_EQ(stopText(deviceIn(SafetyState::kEmergencyStop)), "The Touch is in emergency stop.");
+}
+
+TEST(DeviceLines, AMouseHasNoMotorsAndANameIsNotCutShort) {
+    topics::Device mouse = deviceIn(SafetyState::kFault, StopCause::kForceMismatch);
+    mouse.set_kind(uint32_t(DeviceKind::kPointer));
+    mouse.set_name("mouse in the viewer");
+    EXPECT_EQ(stopText(mouse),
+              "The mouse in the viewer is out of order. Reset it, let it go and take it again.");
+    topics::Device emulator = deviceIn(SafetyState::kProtectiveStop, StopCause::kDeviceLost);
+    emulator.set_name("ARES emulator (placeholder geometry)");
+    EXPECT_EQ(
+        stopText(emulator),
+        "The ARES emulator (placeholder geometry) has stopped: device lost. Check cable and power of the "
+        "device.");
 }
 
 TEST(DeviceLines, BeforeItEngagesItIsAWarningAndACauseThatIsOverIsNotSaid) {
@@ -82,15 +97,16 @@ TEST(DeviceLines, BeforeItEngagesItIsAWarningAndACauseThatIsOverIsNotSaid) {
 
 TEST(DeviceLines, ReadyAndPausedSayWhatTheyWaitFor) {
     for (const SafetyState state : {SafetyState::kReady, SafetyState::kPaused}) {
-        const std::string begin = std::string("Touch is ") + nameOf(state) + ": ";
+        const std::string begin = std::string("The Touch is ") + nameOf(state) + ": ";
         topics::Device waits = deviceIn(state);
         waits.set_force_waits(true);
-        EXPECT_EQ(waitText(waits), begin + "move the tool away.");
+        EXPECT_EQ(waitText(waits), begin + "move the tool away from the bone.");
         waits.set_force_waits(false);
         waits.set_abilities(kAbilityEnablingSwitch);
         EXPECT_EQ(waitText(waits), begin + "hold the enabling switch.");
         waits.set_is_enabled(true);
-        EXPECT_EQ(waitText(waits), state == SafetyState::kPaused ? begin + "press the switch anew." : "");
+        EXPECT_EQ(waitText(waits),
+                  state == SafetyState::kPaused ? begin + "let the switch go and press it again." : "");
     }
 }
 
@@ -101,7 +117,7 @@ TEST(DeviceLines, TheToolsStateIsNewerAndUnknownStatesAreAlarms) {
     const auto rows = deviceRows(deviceIn(SafetyState::kEngaged), &tool);
     EXPECT_EQ(rows[0].value, "emergency stop");
     EXPECT_EQ(deviceStop(deviceIn(SafetyState::kEngaged), &tool)->text,
-              std::string("Touch: emergency stop. ") + whatToDo(StopCause::kEmergencyStop));
+              std::string("The Touch is in emergency stop. ") + whatToDo(StopCause::kEmergencyStop));
     tool.set_device_state(1000);
     EXPECT_EQ(deviceRows(deviceIn(SafetyState::kEngaged), &tool)[0].tone, HudTone::kAlarm);
 }

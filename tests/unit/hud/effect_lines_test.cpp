@@ -130,8 +130,8 @@ TEST(EffectText, TrainingInWords) {
     training.add_warnings("touched facial nerve");
     const std::vector<HudRow> rows = trainingRows(training);
     EXPECT_EQ(test::findRow(rows, "Damaged")->value, "none");
-    EXPECT_EQ(test::findRow(rows, "Least distance")->tone, HudTone::kAlarm);
-    EXPECT_EQ(test::findRow(rows, "Hottest bone")->tone, HudTone::kWarning);
+    EXPECT_EQ(test::findRow(rows, "Least distance to a protected structure")->tone, HudTone::kAlarm);
+    EXPECT_EQ(test::findRow(rows, "Hottest bone so far")->tone, HudTone::kWarning);
     EXPECT_EQ(test::findRow(rows, "Necrosis"), nullptr);
     EXPECT_EQ(rows.back().value, "touched facial nerve");
 }

@@ -124,11 +124,25 @@ TEST(Hud, SaysHowItStandsWithTheServer) {
     EXPECT_TRUE(makeHud(input).rows.empty());
     input = liveInput();
     input.connection = Connection::kReceiving;
-    input.node_count = 12;
-    EXPECT_EQ(makeHud(input).state, "receiving 12 of 40 nodes");
+    input.node_count = 32;
+    EXPECT_EQ(makeHud(input).state, "loading 80 %");
+    input.node_count = 220;
+    EXPECT_EQ(makeHud(input).state, "loading 100 %") << "those of the scene before count as well";
     input.connection = Connection::kServerLost;
     EXPECT_EQ(makeHud(input).state, "server lost");
     EXPECT_EQ(makeHud(input).state_tone, HudTone::kAlarm);
+}
+
+TEST(Hud, TheScenesTitleInALessonGoesBeforeItsFilesName) {
+    HudInput input = liveInput();
+    const std::string name = makeHud(input).title;
+    input.title = "Straight bore, molar";
+    EXPECT_EQ(makeHud(input).title, "Straight bore, molar");
+    EXPECT_NE(name, "Straight bore, molar");
+    input.modes = {"Cut Y on (Y: off)"};
+    EXPECT_EQ(makeHud(input).modes.size(), 1u);
+    input.is_in_eyes = true;
+    EXPECT_TRUE(makeHud(input).modes.empty());
 }
 
 TEST(Hud, ALoopThatNeverTickedHasNoNumbers) {
@@ -291,9 +305,17 @@ TEST(Hud, TheHelpPageIsShownOnRequest) {
     EXPECT_EQ(makeHud(input).help[0].rows[0].label, "H");
 }
 
+TEST(Hud, ALockSaysWhoCanJoin) {
+    HudInput input;
+    EXPECT_EQ(makeHud(input).lock, HudLock::kNone);
+    input.sought = ServerSought{};
+    input.sought->lock = HudLock::kOpen;
+    EXPECT_EQ(makeHud(input).lock, HudLock::kOpen);
+}
+
 TEST(Hud, WaitingNamesTheServerAndWhatToTry) {
     HudInput input;
-    input.sought = ServerSought{7, 3, "one-pc", "", false};
+    input.sought = ServerSought{7, 3, "one-pc", "", false, false};
     const HudPage page = makeHud(input).page.value();
     EXPECT_EQ(test::findRow(page.rows, "Session")->value, "7");
     EXPECT_EQ(test::findRow(page.rows, "Domain")->value, "3");

@@ -11,7 +11,18 @@ TEST(SessionText, RolesHaveNames) {
     EXPECT_EQ(roleName(topics::Viewer::VIEWER), "viewer");
     EXPECT_EQ(roleName(topics::Viewer::OPERATOR), "operator");
     EXPECT_EQ(roleName(topics::Viewer::INSTRUCTOR), "instructor");
+    EXPECT_EQ(roleName(topics::Viewer::EXAMINER), "examiner");
     EXPECT_EQ(roleName(topics::Viewer::Role(7)), "?") << "nobody is called a viewer by mistake";
+}
+
+TEST(SessionText, AWatcherIsNamedWithItsLink) {
+    topics::Viewer watcher;
+    watcher.set_role(topics::Viewer::EXAMINER);
+    watcher.set_frame_rate_hz(30);
+    watcher.set_is_complete(true);
+    EXPECT_EQ(watcherText(watcher), "examiner, 30 Hz");
+    watcher.set_link("browser");
+    EXPECT_EQ(watcherText(watcher), "examiner by browser, 30 Hz");
 }
 
 TEST(SessionText, AClockIsBoundedWhateverTheNetworkSays) {

@@ -93,6 +93,32 @@ TEST(LinkStart, theDaemonLearnsWhichSceneIsInForce) {
     EXPECT_STREQ(notice.path, "/s");
 }
 
+TEST(LinkStart, theDaemonLearnsWhenAttemptsBeginAndEnd) {
+    const TestSession session;
+    const DeviceLink daemon = session.open(LinkSide::kDaemon);
+    DeviceLink server = session.open(LinkSide::kServer);
+    server.announceAttempt(true);
+    SceneNotice notice{};
+    EXPECT_FALSE(daemon.readScene(notice)) << "there is no scene to attempt";
+    server.announceScene("/scenes/tooth.textproto", 7, 99);
+    const auto changesAfter = [&](bool begins) {
+        server.announceAttempt(begins);
+        EXPECT_TRUE(daemon.readScene(notice));
+        EXPECT_EQ(notice.hash, 7u);
+        EXPECT_EQ(notice.revision, 1u);
+        EXPECT_EQ(notice.epoch, 99u);
+        return notice.attempt_changes;
+    };
+    EXPECT_EQ(changesAfter(false), 0u) << "none is under way";
+    EXPECT_EQ(changesAfter(true), 1u);
+    EXPECT_EQ(changesAfter(true), 3u) << "one after the other";
+    EXPECT_EQ(changesAfter(false), 4u);
+    EXPECT_EQ(changesAfter(true), 5u);
+    server.announceScene("/scenes/skull.textproto", 8);
+    ASSERT_TRUE(daemon.readScene(notice));
+    EXPECT_EQ(notice.attempt_changes, 6u) << "another scene ends it";
+}
+
 TEST(LinkStart, aSceneThatNobodyCanMeanIsNotBelieved) {
     const TestSession session;
     DeviceLink server = session.open(LinkSide::kServer);

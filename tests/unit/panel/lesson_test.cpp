@@ -53,6 +53,59 @@ TEST_F(LessonClicks, TheMouseAloneOpensThePanelAndChooses) {
     EXPECT_TRUE(wishes_.commands.empty()) << "it has a problem";
 }
 
+TEST_F(LessonClicks, ARowIsClickedAnywhereAndOnlyByAWholeClick) {
+    switchPanel();
+    layOut();
+    const PixelPoint row = panel_.find("Pedicle of a vertebra").value();
+    const PixelPoint end{row.x + 250, row.y + 10}, other = panel_.find("Cavity in a molar").value();
+    const auto pressAndRelease = [&](const PixelPoint& from) {
+        wishes_ = {};
+        send(MouseMoveEvent{from});
+        send(MouseButtonEvent{MouseButton::kLeft, true, from, {}, 0});
+        send(MouseMoveEvent{end});
+        send(MouseButtonEvent{MouseButton::kLeft, false, end, {}, 0});
+        return command().choose_scene();
+    };
+    EXPECT_EQ(pressAndRelease(other), "");
+    EXPECT_EQ(pressAndRelease(end), "pedicle");
+}
+
+TEST_F(LessonClicks, AnAttemptOfTheTableShowsItsCardAgain) {
+    switchPanel();
+    click("Attempt 1");
+    EXPECT_TRUE(isThere("Close"));
+    EXPECT_LT(panel_.find("Attempt 2")->y, panel_.find("Attempt 1")->y) << "the newest first";
+    EXPECT_LT(panel_.find("Attempt 1")->y, panel_.find("Cavity in a molar")->y);
+    click("Close");
+    EXPECT_FALSE(isThere("Close"));
+}
+
+TEST_F(LessonClicks, InANewSceneThePanelIsAtItsTop) {
+    switchPanel();
+    ControlledPanel::layOut(1280, 300);
+    send(MouseMoveEvent{panel_.find("Start").value()});
+    for (int n = 0; n < 10; ++n) send(ScrollEvent{-1});
+    ControlledPanel::layOut(1280, 300);
+    ASSERT_FALSE(panel_.find("Start"));
+    lesson_.set_scene_id("pedicle");
+    for (int n = 0; n < 3; ++n) ControlledPanel::layOut(1280, 300);
+    EXPECT_TRUE(panel_.find("Start"));
+}
+
+TEST_F(LessonClicks, TheButtonStaysWhereItIsBesideSlices) {
+    layOut();
+    const PixelPoint before = panel_.find("Lesson (M)").value();
+    for (int n = 0; n < 3; ++n) {
+        panel_.setPicture(1280, 1000, 800, 1, 0.02);
+        panel_.layOut(controls_, session_, wishes_);
+    }
+    EXPECT_EQ(panel_.find("Lesson (M)")->x, before.x);
+    switchPanel();
+    panel_.setPicture(1280, 1000, 800, 1, 0.02);
+    panel_.layOut(controls_, session_, wishes_);
+    EXPECT_LT(panel_.find("Start")->x, 800) << "the panel leaves the slices free";
+}
+
 TEST_F(LessonClicks, WithoutALessonThereIsNothingOfIt) {
     session_.lesson = nullptr;
     EXPECT_FALSE(isThere("Lesson (M)"));
@@ -67,10 +120,15 @@ TEST_F(LessonClicks, ASceneIsLostOnlyAfterAQuestion) {
     status_.set_removed_mm3(4);
     click("Pedicle of a vertebra");
     EXPECT_TRUE(wishes_.commands.empty());
-    ASSERT_TRUE(wishes_.notice);
-    EXPECT_NE(wishes_.notice->text.find("once more does it"), std::string::npos);
+    click("Stay (Esc)");
+    EXPECT_TRUE(wishes_.commands.empty());
     click("Pedicle of a vertebra");
+    click("Change (Enter)");
     EXPECT_EQ(command().choose_scene(), "pedicle");
+    EXPECT_FALSE(isThere("Change (Enter)"));
+    click("Pedicle of a vertebra");
+    click("Pedicle of a vertebra");
+    EXPECT_EQ(command().choose_scene(), "pedicle") << "the same once more is an answer, too";
 }
 
 TEST_F(LessonClicks, TheKeyAsksForANameAndEnterStarts) {
@@ -81,8 +139,31 @@ TEST_F(LessonClicks, TheKeyAsksForANameAndEnterStarts) {
     type("Cleo");
     press(Key::kEnter);
     EXPECT_EQ(command().start_attempt(), "Cleo");
-    // Letters typed were none of the viewer's keys, and are again after the start.
-    EXPECT_EQ(settings_.stereo, StereoMode::kOff);
+    EXPECT_EQ(settings_.stereo, StereoMode::kOff) << "letters typed were none of the viewer's keys";
+    layOut();
+    layOut();
+    EXPECT_TRUE(send(KeyEvent{keyOf('S'), true, false, {}})) << "the attempt has not begun";
+    lesson_.set_is_running(true);
+    lesson_.set_start_stamp_ns(1);
+    layOut();
+    layOut();
+    EXPECT_FALSE(send(KeyEvent{keyOf('S'), true, false, {}})) << "keys are the viewer's again";
+}
+
+TEST_F(LessonClicks, ADoubleClickStartsOnce) {
+    session_.time_s = 10;
+    switchPanel();
+    click("Start");
+    EXPECT_TRUE(command().has_start_attempt());
+    lesson_.set_is_running(true);
+    session_.time_s = 11.9;
+    click("Start");
+    EXPECT_TRUE(wishes_.commands.empty());
+    EXPECT_FALSE(isThere("Begin anew (Enter)"));
+    session_.time_s = 12.1;
+    click("Start");
+    click("Begin anew (Enter)");
+    EXPECT_TRUE(command().has_start_attempt());
 }
 
 TEST_F(LessonClicks, WhoHasNoNameIsCounted) {
@@ -101,6 +182,8 @@ TEST_F(LessonClicks, AnAttemptIsPausedStoppedAndFollowedByTheNext) {
     click("Stop (Shift+F)");
     EXPECT_TRUE(command().stop_attempt());
     click("Next trainee");
+    EXPECT_TRUE(wishes_.commands.empty()) << "an attempt would end";
+    click("End it (Enter)");
     EXPECT_TRUE(command().stop_attempt());
     lesson_.set_is_running(false);
     layOut();
@@ -158,6 +241,39 @@ TEST_F(LessonClicks, TheSummaryComesWithTheEndOfAnAttemptAndGoes) {
     EXPECT_TRUE(isThere("Close")) << "a change of scene ends an attempt, too";
     lesson_.set_is_running(true);
     EXPECT_FALSE(isThere("Close")) << "the next one has begun";
+    *lesson_.add_attempts() = lesson_.attempts(1);
+    lesson_.mutable_attempts(3)->set_number(5);
+    lesson_.set_start_stamp_ns(2);
+    EXPECT_FALSE(isThere("Close")) << "one ended as the next one began";
+}
+
+TEST(LessonDraft, TheAttemptsClockCountsWithoutPauses) {
+    topics::Lesson lesson = test::makeLesson();
+    topics::Status status;
+    SessionView session;
+    session.lesson = &lesson;
+    session.status = &status;
+    LessonDraft draft, late;
+    const auto timeAt = [&](double time_s) {
+        session.time_s = time_s;
+        draft.follow(session);
+        return draft.attemptTime();
+    };
+    EXPECT_FALSE(timeAt(100));
+    lesson.set_is_running(true);
+    lesson.set_start_stamp_ns(5'000'000'000);
+    EXPECT_DOUBLE_EQ(timeAt(101).value(), 0);
+    EXPECT_DOUBLE_EQ(timeAt(103).value(), 2);
+    status.set_is_milling_paused(true);
+    EXPECT_DOUBLE_EQ(timeAt(113).value(), 2);
+    session.realtime_ns = 17'000'000'000;
+    late.follow(session);
+    EXPECT_DOUBLE_EQ(late.attemptTime().value(), 12) << "it came later";
+    lesson.set_start_stamp_ns(9'000'000'000);
+    status.set_is_milling_paused(false);
+    EXPECT_DOUBLE_EQ(timeAt(114).value(), 0) << "another one";
+    lesson.set_is_running(false);
+    EXPECT_FALSE(timeAt(115));
 }
 
 TEST(LessonDraft, TheTaskFadesAfterAWhileAndComesWithTheNextAttempt) {

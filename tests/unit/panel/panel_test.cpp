@@ -71,7 +71,7 @@ TEST_F(PanelClicks, TheToolIsOfferedWhereAMouseHoldsIt) {
     status_.mutable_device()->set_kind(uint32_t(DeviceKind::kPointer));
     click("Hold the tool (G)");
     EXPECT_TRUE(wishes_.hold_tool);
-    controls_.toolHold().begin({}, 1e-3, true);
+    controls_.toolHold().begin({}, 1e-3);
     click("Hold the tool (G)");
     EXPECT_FALSE(controls_.toolHold().isHolding());
     wishes_ = {};
@@ -135,6 +135,10 @@ TEST_F(PanelClicks, BoxesSwitchWhatIsSeen) {
     EXPECT_TRUE(settings_.show_details && settings_.show_hud);
     click("Help (H)");
     EXPECT_TRUE(settings_.show_help);
+    EXPECT_FALSE(panel_.drawData()) << "the help is in front";
+    EXPECT_TRUE(send(MouseButtonEvent{MouseButton::kLeft, true, {400, 300}, {}, 0}));
+    send(MouseButtonEvent{MouseButton::kLeft, false, {400, 300}, {}, 0});
+    EXPECT_FALSE(settings_.show_help) << "a click leads back to the panel";
     click("Red/cyan");
     EXPECT_EQ(settings_.stereo, StereoMode::kAnaglyph);
     click("Off");
@@ -198,6 +202,16 @@ TEST_F(PanelClicks, ViewButtonsTurnTheCamera) {
     EXPECT_TRUE(wishes_.reset_view);
 }
 
+TEST_F(PanelClicks, SidesOfAScanThatDoesNotSayHowThePatientLayAreItsAxes) {
+    info_.set_lacks_patient_axes(true);
+    layOut();
+    EXPECT_FALSE(panel_.find("Left"));
+    click("+x");
+    EXPECT_GT(camera_.towardsEye_W().x(), 0.99);
+    click("-y");
+    EXPECT_LT(camera_.towardsEye_W().y(), -0.99);
+}
+
 TEST_F(PanelClicks, SessionButtonsAreCommands) {
     EXPECT_TRUE(clickForCommand("Pause milling (P)").pause_milling());
     EXPECT_TRUE(clickForCommand("Put the bone back (C)").reset_volume());
@@ -211,12 +225,47 @@ TEST_F(PanelClicks, SessionButtonsAreCommands) {
     EXPECT_EQ(clickForCommand("As the scene file says (0)").set_accuracy(), "scene");
 }
 
-TEST_F(PanelClicks, ACheckpointIsAskedForTwiceOverUnsavedWork) {
+TEST_F(PanelClicks, AQuestionStandsUntilItIsAnswered) {
     status_.set_removed_mm3(5);
     click("Back to 3");
     EXPECT_TRUE(wishes_.commands.empty());
-    EXPECT_TRUE(wishes_.notice);
-    EXPECT_EQ(clickForCommand("Back to 3").restore_checkpoint(), 3u);
+    session_.time_s += 1000;
+    click("Stay (Esc)");
+    layOut();
+    EXPECT_FALSE(panel_.find("Stay (Esc)"));
+    EXPECT_TRUE(wishes_.commands.empty());
+    click("Back to 3");
+    EXPECT_EQ(clickForCommand("Go back (Enter)").restore_checkpoint(), 3u);
+    click("Back to 3");
+    EXPECT_EQ(clickForCommand("Back to 3").restore_checkpoint(), 3u) << "the same button once more";
+    click("Back to 3");
+    wishes_ = {};
+    click("Save a checkpoint first");
+    EXPECT_EQ(wishes_.commands.size(), 2u);
+    layOut();
+    EXPECT_FALSE(panel_.find("Go back (Enter)"));
+}
+
+TEST_F(PanelClicks, KeysAnswerAQuestionAndNothingElse) {
+    const auto press = [this](Key key) {
+        wishes_ = {};
+        const bool is_panels = send(KeyEvent{key, true, false, {}});
+        send(KeyEvent{key, false, false, {}});
+        layOut();
+        return is_panels;
+    };
+    switchPanel();
+    status_.set_removed_mm3(5);
+    controls_.act(Action::kResetBone, session_, wishes_);
+    layOut();
+    EXPECT_TRUE(panel_.drawData()) << "also while the panel is closed";
+    EXPECT_TRUE(press(Key::kEscape));
+    EXPECT_TRUE(wishes_.commands.empty() && !wishes_.quit);
+    EXPECT_FALSE(panel_.drawData());
+    EXPECT_FALSE(press(Key::kEnter)) << "it has been answered";
+    controls_.act(Action::kResetBone, session_, wishes_);
+    EXPECT_TRUE(press(Key::kEnter));
+    EXPECT_EQ(wishes_.commands.size(), 1u);
 }
 
 TEST_F(PanelClicks, ADeviceIsResetWhereThereIsOne) {

@@ -9,10 +9,11 @@ namespace {
 
 TEST(AttemptsCsv, HasALinePerAttemptBelowTheHeader) {
     const std::string text = attemptsCsv(test::makeLesson());
-    EXPECT_EQ(text,
-              std::string(kAttemptsHeader) +
-                  "\n1,2026-11-23T19:00:00Z,\"Anna\",\"cavity\",151,12.34,5.1,,,,0.2,48.5,\"\",\"\"\n"
-                  "2,2026-11-23T19:00:00Z,\"'=Ben\",\"cavity\",151,12.34,5.1,,,,0.2,48.5,\"pulp\",\"\"\n");
+    EXPECT_EQ(text, std::string(kAttemptsHeader) +
+                        "\n1,2026-11-23T19:00:00Z,\"Anna\",\"Cavity in a "
+                        "molar\",151,12.34,5.1,,,,0.2,48.5,\"\",\"none\"\n"
+                        "2,2026-11-23T19:00:00Z,\"'=Ben\",\"Cavity in a "
+                        "molar\",151,12.34,5.1,,,,0.2,48.5,\"pulp\",\"none\"\n");
     EXPECT_EQ(attemptsCsv({}), std::string(kAttemptsHeader) + "\n");
 }
 
@@ -26,7 +27,15 @@ TEST(AttemptsCsv, NoNameIsAFormulaOrBreaksItsLine) {
 TEST(AttemptsCsv, ATimeThatIsNotKnownStaysEmpty) {
     topics::Attempt attempt;
     attempt.set_start_stamp_ns(-1);
-    EXPECT_EQ(attemptLine(attempt).find("0,,"), 0u);
+    EXPECT_EQ(attemptLine(attempt, "cavity").find("0,,"), 0u);
+}
+
+TEST(AttemptsCsv, NothingTouchedIsToldFromNothingToTouch) {
+    topics::Attempt attempt;
+    EXPECT_NE(attemptLine(attempt, "clay").find(",,,,,,\"\",\"\""), std::string::npos);
+    attempt.mutable_training()->set_damaged_mm3(0);
+    EXPECT_NE(attemptLine(attempt, "tooth").find(",0,none,,,,\"none\",\"none\""), std::string::npos)
+        << attemptLine(attempt, "tooth");
 }
 
 }  // namespace

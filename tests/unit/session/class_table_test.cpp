@@ -36,13 +36,14 @@ class ClassTableTest : public testing::Test {
 
 const std::string kHeader = std::string(kAttemptsHeader) + "\n";
 const std::string kAnn =
-    "3,2023-11-14T22:13:20Z,\"Ann\",\"tooth_cavity\",61.5,12.25,4,0,,,,,\"pulp; nerve, left\",\"\"\n";
+    "3,2023-11-14T22:13:20Z,\"Ann\",\"Straight bore, molar\",61.5,12.25,4,0,none,,,,\"pulp; nerve, "
+    "left\",\"none\"\n";
 
 TEST_F(ClassTableTest, EachAttemptIsAWholeLineBelowTheHeader) {
     const ClassTable table(path());
-    EXPECT_EQ(table.append(attemptOf("Ann")), "");
+    EXPECT_EQ(table.append(attemptOf("Ann"), "Straight bore, molar"), "");
     EXPECT_EQ(content(), kHeader + kAnn);
-    EXPECT_EQ(ClassTable(path()).append(attemptOf("Ann")), "");
+    EXPECT_EQ(ClassTable(path()).append(attemptOf("Ann"), "Straight bore, molar"), "");
     EXPECT_EQ(content(), kHeader + kAnn + kAnn);
 }
 
@@ -58,20 +59,20 @@ TEST_F(ClassTableTest, AnotherFileIsNotTouched) {
 
 TEST_F(ClassTableTest, ALineWithoutItsEndIsNotContinued) {
     test::writeFile(path(), kHeader + "1,somebody's");
-    EXPECT_EQ(ClassTable(path()).append(attemptOf("Ann")), "");
+    EXPECT_EQ(ClassTable(path()).append(attemptOf("Ann"), "Straight bore, molar"), "");
     EXPECT_EQ(content(), kHeader + "1,somebody's\n" + kAnn);
 }
 
 TEST_F(ClassTableTest, AFullDiskIsToldOfAndLeavesWholeLines) {
     const ClassTable table(path());
-    ASSERT_EQ(table.append(attemptOf("Ann")), "");
+    ASSERT_EQ(table.append(attemptOf("Ann"), "Straight bore, molar"), "");
     const std::string before = content();
     const rlimit full{before.size() + 10, RLIM_INFINITY};
     rlimit unlimited{};
     ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &unlimited), 0);
     signal(SIGXFSZ, SIG_IGN);
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
-    const std::string problem = table.append(attemptOf("Bob"));
+    const std::string problem = table.append(attemptOf("Bob"), "Straight bore, molar");
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &unlimited), 0);
     EXPECT_NE(problem.find("cannot be written"), std::string::npos) << problem;
     EXPECT_EQ(content(), before);

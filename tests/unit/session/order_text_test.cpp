@@ -16,13 +16,15 @@ TEST(OrderText, NamesEveryOrder) {
     EXPECT_EQ(orderText(command), "pause_milling false");
     command.set_shut_down(true);
     EXPECT_EQ(orderText(command), "shut_down");
+    command.mutable_add_remark()->set_note("not to be logged");
+    EXPECT_EQ(orderText(command), "add_remark");
     // An action of another kind would need words of its own.
     const auto* actions = topics::Command::descriptor()->oneof_decl(0);
     for (int n = 0; n < actions->field_count(); ++n) {
         using google::protobuf::FieldDescriptor;
         const auto type = actions->field(n)->type();
         EXPECT_TRUE(type == FieldDescriptor::TYPE_STRING || type == FieldDescriptor::TYPE_UINT32 ||
-                    type == FieldDescriptor::TYPE_BOOL)
+                    type == FieldDescriptor::TYPE_BOOL || type == FieldDescriptor::TYPE_MESSAGE)
             << actions->field(n)->name();
     }
 }

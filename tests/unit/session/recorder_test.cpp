@@ -62,6 +62,30 @@ TEST_F(RecorderTest, EachChangeOfTheDeviceIsGivenOnce) {
     EXPECT_TRUE(recorder.takeDeviceChanges().empty());
 }
 
+// Records of the attempt before are still on their way when the next one begins.
+TEST_F(RecorderTest, AnAttemptCountsFromWhereItsBoneIsPutBack) {
+    Recorder recorder(ring_, kPeriodNs, {.protection = true});
+    const auto push = [&](double force, float damaged, uint64_t bone_order) {
+        TickRecord record{};
+        record.tick = tick_++;
+        record.f_hand_W[0] = force;
+        record.effects.damaged_volume = damaged;
+        record.bone_order = bone_order;
+        ring_.tryPush(record);
+    };
+    push(9, 3, 0);
+    recorder.drain();
+    recorder.beginAttempt(2);
+    push(9, 3, 0), push(9, 0, 1);
+    recorder.drain();
+    EXPECT_EQ(recorder.attempt().max_force, 0);
+    EXPECT_EQ(recorder.attempt().effects.damaged(), 0);
+    push(2, 0, 2), push(1, 1, 2);
+    recorder.drain();
+    EXPECT_EQ(recorder.attempt().max_force, 2);
+    EXPECT_EQ(recorder.attempt().effects.damaged(), 1);
+}
+
 TEST_F(RecorderTest, ATraceThatLacksTicksIsNotWhole) {
     Recorder recorder(ring_, kPeriodNs);
     recorder.openTrace(trace_);

@@ -16,7 +16,8 @@ class SessionCommandsTest : public testing::Test {
           accuracy_(presetSettings(Preset::kBalanced)),
           tools_(std::vector<SpoTool>{{&tool_, {.radius = 1e-3}, 5}}, 0),
           bone_export_(ball_.history, ball_.bone, ""),
-          attempts_(lesson_, recorder_, ball_.history, ball_.bone.volume.voxelVolume(), sceneOf()),
+          attempts_(lesson_, recorder_, ball_.history, ball_.bone.volume.voxelVolume(), sceneOf(),
+                    [this](bool begins) { told_ += begins ? 'b' : 'e'; }),
           commands_(sceneOf(), ball_.bone, recorder_, controls(), false) {}
 
     static std::vector<ListedScene> listed() {
@@ -25,12 +26,14 @@ class SessionCommandsTest : public testing::Test {
         return {scene};
     }
     SessionControls controls() {
-        return {ball_.history, accuracy_,     tools_,  stop_requested_,
-                bone_export_,  reset_orders_, lesson_, attempts_};
+        return {ball_.history, accuracy_, tools_,    stop_requested_, bone_export_,
+                reset_orders_, lesson_,   attempts_, limits_};
     }
     std::string order(topics::Command command, topics::Viewer::Role role = topics::Viewer::OPERATOR) {
         command.set_role(role);
-        return commands_.carryOut(command).value_or("nothing said");
+        if (const auto answer = commands_.carryOut(command)) return *answer;
+        const auto answers = lesson_.takeAnswers();
+        return answers.empty() ? "nothing said" : answers.front().second;
     }
     static topics::Command startOf(const std::string& trainee) {
         topics::Command command;
@@ -70,14 +73,16 @@ class SessionCommandsTest : public testing::Test {
     SessionExport bone_export_;
     std::atomic<uint32_t> reset_orders_{0};
     LessonBook lesson_{listed(), ClassTable("")};
+    std::string told_;  // to the device
     AttemptKeeper attempts_;
+    OrderLimits limits_;
     SessionCommands commands_;
 };
 
 TEST_F(SessionCommandsTest, WhoOnlyLooksChoosesNoSceneAndBeginsNoAttempt) {
     for (const topics::Command& command : {choiceOf("tooth"), startOf("Ann"), stop()})
         EXPECT_EQ(order(command, topics::Viewer::VIEWER),
-                  "refused: a viewer only looks; start with --role operator");
+                  "refused: a viewer only looks; an operator may that (docs/security.md)");
     EXPECT_FALSE(lesson_.takeOrder());
     EXPECT_FALSE(lesson_.isAttemptRunning());
 }
@@ -111,11 +116,17 @@ TEST_F(SessionCommandsTest, AnAttemptCountsFromZeroAndIsListed) {
     TickRecord record{};
     record.f_hand_W[0] = 3;
     record.f_hand_W[1] = 4;
+    ball_.restoreAll();
+    ball_.groove(10e-3);
+    record.bone_order = ball_.history.finishedOrder();
     ring_.tryPush(record);
     recorder_.drain();
     EXPECT_TRUE(lesson_.takeChanged()->is_running());
     EXPECT_EQ(order(startOf("Bob \xc3\xa4")), "done") << "ends the one under way";
+    ball_.restoreAll();
+    ball_.groove(10e-3);
     EXPECT_EQ(order(stop()), "done");
+    EXPECT_EQ(told_, "bbe");
     const auto lesson = lesson_.takeChanged();
     ASSERT_EQ(lesson->attempts_size(), 2);
     EXPECT_FALSE(lesson->is_running());
@@ -125,6 +136,95 @@ TEST_F(SessionCommandsTest, AnAttemptCountsFromZeroAndIsListed) {
     EXPECT_DOUBLE_EQ(lesson->attempts(0).max_force_n(), 5);
     EXPECT_EQ(lesson->attempts(1).number(), 2u);
     EXPECT_EQ(lesson->attempts(1).max_force_n(), 0);
+}
+
+// The summary stands still only while the bone does.
+TEST_F(SessionCommandsTest, AfterAnAttemptMillingIsPausedUntilTheNextOne) {
+    EXPECT_EQ(order(startOf("Ann")), "done");
+    ball_.restoreAll();
+    ball_.groove(10e-3);
+    EXPECT_EQ(order(stop()), "done");
+    EXPECT_TRUE(ball_.history.isMillingPaused());
+    topics::Command resume;
+    resume.set_pause_milling(false);
+    EXPECT_EQ(order(resume), "done");
+    EXPECT_FALSE(ball_.history.isMillingPaused());
+    EXPECT_EQ(order(startOf("Bob")), "done");
+    EXPECT_FALSE(ball_.history.isMillingPaused());
+}
+
+TEST_F(SessionCommandsTest, AnAttemptThatWasBegunByMistakeIsNotRecorded) {
+    EXPECT_EQ(order(startOf("Ann")), "done");
+    ball_.restoreAll();
+    EXPECT_EQ(order(startOf("Ann")), "done") << "pressed twice";
+    ball_.restoreAll();
+    ball_.groove(10e-3);
+    EXPECT_EQ(order(stop()), "done");
+    EXPECT_EQ(order(startOf("Bob")), "done");
+    EXPECT_EQ(order(stop()), "done") << "while the bone goes back";
+    const auto lesson = lesson_.takeChanged();
+    EXPECT_FALSE(lesson->is_running());
+    ASSERT_EQ(lesson->attempts_size(), 1);
+    EXPECT_EQ(lesson->attempts(0).number(), 1u);
+    EXPECT_EQ(lesson->attempts(0).trainee(), "Ann");
+    EXPECT_GT(lesson->attempts(0).removed_mm3(), 0);
+}
+
+TEST_F(SessionCommandsTest, WhatViewersRememberOfTheBoneIsOfTheBoneThatWasPutBackLast) {
+    const auto restores = [this] {
+        topics::Status status;
+        commands_.describe(status);
+        return status.bone_restores();
+    };
+    EXPECT_EQ(restores(), 0u);
+    EXPECT_EQ(order(startOf("Ann")), "done");
+    EXPECT_EQ(restores(), 1u);
+    ball_.restoreAll();
+    topics::Command reset;
+    reset.set_reset_volume(true);
+    EXPECT_EQ(order(reset), "done");
+    EXPECT_EQ(restores(), 2u);
+}
+
+// A status shows the attempt's; outside of attempts those since the bone was put back.
+TEST_F(SessionCommandsTest, FiguresBeginAnewWithAnAttemptAndWithBoneThatIsPutBackOutsideOfOne) {
+    const auto felt = [this](double force) {
+        TickRecord record{};
+        record.f_hand_W[0] = force;
+        record.bone_order = ball_.history.finishedOrder();
+        ring_.tryPush(record);
+        recorder_.drain();
+        return recorder_.attempt().max_force;
+    };
+    topics::Command reset;
+    reset.set_reset_volume(true);
+    EXPECT_EQ(felt(9), 9) << "before the first attempt";
+    EXPECT_EQ(order(reset), "done");
+    ball_.restoreAll();
+    EXPECT_EQ(felt(3), 3);
+    EXPECT_EQ(order(startOf("Ann")), "done");
+    ball_.restoreAll();
+    EXPECT_EQ(felt(2), 2);
+    EXPECT_EQ(order(reset), "done");
+    ball_.restoreAll();
+    EXPECT_EQ(felt(1), 2) << "the attempt goes on";
+}
+
+TEST_F(SessionCommandsTest, AFloodOfOrdersIsRefusedAndOthersAreNot) {
+    int done = 0;
+    std::string last;
+    for (int n = 0; n < 200; ++n) {
+        last = setAccuracy(n % 2 ? "fast" : "balanced");
+        done += last == "done";
+    }
+    EXPECT_GE(done, 12);
+    EXPECT_LE(done, 14);
+    EXPECT_EQ(last, "refused: too many orders of this kind; one in 2 s is carried out");
+    for (int n = 0; n < 50; ++n) order(startOf("Ann"));
+    EXPECT_EQ(order(stop()), "refused: too many orders of this kind; one in 2 s is carried out");
+    topics::Command pause;
+    pause.set_pause_milling(true);
+    EXPECT_EQ(order(pause), "done");
 }
 
 TEST_F(SessionCommandsTest, TraineesHaveNamesThatCanBeShown) {

@@ -189,7 +189,7 @@ TEST(Recorder, EventsAndVolumeOfAllTicksReachTheNextToolState) {
     EXPECT_EQ(again->latest.tick, 4u);
     EXPECT_EQ(again->events.events, 0u);
     EXPECT_EQ(again->removed, 0);
-    EXPECT_EQ(recorder.effects().warnings({}).size(), 2u);
+    EXPECT_EQ(recorder.attempt().effects.warnings({}).size(), 2u);
 }
 
 TEST(EventSum, KnowsWhichStructureTheWorstWasAbout) {

@@ -66,6 +66,17 @@ TEST(Panes, FollowTheBurrUntilTheyAreScrolled) {
     }
 }
 
+TEST(Panes, BeginInTheBoneWhileTheBurrIsOutsideOfTheScan) {
+    const SlicedVolume volume;
+    const Vector3d centre_W = scanBox(volume.grid, Pose()).center();
+    const SliceBurr far{centre_W + Vector3d(1, 1, 1), 1.5e-3};
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const Pane pane = makePane(volume.grid, Pose(), {}, axis, {0, 0, 200, 200}, far);
+        EXPECT_LE(std::abs(pane.position_W - centre_W[Eigen::Index(axis)]),
+                  volume.grid.spacing_m[Eigen::Index(axis)]);
+    }
+}
+
 TEST(Panes, ZoomInAroundTheBurr) {
     const SlicedVolume volume;
     SliceSettings settings;

@@ -46,11 +46,12 @@ class Speaker : public testing::Test {
 };
 
 TEST_F(Speaker, RepeatsAWishWhilePicturesAreSlowAndFallsSilentWhenTheyStop) {
-    speaker_->want({{0.1, 0.2, 0.3}, expRotation({0.1, 0, 0})}, kButtonRemove, 42);
+    speaker_->want({{0.1, 0.2, 0.3}, expRotation({0.1, 0, 0})}, kButtonRemove, 3, 42);
     ASSERT_TRUE(isHeard(5));
     for (const HandWish& wish : heard_) {
         EXPECT_TRUE(wish.is_holding && wish.may_hold);
         EXPECT_EQ(wish.buttons, uint32_t{kButtonRemove});
+        EXPECT_EQ(wish.placements, 3u);
         EXPECT_EQ(wish.X_WT.position.y(), 0.2);
     }
     size_t before = 0;
@@ -60,12 +61,12 @@ TEST_F(Speaker, RepeatsAWishWhilePicturesAreSlowAndFallsSilentWhenTheyStop) {
         hear();
         return heard_.size() == before;
     })) << "no picture has come for long";
-    speaker_->want({}, 0, 42);
+    speaker_->want({}, 0, 0, 42);
     EXPECT_TRUE(isHeard(before + 2));
 }
 
 TEST_F(Speaker, LettingGoIsRepeatedForAWhile) {
-    speaker_->want({}, 0, 42);
+    speaker_->want({}, 0, 0, 42);
     ASSERT_TRUE(isHeard(1));
     speaker_->letGo(42);
     EXPECT_TRUE(waitFor([&] {
@@ -75,7 +76,7 @@ TEST_F(Speaker, LettingGoIsRepeatedForAWhile) {
 }
 
 TEST_F(Speaker, TheEndOfTheViewerLetsGo) {
-    speaker_->want({}, kButtonAdd, 42);
+    speaker_->want({}, kButtonAdd, 0, 42);
     ASSERT_TRUE(isHeard(1));
     speaker_.reset();
     EXPECT_TRUE(waitFor([&] {

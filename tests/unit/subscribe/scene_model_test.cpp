@@ -8,18 +8,23 @@ namespace bonemill {
 namespace {
 
 constexpr uint64_t kEpoch = 1000;
-constexpr uint64_t kWriter = 1;
 const SceneModel::Clock::time_point kNow{};
 
 // The revision stands for the content.
-void apply(SceneModel& model, uint32_t leaf, uint32_t revision, const NodeTag& tag, uint64_t writer = kWriter,
+void apply(SceneModel& model, uint32_t leaf, uint32_t revision, const NodeTag& tag,
            SceneModel::Clock::time_point now = kNow) {
-    model.applyNode({syntheticNode(leaf, revision), tag, revision}, writer, now);
+    EXPECT_TRUE(model.applyNode({syntheticNode(leaf, revision), tag, revision}, now));
+}
+
+SceneModel begun() {
+    SceneModel model;
+    model.begin(kEpoch);
+    return model;
 }
 
 TEST(SceneModel, HandsOutEachChangeOnce) {
-    SceneModel model;
-    apply(model, 5, 2, {.epoch = kEpoch}, kWriter);
+    SceneModel model = begun();
+    apply(model, 5, 2, {.epoch = kEpoch});
     const auto changes = model.takeChanges(kNow);
     ASSERT_EQ(changes.nodes.size(), 1u);
     EXPECT_EQ(changes.nodes[0].mesh.leaf, 5u);
@@ -28,28 +33,28 @@ TEST(SceneModel, HandsOutEachChangeOnce) {
 }
 
 TEST(SceneModel, AppliesIdempotently) {
-    SceneModel model;
-    apply(model, 5, 4, {.epoch = kEpoch}, kWriter);
+    SceneModel model = begun();
+    apply(model, 5, 4, {.epoch = kEpoch});
     const NodeDigest digest = model.digest();
     model.takeChanges(kNow);
-    apply(model, 5, 4, {.epoch = kEpoch}, kWriter);
-    apply(model, 5, 2, {.epoch = kEpoch}, kWriter);
+    apply(model, 5, 4, {.epoch = kEpoch});
+    apply(model, 5, 2, {.epoch = kEpoch});
     EXPECT_TRUE(model.takeChanges(kNow).nodes.empty());
     EXPECT_EQ(model.digest(), digest);
 }
 
 TEST(SceneModel, AcceptsRevisionZero) {
-    SceneModel model;
-    apply(model, 5, 0, {.epoch = kEpoch}, kWriter);
+    SceneModel model = begun();
+    apply(model, 5, 0, {.epoch = kEpoch});
     EXPECT_EQ(model.digest().count(), 1u);
 }
 
 TEST(SceneModel, DigestIsThatOfTheNewestRevisions) {
-    SceneModel model;
+    SceneModel model = begun();
     NodeDigest expected;
     for (uint32_t leaf = 0; leaf < 50; ++leaf) {
         for (uint32_t revision = 0; revision <= leaf % 7; ++revision) {
-            apply(model, leaf, revision, {.epoch = kEpoch}, kWriter);
+            apply(model, leaf, revision, {.epoch = kEpoch});
         }
         expected.add(leaf, leaf % 7);
     }
@@ -57,12 +62,12 @@ TEST(SceneModel, DigestIsThatOfTheNewestRevisions) {
 }
 
 TEST(SceneModel, RemovalIsAnEmptyMeshAndCountsOnce) {
-    SceneModel model;
-    apply(model, 5, 2, {.epoch = kEpoch}, kWriter);
+    SceneModel model = begun();
+    apply(model, 5, 2, {.epoch = kEpoch});
     model.takeChanges(kNow);
-    model.removeNode(5, kWriter);
-    model.removeNode(5, kWriter);
-    model.removeNode(6, kWriter);
+    model.removeNode(5);
+    model.removeNode(5);
+    model.removeNode(6);
     const auto changes = model.takeChanges(kNow);
     ASSERT_EQ(changes.nodes.size(), 1u);
     EXPECT_EQ(changes.nodes[0].mesh.leaf, 5u);
@@ -71,19 +76,20 @@ TEST(SceneModel, RemovalIsAnEmptyMeshAndCountsOnce) {
 }
 
 TEST(SceneModel, RemovedNodeCanComeBack) {
-    SceneModel model;
-    apply(model, 5, 2, {.epoch = kEpoch}, kWriter);
-    model.removeNode(5, kWriter);
-    apply(model, 5, 6, {.epoch = kEpoch}, kWriter);
+    SceneModel model = begun();
+    apply(model, 5, 2, {.epoch = kEpoch});
+    model.removeNode(5);
+    apply(model, 5, 6, {.epoch = kEpoch});
     EXPECT_EQ(model.digest().count(), 1u);
     EXPECT_FALSE(model.takeChanges(kNow).nodes.back().mesh.isEmpty());
 }
 
-TEST(SceneModel, NewerEpochReplacesTheModelEvenWithLowerRevisions) {
-    SceneModel model;
-    apply(model, 5, 20, {.epoch = kEpoch}, kWriter);
-    apply(model, 6, 20, {.epoch = kEpoch}, kWriter);
-    apply(model, 5, 0, {.epoch = kEpoch + 1}, kWriter + 1);
+TEST(SceneModel, AnotherRunReplacesTheModelEvenWithLowerRevisions) {
+    SceneModel model = begun();
+    apply(model, 5, 20, {.epoch = kEpoch});
+    apply(model, 6, 20, {.epoch = kEpoch});
+    model.begin(kEpoch + 1);
+    apply(model, 5, 0, {.epoch = kEpoch + 1});
     NodeDigest expected;
     expected.add(5, 0);
     EXPECT_EQ(model.digest(), expected);
@@ -93,22 +99,51 @@ TEST(SceneModel, NewerEpochReplacesTheModelEvenWithLowerRevisions) {
     EXPECT_EQ(changes.nodes[0].mesh.revision, 0u);
 }
 
-TEST(SceneModel, OlderEpochChangesNothing) {
-    SceneModel model;
-    apply(model, 5, 0, {.epoch = kEpoch}, kWriter);
+TEST(SceneModel, AnOlderRunOfAnotherServerReplacesIt) {
+    SceneModel model = begun();
+    apply(model, 5, 20, {.epoch = kEpoch});
+    model.begin(kEpoch - 1);
+    EXPECT_TRUE(model.takeChanges(kNow).is_cleared);
+    apply(model, 6, 0, {.epoch = kEpoch - 1});
+    EXPECT_EQ(model.digest().count(), 1u);
+    EXPECT_EQ(model.epoch(), kEpoch - 1);
+}
+
+TEST(SceneModel, OtherRunsChangeNothing) {
+    SceneModel model = begun();
+    apply(model, 5, 0, {.epoch = kEpoch});
     const NodeDigest digest = model.digest();
-    EXPECT_FALSE(model.enterEpoch(kEpoch - 1));
-    apply(model, 5, 20, {.epoch = kEpoch - 1}, kWriter + 1);
-    model.removeNode(5, kWriter + 1);
+    apply(model, 5, 20, {.epoch = kEpoch - 1});
+    apply(model, 6, 20, {.epoch = kEpoch + 1});
     EXPECT_EQ(model.digest(), digest);
     EXPECT_EQ(model.epoch(), kEpoch);
 }
 
-TEST(SceneModel, RemovalByAWriterNotSeenBeforeCounts) {
-    SceneModel model;
-    apply(model, 5, 2, {.epoch = kEpoch}, kWriter);
-    model.removeNode(5, kWriter + 1);  // the same server, matched anew after an interruption
-    EXPECT_EQ(model.digest().count(), 0u);
+TEST(SceneModel, NoNodeIsTakenThatTheOctreeLacks) {
+    SceneModel model = begun();
+    model.setLeafCount(6);
+    apply(model, 5, 0, {.epoch = kEpoch});
+    EXPECT_FALSE(model.applyNode({syntheticNode(6, 0), {.epoch = kEpoch}, 1}, kNow));
+    EXPECT_EQ(model.digest().count(), 1u);
+}
+
+DecodedNode largeNode(uint32_t leaf, size_t triangles, uint32_t revision = 1) {
+    DecodedNode node{syntheticNode(leaf, revision), {.epoch = kEpoch}, revision};
+    node.mesh.indices.assign(3 * triangles, 0);
+    return node;
+}
+
+TEST(SceneModel, TrianglesAreBoundedInAll) {
+    SceneModel model = begun();
+    constexpr size_t kEach = SceneModel::kMostTriangles / 4 + 1;
+    for (uint32_t leaf = 0; leaf < 4; ++leaf)
+        EXPECT_EQ(model.applyNode(largeNode(leaf, kEach), kNow), leaf < 3);
+    EXPECT_TRUE(model.applyNode(largeNode(2, kEach, 2), kNow)) << "it takes its own place";
+    model.removeNode(0);
+    EXPECT_TRUE(model.applyNode(largeNode(7, kEach), kNow));
+    model.begin(kEpoch + 1);
+    model.begin(kEpoch);
+    for (uint32_t leaf = 0; leaf < 3; ++leaf) EXPECT_TRUE(model.applyNode(largeNode(leaf, kEach), kNow));
 }
 
 std::vector<uint32_t> leavesOf(const SceneModel::Changes& changes) {
@@ -118,7 +153,7 @@ std::vector<uint32_t> leavesOf(const SceneModel::Changes& changes) {
 }
 
 TEST(SceneModel, ABatchComesOutWhole) {
-    SceneModel model;
+    SceneModel model = begun();
     const NodeTag batch{.epoch = kEpoch, .batch = 1, .batch_nodes = 3, .cut_stamp_ns = 77};
     apply(model, 1, 2, batch);
     apply(model, 2, 2, batch);
@@ -133,7 +168,7 @@ TEST(SceneModel, ABatchComesOutWhole) {
 
 // Node 2 of the older batch was overtaken by its newer version; shown without it, node 1 would leave a crack.
 TEST(SceneModel, AnOvertakenBatchComesOutWithTheNextOne) {
-    SceneModel model;
+    SceneModel model = begun();
     apply(model, 1, 2, {.epoch = kEpoch, .batch = 1, .batch_nodes = 2});
     apply(model, 2, 4, {.epoch = kEpoch, .batch = 2, .batch_nodes = 2});
     EXPECT_TRUE(model.takeChanges(kNow).nodes.empty());
@@ -143,7 +178,7 @@ TEST(SceneModel, AnOvertakenBatchComesOutWithTheNextOne) {
 
 // DDS hands out node by node: one of an older batch may come after the first ones of a newer one.
 TEST(SceneModel, AnOlderBatchWaitsForTheNewestToo) {
-    SceneModel model;
+    SceneModel model = begun();
     apply(model, 2, 4, {.epoch = kEpoch, .batch = 2, .batch_nodes = 2});
     apply(model, 1, 2, {.epoch = kEpoch, .batch = 1, .batch_nodes = 2});
     EXPECT_TRUE(model.takeChanges(kNow).nodes.empty());
@@ -155,17 +190,17 @@ TEST(SceneModel, AnOlderBatchWaitsForTheNewestToo) {
 
 // This holds however many batches follow each other, each cut short.
 TEST(SceneModel, TheFirstThatWaitsStartsTheClock) {
-    SceneModel model;
+    SceneModel model = begun();
     for (int n = 1; n <= 6; ++n) {
         const auto now = kNow + (n - 1) * std::chrono::milliseconds(10);
-        apply(model, uint32_t(n), 2, {.epoch = kEpoch, .batch = uint64_t(n), .batch_nodes = 2}, kWriter, now);
+        apply(model, uint32_t(n), 2, {.epoch = kEpoch, .batch = uint64_t(n), .batch_nodes = 2}, now);
         EXPECT_TRUE(model.takeChanges(now).nodes.empty());
     }
     EXPECT_EQ(model.takeChanges(kNow + std::chrono::milliseconds(51)).nodes.size(), 6u);
 }
 
 TEST(SceneModel, NothingWaitsForALostNodeForLong) {
-    SceneModel model;
+    SceneModel model = begun();
     apply(model, 1, 2, {.epoch = kEpoch, .batch = 1, .batch_nodes = 2});
     EXPECT_TRUE(model.takeChanges(kNow + SceneModel::kLongestWait).nodes.empty());
     const auto late = kNow + SceneModel::kLongestWait + std::chrono::milliseconds(1);
@@ -173,9 +208,9 @@ TEST(SceneModel, NothingWaitsForALostNodeForLong) {
 }
 
 TEST(SceneModel, ARemovalDoesNotOvertakeWhatWaits) {
-    SceneModel model;
+    SceneModel model = begun();
     apply(model, 1, 2, {.epoch = kEpoch, .batch = 1, .batch_nodes = 2});
-    model.removeNode(1, kWriter);
+    model.removeNode(1);
     EXPECT_TRUE(model.takeChanges(kNow).nodes.empty());
     apply(model, 2, 2, {.epoch = kEpoch, .batch = 1, .batch_nodes = 2});
     EXPECT_EQ(leavesOf(model.takeChanges(kNow)), (std::vector<uint32_t>{1, 1, 2}));
@@ -183,8 +218,9 @@ TEST(SceneModel, ARemovalDoesNotOvertakeWhatWaits) {
 }
 
 TEST(SceneModel, AnotherRunForgetsWhatWaits) {
-    SceneModel model;
+    SceneModel model = begun();
     apply(model, 1, 2, {.epoch = kEpoch, .batch = 9, .batch_nodes = 2});
+    model.begin(kEpoch + 1);
     apply(model, 2, 2, {.epoch = kEpoch + 1, .batch = 1, .batch_nodes = 1});
     EXPECT_EQ(leavesOf(model.takeChanges(kNow)), (std::vector<uint32_t>{2}));
 }

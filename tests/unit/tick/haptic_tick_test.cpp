@@ -136,6 +136,36 @@ TEST(HapticTick, BeforeTheFirstGoodPoseNothingIsMilledOrFelt) {
     }
 }
 
+// The hand was put elsewhere while its tool was held by the bone.
+TEST(HapticTick, AHandThatIsPutSomewhereTakesItsToolAlongWithoutAStepOfForce) {
+    Bench bench;
+    bench.config.accuracy = presetSettings(Preset::kBalanced);
+    const Pose start = bench.atV(kStart);
+    const Pose X_VT_upright{{4e-3, 4e-3, 1e-3},
+                            rotationBetween(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ())};
+    auto inputs =
+        test::straightPath(start, bench.atV(kStart - Eigen::Vector3d(0, 0, 1.3e-3)).position, 300, 0);
+    const auto hold = [&](const Pose& X_WT, uint32_t placements) {
+        DeviceInput input = inputs.back();
+        input.X_WT_device = X_WT;
+        input.placements = placements;
+        inputs.insert(inputs.end(), 200, input);
+    };
+    hold(bench.atV(kStart + Eigen::Vector3d(-2e-3, 0, 0.5e-3)), 1);
+    hold(bench.bone.volume.geometry().X_WV * X_VT_upright, 2);
+    const auto records = bench.run(inputs);
+    EXPECT_GT(forceSizeOf(records[299]), 1);
+    EXPECT_LT((bench.inV(records[300].p_WT) - kStart - Eigen::Vector3d(-2e-3, 0, 0.5e-3)).norm(), 1e-9);
+    for (size_t n = 301; n < records.size(); ++n)
+        EXPECT_LT(std::abs(forceSizeOf(records[n]) - forceSizeOf(records[n - 1])),
+                  1.001 * HandLimits::kForceRate * bench.config.dt)
+            << n;
+    EXPECT_LT(forceSizeOf(records[499]), 1e-6);
+    for (size_t n = 500; n < records.size(); ++n)
+        EXPECT_GT(bench.inV(records[n].p_WT).z(), kTop + 0.7 * kBurr) << "in bone it has no place: " << n;
+    EXPECT_NEAR(bench.inV(records.back().p_WT).x(), 4e-3, 1e-4);
+}
+
 TEST(HapticTick, StaleDeviceMillsNothingAndForceFollowsTheRamp) {
     Bench bench;
     const Pose start = bench.atV(kStart - Eigen::Vector3d(0, 0, 1e-3));

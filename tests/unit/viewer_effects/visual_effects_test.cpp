@@ -171,6 +171,34 @@ TEST(Irrigation, wetsWhileThePedalIsDownAndDriesAfterwards) {
     EXPECT_EQ(effects.film()->at(SurfaceFilm::kWater, near_burr), 0);
 }
 
+// What comes afterwards leaves its traces on the same bone.
+TEST(VisualEffects, ofBoneThatWasPutBackNothingIsRemembered) {
+    scene::Effects wish = everything();
+    wish.mutable_bleeding()->set_delay_s(0.1);
+    VisualEffects effects(wish, kRadius);
+    const Eigen::Vector3f cut(0, 0, -3e-4f);
+    const auto mill = [&] {
+        effects.setNode(floorMesh());
+        effects.take(burrAt({0, 0, 0.7e-3}, true, 2e-9));
+        effects.setNode(floorMesh(300));
+        effects.advance(0.2);
+        effects.take(burrAt({0, 0, 4e-3}, false));
+        for (int n = 0; n < 10; ++n) effects.advance(0.1);
+    };
+    mill();
+    EXPECT_GT(effects.film()->at(SurfaceFilm::kBlood, cut), 0);
+    effects.forget();
+    EXPECT_EQ(effects.film()->at(SurfaceFilm::kBlood, cut), 0);
+    EXPECT_EQ(effects.dust()->count(), 0u);
+    EXPECT_EQ(effects.irrigation()->count(), 0u);
+    effects.setNode(floorMesh());
+    for (int n = 0; n < 20; ++n) effects.advance(0.1);
+    EXPECT_EQ(effects.bleeding()->woundCount(), 0u) << "the bone that comes back was not cut";
+    EXPECT_EQ(effects.film()->at(SurfaceFilm::kBlood, cut), 0);
+    mill();
+    EXPECT_GT(effects.film()->at(SurfaceFilm::kBlood, cut), 0);
+}
+
 TEST(BurrSpin, turnsWithTheSpeedAndSaysHowFarWithinAPicture) {
     BurrSpin spin{scene::BurrSpin()};
     EXPECT_EQ(spin.takeTurn().sweep, 0);

@@ -1,12 +1,21 @@
 #include "haptic_server/volume/import/guarded_import.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/mount.h>
+#include <sys/ptrace.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdlib>
+#include <fstream>
+#include <thread>
 
 #include "haptic_server/volume/import/file_being_read.h"
 #include "haptic_server/volume/import/import_program.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/unit/volume_import/expect_user_error.h"
 
 namespace bonemill {
@@ -93,6 +102,39 @@ TEST(GuardedImport, deathOfTheReaderNamesTheFileItWasAt) {
     };
     expectUserError([&] { importGuarded("folder", readAndDie); }, {"folder/slice7", "damaged"});
     expectUserError([] { importGuarded("file", []() -> RawVolume { _exit(0); }); }, {"file", "ended early"});
+}
+
+// Names what the reader should not have been able to do.
+std::string doneByReader(const std::string& folder) {
+    std::string done;
+    const auto attempt = [&done](const char* what, long result) {
+        if (result >= 0) done += std::string(what) + " ";
+    };
+    attempt("socket", socket(AF_INET, SOCK_DGRAM, 0));
+    attempt("local socket", socket(AF_UNIX, SOCK_STREAM, 0));
+    attempt("file", open((folder + "/new").c_str(), O_CREAT | O_WRONLY, 0600));
+    attempt("change", open((folder + "/there").c_str(), O_RDWR));
+    attempt("removal", unlink((folder + "/there").c_str()));
+    attempt("mode", chmod((folder + "/there").c_str(), 0777));
+    attempt("trace", ptrace(PTRACE_TRACEME, 0, nullptr, nullptr));
+    attempt("kill", kill(getppid(), 0));
+    attempt("mount", mount("none", folder.c_str(), "tmpfs", 0, nullptr));
+    attempt("process", fork());
+    char name[] = "/bin/true";
+    char* words[] = {name, nullptr};
+    attempt("program", execv(name, words));
+    if (open((folder + "/there").c_str(), O_RDONLY) < 0) done += "cannot read ";
+    std::thread([&done] { done += "thread "; }).join();
+    return done;
+}
+
+TEST(GuardedImport, theReaderReadsFilesAndDoesNothingElse) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "there") << "text";
+    const auto read = [&]() -> RawVolume { throw UserError("done: " + doneByReader(folder.path())); };
+    expectUserError([&] { importGuarded("file", read); }, {"done: thread "});
+    EXPECT_TRUE(std::filesystem::exists(folder / "there"));
+    EXPECT_EQ(std::system("true"), 0) << "only the reader is confined";
 }
 
 TEST(GuardedImport, aReaderProgramThatDoesNotReadIsToldOf) {

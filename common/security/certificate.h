@@ -1,0 +1,58 @@
+// A certificate as deploy/security/make-session issues it: who somebody is, as what, and for how long. It is
+// not for the tick.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+struct x509_st;  // OpenSSL's X509
+
+namespace bonemill {
+
+// A participant's GUID begins with this if DDS Security has checked who it is: it is made of the
+// certificate's subject, and nobody can take another one's.
+using GuidPrefix = std::array<uint8_t, 6>;
+
+struct Identity {
+    std::string name;
+    std::string role;  // server, device, operator, instructor, observer, examiner or gateway
+    GuidPrefix prefix{};
+};
+
+class Certificate {
+  public:
+    // Reads all that the file holds, in their order. Throws UserError when it cannot be read, or holds none.
+    static std::vector<Certificate> readAll(const std::filesystem::path& file);
+    static Certificate read(const std::filesystem::path& file) { return readAll(file).front(); }
+
+    const Identity& identity() const noexcept { return identity_; }
+    // For people and for permissions: "CN=Anna,OU=operator,O=bonemill-session-1".
+    std::string subject() const;
+    bool isIssuedBy(const Certificate& authority) const;
+    // Throws UserError if it was not yet, or is no longer, valid at that unix time.
+    void requireValidAt(std::time_t now) const;
+    // Returns whether the file holds the private key that belongs to this. Throws UserError if it holds no
+    // key.
+    bool hasKey(const std::filesystem::path& file) const;
+
+    const x509_st* get() const noexcept { return x509_.get(); }
+
+  private:
+    explicit Certificate(x509_st* owned);
+
+    std::shared_ptr<x509_st> x509_;
+    Identity identity_;
+};
+
+// Returns "2026-09-01 12:00 UTC".
+std::string dayText(std::time_t time);
+
+// Throws UserError unless `now` lies between both; `what` begins the message, as "the certificate of Anna".
+void requireBetween(std::time_t now, std::time_t first, std::time_t last, const std::string& what);
+
+}  // namespace bonemill

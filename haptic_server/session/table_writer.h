@@ -1,0 +1,42 @@
+// Writes a class' attempts into its table on a thread of its own: a disk or a network folder that hangs keeps
+// nobody else waiting.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "haptic_server/session/class_table.h"
+
+namespace bonemill {
+
+class TableWriter {
+  public:
+    static constexpr size_t kMostWaiting = 64;  // lines
+
+    explicit TableWriter(ClassTable table);
+    // Waits for what is to be written, kLongestEnd_s at most, and says in the log what is not.
+    ~TableWriter();
+    TableWriter(TableWriter&&) noexcept = default;
+    TableWriter& operator=(TableWriter&&) = delete;
+
+    static constexpr int kLongestEnd_s = 3;
+
+    // Any thread, at once. False: so many lines wait already that this one is left out. `scene` is the
+    // scene's title; `order` is the one that waits for the line, if there is one.
+    bool write(const topics::Attempt& attempt, const std::string& scene,
+               const std::optional<topics::Command>& order);
+    struct Written {
+        topics::Command order;
+        std::string problem;  // why the line is not there, or ""
+    };
+    // Any thread: how orders have ended since the last call.
+    std::vector<Written> takeWritten();
+
+  private:
+    struct Shared;
+    std::shared_ptr<Shared> shared_;  // with the thread, which may outlive this object
+};
+
+}  // namespace bonemill

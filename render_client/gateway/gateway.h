@@ -1,0 +1,63 @@
+// The gateway without its network: the session on one side, guests on the other. For one thread; nothing
+// waits.
+#pragma once
+
+#include <chrono>
+#include <list>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "common/dds/participant.h"
+#include "render_client/gateway/gateway_options.h"
+#include "render_client/gateway/guest.h"
+#include "render_client/gateway/session_mirror.h"
+
+namespace bonemill::gateway {
+
+class Gateway {
+  public:
+    using Clock = std::chrono::steady_clock;
+    static constexpr size_t kMostGuests = 64;
+    static constexpr size_t kMostUnknown = 64, kMostUnknownOfAddress = 16;  // before their Hello
+    static constexpr int kMostFailures = 10;  // of one address within kFailuresLast
+    static constexpr std::chrono::seconds kFailuresLast{60};
+
+    // Throws UserError.
+    explicit Gateway(const GatewayOptions& options);
+
+    // Somebody has connected from there; returns nullptr where there are too many. It stays until leave().
+    Guest* come(const std::string& address, Clock::time_point now);
+    void leave(Guest* guest);
+    // Takes one whole frame of the guest.
+    void receive(Guest& guest, std::string_view frame, Clock::time_point now);
+    // Takes what is new from the session, and looks after the guests: often.
+    void step(Clock::time_point now);
+
+    size_t guestCount() const { return guests_.size(); }
+    const SessionMirror& mirror() const { return mirror_; }
+    const GuestList& list() const { return list_; }
+
+  private:
+    size_t admittedCount() const;
+    void welcome(Guest& guest);
+    void noteFailure(const std::string& address, Clock::time_point now);
+    void lookAtList(Clock::time_point now);
+
+    struct Failures {
+        int count = 0;
+        Clock::time_point since;
+    };
+    dds::Participant participant_;
+    SessionMirror mirror_;
+    GuestVoice voice_;
+    GuestList list_;
+    Hall hall_;
+    std::list<std::unique_ptr<Guest>> guests_;
+    std::map<std::string, Failures> failures_;  // by address
+    Clock::time_point looked_;
+    uint64_t epoch_ = 0;  // of the run that is shown
+};
+
+}  // namespace bonemill::gateway

@@ -1,0 +1,62 @@
+// Builds the page: node build.mjs --source DIR --proto DIR --work DIR --out DIR
+// In the work folder lie copies of the sources, the packages (npm ci, when package-lock.json changed) and the code made
+// from proto/; the out folder gets index.html, page.css and the three scripts, each also compressed, and tests.mjs.
+import { execFileSync } from 'node:child_process';
+import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { join, resolve } from 'node:path';
+import { gzipSync } from 'node:zlib';
+
+const options = Object.fromEntries(process.argv.slice(2).map((word, i, all) => (word.startsWith('--') ? [word.slice(2), resolve(all[i + 1] ?? '')] : ['', ''])));
+const { source, proto, work, out } = options;
+if (!source || !proto || !work || !out) throw new Error('usage: node build.mjs --source DIR --proto DIR --work DIR --out DIR');
+const kMostPageBytes = 200_000;  // compressed, of all that a guest loads
+
+function run(program, ...args) {
+  execFileSync(program, args, { cwd: work, stdio: ['ignore', 'inherit', 'inherit'] });
+}
+
+mkdirSync(work, { recursive: true });
+mkdirSync(out, { recursive: true });
+const lock = readFileSync(join(source, 'package-lock.json'), 'utf8');
+const installed = join(work, 'installed-lock.json');
+for (const file of ['package.json', 'package-lock.json', '.npmrc', 'tsconfig.json']) cpSync(join(source, file), join(work, file));
+if (!existsSync(installed) || readFileSync(installed, 'utf8') !== lock) {
+  try {
+    run('npm', 'ci', '--no-audit', '--no-fund', '--loglevel=error');
+  } catch {
+    console.error('page: npm ci failed: is there a network? cmake -DBONEMILL_PAGE=OFF builds everything else.');
+    process.exit(1);
+  }
+  writeFileSync(installed, lock);
+}
+for (const folder of ['src', 'tests']) {
+  rmSync(join(work, folder), { recursive: true, force: true });
+  cpSync(join(source, folder), join(work, folder), { recursive: true });
+}
+mkdirSync(join(work, 'generated'), { recursive: true });
+const protos = ['gateway', 'topics', 'densities', 'scene'].map((name) => join(proto, `${name}.proto`));
+run('protoc', '-I', proto, `--plugin=protoc-gen-es=${join(work, 'node_modules/.bin/protoc-gen-es')}`, '--es_out=generated', '--es_opt=target=ts', ...protos);
+run(process.execPath, join(work, 'node_modules/typescript/bin/tsc'), '--noEmit');
+
+const { build } = createRequire(join(work, 'package.json'))('esbuild');
+const common = { absWorkingDir: work, bundle: true, format: 'esm', legalComments: 'eof', logLevel: 'warning' };
+await build({
+  ...common, minify: true, target: 'es2022', outdir: out,
+  entryPoints: { page: 'src/main.ts', link: 'src/link/link_worker.ts', sound: 'src/sound/sound_worklet.ts' },
+});
+await build({
+  ...common, platform: 'node', target: 'node18', outdir: join(work, 'tests_out'), outExtension: { '.js': '.mjs' },
+  entryPoints: { unit: 'tests/unit.ts', stand_in: 'tests/stand_in.ts', browser: 'tests/browser.ts' },
+  external: ['playwright-core', 'ws'],
+});
+
+let total = 0;
+for (const file of ['index.html', 'page.css', 'page.js', 'link.js', 'sound.js']) {
+  if (!file.endsWith('.js')) cpSync(join(source, file), join(out, file));
+  const packed = gzipSync(readFileSync(join(out, file)), { level: 9 });
+  writeFileSync(join(out, `${file}.gz`), packed);
+  total += packed.length;
+}
+console.log(`page: ${total} bytes compressed`);
+if (total > kMostPageBytes) throw new Error(`the page is too large: ${total} of ${kMostPageBytes} bytes`);

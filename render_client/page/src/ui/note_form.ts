@@ -1,0 +1,28 @@
+// A line to write a note in.
+import { button, make } from './dom';
+import { row } from './panel';
+
+export function askForNote(done: (note: string) => void): void {
+  document.getElementById('note-form')?.remove();
+  const input = make('input'), form = make('form');
+  form.id = 'note-form';
+  input.type = 'text';
+  input.maxLength = 300;
+  input.placeholder = 'a note for everyone';
+  input.setAttribute('aria-label', input.placeholder);
+  const close = () => form.remove();
+  form.addEventListener('submit', (event) => {
+    event.preventDefault();
+    const note = input.value.trim();
+    close();
+    if (note) done(note);
+  });
+  form.addEventListener('keydown', (event) => {
+    if (event.key === 'Escape') close();
+  });
+  const ok = button('Show it', 'to everyone', () => undefined);
+  ok.type = 'submit';
+  form.append(row(input, ok, button('Cancel', 'Esc', close)));
+  document.body.append(form);
+  input.focus();
+}

@@ -1,0 +1,203 @@
+// The page in a real browser, with a stand-in for the gateway: node browser.mjs PAGE_DIR PICTURES_DIR [TRIANGLES]
+// Says what is wrong and ends with 1, or says how fast it draws. Without a browser it ends with 77: skipped.
+import assert from 'node:assert/strict';
+import { existsSync, mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { chromium, type Page } from 'playwright-core';
+import { startStandIn } from './stand_in';
+import { boneNodes } from './synthetic';
+
+const kChromium = '/usr/bin/chromium';
+const kFlags = [
+  '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-quic', '--no-first-run',
+  '--disable-background-networking', '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage',
+];
+const kInstructor = 2;
+const [page_dir, pictures = mkdtempSync(join(tmpdir(), 'page_')), triangles = '20000'] = process.argv.slice(2);
+
+if (!existsSync(kChromium)) {
+  console.log('skipped: there is no chromium');
+  process.exit(77);
+}
+mkdirSync(pictures, { recursive: true });
+const profile = mkdtempSync(join(tmpdir(), 'page_profile_'));
+const stand_in = await startStandIn(page_dir, kInstructor, Number(triangles));
+const browser = await chromium.launchPersistentContext(profile, {
+  executablePath: kChromium, headless: true, args: kFlags, viewport: { width: 1280, height: 720 },
+});
+const faults: string[] = [];
+
+async function open(width: number, height: number, hash = '#invited'): Promise<Page> {
+  const page = await browser.newPage();
+  await page.setViewportSize({ width, height });
+  page.on('console', (message) => {
+    if (message.type() === 'error' || message.type() === 'warning') faults.push(`console: ${message.text()}`);
+  });
+  page.on('pageerror', (error) => faults.push(`page: ${error.message}`));
+  page.on('request', (request) => {
+    if (!/^(http|ws):\/\/127\.0\.0\.1|^(data|blob):/.test(request.url())) faults.push(`request: ${request.url()}`);
+  });
+  await page.goto(stand_in.url + hash);
+  return page;
+}
+
+// The page's policy forbids what playwright would wait with: so this asks again and again.
+async function has(page: Page, id: string, text: string): Promise<void> {
+  let shown: string | null | undefined = '';
+  for (let i = 0; i < 200; ++i) {
+    shown = await page.evaluate((where) => document.getElementById(where)?.innerText, id);
+    if (shown?.includes(text)) return;
+    await page.waitForTimeout(100);
+  }
+  throw new Error(`#${id} says '${shown}', not '${text}'`);
+}
+const stateIs = (page: Page, text: string) => has(page, 'state', text);
+const ordered = async (action: string) => {
+  for (let i = 0; i < 50; ++i) {
+    const found = stand_in.heard.find((one) => one.kind.case === 'command' && one.kind.value.action.case === action);
+    if (found) return found;
+    await new Promise((done) => setTimeout(done, 100));
+  }
+  throw new Error(`no command ${action} came`);
+};
+
+// Pictures per second while the view turns.
+async function measure(page: Page): Promise<number> {
+  return page.evaluate(async () => {
+    const canvas = document.getElementById('picture')!;
+    const press = (type: string, x: number, y: number) =>
+      canvas.dispatchEvent(new PointerEvent(type, { pointerId: 1, pointerType: 'mouse', button: 0, buttons: 1, clientX: x, clientY: y, bubbles: true }));
+    canvas.setPointerCapture = () => undefined;
+    press('pointerdown', 400, 360);
+    const start = performance.now();
+    let pictures = 0, pixel = 0;
+    while (performance.now() - start < 4000) {
+      press('pointermove', 400 + ++pixel, 360);
+      await new Promise((done) => requestAnimationFrame(done));
+      if (performance.now() - start > 1000) ++pictures;
+    }
+    press('pointerup', 400 + pixel, 360);
+    return pictures / 3;
+  });
+}
+
+// Where bone is milled only a part of the picture is drawn anew: it is the picture that is drawn whole.
+async function milled(page: Page): Promise<void> {
+  const clip = { x: 300, y: 60, width: 640, height: 510 };  // without figures and notices
+  const before = await page.screenshot({ clip });
+  const [old, dented] = [false, true].map((is_milled) => boneNodes(Number(triangles), is_milled));
+  stand_in.show(dented.filter((node, i) => !Buffer.from(node.payload.subarray(40)).equals(Buffer.from(old[i].payload.subarray(40)))));
+  await page.waitForTimeout(900);
+  const part = await page.screenshot({ clip, path: join(pictures, 'milled.png') });
+  for (let i = 0; i < 2; ++i) {
+    await page.keyboard.press('x');
+    await page.waitForTimeout(900);
+  }
+  const whole = await page.screenshot({ clip, path: join(pictures, 'milled_whole.png') });
+  assert.ok(!part.equals(before) && part.equals(whole), 'the milled part was drawn as the whole');
+}
+
+async function desktop(): Promise<void> {
+  const page = await open(1280, 720);
+  await stateIs(page, 'live');
+  assert.equal(new URL(page.url()).hash, '', 'the token is gone from the address');
+  assert.equal(await page.evaluate(() => sessionStorage.getItem('bonemill.token')), 'ticket');
+  await page.waitForTimeout(700);
+  await page.screenshot({ path: join(pictures, 'desktop.png') });
+  await has(page, 'labels', 'Dr. Weber');
+  await has(page, 'labels', 'Thin <i id="bad">here</i>');
+  assert.equal(await page.evaluate(() => document.getElementById('bad')), null, 'what others write is no markup');
+  await page.getByRole('button', { name: 'Sound' }).click();
+  await page.waitForTimeout(300);
+  assert.equal(await page.getByRole('button', { name: 'Sound' }).getAttribute('aria-pressed'), 'true');
+  await page.keyboard.press('Shift+M');
+  await page.keyboard.press('p');
+  await ordered('pauseMilling');
+  await has(page, 'notices', 'pause: done');
+  await page.keyboard.press('m');
+  await page.keyboard.press('x');
+  await has(page, 'panel', 'Mill the ball open');
+  await page.waitForTimeout(700);
+  await page.screenshot({ path: join(pictures, 'cut_panel.png') });
+  await page.keyboard.press('m');
+  await page.keyboard.press('x');
+  await page.keyboard.press('t');
+  await page.waitForTimeout(700);
+  await page.screenshot({ path: join(pictures, 'transparent.png') });
+  await page.keyboard.press('t');
+  await page.getByRole('button', { name: 'Draw' }).click();
+  await page.mouse.move(600, 330);
+  await page.mouse.down();
+  await page.mouse.move(660, 420, { steps: 12 });
+  await page.mouse.up();
+  const stroke = await ordered('addRemark');
+  assert.ok(stroke.kind.case === 'command' && stroke.kind.value.action.case === 'addRemark' && stroke.kind.value.action.value.pointsM.length >= 12);
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('e');
+  await page.waitForTimeout(700);
+  await page.screenshot({ path: join(pictures, 'endoscope.png') });
+  await page.keyboard.press('e');
+  await milled(page);
+  console.log(`pictures per second while the view turns: ${(await measure(page)).toFixed(1)}`);
+  stand_in.cut();
+  await has(page, 'banner', 'Away for');
+  await page.screenshot({ path: join(pictures, 'away.png') });
+  await stateIs(page, 'live');
+  const again = stand_in.heard.filter((one) => one.kind.case === 'hello').at(-1)!;
+  assert.ok(again.kind.case === 'hello' && again.kind.value.token === 'ticket' && again.kind.value.leaves.length > 300);
+  await page.close();
+}
+
+// One finger turns the bone, two come nearer.
+async function fingers(page: Page): Promise<void> {
+  const clip = { x: 0, y: 240, width: 390, height: 400 }, shots = [await page.screenshot({ clip })];
+  for (const count of [1, 2]) {
+    await page.evaluate(async (all) => {
+      const canvas = document.getElementById('picture')!;
+      canvas.setPointerCapture = () => undefined;  // these fingers are none
+      const touch = (type: string, id: number, x: number) => canvas.dispatchEvent(
+        new PointerEvent(type, { pointerId: id, pointerType: 'touch', button: 0, buttons: 1, clientX: x, clientY: 400, bubbles: true }));
+      for (let id = 0; id < all; ++id) touch('pointerdown', 10 + id, 150 + 60 * id);
+      for (let step = 0; step < 10; ++step)
+        for (let id = 0; id < all; ++id) touch('pointermove', 10 + id, 150 + 60 * id + (id === 1 ? 8 : -8) * step);
+      for (let id = 0; id < all; ++id) touch('pointerup', 10 + id, 150);
+    }, count);
+    await page.waitForTimeout(900);
+    shots.push(await page.screenshot({ clip, path: join(pictures, `phone_${count}.png`) }));
+  }
+  assert.ok(!shots[1].equals(shots[0]) && !shots[2].equals(shots[1]), 'fingers move the view');
+}
+
+async function phone(): Promise<void> {
+  const page = await open(390, 844);
+  await stateIs(page, 'live');
+  await page.waitForTimeout(700);
+  await page.screenshot({ path: join(pictures, 'phone.png') });
+  await fingers(page);
+  await page.getByRole('button', { name: '☰' }).click();
+  await page.waitForTimeout(300);
+  await page.screenshot({ path: join(pictures, 'phone_panel.png') });
+  await page.close();
+}
+
+async function refused(): Promise<void> {
+  const page = await open(1280, 720, '#wrong');
+  await has(page, 'banner', 'This invitation is not known');
+  await page.close();
+}
+
+try {
+  await desktop();
+  await phone();
+  await refused();
+  assert.deepEqual(faults, []);
+  console.log(`the page works; pictures lie in ${pictures}`);
+} catch (error) {
+  console.error(error, faults);
+  process.exitCode = 1;
+} finally {
+  await browser.close();
+  await stand_in.close();
+  rmSync(profile, { recursive: true, force: true });
+}

@@ -1,0 +1,263 @@
+// The pure parts of the page, with node's own test runner.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import * as linear from '../src/math/linear';
+import { shownText, Malformed } from '../src/link/checks';
+import { CommandOutbox } from '../src/link/command_outbox';
+import { coarseIndices } from '../src/link/coarse_indices';
+import { decodeMaterials, decodeNode, decoderReady } from '../src/link/node_codec';
+import { NodeBook } from '../src/link/node_book';
+import * as payloads from '../src/link/payloads';
+import { Placement } from '../src/link/place_node';
+import { kVertexBytes, Role, type CommandOrder, type StatusView } from '../src/shared/messages';
+import { clockText, readableText } from '../src/shared/format';
+import { OrderDesk, questionBefore, whyNot, whyNotHold } from '../src/orders';
+import { Session } from '../src/session';
+import { MillingSynth } from '../src/sound/milling_synth';
+import { thinned } from '../src/stroke_pen';
+import { ToolHold } from '../src/tool_hold';
+import { actionOf } from '../src/ui/key_table';
+import { Orbit, frustumPlanes, isBoxSeen, pixelOf } from '../src/view/camera';
+import { makeFrame, type PictureView } from '../src/view/picture_view';
+import * as synthetic from './synthetic';
+
+await decoderReady;
+
+const near = (a: number, b: number, tolerance: number) => assert.ok(Math.abs(a - b) <= tolerance, `${a} is not ${b}`);
+
+test('poses go there and back', () => {
+  const X: linear.Pose = { p: [1, 2, 3], q: linear.unit([0.5, 0.1, -0.7, 0.3]) };
+  const v: linear.Vec3 = [0.3, -0.2, 0.9];
+  const back = linear.placed(linear.inversePose(X), linear.placed(X, v));
+  const by_matrix = linear.transformed(linear.inverseRigid(linear.matrixOf(X)), linear.transformed(linear.matrixOf(X), v));
+  for (let i = 0; i < 3; ++i) {
+    near(back[i], v[i], 1e-12);
+    near(by_matrix[i], v[i], 1e-6);
+  }
+});
+
+test('numbers are worded as in the native viewer', () => {
+  assert.equal(readableText(2.5311, ' N'), '2.53 N');
+  assert.equal(readableText(-0.001, ' N'), '0.00 N');
+  assert.equal(readableText(1234, ' mm³'), '1234 mm³');
+  assert.equal(readableText(NaN, ' N'), '--');
+  assert.equal(clockText(3723.9), '1:02:03');
+});
+
+test('texts of others lose what is no sign', () => {
+  assert.equal(shownText('a\u0000b\u202ec\nd'), 'abcd');
+  assert.equal(shownText('x'.repeat(600)).length, 512);
+});
+
+test('a node keeps its place to some micrometres', () => {
+  const nodes = synthetic.boneNodes(4000), low: linear.Vec3 = [-0.01, -0.01, -0.01], high: linear.Vec3 = [0.01, 0.01, 0.01];
+  const placement = new Placement(low, high);
+  for (const sample of nodes.slice(0, 20)) {
+    const node = decodeNode(sample.payload), placed = placement.place(Number(sample.key), node);
+    const from = new DataView(node.packed.buffer), to = new DataView(placed.vertices.buffer);
+    for (let v = 0; v < node.vertexCount; ++v)
+      for (let i = 0; i < 3; ++i) {
+        const there = node.origin[i] + node.step[i] * from.getUint16(8 * v + 2 * i, true);
+        near(placed.origin[i] + placed.step * to.getUint16(kVertexBytes * v + 2 * i, true), there, 1e-6);
+      }
+  }
+});
+
+test('what was damaged on its way is refused, whatever it is', () => {
+  const good = synthetic.boneNodes(4000)[0].payload;
+  let seed = 12345, refused = 0;
+  const random = (n: number) => (seed = (Math.imul(seed, 1103515245) + 12345) >>> 0) % n;
+  for (let round = 0; round < 2000; ++round) {
+    const bad = good.slice();
+    for (let k = 0; k <= random(3); ++k) bad[random(bad.length)] = random(256);
+    try {
+      const node = decodeNode(bad.slice(0, random(8) === 0 ? random(bad.length) : bad.length));
+      assert.ok(node.indices.every((i) => i < node.vertexCount));
+    } catch (error) {
+      ++refused;
+      assert.ok(error instanceof Error && !(error instanceof assert.AssertionError), String(error));
+    }
+  }
+  assert.ok(refused > 200);
+});
+
+test('runs of materials must cover the vertices', () => {
+  assert.deepEqual([...decodeMaterials(Uint8Array.from([3, 2, 0, 1]), 3)], [3, 3, 0]);
+  for (const bad of [[3, 2], [3, 4], [3, 0], [3, 0x80], [3, 0xff, 0xff, 0xff, 0xff, 0xff, 1]])
+    assert.throws(() => decodeMaterials(Uint8Array.from(bad), 3), Malformed);
+});
+
+test('numbers that cannot be are refused', () => {
+  assert.equal(payloads.sceneOf(synthetic.sceneInfo().payload).toolNames.length, 2);
+  assert.equal(payloads.statusOf(synthetic.status({ nodes: 3 }).payload).nodeCount, 3);
+  assert.throws(() => payloads.statusOf(synthetic.status({ nodes: 3, sessionS: NaN }).payload), Malformed);
+  assert.throws(() => payloads.remarkOf(synthetic.remark(0, '', [1, 2]).payload), Malformed);
+  assert.throws(() => payloads.remarkOf(synthetic.remark(0, '', Array.from({ length: 903 }, () => 0)).payload), Malformed);
+  assert.throws(() => payloads.viewerOf(synthetic.viewer(4, 'x', 2, [1e9, 0, 0]).payload), Malformed);
+  assert.throws(() => payloads.viewerOf(synthetic.viewer(4, 'x', 17 as never).payload), Malformed);
+  assert.equal(payloads.viewerOf(synthetic.viewer(4, 'x', 1, [0, 0, 0]).payload).pointer, undefined, 'an operator does not point');
+});
+
+test('the newer epoch wins, then the newer revision, and there is an end to it', () => {
+  const book = new NodeBook();
+  assert.ok(book.begins(5n) && !book.begins(5n) && !book.begins(4n));
+  book.hold(7, 2, 100);
+  assert.ok(book.isNews(7, 5n, 3) && !book.isNews(7, 5n, 2) && !book.isNews(8, 4n, 9));
+  assert.throws(() => book.hold(8, 1, 20_000_000), Malformed);
+  assert.ok(book.begins(6n));
+  assert.equal(book.size, 0);
+});
+
+test('coarse triangles are fewer, of the same vertices, and leave the border', () => {
+  const node = decodeNode(synthetic.boneNodes(200_000)[10].payload);
+  const placed = new Placement([-0.01, -0.01, -0.01], [0.01, 0.01, 0.01]).place(1, node);
+  const coarse = coarseIndices(placed.vertices, placed.indices), used = new Set(coarse);
+  assert.ok(coarse.length < placed.indices.length / 2 && coarse.length > placed.indices.length / 20);
+  const edges = (indices: Uint32Array) => {
+    const all = new Set<string>();
+    for (let i = 0; i < indices.length; i += 3)
+      for (let k = 0; k < 3; ++k) all.add(`${indices[i + k]} ${indices[i + ((k + 1) % 3)]}`);
+    return [...all].filter((edge) => !all.has(edge.split(' ').reverse().join(' '))).sort();
+  };
+  assert.deepEqual(edges(coarse), edges(placed.indices));
+  assert.ok([...used].every((v) => v < node.vertexCount));
+});
+
+test('an order waits for its own answer, is repeated, and given up', () => {
+  const outbox = new CommandOutbox(5000), written: number[] = [];
+  const write = (_: CommandOrder, sequence: number) => written.push(sequence);
+  outbox.enqueue({ action: 'saveCheckpoint' });
+  outbox.enqueue({ action: 'resetDevice' });
+  outbox.step(0, true, write);
+  outbox.step(100, true, write);
+  outbox.step(600, true, write);
+  assert.deepEqual(written, [6, 6]);
+  const status = { lastCommandSender: '9', lastCommandSequence: 6, lastCommandResult: 'done' } as StatusView;
+  assert.equal(outbox.answered(status, '8'), undefined);
+  assert.equal(outbox.answered(status, '9')?.result, 'done');
+  outbox.step(700, true, write);
+  assert.equal(outbox.step(5700, true, write)?.result, 'the server did not answer');
+});
+
+function live(role: Role): Session {
+  const session = new Session();
+  session.take({ kind: 'welcome', ticket: 't', name: 'A', role, sender: '7', expiresMs: 0 }, 0);
+  session.take({ kind: 'server', hasServer: true, hasEnded: false }, 0);
+  session.take({ kind: 'status', status: payloads.statusOf(synthetic.status({ nodes: 1 }).payload) }, 0);
+  return session;
+}
+
+test('what a role may do', () => {
+  assert.notEqual(whyNot('pauseMilling', live(Role.Viewer)), '');
+  assert.equal(whyNot('pauseMilling', live(Role.Operator)), '');
+  assert.notEqual(whyNot('shutDown', live(Role.Operator)), '');
+  assert.equal(whyNot('shutDown', live(Role.Instructor)), '');
+  assert.notEqual(whyNot('resetVolume', live(Role.Examiner)), '');
+  assert.equal(whyNot('startAttempt', live(Role.Examiner)), '');
+  assert.equal(whyNot('pauseMilling', live(Role.Examiner)), '');
+  assert.match(whyNotHold(live(Role.Examiner), 0), /examiner/);
+});
+
+test('what loses something is asked for twice', () => {
+  const session = live(Role.Operator), sent: CommandOrder[] = [], said: string[] = [];
+  const desk = new OrderDesk(session, (order) => sent.push(order), (text) => said.push(text));
+  desk.give({ action: 'resetVolume' });
+  assert.deepEqual(sent, []);
+  assert.match(said[0], /once more does it/);
+  desk.give({ action: 'resetVolume' });
+  assert.equal(sent.length, 1);
+  session.status!.checkpoints.push({ id: 2, sessionS: 5, removedMm3: session.status!.removedMm3 });
+  assert.equal(questionBefore({ action: 'resetVolume' }, session), '');
+});
+
+test('a viewer that falls silent is gone', () => {
+  const session = live(Role.Viewer), sample = synthetic.viewer(5, 'B', 1);
+  session.take({ kind: 'viewer', sender: '5', viewer: payloads.viewerOf(sample.payload) }, 1000);
+  assert.equal(session.others(2000).length, 1);
+  assert.equal(session.others(9000).length, 0);
+});
+
+test('keys mean what they mean in the native viewer', () => {
+  const press = (key: string, shiftKey = false) => actionOf({ key, shiftKey, ctrlKey: false, metaKey: false, altKey: false, repeat: false });
+  assert.equal(press('x'), 'cutX');
+  assert.equal(press('X', true), 'flipX');
+  assert.equal(press('+', true), 'zoomIn');
+  assert.equal(press('ArrowLeft'), 'orbitLeft');
+  assert.equal(press('q'), undefined);
+});
+
+test('the first view shows all of the bone', () => {
+  const corners = linear.cornersOf({ low: [-0.01, -0.02, -0.03], high: [0.01, 0.02, 0.03] });
+  for (const aspect of [16 / 9, 0.46]) {
+    const orbit = Orbit.of({ distance: 0, azimuth: 0.6, elevation: 0.4 }, corners, aspect), height = 720;
+    for (const corner of corners) {
+      const at = pixelOf(orbit.view(), corner, height * aspect, height)!;
+      assert.ok(at.x > 0 && at.x < height * aspect && at.y > 0 && at.y < height);
+    }
+  }
+});
+
+function pictureView(): PictureView {
+  const bone_V = { low: [-0.01, -0.01, -0.01] as linear.Vec3, high: [0.01, 0.01, 0.01] as linear.Vec3 };
+  const cut = () => ({ isOn: false, position: 0.5, isFlipped: false });
+  return {
+    camera: Orbit.of({ distance: 0, azimuth: 0.6, elevation: 0.4 }, linear.cornersOf(bone_V), 1.5).view(), isEndoscope: false,
+    X_WV: { p: [0.1, 0, 0], q: linear.unit([1, 0.2, 0, 0]) }, bone_V, burrRadius: 0.001, toolReach: 0, work: 'idle',
+    cuts: [cut(), cut(), cut()], structures: [], structureMode: 'behind', pointers: [], strokes: [],
+  };
+}
+
+test('a cut-plane leaves the side that it says', () => {
+  const view = pictureView();
+  view.cuts[0] = { isOn: true, position: 0.25, isFlipped: false };
+  const frame = makeFrame(view, 1.5), plane = frame.cuts_V.slice(0, 4), bone = frame.bone_W;
+  const inside: linear.Vec3 = [bone.low[0] + 0.2 * (bone.high[0] - bone.low[0]), 0, 0];
+  const at = (p_W: linear.Vec3) => {
+    const p = linear.placed(linear.inversePose(view.X_WV), p_W);
+    return plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3];
+  };
+  assert.ok(at(inside) > 0 && at([bone.high[0], 0, 0]) < 0);
+});
+
+test('what is out of the picture is not drawn', () => {
+  const view = { ...pictureView(), X_WV: { p: [0, 0, 0] as const, q: [1, 0, 0, 0] as const } };
+  const planes = frustumPlanes(makeFrame(view, 1.5).clipFromModel);
+  assert.ok(isBoxSeen(planes, [-0.001, -0.001, -0.001], [0.001, 0.001, 0.001]));
+  assert.ok(!isBoxSeen(planes, [0.5, -0.001, -0.001], [0.6, 0.001, 0.001]));
+});
+
+test('the tool in the mouse stays under the cursor', () => {
+  const hold = new ToolHold(), camera = pictureView().camera, look = { camera, width: 1200, height: 800 };
+  hold.begin({ p: [0, 0, 0], q: [1, 0, 0, 0] }, 0.001, true);
+  hold.move(look, { x: 0, y: 0 }, { x: 300, y: 200 });
+  for (const to of [{ x: 700, y: 500 }, { x: 640, y: 90 }]) {
+    hold.move(look, pixelOf(camera, hold.wish.p, 1200, 800)!, to);
+    const at = pixelOf(camera, hold.wish.p, 1200, 800)!;
+    near(at.x, to.x, 0.01);
+    near(at.y, to.y, 0.01);
+  }
+});
+
+test('a long stroke loses points, not its ends', () => {
+  const points = Array.from({ length: 1000 }, (_, i): linear.Vec3 => [i, 0, 0]);
+  const thin = thinned(points);
+  assert.ok(thin.length <= 300 && thin[0][0] === 0 && thin.at(-1)![0] === 999);
+});
+
+test('the sound is heard under load and fades without', () => {
+  const synth = new MillingSynth({ volume: 0.5, flutes: 8, idleLevel: 0.3, fullSpeedRpm: 30000, fullPowerW: 10 }, 48000);
+  const loudness = () => {
+    const samples = new Float32Array(24000);
+    synth.render(samples);
+    return Math.sqrt(samples.reduce((sum, x) => sum + x * x, 0) / samples.length);
+  };
+  synth.setLoad({ spinSpeed: 3000, burrForceN: 3, cuttingPowerW: 5 }, true);
+  const loud = loudness();
+  synth.setLoad({ spinSpeed: 3000, burrForceN: 0, cuttingPowerW: 0 }, true);
+  loudness();
+  const idle = loudness();
+  synth.setLoad({ spinSpeed: 3000, burrForceN: 3, cuttingPowerW: 5 }, false);
+  loudness();
+  assert.ok(loud > 2 * idle && idle > 0.001 && loudness() < 1e-4);
+  near(synth.frequency, 3000 / (2 * Math.PI), 1);
+});

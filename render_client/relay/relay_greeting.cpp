@@ -1,0 +1,69 @@
+#include "render_client/relay/relay_greeting.h"
+
+#include <openssl/crypto.h>
+#include <openssl/evp.h>
+#include <openssl/hmac.h>
+#include <openssl/rand.h>
+#include <sys/stat.h>
+
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "common/require_file.h"
+#include "common/user_error.h"
+
+namespace bonemill {
+namespace {
+
+constexpr size_t kShortestSecret = 32, kLongestSecret = 4096;
+
+}  // namespace
+
+std::string greetingOf(RelayAsk ask, const GuestId& guest) {
+    std::string greeting(kRelayMagic);
+    greeting += static_cast<char>(ask);
+    greeting.append(guest.data(), guest.size());
+    return greeting;
+}
+
+RelayProof proofOf(std::string_view secret, std::string_view greeting, const RelayNonce& nonce) {
+    std::string said(greeting);
+    said.append(nonce.data(), nonce.size());
+    RelayProof proof{};
+    unsigned size = 0;
+    if (HMAC(EVP_sha256(), secret.data(), int(secret.size()),
+             reinterpret_cast<const unsigned char*>(said.data()), said.size(),
+             reinterpret_cast<unsigned char*>(proof.data()), &size) == nullptr)
+        throw std::runtime_error("HMAC-SHA256 failed");
+    return proof;
+}
+
+bool isEqualProof(std::string_view a, std::string_view b) {
+    return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
+}
+
+void fillRandom(char* bytes, size_t count) {
+    if (RAND_bytes(reinterpret_cast<unsigned char*>(bytes), int(count)) != 1)
+        throw std::runtime_error("there are no random numbers");
+}
+
+std::string readRelaySecret(const std::string& path) {
+    requireFile(path);
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0 || (status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
+        throw UserError(path + ": others may read this secret; type: chmod 600 " + path);
+    std::ifstream file(path, std::ios::binary);
+    std::string secret(kLongestSecret, '\0');
+    file.read(secret.data(), std::streamsize(secret.size()));
+    secret.resize(size_t(file.gcount()));
+    constexpr const char* kBlanks = " \t\r\n";
+    secret.erase(0, std::min(secret.find_first_not_of(kBlanks), secret.size()));
+    secret.erase(secret.find_last_not_of(kBlanks) + 1);
+    if (secret.size() < kShortestSecret)
+        throw UserError(
+            path + ": a relay's secret has at least 32 letters; make one: openssl rand -hex 32 > " + path);
+    return secret;
+}
+
+}  // namespace bonemill

@@ -1,0 +1,37 @@
+// Who else is watching. It is bounded, whatever senders are invented: each writer speaks for few viewers, and
+// for none that another writer speaks for. For one thread.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "proto/topics.pb.h"
+
+namespace bonemill {
+
+class ViewerList {
+  public:
+    using Clock = std::chrono::steady_clock;
+    static constexpr std::chrono::seconds kTimeout{4};
+    static constexpr size_t kMostViewers = 256;
+    static constexpr size_t kMostOfWriter = 64;  // a gateway's guests
+
+    // `writer` is who tells of this viewer (dds::SampleInfo::writer).
+    void hear(topics::Viewer viewer, uint64_t writer, Clock::time_point now);
+    // Forgets those that were not heard within kTimeout.
+    void forgetSilent(Clock::time_point now);
+    // Returns them by sender.
+    std::vector<topics::Viewer> viewers() const;
+
+  private:
+    struct Heard {
+        topics::Viewer viewer;
+        uint64_t writer = 0;
+        Clock::time_point at;
+    };
+    std::map<uint64_t, Heard> heard_;  // by sender
+};
+
+}  // namespace bonemill

@@ -1,0 +1,122 @@
+// Writes what it should not: an order to end the session as instructor Anna, and a status of another server,
+// for some seconds; and reads what it can of the server's status. Prints one JSON line at the end.
+//   intruder --session N --domain D [--secure DIR [--plugins DIR]] [--sender N] [--seconds S]
+// With --plugins the plugins of DDS Security are those of that folder.
+#include <dds/dds.h>
+
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "common/cli/command_line.h"
+#include "common/dds/network.h"
+#include "common/dds/topic_traits.h"
+#include "common/run_program.h"
+#include "common/security/security_folder.h"
+#include "proto/topics.pb.h"
+
+namespace {
+
+using namespace bonemill;
+
+constexpr uint64_t kForgedEpoch = UINT64_MAX / 2;
+
+struct Intrusion {
+    uint32_t session = 1, domain = 0;
+    std::string secure, plugins;
+    uint64_t sender = 66;
+    double seconds = 3;
+};
+
+dds_entity_t participantOf(const Intrusion& intrusion) {
+    dds_create_domain(intrusion.domain, dds::networkConfiguration({}).c_str());
+    dds::Qos qos;
+    if (!intrusion.secure.empty())
+        for (const auto& [name, value] : SecurityFolder(intrusion.secure).properties(intrusion.plugins))
+            qos.property(name, value);
+    return dds_create_participant(intrusion.domain, qos.get(), nullptr);
+}
+
+template <class Sample>
+dds_entity_t topicOf(dds_entity_t participant) {
+    const auto description = dds::describeTopic<Sample>();
+    return dds_create_topic(participant, description.type, description.name, nullptr, nullptr);
+}
+
+template <class Sample>
+dds_entity_t writerOf(dds_entity_t participant) {
+    return dds_create_writer(participant, topicOf<Sample>(participant),
+                             dds::describeTopic<Sample>().qos.get(), nullptr);
+}
+
+template <class Sample>
+void write(dds_entity_t writer, Sample sample, const std::string& bytes) {
+    sample.payload._length = sample.payload._maximum = uint32_t(bytes.size());
+    sample.payload._buffer = reinterpret_cast<uint8_t*>(const_cast<char*>(bytes.data()));
+    dds_write(writer, &sample);
+}
+
+topics::Command endOfSession(const Intrusion& intrusion, uint32_t sequence) {
+    topics::Command command;
+    command.set_sender(intrusion.sender);
+    command.set_sequence(sequence);
+    command.set_shut_down(true);
+    command.set_role(topics::Viewer::INSTRUCTOR);
+    command.set_name("Anna");
+    return command;
+}
+
+topics::Status statusOfAnother() {
+    topics::Status status;
+    status.set_epoch(kForgedEpoch);
+    status.set_scene("forged");
+    return status;
+}
+
+int intrude(const Intrusion& intrusion) {
+    const dds_entity_t participant = participantOf(intrusion);
+    const dds_entity_t reader = dds_create_reader(participant, topicOf<dds::StatusSample>(participant),
+                                                  dds::describeTopic<dds::StatusSample>().qos.get(), nullptr);
+    const dds_entity_t commands = writerOf<dds::CommandSample>(participant);
+    const dds_entity_t statuses = writerOf<dds::StatusSample>(participant);
+    int read = 0, matched = 0;
+    for (uint32_t n = 1; n <= uint32_t(intrusion.seconds * 20); ++n) {
+        // What was written here last must not stand before what the server wrote.
+        void* sample = nullptr;
+        dds_sample_info_t info;
+        if (reader > 0 && dds_take(reader, &sample, &info, 1, 1) > 0) {
+            const auto* bytes = static_cast<const dds::StatusSample*>(sample);
+            topics::Status status;
+            read += status.ParseFromArray(bytes->payload._buffer, int(bytes->payload._length)) &&
+                    status.epoch() != kForgedEpoch;
+            dds_return_loan(reader, &sample, 1);
+        }
+        write(commands, dds::CommandSample{intrusion.session, intrusion.sender, {}},
+              endOfSession(intrusion, n).SerializeAsString());
+        write(statuses, dds::StatusSample{intrusion.session, {}}, statusOfAnother().SerializeAsString());
+        dds_publication_matched_status_t status{};
+        if (commands > 0 && dds_get_publication_matched_status(commands, &status) == DDS_RETCODE_OK)
+            matched = std::max(matched, int(status.total_count));
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    std::printf("{\"commands\":%s,\"statuses\":%s,\"matched\":%d,\"read\":%d}\n",
+                commands > 0 ? "true" : "false", statuses > 0 ? "true" : "false", matched, read);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return bonemill::runProgram([&] {
+        CLI::App app("Writes what it should not", "intruder");
+        Intrusion intrusion;
+        app.add_option("--session", intrusion.session)->required();
+        app.add_option("--domain", intrusion.domain)->required();
+        app.add_option("--secure", intrusion.secure);
+        app.add_option("--plugins", intrusion.plugins);
+        app.add_option("--sender", intrusion.sender);
+        app.add_option("--seconds", intrusion.seconds);
+        if (!bonemill::parseCommandLine(app, argc, argv, "intruder")) return 0;
+        return intrude(intrusion);
+    });
+}

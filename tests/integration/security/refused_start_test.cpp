@@ -1,0 +1,40 @@
+// Security that was asked for and is not in force stops the start of every program.
+#include "tests/integration/security/secured_slab.h"
+
+namespace bonemill {
+namespace {
+
+void expectRefused(const test::Words& words, const std::string& why) {
+    const test::Finished finished = test::run(words);
+    EXPECT_EQ(finished.exit_code, 2) << words[0] << ": " << finished.err;
+    EXPECT_NE(finished.err.find(why), std::string::npos) << words[0] << ": " << finished.err;
+}
+
+TEST(RefusedStart, SaysWhatIsWrongWithTheFolder) {
+    const test::TemporaryFolder folder;
+    const auto made = [&](const std::string& name, const std::string& from) {
+        EXPECT_EQ(test::makeSession(folder / name, {"--server", "--person", "Olga:operator", "--from", from})
+                      .exit_code,
+                  0);
+        return folder / name + "/";
+    };
+    const std::string old = made("old", "2020-01-01"), coming = made("coming", "2099-01-01");
+    expectRefused({"haptic_server", "--scene", "none", "--secure", old + "server"},
+                  "server expired on 2020-01-31");
+    expectRefused({"device_daemon", "--device", "pointer", "--secure", coming + "device"},
+                  "device is not valid before 2099-01-01");
+    expectRefused({"render_client", "--command", "pause", "--secure", old + "Olga"}, "Olga expired on");
+    expectRefused({"render_client", "--command", "pause", "--secure", folder / "none"},
+                  "there is no such folder");
+    std::filesystem::remove(coming + "Olga/permissions.p7s");
+    expectRefused({"render_client", "--command", "pause", "--secure", coming + "Olga"},
+                  "permissions.p7s is missing");
+    ASSERT_EQ(test::makeSession(folder / "now", {"--server", "--person", "Olga:operator"}).exit_code, 0);
+    expectRefused({"haptic_server", "--scene", "none", "--secure", folder / "now/Olga"},
+                  "needs the folder server");
+    expectRefused({"render_client", "--command", "pause", "--secure", folder / "now/server"},
+                  "needs a person's folder");
+}
+
+}  // namespace
+}  // namespace bonemill
