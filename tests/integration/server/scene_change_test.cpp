@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "common/device_messages/device_state.h"
 #include "common/lesson/attempts_csv.h"
@@ -20,9 +21,15 @@ namespace {
 
 using test::Process;
 
+constexpr double kLongestWait_s =
+    0.005;  // five periods: ticks that are farther apart do not follow one another
+constexpr double kFastestRamp_s = 0.05;  // StaleRampConfig::ramp_down_ns
+
 // What the trace says of the wrench on the hand.
 struct TracedForce {
-    double first = -1, last = -1, most = 0, largest_step = 0;  // N
+    double first = -1, last = -1, most = 0;  // N
+    double largest_step = 0;                 // N, between ticks that follow one another
+    double steepest = 0;                     // N/s, over ticks that a busy machine let wait
 };
 
 TracedForce forceIn(const std::string& trace) {
@@ -30,12 +37,14 @@ TracedForce forceIn(const std::string& trace) {
     std::string line;
     std::getline(file, line);
     TracedForce force;
-    for (double before[3]{}; std::getline(file, line);) {
+    for (double before[3]{}, t_before_s = 0; std::getline(file, line);) {
         std::istringstream fields(line);
         std::string field;
-        double now[3]{}, sum = 0, step = 0;
-        for (int column = 0; column < 18 && std::getline(fields, field, ','); ++column)
+        double now[3]{}, t_s = 0, sum = 0, step = 0;
+        for (int column = 0; column < 18 && std::getline(fields, field, ','); ++column) {
+            if (column == 0) t_s = std::stod(field);
             if (column >= 15) now[column - 15] = std::stod(field);
+        }
         for (int axis = 0; axis < 3; ++axis) {
             sum += now[axis] * now[axis];
             step += (now[axis] - before[axis]) * (now[axis] - before[axis]);
@@ -44,7 +53,11 @@ TracedForce forceIn(const std::string& trace) {
         force.last = std::sqrt(sum);
         if (force.first < 0) force.first = force.last;
         force.most = std::max(force.most, force.last);
-        force.largest_step = std::max(force.largest_step, std::sqrt(step));
+        const double gap_s = t_s - std::exchange(t_before_s, t_s);
+        if (gap_s < kLongestWait_s)
+            force.largest_step = std::max(force.largest_step, std::sqrt(step));
+        else
+            force.steepest = std::max(force.steepest, std::sqrt(step) / gap_s);
     }
     return force;
 }
@@ -197,6 +210,7 @@ TEST_F(SceneChange, ReachesViewersAndTheHandAtOnceWithoutAStepOfForce) {
         const TracedForce force = forceIn(folder_ / name);
         EXPECT_GT(force.most, 0.1) << name;
         EXPECT_LT(force.largest_step, 0.3) << name;
+        EXPECT_LT(force.steepest, 2 * force.most / kFastestRamp_s) << name;
         EXPECT_LT(force.first, 0.01) << name << ": it fades in";
         if (std::string(name) != "trace_3.csv") {
             EXPECT_LT(force.last, 0.01) << name << ": it fades out";
