@@ -30,8 +30,8 @@ struct PublisherOptions {
     uint32_t domain = 0;   // DDS domain, 0 to dds::kMaxDomain
     uint32_t session = 1;  // one server per session; clients name the same
     uint64_t epoch = 0;    // unix ns, later than that of any earlier server of the session; 0: now
-    std::string
-        secure;  // folder of --secure: its people are known by their certificates; empty: by their word
+    // Folder of --secure: its people are known by their certificates; empty: by their word.
+    std::string secure = {};
 };
 
 class Publisher {

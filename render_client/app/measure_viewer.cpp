@@ -25,11 +25,6 @@ struct Measured {
     double seconds = 0;
 };
 
-int64_t realtimeNowNs() {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
-}
-
 Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const GlApi& gl, RenderScene& scene,
                  SceneFeed& feed) {
     Measured measured;
@@ -44,7 +39,7 @@ Measured drawFor(std::chrono::seconds time, const ClientOptions& options, const 
                    textScale(options.width, options.height, options.settings.text_scale));
         gl.Finish();
         measured.render.record(monotonicNowNs() - draw_ns);
-        measured.cuts.hasShown(realtimeNowNs());
+        measured.cuts.hasShown(CutToScreen::nowNs());
         ++measured.frames;
     }
     feed.watchCuts(nullptr);
@@ -92,6 +87,8 @@ void measure(const ClientOptions& options, const GlApi& gl) {
         options.width, options.height, scene.nodeCount(), scene.triangleCount(),
         (unsigned long long)measured.frames, double(measured.frames) / measured.seconds);
     printTimes("render_ms", measured.render);
+    std::printf(",");
+    printTimes("cut_to_viewer_ms", measured.cuts.arrivals());
     std::printf(",");
     printTimes("cut_to_screen_ms", measured.cuts.times());
     std::printf(",\"uploaded_nodes\":%llu,\"uploaded_bytes\":%llu}\n",

@@ -12,7 +12,7 @@ void SceneFeed::update() {
     const SceneModel::Changes changes = subscriber_.poll();
     if (changes.is_cleared) nodes_.clear();
     for (const SceneModel::Change& change : changes.nodes)
-        if (nodes_.set(change.mesh) && cuts_) cuts_->willShow(change.cut_stamp_ns);
+        if (nodes_.set(change.mesh) && cuts_) cuts_->willShow(change.cut_stamp_ns, CutToScreen::nowNs());
     showSceneInfo();
     subscriber_.followDensities(scene_.densities());
     showStructures();
