@@ -1,7 +1,6 @@
 #include "tests/bench/bench_stream.h"
 
 #include <signal.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +20,7 @@
 #include "render_client/subscribe/scene_subscriber.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/leaf_cells.h"
+#include "tests/bench/processor_time.h"
 #include "tests/integration/dds/child_process.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/places.h"
@@ -117,21 +117,6 @@ std::string millingScene(const std::string& scene, int seconds) {
              << " } q_WT { w: 0.70710678 z: -0.70710678 } remove: true }\n";
     }
     return whole.substr(0, begin) + path.str() + "}\n" + whole.substr(end + 3);
-}
-
-double processorSeconds(int pid) {
-    std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
-    std::string word;
-    for (int field = 1; field < 14; ++field) stat >> word;
-    double user = 0, system = 0;
-    stat >> user >> system;
-    return (user + system) / double(sysconf(_SC_CLK_TCK));
-}
-
-double shareOfACore(int pid, std::chrono::seconds time) {
-    const double before = processorSeconds(pid);
-    std::this_thread::sleep_for(time);
-    return (processorSeconds(pid) - before) / double(time.count());
 }
 
 // It is a real server whose simulated hand mills all the time.

@@ -6,6 +6,7 @@
 #include "common/user_error.h"
 #include "tests/bench/bench_densities.h"
 #include "tests/bench/bench_effects.h"
+#include "tests/bench/bench_guests.h"
 #include "tests/bench/bench_heavy.h"
 #include "tests/bench/bench_laws.h"
 #include "tests/bench/bench_load.h"
@@ -30,6 +31,7 @@ int main(int argc, char** argv) {
     bench::addScaleCommand(app);
     bench::addPresetsCommand(app);
     bench::addStreamCommand(app);
+    bench::addGuestsCommand(app);
     bench::addEffectsCommand(app);
     bench::addHeavyCommand(app);
     bench::addDensitiesCommand(app);
