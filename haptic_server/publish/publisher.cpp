@@ -49,6 +49,7 @@ topics::ToolState toolState(const TickRecord& record, uint64_t epoch) {
     state.set_contacts(record.contacts);
     state.set_max_penetration_m(record.max_penetration);
     state.set_buttons(record.buttons);
+    state.set_waits_for_release(record.waits_for_release);
     state.set_device_state(record.device.state);
     state.set_stop_cause(record.device.stop_cause);
     return state;

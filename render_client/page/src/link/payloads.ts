@@ -105,6 +105,7 @@ export function toolOf(payload: Uint8Array): ToolView {
     X_WT_device: { p: vector(state.pWTDeviceM), q: quaternion(state.qWTDevice) },
     forceN: vector(state.forceN),
     buttons: state.buttons,
+    waitsForRelease: state.waitsForRelease,
     deviceState: state.deviceState,
     stopCause: state.stopCause,
     effects: state.effects && effectsOf(state.effects),

@@ -68,6 +68,7 @@ export interface ToolView {
   X_WT_device: Pose;
   forceN: Vec3;
   buttons: number;
+  waitsForRelease: boolean;
   deviceState: number;
   stopCause: number;
   effects?: EffectView;
