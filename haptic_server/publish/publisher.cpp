@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/rt/clock.h"
+#include "haptic_server/publish/other_server.h"
 
 namespace bonemill {
 namespace {
@@ -207,8 +208,11 @@ std::vector<topics::Command> Publisher::takeCommands() {
             if (!info.has_data || sample.session != session_) return;
             const std::optional<GuidPrefix> participant =
                 proven_senders_ ? command_reader_->ownerOf(info.writer) : std::nullopt;
-            if (!mayBeTaken(sample, participant)) return;
-            CommandInbox::Decision decision = inbox_.receive(sample.sender, dds::payloadOf(sample));
+            if (!mayBeTaken(participant, sample, info.writer)) return;
+            CommandInbox::Decision decision =
+                inbox_.receive(sample.sender, {command_reader_->participantOf(info.writer), info.writer},
+                               dds::payloadOf(sample));
+            if (decision.is_foreign) tellOfForeign(sample, info.writer);
             if (decision.acknowledgement) show(*decision.acknowledgement);
             if (!decision.command) return;
             if (participant) proven_senders_->identify(*decision.command, *participant);
@@ -220,13 +224,20 @@ std::vector<topics::Command> Publisher::takeCommands() {
     return commands;
 }
 
-bool Publisher::mayBeTaken(const dds::CommandSample& sample, const std::optional<GuidPrefix>& participant) {
+bool Publisher::mayBeTaken(const std::optional<GuidPrefix>& participant, const dds::CommandSample& sample,
+                           uint64_t writer) {
     if (!proven_senders_ || (participant && proven_senders_->mayUse(sample.sender, *participant)))
         return true;
-    if (++foreign_commands_ == 1)
-        spdlog::warn(
-            "dropped a command with the sender number of somebody else; more of them are only counted");
+    tellOfForeign(sample, writer);
     return false;
+}
+
+void Publisher::tellOfForeign(const dds::CommandSample& sample, uint64_t writer) {
+    if (++foreign_commands_ > 1) return;
+    const std::string host = command_reader_->hostOf(writer);
+    spdlog::warn(
+        "refused a command from {} with the sender number {} of somebody else; more of them are only counted",
+        host.empty() ? "a PC without a name" : printableName(host), sample.sender);
 }
 
 std::string Publisher::proofOf(const topics::Command& command) const {

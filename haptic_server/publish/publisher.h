@@ -98,7 +98,9 @@ class Publisher {
     bool writeStatus();
     void show(const CommandAcknowledgement& acknowledgement);
     // Returns false for a command whose sender is not known, or not the one that it says, where that counts.
-    bool mayBeTaken(const dds::CommandSample& sample, const std::optional<GuidPrefix>& participant);
+    bool mayBeTaken(const std::optional<GuidPrefix>& participant, const dds::CommandSample& sample,
+                    uint64_t writer);
+    void tellOfForeign(const dds::CommandSample& sample, uint64_t writer);
 
     uint32_t session_;
     uint64_t epoch_;
@@ -108,7 +110,7 @@ class Publisher {
     uint64_t batch_ = 0;
     LatencyHistogram write_times_;
     topics::Status status_;  // as last published
-    CommandInbox inbox_;
+    CommandInbox inbox_{[this](uint64_t writer) { return command_reader_->isMatched(writer); }};
     uint64_t foreign_commands_ = 0;
     std::optional<People> people_;                 // with security
     std::optional<ProvenSenders> proven_senders_;  // with security

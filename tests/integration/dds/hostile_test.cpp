@@ -155,6 +155,42 @@ TEST(HostilePayloads, AForgedStatusSilencesNoClient) {
     EXPECT_EQ(outcomes[0].result, "refused: no");
 }
 
+TEST(HostilePayloads, AForgedCommandSilencesNoClient) {
+    Publisher server({.domain = testDomain(), .session = testSession()});
+    ClientProbe client;
+    topics::Command command;
+    command.set_save_checkpoint(true);
+    std::vector<topics::Command> heard;
+    const auto hears = [&] {
+        EXPECT_TRUE(server.publishStatus({}));
+        for (const topics::Command& one : server.takeCommands()) {
+            heard.push_back(one);
+            server.acknowledge(one, "done");
+        }
+    };
+    client.subscriber.sendCommand(command);
+    ASSERT_TRUE(client.pollUntil([&] { return hears(), !client.subscriber.takeOutcomes().empty(); }));
+    ASSERT_EQ(heard.size(), 1u);
+
+    const dds::Participant intruder(testDomain());
+    dds::Writer<dds::CommandSample> commands(intruder);
+    topics::Command forged = heard[0];
+    forged.set_sequence(UINT32_MAX);
+    const std::string bytes = forged.SerializeAsString();
+    auto sample = garbage<dds::CommandSample>(bytes);
+    sample.sender = forged.sender();
+    ASSERT_TRUE(client.pollUntil([&] { return commands.matchedReaders() > 0; }));
+    for (int n = 0; n < 10; ++n) {
+        ASSERT_TRUE(commands.write(sample));
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        hears();
+    }
+    client.subscriber.sendCommand(command);
+    EXPECT_TRUE(client.pollUntil([&] { return hears(), !client.subscriber.takeOutcomes().empty(); }));
+    ASSERT_EQ(heard.size(), 2u) << "only the client's own are carried out";
+    EXPECT_EQ(heard[1].sequence(), 2u);
+}
+
 TEST(Deafness, AViewerThatHearsNothingJoinsAnew) {
     using std::chrono::milliseconds;
     SceneSubscriber viewer(
