@@ -252,6 +252,8 @@ void SessionMirror::takeBricks() {
     brick_reader_->take(
         kMostBricks, [this](const dds::DensityBrickSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != session_) return;
+            const uint64_t participant = brick_reader_->participantOf(info.writer);
+            if (!choice_.isOurs(server_numbers_.of(participant, info.writer))) return;
             const auto brick = parseDensityBrick(dds::payloadOf(sample));
             if (!brick) return dropMalformed("density brick");
             if (brick->epoch() != state_.epoch) return;

@@ -79,7 +79,10 @@ bool SceneSubscriber::waitForData(std::chrono::nanoseconds timeout) const {
 
 void SceneSubscriber::followDensities(DensityStore& densities) {
     if (!link_) return;
-    link_->density_feed.update(densities, scene_info_, epoch(), monotonicNowNs(),
+    const auto is_ours = [this](uint64_t participant, uint64_t writer) {
+        return choice_.isOurs(server_numbers_.of(participant, writer));
+    };
+    link_->density_feed.update(densities, {scene_info_, epoch(), is_ours}, monotonicNowNs(),
                                [this](const std::string& what) { dropMalformed(what); });
 }
 
