@@ -14,8 +14,6 @@ namespace {
 
 // A flood of commands must not keep the publisher thread from publishing.
 constexpr size_t kMaxCommandsPerCall = 1024;
-// So many senders are heard before all are forgotten: who is honest repeats a command that gets lost.
-constexpr size_t kMostKeys = 16384;
 
 int64_t unixTime_ns() {
     const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
@@ -202,15 +200,14 @@ bool Publisher::publishLesson(topics::Lesson lesson) {
 std::vector<topics::Command> Publisher::takeCommands() {
     std::vector<topics::Command> commands;
     const uint64_t malformed_before = inbox_.malformedCount();
-    if (command_reader_->newKeys() > kMostKeys) command_reader_.emplace(participant_);
-    command_reader_->take(
+    command_reader_.take(
         kMaxCommandsPerCall, [&](const dds::CommandSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != session_) return;
             const std::optional<GuidPrefix> participant =
-                proven_senders_ ? command_reader_->ownerOf(info.writer) : std::nullopt;
+                proven_senders_ ? command_reader_.ownerOf(info.writer) : std::nullopt;
             if (!mayBeTaken(participant, sample, info.writer)) return;
             CommandInbox::Decision decision =
-                inbox_.receive(sample.sender, {command_reader_->participantOf(info.writer), info.writer},
+                inbox_.receive(sample.sender, {command_reader_.participantOf(info.writer), info.writer},
                                dds::payloadOf(sample));
             if (decision.is_foreign) tellOfForeign(sample, info.writer);
             if (decision.acknowledgement) show(*decision.acknowledgement);
@@ -234,7 +231,7 @@ bool Publisher::mayBeTaken(const std::optional<GuidPrefix>& participant, const d
 
 void Publisher::tellOfForeign(const dds::CommandSample& sample, uint64_t writer) {
     if (++foreign_commands_ > 1) return;
-    const std::string host = command_reader_->hostOf(writer);
+    const std::string host = command_reader_.hostOf(writer);
     spdlog::warn(
         "refused a command from {} with the sender number {} of somebody else; more of them are only counted",
         host.empty() ? "a PC without a name" : printableName(host), sample.sender);

@@ -110,7 +110,7 @@ class Publisher {
     uint64_t batch_ = 0;
     LatencyHistogram write_times_;
     topics::Status status_;  // as last published
-    CommandInbox inbox_{[this](uint64_t writer) { return command_reader_->isMatched(writer); }};
+    CommandInbox inbox_{[this](uint64_t writer) { return command_reader_.isMatched(writer); }};
     uint64_t foreign_commands_ = 0;
     std::optional<People> people_;                 // with security
     std::optional<ProvenSenders> proven_senders_;  // with security
@@ -122,7 +122,7 @@ class Publisher {
     dds::Writer<dds::ToolStateSample> tool_state_writer_;
     dds::Writer<dds::StatusSample> status_writer_;
     dds::Writer<dds::LessonSample> lesson_writer_;
-    std::optional<dds::Reader<dds::CommandSample>> command_reader_;
+    dds::Reader<dds::CommandSample> command_reader_;
 };
 
 }  // namespace bonemill

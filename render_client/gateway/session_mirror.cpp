@@ -42,7 +42,7 @@ SessionMirror::SessionMirror(const dds::Participant& participant, uint32_t sessi
       session_(session),
       viewer_reader_(participant),
       remark_reader_(participant),
-      servers_(std::make_unique<ServerReaders>(participant, viewer_reader_.handle())) {}
+      servers_(std::make_unique<ServerReaders>(participant, viewer_reader_)) {}
 
 SessionChanges SessionMirror::poll() {
     takeStatus();
@@ -206,7 +206,7 @@ void SessionMirror::takeViewers() {
         if (!info.has_data || sample.session != session_) return;
         std::optional<topics::Viewer> viewer = parseViewer(dds::payloadOf(sample), sample.sender);
         if (!viewer) return dropMalformed("viewer");
-        viewers_.hear(std::move(*viewer), info.writer, now);
+        viewers_.hear(std::move(*viewer), viewer_reader_.participantOf(info.writer), now);
         ++heard;
     });
     if (heard == 0 && now - listed_ < kListEvery) return;
@@ -299,7 +299,7 @@ void SessionMirror::readAnewIfDue() {
     const bool has_candidate = is_due && choice_.hasCandidate() && !isServerAlive();
     if (!choice_.takeLost() && !has_candidate) return;
     if (has_candidate) read_anew_ = now;
-    servers_ = std::make_unique<ServerReaders>(participant_, viewer_reader_.handle());
+    servers_ = std::make_unique<ServerReaders>(participant_, viewer_reader_);
     choice_.forgetRefused();
 }
 

@@ -168,7 +168,7 @@ void SceneSubscriber::takeViewers() {
                 return;
             std::optional<topics::Viewer> viewer = parseViewer(dds::payloadOf(sample), sample.sender);
             if (!viewer) return dropMalformed("viewer " + std::to_string(sample.sender));
-            viewers_.hear(std::move(*viewer), info.writer, now);
+            viewers_.hear(std::move(*viewer), link_->viewer_reader.participantOf(info.writer), now);
         });
     viewers_.forgetSilent(now);
 }

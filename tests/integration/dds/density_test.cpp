@@ -8,6 +8,7 @@
 #include "common/rt/clock.h"
 #include "haptic_server/densities/density_publisher.h"
 #include "haptic_server/publish/publisher.h"
+#include "tests/integration/dds/child_process.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/scanned_bone.h"
 #include "tests/support/synthetic_nodes.h"
@@ -206,6 +207,16 @@ TEST(Densities, SurviveHostileWishesAndBricks) {
     EXPECT_EQ(client.store.find(20)->revision, 0u);
     client.store.want({20, 21});
     EXPECT_TRUE(runUntil(server, {&client}, [&] { return hasWanted(client.store); })) << "it goes on";
+}
+
+TEST(Densities, ComeToWhoeverWishesBesideStrangersWhoInventSenders) {
+    DensityServer server;
+    DensityClient client;
+    ASSERT_TRUE(runUntil(server, {&client}, [&] { return client.store.grid().has_value(); }));
+    ChildProcess intruder("synthetic_intruder", "wishes");
+    EXPECT_EQ(intruder.ask("5000"), "done");
+    wantAll(client.store);
+    EXPECT_TRUE(runUntil(server, {&client}, [&] { return hasWanted(client.store); }));
 }
 
 // Bricks of a stranger who says that it is the server: they make sense, and would hide what was milled.

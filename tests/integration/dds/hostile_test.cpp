@@ -256,7 +256,7 @@ size_t residentBytes() {
 // DDS keeps a key for as long as its writer lives.
 TEST(HostileSenders, TakeNoMemoryAndHonestOnesAreHeard) {
     Publisher publisher({.domain = testDomain(), .session = testSession()});
-    ChildProcess intruder("synthetic_intruder");
+    ChildProcess intruder("synthetic_intruder", "commands");
     const size_t before = residentBytes();
     std::atomic<bool> is_done = false;
     std::thread asking([&] {
@@ -274,6 +274,23 @@ TEST(HostileSenders, TakeNoMemoryAndHonestOnesAreHeard) {
     pause.set_pause_milling(true);
     client.subscriber.sendCommand(pause);
     EXPECT_TRUE(client.pollUntil([&] { return !publisher.takeCommands().empty(); }));
+}
+
+// They stay, and so do their keys: who comes later is heard all the same.
+TEST(HostileSenders, KeepOutNoViewer) {
+    Publisher publisher({.domain = testDomain(), .session = testSession()});
+    ASSERT_TRUE(publisher.publishStatus({}));
+    ClientProbe watching;
+    ASSERT_TRUE(watching.pollUntil([&] { return watching.subscriber.hasServer(); }));
+    ChildProcess intruder("synthetic_intruder", "viewers");
+    EXPECT_EQ(intruder.ask("5000"), "done");
+    watching.poll();
+    ClientProbe honest;
+    EXPECT_TRUE(watching.pollUntil([&] {
+        honest.poll();
+        honest.subscriber.announce(60, std::nullopt);
+        return watching.subscriber.viewers().size() == 1;
+    }));
 }
 
 TEST(HostilePayloads, AreCountedAndDroppedByTheServer) {
