@@ -72,6 +72,11 @@ TopicDescription describeTopic<LessonSample>() {
 }
 
 template <>
+TopicDescription describeTopic<ScenePictureSample>() {
+    return {"bonemill_scene_picture", &bonemill_dds_ScenePictureSample_desc, stateQos()};
+}
+
+template <>
 TopicDescription describeTopic<RemarkSample>() {
     return {"bonemill_remark", &bonemill_dds_RemarkSample_desc, stateQos()};
 }

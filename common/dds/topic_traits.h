@@ -15,6 +15,7 @@ using StructureMeshSample = bonemill_dds_StructureMeshSample;
 using ToolStateSample = bonemill_dds_ToolStateSample;
 using StatusSample = bonemill_dds_StatusSample;
 using LessonSample = bonemill_dds_LessonSample;
+using ScenePictureSample = bonemill_dds_ScenePictureSample;
 using RemarkSample = bonemill_dds_RemarkSample;
 using ViewerSample = bonemill_dds_ViewerSample;
 using HandPointerSample = bonemill_dds_HandPointerSample;
@@ -50,6 +51,8 @@ template <>
 TopicDescription describeTopic<StatusSample>();
 template <>
 TopicDescription describeTopic<LessonSample>();
+template <>
+TopicDescription describeTopic<ScenePictureSample>();
 template <>
 TopicDescription describeTopic<RemarkSample>();
 template <>

@@ -66,6 +66,7 @@ Publisher::Publisher(const PublisherOptions& options)
       tool_state_writer_(participant_),
       status_writer_(participant_),
       lesson_writer_(participant_),
+      picture_writer_(participant_),
       command_reader_(participant_) {
     if (options.secure.empty()) return;
     people_.emplace(options.secure);
@@ -195,6 +196,19 @@ bool Publisher::writeStatus() {
 bool Publisher::publishLesson(topics::Lesson lesson) {
     lesson.set_epoch(epoch_);
     return writeMessage(lesson_writer_, session_, lesson);
+}
+
+bool Publisher::publishScenePicture(uint32_t scene, const std::string& id, const std::string& png) {
+    topics::ScenePicture picture;
+    picture.set_epoch(epoch_);
+    picture.set_scene_id(id);
+    picture.set_png(png);
+    const std::string bytes = picture.SerializeAsString();
+    dds::ScenePictureSample sample{};
+    sample.session = session_;
+    sample.scene = scene;
+    dds::setPayload(sample, bytes);
+    return picture_writer_.write(sample);
 }
 
 std::vector<topics::Command> Publisher::takeCommands() {

@@ -66,6 +66,8 @@ class Publisher {
 
     // The epoch is filled in.
     bool publishLesson(topics::Lesson lesson);
+    // The picture (PNG) of scene number `scene` of the lesson.
+    bool publishScenePicture(uint32_t scene, const std::string& id, const std::string& png);
 
     // These commands have arrived, each valid and new; carry each out and acknowledge() it. What is invalid
     // is answered or counted here. With security their role and name are what the sender's certificate says.
@@ -122,6 +124,7 @@ class Publisher {
     dds::Writer<dds::ToolStateSample> tool_state_writer_;
     dds::Writer<dds::StatusSample> status_writer_;
     dds::Writer<dds::LessonSample> lesson_writer_;
+    dds::Writer<dds::ScenePictureSample> picture_writer_;
     dds::Reader<dds::CommandSample> command_reader_;
 };
 

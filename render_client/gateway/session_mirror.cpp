@@ -49,6 +49,7 @@ SessionChanges SessionMirror::poll() {
     readAnewIfDue();
     takeSceneInfo();
     takeLesson();
+    takePictures();
     takeStructures();
     takeNodes();
     takeToolState();
@@ -120,6 +121,17 @@ void SessionMirror::takeLesson() {
                               if (!accept(lesson->epoch(), servers_->lesson, info.writer)) return;
                               keep(Sample::LESSON, 0, lesson->SerializeAsString());
                           });
+}
+
+void SessionMirror::takePictures() {
+    servers_->pictures.take(
+        kMostSmallSamples, [this](const dds::ScenePictureSample& sample, const dds::SampleInfo& info) {
+            if (!info.has_data || sample.session != session_) return;
+            const auto picture = parseScenePicture(dds::payloadOf(sample), sample.scene);
+            if (!picture) return dropMalformed("picture of a scene");
+            if (!accept(picture->epoch(), servers_->pictures, info.writer)) return;
+            keep(Sample::SCENE_PICTURE, sample.scene, picture->SerializeAsString());
+        });
 }
 
 void SessionMirror::takeStructures() {

@@ -54,6 +54,7 @@ void SceneSubscriber::takeAll(size_t max_nodes) {
     readAnewIfDue();
     takeSceneInfo();
     takeLesson();
+    takePictures();
     takeStructures();
     takeNodes(max_nodes);
     takeToolState();
@@ -108,8 +109,32 @@ void SceneSubscriber::takeLesson() {
             if (!info.has_data || sample.session != options_.session) return;
             std::optional<topics::Lesson> lesson = parseLesson(dds::payloadOf(sample));
             if (!lesson) return dropMalformed("lesson");
-            if (accept(lesson->epoch(), link_->servers->lesson, info.writer)) lesson_ = std::move(lesson);
+            if (!accept(lesson->epoch(), link_->servers->lesson, info.writer)) return;
+            lesson_ = std::move(lesson);
+            showPictures();
         });
+}
+
+void SceneSubscriber::takePictures() {
+    link_->servers->pictures.take(
+        kMaxSmallSamples, [this](const dds::ScenePictureSample& sample, const dds::SampleInfo& info) {
+            if (!info.has_data || sample.session != options_.session) return;
+            std::optional<topics::ScenePicture> picture =
+                parseScenePicture(dds::payloadOf(sample), sample.scene);
+            if (!picture) return dropMalformed("picture of scene " + std::to_string(sample.scene));
+            if (!accept(picture->epoch(), link_->servers->pictures, info.writer)) return;
+            pictures_[sample.scene] = std::move(*picture);
+            showPictures();
+        });
+}
+
+void SceneSubscriber::showPictures() {
+    if (!lesson_) return;
+    for (const auto& [scene, picture] : pictures_) {
+        if (int(scene) >= lesson_->scenes_size()) continue;
+        topics::SceneChoice& choice = *lesson_->mutable_scenes(int(scene));
+        if (choice.id() == picture.scene_id()) choice.set_picture(picture.png());
+    }
 }
 
 void SceneSubscriber::takeSceneInfo() {
@@ -239,6 +264,7 @@ void SceneSubscriber::beginRun() {
     tool_state_.reset();
     status_.reset();
     lesson_.reset();
+    pictures_.clear();
     structure_changes_ += !structures_.empty();
     structures_.clear();
     structure_triangles_ = 0;

@@ -20,6 +20,7 @@ class ServerReaders {
           tool_state(wire),
           status(wire),
           lesson(wire),
+          pictures(wire),
           remote_(wire.remote) {
         if (remote_) return;
         wait_set_.emplace(*wire.participant);
@@ -27,6 +28,7 @@ class ServerReaders {
             wait_set_->add([&reader] { return reader.handle(); });
         };
         watch(nodes), watch(scene_info), watch(structures), watch(tool_state), watch(status), watch(lesson);
+        watch(pictures);
         watch(also);
     }
 
@@ -41,6 +43,7 @@ class ServerReaders {
     Inlet<dds::ToolStateSample> tool_state;
     Inlet<dds::StatusSample> status;
     Inlet<dds::LessonSample> lesson;
+    Inlet<dds::ScenePictureSample> pictures;
 
   private:
     RemoteSession* remote_;

@@ -2,7 +2,7 @@
 import { fromBinary } from '@bufbuild/protobuf';
 import * as wire from '#proto/topics_pb';
 import type {
-  AttemptView, CameraWish, EffectView, LessonView, RemarkView, SceneChoiceView, SceneView, SoundWish, StatusView,
+  AttemptView, CameraWish, EffectView, LessonView, RemarkView, SceneChoiceView, ScenePictureView, SceneView, SoundWish, StatusView,
   ToolMesh, ToolView, TrainingView, ViewerView,
 } from '../shared/messages';
 import { Role } from '../shared/messages';
@@ -192,6 +192,12 @@ export function lessonOf(payload: Uint8Array): LessonView {
     attempts: bounded(lesson.attempts, kMostAttempts).map(attemptOf),
     changingTo: shownName(lesson.changingTo),
   };
+}
+
+export function pictureOf(payload: Uint8Array): ScenePictureView {
+  const picture = fromBinary(wire.ScenePictureSchema, payload);
+  demand(picture.png.length <= kMostPictureBytes, 'picture');
+  return { epoch: epochOf(picture.epoch), sceneId: picture.sceneId, png: picture.png.slice() };
 }
 
 function roleOf(role: wire.Viewer_Role): Role {

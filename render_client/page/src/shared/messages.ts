@@ -131,6 +131,13 @@ export interface SceneChoiceView {
   problem: string;
 }
 
+// Of one of LessonView.scenes.
+export interface ScenePictureView {
+  epoch: string;
+  sceneId: string;
+  png: Uint8Array;
+}
+
 export interface AttemptView {
   number: number;
   trainee: string;
@@ -221,6 +228,7 @@ export type FromLink =
   | { kind: 'tool'; tool: ToolView }
   | { kind: 'status'; status: StatusView }
   | { kind: 'lesson'; lesson: LessonView }
+  | { kind: 'picture'; scene: number; picture: ScenePictureView }
   | { kind: 'viewer'; sender: string; viewer?: ViewerView }
   | { kind: 'remark'; key: string; remark?: RemarkView }
   | { kind: 'structure'; id: number; surface?: StructureSurface }
