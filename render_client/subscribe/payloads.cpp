@@ -202,6 +202,7 @@ constexpr size_t mostBytes(const topics::Viewer*) {
 
 void keepShownText(topics::Training& training) {
     for (std::string& warning : *training.mutable_warnings()) warning = shownText(warning, kLongestText);
+    training.set_nearest_structure(shownName(training.nearest_structure()));
 }
 
 void keepShownText(topics::SceneChoice& scene) {

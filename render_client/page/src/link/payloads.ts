@@ -116,6 +116,7 @@ function trainingOf(training: wire.Training): TrainingView {
   return {
     damagedMm3: saneOrNone(training.damagedMm3),
     leastDistanceMm: saneOrNone(training.leastDistanceMm),
+    nearestStructure: shownName(training.nearestStructure),
     maxProtectedForceN: saneOrNone(training.maxProtectedForceN),
     necroticMm3: saneOrNone(training.necroticMm3),
     maxTemperatureC: saneOrNone(training.maxTemperatureC),

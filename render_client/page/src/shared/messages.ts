@@ -83,6 +83,7 @@ export interface CheckpointView {
 export interface TrainingView {
   damagedMm3?: number;
   leastDistanceMm?: number;
+  nearestStructure: string;
   maxProtectedForceN?: number;
   necroticMm3?: number;
   maxTemperatureC?: number;

@@ -174,7 +174,11 @@ export function trainingRows(training: TrainingView): Row[] {
   const bad = (mm3: number): Tone => (mm3 > 0 ? 'alarm' : 'good');
   const volume = (mm3: number) => (mm3 > 0 ? readableText(mm3, ' mm³') : 'none');
   if (training.damagedMm3 !== undefined) rows.push({ label: 'Damaged', value: volume(training.damagedMm3), tone: bad(training.damagedMm3) });
-  if (training.leastDistanceMm !== undefined) rows.push({ label: 'Least distance', value: readableText(training.leastDistanceMm, ' mm') });
+  if (training.leastDistanceMm !== undefined)
+    rows.push({
+      label: `Least distance to ${shortened(training.nearestStructure || 'a protected structure', 24)}`,
+      value: readableText(training.leastDistanceMm, ' mm'),
+    });
   if (training.maxProtectedForceN !== undefined) rows.push({ label: 'Largest force on it', value: readableText(training.maxProtectedForceN, ' N') });
   if (training.necroticMm3 !== undefined) rows.push({ label: 'Necrosis', value: volume(training.necroticMm3), tone: bad(training.necroticMm3) });
   if (training.maxTemperatureC !== undefined) rows.push({ label: 'Hottest bone', value: figureText(training.maxTemperatureC, 1, ' °C') });
