@@ -7,6 +7,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <utility>
 
 namespace bonemill::dds {
 namespace {
@@ -17,9 +18,9 @@ bool isForbidden(int32_t result) {
     return result == DDS_RETCODE_NOT_ALLOWED_BY_SECURITY;
 }
 
-Entity createTopic(const Participant& participant, const TopicDescription& description) {
+Entity createTopic(int32_t participant, const TopicDescription& description) {
     return requireEntity(
-        dds_create_topic(participant.handle(), description.type, description.name, nullptr, nullptr),
+        dds_create_topic(participant, description.type, description.name, nullptr, nullptr),
         std::string("topic ") + description.name);
 }
 
@@ -55,6 +56,12 @@ std::unique_ptr<dds_listener_t, DeleteListener> mismatchListener(const char* top
     dds_lset_offered_incompatible_qos(listener.get(), logOffered);
     dds_lset_requested_incompatible_qos(listener.get(), logRequested);
     return listener;
+}
+
+Entity createReader(int32_t participant, const Entity& topic, const TopicDescription& description) {
+    return requireEntity(dds_create_reader(participant, topic.handle(), description.qos.get(),
+                                           mismatchListener(description.name).get()),
+                         std::string("reader of ") + description.name);
 }
 
 }  // namespace
@@ -93,10 +100,14 @@ int AnyWriter::matchedReaders() const {
 }
 
 AnyReader::AnyReader(const Participant& participant, const TopicDescription& description)
-    : topic_(createTopic(participant, description)),
-      reader_(requireEntity(dds_create_reader(participant.handle(), topic_.handle(), description.qos.get(),
-                                              mismatchListener(description.name).get()),
-                            std::string("reader of ") + description.name)) {}
+    : participant_(participant.handle()),
+      topic_(createTopic(participant_, description)),
+      reader_(createReader(participant_, topic_, description)) {}
+
+void AnyReader::beginAnew(const TopicDescription& description) {
+    Entity next = createReader(participant_, topic_, description);
+    std::swap(reader_, next);
+}
 
 int AnyReader::matchedWriters() const {
     dds_subscription_matched_status_t status{};
@@ -105,11 +116,7 @@ int AnyReader::matchedWriters() const {
 }
 
 bool AnyReader::isMatched(uint64_t writer) const {
-    std::array<dds_instance_handle_t, kBatch> writers;
-    const int32_t count = dds_get_matched_publications(reader_.handle(), writers.data(), writers.size());
-    if (count > int32_t(writers.size())) return true;  // too many to look through
-    return std::find(writers.begin(), writers.begin() + std::max(count, 0), writer) !=
-           writers.begin() + std::max(count, 0);
+    return participantOf(writer) != 0;
 }
 
 uint64_t AnyReader::participantOf(uint64_t writer) const {

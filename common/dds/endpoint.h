@@ -68,6 +68,9 @@ class AnyReader {
 
     AnyReader(const Participant& participant, const TopicDescription& description);
 
+    // It becomes a new reader of the same topic, with another handle: all that it had heard is forgotten, what waits
+    // to be taken, too. Throws UserError, and stays what it was.
+    void beginAnew(const TopicDescription& description);
     int32_t handle() const noexcept { return reader_.handle(); }
     int matchedWriters() const;
     bool isMatched(uint64_t writer) const;
@@ -76,6 +79,7 @@ class AnyReader {
     std::optional<GuidPrefix> ownerOf(uint64_t writer) const;
 
   private:
+    int32_t participant_;
     Entity topic_;
     Entity reader_;
 };
@@ -100,12 +104,16 @@ class Writer {
 template <class Sample>
 class Reader {
   public:
-    explicit Reader(const Participant& participant) : reader_(participant, describeTopic<Sample>()) {}
+    explicit Reader(const Participant& participant) : Reader(participant, describeTopic<Sample>()) {}
 
     // Calls handle(const Sample&, const SampleInfo&) for at most `max_samples` new samples; returns how many.
     // The sample lives only during the call.
+    //
+    // Cyclone keeps every key that a writer ever used for as long as that writer lives. A reader that has heard of too
+    // many (TopicDescription::most_keys) begins anew, its handle changes, and strangers who fill it keep out nobody.
     template <class Handler>
     size_t take(size_t max_samples, Handler&& handle) {
+        forgetTooMany();
         size_t taken = 0;
         while (taken < max_samples) {
             const AnyReader::Batch batch(reader_.handle(), max_samples - taken);
@@ -118,10 +126,6 @@ class Reader {
         }
         return taken;
     }
-
-    // Cyclone keeps every key that a writer ever used for as long as that writer lives. Whoever hears
-    // strangers makes the reader anew when it has heard too many, and forgets them all.
-    size_t newKeys() const noexcept { return new_keys_; }
 
     int32_t handle() const noexcept { return reader_.handle(); }
     int matchedWriters() const { return reader_.matchedWriters(); }
@@ -137,7 +141,17 @@ class Reader {
     std::optional<GuidPrefix> ownerOf(uint64_t writer) const { return reader_.ownerOf(writer); }
 
   private:
+    Reader(const Participant& participant, const TopicDescription& description)
+        : reader_(participant, description), most_keys_(description.most_keys) {}
+
+    void forgetTooMany() {
+        if (most_keys_ == 0 || new_keys_ < most_keys_) return;
+        new_keys_ = 0;
+        reader_.beginAnew(describeTopic<Sample>());
+    }
+
     AnyReader reader_;
+    size_t most_keys_;
     size_t new_keys_ = 0;
 };
 

@@ -57,7 +57,8 @@ TopicDescription describeTopic<StructureMeshSample>() {
 
 template <>
 TopicDescription describeTopic<ToolStateSample>() {
-    return {"bonemill_tool_state", &bonemill_dds_ToolStateSample_desc, streamQos(kQueuedToolStates)};
+    return {"bonemill_tool_state", &bonemill_dds_ToolStateSample_desc, streamQos(kQueuedToolStates),
+            kMostStreamKeys / 2};
 }
 
 template <>
@@ -71,23 +72,30 @@ TopicDescription describeTopic<LessonSample>() {
 }
 
 template <>
+TopicDescription describeTopic<ScenePictureSample>() {
+    return {"bonemill_scene_picture", &bonemill_dds_ScenePictureSample_desc, stateQos()};
+}
+
+template <>
 TopicDescription describeTopic<RemarkSample>() {
     return {"bonemill_remark", &bonemill_dds_RemarkSample_desc, stateQos()};
 }
 
 template <>
 TopicDescription describeTopic<ViewerSample>() {
-    return {"bonemill_viewer", &bonemill_dds_ViewerSample_desc, streamQos(1)};
+    return {"bonemill_viewer", &bonemill_dds_ViewerSample_desc, streamQos(1),
+            kMostStreamKeys / 2};
 }
 
 template <>
 TopicDescription describeTopic<HandPointerSample>() {
-    return {"bonemill_hand_pointer", &bonemill_dds_HandPointerSample_desc, streamQos(1)};
+    return {"bonemill_hand_pointer", &bonemill_dds_HandPointerSample_desc, streamQos(1),
+            kMostStreamKeys / 2};
 }
 
 template <>
 TopicDescription describeTopic<CommandSample>() {
-    return {"bonemill_command", &bonemill_dds_CommandSample_desc, commandQos()};
+    return {"bonemill_command", &bonemill_dds_CommandSample_desc, commandQos(), kMostCommandKeys};
 }
 
 template <>
@@ -97,7 +105,8 @@ TopicDescription describeTopic<DensityBrickSample>() {
 
 template <>
 TopicDescription describeTopic<DensityWishSample>() {
-    return {"bonemill_density_wish", &bonemill_dds_DensityWishSample_desc, streamQos(1)};
+    return {"bonemill_density_wish", &bonemill_dds_DensityWishSample_desc, streamQos(1),
+            kMostStreamKeys / 2};
 }
 
 }  // namespace bonemill::dds

@@ -3,6 +3,8 @@
 
 #include <topics.h>
 
+#include <cstddef>
+
 #include "common/dds/qos.h"
 
 namespace bonemill::dds {
@@ -13,6 +15,7 @@ using StructureMeshSample = bonemill_dds_StructureMeshSample;
 using ToolStateSample = bonemill_dds_ToolStateSample;
 using StatusSample = bonemill_dds_StatusSample;
 using LessonSample = bonemill_dds_LessonSample;
+using ScenePictureSample = bonemill_dds_ScenePictureSample;
 using RemarkSample = bonemill_dds_RemarkSample;
 using ViewerSample = bonemill_dds_ViewerSample;
 using HandPointerSample = bonemill_dds_HandPointerSample;
@@ -24,11 +27,15 @@ struct TopicDescription {
     const char* name;  // of static storage
     const dds_topic_descriptor_t* type;
     Qos qos;
+    // A reader that has heard of so many keys forgets them all (Reader::take()); 0: it never does.
+    size_t most_keys = 0;
 };
 
 // So many senders of a stream a reader knows at once: far more than there are viewers, and a bound for the
-// memory that invented ones can take.
+// memory that invented ones can take. It forgets them when half of that is used, so that there is room for others.
 inline constexpr int kMostStreamKeys = 1024;
+// Likewise of commands: who is honest repeats a command that gets lost.
+inline constexpr int kMostCommandKeys = 16384;
 
 template <class Sample>
 TopicDescription describeTopic();
@@ -44,6 +51,8 @@ template <>
 TopicDescription describeTopic<StatusSample>();
 template <>
 TopicDescription describeTopic<LessonSample>();
+template <>
+TopicDescription describeTopic<ScenePictureSample>();
 template <>
 TopicDescription describeTopic<RemarkSample>();
 template <>

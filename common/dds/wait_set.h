@@ -2,6 +2,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "common/dds/participant.h"
@@ -12,13 +14,21 @@ class WaitSet {
   public:
     explicit WaitSet(const Participant& participant);
 
-    void add(int32_t reader);
+    // `handle` is asked before each wait, for a reader may begin anew; 0: there is none.
+    void add(std::function<int32_t()> handle);
     // Returns true when a reader has samples to take, false when `timeout` passed before.
-    bool wait(std::chrono::nanoseconds timeout) const;
+    bool wait(std::chrono::nanoseconds timeout);
 
   private:
+    struct Watched {
+        std::function<int32_t()> handle;
+        int32_t reader;
+        Entity condition;
+    };
+    void watch(Watched& watched);
+
     Entity set_;
-    std::vector<Entity> conditions_;
+    std::vector<Watched> watched_;
 };
 
 }  // namespace bonemill::dds

@@ -27,7 +27,7 @@ PointerDevice::PointerDevice(const PointerConfig& config)
       participant_(config.domain),
       reader_(participant_),
       wait_set_(participant_) {
-    wait_set_.add(reader_.handle());
+    wait_set_.add([this] { return reader_.handle(); });
     listener_ = std::thread([this] { listen(); });
 }
 

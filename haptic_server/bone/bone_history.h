@@ -59,6 +59,8 @@ class BoneHistory {
     // means that there is nothing to restore. Otherwise `shell_is_complete` says whether the point-shell pool
     // had room.
     bool restoreSome(BoneModel& bone, bool& shell_is_complete) noexcept;
+    // Tick: the number of the newest order that it has begun; finishedOrder() follows.
+    uint64_t takenUpOrder() const noexcept { return order_->number; }
     // Tick: what restoreSome() has last worked at is the way to the scanned bone.
     bool isTargetScanned() const noexcept { return !order_->target; }
     // Whoever runs no tick beside it: all of the last restore() that is still to do, at once.

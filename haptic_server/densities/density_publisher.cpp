@@ -1,13 +1,15 @@
 #include "haptic_server/densities/density_publisher.h"
 
 #include <cmath>
+#include <map>
 
 #include "common/rt/clock.h"
 
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostWishes = 16;  // per round: 3200 per second
+constexpr size_t kMostWishes = 256;          // taken per round
+constexpr size_t kMostWishesOfWriter = 16;  // of them, read: 3200 per second
 constexpr int64_t kLongestRound_ns = 2 * kNsPerMillisecond;
 constexpr size_t kLeastCharge = 1024;  // bytes: a small brick costs time, too
 
@@ -38,9 +40,10 @@ DensityPublisher::DensityPublisher(const dds::Participant& participant, uint32_t
     : session_(session), stream_(source, epoch, stepsOf(scale)), writer_(participant), reader_(participant) {}
 
 void DensityPublisher::takeWishes(int64_t now_ns) {
+    std::map<uint64_t, size_t> taken;  // by writer
     reader_.take(kMostWishes, [&](const dds::DensityWishSample& sample, const dds::SampleInfo& info) {
-        if (info.has_data && sample.session == session_)
-            stream_.receive(sample.sender, dds::payloadOf(sample), now_ns);
+        if (!info.has_data || sample.session != session_ || ++taken[info.writer] > kMostWishesOfWriter) return;
+        stream_.receive(sample.sender, reader_.participantOf(info.writer), dds::payloadOf(sample), now_ns);
     });
 }
 

@@ -15,9 +15,10 @@ constexpr size_t kLooksPerTurn = 512;
 DensityStream::DensityStream(const DensitySource& source, uint64_t epoch, uint16_t steps)
     : source_(source), epoch_(epoch), encoder_(steps), bricks_(source.brickCount()) {}
 
-void DensityStream::receive(uint64_t sender, std::span<const uint8_t> payload, int64_t now_ns) {
+void DensityStream::receive(uint64_t sender, uint64_t participant, std::span<const uint8_t> payload,
+                            int64_t now_ns) {
     auto bricks = parseDensityWish(payload, sender, epoch_, source_.brickCount());
-    if (bricks) wishes_.receive(sender, std::move(*bricks), now_ns);
+    if (bricks) wishes_.receive(sender, participant, std::move(*bricks), now_ns);
 }
 
 bool DensityStream::isWished(int64_t now_ns) {

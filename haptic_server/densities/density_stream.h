@@ -23,7 +23,7 @@ class DensityStream {
     DensityStream(const DensitySource& source, uint64_t epoch, uint16_t steps);
 
     // Payloads that are no wish of this epoch, or name what is not there, change nothing.
-    void receive(uint64_t sender, std::span<const uint8_t> payload, int64_t now_ns);
+    void receive(uint64_t sender, uint64_t participant, std::span<const uint8_t> payload, int64_t now_ns);
     // Returns true if a viewer has said lately that it shows densities.
     bool isWished(int64_t now_ns);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/make_room.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
@@ -65,14 +66,16 @@ std::optional<std::vector<WishedBrick>> parseDensityWish(std::span<const uint8_t
     return bricks;
 }
 
-void DensityWishes::receive(uint64_t sender, std::vector<WishedBrick> bricks, int64_t now_ns) {
+void DensityWishes::receive(uint64_t sender, uint64_t participant, std::vector<WishedBrick> bricks,
+                            int64_t now_ns) {
     auto wish = std::ranges::find(wishes_, sender, &Wish::sender);
     if (wish == wishes_.end()) {
-        if (wishes_.size() == kMostSenders)
-            wishes_.erase(std::ranges::min_element(wishes_, {}, &Wish::heard_ns));
-        wish = wishes_.insert(wishes_.end(), Wish{sender, now_ns, {}});
+        makeRoomFor(participant, wishes_, {kMostSenders, kMostOfParticipant}, &Wish::participant, &Wish::heard_ns);
+        wish = wishes_.insert(wishes_.end(), Wish{sender, participant, now_ns, {}});
+    } else if (wish->participant != participant) {
+        return;
     }
-    *wish = {sender, now_ns, std::move(bricks)};
+    *wish = {sender, participant, now_ns, std::move(bricks)};
 }
 
 void DensityWishes::forgetSilent(int64_t now_ns) {

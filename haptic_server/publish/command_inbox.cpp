@@ -4,11 +4,13 @@
 
 #include <algorithm>
 
+#include "common/make_room.h"
+
 namespace bonemill {
 namespace {
 
 // These are far more than a classroom has, and they bound what invented sender ids can take.
-constexpr size_t kMaxSenders = 1024;
+constexpr RoomLimits kSenders{1024, 128};
 // It is many times what any command needs.
 constexpr size_t kLongestPayload = 4096;
 
@@ -20,25 +22,38 @@ bool parse(std::span<const uint8_t> payload, topics::Command& command) {
 
 }  // namespace
 
-CommandInbox::Sender& CommandInbox::senderState(uint64_t id) {
-    if (senders_.size() >= kMaxSenders && !senders_.contains(id)) {
-        const auto heard_before = [](const auto& a, const auto& b) {
-            return a.second.last_heard < b.second.last_heard;
-        };
-        senders_.erase(std::min_element(senders_.begin(), senders_.end(), heard_before));
+// Who comes again with another participant, its first one gone, goes on counting; a lower number is of somebody
+// new.
+CommandInbox::Sender* CommandInbox::senderOf(const topics::Command& command, const CommandOrigin& origin) {
+    const auto known = senders_.find(command.sender());
+    if (known == senders_.end()) {
+        makeRoomFor(
+            origin.participant, senders_, kSenders, [](const auto& s) { return s.second.origin.participant; },
+            [](const auto& s) { return s.second.last_heard; });
+        Sender& sender = senders_[command.sender()];
+        sender.origin = origin;
+        return &sender;
     }
-    Sender& sender = senders_[id];
-    sender.last_heard = ++received_count_;
-    return sender;
+    Sender& sender = known->second;
+    if (!sender.origin.isSameAs(origin)) {
+        if (is_there_(sender.origin.writer)) return nullptr;
+        if (command.sequence() < sender.sequence) sender = {};
+    }
+    sender.origin = origin;
+    return &sender;
 }
 
-CommandInbox::Decision CommandInbox::receive(uint64_t envelope_sender, std::span<const uint8_t> payload) {
+CommandInbox::Decision CommandInbox::receive(uint64_t envelope_sender, const CommandOrigin& origin,
+                                             std::span<const uint8_t> payload) {
     topics::Command command;
     if (!parse(payload, command) || command.sender() != envelope_sender || command.sequence() == 0) {
         ++malformed_count_;
         return {};
     }
-    Sender& sender = senderState(envelope_sender);
+    Sender* const its = senderOf(command, origin);
+    if (!its) return refuseForeign(command);
+    Sender& sender = *its;
+    sender.last_heard = ++received_count_;
     if (command.sequence() < sender.sequence) return {};
     if (command.sequence() == sender.sequence) {
         if (!sender.result) return {};
@@ -52,11 +67,20 @@ CommandInbox::Decision CommandInbox::receive(uint64_t envelope_sender, std::span
     return {std::move(command), std::nullopt};
 }
 
+// The rightful one must not take the answer for its own: it waits for a newer number than those that are done.
+CommandInbox::Decision CommandInbox::refuseForeign(const topics::Command& command) const {
+    Decision decision{.is_foreign = true};
+    if (command.sequence() < senders_.at(command.sender()).sequence)
+        decision.acknowledgement = {command.sender(), command.sequence(),
+                                    "refused: another client of this session has this sender number; start anew"};
+    return decision;
+}
+
 CommandAcknowledgement CommandInbox::finish(const topics::Command& command, const std::string& result) {
-    Sender& sender = senderState(command.sender());
-    if (command.sequence() >= sender.sequence) {
-        sender.sequence = command.sequence();
-        sender.result = result;
+    const auto known = senders_.find(command.sender());
+    if (known != senders_.end() && command.sequence() >= known->second.sequence) {
+        known->second.sequence = command.sequence();
+        known->second.result = result;
     }
     return {command.sender(), command.sequence(), result};
 }

@@ -1,12 +1,14 @@
-// Decides which received commands the server carries out: each (sender, sequence) once. It is for one thread
-// and not RT-safe.
+// Decides which received commands the server carries out: each (sender, sequence) once. A sender belongs to the
+// participant that used it first, for as long as that lives. It is for one thread and not RT-safe.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 #include "proto/topics.pb.h"
 
@@ -19,6 +21,16 @@ struct CommandAcknowledgement {
     std::string result;
 };
 
+// Who has really written a command (dds::Reader): 0 for the participant of a writer that has gone already.
+struct CommandOrigin {
+    uint64_t participant = 0;
+    uint64_t writer = 0;
+
+    bool isSameAs(const CommandOrigin& other) const noexcept {
+        return writer == other.writer || (participant != 0 && participant == other.participant);
+    }
+};
+
 class CommandInbox {
   public:
     // Says what to do with one received payload: carry out `command`, or tell the sender `acknowledgement`,
@@ -26,11 +38,15 @@ class CommandInbox {
     struct Decision {
         std::optional<topics::Command> command;
         std::optional<CommandAcknowledgement> acknowledgement;
+        bool is_foreign = false;  // the sender is another participant's; it is answered where nobody else waits
     };
+
+    // `is_there` says whether a writer that was an origin still lives.
+    explicit CommandInbox(std::function<bool(uint64_t writer)> is_there) : is_there_(std::move(is_there)) {}
 
     // `envelope_sender` is the key of the sample. Bytes that are no command of that sender, or more than
     // 4 KiB, are counted and dropped.
-    Decision receive(uint64_t envelope_sender, std::span<const uint8_t> payload);
+    Decision receive(uint64_t envelope_sender, const CommandOrigin& origin, std::span<const uint8_t> payload);
 
     // Remembers how a command ended, for senders that repeat it because they missed the acknowledgement.
     CommandAcknowledgement finish(const topics::Command& command, const std::string& result);
@@ -39,12 +55,16 @@ class CommandInbox {
 
   private:
     struct Sender {
+        CommandOrigin origin;
         uint32_t sequence = 0;              // the last one received
         std::optional<std::string> result;  // of that one; nothing: it is still being carried out
         uint64_t last_heard = 0;            // receive counter, to forget the quietest
     };
-    Sender& senderState(uint64_t id);
+    // Null if another participant has it.
+    Sender* senderOf(const topics::Command& command, const CommandOrigin& origin);
+    Decision refuseForeign(const topics::Command& command) const;
 
+    std::function<bool(uint64_t)> is_there_;
     std::unordered_map<uint64_t, Sender> senders_;
     uint64_t received_count_ = 0;
     uint64_t malformed_count_ = 0;

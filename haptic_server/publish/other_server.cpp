@@ -15,16 +15,16 @@ namespace bonemill {
 namespace {
 
 constexpr size_t kLongestStatus = 1 << 20;
-constexpr size_t kLongestName = 80;
-
-std::string printable(std::string text) {
-    text.resize(std::min(text.size(), kLongestName));
-    std::ranges::replace_if(
-        text, [](char c) { return c < ' ' || c > '~'; }, '?');
-    return text;
-}
 
 }  // namespace
+
+std::string printableName(std::string name) {
+    constexpr size_t kLongest = 80;
+    name.resize(std::min(name.size(), kLongest));
+    std::ranges::replace_if(
+        name, [](char c) { return c < ' ' || c > '~'; }, '?');
+    return name;
+}
 
 std::optional<OtherServer> findOtherServer(const dds::Participant& participant, uint32_t session,
                                            std::chrono::milliseconds patience) {
@@ -41,7 +41,7 @@ std::optional<OtherServer> findOtherServer(const dds::Participant& participant, 
                         if (!info.has_data || sample.session != session || payload.size() > kLongestStatus ||
                             !status.ParseFromArray(payload.data(), int(payload.size())))
                             return;
-                        found = OtherServer{printable(status.scene()), status.epoch()};
+                        found = OtherServer{printableName(status.scene()), status.epoch()};
                     });
     }
     return found;

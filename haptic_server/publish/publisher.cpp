@@ -7,14 +7,13 @@
 #include <utility>
 
 #include "common/rt/clock.h"
+#include "haptic_server/publish/other_server.h"
 
 namespace bonemill {
 namespace {
 
 // A flood of commands must not keep the publisher thread from publishing.
 constexpr size_t kMaxCommandsPerCall = 1024;
-// So many senders are heard before all are forgotten: who is honest repeats a command that gets lost.
-constexpr size_t kMostKeys = 16384;
 
 int64_t unixTime_ns() {
     const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
@@ -49,6 +48,7 @@ topics::ToolState toolState(const TickRecord& record, uint64_t epoch) {
     state.set_contacts(record.contacts);
     state.set_max_penetration_m(record.max_penetration);
     state.set_buttons(record.buttons);
+    state.set_waits_for_release(record.waits_for_release);
     state.set_device_state(record.device.state);
     state.set_stop_cause(record.device.stop_cause);
     return state;
@@ -66,6 +66,7 @@ Publisher::Publisher(const PublisherOptions& options)
       tool_state_writer_(participant_),
       status_writer_(participant_),
       lesson_writer_(participant_),
+      picture_writer_(participant_),
       command_reader_(participant_) {
     if (options.secure.empty()) return;
     people_.emplace(options.secure);
@@ -197,17 +198,32 @@ bool Publisher::publishLesson(topics::Lesson lesson) {
     return writeMessage(lesson_writer_, session_, lesson);
 }
 
+bool Publisher::publishScenePicture(uint32_t scene, const std::string& id, const std::string& png) {
+    topics::ScenePicture picture;
+    picture.set_epoch(epoch_);
+    picture.set_scene_id(id);
+    picture.set_png(png);
+    const std::string bytes = picture.SerializeAsString();
+    dds::ScenePictureSample sample{};
+    sample.session = session_;
+    sample.scene = scene;
+    dds::setPayload(sample, bytes);
+    return picture_writer_.write(sample);
+}
+
 std::vector<topics::Command> Publisher::takeCommands() {
     std::vector<topics::Command> commands;
     const uint64_t malformed_before = inbox_.malformedCount();
-    if (command_reader_->newKeys() > kMostKeys) command_reader_.emplace(participant_);
-    command_reader_->take(
+    command_reader_.take(
         kMaxCommandsPerCall, [&](const dds::CommandSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != session_) return;
             const std::optional<GuidPrefix> participant =
-                proven_senders_ ? command_reader_->ownerOf(info.writer) : std::nullopt;
-            if (!mayBeTaken(sample, participant)) return;
-            CommandInbox::Decision decision = inbox_.receive(sample.sender, dds::payloadOf(sample));
+                proven_senders_ ? command_reader_.ownerOf(info.writer) : std::nullopt;
+            if (!mayBeTaken(participant, sample, info.writer)) return;
+            CommandInbox::Decision decision =
+                inbox_.receive(sample.sender, {command_reader_.participantOf(info.writer), info.writer},
+                               dds::payloadOf(sample));
+            if (decision.is_foreign) tellOfForeign(sample, info.writer);
             if (decision.acknowledgement) show(*decision.acknowledgement);
             if (!decision.command) return;
             if (participant) proven_senders_->identify(*decision.command, *participant);
@@ -219,13 +235,20 @@ std::vector<topics::Command> Publisher::takeCommands() {
     return commands;
 }
 
-bool Publisher::mayBeTaken(const dds::CommandSample& sample, const std::optional<GuidPrefix>& participant) {
+bool Publisher::mayBeTaken(const std::optional<GuidPrefix>& participant, const dds::CommandSample& sample,
+                           uint64_t writer) {
     if (!proven_senders_ || (participant && proven_senders_->mayUse(sample.sender, *participant)))
         return true;
-    if (++foreign_commands_ == 1)
-        spdlog::warn(
-            "dropped a command with the sender number of somebody else; more of them are only counted");
+    tellOfForeign(sample, writer);
     return false;
+}
+
+void Publisher::tellOfForeign(const dds::CommandSample& sample, uint64_t writer) {
+    if (++foreign_commands_ > 1) return;
+    const std::string host = command_reader_.hostOf(writer);
+    spdlog::warn(
+        "refused a command from {} with the sender number {} of somebody else; more of them are only counted",
+        host.empty() ? "a PC without a name" : printableName(host), sample.sender);
 }
 
 std::string Publisher::proofOf(const topics::Command& command) const {

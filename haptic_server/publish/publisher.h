@@ -66,6 +66,8 @@ class Publisher {
 
     // The epoch is filled in.
     bool publishLesson(topics::Lesson lesson);
+    // The picture (PNG) of scene number `scene` of the lesson.
+    bool publishScenePicture(uint32_t scene, const std::string& id, const std::string& png);
 
     // These commands have arrived, each valid and new; carry each out and acknowledge() it. What is invalid
     // is answered or counted here. With security their role and name are what the sender's certificate says.
@@ -98,7 +100,9 @@ class Publisher {
     bool writeStatus();
     void show(const CommandAcknowledgement& acknowledgement);
     // Returns false for a command whose sender is not known, or not the one that it says, where that counts.
-    bool mayBeTaken(const dds::CommandSample& sample, const std::optional<GuidPrefix>& participant);
+    bool mayBeTaken(const std::optional<GuidPrefix>& participant, const dds::CommandSample& sample,
+                    uint64_t writer);
+    void tellOfForeign(const dds::CommandSample& sample, uint64_t writer);
 
     uint32_t session_;
     uint64_t epoch_;
@@ -108,7 +112,7 @@ class Publisher {
     uint64_t batch_ = 0;
     LatencyHistogram write_times_;
     topics::Status status_;  // as last published
-    CommandInbox inbox_;
+    CommandInbox inbox_{[this](uint64_t writer) { return command_reader_.isMatched(writer); }};
     uint64_t foreign_commands_ = 0;
     std::optional<People> people_;                 // with security
     std::optional<ProvenSenders> proven_senders_;  // with security
@@ -120,7 +124,8 @@ class Publisher {
     dds::Writer<dds::ToolStateSample> tool_state_writer_;
     dds::Writer<dds::StatusSample> status_writer_;
     dds::Writer<dds::LessonSample> lesson_writer_;
-    std::optional<dds::Reader<dds::CommandSample>> command_reader_;
+    dds::Writer<dds::ScenePictureSample> picture_writer_;
+    dds::Reader<dds::CommandSample> command_reader_;
 };
 
 }  // namespace bonemill

@@ -29,10 +29,7 @@ void EffectStatistics::add(const EffectRecord& record) noexcept {
     if (std::isfinite(record.removed_energy)) removed_energy_ += double(record.removed_energy);
     if (recorded_.heat) raise(max_temperature_, double(record.temperature));
     raise(max_protected_force_, double(record.protected_force));
-    if (record.protected_id != 0 && std::isfinite(record.protected_distance))
-        least_protected_distance_ =
-            std::min(least_protected_distance_.value_or(double(record.protected_distance)),
-                     double(record.protected_distance));
+    noteDistance(record);
     necrotic_ = double(record.necrotic_volume);
     damaged_ = double(record.damaged_volume);
     events_ |= record.events;
@@ -40,6 +37,14 @@ void EffectStatistics::add(const EffectRecord& record) noexcept {
     book(kEventNearProtected, record.protected_id, record);
     book(kEventProtectedTouched, record.touched_id, record);
     book(kEventProtectedDamaged, record.damaged_id, record);
+}
+
+void EffectStatistics::noteDistance(const EffectRecord& record) noexcept {
+    const double distance = double(record.protected_distance);
+    if (record.protected_id == 0 || !std::isfinite(distance)) return;
+    if (least_protected_distance_ && *least_protected_distance_ <= distance) return;
+    least_protected_distance_ = distance;
+    nearest_id_ = record.protected_id;
 }
 
 void EffectStatistics::book(uint32_t event, size_t structure, const EffectRecord& record) noexcept {
@@ -78,6 +83,10 @@ std::vector<std::string> EffectStatistics::warnings(const std::vector<std::strin
     if (events_ & kEventTooHot) warnings.emplace_back("bone too hot");
     if (events_ & kEventSpindleStalled) warnings.emplace_back("spindle stalled");
     return warnings;
+}
+
+std::string EffectStatistics::nearest(const std::vector<std::string>& materials) const {
+    return nearest_id_ == 0 ? "" : nameOf(nearest_id_, materials);
 }
 
 std::vector<std::string> EffectStatistics::touched(const std::vector<std::string>& materials) const {

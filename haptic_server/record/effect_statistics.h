@@ -28,6 +28,8 @@ class EffectStatistics {
     double necrotic() const noexcept { return necrotic_; }
     // It is the distance of the burr's surface, and nothing while no structure was in reach.
     std::optional<double> leastProtectedDistance() const noexcept { return least_protected_distance_; }
+    // The name of the structure that it is of; empty while there is none.
+    std::string nearest(const std::vector<std::string>& materials) const;
     double maxProtectedForce() const noexcept { return max_protected_force_; }
     double damaged() const noexcept { return damaged_; }
 
@@ -39,11 +41,13 @@ class EffectStatistics {
     std::vector<std::string> touched(const std::vector<std::string>& materials) const;
 
   private:
+    void noteDistance(const EffectRecord& record) noexcept;
     void book(uint32_t event, size_t structure, const EffectRecord& record) noexcept;
 
     RecordedEffects recorded_;
     double max_axis_torque_ = 0, max_cutting_power_ = 0, removed_energy_ = 0;
     std::optional<double> max_temperature_, least_protected_distance_;
+    uint32_t nearest_id_ = 0;  // of that distance
     double necrotic_ = 0, max_protected_force_ = 0, damaged_ = 0;
     uint32_t events_ = 0;  // that were ever set
     uint64_t stalled_ticks_ = 0;

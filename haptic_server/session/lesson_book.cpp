@@ -27,7 +27,11 @@ int64_t nowUnixNs() {
 
 LessonBook::LessonBook(std::vector<ListedScene> scenes, ClassTable table)
     : scenes_(std::move(scenes)), table_(std::move(table)) {
-    for (const ListedScene& scene : scenes_) *lesson_.add_scenes() = scene.choice;
+    for (const ListedScene& scene : scenes_) {
+        topics::SceneChoice& choice = *lesson_.add_scenes();
+        choice = scene.choice;
+        choice.clear_picture();
+    }
 }
 
 std::optional<topics::Lesson> LessonBook::takeChanged() {

@@ -26,8 +26,10 @@ class LessonBook {
 
     LessonBook(std::vector<ListedScene> scenes, ClassTable table);
 
-    // The publisher thread asks what is to be shown, once per change; the epoch is still missing.
+    // The publisher thread asks what is to be shown, once per change; the epoch is still missing, and so are the
+    // pictures of the scenes, which never change.
     std::optional<topics::Lesson> takeChanged();
+    const std::vector<ListedScene>& scenes() const noexcept { return scenes_; }
     // The scene of this file is in force now: it is told anew.
     void enterScene(const std::string& file);
 
@@ -57,7 +59,7 @@ class LessonBook {
 
   private:
     mutable std::mutex mutex_;
-    std::vector<ListedScene> scenes_;
+    const std::vector<ListedScene> scenes_;
     TableWriter table_;
     topics::Lesson lesson_;
     bool has_changed_ = true;

@@ -147,8 +147,22 @@ void ShowSession::begin() {
 }
 
 void ShowSession::publishLesson() {
-    if (std::optional<topics::Lesson> lesson = commands_.lesson().takeChanged())
-        publisher_.publishLesson(std::move(*lesson));
+    std::optional<topics::Lesson> lesson = commands_.lesson().takeChanged();
+    if (!lesson) return;
+    budget_.spend(lesson->ByteSizeLong());
+    publisher_.publishLesson(std::move(*lesson));
+}
+
+// One per round, after what the session needs: while a node waits nothing is left of the budget. DDS keeps them for
+// those who come later.
+void ShowSession::publishPictures() {
+    const std::vector<ListedScene>& scenes = commands_.lesson().scenes();
+    while (next_picture_ < scenes.size() && scenes[next_picture_].choice.picture().empty()) ++next_picture_;
+    if (next_picture_ == scenes.size() || budget_.available(monotonicNowNs()) <= 0) return;
+    const topics::SceneChoice& choice = scenes[next_picture_].choice;
+    if (!publisher_.publishScenePicture(uint32_t(next_picture_), choice.id(), choice.picture())) return;
+    budget_.spend(choice.picture().size());
+    ++next_picture_;
 }
 
 void ShowSession::publishSceneInfo() {
@@ -171,6 +185,7 @@ void ShowSession::round() {
     carryOutCommands();
     publishDensities();
     publishLesson();
+    publishPictures();
     if (now_ns - last_status_ns_ > (has_changed_ ? kStatusAfterChangeNs : kStatusPeriodNs)) publishStatus();
 }
 

@@ -53,6 +53,7 @@ class ShowSession {
     void publishStatus();
     void publishSceneInfo();
     void publishLesson();
+    void publishPictures();
     void carryOutCommands();
     void answer(const topics::Command& command, const std::string& result);
     void log(const topics::Command& command, const std::string& result);
@@ -79,6 +80,7 @@ class ShowSession {
     topics::SceneInfo scene_info_;               // as last published
     std::optional<topics::Command> under_way_;   // an export that was begun and has not ended
     LogLimit orders_logged_{20, 3 * kNsPerSecond};
+    size_t next_picture_ = 0;  // of the scenes of the lesson
     int64_t last_tool_state_ns_ = 0;
     int64_t last_status_ns_ = 0;
     bool has_changed_ = false;  // since the last status

@@ -113,6 +113,7 @@ void ShownEffects::fill(const EffectStatistics& statistics, const std::vector<st
         training.set_max_protected_force_n(statistics.maxProtectedForce());
         if (const auto distance = statistics.leastProtectedDistance())
             training.set_least_distance_mm(*distance * kPerMillimetre);
+        training.set_nearest_structure(statistics.nearest(materials));
     }
     if (recorded_.heat) {
         training.set_necrotic_mm3(statistics.necrotic() * kPerCubicMillimetre);

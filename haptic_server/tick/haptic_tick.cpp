@@ -154,6 +154,7 @@ bool HapticTick::tick(TickIo& io) noexcept {
 
     effects_.afterSolve(X_VT_, *model_);
     const MillingResult milled = mill(faults);
+    keepWaiting(step);
     const EffectRecord& effects = effects_.finish();
     chooseSettings(step, faults);
     TickRecord record = makeRecord(input, step);
@@ -201,9 +202,10 @@ void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept
 void HapticTick::placeTool() noexcept {
     constexpr int kMostSteps = 64;  // of a burr's radius: some cm
     Pose X_VT = X_VT_device_;
-    const Eigen::Vector3d step = tools_[tool_].burr.radius * (X_VT.rotation * Eigen::Vector3d::UnitY());
+    const double radius = tools_[tool_].burr.radius;
+    const Eigen::Vector3d step = radius * (X_VT.rotation * Eigen::Vector3d::UnitY());
     int steps = 0;
-    for (; steps < kMostSteps && isInBone(X_VT); ++steps) X_VT.position += step;
+    for (; steps < kMostSteps && isInBone(X_VT, radius); ++steps) X_VT.position += step;
     hand_limits_.beginSuddenChange();
     has_changed_suddenly_ = true;
     if (steps == kMostSteps) return;  // it comes as it can
@@ -213,10 +215,9 @@ void HapticTick::placeTool() noexcept {
     effects_.restart(Restart::kOtherLaw);
 }
 
-// Looks at the burr's middle and at six places on it.
-bool HapticTick::isInBone(const Pose& X_VT) const noexcept {
+// Looks at the burr's middle and at six places at this distance from it.
+bool HapticTick::isInBone(const Pose& X_VT, double radius) const noexcept {
     const VoxelVolume& volume = bone_.volume;
-    const double radius = tools_[tool_].burr.radius;
     for (int i = -1; i < 6; ++i) {
         const Eigen::Vector3d offset =
             i < 0 ? Eigen::Vector3d::Zero().eval()
@@ -252,10 +253,11 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     if (effects_.isEmpty()) return;
     const bool remove = input.buttons & kButtonRemove;
     const bool add = input.buttons & kButtonAdd;
+    if (!input.is_stale && !remove && !add) waits_for_release_ = false;
     EffectTick start;
     start.dt = config_.dt * input.periods;
     start.periods = input.periods;
-    start.may_mill = !place_.isLost() && !input.is_stale && input.device.isEngaged() &&
+    start.may_mill = !place_.isLost() && !input.is_stale && input.device.isEngaged() && !waits_for_release_ &&
                      !(history_ && history_->isMillingPaused());
     start.is_pedal_down = start.may_mill && remove && !add;
     start.is_add_wanted = start.may_mill && add && !remove;
@@ -294,6 +296,7 @@ MillingResult HapticTick::mill(uint32_t& faults) noexcept {
     MillingResult milled;
     bool shell_is_complete = true;
     if (history_->restoreSome(bone_, shell_is_complete)) {
+        waits_for_release_ = true;
         hand_limits_.beginSuddenChange();
         gradient_.expectOtherBone();
         effects_.restart(history_->isTargetScanned() ? Restart::kScanPutBack : Restart::kBonePutBack);
@@ -304,6 +307,14 @@ MillingResult HapticTick::mill(uint32_t& faults) noexcept {
     if (!shell_is_complete) faults |= kFaultShellOverflow;
     history_->endWrite(milled.removed_voxels, milled.added_voxels);
     return milled;
+}
+
+// Bone that is put back around a burr at work is not cut before somebody wants it: the pedal is let go once,
+// or the burr has left the bone by so much that no tremor leads there.
+void HapticTick::keepWaiting(const SpoStep& step) noexcept {
+    constexpr double kAway = 2;  // radii of the burr from its middle
+    if (!waits_for_release_ || history_->finishedOrder() != history_->takenUpOrder()) return;
+    waits_for_release_ = step.contacts > 0 || isInBone(X_VT_, kAway * tools_[tool_].burr.radius);
 }
 
 MillingResult HapticTick::millWithEffects(uint32_t& faults) noexcept {
@@ -340,6 +351,7 @@ TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step)
     record.coupling_share = hand_coupling_.share();
     record.rotation_share = hand_coupling_.rotationShare();
     record.buttons = input.buttons;
+    record.waits_for_release = waits_for_release_;
     record.device = input.device;
     record.bone_order = history_ ? history_->finishedOrder() : 0;
     return record;

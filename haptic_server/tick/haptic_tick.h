@@ -61,7 +61,7 @@ class HapticTick {
     void acceptPose(const DeviceInput& input, uint32_t& faults) noexcept;
     bool believe(const DeviceInput& input) noexcept;
     void placeTool() noexcept;
-    bool isInBone(const Pose& X_VT) const noexcept;
+    bool isInBone(const Pose& X_VT, double radius) const noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
     SpoModel* modelOf(ContactLaw law) noexcept;
@@ -69,6 +69,7 @@ class HapticTick {
     void beginEffects(const DeviceInput& input) noexcept;
     SpoStep moveAndFeel(const DeviceInput& input, uint32_t& faults) noexcept;
     MillingResult mill(uint32_t& faults) noexcept;
+    void keepWaiting(const SpoStep& step) noexcept;
     MillingResult millWithEffects(uint32_t& faults) noexcept;
     Wrench inWorld(const Wrench& wrench_V) const noexcept;
     TickRecord makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept;
@@ -96,6 +97,7 @@ class HapticTick {
     HandPlace place_;
     uint32_t placements_ = 0;                               // of the hand, that were followed
     bool was_pedal_down_ = false, was_add_wanted_ = false;  // in the last tick
+    bool waits_for_release_ = false;     // the bone was put back: it is not milled by a pedal that was down
     bool has_changed_suddenly_ = false;  // what the simulated side stores, by no one's work
     uint64_t tick_ = 0;
     uint32_t latched_faults_ = 0;

@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 constexpr auto kFirstPause = 500ms, kLongestPause = 15000ms;
 constexpr auto kSilence = 12s;  // the gateway says something every few seconds
 constexpr auto kLook = 250ms;

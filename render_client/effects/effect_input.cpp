@@ -33,7 +33,7 @@ EffectInput effectInputOf(const topics::ToolState& tool, const topics::SceneInfo
     const Pose X_VW = readPose(info.p_wv_m(), info.q_wv()).value_or(Pose()).inverse();
     if (const auto X_WT = readPose(tool.p_wt_m(), tool.q_wt())) input.X_VT = X_VW * *X_WT;
     input.burr_radius = bounded(info.burr_radius_m(), kSmallestBurr, kLargestBurr);
-    input.is_pedal_down = (tool.buttons() & kButtonRemove) != 0;
+    input.is_pedal_down = (tool.buttons() & kButtonRemove) != 0 && !tool.waits_for_release();
     input.up_V = X_VW.rotation * upOf(info);
     const auto force_W = readVector(tool.force_n());
     if (force_W && force_W->norm() > kTouch) input.towards_bone_V = X_VW.rotation * -force_W->normalized();

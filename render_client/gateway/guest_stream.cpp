@@ -21,6 +21,8 @@ int rankOf(Topic topic) {
             return 3;
         case Sample::LESSON:
             return 4;
+        case Sample::SCENE_PICTURE:
+            return 5;
         default:
             return 1;
     }

@@ -42,13 +42,14 @@ SessionMirror::SessionMirror(const dds::Participant& participant, uint32_t sessi
       session_(session),
       viewer_reader_(participant),
       remark_reader_(participant),
-      servers_(std::make_unique<ServerReaders>(participant, viewer_reader_.handle())) {}
+      servers_(std::make_unique<ServerReaders>(participant, viewer_reader_)) {}
 
 SessionChanges SessionMirror::poll() {
     takeStatus();
     readAnewIfDue();
     takeSceneInfo();
     takeLesson();
+    takePictures();
     takeStructures();
     takeNodes();
     takeToolState();
@@ -120,6 +121,17 @@ void SessionMirror::takeLesson() {
                               if (!accept(lesson->epoch(), servers_->lesson, info.writer)) return;
                               keep(Sample::LESSON, 0, lesson->SerializeAsString());
                           });
+}
+
+void SessionMirror::takePictures() {
+    servers_->pictures.take(
+        kMostSmallSamples, [this](const dds::ScenePictureSample& sample, const dds::SampleInfo& info) {
+            if (!info.has_data || sample.session != session_) return;
+            const auto picture = parseScenePicture(dds::payloadOf(sample), sample.scene);
+            if (!picture) return dropMalformed("picture of a scene");
+            if (!accept(picture->epoch(), servers_->pictures, info.writer)) return;
+            keep(Sample::SCENE_PICTURE, sample.scene, picture->SerializeAsString());
+        });
 }
 
 void SessionMirror::takeStructures() {
@@ -206,7 +218,7 @@ void SessionMirror::takeViewers() {
         if (!info.has_data || sample.session != session_) return;
         std::optional<topics::Viewer> viewer = parseViewer(dds::payloadOf(sample), sample.sender);
         if (!viewer) return dropMalformed("viewer");
-        viewers_.hear(std::move(*viewer), info.writer, now);
+        viewers_.hear(std::move(*viewer), viewer_reader_.participantOf(info.writer), now);
         ++heard;
     });
     if (heard == 0 && now - listed_ < kListEvery) return;
@@ -252,6 +264,8 @@ void SessionMirror::takeBricks() {
     brick_reader_->take(
         kMostBricks, [this](const dds::DensityBrickSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != session_) return;
+            const uint64_t participant = brick_reader_->participantOf(info.writer);
+            if (!choice_.isOurs(server_numbers_.of(participant, info.writer))) return;
             const auto brick = parseDensityBrick(dds::payloadOf(sample));
             if (!brick) return dropMalformed("density brick");
             if (brick->epoch() != state_.epoch) return;
@@ -297,7 +311,7 @@ void SessionMirror::readAnewIfDue() {
     const bool has_candidate = is_due && choice_.hasCandidate() && !isServerAlive();
     if (!choice_.takeLost() && !has_candidate) return;
     if (has_candidate) read_anew_ = now;
-    servers_ = std::make_unique<ServerReaders>(participant_, viewer_reader_.handle());
+    servers_ = std::make_unique<ServerReaders>(participant_, viewer_reader_);
     choice_.forgetRefused();
 }
 

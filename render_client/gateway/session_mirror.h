@@ -39,6 +39,7 @@ class SessionMirror {
     void takeStatus();
     void takeSceneInfo();
     void takeLesson();
+    void takePictures();
     void takeStructures();
     void takeToolState();
     void takeNodes();

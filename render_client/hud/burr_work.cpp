@@ -5,6 +5,7 @@
 namespace bonemill {
 
 BurrWork burrWorkOf(const topics::ToolState& tool) {
+    if (tool.waits_for_release()) return BurrWork::kIdle;
     if (tool.buttons() & kButtonRemove) return BurrWork::kRemoving;
     return tool.buttons() & kButtonAdd ? BurrWork::kAdding : BurrWork::kIdle;
 }

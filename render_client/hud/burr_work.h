@@ -1,4 +1,4 @@
-// The tool's buttons say what the burr does to the bone. The function is pure; any thread may call it.
+// Says what the burr does to the bone, from the tool's buttons and what keeps it from milling. The function is pure; any thread may call it.
 #pragma once
 
 #include "proto/topics.pb.h"

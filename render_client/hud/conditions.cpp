@@ -45,6 +45,9 @@ void addPause(const HudInput& input, std::vector<Condition>& conditions) {
     if (is_asked && input.status->is_milling_paused())
         conditions.push_back(
             {"paused", "Milling is paused: P goes on, Start begins the next attempt.", HudTone::kWarning});
+    else if (is_asked && input.tool->waits_for_release())
+        conditions.push_back({"release", "The bone was put back: release the pedal, then the burr cuts again.",
+                              HudTone::kWarning});
 }
 
 }  // namespace

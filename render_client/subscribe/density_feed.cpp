@@ -13,40 +13,42 @@ constexpr int kMostLackingSaid = 1024;
 
 }  // namespace
 
-void DensityFeed::update(DensityStore& store, const std::optional<topics::SceneInfo>& info, uint64_t epoch,
-                         int64_t now_ns, const std::function<void(const std::string&)>& drop) {
-    follow(store, info, epoch);
+void DensityFeed::update(DensityStore& store, const DensityRun& run, int64_t now_ns,
+                         const std::function<void(const std::string&)>& drop) {
+    follow(store, run);
     if (!store.wanted().empty()) {
         wanted_ns_ = now_ns;
         if (!reader_) reader_.emplace(wire_);
         if (!writer_) writer_.emplace(wire_);
     }
     if (!reader_) return;
-    take(store, drop);
+    take(store, run, drop);
     say(store, now_ns);
     if (now_ns - wanted_ns_ < kFarewell_ns) return;
     reader_.reset();
     writer_.reset();
 }
 
-void DensityFeed::follow(DensityStore& store, const std::optional<topics::SceneInfo>& info, uint64_t epoch) {
-    if (epoch != epoch_) {
+void DensityFeed::follow(DensityStore& store, const DensityRun& run) {
+    if (run.epoch != epoch_) {
         store.clear();
-        epoch_ = epoch;
+        epoch_ = run.epoch;
         wished_.clear();
     }
-    if (!info || !info->has_densities()) return;
-    const DensityGrid grid = densityGridOf(info->densities());
+    if (!run.info || !run.info->has_densities()) return;
+    const DensityGrid grid = densityGridOf(run.info->densities());
     if (store.grid() != grid) wished_.clear();  // its numbers are of other bricks
     store.setGrid(grid);
-    air_ = info->densities().air();
+    air_ = run.info->densities().air();
 }
 
-void DensityFeed::take(DensityStore& store, const std::function<void(const std::string&)>& drop) {
+void DensityFeed::take(DensityStore& store, const DensityRun& run,
+                       const std::function<void(const std::string&)>& drop) {
     reader_->take(kMostTaken, [&](const dds::DensityBrickSample& sample, const dds::SampleInfo& info) {
         if (!info.has_data || sample.session != session_ || !store.grid()) return;
         // What others wish comes here, too.
         if (!std::ranges::binary_search(wished_, sample.brick)) return;
+        if (!run.is_its(reader_->participantOf(info.writer), info.writer)) return;
         const auto message = parseDensityBrick(dds::payloadOf(sample));
         if (message && message->epoch() != epoch_) return;
         if (!message || !apply(store, sample.brick, *message))

@@ -15,6 +15,15 @@
 
 namespace bonemill {
 
+// The run of the server that is shown.
+struct DensityRun {
+    const std::optional<topics::SceneInfo>& info;  // the newest
+    uint64_t epoch;                                // 0: none
+    // Says whether a writer of this participant (dds::Reader::participantOf) is that server's: nobody else's bricks
+    // are taken.
+    std::function<bool(uint64_t participant, uint64_t writer)> is_its;
+};
+
 class DensityFeed {
   public:
     static constexpr int64_t kWishPeriod_ns = 100'000'000;   // while what it says changes
@@ -25,17 +34,17 @@ class DensityFeed {
     DensityFeed(const Wire& wire, uint32_t session, uint64_t sender)
         : wire_(wire), session_(session), sender_(sender) {}
 
-    // Takes what has arrived, and says what the store wants. `info` is the newest of the server's run `epoch`
-    // (0: none); another run empties the store. `drop` is told of what makes no sense. It never waits.
-    void update(DensityStore& store, const std::optional<topics::SceneInfo>& info, uint64_t epoch,
-                int64_t now_ns, const std::function<void(const std::string&)>& drop);
+    // Takes what has arrived, and says what the store wants; another run empties the store. `drop` is told of what
+    // makes no sense. It never waits.
+    void update(DensityStore& store, const DensityRun& run, int64_t now_ns,
+                const std::function<void(const std::string&)>& drop);
 
     bool isListening() const { return reader_.has_value(); }
     uint64_t takenBricks() const { return taken_bricks_; }
 
   private:
-    void follow(DensityStore& store, const std::optional<topics::SceneInfo>& info, uint64_t epoch);
-    void take(DensityStore& store, const std::function<void(const std::string&)>& drop);
+    void follow(DensityStore& store, const DensityRun& run);
+    void take(DensityStore& store, const DensityRun& run, const std::function<void(const std::string&)>& drop);
     bool apply(DensityStore& store, uint32_t brick, const topics::DensityBrick& message);
     bool isAir(uint32_t brick) const;
     topics::DensityWish wishOf(DensityStore& store);

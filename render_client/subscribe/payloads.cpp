@@ -136,6 +136,11 @@ bool isUsable(const topics::SceneChoice& scene) {
            isTime(scene.expected_s()) && scene.picture().size() <= kMostPictureBytes;
 }
 
+bool isUsable(const topics::ScenePicture& picture) {
+    return !picture.scene_id().empty() && picture.scene_id().size() <= kLongestName &&
+           picture.png().size() <= kMostPictureBytes;
+}
+
 bool isUsable(const topics::Attempt& attempt) {
     return isTime(attempt.time_s()) && isSane(attempt.removed_mm3()) && isSane(attempt.max_force_n()) &&
            attempt.max_force_n() >= 0 && isUsable(attempt.training()) &&
@@ -188,12 +193,16 @@ constexpr size_t mostBytes(const topics::Status*) {
 constexpr size_t mostBytes(const topics::Lesson*) {
     return 8u << 20;
 }
+constexpr size_t mostBytes(const topics::ScenePicture*) {
+    return 128u << 10;
+}
 constexpr size_t mostBytes(const topics::Viewer*) {
     return 4u << 10;
 }
 
 void keepShownText(topics::Training& training) {
     for (std::string& warning : *training.mutable_warnings()) warning = shownText(warning, kLongestText);
+    training.set_nearest_structure(shownName(training.nearest_structure()));
 }
 
 void keepShownText(topics::SceneChoice& scene) {
@@ -287,6 +296,14 @@ std::optional<topics::Lesson> parseLesson(std::span<const uint8_t> payload) {
     for (topics::SceneChoice& scene : *lesson->mutable_scenes()) keepShownText(scene);
     for (topics::Attempt& attempt : *lesson->mutable_attempts()) keepShownText(attempt);
     return lesson;
+}
+
+std::optional<topics::ScenePicture> parseScenePicture(std::span<const uint8_t> payload, uint32_t scene) {
+    std::optional<topics::ScenePicture> picture = parseOfEpoch<topics::ScenePicture>(payload);
+    if (!picture || scene >= uint32_t(kMostScenes)) return std::nullopt;
+    picture->DiscardUnknownFields();
+    picture->set_scene_id(shownName(picture->scene_id()));
+    return picture;
 }
 
 std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint64_t sender) {

@@ -37,6 +37,8 @@ std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload);
 // Names and texts are cut to what stands on a screen; there are 64 scenes at most, with pictures of at most
 // 64 KiB, and 256 attempts.
 std::optional<topics::Lesson> parseLesson(std::span<const uint8_t> payload);
+// `scene` is that of the sample's envelope, one of the 64.
+std::optional<topics::ScenePicture> parseScenePicture(std::span<const uint8_t> payload, uint32_t scene);
 // `sender` is that of the sample's envelope. The name is cut to 64 bytes of printable UTF-8; only an
 // instructor points.
 std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint64_t sender);

@@ -54,6 +54,7 @@ void SceneSubscriber::takeAll(size_t max_nodes) {
     readAnewIfDue();
     takeSceneInfo();
     takeLesson();
+    takePictures();
     takeStructures();
     takeNodes(max_nodes);
     takeToolState();
@@ -79,7 +80,10 @@ bool SceneSubscriber::waitForData(std::chrono::nanoseconds timeout) const {
 
 void SceneSubscriber::followDensities(DensityStore& densities) {
     if (!link_) return;
-    link_->density_feed.update(densities, scene_info_, epoch(), monotonicNowNs(),
+    const auto is_ours = [this](uint64_t participant, uint64_t writer) {
+        return choice_.isOurs(server_numbers_.of(participant, writer));
+    };
+    link_->density_feed.update(densities, {scene_info_, epoch(), is_ours}, monotonicNowNs(),
                                [this](const std::string& what) { dropMalformed(what); });
 }
 
@@ -105,8 +109,32 @@ void SceneSubscriber::takeLesson() {
             if (!info.has_data || sample.session != options_.session) return;
             std::optional<topics::Lesson> lesson = parseLesson(dds::payloadOf(sample));
             if (!lesson) return dropMalformed("lesson");
-            if (accept(lesson->epoch(), link_->servers->lesson, info.writer)) lesson_ = std::move(lesson);
+            if (!accept(lesson->epoch(), link_->servers->lesson, info.writer)) return;
+            lesson_ = std::move(lesson);
+            showPictures();
         });
+}
+
+void SceneSubscriber::takePictures() {
+    link_->servers->pictures.take(
+        kMaxSmallSamples, [this](const dds::ScenePictureSample& sample, const dds::SampleInfo& info) {
+            if (!info.has_data || sample.session != options_.session) return;
+            std::optional<topics::ScenePicture> picture =
+                parseScenePicture(dds::payloadOf(sample), sample.scene);
+            if (!picture) return dropMalformed("picture of scene " + std::to_string(sample.scene));
+            if (!accept(picture->epoch(), link_->servers->pictures, info.writer)) return;
+            pictures_[sample.scene] = std::move(*picture);
+            showPictures();
+        });
+}
+
+void SceneSubscriber::showPictures() {
+    if (!lesson_) return;
+    for (const auto& [scene, picture] : pictures_) {
+        if (int(scene) >= lesson_->scenes_size()) continue;
+        topics::SceneChoice& choice = *lesson_->mutable_scenes(int(scene));
+        if (choice.id() == picture.scene_id()) choice.set_picture(picture.png());
+    }
 }
 
 void SceneSubscriber::takeSceneInfo() {
@@ -165,7 +193,7 @@ void SceneSubscriber::takeViewers() {
                 return;
             std::optional<topics::Viewer> viewer = parseViewer(dds::payloadOf(sample), sample.sender);
             if (!viewer) return dropMalformed("viewer " + std::to_string(sample.sender));
-            viewers_.hear(std::move(*viewer), info.writer, now);
+            viewers_.hear(std::move(*viewer), link_->viewer_reader.participantOf(info.writer), now);
         });
     viewers_.forgetSilent(now);
 }
@@ -236,6 +264,7 @@ void SceneSubscriber::beginRun() {
     tool_state_.reset();
     status_.reset();
     lesson_.reset();
+    pictures_.clear();
     structure_changes_ += !structures_.empty();
     structures_.clear();
     structure_triangles_ = 0;

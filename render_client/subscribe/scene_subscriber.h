@@ -56,7 +56,7 @@ class SceneSubscriber {
     // What its effects count since the state before, they count here since the poll() before.
     const std::optional<topics::ToolState>& toolState() const noexcept { return tool_state_; }
     const std::optional<topics::Status>& status() const noexcept { return status_; }
-    // A server that shows another scene tells it anew.
+    // A server that shows another scene tells it anew. The pictures of its scenes come by and by.
     const std::optional<topics::Lesson>& lesson() const noexcept { return lesson_; }
 
     // The protected structures of the current server run, by their number. The count changes with them;
@@ -115,6 +115,8 @@ class SceneSubscriber {
     void takeAll(size_t max_nodes);
     void takeStatus();
     void takeLesson();
+    void takePictures();
+    void showPictures();
     void takeSceneInfo();
     void takeNodes(size_t max_nodes);
     void takeStructures();
@@ -142,6 +144,7 @@ class SceneSubscriber {
     std::optional<topics::ToolState> tool_state_;
     std::optional<topics::Status> status_;
     std::optional<topics::Lesson> lesson_;
+    std::map<uint32_t, topics::ScenePicture> pictures_;  // of its scenes, by number
     std::map<uint32_t, StructureSurface> structures_;
     uint64_t structure_changes_ = 0;
     size_t structure_triangles_ = 0;

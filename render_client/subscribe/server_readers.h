@@ -12,24 +12,28 @@ namespace bonemill {
 
 class ServerReaders {
   public:
-    // Joins `also`, another reader, to the wait. Throws UserError.
-    ServerReaders(const Wire& wire, int32_t also)
+    // Joins `also`, another reader, to the wait; it must outlive this object. Throws UserError.
+    ServerReaders(const Wire& wire, const Inlet<dds::ViewerSample>& also)
         : nodes(wire),
           scene_info(wire),
           structures(wire),
           tool_state(wire),
           status(wire),
           lesson(wire),
+          pictures(wire),
           remote_(wire.remote) {
         if (remote_) return;
         wait_set_.emplace(*wire.participant);
-        for (const int32_t reader : {nodes.handle(), scene_info.handle(), structures.handle(),
-                                     tool_state.handle(), status.handle(), lesson.handle(), also})
-            wait_set_->add(reader);
+        const auto watch = [this](const auto& reader) {
+            wait_set_->add([&reader] { return reader.handle(); });
+        };
+        watch(nodes), watch(scene_info), watch(structures), watch(tool_state), watch(status), watch(lesson);
+        watch(pictures);
+        watch(also);
     }
 
     // Returns true when something can be taken, false when `timeout` passed before.
-    bool wait(std::chrono::nanoseconds timeout) const {
+    bool wait(std::chrono::nanoseconds timeout) {
         return remote_ ? remote_->wait(timeout) : wait_set_->wait(timeout);
     }
 
@@ -39,6 +43,7 @@ class ServerReaders {
     Inlet<dds::ToolStateSample> tool_state;
     Inlet<dds::StatusSample> status;
     Inlet<dds::LessonSample> lesson;
+    Inlet<dds::ScenePictureSample> pictures;
 
   private:
     RemoteSession* remote_;

@@ -21,14 +21,14 @@ struct SessionLink {
         : participant(remote ? std::nullopt : std::make_optional<dds::Participant>(domain)),
           wire(remote ? Wire(*remote, session) : Wire(*participant)),
           viewer_reader(wire),
-          servers(std::make_unique<ServerReaders>(wire, viewer_reader.handle())),
+          servers(std::make_unique<ServerReaders>(wire, viewer_reader)),
           viewer_writer(wire),
           hand(wire, session, sender, role, first_wish),
           density_feed(wire, session, sender),
           command_writer(wire) {}
 
     // What was refused meanwhile, DDS gives to new readers only.
-    void readAnew() { servers = std::make_unique<ServerReaders>(wire, viewer_reader.handle()); }
+    void readAnew() { servers = std::make_unique<ServerReaders>(wire, viewer_reader); }
     // It is the way to the gateway that is lost, whatever became of the server.
     bool isCut() const { return wire.remote && wire.remote->isCut(); }
 

@@ -1,21 +1,22 @@
 #include "render_client/subscribe/viewer_list.h"
 
-#include <algorithm>
 #include <utility>
+
+#include "common/make_room.h"
 
 namespace bonemill {
 
-void ViewerList::hear(topics::Viewer viewer, uint64_t writer, Clock::time_point now) {
+void ViewerList::hear(topics::Viewer viewer, uint64_t participant, Clock::time_point now) {
     const auto known = heard_.find(viewer.sender());
-    if (known == heard_.end()) {
-        const auto is_its = [writer](const auto& entry) { return entry.second.writer == writer; };
-        if (heard_.size() >= kMostViewers || size_t(std::ranges::count_if(heard_, is_its)) >= kMostOfWriter)
-            return;
-    } else if (known->second.writer != writer) {
-        return;  // until the other writer falls silent
-    }
+    if (known == heard_.end())
+        makeRoomFor(
+            participant, heard_, {kMostViewers, kMostOfParticipant},
+            [](const auto& entry) { return entry.second.participant; },
+            [](const auto& entry) { return entry.second.at; });
+    else if (known->second.participant != participant)
+        return;  // until the other one falls silent
     const uint64_t sender = viewer.sender();
-    heard_[sender] = {std::move(viewer), writer, now};
+    heard_[sender] = {std::move(viewer), participant, now};
 }
 
 void ViewerList::forgetSilent(Clock::time_point now) {

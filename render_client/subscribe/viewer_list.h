@@ -1,5 +1,6 @@
-// Who else is watching. It is bounded, whatever senders are invented: each writer speaks for few viewers, and
-// for none that another writer speaks for. For one thread.
+// Who else is watching. It is bounded, whatever senders are invented: each participant speaks for few viewers, the
+// last that it spoke for, and for none that another one speaks for; of too many the least recent goes of who has most.
+// For one thread.
 #pragma once
 
 #include <chrono>
@@ -16,10 +17,10 @@ class ViewerList {
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::seconds kTimeout{4};
     static constexpr size_t kMostViewers = 256;
-    static constexpr size_t kMostOfWriter = 64;  // a gateway's guests
+    static constexpr size_t kMostOfParticipant = 64;  // a gateway's guests
 
-    // `writer` is who tells of this viewer (dds::SampleInfo::writer).
-    void hear(topics::Viewer viewer, uint64_t writer, Clock::time_point now);
+    // `participant` is who tells of this viewer (dds::Reader::participantOf).
+    void hear(topics::Viewer viewer, uint64_t participant, Clock::time_point now);
     // Forgets those that were not heard within kTimeout.
     void forgetSilent(Clock::time_point now);
     // Returns them by sender.
@@ -28,7 +29,7 @@ class ViewerList {
   private:
     struct Heard {
         topics::Viewer viewer;
-        uint64_t writer = 0;
+        uint64_t participant = 0;
         Clock::time_point at;
     };
     std::map<uint64_t, Heard> heard_;  // by sender

@@ -60,6 +60,13 @@ struct RemoteTopic<dds::LessonSample> {
     static void setKey(dds::LessonSample&, const gateway::Sample&) {}
 };
 template <>
+struct RemoteTopic<dds::ScenePictureSample> {
+    static constexpr auto kTopic = gateway::Sample::SCENE_PICTURE;
+    static void setKey(dds::ScenePictureSample& sample, const gateway::Sample& from) {
+        sample.scene = uint32_t(from.key());
+    }
+};
+template <>
 struct RemoteTopic<dds::RemarkSample> {
     static constexpr auto kTopic = gateway::Sample::REMARK;
     static void setKey(dds::RemarkSample& sample, const gateway::Sample& from) {

@@ -1,6 +1,6 @@
 // What the page knows of the session: the newest of everything that came, and who we are in it.
 import {
-  Role, type FromLink, type LessonView, type RemarkView, type SceneView, type StatusView, type ToolView, type ViewerView,
+  Role, type FromLink, type LessonView, type RemarkView, type ScenePictureView, type SceneView, type StatusView, type ToolView, type ViewerView,
 } from './shared/messages';
 
 export type Connection =
@@ -29,6 +29,7 @@ export class Session {
   hasBeenComplete = false;  // since this run of the server began; milling changes the count faster than it is told
   readonly viewers = new Map<string, { viewer: ViewerView; heardMs: number }>();
   readonly remarks = new Map<string, RemarkView>();
+  private readonly pictures = new Map<number, ScenePictureView>();  // of the lesson's scenes
   private events = 0;
   private eventsUntil = 0;
   private eventStructure = 0;
@@ -56,6 +57,7 @@ export class Session {
         this.nodes = 0;
         this.hasBeenComplete = false;
         this.remarks.clear();
+        this.pictures.clear();
         break;
       case 'scene':
         this.scene = message.scene;
@@ -69,6 +71,11 @@ export class Session {
         break;
       case 'lesson':
         this.lesson = message.lesson;
+        this.showPictures();
+        break;
+      case 'picture':
+        this.pictures.set(message.scene, message.picture);
+        this.showPictures();
         break;
       case 'viewer':
         if (message.viewer) this.viewers.set(message.sender, { viewer: message.viewer, heardMs: now });
@@ -85,6 +92,14 @@ export class Session {
   showNodes(count: number): void {
     this.nodes = count;
     this.hasBeenComplete ||= this.isComplete;
+  }
+
+  // They come by themselves.
+  private showPictures(): void {
+    for (const [scene, { sceneId, png }] of this.pictures) {
+      const choice = this.lesson?.scenes[scene];
+      if (choice?.id === sceneId) choice.picture = png;
+    }
   }
 
   private takeTool(tool: ToolView, now: number): void {

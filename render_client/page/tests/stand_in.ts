@@ -56,7 +56,7 @@ export async function startStandIn(page: string, role: number, triangles: number
       return socket.close();
     }
     socket.send(toBinary(ToGuestSchema, create(ToGuestSchema, {
-      kind: { case: 'welcome', value: { ticket: 'ticket', name: 'Anna', role, sender: kSender, version: 1 } },
+      kind: { case: 'welcome', value: { ticket: 'ticket', name: 'Anna', role, sender: kSender, version: 2 } },
     })));
     sockets.add(socket);
     const held = new Set(leaves.map(BigInt)), wanted = nodes.filter((node) => !held.has(node.key));

@@ -193,6 +193,10 @@ export function lesson(): Sample {
   })));
 }
 
+export function scenePicture(scene: number, sceneId: string, png: Uint8Array): Sample {
+  return sample(Sample_Topic.SCENE_PICTURE, scene, toBinary(wire.ScenePictureSchema, create(wire.ScenePictureSchema, { epoch: kEpoch, sceneId, png })));
+}
+
 export function viewer(sender: number, name: string, role: wire.Viewer_Role, pointer: number[] = []): Sample {
   return sample(Sample_Topic.VIEWER, sender, toBinary(wire.ViewerSchema, create(wire.ViewerSchema, {
     sender: BigInt(sender), name, role, frameRateHz: 30, isComplete: true, pointerM: pointer, link: 'viewer',

@@ -17,6 +17,7 @@ import { MillingSynth } from '../src/sound/milling_synth';
 import { thinned } from '../src/stroke_pen';
 import { ToolHold } from '../src/tool_hold';
 import { actionOf } from '../src/ui/key_table';
+import { conditions } from '../src/ui/words';
 import { Orbit, frustumPlanes, isBoxSeen, pixelOf } from '../src/view/camera';
 import { makeFrame, type PictureView } from '../src/view/picture_view';
 import * as synthetic from './synthetic';
@@ -175,6 +176,32 @@ test('a viewer that falls silent is gone', () => {
   session.take({ kind: 'viewer', sender: '5', viewer: payloads.viewerOf(sample.payload) }, 1000);
   assert.equal(session.others(2000).length, 1);
   assert.equal(session.others(9000).length, 0);
+});
+
+test('pictures of scenes come by themselves, and stay over a change of the lesson', () => {
+  const session = new Session(), png = new Uint8Array([1, 2, 3]);
+  const lesson = () => session.take({ kind: 'lesson', lesson: payloads.lessonOf(synthetic.lesson().payload) }, 0);
+  const picture = (scene: number, id: string) =>
+    session.take({ kind: 'picture', scene, picture: payloads.pictureOf(synthetic.scenePicture(scene, id, png).payload) }, 0);
+  picture(1, 'other');
+  lesson();
+  assert.deepEqual(session.lesson?.scenes.map((scene) => scene.picture?.length), [undefined, 3]);
+  picture(0, 'another');
+  assert.equal(session.lesson?.scenes[0].picture, undefined);
+  picture(0, 'ball');
+  lesson();
+  assert.deepEqual(session.lesson?.scenes.map((scene) => scene.picture?.length), [3, 3]);
+});
+
+test('who holds the pedal while bone is put back is told to release it', () => {
+  const session = new Session();
+  session.take({ kind: 'welcome', role: Role.Operator, name: 'Anna', sender: '1', expiresMs: 0 } as never, 0);
+  session.hasServer = true;
+  const tool = payloads.toolOf(synthetic.toolState(1).payload);
+  session.take({ kind: 'tool', tool: { ...tool, waitsForRelease: true } }, 0);
+  assert.match(conditions(session)[0].text, /release the pedal/);
+  session.take({ kind: 'tool', tool: { ...tool, buttons: 0, waitsForRelease: true } }, 0);
+  assert.deepEqual(conditions(session), []);
 });
 
 test('keys mean what they mean in the native viewer', () => {

@@ -15,7 +15,7 @@
 
 namespace bonemill {
 
-ChildProcess::ChildProcess(const std::string& name) {
+ChildProcess::ChildProcess(const std::string& name, std::string argument) {
     int input[2], output[2];
     // The pipes close on exec: a child that held another one's pipe would keep that one from ending.
     if (pipe2(input, O_CLOEXEC) != 0 || pipe2(output, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
@@ -25,7 +25,7 @@ ChildProcess::ChildProcess(const std::string& name) {
     posix_spawn_file_actions_adddup2(&actions, output[1], STDOUT_FILENO);
     std::string path = test::helperDir() + "/" + name;
     std::string domain = std::to_string(testDomain()), session = std::to_string(testSession());
-    char* const arguments[] = {path.data(), domain.data(), session.data(), nullptr};
+    char* const arguments[] = {path.data(), domain.data(), session.data(), argument.data(), nullptr};
     const int failure = posix_spawn(&pid_, path.c_str(), &actions, nullptr, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     close(input[0]);

@@ -8,6 +8,7 @@
 #include "common/rt/clock.h"
 #include "haptic_server/densities/density_publisher.h"
 #include "haptic_server/publish/publisher.h"
+#include "tests/integration/dds/child_process.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/scanned_bone.h"
 #include "tests/support/synthetic_nodes.h"
@@ -169,7 +170,7 @@ TEST(Densities, SurviveHostileWishesAndBricks) {
 
     dds::Participant intruder(testDomain());
     dds::Writer<dds::DensityWishSample> wishes(intruder);
-    dds::Writer<dds::DensityBrickSample> bricks(intruder);
+    dds::Writer<dds::DensityBrickSample> bricks(server.publisher.participant());
     topics::DensityWish beyond;
     beyond.set_epoch(server.publisher.epoch());
     beyond.add_lacking(36);
@@ -206,6 +207,46 @@ TEST(Densities, SurviveHostileWishesAndBricks) {
     EXPECT_EQ(client.store.find(20)->revision, 0u);
     client.store.want({20, 21});
     EXPECT_TRUE(runUntil(server, {&client}, [&] { return hasWanted(client.store); })) << "it goes on";
+}
+
+TEST(Densities, ComeToWhoeverWishesBesideStrangersWhoInventSenders) {
+    DensityServer server;
+    DensityClient client;
+    ASSERT_TRUE(runUntil(server, {&client}, [&] { return client.store.grid().has_value(); }));
+    ChildProcess intruder("synthetic_intruder", "wishes");
+    EXPECT_EQ(intruder.ask("5000"), "done");
+    wantAll(client.store);
+    EXPECT_TRUE(runUntil(server, {&client}, [&] { return hasWanted(client.store); }));
+}
+
+// Bricks of a stranger who says that it is the server: they make sense, and would hide what was milled.
+TEST(Densities, OfSomebodyElseAreNotShown) {
+    DensityServer server;
+    DensityClient client;
+    ASSERT_TRUE(runUntil(server, {&client}, [&] { return client.store.grid().has_value(); }));
+    wantAll(client.store);
+    ASSERT_TRUE(runUntil(server, {&client}, [&] { return hasWanted(client.store); }));
+    const dds::Participant intruder(testDomain());
+    dds::Writer<dds::DensityBrickSample> bricks(intruder);
+    topics::DensityBrick forged;
+    forged.set_epoch(server.publisher.epoch());
+    forged.set_revision(UINT32_MAX - 1);
+    const std::string bytes = forged.SerializeAsString();
+    dds::DensityBrickSample brick{};
+    brick.session = testSession();
+    dds::setPayload(brick, bytes);
+    ASSERT_TRUE(runUntil(server, {&client}, [&] { return bricks.matchedReaders() > 0; }));
+    int rounds = 0;
+    ASSERT_TRUE(runUntil(server, {&client}, [&] {
+        for (const uint32_t wanted : client.store.wanted()) {
+            brick.brick = wanted;
+            EXPECT_TRUE(bricks.write(brick));
+        }
+        return ++rounds > 50;
+    }));
+    mill(server, 5);
+    EXPECT_TRUE(runUntil(server, {&client}, [&] { return isExact(server, client.store); }));
+    EXPECT_EQ(client.subscriber.malformedSamples(), 0u);
 }
 
 }  // namespace

@@ -155,6 +155,42 @@ TEST(HostilePayloads, AForgedStatusSilencesNoClient) {
     EXPECT_EQ(outcomes[0].result, "refused: no");
 }
 
+TEST(HostilePayloads, AForgedCommandSilencesNoClient) {
+    Publisher server({.domain = testDomain(), .session = testSession()});
+    ClientProbe client;
+    topics::Command command;
+    command.set_save_checkpoint(true);
+    std::vector<topics::Command> heard;
+    const auto hears = [&] {
+        EXPECT_TRUE(server.publishStatus({}));
+        for (const topics::Command& one : server.takeCommands()) {
+            heard.push_back(one);
+            server.acknowledge(one, "done");
+        }
+    };
+    client.subscriber.sendCommand(command);
+    ASSERT_TRUE(client.pollUntil([&] { return hears(), !client.subscriber.takeOutcomes().empty(); }));
+    ASSERT_EQ(heard.size(), 1u);
+
+    const dds::Participant intruder(testDomain());
+    dds::Writer<dds::CommandSample> commands(intruder);
+    topics::Command forged = heard[0];
+    forged.set_sequence(UINT32_MAX);
+    const std::string bytes = forged.SerializeAsString();
+    auto sample = garbage<dds::CommandSample>(bytes);
+    sample.sender = forged.sender();
+    ASSERT_TRUE(client.pollUntil([&] { return commands.matchedReaders() > 0; }));
+    for (int n = 0; n < 10; ++n) {
+        ASSERT_TRUE(commands.write(sample));
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        hears();
+    }
+    client.subscriber.sendCommand(command);
+    EXPECT_TRUE(client.pollUntil([&] { return hears(), !client.subscriber.takeOutcomes().empty(); }));
+    ASSERT_EQ(heard.size(), 2u) << "only the client's own are carried out";
+    EXPECT_EQ(heard[1].sequence(), 2u);
+}
+
 TEST(Deafness, AViewerThatHearsNothingJoinsAnew) {
     using std::chrono::milliseconds;
     SceneSubscriber viewer(
@@ -220,7 +256,7 @@ size_t residentBytes() {
 // DDS keeps a key for as long as its writer lives.
 TEST(HostileSenders, TakeNoMemoryAndHonestOnesAreHeard) {
     Publisher publisher({.domain = testDomain(), .session = testSession()});
-    ChildProcess intruder("synthetic_intruder");
+    ChildProcess intruder("synthetic_intruder", "commands");
     const size_t before = residentBytes();
     std::atomic<bool> is_done = false;
     std::thread asking([&] {
@@ -238,6 +274,23 @@ TEST(HostileSenders, TakeNoMemoryAndHonestOnesAreHeard) {
     pause.set_pause_milling(true);
     client.subscriber.sendCommand(pause);
     EXPECT_TRUE(client.pollUntil([&] { return !publisher.takeCommands().empty(); }));
+}
+
+// They stay, and so do their keys: who comes later is heard all the same.
+TEST(HostileSenders, KeepOutNoViewer) {
+    Publisher publisher({.domain = testDomain(), .session = testSession()});
+    ASSERT_TRUE(publisher.publishStatus({}));
+    ClientProbe watching;
+    ASSERT_TRUE(watching.pollUntil([&] { return watching.subscriber.hasServer(); }));
+    ChildProcess intruder("synthetic_intruder", "viewers");
+    EXPECT_EQ(intruder.ask("5000"), "done");
+    watching.poll();
+    ClientProbe honest;
+    EXPECT_TRUE(watching.pollUntil([&] {
+        honest.poll();
+        honest.subscriber.announce(60, std::nullopt);
+        return watching.subscriber.viewers().size() == 1;
+    }));
 }
 
 TEST(HostilePayloads, AreCountedAndDroppedByTheServer) {

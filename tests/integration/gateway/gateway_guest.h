@@ -100,7 +100,7 @@ struct TestGuest {
         FromGuest message;
         Hello& hello = *message.mutable_hello();
         hello.set_token(token);
-        hello.set_version(1);
+        hello.set_version(gateway::kProtocolVersion);
         hello.set_epoch(epoch);
         for (const auto& [leaf, node] : nodes) {
             hello.add_leaves(leaf);

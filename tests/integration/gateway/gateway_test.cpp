@@ -32,6 +32,22 @@ TEST(Gateway, ShowsAGuestTheWholeModelAndWhatChanges) {
     }));
 }
 
+TEST(Gateway, PicturesOfScenesComeOnceAndToLateGuests) {
+    TestServer server(1);
+    topics::Lesson lesson;
+    lesson.add_scenes()->set_id("cavity");
+    ASSERT_TRUE(server.publisher.publishLesson(lesson));
+    ASSERT_TRUE(server.publisher.publishScenePicture(0, "cavity", "a picture"));
+    const RunningGateway gateway(invitationOf("Anna", "VIEWER", kToken));
+    TestGuest guest(gateway, kToken, true);
+    ASSERT_TRUE(guest.pollUntil([&] { return guest.samples[Sample::SCENE_PICTURE] == 1; }));
+    EXPECT_EQ(guest.samples[Sample::LESSON], 1) << "it comes first";
+    lesson.set_trainee("Ann");
+    ASSERT_TRUE(server.publisher.publishLesson(lesson));
+    ASSERT_TRUE(guest.pollUntil([&] { return guest.samples[Sample::LESSON] == 2; }));
+    EXPECT_EQ(guest.samples[Sample::SCENE_PICTURE], 1);
+}
+
 TEST(Gateway, ANewRunOfTheServerReplacesTheModel) {
     TestServer server(20);
     const RunningGateway gateway(invitationOf("Anna", "VIEWER", kToken));

@@ -8,6 +8,7 @@
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/telemetry/tick_record.h"
 #include "render_client/hud/fault_words.h"
+#include "tests/support/hud_rows.h"
 
 namespace bonemill {
 namespace {
@@ -52,6 +53,23 @@ TEST(Conditions, WhoMillsInAPauseIsToldWhatGoesOn) {
     EXPECT_NE(conditions[0].text.find("P goes on"), std::string::npos);
     EXPECT_FALSE(conditions[0].is_fault);
     input.status->set_is_milling_paused(false);
+    EXPECT_TRUE(conditionsOf(input).empty());
+}
+
+TEST(Conditions, WhoHoldsThePedalWhileBoneIsPutBackIsToldToReleaseIt) {
+    HudInput input = runningSession();
+    input.tool.emplace().set_waits_for_release(true);
+    EXPECT_TRUE(conditionsOf(input).empty()) << "nobody asks for anything";
+    input.tool->set_buttons(kButtonRemove);
+    const auto conditions = conditionsOf(input);
+    ASSERT_EQ(conditions.size(), 1u);
+    EXPECT_NE(conditions[0].text.find("release the pedal"), std::string::npos);
+    EXPECT_FALSE(conditions[0].is_fault);
+    const Hud hud = makeHud(input);
+    const HudRow* const burr = test::findRow(hud.rows, "Burr");
+    ASSERT_TRUE(burr);
+    EXPECT_EQ(burr->value, "release the pedal");
+    input.tool->set_waits_for_release(false);
     EXPECT_TRUE(conditionsOf(input).empty());
 }
 

@@ -131,6 +131,8 @@ TEST(EffectText, TrainingInWords) {
     const std::vector<HudRow> rows = trainingRows(training);
     EXPECT_EQ(test::findRow(rows, "Damaged")->value, "none");
     EXPECT_EQ(test::findRow(rows, "Least distance to a protected structure")->tone, HudTone::kAlarm);
+    training.set_nearest_structure("facial nerve");
+    EXPECT_TRUE(test::findRow(trainingRows(training), "Least distance to facial nerve"));
     EXPECT_EQ(test::findRow(rows, "Hottest bone so far")->tone, HudTone::kWarning);
     EXPECT_EQ(test::findRow(rows, "Necrosis"), nullptr);
     EXPECT_EQ(rows.back().value, "touched facial nerve");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 namespace bonemill {
 namespace {
 
@@ -15,15 +17,19 @@ topics::Command resetCommand(uint64_t sender, uint32_t sequence) {
 
 class CommandInboxTest : public testing::Test {
   protected:
-    CommandInbox::Decision receive(uint64_t envelope_sender, const topics::Command& command) {
-        return receiveBytes(envelope_sender, command.SerializeAsString());
+    CommandInbox::Decision receive(uint64_t envelope_sender, const topics::Command& command,
+                                   const CommandOrigin& origin = kAnna) {
+        return receiveBytes(envelope_sender, command.SerializeAsString(), origin);
     }
-    CommandInbox::Decision receiveBytes(uint64_t envelope_sender, const std::string& bytes) {
-        return inbox_.receive(envelope_sender,
+    CommandInbox::Decision receiveBytes(uint64_t envelope_sender, const std::string& bytes,
+                                        const CommandOrigin& origin = kAnna) {
+        return inbox_.receive(envelope_sender, origin,
                               {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
     }
 
-    CommandInbox inbox_;
+    static constexpr CommandOrigin kAnna{1, 11}, kOtto{2, 22};
+    std::set<uint64_t> gone_;  // writers
+    CommandInbox inbox_{[this](uint64_t writer) { return !gone_.contains(writer); }};
 };
 
 TEST_F(CommandInboxTest, CarriesACommandOutOnceAndAcknowledgesRepetitions) {
@@ -47,7 +53,7 @@ TEST_F(CommandInboxTest, CarriesACommandOutOnceAndAcknowledgesRepetitions) {
 // Who repeats a command reads what who did not repeat it has read.
 TEST_F(CommandInboxTest, ARepetitionIsAnsweredWithTheVeryResult) {
     for (const std::string& result : {std::string("done"), std::string("refused: no"), std::string()}) {
-        inbox_ = CommandInbox();
+        inbox_ = CommandInbox([](uint64_t) { return true; });
         const auto first = receive(7, resetCommand(7, 1));
         ASSERT_TRUE(first.command);
         EXPECT_EQ(inbox_.finish(*first.command, result).result, result);
@@ -120,6 +126,47 @@ TEST_F(CommandInboxTest, MalformedTextsAreNotLogged) {
     for (int n = 0; n < 3; ++n) EXPECT_FALSE(receiveBytes(7, bytes).command);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_EQ(inbox_.malformedCount(), 3u);
+}
+
+TEST_F(CommandInboxTest, AForgedNumberSilencesNobody) {
+    ASSERT_TRUE(receive(7, resetCommand(7, 1)).command);
+    const auto forged = receive(7, resetCommand(7, UINT32_MAX), kOtto);
+    EXPECT_FALSE(forged.command);
+    EXPECT_TRUE(forged.is_foreign);
+    EXPECT_FALSE(forged.acknowledgement) << "the first would read it, if it came to this number";
+    EXPECT_TRUE(receive(7, resetCommand(7, 2)).command);
+    EXPECT_TRUE(receive(7, resetCommand(7, 3), {kAnna.participant, 12}).command) << "another of its writers";
+    const auto newcomer = receive(7, resetCommand(7, 1), kOtto);
+    EXPECT_FALSE(newcomer.command);
+    ASSERT_TRUE(newcomer.acknowledgement);
+    EXPECT_NE(newcomer.acknowledgement->result.find("refused: another client"), std::string::npos);
+}
+
+TEST_F(CommandInboxTest, WhoJoinsAnewGoesOnAndWhoTakesTheNumberOfOneWhoHasGoneBegins) {
+    const auto first = receive(7, resetCommand(7, 5));
+    ASSERT_TRUE(first.command);
+    inbox_.finish(*first.command, "done");
+    gone_.insert(kAnna.writer);
+    const auto repeated = receive(7, resetCommand(7, 5), kOtto);
+    EXPECT_FALSE(repeated.command) << "it is not carried out twice";
+    ASSERT_TRUE(repeated.acknowledgement);
+    EXPECT_EQ(repeated.acknowledgement->result, "done");
+    EXPECT_TRUE(receive(7, resetCommand(7, 6), kOtto).command);
+    gone_.insert(kOtto.writer);
+    EXPECT_TRUE(receive(7, resetCommand(7, 1), {3, 33}).command);
+}
+
+TEST_F(CommandInboxTest, AFloodOfInventedSendersDrivesOutNobodyElse) {
+    EXPECT_TRUE(receive(7, resetCommand(7, 9)).command);
+    for (uint64_t invented = 1000; invented < 6000; ++invented)
+        ASSERT_TRUE(receive(invented, resetCommand(invented, 1), kOtto).command);
+    EXPECT_TRUE(receive(7, resetCommand(7, UINT32_MAX), kOtto).is_foreign) << "it is still known whose it is";
+    // As many participants as would fill all.
+    for (uint64_t invented = 10'000; invented < 30'000; ++invented) {
+        const uint64_t participant = 100 + invented % 64;
+        ASSERT_TRUE(receive(invented, resetCommand(invented, 1), {participant, participant}).command);
+    }
+    EXPECT_TRUE(receive(7, resetCommand(7, UINT32_MAX), kOtto).is_foreign);
 }
 
 TEST_F(CommandInboxTest, StillKnowsABusySenderAfterAFloodOfInventedOnes) {

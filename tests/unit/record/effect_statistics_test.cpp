@@ -71,6 +71,19 @@ TEST(EffectStatistics, TheLeastDistanceIsOfStructuresInReach) {
     EXPECT_NEAR(figuresOf(statistics).at("protected_distance_min_mm"), -0.5, 1e-6);
 }
 
+TEST(EffectStatistics, TheLeastDistanceIsOfAStructureWithAName) {
+    const std::vector<std::string> materials{"bone", "facial nerve", "dura"};
+    EffectStatistics statistics(kAll);
+    EXPECT_EQ(statistics.nearest(materials), "");
+    for (const auto& [id, distance] : {std::pair(3, 2e-3f), {2, 1e-3f}, {3, 1.5e-3f}, {3, 1e-3f}}) {
+        EffectRecord record{};
+        record.protected_id = uint32_t(id);
+        record.protected_distance = distance;
+        statistics.add(record);
+    }
+    EXPECT_EQ(statistics.nearest(materials), "facial nerve") << "the first that was so near";
+}
+
 TEST(EffectStatistics, EachWarningOnceTheWorstFirst) {
     EffectStatistics statistics(kAll);
     EXPECT_TRUE(statistics.warnings({}).empty());

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "proto/topics.pb.h"
 
 namespace bonemill {
@@ -59,19 +61,31 @@ TEST(DensityWish, IsRefusedIfItCannotBeMeant) {
 
 TEST(DensityWishes, ForgetTheLeastRecentOfTooManyAndTheSilent) {
     DensityWishes wishes;
-    constexpr uint64_t kInvented = 1'000'000;
+    constexpr uint64_t kInvented = 10'000;
     for (uint64_t sender = 1; sender <= kInvented; ++sender) {
-        wishes.receive(sender, {{1, 0}}, int64_t(sender));
+        wishes.receive(sender, sender, {{1, 0}}, int64_t(sender));
         ASSERT_LE(wishes.wishes().size(), DensityWishes::kMostSenders);
     }
     for (const auto& wish : wishes.wishes()) EXPECT_GT(wish.sender, kInvented - DensityWishes::kMostSenders);
-    wishes.receive(kInvented, {{2, 0}}, kInvented + 1);
+    wishes.receive(kInvented, kInvented, {{2, 0}}, kInvented + 1);
     EXPECT_EQ(wishes.wishes().size(), DensityWishes::kMostSenders) << "a sender has one wish";
-    wishes.receive(kInvented, {}, kInvented + 2);
+    wishes.receive(kInvented, kInvented, {}, kInvented + 2);
     wishes.forgetSilent(kInvented + 2);
     EXPECT_EQ(wishes.wishes().size(), DensityWishes::kMostSenders - 1) << "who shows none is forgotten";
     wishes.forgetSilent(kInvented + DensityWishes::kSilence_ns);
     EXPECT_TRUE(wishes.wishes().empty());
+}
+
+// A participant that invents senders has its share of the list, and others have theirs.
+TEST(DensityWishes, OfWhoInventsSendersDriveOutNobodyElses) {
+    DensityWishes wishes;
+    wishes.receive(1, 7, {{1, 0}}, 1);
+    wishes.receive(1, 8, {}, 2);
+    EXPECT_EQ(wishes.wishes().at(0).bricks.size(), 1u) << "nobody else speaks for it";
+    for (uint64_t sender = 100; sender < 3000; ++sender)
+        wishes.receive(sender, 8 + sender % 5, {{2, 0}}, int64_t(sender));
+    EXPECT_EQ(wishes.wishes().size(), DensityWishes::kMostSenders);
+    EXPECT_TRUE(std::ranges::any_of(wishes.wishes(), [](const auto& wish) { return wish.sender == 1; }));
 }
 
 }  // namespace

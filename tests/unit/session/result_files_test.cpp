@@ -39,6 +39,33 @@ TEST_F(ResultFilesTest, WhatAnySceneReadsIsSpared) {
     EXPECT_THROW(ResultFiles(options(), {{"the scene's volume.path", folder_ / "case.nrrd"}}), UserError);
 }
 
+// A scan may be a folder: none of its slices is a result's place, whatever name leads there.
+TEST_F(ResultFilesTest, AFolderThatASceneReadsIsSpared) {
+    namespace fs = std::filesystem;
+    const fs::path series = folder_ / "series", slice = series / "sub" / "0001.dcm";
+    fs::create_directories(slice.parent_path());
+    test::writeFile(slice.string(), "a slice");
+    fs::create_directory_symlink(series, folder_ / "link");
+    fs::create_hard_link(slice, folder_ / "hard.csv");
+    fs::create_symlink(slice, folder_ / "soft.csv");
+    const std::vector<NamedFile> read{{"the scene's volume.path", series}};
+    for (const fs::path& path : {slice, series / "new.csv", fs::path(folder_ / "link/sub/0001.dcm"),
+                                 fs::path(folder_ / "hard.csv"), fs::path(folder_ / "soft.csv"),
+                                 series / "sub" / ".." / "new.csv"}) {
+        ServerOptions into = options();
+        into.trace = path.string();
+        EXPECT_THROW(ResultFiles(into, read), UserError) << path;
+        into = options();
+        into.class_table = path.string();
+        EXPECT_THROW(ResultFiles(into, read), UserError) << path;
+    }
+    ServerOptions beside = options();
+    beside.trace = folder_ / "series_of_mine.csv";
+    beside.report = "/dev/null";
+    EXPECT_NO_THROW(ResultFiles(beside, read));
+    EXPECT_EQ(test::readFile(slice.string()), "a slice");
+}
+
 TEST_F(ResultFilesTest, WhatIsThereIsSpared) {
     test::writeFile(folder_ / "trace_2.csv", "of yesterday");
     std::filesystem::create_symlink(folder_ / "elsewhere", folder_ / "trace_3.csv");

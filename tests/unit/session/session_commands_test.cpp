@@ -23,6 +23,7 @@ class SessionCommandsTest : public testing::Test {
     static std::vector<ListedScene> listed() {
         ListedScene scene{.choice = {}, .file = "/scenes/tooth.textproto"};
         scene.choice.set_id("tooth");
+        scene.choice.set_picture("a picture");
         return {scene};
     }
     SessionControls controls() {
@@ -102,6 +103,13 @@ TEST_F(SessionCommandsTest, ASceneIsOrderedOnceAndAnsweredWhenItIsThere) {
     EXPECT_TRUE(lesson_.takeAnswers().empty());
     EXPECT_EQ(lesson_.takeChanged()->changing_to(), "");
     EXPECT_EQ(order(choiceOf("tooth")), "nothing said");
+}
+
+TEST_F(SessionCommandsTest, WhatChangesOfTheLessonTravelsWithoutPictures) {
+    EXPECT_EQ(lesson_.takeChanged()->scenes(0).picture(), "");
+    EXPECT_EQ(lesson_.scenes().at(0).choice.picture(), "a picture");
+    EXPECT_EQ(order(startOf("Ann")), "done");
+    EXPECT_EQ(lesson_.takeChanged()->scenes(0).picture(), "");
 }
 
 TEST_F(SessionCommandsTest, AnAttemptCountsFromZeroAndIsListed) {

@@ -153,6 +153,7 @@ TEST(ShownEffects, TheStatusSaysHowCarefulTheSessionWas) {
     const topics::Training& training = status.training();
     EXPECT_FLOAT_EQ(float(training.damaged_mm3()), 2);
     EXPECT_FLOAT_EQ(float(training.least_distance_mm()), 1);
+    EXPECT_EQ(training.nearest_structure(), "nerve");
     EXPECT_EQ(training.max_protected_force_n(), 0.25);
     EXPECT_FLOAT_EQ(float(training.necrotic_mm3()), 1);
     EXPECT_EQ(training.max_temperature_c(), 48);

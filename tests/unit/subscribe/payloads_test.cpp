@@ -258,6 +258,25 @@ TEST(Payloads, LessonIsChecked) {
     }));
 }
 
+TEST(Payloads, PicturesOfScenesAreChecked) {
+    topics::ScenePicture picture;
+    picture.set_epoch(5);
+    picture.set_scene_id("tooth_cavity");
+    picture.set_png(std::string(64u << 10, 'x'));
+    const auto parsed = [&](uint32_t scene) {
+        return parseScenePicture(bytesOf(picture.SerializeAsString()), scene);
+    };
+    ASSERT_TRUE(parsed(63));
+    EXPECT_EQ(parsed(63)->scene_id(), "tooth_cavity");
+    EXPECT_FALSE(parsed(64)) << "there are no more scenes";
+    picture.mutable_png()->push_back('x');
+    EXPECT_FALSE(parsed(0));
+    picture.clear_png();
+    EXPECT_TRUE(parsed(0));
+    picture.clear_epoch();
+    EXPECT_FALSE(parsed(0));
+}
+
 TEST(Payloads, WhoOnlyLooksHoldsNothing) {
     topics::Viewer viewer;
     viewer.set_sender(7);

@@ -15,7 +15,7 @@ import { StructureMeshSchema } from '#proto/topics_pb';
 import { demand } from './checks';
 
 const kMostStructureTriangles = 1 << 18;
-const kMostKeys = 1024;  // viewers, remarks and structures each
+const kMostKeys = 1024;  // viewers, remarks and pictures each
 
 const scope = self as unknown as { postMessage(message: FromLink, transfer?: Transferable[]): void };
 const post = (message: FromLink, transfer: Transferable[] = []) => scope.postMessage(message, transfer);
@@ -135,6 +135,10 @@ function take(sample: Sample): void {
       return is_gone ? undefined : post({ kind: 'tool', tool: payloads.toolOf(payload) });
     case Sample_Topic.LESSON:
       return is_gone ? undefined : post({ kind: 'lesson', lesson: payloads.lessonOf(payload) });
+    case Sample_Topic.SCENE_PICTURE:
+      if (isKnownKey('picture', key, is_gone) && !is_gone)
+        post({ kind: 'picture', scene: Number(sample.key), picture: payloads.pictureOf(payload) });
+      return;
     case Sample_Topic.STATUS:
       return is_gone ? undefined : takeStatus(payload);
     case Sample_Topic.VIEWER:

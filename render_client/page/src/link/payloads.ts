@@ -2,7 +2,7 @@
 import { fromBinary } from '@bufbuild/protobuf';
 import * as wire from '#proto/topics_pb';
 import type {
-  AttemptView, CameraWish, EffectView, LessonView, RemarkView, SceneChoiceView, SceneView, SoundWish, StatusView,
+  AttemptView, CameraWish, EffectView, LessonView, RemarkView, SceneChoiceView, ScenePictureView, SceneView, SoundWish, StatusView,
   ToolMesh, ToolView, TrainingView, ViewerView,
 } from '../shared/messages';
 import { Role } from '../shared/messages';
@@ -105,6 +105,7 @@ export function toolOf(payload: Uint8Array): ToolView {
     X_WT_device: { p: vector(state.pWTDeviceM), q: quaternion(state.qWTDevice) },
     forceN: vector(state.forceN),
     buttons: state.buttons,
+    waitsForRelease: state.waitsForRelease,
     deviceState: state.deviceState,
     stopCause: state.stopCause,
     effects: state.effects && effectsOf(state.effects),
@@ -115,6 +116,7 @@ function trainingOf(training: wire.Training): TrainingView {
   return {
     damagedMm3: saneOrNone(training.damagedMm3),
     leastDistanceMm: saneOrNone(training.leastDistanceMm),
+    nearestStructure: shownName(training.nearestStructure),
     maxProtectedForceN: saneOrNone(training.maxProtectedForceN),
     necroticMm3: saneOrNone(training.necroticMm3),
     maxTemperatureC: saneOrNone(training.maxTemperatureC),
@@ -191,6 +193,12 @@ export function lessonOf(payload: Uint8Array): LessonView {
     attempts: bounded(lesson.attempts, kMostAttempts).map(attemptOf),
     changingTo: shownName(lesson.changingTo),
   };
+}
+
+export function pictureOf(payload: Uint8Array): ScenePictureView {
+  const picture = fromBinary(wire.ScenePictureSchema, payload);
+  demand(picture.png.length <= kMostPictureBytes, 'picture');
+  return { epoch: epochOf(picture.epoch), sceneId: picture.sceneId, png: picture.png.slice() };
 }
 
 function roleOf(role: wire.Viewer_Role): Role {

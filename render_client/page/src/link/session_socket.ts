@@ -3,7 +3,7 @@
 import { create, fromBinary, toBinary, type MessageInitShape } from '@bufbuild/protobuf';
 import { FromGuestSchema, ToGuestSchema, type Samples, type Welcome } from '#proto/gateway_pb';
 
-const kVersion = 1;
+const kVersion = 2;
 const kSubprotocol = 'bonemill.v1';
 const kFirstWaitMs = 500, kLongestWaitMs = 15_000;
 // The gateway is heard several times per second; a connection that is silent for so long is dead.

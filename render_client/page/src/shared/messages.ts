@@ -68,6 +68,7 @@ export interface ToolView {
   X_WT_device: Pose;
   forceN: Vec3;
   buttons: number;
+  waitsForRelease: boolean;
   deviceState: number;
   stopCause: number;
   effects?: EffectView;
@@ -82,6 +83,7 @@ export interface CheckpointView {
 export interface TrainingView {
   damagedMm3?: number;
   leastDistanceMm?: number;
+  nearestStructure: string;
   maxProtectedForceN?: number;
   necroticMm3?: number;
   maxTemperatureC?: number;
@@ -128,6 +130,13 @@ export interface SceneChoiceView {
   expectedS: number;
   picture?: Uint8Array;  // PNG
   problem: string;
+}
+
+// Of one of LessonView.scenes.
+export interface ScenePictureView {
+  epoch: string;
+  sceneId: string;
+  png: Uint8Array;
 }
 
 export interface AttemptView {
@@ -220,6 +229,7 @@ export type FromLink =
   | { kind: 'tool'; tool: ToolView }
   | { kind: 'status'; status: StatusView }
   | { kind: 'lesson'; lesson: LessonView }
+  | { kind: 'picture'; scene: number; picture: ScenePictureView }
   | { kind: 'viewer'; sender: string; viewer?: ViewerView }
   | { kind: 'remark'; key: string; remark?: RemarkView }
   | { kind: 'structure'; id: number; surface?: StructureSurface }

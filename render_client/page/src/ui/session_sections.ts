@@ -32,7 +32,7 @@ export function lessonSection(acts: SessionActs): Section {
     key: () => {
       const lesson = session.lesson;
       if (!lesson || lesson.scenes.length === 0) return undefined;
-      return [lesson.scenes.map((scene) => [scene.id, scene.title, scene.problem, scene.task]), lesson.sceneId,
+      return [lesson.scenes.map((scene) => [scene.id, scene.title, scene.problem, scene.task, scene.picture?.length]), lesson.sceneId,
         lesson.isRunning, lesson.trainee, lesson.attempts.length, permission(acts)];
     },
     content: () => {

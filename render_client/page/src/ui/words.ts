@@ -54,7 +54,7 @@ export function structureName(id: number, scene?: SceneView): string {
 }
 
 export function workOf(tool?: ToolView): 'idle' | 'removing' | 'adding' {
-  if (!tool) return 'idle';
+  if (!tool || tool.waitsForRelease) return 'idle';
   return tool.buttons & 1 ? 'removing' : tool.buttons & 2 ? 'adding' : 'idle';
 }
 
@@ -95,6 +95,7 @@ export function taskRows(session: Session, events: number): Row[] {
     const work = workOf(tool);
     if (events & Event.Stalled) rows.push({ label: 'Burr', value: 'stalled', tone: 'alarm' });
     else if (status?.isMillingPaused) rows.push({ label: 'Burr', value: 'paused', tone: 'warning' });
+    else if (tool.waitsForRelease && tool.buttons !== 0) rows.push({ label: 'Burr', value: 'release the pedal', tone: 'warning' });
     else rows.push({ label: 'Burr', value: work, tone: work === 'idle' ? 'plain' : 'warning' });
   }
   if (status) {
@@ -157,6 +158,8 @@ export function conditions(session: Session): { text: string; tone: Tone }[] {
     if (kStopped.includes(state)) list.push({ text: `${name}: ${kStates[state]}${stop}. ${todo}`, tone: 'alarm' });
     if ((state === 3 || state === 5) && device.forceWaits) list.push({ text: `${name} is ${kStates[state]}: move the tool away.`, tone: 'warning' });
   }
+  if (tool?.waitsForRelease && tool.buttons !== 0 && !status?.isMillingPaused)
+    list.push({ text: 'The bone was put back: release the pedal, then the burr cuts again.', tone: 'warning' });
   if (status?.deviceStale && status.ticks > 0) list.push({ text: 'The device sends nothing: there is no force.', tone: 'alarm' });
   return list;
 }
@@ -171,7 +174,11 @@ export function trainingRows(training: TrainingView): Row[] {
   const bad = (mm3: number): Tone => (mm3 > 0 ? 'alarm' : 'good');
   const volume = (mm3: number) => (mm3 > 0 ? readableText(mm3, ' mm³') : 'none');
   if (training.damagedMm3 !== undefined) rows.push({ label: 'Damaged', value: volume(training.damagedMm3), tone: bad(training.damagedMm3) });
-  if (training.leastDistanceMm !== undefined) rows.push({ label: 'Least distance', value: readableText(training.leastDistanceMm, ' mm') });
+  if (training.leastDistanceMm !== undefined)
+    rows.push({
+      label: `Least distance to ${shortened(training.nearestStructure || 'a protected structure', 24)}`,
+      value: readableText(training.leastDistanceMm, ' mm'),
+    });
   if (training.maxProtectedForceN !== undefined) rows.push({ label: 'Largest force on it', value: readableText(training.maxProtectedForceN, ' N') });
   if (training.necroticMm3 !== undefined) rows.push({ label: 'Necrosis', value: volume(training.necroticMm3), tone: bad(training.necroticMm3) });
   if (training.maxTemperatureC !== undefined) rows.push({ label: 'Hottest bone', value: figureText(training.maxTemperatureC, 1, ' °C') });
