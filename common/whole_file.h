@@ -16,8 +16,9 @@ namespace bonemill {
 
 class WholeFile {
   public:
-    // Makes the empty file to write to; what an earlier run left half written goes. Throws UserError.
-    explicit WholeFile(const std::filesystem::path& path) : path_(path), part_(path) {
+    // Makes the empty file to write to; what an earlier run left half written goes. Who may read it is
+    // `mode`, less the umask. Throws UserError.
+    explicit WholeFile(const std::filesystem::path& path, mode_t mode = 0666) : path_(path), part_(path) {
         std::error_code error;
         const std::filesystem::file_status status = std::filesystem::symlink_status(path, error);
         is_beside_ = !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
@@ -25,7 +26,7 @@ class WholeFile {
         part_.replace_filename(".part_" + path.filename().string());
         unlink(part_.c_str());
         // Nobody else's file or link of that name is written to.
-        const int file = open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+        const int file = open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
         if (file < 0)
             throw UserError(path.string() + ": cannot be written (" + part_.filename().string() + ": " +
                             std::strerror(errno) + "); check that its folder exists and is yours");

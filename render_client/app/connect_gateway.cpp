@@ -1,15 +1,15 @@
 #include "render_client/app/connect_gateway.h"
 
-#include <fcntl.h>
-#include <unistd.h>
+#include <spdlog/spdlog.h>
 
 #include <fstream>
 #include <memory>
 
+#include "common/private_file.h"
 #include "common/user_error.h"
 #include "render_client/connect/gateway_session.h"
 #include "render_client/gateway/guest_list.h"
-#include "render_client/gateway/secrets.h"
+#include "render_client/secrets/secrets.h"
 
 namespace bonemill {
 namespace {
@@ -18,7 +18,7 @@ constexpr std::chrono::seconds kPatience{10};
 
 // The token itself is kept nowhere.
 std::filesystem::path ticketFile(const std::string& token) {
-    return gateway::configFolder() / "tickets" / gateway::sha256Hex(token);
+    return gateway::configFolder() / "tickets" / sha256Hex(token);
 }
 
 std::string keptTicket(const std::filesystem::path& file) {
@@ -28,14 +28,12 @@ std::string keptTicket(const std::filesystem::path& file) {
     return ticket;
 }
 
-// Without it the next run needs another invitation, but this one goes on.
 void keepTicket(const std::filesystem::path& file, const std::string& ticket) {
-    std::error_code ignored;
-    std::filesystem::create_directories(file.parent_path(), ignored);
-    const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    if (descriptor < 0) return;
-    if (write(descriptor, ticket.data(), ticket.size()) < 0) std::filesystem::remove(file, ignored);
-    close(descriptor);
+    try {
+        writePrivateFile(file, ticket);
+    } catch (const std::exception& error) {
+        spdlog::warn("{}; the next run needs another invitation", error.what());
+    }
 }
 
 std::shared_ptr<connect::GatewaySession> sessionOf(const ConnectOptions& options, const std::string& ticket) {

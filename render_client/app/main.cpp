@@ -8,6 +8,7 @@
 #include "render_client/app/list_sessions.h"
 #include "render_client/app/measure_viewer.h"
 #include "render_client/app/offscreen_viewer.h"
+#include "render_client/app/run_relay.h"
 #include "render_client/app/send_command.h"
 #include "render_client/app/serve_gateway.h"
 #include "render_client/app/stop_signal.h"
@@ -23,8 +24,9 @@ int view(int argc, char** argv) {
     auto options = parseOptions(argc, argv);
     if (!options) return 0;
     setUpLog("render_client", options->log_level);
-    dds::setNetwork(options->network);
     catchStopSignals();
+    if (options->relay) return runRelay(*options);
+    dds::setNetwork(options->network);
     if (options->connect) connectToGateway(*options);
     if (options->lists_sessions) return runListSessions(*options);
     if (options->serve) return runGateway(*options);

@@ -13,6 +13,7 @@
 #include "common/units.h"
 #include "common/user_error.h"
 #include "render_client/app/connect_options.h"
+#include "render_client/app/relay_choice.h"
 #include "render_client/app/serve_options.h"
 #include "render_client/app/view_options.h"
 #include "render_client/hud/session_text.h"
@@ -41,6 +42,7 @@ struct RawOptions {
     std::vector<double> target_mm;
     RawView view;
     RawServe serve;
+    RawRelay relay;
     RawConnect connect;
 };
 
@@ -190,7 +192,10 @@ void addOptions(CLI::App& app, RawOptions& raw, ClientOptions& options) {
     std::vector<CLI::Option*> no_window =
         addCommandOptions(app, raw, addOffscreenOptions(app, raw), view_options);
     no_window.insert(no_window.end(), view_options.begin(), view_options.end());
-    of_dds.push_back(addServeOptions(app, raw.serve, no_window));
+    CLI::Option* const serve = addServeOptions(app, raw.serve, no_window);
+    of_dds.push_back(serve);
+    no_window.insert(no_window.end(), of_dds.begin(), of_dds.end());
+    of_dds.push_back(addRelayOptions(app, raw.relay, serve, no_window));
     addConnectOptions(app, raw.connect, of_dds);
 }
 
@@ -249,8 +254,10 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
             "--sound-wav needs a viewer with effects: leave out --no-effects, --measure-s and --command");
     if (!raw.command.empty()) options.command = CommandOptions{raw.command, timeout};
     options.connect = connectOptions(raw.connect);
+    options.relay = relayOptions(raw.relay);
     options.serve = serveOptions(raw.serve);
     if (options.serve) {
+        options.serve->via = relayPlace(raw.relay);
         options.serve->domain = options.subscriber.domain;
         options.serve->session = options.subscriber.session;
     }

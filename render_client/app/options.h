@@ -60,6 +60,7 @@ struct ClientOptions {
     std::optional<MeasureOptions> measure;
     std::optional<ConnectOptions> connect;         // instead of DDS
     std::optional<gateway::GatewayOptions> serve;  // instead of a viewer
+    std::optional<RelayOptions> relay;             // instead of a viewer
     std::string log_level = "info";
 };
 

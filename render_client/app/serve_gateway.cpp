@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "render_client/app/network_place.h"
 #include "render_client/app/stop_signal.h"
 #include "render_client/gateway/gateway_server.h"
 
@@ -9,10 +10,11 @@ namespace bonemill {
 
 int runGateway(const ClientOptions& options) {
     gateway::GatewayServer server(*options.serve);
-    const std::string& address = options.serve->address;
-    const bool is_v6 = address.find(':') != std::string::npos;
     std::cout << "gateway of session " << options.serve->session << ": https://"
-              << (is_v6 ? "[" + address + "]" : address) << ':' << server.port() << '\n';
+              << textOf(NetworkPlace{options.serve->address, server.port()}) << '\n';
+    if (options.serve->via)
+        std::cout << "through the relay, once it is reached: https://"
+                  << textOf(NetworkPlace{options.serve->via->host, options.serve->via->port}) << '\n';
     if (server.certificate().is_self_made)
         std::cout << "certificate of its own making, which browsers ask about; fingerprint (SHA-256): "
                   << server.certificate().fingerprint << '\n';

@@ -1,26 +1,12 @@
 #include "render_client/app/serve_options.h"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 
 #include "common/cli/number_range.h"
-#include "common/user_error.h"
+#include "render_client/app/network_place.h"
 
 namespace bonemill {
 namespace {
-
-// "8443", "0.0.0.0:8443", "[::1]:8443"
-void parsePlace(const std::string& place, gateway::GatewayOptions& options) {
-    const size_t colon = place.rfind(':');
-    const std::string port = colon == std::string::npos ? place : place.substr(colon + 1);
-    const char* const end = port.data() + port.size();
-    const auto [rest, error] = std::from_chars(port.data(), end, options.port);
-    std::string address = colon == std::string::npos ? options.address : place.substr(0, colon);
-    if (address.starts_with('[') && address.ends_with(']')) address = address.substr(1, address.size() - 2);
-    if (error != std::errc() || rest != end || port.empty() || address.empty())
-        throw UserError("--serve " + place + ": expected PORT or ADDRESS:PORT, such as 8443 or 0.0.0.0:8443");
-    options.address = address;
-}
 
 std::filesystem::path builtPage() {
     std::error_code error;
@@ -58,13 +44,19 @@ CLI::Option* addServeOptions(CLI::App& app, RawServe& raw, const std::vector<CLI
         ->check(within(0.1, 10000))
         ->capture_default_str()
         ->needs(serve);
+    app.add_option("--guests-at-once", options.most_guests, "So many guests at most")
+        ->check(CLI::Range(1u, gateway::kMostGuestsOfGateway))
+        ->capture_default_str()
+        ->needs(serve);
     return serve;
 }
 
 std::optional<gateway::GatewayOptions> serveOptions(const RawServe& raw) {
     if (!raw.place) return std::nullopt;
     gateway::GatewayOptions options = raw.options;
-    parsePlace(*raw.place, options);
+    const NetworkPlace place = placeOf("--serve", *raw.place, options.address);
+    options.address = place.host;
+    options.port = place.port;
     if (options.page.empty()) options.page = builtPage();
     return options;
 }

@@ -1,20 +1,18 @@
 #include "render_client/connect/tls_socket.h"
 
-#include <fcntl.h>
-#include <netdb.h>
-#include <netinet/tcp.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
 #include <openssl/x509v3.h>
 #include <poll.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <csignal>
+#include <utility>
 
 #include "common/user_error.h"
+#include "render_client/secrets/secrets.h"
+#include "render_client/tcp/dial.h"
 
 namespace bonemill::connect {
 namespace {
@@ -35,45 +33,12 @@ bool waitFor(int socket, short events, Clock::time_point end) {
     return poll(&look, 1, leftMs(end)) > 0;
 }
 
-int connectTo(const addrinfo& at, Clock::time_point end) {
-    const int socket = ::socket(at.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    if (socket < 0) return -1;
-    const bool has_begun = ::connect(socket, at.ai_addr, at.ai_addrlen) == 0 || errno == EINPROGRESS;
-    int error = 0;
-    socklen_t size = sizeof error;
-    if (has_begun && waitFor(socket, POLLOUT, end) &&
-        getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0) {
-        const int on = 1;
-        setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-        return socket;
-    }
-    close(socket);
-    return -1;
-}
-
-int connectTo(const TlsTarget& target, Clock::time_point end) {
-    addrinfo wish{}, *found = nullptr;
-    wish.ai_socktype = SOCK_STREAM;
-    const int error = getaddrinfo(target.host.c_str(), std::to_string(target.port).c_str(), &wish, &found);
-    if (error != 0) throw UserError("--connect " + placeOf(target) + ": " + gai_strerror(error));
-    int socket = -1;
-    for (const addrinfo* at = found; at && socket < 0; at = at->ai_next) socket = connectTo(*at, end);
-    freeaddrinfo(found);
-    if (socket < 0) throw UserError("--connect " + placeOf(target) + ": nobody answers there");
-    return socket;
-}
-
 std::string fingerprintOf(SSL* ssl) {
     X509* const certificate = SSL_get0_peer_certificate(ssl);
     unsigned char hash[EVP_MAX_MD_SIZE];
     unsigned length = 0;
     if (!certificate || X509_digest(certificate, EVP_sha256(), hash, &length) != 1) return "";
-    std::string hex;
-    for (unsigned n = 0; n < length; ++n) {
-        hex += "0123456789abcdef"[hash[n] >> 4];
-        hex += "0123456789abcdef"[hash[n] & 15];
-    }
-    return hex;
+    return hexOf({hash, length});
 }
 
 std::string digitsOf(const std::string& fingerprint) {
@@ -93,13 +58,12 @@ struct TlsSocket::State {
             SSL_free(ssl);
         }
         if (context) SSL_CTX_free(context);
-        if (socket >= 0) close(socket);
     }
     void shakeHands(const TlsTarget& target, Clock::time_point end);
     void prove(const TlsTarget& target) const;
     long moved(int result);
 
-    int socket = -1;
+    Descriptor socket;
     SSL_CTX* context = nullptr;
     SSL* ssl = nullptr;
     bool wants_to_write = false;  // TLS itself
@@ -113,7 +77,7 @@ void TlsSocket::State::shakeHands(const TlsTarget& target, Clock::time_point end
     SSL_CTX_set_mode(context, SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER);
     ssl = SSL_new(context);
     if (!ssl) throw UserError("library: OpenSSL gives no connection");
-    SSL_set_fd(ssl, socket);
+    SSL_set_fd(ssl, socket.get());
     // The certificate is judged behind the handshake, so that the user learns its fingerprint.
     SSL_set_verify(ssl, SSL_VERIFY_NONE, nullptr);
     if (X509_VERIFY_PARAM_set1_ip_asc(SSL_get0_param(ssl), target.host.c_str()) != 1) {
@@ -125,7 +89,7 @@ void TlsSocket::State::shakeHands(const TlsTarget& target, Clock::time_point end
         const short events = error == SSL_ERROR_WANT_READ    ? POLLIN
                              : error == SSL_ERROR_WANT_WRITE ? POLLOUT
                                                              : 0;
-        if (events == 0 || !waitFor(socket, events, end))
+        if (events == 0 || !waitFor(socket.get(), events, end))
             throw UserError("--connect " + placeOf(target) + ": nobody speaks TLS there");
     }
 }
@@ -156,7 +120,9 @@ TlsSocket::TlsSocket(const TlsTarget& target, std::chrono::milliseconds patience
     : state_(std::make_unique<State>()) {
     std::signal(SIGPIPE, SIG_IGN);  // OpenSSL writes into sockets that may be closed
     const auto end = Clock::now() + patience;
-    state_->socket = connectTo(target, end);
+    Dialled dialled = dial(target.host, target.port, patience);
+    if (!dialled.socket) throw UserError("--connect " + placeOf(target) + ": " + dialled.problem);
+    state_->socket = std::move(dialled.socket);
     state_->shakeHands(target, end);
     state_->prove(target);
 }
@@ -174,12 +140,12 @@ long TlsSocket::write(const char* bytes, size_t size) {
 void TlsSocket::wait(bool wants_to_write, int wake, std::chrono::milliseconds patience) {
     if (SSL_pending(state_->ssl) > 0) return;
     const short out = wants_to_write || state_->wants_to_write ? POLLOUT : 0;
-    pollfd looks[] = {{state_->socket, short(POLLIN | out), 0}, {wake, POLLIN, 0}};
+    pollfd looks[] = {{state_->socket.get(), short(POLLIN | out), 0}, {wake, POLLIN, 0}};
     poll(looks, 2, int(patience.count()));
 }
 
 int TlsSocket::descriptor() const {
-    return state_->socket;
+    return state_->socket.get();
 }
 
 }  // namespace bonemill::connect

@@ -1,7 +1,6 @@
 #include "render_client/connect/web_socket_client.h"
 
 #include <openssl/evp.h>
-#include <openssl/rand.h>
 #include <openssl/sha.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "common/user_error.h"
+#include "render_client/secrets/secrets.h"
 
 namespace bonemill::connect {
 namespace {
@@ -48,7 +48,7 @@ void WebSocketClient::shakeHands(const TlsTarget& target, const std::string& pat
                                  const std::string& protocol, const std::string& origin,
                                  std::chrono::steady_clock::time_point end) {
     unsigned char random[16];
-    RAND_bytes(random, sizeof random);
+    fillRandom(random, sizeof random);
     const std::string key = base64(random, sizeof random);
     const bool is_v6 = target.host.find(':') != std::string::npos;
     outgoing_ = "GET " + path + " HTTP/1.1\r\nHost: " + (is_v6 ? "[" + target.host + "]" : target.host) +
@@ -90,7 +90,7 @@ void WebSocketClient::queueFrame(unsigned char opcode, std::string_view payload)
     outgoing_ += char(0x80 | (length_bytes == 0 ? size : length_bytes == 2 ? 126 : 127));
     for (int n = length_bytes; n-- > 0;) outgoing_ += char(size >> (8 * n));
     unsigned char mask[4];
-    RAND_bytes(mask, sizeof mask);
+    fillRandom(mask, sizeof mask);
     outgoing_.append(reinterpret_cast<const char*>(mask), sizeof mask);
     for (size_t n = 0; n < payload.size(); ++n) outgoing_ += char(payload[n] ^ char(mask[n % 4]));
 }

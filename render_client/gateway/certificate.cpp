@@ -1,25 +1,25 @@
 #include "render_client/gateway/certificate.h"
 
-#include <fcntl.h>
+#include <openssl/bio.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
-#include <openssl/rand.h>
 #include <openssl/x509.h>
 #include <openssl/x509v3.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <memory>
 
+#include "common/private_file.h"
 #include "common/user_error.h"
-#include "render_client/gateway/secrets.h"
+#include "render_client/secrets/secrets.h"
 
 namespace bonemill::gateway {
 namespace {
 
 using KeyPtr = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
 using X509Ptr = std::unique_ptr<X509, decltype(&X509_free)>;
+using BioPtr = std::unique_ptr<BIO, decltype(&BIO_free)>;
 using FilePtr = std::unique_ptr<FILE, decltype(&std::fclose)>;
 
 constexpr long kLifetime_s = 3650L * 86400;
@@ -28,11 +28,14 @@ constexpr long kLifetime_s = 3650L * 86400;
     throw UserError(file.string() + ": " + what);
 }
 
-FilePtr privateFile(const std::filesystem::path& path) {
-    const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    if (file < 0) fail(path, "cannot be written");
-    fchmod(file, 0600);
-    return {fdopen(file, "w"), std::fclose};
+// What `write` writes into memory.
+template <class Write>
+std::string pemOf(Write&& write) {
+    const BioPtr memory(BIO_new(BIO_s_mem()), BIO_free);
+    if (!memory || write(memory.get()) != 1) throw UserError("library: OpenSSL writes no PEM");
+    char* bytes = nullptr;
+    const long size = BIO_get_mem_data(memory.get(), &bytes);
+    return {bytes, size_t(size)};
 }
 
 void addExtension(X509* certificate, int kind, const std::string& value) {
@@ -47,7 +50,7 @@ void addExtension(X509* certificate, int kind, const std::string& value) {
 X509Ptr signedBy(EVP_PKEY* key) {
     X509Ptr certificate(X509_new(), X509_free);
     uint64_t serial = 0;
-    RAND_bytes(reinterpret_cast<unsigned char*>(&serial), sizeof serial);
+    fillRandom(&serial, sizeof serial);
     X509_set_version(certificate.get(), 2);
     ASN1_INTEGER_set_uint64(X509_get_serialNumber(certificate.get()), serial >> 1);
     X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -86400);  // clocks differ
@@ -72,10 +75,12 @@ void make(const Certificate& place) {
     const KeyPtr key(EVP_EC_gen("P-256"), EVP_PKEY_free);
     if (!key) throw UserError("library: OpenSSL makes no key");
     const X509Ptr certificate = signedBy(key.get());
-    const FilePtr key_file = privateFile(place.key), certificate_file = privateFile(place.certificate);
-    if (PEM_write_PrivateKey(key_file.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr) != 1 ||
-        PEM_write_X509(certificate_file.get(), certificate.get()) != 1)
-        fail(place.key, "cannot be written");
+    writePrivateFile(place.key, pemOf([&](BIO* memory) {
+                         return PEM_write_bio_PrivateKey(memory, key.get(), nullptr, nullptr, 0, nullptr,
+                                                         nullptr);
+                     }));
+    writePrivateFile(place.certificate,
+                     pemOf([&](BIO* memory) { return PEM_write_bio_X509(memory, certificate.get()); }));
 }
 
 std::string fingerprintOf(const std::filesystem::path& file) {
@@ -100,9 +105,6 @@ Certificate certificateOf(const std::filesystem::path& certificate, const std::f
 
 Certificate selfMadeCertificate(const std::filesystem::path& folder) {
     Certificate certificate{folder / "gateway-certificate.pem", folder / "gateway-key.pem", "", true};
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) fail(folder, error.message().c_str());
     if (!std::filesystem::exists(certificate.certificate) || !std::filesystem::exists(certificate.key))
         make(certificate);
     certificate.fingerprint = fingerprintOf(certificate.certificate);

@@ -35,21 +35,20 @@ const char* wordOf(topics::Viewer::Role role) {
 }  // namespace
 
 Gateway::Gateway(const GatewayOptions& options)
-    : participant_(options.domain),
+    : most_guests_(options.most_guests),
+      participant_(options.domain),
       mirror_(participant_, options.session),
       voice_(participant_, options.session),
       list_(options.guests.empty() ? configFolder() / "guests.textproto" : options.guests),
       hall_{mirror_.state(), list_, voice_, options.guest_mbit_per_s * kMega / kBitsPerByte} {}
 
-Guest* Gateway::come(const std::string& address, Clock::time_point now) {
-    const auto count = [this](const auto& is) { return size_t(std::ranges::count_if(guests_, is)); };
-    const auto is_unknown = [](const auto& guest) { return !guest->isAdmitted(); };
-    const auto is_from_there = [&](const auto& guest) {
-        return is_unknown(guest) && guest->address() == address;
-    };
-    if (count(is_unknown) >= kMostUnknown || count(is_from_there) >= kMostUnknownOfAddress) return nullptr;
-    Guest* const guest = guests_.emplace_back(std::make_unique<Guest>(hall_, address, now)).get();
-    const auto failures = failures_.find(address);
+Guest* Gateway::come(const GuestOrigin& origin, Clock::time_point now) {
+    Crowd unknown(origin);
+    for (const auto& guest : guests_)
+        if (!guest->isAdmitted()) unknown.add(guest->origin());
+    if (!unknown.hasPlace(kMostUnknown)) return nullptr;
+    Guest* const guest = guests_.emplace_back(std::make_unique<Guest>(hall_, origin, now)).get();
+    const auto failures = failures_.find(origin);
     if (failures != failures_.end() && now - failures->second.since < kFailuresLast &&
         failures->second.count >= kMostFailures)
         guest->refuse("Too many wrong links came from this address: wait a minute.", false,
@@ -70,27 +69,27 @@ size_t Gateway::admittedCount() const {
 
 void Gateway::receive(Guest& guest, std::string_view frame, Clock::time_point now) {
     const bool was_admitted = guest.isAdmitted();
-    if (!was_admitted && admittedCount() >= kMostGuests)
+    if (!was_admitted && admittedCount() >= most_guests_)
         guest.refuse("There are as many guests as the gateway can serve: try again later.", false);
     guest.receive(frame, now);
     if (!was_admitted && guest.isAdmitted()) welcome(guest);
-    if (!was_admitted && guest.hasFailed()) noteFailure(guest.address(), now);
+    if (!was_admitted && guest.hasFailed()) noteFailure(guest.origin(), now);
 }
 
 void Gateway::welcome(Guest& guest) {
     spdlog::info("guest {} ({}) has come from {}", guest.speaker().name, wordOf(guest.speaker().role),
-                 guest.address());
+                 guest.origin().text());
     for (const auto& other : guests_)
         if (other.get() != &guest && other->seat() == guest.seat())
             other->refuse("This session goes on in another window.", true);
 }
 
-void Gateway::noteFailure(const std::string& address, Clock::time_point now) {
+void Gateway::noteFailure(const GuestOrigin& origin, Clock::time_point now) {
     std::erase_if(failures_, [&](const auto& one) { return now - one.second.since >= kFailuresLast; });
-    if (failures_.size() >= kMostAddresses && !failures_.contains(address)) return;
-    Failures& failures = failures_[address];
+    if (failures_.size() >= kMostAddresses && !failures_.contains(origin)) return;
+    Failures& failures = failures_[origin];
     if (++failures.count == 1) failures.since = now;
-    if (failures.count <= kMostFailures) spdlog::warn("a wrong link came from {}", address);
+    if (failures.count <= kMostFailures) spdlog::warn("a wrong link came from {}", origin.text());
 }
 
 void Gateway::step(Clock::time_point now) {

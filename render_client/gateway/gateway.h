@@ -12,6 +12,7 @@
 #include "common/dds/participant.h"
 #include "render_client/gateway/gateway_options.h"
 #include "render_client/gateway/guest.h"
+#include "render_client/gateway/guest_origin.h"
 #include "render_client/gateway/session_mirror.h"
 
 namespace bonemill::gateway {
@@ -19,16 +20,15 @@ namespace bonemill::gateway {
 class Gateway {
   public:
     using Clock = std::chrono::steady_clock;
-    static constexpr size_t kMostGuests = 64;
-    static constexpr size_t kMostUnknown = 64, kMostUnknownOfAddress = 16;  // before their Hello
-    static constexpr int kMostFailures = 10;  // of one address within kFailuresLast
+    static constexpr CrowdBounds kMostUnknown{64, 16, 48};  // before their Hello
+    static constexpr int kMostFailures = 10;                // of one address within kFailuresLast
     static constexpr std::chrono::seconds kFailuresLast{60};
 
     // Throws UserError.
     explicit Gateway(const GatewayOptions& options);
 
     // Somebody has connected from there; returns nullptr where there are too many. It stays until leave().
-    Guest* come(const std::string& address, Clock::time_point now);
+    Guest* come(const GuestOrigin& origin, Clock::time_point now);
     void leave(Guest* guest);
     // Takes one whole frame of the guest.
     void receive(Guest& guest, std::string_view frame, Clock::time_point now);
@@ -42,20 +42,21 @@ class Gateway {
   private:
     size_t admittedCount() const;
     void welcome(Guest& guest);
-    void noteFailure(const std::string& address, Clock::time_point now);
+    void noteFailure(const GuestOrigin& origin, Clock::time_point now);
     void lookAtList(Clock::time_point now);
 
     struct Failures {
         int count = 0;
         Clock::time_point since;
     };
+    const size_t most_guests_;
     dds::Participant participant_;
     SessionMirror mirror_;
     GuestVoice voice_;
     GuestList list_;
     Hall hall_;
     std::list<std::unique_ptr<Guest>> guests_;
-    std::map<std::string, Failures> failures_;  // by address
+    std::map<GuestOrigin, Failures> failures_;
     Clock::time_point looked_;
     uint64_t epoch_ = 0;  // of the run that is shown
 };

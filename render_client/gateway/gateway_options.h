@@ -3,9 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "render_client/relay/relay_options.h"
+
 namespace bonemill::gateway {
+
+inline constexpr uint32_t kMostGuestsOfGateway = 1000;
 
 struct GatewayOptions {
     uint32_t domain = 0;   // DDS
@@ -17,6 +22,8 @@ struct GatewayOptions {
     std::filesystem::path guests;       // empty: in the user's configuration
     std::filesystem::path page;         // folder of the page
     double guest_mbit_per_s = 20;       // at most, to each guest
+    uint32_t most_guests = 64;          // kMostGuestsOfGateway at most
+    std::optional<RelayPlace> via;      // guests come through this relay, too
 };
 
 }  // namespace bonemill::gateway

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -16,17 +17,19 @@
 #include "common/user_error.h"
 #include "render_client/gateway/gateway.h"
 #include "render_client/gateway/http_answer.h"
+#include "render_client/gateway/relayed_guests.h"
 #include "render_client/gateway/static_pages.h"
+#include "render_client/tcp/listen.h"
 
 namespace bonemill::gateway {
 namespace {
 
 constexpr int64_t kStepUs = 5000, kIdleStepUs = 50000;
-constexpr size_t kMostConnections = 256;  // that are no guest's
-constexpr size_t kMostOfAddress = 96;     // of them
+constexpr CrowdBounds kMostConnections{256, 96, 192};  // that are no guest's
 constexpr unsigned kHeaderTimeS = 5;
 constexpr unsigned kHeaderBytes = 4096;
-constexpr size_t kPieceBytes = 16 << 10;  // of a guest's frame, as it arrives
+constexpr size_t kSpareDescriptors = 128;  // for DDS, files and the relay
+constexpr size_t kPieceBytes = 16 << 10;   // of a guest's frame, as it arrives
 
 // In the connection's own memory, which libwebsockets sets to zero.
 struct GuestConnection {
@@ -65,6 +68,7 @@ void logLine(int, const char* line) {
 struct GatewayServer::Port {
     explicit Port(const GatewayOptions& options);
     ~Port() {
+        relayed.reset();  // its thread wakes the context
         if (context) lws_context_destroy(context);
     }
     static Port& of(lws* connection) {
@@ -73,7 +77,9 @@ struct GatewayServer::Port {
     static int onHttp(lws* connection, lws_callback_reasons reason, void* user, void* data, size_t length);
     static int onGuest(lws* connection, lws_callback_reasons reason, void* user, void* data, size_t length);
     static void onTime(lws_sorted_usec_list_t* list);
+    bool hasPlace(const GuestOrigin& comer) const;
     int accept(int socket);
+    void adoptRelayed();
     int open(lws* connection, GuestConnection& place);
     void close(lws* connection, GuestConnection& place);
     int take(lws* connection, GuestConnection& place, const char* data, size_t length);
@@ -83,7 +89,7 @@ struct GatewayServer::Port {
     Certificate certificate;
     StaticPages pages;
     Gateway gateway;
-    std::map<lws*, std::string> connections;  // the address of each, before it is a guest's
+    std::map<lws*, GuestOrigin> connections;  // before they are guests'
     std::map<lws*, Guest*> guests;
     struct Timer {
         lws_sorted_usec_list_t list;  // first: libwebsockets gives it back
@@ -91,6 +97,8 @@ struct GatewayServer::Port {
     } timer{};
     lws_context* context = nullptr;
     lws_vhost* vhost = nullptr;
+    std::optional<GuestOrigin> adopting;  // whose line libwebsockets is being given
+    std::optional<RelayedGuests> relayed;
 };
 
 GatewayServer::Port::Port(const GatewayOptions& options)
@@ -123,8 +131,9 @@ GatewayServer::Port::Port(const GatewayOptions& options)
     info.timeout_secs = kHeaderTimeS;
     info.keepalive_timeout = int(kHeaderTimeS);
     info.max_http_header_data = kHeaderBytes;
-    info.max_http_header_pool = kMostConnections;
-    info.fd_limit_per_thread = unsigned(kMostConnections + Gateway::kMostGuests + 2 * Gateway::kMostUnknown);
+    info.max_http_header_pool = kMostConnections.all;
+    const size_t most_lines = kMostConnections.all + options.most_guests + 2 * Gateway::kMostUnknown.all;
+    info.fd_limit_per_thread = unsigned(allowDescriptors(most_lines + kSpareDescriptors) - kSpareDescriptors);
     info.retry_and_idle_policy = &kPings;
     info.vhost_name = "gateway";
     context = lws_create_context(&info);
@@ -137,6 +146,8 @@ GatewayServer::Port::Port(const GatewayOptions& options)
     }
     timer.owner = this;
     lws_sul_schedule(context, 0, &timer.list, onTime, kStepUs);
+    // It is the only call of libwebsockets that other threads may make.
+    if (options.via) relayed.emplace(*options.via, [this] { lws_cancel_service(context); });
 }
 
 void GatewayServer::Port::onTime(lws_sorted_usec_list_t* list) {
@@ -154,9 +165,12 @@ int GatewayServer::Port::onHttp(lws* connection, lws_callback_reasons reason, vo
         case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED: {
             char address[64] = "";
             lws_get_peer_simple(connection, address, sizeof address);
-            port.connections.emplace(connection, address);
+            port.connections.emplace(connection, port.adopting.value_or(GuestOrigin{address}));
             return 0;
         }
+        case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
+            port.adoptRelayed();
+            return 0;
         case LWS_CALLBACK_WSI_DESTROY:
             port.connections.erase(connection);
             return 0;
@@ -174,9 +188,25 @@ int GatewayServer::Port::onHttp(lws* connection, lws_callback_reasons reason, vo
 int GatewayServer::Port::accept(int socket) {
     char address[64] = "";
     lws_get_peer_simple_fd(socket, address, sizeof address);
-    const auto from_there = [&](const auto& one) { return one.second == address; };
-    return connections.size() >= kMostConnections ||
-           size_t(std::ranges::count_if(connections, from_there)) >= kMostOfAddress;
+    return hasPlace({address}) ? 0 : 1;
+}
+
+bool GatewayServer::Port::hasPlace(const GuestOrigin& comer) const {
+    Crowd there(comer);
+    for (const auto& [connection, origin] : connections) there.add(origin);
+    return there.hasPlace(kMostConnections);
+}
+
+// They are connections as any other from here on: libwebsockets speaks TLS with them, and tells of each
+// before it returns.
+void GatewayServer::Port::adoptRelayed() {
+    if (!relayed) return;
+    for (RelayedGuests::Arrival& arrival : relayed->take()) {
+        if (!hasPlace(arrival.origin)) continue;
+        adopting = std::move(arrival.origin);
+        lws_adopt_socket_vhost(vhost, arrival.line.release());
+        adopting.reset();
+    }
 }
 
 int GatewayServer::Port::onGuest(lws* connection, lws_callback_reasons reason, void* user, void* data,
@@ -202,7 +232,7 @@ int GatewayServer::Port::onGuest(lws* connection, lws_callback_reasons reason, v
 
 int GatewayServer::Port::open(lws* connection, GuestConnection& place) {
     const auto known = connections.extract(connection);
-    place.guest = gateway.come(known.empty() ? "" : known.mapped(), Gateway::Clock::now());
+    place.guest = gateway.come(known.empty() ? GuestOrigin{} : known.mapped(), Gateway::Clock::now());
     if (!place.guest) {
         kill(connection);
         return 0;

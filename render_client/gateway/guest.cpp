@@ -35,8 +35,8 @@ std::unordered_set<uint32_t> bricksOf(const topics::DensityWish& wish) {
 
 }  // namespace
 
-Guest::Guest(Hall& hall, std::string address, Clock::time_point now)
-    : hall_(hall), address_(std::move(address)), came_(now), talked_(now) {}
+Guest::Guest(Hall& hall, GuestOrigin origin, Clock::time_point now)
+    : hall_(hall), origin_(std::move(origin)), came_(now), talked_(now) {}
 
 Guest::~Guest() {
     if (!is_holding_) return;

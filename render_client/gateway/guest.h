@@ -13,6 +13,7 @@
 
 #include "render_client/gateway/guest_frames.h"
 #include "render_client/gateway/guest_list.h"
+#include "render_client/gateway/guest_origin.h"
 #include "render_client/gateway/guest_stream.h"
 #include "render_client/gateway/guest_voice.h"
 
@@ -33,7 +34,7 @@ class Guest {
     static constexpr std::chrono::seconds kRefusalDelay{1};  // who guesses is slow
     static constexpr double kFramesPerSecond = 400, kMostFramesAtOnce = 800;
 
-    Guest(Hall& hall, std::string address, Clock::time_point now);
+    Guest(Hall& hall, GuestOrigin origin, Clock::time_point now);
     // The session learns that this hand has let go.
     ~Guest();
     Guest(const Guest&) = delete;
@@ -60,7 +61,7 @@ class Guest {
     // It came with a token that nobody was given.
     bool hasFailed() const noexcept { return has_failed_; }
     bool wishesBricks() const { return stream_ && stream_->wishesBricks(); }
-    const std::string& address() const noexcept { return address_; }
+    const GuestOrigin& origin() const noexcept { return origin_; }
     const Speaker& speaker() const noexcept { return speaker_; }
     const GuestStream* stream() const noexcept { return stream_ ? &*stream_ : nullptr; }
 
@@ -73,7 +74,7 @@ class Guest {
     void takeWish(topics::DensityWish& wish);
 
     Hall& hall_;
-    const std::string address_;
+    const GuestOrigin origin_;
     const Clock::time_point came_;
     std::optional<Admission> admission_;
     Speaker speaker_;

@@ -1,10 +1,8 @@
 #include "render_client/gateway/guest_list.h"
 
-#include <fcntl.h>
 #include <google/protobuf/text_format.h>
 #include <spdlog/spdlog.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -12,8 +10,9 @@
 #include <sstream>
 #include <utility>
 
+#include "common/private_file.h"
 #include "common/user_error.h"
-#include "render_client/gateway/secrets.h"
+#include "render_client/secrets/secrets.h"
 
 namespace bonemill::gateway {
 namespace {
@@ -161,15 +160,11 @@ Admission GuestList::admitTo(const Seat& seat, const Invitation& invitation, std
 void GuestList::writeSeats() const {
     std::string text;
     google::protobuf::TextFormat::PrintToString(seats_, &text);
-    const std::string draft = seats_file_.string() + ".new";
-    std::error_code ignored;
-    std::filesystem::create_directories(seats_file_.parent_path(), ignored);
-    const int file = open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    const bool is_written = file >= 0 && write(file, text.data(), text.size()) == ssize_t(text.size());
-    if (file >= 0) close(file);
-    if (!is_written || rename(draft.c_str(), seats_file_.c_str()) != 0)
-        spdlog::warn("{}: cannot be written; a gateway started anew will not know who was here",
-                     seats_file_.string());
+    try {
+        writePrivateFile(seats_file_, text);
+    } catch (const std::exception& error) {
+        spdlog::warn("{}; a gateway started anew will not know who was here", error.what());
+    }
 }
 
 }  // namespace bonemill::gateway

@@ -11,13 +11,14 @@
 #include <cerrno>
 #include <cstring>
 
-#include "render_client/relay/dial.h"
+#include "render_client/secrets/secrets.h"
+#include "render_client/tcp/listen.h"
 
 namespace bonemill {
 
 struct Relay::Line {
     Descriptor socket;
-    std::string address;
+    PeerAddress address{};
     Stage stage = Stage::kNew;
     Clock::time_point until;  // it is ended then; that of kPassing is never
     std::string heard;        // of a gateway's greeting
@@ -36,13 +37,18 @@ constexpr int kMostEvents = 64;
 constexpr size_t kMostRead = 16384;
 constexpr size_t kMostAccepted = 32;  // in one round: others are to be served, too
 constexpr int kRound_ms = 100;
-constexpr size_t kSpare = 32;  // descriptors
+constexpr size_t kSpare = 32;         // descriptors
+constexpr int kMostWrongSecrets = 5;  // in the log at once, which strangers must not fill
+constexpr int64_t kWrongSecretEvery_ns = 60'000'000'000;
 constexpr auto kNever = std::chrono::steady_clock::time_point::max();
 
 }  // namespace
 
 Relay::Relay(const RelayOptions& options, const RelayBounds& bounds)
-    : options_(options), bounds_(bounds), listener_(listenOn(options.address, options.port)) {
+    : options_(options),
+      bounds_(bounds),
+      listener_(listenOn(options.address, options.port)),
+      wrong_secrets_(kMostWrongSecrets, kWrongSecretEvery_ns) {
     port_ = portOf(listener_.get());
     // Some are always left: a listener that cannot accept would be asked again and again.
     bounds_.lines = std::min(bounds_.lines, allowDescriptors(bounds_.lines + kSpare) - kSpare);
@@ -75,7 +81,7 @@ void Relay::run(const std::function<bool()>& should_stop) {
 
 void Relay::acceptAll() {
     for (size_t i = 0; i < kMostAccepted; ++i) {
-        std::string address;
+        PeerAddress address{};
         Descriptor socket = acceptFrom(listener_.get(), address);
         if (!socket) return;
         if (isRefused(address)) {
@@ -85,7 +91,7 @@ void Relay::acceptAll() {
         const int number = socket.get();
         auto line = std::make_unique<Line>();
         line->socket = std::move(socket);
-        line->address = std::move(address);
+        line->address = address;
         line->until = Clock::now() + bounds_.to_greet;
         epoll_event event{};
         event.events = EPOLLIN;
@@ -94,7 +100,7 @@ void Relay::acceptAll() {
     }
 }
 
-bool Relay::isRefused(const std::string& address) const {
+bool Relay::isRefused(const PeerAddress& address) const {
     if (lines_.size() >= bounds_.lines) return true;
     size_t all = 0, fresh = 0;
     for (const auto& [number, line] : lines_) {
@@ -147,7 +153,9 @@ void Relay::addGuest(Line& line) {
     line.until = Clock::now() + bounds_.to_meet;
     waiting_[line.guest] = &line;
     watch(line);
-    say(*control_, kGuestCame + std::string(line.guest.data(), line.guest.size()));
+    std::string news(1, kGuestCame);
+    news.append(line.guest.data(), line.guest.size()).append(line.address.data(), line.address.size());
+    say(*control_, news);
 }
 
 // Returns true when so many bytes are there.
@@ -178,9 +186,10 @@ void Relay::challenge(Line& line) {
 void Relay::takeProof(Line& line) {
     if (!readGreeting(line, std::tuple_size_v<RelayProof>)) return;
     const RelayProof proof = proofOf(options_.secret, line.greeting, line.nonce);
-    if (!isEqualProof({proof.data(), proof.size()}, line.heard)) {
+    if (!isSameSecret({proof.data(), proof.size()}, line.heard)) {
         ++refused_;
-        spdlog::warn("{} does not know the relay's secret", line.address);
+        if (wrong_secrets_.ask(std::chrono::nanoseconds(Clock::now().time_since_epoch()).count()) >= 0)
+            spdlog::warn("{} does not know the relay's secret", textOf(line.address));
         return end(line);
     }
     if (line.greeting[kRelayMagic.size()] == char(RelayAsk::kGuest)) {
@@ -192,7 +201,7 @@ void Relay::takeProof(Line& line) {
     control_ = &line;
     line.stage = Stage::kControl;
     line.until = Clock::now() + 3 * bounds_.ping;
-    spdlog::info("the gateway is there, from {}", line.address);
+    spdlog::info("the gateway is there, from {}", textOf(line.address));
     say(line, {&kRelayAccepted, 1});
 }
 
@@ -217,7 +226,7 @@ void Relay::join(Line& gateway_side, const GuestId& guest) {
         line->stage = Stage::kPassing;
         line->until = kNever;
     }
-    spdlog::debug("a guest from {} reaches the gateway", guest_side.address);
+    spdlog::debug("a guest from {} reaches the gateway", textOf(guest_side.address));
     say(gateway_side, {&kRelayAccepted, 1});
     watch(guest_side);
     watch(gateway_side);

@@ -13,16 +13,13 @@
 #include <string>
 #include <vector>
 
-#include "render_client/relay/descriptor.h"
+#include "common/log/log_limit.h"
 #include "render_client/relay/relay_greeting.h"
+#include "render_client/relay/relay_options.h"
+#include "render_client/tcp/descriptor.h"
+#include "render_client/tcp/peer_address.h"
 
 namespace bonemill {
-
-struct RelayOptions {
-    std::string address = "127.0.0.1";  // it listens there
-    uint16_t port = 0;                  // 0: any
-    std::string secret;                 // shared with the gateway
-};
 
 struct RelayBounds {
     size_t lines = 2200;                        // two for each of 1000 guests, and strangers
@@ -61,7 +58,7 @@ class Relay {
     struct Line;
 
     void acceptAll();
-    bool isRefused(const std::string& address) const;
+    bool isRefused(const PeerAddress& address) const;
     void serve(Line& line, uint32_t events);
     void learnKind(Line& line);
     void addGuest(Line& line);
@@ -87,6 +84,7 @@ class Relay {
     std::map<GuestId, Line*> waiting_;
     Line* control_ = nullptr;
     uint64_t refused_ = 0, bytes_ = 0;
+    LogLimit wrong_secrets_;
     Clock::time_point looked_{}, pinged_{};
 };
 

@@ -8,33 +8,27 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <utility>
 #include <vector>
 
-#include "render_client/relay/dial.h"
+#include "render_client/tcp/dial.h"
 
 namespace bonemill {
 namespace {
 
 constexpr size_t kMostDials = 32;  // at once
 constexpr size_t kMostAskedGuests = 1024;
-constexpr std::chrono::seconds kToBeAccepted{10}, kToBePinged{30};
+constexpr std::chrono::seconds kToAnswer{5}, kToBeAccepted{10}, kToBePinged{30};
 constexpr int kDialRound_ms = 200;
 
 bool sayAll(int socket, std::string_view bytes) {
     return send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL) == ssize_t(bytes.size());
 }
 
-bool isConnectedSocket(int socket) {
-    int error = 0;
-    socklen_t size = sizeof error;
-    return getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0;
-}
-
 }  // namespace
 
-RelayDialer::RelayDialer(RelayPlace relay, std::string secret, Adopt adopt)
+RelayDialer::RelayDialer(RelayPlace relay, Adopt adopt)
     : relay_(std::move(relay)),
-      secret_(std::move(secret)),
       adopt_(std::move(adopt)),
       wake_(eventfd(0, EFD_CLOEXEC)),
       thread_([this] { run(); }) {}
@@ -65,22 +59,32 @@ void RelayDialer::run() {
             if (progress != Progress::kGoesOn) dials_.erase(here);
         }
         beginControl(now);
-        for (; !asked_.empty() && dials_.size() < kMostDials; asked_.pop_front())
-            dial(RelayAsk::kGuest, asked_.front(), now);
+        for (; control_ && !asked_.empty() && dials_.size() < kMostDials; asked_.pop_front())
+            beginGuest(asked_.front(), now);
     }
 }
 
+// Without a control line there is nothing else to do, so this may wait.
 void RelayDialer::beginControl(Clock::time_point now) {
     const bool is_dialled =
         std::any_of(dials_.begin(), dials_.end(), [](const Dial& d) { return d.ask == RelayAsk::kControl; });
     if (control_ || is_dialled || now < next_try_) return;
-    next_try_ = now + pause_;
+    Dialled dialled = dial(relay_.host, relay_.port, kToAnswer, wake_.get());
+    const auto later = Clock::now();
+    next_try_ = later + pause_;
     pause_ = std::min(2 * pause_, kLongestPause);
-    dial(RelayAsk::kControl, {}, now);
+    if (!dialled.socket) return complain(dialled.problem);
+    dials_.push_back(
+        {std::move(dialled.socket), RelayAsk::kControl, {}, Stage::kConnecting, {}, later + kToBeAccepted});
+}
+
+void RelayDialer::complain(const std::string& problem) {
+    if (std::exchange(complaint_, problem) != problem)
+        spdlog::warn("the relay {}:{}: {}; it is tried again and again", relay_.host, relay_.port, problem);
 }
 
 void RelayDialer::loseControl(Clock::time_point now) {
-    spdlog::warn("the relay {}:{} is lost; it is tried again", relay_.host, relay_.port);
+    complain("is lost");
     control_ = {};
     heard_.clear();
     asked_.clear();
@@ -89,16 +93,18 @@ void RelayDialer::loseControl(Clock::time_point now) {
     next_try_ = now + pause_;
 }
 
-void RelayDialer::dial(RelayAsk ask, const GuestId& guest, Clock::time_point now) {
-    Descriptor socket = beginDial(relay_.host, relay_.port);
+// The line goes to the very relay that has announced the guest, whatever its name stands for by now.
+void RelayDialer::beginGuest(const AskedGuest& guest, Clock::time_point now) {
+    Descriptor socket = beginDialAsOf(control_.get());
     if (!socket) return;
-    dials_.push_back({std::move(socket), ask, guest, Stage::kConnecting, {}, now + kToBeAccepted});
+    dials_.push_back(
+        {std::move(socket), RelayAsk::kGuest, guest, Stage::kConnecting, {}, now + kToBeAccepted});
 }
 
 RelayDialer::Progress RelayDialer::advance(Dial& dial) {
-    const std::string greeting = greetingOf(dial.ask, dial.guest);
+    const std::string greeting = greetingOf(dial.ask, dial.guest.id);
     if (dial.stage == Stage::kConnecting) {
-        if (!isConnectedSocket(dial.socket.get()) || !sayAll(dial.socket.get(), greeting))
+        if (!hasConnected(dial.socket.get()) || !sayAll(dial.socket.get(), greeting))
             return Progress::kFailed;
         dial.stage = Stage::kNonce;
         return Progress::kGoesOn;
@@ -117,7 +123,7 @@ RelayDialer::Progress RelayDialer::advance(Dial& dial) {
     std::copy(dial.heard.begin(), dial.heard.end(), nonce.begin());
     dial.heard.clear();
     dial.stage = Stage::kAnswer;
-    const RelayProof proof = proofOf(secret_, greeting, nonce);
+    const RelayProof proof = proofOf(relay_.secret, greeting, nonce);
     return sayAll(dial.socket.get(), {proof.data(), proof.size()}) ? Progress::kGoesOn : Progress::kFailed;
 }
 
@@ -125,17 +131,18 @@ void RelayDialer::settle(Dial& dial, Progress progress, Clock::time_point now) {
     if (progress == Progress::kGoesOn) return;
     const bool is_done = progress == Progress::kDone;
     if (dial.ask == RelayAsk::kGuest) {
-        if (is_done) adopt_(std::move(dial.socket));
+        if (is_done) adopt_(std::move(dial.socket), dial.guest.address);
         return;
     }
-    if (!is_done) {
-        if (pause_ == kLongestPause || pause_ == 2 * kShortestPause)
-            spdlog::warn("the relay {}:{} does not answer, or has another secret; it is tried again",
-                         relay_.host, relay_.port);
-        return;
-    }
+    if (is_done) return beControl(std::move(dial.socket), now);
+    complain(dial.stage == Stage::kAnswer ? "does not accept this gateway: both must have the same secret"
+                                          : "is no relay");
+}
+
+void RelayDialer::beControl(Descriptor socket, Clock::time_point now) {
     spdlog::info("guests reach this gateway at the relay {}:{}", relay_.host, relay_.port);
-    control_ = std::move(dial.socket);
+    complaint_.clear();
+    control_ = std::move(socket);
     control_heard_ = now;
     pause_ = kShortestPause;
     is_connected_ = true;
@@ -155,10 +162,12 @@ bool RelayDialer::hearControl(Clock::time_point now) {
             continue;
         }
         if (heard_[0] != kGuestCame) return false;
-        GuestId guest;
-        if (heard_.size() < 1 + guest.size()) return true;
-        std::copy_n(heard_.begin() + 1, guest.size(), guest.begin());
-        heard_.erase(0, 1 + guest.size());
+        AskedGuest guest;
+        if (heard_.size() < kGuestCameBytes) return true;
+        const auto id = heard_.begin() + 1, address = id + std::ptrdiff_t(guest.id.size());
+        std::copy_n(id, guest.id.size(), guest.id.begin());
+        std::copy_n(address, guest.address.size(), guest.address.begin());
+        heard_.erase(0, kGuestCameBytes);
         if (asked_.size() < kMostAskedGuests) asked_.push_back(guest);
     }
     return true;

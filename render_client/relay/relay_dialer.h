@@ -7,27 +7,23 @@
 #include <cstdint>
 #include <functional>
 #include <list>
-#include <optional>
 #include <string>
 #include <thread>
 
-#include "render_client/relay/descriptor.h"
 #include "render_client/relay/relay_greeting.h"
+#include "render_client/relay/relay_options.h"
+#include "render_client/tcp/descriptor.h"
+#include "render_client/tcp/peer_address.h"
 
 namespace bonemill {
-
-struct RelayPlace {
-    std::string host;
-    uint16_t port = 0;
-};
 
 class RelayDialer {
   public:
     // Gets each guest's line, on the dialer's thread: a connected socket that does not block, whose next
-    // bytes are the guest's first.
-    using Adopt = std::function<void(Descriptor line)>;
+    // bytes are the guest's first. The address is the relay's word.
+    using Adopt = std::function<void(Descriptor line, const PeerAddress& guest)>;
 
-    RelayDialer(RelayPlace relay, std::string secret, Adopt adopt);
+    RelayDialer(RelayPlace relay, Adopt adopt);
     RelayDialer(const RelayDialer&) = delete;
     RelayDialer& operator=(const RelayDialer&) = delete;
     ~RelayDialer();
@@ -38,10 +34,14 @@ class RelayDialer {
   private:
     using Clock = std::chrono::steady_clock;
     enum class Stage { kConnecting, kNonce, kAnswer };
+    struct AskedGuest {
+        GuestId id{};
+        PeerAddress address{};
+    };
     struct Dial {
         Descriptor socket;
         RelayAsk ask = RelayAsk::kControl;
-        GuestId guest{};
+        AskedGuest guest;
         Stage stage = Stage::kConnecting;
         std::string heard;
         Clock::time_point until;
@@ -51,18 +51,20 @@ class RelayDialer {
     void run();
     void beginControl(Clock::time_point now);
     void loseControl(Clock::time_point now);
-    void dial(RelayAsk ask, const GuestId& guest, Clock::time_point now);
+    void beginGuest(const AskedGuest& guest, Clock::time_point now);
     Progress advance(Dial& dial);
     void settle(Dial& dial, Progress progress, Clock::time_point now);
+    void beControl(Descriptor socket, Clock::time_point now);
+    void complain(const std::string& problem);
     bool hearControl(Clock::time_point now);
 
     RelayPlace relay_;
-    std::string secret_;
     Adopt adopt_;
     std::list<Dial> dials_;
-    std::list<GuestId> asked_;  // guests that wait until there are fewer dials
+    std::list<AskedGuest> asked_;  // they wait until there are fewer dials
     Descriptor control_;
     std::string heard_;
+    std::string complaint_;  // that the log has; each is made once
     Clock::time_point control_heard_, next_try_{};
     std::chrono::milliseconds pause_{kShortestPause};
     static constexpr std::chrono::milliseconds kShortestPause{500}, kLongestPause{20000};

@@ -1,9 +1,7 @@
 #include "render_client/relay/relay_greeting.h"
 
-#include <openssl/crypto.h>
 #include <openssl/evp.h>
 #include <openssl/hmac.h>
-#include <openssl/rand.h>
 #include <sys/stat.h>
 
 #include <fstream>
@@ -39,19 +37,13 @@ RelayProof proofOf(std::string_view secret, std::string_view greeting, const Rel
     return proof;
 }
 
-bool isEqualProof(std::string_view a, std::string_view b) {
-    return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
-}
-
-void fillRandom(char* bytes, size_t count) {
-    if (RAND_bytes(reinterpret_cast<unsigned char*>(bytes), int(count)) != 1)
-        throw std::runtime_error("there are no random numbers");
-}
-
 std::string readRelaySecret(const std::string& path) {
     requireFile(path);
+    const std::string how = "openssl rand -hex 32 > " + path + " && chmod 600 " + path;
     struct stat status {};
-    if (stat(path.c_str(), &status) != 0 || (status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
+    if (stat(path.c_str(), &status) != 0)
+        throw UserError(path + ": there is no secret of a relay; make one: " + how);
+    if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
         throw UserError(path + ": others may read this secret; type: chmod 600 " + path);
     std::ifstream file(path, std::ios::binary);
     std::string secret(kLongestSecret, '\0');
@@ -61,8 +53,7 @@ std::string readRelaySecret(const std::string& path) {
     secret.erase(0, std::min(secret.find_first_not_of(kBlanks), secret.size()));
     secret.erase(secret.find_last_not_of(kBlanks) + 1);
     if (secret.size() < kShortestSecret)
-        throw UserError(
-            path + ": a relay's secret has at least 32 letters; make one: openssl rand -hex 32 > " + path);
+        throw UserError(path + ": a relay's secret has at least 32 letters; make one: " + how);
     return secret;
 }
 

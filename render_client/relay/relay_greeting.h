@@ -7,15 +7,17 @@
 //   gateway  Proof = HMAC-SHA256(secret, kMagic, Ask, GuestId, Nonce)
 //   relay    kAccepted
 //
-// On a kControl line the relay then says kGuestCame and a GuestId for each guest, for which the gateway opens
-// a kGuest line, and kPing, which the gateway answers with kPing. On a kGuest line the guest's bytes follow.
-// The functions are thread-safe.
+// On a kControl line the relay then says kGuestCame, a GuestId and a PeerAddress for each guest, for which
+// the gateway opens a kGuest line, and kPing, which the gateway answers with kPing. On a kGuest line the
+// guest's bytes follow. The functions are thread-safe.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
+
+#include "render_client/tcp/peer_address.h"
 
 namespace bonemill {
 
@@ -28,17 +30,13 @@ using GuestId = std::array<char, 16>;
 using RelayNonce = std::array<char, 32>;
 using RelayProof = std::array<char, 32>;
 inline constexpr size_t kGreetingBytes = kRelayMagic.size() + 1 + std::tuple_size_v<GuestId>;
+inline constexpr size_t kGuestCameBytes = 1 + std::tuple_size_v<GuestId> + std::tuple_size_v<PeerAddress>;
 
 std::string greetingOf(RelayAsk ask, const GuestId& guest);
 RelayProof proofOf(std::string_view secret, std::string_view greeting, const RelayNonce& nonce);
-// Takes as long whatever differs.
-bool isEqualProof(std::string_view a, std::string_view b);
 
-// Fills it from the system's random source. Throws std::runtime_error.
-void fillRandom(char* bytes, size_t count);
-
-// Returns the relay's secret out of a file that others may not read: at least 32 letters, without blanks at
-// its ends. Throws UserError.
+// Returns the secret that a relay and its gateway share, out of a file that others may not read: at least 32
+// letters, without blanks at its ends. Throws UserError.
 std::string readRelaySecret(const std::string& path);
 
 }  // namespace bonemill

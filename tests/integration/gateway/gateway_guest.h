@@ -20,7 +20,7 @@
 #include "render_client/gateway/gateway.h"
 #include "render_client/gateway/gateway_server.h"
 #include "render_client/gateway/guest.h"
-#include "render_client/gateway/secrets.h"
+#include "render_client/secrets/secrets.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/process.h"
 #include "tests/support/synthetic_nodes.h"
@@ -74,6 +74,7 @@ class RunningGateway {
     connect::TlsTarget target() const {
         return {"127.0.0.1", server_->port(), server_->certificate().fingerprint};
     }
+    operator connect::TlsTarget() const { return target(); }
     std::string filesContent() const {
         return test::readFile(folder_ / "guests") + test::readFile(folder_ / "guests.seats");
     }
@@ -87,10 +88,10 @@ class RunningGateway {
 };
 
 struct TestGuest {
-    explicit TestGuest(const RunningGateway& gateway, const std::string& origin = {})
-        : socket(gateway.target(), "/session", "bonemill.v1", std::chrono::seconds(5), origin) {}
-    TestGuest(const RunningGateway& gateway, const std::string& token, bool acknowledges)
-        : TestGuest(gateway) {
+    explicit TestGuest(const connect::TlsTarget& target, const std::string& origin = {})
+        : socket(target, "/session", "bonemill.v1", std::chrono::seconds(5), origin) {}
+    TestGuest(const connect::TlsTarget& target, const std::string& token, bool acknowledges)
+        : TestGuest(target) {
         this->acknowledges = acknowledges;
         hello(token);
     }
@@ -189,6 +190,7 @@ struct TestGuest {
         }
         const auto node = decodeNodeMesh(sample.payload(), leaf);
         ASSERT_TRUE(node);
+        a_node = sample.payload();
         nodes[leaf] = {node->content, node->mesh.revision};
     }
 
@@ -201,6 +203,7 @@ struct TestGuest {
     uint64_t epoch = 0, received = 0;
     size_t frames = 0, largest_frame = 0;
     std::map<uint32_t, Node> nodes;
+    std::string a_node;          // the payload that came last
     std::map<int, int> samples;  // by topic
     std::map<uint64_t, std::string> viewers;
     std::optional<topics::Status> status;

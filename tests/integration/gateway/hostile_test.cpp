@@ -170,7 +170,7 @@ TEST(HostileGuest, OneAddressDoesNotTakeThePlacesOfAllOthers) {
         guest->poll(std::chrono::milliseconds(0));
         open += !guest->socket.hasEnded();
     }
-    EXPECT_EQ(open, Gateway::kMostUnknownOfAddress);
+    EXPECT_EQ(open, Gateway::kMostUnknown.of_address);
 }
 
 TEST(HostileGuest, SilentConnectionsAreBoundedAndKeepNobodyOut) {

@@ -7,7 +7,7 @@
 
 #include "common/user_error.h"
 #include "render_client/gateway/guest_frames.h"
-#include "render_client/gateway/secrets.h"
+#include "render_client/secrets/secrets.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 

@@ -13,8 +13,9 @@
 #include <thread>
 
 #include "common/user_error.h"
-#include "render_client/relay/dial.h"
 #include "render_client/relay/relay_dialer.h"
+#include "render_client/tcp/dial.h"
+#include "render_client/tcp/listen.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bonemill {
@@ -69,9 +70,9 @@ class RunningRelay {
 
     uint16_t port() const { return relay_.port(); }
     Descriptor dial() const {
-        Descriptor line = beginDial("127.0.0.1", port());
-        EXPECT_TRUE(line && isReady(line.get(), POLLOUT));
-        return line;
+        Dialled dialled = bonemill::dial("127.0.0.1", port(), 5000ms);
+        EXPECT_TRUE(dialled.socket) << dialled.problem;
+        return std::move(dialled.socket);
     }
     Descriptor guest(const std::string& first = kTls) const {
         Descriptor line = dial();
@@ -94,10 +95,12 @@ class RunningRelay {
 class Echo {
   public:
     explicit Echo(uint16_t port, const std::string& secret = kSecret) {
-        dialer_.emplace(RelayPlace{"127.0.0.1", port}, secret, [this](Descriptor line) {
-            const std::lock_guard lock(mutex_);
-            fresh_.push_back(std::move(line));
-        });
+        dialer_.emplace(RelayPlace{"127.0.0.1", port, secret},
+                        [this](Descriptor line, const PeerAddress& guest) {
+                            const std::lock_guard lock(mutex_);
+                            guest_ = textOf(guest);
+                            fresh_.push_back(std::move(line));
+                        });
         thread_ = std::thread([this] { run(); });
     }
     ~Echo() {
@@ -110,6 +113,12 @@ class Echo {
         while (!dialer_->isConnected() && std::chrono::steady_clock::now() < end)
             std::this_thread::sleep_for(2ms);
         return dialer_->isConnected();
+    }
+
+    // Whom the relay named last.
+    std::string lastGuest() {
+        const std::lock_guard lock(mutex_);
+        return guest_;
     }
 
   private:
@@ -139,6 +148,7 @@ class Echo {
     }
 
     std::mutex mutex_;
+    std::string guest_;
     std::vector<Descriptor> fresh_, lines_;
     std::optional<RelayDialer> dialer_;
     std::atomic<bool> stop_ = false;
@@ -147,11 +157,12 @@ class Echo {
 
 TEST(Relay, PassesOnWhatGuestAndGatewaySay) {
     const RunningRelay relay;
-    const Echo gateway(relay.port());
+    Echo gateway(relay.port());
     ASSERT_TRUE(gateway.waitUntilConnected());
     const Descriptor guest = relay.guest();
     tell(guest, "hello");
     EXPECT_EQ(hear(guest, 6), kTls + "hello");
+    EXPECT_EQ(gateway.lastGuest(), "127.0.0.1");
 }
 
 TEST(Relay, TwoHundredGuestsAtOnceGetTheirOwnBytes) {
@@ -231,7 +242,7 @@ TEST(Relay, AThousandSilentLinesKeepNobodyOut) {
     ASSERT_TRUE(gateway.waitUntilConnected());
     allowDescriptors(4096);
     std::vector<Descriptor> silent;
-    for (int i = 0; i < 1000; ++i) silent.push_back(beginDial("127.0.0.1", relay.port()));
+    for (int i = 0; i < 1000; ++i) silent.push_back(relay.dial());
     size_t refused = 0;
     for (const Descriptor& line : silent) refused += hasEnded(line, 1ms);
     EXPECT_GE(refused, 900u);

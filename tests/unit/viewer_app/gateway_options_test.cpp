@@ -1,6 +1,7 @@
 // Options of a gateway, and of a viewer that comes through one.
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 #include "common/user_error.h"
 #include "render_client/app/options.h"
@@ -33,6 +34,51 @@ TEST(GatewayOptions, ServesThisPcAloneUnlessAnAddressIsGiven) {
     EXPECT_THROW(parsed({"--page", "p"}), UserError) << "of no gateway";
     EXPECT_THROW(parsed({"--serve", "1", "--key", "k"}), UserError) << "a key without its certificate";
     EXPECT_THROW(parsed({"--serve", "1", "--command", "reset"}), UserError);
+}
+
+TEST(RelayOptions, RelayAndGatewayShareASecretOutOfAPrivateFile) {
+    const test::TemporaryFolder folder;
+    const std::string secret = folder / "secret", letters(32, 'a');
+    test::writeFile(secret, letters + "\n");
+    chmod(secret.c_str(), 0600);
+    EXPECT_FALSE(parsed({}).relay);
+    const ClientOptions alone = parsed({"--relay", "9443", "--relay-secret", secret.c_str()});
+    ASSERT_TRUE(alone.relay);
+    EXPECT_EQ(alone.relay->address, "127.0.0.1");
+    EXPECT_EQ(alone.relay->port, 9443);
+    EXPECT_EQ(alone.relay->secret, letters);
+    EXPECT_EQ(parsed({"--relay", "0.0.0.0:0", "--relay-secret", secret.c_str()}).relay->address, "0.0.0.0");
+    const ClientOptions gateway = parsed({"--serve", "8443", "--via", "relay.example.org:9443",
+                                          "--relay-secret", secret.c_str(), "--guests-at-once", "200"});
+    ASSERT_TRUE(gateway.serve && gateway.serve->via);
+    EXPECT_FALSE(gateway.relay);
+    EXPECT_EQ(gateway.serve->via->host, "relay.example.org");
+    EXPECT_EQ(gateway.serve->via->port, 9443);
+    EXPECT_EQ(gateway.serve->via->secret, letters);
+    EXPECT_EQ(gateway.serve->most_guests, 200u);
+    EXPECT_FALSE(parsed({"--serve", "8443"}).serve->via);
+    for (const char* place : {"9443", ":9443", "relay:", "relay:0", "relay:x"})
+        EXPECT_THROW(parsed({"--serve", "1", "--via", place, "--relay-secret", secret.c_str()}), UserError)
+            << place;
+    EXPECT_THROW(parsed({"--via", "relay:1", "--relay-secret", secret.c_str()}), UserError) << "no gateway";
+    EXPECT_THROW(parsed({"--relay-secret", secret.c_str()}), UserError) << "for nothing";
+    EXPECT_THROW(parsed({"--relay", "1", "--serve", "2", "--relay-secret", secret.c_str()}), UserError);
+    EXPECT_THROW(parsed({"--relay", "1", "--session", "2", "--relay-secret", secret.c_str()}), UserError);
+    chmod(secret.c_str(), 0644);
+    EXPECT_THROW(parsed({"--relay", "1", "--relay-secret", secret.c_str()}), UserError) << "all can read it";
+}
+
+TEST(RelayOptions, WithoutASecretTheMessageSaysHowToMakeOne) {
+    const test::TemporaryFolder folder;
+    setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
+    try {
+        parsed({"--relay", "9443"});
+        ADD_FAILURE() << "no secret, and no error";
+    } catch (const UserError& error) {
+        const std::string words = error.what();
+        EXPECT_NE(words.find(folder / "bonemill/relay-secret"), std::string::npos) << words;
+        EXPECT_NE(words.find("openssl rand -hex 32"), std::string::npos) << words;
+    }
 }
 
 TEST(GatewayOptions, TheTokenComesFromLinkFileOrVariable) {

@@ -1,15 +1,13 @@
-#include "render_client/gateway/secrets.h"
+#include "render_client/secrets/secrets.h"
 
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
 #include <openssl/sha.h>
 
 #include <array>
-#include <span>
 #include <stdexcept>
 
-namespace bonemill::gateway {
-namespace {
+namespace bonemill {
 
 std::string hexOf(std::span<const unsigned char> bytes) {
     std::string hex;
@@ -20,22 +18,25 @@ std::string hexOf(std::span<const unsigned char> bytes) {
     return hex;
 }
 
-}  // namespace
-
 std::string sha256Hex(std::string_view bytes) {
     std::array<unsigned char, SHA256_DIGEST_LENGTH> hash{};
     SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), hash.data());
     return hexOf(hash);
 }
 
+void fillRandom(void* bytes, size_t count) {
+    if (RAND_bytes(static_cast<unsigned char*>(bytes), int(count)) != 1)
+        throw std::runtime_error("there are no random numbers");
+}
+
 std::string randomToken() {
     std::array<unsigned char, 16> bytes{};
-    if (RAND_bytes(bytes.data(), int(bytes.size())) != 1) throw std::runtime_error("no random numbers");
+    fillRandom(bytes.data(), bytes.size());
     return hexOf(bytes);
 }
 
-bool isSameSecret(const std::string& a, const std::string& b) {
+bool isSameSecret(std::string_view a, std::string_view b) {
     return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
-}  // namespace bonemill::gateway
+}  // namespace bonemill

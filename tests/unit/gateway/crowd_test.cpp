@@ -1,0 +1,43 @@
+// How many may come from where.
+#include <gtest/gtest.h>
+
+#include "render_client/gateway/guest_origin.h"
+
+namespace bonemill::gateway {
+namespace {
+
+constexpr CrowdBounds kCrowd{8, 3, 6};
+
+bool mayCome(const GuestOrigin& comer, const std::vector<GuestOrigin>& there) {
+    Crowd crowd(comer);
+    for (const GuestOrigin& one : there) crowd.add(one);
+    return crowd.hasPlace(kCrowd);
+}
+
+TEST(Crowd, OneAddressTakesItsShare) {
+    const GuestOrigin one{"192.0.2.1"}, other{"192.0.2.2"};
+    EXPECT_TRUE(mayCome(one, {one, one}));
+    EXPECT_FALSE(mayCome(one, {one, one, one}));
+    EXPECT_TRUE(mayCome(other, {one, one, one}));
+    EXPECT_FALSE(mayCome(other, std::vector<GuestOrigin>(8, one)));
+}
+
+TEST(Crowd, GuestsOfARelayAreCountedByTheAddressThatItNames) {
+    const GuestOrigin one{"192.0.2.1", true}, other{"192.0.2.2", true};
+    EXPECT_FALSE(mayCome(one, {one, one, one}));
+    EXPECT_TRUE(mayCome(other, {one, one, one}));
+    EXPECT_TRUE(mayCome({"192.0.2.1"}, {one, one, one})) << "who comes directly pays for nobody's word";
+}
+
+// Whatever addresses it invents.
+TEST(Crowd, ARelayLeavesRoomForThoseWhoComeDirectly) {
+    std::vector<GuestOrigin> there;
+    for (int n = 0; n < 6; ++n) there.push_back({"192.0.2." + std::to_string(n), true});
+    EXPECT_FALSE(mayCome({"192.0.2.99", true}, there));
+    EXPECT_TRUE(mayCome({"192.0.2.99"}, there));
+    there.pop_back();
+    EXPECT_TRUE(mayCome({"192.0.2.99", true}, there));
+}
+
+}  // namespace
+}  // namespace bonemill::gateway
