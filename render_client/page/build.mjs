@@ -1,15 +1,15 @@
-// Builds the page: node build.mjs --source DIR --proto DIR --work DIR --out DIR
+// Builds the page: node build.mjs --source DIR --shaders DIR --proto DIR --work DIR --out DIR
 // In the work folder lie copies of the sources, the packages (npm ci, when package-lock.json changed) and the code made
 // from proto/; the out folder gets index.html, page.css and the three scripts, each also compressed, and tests.mjs.
 import { execFileSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { join, resolve } from 'node:path';
+import { dirname, join, resolve } from 'node:path';
 import { gzipSync } from 'node:zlib';
 
 const options = Object.fromEntries(process.argv.slice(2).map((word, i, all) => (word.startsWith('--') ? [word.slice(2), resolve(all[i + 1] ?? '')] : ['', ''])));
-const { source, proto, work, out } = options;
-if (!source || !proto || !work || !out) throw new Error('usage: node build.mjs --source DIR --proto DIR --work DIR --out DIR');
+const { source, shaders, proto, work, out } = options;
+if (!source || !shaders || !proto || !work || !out) throw new Error('usage: node build.mjs --source DIR --shaders DIR --proto DIR --work DIR --out DIR');
 const kMostPageBytes = 200_000;  // compressed, of all that a guest loads
 
 function run(program, ...args) {
@@ -30,17 +30,27 @@ if (!existsSync(installed) || readFileSync(installed, 'utf8') !== lock) {
   }
   writeFileSync(installed, lock);
 }
-for (const folder of ['src', 'tests']) {
+for (const [folder, from] of [['src', join(source, 'src')], ['tests', join(source, 'tests')], ['shaders', shaders]]) {
   rmSync(join(work, folder), { recursive: true, force: true });
-  cpSync(join(source, folder), join(work, folder), { recursive: true });
+  cpSync(from, join(work, folder), { recursive: true });
 }
 mkdirSync(join(work, 'generated'), { recursive: true });
 const protos = ['gateway', 'topics', 'densities', 'scene'].map((name) => join(proto, `${name}.proto`));
 run('protoc', '-I', proto, `--plugin=protoc-gen-es=${join(work, 'node_modules/.bin/protoc-gen-es')}`, '--es_out=generated', '--es_opt=target=ts', ...protos);
 run(process.execPath, join(work, 'node_modules/typescript/bin/tsc'), '--noEmit');
 
+// A shader is its text, with the files that it includes in their places and without what only readers need.
+function shaderText(file) {
+  const whole = readFileSync(file, 'utf8').replace(/#include "(.*)"\n/g, (_, name) => shaderText(join(dirname(file), name)));
+  return whole.replace(/ *\/\/.*$/gm, '').replace(/^\s+/gm, '');
+}
+const glsl = {
+  name: 'glsl',
+  setup: (made) => made.onLoad({ filter: /\.glsl$/ }, ({ path }) => ({ contents: shaderText(path), loader: 'text' })),
+};
+
 const { build } = createRequire(join(work, 'package.json'))('esbuild');
-const common = { absWorkingDir: work, bundle: true, format: 'esm', legalComments: 'eof', logLevel: 'warning' };
+const common = { absWorkingDir: work, bundle: true, format: 'esm', legalComments: 'eof', logLevel: 'warning', plugins: [glsl] };
 await build({
   ...common, minify: true, target: 'es2022', outdir: out,
   entryPoints: { page: 'src/main.ts', link: 'src/link/link_worker.ts', sound: 'src/sound/sound_worklet.ts' },

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 
 namespace bonemill {
 

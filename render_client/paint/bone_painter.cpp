@@ -4,7 +4,7 @@
 #include <string>
 
 #include "render_client/paint/clip_planes.h"
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 
 namespace bonemill {
 namespace {
@@ -27,20 +27,18 @@ const Eigen::Vector3f kInsideGlass(0.85f, 0.22f, 0.10f);
 
 BonePainter::BonePainter(const GlApi& gl)
     : gl_(gl),
-      surface_(gl, "bone", shaders::kMeshVertex,
-               std::string(shaders::kLighting) + shaders::kNoise + shaders::kBoneFragment),
+      surface_(gl, "bone", shaders::kMeshVertex, shaders::kBoneFragment),
       depth_(gl, "bone depth", shaders::kMeshVertex, shaders::kDepthFragment),
-      cap_(gl, "cap", shaders::kFullScreenVertex,
-           std::string(shaders::kLighting) + shaders::kNoise + shaders::kCapFragment),
+      cap_(gl, "cap", shaders::kFullScreenVertex, shaders::kCapFragment),
       no_attributes_(gl) {}
 
 void BonePainter::setPalette(const std::vector<Eigen::Vector4f>& colours) {
     coloured_.reset();
     if (colours.empty()) return;
     const std::string define = MaterialPalette::kDefine;
-    coloured_.reset(new Coloured{{gl_, colours},
-                                 {gl_, "bone of materials", define + shaders::kMeshVertex,
-                                  define + shaders::kLighting + shaders::kNoise + shaders::kBoneFragment}});
+    coloured_.reset(new Coloured{
+        {gl_, colours},
+        {gl_, "bone of materials", define + shaders::kMeshVertex, define + shaders::kBoneFragment}});
 }
 
 void BonePainter::drawOpaque(const Frame& frame, const NodeStore& nodes, GLuint shadow_texture) {

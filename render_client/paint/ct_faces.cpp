@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 #include "render_client/slices/grey_window.h"
 
 namespace bonemill {
@@ -67,7 +67,7 @@ Eigen::Matrix4f textureFromVolume(const SlicePlane& plane) {
 CtFaces::CtFaces(const GlApi& gl)
     : gl_(gl),
       cap_(gl, "cap with the scan", shaders::kFullScreenVertex,
-           std::string("#define CT\n") + shaders::kLighting + shaders::kNoise + shaders::kCapFragment),
+           std::string("#define CT\n") + shaders::kCapFragment),
       nothing_(gl) {
     SliceImage nothing{1, 1, {0}, {0}, {SliceState::kOutside}};
     Face face(gl);

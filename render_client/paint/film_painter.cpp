@@ -3,7 +3,7 @@
 #include <string>
 
 #include "render_client/model/material_palette.h"
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 
 namespace bonemill {
 namespace {
@@ -28,9 +28,8 @@ FilmPainter::FilmPainter(const GlApi& gl, bool has_materials) : gl_(gl), texture
 
 void FilmPainter::setMaterials(bool has_materials) {
     const std::string define = has_materials ? MaterialPalette::kDefine : "";
-    surface_ = std::make_unique<Program>(
-        gl_, "bone with a film", define + shaders::kMeshVertex,
-        define + "#define FILM\n" + shaders::kLighting + shaders::kNoise + shaders::kBoneFragment);
+    surface_ = std::make_unique<Program>(gl_, "bone with a film", define + shaders::kMeshVertex,
+                                         define + "#define FILM\n" + shaders::kBoneFragment);
 }
 
 Eigen::AlignedBox3f FilmPainter::update(const EffectPicture& picture) {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 
 namespace bonemill {
 namespace {

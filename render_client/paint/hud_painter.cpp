@@ -6,7 +6,7 @@
 
 #include "render_client/hud/help_page.h"
 #include "render_client/hud/orientation_marker.h"
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 
 namespace bonemill {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 
 namespace bonemill {
 namespace {

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <string>
 
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 
 namespace bonemill {
 namespace {
@@ -33,8 +32,7 @@ Placed place(const Frame& frame, const Particle& particle, int height) {
 
 ParticlePainter::ParticlePainter(const GlApi& gl)
     : gl_(gl),
-      program_(gl, "particle", shaders::kParticleVertex,
-               std::string(shaders::kLighting) + shaders::kParticleFragment),
+      program_(gl, "particle", shaders::kParticleVertex, shaders::kParticleFragment),
       layout_(gl),
       buffer_(gl) {
     gl_.BindVertexArray(layout_.name());

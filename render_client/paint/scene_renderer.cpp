@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "render_client/paint/clip_planes.h"
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 
 namespace bonemill {
 namespace {

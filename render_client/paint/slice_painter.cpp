@@ -1,6 +1,6 @@
 #include "render_client/paint/slice_painter.h"
 
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 
 namespace bonemill {
 namespace {

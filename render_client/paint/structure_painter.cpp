@@ -1,11 +1,10 @@
 #include "render_client/paint/structure_painter.h"
 
-#include <string>
 #include <utility>
 
 #include "render_client/model/mesh_difference.h"
 #include "render_client/paint/clip_planes.h"
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 
 namespace bonemill {
 namespace {
@@ -17,11 +16,10 @@ constexpr GLuint kAllStencil = 0xff;
 
 void StructurePainter::set(const NodeMesh& mesh) {
     if (!program_) {
-        const std::string lighting = shaders::kLighting;
-        program_ = std::make_unique<Program>(gl_, "structure", shaders::kMeshVertex,
-                                             lighting + shaders::kStructureFragment);
+        program_ =
+            std::make_unique<Program>(gl_, "structure", shaders::kMeshVertex, shaders::kStructureFragment);
         section_ = std::make_unique<Program>(gl_, "section of a structure", shaders::kFullScreenVertex,
-                                             lighting + shaders::kSectionFragment);
+                                             shaders::kSectionFragment);
     }
     Shape shape{NodeStore(gl_), boxOf(mesh), {}};
     shape.surface.set(mesh);

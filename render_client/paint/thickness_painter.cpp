@@ -2,16 +2,15 @@
 
 #include <string>
 
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 #include "render_client/structures/structure_colours.h"
 
 namespace bonemill {
 
 ThicknessPainter::ThicknessPainter(const GlApi& gl, const ThicknessField& field)
     : gl_(gl),
-      surface_(
-          gl, "bone of thickness", std::string("#define THICKNESS\n") + shaders::kMeshVertex,
-          std::string("#define THICKNESS\n") + shaders::kLighting + shaders::kNoise + shaders::kBoneFragment),
+      surface_(gl, "bone of thickness", std::string("#define THICKNESS\n") + shaders::kMeshVertex,
+               std::string("#define THICKNESS\n") + shaders::kBoneFragment),
       texture_(gl),
       // A texture's corner is half a sample before its first one.
       first_V_(field.first_V - Eigen::Vector3f::Constant(0.5f * field.step)),

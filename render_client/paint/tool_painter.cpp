@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "render_client/paint/shaders.h"
+#include "render_client/shaders/shaders.h"
 
 namespace bonemill {
 namespace {
@@ -24,13 +24,13 @@ Eigen::Vector3f glowOf(BurrWork work) {
 
 ToolPainter::ToolPainter(const GlApi& gl)
     : gl_(gl),
-      tool_(gl, "tool", shaders::kToolVertex, std::string(shaders::kLighting) + shaders::kToolFragment),
+      tool_(gl, "tool", shaders::kToolVertex, shaders::kToolFragment),
       ghost_(gl, "ghost", shaders::kToolVertex, shaders::kGhostFragment) {}
 
 void ToolPainter::prepareSpin(bool is_needed) {
     spinning_tool_.reset();
     if (!is_needed) return;
-    const std::string fragment = std::string("#define SPIN\n") + shaders::kLighting + shaders::kToolFragment;
+    const std::string fragment = std::string("#define SPIN\n") + shaders::kToolFragment;
     spinning_tool_ = std::make_unique<Program>(gl_, "turning tool", shaders::kToolVertex, fragment);
 }
 

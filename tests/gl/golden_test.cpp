@@ -312,13 +312,17 @@ TEST_F(Golden, TheComparisonSeesTurnedNormalsInTheShader) {
 }
 
 TEST_F(Golden, TheComparisonSeesACutWithoutItsCap) {
-    expectSeen("cut", {{"vec3 p_C = entry * ray;", "vec3 p_C = entry * ray; if (entry > 0.0) discard;"}},
+    expectSeen("cut",
+               {{"vec3 p_C = entry.depth * entry.ray;",
+                 "vec3 p_C = entry.depth * entry.ray; if (entry.depth > 0.0) discard;"}},
                [this] { lookThroughTheCut(); });
 }
 
 TEST_F(Golden, TheComparisonSeesATransparentCutWithoutItsCap) {
     expectSeen("transparent_cut",
-               {{"vec3 p_C = entry * ray;", "vec3 p_C = entry * ray; if (entry > 0.0) discard;"}}, [this] {
+               {{"vec3 p_C = entry.depth * entry.ray;",
+                 "vec3 p_C = entry.depth * entry.ray; if (entry.depth > 0.0) discard;"}},
+               [this] {
                    lookThroughTheCut();
                    scene_->settings().is_transparent = true;
                });

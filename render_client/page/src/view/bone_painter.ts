@@ -1,12 +1,14 @@
 // Draws what rests while the camera does: bone with its cut faces, and protected structures. The order of passes is
 // that of render_client/paint/bone_painter.cpp and structure_painter.cpp.
+import bone_fragment from '#shaders/bone_fragment.glsl';
+import cap_fragment from '#shaders/cap_fragment.glsl';
+import depth_fragment from '#shaders/depth_fragment.glsl';
+import full_screen_vertex from '#shaders/full_screen_vertex.glsl';
+import mesh_vertex from '#shaders/mesh_vertex.glsl';
+import structure_fragment from '#shaders/structure_fragment.glsl';
 import type { MaterialView, StructureSurface } from '../shared/messages';
-import {
-  kBoneFragment, kCapFragment, kDepthFragment, kLighting, kMeshVertex, kStructureFragment,
-} from './bone_shaders';
 import { BoneStore, Chunk, type Level } from './bone_store';
 import { frustumPlanes } from './camera';
-import { kFullScreenVertex } from './frame_shaders';
 import { bindTexture, makeTexture, Program, type Gl, type UniformValue } from './gl';
 import type { Layers } from './layers';
 import type { Frame, PictureView } from './picture_view';
@@ -45,7 +47,7 @@ export class BonePainter {
     this.bone = new BoneStore(gl);
     this.light = layers.shadow ? ['SHADOW'] : [];
     this.makePrograms(false);
-    this.cap = new Program(gl, 'cap', kFullScreenVertex, kLighting + kCapFragment, this.light);
+    this.cap = new Program(gl, 'cap', full_screen_vertex, cap_fragment, this.light);
     this.palette = makeTexture(gl, gl.RGBA32F, 256, 1);
     this.nothing = gl.createVertexArray();
   }
@@ -55,9 +57,9 @@ export class BonePainter {
     this.hasColours = has_colours;
     const { gl, light } = this, colours = has_colours ? ['MATERIALS'] : [];
     const of = (words: string[]): Programs => ({
-      surface: new Program(gl, 'bone', kMeshVertex, kLighting + kBoneFragment, [...words, ...light, ...colours]),
-      depth: new Program(gl, 'bone depth', kMeshVertex, kDepthFragment, words),
-      structure: new Program(gl, 'structure', kMeshVertex, kLighting + kStructureFragment, [...words, ...light]),
+      surface: new Program(gl, 'bone', mesh_vertex, bone_fragment, [...words, ...light, ...colours]),
+      depth: new Program(gl, 'bone depth', mesh_vertex, depth_fragment, words),
+      structure: new Program(gl, 'structure', mesh_vertex, structure_fragment, [...words, ...light]),
     });
     this.programs = { whole: of([]), cut: of(['CUT']) };
   }
@@ -301,6 +303,7 @@ export class BonePainter {
       key_direction: frame.keyDirection,
       light_reach: frame.lightReach,
       clip_from_camera: frame.clipFromCamera,
+      has_shadow: this.layers.shadow ? 1 : 0,
       shadow_map: this.layers.shadow ? bindTexture(this.gl, 2, this.layers.shadow) : 2,
       shadow_texel: frame.shadowTexel,
       shadow_from_camera: frame.shadowFromCamera,

@@ -64,13 +64,15 @@ class Space {
 
 export class Chunk {
   readonly pieces = new Map<number, Piece>();
+  readonly step: Vec3;  // m
   low: Vec3 = [0, 0, 0];
   high: Vec3 = [0, 0, 0];
   private readonly vertices: Space;
   private readonly spaces: Record<Level, Space>;
   private readonly layouts: Record<Level, WebGLVertexArrayObject>;
 
-  constructor(private readonly gl: Gl, readonly origin: Vec3, readonly step: number) {
+  constructor(private readonly gl: Gl, readonly origin: Vec3, step: number) {
+    this.step = [step, step, step];
     this.vertices = new Space(gl, gl.ARRAY_BUFFER, kVertexBytes);
     this.spaces = { indices: new Space(gl, gl.ELEMENT_ARRAY_BUFFER, 4), coarse: new Space(gl, gl.ELEMENT_ARRAY_BUFFER, 4) };
     this.layouts = { indices: this.layOutOf('indices'), coarse: this.layOutOf('coarse') };

@@ -29,8 +29,8 @@ export class Program {
   private readonly places = new Map<string, { place: WebGLUniformLocation; type: number }>();
 
   constructor(private readonly gl: Gl, name: string, vertex: string, fragment: string, defines: string[] = []) {
-    const head = '#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2DShadow;\n' +
-                 defines.map((word) => `#define ${word}\n`).join('');
+    const precise = ['float', 'int', 'sampler2D', 'sampler2DShadow'].map((type) => `precision highp ${type};\n`);
+    const head = ['#version 300 es\n', ...precise, ...defines.map((word) => `#define ${word}\n`)].join('');
     this.program = gl.createProgram();
     for (const [kind, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]] as const) {
       const shader = gl.createShader(kind)!;

@@ -1,9 +1,10 @@
 // Signs in the picture: force arrow, pointers, the line to where a mouse wants the tool, strokes on the bone. After
 // render_client/paint/marker_painter.cpp.
+import marker_fragment from '#shaders/marker_fragment.glsl';
+import marker_vertex from '#shaders/marker_vertex.glsl';
 import { add, cross, norm, normalized, orthogonal, scale, sub, dot, type Vec3 } from '../math/linear';
 import { Program, type Gl } from './gl';
 import type { Frame, PictureView } from './picture_view';
-import { kMarkerFragment, kMarkerVertex } from './tool_shaders';
 
 const kSmallestForce = 0.05, kGreenForce = 0.2, kLargestForce = 20;  // N
 const kShortest = 0.05, kLongest = 0.3;  // of the picture's height, as all sizes below
@@ -43,7 +44,7 @@ export class MarkerPainter {
   private numbers: number[] = [];
 
   constructor(private readonly gl: Gl) {
-    this.program = new Program(gl, 'marker', kMarkerVertex, kMarkerFragment);
+    this.program = new Program(gl, 'marker', marker_vertex, marker_fragment);
     this.layout = gl.createVertexArray();
     this.buffer = gl.createBuffer();
     gl.bindVertexArray(this.layout);

@@ -1,12 +1,15 @@
 // Draws a picture: the layer of all that rests (bone, structures), kept while neither view nor bone changes, then tool
 // and signs over it. Where the processor draws, a moving view has no ambient occlusion; that comes when it rests.
+import background_fragment from '#shaders/background_fragment.glsl';
+import composite_fragment from '#shaders/composite_fragment.glsl';
+import copy_fragment from '#shaders/copy_fragment.glsl';
+import full_screen_vertex from '#shaders/full_screen_vertex.glsl';
+import occlusion_fragment from '#shaders/occlusion_fragment.glsl';
+import pick_fragment from '#shaders/pick_fragment.glsl';
+import tool_shadow_fragment from '#shaders/tool_shadow_fragment.glsl';
 import { add, joined, matrixOf, normalized, product, scale, transformed, type Box, type Vec3 } from '../math/linear';
 import { BonePainter } from './bone_painter';
 import { cameraFromWorld, rayThrough } from './camera';
-import {
-  kBackgroundFragment, kCompositeFragment, kCopyFragment, kFullScreenVertex, kOcclusionFragment, kPickFragment,
-  kToolShadowFragment,
-} from './frame_shaders';
 import { bindTexture, Program, type Canvas, type Gl } from './gl';
 import { Layers } from './layers';
 import { MarkerPainter } from './marker_painter';
@@ -51,13 +54,13 @@ export class Renderer {
     this.bonePainter = new BonePainter(gl, this.layers);
     this.toolPainter = new ToolPainter(gl);
     this.markers = new MarkerPainter(gl);
-    const full = (name: string, fragment: string) => new Program(gl, name, kFullScreenVertex, fragment);
-    this.background = full('background', kBackgroundFragment);
-    this.occlusion = full('occlusion', kOcclusionFragment);
-    this.composite = full('composite', kCompositeFragment);
-    this.copy = full('copy', kCopyFragment);
-    this.toolShadow = full('tool shadow', kToolShadowFragment);
-    this.pickProgram = full('pick', kPickFragment);
+    const full = (name: string, fragment: string) => new Program(gl, name, full_screen_vertex, fragment);
+    this.background = full('background', background_fragment);
+    this.occlusion = full('occlusion', occlusion_fragment);
+    this.composite = full('composite', composite_fragment);
+    this.copy = full('copy', copy_fragment);
+    this.toolShadow = full('tool shadow', tool_shadow_fragment);
+    this.pickProgram = full('pick', pick_fragment);
     this.nothing = gl.createVertexArray();
   }
 
@@ -112,7 +115,6 @@ export class Renderer {
       colour_map: bindTexture(gl, 0, is_fine ? this.layers.shaded : this.layers.colour),
       depth_map: bindTexture(gl, 3, this.layers.depth),
       field_radius: view.isEndoscope ? 0.48 * Math.min(aspect, 1) : 0,
-      aspect,
     });
     this.fullScreen();
     if (is_opaque) this.castToolShadow(frame, view);

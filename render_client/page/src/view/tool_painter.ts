@@ -1,11 +1,12 @@
 // The tool, and its outline where the hand is.
+import ghost_fragment from '#shaders/ghost_fragment.glsl';
+import tool_fragment from '#shaders/tool_fragment.glsl';
+import tool_vertex from '#shaders/tool_vertex.glsl';
 import { matrixOf, norm, product, type Mat4, type Pose, type Vec3 } from '../math/linear';
 import type { ToolMesh } from '../shared/messages';
-import { kLighting } from './bone_shaders';
 import { cameraFromWorld } from './camera';
 import { Program, type Gl } from './gl';
 import type { Frame, PictureView } from './picture_view';
-import { kGhostFragment, kToolFragment, kToolVertex } from './tool_shaders';
 
 // The burr has a light of its own while it works: orange where it removes, blue where it adds.
 const kGlow: Record<PictureView['work'], Vec3> = { idle: [0, 0, 0], removing: [1.9, 0.3, 0.02], adding: [0.05, 0.75, 1.1] };
@@ -20,8 +21,8 @@ export class ToolPainter {
   private readonly buffers: WebGLBuffer[];
 
   constructor(private readonly gl: Gl) {
-    this.tool = new Program(gl, 'tool', kToolVertex, kLighting + kToolFragment);
-    this.ghost = new Program(gl, 'ghost', kToolVertex, kGhostFragment);
+    this.tool = new Program(gl, 'tool', tool_vertex, tool_fragment);
+    this.ghost = new Program(gl, 'ghost', tool_vertex, ghost_fragment);
     this.layout = gl.createVertexArray();
     this.buffers = [gl.createBuffer(), gl.createBuffer(), gl.createBuffer()];
     gl.bindVertexArray(this.layout);

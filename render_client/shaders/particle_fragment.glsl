@@ -1,31 +1,5 @@
-#include "render_client/paint/shaders.h"
-
-namespace bonemill::shaders {
-
-const char kParticleVertex[] = R"(
-layout(location = 0) in vec3 position;  // C, m
-layout(location = 1) in vec2 place;     // along and across the streak, in radii
-layout(location = 2) in vec3 streak;    // direction in the picture, half length in radii
-layout(location = 3) in vec4 particle_colour;
-layout(location = 4) in float particle_gloss;
-uniform mat4 clip_from_camera;
-out vec3 p_C;
-out vec2 f_place;
-flat out vec3 f_streak;
-flat out vec4 f_colour;
-flat out float f_gloss;
-void main() {
-    p_C = position;
-    f_place = place;
-    f_streak = streak;
-    f_colour = particle_colour;
-    f_gloss = particle_gloss;
-    gl_Position = clip_from_camera * vec4(position, 1.0);
-}
-)";
-
 // A particle looks like a ball, or like a capsule along its streak, seen from the front.
-const char kParticleFragment[] = R"(
+#include "lighting.glsl"
 in vec3 p_C;
 in vec2 f_place;
 flat in vec3 f_streak;
@@ -56,6 +30,3 @@ void main() {
     edge *= mix(1.0, smoothstep(0.0, 0.7, ends), is_long);
     colour = vec4(toneMap(mix(matt, water, f_gloss) * falloff(p_C)), clamp(f_colour.a * cover * edge, 0.0, 1.0));
 }
-)";
-
-}  // namespace bonemill::shaders

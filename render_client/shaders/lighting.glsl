@@ -1,16 +1,17 @@
-#include "render_client/paint/shaders.h"
-
-namespace bonemill::shaders {
-
-// The light rig is fixed to the camera, so that what one looks at is always lit: a warm key from the upper
-// left with a shadow, a cool fill from the right, a rim from behind, and a hemisphere.
-const char kLighting[] = R"(
-uniform sampler2DShadow shadow_map;
+// The light rig is fixed to the camera, so that what one looks at is always lit: a warm key from the upper left with a
+// shadow, a cool fill from the right, a rim from behind, and a hemisphere. A browser whose processor draws has no
+// shadow map.
 uniform vec3 key_direction;   // C, towards the light
+uniform float light_reach;    // m from the eye to where its own light is as bright as the room's; 0: the room's
+#ifndef GL_ES
+#define SHADOW
+#endif
+#ifdef SHADOW
+uniform sampler2DShadow shadow_map;
 uniform bool has_shadow;
 uniform float shadow_texel;   // m in the world per texel of the shadow map
 uniform mat4 shadow_from_camera;
-uniform float light_reach;    // m from the eye to where its own light is as bright as the room's; 0: the room's
+#endif
 
 const vec3 kKeyColour = vec3(1.00, 0.94, 0.85) * 2.35;
 const vec3 kFillColour = vec3(0.60, 0.70, 0.92) * 0.30;
@@ -26,6 +27,7 @@ vec3 toneMap(vec3 linear) {
 }
 
 float keyVisibility(vec3 p_C, vec3 normal) {
+#ifdef SHADOW
     if (!has_shadow) return 1.0;
     vec3 offset = normal * shadow_texel * (1.5 + 2.5 * (1.0 - max(dot(normal, key_direction), 0.0)));
     vec4 clip = shadow_from_camera * vec4(p_C + offset, 1.0);
@@ -37,6 +39,9 @@ float keyVisibility(vec3 p_C, vec3 normal) {
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) sum += texture(shadow_map, vec3(uvw.xy + vec2(x, y) * texel, uvw.z));
     return sum / 9.0;
+#else
+    return 1.0;
+#endif
 }
 
 float falloff(vec3 p_C) {
@@ -46,20 +51,3 @@ float falloff(vec3 p_C) {
 }
 
 vec3 hemisphere(vec3 normal) { return mix(kGround, kSky, 0.5 + 0.5 * normal.y); }
-)";
-
-const char kNoise[] = R"(
-float hash(vec3 cell) { return fract(sin(dot(cell, vec3(127.1, 311.7, 74.7))) * 43758.5453); }
-
-float valueNoise(vec3 p) {
-    vec3 cell = floor(p), f = fract(p);
-    f = f * f * (3.0 - 2.0 * f);
-    vec4 low = vec4(hash(cell), hash(cell + vec3(1, 0, 0)), hash(cell + vec3(0, 1, 0)), hash(cell + vec3(1, 1, 0)));
-    cell.z += 1.0;
-    vec4 high = vec4(hash(cell), hash(cell + vec3(1, 0, 0)), hash(cell + vec3(0, 1, 0)), hash(cell + vec3(1, 1, 0)));
-    vec4 z = mix(low, high, f.z);
-    return mix(mix(z.x, z.y, f.x), mix(z.z, z.w, f.x), f.y);
-}
-)";
-
-}  // namespace bonemill::shaders

@@ -1,25 +1,4 @@
-#include "render_client/paint/shaders.h"
-
-namespace bonemill::shaders {
-
-const char kToolVertex[] = R"(
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-uniform mat4 camera_from_model;
-uniform mat4 clip_from_camera;
-out vec3 p_C;
-out vec3 n_C;
-out vec3 p_M;
-
-void main() {
-    p_M = position;
-    p_C = (camera_from_model * vec4(p_M, 1.0)).xyz;
-    n_C = mat3(camera_from_model) * normal;
-    gl_Position = clip_from_camera * vec4(p_C, 1.0);
-}
-)";
-
-const char kToolFragment[] = R"(
+#include "lighting.glsl"
 in vec3 p_C;
 in vec3 n_C;
 in vec3 p_M;
@@ -27,7 +6,7 @@ uniform float burr_radius;  // m
 uniform vec3 milling_glow;  // linear colour, 0 when idle
 out vec4 colour;
 
-float grooveAt(float phase) { return smoothstep(-0.2, -0.9, sin(phase)); }
+float grooveAt(float phase) { return 1.0 - smoothstep(-0.9, -0.2, sin(phase)); }
 
 #ifdef SPIN
 uniform float spin_angle;  // rad about +y of T
@@ -100,17 +79,3 @@ void main() {
     shaded += milling_glow * burr * (0.40 + 0.9 * pow(1.0 - max(dot(normal, to_eye), 0.0), 1.5)) * (1.0 - 0.6 * groove);
     colour = vec4(toneMap(shaded * min(falloff(p_C), 1.0)), 1.0);
 }
-)";
-
-const char kGhostFragment[] = R"(
-in vec3 p_C;
-in vec3 n_C;
-uniform float strength;
-out vec4 colour;
-void main() {
-    float edge = pow(1.0 - abs(dot(normalize(n_C), normalize(-p_C))), 1.5);
-    colour = vec4(0.35, 0.80, 1.0, strength * (0.03 + 0.60 * edge * edge));
-}
-)";
-
-}  // namespace bonemill::shaders

@@ -1,8 +1,3 @@
-#include "render_client/paint/shaders.h"
-
-namespace bonemill::shaders {
-
-const char kSliceFragment[] = R"(
 in vec2 uv;
 uniform sampler2D slice;
 uniform vec2 size;     // of the pane, pixels
@@ -24,6 +19,3 @@ void main() {
     shown = mix(shown, vec3(1.0, 0.83, 0.25), ring);
     colour = vec4(shown, 1.0);
 }
-)";
-
-}  // namespace bonemill::shaders

@@ -1,0 +1,120 @@
+#include "lighting.glsl"
+#include "cut_away.glsl"
+in vec3 p_C;
+in vec3 n_C;
+uniform vec2 opacity;        // facing the eye, and the part of the rest that the outline adds
+uniform vec3 inside_colour;  // linear
+#ifdef MATERIALS
+in vec4 material_colour;  // colour times alpha, alpha
+#endif
+out vec4 colour;
+
+// The faint mottling: a browser makes it per vertex, so that its processor has nothing to do for it.
+#ifdef GL_ES
+in float grain;
+#else
+#include "noise.glsl"
+in vec3 p_M;
+in vec2 scanned;
+uniform vec2 grey_of_density;  // of the scan: factor, and what is added
+uniform bool shows_scan;
+uniform float grain_size;      // m
+#endif
+
+#ifdef THICKNESS
+in float share_to_structure;
+uniform vec3 thickness_colours[5];  // linear, from 0 to the reach
+
+vec3 thicknessColour(float share) {
+    float at = clamp(share, 0.0, 1.0) * 4.0;
+    int low = min(int(at), 3);
+    return mix(thickness_colours[low], thickness_colours[low + 1], at - float(low));
+}
+#endif
+
+#ifdef FILM
+uniform sampler3D film;            // blood, water; repeats
+uniform float film_period;         // m, V
+uniform vec3 film_low, film_high;  // V, of what the texture holds now
+uniform vec2 film_strength;
+uniform vec3 blood_colour;         // linear
+
+vec2 filmAt(vec3 p) {
+    if (any(lessThan(p, film_low)) || any(greaterThan(p, film_high))) return vec2(0.0);
+    return texture(film, p / film_period).rg * film_strength;
+}
+#endif
+
+void main() {
+    cutAway();
+    vec3 to_eye = normalize(-p_C);
+    vec3 normal = normalize(n_C);
+    bool inside = !gl_FrontFacing;  // an open border, or the eye inside the bone
+    if (inside) normal = -normal;
+
+#ifdef GL_ES
+    float mottling = grain;
+#else
+    float mottling = valueNoise(p_M / grain_size) * 0.65 + valueNoise(p_M / grain_size * 2.7 + 11.0) * 0.35;
+#endif
+    vec3 albedo = mix(vec3(0.69, 0.55, 0.38), vec3(0.82, 0.71, 0.54), mottling);
+#ifdef MATERIALS
+    albedo = albedo * (1.0 - material_colour.a) + material_colour.rgb * mix(0.88, 1.12, mottling);
+#endif
+#ifndef GL_ES
+    if (shows_scan && scanned.y > 0.0) {
+        float grey = clamp(scanned.x / scanned.y * grey_of_density.x + grey_of_density.y, 0.0, 1.0);
+        albedo = mix(albedo, vec3(pow(grey, 2.2)), scanned.y);
+    }
+#endif
+#ifdef THICKNESS
+    albedo = mix(thicknessColour(share_to_structure), albedo, smoothstep(0.85, 1.0, share_to_structure));
+#endif
+    if (inside) albedo = inside_colour;
+#ifdef FILM
+    vec3 sheen = vec3(0.0);
+    float wetness = 0.0;
+    vec2 lying = inside ? vec2(0.0) : filmAt(p_M);
+    if (lying.x + lying.y > 0.0) {  // noise is dear
+        float fine = valueNoise(p_M / film_period * 150.0), coarse = valueNoise(p_M / film_period * 48.0 + 5.0);
+        float blood = smoothstep(0.10, 0.46, lying.x * (0.55 + 0.55 * fine + 0.45 * coarse));
+        float wet = max(smoothstep(0.05, 0.7, lying.y * (0.7 + 0.6 * coarse)), 0.75 * blood);
+        wetness = wet;
+        albedo = mix(albedo * (1.0 - 0.34 * wet), blood_colour * (0.75 + 0.45 * coarse), 0.95 * blood);
+        // The film's own surface is smoother than bone, but ripples.
+        vec3 ripple = vec3(fine, coarse, valueNoise(p_M / film_period * 90.0 + 9.0)) - 0.5;
+        vec3 film_normal = normalize(normal + 0.16 * ripple);
+        float grazing = pow(1.0 - max(dot(film_normal, to_eye), 0.0), 4.0);
+        vec3 film_mirror = reflect(-to_eye, film_normal);
+        float panel = smoothstep(0.88, 0.99, dot(film_mirror, key_direction));
+        float strip = smoothstep(0.86, 0.96, dot(film_mirror, kFillDirection));
+        sheen = wet * (0.04 + 0.80 * grazing) * kSky + wet * 0.16 * panel * kKeyColour * keyVisibility(p_C, normal)
+              + wet * 0.05 * strip * vec3(0.6, 0.8, 1.0);
+    }
+#endif
+
+    float facing = dot(normal, key_direction);
+    float visible = keyVisibility(p_C, normal);
+    const float kWrap = 0.12;  // light that bone lets through
+    float key = max((facing + kWrap) / (1.0 + kWrap), 0.0) * mix(0.06, 1.0, visible);
+    vec3 light = kKeyColour * key + kFillColour * max(dot(normal, kFillDirection), 0.0) + hemisphere(normal);
+    // Light inside the bone gives the edge of the shadow a warm tint.
+    light += vec3(0.34, 0.13, 0.05) * key * (1.0 - visible);
+
+    vec3 half_way = normalize(key_direction + to_eye);
+    // Dry bone is matt: a broad, faint shine. A wet one has the film's narrow highlight.
+    float mirrored = max(dot(normal, half_way), 0.0);
+    float gloss = pow(mirrored, 14.0) * 0.11;
+#ifdef FILM
+    gloss = mix(gloss, pow(mirrored, 90.0) * 1.1, wetness);
+#endif
+    gloss *= visible * step(0.0, facing);
+    float grazing_eye = 1.0 - max(dot(normal, to_eye), 0.0);
+    float outline = grazing_eye * grazing_eye;
+    float rim = outline * outline * (0.35 + 0.65 * max(normal.y, 0.0));
+    vec3 shaded = albedo * light * 0.56 + kKeyColour * gloss * 0.4 + kRimColour * rim * 0.16;
+#ifdef FILM
+    shaded += sheen;
+#endif
+    colour = vec4(toneMap(shaded * falloff(p_C)), opacity.x + (1.0 - opacity.x) * opacity.y * outline);
+}

@@ -1,0 +1,2 @@
+#include "cut_away.glsl"
+void main() { cutAway(); }

@@ -1,0 +1,65 @@
+layout(location = 0) in vec3 steps;
+layout(location = 1) in vec2 octahedral;
+#ifdef MATERIALS
+layout(location = 2) in float material;  // 1 + index in the scene's list, 0: none
+uniform sampler2D palette;               // per material: linear colour times alpha; alpha 0: it has none
+out vec4 material_colour;
+#endif
+#ifdef GL_ES
+layout(location = 3) in float mottling;  // 0 to 255
+out float grain;
+#else
+layout(location = 3) in vec2 scan;       // its density (0 to 1) where milling opened the bone; whether it did
+out vec2 scanned;
+out vec3 p_M;
+#endif
+#ifdef THICKNESS
+uniform sampler3D thickness;     // share of the reach
+uniform vec3 thickness_first;    // V, m: of the texture's first corner
+uniform vec3 thickness_extent;   // m: of the texture
+out float share_to_structure;
+#endif
+uniform vec3 origin;
+uniform vec3 step;
+uniform mat4 camera_from_model;
+uniform mat4 clip_from_camera;
+uniform vec4 cut_planes[3];  // model frame: shown where dot(plane, (p, 1)) >= 0
+out vec3 p_C;
+out vec3 n_C;
+#ifndef GL_ES
+out float gl_ClipDistance[3];
+#elif defined(CUT)
+out vec3 kept;
+#endif
+invariant gl_Position;  // a layer is found by its depth first and then drawn where the depth is equal
+
+vec3 unitVector(vec2 uv) {
+    vec3 v = vec3(uv, 1.0 - abs(uv.x) - abs(uv.y));
+    if (v.z < 0.0) v.xy = (1.0 - abs(v.yx)) * vec2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0);
+    return normalize(v);
+}
+
+void main() {
+    vec4 p = vec4(origin + step * steps, 1.0);
+    p_C = (camera_from_model * p).xyz;
+    n_C = mat3(camera_from_model) * unitVector(octahedral / 127.0);
+    gl_Position = clip_from_camera * vec4(p_C, 1.0);
+#ifdef MATERIALS
+    material_colour = texelFetch(palette, ivec2(int(material), 0), 0);
+#endif
+#ifdef GL_ES
+    grain = mottling / 255.0;
+#else
+    p_M = p.xyz;
+    scanned = vec2(scan.x * scan.y, scan.y);
+    for (int i = 0; i < 3; ++i) gl_ClipDistance[i] = dot(cut_planes[i], p);
+#endif
+#if defined(GL_ES) && defined(CUT)
+    kept = vec3(dot(cut_planes[0], p), dot(cut_planes[1], p), dot(cut_planes[2], p));
+#endif
+#ifdef THICKNESS
+    vec3 at = (p_M - thickness_first) / thickness_extent;
+    bool is_near = all(greaterThan(at, vec3(0.0))) && all(lessThan(at, vec3(1.0)));
+    share_to_structure = is_near ? textureLod(thickness, at, 0.0).r : 1.0;
+#endif
+}

@@ -1,0 +1,35 @@
+// This is scalable ambient obscurance (McGuire, Mara, Luebke: High Performance Graphics 2012), from the depth buffer
+// alone, at half resolution. The 4 x 4 rotation pattern is averaged out exactly by the 4 x 4 gather of the composite.
+#include "position.glsl"
+#include "occlusion_texel.glsl"
+in vec2 uv;
+uniform float radius;      // m
+uniform float max_radius;  // in picture heights
+out vec4 occlusion_depth;
+
+const int kSamples = 14;
+
+void main() {
+    vec2 size = vec2(textureSize(depth_map, 0));
+    ivec2 texel = ivec2(uv * size);
+    if (storedAt(texel) >= 1.0) { occlusion_depth = occlusionTexel(1.0, near_far.y); return; }
+    vec3 p = positionOf(texel, size);
+    vec3 normal = normalOf(p, texel, size);
+
+    float picture_radius = min(radius / (2.0 * tangents.y * -p.z), max_radius);  // in picture heights
+    float world_radius = picture_radius * 2.0 * tangents.y * -p.z;
+    ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
+    float turn = float((cell.x * 4 + cell.y * 5 + (cell.x & cell.y)) % 16) / 16.0 * 6.2831853;
+    float sum = 0.0;
+    for (int i = 0; i < kSamples; ++i) {
+        float along = (float(i) + 0.5) / float(kSamples);
+        float angle = along * 6.2831853 * 5.0 + turn;
+        vec2 offset = vec2(cos(angle), sin(angle)) * along * picture_radius * size.y;
+        vec3 v = positionOf(texel + ivec2(offset), size) - p;
+        float squared = dot(v, v);
+        float falloff = max(1.0 - squared / (world_radius * world_radius), 0.0);
+        float above = dot(v, normal) / (sqrt(squared) + 1e-9) - 0.08;
+        sum += falloff * falloff * max(above, 0.0);
+    }
+    occlusion_depth = occlusionTexel(clamp(1.0 - 2.9 * sum / float(kSamples), 0.0, 1.0), -p.z);
+}
