@@ -53,6 +53,7 @@ class ShowSession {
     void publishStatus();
     void publishSceneInfo();
     void publishLesson();
+    void publishRemarks();
     void carryOutCommands();
     void answer(const topics::Command& command, const std::string& result);
     void log(const topics::Command& command, const std::string& result);

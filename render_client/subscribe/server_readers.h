@@ -20,11 +20,13 @@ class ServerReaders {
           tool_state(wire),
           status(wire),
           lesson(wire),
+          remarks(wire),
           remote_(wire.remote) {
         if (remote_) return;
         wait_set_.emplace(*wire.participant);
-        for (const int32_t reader : {nodes.handle(), scene_info.handle(), structures.handle(),
-                                     tool_state.handle(), status.handle(), lesson.handle(), also})
+        for (const int32_t reader :
+             {nodes.handle(), scene_info.handle(), structures.handle(), tool_state.handle(), status.handle(),
+              lesson.handle(), remarks.handle(), also})
             wait_set_->add(reader);
     }
 
@@ -39,6 +41,7 @@ class ServerReaders {
     Inlet<dds::ToolStateSample> tool_state;
     Inlet<dds::StatusSample> status;
     Inlet<dds::LessonSample> lesson;
+    Inlet<dds::RemarkSample> remarks;
 
   private:
     RemoteSession* remote_;
