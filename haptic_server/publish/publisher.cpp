@@ -67,13 +67,14 @@ Publisher::Publisher(const PublisherOptions& options)
       status_writer_(participant_),
       lesson_writer_(participant_),
       picture_writer_(participant_),
+      remark_writer_(participant_),
       command_reader_(participant_) {
     if (options.secure.empty()) return;
     people_.emplace(options.secure);
     proven_senders_.emplace([this](const GuidPrefix& prefix) { return people_->find(prefix); });
 }
 
-// Nodes and structures of the run before are removed for those who join later.
+// Nodes, structures and remarks of the run before are removed for those who join later.
 void Publisher::beginRun() {
     epoch_ = std::max(static_cast<uint64_t>(unixTime_ns()), epoch_ + 1);
     status_.clear_training();
@@ -91,6 +92,7 @@ void Publisher::beginRun() {
         key.structure = structure;
         structure_writer_.dispose(key);
     }
+    while (!remarks_.empty()) removeRemark(*remarks_.begin());
     digest_ = NodeDigest();
     write_times_ = {};
 }
@@ -209,6 +211,25 @@ bool Publisher::publishScenePicture(uint32_t scene, const std::string& id, const
     sample.scene = scene;
     dds::setPayload(sample, bytes);
     return picture_writer_.write(sample);
+}
+
+bool Publisher::publishRemark(uint32_t place, topics::Remark remark) {
+    remark.set_epoch(epoch_);
+    const std::string bytes = remark.SerializeAsString();
+    dds::RemarkSample sample{};
+    sample.session = session_;
+    sample.place = place;
+    dds::setPayload(sample, bytes);
+    remarks_.insert(place);
+    return remark_writer_.write(sample);
+}
+
+bool Publisher::removeRemark(uint32_t place) {
+    if (remarks_.erase(place) == 0) return true;
+    dds::RemarkSample key{};
+    key.session = session_;
+    key.place = place;
+    return remark_writer_.dispose(key);
 }
 
 std::vector<topics::Command> Publisher::takeCommands() {

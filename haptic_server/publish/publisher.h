@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -69,6 +70,10 @@ class Publisher {
     // The picture (PNG) of scene number `scene` of the lesson.
     bool publishScenePicture(uint32_t scene, const std::string& id, const std::string& png);
 
+    // Shows it at this place, instead of what is there; the epoch is filled in.
+    bool publishRemark(uint32_t place, topics::Remark remark);
+    bool removeRemark(uint32_t place);
+
     // These commands have arrived, each valid and new; carry each out and acknowledge() it. What is invalid
     // is answered or counted here. With security their role and name are what the sender's certificate says.
     std::vector<topics::Command> takeCommands();
@@ -108,6 +113,7 @@ class Publisher {
     uint64_t epoch_;
     std::unordered_map<uint32_t, Node> nodes_;
     std::vector<uint32_t> structures_;  // written in this run
+    std::set<uint32_t> remarks_;        // places with one
     NodeDigest digest_;
     uint64_t batch_ = 0;
     LatencyHistogram write_times_;
@@ -125,6 +131,7 @@ class Publisher {
     dds::Writer<dds::StatusSample> status_writer_;
     dds::Writer<dds::LessonSample> lesson_writer_;
     dds::Writer<dds::ScenePictureSample> picture_writer_;
+    dds::Writer<dds::RemarkSample> remark_writer_;
     dds::Reader<dds::CommandSample> command_reader_;
 };
 

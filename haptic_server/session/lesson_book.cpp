@@ -93,12 +93,8 @@ std::string LessonBook::traineeProblem(const std::string& trainee) {
     if (trainee.size() > kLongestTrainee)
         return "refused: the trainee's name has " + std::to_string(trainee.size()) + " bytes; " +
                std::to_string(kLongestTrainee) + " at most";
-    for (size_t i = 0; i < trainee.size(); ++i) {
-        const auto c = (unsigned char)trainee[i];
-        const bool is_c1 = c == 0xc2 && i + 1 < trainee.size() && (unsigned char)trainee[i + 1] < 0xa0;
-        if (c < ' ' || c == 0x7f || is_c1)
-            return "refused: the name '" + repeatedText(trainee) + "' has characters that cannot be printed";
-    }
+    if (hasUnprintable(trainee))
+        return "refused: the name '" + repeatedText(trainee) + "' has characters that cannot be printed";
     return "";
 }
 

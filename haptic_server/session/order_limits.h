@@ -1,5 +1,6 @@
-// Bounds how often a server does what costs its tick or its disk, whoever asks: so many orders of a kind at
-// once, and over a long time one in so long. It lives as long as the process; the publisher thread asks.
+// Bounds how often a server does what costs its tick, its disk or everyone's network, whoever asks: so many
+// orders of a kind at once, and over a long time one in so long. It lives as long as the process; the
+// publisher thread asks.
 #pragma once
 
 #include <array>
@@ -33,13 +34,15 @@ class OrderLimits {
         LogLimit limit{at_once, every_s* kNsPerSecond};
         bool isOf(Action action) const { return action == actions[0] || action == actions[1]; }
     };
-    std::array<Kind, 7> kinds_{{{{topics::Command::kSetAccuracy, topics::Command::kSetAccuracy}, 12, 2},
+    std::array<Kind, 9> kinds_{{{{topics::Command::kSetAccuracy, topics::Command::kSetAccuracy}, 12, 2},
                                 {{topics::Command::kSelectTool, topics::Command::kSelectTool}, 12, 1},
                                 {{topics::Command::kResetVolume, topics::Command::kRestoreCheckpoint}, 8, 1},
                                 {{topics::Command::kSaveCheckpoint, topics::Command::kSaveCheckpoint}, 12, 1},
                                 {{topics::Command::kExport, topics::Command::kExport}, 6, 5},
                                 {{topics::Command::kChooseScene, topics::Command::kChooseScene}, 6, 5},
-                                {{topics::Command::kStartAttempt, topics::Command::kStopAttempt}, 12, 2}}};
+                                {{topics::Command::kStartAttempt, topics::Command::kStopAttempt}, 12, 2},
+                                {{topics::Command::kAddRemark, topics::Command::kAddRemark}, 20, 1},
+                                {{topics::Command::kEraseRemark, topics::Command::kEraseRemark}, 20, 1}}};
 };
 
 }  // namespace bonemill

@@ -1,4 +1,5 @@
-// An answer may repeat only so much of what a client wrote, for answers are kept and sent to all.
+// What clients wrote, as it may go on to others: an answer may repeat only so much of it, for answers are
+// kept and sent to all.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +13,16 @@ inline std::string repeatedText(const std::string& text) {
     std::replace_if(
         start.begin(), start.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
     return text.size() > kMost ? start + "..." : start;
+}
+
+// Returns whether UTF-8 text has control characters.
+inline bool hasUnprintable(const std::string& text) {
+    for (size_t i = 0; i < text.size(); ++i) {
+        const auto c = (unsigned char)text[i];
+        const bool is_c1 = c == 0xc2 && i + 1 < text.size() && (unsigned char)text[i + 1] < 0xa0;
+        if (c < ' ' || c == 0x7f || is_c1) return true;
+    }
+    return false;
 }
 
 }  // namespace bonemill

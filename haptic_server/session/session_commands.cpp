@@ -34,6 +34,7 @@ SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bon
     : controls_(controls),
       recorder_(recorder),
       checkpoints_(controls.history, bone),
+      remarks_(bone.volume.geometry()),
       voxel_mm3_(bone.volume.voxelVolume() * kPerCubicMillimetre),
       is_switchable_(scene.accuracy().switchable()),
       effect_of_gradient_law_(effectOfGradientLaw(scene.effects())),
@@ -73,6 +74,10 @@ std::optional<std::string> SessionCommands::carryOut(const topics::Command& comm
             return controls_.attempts.start(command);
         case topics::Command::kStopAttempt:
             return controls_.attempts.stop(command);
+        case topics::Command::kAddRemark:
+            return remarks_.add(command, sessionS());
+        case topics::Command::kEraseRemark:
+            return remarks_.erase(command.erase_remark());
         default:
             return "refused: this server does not know the action";
     }

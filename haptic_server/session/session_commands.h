@@ -12,6 +12,7 @@
 #include "haptic_server/session/lesson_book.h"
 #include "haptic_server/session/order_limits.h"
 #include "haptic_server/session/recorder.h"
+#include "haptic_server/session/remark_book.h"
 #include "haptic_server/session/session_export.h"
 #include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/tick/accuracy_switch.h"
@@ -47,6 +48,7 @@ class SessionCommands {
     void waitForResult() { controls_.bone_export.wait(); }
     LessonBook& lesson() noexcept { return controls_.lesson; }
     AttemptKeeper& attempts() noexcept { return controls_.attempts; }
+    RemarkBook& remarks() noexcept { return remarks_; }
     // Fills in the session clock, the pause, the checkpoints and what the bone has lost.
     void describe(topics::Status& status) const;
     const ToolSwitch& tools() const noexcept { return controls_.tools; }
@@ -62,6 +64,7 @@ class SessionCommands {
     SessionControls controls_;
     const Recorder& recorder_;
     Checkpoints checkpoints_;
+    RemarkBook remarks_;
     double voxel_mm3_;
     bool is_switchable_;
     const char* effect_of_gradient_law_;  // null: none

@@ -165,6 +165,15 @@ void ShowSession::publishPictures() {
     ++next_picture_;
 }
 
+void ShowSession::publishRemarks() {
+    for (const RemarkBook::Change& change : commands_.remarks().takeChanges()) {
+        if (change.remark)
+            publisher_.publishRemark(change.place, *change.remark);
+        else
+            publisher_.removeRemark(change.place);
+    }
+}
+
 void ShowSession::publishSceneInfo() {
     const size_t tool = commands_.tools().chosen();
     scene_info_.set_revision(scene_info_.revision() + 1);
@@ -273,6 +282,7 @@ void ShowSession::carryOutCommands() {
     for (const topics::Command& command : publisher_.takeCommands()) {
         const std::optional<std::string> result = commands_.carryOut(command);
         if (commands_.tools().chosen() != scene_info_.tool_index()) publishSceneInfo();
+        publishRemarks();
         if (result)
             answer(command, *result);
         else if (command.action_case() == topics::Command::kExport)

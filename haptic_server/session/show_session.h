@@ -54,6 +54,7 @@ class ShowSession {
     void publishSceneInfo();
     void publishLesson();
     void publishPictures();
+    void publishRemarks();
     void carryOutCommands();
     void answer(const topics::Command& command, const std::string& result);
     void log(const topics::Command& command, const std::string& result);

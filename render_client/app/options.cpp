@@ -160,8 +160,8 @@ std::vector<CLI::Option*> addCommandOptions(CLI::App& app, RawOptions& raw, CLI:
                "--command", raw.command,
                "No viewer: ask the server for \"reset\", \"pause\", \"resume\", \"tool NAME-or-number\", "
                "\"checkpoint\", \"restore NUMBER-or-last\", \"accuracy NAME\", \"export NAME\", "
-               "\"reset-device\", \"scene ID\", \"start TRAINEE\", \"stop\" or \"shutdown\", print what it "
-               "answers and stop")
+               "\"reset-device\", \"scene ID\", \"start TRAINEE\", \"stop\", \"note TEXT\", "
+               "\"erase NUMBER-or-all\" or \"shutdown\", print what it answers and stop")
             ->check(commandProblem)
             ->type_name("TEXT")
             ->excludes(offscreen);

@@ -2,7 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cmath>
 #include <type_traits>
 #include <utility>
 
@@ -16,23 +15,10 @@ namespace {
 constexpr size_t kMostSmallSamples = 256, kMostNodes = 512, kMostBricks = 256;  // per look
 constexpr std::chrono::milliseconds kListEvery{500};
 constexpr std::chrono::seconds kReadAnewAgain{2};
-constexpr size_t kMostRemarkBytes = 16 << 10;
-constexpr uint32_t kMostRemarks = 4096;
 constexpr uint64_t kMostNamed = 16;  // malformed samples in the log
 
 std::string bytesOf(std::span<const uint8_t> payload) {
     return {reinterpret_cast<const char*>(payload.data()), payload.size()};
-}
-
-// Returns what a viewer may be shown of it: numbers are finite, and there are few of them.
-std::optional<topics::Remark> parseSharedRemark(std::span<const uint8_t> payload) {
-    topics::Remark remark;
-    if (payload.size() > kMostRemarkBytes || !remark.ParseFromArray(payload.data(), int(payload.size())) ||
-        remark.epoch() == 0 || remark.points_m_size() % 3 != 0)
-        return std::nullopt;
-    for (const float value : remark.points_m())
-        if (!std::isfinite(value)) return std::nullopt;
-    return remark;
 }
 
 }  // namespace
@@ -41,7 +27,6 @@ SessionMirror::SessionMirror(const dds::Participant& participant, uint32_t sessi
     : participant_(participant),
       session_(session),
       viewer_reader_(participant),
-      remark_reader_(participant),
       servers_(std::make_unique<ServerReaders>(participant, viewer_reader_)) {}
 
 SessionChanges SessionMirror::poll() {
@@ -243,20 +228,21 @@ void SessionMirror::showViewers() {
 }
 
 void SessionMirror::takeRemarks() {
-    remark_reader_.take(kMostSmallSamples, [this](const dds::RemarkSample& sample,
-                                                  const dds::SampleInfo& info) {
-        if (sample.session != session_) return;
-        if (info.is_disposed) {
-            if (choice_.isOurs(server_numbers_.of(remark_reader_.participantOf(info.writer), info.writer)))
-                forget(Sample::REMARK, sample.place);
-            return;
-        }
-        if (!info.has_data) return;
-        const auto remark = parseSharedRemark(dds::payloadOf(sample));
-        if (!remark || sample.place > kMostRemarks) return dropMalformed("remark");
-        if (accept(remark->epoch(), remark_reader_, info.writer))
-            keep(Sample::REMARK, sample.place, remark->SerializeAsString());
-    });
+    const auto& reader = servers_->remarks;
+    servers_->remarks.take(
+        kMostSmallSamples, [&](const dds::RemarkSample& sample, const dds::SampleInfo& info) {
+            if (sample.session != session_) return;
+            if (info.is_disposed) {
+                if (choice_.isOurs(server_numbers_.of(reader.participantOf(info.writer), info.writer)))
+                    forget(Sample::REMARK, sample.place);
+                return;
+            }
+            if (!info.has_data) return;
+            const auto remark = parseRemark(dds::payloadOf(sample), sample.place);
+            if (!remark) return dropMalformed("remark");
+            if (accept(remark->epoch(), reader, info.writer))
+                keep(Sample::REMARK, sample.place, remark->SerializeAsString());
+        });
 }
 
 void SessionMirror::takeBricks() {

@@ -86,7 +86,6 @@ class SessionMirror {
     uint64_t malformed_count_ = 0;
 
     Inlet<dds::ViewerSample> viewer_reader_;
-    Inlet<dds::RemarkSample> remark_reader_;
     std::optional<Inlet<dds::DensityBrickSample>> brick_reader_;
     std::unique_ptr<ServerReaders> servers_;
 };

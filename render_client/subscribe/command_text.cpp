@@ -30,6 +30,11 @@ std::string commandText(const topics::Command& command) {
             return "attempt of " + command.start_attempt();
         case topics::Command::kStopAttempt:
             return "end the attempt";
+        case topics::Command::kAddRemark:
+            return command.add_remark().note().empty() ? "draw a stroke" : "write a note";
+        case topics::Command::kEraseRemark:
+            return command.erase_remark() == 0 ? "erase all notes and strokes"
+                                               : "erase " + std::to_string(command.erase_remark());
         case topics::Command::ACTION_NOT_SET:
             break;
     }

@@ -74,6 +74,12 @@ constexpr CommandWord kWords[] = {
     {"start", "TRAINEE",
      [](Command& c, const std::string& trainee, const Session&) { c.set_start_attempt(trainee); }},
     {"stop", "", [](Command& c, const std::string&, const Session&) { c.set_stop_attempt(true); }},
+    {"note", "TEXT",
+     [](Command& c, const std::string& text, const Session&) { c.mutable_add_remark()->set_note(text); }},
+    {"erase", "NUMBER-or-all",
+     [](Command& c, const std::string& which, const Session&) {
+         c.set_erase_remark(which == "all" ? 0 : *numberOf(which));
+     }},
     {"shutdown", "", [](Command& c, const std::string&, const Session&) { c.set_shut_down(true); }},
 };
 
@@ -109,6 +115,8 @@ std::string commandProblem(const std::string& text) {
     if (!needs_argument && !argument.empty()) return "'" + action + "' takes no '" + argument + "'";
     if (action == "restore" && argument != "last" && !numberOf(argument))
         return "'" + argument + "' is no checkpoint's number, nor last";
+    if (action == "erase" && argument != "all" && numberOf(argument).value_or(0) == 0)
+        return "'" + argument + "' is no number of a note or stroke, nor all";
     return "";
 }
 

@@ -1,5 +1,6 @@
 // People write commands so: reset, pause, resume, tool NAME (or its number), checkpoint, restore N (or last),
-// accuracy NAME, export NAME, reset-device, scene ID, start TRAINEE, stop, shutdown.
+// accuracy NAME, export NAME, reset-device, scene ID, start TRAINEE, stop, note TEXT, erase N (or
+// all), shutdown.
 #pragma once
 
 #include <string>

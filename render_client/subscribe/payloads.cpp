@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/config/viewer_effects.h"
+#include "common/dds/remark_bounds.h"
 #include "render_client/subscribe/density_payloads.h"
 #include "render_client/subscribe/scene_parts.h"
 
@@ -154,6 +155,14 @@ bool isUsable(const topics::Lesson& lesson) {
            std::ranges::all_of(lesson.attempts(), is_usable);
 }
 
+bool isUsable(const topics::Remark& remark) {
+    const int points = remark.points_m_size() / 3;
+    const bool has_points = remark.note().empty() ? points >= 2 && points <= kMostRemarkPoints : points <= 1;
+    return remark.number() > 0 && isTime(remark.session_s()) && remark.points_m_size() % 3 == 0 &&
+           has_points && std::ranges::all_of(remark.points_m(), isSane) &&
+           topics::Viewer::Role_IsValid(remark.role());
+}
+
 bool isUsable(const topics::Viewer& viewer) {
     return std::isfinite(viewer.frame_rate_hz()) && viewer.frame_rate_hz() >= 0 &&
            (viewer.pointer_m().empty() || isVector(viewer.pointer_m())) &&
@@ -195,6 +204,10 @@ constexpr size_t mostBytes(const topics::Lesson*) {
 }
 constexpr size_t mostBytes(const topics::ScenePicture*) {
     return 128u << 10;
+}
+
+constexpr size_t mostBytes(const topics::Remark*) {
+    return 8u << 10;
 }
 constexpr size_t mostBytes(const topics::Viewer*) {
     return 4u << 10;
@@ -304,6 +317,17 @@ std::optional<topics::ScenePicture> parseScenePicture(std::span<const uint8_t> p
     picture->DiscardUnknownFields();
     picture->set_scene_id(shownName(picture->scene_id()));
     return picture;
+}
+
+std::optional<topics::Remark> parseRemark(std::span<const uint8_t> payload, uint32_t place) {
+    std::optional<topics::Remark> remark = parseOfEpoch<topics::Remark>(payload);
+    if (!remark || place >= kMostRemarks || lettersOf(remark->note()) > kMostNoteLetters) return std::nullopt;
+    remark->DiscardUnknownFields();
+    remark->set_author(shownName(remark->author()));
+    remark->set_note(shownText(remark->note(), remark->note().size()));
+    remark->set_color(remark->color() & 0xffffff);
+    if (remark->note().empty() && remark->points_m_size() < 6) return std::nullopt;
+    return remark;
 }
 
 std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint64_t sender) {

@@ -39,6 +39,9 @@ std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload);
 std::optional<topics::Lesson> parseLesson(std::span<const uint8_t> payload);
 // `scene` is that of the sample's envelope, one of the 64.
 std::optional<topics::ScenePicture> parseScenePicture(std::span<const uint8_t> payload, uint32_t scene);
+// It is a note, with one point at most, or a stroke of two points or more; `place` is that of the sample's
+// envelope. Texts are cut to what stands on a screen (common/dds/remark_bounds.h).
+std::optional<topics::Remark> parseRemark(std::span<const uint8_t> payload, uint32_t place);
 // `sender` is that of the sample's envelope. The name is cut to 64 bytes of printable UTF-8; only an
 // instructor points.
 std::optional<topics::Viewer> parseViewer(std::span<const uint8_t> payload, uint64_t sender);

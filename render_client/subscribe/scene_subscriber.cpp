@@ -59,6 +59,7 @@ void SceneSubscriber::takeAll(size_t max_nodes) {
     takeNodes(max_nodes);
     takeToolState();
     takeViewers();
+    takeRemarks();
     noteEnd();
     if (!link_->command_writer.isAllowed()) outbox_.refuseAll("refused: the identity of --secure only looks");
     outbox_.step(CommandOutbox::Clock::now(), link_->command_writer.matchedReaders() > 0,
@@ -198,6 +199,25 @@ void SceneSubscriber::takeViewers() {
     viewers_.forgetSilent(now);
 }
 
+void SceneSubscriber::takeRemarks() {
+    const auto& reader = link_->servers->remarks;
+    link_->servers->remarks.take(
+        kMaxSmallSamples, [&](const dds::RemarkSample& sample, const dds::SampleInfo& info) {
+            if (sample.session != options_.session) return;
+            if (info.is_disposed) {
+                if (choice_.isOurs(server_numbers_.of(reader.participantOf(info.writer), info.writer)))
+                    remark_changes_ += remarks_.erase(sample.place);
+                return;
+            }
+            if (!info.has_data) return;
+            std::optional<topics::Remark> remark = parseRemark(dds::payloadOf(sample), sample.place);
+            if (!remark) return dropMalformed("remark " + std::to_string(sample.place));
+            if (!accept(remark->epoch(), reader, info.writer)) return;
+            remarks_[sample.place] = std::move(*remark);
+            ++remark_changes_;
+        });
+}
+
 void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W,
                                bool is_holding) {
     if (!link_) return;
@@ -265,6 +285,8 @@ void SceneSubscriber::beginRun() {
     status_.reset();
     lesson_.reset();
     pictures_.clear();
+    remark_changes_ += !remarks_.empty();
+    remarks_.clear();
     structure_changes_ += !structures_.empty();
     structures_.clear();
     structure_triangles_ = 0;

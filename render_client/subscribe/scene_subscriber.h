@@ -59,6 +59,10 @@ class SceneSubscriber {
     // A server that shows another scene tells it anew. The pictures of its scenes come by and by.
     const std::optional<topics::Lesson>& lesson() const noexcept { return lesson_; }
 
+    // What people of the current server run wrote and drew, by its place. The count changes with it.
+    const std::map<uint32_t, topics::Remark>& remarks() const noexcept { return remarks_; }
+    uint64_t remarkChanges() const noexcept { return remark_changes_; }
+
     // The protected structures of the current server run, by their number. The count changes with them;
     // structures with a larger one in StructureSurface::change came since.
     const std::map<uint32_t, StructureSurface>& structures() const noexcept { return structures_; }
@@ -121,6 +125,7 @@ class SceneSubscriber {
     void takeNodes(size_t max_nodes);
     void takeStructures();
     void takeToolState();
+    void takeRemarks();
     void takeViewers();
     // Returns whether a message of this epoch from this writer, as `reader` knows it, is our server's.
     template <class Sample>
@@ -145,6 +150,8 @@ class SceneSubscriber {
     std::optional<topics::Status> status_;
     std::optional<topics::Lesson> lesson_;
     std::map<uint32_t, topics::ScenePicture> pictures_;  // of its scenes, by number
+    std::map<uint32_t, topics::Remark> remarks_;
+    uint64_t remark_changes_ = 0;
     std::map<uint32_t, StructureSurface> structures_;
     uint64_t structure_changes_ = 0;
     size_t structure_triangles_ = 0;

@@ -21,6 +21,7 @@ class ServerReaders {
           status(wire),
           lesson(wire),
           pictures(wire),
+          remarks(wire),
           remote_(wire.remote) {
         if (remote_) return;
         wait_set_.emplace(*wire.participant);
@@ -28,7 +29,7 @@ class ServerReaders {
             wait_set_->add([&reader] { return reader.handle(); });
         };
         watch(nodes), watch(scene_info), watch(structures), watch(tool_state), watch(status), watch(lesson);
-        watch(pictures);
+        watch(pictures), watch(remarks);
         watch(also);
     }
 
@@ -44,6 +45,7 @@ class ServerReaders {
     Inlet<dds::StatusSample> status;
     Inlet<dds::LessonSample> lesson;
     Inlet<dds::ScenePictureSample> pictures;
+    Inlet<dds::RemarkSample> remarks;
 
   private:
     RemoteSession* remote_;

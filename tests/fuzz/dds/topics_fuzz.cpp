@@ -6,6 +6,7 @@
 #include <functional>
 #include <random>
 
+#include "common/dds/remark_bounds.h"
 #include "common/device_messages/device_messages.h"
 #include "common/mesh/mesh_codec.h"
 #include "device_daemon/pointer/hand_wish.h"
@@ -129,6 +130,35 @@ TEST(TopicsFuzz, SceneInfo) {
         for (const float number : info->burr_balls_m()) EXPECT_TRUE(std::isfinite(number));
         return true;
     });
+}
+
+TEST(TopicsFuzz, Remark) {
+    topics::Remark remark;
+    remark.set_epoch(42);
+    remark.set_number(3);
+    remark.set_author("Anna \xc3\xbc");
+    remark.set_role(topics::Viewer::INSTRUCTOR);
+    remark.set_session_s(12.5);
+    remark.set_color(0xffd23f);
+    for (const bool is_note : {false, true}) {
+        remark.clear_points_m();
+        remark.set_note(is_note ? "mind the nerve" : "");
+        for (int n = 0; n < (is_note ? 3 : 30); ++n) remark.add_points_m(0.01f * float(n));
+        fuzz(remark.SerializeAsString(), [](Bytes bytes) {
+            const auto parsed = parseRemark(bytes, 7);
+            if (!parsed) return false;
+            EXPECT_GT(parsed->number(), 0u);
+            EXPECT_TRUE(parsed->session_s() >= 0 && parsed->session_s() <= 1e9);
+            EXPECT_LE(parsed->color(), 0xffffffu);
+            EXPECT_LE(parsed->author().size(), 64u);
+            EXPECT_LE(lettersOf(parsed->note()), kMostNoteLetters);
+            const int points = parsed->points_m_size() / 3;
+            EXPECT_EQ(parsed->points_m_size() % 3, 0);
+            EXPECT_TRUE(parsed->note().empty() ? points >= 2 && points <= kMostRemarkPoints : points <= 1);
+            for (const float number : parsed->points_m()) EXPECT_LE(std::abs(number), 1e6f);
+            return true;
+        });
+    }
 }
 
 TEST(TopicsFuzz, ToolState) {

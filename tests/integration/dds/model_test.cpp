@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "common/dds/remark_bounds.h"
 #include "common/mesh/mesh_codec.h"
 #include "haptic_server/publish/publisher.h"
 #include "tests/integration/dds/child_process.h"
@@ -187,6 +188,54 @@ TEST(Structures, ComeToALateViewerAndGoWithTheirRun) {
     ASSERT_TRUE(late.pollUntil([&] { return late.subscriber.structures().size() == 1; }));
     EXPECT_EQ(late.subscriber.structures().at(5).warning_distance, 3e-3);
     EXPECT_NE(late.subscriber.structureChanges(), changes);
+}
+
+topics::Remark noteOf(uint32_t number) {
+    topics::Remark note;
+    note.set_number(number);
+    note.set_note("note " + std::to_string(number));
+    return note;
+}
+
+TEST(Topics, NotesReachLateClientsAndGoWithTheRun) {
+    Publisher server({.domain = testDomain(), .session = testSession()});
+    server.publishStatus({});
+    ClientProbe watching;
+    for (const uint32_t place : {0u, 1u, 2u}) server.publishRemark(place, noteOf(place + 1));
+    ASSERT_TRUE(watching.pollUntil([&] { return watching.subscriber.remarks().size() == 3; }));
+    server.removeRemark(1);
+    server.publishRemark(2, noteOf(4));
+    const auto has_both = [](const ClientProbe& client) {
+        const auto& remarks = client.subscriber.remarks();
+        return remarks.size() == 2 && remarks.contains(0) && remarks.contains(2) &&
+               remarks.at(2).number() == 4;
+    };
+    ASSERT_TRUE(watching.pollUntil([&] { return has_both(watching); }));
+    ClientProbe late;
+    ASSERT_TRUE(late.pollUntil([&] { return has_both(late); }));
+
+    // Another server of the session, and numbers that no server has, change nothing.
+    {
+        Publisher other({.domain = testDomain(), .session = testSession()});
+        other.publishRemark(0, noteOf(9));
+        other.removeRemark(0);
+        other.publishRemark(kMostRemarks, noteOf(5));
+        ASSERT_TRUE(watching.pollUntil([&] { return watching.subscriber.malformedSamples() == 1; }));
+        EXPECT_TRUE(has_both(watching));
+    }
+
+    const uint64_t changes = watching.subscriber.remarkChanges();
+    server.beginRun();
+    server.publishStatus({});
+    server.publishRemark(0, noteOf(1));
+    const auto has_one = [](const ClientProbe& client) {
+        const auto& remarks = client.subscriber.remarks();
+        return remarks.size() == 1 && remarks.contains(0) && remarks.at(0).number() == 1;
+    };
+    EXPECT_TRUE(watching.pollUntil([&] { return has_one(watching); }));
+    EXPECT_GT(watching.subscriber.remarkChanges(), changes);
+    ClientProbe latest;
+    EXPECT_TRUE(latest.pollUntil([&] { return has_one(latest); }));
 }
 
 }  // namespace

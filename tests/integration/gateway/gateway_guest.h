@@ -182,6 +182,10 @@ struct TestGuest {
         }
         if (sample.topic() == Sample::TOOL_STATE) tool.ParseFromString(sample.payload());
         if (sample.topic() == Sample::VIEWER) viewers[sample.key()] = sample.payload();
+        if (sample.topic() == Sample::REMARK) {
+            remarks[sample.key()] = sample.payload();
+            if (sample.payload().empty()) remarks.erase(sample.key());
+        }
         if (sample.topic() != Sample::NODE_MESH) return;
         const auto leaf = uint32_t(sample.key());
         if (sample.payload().empty()) {
@@ -206,6 +210,7 @@ struct TestGuest {
     std::string a_node;          // the payload that came last
     std::map<int, int> samples;  // by topic
     std::map<uint64_t, std::string> viewers;
+    std::map<uint64_t, std::string> remarks;  // by place
     std::optional<topics::Status> status;
     topics::ToolState tool;
     std::string answer;  // to its last command

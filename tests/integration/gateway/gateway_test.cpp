@@ -1,4 +1,5 @@
 // Guests see what the server shows, and the server hears them as the guest list knows them.
+#include "haptic_server/session/remark_book.h"
 #include "tests/integration/gateway/gateway_guest.h"
 
 namespace bonemill::gateway {
@@ -57,6 +58,41 @@ TEST(Gateway, ANewRunOfTheServerReplacesTheModel) {
     server.show({syntheticNode(1, 1), syntheticNode(100, 1)});
     const NodeDigest digest = server.publisher.digest();
     ASSERT_TRUE(guest.pollUntil([&] { return guest.digest() == digest; }));
+}
+
+TEST(Gateway, PassesOnNotesAndStrokesAlsoToWhoComesLater) {
+    TestServer server(3);
+    const RunningGateway gateway(invitationOf("Anna", "OPERATOR", kToken, 0, 2));
+    TestGuest anna(gateway, kToken, true);
+    ASSERT_TRUE(anna.isWelcome());
+    FromGuest order;
+    order.mutable_command()->set_sequence(1);
+    order.mutable_command()->mutable_add_remark()->set_note("mind the nerve");
+    std::vector<topics::Command> heard;
+    ASSERT_TRUE(anna.sendUntil(order, [&] {
+        heard = server.publisher.takeCommands();
+        return !heard.empty();
+    }));
+    RemarkBook book(VolumeGeometry{});
+    ASSERT_EQ(book.add(heard[0], 12.5), "done");
+    server.publisher.publishRemark(5, *book.takeChanges().at(0).remark);
+    topics::Remark broken;
+    broken.set_number(2);
+    server.publisher.publishRemark(6, broken);
+    ASSERT_TRUE(anna.pollUntil([&] { return anna.remarks.contains(5); }));
+    topics::Remark shown;
+    ASSERT_TRUE(shown.ParseFromString(anna.remarks[5]));
+    EXPECT_EQ(shown.note(), "mind the nerve");
+    EXPECT_EQ(shown.author(), "Anna 1");
+    EXPECT_EQ(shown.role(), topics::Viewer::OPERATOR);
+    EXPECT_EQ(shown.epoch(), server.publisher.epoch());
+
+    TestGuest late(gateway, kToken, true);
+    ASSERT_TRUE(late.pollUntil([&] { return late.remarks.contains(5); }));
+    EXPECT_EQ(late.remarks, anna.remarks) << "nothing of what makes no sense";
+    server.publisher.removeRemark(5);
+    EXPECT_TRUE(late.pollUntil([&] { return late.remarks.empty(); }));
+    EXPECT_TRUE(anna.pollUntil([&] { return anna.remarks.empty(); }));
 }
 
 TEST(Gateway, ALinkIsGoodForOnePersonWhoMayComeAgainWithTheTicket) {

@@ -226,6 +226,31 @@ TEST_F(Instructor, EndingWhileItMillsShowsTheBoneThatIsInTheFiles) {
     EXPECT_TRUE(probe_.pollUntil([&] { return probe_.subscriber.isComplete() && shownHash() == end; }));
 }
 
+TEST_F(Instructor, ShowsNotesAndStrokesToEveryoneAlsoToWhoComesLater) {
+    Process server_process(server({}));
+    ASSERT_TRUE(hasSession());
+    topics::Command stroke;
+    for (const float value : {0.f, 0.f, 2e-3f, 1e-3f, 0.f, 2e-3f})
+        stroke.mutable_add_remark()->add_points_m(value);
+    probe_.subscriber.sendCommand(stroke);
+    ASSERT_TRUE(probe_.pollUntil([&] { return probe_.subscriber.remarks().size() == 1; }));
+    EXPECT_EQ(probe_.subscriber.remarks().at(0).points_m_size(), 6);
+    EXPECT_EQ(probe_.subscriber.remarks().at(0).role(), topics::Viewer::OPERATOR);
+    expectDone("note mind the nerve", "instructor");
+    ClientProbe late;
+    ASSERT_TRUE(late.pollUntil([&] { return late.subscriber.remarks().size() == 2; }));
+    EXPECT_EQ(late.subscriber.remarks().at(1).note(), "mind the nerve");
+    EXPECT_EQ(late.subscriber.remarks().at(1).role(), topics::Viewer::INSTRUCTOR);
+    expectRefused("note hello", "viewer", "a viewer only looks");
+    expectRefused("note " + std::string(301, 'x'), "operator", "the note has 301 letters; 300 at most");
+    expectRefused("erase 7", "operator", "there is no note or stroke 7");
+    expectDone("erase 1");
+    ASSERT_TRUE(late.pollUntil([&] { return late.subscriber.remarks().size() == 1; }));
+    ASSERT_TRUE(probe_.pollUntil([&] { return probe_.subscriber.remarks().contains(1); }));
+    expectDone("erase all");
+    EXPECT_TRUE(late.pollUntil([&] { return late.subscriber.remarks().empty(); }));
+}
+
 TEST_F(Instructor, AloneCommandsInAnExamination) {
     Process server_process(server({"--instructor-only"}));
     expectRefused("pause", "operator", "only instructors command this session");

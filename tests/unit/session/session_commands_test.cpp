@@ -243,6 +243,26 @@ TEST_F(SessionCommandsTest, TraineesHaveNamesThatCanBeShown) {
     EXPECT_EQ(order(startOf("=1+2")), "done");
 }
 
+TEST_F(SessionCommandsTest, NotesAreForWhoMayCommandAndNotTooOften) {
+    topics::Command note, erase;
+    note.mutable_add_remark()->set_note("here");
+    erase.set_erase_remark(1);
+    for (const topics::Command& command : {note, erase})
+        EXPECT_EQ(order(command, topics::Viewer::VIEWER),
+                  "refused: a viewer only looks; an operator may that (docs/security.md)");
+    EXPECT_EQ(commands_.remarks().count(), 0u);
+    EXPECT_EQ(order(note, topics::Viewer::EXAMINER), "done");
+    EXPECT_EQ(order(erase), "done");
+    EXPECT_EQ(commands_.remarks().count(), 0u);
+    int taken = 0;
+    for (int n = 0; n < 100; ++n) taken += order(note) == "done";
+    EXPECT_GE(taken, 19);
+    EXPECT_LT(taken, 60);
+    EXPECT_EQ(order(note), "refused: too many orders of this kind; one in 1 s is carried out");
+    erase.set_erase_remark(0);
+    EXPECT_EQ(order(erase), "done") << "a flood can be cleared away";
+}
+
 TEST_F(SessionCommandsTest, OfAttemptsTheOldestAreForgotten) {
     for (int n = 0; n < LessonBook::kMostAttempts + 3; ++n) {
         lesson_.beginAttempt("Ann");

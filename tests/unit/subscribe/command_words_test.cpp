@@ -33,6 +33,10 @@ TEST_F(CommandWords, EachWordIsItsCommand) {
     EXPECT_EQ(of("start Ann Lee").start_attempt(), "Ann Lee");
     EXPECT_TRUE(of("stop").stop_attempt());
     EXPECT_EQ(of("accuracy fast").set_accuracy(), "fast");
+    EXPECT_EQ(of(" note  mind the nerve ").add_remark().note(), "mind the nerve");
+    EXPECT_EQ(of("erase 12").erase_remark(), 12u);
+    EXPECT_EQ(of("erase all").action_case(), topics::Command::kEraseRemark);
+    EXPECT_EQ(of("erase all").erase_remark(), 0u);
     EXPECT_EQ(of("export after lunch").export_(), "after lunch");
 }
 
@@ -51,9 +55,9 @@ TEST_F(CommandWords, ToolsAndCheckpointsAreThoseOfTheSession) {
 }
 
 TEST_F(CommandWords, WhatIsNoCommandIsRefusedWithoutAServer) {
-    for (const char* text :
-         {"", " ", "explode", "pause now", "tool", "restore", "restore first", "restore -1",
-          "restore 4294967296", "accuracy", "export", "scene", "start", "stop it", "Reset"}) {
+    for (const char* text : {"", " ", "explode", "pause now", "tool", "restore", "restore first",
+                             "restore -1", "restore 4294967296", "accuracy", "export", "scene", "start",
+                             "stop it", "note", "erase", "erase 0", "erase everything", "Reset"}) {
         EXPECT_NE(commandProblem(text), "") << text;
         EXPECT_THROW(of(text), UserError) << text;
     }

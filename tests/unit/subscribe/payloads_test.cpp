@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "common/dds/remark_bounds.h"
 #include "common/mesh/mesh_codec.h"
 #include "tests/support/synthetic_nodes.h"
 
@@ -275,6 +276,55 @@ TEST(Payloads, PicturesOfScenesAreChecked) {
     EXPECT_TRUE(parsed(0));
     picture.clear_epoch();
     EXPECT_FALSE(parsed(0));
+}
+
+topics::Remark validRemark(const std::string& note, int points) {
+    topics::Remark remark;
+    remark.set_epoch(1);
+    remark.set_number(3);
+    remark.set_author("Ann\n" + std::string(200, 'n'));
+    remark.set_session_s(61);
+    remark.set_note(note);
+    for (int n = 0; n < 3 * points; ++n) remark.add_points_m(0.01f * float(n % 7));
+    return remark;
+}
+
+TEST(Payloads, RemarksComeThroughWithTextsThatCanBeShown) {
+    const auto parsed =
+        parseRemark(bytesOf(validRemark("mind\x1b[2J the nerve", 1).SerializeAsString()), 255);
+    ASSERT_TRUE(parsed);
+    EXPECT_EQ(parsed->author(), "Ann" + std::string(61, 'n'));
+    EXPECT_EQ(parsed->note(), "mind[2J the nerve");
+    EXPECT_EQ(parsed->points_m_size(), 3);
+}
+
+TEST(Payloads, RemarksAreChecked) {
+    const auto is_accepted = [](const topics::Remark& remark, uint32_t place = 0) {
+        return parseRemark(bytesOf(remark.SerializeAsString()), place).has_value();
+    };
+    EXPECT_TRUE(is_accepted(validRemark("x", 0)));
+    EXPECT_TRUE(is_accepted(validRemark("", kMostRemarkPoints)));
+    EXPECT_TRUE(is_accepted(validRemark(std::string(300, 'x'), 1)));
+    EXPECT_FALSE(is_accepted(validRemark("x", 0), kMostRemarks)) << "a place that no server has";
+    EXPECT_FALSE(is_accepted(validRemark("", 1)));
+    EXPECT_FALSE(is_accepted(validRemark("\n", 1))) << "nothing of it can be shown";
+    EXPECT_FALSE(is_accepted(validRemark("x", 2)));
+    EXPECT_FALSE(is_accepted(validRemark("", kMostRemarkPoints + 1)));
+    EXPECT_FALSE(is_accepted(validRemark(std::string(301, 'x'), 1)));
+    const std::function<void(topics::Remark&)> damages[] = {
+        [](topics::Remark& r) { r.set_epoch(0); },
+        [](topics::Remark& r) { r.set_number(0); },
+        [](topics::Remark& r) { r.set_session_s(-1); },
+        [](topics::Remark& r) { r.set_session_s(std::numeric_limits<double>::quiet_NaN()); },
+        [](topics::Remark& r) { r.set_role(topics::Viewer::Role(9)); },
+        [](topics::Remark& r) { r.add_points_m(0); },
+        [](topics::Remark& r) { r.set_points_m(4, std::numeric_limits<float>::infinity()); },
+        [](topics::Remark& r) { r.set_points_m(4, 1e9f); }};
+    for (const auto& damage : damages) {
+        topics::Remark remark = validRemark("", 2);
+        damage(remark);
+        EXPECT_FALSE(is_accepted(remark)) << remark.ShortDebugString();
+    }
 }
 
 TEST(Payloads, WhoOnlyLooksHoldsNothing) {
