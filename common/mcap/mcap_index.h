@@ -1,0 +1,76 @@
+// What the end of an MCAP file says of all that is before it. Writer and reader keep one as they go, so that
+// a file whose end is missing can be given it. It is for normal threads.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bonemill::mcap {
+
+struct Schema {
+    uint16_t id = 0;       // not 0
+    std::string name;      // of a Protobuf message: with its package
+    std::string encoding;  // "protobuf"
+    std::string data;      // of Protobuf: a serialized FileDescriptorSet
+};
+
+struct Channel {
+    uint16_t id = 0;
+    uint16_t schema = 0;
+    std::string topic;
+    std::string encoding;  // of its messages: "protobuf"
+};
+
+struct Message {
+    uint16_t channel = 0;
+    uint32_t sequence = 0;  // counts the channel's messages from 0
+    uint64_t time_ns = 0;   // since 1970-01-01
+    std::string_view data;
+};
+
+// Where the messages of one channel are in a chunk.
+struct MessagePlace {
+    uint64_t time_ns, offset;
+};
+using ChunkPlaces = std::map<uint16_t, std::vector<MessagePlace>>;
+
+// It grows by some 100 bytes for each chunk.
+class Index {
+  public:
+    // These bytes come next in the file, before the end of its data.
+    void addBytes(std::string_view bytes);
+    // These records were met, in a chunk.
+    void addSchema(std::string_view record) { schemas_ += record, ++schema_count_; }
+    void addChannel(std::string_view record) { channels_ += record, ++channel_count_; }
+    // The chunk begins at size() - length. Returns the records that follow it in the file, which are to be
+    // added as bytes.
+    struct Chunk {
+        uint64_t length, packed_size, plain_size, first_ns, last_ns;
+    };
+    std::string addChunk(const Chunk& chunk, const ChunkPlaces& places);
+
+    uint64_t size() const { return size_; }
+    uint64_t chunks() const { return chunk_count_; }
+    uint64_t messages() const;
+    // All that comes after the data: how it ends, the index, and the footer.
+    std::string ending() const;
+
+  private:
+    std::string summary(uint64_t start) const;
+
+    std::string schemas_, channels_, chunk_records_;
+    uint64_t size_ = 0;
+    uint32_t crc_ = 0;
+    uint16_t schema_count_ = 0;
+    uint32_t channel_count_ = 0, chunk_count_ = 0;
+    std::map<uint16_t, uint64_t> messages_;  // by channel
+    uint64_t first_ns_ = 0, last_ns_ = 0;
+};
+
+// CRC-32 as zlib and MCAP have it; `crc` is that of what comes before.
+uint32_t crcOf(std::string_view bytes, uint32_t crc = 0);
+
+}  // namespace bonemill::mcap

@@ -1,0 +1,32 @@
+// Reads what mcap::Writer makes, whoever had the file in between: every length is checked before it is
+// believed, every chunk against its CRC before anything in it is told, and memory is bounded. Where a file is
+// torn or changed, all that is whole before that place is read, and what was lost is said. Files of other
+// writers are read as far as they have the same shape: chunks packed by zstd with CRC and indexes. It is for
+// normal threads.
+#pragma once
+
+#include <functional>
+#include <iosfwd>
+#include <string>
+
+#include "common/mcap/mcap_index.h"
+
+namespace bonemill::mcap {
+
+struct Reading {
+    bool is_whole = false;    // from the first byte to the last, with its end
+    std::string problem;      // for people; empty if whole
+    uint64_t lost_bytes = 0;  // in the file, after the last that is whole
+    std::string profile, library;
+    // Of what is whole: its size() is that of the file up to there.
+    Index index;
+    // These records belong at the end of that, and are not there whole.
+    std::string missing;
+};
+
+// `visit` is called for each message, in the file's order; its data is good until it returns. What it throws
+// goes through. Nothing else is thrown; a stream that cannot be read counts as torn there.
+using Visit = std::function<void(const Channel&, const Message&)>;
+Reading read(std::istream& input, const Visit& visit);
+
+}  // namespace bonemill::mcap
