@@ -10,19 +10,22 @@ constexpr size_t kEnvelope = 24;  // bytes around a payload, at most
 constexpr size_t kMostAnswers = 8;
 constexpr std::chrono::seconds kOrderLasts{1};  // then the tool may be elsewhere
 
-// What is small and changes often comes before what is large.
+// What is small and changes often comes before what is large. What comes later waits for the whole bone at
+// first.
+constexpr int kFirstLaterRank = 2;
+
 int rankOf(Topic topic) {
     switch (topic) {
         case Sample::SCENE_INFO:
             return 0;
-        case Sample::REMARK:
-            return 2;
-        case Sample::STRUCTURE_MESH:
-            return 3;
         case Sample::LESSON:
-            return 4;
+            return kFirstLaterRank;
+        case Sample::REMARK:
+            return kFirstLaterRank + 1;
+        case Sample::STRUCTURE_MESH:
+            return kFirstLaterRank + 2;
         case Sample::SCENE_PICTURE:
-            return 5;
+            return kFirstLaterRank + 3;
         default:
             return 1;
     }
@@ -61,6 +64,7 @@ void GuestStream::note(const SessionChanges& changes) {
         order_.clear();
         bricks_.clear();
         counted_.Clear();
+        has_bone_ = false;
     }
     for (const SmallKey& key : changes.small) small_.emplace(rankOf(key.topic), key);
     nodes_.insert(changes.nodes.begin(), changes.nodes.end());
@@ -101,10 +105,12 @@ std::string GuestStream::next(Clock::time_point now) {
     addStatus(samples);
     addToolState(samples);
     size_t size = addSmall(samples, 0, most);
-    if (small_.empty()) {
+    if (!isNextSmall()) {
         orderNodes(now);
         size = addNodes(samples, size, most);
-        addBricks(samples, size, most);
+        has_bone_ = has_bone_ || nodes_.empty();
+        size = addSmall(samples, size, most);
+        if (small_.empty()) addBricks(samples, size, most);
     }
     std::string bytes = frame.SerializeAsString();
     window_.sent(bytes.size(), hasNews(), now);
@@ -137,8 +143,12 @@ void GuestStream::addToolState(Samples& samples) {
     add(samples, Sample::TOOL_STATE, 0, state.SerializeAsString());
 }
 
+bool GuestStream::isNextSmall() const {
+    return !small_.empty() && (has_bone_ || small_.begin()->first < kFirstLaterRank);
+}
+
 size_t GuestStream::addSmall(Samples& samples, size_t size, size_t most) {
-    while (!small_.empty() && size < most) {
+    while (isNextSmall() && size < most) {
         const SmallKey key = small_.begin()->second;
         const auto held = state_.small.find(key);
         const bool is_there = held != state_.small.end();

@@ -48,6 +48,7 @@ class GuestStream {
     bool hasNews() const;
     void addStatus(Samples& samples);
     void addToolState(Samples& samples);
+    bool isNextSmall() const;
     size_t addSmall(Samples& samples, size_t size, size_t most);
     size_t addNodes(Samples& samples, size_t size, size_t most);
     bool areNodesFew(size_t most) const;
@@ -61,6 +62,7 @@ class GuestStream {
     std::unordered_set<uint32_t> nodes_;
     std::vector<uint32_t> order_;  // of many nodes: the next one last; some may be sent already
     Clock::time_point ordered_;
+    bool has_bone_ = false;  // each node was sent once
     bool has_tool_state_ = false;
     topics::EffectState counted_;  // in tool states that were not sent
     std::deque<SessionChanges::Brick> bricks_;

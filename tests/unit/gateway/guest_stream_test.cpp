@@ -194,6 +194,37 @@ TEST(GuestStream, NodesThatChangedTogetherComeInOneFrameAndManyTheNearestFirst) 
     for (const Sample& sample : part.samples()) EXPECT_NEAR(double(sample.key()), 50, 15);
 }
 
+TEST(GuestStream, TheBoneComesBeforeStructuresAndPicturesAtFirstAndLaterHoldsUpNothing) {
+    Session session;
+    session.small(Sample::SCENE_INFO, 0, "scene");
+    session.small(Sample::STRUCTURE_MESH, 1, std::string(60'000, 's'));
+    session.small(Sample::SCENE_PICTURE, 0, std::string(60'000, 'p'));
+    for (uint32_t leaf = 0; leaf < 50; ++leaf) session.node(leaf, 1, 5000);
+    GuestStream stream = quickStream(session);
+    uint64_t sent = 0;
+    const auto next = [&] {
+        const std::string frame = stream.next(session.now += 1s);
+        EXPECT_TRUE(stream.acknowledge(sent += frame.size(), session.now));
+        return samplesOf(frame);
+    };
+    std::vector<Topic> order;
+    for (int frames = 0; frames < 50; ++frames)
+        for (const Sample& sample : next().samples())
+            if (order.empty() || order.back() != sample.topic()) order.push_back(sample.topic());
+    EXPECT_EQ(order, (std::vector<Topic>{Sample::SCENE_INFO, Sample::NODE_MESH, Sample::STRUCTURE_MESH,
+                                         Sample::SCENE_PICTURE}));
+
+    SessionChanges changes = session.small(Sample::LESSON, 0, "lesson");
+    for (uint32_t leaf = 0; leaf < 50; ++leaf) {
+        session.node(leaf, 2, 5000);
+        changes.nodes.push_back(leaf);
+    }
+    stream.note(changes);
+    const Samples mixed = next();
+    EXPECT_EQ(mixed.samples(0).topic(), Sample::LESSON);
+    EXPECT_EQ(mixed.samples(1).topic(), Sample::NODE_MESH);
+}
+
 TEST(GuestStream, WhatHappensBetweenTwoToolStatesIsAddedUp) {
     Session session;
     GuestStream stream = quickStream(session);
