@@ -14,9 +14,10 @@ struct RoomLimits {
     size_t most_of_owner;  // of one of those who speak for them
 };
 
-// Before an entry of this owner comes to the list, makes room for it: the least recently heard of the owner goes
-// where it has its share, and else, where the list is full, that of who has most. `owner_of` and `heard_at` are
-// projections of an entry, to uint64_t and to what grows with time. It looks through the whole list.
+// Before an entry of this owner comes to the list, makes room for it: the least recently heard of the owner
+// goes where it has its share, and else, where the list is full, that of who has most. `owner_of` and
+// `heard_at` are projections of an entry, to uint64_t and to what grows with time. It looks through the whole
+// list.
 template <class List, class OwnerOf, class HeardAt>
 void makeRoomFor(uint64_t owner, List& list, const RoomLimits& limits, OwnerOf owner_of, HeardAt heard_at) {
     const auto forgetOldestOf = [&](uint64_t of) {

@@ -26,8 +26,8 @@ inline bool isSameFile(const std::filesystem::path& a, const std::filesystem::pa
     return !place.empty() && place == fs::weakly_canonical(fs::absolute(b, error), error);
 }
 
-// Whatever links lead there: the file, also one that is not there yet, lies somewhere in the folder, or is one of
-// its files by another name.
+// Whatever links lead there: the file, also one that is not there yet, lies somewhere in the folder, or is
+// one of its files by another name.
 inline bool isWithinFolder(const std::filesystem::path& file, const std::filesystem::path& folder) {
     namespace fs = std::filesystem;
     std::error_code error;
@@ -36,15 +36,17 @@ inline bool isWithinFolder(const std::filesystem::path& file, const std::filesys
     const fs::path inner = fs::weakly_canonical(fs::absolute(file, error), error);
     const fs::path outer = fs::canonical(folder, error);
     if (inner.empty() || outer.empty()) return false;
-    if (std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end()) return true;
+    if (std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end())
+        return true;
     if (const auto links = fs::hard_link_count(inner, error); error || links < 2) return false;
-    for (fs::recursive_directory_iterator entry(outer, error), end; !error && entry != end; entry.increment(error))
+    for (fs::recursive_directory_iterator entry(outer, error), end; !error && entry != end;
+         entry.increment(error))
         if (entry->is_regular_file(error) && fs::equivalent(inner, entry->path(), error)) return true;
     return false;
 }
 
-// Throws UserError if one of `written` is the same file as another one of them or as one of `read`, or lies in a
-// folder that is read.
+// Throws UserError if one of `written` is the same file as another one of them or as one of `read`, or lies
+// in a folder that is read.
 inline void requireApart(const std::vector<NamedFile>& written, const std::vector<NamedFile>& read) {
     const auto check = [](const NamedFile& file, const NamedFile& other, const char* what) {
         if (file.path.empty() || other.path.empty()) return;

@@ -19,9 +19,8 @@ bool isForbidden(int32_t result) {
 }
 
 Entity createTopic(int32_t participant, const TopicDescription& description) {
-    return requireEntity(
-        dds_create_topic(participant, description.type, description.name, nullptr, nullptr),
-        std::string("topic ") + description.name);
+    return requireEntity(dds_create_topic(participant, description.type, description.name, nullptr, nullptr),
+                         std::string("topic ") + description.name);
 }
 
 // A hostile peer that makes endpoints without end must not fill the log.

@@ -68,8 +68,8 @@ class AnyReader {
 
     AnyReader(const Participant& participant, const TopicDescription& description);
 
-    // It becomes a new reader of the same topic, with another handle: all that it had heard is forgotten, what waits
-    // to be taken, too. Throws UserError, and stays what it was.
+    // It becomes a new reader of the same topic, with another handle: all that it had heard is forgotten,
+    // what waits to be taken, too. Throws UserError, and stays what it was.
     void beginAnew(const TopicDescription& description);
     int32_t handle() const noexcept { return reader_.handle(); }
     int matchedWriters() const;
@@ -109,8 +109,9 @@ class Reader {
     // Calls handle(const Sample&, const SampleInfo&) for at most `max_samples` new samples; returns how many.
     // The sample lives only during the call.
     //
-    // Cyclone keeps every key that a writer ever used for as long as that writer lives. A reader that has heard of too
-    // many (TopicDescription::most_keys) begins anew, its handle changes, and strangers who fill it keep out nobody.
+    // Cyclone keeps every key that a writer ever used for as long as that writer lives. A reader that has
+    // heard of too many (TopicDescription::most_keys) begins anew, its handle changes, and strangers who fill
+    // it keep out nobody.
     template <class Handler>
     size_t take(size_t max_samples, Handler&& handle) {
         forgetTooMany();

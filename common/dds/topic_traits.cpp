@@ -83,14 +83,12 @@ TopicDescription describeTopic<RemarkSample>() {
 
 template <>
 TopicDescription describeTopic<ViewerSample>() {
-    return {"bonemill_viewer", &bonemill_dds_ViewerSample_desc, streamQos(1),
-            kMostStreamKeys / 2};
+    return {"bonemill_viewer", &bonemill_dds_ViewerSample_desc, streamQos(1), kMostStreamKeys / 2};
 }
 
 template <>
 TopicDescription describeTopic<HandPointerSample>() {
-    return {"bonemill_hand_pointer", &bonemill_dds_HandPointerSample_desc, streamQos(1),
-            kMostStreamKeys / 2};
+    return {"bonemill_hand_pointer", &bonemill_dds_HandPointerSample_desc, streamQos(1), kMostStreamKeys / 2};
 }
 
 template <>
@@ -105,8 +103,7 @@ TopicDescription describeTopic<DensityBrickSample>() {
 
 template <>
 TopicDescription describeTopic<DensityWishSample>() {
-    return {"bonemill_density_wish", &bonemill_dds_DensityWishSample_desc, streamQos(1),
-            kMostStreamKeys / 2};
+    return {"bonemill_density_wish", &bonemill_dds_DensityWishSample_desc, streamQos(1), kMostStreamKeys / 2};
 }
 
 }  // namespace bonemill::dds

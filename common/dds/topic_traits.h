@@ -32,7 +32,8 @@ struct TopicDescription {
 };
 
 // So many senders of a stream a reader knows at once: far more than there are viewers, and a bound for the
-// memory that invented ones can take. It forgets them when half of that is used, so that there is room for others.
+// memory that invented ones can take. It forgets them when half of that is used, so that there is room for
+// others.
 inline constexpr int kMostStreamKeys = 1024;
 // Likewise of commands: who is honest repeats a command that gets lost.
 inline constexpr int kMostCommandKeys = 16384;

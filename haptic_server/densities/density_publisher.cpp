@@ -8,7 +8,7 @@
 namespace bonemill {
 namespace {
 
-constexpr size_t kMostWishes = 256;          // taken per round
+constexpr size_t kMostWishes = 256;         // taken per round
 constexpr size_t kMostWishesOfWriter = 16;  // of them, read: 3200 per second
 constexpr int64_t kLongestRound_ns = 2 * kNsPerMillisecond;
 constexpr size_t kLeastCharge = 1024;  // bytes: a small brick costs time, too
@@ -42,7 +42,8 @@ DensityPublisher::DensityPublisher(const dds::Participant& participant, uint32_t
 void DensityPublisher::takeWishes(int64_t now_ns) {
     std::map<uint64_t, size_t> taken;  // by writer
     reader_.take(kMostWishes, [&](const dds::DensityWishSample& sample, const dds::SampleInfo& info) {
-        if (!info.has_data || sample.session != session_ || ++taken[info.writer] > kMostWishesOfWriter) return;
+        if (!info.has_data || sample.session != session_ || ++taken[info.writer] > kMostWishesOfWriter)
+            return;
         stream_.receive(sample.sender, reader_.participantOf(info.writer), dds::payloadOf(sample), now_ns);
     });
 }

@@ -70,7 +70,8 @@ void DensityWishes::receive(uint64_t sender, uint64_t participant, std::vector<W
                             int64_t now_ns) {
     auto wish = std::ranges::find(wishes_, sender, &Wish::sender);
     if (wish == wishes_.end()) {
-        makeRoomFor(participant, wishes_, {kMostSenders, kMostOfParticipant}, &Wish::participant, &Wish::heard_ns);
+        makeRoomFor(participant, wishes_, {kMostSenders, kMostOfParticipant}, &Wish::participant,
+                    &Wish::heard_ns);
         wish = wishes_.insert(wishes_.end(), Wish{sender, participant, now_ns, {}});
     } else if (wish->participant != participant) {
         return;

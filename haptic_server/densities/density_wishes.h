@@ -25,8 +25,9 @@ std::optional<std::vector<WishedBrick>> parseDensityWish(std::span<const uint8_t
 
 class DensityWishes {
   public:
-    static constexpr size_t kMostSenders = 128;       // of more, the least recent of who has most is forgotten
-    static constexpr size_t kMostOfParticipant = 64;  // a gateway's guests; of more, its least recent is forgotten
+    static constexpr size_t kMostSenders = 128;  // of more, the least recent of who has most is forgotten
+    static constexpr size_t kMostOfParticipant =
+        64;  // a gateway's guests; of more, its least recent is forgotten
     static constexpr int64_t kSilence_ns = 5'000'000'000;  // whoever says nothing for so long shows nothing
 
     struct Wish {
@@ -38,8 +39,8 @@ class DensityWishes {
         int64_t last_end_ns = 0;  // all of them had been looked at then
     };
 
-    // It replaces the sender's wish before, if that was of the same participant (dds::Reader::participantOf); another
-    // one speaks for the sender only when it has fallen silent.
+    // It replaces the sender's wish before, if that was of the same participant (dds::Reader::participantOf);
+    // another one speaks for the sender only when it has fallen silent.
     void receive(uint64_t sender, uint64_t participant, std::vector<WishedBrick> bricks, int64_t now_ns);
     void forgetSilent(int64_t now_ns);
 

@@ -22,8 +22,8 @@ bool parse(std::span<const uint8_t> payload, topics::Command& command) {
 
 }  // namespace
 
-// Who comes again with another participant, its first one gone, goes on counting; a lower number is of somebody
-// new.
+// Who comes again with another participant, its first one gone, goes on counting; a lower number is of
+// somebody new.
 CommandInbox::Sender* CommandInbox::senderOf(const topics::Command& command, const CommandOrigin& origin) {
     const auto known = senders_.find(command.sender());
     if (known == senders_.end()) {
@@ -67,12 +67,15 @@ CommandInbox::Decision CommandInbox::receive(uint64_t envelope_sender, const Com
     return {std::move(command), std::nullopt};
 }
 
-// The rightful one must not take the answer for its own: it waits for a newer number than those that are done.
+// The rightful one must not take the answer for its own: it waits for a newer number than those that are
+// done.
 CommandInbox::Decision CommandInbox::refuseForeign(const topics::Command& command) const {
-    Decision decision{.is_foreign = true};
+    Decision decision;
+    decision.is_foreign = true;
     if (command.sequence() < senders_.at(command.sender()).sequence)
-        decision.acknowledgement = {command.sender(), command.sequence(),
-                                    "refused: another client of this session has this sender number; start anew"};
+        decision.acknowledgement = {
+            command.sender(), command.sequence(),
+            "refused: another client of this session has this sender number; start anew"};
     return decision;
 }
 

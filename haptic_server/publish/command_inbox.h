@@ -1,5 +1,5 @@
-// Decides which received commands the server carries out: each (sender, sequence) once. A sender belongs to the
-// participant that used it first, for as long as that lives. It is for one thread and not RT-safe.
+// Decides which received commands the server carries out: each (sender, sequence) once. A sender belongs to
+// the participant that used it first, for as long as that lives. It is for one thread and not RT-safe.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,8 @@ class CommandInbox {
     struct Decision {
         std::optional<topics::Command> command;
         std::optional<CommandAcknowledgement> acknowledgement;
-        bool is_foreign = false;  // the sender is another participant's; it is answered where nobody else waits
+        bool is_foreign =
+            false;  // the sender is another participant's; it is answered where nobody else waits
     };
 
     // `is_there` says whether a writer that was an origin still lives.

@@ -26,8 +26,8 @@ class LessonBook {
 
     LessonBook(std::vector<ListedScene> scenes, ClassTable table);
 
-    // The publisher thread asks what is to be shown, once per change; the epoch is still missing, and so are the
-    // pictures of the scenes, which never change.
+    // The publisher thread asks what is to be shown, once per change; the epoch is still missing, and so are
+    // the pictures of the scenes, which never change.
     std::optional<topics::Lesson> takeChanged();
     const std::vector<ListedScene>& scenes() const noexcept { return scenes_; }
     // The scene of this file is in force now: it is told anew.

@@ -153,8 +153,8 @@ void ShowSession::publishLesson() {
     publisher_.publishLesson(std::move(*lesson));
 }
 
-// One per round, after what the session needs: while a node waits nothing is left of the budget. DDS keeps them for
-// those who come later.
+// One per round, after what the session needs: while a node waits nothing is left of the budget. DDS keeps
+// them for those who come later.
 void ShowSession::publishPictures() {
     const std::vector<ListedScene>& scenes = commands_.lesson().scenes();
     while (next_picture_ < scenes.size() && scenes[next_picture_].choice.picture().empty()) ++next_picture_;

@@ -109,14 +109,14 @@ void SessionMirror::takeLesson() {
 }
 
 void SessionMirror::takePictures() {
-    servers_->pictures.take(
-        kMostSmallSamples, [this](const dds::ScenePictureSample& sample, const dds::SampleInfo& info) {
-            if (!info.has_data || sample.session != session_) return;
-            const auto picture = parseScenePicture(dds::payloadOf(sample), sample.scene);
-            if (!picture) return dropMalformed("picture of a scene");
-            if (!accept(picture->epoch(), servers_->pictures, info.writer)) return;
-            keep(Sample::SCENE_PICTURE, sample.scene, picture->SerializeAsString());
-        });
+    servers_->pictures.take(kMostSmallSamples,
+                            [this](const dds::ScenePictureSample& sample, const dds::SampleInfo& info) {
+                                if (!info.has_data || sample.session != session_) return;
+                                const auto picture = parseScenePicture(dds::payloadOf(sample), sample.scene);
+                                if (!picture) return dropMalformed("picture of a scene");
+                                if (!accept(picture->epoch(), servers_->pictures, info.writer)) return;
+                                keep(Sample::SCENE_PICTURE, sample.scene, picture->SerializeAsString());
+                            });
 }
 
 void SessionMirror::takeStructures() {

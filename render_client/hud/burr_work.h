@@ -1,4 +1,5 @@
-// Says what the burr does to the bone, from the tool's buttons and what keeps it from milling. The function is pure; any thread may call it.
+// Says what the burr does to the bone, from the tool's buttons and what keeps it from milling. The function
+// is pure; any thread may call it.
 #pragma once
 
 #include "proto/topics.pb.h"

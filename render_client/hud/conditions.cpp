@@ -46,7 +46,8 @@ void addPause(const HudInput& input, std::vector<Condition>& conditions) {
         conditions.push_back(
             {"paused", "Milling is paused: P goes on, Start begins the next attempt.", HudTone::kWarning});
     else if (is_asked && input.tool->waits_for_release())
-        conditions.push_back({"release", "The bone was put back: release the pedal, then the burr cuts again.",
+        conditions.push_back({"release",
+                              "The bone was put back: release the pedal, then the burr cuts again.",
                               HudTone::kWarning});
 }
 

@@ -91,11 +91,11 @@ std::vector<HudRow> trainingRows(const topics::Training& training) {
     if (training.has_damaged_mm3())
         rows.push_back({"Damaged", volumeText(training.damaged_mm3()), toneOfVolume(training.damaged_mm3())});
     if (training.has_least_distance_mm())
-        rows.push_back({"Least distance to " + (training.nearest_structure().empty()
-                                                    ? "a protected structure"
-                                                    : training.nearest_structure()),
-                        readableText(training.least_distance_mm(), " mm"),
-                        training.least_distance_mm() <= 0 ? HudTone::kAlarm : HudTone::kPlain});
+        rows.push_back(
+            {"Least distance to " + (training.nearest_structure().empty() ? "a protected structure"
+                                                                          : training.nearest_structure()),
+             readableText(training.least_distance_mm(), " mm"),
+             training.least_distance_mm() <= 0 ? HudTone::kAlarm : HudTone::kPlain});
     if (training.has_max_protected_force_n())
         rows.push_back(
             {"Largest force on a protected structure", readableText(training.max_protected_force_n(), " N")});

@@ -39,7 +39,8 @@ std::vector<HudRow> watcherRows(const std::vector<topics::Viewer>& watchers) {
 HudRow burrRow(const topics::ToolState& tool, bool is_paused, uint32_t events) {
     if (events & topics::EffectState::SPINDLE_STALLED) return {"Burr", "stalled", HudTone::kAlarm};
     if (is_paused) return {"Burr", "paused", HudTone::kWarning};
-    if (tool.waits_for_release() && tool.buttons() != 0) return {"Burr", "release the pedal", HudTone::kWarning};
+    if (tool.waits_for_release() && tool.buttons() != 0)
+        return {"Burr", "release the pedal", HudTone::kWarning};
     switch (burrWorkOf(tool)) {
         case BurrWork::kRemoving:
             return {"Burr", "removing", HudTone::kWarning};

@@ -19,8 +19,8 @@ namespace bonemill {
 struct DensityRun {
     const std::optional<topics::SceneInfo>& info;  // the newest
     uint64_t epoch;                                // 0: none
-    // Says whether a writer of this participant (dds::Reader::participantOf) is that server's: nobody else's bricks
-    // are taken.
+    // Says whether a writer of this participant (dds::Reader::participantOf) is that server's: nobody else's
+    // bricks are taken.
     std::function<bool(uint64_t participant, uint64_t writer)> is_its;
 };
 
@@ -34,8 +34,8 @@ class DensityFeed {
     DensityFeed(const Wire& wire, uint32_t session, uint64_t sender)
         : wire_(wire), session_(session), sender_(sender) {}
 
-    // Takes what has arrived, and says what the store wants; another run empties the store. `drop` is told of what
-    // makes no sense. It never waits.
+    // Takes what has arrived, and says what the store wants; another run empties the store. `drop` is told of
+    // what makes no sense. It never waits.
     void update(DensityStore& store, const DensityRun& run, int64_t now_ns,
                 const std::function<void(const std::string&)>& drop);
 
@@ -44,7 +44,8 @@ class DensityFeed {
 
   private:
     void follow(DensityStore& store, const DensityRun& run);
-    void take(DensityStore& store, const DensityRun& run, const std::function<void(const std::string&)>& drop);
+    void take(DensityStore& store, const DensityRun& run,
+              const std::function<void(const std::string&)>& drop);
     bool apply(DensityStore& store, uint32_t brick, const topics::DensityBrick& message);
     bool isAir(uint32_t brick) const;
     topics::DensityWish wishOf(DensityStore& store);

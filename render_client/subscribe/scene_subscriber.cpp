@@ -117,16 +117,15 @@ void SceneSubscriber::takeLesson() {
 }
 
 void SceneSubscriber::takePictures() {
-    link_->servers->pictures.take(
-        kMaxSmallSamples, [this](const dds::ScenePictureSample& sample, const dds::SampleInfo& info) {
-            if (!info.has_data || sample.session != options_.session) return;
-            std::optional<topics::ScenePicture> picture =
-                parseScenePicture(dds::payloadOf(sample), sample.scene);
-            if (!picture) return dropMalformed("picture of scene " + std::to_string(sample.scene));
-            if (!accept(picture->epoch(), link_->servers->pictures, info.writer)) return;
-            pictures_[sample.scene] = std::move(*picture);
-            showPictures();
-        });
+    link_->servers->pictures.take(kMaxSmallSamples, [this](const dds::ScenePictureSample& sample,
+                                                           const dds::SampleInfo& info) {
+        if (!info.has_data || sample.session != options_.session) return;
+        std::optional<topics::ScenePicture> picture = parseScenePicture(dds::payloadOf(sample), sample.scene);
+        if (!picture) return dropMalformed("picture of scene " + std::to_string(sample.scene));
+        if (!accept(picture->epoch(), link_->servers->pictures, info.writer)) return;
+        pictures_[sample.scene] = std::move(*picture);
+        showPictures();
+    });
 }
 
 void SceneSubscriber::showPictures() {

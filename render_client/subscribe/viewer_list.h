@@ -1,6 +1,6 @@
-// Who else is watching. It is bounded, whatever senders are invented: each participant speaks for few viewers, the
-// last that it spoke for, and for none that another one speaks for; of too many the least recent goes of who has most.
-// For one thread.
+// Who else is watching. It is bounded, whatever senders are invented: each participant speaks for few
+// viewers, the last that it spoke for, and for none that another one speaks for; of too many the least recent
+// goes of who has most. For one thread.
 #pragma once
 
 #include <chrono>

@@ -232,14 +232,27 @@ TEST(TopicsFuzz, HandPointer) {
     });
 }
 
+TEST(TopicsFuzz, ScenePicture) {
+    topics::ScenePicture picture;
+    picture.set_epoch(5);
+    picture.set_scene_id("tooth_cavity");
+    picture.set_png("\x89PNG\r\n\x1a\n and so on");
+    fuzz(picture.SerializeAsString(), [](Bytes bytes) {
+        const auto parsed = parseScenePicture(bytes, 3);
+        if (!parsed) return false;
+        EXPECT_FALSE(parsed->scene_id().size() > 64 || parsed->epoch() == 0);
+        return true;
+    });
+}
+
 TEST(TopicsFuzz, Command) {
     topics::Command command;
     command.set_sender(7);
     command.set_sequence(3);
     command.set_pause_milling(true);
     fuzz(command.SerializeAsString(), [](Bytes bytes) {
-        CommandInbox inbox;
-        const auto decision = inbox.receive(7, bytes);
+        CommandInbox inbox([](uint64_t) { return true; });
+        const auto decision = inbox.receive(7, {1, 2}, bytes);
         EXPECT_TRUE(!decision.command || decision.command->action_case() != topics::Command::ACTION_NOT_SET);
         return decision.command.has_value();
     });

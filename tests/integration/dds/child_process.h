@@ -8,7 +8,8 @@ namespace bonemill {
 
 class ChildProcess {
   public:
-    // Starts the program `name` beside the test; it gets the test's domain and session as arguments, and one more.
+    // Starts the program `name` beside the test; it gets the test's domain and session as arguments, and one
+    // more.
     explicit ChildProcess(const std::string& name, std::string argument = "");
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;

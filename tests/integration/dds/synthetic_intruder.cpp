@@ -1,5 +1,5 @@
-// This intruder invents as many senders as its standard input says, and prints "done". The third argument says what
-// they send: "commands", "viewers" or "wishes".
+// This intruder invents as many senders as its standard input says, and prints "done". The third argument
+// says what they send: "commands", "viewers" or "wishes".
 #include <iostream>
 #include <string>
 #include <thread>

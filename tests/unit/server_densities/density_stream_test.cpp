@@ -38,7 +38,8 @@ struct StreamRig {
             wish.add_revisions(revision);
         }
         const std::string bytes = wish.SerializeAsString();
-        stream.receive(sender, sender, {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}, now_ns);
+        stream.receive(sender, sender, {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()},
+                       now_ns);
     }
     // Rounds of at most so many bricks follow, one per 5 ms; returns how many bricks they wrote.
     size_t run(int rounds, size_t most = 1000) {

@@ -49,9 +49,9 @@ TEST_F(ResultFilesTest, AFolderThatASceneReadsIsSpared) {
     fs::create_hard_link(slice, folder_ / "hard.csv");
     fs::create_symlink(slice, folder_ / "soft.csv");
     const std::vector<NamedFile> read{{"the scene's volume.path", series}};
-    for (const fs::path& path : {slice, series / "new.csv", fs::path(folder_ / "link/sub/0001.dcm"),
-                                 fs::path(folder_ / "hard.csv"), fs::path(folder_ / "soft.csv"),
-                                 series / "sub" / ".." / "new.csv"}) {
+    for (const fs::path& path :
+         {slice, series / "new.csv", fs::path(folder_ / "link/sub/0001.dcm"), fs::path(folder_ / "hard.csv"),
+          fs::path(folder_ / "soft.csv"), series / "sub" / ".." / "new.csv"}) {
         ServerOptions into = options();
         into.trace = path.string();
         EXPECT_THROW(ResultFiles(into, read), UserError) << path;
