@@ -12,7 +12,7 @@
 
 #include "common/rt/clock.h"
 #include "common/user_error.h"
-#include "render_client/gateway/secrets.h"
+#include "render_client/secrets/secrets.h"
 #include "tests/bench/bench_output.h"
 #include "tests/bench/processor_time.h"
 #include "tests/support/dds_session.h"
@@ -51,7 +51,7 @@ class GuestSession {
           far_(isGood(o.line) ? network_.addHost() : network_.addHost(o.line)) {
         setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
         test::writeFile(folder_ / "guests", "invitations { name: \"Guest\" role: VIEWER token_sha256: \"" +
-                                                gateway::sha256Hex(kToken) + "\" people: 64 }\n");
+                                                sha256Hex(kToken) + "\" people: 64 }\n");
         server_ = lab_.start(words({"haptic_server", "--scene", o.scene, "--report", report()}));
         gateway_ = lab_.start(words({"render_client", "--serve", lab_.address() + ':' + std::to_string(kPort),
                                      "--guests", folder_ / "guests"}));
