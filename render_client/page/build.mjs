@@ -57,7 +57,7 @@ await build({
 });
 await build({
   ...common, platform: 'node', target: 'node18', outdir: join(work, 'tests_out'), outExtension: { '.js': '.mjs' },
-  entryPoints: { unit: 'tests/unit.ts', stand_in: 'tests/stand_in.ts', browser: 'tests/browser.ts' },
+  entryPoints: { unit: 'tests/unit.ts', stand_in: 'tests/stand_in.ts', browser: 'tests/browser.ts', native: 'tests/native.ts' },
   external: ['playwright-core', 'ws'],
 });
 

@@ -1,31 +1,20 @@
 // The page in a real browser, with a stand-in for the gateway: node browser.mjs PAGE_DIR PICTURES_DIR [TRIANGLES]
 // Says what is wrong and ends with 1, or says how fast it draws. Without a browser it ends with 77: skipped.
 import assert from 'node:assert/strict';
-import { existsSync, mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import { mkdirSync, mkdtempSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { chromium, type Page } from 'playwright-core';
+import type { Page } from 'playwright-core';
+import { startChromium } from './chromium';
 import { startStandIn } from './stand_in';
-import { boneNodes } from './synthetic';
+import { boneNodes, dented } from './synthetic';
 
-const kChromium = '/usr/bin/chromium';
-const kFlags = [
-  '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-quic', '--no-first-run',
-  '--disable-background-networking', '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage',
-];
 const kInstructor = 2;
 const [page_dir, pictures = mkdtempSync(join(tmpdir(), 'page_')), triangles = '20000'] = process.argv.slice(2);
 
-if (!existsSync(kChromium)) {
-  console.log('skipped: there is no chromium');
-  process.exit(77);
-}
 mkdirSync(pictures, { recursive: true });
-const profile = mkdtempSync(join(tmpdir(), 'page_profile_'));
-const stand_in = await startStandIn(page_dir, kInstructor, Number(triangles));
-const browser = await chromium.launchPersistentContext(profile, {
-  executablePath: kChromium, headless: true, args: kFlags, viewport: { width: 1280, height: 720 },
-});
+const { browser, close } = await startChromium(1280, 720);
+const stand_in = await startStandIn({ page: page_dir, role: kInstructor, nodes: boneNodes(Number(triangles)), hasOthers: true });
 const faults: string[] = [];
 
 async function open(width: number, height: number, hash = '#invited'): Promise<Page> {
@@ -86,8 +75,8 @@ async function measure(page: Page): Promise<number> {
 async function milled(page: Page): Promise<void> {
   const clip = { x: 300, y: 60, width: 640, height: 510 };  // without figures and notices
   const before = await page.screenshot({ clip });
-  const [old, dented] = [false, true].map((is_milled) => boneNodes(Number(triangles), is_milled));
-  stand_in.show(dented.filter((node, i) => !Buffer.from(node.payload.subarray(40)).equals(Buffer.from(old[i].payload.subarray(40)))));
+  const old = boneNodes(Number(triangles)), milled = boneNodes(Number(triangles), dented, 2);
+  stand_in.show(milled.filter((node, i) => !Buffer.from(node.payload.subarray(40)).equals(Buffer.from(old[i].payload.subarray(40)))));
   await page.waitForTimeout(900);
   const part = await page.screenshot({ clip, path: join(pictures, 'milled.png') });
   for (let i = 0; i < 2; ++i) {
@@ -197,7 +186,6 @@ try {
   console.error(error, faults);
   process.exitCode = 1;
 } finally {
-  await browser.close();
+  await close();
   await stand_in.close();
-  rmSync(profile, { recursive: true, force: true });
 }

@@ -1,5 +1,5 @@
 // A session that nobody milled: a bumpy ball in nodes, a burr, a nerve inside; coded as the server codes them.
-import { create, toBinary } from '@bufbuild/protobuf';
+import { create, fromBinary, toBinary } from '@bufbuild/protobuf';
 import { MeshoptEncoder } from 'meshoptimizer/encoder';
 import * as wire from '#proto/topics_pb';
 import { Sample_Topic, SampleSchema, type Sample } from '#proto/gateway_pb';
@@ -8,6 +8,7 @@ export const kEpoch = 1_790_000_000_000_000_000n;
 export const kRadius = 0.01;  // m
 const kTiles = 8;  // nodes along an edge of a cube's face
 const kStep = 2e-7;  // m
+const kCodecLevel = 2, kCodecVersion = 0;  // of the server's meshoptimizer
 
 await MeshoptEncoder.ready;
 
@@ -44,7 +45,7 @@ export function nodeMesh(surface: Surface, revision = 1, material = 0): Uint8Arr
   return toBinary(wire.NodeMeshSchema, create(wire.NodeMeshSchema, {
     epoch: kEpoch, revision, originM: low, stepM: [step, step, step],
     vertexCount: surface.points.length, indexCount: surface.indices.length,
-    vertices: MeshoptEncoder.encodeVertexBuffer(vertices, surface.points.length, 8),
+    vertices: MeshoptEncoder.encodeVertexBufferLevel(vertices, surface.points.length, 8, kCodecLevel, kCodecVersion),
     indices: MeshoptEncoder.encodeIndexBuffer(indices, surface.indices.length, 4),
     materials: material ? materialRun(material, surface.points.length) : new Uint8Array(),
   }));
@@ -89,23 +90,27 @@ function tile(face: number, a: number, b: number, tiles: number, cells: number, 
 
 const bumpy = (n: V3) => kRadius * (1 + 0.04 * Math.sin(9 * n[0]) * Math.sin(8 * n[1] + 1) * Math.sin(7 * n[2] + 2));
 
-export const sample = (topic: Sample_Topic, key: number | bigint, payload: Uint8Array): Sample =>
-  create(SampleSchema, { topic, key: BigInt(key), payload });
+export const sample = (topic: Sample_Topic, key: number | bigint, payload: Uint8Array, revision = 0): Sample =>
+  create(SampleSchema, { topic, key: BigInt(key), payload, revision });
 
-function dented(n: V3): number {
+// With a dent in front, which somebody has milled.
+export function dented(n: V3): number {
   const depth = 0.15 * Math.exp(-30 * ((n[0] - 0.1) ** 2 + (n[1] + 0.9) ** 2 + (n[2] - 0.35) ** 2));
   return depth > 0.02 ? bumpy(n) * (1 - depth + 0.02) : bumpy(n);
 }
 
-// About so many triangles; with a dent in front if somebody has milled it.
-export function boneNodes(triangles: number, is_milled = false): Sample[] {
+// With furrows, into which less light comes.
+export const furrowed = (n: V3) => bumpy(n) * (1 - 0.1 * Math.max(Math.sin(14 * n[2]), 0) ** 4);
+
+// About so many triangles.
+export function boneNodes(triangles: number, radius = bumpy, revision = 1): Sample[] {
   const cells = Math.max(1, Math.round(Math.sqrt(triangles / (2 * 6 * kTiles * kTiles))));
   const samples: Sample[] = [];
   for (let face = 0; face < 6; ++face)
     for (let a = 0; a < kTiles; ++a)
       for (let b = 0; b < kTiles; ++b)
         samples.push(sample(Sample_Topic.NODE_MESH, samples.length + 1,
-          nodeMesh(tile(face, a, b, kTiles, cells, [0, 0, 0], is_milled ? dented : bumpy), is_milled ? 2 : 1, (a + b) % 7 === 0 ? 2 : 0)));
+          nodeMesh(tile(face, a, b, kTiles, cells, [0, 0, 0], radius), revision, (a + b) % 7 === 0 ? 2 : 0), revision));
   return samples;
 }
 
@@ -167,8 +172,37 @@ export function toolState(tick: number): Sample {
   })));
 }
 
+// What the server says of the nodes that there are (common/dds/node_digest.h): a sum over what each of them shows.
+export interface NodeSum {
+  count: number;
+  digest: bigint;
+}
+
+const word = (n: bigint) => BigInt.asUintN(64, n);
+
+function contentOf(payload: Uint8Array): bigint {
+  const node = fromBinary(wire.NodeMeshSchema, payload);
+  const parts = [Uint32Array.of(node.revision), Float32Array.from(node.originM), Float32Array.from(node.stepM)].map((all) => new Uint8Array(all.buffer));
+  let hash = 0xcbf29ce484222325n;
+  for (const part of [...parts, node.vertices, node.indices, node.materials])
+    for (const byte of part) hash = word((hash ^ BigInt(byte)) * 0x100000001b3n);
+  return hash;
+}
+
+function finalised(n: bigint): bigint {
+  n = word(n + 0x9e3779b97f4a7c15n);
+  n = word((n ^ (n >> 30n)) * 0xbf58476d1ce4e5b9n);
+  n = word((n ^ (n >> 27n)) * 0x94d049bb133111ebn);
+  return n ^ (n >> 31n);
+}
+
+export function sumOf(nodes: Sample[]): NodeSum {
+  const digest = nodes.reduce((sum, { key, payload }) => word(sum + finalised(word(finalised(key) + contentOf(payload)))), 0n);
+  return { count: nodes.length, digest };
+}
+
 export interface StatusWish {
-  nodes: number;
+  nodes: NodeSum;
   sessionS?: number;
   answer?: { sender: bigint; sequence: number; result: string };
   isPaused?: boolean;
@@ -177,7 +211,7 @@ export interface StatusWish {
 export function status({ nodes, sessionS = 12.5, answer, isPaused = false }: StatusWish): Sample {
   return sample(Sample_Topic.STATUS, 0, toBinary(wire.StatusSchema, create(wire.StatusSchema, {
     epoch: kEpoch, scene: 'ball', preset: 'balanced', ticks: BigInt(Math.round((sessionS || 0) * 1000)), rateHz: 1000, tickP50Us: 30, tickP99Us: 41,
-    removedMm3: 3.25, nodeCount: nodes, sessionS, isMillingPaused: isPaused,
+    removedMm3: 3.25, nodeCount: nodes.count, nodeDigest: nodes.digest, sessionS, isMillingPaused: isPaused,
     checkpoints: [{ id: 1, sessionS: 4, removedMm3: 1 }], device: { name: 'simulated hand', kind: 5, state: 4, isSimulated: true },
     lastCommandSender: answer?.sender ?? 0n, lastCommandSequence: answer?.sequence ?? 0, lastCommandResult: answer?.result ?? '',
   })));

@@ -90,8 +90,8 @@ test('runs of materials must cover the vertices', () => {
 
 test('numbers that cannot be are refused', () => {
   assert.equal(payloads.sceneOf(synthetic.sceneInfo().payload).toolNames.length, 2);
-  assert.equal(payloads.statusOf(synthetic.status({ nodes: 3 }).payload).nodeCount, 3);
-  assert.throws(() => payloads.statusOf(synthetic.status({ nodes: 3, sessionS: NaN }).payload), Malformed);
+  assert.equal(payloads.statusOf(synthetic.status({ nodes: { count: 3, digest: 0n } }).payload).nodeCount, 3);
+  assert.throws(() => payloads.statusOf(synthetic.status({ nodes: { count: 3, digest: 0n }, sessionS: NaN }).payload), Malformed);
   assert.throws(() => payloads.remarkOf(synthetic.remark(0, '', [1, 2]).payload), Malformed);
   assert.throws(() => payloads.remarkOf(synthetic.remark(0, '', Array.from({ length: 903 }, () => 0)).payload), Malformed);
   assert.throws(() => payloads.viewerOf(synthetic.viewer(4, 'x', 2, [1e9, 0, 0]).payload), Malformed);
@@ -144,7 +144,7 @@ function live(role: Role): Session {
   const session = new Session();
   session.take({ kind: 'welcome', ticket: 't', name: 'A', role, sender: '7', expiresMs: 0 }, 0);
   session.take({ kind: 'server', hasServer: true, hasEnded: false }, 0);
-  session.take({ kind: 'status', status: payloads.statusOf(synthetic.status({ nodes: 1 }).payload) }, 0);
+  session.take({ kind: 'status', status: payloads.statusOf(synthetic.status({ nodes: { count: 1, digest: 0n } }).payload) }, 0);
   return session;
 }
 

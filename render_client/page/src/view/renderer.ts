@@ -107,7 +107,7 @@ export class Renderer {
   }
 
   private copyLayer(frame: Frame, view: PictureView, is_fine: boolean, aspect: number): void {
-    const { gl } = this, is_opaque = view.opacity === undefined;
+    const { gl } = this;
     gl.disable(gl.BLEND);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.ALWAYS);
@@ -117,7 +117,7 @@ export class Renderer {
       field_radius: view.isEndoscope ? 0.48 * Math.min(aspect, 1) : 0,
     });
     this.fullScreen();
-    if (is_opaque) this.castToolShadow(frame, view);
+    this.castToolShadow(frame, view);
     gl.depthFunc(gl.LESS);
     for (const unit of [0, 3]) bindTexture(gl, unit, null);
   }
