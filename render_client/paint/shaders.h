@@ -44,6 +44,10 @@ extern const char kParticleFragment[];
 extern const char kMarkerVertex[];
 extern const char kMarkerFragment[];
 
+// stroke_shaders.cpp draws lines on the bone.
+extern const char kStrokeVertex[];
+extern const char kStrokeFragment[];
+
 // slice_shaders.cpp draws a pane with a slice through the scan.
 extern const char kSliceFragment[];
 
