@@ -16,6 +16,7 @@ void SceneFeed::update() {
     showSceneInfo();
     subscriber_.followDensities(scene_.densities());
     showStructures();
+    showRemarks();
     if (subscriber_.toolState()) scene_.setToolState(*subscriber_.toolState());
     if (subscriber_.status()) scene_.setStatus(*subscriber_.status());
     advanceEffects();
@@ -42,6 +43,11 @@ void SceneFeed::showStructures() {
         scene_.clearStructures();
     for (const auto& [id, structure] : subscriber_.structures())
         if (structure.change > shown) scene_.setStructure(structure.mesh, structure.warning_distance);
+}
+
+void SceneFeed::showRemarks() {
+    const uint64_t changes = subscriber_.remarkChanges();
+    if (std::exchange(shown_remarks_, changes) != changes) scene_.setRemarks(subscriber_.remarks());
 }
 
 void SceneFeed::advanceEffects() {

@@ -11,6 +11,7 @@
 #include "common/user_error.h"
 #include "common/whole_file.h"
 #include "render_client/app/hand_feed.h"
+#include "render_client/app/remark_feed.h"
 #include "render_client/app/scene_feed.h"
 #include "render_client/app/stop_signal.h"
 #include "render_client/controls/announce_clock.h"
@@ -109,6 +110,7 @@ class WindowViewer {
           feed_(options.subscriber, scene_),
           controls_(scene_.settings(), scene_.camera()),
           hand_(controls_, scene_, feed_.subscriber(), options.holds_tool),
+          remarks_(controls_, scene_),
           painter_(window_.gl()),
           notices_(scene_) {
         spdlog::info("window, {}", window_.gl().describe());
@@ -137,6 +139,7 @@ class WindowViewer {
         Wishes wishes;
         if (!is_minimised) prepare(width, height);
         takeInput(height, session, wishes);
+        if (const auto notice = remarks_.update(session, wishes)) notices_.show(*notice);
         if (!is_minimised) panel_.layOut(controls_, session, wishes);
         carryOut(wishes);
         if (const auto notice = hand_.update(session, wishes.hold_tool, Clock::now())) notices_.show(*notice);
@@ -149,7 +152,7 @@ class WindowViewer {
         scene_.setWatchers(watchers(session));
         scene_.setMouse(mouseOverScene(width, height));
         scene_.setFrameRate(frame_rate_.perSecond());
-        scene_.setModes(modeTexts(scene_.settings()));
+        scene_.setModes(modeTexts(scene_.settings(), controls_.isDrawing()));
         scene_.setTitle(session.lesson ? sceneTitle(*session.lesson, session.lesson->scene_id()) : "");
         scene_.draw(width, height, scaleOfText(width, height));
         painter_.paint(panel_, width, height);
@@ -189,6 +192,7 @@ class WindowViewer {
         session.lesson = lessonOf(subscriber);
         session.others = subscriber.viewers();
         session.faults = scene_.faults();
+        session.remarks = &subscriber.remarks();
         session.offered = offered_;
         session.time_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
         session.realtime_ns =
@@ -297,6 +301,7 @@ class WindowViewer {
     SceneFeed feed_;
     ViewerControls controls_;
     HandFeed hand_;
+    RemarkFeed remarks_;
     Panel panel_;
     PanelPainter painter_;
     Notices notices_;

@@ -75,6 +75,7 @@ struct ViewSettings {
     std::array<StructureMode, kMostStructures> structures{};
     bool show_clearance = true;   // the line from the burr to the nearest structure
     bool show_thickness = false;  // bone has the colour of its distance to the next structure
+    bool show_remarks = true;     // notes and strokes of people
     bool show_hud = true;
     bool show_details = false;  // with the figures that matter to the task, all others
     bool show_watchers = false;

@@ -29,6 +29,11 @@ std::string doneText(const topics::Command& command, const topics::Lesson* lesso
         case topics::Command::kStopAttempt:
             return (lesson && !lesson->trainee().empty() ? lesson->trainee() + "'s" : "The") +
                    std::string(" attempt has ended");
+        case topics::Command::kAddRemark:
+            return command.add_remark().note().empty() ? "Everyone sees the stroke"
+                                                       : "Everyone sees the note";
+        case topics::Command::kEraseRemark:
+            return command.erase_remark() == 0 ? "All notes and strokes are erased" : "It is erased";
         default:
             return "It is done";
     }

@@ -20,7 +20,8 @@ const HudRow kMouse[] = {{"Left drag", "orbit"},
                          {"Right drag", "pan, as Shift+left drag"},
                          {"Wheel", "zoom"},
                          {"Double click", "orbit around that point"},
-                         {"Ctrl+left drag", "point (instructor)"}};
+                         {"Ctrl+left drag", "point (instructor)"},
+                         {"Ctrl+Shift+left drag", "draw on the bone"}};
 
 // This is what PaneMouse makes of it.
 const HudRow kMouseOverSlices[] = {{"Wheel", "scroll"},
@@ -85,11 +86,12 @@ std::vector<HudRow> startRows() {
             {keyLabelOf(Action::kDetails), "all figures"}};
 }
 
-std::vector<std::string> modeTexts(const ViewSettings& settings) {
+std::vector<std::string> modeTexts(const ViewSettings& settings, bool is_drawing) {
     std::vector<std::string> modes;
     const auto add = [&](const std::string& text, Action action, const char* leave) {
         modes.push_back(text + " (" + keyLabelOf(action) + ": " + leave + ")");
     };
+    if (is_drawing) add("Drawing", Action::kDraw, "off");
     if (settings.camera == CameraMode::kEndoscope) add("Endoscope", Action::kEndoscope, "back");
     if (settings.camera == CameraMode::kMicroscope) add("Microscope", Action::kMicroscope, "back");
     for (const auto& [axis, action] :

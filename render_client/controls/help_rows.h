@@ -18,9 +18,9 @@ std::vector<HelpGroup> helpGroups(HelpFor whom, bool has_lesson = false);
 // Returns where help and panel are, for a hint over the first pictures.
 std::vector<HudRow> startRows();
 
-// Returns how the bone is looked at, where that is not the usual way, each with the key that leaves it: "Cut
-// Y on (Y: off)".
-std::vector<std::string> modeTexts(const ViewSettings& settings);
+// Returns how the bone is looked at, and that the mouse draws, where that is not the usual way, each with the
+// key that leaves it: "Cut Y on (Y: off)".
+std::vector<std::string> modeTexts(const ViewSettings& settings, bool is_drawing = false);
 
 // Returns in short what mouse and keys do to the tool that they hold, for a hint over the picture.
 std::vector<HudRow> hintRows();

@@ -43,7 +43,10 @@ constexpr KeyBinding kKeys[] = {
     {"M", keyOf('M'), false, Action::kPanel, "control panel"},
     {"Tab", Key::kTab, false, Action::kHud, "figures"},
     {"Shift+Tab", Key::kTab, true, Action::kDetails, "all figures"},
+    {"Shift+R", keyOf('R'), true, Action::kRemarks, "notes and strokes"},
     {"L", keyOf('L'), false, Action::kPoint, "point while held (instructor)"},
+    {"Shift+L", keyOf('L'), true, Action::kDraw, "draw on the bone with left drag"},
+    {"Shift+M", keyOf('M'), true, Action::kNote, "write a note at the mouse"},
     {"Left", Key::kLeft, false, Action::kOrbitLeft, "orbit", true},
     {"Right", Key::kRight, false, Action::kOrbitRight, "orbit", true},
     {"Up", Key::kUp, false, Action::kOrbitUp, "orbit", true},
@@ -76,10 +79,10 @@ KeyGroup groupOf(Action action) {
     const auto lies = [action](Action first, Action last) { return action >= first && action <= last; };
     if (lies(Action::kCutX, Action::kSlices)) return KeyGroup::kCuts;
     if (lies(Action::kPauseMilling, Action::kAccuracy4) || action == Action::kResetBone ||
-        action == Action::kPoint)
+        lies(Action::kPoint, Action::kNote))
         return KeyGroup::kSession;
     if (lies(Action::kHoldTool, Action::kToolNearer)) return KeyGroup::kTool;
-    if (lies(Action::kWatchers, Action::kDetails) || lies(Action::kLargerText, Action::kQuit))
+    if (lies(Action::kWatchers, Action::kRemarks) || lies(Action::kLargerText, Action::kQuit))
         return KeyGroup::kScreen;
     return KeyGroup::kView;
 }

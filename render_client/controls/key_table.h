@@ -49,7 +49,10 @@ enum class Action {
     kPanel,
     kHud,
     kDetails,
+    kRemarks,
     kPoint,  // while the key is held
+    kDraw,
+    kNote,
     kOrbitLeft,
     kOrbitRight,
     kOrbitUp,

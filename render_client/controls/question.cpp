@@ -52,6 +52,8 @@ std::optional<Question> beforeCommand(const topics::Command& command, const Sess
             "End " + attemptText(session) + "? " + command.start_attempt() + " begins on whole bone.",
             "Begin anew"};
     }
+    if (command.has_erase_remark() && command.erase_remark() == 0)
+        return Question{"Erase all notes and strokes, for everybody?", "Erase"};
     if (command.reset_volume() || command.has_restore_checkpoint()) return beforeOtherBone(command, session);
     return std::nullopt;
 }

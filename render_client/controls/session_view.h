@@ -4,6 +4,7 @@
 // has come yet.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,9 @@ struct SessionView {
     const topics::Status* status = nullptr;
     const topics::Lesson* lesson = nullptr;
     std::vector<topics::Viewer> others = {};
-    std::vector<OfferedSession> offered = {};  // to choose from; empty: nothing to choose
-    std::vector<FaultEntry> faults = {};       // of the session, the first one first
+    std::vector<OfferedSession> offered = {};                     // to choose from; empty: nothing to choose
+    const std::map<uint32_t, topics::Remark>* remarks = nullptr;  // by place
+    std::vector<FaultEntry> faults = {};                          // of the session, the first one first
 };
 
 // Returns why this viewer may not do it, a sentence for the user; empty when it may.

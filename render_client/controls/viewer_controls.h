@@ -15,6 +15,7 @@
 #include "render_client/controls/pane_mouse.h"
 #include "render_client/controls/question.h"
 #include "render_client/controls/session_view.h"
+#include "render_client/controls/stroke_pen.h"
 #include "render_client/controls/tool_hold.h"
 #include "render_client/hud/hud.h"
 
@@ -28,11 +29,14 @@ struct Wishes {
     std::optional<PixelPoint> centre_at;  // orbit around the surface there from now on
     std::optional<HudNotice> notice;      // why something was not done
     bool save_picture = false;
-    bool save_attempts = false;       // of the lesson, as CSV
-    bool type_trainee = false;        // in the panel
-    bool next_trainee = false;        // in the panel: another name
-    std::string asked;                // a question was put to the user, for the log
-    std::optional<uint32_t> session;  // to be joined, of those that are offered
+    bool save_attempts = false;                 // of the lesson, as CSV
+    bool type_trainee = false;                  // in the panel
+    bool next_trainee = false;                  // in the panel: another name
+    bool write_note = false;                    // in the panel
+    std::optional<PixelPoint> note_at;          // it belongs to the bone there
+    std::optional<Eigen::Vector3d> note_place;  // which is this place (W): the owner's to say
+    std::string asked;                          // a question was put to the user, for the log
+    std::optional<uint32_t> session;            // to be joined, of those that are offered
     bool quit = false;
 };
 
@@ -91,6 +95,10 @@ class ViewerControls {
     // The owner tells it which panes the user sees.
     PaneMouse& paneMouse() { return pane_mouse_; }
     const ToolHold& toolHold() const { return hold_; }
+    // The owner tells it what is under the mouse, and gives its orders.
+    StrokePen& pen() { return pen_; }
+    // Left drags draw on the bone.
+    bool isDrawing() const { return is_drawing_; }
     bool isPanelOpen() const { return is_panel_open_; }
     // Returns where the user points with the laser now.
     std::optional<PixelPoint> pointing() const;
@@ -98,7 +106,7 @@ class ViewerControls {
     std::optional<PixelPoint> hovering() const;
 
   private:
-    enum class Drag { kNone, kOrbit, kPan, kPoint };
+    enum class Drag { kNone, kOrbit, kPan, kPoint, kDraw };
 
     void onKey(const KeyEvent& event, const SessionView& session, Wishes& wishes);
     void onButton(const MouseButtonEvent& event, const SessionView& session, Wishes& wishes);
@@ -114,6 +122,9 @@ class ViewerControls {
     void flipCut(size_t axis);
     void moveCut(double by);
     bool mayPoint(const SessionView& session, Wishes& wishes) const;
+    bool mayDraw(const SessionView& session, Wishes& wishes) const;
+    void switchDrawing(const SessionView& session, Wishes& wishes);
+    void writeNote(const SessionView& session, Wishes& wishes);
     std::string whyNoPlace() const;
     void switchHold(const SessionView& session, Wishes& wishes);
 
@@ -122,6 +133,8 @@ class ViewerControls {
     size_t last_cut_ = 0;  // axis of the cut-plane that was switched or moved last
     bool is_panel_open_ = false;
     bool is_point_key_down_ = false;
+    bool is_drawing_ = false;
+    StrokePen pen_;
     Drag drag_ = Drag::kNone;
     MouseButton drag_button_ = MouseButton::kLeft;
     PixelPoint mouse_;

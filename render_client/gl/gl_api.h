@@ -40,6 +40,7 @@
     X(PFNGLDEPTHMASKPROC, DepthMask)                                           \
     X(PFNGLDISABLEPROC, Disable)                                               \
     X(PFNGLDRAWARRAYSPROC, DrawArrays)                                         \
+    X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)                       \
     X(PFNGLDRAWBUFFERPROC, DrawBuffer)                                         \
     X(PFNGLDRAWELEMENTSPROC, DrawElements)                                     \
     X(PFNGLENABLEPROC, Enable)                                                 \
@@ -83,6 +84,7 @@
     X(PFNGLUNIFORMMATRIX3FVPROC, UniformMatrix3fv)                             \
     X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)                             \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                                         \
+    X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor)                       \
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                       \
     X(PFNGLVIEWPORTPROC, Viewport)
 

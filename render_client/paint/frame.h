@@ -49,6 +49,12 @@ struct ClearanceLine {
     double distance;  // m
 };
 
+// It was drawn on the bone, or is a dot, which has one point.
+struct Stroke {
+    std::vector<Eigen::Vector3f> points_W;
+    Eigen::Vector3f colour = Eigen::Vector3f::Zero();  // linear
+};
+
 struct FrameView {
     Camera camera;
     LightRig light = LightRig::kRoom;
@@ -71,6 +77,8 @@ struct FrameView {
     std::optional<ClearanceLine> clearance;
     bool shows_thickness = false;
     std::vector<Eigen::Vector3d> pointers_W;
+    bool shows_strokes = true;    // those of the renderer
+    std::optional<Stroke> drawn;  // being drawn now
     Quality quality = Quality::kFull;
     const EffectPicture* effects = nullptr;  // null: the scene lists none
 };

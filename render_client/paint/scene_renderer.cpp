@@ -19,7 +19,9 @@ SceneRenderer::SceneRenderer(const GlApi& gl)
       markers_(gl),
       passes_(gl),
       shadow_(gl, "shadow", shaders::kShadowVertex, shaders::kDepthFragment),
-      structures_(gl) {}
+      structures_(gl),
+      strokes_(gl),
+      drawn_(gl) {}
 
 void SceneRenderer::setPalette(const std::vector<Eigen::Vector4f>& colours) {
     bone_.setPalette(colours);
@@ -71,6 +73,12 @@ void SceneRenderer::setThickness(const ThicknessField& field) {
 void SceneRenderer::chooseSurface(const FrameView& view) {
     bone_.setThickness(view.shows_thickness ? thickness_.get() : nullptr);
     if (std::exchange(shows_thickness_, view.shows_thickness) != view.shows_thickness) changes_.forget();
+    if (std::exchange(shows_strokes_, view.shows_strokes) != view.shows_strokes) changes_.forget();
+    drawn_.set(view.drawn ? std::vector<Stroke>{*view.drawn} : std::vector<Stroke>{});
+}
+
+void SceneRenderer::drawStrokes(const Frame& frame, const FrameView& view) const {
+    if (view.shows_strokes) strokes_.draw(frame, view);
 }
 
 void SceneRenderer::drawFull(const Frame& frame, const FrameView& view, const NodeStore& nodes,
@@ -91,6 +99,7 @@ void SceneRenderer::drawFull(const Frame& frame, const FrameView& view, const No
 void SceneRenderer::drawOver(const Frame& frame, const FrameView& view, const ToolMesh& tool) {
     drawParticles(frame, view);
     tool_.drawGhost(frame, tool);
+    drawn_.draw(frame, view);
     markers_.draw(frame, view);
 }
 
@@ -173,6 +182,7 @@ void SceneRenderer::drawKeptBone(Frame frame, const FrameView& view, const NodeS
     frame.cull_from_V = part.zoom(targets_->width(), targets_->height()) * frame.cull_from_V;
     bone_.drawOpaque(frame, nodes, targets_->shadowTexture());
     structures_.draw(frame, view.structures, targets_->shadowTexture());
+    drawStrokes(frame, view);
 }
 
 PixelBox SceneRenderer::shadowPixels(const Frame& frame) const {
@@ -185,6 +195,9 @@ PixelBox SceneRenderer::movingPixels(const Frame& frame, const FrameView& view, 
         return PixelBox::around(box, frame.clip_from_camera * X_CB, targets_->width(), targets_->height());
     };
     PixelBox moving = pixels(markers_.box(frame, view), Eigen::Matrix4f::Identity());
+    if (view.drawn)
+        moving =
+            moving.joined(pixels(StrokePainter::box(*view.drawn, frame, view), Eigen::Matrix4f::Identity()));
     if (particles_ && !view.effects->particles.empty())
         moving =
             moving.joined(pixels(ParticlePainter::box(frame, view.effects->particles, targets_->height()),
@@ -215,6 +228,8 @@ std::vector<float> SceneRenderer::stillLike(const Frame& frame, const FrameView&
     if (view.gap) append(view.gap->surface_W);
     if (view.gap) numbers.push_back(float(view.gap->distance));
     for (const Eigen::Vector3d& pointer : view.pointers_W) append(pointer);
+    if (view.drawn)
+        for (const Eigen::Vector3f& point : view.drawn->points_W) append(point);
     if (view.clearance) append(view.clearance->burr_W);
     if (view.clearance) append(view.clearance->structure_W);
     return numbers;
@@ -274,13 +289,16 @@ void SceneRenderer::drawShadowMap(const Frame& frame, const FrameView& view, con
 void SceneRenderer::drawSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes,
                                const ToolMesh& tool) {
     const auto draw_tool = [&] { tool_.drawTool(frame, view, tool, targets_->shadowTexture()); };
-    if (view.bone_opacity)
-        return bone_.drawTransparent(frame, nodes, targets_->shadowTexture(), *view.bone_opacity, [&] {
+    if (view.bone_opacity) {
+        bone_.drawTransparent(frame, nodes, targets_->shadowTexture(), *view.bone_opacity, [&] {
             structures_.drawSolid(frame, view.structures, targets_->shadowTexture());
             draw_tool();
         });
+        return drawStrokes(frame, view);
+    }
     bone_.drawOpaque(frame, nodes, targets_->shadowTexture());
     structures_.draw(frame, view.structures, targets_->shadowTexture());
+    drawStrokes(frame, view);
     draw_tool();
 }
 

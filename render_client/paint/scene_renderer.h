@@ -18,6 +18,7 @@
 #include "render_client/paint/particle_painter.h"
 #include "render_client/paint/picture_changes.h"
 #include "render_client/paint/render_targets.h"
+#include "render_client/paint/stroke_painter.h"
 #include "render_client/paint/structure_painter.h"
 #include "render_client/paint/tool_painter.h"
 
@@ -48,6 +49,11 @@ class SceneRenderer {
     // Replaces the surface of the protected structure that the mesh's leaf names. Throws GlError.
     void setStructure(const NodeMesh& mesh) { structures_.set(mesh); }
     void clearStructures() { structures_.clear(); }
+    // Replaces what is drawn on the bone. Throws GlError.
+    void setStrokes(const std::vector<Stroke>& strokes) {
+        strokes_.set(strokes);
+        changes_.forget();
+    }
     // Views that show thickness take it from here. Throws GlError.
     void setThickness(const ThicknessField& field);
     // Makes what a scene's effects need to be drawn, and nothing else. Throws GlError.
@@ -90,6 +96,7 @@ class SceneRenderer {
     void showFinished(const PictureArea& area, GLuint target) const;
     PixelBox shadowPixels(const Frame& frame) const;
     PixelBox movingPixels(const Frame& frame, const FrameView& view, const ToolMesh& tool);
+    void drawStrokes(const Frame& frame, const FrameView& view) const;
     static std::vector<float> stillLike(const Frame& frame, const FrameView& view, const ToolMesh& tool);
     void scissor(const PixelBox& part) const;
     void drawShadowMap(const Frame& frame, const FrameView& view, const NodeStore& nodes,
@@ -106,6 +113,9 @@ class SceneRenderer {
     FramePasses passes_;
     Program shadow_;
     StructurePainter structures_;
+    StrokePainter strokes_;
+    StrokePainter drawn_;        // FrameView::drawn
+    bool shows_strokes_ = true;  // in the last picture
     std::unique_ptr<ThicknessPainter> thickness_;
     bool shows_thickness_ = false;  // in the last picture
     bool has_materials_ = false;

@@ -165,6 +165,8 @@ void Panel::layOut(ViewerControls& controls, const SessionView& session, Wishes&
     controls.dropIdleQuestion(session);
     if (session.lesson) pictures_.follow(*session.lesson);
     if (wishes.next_trainee) lesson_.trainee.fill(0);
+    if (wishes.write_note) remark_.wants_keyboard = true;
+    if (wishes.write_note) remark_.place = wishes.note_place;
     if (wishes.type_trainee || wishes.next_trainee) lesson_.wants_keyboard = true;
     const bool is_open = controls.isPanelOpen();
     const bool was_drawn = std::exchange(is_drawn_, isWanted(controls, session));
@@ -181,11 +183,12 @@ void Panel::frame(double seconds, ViewerControls& controls, const SessionView& s
     ImGui::GetIO().DeltaTime = float(std::max(seconds, kShortestFrame));
     ImGui::NewFrame();
     places_.clear();
-    if (std::exchange(lesson_.leaves_keyboard, false)) ImGui::SetWindowFocus(nullptr);
+    if (std::exchange(lesson_.leaves_keyboard, false) || std::exchange(remark_.leaves_keyboard, false))
+        ImGui::SetWindowFocus(nullptr);
     const bool is_bare = isHelpInFront(controls);
     if (controls.isPanelOpen() && !is_bare)
-        PanelContent(controls, session, wishes, places_, is_ending_, lesson_, pictures_.all(), scale_,
-                     view_width_)
+        PanelContent(controls, session, wishes, places_, is_ending_, lesson_, remark_, pictures_.all(),
+                     scale_, view_width_)
             .build();
     if (lesson_.isOnScreen(session) && !is_bare)
         LessonCards(controls, session, wishes, lesson_, places_, scale_, view_width_).build();

@@ -13,6 +13,7 @@
 
 #include "render_client/controls/viewer_controls.h"
 #include "render_client/panel/lesson_draft.h"
+#include "render_client/panel/remark_draft.h"
 #include "render_client/panel/scene_pictures.h"
 
 struct ImDrawData;
@@ -75,6 +76,7 @@ class Panel {
     bool is_drawn_ = false;   // the panel, or something else
     bool is_ending_ = false;  // the session's end was asked for and waits to be confirmed
     LessonDraft lesson_;
+    RemarkDraft remark_;
     ScenePictures pictures_;
 };
 

@@ -55,6 +55,8 @@ void PanelContent::build() {
         if (isOpen("Faults")) buildFaults();
     }
     gap();
+    if (isOpen("Notes and strokes")) buildRemarks();
+    gap();
     if (isOpen("Who is watching")) buildWatchers();
     ImGui::End();
 }

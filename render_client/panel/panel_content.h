@@ -10,6 +10,7 @@
 #include "render_client/controls/viewer_controls.h"
 #include "render_client/hud/hud_colours.h"
 #include "render_client/panel/lesson_draft.h"
+#include "render_client/panel/remark_draft.h"
 #include "render_client/panel/scene_pictures.h"
 
 namespace bonemill {
@@ -23,7 +24,8 @@ class PanelContent {
     // end of the session waits to be confirmed.
     PanelContent(ViewerControls& controls, const SessionView& session, Wishes& wishes,
                  std::map<std::string, PixelPoint>& places, bool& is_ending, LessonDraft& draft,
-                 const std::map<std::string, ScenePicture>& pictures, float scale, float view_width)
+                 RemarkDraft& remark_draft, const std::map<std::string, ScenePicture>& pictures, float scale,
+                 float view_width)
         : controls_(controls),
           settings_(controls.settings()),
           session_(session),
@@ -31,6 +33,7 @@ class PanelContent {
           places_(places),
           is_ending_(is_ending),
           draft_(draft),
+          remark_draft_(remark_draft),
           pictures_(pictures),
           scale_(scale),
           view_width_(view_width) {}
@@ -73,6 +76,11 @@ class PanelContent {
     void buildTraining();
     void buildFaults();
     void buildWatchers();
+    // These are about what people write and draw (panel_remarks.cpp).
+    void buildRemarks();
+    void buildNote();
+    void sendNote();
+    void buildRemark(const topics::Remark& remark);
 
     // Each control has a label, and says what it does in words while the mouse rests on it.
     bool button(const std::string& label, const char* what);
@@ -99,6 +107,7 @@ class PanelContent {
     std::map<std::string, PixelPoint>& places_;
     bool& is_ending_;
     LessonDraft& draft_;
+    RemarkDraft& remark_draft_;
     const std::map<std::string, ScenePicture>& pictures_;
     float scale_;
     float view_width_;  // pixels

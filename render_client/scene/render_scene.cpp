@@ -37,11 +37,6 @@ ViewWish wishOf(const topics::Camera& camera) {
     return wish;
 }
 
-std::optional<Eigen::Vector3d> pointerOf(const topics::Viewer& watcher) {
-    if (watcher.role() != topics::Viewer::INSTRUCTOR) return std::nullopt;
-    return readVector(watcher.pointer_m());
-}
-
 }  // namespace
 
 RenderScene::RenderScene(const GlApi& gl, bool has_effects)
@@ -102,6 +97,11 @@ void RenderScene::setStructure(const NodeMesh& mesh, double warning_distance) {
     renderer_.setStructure(mesh);
     structures_.set(mesh, warning_distance);
     is_thickness_ready_ = false;
+}
+
+void RenderScene::setRemarks(const std::map<uint32_t, topics::Remark>& remarks) {
+    remarks_.set(remarks);
+    renderer_.setStrokes(remarks_.strokes());
 }
 
 void RenderScene::clearStructures() {
@@ -220,9 +220,11 @@ FrameView RenderScene::makeView() const {
     if (settings_.is_transparent) view.bone_opacity = std::clamp(settings_.opacity, 0.0, 1.0);
     if (hud_input_.info) view.burr_radius = hud_input_.info->burr_radius_m();
     for (const topics::Viewer& watcher : hud_input_.watchers)
-        if (const auto pointer = pointerOf(watcher)) view.pointers_W.push_back(*pointer);
+        if (const auto pointer = pointerPlace(watcher)) view.pointers_W.push_back(*pointer);
     if (settings_.camera == CameraMode::kMicroscope) lookThroughMicroscope(view);
     if (hud_input_.tool) showTool(view);
+    view.shows_strokes = settings_.show_remarks;
+    if (!drawn_.points_W.empty()) view.drawn = drawn_;
     structures_.show(settings_, view);
     return view;
 }
@@ -314,23 +316,6 @@ void RenderScene::prepareThickness(const FrameView& view) {
     renderer_.setThickness(thicknessField(structures, structures.largestWarningDistance()));
 }
 
-std::string RenderScene::structureAt(int x, int y) const {
-    const auto size = renderer_.pictureSize();
-    if (!can_pick_ || last_view_.structures.empty() || x < 0 || y < 0 || x >= size.x() || y >= size.y())
-        return "";
-    const Camera& camera = last_view_.camera;
-    const auto bone_W = renderer_.pick(x, y);
-    const double bone_at = bone_W ? (*bone_W - camera.eye_W).norm() : std::numeric_limits<double>::max();
-    return structures_.nameAlong(camera.eye_W, camera.rayThrough(x, y, size.x(), size.y()), bone_at,
-                                 last_view_);
-}
-
-void RenderScene::nameMouse(const PictureArea& area, std::vector<HudLabel>& labels) const {
-    if (!mouse_ || !can_pick_ || area.x != 0) return;
-    const std::string name = structureAt(mouse_->first, mouse_->second);
-    if (!name.empty()) labels.push_back({float(mouse_->first), float(mouse_->second), name});
-}
-
 // Names stand in each eye's picture, so that they have the depth of what they name.
 void RenderScene::drawEye(FrameView view, const Camera& camera, const PictureArea& area, float ui_scale,
                           GLuint target) {
@@ -363,33 +348,6 @@ void RenderScene::paintHud(const Camera& camera, const PictureArea& area, float 
     Hud hud = makeHud(hud_input_);
     if (hasSceneInfo()) hud.orientation = orientationOf(camera);
     hud_painter_.paint(hud, bar, metres_per_pixel, {area.width, area.height}, ui_scale);
-}
-
-void RenderScene::paintNames(const FrameView& view, const PictureArea& area, float ui_scale) {
-    std::vector<HudLabel> labels;
-    const auto add = [&](const Eigen::Vector3d& p_W, const std::string& text, bool is_of_pointer) {
-        const Eigen::Vector3d p_C = view.camera.R_WC.transpose() * (p_W - view.camera.eye_W);
-        if (p_C.z() >= 0 || text.empty()) return;
-        const double pixels = area.height / (2 * view.camera.halfTangent() * -p_C.z());
-        const double right = area.width / 2.0 + (p_C.x() + view.camera.shift * p_C.z()) * pixels;
-        labels.push_back({float(right), float(area.height / 2.0 - p_C.y() * pixels), text, is_of_pointer});
-    };
-    for (const topics::Viewer& watcher : hud_input_.watchers) {
-        const auto pointer = pointerOf(watcher);
-        if (!pointer) continue;
-        const Eigen::Vector3d way = *pointer - view.camera.eye_W;
-        const std::string structure = structures_.nameAlong(view.camera.eye_W, way, way.norm(), view);
-        add(*pointer, watcher.name() + (watcher.name().empty() || structure.empty() ? "" : ": ") + structure,
-            true);
-    }
-    if (view.clearance && settings_.show_hud)
-        add((view.clearance->burr_W + view.clearance->structure_W) / 2,
-            readableText(std::max(view.clearance->distance, 0.0) * kPerMillimetre, " mm"), false);
-    if (view.gap && settings_.show_hud)
-        add(view.gap->surface_W + gapRingRadius(view) * view.camera.R_WC.col(0),
-            readableText(view.gap->distance * kPerMillimetre, " mm to the bone"), false);
-    nameMouse(area, labels);
-    if (!labels.empty()) hud_painter_.paintLabels(labels, {area.width, area.height}, ui_scale);
 }
 
 }  // namespace bonemill

@@ -25,9 +25,13 @@
 #include "render_client/paint/hud_painter.h"
 #include "render_client/paint/scene_renderer.h"
 #include "render_client/scene/ct_show.h"
+#include "render_client/scene/remark_view.h"
 #include "render_client/scene/structure_view.h"
 
 namespace bonemill {
+
+// Returns where an instructor points (W); nothing for others.
+std::optional<Eigen::Vector3d> pointerPlace(const topics::Viewer& watcher);
 
 class RenderScene {
   public:
@@ -44,6 +48,11 @@ class RenderScene {
     // std::invalid_argument on a mesh that contradicts itself.
     void setStructure(const NodeMesh& mesh, double warning_distance);
     void clearStructures();
+
+    // Takes what people wrote and drew, by place.
+    void setRemarks(const std::map<uint32_t, topics::Remark>& remarks);
+    // Takes the stroke that the user is drawing; without points there is none.
+    void setDrawn(Stroke stroke) { drawn_ = std::move(stroke); }
 
     // The first scene, and every scene of another name, resets the view; a newer revision of the same one
     // brings another tool. An older revision of the same epoch changes nothing. Throws std::invalid_argument
@@ -190,6 +199,8 @@ class RenderScene {
     EventLatch events_;
     FaultBook faults_;
     StructureView structures_;
+    RemarkView remarks_;
+    Stroke drawn_;  // now
     bool is_thickness_ready_ = false;
     std::optional<std::pair<int, int>> mouse_;
     FrameView last_view_;  // of the last picture without stereo

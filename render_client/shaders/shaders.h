@@ -40,6 +40,10 @@ extern const char kParticleFragment[];
 extern const char kMarkerVertex[];
 extern const char kMarkerFragment[];
 
+// Lines on the bone.
+extern const char kStrokeVertex[];
+extern const char kStrokeFragment[];
+
 // A pane with a slice through the scan.
 extern const char kSliceFragment[];
 

@@ -334,7 +334,7 @@ TEST_F(Window, AViewerOnlyLooks) {
     EXPECT_TRUE(session_.commands().empty());
 }
 
-TEST_F(Window, ViewersSeeEachOtherAndTheInstructorsPointer) {
+TEST_F(Window, ViewersSeeEachOtherAndTheInstructorPointsAndDraws) {
     WindowedViewer& pupil = start("pupil", "viewer");
     WindowedViewer& teacher = start("teacher", "instructor");
     waitForLog(pupil, "teacher (instructor) is watching");
@@ -361,6 +361,16 @@ TEST_F(Window, ViewersSeeEachOtherAndTheInstructorsPointer) {
     expectOnTheBody("Ctrl and left drag");
     display_.type({"mouseup", "1", "keyup", "ctrl"});
     waitFor("no pointer", [&] { return !pointer(); });
+
+    display_.type({"keydown", "ctrl", "keydown", "shift", "mousemove", "230", "150", "mousedown", "1",
+                   "mousemove", "260", "160", "mouseup", "1", "keyup", "shift", "keyup", "ctrl"});
+    const topics::Remark stroke = waitForCommand(1).add_remark();
+    EXPECT_EQ(stroke.color(), colourOfAuthor("teacher"));
+    ASSERT_GE(stroke.points_m_size(), 6);
+    for (int n = 0; n < stroke.points_m_size(); n += 3) {
+        const Eigen::Vector3d p_W(stroke.points_m(n), stroke.points_m(n + 1), stroke.points_m(n + 2));
+        EXPECT_LT((p_W - test::kBlockCenter).norm(), 1.02 * test::kBlockRadius);
+    }
 
     teacher.process().signal(SIGTERM);
     waitForLog(pupil, "teacher is no longer watching");
