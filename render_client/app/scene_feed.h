@@ -5,10 +5,10 @@
 #include <chrono>
 #include <utility>
 
-#include "render_client/subscribe/cut_to_screen.h"
 #include "render_client/app/sound_feed.h"
 #include "render_client/controls/announce_clock.h"
 #include "render_client/scene/node_intake.h"
+#include "render_client/subscribe/cut_to_screen.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
 namespace bonemill {
