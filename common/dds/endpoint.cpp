@@ -115,7 +115,11 @@ int AnyReader::matchedWriters() const {
 }
 
 bool AnyReader::isMatched(uint64_t writer) const {
-    return participantOf(writer) != 0;
+    std::array<dds_instance_handle_t, kBatch> writers;
+    const int32_t count = dds_get_matched_publications(reader_.handle(), writers.data(), writers.size());
+    if (count > int32_t(writers.size())) return participantOf(writer) != 0;  // too many to look through
+    return std::find(writers.begin(), writers.begin() + std::max(count, 0), writer) !=
+           writers.begin() + std::max(count, 0);
 }
 
 uint64_t AnyReader::participantOf(uint64_t writer) const {

@@ -235,20 +235,26 @@ bool Publisher::removeRemark(uint32_t place) {
 std::vector<topics::Command> Publisher::takeCommands() {
     std::vector<topics::Command> commands;
     const uint64_t malformed_before = inbox_.malformedCount();
-    command_reader_.take(kMaxCommandsPerCall, [&](const dds::CommandSample& sample,
-                                                  const dds::SampleInfo& info) {
-        if (!info.has_data || sample.session != session_) return;
-        const std::optional<GuidPrefix> participant =
-            proven_senders_ ? command_reader_.ownerOf(info.writer) : std::nullopt;
-        if (!mayBeTaken(participant, sample, info.writer)) return;
-        CommandInbox::Decision decision = inbox_.receive(
-            sample.sender, {command_reader_.participantOf(info.writer), info.writer}, dds::payloadOf(sample));
-        if (decision.is_foreign) tellOfForeign(sample, info.writer);
-        if (decision.acknowledgement) show(*decision.acknowledgement);
-        if (!decision.command) return;
-        if (participant) proven_senders_->identify(*decision.command, *participant);
-        commands.push_back(std::move(*decision.command));
-    });
+    std::unordered_map<uint64_t, uint64_t> participants;  // by writer: a flood comes of few
+    const auto originOf = [&](uint64_t writer) {
+        const auto [known, is_new] = participants.try_emplace(writer);
+        if (is_new) known->second = command_reader_.participantOf(writer);
+        return CommandOrigin{known->second, writer};
+    };
+    command_reader_.take(kMaxCommandsPerCall,
+                         [&](const dds::CommandSample& sample, const dds::SampleInfo& info) {
+                             if (!info.has_data || sample.session != session_) return;
+                             const std::optional<GuidPrefix> participant =
+                                 proven_senders_ ? command_reader_.ownerOf(info.writer) : std::nullopt;
+                             if (!mayBeTaken(participant, sample, info.writer)) return;
+                             CommandInbox::Decision decision =
+                                 inbox_.receive(sample.sender, originOf(info.writer), dds::payloadOf(sample));
+                             if (decision.is_foreign) tellOfForeign(sample, info.writer);
+                             if (decision.acknowledgement) show(*decision.acknowledgement);
+                             if (!decision.command) return;
+                             if (participant) proven_senders_->identify(*decision.command, *participant);
+                             commands.push_back(std::move(*decision.command));
+                         });
     if (malformed_before == 0 && inbox_.malformedCount() > 0) {
         spdlog::warn("dropped a malformed command; more of them are only counted");
     }
