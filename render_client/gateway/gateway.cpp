@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/units.h"
+#include "common/user_error.h"
 
 namespace bonemill::gateway {
 namespace {
@@ -36,11 +37,40 @@ const char* wordOf(topics::Viewer::Role role) {
 
 Gateway::Gateway(const GatewayOptions& options)
     : most_guests_(options.most_guests),
-      participant_(options.domain),
-      mirror_(participant_, options.session),
-      voice_(participant_, options.session),
+      domain_(options.domain),
+      mirror_(options.session),
+      voice_(options.session),
       list_(options.guests.empty() ? configFolder() / "guests.textproto" : options.guests),
-      hall_{mirror_.state(), list_, voice_, options.guest_mbit_per_s * kMega / kBitsPerByte} {}
+      hall_{mirror_.state(), list_, voice_, options.guest_mbit_per_s * kMega / kBitsPerByte},
+      deaf_watch_(options.rejoin_after) {
+    join();
+}
+
+void Gateway::join() {
+    participant_.emplace(domain_);
+    mirror_.join(*participant_);
+    voice_.join(*participant_);
+}
+
+// Guests keep their places and what they are shown; the session sees them as if they had just come.
+void Gateway::rejoinIfDeaf(Clock::time_point now) {
+    const auto slept = deaf_watch_.pass(now);
+    if (mirror_.lastHeard() != heard_) deaf_watch_.hear(now);
+    mirror_.forgive(slept);
+    heard_ = mirror_.lastHeard();
+    if (!deaf_watch_.isDue(now)) return;
+    ++rejoinings_;
+    mirror_.leave();
+    voice_.leave();
+    participant_.reset();  // before the new one, or Cyclone would go on with what it has of this domain
+    try {
+        join();
+    } catch (const UserError& error) {
+        mirror_.leave();
+        voice_.leave();
+        spdlog::warn("the session cannot be joined anew: {}", error.what());
+    }
+}
 
 Guest* Gateway::come(const GuestOrigin& origin, Clock::time_point now) {
     Crowd unknown(origin);
@@ -106,6 +136,7 @@ void Gateway::step(Clock::time_point now) {
                 "Another server's session is shown from now on: reload the page, or start the viewer again.",
                 true);
     if (now - looked_ >= kLookEvery) lookAtList(now);
+    rejoinIfDeaf(now);
 }
 
 void Gateway::lookAtList(Clock::time_point now) {

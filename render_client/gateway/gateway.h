@@ -6,6 +6,7 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,7 @@
 #include "render_client/gateway/guest.h"
 #include "render_client/gateway/guest_origin.h"
 #include "render_client/gateway/session_mirror.h"
+#include "render_client/subscribe/deaf_watch.h"
 
 namespace bonemill::gateway {
 
@@ -38,19 +40,24 @@ class Gateway {
     size_t guestCount() const { return guests_.size(); }
     const SessionMirror& mirror() const { return mirror_; }
     const GuestList& list() const { return list_; }
+    // How often it has joined the domain anew, as nothing was heard there.
+    uint64_t rejoinings() const { return rejoinings_; }
 
   private:
     size_t admittedCount() const;
     void welcome(Guest& guest);
     void noteFailure(const GuestOrigin& origin, Clock::time_point now);
     void lookAtList(Clock::time_point now);
+    void join();
+    void rejoinIfDeaf(Clock::time_point now);
 
     struct Failures {
         int count = 0;
         Clock::time_point since;
     };
     const size_t most_guests_;
-    dds::Participant participant_;
+    const uint32_t domain_;
+    std::optional<dds::Participant> participant_;
     SessionMirror mirror_;
     GuestVoice voice_;
     GuestList list_;
@@ -59,6 +66,9 @@ class Gateway {
     std::map<GuestOrigin, Failures> failures_;
     Clock::time_point looked_;
     uint64_t epoch_ = 0;  // of the run that is shown
+    DeafWatch deaf_watch_;
+    std::optional<Clock::time_point> heard_;  // our server, the last time
+    uint64_t rejoinings_ = 0;
 };
 
 }  // namespace bonemill::gateway

@@ -1,12 +1,14 @@
 // What the gateway is to do (render_client --serve).
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include "render_client/relay/relay_options.h"
+#include "render_client/subscribe/deaf_watch.h"
 
 namespace bonemill::gateway {
 
@@ -24,6 +26,8 @@ struct GatewayOptions {
     double guest_mbit_per_s = 20;       // at most, to each guest
     uint32_t most_guests = 64;          // kMostGuestsOfGateway at most
     std::optional<RelayPlace> via;      // guests come through this relay, too
+    // After so much silence in DDS it joins anew (DeafWatch).
+    std::chrono::milliseconds rejoin_after = DeafWatch::kFirstSilence;
 };
 
 }  // namespace bonemill::gateway

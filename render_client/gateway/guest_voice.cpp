@@ -26,25 +26,25 @@ void GuestVoice::announce(const Speaker& speaker, topics::Viewer viewer) {
     viewer.set_link(speaker.link);
     if (speaker.role != topics::Viewer::INSTRUCTOR) viewer.clear_pointer_m();
     if (!mayHold(speaker.role)) viewer.clear_is_holding();
-    say(viewers_, session_, viewer);
+    if (mouth_) say(mouth_->viewers, session_, viewer);
 }
 
 void GuestVoice::command(const Speaker& speaker, topics::Command command) {
     command.set_sender(speaker.sender);
     command.set_role(speaker.role);
     command.set_name(speaker.name);
-    say(commands_, session_, command);
+    if (mouth_) say(mouth_->commands, session_, command);
 }
 
 void GuestVoice::hand(const Speaker& speaker, topics::HandPointer hand) {
     hand.set_sender(speaker.sender);
     hand.set_role(speaker.role);
-    say(hands_, session_, hand);
+    if (mouth_) say(mouth_->hands, session_, hand);
 }
 
 void GuestVoice::wish(const Speaker& speaker, topics::DensityWish wish) {
     wish.set_sender(speaker.sender);
-    say(wishes_, session_, wish);
+    if (mouth_) say(mouth_->wishes, session_, wish);
 }
 
 }  // namespace bonemill::gateway

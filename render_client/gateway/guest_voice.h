@@ -1,6 +1,7 @@
 // Says in the session, by DDS, what guests ask for, as the guest list knows them. For one thread.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/dds/endpoint.h"
@@ -21,13 +22,12 @@ bool mayHold(topics::Viewer::Role role);
 
 class GuestVoice {
   public:
-    // The participant must outlive the object. Throws UserError.
-    GuestVoice(const dds::Participant& participant, uint32_t session)
-        : session_(session),
-          viewers_(participant),
-          hands_(participant),
-          commands_(participant),
-          wishes_(participant) {}
+    // It has joined no domain yet, and nobody hears it.
+    explicit GuestVoice(uint32_t session) : session_(session) {}
+
+    // The participant must outlive the object, or leave() comes before. Throws UserError.
+    void join(const dds::Participant& participant) { mouth_.emplace(participant); }
+    void leave() { mouth_.reset(); }
 
     void announce(const Speaker& speaker, topics::Viewer viewer);
     // It must not come from a VIEWER.
@@ -36,11 +36,19 @@ class GuestVoice {
     void wish(const Speaker& speaker, topics::DensityWish wish);
 
   private:
+    // What it speaks to the domain by.
+    struct Mouth {
+        explicit Mouth(const dds::Participant& participant)
+            : viewers(participant), hands(participant), commands(participant), wishes(participant) {}
+
+        dds::Writer<dds::ViewerSample> viewers;
+        dds::Writer<dds::HandPointerSample> hands;
+        dds::Writer<dds::CommandSample> commands;
+        dds::Writer<dds::DensityWishSample> wishes;
+    };
+
     const uint32_t session_;
-    dds::Writer<dds::ViewerSample> viewers_;
-    dds::Writer<dds::HandPointerSample> hands_;
-    dds::Writer<dds::CommandSample> commands_;
-    dds::Writer<dds::DensityWishSample> wishes_;
+    std::optional<Mouth> mouth_;
 };
 
 }  // namespace bonemill::gateway

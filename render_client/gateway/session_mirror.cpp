@@ -23,13 +23,34 @@ std::string bytesOf(std::span<const uint8_t> payload) {
 
 }  // namespace
 
-SessionMirror::SessionMirror(const dds::Participant& participant, uint32_t session)
-    : participant_(participant),
-      session_(session),
-      viewer_reader_(participant),
-      servers_(std::make_unique<ServerReaders>(participant, viewer_reader_)) {}
+SessionMirror::Ears::Ears(const dds::Participant& p)
+    : participant(p), viewers(p), servers(std::make_unique<ServerReaders>(p, viewers)) {}
+
+void SessionMirror::Ears::readAnew() {
+    servers = std::make_unique<ServerReaders>(participant, viewers);
+}
+
+// Writers are others there than they were before.
+void SessionMirror::join(const dds::Participant& participant) {
+    ears_.emplace(participant);
+    server_numbers_.clear();
+    status_writer_ = 0;
+    choice_.forgetRefused();
+}
+
+void SessionMirror::leave() {
+    ears_.reset();
+    is_matched_ = false;
+}
 
 SessionChanges SessionMirror::poll() {
+    if (ears_) takeAll();
+    releaseNodes();
+    state_.has_server = is_matched_ && isHeard();
+    return std::exchange(changes_, {});
+}
+
+void SessionMirror::takeAll() {
     takeStatus();
     readAnewIfDue();
     takeSceneInfo();
@@ -42,9 +63,6 @@ SessionChanges SessionMirror::poll() {
     takeRemarks();
     takeBricks();
     noteEnd();
-    releaseNodes();
-    state_.has_server = is_matched_ && isHeard();
-    return std::exchange(changes_, {});
 }
 
 bool SessionMirror::isComplete() const {
@@ -54,10 +72,11 @@ bool SessionMirror::isComplete() const {
 }
 
 void SessionMirror::hearBricks(bool should_hear) {
+    if (!ears_) return;
     if (!should_hear)
-        brick_reader_.reset();
-    else if (!brick_reader_)
-        brick_reader_.emplace(participant_);
+        ears_->bricks.reset();
+    else if (!ears_->bricks)
+        ears_->bricks.emplace(ears_->participant);
 }
 
 void SessionMirror::keep(Topic topic, uint64_t key, std::string payload) {
@@ -70,25 +89,25 @@ void SessionMirror::forget(Topic topic, uint64_t key) {
 }
 
 void SessionMirror::takeStatus() {
-    servers_->status.take(kMostSmallSamples,
-                          [this](const dds::StatusSample& sample, const dds::SampleInfo& info) {
-                              if (!info.has_data || sample.session != session_) return;
-                              std::optional<topics::Status> status = parseStatus(dds::payloadOf(sample));
-                              if (!status) return dropMalformed("status");
-                              if (!accept(status->epoch(), servers_->status, info.writer)) return;
-                              status_writer_ = info.writer;
-                              keep(Sample::STATUS, 0, status->SerializeAsString());
-                              state_.status = std::move(status);
-                          });
+    ears_->servers->status.take(
+        kMostSmallSamples, [this](const dds::StatusSample& sample, const dds::SampleInfo& info) {
+            if (!info.has_data || sample.session != session_) return;
+            std::optional<topics::Status> status = parseStatus(dds::payloadOf(sample));
+            if (!status) return dropMalformed("status");
+            if (!accept(status->epoch(), ears_->servers->status, info.writer)) return;
+            status_writer_ = info.writer;
+            keep(Sample::STATUS, 0, status->SerializeAsString());
+            state_.status = std::move(status);
+        });
 }
 
 void SessionMirror::takeSceneInfo() {
-    servers_->scene_info.take(
+    ears_->servers->scene_info.take(
         kMostSmallSamples, [this](const dds::SceneInfoSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != session_) return;
             const std::optional<topics::SceneInfo> scene = parseSceneInfo(dds::payloadOf(sample));
             if (!scene) return dropMalformed("scene info");
-            if (!accept(scene->epoch(), servers_->scene_info, info.writer)) return;
+            if (!accept(scene->epoch(), ears_->servers->scene_info, info.writer)) return;
             if (state_.small.contains({Sample::SCENE_INFO, 0}) && scene->revision() < scene_revision_) return;
             scene_revision_ = scene->revision();
             p_WV_ = {scene->p_wv_m(0), scene->p_wv_m(1), scene->p_wv_m(2)};
@@ -98,45 +117,45 @@ void SessionMirror::takeSceneInfo() {
 }
 
 void SessionMirror::takeLesson() {
-    servers_->lesson.take(kMostSmallSamples,
-                          [this](const dds::LessonSample& sample, const dds::SampleInfo& info) {
-                              if (!info.has_data || sample.session != session_) return;
-                              const auto lesson = parseLesson(dds::payloadOf(sample));
-                              if (!lesson) return dropMalformed("lesson");
-                              if (!accept(lesson->epoch(), servers_->lesson, info.writer)) return;
-                              keep(Sample::LESSON, 0, lesson->SerializeAsString());
-                          });
+    ears_->servers->lesson.take(kMostSmallSamples,
+                                [this](const dds::LessonSample& sample, const dds::SampleInfo& info) {
+                                    if (!info.has_data || sample.session != session_) return;
+                                    const auto lesson = parseLesson(dds::payloadOf(sample));
+                                    if (!lesson) return dropMalformed("lesson");
+                                    if (!accept(lesson->epoch(), ears_->servers->lesson, info.writer)) return;
+                                    keep(Sample::LESSON, 0, lesson->SerializeAsString());
+                                });
 }
 
 void SessionMirror::takePictures() {
-    servers_->pictures.take(kMostSmallSamples,
-                            [this](const dds::ScenePictureSample& sample, const dds::SampleInfo& info) {
-                                if (!info.has_data || sample.session != session_) return;
-                                const auto picture = parseScenePicture(dds::payloadOf(sample), sample.scene);
-                                if (!picture) return dropMalformed("picture of a scene");
-                                if (!accept(picture->epoch(), servers_->pictures, info.writer)) return;
-                                keep(Sample::SCENE_PICTURE, sample.scene, picture->SerializeAsString());
-                            });
+    ears_->servers->pictures.take(
+        kMostSmallSamples, [this](const dds::ScenePictureSample& sample, const dds::SampleInfo& info) {
+            if (!info.has_data || sample.session != session_) return;
+            const auto picture = parseScenePicture(dds::payloadOf(sample), sample.scene);
+            if (!picture) return dropMalformed("picture of a scene");
+            if (!accept(picture->epoch(), ears_->servers->pictures, info.writer)) return;
+            keep(Sample::SCENE_PICTURE, sample.scene, picture->SerializeAsString());
+        });
 }
 
 void SessionMirror::takeStructures() {
-    servers_->structures.take(
+    ears_->servers->structures.take(
         kMostSmallSamples, [this](const dds::StructureMeshSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != session_) return;
             const auto structure = parseStructure(dds::payloadOf(sample), sample.structure);
             if (!structure) return dropMalformed("structure");
-            if (!accept(structure->epoch, servers_->structures, info.writer)) return;
+            if (!accept(structure->epoch, ears_->servers->structures, info.writer)) return;
             keep(Sample::STRUCTURE_MESH, sample.structure, bytesOf(dds::payloadOf(sample)));
         });
 }
 
 void SessionMirror::takeToolState() {
-    servers_->tool_state.take(
+    ears_->servers->tool_state.take(
         kMostSmallSamples, [this](const dds::ToolStateSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != session_) return;
             std::optional<topics::ToolState> state = parseToolState(dds::payloadOf(sample));
             if (!state) return dropMalformed("tool state");
-            if (!accept(state->epoch(), servers_->tool_state, info.writer)) return;
+            if (!accept(state->epoch(), ears_->servers->tool_state, info.writer)) return;
             if (state_.tool_state && state->tick() < state_.tool_state->tick()) return;
             if (state->has_effects()) {
                 topics::EffectState counted = state->effects();
@@ -158,26 +177,27 @@ void SessionMirror::placeTool() {
 }
 
 void SessionMirror::takeNodes() {
-    const auto& reader = servers_->nodes;
-    servers_->nodes.take(kMostNodes, [&](const dds::NodeMeshSample& sample, const dds::SampleInfo& info) {
-        if (sample.session != session_) return;
-        if (info.is_disposed) {
-            if (choice_.isOurs(server_numbers_.of(reader.participantOf(info.writer), info.writer)))
-                model_.removeNode(sample.node);
-            return;
-        }
-        if (!info.has_data) return;
-        std::optional<DecodedNode> node = parseNode(dds::payloadOf(sample), sample.node, sample.revision);
-        if (!node) return dropMalformed("node mesh");
-        if (!accept(node->tag.epoch, reader, info.writer)) return;
-        const auto shown = state_.nodes.find(sample.node);
-        if (shown != state_.nodes.end() && sample.revision <= shown->second.revision) return;
-        const Eigen::Vector3f place_V = node->mesh.origin;
-        if (!model_.applyNode(std::move(*node), SceneModel::Clock::now()))
-            return dropMalformed("node mesh, which is one too many");
-        arrived_[{sample.node, sample.revision}] = {
-            std::make_shared<const std::string>(bytesOf(dds::payloadOf(sample))), place_V};
-    });
+    const auto& reader = ears_->servers->nodes;
+    ears_->servers->nodes.take(
+        kMostNodes, [&](const dds::NodeMeshSample& sample, const dds::SampleInfo& info) {
+            if (sample.session != session_) return;
+            if (info.is_disposed) {
+                if (choice_.isOurs(server_numbers_.of(reader.participantOf(info.writer), info.writer)))
+                    model_.removeNode(sample.node);
+                return;
+            }
+            if (!info.has_data) return;
+            std::optional<DecodedNode> node = parseNode(dds::payloadOf(sample), sample.node, sample.revision);
+            if (!node) return dropMalformed("node mesh");
+            if (!accept(node->tag.epoch, reader, info.writer)) return;
+            const auto shown = state_.nodes.find(sample.node);
+            if (shown != state_.nodes.end() && sample.revision <= shown->second.revision) return;
+            const Eigen::Vector3f place_V = node->mesh.origin;
+            if (!model_.applyNode(std::move(*node), SceneModel::Clock::now()))
+                return dropMalformed("node mesh, which is one too many");
+            arrived_[{sample.node, sample.revision}] = {
+                std::make_shared<const std::string>(bytesOf(dds::payloadOf(sample))), place_V};
+        });
 }
 
 // The model says what is shown together; its bytes were kept meanwhile.
@@ -199,7 +219,7 @@ void SessionMirror::releaseNodes() {
 void SessionMirror::takeViewers() {
     const auto now = Clock::now();
     size_t heard = 0;
-    viewer_reader_.take(kMostSmallSamples, [&](const dds::ViewerSample& sample, const dds::SampleInfo& info) {
+    ears_->viewers.take(kMostSmallSamples, [&](const dds::ViewerSample& sample, const dds::SampleInfo& info) {
         if (!info.has_data || sample.session != session_) return;
         std::optional<topics::Viewer> viewer = parseViewer(dds::payloadOf(sample), sample.sender);
         if (!viewer) return dropMalformed("viewer");
@@ -228,8 +248,8 @@ void SessionMirror::showViewers() {
 }
 
 void SessionMirror::takeRemarks() {
-    const auto& reader = servers_->remarks;
-    servers_->remarks.take(
+    const auto& reader = ears_->servers->remarks;
+    ears_->servers->remarks.take(
         kMostSmallSamples, [&](const dds::RemarkSample& sample, const dds::SampleInfo& info) {
             if (sample.session != session_) return;
             if (info.is_disposed) {
@@ -246,11 +266,11 @@ void SessionMirror::takeRemarks() {
 }
 
 void SessionMirror::takeBricks() {
-    if (!brick_reader_) return;
-    brick_reader_->take(
+    if (!ears_->bricks) return;
+    ears_->bricks->take(
         kMostBricks, [this](const dds::DensityBrickSample& sample, const dds::SampleInfo& info) {
             if (!info.has_data || sample.session != session_) return;
-            const uint64_t participant = brick_reader_->participantOf(info.writer);
+            const uint64_t participant = ears_->bricks->participantOf(info.writer);
             if (!choice_.isOurs(server_numbers_.of(participant, info.writer))) return;
             const auto brick = parseDensityBrick(dds::payloadOf(sample));
             if (!brick) return dropMalformed("density brick");
@@ -297,7 +317,7 @@ void SessionMirror::readAnewIfDue() {
     const bool has_candidate = is_due && choice_.hasCandidate() && !isServerAlive();
     if (!choice_.takeLost() && !has_candidate) return;
     if (has_candidate) read_anew_ = now;
-    servers_ = std::make_unique<ServerReaders>(participant_, viewer_reader_);
+    ears_->readAnew();
     choice_.forgetRefused();
 }
 
@@ -306,11 +326,11 @@ bool SessionMirror::isHeard() const {
 }
 
 bool SessionMirror::isServerAlive() const {
-    return isHeard() && (status_writer_ == 0 || servers_->status.isMatched(status_writer_));
+    return isHeard() && (status_writer_ == 0 || ears_->servers->status.isMatched(status_writer_));
 }
 
 void SessionMirror::noteEnd() {
-    const bool was_matched = std::exchange(is_matched_, servers_->status.matchedWriters() > 0);
+    const bool was_matched = std::exchange(is_matched_, ears_->servers->status.matchedWriters() > 0);
     if (is_matched_)
         state_.has_ended = false;
     else if (was_matched)

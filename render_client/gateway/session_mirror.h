@@ -23,11 +23,22 @@ class SessionMirror {
   public:
     using Clock = std::chrono::steady_clock;
 
-    // The participant must outlive the mirror. Throws UserError.
-    SessionMirror(const dds::Participant& participant, uint32_t session);
+    // It has joined no domain yet.
+    explicit SessionMirror(uint32_t session) : session_(session) {}
 
-    // Takes what has arrived.
+    // Hears what comes there from now on, and keeps what it has. The participant must outlive the mirror, or
+    // leave() comes before. Throws UserError.
+    void join(const dds::Participant& participant);
+    void leave();
+
+    // Takes what has arrived, if a domain is joined.
     SessionChanges poll();
+    // When our server was heard last.
+    std::optional<Clock::time_point> lastHeard() const { return last_heard_; }
+    // The caller has slept for so long: silence in its sleep says nothing.
+    void forgive(Clock::duration slept) {
+        if (last_heard_) *last_heard_ += slept;
+    }
     const SessionState& state() const noexcept { return state_; }
     // From now on bricks of the scan's densities are taken, too, or no longer.
     void hearBricks(bool should_hear);
@@ -36,6 +47,7 @@ class SessionMirror {
     uint64_t malformedSamples() const noexcept { return malformed_count_; }
 
   private:
+    void takeAll();
     void takeStatus();
     void takeSceneInfo();
     void takeLesson();
@@ -66,7 +78,17 @@ class SessionMirror {
         Eigen::Vector3f place_V;
     };
 
-    const dds::Participant& participant_;
+    // What it hears the domain by.
+    struct Ears {
+        explicit Ears(const dds::Participant& participant);
+        void readAnew();
+
+        const dds::Participant& participant;
+        Inlet<dds::ViewerSample> viewers;
+        std::optional<Inlet<dds::DensityBrickSample>> bricks;
+        std::unique_ptr<ServerReaders> servers;
+    };
+
     const uint32_t session_;
     SessionState state_;
     SessionChanges changes_;
@@ -84,10 +106,7 @@ class SessionMirror {
     ViewerList viewers_;
     Clock::time_point listed_;  // the viewers
     uint64_t malformed_count_ = 0;
-
-    Inlet<dds::ViewerSample> viewer_reader_;
-    std::optional<Inlet<dds::DensityBrickSample>> brick_reader_;
-    std::unique_ptr<ServerReaders> servers_;
+    std::optional<Ears> ears_;  // none: no domain is joined
 };
 
 }  // namespace bonemill::gateway

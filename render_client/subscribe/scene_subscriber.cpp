@@ -16,8 +16,6 @@ namespace {
 // Few samples per session are kept, so more than this many at once is a flood of foreign sessions.
 constexpr size_t kMaxSmallSamples = 256;
 constexpr uint64_t kMostNamed = 16;  // malformed samples in the log: a hostile peer must not fill it
-// Who did not poll for so long has slept, and silence in its sleep says nothing.
-constexpr std::chrono::seconds kSleep{1};
 constexpr std::chrono::seconds kReadAnewAgain{2};
 
 uint64_t randomSender() {
@@ -37,7 +35,7 @@ void addCounts(const topics::EffectState& before, topics::EffectState& now) {
 
 SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
     : options_(options),
-      patience_(options.rejoin_after),
+      deaf_watch_(options.rejoin_after),
       outbox_(randomSender()),
       link_(std::make_unique<SessionLink>(options.domain, options.remote.get(), options.session,
                                           outbox_.sender(), options.role, next_wish_)) {}
@@ -273,7 +271,7 @@ bool SceneSubscriber::accept(uint64_t epoch, const Inlet<Sample>& reader, uint64
     if (choice_.judge(message, isServerAlive(), now) != ServerChoice::Verdict::kOurs) return false;
     if (!was_ours || epoch != model_.epoch()) beginRun();
     last_heard_ = now;
-    patience_ = options_.rejoin_after;
+    deaf_watch_.hear(now);
     return true;
 }
 
@@ -304,14 +302,9 @@ void SceneSubscriber::readAnewIfDue() {
     choice_.forgetRefused();
 }
 
-// A reader may have become deaf; so may one that waits for its first server. Gateways are reached anew by
-// themselves.
+// Gateways are reached anew by themselves.
 void SceneSubscriber::rejoinIfDeaf() {
-    if (options_.remote) return;
-    const auto now = std::chrono::steady_clock::now();
-    if (now - std::max(joined_, last_heard_.value_or(joined_)) < patience_) return;
-    patience_ = std::min<std::chrono::milliseconds>(2 * patience_, kLongestSilence);
-    joined_ = now;
+    if (options_.remote || !deaf_watch_.isDue(DeafWatch::Clock::now())) return;
     ++rejoinings_;
     if (link_) next_wish_ = link_->hand.nextWish();
     link_.reset();  // before the new one, or Cyclone would go on with what it has of this domain
@@ -332,11 +325,8 @@ void SceneSubscriber::join() {
 }
 
 void SceneSubscriber::noteTime() {
-    const auto now = std::chrono::steady_clock::now();
-    const auto before = std::exchange(polled_, now);
-    if (!before || now - *before < kSleep) return;
-    joined_ += now - *before;
-    if (last_heard_) *last_heard_ += now - *before;
+    const auto slept = deaf_watch_.pass(DeafWatch::Clock::now());
+    if (last_heard_) *last_heard_ += slept;
 }
 
 bool SceneSubscriber::isServerAlive() const {

@@ -17,6 +17,7 @@
 
 #include "proto/topics.pb.h"
 #include "render_client/subscribe/command_outbox.h"
+#include "render_client/subscribe/deaf_watch.h"
 #include "render_client/subscribe/payloads.h"
 #include "render_client/subscribe/scene_model.h"
 #include "render_client/subscribe/server_choice.h"
@@ -31,8 +32,8 @@ struct SubscriberOptions {
     uint32_t session = 1;   // that of the server
     std::string name = {};  // of who watches, for the others' lists
     topics::Viewer::Role role = topics::Viewer::OPERATOR;
-    // After so much silence, then twice as much and so on up to kLongestSilence, it joins anew.
-    std::chrono::milliseconds rejoin_after{6000};
+    // After so much silence it joins anew (DeafWatch).
+    std::chrono::milliseconds rejoin_after = DeafWatch::kFirstSilence;
     // The gateway that the session is reached through; none: by DDS. Then name and role are the gateway's to
     // say.
     std::shared_ptr<RemoteSession> remote = {};
@@ -113,7 +114,6 @@ class SceneSubscriber {
     // While no server is heard it joins the domain anew, with a fresh participant: a reader that became deaf
     // hears again. Returns how often it did.
     uint64_t rejoinings() const noexcept { return rejoinings_; }
-    static constexpr std::chrono::seconds kLongestSilence{30};
 
   private:
     void takeAll(size_t max_nodes);
@@ -160,9 +160,8 @@ class SceneSubscriber {
     bool is_matched_ = false;  // with a server's writer, at the last poll()
     ViewerList viewers_;
     ServerNumbers server_numbers_;
-    std::optional<std::chrono::steady_clock::time_point> polled_, read_anew_;
-    std::chrono::steady_clock::time_point joined_ = std::chrono::steady_clock::now();
-    std::chrono::milliseconds patience_;
+    std::optional<std::chrono::steady_clock::time_point> read_anew_;
+    DeafWatch deaf_watch_;
     uint64_t rejoinings_ = 0;
     uint32_t next_wish_ = 1;  // HandSpeaker
     uint64_t malformed_count_ = 0;

@@ -227,5 +227,45 @@ TEST(Gateway, AHandThatLeavesLetsTheToolGo) {
     EXPECT_EQ(hands.size(), 1u) << "an observer holds nothing";
 }
 
+TEST(Gateway, ThatHearsNothingJoinsAnewAndKeepsItsGuests) {
+    const test::TemporaryFolder folder;
+    test::writeFile(folder / "guests", invitationOf("Anna", "OPERATOR", kToken));
+    GatewayOptions options;
+    options.domain = testDomain();
+    options.session = testSession();
+    options.guests = folder / "guests";
+    options.rejoin_after = std::chrono::milliseconds(100);
+    Gateway gateway(options);
+    Guest* const anna = gateway.come({"192.0.2.1"}, Gateway::Clock::now());
+    FromGuest hello, command;
+    hello.mutable_hello()->set_token(kToken);
+    hello.mutable_hello()->set_version(1);
+    gateway.receive(*anna, hello.SerializeAsString(), Gateway::Clock::now());
+    ASSERT_TRUE(anna->isAdmitted());
+    const auto stepUntil = [&](const std::function<bool()>& condition) {
+        return test::waitFor([&] {
+            gateway.step(Gateway::Clock::now());
+            return condition();
+        });
+    };
+    ASSERT_TRUE(stepUntil([&] { return gateway.rejoinings() >= 2; })) << "no server is there";
+
+    TestServer server(20);
+    ASSERT_TRUE(stepUntil([&] {
+        server.tellStatus();
+        return gateway.mirror().isComplete();
+    }));
+    const uint64_t rejoinings = gateway.rejoinings();
+    command.mutable_command()->set_sequence(1);
+    command.mutable_command()->set_reset_volume(true);
+    EXPECT_TRUE(stepUntil([&] {
+        server.tellStatus();
+        gateway.receive(*anna, command.SerializeAsString(), Gateway::Clock::now());
+        return !server.publisher.takeCommands().empty();
+    })) << "she is heard, too";
+    EXPECT_EQ(gateway.rejoinings(), rejoinings) << "a server is heard";
+    EXPECT_TRUE(anna->isAdmitted());
+}
+
 }  // namespace
 }  // namespace bonemill::gateway
