@@ -223,7 +223,7 @@ void SessionMirror::takeViewers() {
         if (!info.has_data || sample.session != session_) return;
         std::optional<topics::Viewer> viewer = parseViewer(dds::payloadOf(sample), sample.sender);
         if (!viewer) return dropMalformed("viewer");
-        viewers_.hear(std::move(*viewer), viewer_reader_.participantOf(info.writer), now);
+        viewers_.hear(std::move(*viewer), ears_->viewers.participantOf(info.writer), now);
         ++heard;
     });
     if (heard == 0 && now - listed_ < kListEvery) return;
