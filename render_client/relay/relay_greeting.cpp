@@ -4,6 +4,7 @@
 #include <openssl/hmac.h>
 #include <sys/stat.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -39,7 +40,9 @@ RelayProof proofOf(std::string_view secret, std::string_view greeting, const Rel
 
 std::string readRelaySecret(const std::string& path) {
     requireFile(path);
-    const std::string how = "openssl rand -hex 32 > " + path + " && chmod 600 " + path;
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    const std::string how =
+        "mkdir -p " + folder.string() + " && (umask 077; openssl rand -hex 32 > " + path + ")";
     struct stat status {};
     if (stat(path.c_str(), &status) != 0)
         throw UserError(path + ": there is no secret of a relay; make one: " + how);
