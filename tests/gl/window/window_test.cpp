@@ -362,8 +362,8 @@ TEST_F(Window, ViewersSeeEachOtherAndTheInstructorPointsAndDraws) {
     display_.type({"mouseup", "1", "keyup", "ctrl"});
     waitFor("no pointer", [&] { return !pointer(); });
 
-    display_.type({"keydown", "ctrl", "keydown", "shift", "mousemove", "230", "150", "mousedown", "1",
-                   "mousemove", "260", "160", "mouseup", "1", "keyup", "shift", "keyup", "ctrl"});
+    display_.type({"keydown", "ctrl", "keydown", "shift", "mousemove", "230", "100", "mousedown", "1",
+                   "mousemove", "270", "110", "mouseup", "1", "keyup", "shift", "keyup", "ctrl"});
     const topics::Remark stroke = waitForCommand(1).add_remark();
     EXPECT_EQ(stroke.color(), colourOfAuthor("teacher"));
     ASSERT_GE(stroke.points_m_size(), 6);
