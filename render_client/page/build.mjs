@@ -1,6 +1,6 @@
 // Builds the page: node build.mjs --source DIR --shaders DIR --proto DIR --work DIR --out DIR
 // In the work folder lie copies of the sources, the packages (npm ci, when package-lock.json changed) and the code made
-// from proto/; the out folder gets index.html, page.css and the three scripts, each also compressed, and tests.mjs.
+// from proto/, and contained.json names the packages that the page holds; the out folder gets index.html, page.css and the three scripts, each also compressed, and tests.mjs.
 import { execFileSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -51,10 +51,14 @@ const glsl = {
 
 const { build } = createRequire(join(work, 'package.json'))('esbuild');
 const common = { absWorkingDir: work, bundle: true, format: 'esm', legalComments: 'eof', logLevel: 'warning', plugins: [glsl] };
-await build({
-  ...common, minify: true, target: 'es2022', outdir: out,
+const made = await build({
+  ...common, metafile: true, minify: true, target: 'es2022', outdir: out,
   entryPoints: { page: 'src/main.ts', link: 'src/link/link_worker.ts', sound: 'src/sound/sound_worklet.ts' },
 });
+// Which packages the page holds, for deploy/security/make-sbom.
+const parts = Object.values(made.metafile.outputs).flatMap(({ inputs }) => Object.keys(inputs).filter((file) => inputs[file].bytesInOutput > 0));
+const packages = parts.map((file) => /^.*node_modules\/(@[^/]+\/)?[^/]+/.exec(file)?.[0]).filter((folder) => folder);
+writeFileSync(join(work, 'contained.json'), JSON.stringify([...new Set(packages)].sort()));
 await build({
   ...common, platform: 'node', target: 'node18', outdir: join(work, 'tests_out'), outExtension: { '.js': '.mjs' },
   entryPoints: { unit: 'tests/unit.ts', stand_in: 'tests/stand_in.ts', browser: 'tests/browser.ts', native: 'tests/native.ts' },
