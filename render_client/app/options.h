@@ -13,6 +13,7 @@
 #include "render_client/camera/view_settings.h"
 #include "render_client/gateway/gateway_options.h"
 #include "render_client/hud/waiting_page.h"
+#include "render_client/relay/relay_options.h"
 #include "render_client/subscribe/scene_subscriber.h"
 
 namespace bonemill {
