@@ -14,7 +14,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr uint32_t kVersion = 2;
 constexpr auto kFirstPause = 500ms, kLongestPause = 15000ms;
 constexpr auto kSilence = 12s;  // the gateway says something every few seconds
 constexpr auto kLook = 250ms;
@@ -133,7 +132,7 @@ std::string GatewaySession::hello() const {
     gateway::Hello& hello = *frame.mutable_hello();
     hello.set_token(token_);
     hello.set_link("viewer");
-    hello.set_version(kVersion);
+    hello.set_version(gateway::kProtocolVersion);
     hello.set_epoch(held_epoch_);
     for (const auto& [leaf, revision] : held_) {
         hello.add_leaves(leaf);

@@ -6,6 +6,8 @@
 #include <random>
 #include <utility>
 
+#include "render_client/subscribe/remote_session.h"
+
 namespace bonemill::gateway {
 namespace {
 

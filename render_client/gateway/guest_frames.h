@@ -13,7 +13,6 @@ inline constexpr size_t kMostFrameBytes = 16 << 10;
 // A guest that comes again lists what it holds.
 inline constexpr size_t kMostHelloBytes = 256 << 10;
 inline constexpr size_t kMostTokenBytes = 128;
-inline constexpr uint32_t kProtocolVersion = 2;
 
 // Returns what the frame says if its numbers are ones to compute with; nothing for all else.
 std::optional<FromGuest> parseFromGuest(std::string_view frame);

@@ -9,6 +9,11 @@
 
 namespace bonemill {
 
+namespace gateway {
+// What a guest's Hello says; render_client/page/src/link/session_socket.ts says the same.
+inline constexpr uint32_t kProtocolVersion = 2;
+}  // namespace gateway
+
 // next() and wait() are for the thread that shows the session; the others for any.
 class RemoteSession {
   public:

@@ -18,6 +18,7 @@
 #include "common/user_error.h"
 #include "proto/gateway.pb.h"
 #include "render_client/connect/web_socket_client.h"
+#include "render_client/subscribe/remote_session.h"
 #include "render_client/tcp/listen.h"
 #include "tests/bench/bench_output.h"
 
@@ -43,7 +44,7 @@ class BenchGuest {
         : socket_(target, "/session", "bonemill.v1", kToCome) {
         gateway::FromGuest frame;
         frame.mutable_hello()->set_token(token);
-        frame.mutable_hello()->set_version(1);
+        frame.mutable_hello()->set_version(gateway::kProtocolVersion);
         socket_.send(frame.SerializeAsString());
         socket_.move();
     }

@@ -21,6 +21,7 @@
 #include "render_client/gateway/gateway_server.h"
 #include "render_client/gateway/guest.h"
 #include "render_client/secrets/secrets.h"
+#include "render_client/subscribe/remote_session.h"
 #include "tests/support/dds_session.h"
 #include "tests/support/process.h"
 #include "tests/support/synthetic_nodes.h"

@@ -239,7 +239,7 @@ TEST(Gateway, ThatHearsNothingJoinsAnewAndKeepsItsGuests) {
     Guest* const anna = gateway.come({"192.0.2.1"}, Gateway::Clock::now());
     FromGuest hello, command;
     hello.mutable_hello()->set_token(kToken);
-    hello.mutable_hello()->set_version(1);
+    hello.mutable_hello()->set_version(kProtocolVersion);
     gateway.receive(*anna, hello.SerializeAsString(), Gateway::Clock::now());
     ASSERT_TRUE(anna->isAdmitted());
     const auto stepUntil = [&](const std::function<bool()>& condition) {

@@ -208,9 +208,11 @@ TEST(GuestStream, TheBoneComesBeforeStructuresAndPicturesAtFirstAndLaterHoldsUpN
         return samplesOf(frame);
     };
     std::vector<Topic> order;
-    for (int frames = 0; frames < 50; ++frames)
-        for (const Sample& sample : next().samples())
+    for (int frames = 0; frames < 50; ++frames) {
+        const Samples samples = next();
+        for (const Sample& sample : samples.samples())
             if (order.empty() || order.back() != sample.topic()) order.push_back(sample.topic());
+    }
     EXPECT_EQ(order, (std::vector<Topic>{Sample::SCENE_INFO, Sample::NODE_MESH, Sample::STRUCTURE_MESH,
                                          Sample::SCENE_PICTURE}));
 
@@ -221,6 +223,7 @@ TEST(GuestStream, TheBoneComesBeforeStructuresAndPicturesAtFirstAndLaterHoldsUpN
     }
     stream.note(changes);
     const Samples mixed = next();
+    ASSERT_GE(mixed.samples_size(), 2);
     EXPECT_EQ(mixed.samples(0).topic(), Sample::LESSON);
     EXPECT_EQ(mixed.samples(1).topic(), Sample::NODE_MESH);
 }
