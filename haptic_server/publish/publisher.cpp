@@ -20,13 +20,19 @@ int64_t unixTime_ns() {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(since_epoch).count();
 }
 
+// The sample has its key already.
 template <class Sample, class Message>
-bool writeMessage(dds::Writer<Sample>& writer, uint32_t session, const Message& message) {
+bool writeMessage(dds::Writer<Sample>& writer, Sample sample, const Message& message) {
     const std::string bytes = message.SerializeAsString();
-    Sample sample{};
-    sample.session = session;
     dds::setPayload(sample, bytes);
     return writer.write(sample);
+}
+
+template <class Sample, class Message>
+bool writeMessage(dds::Writer<Sample>& writer, uint32_t session, const Message& message) {
+    Sample sample{};
+    sample.session = session;
+    return writeMessage(writer, sample, message);
 }
 
 template <size_t N>
@@ -165,13 +171,11 @@ bool Publisher::publishStructure(const NodeMesh& mesh, double warning_distance_m
     structure.set_epoch(epoch_);
     structure.set_surface(encodeNodeMesh(mesh, {.epoch = epoch_}).bytes);
     structure.set_warning_distance_m(warning_distance_m);
-    const std::string bytes = structure.SerializeAsString();
     dds::StructureMeshSample sample{};
     sample.session = session_;
     sample.structure = mesh.leaf;
-    dds::setPayload(sample, bytes);
     structures_.push_back(mesh.leaf);
-    return structure_writer_.write(sample);
+    return writeMessage(structure_writer_, sample, structure);
 }
 
 bool Publisher::publishToolState(const TickRecord& record, std::optional<topics::EffectState> effects) {
@@ -205,23 +209,19 @@ bool Publisher::publishScenePicture(uint32_t scene, const std::string& id, const
     picture.set_epoch(epoch_);
     picture.set_scene_id(id);
     picture.set_png(png);
-    const std::string bytes = picture.SerializeAsString();
     dds::ScenePictureSample sample{};
     sample.session = session_;
     sample.scene = scene;
-    dds::setPayload(sample, bytes);
-    return picture_writer_.write(sample);
+    return writeMessage(picture_writer_, sample, picture);
 }
 
 bool Publisher::publishRemark(uint32_t place, topics::Remark remark) {
     remark.set_epoch(epoch_);
-    const std::string bytes = remark.SerializeAsString();
     dds::RemarkSample sample{};
     sample.session = session_;
     sample.place = place;
-    dds::setPayload(sample, bytes);
     remarks_.insert(place);
-    return remark_writer_.write(sample);
+    return writeMessage(remark_writer_, sample, remark);
 }
 
 bool Publisher::removeRemark(uint32_t place) {

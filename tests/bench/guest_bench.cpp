@@ -1,8 +1,6 @@
 // Guests of a gateway, as many as are asked for: do all come in and get the whole model, what is each sent,
 // and what does that cost the programs on the way (docs/gateway.md)? They take what comes as a page does, and
 // draw nothing.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fstream>
@@ -21,6 +19,7 @@
 #include "render_client/subscribe/remote_session.h"
 #include "render_client/tcp/listen.h"
 #include "tests/bench/bench_output.h"
+#include "tests/bench/processor_time.h"
 
 namespace bonemill::bench {
 namespace {
@@ -158,19 +157,6 @@ Guests comeIn(const BenchWish& wish) {
     return guests;
 }
 
-// Processor seconds so far.
-double processorSecondsOf(int pid) {
-    std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
-    std::string text;
-    std::getline(stat, text);
-    std::istringstream fields(text.substr(std::min(text.rfind(')') + 1, text.size())));
-    std::string skipped;
-    for (int n = 3; n < 14; ++n) fields >> skipped;  // proc(5): 14 is utime, 15 stime
-    double user = 0, system = 0;
-    fields >> user >> system;
-    return (user + system) / double(sysconf(_SC_CLK_TCK));
-}
-
 double peakMibOf(int pid) {
     std::ifstream status("/proc/" + std::to_string(pid) + "/status");
     for (std::string word; status >> word;) {
@@ -199,7 +185,7 @@ Sent sentTo(const Guests& guests) {
 void measure(const BenchWish& wish, const Guests& guests) {
     const Sent before = sentTo(guests);
     std::vector<double> used;
-    for (const int pid : wish.pids) used.push_back(processorSecondsOf(pid));
+    for (const int pid : wish.pids) used.push_back(processorSeconds(pid));
     const auto start = GuestClock::now();
     while (GuestClock::now() - start < std::chrono::seconds(wish.seconds)) stepAll(guests);
     const double time = Seconds(GuestClock::now() - start).count();
@@ -216,7 +202,7 @@ void measure(const BenchWish& wish, const Guests& guests) {
               << countOf(guests, &BenchGuest::isComplete) << " have the whole model\n";
     for (size_t n = 0; n < wish.pids.size(); ++n)
         std::cout << "process " << wish.pids[n] << ": "
-                  << number(100 * (processorSecondsOf(wish.pids[n]) - used[n]) / time)
+                  << number(100 * (processorSeconds(wish.pids[n]) - used[n]) / time)
                   << " % of a core, at most " << number(peakMibOf(wish.pids[n])) << " MiB\n";
 }
 

@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <thread>
 
@@ -10,10 +12,13 @@ namespace bonemill::bench {
 
 double processorSeconds(int pid) {
     std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
-    std::string word;
-    for (int field = 1; field < 14; ++field) stat >> word;
+    std::string text;
+    std::getline(stat, text);
+    std::istringstream fields(text.substr(std::min(text.rfind(')') + 1, text.size())));
+    std::string skipped;
+    for (int n = 3; n < 14; ++n) fields >> skipped;  // proc(5): 14 is utime, 15 stime
     double user = 0, system = 0;
-    stat >> user >> system;
+    fields >> user >> system;
     return (user + system) / double(sysconf(_SC_CLK_TCK));
 }
 

@@ -6,6 +6,7 @@
 
 namespace bonemill::bench {
 
+// So far, in its own code and in the kernel's.
 double processorSeconds(int pid);
 
 // Waits for so long, and returns the share of one core that the process had meanwhile.
