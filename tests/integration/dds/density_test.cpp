@@ -23,7 +23,8 @@ constexpr DensityScale kCtScale{-200, 1800, 300};
 struct DensityServer {
     Publisher publisher{{.domain = testDomain(), .session = testSession(), .epoch = 0}};
     test::ScannedBone scan;
-    DensitySource source{scan.bone, scan.history};
+    BoneProperties properties = test::randomMaterials(scan);
+    DensitySource source{scan.bone, scan.history, &properties};
     DensityPublisher densities{publisher.participant(), testSession(), publisher.epoch(), source, kCtScale};
 
     DensityServer() {
@@ -60,6 +61,16 @@ void wantAll(DensityStore& store) {
     std::vector<uint32_t> all(size_t(brickCount(*store.grid())));
     std::iota(all.begin(), all.end(), 0u);
     store.want(all);
+}
+
+// Each brick that is here is made of what the volume says.
+bool hasMaterials(const DensityServer& server, const DensityStore& store) {
+    return std::ranges::all_of(store.wanted(), [&](uint32_t number) {
+        const std::vector<MaterialId> expected = server.source.materials(number);
+        const std::vector<uint8_t>& materials = store.find(number)->materials;
+        const bool is_none = std::ranges::all_of(expected, [](MaterialId id) { return id == kNoMaterial; });
+        return materials == expected || (materials.empty() && is_none);
+    });
 }
 
 bool hasWanted(const DensityStore& store) {
@@ -107,6 +118,8 @@ TEST(Densities, ComeExactlyAndAgainWhenTheyChange) {
     wantAll(late.store);
     ASSERT_TRUE(runUntil(server, {&client, &late}, [&] { return isExact(server, late.store); }))
         << "who comes late gets both";
+    EXPECT_TRUE(hasMaterials(server, client.store)) << "also of bricks that changed since";
+    EXPECT_TRUE(hasMaterials(server, late.store));
     EXPECT_EQ(client.subscriber.malformedSamples() + late.subscriber.malformedSamples(), 0u);
 }
 
