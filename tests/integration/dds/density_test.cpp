@@ -63,13 +63,12 @@ void wantAll(DensityStore& store) {
     store.want(all);
 }
 
-// Each brick that is here is made of what the volume says.
+// Each brick that is here is made of what the volume says; air is not sent.
 bool hasMaterials(const DensityServer& server, const DensityStore& store) {
     return std::ranges::all_of(store.wanted(), [&](uint32_t number) {
-        const std::vector<MaterialId> expected = server.source.materials(number);
-        const std::vector<uint8_t>& materials = store.find(number)->materials;
-        const bool is_none = std::ranges::all_of(expected, [](MaterialId id) { return id == kNoMaterial; });
-        return materials == expected || (materials.empty() && is_none);
+        const std::vector<Density> scanned = server.source.scanned(number);
+        const bool is_air = std::ranges::all_of(scanned, [](Density density) { return density == 0; });
+        return is_air || store.find(number)->materials == server.source.materials(number);
     });
 }
 
