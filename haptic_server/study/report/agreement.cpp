@@ -13,7 +13,7 @@
 namespace bonemill::study {
 namespace {
 
-constexpr size_t kMostRaters = 50, kMostRows = 10'000, kMostBytes = 10'000;
+constexpr size_t kMostRaters = 50, kMostRows = 10'000, kMostBytes = 10'000, kMostFileBytes = 10'000'000;
 
 std::vector<std::string> fieldsOf(const std::string& line) {
     std::vector<std::string> fields = {""};
@@ -49,6 +49,8 @@ Ratings readRatings(const std::filesystem::path& path) {
     requireFile(path);
     std::ifstream file(path);
     if (!file || std::filesystem::is_directory(path)) throw UserError(path.string() + ": cannot be read");
+    if (std::filesystem::file_size(path) > kMostFileBytes)
+        throw UserError(path.string() + ": is larger than 10 MB");
     Ratings ratings;
     size_t number = 0;
     for (std::string line; std::getline(file, line);) {

@@ -48,12 +48,18 @@ ConditionComparison comparedWithin(const Measure& measure, const std::string& fi
     comparison.of_first = summarise(a);
     comparison.of_second = summarise(b);
     if (a.size() < 2) return comparison;
-    const std::vector<double> differences = differencesOf(a, b);
+    std::vector<double> differences = differencesOf(a, b);
+    for (double& difference : differences) difference = withoutRounding(difference);
     comparison.paired = pairedT(a, b);
     comparison.pratt = prattSignedRank(differences);
     const double sd = std::sqrt(varianceOf(differences));
     comparison.d = sd > 0 ? meanOf(differences) / sd : kNotKnown;
     return comparison;
+}
+
+// A statement of SUS means nothing by itself (Brooke 1996).
+bool isCompared(const Measure& measure) {
+    return measure.is_score || measure.form->scoring != Scoring::kSus;
 }
 
 bool areOfOneFamily(const Measure& a, const Measure& b) {
@@ -83,7 +89,7 @@ std::vector<GroupComparison> compareGroups(const StudyData& data, const std::vec
     const std::vector<Group>& groups = data.protocol().groups;
     std::vector<GroupComparison> all;
     for (const Measure& measure : measures)
-        for (size_t i = 0; i < groups.size(); ++i)
+        for (size_t i = 0; i < groups.size() && isCompared(measure); ++i)
             for (size_t j = i + 1; j < groups.size(); ++j)
                 all.push_back(compared(data, measure, groups[i].id, groups[j].id));
     adjust(
@@ -98,7 +104,8 @@ std::vector<ConditionComparison> compareConditions(const StudyData& data,
     const std::vector<Condition>& conditions = data.protocol().conditions;
     std::vector<ConditionComparison> all;
     for (const Measure& measure : measures) {
-        if (measure.values.front().condition.empty()) continue;  // asked once per visit
+        if (!isCompared(measure) || measure.values.front().condition.empty())
+            continue;  // asked once per visit
         for (size_t i = 0; i < conditions.size(); ++i)
             for (size_t j = i + 1; j < conditions.size(); ++j)
                 all.push_back(comparedWithin(measure, conditions[i].id, conditions[j].id));

@@ -58,9 +58,9 @@ std::string itemsText(const StudyData& data, const std::vector<Measure>& measure
         text += rowText(
             {nameOf(measure), std::to_string(summary.n), meanText(summary), fixedText(summary.median, 2),
              fixedText(summary.least, 1) + " to " + fixedText(summary.most, 1),
-             measure.has_options ? percentText(double(hits) / double(values.size())) + " (" +
-                                       percentText(share.low) + " to " + percentText(share.high) + ")"
-                                 : "–"});
+             measure.has_share ? percentText(double(hits) / double(values.size())) + " (" +
+                                     percentText(share.low) + " to " + percentText(share.high) + ")"
+                               : "–"});
     }
     return text;
 }
@@ -163,15 +163,15 @@ std::string formText(const StudyData& data, const std::vector<Measure>& measures
 constexpr char kMethods[] = R"(
 ## How it was computed
 
-Each person counts once: where somebody answered a question in several sessions, the mean of them. Welch's test has
-Satterthwaite's degrees of freedom. Mann-Whitney and Wilcoxon-Pratt are exact up to 100 people, ties included, and to
-both sides: the chance to be at least as far from the expected value. For single questions with few steps and small
-unequal groups Mann-Whitney is the one to go by; Welch stands beside it because others report it. Holm's adjustment
-counts all questions of a form (and, apart, all its scores) over all pairs. Hedges g is above zero where the first
-group answers higher; AUC is the chance that one of the first group does; Cliff's delta is 2 AUC - 1. Their intervals
-are bias-corrected accelerated bootstraps of 2000 draws within the groups, seeded by the protocol; a dash says that the
-data do not determine one. Shares have Wilson's intervals. A dash elsewhere: not defined for these data (one person, no
-spread).
+Each person counts once: where somebody answered a question in several sessions, the mean of them. SUS is compared by
+its score only. Welch's test has Satterthwaite's degrees of freedom. Mann-Whitney and Wilcoxon-Pratt are exact up to
+100 people, ties included, and to both sides: the chance to be at least as far from the expected value. For single
+questions with few steps and small unequal groups Mann-Whitney is the one to go by; Welch stands beside it because
+others report it. Holm's adjustment counts all questions of a form (and, apart, all its scores) over all pairs. Hedges
+g is above zero where the first group answers higher; AUC is the chance that one of the first group does; Cliff's
+delta is 2 AUC - 1. Their intervals are bias-corrected accelerated bootstraps of 2000 draws within the groups, seeded
+by the protocol; a dash says that the data do not determine one. Shares have Wilson's intervals. A dash elsewhere: not
+defined for these data (one person, no spread).
 
 What no table here can say: experts and novices who answer alike, or apart, is weak evidence of validity by itself; a
 mean above a threshold says that people were content, not that they learn. `analysis.R` recomputes this in R and goes on

@@ -1,6 +1,7 @@
 #include "haptic_server/study/report/study_data.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "haptic_server/study/statistics/reliability.h"
 
@@ -15,7 +16,8 @@ void addItems(const StudyData& data, const Form& form, std::vector<Measure>& mea
     for (const Block& block : form.blocks)
         for (const Item& item : block.items) {
             if (!item.is_rating) continue;
-            Measure measure{&form, block.id, item.id, item.text, false, !item.options.empty(), {}};
+            const bool has_share = !item.options.empty() && form.scoring == Scoring::kNone;
+            Measure measure{&form, block.id, item.id, item.text, false, has_share, {}};
             for (const FilledForm& filled : data.filled) {
                 const auto found = filled.answers.values.find(item.id);
                 if (filled.form == &form && found != filled.answers.values.end())
@@ -55,6 +57,11 @@ std::vector<double> rowOf(const std::vector<std::map<size_t, double>>& items, si
 
 }  // namespace
 
+double withoutRounding(double value) {
+    constexpr double kStep = 1e9;
+    return std::round(value * kStep) / kStep;
+}
+
 StudyData readStudy(const StudyFolder& folder) {
     StudyData data{&folder, {}, {}, {}};
     for (const std::string& pseudonym : folder.pseudonyms()) {
@@ -78,7 +85,7 @@ std::map<size_t, double> Measure::byPerson(const std::string& condition) const {
     for (const Value& value : values)
         if (condition.empty() || value.condition == condition) all[value.person].push_back(value.value);
     std::map<size_t, double> means;
-    for (const auto& [person, of_person] : all) means[person] = meanOf(of_person);
+    for (const auto& [person, of_person] : all) means[person] = withoutRounding(meanOf(of_person));
     return means;
 }
 

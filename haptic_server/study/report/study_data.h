@@ -36,13 +36,16 @@ struct Measure {
     const Form* form = nullptr;
     std::string block, id, title;
     bool is_score = false;
-    bool has_options = false;  // few steps: shares are worth reporting
+    bool has_share = false;  // a question of few steps that stands by itself
     std::vector<Value> values;
 
     // The mean over a person's sessions, of one condition unless it is empty. People without an answer are
     // not there: people are independent of each other, sessions of one person are not.
     std::map<size_t, double> byPerson(const std::string& condition = "") const;
 };
+
+// Equal answers give equal means, in whatever order they were added up: else ranks would tell them apart.
+double withoutRounding(double value);
 
 // In the order of forms, blocks and items; a form's scores after its items. Those without any answer are left
 // out.

@@ -115,7 +115,7 @@ TableFile itemsTable(const StudyData& data, const std::vector<Measure>& measures
                  << (i == 0 ? "all" : group);
             line << summarise(values);
             const size_t hits = hitsOf(values, data.protocol().threshold);
-            const bool has_share = measure.has_options && !values.empty();
+            const bool has_share = measure.has_share && !values.empty();
             if (has_share)
                 line << hits << double(hits) / double(values.size()) << wilson(hits, values.size());
             else
