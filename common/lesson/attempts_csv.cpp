@@ -2,8 +2,9 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <ctime>
+
+#include "common/csv_text.h"
 
 namespace bonemill {
 namespace {
@@ -31,16 +32,6 @@ std::string joined(const Texts& texts) {
 }
 
 }  // namespace
-
-std::string csvText(const std::string& text) {
-    std::string field = "\"";
-    if (!text.empty() && std::strchr("=+-@\t\r", text[0])) field += '\'';
-    for (const char c : text) {
-        if (c == '"') field += '"';
-        field += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    }
-    return field + '"';
-}
 
 std::string sceneTitle(const topics::Lesson& lesson, const std::string& id) {
     for (const topics::SceneChoice& scene : lesson.scenes())
