@@ -153,7 +153,7 @@ void Gateway::step(Clock::time_point now) {
 
 void Gateway::lookAtList(Clock::time_point now) {
     looked_ = now;
-    if (list_.reread()) spdlog::info("{} invitations are in force", list_.size());
+    list_.reread();
     for (const auto& guest : guests_)
         if (!guest->isInvited(unixSeconds()))
             guest->refuse("This invitation has ended. Ask for a new one.", true);
