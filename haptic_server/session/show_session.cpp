@@ -76,6 +76,13 @@ Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
     return box;
 }
 
+// Viewers show materials by their colours only.
+const BoneProperties* shownProperties(const scene::Scene& scene, const Simulation& simulation) {
+    const bool has_colours =
+        std::ranges::any_of(scene.material(), [](const scene::Material& m) { return m.has_color(); });
+    return has_colours ? simulation.tick.effects.properties.get() : nullptr;
+}
+
 DensityScale scaleOf(const DensityMapping& mapping) {
     return {mapping.low, mapping.high, mapping.iso_value};
 }
@@ -133,7 +140,7 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
       effects_(scene.effects()),
       material_names_(materialNamesOf(scene)),
       tools_(simulation.tools),
-      density_source_(*simulation.bone, history),
+      density_source_(*simulation.bone, history, shownProperties(scene, simulation)),
       density_scale_(scaleOf(simulation.mapping)),
       scene_info_(sceneInfo(scene, simulation)) {
     *scene_info_.mutable_densities() = densityGridOf(density_source_, density_scale_);
