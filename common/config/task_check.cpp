@@ -100,8 +100,8 @@ class TaskChecker {
   private:
     void requireFew(const std::string& list, int count, int most, const char* what) const {
         if (count > most)
-            refuse_(pathIn(list, most), std::string("is one too many: a task has at most ") +
-                                            std::to_string(most) + " " + what);
+            refuse_(pathIn(list, most),
+                    std::string("is one too many: a task has at most ") + std::to_string(most) + " " + what);
     }
 
     void checkZone(int n) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/config/scene_file.h"
+#include "haptic_server/assessment/product/judged_task.h"
 #include "haptic_server/bone/bone_model.h"
 #include "haptic_server/setup/scene_accuracy.h"
 #include "haptic_server/tick/tick_config.h"
@@ -30,11 +31,12 @@ struct Simulation {
     AccuracySettings accuracy;
     std::unique_ptr<BoneModel> bone;
     DensityMapping mapping;
-    std::vector<SceneTool> tools;       // at least one
-    bool lacks_patient_axes = false;    // RawVolume
-    Pose X_WD;                          // device base in the world
-    std::vector<std::string> remarks;   // for people: what was read or proposed
-    std::vector<std::string> warnings;  // what the user would better change in the scene
+    std::vector<SceneTool> tools;                      // at least one
+    std::shared_ptr<const JudgedTask> task = nullptr;  // null: the scene has none
+    bool lacks_patient_axes = false;                   // RawVolume
+    Pose X_WD;                                         // device base in the world
+    std::vector<std::string> remarks;                  // for people: what was read or proposed
+    std::vector<std::string> warnings;                 // what the user would better change in the scene
 
     // They are meant for ToolSwitch and point into `tools`.
     std::vector<SpoTool> spoTools() const;
