@@ -4,11 +4,14 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 
 #include "haptic_server/assessment/technique.h"
 
 namespace bonemill::test {
+
+inline constexpr double kPi = std::numbers::pi;
 
 struct HandMadeSession {
     double seconds = 1;

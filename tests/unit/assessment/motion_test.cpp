@@ -2,16 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "tests/unit/assessment/hand_made_session.h"
 
 namespace bonemill {
 namespace {
 
 using test::HandMadeSession;
-
-constexpr double kPi = std::numbers::pi;
+using test::kPi;
 
 std::vector<MotionSample> samplesOf(const HandMadeSession& session) {
     std::vector<MotionSample> samples;

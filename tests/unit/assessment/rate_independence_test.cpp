@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <random>
 
 #include "tests/unit/assessment/hand_made_session.h"
@@ -9,8 +8,7 @@ namespace bonemill {
 namespace {
 
 using test::HandMadeSession;
-
-constexpr double kPi = std::numbers::pi;
+using test::kPi;
 
 // Somebody mills: strokes of random lengths and speeds with random pressure, contact in most of them.
 HandMadeSession randomMilling(uint32_t seed) {

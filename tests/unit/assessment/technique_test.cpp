@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "common/units.h"
 #include "tests/unit/assessment/hand_made_session.h"
 
@@ -11,9 +9,8 @@ namespace bonemill {
 namespace {
 
 using test::HandMadeSession;
+using test::kPi;
 using test::valueOf;
-
-constexpr double kPi = std::numbers::pi;
 
 // 10 s at 20 mm/s along x, in contact from 2 s to 7 s with 3 N, the pedal down from 1 s to 8 s.
 HandMadeSession straightWay() {
