@@ -8,10 +8,12 @@
 
 namespace bonemill {
 
-Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded)
+Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded,
+                   std::optional<BreachWatch> breach)
     : ring_(ring),
       statistics_(period_ns, recorded),
       recorded_(recorded),
+      breach_(std::move(breach)),
       attempt_{.max_force = 0, .effects = EffectStatistics(recorded)},
       shown_attempt_(attempt_) {}
 
@@ -59,6 +61,7 @@ void Recorder::takeUpAttempt() {
     if (!asked_bone_order_) return;
     bone_order_ = *std::exchange(asked_bone_order_, std::nullopt);
     attempt_ = shown_attempt_;
+    if (breach_) breach_->reset();
 }
 
 void Recorder::addToAttempt(const TickRecord& record) noexcept {
@@ -66,6 +69,9 @@ void Recorder::addToAttempt(const TickRecord& record) noexcept {
     const double(&force)[3] = record.f_hand_W;
     attempt_.max_force = std::max(attempt_.max_force, std::hypot(force[0], force[1], force[2]));
     attempt_.effects.add(record.effects);
+    if (!breach_) return;
+    breach_->add(record);
+    attempt_.breach = breach_->depth();
 }
 
 AttemptFigures Recorder::attempt() const {

@@ -210,6 +210,13 @@ std::vector<SpoTool> Simulation::spoTools() const {
     return all;
 }
 
+std::optional<BreachWatch> breachWatchOf(const Simulation& simulation) {
+    if (!simulation.task || !simulation.task->plan) return std::nullopt;
+    std::vector<BurrProbes> burrs;
+    for (const SceneTool& tool : simulation.tools) burrs.emplace_back(tool.burr);
+    return BreachWatch(simulation.bone->volume, *simulation.task->plan, std::move(burrs));
+}
+
 scene::Tool::Handpiece handpieceOf(const scene::Tool& tool, const TriangleSurface& surface) {
     if (tool.handpiece() != scene::Tool::AUTOMATIC) return tool.handpiece();
     if (!tool.mesh_path().empty()) return scene::Tool::NONE;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/config/scene_file.h"
-#include "haptic_server/assessment/product/judged_task.h"
+#include "haptic_server/assessment/product/breach_watch.h"
 #include "haptic_server/bone/bone_model.h"
 #include "haptic_server/setup/scene_accuracy.h"
 #include "haptic_server/tick/tick_config.h"
@@ -43,6 +43,9 @@ struct Simulation {
     // It has the first tool and the scene's accuracy from beginning to end.
     FixedTickConfig fixedTick() const { return {tick, spoTools().front(), accuracy}; }
 };
+
+// Who follows the tool for its breach beside the planned line of the task; none without such a line.
+std::optional<BreachWatch> breachWatchOf(const Simulation& simulation);
 
 // Imports the volume, builds tree, shell and tools. Throws UserError.
 Simulation makeSimulation(const LoadedScene& loaded);

@@ -87,7 +87,7 @@ class TaskReader {
             });
         }
         requireVoxels(ids);
-        task_->map = std::make_shared<const ZoneMap>(scanned_.dims(), ids);
+        task_->map = std::make_shared<const VoxelIds>(scanned_.dims(), ids);
     }
 
     // A zone in the wrong place is most often a slip, and would judge everybody wrongly.
@@ -120,7 +120,7 @@ class TaskReader {
             [&](const Eigen::Vector3i& v, size_t at) { is_something |= ids[at] && isScannedBone(v); });
         if (!is_something)
             refuseTask("assessment.reference", "takes no bone away: check where it lies, or what was saved");
-        task_->reference = std::make_shared<const ZoneMap>(scanned_.dims(), ids);
+        task_->reference = std::make_shared<const VoxelIds>(scanned_.dims(), ids);
     }
 
     // What is bone here, and none in the saved densities.

@@ -18,10 +18,11 @@ constexpr double kShaftStep = 1e-3;   // m
 IndexBox boxOf(const VoxelVolume& scanned, const PlannedLine& line) {
     const Eigen::Array3d low = line.entry_V.cwiseMin(line.tip_V).array() - kAround;
     const Eigen::Array3d high = line.entry_V.cwiseMax(line.tip_V).array() + kAround;
-    const Eigen::Array3d h = scanned.spacing().array(), far = scanned.dims().cast<double>().array();
-    const IndexBox box{(low / h).max(0).min(far - 1).floor().cast<int>(),
-                       (high / h).max(0).min(far - 1).ceil().cast<int>()};
-    return box.clamped(Eigen::Vector3i::Zero(), scanned.dims().array() - 1);
+    // Around the scan there is air; a line may lie anywhere.
+    const Eigen::Array3d h = scanned.spacing().array(), rim = (kAround / h).ceil();
+    const Eigen::Array3d end = scanned.dims().cast<double>().array() - 1 + rim;
+    return {(low / h).max(-rim).min(end).floor().cast<int>(),
+            (high / h).max(-rim).min(end).ceil().cast<int>()};
 }
 
 // Marks what is not bone and leads out of the box.
@@ -52,8 +53,12 @@ class OutsideFlood {
         const Eigen::Vector3i n = v - box_.min;
         return size_t(n.x()) + size_t(size_.x()) * (size_t(n.y()) + size_t(size_.y()) * size_t(n.z()));
     }
+    bool isBone(const Eigen::Vector3i& v) const {
+        return (v.array() >= 0).all() && (v.array() < scanned_.dims().array()).all() &&
+               scanned_.at(v.x(), v.y(), v.z()) >= scanned_.iso();
+    }
     void enter(const Eigen::Vector3i& v) {
-        if (scanned_.at(v.x(), v.y(), v.z()) >= scanned_.iso() || is_outside_[indexOf(v)]) return;
+        if (isBone(v) || is_outside_[indexOf(v)]) return;
         is_outside_[indexOf(v)] = true;
         open_.push_back(v);
     }

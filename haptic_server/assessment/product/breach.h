@@ -37,7 +37,6 @@ class BreachMeter {
   public:
     BreachMeter(std::shared_ptr<const SolidBone> bone, const PlannedLine& line);
 
-    const SolidBone& bone() const noexcept { return *bone_; }
     // Another attempt begins.
     void reset() noexcept { last_V_.reset(), depth_ = 0; }
 

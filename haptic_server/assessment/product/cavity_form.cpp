@@ -12,11 +12,10 @@ constexpr int kCavityVersion = 1;
 constexpr double kWalkStepsPerVoxel = 4;
 constexpr size_t kMostSteps = 40'000'000;  // of all walks; a second
 
-bool isRemovedNear(const ChangeGrid& changes, const Eigen::Vector3d& p_V) {
-    const Eigen::Vector3i low = (p_V.array() / changes.spacing().array()).floor().cast<int>();
-    for (int corner = 0; corner < 8; ++corner)
-        if (changes.isRemoved(low + Eigen::Vector3i(corner & 1, corner >> 1 & 1, corner >> 2))) return true;
-    return false;
+// Something was taken away right in front of it: it is no part of the surface as it was.
+bool isCut(const ChangeGrid& changes, const CutPiece& piece) {
+    const Eigen::Vector3d out = 0.6 * changes.spacing().cwiseProduct(piece.normal_V);
+    return changes.isRemoved(changes.voxelOf(piece.center_V + out));
 }
 
 // Goes from `start` along `way` through the box in small steps.
@@ -57,19 +56,19 @@ class Walk {
 
 }  // namespace
 
-void addCavityFigures(const ChangeGrid& changes, const std::vector<SurfacePiece>& pieces,
+void addCavityFigures(const ChangeGrid& changes, const std::vector<CutPiece>& pieces,
                       const Eigen::Vector3d& approach_V, Figures& figures) {
     const double floor_cosine = std::cos(45 * kDegree), undercut_cosine = -std::sin(5 * kDegree);
     const Walk walk(changes);
     WeightedSample depth, width, taper;
     double undercut = 0;
-    bool is_cut = false;
+    bool is_hollow = false;
     // Of very many pieces every n-th stands for the others.
     const size_t stride = 1 + pieces.size() * size_t(walk.steps()) / kMostSteps;
     for (size_t n = 0; n < pieces.size(); n += stride) {
-        const SurfacePiece& piece = pieces[n];
-        if (!piece.is_judged || !isRemovedNear(changes, piece.center_V)) continue;
-        is_cut = true;
+        const CutPiece& piece = pieces[n];
+        if (!piece.is_judged || !isCut(changes, piece)) continue;
+        is_hollow = true;
         const double cosine = -piece.normal_V.dot(approach_V);
         if (cosine < undercut_cosine) undercut += piece.area * double(stride);
         if (cosine > floor_cosine) {
@@ -80,7 +79,7 @@ void addCavityFigures(const ChangeGrid& changes, const std::vector<SurfacePiece>
             if (across > 0) width.add(across, piece.area);
         }
     }
-    if (!is_cut) return;
+    if (!is_hollow) return;
     const auto add = [&](const char* id, const char* label, double value, const char* unit) {
         figures.push_back({std::string("cavity.") + id, kCavityVersion, label, value, unit});
     };
@@ -89,7 +88,7 @@ void addCavityFigures(const ChangeGrid& changes, const std::vector<SurfacePiece>
         add("depth_sd", "Depth of the floor, SD", depth.deviation() * kPerMillimetre, "mm");
     }
     if (!width.isEmpty()) add("isthmus", "Least width", width.percentile(0.05) * kPerMillimetre, "mm");
-    if (!taper.isEmpty()) add("wall_taper", "Walls open by, mean", taper.mean() / kDegree, "deg");
+    if (!taper.isEmpty()) add("wall_taper", "Walls open by, median", taper.percentile(0.5) / kDegree, "deg");
     add("undercut_area", "Undercut walls", undercut * kPerMillimetre * kPerMillimetre, "mm2");
 }
 

@@ -13,7 +13,7 @@
 namespace bonemill {
 
 // Adds the figures "cavity.*". `approach_V` goes into the bone and has length 1.
-void addCavityFigures(const ChangeGrid& changes, const std::vector<SurfacePiece>& pieces,
+void addCavityFigures(const ChangeGrid& changes, const std::vector<CutPiece>& pieces,
                       const Eigen::Vector3d& approach_V, Figures& figures);
 
 }  // namespace bonemill

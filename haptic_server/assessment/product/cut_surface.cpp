@@ -16,7 +16,7 @@ bool isNearChange(const Eigen::Vector3d& p_V, const ChangeGrid& changes) {
 }
 
 void addPieces(const NodeMesh& mesh, const MeshGrid& grid, const ChangeGrid& changes,
-               std::vector<SurfacePiece>& pieces) {
+               std::vector<CutPiece>& pieces) {
     for (size_t n = 0; n + 2 < mesh.indices.size(); n += 3) {
         Eigen::Vector3d corner[3];
         for (size_t c = 0; c < 3; ++c)
@@ -30,8 +30,8 @@ void addPieces(const NodeMesh& mesh, const MeshGrid& grid, const ChangeGrid& cha
 
 }  // namespace
 
-std::vector<SurfacePiece> surfaceIn(const VoxelVolume& now, const ChangeGrid& changes) {
-    std::vector<SurfacePiece> pieces;
+std::vector<CutPiece> surfaceIn(const VoxelVolume& now, const ChangeGrid& changes) {
+    std::vector<CutPiece> pieces;
     const LeafLattice lattice(now, Eigen::Vector3i::Constant(kCutLeafCells));
     const MeshGrid grid(now, lattice);
     LeafMesher mesher(now, lattice);

@@ -8,13 +8,13 @@
 
 namespace bonemill {
 
-struct SurfacePiece {
+struct CutPiece {
     Eigen::Vector3d center_V, normal_V;  // out of the bone
     double area;                         // m²
     bool is_judged;                      // something around it is removed, or should be
 };
 
 // All of the surface in the box. `now` may not be written meanwhile. It allocates.
-std::vector<SurfacePiece> surfaceIn(const VoxelVolume& now, const ChangeGrid& changes);
+std::vector<CutPiece> surfaceIn(const VoxelVolume& now, const ChangeGrid& changes);
 
 }  // namespace bonemill

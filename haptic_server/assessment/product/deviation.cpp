@@ -25,11 +25,11 @@ void addOneSide(const WeightedSample& sample, const std::string& id, const std::
 
 }  // namespace
 
-Deviation deviationOf(const ChangeGrid& changes, const std::vector<SurfacePiece>& pieces) {
+Deviation deviationOf(const ChangeGrid& changes, const std::vector<CutPiece>& pieces) {
     const SignedField ideal(changes.box(), changes.spacing(),
                             [&](const Eigen::Vector3i& v) { return changes.staysIdeally(v); });
     Deviation deviation;
-    for (const SurfacePiece& piece : pieces) {
+    for (const CutPiece& piece : pieces) {
         if (!piece.is_judged) continue;
         const double distance = ideal.at(piece.center_V);
         if (!std::isfinite(distance)) continue;

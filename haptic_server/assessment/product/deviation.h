@@ -10,12 +10,12 @@
 namespace bonemill {
 
 struct Deviation {
-    std::vector<SurfacePiece> pieces;  // of the surface as it is now
-    std::vector<double> distance;      // of each piece, m: positive is over-cut
+    std::vector<CutPiece> pieces;  // of the surface as it is now
+    std::vector<double> distance;  // of each piece, m: positive is over-cut
 };
 
 // Of all pieces those that are judged; without an ideal surface in reach there is none.
-Deviation deviationOf(const ChangeGrid& changes, const std::vector<SurfacePiece>& pieces);
+Deviation deviationOf(const ChangeGrid& changes, const std::vector<CutPiece>& pieces);
 
 // Adds the figures "overcut.*" and "undercut.*": mean, SD and 95th percentile by area, and maximum.
 void addDeviationFigures(const Deviation& deviation, Figures& figures);

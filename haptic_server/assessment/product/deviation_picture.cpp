@@ -95,27 +95,27 @@ Colour colourOf(double distance, double scale) {
 
 }  // namespace
 
-DeviationPicture drawDeviation(const Deviation& deviation, const std::vector<SurfacePiece>& context,
+DeviationPicture drawDeviation(const Deviation& deviation, const std::vector<CutPiece>& context,
                                const Eigen::Vector3d& approach_V, double voxel) {
     DeviationPicture picture;
     if (deviation.pieces.empty()) return picture;
     picture.scale = std::max(kFineScale, kScaleVoxels * voxel);
     const View view(approach_V);
     Eigen::AlignedBox2d window;
-    for (const SurfacePiece& piece : deviation.pieces) window.extend(view.place(piece.center_V));
+    for (const CutPiece& piece : deviation.pieces) window.extend(view.place(piece.center_V));
     const Eigen::Vector2d rim = Eigen::Vector2d::Constant(6 * voxel);
     window = {window.min() - rim, window.max() + rim};
     const double pixel = std::max(voxel / 4, window.sizes().maxCoeff() / kMostPixels);
     Canvas canvas(window, pixel);
     const double radius = std::max(0.8 * voxel, pixel);
-    const auto draw = [&](const SurfacePiece& piece, const Colour& colour) {
+    const auto draw = [&](const CutPiece& piece, const Colour& colour) {
         if (piece.normal_V.dot(view.into) > 0) return;  // seen from behind
         canvas.splat(view.place(piece.center_V), view.into.dot(piece.center_V), radius,
                      view.shaded(colour, piece.normal_V));
     };
     for (size_t n = 0; n < deviation.pieces.size(); ++n)
         draw(deviation.pieces[n], colourOf(deviation.distance[n], picture.scale));
-    for (const SurfacePiece& piece : context)
+    for (const CutPiece& piece : context)
         if (!piece.is_judged) draw(piece, kBone);
     picture.png = canvas.png();
     return picture;

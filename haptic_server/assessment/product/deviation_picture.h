@@ -16,7 +16,7 @@ struct DeviationPicture {
 
 // `context` is all of the surface around; `approach_V` of length 1 goes into the picture. `voxel` in m. The
 // same input gives the same bytes (of one libpng).
-DeviationPicture drawDeviation(const Deviation& deviation, const std::vector<SurfacePiece>& context,
+DeviationPicture drawDeviation(const Deviation& deviation, const std::vector<CutPiece>& context,
                                const Eigen::Vector3d& approach_V, double voxel);
 
 }  // namespace bonemill

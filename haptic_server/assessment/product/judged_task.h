@@ -9,6 +9,7 @@
 
 #include "haptic_server/assessment/product/zones.h"
 #include "haptic_server/volume/bone_properties.h"
+#include "haptic_server/volume/voxel_ids.h"
 
 namespace bonemill {
 
@@ -39,8 +40,8 @@ enum class TaskFeedback : uint8_t { kNever, kAfterwards, kLive };
 
 struct JudgedTask {
     std::vector<Zone> zones;
-    std::shared_ptr<const ZoneMap> map;                // never null
-    std::shared_ptr<const ZoneMap> reference;          // what shall be gone has a zone; null: all targets
+    std::shared_ptr<const VoxelIds> map;               // never null
+    std::shared_ptr<const VoxelIds> reference;         // what shall be gone has a zone; null: all targets
     std::shared_ptr<const BoneProperties> properties;  // null: there is no structure of a material
     std::vector<Structure> structures;
     std::optional<Eigen::Vector3d> approach_V;  // into the bone, of length 1

@@ -1,5 +1,6 @@
 #include "haptic_server/assessment/product/product.h"
 
+#include "haptic_server/assessment/product/breach.h"
 #include "haptic_server/assessment/product/cavity_form.h"
 #include "haptic_server/assessment/product/plan_error.h"
 #include "haptic_server/assessment/product/structures_left.h"
@@ -22,25 +23,20 @@ Eigen::Vector3d viewOf(const Deviation& deviation, const JudgedTask& task) {
     if (task.approach_V) return *task.approach_V;
     if (task.plan) return (task.plan->tip_V - task.plan->entry_V).normalized();
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const SurfacePiece& piece : deviation.pieces) sum -= piece.area * piece.normal_V;
+    for (const CutPiece& piece : deviation.pieces) sum -= piece.area * piece.normal_V;
     return sum.norm() > 0 ? Eigen::Vector3d(sum.normalized()) : Eigen::Vector3d(-Eigen::Vector3d::UnitZ());
 }
 
 void measureShape(const ProductInput& input, const IndexBox& changed, Product& product) {
     const JudgedTask& task = input.task;
     const ChangeGrid changes(gridBoxOf(changed, input.now), input.scanned, input.now, task);
-    const std::vector<SurfacePiece> pieces = surfaceIn(input.now, changes);
+    const std::vector<CutPiece> pieces = surfaceIn(input.now, changes);
     const Deviation deviation = deviationOf(changes, pieces);
     addDeviationFigures(deviation, product.figures);
     if (task.approach_V) addCavityFigures(changes, pieces, *task.approach_V, product.figures);
     product.picture =
         drawDeviation(deviation, pieces, viewOf(deviation, task), input.now.spacing().maxCoeff());
-    if (!task.plan) return;
-    if (input.breach) {
-        addPlanFigures(changes, *task.plan, input.breach->bone(), product.figures);
-    } else {
-        addPlanFigures(changes, *task.plan, SolidBone(input.scanned, *task.plan), product.figures);
-    }
+    if (task.plan) addPlanFigures(changes, *task.plan, SolidBone(input.scanned, *task.plan), product.figures);
 }
 
 }  // namespace
@@ -50,7 +46,7 @@ Product measureProduct(const ProductInput& input) {
     const ProductCounts counts = countProduct(input.scanned, input.now, input.task);
     const double voxel_volume = input.scanned.voxelVolume();
     addZoneFigures(counts, input.task, voxel_volume, product.figures);
-    if (input.breach) addBreachFigures(input.breach->depth(), product.figures);
+    if (input.breach) addBreachFigures(*input.breach, product.figures);
     if (!counts.changed.isEmpty()) {
         if (gridBoxOf(counts.changed, input.now).count() <= kMostGridVoxels)
             measureShape(input, counts.changed, product);

@@ -5,9 +5,11 @@
 // be written meanwhile.
 #pragma once
 
+#include <optional>
+
 #include "haptic_server/assessment/figure.h"
-#include "haptic_server/assessment/product/breach.h"
 #include "haptic_server/assessment/product/deviation_picture.h"
+#include "haptic_server/volume/voxel_volume.h"
 
 namespace bonemill {
 
@@ -15,7 +17,7 @@ struct ProductInput {
     const VoxelVolume& scanned;
     const VoxelVolume& now;
     const JudgedTask& task;
-    const BreachMeter* breach = nullptr;  // null: the tool's way is not known
+    std::optional<double> breach = {};  // m, of a BreachMeter; none where the tool's way is not known
 };
 
 struct Product {

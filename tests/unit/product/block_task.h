@@ -1,6 +1,8 @@
 // A block of bone with a margin of air, milled by formula, and a task on it.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "haptic_server/assessment/product/product.h"
@@ -50,8 +52,17 @@ class BlockTask {
             if (in(inB(v))) now_.set(v.x(), v.y(), v.z(), 0);
         });
     }
-    void finishZones() { task.map = std::make_shared<const ZoneMap>(geometry_.dims, ids_); }
-    Figures figures(const BreachMeter* breach = nullptr) const {
+    // As a burr leaves it, with a ramp of densities: distance(p_B) is in m, negative inside of what goes.
+    template <class Distance>
+    void carve(Distance&& distance) {
+        forEachIndex(box(), [&](const Eigen::Vector3i& v) {
+            const double share = std::clamp(0.5 + distance(inB(v)) / geometry_.spacing.x(), 0.0, 1.0);
+            const Density left = Density(share * kMaxDensity);
+            if (left < now_.at(v.x(), v.y(), v.z())) now_.set(v.x(), v.y(), v.z(), left);
+        });
+    }
+    void finishZones() { task.map = std::make_shared<const VoxelIds>(geometry_.dims, ids_); }
+    Figures figures(std::optional<double> breach = {}) const {
         return measureProduct({scanned_, now_, task, breach}).figures;
     }
 

@@ -84,7 +84,7 @@ TEST(ZoneTally, aReferenceTakesThePlaceOfTheTargets) {
     test::BlockTask block = boxTask();
     std::vector<ZoneId> ideal;
     forEachIndex(block.box(), [&](const Eigen::Vector3i& v) { ideal.push_back(block.inB(v).z() > 5e-3); });
-    block.task.reference = std::make_shared<const ZoneMap>(block.scanned().dims(), ideal);
+    block.task.reference = std::make_shared<const VoxelIds>(block.scanned().dims(), ideal);
     block.mill([](const auto& p) { return p.z() > 5e-3; });
     EXPECT_EQ(valueOf(block.figures(), "overlap.dice"), 1);
     EXPECT_NEAR(valueOf(block.figures(), "overcut.max"), 0, 0.13);  // mm: half a voxel
@@ -102,7 +102,7 @@ TEST(RunningTally, keepsUpWithAWholeCount) {
     std::vector<ZoneId> ids;
     forEachIndex(test::wholeBox(scanned),
                  [&](const Eigen::Vector3i& v) { ids.push_back(ZoneId((v.x() / 9 + v.z() / 11) % 4)); });
-    task.map = std::make_shared<const ZoneMap>(scanned.dims(), ids);
+    task.map = std::make_shared<const VoxelIds>(scanned.dims(), ids);
     RunningTally tally(scanned, now, lattice, task);
     while (!tally.update(16)) {
     }
@@ -127,7 +127,7 @@ TEST(RunningTally, leavesBeingWrittenWait) {
     const VoxelVolume scanned = volume;
     LeafLattice lattice(volume, {8, 8, 8});
     JudgedTask task;
-    task.map = std::make_shared<const ZoneMap>(volume.dims(), std::vector<ZoneId>(4096));
+    task.map = std::make_shared<const VoxelIds>(volume.dims(), std::vector<ZoneId>(4096));
     RunningTally tally(scanned, volume, lattice, task);
     while (!tally.update()) {
     }
