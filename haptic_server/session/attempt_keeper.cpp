@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/config/scene_file.h"
 #include "common/rt/clock.h"
 #include "common/units.h"
 #include "haptic_server/setup/scene_materials.h"
@@ -17,7 +18,8 @@ AttemptKeeper::AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& 
       voxel_mm3_(voxel_volume * kPerCubicMillimetre),
       effects_(scene.effects()),
       tell_device_(std::move(tell_device)),
-      material_names_(materialNamesOf(scene)) {}
+      material_names_(materialNamesOf(scene)),
+      scene_hash_(sceneHashOf(scene)) {}
 
 std::optional<std::string> AttemptKeeper::start(const topics::Command& order) {
     const std::string& trainee = order.start_attempt();
@@ -70,8 +72,20 @@ bool AttemptKeeper::end(const std::optional<topics::Command>& order) {
     attempt.set_removed_mm3(double(removed_voxels) * voxel_mm3_);
     attempt.set_max_force_n(figures.max_force);
     effects_.describe(figures.effects, material_names_, attempt);
-    book_.endAttempt(std::move(attempt), order);
+    book_.endAttempt(std::move(attempt), order, judgement());
     return true;
+}
+
+// Nothing is judged of an attempt that no tick has seen.
+std::optional<AttemptJudgement> AttemptKeeper::judgement() {
+    const std::shared_ptr<Technique> technique = recorder_.takeTechnique();
+    if (!technique || technique->isEmpty()) return std::nullopt;
+    technique->finish();
+    AttemptJudgement judgement;
+    judgement.judge = [technique] { return JudgedAttempt{technique->assessment(), {}}; };
+    judgement.scene_hash = scene_hash_;
+    judgement.begin_s = technique->beginS();
+    return judgement;
 }
 
 }  // namespace bonemill

@@ -39,6 +39,7 @@ class AttemptKeeper {
   private:
     // Returns true if the order is answered when the attempt is in the class table.
     bool end(const std::optional<topics::Command>& order);
+    std::optional<AttemptJudgement> judgement();
 
     LessonBook& book_;
     Recorder& recorder_;
@@ -47,6 +48,7 @@ class AttemptKeeper {
     ShownEffects effects_;
     std::function<void(bool begins)> tell_device_;
     std::vector<std::string> material_names_;
+    uint64_t scene_hash_;
     double time_s_ = 0;
     int64_t counted_ns_ = 0;  // CLOCK_MONOTONIC until which it is counted
 };

@@ -18,6 +18,7 @@ class ClassTable {
     explicit ClassTable(std::string path);
 
     bool hasFile() const noexcept { return !path_.empty(); }
+    const std::string& path() const noexcept { return path_; }
     // Returns why the line is not there (disk full, among others), or "".
     std::string append(const topics::Attempt& attempt, const std::string& scene) const;
 
