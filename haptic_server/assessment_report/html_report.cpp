@@ -107,14 +107,16 @@ std::string worstMomentsOf(const std::vector<Moment>& worst, double begin_s) {
                         element("td", std::to_string(n + 1), "class='mark'") +
                             element("td", clockText(worst[n].t_s - begin_s), "class='n'") +
                             element("td", escaped(worst[n].text)) +
-                            element("td", element("code", "seek " + coordinate(worst[n].t_s)), "class='n'"));
+                            element("td", element("code", "--at " + coordinate(worst[n].t_s)), "class='n'"));
     return rows.empty() ? "" : element("table", rows, "class='moments'");
 }
 
 std::string timeLineOf(const AttemptResult& result, double begin_s) {
     const std::vector<Moment> worst = worstOf(result.assessment.moments, kWorst);
     const std::string replay =
-        result.journal.empty() ? "" : " · recording " + element("code", escaped(result.journal));
+        result.journal.empty()
+            ? ""
+            : " · " + element("code", "haptic_server replay " + escaped(result.journal) + " --at …");
     const std::string line = timeLineSvg(result.assessment, worst, begin_s);
     if (line.empty() && worst.empty()) return "";
     return element("section", element("h2", "The attempt, and its worst moments" + replay) + line +

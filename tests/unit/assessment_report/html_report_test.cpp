@@ -93,7 +93,7 @@ TEST(HtmlReport, TheWorstMomentsComeFirstAndCanBeSought) {
                  force = html.find("5.2 N on");
     EXPECT_LT(damage, touch);
     EXPECT_LT(touch, force);
-    EXPECT_NE(html.find("seek 158.9"), std::string::npos);
+    EXPECT_NE(html.find("--at 158.9"), std::string::npos);
     EXPECT_NE(html.find("0:58.9"), std::string::npos) << "in the attempt's time";
 }
 
