@@ -67,6 +67,9 @@ void addSimulateOptions(CLI::App& app, SimulateOptions& simulate) {
     app.add_option("--tool", simulate.tool, "name of the scene's tool, or its number; default: the first")
         ->type_name("NAME|NUMBER");
     app.add_option("--trace", simulate.trace, "write one CSV line per tick");
+    app.add_option(
+        "--save-deviation", simulate.deviation,
+        "at the end: picture of what was cut too far and not far enough by the scene's task (.png)");
     addSaveOptions(app, simulate.save);
 }
 

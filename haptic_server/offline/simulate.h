@@ -11,8 +11,9 @@ namespace bonemill {
 struct SimulateOptions {
     std::string scene;
     std::string trajectory;
-    std::string tool;   // name or number from 1; empty: the first
-    std::string trace;  // empty: none
+    std::string tool;       // name or number from 1; empty: the first
+    std::string trace;      // empty: none
+    std::string deviation;  // picture of what was cut too far and not far enough (.png); empty: none
     SavePaths save;
 };
 

@@ -120,6 +120,15 @@ bool LessonBook::isAttemptRunning() const {
     return lesson_.is_running();
 }
 
+int LessonBook::attemptsOf(const std::string& trainee) const {
+    const std::lock_guard lock(mutex_);
+    const auto is_one = [&](const topics::Attempt& attempt) {
+        return attempt.trainee() == trainee && attempt.scene_id() == lesson_.scene_id();
+    };
+    return int(std::ranges::count_if(lesson_.attempts(), is_one)) +
+           (lesson_.is_running() && lesson_.trainee() == trainee ? 1 : 0);
+}
+
 void LessonBook::dropAttempt() {
     const std::lock_guard lock(mutex_);
     --attempts_begun_;

@@ -51,6 +51,9 @@ class LessonBook {
     static std::string traineeProblem(const std::string& trainee);
     void beginAttempt(const std::string& trainee);
     bool isAttemptRunning() const;
+    // How many attempts this trainee has had at the scene in force, the one under way included; of those that
+    // the book still holds.
+    int attemptsOf(const std::string& trainee) const;
     // The attempt under way ends as if it had never begun.
     void dropAttempt();
     // Takes the attempt's figures; name, number, scene and start are filled in. It goes into the class table;

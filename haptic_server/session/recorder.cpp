@@ -8,10 +8,12 @@
 
 namespace bonemill {
 
-Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded)
+Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded,
+                   std::optional<BreachWatch> breach)
     : ring_(ring),
       statistics_(period_ns, recorded),
       recorded_(recorded),
+      breach_(std::move(breach)),
       attempt_{.max_force = 0, .effects = EffectStatistics(recorded)},
       shown_attempt_(attempt_) {}
 
@@ -61,6 +63,7 @@ void Recorder::takeUpAttempt() {
     bone_order_ = *std::exchange(asked_bone_order_, std::nullopt);
     attempt_ = shown_attempt_;
     if (make_technique_) technique_ = make_technique_();
+    if (breach_) breach_->reset();
 }
 
 void Recorder::addToAttempt(const TickRecord& record) {
@@ -69,6 +72,9 @@ void Recorder::addToAttempt(const TickRecord& record) {
     attempt_.max_force = std::max(attempt_.max_force, std::hypot(force[0], force[1], force[2]));
     attempt_.effects.add(record.effects);
     if (technique_) technique_->add(record);
+    if (!breach_) return;
+    breach_->add(record);
+    attempt_.breach = breach_->depth();
 }
 
 std::unique_ptr<Technique> Recorder::takeTechnique() {

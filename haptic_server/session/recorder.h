@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/rt/spsc_ring.h"
+#include "haptic_server/assessment/product/breach_watch.h"
 #include "haptic_server/assessment/technique.h"
 #include "haptic_server/record/event_sum.h"
 #include "haptic_server/record/run_statistics.h"
@@ -31,12 +32,14 @@ struct LoopHealth {
 struct AttemptFigures {
     double max_force = 0;  // N, of the wrench on the hand
     EffectStatistics effects;
+    std::optional<double> breach = {};  // m beside the task's planned line; none without one
 };
 
 class Recorder {
   public:
-    // `recorded` says what the records hold of effects.
-    Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded = {});
+    // `recorded` says what the records hold of effects; `breach` is there where the task has a planned line.
+    Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded = {},
+             std::optional<BreachWatch> breach = {});
 
     // Before the first drain(), it begins a trace, which takes the place of the file that is there; an empty
     // path is none. Throws UserError when it cannot be created.
@@ -91,6 +94,7 @@ class Recorder {
     std::optional<TraceWriter> trace_;
     LatencyHistogram window_;  // tick compute time in the second under way
     int64_t window_start_ns_ = 0;
+    std::optional<BreachWatch> breach_;
     AttemptFigures attempt_;
     uint64_t bone_order_ = 0;  // the attempt's
     MakeTechnique make_technique_;

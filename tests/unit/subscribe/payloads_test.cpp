@@ -168,6 +168,36 @@ TEST(Payloads, EffectStateAndTrainingAreChecked) {
     EXPECT_FALSE(isAccepted(&parseStatus, status));
 }
 
+TEST(Payloads, HowTheTaskStandsIsChecked) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    topics::Status good;
+    good.set_epoch(1);
+    good.mutable_task()->add_zones()->set_name("box\n");
+    good.mutable_task()->mutable_zones(0)->set_removed_mm3(2);
+    good.mutable_task()->add_gates()->set_text("no\thole");
+    good.mutable_task()->set_time_left_s(-1);
+    good.mutable_task()->set_score(1);
+    const auto parsed = parseStatus(bytesOf(good.SerializeAsString()));
+    ASSERT_TRUE(parsed);
+    EXPECT_EQ(parsed->task().zones(0).name(), "box");
+    EXPECT_EQ(parsed->task().gates(0).text(), "nohole");
+    const auto accepts = [&](const auto& spoil) {
+        topics::Status status = good;
+        spoil(*status.mutable_task());
+        return isAccepted(&parseStatus, status);
+    };
+    EXPECT_FALSE(accepts([](topics::TaskState& task) { task.mutable_zones(0)->set_bone_mm3(kNan); }));
+    EXPECT_FALSE(accepts([](topics::TaskState& task) { task.mutable_zones(0)->set_removed_mm3(1e300); }));
+    EXPECT_FALSE(accepts([](topics::TaskState& task) { task.set_time_left_s(kNan); }));
+    EXPECT_FALSE(accepts([](topics::TaskState& task) { task.set_score(1.01); }));
+    EXPECT_FALSE(accepts([](topics::TaskState& task) {
+        for (int n = 0; n < 32; ++n) task.add_zones();
+    }));
+    EXPECT_FALSE(accepts([](topics::TaskState& task) {
+        for (int n = 0; n < 64; ++n) task.add_gates();
+    }));
+}
+
 TEST(Payloads, ADevicesNameIsCleanedAndItsFiguresAreChecked) {
     topics::Status status;
     status.set_epoch(1);
