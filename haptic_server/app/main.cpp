@@ -70,6 +70,10 @@ void addSimulateOptions(CLI::App& app, SimulateOptions& simulate) {
     app.add_option(
         "--save-deviation", simulate.deviation,
         "at the end: picture of what was cut too far and not far enough by the scene's task (.png)");
+    app.add_option(
+        "--assess", simulate.assess,
+        "at the end: results and report into this folder, as a session writes them beside the class table");
+    app.add_option("--pseudonym", simulate.pseudonym, "whose results they are")->capture_default_str();
     addSaveOptions(app, simulate.save);
 }
 

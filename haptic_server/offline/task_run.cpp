@@ -10,9 +10,10 @@
 
 namespace bonemill {
 
-TaskRun::TaskRun(const scene::Scene& scene, const Simulation& simulation) : task_(simulation.task) {
-    if (!task_) return;
-    breach_ = breachWatchOf(simulation);
+TaskRun::TaskRun(const scene::Scene& scene, const Simulation& simulation, bool wanted)
+    : task_(simulation.task) {
+    if (!task_ && !wanted) return;
+    if (task_) breach_ = breachWatchOf(simulation);
     technique_ = techniqueMaker(scene, simulation)();
 }
 
@@ -23,13 +24,15 @@ void TaskRun::add(const TickRecord& record) {
 
 TaskRun::Result TaskRun::judgeBone(const VoxelVolume& scanned, const VoxelVolume& now) {
     technique_->finish();
+    if (!task_) return {technique_->assessment(), {}, technique_->beginS()};
     ProductInput input{scanned, now, *task_};
     if (breach_) input.breach = breach_->depth();
     Product product = measureProduct(input);
     for (const std::string& what : product.left_out) spdlog::warn("not measured: {}", what);
     Assessment technique = technique_->assessment();
     product.figures.insert(product.figures.end(), technique.figures.begin(), technique.figures.end());
-    Result result{judge(*task_, std::move(product.figures)), std::move(product.picture)};
+    Result result{judge(*task_, std::move(product.figures)), std::move(product.picture),
+                  technique_->beginS()};
     result.assessment.series = std::move(technique.series);
     result.assessment.moments = std::move(technique.moments);
     return result;

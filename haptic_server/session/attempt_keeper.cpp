@@ -9,7 +9,7 @@
 #include "common/config/scene_file.h"
 #include "common/rt/clock.h"
 #include "common/units.h"
-#include "haptic_server/assessment_report/report_text.h"
+#include "haptic_server/assessment_report/deviation_caption.h"
 #include "haptic_server/setup/scene_materials.h"
 
 namespace bonemill {
@@ -21,9 +21,8 @@ JudgedAttempt judgedAttempt(const Technique& technique, const TaskWatch::Result&
     judged.assessment.series = technique.series();
     judged.assessment.moments = technique.moments();
     if (!of_task.picture.png.empty())
-        judged.pictures.push_back({"Cut too far: red; not far enough: blue. Full colour from " +
-                                       valueText(of_task.picture.scale * kPerMillimetre, "mm"),
-                                   "image/png", of_task.picture.png});
+        judged.pictures.push_back(
+            {deviationCaption(of_task.picture.scale), "image/png", of_task.picture.png});
     return judged;
 }
 
@@ -127,7 +126,10 @@ std::optional<AttemptJudgement> AttemptKeeper::judgement(std::optional<double> b
     AttemptJudgement judgement;
     judgement.scene_hash = scene_hash_;
     judgement.begin_s = technique->beginS();
-    judgement.is_exam = task_ && task_->task() && task_->task()->is_exam;
+    if (const JudgedTask* const task = task_ ? task_->task() : nullptr) {
+        judgement.is_exam = task->is_exam;
+        judgement.is_told = !task->is_exam && task->feedback != TaskFeedback::kNever;
+    }
     judgement.judge = [technique, judged] {
         return judged.valid() ? judgedAttempt(*technique, judged.get())
                               : JudgedAttempt{technique->assessment(), {}};

@@ -24,6 +24,7 @@ struct AttemptJudgement {
     double begin_s = 0;       // of the session
     std::string journal;      // the recording's file name; empty: none
     bool is_exam = false;
+    bool is_told = true;  // trainees may learn how it went
 };
 
 // Judges the attempt, writes results and report beside the class table, and fills in the attempt's verdict.

@@ -40,7 +40,7 @@ TableWriter::Written TableWriter::Shared::write(const Line& line) {
     if (!problem.empty())
         spdlog::error("attempt {} is not in the class table: {}", attempt.number(), problem);
     Written written{line.order, attempt.number(), {}, problem.empty() ? files_problem : problem};
-    if (attempt.has_verdict() && !line.judgement->is_exam) written.verdict = attempt.verdict();
+    if (attempt.has_verdict() && line.judgement->is_told) written.verdict = attempt.verdict();
     return written;
 }
 

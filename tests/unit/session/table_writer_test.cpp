@@ -106,11 +106,11 @@ TEST(TableWriter, AJudgedAttemptHasItsFilesBeforeItsLine) {
               std::string::npos);
 }
 
-TEST(TableWriter, OfAnExaminationNothingIsTold) {
+TEST(TableWriter, WhatTraineesMayNotKnowIsNotTold) {
     const test::TemporaryFolder folder;
     TableWriter writer{ClassTable(folder / "class.csv")};
     AttemptJudgement judgement = failedJudgement();
-    judgement.is_exam = true;
+    judgement.is_told = false;
     EXPECT_FALSE(writtenBy(writer, judgement).verdict);
     EXPECT_NE(test::readFile(folder / "class.csv").find(",no,"), std::string::npos)
         << "the teacher's table has it";
