@@ -14,6 +14,7 @@
 #include "haptic_server/offline/run_path.h"
 #include "haptic_server/offline/state_hash.h"
 #include "haptic_server/offline/task_run.h"
+#include "haptic_server/offline/write_assessment.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/record/final_files.h"
 #include "haptic_server/record/hex_text.h"
@@ -120,11 +121,12 @@ SimulateResult simulate(const SimulateOptions& options) {
     const MeshGrid grid(bone.volume, bone.lattice);
     const double volume_before = meshVolume(meshWholeBone(bone.volume, bone.lattice), grid);
     std::optional<VoxelVolume> before;
-    if (!options.save.difference.empty() || simulation.task) before = bone.volume.withoutSpareBricks();
+    if (!options.save.difference.empty() || simulation.task || !options.assess.empty())
+        before = bone.volume.withoutSpareBricks();
 
     if (!options.deviation.empty() && !simulation.task)
         throw UserError("--save-deviation: the scene has no task to compare with (assessment)");
-    TaskRun task(loaded.scene, simulation);
+    TaskRun task(loaded.scene, simulation, !options.assess.empty());
     const ToolSwitch tools(simulation.spoTools(), tool);
     const AccuracySwitch accuracy(simulation.accuracy);
     HapticTick tick(simulation.tick, {bone}, {tools, accuracy});
@@ -154,9 +156,12 @@ SimulateResult simulate(const SimulateOptions& options) {
     nlohmann::json json = totals(statistics, hash);
     for (const auto& [key, value] : statistics.effects().figures()) json[key] = value;
     if (recorded.any()) json["warnings"] = statistics.effects().warnings(materialNamesOf(loaded.scene));
-    if (simulation.task) {
+    if (simulation.task || !options.assess.empty()) {
         const TaskRun::Result result = task.judgeBone(*before, bone.volume);
-        json["assessment"] = assessmentJson(result.assessment);
+        if (simulation.task) json["assessment"] = assessmentJson(result.assessment);
+        if (!options.assess.empty())
+            writeAssessment({options.assess, options.pseudonym, rows.back().t_s - rows.front().t_s}, loaded,
+                            result, files);
         files.write(options.deviation,
                     [&](const std::string& path) { writeBytes(path, result.picture.png); });
     }

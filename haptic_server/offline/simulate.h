@@ -15,6 +15,8 @@ struct SimulateOptions {
     std::string trace;      // empty: none
     std::string deviation;  // picture of what was cut too far and not far enough (.png); empty: none
     SavePaths save;
+    std::string assess;  // folder for results and report, as beside a class table; empty: none
+    std::string pseudonym = "simulated";  // whose they are
 };
 
 struct SimulateResult {

@@ -4,20 +4,17 @@
 
 #include <fstream>
 
-#include "common/config/scene_tools.h"
 #include "common/user_error.h"
 #include "haptic_server/assessment/product/judge.h"
-#include "haptic_server/setup/scene_effects.h"
-#include "haptic_server/setup/scene_materials.h"
+#include "haptic_server/setup/make_technique.h"
 
 namespace bonemill {
 
-TaskRun::TaskRun(const scene::Scene& scene, const Simulation& simulation) : task_(simulation.task) {
-    if (!task_) return;
-    breach_ = breachWatchOf(simulation);
-    technique_.emplace(TechniqueScene{.recorded = recordedEffectsOf(scene.effects()),
-                                      .materials = materialNamesOf(scene),
-                                      .tools = toolNamesOf(scene)});
+TaskRun::TaskRun(const scene::Scene& scene, const Simulation& simulation, bool wanted)
+    : task_(simulation.task) {
+    if (!task_ && !wanted) return;
+    if (task_) breach_ = breachWatchOf(simulation);
+    technique_ = techniqueMaker(scene, simulation)();
 }
 
 void TaskRun::add(const TickRecord& record) {
@@ -27,13 +24,15 @@ void TaskRun::add(const TickRecord& record) {
 
 TaskRun::Result TaskRun::judgeBone(const VoxelVolume& scanned, const VoxelVolume& now) {
     technique_->finish();
+    if (!task_) return {technique_->assessment(), {}, technique_->beginS()};
     ProductInput input{scanned, now, *task_};
     if (breach_) input.breach = breach_->depth();
     Product product = measureProduct(input);
     for (const std::string& what : product.left_out) spdlog::warn("not measured: {}", what);
     Assessment technique = technique_->assessment();
     product.figures.insert(product.figures.end(), technique.figures.begin(), technique.figures.end());
-    Result result{judge(*task_, std::move(product.figures)), std::move(product.picture)};
+    Result result{judge(*task_, std::move(product.figures)), std::move(product.picture),
+                  technique_->beginS()};
     result.assessment.series = std::move(technique.series);
     result.assessment.moments = std::move(technique.moments);
     return result;

@@ -14,21 +14,23 @@ namespace bonemill {
 
 class TaskRun {
   public:
-    // In a scene without a task it does nothing. `simulation` must outlive it.
-    TaskRun(const scene::Scene& scene, const Simulation& simulation);
+    // In a scene without a task it does nothing, unless the technique is `wanted`. `simulation` must outlive
+    // it.
+    TaskRun(const scene::Scene& scene, const Simulation& simulation, bool wanted = false);
 
     void add(const TickRecord& record);
     struct Result {
         Assessment assessment;
         DeviationPicture picture;
+        double begin_s = 0;  // of the first record
     };
-    // No record comes any more, and the scene has a task.
+    // No record comes any more; there is a task, or the technique was wanted.
     Result judgeBone(const VoxelVolume& scanned, const VoxelVolume& now);
 
   private:
     std::shared_ptr<const JudgedTask> task_;
     std::optional<BreachWatch> breach_;
-    std::optional<Technique> technique_;
+    std::unique_ptr<Technique> technique_;
 };
 
 // For programs: {"passed", "gates": [...], "sub_scores": [...], "total", "figures": {id: value}}.

@@ -3,13 +3,30 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
+#include "common/config/scene_file.h"
 #include "common/rt/clock.h"
 #include "common/units.h"
+#include "haptic_server/assessment_report/deviation_caption.h"
 #include "haptic_server/setup/scene_materials.h"
 
 namespace bonemill {
+namespace {
+
+JudgedAttempt judgedAttempt(const Technique& technique, const TaskWatch::Result& of_task) {
+    if (!of_task.problem.empty()) throw std::runtime_error(of_task.problem);
+    JudgedAttempt judged{of_task.assessment, {}};
+    judged.assessment.series = technique.series();
+    judged.assessment.moments = technique.moments();
+    if (!of_task.picture.png.empty())
+        judged.pictures.push_back(
+            {deviationCaption(of_task.picture.scale), "image/png", of_task.picture.png});
+    return judged;
+}
+
+}  // namespace
 
 AttemptKeeper::AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history, double voxel_volume,
                              const scene::Scene& scene, std::function<void(bool begins)> tell_device,
@@ -21,7 +38,8 @@ AttemptKeeper::AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& 
       effects_(scene.effects()),
       tell_device_(std::move(tell_device)),
       task_(task),
-      material_names_(materialNamesOf(scene)) {}
+      material_names_(materialNamesOf(scene)),
+      scene_hash_(sceneHashOf(scene)) {}
 
 std::optional<std::string> AttemptKeeper::start(const topics::Command& order) {
     const std::string& trainee = order.start_attempt();
@@ -93,9 +111,30 @@ bool AttemptKeeper::end(const std::optional<topics::Command>& order) {
     attempt.set_removed_mm3(double(removed_voxels) * voxel_mm3_);
     attempt.set_max_force_n(figures.max_force);
     effects_.describe(figures.effects, material_names_, attempt);
-    if (task_) task_->endAttempt(figures.breach, {});
-    book_.endAttempt(std::move(attempt), order);
+    book_.endAttempt(std::move(attempt), order, judgement(figures.breach));
     return true;
+}
+
+// The judging of the bone has begun when this returns. Of an attempt that no tick has seen there is nothing
+// to tell.
+std::optional<AttemptJudgement> AttemptKeeper::judgement(std::optional<double> breach) {
+    const std::shared_ptr<Technique> technique = recorder_.takeTechnique();
+    if (technique) technique->finish();
+    std::shared_future<TaskWatch::Result> judged;
+    if (task_) judged = task_->endAttempt(breach, technique ? technique->figures() : Figures{});
+    if (!technique || technique->isEmpty()) return std::nullopt;
+    AttemptJudgement judgement;
+    judgement.scene_hash = scene_hash_;
+    judgement.begin_s = technique->beginS();
+    if (const JudgedTask* const task = task_ ? task_->task() : nullptr) {
+        judgement.is_exam = task->is_exam;
+        judgement.is_told = !task->is_exam && task->feedback != TaskFeedback::kNever;
+    }
+    judgement.judge = [technique, judged] {
+        return judged.valid() ? judgedAttempt(*technique, judged.get())
+                              : JudgedAttempt{technique->assessment(), {}};
+    };
+    return judgement;
 }
 
 }  // namespace bonemill

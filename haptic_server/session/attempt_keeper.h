@@ -47,6 +47,7 @@ class AttemptKeeper {
     std::string limitProblem(const std::string& trainee) const;
     // Returns true if the order is answered when the attempt is in the class table.
     bool end(const std::optional<topics::Command>& order);
+    std::optional<AttemptJudgement> judgement(std::optional<double> breach);
 
     LessonBook& book_;
     Recorder& recorder_;
@@ -56,6 +57,7 @@ class AttemptKeeper {
     std::function<void(bool begins)> tell_device_;
     TaskWatch* task_;
     std::vector<std::string> material_names_;
+    uint64_t scene_hash_;
     double time_s_ = 0;
     int64_t counted_ns_ = 0;  // CLOCK_MONOTONIC until which it is counted
 };

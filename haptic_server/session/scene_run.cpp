@@ -16,6 +16,7 @@
 #include "haptic_server/session/shown_device.h"
 #include "haptic_server/session/shown_zones.h"
 #include "haptic_server/setup/coupling_text.h"
+#include "haptic_server/setup/make_technique.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_materials.h"
 #include "haptic_server/volume/import/nrrd_writer.h"
@@ -105,6 +106,7 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
                 options.instructor_only),
       show_(parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,
             io_, commands_, task_, options.stream_mbit_per_s * kMega / 8) {
+    recorder_.measureTechnique(techniqueMaker(loaded_.scene, simulation_));
     for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
     for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
 }

@@ -44,7 +44,7 @@ TaskWatch::TaskWatch(std::shared_ptr<const JudgedTask> task, const BoneModel& bo
 
 void TaskWatch::round() {
     using namespace std::chrono_literals;
-    if (judging_.valid() && judging_.wait_for(0s) == std::future_status::ready) takeUp(judging_.get());
+    if (judging_.valid() && judging_.wait_for(0s) == std::future_status::ready) finish();
     const int64_t now_ns = monotonicNowNs();
     if (!tally_ || task_->feedback != TaskFeedback::kLive || now_ns < next_update_ns_) return;
     tally_->update();
@@ -56,8 +56,8 @@ void TaskWatch::beginAttempt() {
     if (task_ && task_->feedback == TaskFeedback::kAfterwards) shows_zones_ = false;
 }
 
-void TaskWatch::endAttempt(std::optional<double> breach, Figures technique) {
-    if (!task_) return;
+std::shared_future<TaskWatch::Result> TaskWatch::endAttempt(std::optional<double> breach, Figures technique) {
+    if (!task_) return {};
     finish();
     judging_ = std::async(std::launch::async, [this, breach, technique = std::move(technique),
                                                snapshot = history_.snapshot(bone_)]() mutable {
@@ -75,24 +75,22 @@ void TaskWatch::endAttempt(std::optional<double> breach, Figures technique) {
         return result;
     });
     if (task_->feedback == TaskFeedback::kAfterwards) shows_zones_ = true;
+    return judging_;
 }
 
 void TaskWatch::finish() {
-    if (judging_.valid()) takeUp(judging_.get());
+    if (!judging_.valid()) return;
+    takeUp(judging_.get());
+    judging_ = {};
 }
 
-void TaskWatch::takeUp(Result result) {
+void TaskWatch::takeUp(const Result& result) {
     if (result.problem.empty()) {
         logResult(result.assessment);
         last_ = result.assessment;
     } else {
         spdlog::error("the attempt could not be judged: {}", result.problem);
     }
-    untaken_ = std::move(result);
-}
-
-std::optional<TaskWatch::Result> TaskWatch::takeResult() {
-    return std::exchange(untaken_, std::nullopt);
 }
 
 // Of what is counted all along.

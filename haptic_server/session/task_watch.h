@@ -37,10 +37,8 @@ class TaskWatch {
     void round();
     void beginAttempt();
     // The bone is judged as it is now. What else was measured of the attempt goes in with it: gates and
-    // scores may ask for it.
-    void endAttempt(std::optional<double> breach, Figures technique);
-    // It is there once: the last attempt has been judged.
-    std::optional<Result> takeResult();
+    // scores may ask for it. Any thread may wait for what it returns, which is nothing without a task.
+    std::shared_future<Result> endAttempt(std::optional<double> breach, Figures technique);
     // Waits for the judgement under way, if there is one, and takes it up.
     void finish();
 
@@ -49,7 +47,7 @@ class TaskWatch {
 
   private:
     Figures runningFigures() const;
-    void takeUp(Result result);
+    void takeUp(const Result& result);
     void describeZones(topics::TaskState& state) const;
 
     std::shared_ptr<const JudgedTask> task_;
@@ -58,10 +56,9 @@ class TaskWatch {
     ProductCounts scanned_counts_;       // what was bone, and nothing gone
     std::optional<RunningTally> tally_;  // with a task
     int64_t next_update_ns_ = 0;
-    std::future<Result> judging_;
-    std::optional<Assessment> last_;  // of the attempt before
-    std::optional<Result> untaken_;
-    std::atomic<bool> shows_zones_;  // relaxed: the mesher sees it at some later round
+    std::shared_future<Result> judging_;  // its thread ends before this object: finish()
+    std::optional<Assessment> last_;      // of the attempt before
+    std::atomic<bool> shows_zones_;       // relaxed: the mesher sees it at some later round
 };
 
 }  // namespace bonemill

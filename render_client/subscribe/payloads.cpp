@@ -152,10 +152,15 @@ bool isUsable(const topics::ScenePicture& picture) {
            picture.png().size() <= kMostPictureBytes;
 }
 
+bool isUsable(const topics::Verdict& verdict) {
+    const double score = verdict.score_percent();
+    return verdict.failed_gates_size() <= kMostShownGates && score >= 0 && score <= 100;
+}
+
 bool isUsable(const topics::Attempt& attempt) {
     return isTime(attempt.time_s()) && isSane(attempt.removed_mm3()) && isSane(attempt.max_force_n()) &&
            attempt.max_force_n() >= 0 && isUsable(attempt.training()) &&
-           attempt.structures_touched_size() <= kMostStructures;
+           attempt.structures_touched_size() <= kMostStructures && isUsable(attempt.verdict());
 }
 
 bool isUsable(const topics::Lesson& lesson) {
@@ -247,6 +252,10 @@ void keepShownText(topics::Attempt& attempt) {
     attempt.set_scene_id(shownName(attempt.scene_id()));
     if (attempt.has_training()) keepShownText(*attempt.mutable_training());
     for (std::string& name : *attempt.mutable_structures_touched()) name = shownName(name);
+    if (!attempt.has_verdict()) return;
+    topics::Verdict& verdict = *attempt.mutable_verdict();
+    for (std::string& gate : *verdict.mutable_failed_gates()) gate = shownText(gate, kLongestText);
+    verdict.set_results(shownText(verdict.results(), kLongestText));
 }
 
 template <class Message>

@@ -41,9 +41,8 @@ TEST_F(TaskWatching, ASceneWithoutATaskIsNotWatched) {
     TaskWatch watch(nullptr, ball_.bone, ball_.history);
     watch.round();
     watch.beginAttempt();
-    watch.endAttempt({}, {});
+    EXPECT_FALSE(watch.endAttempt({}, {}).valid());
     watch.finish();
-    EXPECT_FALSE(watch.takeResult());
     EXPECT_FALSE(watch.showsZones());
     topics::Status status;
     watch.describe(true, 1, status);
@@ -82,10 +81,9 @@ TEST_F(TaskWatching, AnAttemptIsJudgedWhenItHasEnded) {
     TaskWatch watch(task_, ball_.bone, ball_.history);
     watch.beginAttempt();
     ball_.groove(10e-3);
-    watch.endAttempt(1.5e-3, {{"force.max", 1, "Largest force", 3, "N"}});
+    const auto judged = watch.endAttempt(1.5e-3, {{"force.max", 1, "Largest force", 3, "N"}});
     watch.finish();
-    const std::optional<TaskWatch::Result> result = watch.takeResult();
-    ASSERT_TRUE(result);
+    const TaskWatch::Result* const result = &judged.get();
     EXPECT_EQ(result->problem, "");
     EXPECT_FALSE(result->assessment.hasPassed());
     EXPECT_TRUE(result->assessment.gates[0].is_passed);
@@ -94,7 +92,6 @@ TEST_F(TaskWatching, AnAttemptIsJudgedWhenItHasEnded) {
     EXPECT_EQ(findFigure(result->assessment.figures, "breach.depth")->value, 1.5);
     EXPECT_NEAR(findFigure(result->assessment.figures, "product.removed_volume")->value,
                 double(ball_.history.missingVoxels()) * 0.125, 1e-9);
-    EXPECT_FALSE(watch.takeResult()) << "it is there once";
     const topics::TaskState state = stateOf(watch, false);
     EXPECT_TRUE(state.is_result());
     EXPECT_EQ(state.gates(1).state(), topics::TaskState::Gate::BROKEN);
@@ -172,7 +169,7 @@ TEST_F(LimitedAttempts, AnAttemptEndsWithItsTime) {
     while (attempts.isRunning()) attempts.round();
     EXPECT_TRUE(ball_.history.isMillingPaused());
     watch.finish();
-    EXPECT_TRUE(watch.takeResult());
+    EXPECT_TRUE(stateOf(watch, false).is_result());
 }
 
 }  // namespace

@@ -249,6 +249,7 @@ topics::Lesson validLesson() {
     attempt.set_time_s(12);
     attempt.mutable_training()->set_damaged_mm3(1);
     attempt.add_structures_touched("nerve\x1b[2J");
+    attempt.mutable_verdict()->add_failed_gates("dura\x1b[2J");
     return lesson;
 }
 
@@ -258,6 +259,7 @@ TEST(Payloads, LessonComesThroughWithTextsThatCanBeShown) {
     EXPECT_EQ(parsed->scenes(0).id(), "tooth_cavity");
     EXPECT_EQ(parsed->attempts(0).trainee(), "Ann" + std::string(61, 'n'));
     EXPECT_EQ(parsed->attempts(0).structures_touched(0), "nerve[2J");
+    EXPECT_EQ(parsed->attempts(0).verdict().failed_gates(0), "dura[2J");
 }
 
 TEST(Payloads, LessonIsChecked) {
@@ -275,6 +277,11 @@ TEST(Payloads, LessonIsChecked) {
         is_accepted([](topics::Lesson& l) { l.mutable_scenes(0)->mutable_picture()->push_back(0); }));
     EXPECT_FALSE(is_accepted([](topics::Lesson& l) { l.mutable_attempts(0)->set_time_s(-1); }));
     EXPECT_FALSE(is_accepted([](topics::Lesson& l) { l.mutable_attempts(0)->set_removed_mm3(kNan); }));
+    EXPECT_FALSE(is_accepted(
+        [](topics::Lesson& l) { l.mutable_attempts(0)->mutable_verdict()->set_score_percent(kNan); }));
+    EXPECT_FALSE(is_accepted([](topics::Lesson& l) {
+        for (int n = 0; n < 65; ++n) l.mutable_attempts(0)->mutable_verdict()->add_failed_gates("x");
+    }));
     EXPECT_FALSE(is_accepted([](topics::Lesson& l) { l.mutable_attempts(0)->set_max_force_n(1e9); }));
     EXPECT_FALSE(is_accepted(
         [](topics::Lesson& l) { l.mutable_attempts(0)->mutable_training()->set_max_temperature_c(kNan); }));
