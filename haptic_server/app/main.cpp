@@ -12,6 +12,7 @@
 #include "haptic_server/accuracy_report/accuracy_report.h"
 #include "haptic_server/offline/describe_scene.h"
 #include "haptic_server/offline/simulate.h"
+#include "haptic_server/session/forget_person.h"
 #include "haptic_server/session/server.h"
 #include "haptic_server/volume/import/import_program.h"
 
@@ -66,7 +67,19 @@ void addSimulateOptions(CLI::App& app, SimulateOptions& simulate) {
     app.add_option("--tool", simulate.tool, "name of the scene's tool, or its number; default: the first")
         ->type_name("NAME|NUMBER");
     app.add_option("--trace", simulate.trace, "write one CSV line per tick");
+    app.add_option(
+        "--save-deviation", simulate.deviation,
+        "at the end: picture of what was cut too far and not far enough by the scene's task (.png)");
+    app.add_option(
+        "--assess", simulate.assess,
+        "at the end: results and report into this folder, as a session writes them beside the class table");
+    app.add_option("--pseudonym", simulate.pseudonym, "whose results they are")->capture_default_str();
     addSaveOptions(app, simulate.save);
+}
+
+void addForgetOptions(CLI::App& app, ForgetOptions& forget) {
+    app.add_option("pseudonym", forget.pseudonym, "whose data it is, as in the class table")->required();
+    app.add_option("--in", forget.folder, "folder of the class table")->required()->type_name("DIR");
 }
 
 void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
@@ -86,6 +99,7 @@ struct Options {
     ServerOptions server;
     SimulateOptions simulate;
     AccuracyReportOptions report;
+    ForgetOptions forget;
 };
 
 int simulateInOrder(const SimulateOptions& options) {
@@ -129,8 +143,14 @@ int serve(int argc, char** argv) {
         "accuracy-report",
         "measure errors and tick times of the accuracy settings in a scene, on this machine");
     addReportOptions(*report_command, options.report);
+    CLI::App* const session_command =
+        app.add_subcommand("session", "what can be done with what sessions have left")->require_subcommand(1);
+    CLI::App* const forget_command = session_command->add_subcommand(
+        "forget", "delete what a class' folder holds of one person, and say what was deleted");
+    addForgetOptions(*forget_command, options.forget);
     if (!parseCommandLine(app, argc, argv, "haptic_server")) return 0;
     setUpLog("haptic_server", options.log_level);
+    if (forget_command->parsed()) return forgetPerson(options.forget, std::cout);
     if (simulate_command->parsed()) return simulateInOrder(options.simulate);
     if (!report_command->parsed()) return serveLive(options);
     std::cout << accuracyReport(options.report, std::cerr) << std::flush;

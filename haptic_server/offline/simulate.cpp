@@ -13,6 +13,8 @@
 #include "common/user_error.h"
 #include "haptic_server/offline/run_path.h"
 #include "haptic_server/offline/state_hash.h"
+#include "haptic_server/offline/task_run.h"
+#include "haptic_server/offline/write_assessment.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/record/final_files.h"
 #include "haptic_server/record/hex_text.h"
@@ -97,6 +99,7 @@ nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
 void requireApart(const SimulateOptions& options, const LoadedScene& loaded) {
     std::vector<NamedFile> written = filesOf(options.save), read = filesOf(loaded);
     written.push_back({"--trace", options.trace});
+    written.push_back({"--save-deviation", options.deviation});
     read.push_back({"--trajectory", options.trajectory});
     requireApart(written, read);
 }
@@ -111,6 +114,7 @@ SimulateResult simulate(const SimulateOptions& options) {
     const size_t tool = options.tool.empty() ? 0 : toolIndexOf(toolNamesOf(loaded.scene), options.tool);
     requireReplaceable(options.save);
     requireWritable(options.trace);
+    requireReplaceable(options.deviation);
     const RecordedEffects recorded = recordedEffectsOf(loaded.scene.effects());
     Simulation simulation = makeSimulation(loaded);
     for (const std::string& warning : simulation.warnings) spdlog::warn("{}", warning);
@@ -119,8 +123,12 @@ SimulateResult simulate(const SimulateOptions& options) {
     const MeshGrid grid(bone.volume, bone.lattice);
     const double volume_before = meshVolume(meshWholeBone(bone.volume, bone.lattice), grid);
     std::optional<VoxelVolume> before;
-    if (!options.save.difference.empty()) before = bone.volume.withoutSpareBricks();
+    if (!options.save.difference.empty() || simulation.task || !options.assess.empty())
+        before = bone.volume.withoutSpareBricks();
 
+    if (!options.deviation.empty() && !simulation.task)
+        throw UserError("--save-deviation: the scene has no task to compare with (assessment)");
+    TaskRun task(loaded.scene, simulation, !options.assess.empty());
     const ToolSwitch tools(simulation.spoTools(), tool);
     const AccuracySwitch accuracy(simulation.accuracy);
     HapticTick tick(simulation.tick, {bone}, {tools, accuracy});
@@ -132,6 +140,7 @@ SimulateResult simulate(const SimulateOptions& options) {
         hash.addRecord(record, recorded);
         statistics.add(record);
         if (trace) trace->write(record);
+        task.add(record);
     });
     hash.addVolume(bone.volume);
     FinalFiles files;
@@ -149,6 +158,15 @@ SimulateResult simulate(const SimulateOptions& options) {
     nlohmann::json json = totals(statistics, hash);
     for (const auto& [key, value] : statistics.effects().figures()) json[key] = value;
     if (recorded.any()) json["warnings"] = statistics.effects().warnings(materialNamesOf(loaded.scene));
+    if (simulation.task || !options.assess.empty()) {
+        const TaskRun::Result result = task.judgeBone(*before, bone.volume);
+        if (simulation.task) json["assessment"] = assessmentJson(result.assessment);
+        if (!options.assess.empty())
+            writeAssessment({options.assess, options.pseudonym, rows.back().t_s - rows.front().t_s}, loaded,
+                            result, files);
+        files.write(options.deviation,
+                    [&](const std::string& path) { writeBytes(path, result.picture.png); });
+    }
     json["scene"] = loaded.scene.name();
     json["tool"] = simulation.tools[tool].name;
     json["preset"] = settingsName(simulation.accuracy);

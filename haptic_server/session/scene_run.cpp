@@ -14,7 +14,9 @@
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/record/final_files.h"
 #include "haptic_server/session/shown_device.h"
+#include "haptic_server/session/shown_zones.h"
 #include "haptic_server/setup/coupling_text.h"
+#include "haptic_server/setup/make_technique.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_materials.h"
 #include "haptic_server/volume/import/nrrd_writer.h"
@@ -92,16 +94,19 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
       io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), parts.link, ring_, cuts_),
       tick_(simulation_.tick, {*simulation_.bone, &history_}, {tools_, accuracy_}),
       recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns,
-                recordedEffectsOf(loaded_.scene.effects())),
+                recordedEffectsOf(loaded_.scene.effects()), breachWatchOf(simulation_)),
       bone_export_(history_, *simulation_.bone, options.export_dir),
-      attempts_(parts.lesson, recorder_, history_, simulation_.bone->volume.voxelVolume(), loaded_.scene,
-                [this](bool begins) { parts_.link.announceAttempt(begins); }),
+      task_(simulation_.task, *simulation_.bone, history_),
+      attempts_(
+          parts.lesson, recorder_, history_, simulation_.bone->volume.voxelVolume(), loaded_.scene,
+          [this](bool begins) { parts_.link.announceAttempt(begins); }, &task_),
       commands_(loaded_.scene, *simulation_.bone, recorder_,
                 {history_, accuracy_, tools_, parts.stop_requested, bone_export_, io_.resetOrders(),
                  parts.lesson, attempts_, parts.limits},
                 options.instructor_only),
       show_(parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,
-            io_, commands_, options.stream_mbit_per_s * kMega / 8) {
+            io_, commands_, task_, options.stream_mbit_per_s * kMega / 8) {
+    recorder_.measureTechnique(techniqueMaker(loaded_.scene, simulation_));
     for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
     for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
 }
@@ -193,7 +198,10 @@ void SceneRun::meshUntil(const std::stop_token& stop) {
     const auto markWhole = [&] {
         if (rounds.hasMeshedAll()) outbox_.markWhole(monotonicNowNs());
     };
+    const std::optional<ZonePaint> zones =
+        zonePaintOf(loaded_.scene, simulation_.task.get(), history_.scanned());
     loop(stop, MeshRounds::kPeriod, [&] {
+        rounds.setPaint(zones && task_.showsZones() ? &*zones : nullptr);
         for (bool is_more = true; is_more && !stop.stop_requested(); markWhole()) is_more = rounds.round(put);
     });
     endOnFailure([&] {

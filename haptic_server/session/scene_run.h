@@ -90,6 +90,7 @@ class SceneRun {
     Recorder recorder_;
     MeshOutbox outbox_;
     SessionExport bone_export_;
+    TaskWatch task_;
     AttemptKeeper attempts_;
     SessionCommands commands_;
     ShowSession show_;

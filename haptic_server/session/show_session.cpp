@@ -14,6 +14,7 @@
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/session/order_text.h"
 #include "haptic_server/session/shown_device.h"
+#include "haptic_server/session/shown_zones.h"
 #include "haptic_server/setup/scene_materials.h"
 
 namespace bonemill {
@@ -102,6 +103,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     for (const SceneTool& tool : simulation.tools) info.add_tool_names(tool.name);
     fillCamera(scene.camera(), info.mutable_camera());
     describeToViewers(scene, info);
+    describeZones(scene, info);
     info.set_leaf_count(simulation.bone->lattice.leafCount());
     return info;
 }
@@ -123,7 +125,7 @@ std::future<std::vector<NodeMesh>> meshingStructures(const Simulation& simulatio
 ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                          const BoneHistory& history, const AccuracyFigures& figures, MeshOutbox& outbox,
                          Recorder& recorder, const DeviceLinkIo& device, SessionCommands& commands,
-                         double bytes_per_s)
+                         TaskWatch& task, double bytes_per_s)
     : publisher_(publisher),
       scene_(scene),
       scene_name_(scene.name()),
@@ -136,6 +138,7 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
       recorder_(recorder),
       device_(device),
       commands_(commands),
+      task_(task),
       figures_(figures),
       effects_(scene.effects()),
       material_names_(materialNamesOf(scene)),
@@ -198,6 +201,7 @@ void ShowSession::round() {
     const int64_t now_ns = monotonicNowNs();
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
     commands_.attempts().round();
+    task_.round();
     carryOutCommands();
     publishDensities();
     publishLesson();
@@ -217,6 +221,7 @@ void ShowSession::finish(int64_t until_ns) {
 
 void ShowSession::endAttempt() {
     commands_.attempts().stop();
+    task_.finish();
 }
 
 void ShowSession::leaveAnswers() {
@@ -337,7 +342,8 @@ void ShowSession::publishStatus() {
     status.set_faults(health.faults);
     status.set_fault_text(faultNames(health.faults));
     commands_.describe(status);
-    effects_.describe(recorder_.attempt().effects, material_names_, status);
+    if (!scene_.assessment().exam()) effects_.describe(recorder_.attempt().effects, material_names_, status);
+    task_.describe(commands_.attempts().isRunning(), commands_.attempts().timeS(), status);
     const auto latest = recorder_.latest();
     status.set_device_stale(!latest || (latest->faults & kFaultStaleDevice));
     if (latest) {

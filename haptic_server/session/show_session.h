@@ -26,7 +26,7 @@ class ShowSession {
     // References must outlive this object.
     ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                 const BoneHistory& history, const AccuracyFigures& figures, MeshOutbox& outbox,
-                Recorder& recorder, const DeviceLinkIo& device, SessionCommands& commands,
+                Recorder& recorder, const DeviceLinkIo& device, SessionCommands& commands, TaskWatch& task,
                 double bytes_per_s);
 
     // Publishes the scene, before the first round; the protected structures follow with some round().
@@ -71,6 +71,7 @@ class ShowSession {
     Recorder& recorder_;
     const DeviceLinkIo& device_;
     SessionCommands& commands_;
+    TaskWatch& task_;
     AccuracyFigures figures_;
     ShownEffects effects_;
     std::vector<std::string> material_names_;
