@@ -191,6 +191,7 @@ void ShowSession::round() {
     const int64_t now_ns = monotonicNowNs();
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
     commands_.attempts().round();
+    commands_.journal().round();
     carryOutCommands();
     publishDensities();
     publishLesson();
@@ -295,6 +296,7 @@ void ShowSession::carryOutCommands() {
 void ShowSession::answer(const topics::Command& command, const std::string& result) {
     publishStatus();
     publisher_.acknowledge(command, result);
+    commands_.journal().noteOrder(command, result);
     log(command, result);
 }
 
