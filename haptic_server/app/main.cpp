@@ -5,6 +5,7 @@
 
 #include "common/cli/command_line.h"
 #include "common/cli/number_range.h"
+#include "common/cli/version.h"
 #include "common/dds/network_cli.h"
 #include "common/log/log.h"
 #include "common/run_program.h"
@@ -12,6 +13,7 @@
 #include "haptic_server/accuracy_report/accuracy_report.h"
 #include "haptic_server/offline/describe_scene.h"
 #include "haptic_server/offline/simulate.h"
+#include "haptic_server/offline/verify_journal.h"
 #include "haptic_server/session/forget_person.h"
 #include "haptic_server/session/server.h"
 #include "haptic_server/volume/import/import_program.h"
@@ -44,6 +46,15 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
                    "node meshes take this much of the network at most, those nearest to the burr first")
         ->check(within(0.1, 10000))
         ->capture_default_str();
+    auto* const recording =
+        app.add_option("--recording", server.recording,
+                       "folder for what every session leaves of itself (docs/recording.md); default: "
+                       "$XDG_STATE_HOME/bonemill/recordings");
+    app.add_flag("!--no-recording", server.is_recorded, "leave no recording")->excludes(recording);
+    app.add_flag("--record-results", server.records_results,
+                 "record what the ticks came to as well, which a replay finds again");
+    app.add_flag("--resume", server.resumes,
+                 "go on with the bone of this session if it was stopped before its end; else begin anew");
     app.add_option("--trace", server.trace, "write one CSV line per tick");
     app.add_option("--report", server.report, "write the run's statistics as JSON");
     addSaveOptions(app, server.save);
@@ -100,6 +111,7 @@ struct Options {
     SimulateOptions simulate;
     AccuracyReportOptions report;
     ForgetOptions forget;
+    std::string journal;
 };
 
 int simulateInOrder(const SimulateOptions& options) {
@@ -107,6 +119,12 @@ int simulateInOrder(const SimulateOptions& options) {
     std::cout << result.json << std::endl;
     for (const std::string& problem : result.problems) std::cerr << "error: " << problem << '\n';
     return result.problems.empty() ? 0 : 1;
+}
+
+int verifyInOrder(const std::string& journal) {
+    const JournalVerdict verdict = verifyJournal(journal, versionText());
+    std::cout << journal << ": " << verdict.text() << std::flush;
+    return verdict.isProven() ? 0 : 1;
 }
 
 int serveLive(const Options& options) {
@@ -148,9 +166,14 @@ int serve(int argc, char** argv) {
     CLI::App* const forget_command = session_command->add_subcommand(
         "forget", "delete what a class' folder holds of one person, and say what was deleted");
     addForgetOptions(*forget_command, options.forget);
+    CLI::App* const verify_command =
+        session_command->add_subcommand("verify", "run a recording again and compare every bit");
+    verify_command->add_option("JOURNAL", options.journal, "recording (.mcap)")->required();
     if (!parseCommandLine(app, argc, argv, "haptic_server")) return 0;
+    options.server.version = versionText();
     setUpLog("haptic_server", options.log_level);
     if (forget_command->parsed()) return forgetPerson(options.forget, std::cout);
+    if (verify_command->parsed()) return verifyInOrder(options.journal);
     if (simulate_command->parsed()) return simulateInOrder(options.simulate);
     if (!report_command->parsed()) return serveLive(options);
     std::cout << accuracyReport(options.report, std::cerr) << std::flush;

@@ -13,13 +13,12 @@ namespace bonemill {
 
 struct TrajectoryRow {
     double t_s = 0.0;
-    Pose X_WT;             // of the device; unit quaternion
+    Pose X_WT;             // of the device; its quaternion as written, which the tick normalises
     uint32_t buttons = 0;  // Button bits
 };
 
 // There is at least one row, and t_s is strictly increasing. Throws UserError with file:line for a missing
-// column, a cell that is no finite number, a quaternion whose norm is off by more than 1e-3 (else it is
-// normalised) and a time that does not increase.
+// column, a cell that is no finite number, a quaternion whose norm is off by more than 1e-3 and a time that does not increase.
 std::vector<TrajectoryRow> readTrajectory(const std::string& path);
 // Reads the same from a stream; `name` stands for the file in messages.
 std::vector<TrajectoryRow> readTrajectory(std::istream& input, const std::string& name);

@@ -202,6 +202,7 @@ void ShowSession::round() {
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
     commands_.attempts().round();
     task_.round();
+    commands_.journal().round();
     carryOutCommands();
     publishDensities();
     publishLesson();
@@ -307,6 +308,7 @@ void ShowSession::carryOutCommands() {
 void ShowSession::answer(const topics::Command& command, const std::string& result) {
     publishStatus();
     publisher_.acknowledge(command, result);
+    commands_.journal().noteOrder(command, result);
     log(command, result);
 }
 
