@@ -62,26 +62,50 @@ std::shared_ptr<const BoneSnapshot> BoneHistory::snapshot(const BoneModel& bone)
         for (const auto& copy : last_snapshot_->leaves) copies[copy->leaf] = copy;
     copyChanged(bone, copies);
     auto snapshot = std::make_shared<BoneSnapshot>();
-    {
-        const Hold hold(*this);
-        copyChanged(bone, copies);
-        snapshot->missing_voxels = missingVoxels();
-    }
+    const Moment moment = copyWhole(bone, copies);
+    snapshot->missing_voxels = moment.missing_voxels;
+    snapshot->ticks = moment.ticks;
     for (auto& copy : copies)
         if (copy && !copy->densities.empty()) snapshot->leaves.push_back(std::move(copy));
     return last_snapshot_ = snapshot;
 }
 
-// Copies the leaves whose version is not the copied one, but for those that are written meanwhile.
-void BoneHistory::copyChanged(const BoneModel& bone, Copies& copies) const {
+// Is there while no tick writes.
+std::optional<BoneHistory::Moment> BoneHistory::moment() const noexcept {
+    const Moment moment{written_ticks_.load(), missingVoxels()};
+    if (is_writing_.load() || written_ticks_.load() != moment.ticks) return std::nullopt;
+    return moment;
+}
+
+// A look that finds no version but those of the copies says that the bone was as they are when it began:
+// versions only grow.
+BoneHistory::Moment BoneHistory::copyWhole(const BoneModel& bone, Copies& copies) {
+    constexpr int kLooks = 64;
+    for (int look = 0; look < kLooks; ++look) {
+        const std::optional<Moment> before = moment();
+        const bool is_as_copied = !copyChanged(bone, copies);
+        if (before && is_as_copied) return *before;
+        if (!before) std::this_thread::sleep_for(std::chrono::microseconds(20));
+    }
+    const Hold hold(*this);
+    copyChanged(bone, copies);
+    return {written_ticks_.load(), missingVoxels()};
+}
+
+// Copies the leaves whose version is not the copied one, but for those that are written meanwhile. False:
+// there were none.
+bool BoneHistory::copyChanged(const BoneModel& bone, Copies& copies) const {
+    bool is_any = false;
     for (LeafId leaf = 0; leaf < copies.size(); ++leaf) {
         const uint32_t version = bone.lattice.version(leaf);
-        if (version == 0 || version % 2 == 1) continue;
-        if (copies[leaf] && copies[leaf]->version == version) continue;
+        if (version == 0 || (copies[leaf] && copies[leaf]->version == version)) continue;
+        is_any = true;
+        if (version % 2 == 1) continue;
         auto copy = copyOf(bone, leaf, version);
         // The voxels were read with acquire, so this read cannot be older than they are.
         if (bone.lattice.version(leaf) == version) copies[leaf] = std::move(copy);
     }
+    return is_any;
 }
 
 std::shared_ptr<const LeafCopy> BoneHistory::copyOf(const BoneModel& bone, LeafId leaf,
@@ -129,8 +153,9 @@ uint64_t BoneHistory::restore(std::shared_ptr<const BoneSnapshot> snapshot) {
     return number;
 }
 
-bool BoneHistory::beginWrite() noexcept {
+bool BoneHistory::beginWrite(uint64_t tick) noexcept {
     is_writing_.store(true);
+    tick_ = tick;
     if (!is_held_.load()) return true;
     is_writing_.store(false);
     return false;
@@ -139,6 +164,7 @@ bool BoneHistory::beginWrite() noexcept {
 void BoneHistory::endWrite(uint32_t removed_voxels, uint32_t added_voxels) noexcept {
     missing_voxels_.store(missingVoxels() + int64_t(removed_voxels) - int64_t(added_voxels),
                           std::memory_order_relaxed);
+    written_ticks_.store(tick_ + 1);
     is_writing_.store(false);
 }
 
@@ -178,6 +204,14 @@ bool BoneHistory::restoreSome(BoneModel& bone, bool& shell_is_complete) noexcept
 void BoneHistory::restoreAll(BoneModel& bone) noexcept {
     for (bool shell_is_complete = true; restoreSome(bone, shell_is_complete);) {
     }
+}
+
+void BoneHistory::startFrom(BoneModel& bone, std::shared_ptr<const BoneSnapshot> snapshot) {
+    restore(snapshot);
+    takeUpNewestOrder();
+    bool shell_is_complete = true;  // the first tick that mills there says if it is not
+    for (const auto& copy : snapshot->leaves) restoreLeaf(bone, copy->leaf, shell_is_complete);
+    finishOrder();
 }
 
 bool BoneHistory::restoreLeaf(BoneModel& bone, LeafId leaf, bool& shell_is_complete) noexcept {

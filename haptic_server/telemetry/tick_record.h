@@ -8,6 +8,7 @@
 #include "haptic_server/telemetry/cut.h"
 #include "haptic_server/telemetry/device_report.h"
 #include "haptic_server/telemetry/effect_record.h"
+#include "haptic_server/telemetry/tick_input.h"
 
 namespace bonemill {
 
@@ -62,6 +63,7 @@ struct TickRecord {
     Cut cut;                  // the voxels milled in this tick
     EffectRecord effects;
     DeviceReport device;
+    TickInput input;
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 
