@@ -12,6 +12,8 @@
 #include "haptic_server/accuracy_report/accuracy_report.h"
 #include "haptic_server/offline/describe_scene.h"
 #include "haptic_server/offline/simulate.h"
+#include "haptic_server/replay/player.h"
+#include "haptic_server/replay/replay_server.h"
 #include "haptic_server/session/server.h"
 #include "haptic_server/volume/import/import_program.h"
 
@@ -69,6 +71,23 @@ void addSimulateOptions(CLI::App& app, SimulateOptions& simulate) {
     addSaveOptions(app, simulate.save);
 }
 
+void addReplayOptions(CLI::App& app, ReplayOptions& replay) {
+    app.add_option("journal", replay.journal, "the recorded session (.mcap)")->required();
+    app.add_option("--session", replay.session, "session number under which it is shown");
+    app.add_option("--domain", replay.domain, "DDS domain, 0 to 230");
+    dds::addNetworkOptions(app, replay.network);
+    app.add_option("--at", replay.at_s, "begin at this moment, s")->check(within(0, kMostSeconds));
+    app.add_option("--speed", replay.speed, "so many times as fast as it was")
+        ->check(within(Player::kSlowest, Player::kFastest))
+        ->capture_default_str();
+    app.add_flag("--paused", replay.is_paused, "wait until a viewer lets it go on");
+    app.add_option("--stream-mbit-per-s", replay.stream_mbit_per_s,
+                   "node meshes take this much of the network at most")
+        ->check(within(0.1, 10000))
+        ->capture_default_str();
+    app.add_flag("--instructor-only", replay.instructor_only, "only instructors lead the replay");
+}
+
 void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
     app.add_option("--scene", report.scene, "scene file (.textproto)")->required();
     app.add_option("--out", report.out,
@@ -86,6 +105,7 @@ struct Options {
     ServerOptions server;
     SimulateOptions simulate;
     AccuracyReportOptions report;
+    ReplayOptions replay;
 };
 
 int simulateInOrder(const SimulateOptions& options) {
@@ -129,8 +149,12 @@ int serve(int argc, char** argv) {
         "accuracy-report",
         "measure errors and tick times of the accuracy settings in a scene, on this machine");
     addReportOptions(*report_command, options.report);
+    CLI::App* const replay_command =
+        app.add_subcommand("replay", "show a recorded session again, as a live one (docs/replay.md)");
+    addReplayOptions(*replay_command, options.replay);
     if (!parseCommandLine(app, argc, argv, "haptic_server")) return 0;
     setUpLog("haptic_server", options.log_level);
+    if (replay_command->parsed()) return runReplay(options.replay);
     if (simulate_command->parsed()) return simulateInOrder(options.simulate);
     if (!report_command->parsed()) return serveLive(options);
     std::cout << accuracyReport(options.report, std::cerr) << std::flush;

@@ -101,7 +101,8 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
                  parts.lesson, attempts_, parts.limits},
                 options.instructor_only),
       show_(parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,
-            io_, commands_, options.stream_mbit_per_s * kMega / 8) {
+            [this](DeviceCapabilities& device) { return io_.capabilities(device); }, commands_,
+            options.stream_mbit_per_s * kMega / 8) {
     for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
     for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
 }

@@ -12,35 +12,21 @@
 #include "common/rt/clock.h"
 #include "common/rt/stop_signals.h"
 #include "common/user_error.h"
-#include "haptic_server/publish/other_server.h"
 #include "haptic_server/session/lesson_book.h"
 #include "haptic_server/session/order_limits.h"
 #include "haptic_server/session/result_files.h"
 #include "haptic_server/session/scene_folder.h"
 #include "haptic_server/session/scene_run.h"
+#include "haptic_server/session/sole_server.h"
 
 namespace bonemill {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLookForOthers = 300ms, kLookForSecuredOthers = 1500ms;  // who must prove itself takes longer
 constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 // A loop that waits for a device has no force; one that hangs must not keep the next scene away.
 constexpr int64_t kLongestFadeNs = kNsPerSecond;
-
-// Throws UserError if the session has a server: that is asked before this one shows anything.
-PublisherOptions publisherOptionsOf(const ServerOptions& options) {
-    const auto patience = options.network.secure.empty() ? kLookForOthers : kLookForSecuredOthers;
-    if (const auto other = findOtherServer(dds::Participant(options.domain), options.session, patience))
-        throw UserError(refusalText(*other, options.domain, options.session));
-    if (dds::isOpenToOthers(options.network))
-        spdlog::warn(
-            "anyone in this network can watch this session and command it; --secure closes it "
-            "(docs/security.md)");
-    return {
-        .domain = options.domain, .session = options.session, .epoch = 0, .secure = options.network.secure};
-}
 
 void requireFilesCanBeWritten(const ServerOptions& options) {
     requireWritable(options.trace);
@@ -78,7 +64,7 @@ class Server {
     Server(const ServerOptions& options, std::vector<ListedScene> scenes, Loaded first)
         : options_(options),
           link_(DeviceLink::create(options.session, LinkSide::kServer)),
-          publisher_(publisherOptionsOf(options)),
+          publisher_(soleServerOf(options.domain, options.session, options.network)),
           results_(options, inputsOf(scenes, first.scene)),
           lesson_(std::move(scenes), ClassTable(options.class_table)),
           run_(std::make_unique<SceneRun>(results_.first(), std::move(first.scene),

@@ -112,7 +112,8 @@ constexpr CommandWord kWords[] = {
     {"previous", "", [](Command& c, const std::string&, const Session&) { c.mutable_replay()->set_jump(-1); }},
     {"when", "X Y Z",
      [](Command& c, const std::string& place, const Session&) {
-         for (const double part : *placeOf(place)) c.mutable_replay()->mutable_removal_at()->add_p_m(part);
+         const std::array<double, 3> p_m = placeOf(place).value();
+         for (const double part : p_m) c.mutable_replay()->mutable_removal_at()->add_p_m(part);
      }},
     {"shutdown", "", [](Command& c, const std::string&, const Session&) { c.set_shut_down(true); }},
 };
