@@ -4,28 +4,14 @@
 #include <cstring>
 #include <thread>
 
+#include "haptic_server/bone/leaf_rows.h"
+
 namespace bonemill {
 namespace {
 
 constexpr int kVoxelsPerVersion = 4;  // a look at a leaf's version takes as long
 constexpr int kVoxelsLookedAtPerTick =
     32'768;  // eight leaves of 16³, some 30 µs; at least one leaf, however large
-
-IndexBox voxelsOf(const IndexBox& cells) noexcept {
-    return {cells.min, cells.max.array() + 1};
-}
-
-// A voxel has this place in a LeafCopy.
-size_t placeOf(const IndexBox& cells, const Eigen::Vector3i& voxel) noexcept {
-    const Eigen::Vector3i n = cells.max - cells.min + Eigen::Vector3i::Constant(2), at = voxel - cells.min;
-    return size_t(at.x()) + size_t(n.x()) * (size_t(at.y()) + size_t(n.y()) * size_t(at.z()));
-}
-
-// Calls visit(first voxel) for each row along x of the box.
-template <class Visit>
-void forEachRow(const IndexBox& voxels, Visit&& visit) noexcept {
-    forEachIndex({voxels.min, {voxels.min.x(), voxels.max.y(), voxels.max.z()}}, visit);
-}
 
 }  // namespace
 

@@ -28,7 +28,8 @@ class BoneStateWriter {
 
   private:
     ScannedBone scanned_;
-    std::map<LeafId, std::shared_ptr<const LeafCopy>> last_;
+    using Leaves = std::map<LeafId, std::shared_ptr<const LeafCopy>>;
+    Leaves last_;
 };
 
 class BoneStateReader {

@@ -29,8 +29,8 @@ inline constexpr size_t kMostTicksPerInputs = 1024;
 
 // The ticks are consecutive, and not more than that.
 void encodeInputs(std::span<const JournalTick> ticks, journal::Inputs& out);
-// `previous_start_ns` is that of the tick before, 0 if there is none. Appends; false if that is no message of
-// encodeInputs(): then nothing is appended. No tick has what cannot be: a capability or a factor out of range.
-bool decodeInputs(const journal::Inputs& inputs, int64_t previous_start_ns, std::vector<JournalTick>& ticks);
+// Appends; false if that is no message of encodeInputs(): then nothing is appended. No tick has what cannot be:
+// a capability, a factor or a number of periods out of range.
+bool decodeInputs(const journal::Inputs& inputs, std::vector<JournalTick>& ticks);
 
 }  // namespace bonemill

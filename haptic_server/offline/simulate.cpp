@@ -12,7 +12,7 @@
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/offline/run_path.h"
-#include "haptic_server/offline/state_hash.h"
+#include "haptic_server/record/state_hash.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/record/final_files.h"
 #include "haptic_server/record/hex_text.h"
