@@ -10,6 +10,7 @@
 #include "common/run_program.h"
 #include "common/user_error.h"
 #include "haptic_server/accuracy_report/accuracy_report.h"
+#include "haptic_server/export/export_journal.h"
 #include "haptic_server/offline/describe_scene.h"
 #include "haptic_server/offline/simulate.h"
 #include "haptic_server/replay/player.h"
@@ -88,6 +89,13 @@ void addReplayOptions(CLI::App& app, ReplayOptions& replay) {
     app.add_flag("--instructor-only", replay.instructor_only, "only instructors lead the replay");
 }
 
+void addExportOptions(CLI::App& app, ExportOptions& files) {
+    app.add_option("journal", files.journal, "the recorded session (.mcap)")->required();
+    app.add_option("--h5", files.h5, "write everything as HDF5, with units (docs/replay.md)");
+    app.add_option("--csv", files.csv, "write one CSV line per tick, as --trace does");
+    app.add_option("--traj", files.traj, "write what went in, for simulate --trajectory");
+}
+
 void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
     app.add_option("--scene", report.scene, "scene file (.textproto)")->required();
     app.add_option("--out", report.out,
@@ -106,6 +114,7 @@ struct Options {
     SimulateOptions simulate;
     AccuracyReportOptions report;
     ReplayOptions replay;
+    ExportOptions files;
 };
 
 int simulateInOrder(const SimulateOptions& options) {
@@ -152,8 +161,17 @@ int serve(int argc, char** argv) {
     CLI::App* const replay_command =
         app.add_subcommand("replay", "show a recorded session again, as a live one (docs/replay.md)");
     addReplayOptions(*replay_command, options.replay);
+    CLI::App* const session_command =
+        app.add_subcommand("session", "what can be done with a recorded session")->require_subcommand(1);
+    CLI::App* const export_command =
+        session_command->add_subcommand("export", "write a recorded session as files for other programs");
+    addExportOptions(*export_command, options.files);
     if (!parseCommandLine(app, argc, argv, "haptic_server")) return 0;
     setUpLog("haptic_server", options.log_level);
+    if (export_command->parsed()) {
+        exportJournal(options.files);
+        return 0;
+    }
     if (replay_command->parsed()) return runReplay(options.replay);
     if (simulate_command->parsed()) return simulateInOrder(options.simulate);
     if (!report_command->parsed()) return serveLive(options);

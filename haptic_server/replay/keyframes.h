@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "haptic_server/replay/recording.h"
+#include "haptic_server/rerun/recording.h"
 
 namespace bonemill {
 
@@ -19,15 +19,15 @@ class Keyframes {
     // have more than this in their own leaves.
     static constexpr size_t kMostBytes = size_t(1) << 30;
 
-    // Those of the recording, at least one, by tick: they stay.
+    // Those of the recording, at least one, by tick. The first one stays.
     explicit Keyframes(const std::vector<Keyframe>& recorded, size_t most_bytes = kMostBytes)
         : most_bytes_(most_bytes) {
-        for (const Keyframe& keyframe : recorded) kept_[keyframe.tick] = {keyframe.bone, true};
+        for (const Keyframe& keyframe : recorded) add(keyframe);
     }
 
     void add(Keyframe keyframe) {
         const std::lock_guard lock(mutex_);
-        kept_.emplace(keyframe.tick, Kept{std::move(keyframe.bone), false});
+        kept_.emplace(keyframe.tick, std::move(keyframe.bone));
         if (kept_.size() >= look_at_) thinOut();
     }
 
@@ -36,7 +36,7 @@ class Keyframes {
         const std::lock_guard lock(mutex_);
         auto after = kept_.upper_bound(tick);
         if (after != kept_.begin()) --after;
-        return {after->first, after->second.bone};
+        return {after->first, after->second};
     }
     size_t size() const {
         const std::lock_guard lock(mutex_);
@@ -44,17 +44,13 @@ class Keyframes {
     }
 
   private:
-    struct Kept {
-        std::shared_ptr<const BoneSnapshot> bone;
-        bool stays;
-    };
     static constexpr size_t kLookEvery = 64;
 
     size_t bytes() const {
         std::vector<const LeafCopy*> leaves;
-        for (const auto& [tick, kept] : kept_)
-            if (kept.bone)
-                for (const auto& leaf : kept.bone->leaves) leaves.push_back(leaf.get());
+        for (const auto& [tick, bone] : kept_)
+            if (bone)
+                for (const auto& leaf : bone->leaves) leaves.push_back(leaf.get());
         std::ranges::sort(leaves);
         const auto repeated = std::ranges::unique(leaves);
         leaves.erase(repeated.begin(), repeated.end());
@@ -65,14 +61,14 @@ class Keyframes {
     void thinOut() {
         look_at_ = kept_.size() + kLookEvery;
         if (bytes() <= most_bytes_) return;
-        bool goes = false;
-        std::erase_if(kept_, [&](const auto& kept) { return !kept.second.stays && (goes = !goes); });
+        bool goes = true;
+        std::erase_if(kept_, [&](const auto&) { return goes = !goes; });
         look_at_ = kept_.size() + kLookEvery;
     }
 
     size_t most_bytes_;
     mutable std::mutex mutex_;
-    std::map<uint64_t, Kept> kept_;
+    std::map<uint64_t, std::shared_ptr<const BoneSnapshot>> kept_;
     size_t look_at_ = kLookEvery;
 };
 

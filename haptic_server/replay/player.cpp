@@ -191,12 +191,17 @@ std::string Player::jump(int32_t by) {
         if (!event && survey_.known() < recording_.ticks())
             return "refused: no event is known yet after this one; the recording is still being looked through";
     } else if (by < 0) {
-        const double moment_s = recording_.secondsOf(now);
-        event = events_.before(moment_s > kSameMomentS ? recording_.tickAt(moment_s - kSameMomentS) : 0);
+        const double moment_s = recording_.secondsOf(now) - sameMomentS();
+        event = events_.before(moment_s > 0 ? recording_.tickAt(moment_s) : 0);
     }
     if (!event) return by < 0 ? "refused: there is no event before this one" : "refused: there is no event after this one";
     goTo(event->tick, timeText(event->tick) + ": " + event->text);
     return "done";
+}
+
+double Player::sameMomentS() const {
+    const std::lock_guard lock(mutex_);
+    return is_playing_ ? kSameMomentS * speed_ : 0;
 }
 
 std::string Player::goToRemoval(const topics::Place& place) {

@@ -43,6 +43,7 @@ class Player final : public ReplayOrders {
     std::string setSpeed(double speed);
     std::string jump(int32_t by);
     std::string goToRemoval(const topics::Place& place);
+    double sameMomentS() const;
     std::string timeText(uint64_t tick) const;
     void goTo(uint64_t tick, std::string event);
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "haptic_server/record/device_history.h"
-#include "haptic_server/replay/recording.h"
+#include "haptic_server/rerun/recording.h"
 #include "haptic_server/session/order_text.h"
 #include "haptic_server/session/repeated_text.h"
 
@@ -68,6 +68,13 @@ void ReplayEvents::addEffects(uint64_t tick, const EffectRecord& effects) {
     if (begins(kEventTooHot)) add(tick, "bone gets too hot");
     if (begins(kEventProtectedTouched)) add(tick, nameOf(effects.touched_id) + " is touched");
     if (begins(kEventProtectedDamaged)) add(tick, nameOf(effects.damaged_id) + " is damaged");
+}
+
+std::optional<ReplayEvent> ReplayEvents::at(uint64_t tick) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = events_.find(tick);
+    if (found == events_.end()) return std::nullopt;
+    return ReplayEvent{found->first, found->second};
 }
 
 std::optional<ReplayEvent> ReplayEvents::after(uint64_t tick) const {

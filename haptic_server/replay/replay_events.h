@@ -30,6 +30,7 @@ class ReplayEvents {
     // other.
     void addEffects(uint64_t tick, const EffectRecord& effects);
 
+    std::optional<ReplayEvent> at(uint64_t tick) const;
     std::optional<ReplayEvent> after(uint64_t tick) const;
     std::optional<ReplayEvent> before(uint64_t tick) const;
     size_t count() const;

@@ -16,6 +16,7 @@ namespace {
 // A replay that goes to a moment runs the ticks after the keyframe before it: so much of them takes a fraction of
 // a second.
 constexpr double kKeyframeEveryS = 1;
+constexpr uint64_t kLookEveryTicks = 64;  // for whether a keyframe is due
 constexpr int kNice = 10;
 
 BoneModel copyOf(const Simulation& simulation, const LoadedScene& scene) {
@@ -38,8 +39,7 @@ Survey::Survey(const Recording& recording, const Simulation& simulation, const L
       bone_(copyOf(simulation, scene)),
       rerun_(recording, simulation, bones.checkpoints, bone_, bones.keyframes.front()),
       start_(startOf(rerun_, bone_, bones.keyframes.front())),
-      removals_(start_, bone_.volume),
-      next_keyframe_(0) {}
+      removals_(start_, bone_.volume) {}
 
 void Survey::start() {
     thread_ = std::jthread([this](const std::stop_token& stop) {
@@ -55,14 +55,13 @@ void Survey::run(const std::stop_token& stop) {
     setpriority(PRIO_PROCESS, id_t(gettid()), kNice);
     const auto every = uint64_t(std::ceil(kKeyframeEveryS * recording_.manifest().rate_hz()));
     const int64_t start_ns = monotonicNowNs();
-    next_keyframe_ = every;
     while (!rerun_.isAtEnd() && !stop.stop_requested()) {
         const uint64_t tick = rerun_.next();
         look(rerun_.step(), tick);
         known_.store(tick + 1, std::memory_order_release);
-        if (tick + 1 < next_keyframe_ || rerun_.history().isRestoring()) continue;
-        keyframes_.add({tick + 1, rerun_.history().snapshot(bone_)});
-        next_keyframe_ = tick + 1 + every;
+        if ((tick + 1) % kLookEveryTicks != 0 || rerun_.history().isRestoring()) continue;
+        if (keyframes_.before(tick + 1).tick + every <= tick + 1)
+            keyframes_.add({tick + 1, rerun_.history().snapshot(bone_)});
     }
     if (rerun_.isAtEnd())
         spdlog::info("the recording of {:.1f} s was looked through in {:.1f} s", recording_.lengthS(),

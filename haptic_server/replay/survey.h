@@ -11,7 +11,7 @@
 #include "haptic_server/replay/keyframes.h"
 #include "haptic_server/replay/removal_map.h"
 #include "haptic_server/replay/replay_events.h"
-#include "haptic_server/replay/rerun.h"
+#include "haptic_server/rerun/rerun.h"
 
 namespace bonemill {
 
@@ -38,7 +38,6 @@ class Survey {
     Rerun rerun_;
     VoxelVolume start_;  // the bone before the first tick
     RemovalMap removals_;
-    uint64_t next_keyframe_;
     // Release by the survey, acquire by who asks: what it has found is there.
     std::atomic<uint64_t> known_{0};
     std::jthread thread_;

@@ -26,6 +26,7 @@ TEST(EyeWatch, TellsTwentyTimesPerSecondWhatMovesAndOnceWhatRests) {
     Camera camera;
     EXPECT_EQ(countDue(watch, now, camera, 0), 1);
     EXPECT_EQ(countDue(watch, now, camera, 1e-3), 20);
+    EXPECT_LE(countDue(watch, now, camera, 0), 1) << "where it came to rest";
     EXPECT_EQ(countDue(watch, now, camera, 0), 0) << "what it told last is what it sees";
     EXPECT_NEAR(countDue(watch, now, camera, 1e-6), 10, 1) << "1 mm per s, told every 0.1 mm";
 }

@@ -1,14 +1,19 @@
-#include "haptic_server/replay/recording.h"
+#include "haptic_server/rerun/recording.h"
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
+#include <iterator>
 
 #include "common/config/scene_check.h"
-#include "common/units.h"
+#include "common/rt/clock.h"
 #include "common/user_error.h"
+#include "haptic_server/journal/bone_states.h"
 
 namespace bonemill {
 namespace {
+
+// Of the states of the bone a replay needs one in so long.
+constexpr double kKeyframesApartS = 1;
 
 bool isSame(const DeviceReport& a, const DeviceReport& b) {
     return a.state == b.state && a.stop_cause == b.stop_cause;
@@ -17,19 +22,32 @@ bool isSame(const DeviceReport& a, const DeviceReport& b) {
 }  // namespace
 
 Recording::Recording(const std::filesystem::path& path)
-    : path_(path), content_(readJournalContent(path)) {
-    if (content_.ticks == 0) throw UserError(path.string() + ": the recording has no ticks: nothing was held");
-    DeviceReport device;
-    for (size_t block = 0; block < content_.inputs.size(); ++block) {
-        const std::vector<JournalTick> ticks = decode(block);
+    : path_(path), content_(readJournalContent(path, KeepInputs::kYes)) {
+    content_.ticks = 0;
+    size_t blocks = 0;
+    std::vector<JournalTick> ticks;
+    for (; blocks < content_.inputs.size() && isNext(content_.inputs[blocks], ticks); ++blocks) {
         first_starts_ns_.push_back(ticks.front().start_ns);
-        last_starts_ns_.push_back(ticks.back().start_ns);
-        for (const JournalTick& tick : ticks) {
-            if (tick.input.has_other_device) devices_[tick.tick] = tick.input.other_device;
-            if (!isSame(tick.device, device)) device_changes_[tick.tick] = tick.device;
-            device = tick.device;
-        }
+        content_.ticks += ticks.size();
+        for (const JournalTick& tick : ticks) noteDevice(tick);
     }
+    if (blocks < content_.inputs.size() && content_.problem.empty())
+        content_.problem = "its ticks are damaged from tick " + std::to_string(content_.ticks) + " on";
+    content_.inputs.resize(blocks);
+    if (blocks == 0) throw UserError(path.string() + ": the recording has no ticks: nobody held the tool");
+}
+
+// Ticks that come later than a tick that is missing cannot be run again.
+bool Recording::isNext(const journal::Inputs& inputs, std::vector<JournalTick>& ticks) const {
+    ticks.clear();
+    if (inputs.first_tick() != content_.ticks || !decodeInputs(inputs, ticks) || ticks.empty()) return false;
+    return first_starts_ns_.empty() || ticks.front().start_ns >= first_starts_ns_.back();
+}
+
+void Recording::noteDevice(const JournalTick& tick) {
+    if (tick.input.has_other_device) devices_[tick.tick] = tick.input.other_device;
+    if (!isSame(tick.device, device_)) device_changes_[tick.tick] = tick.device;
+    device_ = tick.device;
 }
 
 size_t Recording::blockOf(uint64_t tick) const {
@@ -38,13 +56,10 @@ size_t Recording::blockOf(uint64_t tick) const {
     return size_t(after - content_.inputs.begin()) - 1;
 }
 
-// Whoever read the journal has found that each can be decoded.
+// Each was decoded once, when the recording was read.
 std::vector<JournalTick> Recording::decode(size_t block) const {
     std::vector<JournalTick> ticks;
-    const int64_t previous_ns = block == 0 ? 0 : last_starts_ns_[block - 1];
-    if (!decodeInputs(content_.inputs[block], previous_ns, ticks) || ticks.empty())
-        throw UserError(path_.string() + ": the recording is damaged at tick " +
-                        std::to_string(content_.inputs[block].first_tick()));
+    decodeInputs(content_.inputs[block], ticks);
     return ticks;
 }
 
@@ -81,6 +96,7 @@ Recording::Bones Recording::readBones(const BoneModel& bone) const {
     BoneStateReader reader({bone.volume, bone.lattice});
     const bool is_resumed = manifest().has_resumed_from();
     if (!is_resumed) bones.keyframes.push_back({0, nullptr});
+    const auto apart = uint64_t(std::ceil(kKeyframesApartS * manifest().rate_hz()));
     size_t unusable = 0;
     readJournal(path_, [&](JournalTopic topic, const mcap::Message& message) {
         if (topic != JournalTopic::kBone) return;
@@ -93,7 +109,7 @@ Recording::Bones Recording::readBones(const BoneModel& bone) const {
         if (state.checkpoint() != 0) bones.checkpoints[state.checkpoint()] = reader.state();
         if (state.kind() == journal::Bone::OTHER || state.tick() >= ticks()) return;
         const Keyframe keyframe{is_resumed && bones.keyframes.empty() ? 0 : state.tick(), reader.state()};
-        if (bones.keyframes.empty() || keyframe.tick >= bones.keyframes.back().tick)
+        if (bones.keyframes.empty() || keyframe.tick >= bones.keyframes.back().tick + apart)
             bones.keyframes.push_back(keyframe);
     });
     if (bones.keyframes.empty())

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "haptic_server/bone/bone_history.h"
-#include "haptic_server/replay/recording.h"
+#include "haptic_server/rerun/recording.h"
 #include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/tick/haptic_tick.h"
 

@@ -1,4 +1,4 @@
-#include "haptic_server/replay/rerun.h"
+#include "haptic_server/rerun/rerun.h"
 
 #include <algorithm>
 

@@ -10,6 +10,7 @@
 
 #include "common/config/scene_file.h"
 #include "haptic_server/bone/bone_model.h"
+#include "haptic_server/bone/bone_snapshot.h"
 #include "haptic_server/journal/journal_reader.h"
 
 namespace bonemill {
@@ -37,7 +38,7 @@ class Recording {
     uint64_t tickAt(double seconds) const;
     double lengthS() const { return secondsOf(ticks() - 1); }
 
-    // The ticks are decoded as they were written, some hundred at once.
+    // The ticks are decoded as they were written, some hundred at once: a block.
     size_t blockOf(uint64_t tick) const;
     std::vector<JournalTick> decode(size_t block) const;
     // The device that the ticks before this one had; null: none was told of.
@@ -59,11 +60,15 @@ class Recording {
     Bones readBones(const BoneModel& bone) const;
 
   private:
+    bool isNext(const journal::Inputs& inputs, std::vector<JournalTick>& ticks) const;
+    void noteDevice(const JournalTick& tick);
+
     std::filesystem::path path_;
     JournalContent content_;
-    std::vector<int64_t> first_starts_ns_, last_starts_ns_;  // of the blocks' first and last ticks
+    std::vector<int64_t> first_starts_ns_;                   // of the blocks' first ticks
     std::map<uint64_t, DeviceCapabilities> devices_;         // by the first tick that had it
     std::map<uint64_t, DeviceReport> device_changes_;
+    DeviceReport device_;  // of the tick that was noted last
 };
 
 // Goes through the ticks of a recording, in any order, fastest one by one. It is for one thread.
