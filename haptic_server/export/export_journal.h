@@ -1,5 +1,5 @@
-// `haptic_server session export`: a recorded session as files for other programs. What its ticks came to is had by
-// running them again (docs/replay.md).
+// `haptic_server session export`: a recorded session as files for other programs. What its ticks came to is
+// had by running them again (docs/replay.md).
 #pragma once
 
 #include <string>
@@ -14,7 +14,8 @@ struct ExportOptions {
     std::string traj;  // what went in, for `simulate`
 };
 
-// Each file is whole or not there. Throws UserError: no journal, nothing to write, a file that cannot be written.
+// Each file is whole or not there. Throws UserError: no journal, nothing to write, a file that cannot be
+// written.
 void exportJournal(const ExportOptions& options);
 
 }  // namespace bonemill

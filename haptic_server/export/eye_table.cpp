@@ -22,14 +22,16 @@ void writeEyes(const Recording& recording, H5File& file) {
     Eyes eyes;
     readJournal(recording.path(), [&](JournalTopic topic, const mcap::Message& message) {
         journal::Camera camera;
-        if (topic != JournalTopic::kCamera || !camera.ParseFromArray(message.data.data(), int(message.data.size())))
+        if (topic != JournalTopic::kCamera ||
+            !camera.ParseFromArray(message.data.data(), int(message.data.size())))
             return;
         const topics::Eye& eye = camera.eye();
         if (eye.p_wc_m_size() == 3 && eye.q_wc_size() == 4 && camera.tick() < recording.ticks())
             eyes.add(recording.secondsOf(camera.tick()), eye);
     });
     if (eyes.t_s.empty()) return;
-    const auto write = [&](const char* place, size_t width, const H5About& about, const std::vector<double>& values) {
+    const auto write = [&](const char* place, size_t width, const H5About& about,
+                           const std::vector<double>& values) {
         file.addColumn(place, width, H5File::Number::kDouble, about).append(values);
     };
     write("/eye/t_s", 1, {"s", "since the session's first tick"}, eyes.t_s);

@@ -84,7 +84,8 @@ void H5File::describe(const std::string& name, double value) {
     H5Sclose(space);
 }
 
-H5File::Column& H5File::addColumn(const std::string& place, size_t width, Number number, const H5About& about) {
+H5File::Column& H5File::addColumn(const std::string& place, size_t width, Number number,
+                                  const H5About& about) {
     Column& column = handles_->columns.emplace_back();
     column.width_ = width;
     column.path_ = path_;
@@ -95,10 +96,10 @@ H5File::Column& H5File::addColumn(const std::string& place, size_t width, Number
     H5Pset_chunk(list, axes, chunk);
     H5Pset_shuffle(list);
     H5Pset_deflate(list, kPacking);
-    column.dataset_ = checked(H5Dcreate2(handles_->file, place.c_str(),
-                                         number == Number::kDouble ? H5T_IEEE_F64LE : H5T_STD_U32LE, space,
-                                         links, list, H5P_DEFAULT),
-                              path_);
+    column.dataset_ = checked(
+        H5Dcreate2(handles_->file, place.c_str(), number == Number::kDouble ? H5T_IEEE_F64LE : H5T_STD_U32LE,
+                   space, links, list, H5P_DEFAULT),
+        path_);
     H5Pclose(links);
     H5Pclose(list);
     H5Sclose(space);
@@ -114,7 +115,8 @@ void H5File::Column::appendAs(std::span<const Value> values, int64_t type) {
     const hsize_t all[] = {rows_ + rows, width_}, start[] = {rows_, 0}, count[] = {rows, width_};
     const int axes = width_ == 1 ? 1 : 2;
     checked(H5Dset_extent(dataset_, all), path_);
-    const hid_t in_file = checked(H5Dget_space(dataset_), path_), in_memory = H5Screate_simple(axes, count, nullptr);
+    const hid_t in_file = checked(H5Dget_space(dataset_), path_),
+                in_memory = H5Screate_simple(axes, count, nullptr);
     H5Sselect_hyperslab(in_file, H5S_SELECT_SET, start, nullptr, count, nullptr);
     const herr_t written = H5Dwrite(dataset_, type, in_memory, in_file, H5P_DEFAULT, values.data());
     H5Sclose(in_memory);

@@ -1,4 +1,5 @@
-// Writes columns of numbers as an HDF5 file that h5py and MATLAB open in one line. It is for one normal thread.
+// Writes columns of numbers as an HDF5 file that h5py and MATLAB open in one line. It is for one normal
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +28,8 @@ class H5File {
     void describe(const std::string& name, const std::string& value);
     void describe(const std::string& name, double value);
 
-    // A dataset "/group/name" of rows; with width 1 it has one axis, else rows of this width. Rows are added in
-    // blocks, packed.
+    // A dataset "/group/name" of rows; with width 1 it has one axis, else rows of this width. Rows are added
+    // in blocks, packed.
     class Column {
       public:
         void append(std::span<const double> values);
@@ -47,7 +48,8 @@ class H5File {
     // The reference is good as long as the file.
     Column& addColumn(const std::string& place, size_t width, Number number, const H5About& about);
     // A dataset of texts, all at once.
-    void writeTexts(const std::string& place, const std::vector<std::string>& texts, const std::string& description);
+    void writeTexts(const std::string& place, const std::vector<std::string>& texts,
+                    const std::string& description);
 
     // Writes all that waits and closes the file.
     void close();

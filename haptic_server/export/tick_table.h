@@ -1,5 +1,5 @@
-// Ticks as the columns of an HDF5 file, with units and frames (docs/replay.md lists them). It is for one normal
-// thread.
+// Ticks as the columns of an HDF5 file, with units and frames (docs/replay.md lists them). It is for one
+// normal thread.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,8 @@ namespace bonemill {
 
 class TickTable {
   public:
-    // Adds the columns below "/tick/", those of effects as the scene records them. The file must outlive the table.
+    // Adds the columns below "/tick/", those of effects as the scene records them. The file must outlive the
+    // table.
     TickTable(H5File& file, const RecordedEffects& recorded);
 
     void add(const TickRecord& record);

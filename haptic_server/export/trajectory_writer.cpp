@@ -48,19 +48,23 @@ uint64_t firstPutBack(const Recording& recording) {
 void writeTrajectory(const std::string& path, const Recording& recording) {
     const uint64_t count = firstPutBack(recording);
     if (count == 0 || recording.manifest().has_resumed_from())
-        throw UserError(path + ": the session does not begin on the scanned bone, as `simulate` does; "
+        throw UserError(path +
+                        ": the session does not begin on the scanned bone, as `simulate` does; "
                         "`session verify` runs its ticks again");
     if (count < recording.ticks())
         spdlog::warn("{}: only the {:.3f} s before the bone was put back", path, recording.secondsOf(count));
     WholeFile file(path);
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(file.part().c_str(), "w"), &std::fclose);
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(file.part().c_str(), "w"),
+                                                              &std::fclose);
     if (!out) throw UserError(path + ": cannot be written");
-    bool is_written = std::fputs(("t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons," + recordedHeader() + "\n").c_str(),
-                                 out.get()) >= 0;
+    bool is_written =
+        std::fputs(("t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons," + recordedHeader() + "\n").c_str(),
+                   out.get()) >= 0;
     RecordedTicks ticks(recording);
     for (uint64_t tick = 0; tick < count && is_written; ++tick)
         is_written = std::fputs(lineOf(ticks.at(tick)).c_str(), out.get()) >= 0;
-    if (!is_written || std::fflush(out.get()) != 0) throw UserError(path + ": cannot be written to its end (disk full?)");
+    if (!is_written || std::fflush(out.get()) != 0)
+        throw UserError(path + ": cannot be written to its end (disk full?)");
     file.finish();
 }
 

@@ -8,8 +8,8 @@
 
 namespace bonemill {
 
-// A session whose bone was put back is written up to there; the log says so. Throws UserError if the file cannot be
-// written.
+// A session whose bone was put back is written up to there; the log says so. Throws UserError if the file
+// cannot be written.
 void writeTrajectory(const std::string& path, const Recording& recording);
 
 }  // namespace bonemill

@@ -12,11 +12,11 @@
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/offline/run_path.h"
-#include "haptic_server/record/state_hash.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/record/final_files.h"
 #include "haptic_server/record/hex_text.h"
 #include "haptic_server/record/run_statistics.h"
+#include "haptic_server/record/state_hash.h"
 #include "haptic_server/record/trace_writer.h"
 #include "haptic_server/record/trajectory_reader.h"
 #include "haptic_server/setup/scene_effects.h"
@@ -51,8 +51,8 @@ std::vector<DeviceInput> inputsOf(const std::vector<TrajectoryRow>& rows) {
     return inputs;
 }
 
-// One row is one tick: a file sampled at another rate would silently mean another speed. A recorded one says how
-// many periods each tick stands for.
+// One row is one tick: a file sampled at another rate would silently mean another speed. A recorded one says
+// how many periods each tick stands for.
 void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::string& file) {
     for (size_t n = 1; n < rows.size() && !rows[n].recorded; ++n) {
         const double spacing = rows[n].t_s - rows[n - 1].t_s;

@@ -237,17 +237,18 @@ bool Publisher::removeRemark(uint32_t place) {
 
 std::optional<SeenEye> Publisher::takeEye() {
     const TraineeEye::Clock::time_point now = TraineeEye::Clock::now();
-    viewer_reader_.take(kMaxViewersPerCall, [&](const dds::ViewerSample& sample, const dds::SampleInfo& info) {
-        if (!info.has_data || sample.session != session_) return;
-        std::optional<topics::Viewer::Role> proven;
-        if (people_) {
-            const auto owner = viewer_reader_.ownerOf(info.writer);
-            const auto identity = owner ? people_->find(*owner) : std::nullopt;
-            proven = identity ? roleOfIdentity(identity->role) : topics::Viewer::VIEWER;
-        }
-        trainee_eye_.hear(dds::payloadOf(sample), sample.sender, viewer_reader_.participantOf(info.writer),
-                          proven, now);
-    });
+    viewer_reader_.take(kMaxViewersPerCall,
+                        [&](const dds::ViewerSample& sample, const dds::SampleInfo& info) {
+                            if (!info.has_data || sample.session != session_) return;
+                            std::optional<topics::Viewer::Role> proven;
+                            if (people_) {
+                                const auto owner = viewer_reader_.ownerOf(info.writer);
+                                const auto identity = owner ? people_->find(*owner) : std::nullopt;
+                                proven = identity ? roleOfIdentity(identity->role) : topics::Viewer::VIEWER;
+                            }
+                            trainee_eye_.hear(dds::payloadOf(sample), sample.sender,
+                                              viewer_reader_.participantOf(info.writer), proven, now);
+                        });
     return trainee_eye_.takeChanged(now);
 }
 

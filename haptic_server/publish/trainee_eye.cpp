@@ -37,9 +37,8 @@ bool isUsable(const topics::Viewer& viewer, uint64_t sender) {
 }  // namespace
 
 bool SeenEye::operator==(const SeenEye& other) const {
-    return X_WC.position == other.X_WC.position &&
-           X_WC.rotation.coeffs() == other.X_WC.rotation.coeffs() && field_of_view == other.field_of_view &&
-           sender == other.sender;
+    return X_WC.position == other.X_WC.position && X_WC.rotation.coeffs() == other.X_WC.rotation.coeffs() &&
+           field_of_view == other.field_of_view && sender == other.sender;
 }
 
 bool TraineeEye::hear(std::span<const uint8_t> payload, uint64_t sender, uint64_t participant,
@@ -72,9 +71,9 @@ std::optional<SeenEye> TraineeEye::takeChanged(Clock::time_point now) {
         const auto named = std::ranges::find_if(operators_, is_named);
         named_ = named == operators_.end() ? 0 : named->first;
     }
-    const auto trainee = named_ != 0               ? operators_.find(named_)
+    const auto trainee = named_ != 0              ? operators_.find(named_)
                          : operators_.size() == 1 ? operators_.begin()
-                                                   : operators_.end();
+                                                  : operators_.end();
     if (trainee == operators_.end() || trainee->second.eye == taken_) return std::nullopt;
     return taken_ = trainee->second.eye;
 }

@@ -12,9 +12,10 @@
 
 namespace bonemill {
 
-// Whole numbers; "input_flags" has the bits 1 repeated, 2 stale, 4 milling is paused, 8 the write was refused.
+// Whole numbers; "input_flags" has the bits 1 repeated, 2 stale, 4 milling is paused, 8 the write was
+// refused.
 inline constexpr std::array<std::string_view, 11> kRecordedNumbers = {
-    "input_flags", "periods",      "placements", "input_faults", "device_state", "stop_cause",
+    "input_flags",       "periods",      "placements", "input_faults", "device_state", "stop_cause",
     "device_fault_code", "device_flags", "tool",       "accuracy",     "most_samples"};
 inline constexpr std::string_view kStaleFactorColumn = "stale_factor";
 // Of another device from this tick on its DeviceCapabilities as hexadecimal digits; else empty.

@@ -1,6 +1,6 @@
 // Reads the device poses that `simulate` feeds to the tick: CSV with the header
-// t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons (any order, further columns are ignored), one row per tick. Where all
-// columns of record/recorded_row.h are there, too, the rows are what the ticks of a session took in.
+// t_s,px_m,py_m,pz_m,qw,qx,qy,qz,buttons (any order, further columns are ignored), one row per tick. Where
+// all columns of record/recorded_row.h are there, too, the rows are what the ticks of a session took in.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ struct TrajectoryRow {
 };
 
 // There is at least one row, and t_s is strictly increasing. Throws UserError with file:line for a missing
-// column, a cell that is no finite number or out of range, a quaternion whose norm is off by more than 1e-3 (else it is
-// normalised) and a time that does not increase.
+// column, a cell that is no finite number or out of range, a quaternion whose norm is off by more than 1e-3
+// (else it is normalised) and a time that does not increase.
 std::vector<TrajectoryRow> readTrajectory(const std::string& path);
 // Reads the same from a stream; `name` stands for the file in messages.
 std::vector<TrajectoryRow> readTrajectory(std::istream& input, const std::string& name);

@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLook = 2ms;                               // for ticks that are due
+constexpr auto kLook = 2ms;                                  // for ticks that are due
 constexpr int64_t kLongestRoundNs = 20 * kNsPerMillisecond;  // then orders are looked at
 // A replay that falls behind by more than this goes on from where it is: it plays more slowly than asked.
 constexpr int64_t kMostBehindNs = 50 * kNsPerMillisecond;
@@ -189,12 +189,15 @@ std::string Player::jump(int32_t by) {
     if (by > 0) {
         event = events_.after(now);
         if (!event && survey_.known() < recording_.ticks())
-            return "refused: no event is known yet after this one; the recording is still being looked through";
+            return "refused: no event is known yet after this one; the recording is still being looked "
+                   "through";
     } else if (by < 0) {
         const double moment_s = recording_.secondsOf(now) - sameMomentS();
         event = events_.before(moment_s > 0 ? recording_.tickAt(moment_s) : 0);
     }
-    if (!event) return by < 0 ? "refused: there is no event before this one" : "refused: there is no event after this one";
+    if (!event)
+        return by < 0 ? "refused: there is no event before this one"
+                      : "refused: there is no event after this one";
     goTo(event->tick, timeText(event->tick) + ": " + event->text);
     return "done";
 }

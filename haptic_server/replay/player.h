@@ -1,5 +1,5 @@
-// Plays a recording: its ticks run on the player's thread when their time has come, at any speed, and what they
-// tell goes where a live session's tick would put it. Orders come from the publisher thread.
+// Plays a recording: its ticks run on the player's thread when their time has come, at any speed, and what
+// they tell goes where a live session's tick would put it. Orders come from the publisher thread.
 #pragma once
 
 #include <condition_variable>
@@ -71,10 +71,10 @@ class Player final : public ReplayOrders {
 
     // The player's thread has these.
     RecordedTicks starts_;
-    int64_t clock_start_ns_ = 0;   // CLOCK_MONOTONIC at which
+    int64_t clock_start_ns_ = 0;     // CLOCK_MONOTONIC at which
     int64_t recorded_start_ns_ = 0;  // this moment of the recording was due
     double clock_speed_ = 0;         // 0: the clock stands
-    uint64_t records_ = 0;  // that were shown
+    uint64_t records_ = 0;           // that were shown
     int64_t first_ns_ = 0;
 
     mutable std::mutex mutex_;  // guards what is below

@@ -25,7 +25,8 @@ RemovalMap::RemovalMap(const VoxelVolume& start, const VoxelVolume& bone)
       map_(size_t(blocks_.cast<int64_t>().prod())) {}
 
 size_t RemovalMap::indexOf(const Eigen::Vector3i& block) const {
-    return size_t(block.x()) + size_t(blocks_.x()) * (size_t(block.y()) + size_t(blocks_.y()) * size_t(block.z()));
+    return size_t(block.x()) +
+           size_t(blocks_.x()) * (size_t(block.y()) + size_t(blocks_.y()) * size_t(block.z()));
 }
 
 size_t RemovalMap::placeIn(const Eigen::Vector3i& voxel) {
@@ -98,9 +99,9 @@ std::optional<RemovalMap::Removal> RemovalMap::nearest(const Eigen::Vector3d& pl
     const Eigen::Vector3d low = (place_V.array() - radius) / bone_.spacing().array(),
                           high = (place_V.array() + radius) / bone_.spacing().array();
     const IndexBox all = allOf(bone_);
-    const IndexBox box =
-        IndexBox{low.array().max(-1e6).min(1e6).ceil().cast<int>(), high.array().max(-1e6).min(1e6).floor().cast<int>()}
-            .clamped(all.min, all.max);
+    const IndexBox box = IndexBox{low.array().max(-1e6).min(1e6).ceil().cast<int>(),
+                                  high.array().max(-1e6).min(1e6).floor().cast<int>()}
+                             .clamped(all.min, all.max);
     std::optional<Removal> seen, any;
     double seen_distance = radius, any_distance = radius;
     const std::lock_guard lock(mutex_);

@@ -1,5 +1,5 @@
-// Knows at which tick of a recording each voxel was removed: it looks at what the ticks have changed, one after
-// the other. Voxels count as removed below the iso-value, as in TickRecord::removed_voxels.
+// Knows at which tick of a recording each voxel was removed: it looks at what the ticks have changed, one
+// after the other. Voxels count as removed below the iso-value, as in TickRecord::removed_voxels.
 //
 // One thread adds; any may ask meanwhile. It takes a mutex, and memory for the leaves that were milled.
 #pragma once
@@ -32,8 +32,8 @@ class RemovalMap {
         uint64_t tick;
         Eigen::Vector3i voxel;
     };
-    // Returns the removal nearest to the place (V, m) within `radius` (m): of voxels that were removed at tick
-    // `now` if there is any, as of the bone that is seen then, else of all.
+    // Returns the removal nearest to the place (V, m) within `radius` (m): of voxels that were removed at
+    // tick `now` if there is any, as of the bone that is seen then, else of all.
     std::optional<Removal> nearest(const Eigen::Vector3d& place_V, double radius, uint64_t now) const;
 
   private:

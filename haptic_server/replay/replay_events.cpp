@@ -30,7 +30,8 @@ std::string textOf(const journal::Event& event) {
 }
 
 std::string textOf(const journal::Order& order) {
-    const std::string who = order.command().name().empty() ? "order" : "order of " + repeatedText(order.command().name());
+    const std::string who =
+        order.command().name().empty() ? "order" : "order of " + repeatedText(order.command().name());
     return who + ": " + orderText(order.command()) + ": " + order.result();
 }
 
@@ -45,7 +46,8 @@ ReplayEvents::ReplayEvents(const Recording& recording)
     };
     for (const journal::Event& event : recording.content().events) keep(event.tick(), textOf(event));
     for (const journal::Order& order : recording.content().orders) keep(order.tick(), textOf(order));
-    for (const auto& [tick, device] : recording.deviceChanges()) keep(tick, "the device: " + deviceText(device));
+    for (const auto& [tick, device] : recording.deviceChanges())
+        keep(tick, "the device: " + deviceText(device));
 }
 
 void ReplayEvents::add(uint64_t tick, const std::string& text) {

@@ -26,8 +26,8 @@ class ReplayEvents {
     explicit ReplayEvents(const Recording& recording);
 
     void add(uint64_t tick, const std::string& text);
-    // Adds what the tick's effects tell that those of the half second before did not. Ticks come one after the
-    // other.
+    // Adds what the tick's effects tell that those of the half second before did not. Ticks come one after
+    // the other.
     void addEffects(uint64_t tick, const EffectRecord& effects);
 
     std::optional<ReplayEvent> at(uint64_t tick) const;

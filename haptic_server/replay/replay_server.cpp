@@ -27,8 +27,8 @@ constexpr size_t kRingRecords = 8192, kRingCuts = 8192;
 constexpr auto kPublishPeriod = 5ms, kRecordPeriod = 4ms;
 constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 
-// The recorded scene, with the bone as its files have it now. Its threads stand around the player as those of a
-// live session stand around the tick (session/scene_run.h).
+// The recorded scene, with the bone as its files have it now. Its threads stand around the player as those of
+// a live session stand around the tick (session/scene_run.h).
 class ReplayServer {
   public:
     explicit ReplayServer(const ReplayOptions& options)
@@ -48,15 +48,17 @@ class ReplayServer {
                     recordedEffectsOf(scene_.scene.effects())),
           bone_export_(rerun_.history(), *simulation_.bone, ""),
           lesson_({}, ClassTable("")),
-          attempts_(lesson_, recorder_, rerun_.history(), simulation_.bone->volume.voxelVolume(), scene_.scene),
+          attempts_(lesson_, recorder_, rerun_.history(), simulation_.bone->volume.voxelVolume(),
+                    scene_.scene),
           commands_(scene_.scene, *simulation_.bone, recorder_,
                     {rerun_.history(), rerun_.accuracies(), rerun_.tools(), stop_requested_, bone_export_,
                      reset_orders_, lesson_, attempts_, limits_, &player_},
                     options.instructor_only),
           publisher_(soleServerOf(options.domain, options.session, options.network)),
-          show_(publisher_, scene_.scene, simulation_, rerun_.history(), {}, outbox_, recorder_,
-                [this](DeviceCapabilities& device) { return deviceNow(device); }, commands_,
-                options.stream_mbit_per_s * kMega / 8) {
+          show_(
+              publisher_, scene_.scene, simulation_, rerun_.history(), {}, outbox_, recorder_,
+              [this](DeviceCapabilities& device) { return deviceNow(device); }, commands_,
+              options.stream_mbit_per_s * kMega / 8) {
         tellOfRecording();
         topics::ReplayOrder order;
         order.set_speed(options.speed);
@@ -81,8 +83,9 @@ class ReplayServer {
   private:
     void tellOfRecording() const {
         const JournalContent& content = recording_.content();
-        spdlog::info("{:.1f} s of session {}, {} ticks, {} moments of the bone, {} events", recording_.lengthS(),
-                     recording_.manifest().session(), recording_.ticks(), keyframes_.size(), events_.count());
+        spdlog::info("{:.1f} s of session {}, {} ticks, {} moments of the bone, {} events",
+                     recording_.lengthS(), recording_.manifest().session(), recording_.ticks(),
+                     keyframes_.size(), events_.count());
         if (!content.problem.empty()) spdlog::warn("the journal is not whole: {}", content.problem);
         if (!content.incomplete.empty())
             spdlog::warn("the recording is incomplete from tick {} on: {}", content.incomplete_from,
@@ -99,11 +102,11 @@ class ReplayServer {
 
     void start() {
         survey_.start();
-        threads_[0] = std::jthread([this](const std::stop_token& stop) {
-            endOnFailure([&] { player_.run(stop); });
+        threads_[0] =
+            std::jthread([this](const std::stop_token& stop) { endOnFailure([&] { player_.run(stop); }); });
+        threads_[1] = std::jthread([this](const std::stop_token& stop) {
+            loop(stop, kRecordPeriod, [this] { recorder_.drain(); });
         });
-        threads_[1] = std::jthread(
-            [this](const std::stop_token& stop) { loop(stop, kRecordPeriod, [this] { recorder_.drain(); }); });
         threads_[2] = std::jthread([this](const std::stop_token& stop) { meshUntil(stop); });
         threads_[3] = std::jthread(
             [this](const std::stop_token& stop) { loop(stop, kPublishPeriod, [this] { show_.round(); }); });

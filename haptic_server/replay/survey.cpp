@@ -13,8 +13,8 @@
 namespace bonemill {
 namespace {
 
-// A replay that goes to a moment runs the ticks after the keyframe before it: so much of them takes a fraction of
-// a second.
+// A replay that goes to a moment runs the ticks after the keyframe before it: so much of them takes a
+// fraction of a second.
 constexpr double kKeyframeEveryS = 1;
 constexpr uint64_t kLookEveryTicks = 64;  // for whether a keyframe is due
 constexpr int kNice = 10;

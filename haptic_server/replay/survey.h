@@ -1,5 +1,5 @@
-// Runs through a whole recording once, beside its replay and as fast as it goes, and keeps what jumps in it need:
-// the bone at many moments, the events that only ticks can tell, and when each voxel was removed.
+// Runs through a whole recording once, beside its replay and as fast as it goes, and keeps what jumps in it
+// need: the bone at many moments, the events that only ticks can tell, and when each voxel was removed.
 //
 // It has a bone of its own, on a thread of its own of low priority. Any thread may ask for what it has found.
 #pragma once

@@ -113,8 +113,9 @@ Recording::Bones Recording::readBones(const BoneModel& bone) const {
             bones.keyframes.push_back(keyframe);
     });
     if (bones.keyframes.empty())
-        throw UserError(path_.string() +
-                        ": the session went on from another one, and the bone that it began with is not in it");
+        throw UserError(
+            path_.string() +
+            ": the session went on from another one, and the bone that it began with is not in it");
     if (unusable > 0)
         bones.problem = std::to_string(unusable) + " states of the bone are not this scan's, or damaged";
     return bones;

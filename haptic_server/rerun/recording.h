@@ -46,8 +46,8 @@ class Recording {
     // Ticks whose device differs in state from the tick before, and what it was then.
     const std::map<uint64_t, DeviceReport>& deviceChanges() const noexcept { return device_changes_; }
 
-    // Of the session's beginning on: the scene whose text the journal has, its paths as of the file that it came
-    // from. Throws UserError.
+    // Of the session's beginning on: the scene whose text the journal has, its paths as of the file that it
+    // came from. Throws UserError.
     LoadedScene scene() const;
 
     struct Bones {
@@ -55,8 +55,8 @@ class Recording {
         std::map<uint32_t, std::shared_ptr<const BoneSnapshot>> checkpoints;
         std::string problem;  // for people, if some of them cannot be used; else empty
     };
-    // Reads the file once more. `bone` is the scanned one of the scene. Throws UserError if the session began with
-    // another bone than the scanned one, and that is not there.
+    // Reads the file once more. `bone` is the scanned one of the scene. Throws UserError if the session began
+    // with another bone than the scanned one, and that is not there.
     Bones readBones(const BoneModel& bone) const;
 
   private:
@@ -65,8 +65,8 @@ class Recording {
 
     std::filesystem::path path_;
     JournalContent content_;
-    std::vector<int64_t> first_starts_ns_;                   // of the blocks' first ticks
-    std::map<uint64_t, DeviceCapabilities> devices_;         // by the first tick that had it
+    std::vector<int64_t> first_starts_ns_;            // of the blocks' first ticks
+    std::map<uint64_t, DeviceCapabilities> devices_;  // by the first tick that had it
     std::map<uint64_t, DeviceReport> device_changes_;
     DeviceReport device_;  // of the tick that was noted last
 };

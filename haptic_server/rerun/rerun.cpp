@@ -68,7 +68,8 @@ void Rerun::makeTick() {
     const TickDecisions first = ticks_.at(std::min(next_, recording_.ticks() - 1)).input.decisions;
     choose(first);
     bone_order_ = next_ == 0 ? 0 : ticks_.at(next_ - 1).input.decisions.bone_order;
-    if (next_ == 0 && !recording_.content().put_backs.contains(first.bone_order)) bone_order_ = first.bone_order;
+    if (next_ == 0 && !recording_.content().put_backs.contains(first.bone_order))
+        bone_order_ = first.bone_order;
     is_device_told_ = false;
     tick_ = std::make_unique<HapticTick>(config_, TickBone{bone_, &history_}, TickChoices{tools_, accuracy_});
 }
@@ -86,6 +87,8 @@ void Rerun::putBack(const TickDecisions& decisions) {
     const auto order = recording_.content().put_backs.find(bone_order_);
     if (order == recording_.content().put_backs.end()) return;
     const auto checkpoint = checkpoints_.find(order->second);
+    // As after an order that no tick took up: the same target, asked for once more, is a new order.
+    history_.restore(std::make_shared<const BoneSnapshot>());
     history_.restore(checkpoint == checkpoints_.end() ? nullptr : checkpoint->second);
 }
 

@@ -100,9 +100,10 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
                 {history_, accuracy_, tools_, parts.stop_requested, bone_export_, io_.resetOrders(),
                  parts.lesson, attempts_, parts.limits},
                 options.instructor_only),
-      show_(parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,
-            [this](DeviceCapabilities& device) { return io_.capabilities(device); }, commands_,
-            options.stream_mbit_per_s * kMega / 8) {
+      show_(
+          parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,
+          [this](DeviceCapabilities& device) { return io_.capabilities(device); }, commands_,
+          options.stream_mbit_per_s * kMega / 8) {
     for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
     for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
 }

@@ -102,7 +102,8 @@ std::optional<std::string> SessionCommands::carryOutInReplay(const topics::Comma
             controls_.stop_requested = true;
             return "done";
         default:
-            return "refused: this is a replay of a recorded session: it is led, not commanded (docs/replay.md)";
+            return "refused: this is a replay of a recorded session: it is led, not commanded "
+                   "(docs/replay.md)";
     }
 }
 

@@ -8,8 +8,8 @@
 
 namespace bonemill {
 
-// Joins the domain for a moment. Throws UserError if the session has a server already; says in the log if anyone in
-// the network can join in.
+// Joins the domain for a moment. Throws UserError if the session has a server already; says in the log if
+// anyone in the network can join in.
 PublisherOptions soleServerOf(uint32_t domain, uint32_t session, const dds::NetworkOptions& network);
 
 }  // namespace bonemill

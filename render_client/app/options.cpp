@@ -95,9 +95,10 @@ std::vector<CLI::Option*> addSessionOptions(CLI::App& app, RawOptions& raw, Clie
     raw.name =
         app.add_option("--name", options.subscriber.name, "What the others read in their list of viewers")
             ->capture_default_str();
-    app.add_flag("--trainee", options.subscriber.is_trainee,
-                 "The trainee looks through this window: the recording takes what it sees (else, what the only "
-                 "operator sees)");
+    app.add_flag(
+        "--trainee", options.subscriber.is_trainee,
+        "The trainee looks through this window: the recording takes what it sees (else, what the only "
+        "operator sees)");
     CLI::Option* const role =
         app.add_option(
                "--role", raw.role,
@@ -278,10 +279,9 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     if (options.holds_tool && options.subscriber.role != topics::Viewer::OPERATOR &&
         options.subscriber.role != topics::Viewer::INSTRUCTOR)
         throw UserError("--hold-tool needs --role operator or instructor: a viewer only looks");
-    if (options.subscriber.is_trainee &&
-        (raw.offscreen || raw.measure_s || !raw.command.empty() ||
-         (options.subscriber.role != topics::Viewer::OPERATOR &&
-          options.subscriber.role != topics::Viewer::INSTRUCTOR)))
+    if (options.subscriber.is_trainee && (raw.offscreen || raw.measure_s || !raw.command.empty() ||
+                                          (options.subscriber.role != topics::Viewer::OPERATOR &&
+                                           options.subscriber.role != topics::Viewer::INSTRUCTOR)))
         throw UserError("--trainee needs a window, and --role operator or instructor");
     if (!options.sound_wav.empty() && (!options.has_effects || raw.measure_s || !raw.command.empty()))
         throw UserError(

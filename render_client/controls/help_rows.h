@@ -8,7 +8,8 @@
 
 namespace bonemill {
 
-// The session's tool is none of the mouse's business, could be held by it, is held by it, or is a recording's.
+// The session's tool is none of the mouse's business, could be held by it, is held by it, or is a
+// recording's.
 enum class HelpFor { kLooking, kMayHold, kHolding, kReplay };
 
 // Returns the mouse, then every key and sign of the table that is of use, by what they are for. Keys that do

@@ -13,9 +13,8 @@ CommandOrReason refuse(std::string why_not) {
 
 CommandOrReason pauseOrGoOn(const SessionView& session) {
     topics::Command command;
-    command.set_pause_milling(isReplay(session)
-                                  ? session.status->replay().is_playing()
-                                  : !(session.status && session.status->is_milling_paused()));
+    command.set_pause_milling(isReplay(session) ? session.status->replay().is_playing()
+                                                : !(session.status && session.status->is_milling_paused()));
     return {command, ""};
 }
 

@@ -1,5 +1,5 @@
-// Says how many frames of a video are due, so that a second of the video is a second of what it shows, however
-// slowly pictures are drawn.
+// Says how many frames of a video are due, so that a second of the video is a second of what it shows,
+// however slowly pictures are drawn.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@ class VideoClock {
     // A clock that leaps (a replay's: somebody seeks in it) goes on in the video as if it had not.
     VideoClock(double fps, bool may_leap) : fps_(fps), may_leap_(may_leap) {}
 
-    // The clock of what is shown stands at `now_s`: returns the number of frames that are due and have not been
-    // before, one at the first call.
+    // The clock of what is shown stands at `now_s`: returns the number of frames that are due and have not
+    // been before, one at the first call.
     uint64_t due(double now_s) {
         if (frames_ == 0) {
             start_s_ = now_s;

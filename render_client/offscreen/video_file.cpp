@@ -70,12 +70,14 @@ VideoFile::VideoFile(const std::filesystem::path& path, int width, int height, d
         throw UserError(path.string() + ": no socket to the encoder: " + std::strerror(errno));
     complaints_ = memfd_create("ffmpeg", MFD_CLOEXEC);
     const std::string size = std::to_string(width) + "x" + std::to_string(height);
-    const int error = spawnEncoder(
-        {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format",
-         "rgb24", "-video_size", size, "-framerate", rateText(fps), "-i", "pipe:0", "-an", "-vf", kFilter,
-         "-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-movflags", "+faststart", "-f", "mp4",
-         "file:" + file_.part()},
-        ends[1], complaints_, encoder_);
+    const int error =
+        spawnEncoder({"ffmpeg",      "-nostdin",   "-hide_banner", "-loglevel",     "error",
+                      "-y",          "-f",         "rawvideo",     "-pixel_format", "rgb24",
+                      "-video_size", size,         "-framerate",   rateText(fps),   "-i",
+                      "pipe:0",      "-an",        "-vf",          kFilter,         "-c:v",
+                      "libx264",     "-preset",    "veryfast",     "-crf",          "20",
+                      "-movflags",   "+faststart", "-f",           "mp4",           "file:" + file_.part()},
+                     ends[1], complaints_, encoder_);
     close(ends[1]);
     pictures_ = ends[0];
     if (error == 0) return;

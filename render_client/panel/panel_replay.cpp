@@ -38,7 +38,8 @@ void PanelContent::buildReplay() {
         ImGui::PopTextWrapPos();
     }
     ImGui::PushTextWrapPos();
-    sayQuietly(keyLabelOf(Action::kRemovalHere) + " or a right click on the bone: when was it removed there?");
+    sayQuietly(keyLabelOf(Action::kRemovalHere) +
+               " or a right click on the bone: when was it removed there?");
     ImGui::PopTextWrapPos();
     ImGui::EndDisabled();
 }

@@ -105,11 +105,16 @@ constexpr CommandWord kWords[] = {
          c.set_erase_remark(which == "all" ? 0 : *numberOf(which));
      }},
     {"seek", "SECONDS",
-     [](Command& c, const std::string& when, const Session&) { c.mutable_replay()->set_seek_s(*realOf(when)); }},
+     [](Command& c, const std::string& when, const Session&) {
+         c.mutable_replay()->set_seek_s(*realOf(when));
+     }},
     {"speed", "FACTOR",
-     [](Command& c, const std::string& speed, const Session&) { c.mutable_replay()->set_speed(*realOf(speed)); }},
+     [](Command& c, const std::string& speed, const Session&) {
+         c.mutable_replay()->set_speed(*realOf(speed));
+     }},
     {"next", "", [](Command& c, const std::string&, const Session&) { c.mutable_replay()->set_jump(1); }},
-    {"previous", "", [](Command& c, const std::string&, const Session&) { c.mutable_replay()->set_jump(-1); }},
+    {"previous", "",
+     [](Command& c, const std::string&, const Session&) { c.mutable_replay()->set_jump(-1); }},
     {"when", "X Y Z",
      [](Command& c, const std::string& place, const Session&) {
          const std::array<double, 3> p_m = placeOf(place).value();

@@ -90,8 +90,8 @@ class SceneSubscriber {
     // after their turn came.
     std::vector<CommandOutcome> takeOutcomes() { return outbox_.takeOutcomes(); }
 
-    // Tells all others who is watching here, where it points (m), whether its mouse holds the tool, and what it
-    // sees, if that is for the recording: once per second at least.
+    // Tells all others who is watching here, where it points (m), whether its mouse holds the tool, and what
+    // it sees, if that is for the recording: once per second at least.
     void announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W,
                   bool is_holding = false, const std::optional<topics::Eye>& eye = std::nullopt);
     // Says where the mouse of this viewer wants the tool point: with every picture while it holds the tool.

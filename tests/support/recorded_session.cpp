@@ -43,11 +43,13 @@ DeviceCapabilities testDevice() {
     return device;
 }
 
-// To and fro along x, 0.4 mm deep, with an orientation that is no unit quaternion to the last bit.
+// To and fro along x, at first 0.4 mm deep, over minutes to and fro along y and deeper, with an orientation
+// that is no unit quaternion to the last bit.
 Pose poseAt(double t) {
     const double x = 4e-3 + 4e-3 * (1 - std::cos(2 * M_PI * t / 2.3));
-    const double z = kTop + 1e-3 + 0.6e-3 * std::max(0.0, 1 - t / 0.2) - 0.4e-3;
-    Pose pose{{x, 8e-3 + 0.3e-3 * std::sin(3 * t), z}, {0.70710678, 0.70710678, 0.01 * std::sin(t), 0}};
+    const double y = 8e-3 + 4e-3 * std::sin(2 * M_PI * t / 61) + 0.3e-3 * std::sin(3 * t);
+    const double z = kTop + 1e-3 + 0.6e-3 * std::max(0.0, 1 - t / 0.2) - 0.4e-3 - 1e-3 * t / 600;
+    Pose pose{{x, y, z}, {0.70710678, 0.70710678, 0.01 * std::sin(t), 0}};
     const double norm = pose.rotation.norm();
     pose.rotation.coeffs() /= norm;
     return pose;
@@ -111,7 +113,10 @@ journal::Manifest manifestOf(const LoadedScene& loaded, const Simulation& simula
 
 RecordedSession recordSession(const std::filesystem::path& folder, const RecordedSessionOptions& options) {
     writeScene(folder);
-    RecordedSession session{.journal = folder / "session.mcap", .scene = folder / "slab.textproto", .missing_voxels = {}, .x_m = {}};
+    RecordedSession session{.journal = folder / "session.mcap",
+                            .scene = folder / "slab.textproto",
+                            .missing_voxels = {},
+                            .x_m = {}};
     const LoadedScene loaded = loadScene(session.scene);
     Simulation simulation = makeSimulation(loaded);
     BoneModel& bone = *simulation.bone;

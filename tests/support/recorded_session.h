@@ -1,5 +1,6 @@
-// Makes a scene and the journal of a session in it, without processes and without waiting: a burr goes through a
-// slab as a live session's tick would have felt and recorded it, with jitter, a silent device and orders.
+// Makes a scene and the journal of a session in it, without processes and without waiting: a burr goes
+// through a slab as a live session's tick would have felt and recorded it, with jitter, a silent device and
+// orders.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +13,8 @@
 namespace bonemill::test {
 
 struct RecordedSessionOptions {
-    uint64_t ticks = 3000;     // at 1 kHz
-    bool has_orders = true;    // puts the bone back, changes the tool, pauses; else only mills
+    uint64_t ticks = 3000;      // at 1 kHz
+    bool has_orders = true;     // puts the bone back, changes the tool, pauses; else only mills
     double bone_every_s = 0.5;  // states of the bone
     bool has_end = true;
 };
@@ -24,12 +25,13 @@ inline constexpr uint64_t kTickOfSilence = 400, kTickOfOtherTool = 1400, kTickOf
 
 struct RecordedSession {
     std::filesystem::path journal, scene;
-    uint64_t state_hash = 0;             // StateHash of all records and of the bone at the end
+    uint64_t state_hash = 0;              // StateHash of all records and of the bone at the end
     std::vector<int64_t> missing_voxels;  // after each tick
     std::vector<double> x_m;              // of the simulated tool after each tick, W
 };
 
 // Files go into the folder.
-RecordedSession recordSession(const std::filesystem::path& folder, const RecordedSessionOptions& options = {});
+RecordedSession recordSession(const std::filesystem::path& folder,
+                              const RecordedSessionOptions& options = {});
 
 }  // namespace bonemill::test

@@ -32,7 +32,8 @@ TEST_F(ExportTest, Hdf5HasEveryTickWithUnits) {
     const test::H5Reader file(folder_ / "s.h5");
     const auto position = file.reals("/tick/tool_p_m");
     ASSERT_EQ(position.shape, (std::vector<size_t>{3000, 3}));
-    for (size_t tick = 0; tick < 3000; ++tick) ASSERT_EQ(position.values[3 * tick], session.x_m[tick]) << tick;
+    for (size_t tick = 0; tick < 3000; ++tick)
+        ASSERT_EQ(position.values[3 * tick], session.x_m[tick]) << tick;
     EXPECT_EQ(file.reals("/tick/force_n").shape, (std::vector<size_t>{3000, 3}));
     EXPECT_EQ(file.text("/tick/force_n", "unit"), "N");
     EXPECT_NE(file.text("/tick/force_n", "description").find("W"), std::string::npos);
@@ -45,7 +46,8 @@ TEST_F(ExportTest, Hdf5HasEveryTickWithUnits) {
     const auto times = file.reals("/events/t_s").values;
     ASSERT_EQ(texts.size(), times.size());
     EXPECT_TRUE(std::ranges::is_sorted(times));
-    EXPECT_NE(std::ranges::find_if(texts, [](const auto& t) { return t.find("select_tool 1") != std::string::npos; }),
+    EXPECT_NE(std::ranges::find_if(
+                  texts, [](const auto& t) { return t.find("select_tool 1") != std::string::npos; }),
               texts.end());
     const std::vector<std::string> lines = linesOf(folder_ / "s.csv");
     ASSERT_EQ(lines.size(), 3001u);
@@ -72,13 +74,17 @@ TEST_F(ExportTest, TheTrajectoryEndsWhereTheBoneIsPutBack) {
 TEST_F(ExportTest, RefusesWhatCannotBe) {
     const test::RecordedSession session = test::recordSession(folder_.path(), {.ticks = 300});
     EXPECT_THROW(exportJournal({.journal = session.journal, .h5 = "", .csv = "", .traj = ""}), UserError);
-    EXPECT_THROW(exportJournal({.journal = session.journal, .h5 = session.journal, .csv = "", .traj = ""}), UserError);
-    EXPECT_THROW(exportJournal({.journal = folder_ / "no.mcap", .h5 = folder_ / "a.h5", .csv = "", .traj = ""}),
+    EXPECT_THROW(exportJournal({.journal = session.journal, .h5 = session.journal, .csv = "", .traj = ""}),
                  UserError);
-    EXPECT_THROW(exportJournal({.journal = session.journal, .h5 = folder_ / "no/a.h5", .csv = "", .traj = ""}),
-                 UserError);
+    EXPECT_THROW(
+        exportJournal({.journal = folder_ / "no.mcap", .h5 = folder_ / "a.h5", .csv = "", .traj = ""}),
+        UserError);
+    EXPECT_THROW(
+        exportJournal({.journal = session.journal, .h5 = folder_ / "no/a.h5", .csv = "", .traj = ""}),
+        UserError);
     std::ofstream(folder_ / "slab.nrrd") << "gone";
-    EXPECT_THROW(exportJournal({.journal = session.journal, .h5 = folder_ / "a.h5", .csv = "", .traj = ""}), UserError);
+    EXPECT_THROW(exportJournal({.journal = session.journal, .h5 = folder_ / "a.h5", .csv = "", .traj = ""}),
+                 UserError);
 }
 
 }  // namespace

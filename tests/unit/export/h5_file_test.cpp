@@ -24,7 +24,8 @@ TEST_F(H5FileTest, HoldsWhatWasAppendedInBlocks) {
         H5File file(path_);
         file.describe("scene", "slab \u00b5");
         file.describe("rate_hz", 1000);
-        H5File::Column& force = file.addColumn("/tick/force_n", 3, H5File::Number::kDouble, {"N", "on the hand"});
+        H5File::Column& force =
+            file.addColumn("/tick/force_n", 3, H5File::Number::kDouble, {"N", "on the hand"});
         H5File::Column& faults = file.addColumn("/tick/faults", 1, H5File::Number::kUint32, {"bits", "bits"});
         for (int block = 0; block < 3; ++block) {
             std::vector<double> forces;

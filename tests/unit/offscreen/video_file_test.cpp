@@ -36,7 +36,8 @@ Picture filled(int width, int height, std::array<uint8_t, 3> color) {
 Picture noise(int width, int height, unsigned seed) {
     Picture picture(width, height);
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width * 3; ++x) picture.row(y)[x] = uint8_t((seed = seed * 1664525u + 1013904223u) >> 24);
+        for (int x = 0; x < width * 3; ++x)
+            picture.row(y)[x] = uint8_t((seed = seed * 1664525u + 1013904223u) >> 24);
     return picture;
 }
 
@@ -96,7 +97,8 @@ TEST_F(VideoFileTest, SaysThatTheDiskIsFull) {
     });
     setrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, handler);
-    EXPECT_NE(message.find("out.mp4: the video could not be written (disk full?)"), std::string::npos) << message;
+    EXPECT_NE(message.find("out.mp4: the video could not be written (disk full?)"), std::string::npos)
+        << message;
     EXPECT_NE(message.find("File too large"), std::string::npos) << message;
     EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }

@@ -109,7 +109,8 @@ TEST_F(TraineeEyeTest, WhatMakesNoSenseIsRefused) {
         return !hear(viewer);
     };
     EXPECT_TRUE(refused([](auto& v) { v.set_sender(0); }));
-    EXPECT_TRUE(refused([](auto& v) { v.mutable_eye()->set_p_wc_m(1, std::numeric_limits<double>::infinity()); }));
+    EXPECT_TRUE(
+        refused([](auto& v) { v.mutable_eye()->set_p_wc_m(1, std::numeric_limits<double>::infinity()); }));
     EXPECT_TRUE(refused([](auto& v) { v.mutable_eye()->set_p_wc_m(1, 1e4); }));
     EXPECT_TRUE(refused([](auto& v) { v.mutable_eye()->add_p_wc_m(1); }));
     EXPECT_TRUE(refused([](auto& v) { v.mutable_eye()->set_q_wc(0, 0.5); }));

@@ -7,8 +7,7 @@ namespace {
 
 std::shared_ptr<const BoneSnapshot> boneOf(size_t densities) {
     auto bone = std::make_shared<BoneSnapshot>();
-    bone->leaves.push_back(
-        std::make_shared<const LeafCopy>(LeafCopy{0, 2, std::vector<Density>(densities)}));
+    bone->leaves.push_back(std::make_shared<const LeafCopy>(LeafCopy{0, 2, std::vector<Density>(densities)}));
     return bone;
 }
 

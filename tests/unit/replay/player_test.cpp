@@ -132,7 +132,8 @@ TEST_F(PlayerTest, PlaysToTheEndAndBeginsAnew) {
 }
 
 TEST_F(PlayerTest, RefusesSpeedsThatItDoesNotHave) {
-    for (const double factor : {0.0, 0.09, 16.1, -1.0, std::nan("")}) EXPECT_EQ(speed(factor).substr(0, 7), "refused");
+    for (const double factor : {0.0, 0.09, 16.1, -1.0, std::nan("")})
+        EXPECT_EQ(speed(factor).substr(0, 7), "refused");
     EXPECT_EQ(now().speed(), 1);
 }
 

@@ -11,7 +11,8 @@ class RemovalMapTest : public testing::Test {
   protected:
     static constexpr double kSpacing = 0.5e-3;
     static VoxelVolume full() {
-        return test::bodyVolume(test::cubeGeometry(40, kSpacing), [](const Eigen::Vector3d&) { return -1.0; });
+        return test::bodyVolume(test::cubeGeometry(40, kSpacing),
+                                [](const Eigen::Vector3d&) { return -1.0; });
     }
     void set(const Eigen::Vector3i& v, Density density) { bone_.set(v.x(), v.y(), v.z(), density); }
     static Eigen::Vector3d placeOf(const Eigen::Vector3i& v) { return kSpacing * v.cast<double>(); }

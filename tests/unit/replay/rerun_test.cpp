@@ -102,9 +102,9 @@ TEST_F(RerunTest, TicksAndSecondsLeadToEachOther) {
 TEST_F(RerunTest, ATornRecordingIsReadUpToThere) {
     const std::filesystem::path torn = folder_->path() / "torn.mcap";
     std::filesystem::copy_file(session_->journal, torn);
-    std::filesystem::resize_file(torn, std::filesystem::file_size(torn) * 3 / 4);
+    std::filesystem::resize_file(torn, std::filesystem::file_size(torn) / 2);
     const Recording recording(torn);
-    EXPECT_GT(recording.ticks(), 500u);
+    EXPECT_GT(recording.ticks(), 0u);
     EXPECT_LT(recording.ticks(), 3000u);
     EXPECT_FALSE(recording.content().problem.empty());
 }
