@@ -8,7 +8,7 @@
 
 #include "common/rt/clock.h"
 #include "common/units.h"
-#include "haptic_server/setup/scene_accuracy.h"
+#include "haptic_server/rerun/moment.h"
 
 namespace bonemill {
 namespace {
@@ -18,11 +18,6 @@ namespace {
 constexpr double kKeyframeEveryS = 1;
 constexpr uint64_t kLookEveryTicks = 64;  // for whether a keyframe is due
 constexpr int kNice = 10;
-
-BoneModel copyOf(const Simulation& simulation, const LoadedScene& scene) {
-    const BoneModel& bone = *simulation.bone;
-    return {bone.volume.withoutSpareBricks(), bone.lattice.leafCells(), shellConfigOf(scene.scene)};
-}
 
 VoxelVolume startOf(const Rerun& rerun, const BoneModel& bone, const Keyframe& first) {
     return first.bone ? rerun.history().volumeOf(*first.bone, bone.lattice)
@@ -36,7 +31,7 @@ Survey::Survey(const Recording& recording, const Simulation& simulation, const L
     : recording_(recording),
       keyframes_(keyframes),
       events_(events),
-      bone_(copyOf(simulation, scene)),
+      bone_(scannedCopyOf(simulation, scene)),
       rerun_(recording, simulation, bones.checkpoints, bone_, bones.keyframes.front()),
       start_(startOf(rerun_, bone_, bones.keyframes.front())),
       removals_(start_, bone_.volume) {}
