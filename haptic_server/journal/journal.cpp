@@ -234,6 +234,12 @@ void Journal::round() {
     closeChunk();
 }
 
+void Journal::flush() {
+    round();
+    closeChunk();
+    file_.flush();
+}
+
 void Journal::finish() {
     round();
     flushTicks();

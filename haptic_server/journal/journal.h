@@ -56,6 +56,8 @@ class Journal {
     void add(const TickRecord& record);
     void round();
     void finish();
+    // Before the recorder thread runs: writes what was put, and waits until it is in the file.
+    void flush();
 
   private:
     struct Post {  // what another thread put

@@ -1,6 +1,7 @@
 #include "haptic_server/journal/journal_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -22,6 +23,7 @@ JournalFile::JournalFile(const std::filesystem::path& path) : path_(path) {
     if (file_ < 0)
         throw UserError(path.string() + ": the recording cannot be written (" + std::strerror(errno) +
                         "); name another folder with --recording, or refuse it with --no-recording");
+    flock(file_, LOCK_EX | LOCK_NB);  // where there are no locks nobody sees that it is written
     writer_ = std::jthread([this] { writeUntilFinished(); });
     syncer_ = std::jthread([this](const std::stop_token& stop) { syncUntilFinished(stop); });
 }
@@ -40,7 +42,7 @@ void JournalFile::append(std::string bytes) {
     }
     waiting_bytes_ += bytes.size();
     waiting_.push_back(std::move(bytes));
-    has_changed_.notify_one();
+    has_changed_.notify_all();
 }
 
 std::string JournalFile::problem() const {
@@ -48,12 +50,17 @@ std::string JournalFile::problem() const {
     return problem_;
 }
 
+void JournalFile::flush() {
+    std::unique_lock lock(mutex_);
+    has_changed_.wait(lock, [this] { return waiting_.empty() && !is_writing_; });
+}
+
 void JournalFile::finish() {
     if (file_ < 0) return;
     {
         const std::lock_guard lock(mutex_);
         is_finishing_ = true;
-        has_changed_.notify_one();
+        has_changed_.notify_all();
     }
     writer_.join();
     syncer_.request_stop();
@@ -76,13 +83,17 @@ void JournalFile::writeUntilFinished() {
             if (waiting_.empty()) return;
             bytes = std::move(waiting_.front());
             waiting_.pop_front();
+            is_writing_ = true;
         }
         const bool is_written = write(bytes);
         const std::lock_guard lock(mutex_);
         waiting_bytes_ -= bytes.size();
-        if (is_written) continue;
-        waiting_.clear();
-        waiting_bytes_ = 0;
+        is_writing_ = false;
+        if (!is_written) {
+            waiting_.clear();
+            waiting_bytes_ = 0;
+        }
+        has_changed_.notify_all();
     }
 }
 

@@ -1,6 +1,7 @@
 // A file that only grows, written by a thread of its own, so that nobody waits for the disk; another one has it
 // written through once per second, for the loss of power. What does not fit on the disk, or comes faster than
-// it takes, is left out from there to the end, so that what is there stays whole.
+// it takes, is left out from there to the end, so that what is there stays whole. As long as the file is open it
+// is locked (flock), so that others see that somebody writes to it.
 #pragma once
 
 #include <atomic>
@@ -31,7 +32,9 @@ class JournalFile {
     void append(std::string bytes);
     // Any thread: why something was left out, for people; empty if nothing was.
     std::string problem() const;
-    // The thread that appends: waits until all is on the disk. Nothing may come after.
+    // The thread that appends: waits until all that came is written, or left out.
+    void flush();
+    // Likewise, until it is on the disk. Nothing may come after.
     void finish();
 
   private:
@@ -47,7 +50,7 @@ class JournalFile {
     std::condition_variable has_changed_;
     std::deque<std::string> waiting_;  // guarded, as all below
     size_t waiting_bytes_ = 0;
-    bool is_finishing_ = false;
+    bool is_finishing_ = false, is_writing_ = false;
     std::string problem_;
     std::condition_variable_any is_stopping_;
     std::jthread writer_, syncer_;

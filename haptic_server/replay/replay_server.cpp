@@ -48,11 +48,12 @@ class ReplayServer {
                     recordedEffectsOf(scene_.scene.effects())),
           bone_export_(rerun_.history(), *simulation_.bone, ""),
           lesson_({}, ClassTable("")),
-          attempts_(lesson_, recorder_, rerun_.history(), simulation_.bone->volume.voxelVolume(),
+          keeper_(rerun_.history(), *simulation_.bone),
+          attempts_(lesson_, recorder_, rerun_.history(), keeper_, simulation_.bone->volume.voxelVolume(),
                     scene_.scene),
           commands_(scene_.scene, *simulation_.bone, recorder_,
                     {rerun_.history(), rerun_.accuracies(), rerun_.tools(), stop_requested_, bone_export_,
-                     reset_orders_, lesson_, attempts_, limits_, &player_},
+                     reset_orders_, lesson_, attempts_, limits_, keeper_, &player_},
                     options.instructor_only),
           publisher_(soleServerOf(options.domain, options.session, options.network)),
           show_(
@@ -161,6 +162,7 @@ class ReplayServer {
     MeshOutbox outbox_;
     SessionExport bone_export_;
     LessonBook lesson_;
+    JournalKeeper keeper_;  // of nothing: a replay is not recorded
     AttemptKeeper attempts_;
     OrderLimits limits_;
     std::atomic<uint32_t> reset_orders_{0};

@@ -9,11 +9,13 @@
 
 namespace bonemill {
 
-AttemptKeeper::AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history, double voxel_volume,
-                             const scene::Scene& scene, std::function<void(bool begins)> tell_device)
+AttemptKeeper::AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history,
+                             JournalKeeper& journal, double voxel_volume, const scene::Scene& scene,
+                             std::function<void(bool begins)> tell_device)
     : book_(book),
       recorder_(recorder),
       history_(history),
+      journal_(journal),
       voxel_mm3_(voxel_volume * kPerCubicMillimetre),
       effects_(scene.effects()),
       tell_device_(std::move(tell_device)),
@@ -23,11 +25,13 @@ std::optional<std::string> AttemptKeeper::start(const topics::Command& order) {
     const std::string& trainee = order.start_attempt();
     if (std::string problem = LessonBook::traineeProblem(trainee); !problem.empty()) return problem;
     const bool is_answered_later = book_.isAttemptRunning() && end(order);
+    journal_.expectPutBack(Checkpoints::kScannedBone);
     recorder_.beginAttempt(history_.restore());
     history_.pauseMilling(false);
     time_s_ = 0;
     counted_ns_ = monotonicNowNs();
     book_.beginAttempt(trainee);
+    journal_.noteAttemptBegan(trainee);
     if (tell_device_) tell_device_(true);
     if (is_answered_later) return std::nullopt;
     return "done";
@@ -70,6 +74,7 @@ bool AttemptKeeper::end(const std::optional<topics::Command>& order) {
     attempt.set_removed_mm3(double(removed_voxels) * voxel_mm3_);
     attempt.set_max_force_n(figures.max_force);
     effects_.describe(figures.effects, material_names_, attempt);
+    journal_.noteAttemptEnded(attempt);
     book_.endAttempt(std::move(attempt), order);
     return true;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "haptic_server/bone/bone_history.h"
+#include "haptic_server/session/journal_keeper.h"
 #include "haptic_server/session/lesson_book.h"
 #include "haptic_server/session/recorder.h"
 #include "haptic_server/session/shown_effects.h"
@@ -21,7 +22,8 @@ class AttemptKeeper {
 
     // References must outlive this object. `tell_device` is told when an attempt begins (true) and when the
     // one under way ends without another.
-    AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history, double voxel_volume,
+    AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history, JournalKeeper& journal,
+                  double voxel_volume,
                   const scene::Scene& scene, std::function<void(bool begins)> tell_device = {});
 
     // The answer is "done", or "refused: <why>". The bone goes back to the scan, and milling goes on. Where
@@ -43,6 +45,7 @@ class AttemptKeeper {
     LessonBook& book_;
     Recorder& recorder_;
     BoneHistory& history_;
+    JournalKeeper& journal_;
     double voxel_mm3_;
     ShownEffects effects_;
     std::function<void(bool begins)> tell_device_;

@@ -60,6 +60,7 @@ std::optional<std::string> SessionCommands::carryOut(const topics::Command& comm
             return selectTool(command.select_tool());
         case topics::Command::kSaveCheckpoint:
             checkpoints_.save(sessionS());
+            controls_.journal.noteCheckpoint(checkpoints_.kept().back());
             return "done";
         case topics::Command::kRestoreCheckpoint:
             return restore(command.restore_checkpoint());
@@ -135,6 +136,7 @@ std::string SessionCommands::selectTool(uint32_t index) {
 }
 
 std::string SessionCommands::restore(uint32_t checkpoint) {
+    controls_.journal.expectPutBack(checkpoint);
     if (checkpoints_.restore(checkpoint)) {
         controls_.attempts.noteRestored();
         return "done";

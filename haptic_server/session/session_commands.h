@@ -9,6 +9,7 @@
 
 #include "haptic_server/bone/checkpoints.h"
 #include "haptic_server/session/attempt_keeper.h"
+#include "haptic_server/session/journal_keeper.h"
 #include "haptic_server/session/lesson_book.h"
 #include "haptic_server/session/order_limits.h"
 #include "haptic_server/session/recorder.h"
@@ -33,6 +34,7 @@ struct SessionControls {
     LessonBook& lesson;
     AttemptKeeper& attempts;
     OrderLimits& limits;
+    JournalKeeper& journal;
     ReplayOrders* replay = nullptr;  // there where a recording is shown
 };
 
@@ -49,6 +51,8 @@ class SessionCommands {
     std::optional<std::string> takeResult() { return controls_.bone_export.takeResult(); }
     void waitForResult() { controls_.bone_export.wait(); }
     LessonBook& lesson() noexcept { return controls_.lesson; }
+    JournalKeeper& journal() noexcept { return controls_.journal; }
+    Checkpoints& checkpoints() noexcept { return checkpoints_; }
     AttemptKeeper& attempts() noexcept { return controls_.attempts; }
     RemarkBook& remarks() noexcept { return remarks_; }
     // Fills in the session clock, the pause, the checkpoints and what the bone has lost.

@@ -191,6 +191,8 @@ void ShowSession::round() {
     const int64_t now_ns = monotonicNowNs();
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
     commands_.attempts().round();
+    if (const auto eye = publisher_.takeEye()) commands_.journal().noteEye(*eye);
+    commands_.journal().round();
     carryOutCommands();
     followTool();
     publishDensities();
@@ -301,6 +303,7 @@ void ShowSession::carryOutCommands() {
 void ShowSession::answer(const topics::Command& command, const std::string& result) {
     publishStatus();
     publisher_.acknowledge(command, result);
+    commands_.journal().noteOrder(command, result);
     log(command, result);
 }
 

@@ -137,6 +137,7 @@ void HapticTick::decide(const DeviceInput& input) noexcept {
     decisions_.accuracy = uint32_t(accuracy_.choice());
     decisions_.is_milling_paused = history_ && history_->isMillingPaused();
     decisions_.is_write_refused = false;
+    decisions_.bone_order = history_ ? history_->takenUpOrder() : 0;
 }
 
 void HapticTick::chooseTool() noexcept {

@@ -16,7 +16,7 @@ class SessionCommandsTest : public testing::Test {
           accuracy_(presetSettings(Preset::kBalanced)),
           tools_(std::vector<SpoTool>{{&tool_, {.radius = 1e-3}, 5}}, 0),
           bone_export_(ball_.history, ball_.bone, ""),
-          attempts_(lesson_, recorder_, ball_.history, ball_.bone.volume.voxelVolume(), sceneOf(),
+          attempts_(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), sceneOf(),
                     [this](bool begins) { told_ += begins ? 'b' : 'e'; }),
           commands_(sceneOf(), ball_.bone, recorder_, controls(), false) {}
 
@@ -28,7 +28,7 @@ class SessionCommandsTest : public testing::Test {
     }
     SessionControls controls() {
         return {ball_.history, accuracy_, tools_,    stop_requested_, bone_export_,
-                reset_orders_, lesson_,   attempts_, limits_};
+                reset_orders_, lesson_,   attempts_, limits_,         journal_};
     }
     std::string order(topics::Command command, topics::Viewer::Role role = topics::Viewer::OPERATOR) {
         command.set_role(role);
@@ -73,6 +73,7 @@ class SessionCommandsTest : public testing::Test {
     std::atomic<bool> stop_requested_{false};
     SessionExport bone_export_;
     std::atomic<uint32_t> reset_orders_{0};
+    JournalKeeper journal_{ball_.history, ball_.bone};
     LessonBook lesson_{listed(), ClassTable("")};
     std::string told_;  // to the device
     AttemptKeeper attempts_;
