@@ -38,13 +38,25 @@ std::vector<DeviceInput> inputsOf(const std::vector<TrajectoryRow>& rows) {
         inputs[n].X_WT_device = rows[n].X_WT;
         inputs[n].buttons = rows[n].buttons;
         inputs[n].t_s = rows[n].t_s;
+        if (!rows[n].recorded) continue;
+        const TickInput& recorded = rows[n].recorded->input;
+        inputs[n].device = rows[n].recorded->device;
+        inputs[n].is_repeated = recorded.is_repeated;
+        inputs[n].is_stale = recorded.is_stale;
+        inputs[n].stale_factor = recorded.stale_factor;
+        inputs[n].placements = recorded.placements;
+        inputs[n].periods = recorded.periods;
+        inputs[n].faults = recorded.faults;
+        inputs[n].other_device = recorded.has_other_device ? &recorded.other_device : nullptr;
+        inputs[n].decisions = &recorded.decisions;
     }
     return inputs;
 }
 
-// One row is one tick: a file sampled at another rate would silently mean another speed.
+// One row is one tick: a file sampled at another rate would silently mean another speed. A recorded one says
+// how many periods each tick stands for.
 void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::string& file) {
-    for (size_t n = 1; n < rows.size(); ++n) {
+    for (size_t n = 1; n < rows.size() && !rows[n].recorded; ++n) {
         const double spacing = rows[n].t_s - rows[n - 1].t_s;
         if (std::abs(spacing / dt - 1) < kTickSpacingTolerance) continue;
         throw UserError(file + ":" + std::to_string(n + 2) + ": this row is " +
@@ -96,6 +108,15 @@ nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
             {"state_hash", hexText(hash.value())}};
 }
 
+// What a recording says of its ticks must be what this scene has.
+void checkDecisions(const std::vector<TrajectoryRow>& rows, size_t tools, const std::string& file) {
+    for (size_t n = 0; n < rows.size(); ++n)
+        if (rows[n].recorded && (rows[n].recorded->input.decisions.tool >= tools ||
+                                 rows[n].recorded->input.decisions.accuracy >= AccuracySwitch::count()))
+            throw UserError(file + ":" + std::to_string(n + 2) +
+                            ": the scene has no such tool or accuracy; is it the recorded scene?");
+}
+
 void requireApart(const SimulateOptions& options, const LoadedScene& loaded) {
     std::vector<NamedFile> written = filesOf(options.save), read = filesOf(loaded);
     written.push_back({"--trace", options.trace});
@@ -131,7 +152,10 @@ SimulateResult simulate(const SimulateOptions& options) {
     TaskRun task(loaded.scene, simulation, !options.assess.empty());
     const ToolSwitch tools(simulation.spoTools(), tool);
     const AccuracySwitch accuracy(simulation.accuracy);
-    HapticTick tick(simulation.tick, {bone}, {tools, accuracy});
+    checkDecisions(rows, tools.count(), options.trajectory);
+    std::optional<BoneHistory> history;  // which a session's tick has
+    if (rows.front().recorded) history.emplace(bone);
+    HapticTick tick(simulation.tick, {bone, history ? &*history : nullptr}, {tools, accuracy});
     RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * double(kNsPerSecond))), recorded);
     StateHash hash;
     std::optional<TraceWriter> trace;  // from here on nothing is refused that would cost the trace of before

@@ -8,6 +8,7 @@
 
 #include "haptic_server/bone/checkpoints.h"
 #include "haptic_server/journal/journal.h"
+#include "haptic_server/publish/trainee_eye.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
@@ -27,6 +28,8 @@ class JournalKeeper {
     // Before the bone may be put back to this checkpoint: a tick that takes the order up is understood then.
     void expectPutBack(uint32_t checkpoint);
     void noteOrder(const topics::Command& command, const std::string& result);
+    // What the trainee sees now.
+    void noteEye(const SeenEye& eye);
     void noteAttemptBegan(const std::string& trainee);
     void noteAttemptEnded(const topics::Attempt& attempt);
 

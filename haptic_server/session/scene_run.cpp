@@ -107,8 +107,10 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
                 {history_, accuracy_, tools_, parts.stop_requested, bone_export_, io_.resetOrders(),
                  parts.lesson, attempts_, parts.limits, journal_keeper_},
                 options.instructor_only),
-      show_(parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,
-            io_, commands_, task_, options.stream_mbit_per_s * kMega / 8) {
+      show_(
+          parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,
+          [this](DeviceCapabilities& device) { return io_.capabilities(device); }, commands_, task_,
+          options.stream_mbit_per_s * kMega / 8) {
     recorder_.measureTechnique(techniqueMaker(loaded_.scene, simulation_));
     for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
     for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
@@ -138,7 +140,7 @@ void SceneRun::startJournal() {
     journal_keeper_.begin(journal_.get(), commands_.checkpoints());
     recorder_.keepJournal(journal_.get());
     spdlog::info("recording to {}", journal_->path().string());
-    if (!resumed_) return;
+    if (!resumed_ || options_.resumed_journal.empty()) return;
     journal_->flush();
     if (journal_->problem().empty()) closeResumed(options_.resumed_journal);
 }

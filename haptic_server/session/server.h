@@ -26,6 +26,7 @@ struct ServerOptions {
     bool is_recorded = true;
     bool records_results = false;  // also what the ticks came to, which a replay finds again
     bool resumes = false;          // goes on from the newest journal of the session without an end
+    std::string from;              // FILE.mcap@SECONDS: goes on from that moment of a recording; or empty
     std::string resumed_journal;   // that is: set by runServer()
     std::string version;           // that --version prints
     std::string trace;             // files to write; empty: none

@@ -13,6 +13,7 @@
 #include "render_client/app/send_command.h"
 #include "render_client/app/serve_gateway.h"
 #include "render_client/app/stop_signal.h"
+#include "render_client/app/video_viewer.h"
 #include "render_client/app/window_viewer.h"
 
 namespace bonemill {
@@ -36,6 +37,8 @@ int view(int argc, char** argv) {
     requireMemory(kPictureBytes, "the pictures");
     if (options->measure) {
         runMeasurement(*options);
+    } else if (options->offscreen && options->offscreen->video) {
+        runVideo(*options);
     } else if (options->offscreen) {
         runOffscreen(*options);
     } else {
