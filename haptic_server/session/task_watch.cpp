@@ -42,6 +42,10 @@ TaskWatch::TaskWatch(std::shared_ptr<const JudgedTask> task, const BoneModel& bo
     tally_.emplace(history.scanned(), bone.volume, bone.lattice, *task_);
 }
 
+TaskWatch::~TaskWatch() {
+    if (judging_.valid()) judging_.wait();
+}
+
 void TaskWatch::round() {
     using namespace std::chrono_literals;
     if (judging_.valid() && judging_.wait_for(0s) == std::future_status::ready) finish();

@@ -28,6 +28,10 @@ class TaskWatch {
 
     // `task` is null in a scene without one: then nothing is watched. References must outlive this object.
     TaskWatch(std::shared_ptr<const JudgedTask> task, const BoneModel& bone, BoneHistory& history);
+    // Waits for the judgement under way: it works on this object, whoever else waits for it.
+    ~TaskWatch();
+    TaskWatch(const TaskWatch&) = delete;
+    TaskWatch& operator=(const TaskWatch&) = delete;
 
     const JudgedTask* task() const noexcept { return task_.get(); }
     // Are viewers to see the zones on the bone now? For any thread.
@@ -56,9 +60,9 @@ class TaskWatch {
     ProductCounts scanned_counts_;       // what was bone, and nothing gone
     std::optional<RunningTally> tally_;  // with a task
     int64_t next_update_ns_ = 0;
-    std::shared_future<Result> judging_;  // its thread ends before this object: finish()
-    std::optional<Assessment> last_;      // of the attempt before
-    std::atomic<bool> shows_zones_;       // relaxed: the mesher sees it at some later round
+    std::shared_future<Result> judging_;
+    std::optional<Assessment> last_;  // of the attempt before
+    std::atomic<bool> shows_zones_;   // relaxed: the mesher sees it at some later round
 };
 
 }  // namespace bonemill

@@ -29,11 +29,11 @@ class Walk {
     }
 
     int steps() const noexcept { return steps_; }
-    // Returns the way to the end of the last removed voxel, 0 if there is none.
-    double toLastRemoved(const Eigen::Vector3d& start, const Eigen::Vector3d& way) const {
+    // Returns the way to the end of the last voxel that was bone, 0 if there is none.
+    double toSurface(const Eigen::Vector3d& start, const Eigen::Vector3d& way) const {
         double last = 0;
         for (int n = 1; n <= steps_; ++n)
-            if (changes_.isRemoved(changes_.voxelOf(start + n * step_ * way))) last = n * step_;
+            if (changes_.wasBone(changes_.voxelOf(start + n * step_ * way))) last = n * step_;
         return last;
     }
     // Returns the way to the next bone, 0 if there is none.
@@ -72,7 +72,7 @@ void addCavityFigures(const ChangeGrid& changes, const std::vector<CutPiece>& pi
         const double cosine = -piece.normal_V.dot(approach_V);
         if (cosine < undercut_cosine) undercut += piece.area * double(stride);
         if (cosine > floor_cosine) {
-            depth.add(walk.toLastRemoved(piece.center_V, -approach_V), piece.area);
+            depth.add(walk.toSurface(piece.center_V, -approach_V), piece.area);
         } else if (cosine > -floor_cosine) {
             taper.add(std::asin(cosine), piece.area);
             const double across = walk.toBone(piece.center_V, piece.normal_V);

@@ -105,7 +105,7 @@ DeviationPicture drawDeviation(const Deviation& deviation, const std::vector<Cut
     for (const CutPiece& piece : deviation.pieces) window.extend(view.place(piece.center_V));
     const Eigen::Vector2d rim = Eigen::Vector2d::Constant(6 * voxel);
     window = {window.min() - rim, window.max() + rim};
-    const double pixel = std::max(voxel / 4, window.sizes().maxCoeff() / kMostPixels);
+    const double pixel = std::max(voxel / 16, window.sizes().maxCoeff() / kMostPixels);
     Canvas canvas(window, pixel);
     const double radius = std::max(0.8 * voxel, pixel);
     const auto draw = [&](const CutPiece& piece, const Colour& colour) {

@@ -14,7 +14,7 @@ const std::string kStart =
 const std::string kTarget = "zone { name: 'box' role: TARGET shape { sphere { } } }\n";
 
 // Of the assessment, which begins on line 3.
-std::string refusal(const std::string& assessment) {
+std::string taskRefusal(const std::string& assessment) {
     try {
         checkScene(parseSceneText(kStart + "assessment { " + assessment + " }", "s"), "s");
     } catch (const UserError& error) {
@@ -24,11 +24,11 @@ std::string refusal(const std::string& assessment) {
 }
 
 void expectRefused(const std::string& assessment, const std::string& message) {
-    EXPECT_EQ(refusal(assessment), message);
+    EXPECT_EQ(taskRefusal(assessment), message);
 }
 
 TEST(TaskCheck, aWholeTaskIsAccepted) {
-    EXPECT_EQ(refusal(kTarget + R"(
+    EXPECT_EQ(taskRefusal(kTarget + R"(
         zone { name: 'around' role: LEEWAY_SIDES material: 'bone' shape { box { size_mm { x: 1 y: 2 z: 3 } } } }
         zone { name: 'duct' role: PROTECTED material: 'bone' }
         reference { shape { capsule { to_mm { x: 1 } } } }
@@ -39,8 +39,8 @@ TEST(TaskCheck, aWholeTaskIsAccepted) {
         weights_version: 4 time_limit_s: 600 most_attempts: 3 feedback: LIVE
         approach { z: -1 } plan { tip_mm { z: -9 } } skeletonised_mm: 0.5)"),
               "accepted");
-    EXPECT_EQ(refusal("exam: true " + kTarget), "accepted");
-    EXPECT_EQ(refusal(""), "accepted");
+    EXPECT_EQ(taskRefusal("exam: true " + kTarget), "accepted");
+    EXPECT_EQ(taskRefusal(""), "accepted");
 }
 
 TEST(TaskCheck, zonesHaveNamesPlacesAndMaterialsThatAreThere) {
