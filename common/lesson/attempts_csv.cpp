@@ -4,8 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <ctime>
+
+#include "common/csv_text.h"
 
 namespace bonemill {
 namespace {
@@ -37,15 +38,6 @@ std::string joined(const Texts& texts) {
 }
 
 }  // namespace
-
-std::string csvText(const std::string& text) {
-    std::string field = "\"";
-    for (const char c : asNoFormula(text)) {
-        if (c == '"') field += '"';
-        field += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    }
-    return field + '"';
-}
 
 std::string sceneTitle(const topics::Lesson& lesson, const std::string& id) {
     for (const topics::SceneChoice& scene : lesson.scenes())

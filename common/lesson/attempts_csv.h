@@ -8,10 +8,6 @@
 
 namespace bonemill {
 
-// Makes one field of it. A spreadsheet takes what begins with = + - or @ for a formula, so an apostrophe goes
-// before.
-std::string csvText(const std::string& text);
-
 inline constexpr char kAttemptsHeader[] =
     "number,start_utc,trainee,scene,time_s,removed_mm3,max_force_n,damaged_mm3,least_distance_mm,"
     "max_protected_force_n,necrotic_mm3,max_temperature_c,structures_touched,warnings,passed,failed_gates,"

@@ -28,12 +28,13 @@ JudgedAttempt judgedAttempt(const Technique& technique, const TaskWatch::Result&
 
 }  // namespace
 
-AttemptKeeper::AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history, double voxel_volume,
-                             const scene::Scene& scene, std::function<void(bool begins)> tell_device,
-                             TaskWatch* task)
+AttemptKeeper::AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history,
+                             JournalKeeper& journal, double voxel_volume, const scene::Scene& scene,
+                             std::function<void(bool begins)> tell_device, TaskWatch* task)
     : book_(book),
       recorder_(recorder),
       history_(history),
+      journal_(journal),
       voxel_mm3_(voxel_volume * kPerCubicMillimetre),
       effects_(scene.effects()),
       tell_device_(std::move(tell_device)),
@@ -47,11 +48,13 @@ std::optional<std::string> AttemptKeeper::start(const topics::Command& order) {
     if (std::string problem = limitProblem(trainee); !problem.empty()) return problem;
     const bool is_answered_later = book_.isAttemptRunning() && end(order);
     if (task_) task_->beginAttempt();
+    journal_.expectPutBack(Checkpoints::kScannedBone);
     recorder_.beginAttempt(history_.restore());
     history_.pauseMilling(false);
     time_s_ = 0;
     counted_ns_ = monotonicNowNs();
     book_.beginAttempt(trainee);
+    journal_.noteAttemptBegan(trainee);
     if (tell_device_) tell_device_(true);
     if (is_answered_later) return std::nullopt;
     return "done";
@@ -111,6 +114,7 @@ bool AttemptKeeper::end(const std::optional<topics::Command>& order) {
     attempt.set_removed_mm3(double(removed_voxels) * voxel_mm3_);
     attempt.set_max_force_n(figures.max_force);
     effects_.describe(figures.effects, material_names_, attempt);
+    journal_.noteAttemptEnded(attempt);
     book_.endAttempt(std::move(attempt), order, judgement(figures.breach));
     return true;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "haptic_server/bone/bone_history.h"
+#include "haptic_server/session/journal_keeper.h"
 #include "haptic_server/session/lesson_book.h"
 #include "haptic_server/session/recorder.h"
 #include "haptic_server/session/shown_effects.h"
@@ -23,9 +24,9 @@ class AttemptKeeper {
     // References must outlive this object. `tell_device` is told when an attempt begins (true) and when the
     // one under way ends without another. `task` (null: none) has each attempt judged, and may limit their
     // number and time.
-    AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history, double voxel_volume,
-                  const scene::Scene& scene, std::function<void(bool begins)> tell_device = {},
-                  TaskWatch* task = nullptr);
+    AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history, JournalKeeper& journal,
+                  double voxel_volume, const scene::Scene& scene,
+                  std::function<void(bool begins)> tell_device = {}, TaskWatch* task = nullptr);
 
     // The answer is "done", or "refused: <why>". The bone goes back to the scan, and milling goes on. Where
     // an attempt that is recorded ends with the order, the answer comes with LessonBook::takeAnswers().
@@ -52,6 +53,7 @@ class AttemptKeeper {
     LessonBook& book_;
     Recorder& recorder_;
     BoneHistory& history_;
+    JournalKeeper& journal_;
     double voxel_mm3_;
     ShownEffects effects_;
     std::function<void(bool begins)> tell_device_;

@@ -34,8 +34,9 @@ void forgetRecordings(const fs::path& folder, Forgotten& forgotten) {
         std::error_code error;
         if (!fs::is_regular_file(file, error)) continue;
         if (std::ranges::find(of_others, name) != of_others.end())
-            forgotten.problems.push_back(file.string() +
-                                         ": holds other people's attempts, too; it is left, decide what to do with it");
+            forgotten.problems.push_back(
+                file.string() +
+                ": holds other people's attempts, too; it is left, decide what to do with it");
         else if (fs::remove(file, error))
             forgotten.deleted.push_back(file.string());
         else

@@ -32,14 +32,18 @@ void Recorder::drain() {
     while (ring_.tryPop(record)) {
         any = true;
         statistics_.add(record);
-        if (trace_) trace_->write(record);
+        if (trace_ && !trace_->write(record)) is_trace_torn_ = true;
+        if (journal_) journal_->add(record);
         addToWindow(record);
         addToAttempt(record);
         events.add(record.effects);
         removed += record.removed;
     }
-    if (!any) return;
+    if (journal_) journal_->round();
+    const bool is_incomplete = isIncomplete();
     const std::lock_guard lock(mutex_);
+    if (is_incomplete) health_.faults |= kFaultNotRecorded;
+    if (!any) return;
     latest_ = record;
     new_events_.add(events);
     new_removed_ += removed;
@@ -47,8 +51,12 @@ void Recorder::drain() {
     new_device_changes_.insert(new_device_changes_.end(), changes.begin(), changes.end());
     health_.ticks = statistics_.ticks();
     health_.dropped_ticks = statistics_.droppedTicks();
-    health_.faults = statistics_.faults();
+    health_.faults = statistics_.faults() | (health_.faults & kFaultNotRecorded);
     if (!asked_bone_order_) shown_attempt_ = attempt_;
+}
+
+bool Recorder::isIncomplete() const {
+    return is_trace_torn_ || ring_.dropped() > 0 || (journal_ && !journal_->problem().empty());
 }
 
 void Recorder::beginAttempt(uint64_t bone_order) {
@@ -104,6 +112,7 @@ void Recorder::addToWindow(const TickRecord& record) {
 
 bool Recorder::finish() {
     drain();
+    if (journal_) journal_->finish();
     statistics_.setLostRecords(ring_.dropped());
     if (!trace_) return true;
     const bool is_written = trace_->close();

@@ -11,6 +11,7 @@
 #include "common/rt/spsc_ring.h"
 #include "haptic_server/assessment/product/breach_watch.h"
 #include "haptic_server/assessment/technique.h"
+#include "haptic_server/journal/journal.h"
 #include "haptic_server/record/event_sum.h"
 #include "haptic_server/record/run_statistics.h"
 #include "haptic_server/record/trace_writer.h"
@@ -44,6 +45,8 @@ class Recorder {
     // Before the first drain(), it begins a trace, which takes the place of the file that is there; an empty
     // path is none. Throws UserError when it cannot be created.
     void openTrace(const std::string& path);
+    // Likewise: all records go into the journal as well, which must outlive this.
+    void keepJournal(Journal* journal) { journal_ = journal; }
     // The recorder thread takes what is in the ring, every few milliseconds.
     void drain();
     // Once the tick has ended this takes the rest and closes the trace. False: some of the trace is lost,
@@ -86,12 +89,15 @@ class Recorder {
   private:
     void addToWindow(const TickRecord& record);
     void takeUpAttempt();
+    bool isIncomplete() const;
     void addToAttempt(const TickRecord& record);
 
     SpscRing<TickRecord>& ring_;
     RunStatistics statistics_;
     RecordedEffects recorded_;
     std::optional<TraceWriter> trace_;
+    bool is_trace_torn_ = false;
+    Journal* journal_ = nullptr;
     LatencyHistogram window_;  // tick compute time in the second under way
     int64_t window_start_ns_ = 0;
     std::optional<BreachWatch> breach_;

@@ -8,6 +8,7 @@
 #include "haptic_server/telemetry/cut.h"
 #include "haptic_server/telemetry/device_report.h"
 #include "haptic_server/telemetry/effect_record.h"
+#include "haptic_server/telemetry/tick_input.h"
 
 namespace bonemill {
 
@@ -29,8 +30,9 @@ enum TickFault : uint32_t {
     kFaultImplausibleDevice = 1u << 12,  // what device_daemon says cannot be: it was refused
     kFaultEarlySamples = 1u << 13,       // samples come faster than the loop's rate: the tick was held back
     kFaultFewerSamples = 1u << 14,  // the contact is sampled less finely than asked for: there was no time
+    kFaultNotRecorded = 1u << 15,   // no tick's: the recording or the trace lacks something (disk full or slow)
 };
-constexpr uint32_t kLastFault = kFaultFewerSamples;
+constexpr uint32_t kLastFault = kFaultNotRecorded;
 
 struct TickRecord {
     uint64_t tick;
@@ -63,6 +65,7 @@ struct TickRecord {
     Cut cut;                  // the voxels milled in this tick
     EffectRecord effects;
     DeviceReport device;
+    TickInput input;
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 

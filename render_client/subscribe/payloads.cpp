@@ -105,10 +105,15 @@ bool isUsable(const topics::Training& training) {
     return std::ranges::all_of(numbers, isSane) && training.warnings_size() <= kMostWarnings;
 }
 
+bool isUsable(const topics::Replay& replay) {
+    return isTime(replay.length_s()) && isTime(replay.known_s()) && isSane(replay.speed()) &&
+           replay.speed() >= 0;
+}
+
 bool isUsable(const topics::ToolState& state) {
     return isVector(state.p_wt_m()) && isQuaternion(state.q_wt()) && isVector(state.p_wt_device_m()) &&
            isQuaternion(state.q_wt_device()) && isVector(state.force_n()) && isVector(state.torque_nm()) &&
-           std::isfinite(state.max_penetration_m()) && isUsable(state.effects());
+           std::isfinite(state.max_penetration_m()) && isTime(state.session_s()) && isUsable(state.effects());
 }
 
 // States and causes of a later version are shown as unknown.
@@ -139,7 +144,7 @@ bool isUsable(const topics::Status& status) {
     };
     return isFinite(numbers) && isTime(status.session_s()) && status.checkpoints_size() <= kMostCheckpoints &&
            std::ranges::all_of(status.checkpoints(), is_usable) && isUsable(status.training()) &&
-           isUsable(status.device()) && isUsable(status.task());
+           isUsable(status.device()) && isUsable(status.task()) && isUsable(status.replay());
 }
 
 bool isUsable(const topics::SceneChoice& scene) {
@@ -322,6 +327,8 @@ std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {
     if (status->has_device()) status->mutable_device()->set_name(shownName(status->device().name()));
     if (status->has_training()) keepShownText(*status->mutable_training());
     if (status->has_task()) keepShownText(*status->mutable_task());
+    if (status->has_replay())
+        status->mutable_replay()->set_event(shownText(status->replay().event(), kLongestText));
     return status;
 }
 

@@ -27,14 +27,14 @@ inline const std::vector<NodeMesh>& milledBlock() {
     return nodes;
 }
 
-// It has a shell of one material around a core of another, and a lump without one on the right.
+// There is a shell of one material around a core of another, and a lump without one on the right.
+inline uint8_t blockMaterial(const Eigen::Vector3d& p) {
+    if (p.x() > kBlockCenter.x() + 0.0035) return 0;
+    return (p - kBlockCenter).norm() > kBlockRadius - 0.0011 ? 1 : 2;
+}
+
 inline const std::vector<NodeMesh>& layeredBlock() {
-    static const std::vector<NodeMesh> nodes =
-        meshBody(65, 2.5e-4, milledBlockDistance, [](const Eigen::Vector3d& p) {
-            const double radius = (p - kBlockCenter).norm();
-            if (p.x() > kBlockCenter.x() + 0.0035) return uint8_t(0);
-            return uint8_t(radius > kBlockRadius - 0.0011 ? 1 : 2);
-        });
+    static const std::vector<NodeMesh> nodes = meshBody(65, 2.5e-4, milledBlockDistance, blockMaterial);
     return nodes;
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "haptic_server/assessment/technique.h"
 

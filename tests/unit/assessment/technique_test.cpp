@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
+
 #include "common/units.h"
 #include "tests/unit/assessment/hand_made_session.h"
 
@@ -180,6 +182,36 @@ TEST(Technique, TheHardestPressOfEachContactIsAMoment) {
     EXPECT_NEAR(moments[1].severity, 8.0 / 5, 0.01);
     EXPECT_EQ(worstOf(moments, 1)[0].t_s, moments[1].t_s);
     EXPECT_EQ(moments[1].text, "8 N on the bone");
+}
+
+// docs/measurements.md has what --gtest_output=xml tells of it.
+TEST(Technique, AnHourTakesNoMoreMemoryThanItsTables) {
+    HandMadeSession session;
+    session.seconds = 3600;
+    session.rate = 200;
+    session.place = [](double t) { return Eigen::Vector3d(5e-3 * std::sin(6 * t), 1e-3 * std::sin(t), 0); };
+    session.contact = [](double t) { return std::fmod(t, 3) > 1; };
+    session.force = [](double t) { return 2 + std::sin(t); };
+    session.removed_until = [](double t) { return 1e-9 * t; };
+    Technique technique({});
+    double ticks = 0;
+    std::clock_t spent = 0;
+    session.play([&](const TickRecord& record) {
+        const std::clock_t start = std::clock();
+        technique.add(record);
+        spent += std::clock() - start;
+        ++ticks;
+    });
+    technique.finish();
+    RecordProperty("ns_per_tick", int(1e9 * double(spent) / CLOCKS_PER_SEC / ticks));
+    RecordProperty("bytes", int(sizeof(Technique)));
+    const std::vector<SeriesTable> tables = technique.series();
+    EXPECT_LE(tables[0].index.values.size(), StepTable::kMostRows);
+    EXPECT_NEAR(tables[0].index.values.back(), 3600, 4);
+    EXPECT_LE(technique.moments().size(), WorstMoments::kMostKept);
+    EXPECT_LE(sizeof(Technique), size_t(512) << 10);
+    EXPECT_NEAR(valueOf(technique.figures(), "time.contact"), 2400, 10);
+    EXPECT_GT(technique.strokes().strokes().count(), 6000);
 }
 
 TEST(Technique, AnAttemptWithoutATickHasNoMeasures) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/csv_text.h"
 #include "tests/support/class_lesson.h"
 
 namespace bonemill {

@@ -139,13 +139,14 @@ class LimitedAttempts : public TaskWatching {
     SpscRing<TickRecord> ring_;
     Recorder recorder_;
     LessonBook lesson_{{}, ClassTable("")};
+    JournalKeeper journal_{ball_.history, ball_.bone};  // that goes nowhere
 };
 
 TEST_F(LimitedAttempts, EachTraineeHasSoMany) {
     task_->most_attempts = 2;
     TaskWatch watch(task_, ball_.bone, ball_.history);
-    AttemptKeeper attempts(lesson_, recorder_, ball_.history, ball_.bone.volume.voxelVolume(), {}, {},
-                           &watch);
+    AttemptKeeper attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), {},
+                           {}, &watch);
     for (int n = 0; n < 2; ++n) {
         EXPECT_NE(start(attempts, "Ann").find("refused"), 0u);
         ball_.restoreAll();
@@ -161,8 +162,8 @@ TEST_F(LimitedAttempts, EachTraineeHasSoMany) {
 TEST_F(LimitedAttempts, AnAttemptEndsWithItsTime) {
     task_->time_limit_s = 1e-3;
     TaskWatch watch(task_, ball_.bone, ball_.history);
-    AttemptKeeper attempts(lesson_, recorder_, ball_.history, ball_.bone.volume.voxelVolume(), {}, {},
-                           &watch);
+    AttemptKeeper attempts(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), {},
+                           {}, &watch);
     start(attempts, "Ann");
     ball_.restoreAll();
     ball_.groove(10e-3);

@@ -221,6 +221,27 @@ TEST(Payloads, ADevicesNameIsCleanedAndItsFiguresAreChecked) {
     EXPECT_FALSE(parseStatus(bytesOf(status.SerializeAsString()))->has_device());
 }
 
+TEST(Payloads, AReplaysFiguresAreCheckedAndItsWordsCleaned) {
+    topics::Status status;
+    status.set_epoch(1);
+    topics::Replay& replay = *status.mutable_replay();
+    replay.set_length_s(60);
+    replay.set_speed(2);
+    replay.set_event("cut\x01 " + std::string(5000, 'x'));
+    const auto parsed = parseStatus(bytesOf(status.SerializeAsString()));
+    ASSERT_TRUE(parsed);
+    EXPECT_LE(parsed->replay().event().size(), 512u);
+    EXPECT_EQ(parsed->replay().event().substr(0, 4), "cut ");
+    for (const double bad : {-1.0, 1e12, std::nan("")}) {
+        topics::Status other = status;
+        other.mutable_replay()->set_length_s(bad);
+        EXPECT_FALSE(isAccepted(&parseStatus, other)) << bad;
+        other = status;
+        other.mutable_replay()->set_speed(bad);
+        EXPECT_FALSE(isAccepted(&parseStatus, other)) << bad;
+    }
+}
+
 TEST(Payloads, StatusIsChecked) {
     topics::Status status;
     status.set_epoch(1);
