@@ -38,6 +38,28 @@ inline const std::vector<NodeMesh>& layeredBlock() {
     return nodes;
 }
 
+// A task asked for a cavity that is deeper and narrower: what was to go and is left, and what is gone beyond
+// it.
+inline const std::vector<NodeMesh>& zonedBlock() {
+    static const std::vector<NodeMesh> nodes = [] {
+        const auto whole = [](const Eigen::Vector3d& p) { return (p - kBlockCenter).norm() - kBlockRadius; };
+        const VoxelVolume scanned = bodyVolumeOf(65, 2.5e-4, whole);
+        std::vector<uint8_t> zones;
+        forEachIndex({Eigen::Vector3i::Zero(), scanned.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
+            const Eigen::Vector3d p = 2.5e-4 * v.cast<double>() - kCavityCenter;
+            const double off_axis = std::hypot(p.x(), p.z());
+            zones.push_back(off_axis < 0.0013 ? 1 : off_axis < 0.0018 ? 2 : 3);
+        });
+        ZonePaint paint{.zones = std::make_shared<const VoxelIds>(scanned.dims(), zones),
+                        .scanned = &scanned};
+        paint.when_left[1] = 1;
+        paint.when_gone[2] = 2;
+        paint.when_gone[3] = 3;
+        return meshBody(65, 2.5e-4, milledBlockDistance, {}, &paint);
+    }();
+    return nodes;
+}
+
 inline void addLayers(topics::SceneInfo& info) {
     const auto add = [&](const char* name, double red, double green, double blue) {
         scene::Material& material = *info.add_materials();
