@@ -10,6 +10,7 @@
 #include <random>
 #include <thread>
 
+#include "common/mcap/mcap_writer.h"
 #include "haptic_server/journal/journal_reader.h"
 #include "haptic_server/offline/journal_run.h"
 #include "haptic_server/offline/verify_journal.h"
