@@ -46,6 +46,7 @@ void addHand(scene::Scene& scene, const test::EveryEffectBlock& block) {
     scene.mutable_simulated_operator()->set_tremor_mm(0.02);
     auto& place = *scene.mutable_device()->mutable_p_wd_mm();
     place.set_x(middle), place.set_y(middle), place.set_z(face);
+    *scene.mutable_device()->mutable_q_wd() = scene.simulated_operator().waypoint(0).q_wt();
 }
 
 class Recording : public testing::Test {
