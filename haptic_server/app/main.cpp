@@ -11,9 +11,13 @@
 #include "common/run_program.h"
 #include "common/user_error.h"
 #include "haptic_server/accuracy_report/accuracy_report.h"
+#include "haptic_server/export/export_journal.h"
 #include "haptic_server/offline/describe_scene.h"
 #include "haptic_server/offline/simulate.h"
 #include "haptic_server/offline/verify_journal.h"
+#include "haptic_server/replay/player.h"
+#include "haptic_server/replay/replay_server.h"
+#include "haptic_server/session/forget_person.h"
 #include "haptic_server/session/server.h"
 #include "haptic_server/volume/import/import_program.h"
 
@@ -35,6 +39,8 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
     app.add_option("--session", server.session, "session number: names the device link and the topics");
     app.add_option("--domain", server.domain, "DDS domain, 0 to 230");
     dds::addNetworkOptions(app, server.network);
+    app.add_option("--from", server.from,
+                   "go on from that moment of a recording: FILE.mcap@SECONDS (docs/replay.md)");
     app.add_option("--seconds", server.seconds,
                    "stop this long after the first tick; 0: run until SIGINT or SIGTERM")
         ->check(within(0, kMostSeconds));
@@ -77,7 +83,43 @@ void addSimulateOptions(CLI::App& app, SimulateOptions& simulate) {
     app.add_option("--tool", simulate.tool, "name of the scene's tool, or its number; default: the first")
         ->type_name("NAME|NUMBER");
     app.add_option("--trace", simulate.trace, "write one CSV line per tick");
+    app.add_option(
+        "--save-deviation", simulate.deviation,
+        "at the end: picture of what was cut too far and not far enough by the scene's task (.png)");
+    app.add_option(
+        "--assess", simulate.assess,
+        "at the end: results and report into this folder, as a session writes them beside the class table");
+    app.add_option("--pseudonym", simulate.pseudonym, "whose results they are")->capture_default_str();
     addSaveOptions(app, simulate.save);
+}
+
+void addForgetOptions(CLI::App& app, ForgetOptions& forget) {
+    app.add_option("pseudonym", forget.pseudonym, "whose data it is, as in the class table")->required();
+    app.add_option("--in", forget.folder, "folder of the class table")->required()->type_name("DIR");
+}
+
+void addReplayOptions(CLI::App& app, ReplayOptions& replay) {
+    app.add_option("journal", replay.journal, "the recorded session (.mcap)")->required();
+    app.add_option("--session", replay.session, "session number under which it is shown");
+    app.add_option("--domain", replay.domain, "DDS domain, 0 to 230");
+    dds::addNetworkOptions(app, replay.network);
+    app.add_option("--at", replay.at_s, "begin at this moment, s")->check(within(0, kMostSeconds));
+    app.add_option("--speed", replay.speed, "so many times as fast as it was")
+        ->check(within(Player::kSlowest, Player::kFastest))
+        ->capture_default_str();
+    app.add_flag("--paused", replay.is_paused, "wait until a viewer lets it go on");
+    app.add_option("--stream-mbit-per-s", replay.stream_mbit_per_s,
+                   "node meshes take this much of the network at most")
+        ->check(within(0.1, 10000))
+        ->capture_default_str();
+    app.add_flag("--instructor-only", replay.instructor_only, "only instructors lead the replay");
+}
+
+void addExportOptions(CLI::App& app, ExportOptions& files) {
+    app.add_option("journal", files.journal, "the recorded session (.mcap)")->required();
+    app.add_option("--h5", files.h5, "write everything as HDF5, with units (docs/replay.md)");
+    app.add_option("--csv", files.csv, "write one CSV line per tick, as --trace does");
+    app.add_option("--traj", files.traj, "write what went in, for simulate --trajectory");
 }
 
 void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
@@ -97,6 +139,9 @@ struct Options {
     ServerOptions server;
     SimulateOptions simulate;
     AccuracyReportOptions report;
+    ForgetOptions forget;
+    ReplayOptions replay;
+    ExportOptions files;
     std::string journal;
 };
 
@@ -115,7 +160,7 @@ int verifyInOrder(const std::string& journal) {
 
 int serveLive(const Options& options) {
     const bool has_folders = !options.server.scene_folders.empty();
-    if (options.server.scene.empty() && (!has_folders || options.describe))
+    if (options.server.scene.empty() && (!has_folders || options.describe) && options.server.from.empty())
         throw UserError("no scene given; use --scene FILE (see deploy/scenes)" +
                         std::string(options.describe ? "" : ", or --scenes FOLDER"));
     if (options.list_scenes) {
@@ -147,14 +192,29 @@ int serve(int argc, char** argv) {
         "accuracy-report",
         "measure errors and tick times of the accuracy settings in a scene, on this machine");
     addReportOptions(*report_command, options.report);
-    CLI::App* const session_command = app.add_subcommand("session", "what was recorded of sessions");
-    session_command->require_subcommand(1);
+    CLI::App* const replay_command =
+        app.add_subcommand("replay", "show a recorded session again, as a live one (docs/replay.md)");
+    addReplayOptions(*replay_command, options.replay);
+    CLI::App* const session_command =
+        app.add_subcommand("session", "what can be done with what sessions have left")->require_subcommand(1);
+    CLI::App* const forget_command = session_command->add_subcommand(
+        "forget", "delete what a class' folder holds of one person, and say what was deleted");
+    addForgetOptions(*forget_command, options.forget);
     CLI::App* const verify_command =
         session_command->add_subcommand("verify", "run a recording again and compare every bit");
     verify_command->add_option("JOURNAL", options.journal, "recording (.mcap)")->required();
+    CLI::App* const export_command =
+        session_command->add_subcommand("export", "write a recorded session as files for other programs");
+    addExportOptions(*export_command, options.files);
     if (!parseCommandLine(app, argc, argv, "haptic_server")) return 0;
     options.server.version = versionText();
     setUpLog("haptic_server", options.log_level);
+    if (forget_command->parsed()) return forgetPerson(options.forget, std::cout);
+    if (export_command->parsed()) {
+        exportJournal(options.files);
+        return 0;
+    }
+    if (replay_command->parsed()) return runReplay(options.replay);
     if (verify_command->parsed()) return verifyInOrder(options.journal);
     if (simulate_command->parsed()) return simulateInOrder(options.simulate);
     if (!report_command->parsed()) return serveLive(options);

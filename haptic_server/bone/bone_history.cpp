@@ -159,7 +159,16 @@ bool BoneHistory::takeUpNewestOrder() noexcept {
     order_ = next_order_.exchange(nullptr, std::memory_order_acquire);
     taken_up_.store(order_->number, std::memory_order_release);
     next_leaf_ = 0;
+    next_copy_ = 0;
     return is_restoring_ = true;
+}
+
+// Leaves are asked for in ascending order, as the target has them.
+bool BoneHistory::isInTarget(LeafId leaf) noexcept {
+    if (!order_->target) return false;
+    const auto& leaves = order_->target->leaves;
+    while (next_copy_ < leaves.size() && leaves[next_copy_]->leaf < leaf) ++next_copy_;
+    return next_copy_ < leaves.size() && leaves[next_copy_]->leaf == leaf;
 }
 
 void BoneHistory::finishOrder() noexcept {
@@ -172,9 +181,10 @@ bool BoneHistory::restoreSome(BoneModel& bone, bool& shell_is_complete) noexcept
     if (!takeUpNewestOrder()) return false;
     const int voxels_per_leaf = bone.lattice.leafCells().prod();
     for (int looked_at = 0; looked_at < kVoxelsLookedAtPerTick;) {
-        // A version of 0 means that nothing near the leaf was ever written.
+        // A version of 0 means that nothing near the leaf was ever written; only a snapshot of an earlier run
+        // of the session can differ there.
         for (; next_leaf_ < bone.lattice.leafCount() && bone.lattice.version(next_leaf_) == 0 &&
-               looked_at < kVoxelsLookedAtPerTick;
+               !isInTarget(next_leaf_) && looked_at < kVoxelsLookedAtPerTick;
              ++next_leaf_)
             looked_at += kVoxelsPerVersion;
         if (next_leaf_ == bone.lattice.leafCount()) {

@@ -78,7 +78,7 @@ class BoneHistory {
     };
     class Hold;
     using Copies = std::vector<std::shared_ptr<const LeafCopy>>;  // by leaf; null: never written
-    struct Moment {  // between two ticks
+    struct Moment {                                               // between two ticks
         uint64_t ticks;
         int64_t missing_voxels;
     };
@@ -87,6 +87,7 @@ class BoneHistory {
     bool copyChanged(const BoneModel& bone, Copies& copies) const;
     std::shared_ptr<const LeafCopy> copyOf(const BoneModel& bone, LeafId leaf, uint32_t version) const;
     bool takeUpNewestOrder() noexcept;
+    bool isInTarget(LeafId leaf) noexcept;
     void finishOrder() noexcept;
     bool restoreLeaf(BoneModel& bone, LeafId leaf, bool& shell_is_complete) noexcept;
     bool readRows(const BoneModel& bone, const IndexBox& cells, const Density* copy,
@@ -104,7 +105,8 @@ class BoneHistory {
     const Order* order_;  // the newest taken up
     bool is_restoring_ = false;
     LeafId next_leaf_ = 0;
-    uint64_t tick_ = 0;  // whose write is open
+    size_t next_copy_ = 0;             // of the target's leaves, the first that is not behind next_leaf_
+    uint64_t tick_ = 0;                // whose write is open
     std::vector<Density> now_, then_;  // rows of a leaf
 
     // The newest order until the tick takes it, then null: each side exchanges, so that the keeper knows

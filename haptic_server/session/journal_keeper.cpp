@@ -53,6 +53,19 @@ void JournalKeeper::noteOrder(const topics::Command& command, const std::string&
     journal_->put(JournalTopic::kOrder, order);
 }
 
+void JournalKeeper::noteEye(const SeenEye& eye) {
+    if (!journal_) return;
+    journal::Camera camera;
+    camera.set_sender(eye.sender);
+    camera.set_tick(journal_->ticks());
+    topics::Eye& seen = *camera.mutable_eye();
+    seen.mutable_p_wc_m()->Assign(eye.X_WC.position.begin(), eye.X_WC.position.end());
+    const Eigen::Quaterniond& q = eye.X_WC.rotation;
+    for (const double part : {q.w(), q.x(), q.y(), q.z()}) seen.add_q_wc(part);
+    seen.set_field_of_view_rad(eye.field_of_view);
+    journal_->put(JournalTopic::kCamera, camera);
+}
+
 void JournalKeeper::noteAttemptBegan(const std::string& trainee) {
     if (!journal_) return;
     journal::Event event;

@@ -1,6 +1,6 @@
-// Tells the session's journal what the publisher thread knows: how the bone is, several times per second, what
-// viewers ordered, and attempts. Without a journal it does nothing. All members belong to the publisher thread,
-// or to whoever runs none beside it.
+// Tells the session's journal what the publisher thread knows: how the bone is, several times per second,
+// what viewers ordered, and attempts. Without a journal it does nothing. All members belong to the publisher
+// thread, or to whoever runs none beside it.
 #pragma once
 
 #include <optional>
@@ -8,6 +8,7 @@
 
 #include "haptic_server/bone/checkpoints.h"
 #include "haptic_server/journal/journal.h"
+#include "haptic_server/publish/trainee_eye.h"
 #include "proto/topics.pb.h"
 
 namespace bonemill {
@@ -27,6 +28,8 @@ class JournalKeeper {
     // Before the bone may be put back to this checkpoint: a tick that takes the order up is understood then.
     void expectPutBack(uint32_t checkpoint);
     void noteOrder(const topics::Command& command, const std::string& result);
+    // What the trainee sees now.
+    void noteEye(const SeenEye& eye);
     void noteAttemptBegan(const std::string& trainee);
     void noteAttemptEnded(const topics::Attempt& attempt);
 

@@ -102,14 +102,14 @@ class SceneRun {
     Recorder recorder_;
     MeshOutbox outbox_;
     SessionExport bone_export_;
+    TaskWatch task_;
     AttemptKeeper attempts_;
     SessionCommands commands_;
     ShowSession show_;
     PublishFigures published_;  // publisher thread's until it is joined
     std::string device_;        // as told last
     size_t devices_told_ = 0;
-    bool has_told_of_implausible_ = false, has_told_of_early_ = false,
-         has_told_of_journal_ = false;
+    bool has_told_of_implausible_ = false, has_told_of_early_ = false, has_told_of_journal_ = false;
     int64_t first_tick_ns_ = 0;
     std::optional<PageFaults> warm_;  // of the tick thread, when it had run for some time
     RealtimeThread tick_thread_;

@@ -14,6 +14,7 @@
 #include "haptic_server/session/order_limits.h"
 #include "haptic_server/session/recorder.h"
 #include "haptic_server/session/remark_book.h"
+#include "haptic_server/session/replay_orders.h"
 #include "haptic_server/session/session_export.h"
 #include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/tick/accuracy_switch.h"
@@ -34,6 +35,7 @@ struct SessionControls {
     AttemptKeeper& attempts;
     OrderLimits& limits;
     JournalKeeper& journal;
+    ReplayOrders* replay = nullptr;  // there where a recording is shown
 };
 
 class SessionCommands {
@@ -60,6 +62,7 @@ class SessionCommands {
 
   private:
     std::string refusalOf(const topics::Command& command) const;
+    std::optional<std::string> carryOutInReplay(const topics::Command& command);
     std::string setAccuracy(const std::string& name);
     std::string selectTool(uint32_t index);
     std::string restore(uint32_t checkpoint);
@@ -73,6 +76,7 @@ class SessionCommands {
     bool is_switchable_;
     const char* effect_of_gradient_law_;  // null: none
     bool only_instructors_;
+    bool is_exam_;
 };
 
 }  // namespace bonemill

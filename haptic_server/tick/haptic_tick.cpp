@@ -396,6 +396,7 @@ TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step)
     record.coupling_share = hand_coupling_.share();
     record.rotation_share = hand_coupling_.rotationShare();
     record.buttons = input.buttons;
+    record.tool = uint32_t(tool_);
     record.waits_for_release = waits_for_release_;
     record.device = input.device;
     record.bone_order = history_ ? history_->finishedOrder() : 0;
