@@ -1,8 +1,8 @@
-// What a session leaves of itself: it runs again to the bit, and a session that was killed goes on. Server and
-// daemon are processes, the test itself is a viewer.
+// What a session leaves of itself: it runs again to the bit, and a session that was killed goes on. Server
+// and daemon are processes, the test itself is a viewer.
 //
-// BONEMILL_KILLS says how often a server is killed, 2 without; BONEMILL_ALL_SCENES makes every shipped scene run
-// that has its volume.
+// BONEMILL_KILLS says how often a server is killed, 2 without; BONEMILL_ALL_SCENES makes every shipped scene
+// run that has its volume.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -67,8 +67,8 @@ class Recording : public testing::Test {
         test::writeScene(scene_, scene);
     }
     std::vector<std::string> server(const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> words{"haptic_server", "--scene",     scene_,   "--session",   session(),
-                                       "--domain",      domain(),      "--recording", recordings()};
+        std::vector<std::string> words{"haptic_server", "--scene", scene_,        "--session", session(),
+                                       "--domain",      domain(),  "--recording", recordings()};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -99,9 +99,8 @@ class Recording : public testing::Test {
     }
 
     bool isLive() {
-        return probe_.pollUntil([&] {
-            return probe_.subscriber.status() && probe_.subscriber.status()->session_s() > 0.2;
-        });
+        return probe_.pollUntil(
+            [&] { return probe_.subscriber.status() && probe_.subscriber.status()->session_s() > 0.2; });
     }
     bool hasTicked(double seconds) {
         const double until = probe_.subscriber.status()->session_s() + seconds;
@@ -153,8 +152,8 @@ class Recording : public testing::Test {
         const Finished ended = live.wait();
         EXPECT_EQ(ended.exit_code, 0) << ended.err;
     }
-    // The next session begins with the newest bone of the killed one, which is not older than its newest input by
-    // more than the bones' period.
+    // The next session begins with the newest bone of the killed one, which is not older than its newest
+    // input by more than the bones' period.
     void expectGoesOn(const std::string& killed, const std::string& next, uint64_t ticks) {
         const JournalContent content = readJournalContent(killed, KeepInputs::kNo);
         EXPECT_EQ(content.problem, "") << "it was mended";
@@ -334,9 +333,8 @@ TEST_F(Recording, AFullDiskIsSaidAndHarmsNothing) {
     words.insert(words.begin(), {"/usr/bin/prlimit", "--fsize=150000"});
     Process live(words), hand(daemon());
     ASSERT_TRUE(isLive()) << live.errSoFar();
-    ASSERT_TRUE(probe_.pollUntil([&] {
-        return probe_.subscriber.status()->faults() & kFaultNotRecorded;
-    })) << live.errSoFar();
+    ASSERT_TRUE(probe_.pollUntil([&] { return probe_.subscriber.status()->faults() & kFaultNotRecorded; }))
+        << live.errSoFar();
     EXPECT_NE(probe_.subscriber.status()->fault_text().find("not_recorded"), std::string::npos);
     const double removed = removedMm3();
     ASSERT_TRUE(probe_.pollUntil([&] { return removedMm3() > removed; })) << "it mills on";

@@ -47,8 +47,8 @@ TEST_F(JournalTest, TellsWhatTheSessionTold) {
     const auto records = record(config());
     BoneStateReader bones(scanned());
     int checkpoints = 0;
-    const JournalContent content =
-        readJournalContent(folder_ / "j.mcap", KeepInputs::kYes, [&](JournalTopic topic, const auto& message) {
+    const JournalContent content = readJournalContent(
+        folder_ / "j.mcap", KeepInputs::kYes, [&](JournalTopic topic, const auto& message) {
             if (topic != JournalTopic::kBone) return;
             journal::Bone bone;
             ASSERT_TRUE(bone.ParseFromArray(message.data.data(), int(message.data.size())));
@@ -113,8 +113,8 @@ TEST_F(JournalTest, LostTicksAreSaidFromWhichOnOn) {
     EXPECT_EQ(content.inputs.back().first_tick() + content.inputs.back().count(), 300u);
 }
 
-// What comes more is recorded for people; the input of the hand has a budget of 0.15 GB/h at 1 kHz, 41.6 bytes
-// per tick.
+// What comes more is recorded for people; the input of the hand has a budget of 0.15 GB/h at 1 kHz, 41.6
+// bytes per tick.
 TEST_F(JournalTest, ATicksInputIsSmall) {
     const auto size = [&](size_t ticks) {
         const std::string name = std::to_string(ticks);
