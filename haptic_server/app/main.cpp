@@ -38,7 +38,8 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
     app.add_option("--session", server.session, "session number: names the device link and the topics");
     app.add_option("--domain", server.domain, "DDS domain, 0 to 230");
     dds::addNetworkOptions(app, server.network);
-    app.add_option("--from", server.from, "go on from that moment of a recording: FILE.mcap@SECONDS (docs/replay.md)");
+    app.add_option("--from", server.from,
+                   "go on from that moment of a recording: FILE.mcap@SECONDS (docs/replay.md)");
     app.add_option("--seconds", server.seconds,
                    "stop this long after the first tick; 0: run until SIGINT or SIGTERM")
         ->check(within(0, kMostSeconds));
@@ -189,7 +190,7 @@ int serve(int argc, char** argv) {
         session_command->add_subcommand("export", "write a recorded session as files for other programs");
     addExportOptions(*export_command, options.files);
     if (!parseCommandLine(app, argc, argv, "haptic_server")) return 0;
-    options.server.version = versionText();
+    options.server.version = options.replay.version = versionText();
     setUpLog("haptic_server", options.log_level);
     if (export_command->parsed()) {
         exportJournal(options.files);
