@@ -29,7 +29,7 @@ struct JournalVerdict {
     std::vector<std::string> reasons;  // as above: then this is a comparison, no proof
     std::string not_whole;             // what the journal lacks, for people; empty: nothing
 
-    bool isProven() const noexcept { return is_same && reasons.empty(); }
+    bool isProven() const noexcept { return ticks > 0 && is_same && reasons.empty(); }
     std::string text() const;  // for people: some lines
 };
 

@@ -142,7 +142,7 @@ class Reader {
             fail("quaternion qw,qx,qy,qz has norm " + std::to_string(q.norm()) +
                  ", it must be 1 within 0.001");
         }
-        return q.normalized();
+        return q;
     }
 
     template <class Number>

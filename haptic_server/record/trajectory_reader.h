@@ -17,7 +17,7 @@ namespace bonemill {
 
 struct TrajectoryRow {
     double t_s = 0.0;
-    Pose X_WT;             // of the device; unit quaternion
+    Pose X_WT;             // of the device; its quaternion as written, which the tick normalises
     uint32_t buttons = 0;  // Button bits
 
     struct Recorded {
@@ -30,7 +30,7 @@ struct TrajectoryRow {
 
 // There is at least one row, and t_s is strictly increasing. Throws UserError with file:line for a missing
 // column, a cell that is no finite number or out of range, a quaternion whose norm is off by more than 1e-3
-// (else it is normalised) and a time that does not increase.
+// and a time that does not increase.
 std::vector<TrajectoryRow> readTrajectory(const std::string& path);
 // Reads the same from a stream; `name` stands for the file in messages.
 std::vector<TrajectoryRow> readTrajectory(std::istream& input, const std::string& name);

@@ -297,8 +297,9 @@ bool SceneRun::writeFiles() {
     show_.leaveAnswers();
     FinalFiles files;
     if (!recorder_.finish()) files.note(traceProblem());
+    if (journal_ && !journal_->problem().empty())
+        files.note(journal_->path().string() + ": the recording is incomplete: " + journal_->problem());
     tellOfDevice();
-    tellOfJournal();
     const RunStatistics& statistics = recorder_.statistics();
     logClosing(statistics);
     logDistrust();

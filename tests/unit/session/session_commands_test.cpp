@@ -76,6 +76,7 @@ class SessionCommandsTest : public testing::Test {
     JournalKeeper journal_{ball_.history, ball_.bone};
     LessonBook lesson_{listed(), ClassTable("")};
     std::string told_;  // to the device
+    JournalKeeper journal_{ball_.history, ball_.bone};  // that goes nowhere
     AttemptKeeper attempts_;
     OrderLimits limits_;
     SessionCommands commands_;
