@@ -1,7 +1,8 @@
-"""The plots of deploy/demo: what gnuplot makes of a trace."""
+"""The plots of deploy/demo and deploy/study: what gnuplot makes of a trace."""
 
 import csv
 import math
+import statistics
 import subprocess
 import sys
 
@@ -14,17 +15,30 @@ def read_trace(path):
 def gnuplot(script):
     result = subprocess.run(["gnuplot"], input=script, text=True, capture_output=True, check=False)
     if result.returncode:
-        sys.exit(f"demo_report: gnuplot: {result.stderr.strip()}")
+        sys.exit(f"gnuplot: {result.stderr.strip()}")
+
+
+def terminal(path, width, height):
+    """The picture's kind goes by the ending of its name. A path of quotes and backslashes would end gnuplot's text."""
+    kind = "svg enhanced background rgb 'white'" if str(path).endswith(".svg") else "pngcairo"
+    name = str(path).replace("'", "''")
+    return f"set terminal {kind} size {width},{height} font \"DejaVu Sans,11\"\nset output '{name}'"
 
 
 def rate_in_windows(rows, window_s=0.1):
     """Returns the ticks per second in windows of window_s."""
     counts = {}
     for row in rows:
-        index = int(row["t_s"] / window_s)
+        index = int(row["t_s"] / window_s + 1e-6)  # 0.3 s divided by 0.1 s is a little below 3
         counts[index] = counts.get(index, 0) + 1
     whole = range(max(counts)) if counts else []  # The last window is not full.
     return [((i + 0.5) * window_s, counts.get(i, 0) / window_s) for i in whole]
+
+
+def nominal_rate(rows):
+    """The loop's rate: what most of the ticks keep, to 50 Hz."""
+    gap_s = statistics.median(later["t_s"] - row["t_s"] for row, later in zip(rows, rows[1:]))
+    return 50 * round(1 / gap_s / 50) if gap_s > 0 else 1000
 
 
 def shaft_direction(row):
@@ -39,6 +53,7 @@ def data_block(name, rows):
 
 
 def plot_time_series(rows, title, path):
+    nominal = nominal_rate(rows)
     force = [(r["t_s"], r["fx_n"], r["fy_n"], r["fz_n"], math.hypot(r["fx_n"], r["fy_n"], r["fz_n"])) for r in rows]
     torque = [
         (r["t_s"], *(1e3 * r[f"t{c}_nm"] for c in "xyz"), 1e3 * math.hypot(r["tx_nm"], r["ty_nm"], r["tz_nm"]))
@@ -56,8 +71,7 @@ def plot_time_series(rows, title, path):
         + data_block("torque", torque)
         + data_block("compute", compute)
         + f"""
-set terminal pngcairo size 1200,1300 font "DejaVu Sans,11"
-set output "{path}"
+{terminal(path, 1200, 1300)}
 set multiplot layout 4,1 title "{title}" font ",14"
 set lmargin 10
 set rmargin 10
@@ -65,8 +79,8 @@ set grid lc rgb "#dddddd"
 set xrange [0:{max(r["t_s"] for r in rows):.3f}]
 set key top right horizontal
 set ylabel "rate, Hz"
-set yrange [0:1200]
-plot 1000 with lines dt 2 lc rgb "#888888" title "nominal", $rate with steps lw 1.5 lc rgb "#2050a0" title "haptic rate, 100 ms windows"
+set yrange [0:{1.2 * nominal:g}]
+plot {nominal} with lines dt 2 lc rgb "#888888" title "nominal", $rate with steps lw 1.5 lc rgb "#2050a0" title "haptic rate, 100 ms windows"
 set yrange [*:*]
 set ylabel "force on the hand, N"
 plot {(components + norm).replace("${block}", "$force")}
@@ -92,8 +106,7 @@ def plot_orientation(rows, title, path):
     gnuplot(
         data_block("path", points)
         + f"""
-set terminal pngcairo size 1400,700 font "DejaVu Sans,11"
-set output "{path}"
+{terminal(path, 1400, 700)}
 set multiplot layout 1,2 title "{title}: shaft direction on the unit sphere" font ",14"
 set palette rgbformulae 33,13,10
 set cblabel "time, s" offset 1

@@ -17,6 +17,7 @@
 #include "haptic_server/offline/verify_journal.h"
 #include "haptic_server/replay/player.h"
 #include "haptic_server/replay/replay_server.h"
+#include "haptic_server/session/forget_person.h"
 #include "haptic_server/session/server.h"
 #include "haptic_server/volume/import/import_program.h"
 
@@ -82,7 +83,19 @@ void addSimulateOptions(CLI::App& app, SimulateOptions& simulate) {
     app.add_option("--tool", simulate.tool, "name of the scene's tool, or its number; default: the first")
         ->type_name("NAME|NUMBER");
     app.add_option("--trace", simulate.trace, "write one CSV line per tick");
+    app.add_option(
+        "--save-deviation", simulate.deviation,
+        "at the end: picture of what was cut too far and not far enough by the scene's task (.png)");
+    app.add_option(
+        "--assess", simulate.assess,
+        "at the end: results and report into this folder, as a session writes them beside the class table");
+    app.add_option("--pseudonym", simulate.pseudonym, "whose results they are")->capture_default_str();
     addSaveOptions(app, simulate.save);
+}
+
+void addForgetOptions(CLI::App& app, ForgetOptions& forget) {
+    app.add_option("pseudonym", forget.pseudonym, "whose data it is, as in the class table")->required();
+    app.add_option("--in", forget.folder, "folder of the class table")->required()->type_name("DIR");
 }
 
 void addReplayOptions(CLI::App& app, ReplayOptions& replay) {
@@ -126,6 +139,7 @@ struct Options {
     ServerOptions server;
     SimulateOptions simulate;
     AccuracyReportOptions report;
+    ForgetOptions forget;
     ReplayOptions replay;
     ExportOptions files;
     std::string journal;
@@ -181,8 +195,11 @@ int serve(int argc, char** argv) {
     CLI::App* const replay_command =
         app.add_subcommand("replay", "show a recorded session again, as a live one (docs/replay.md)");
     addReplayOptions(*replay_command, options.replay);
-    CLI::App* const session_command = app.add_subcommand("session", "what was recorded of sessions");
-    session_command->require_subcommand(1);
+    CLI::App* const session_command =
+        app.add_subcommand("session", "what can be done with what sessions have left")->require_subcommand(1);
+    CLI::App* const forget_command = session_command->add_subcommand(
+        "forget", "delete what a class' folder holds of one person, and say what was deleted");
+    addForgetOptions(*forget_command, options.forget);
     CLI::App* const verify_command =
         session_command->add_subcommand("verify", "run a recording again and compare every bit");
     verify_command->add_option("JOURNAL", options.journal, "recording (.mcap)")->required();
@@ -192,6 +209,7 @@ int serve(int argc, char** argv) {
     if (!parseCommandLine(app, argc, argv, "haptic_server")) return 0;
     options.server.version = options.replay.version = versionText();
     setUpLog("haptic_server", options.log_level);
+    if (forget_command->parsed()) return forgetPerson(options.forget, std::cout);
     if (export_command->parsed()) {
         exportJournal(options.files);
         return 0;

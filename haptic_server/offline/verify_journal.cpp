@@ -92,10 +92,10 @@ class BonePass {
 };
 
 // Runs the ticks and compares.
-class Comparison {
+class BitComparison {
   public:
-    Comparison(Simulation& simulation, const RecordedEffects& recorded, const BonePass& bones,
-               JournalVerdict& verdict)
+    BitComparison(Simulation& simulation, const RecordedEffects& recorded, const BonePass& bones,
+                  JournalVerdict& verdict)
         : run_(simulation, bones.bones().targets(), bones.bones().beginning()),
           hash_(recorded),
           leaves_(bones.leaves()),
@@ -240,22 +240,23 @@ JournalVerdict verifyJournal(const std::filesystem::path& path, const std::strin
     Simulation simulation = makeSimulation(scene);
     BonePass bones(*simulation.bone);
     readJournal(path, [&](JournalTopic topic, const mcap::Message& message) { bones.take(topic, message); });
-    Comparison comparison(simulation, recordedEffectsOf(scene.scene.effects()), bones, verdict);
+    BitComparison comparison(simulation, recordedEffectsOf(scene.scene.effects()), bones, verdict);
     readJournal(path,
                 [&](JournalTopic topic, const mcap::Message& message) { comparison.take(topic, message); });
     return verdict;
 }
 
 std::string JournalVerdict::text() const {
-    std::string text = fmt::format("{} ticks ({:.3f} s), {} hashes and {} states of the bone: ", ticks, seconds,
-                                   hashes, bones);
+    std::string text = fmt::format("{} ticks ({:.3f} s), {} hashes and {} states of the bone: ", ticks,
+                                   seconds, hashes, bones);
     if (ticks == 0)
         text += "nothing to compare";
     else if (is_same)
         text += reasons.empty() ? "the same bits" : "approximate, though no hash differs";
     else
-        text += fmt::format("{}differs from tick {} ({:.3f} s) on{}", reasons.empty() ? "" : "approximate: ",
-                            first_tick, seconds * double(first_tick) / double(std::max<uint64_t>(1, ticks)),
+        text += fmt::format("{}differs from tick {} ({:.3f} s) on{}",
+                            reasons.empty() ? "" : "approximate: ", first_tick,
+                            seconds * double(first_tick) / double(std::max<uint64_t>(1, ticks)),
                             part.empty() ? "" : ", first in " + part);
     text += fmt::format("\nlargest deviation: {:.3g} um of the tool, {:.3g} N on the hand",
                         position / kMicrometre, force);

@@ -50,6 +50,7 @@ class ReplayServer {
           bone_export_(rerun_.history(), *simulation_.bone, ""),
           lesson_({}, ClassTable("")),
           keeper_(rerun_.history(), *simulation_.bone),
+          task_(simulation_.task, *simulation_.bone, rerun_.history()),
           attempts_(lesson_, recorder_, rerun_.history(), keeper_, simulation_.bone->volume.voxelVolume(),
                     scene_.scene),
           commands_(scene_.scene, *simulation_.bone, recorder_,
@@ -59,7 +60,7 @@ class ReplayServer {
           publisher_(soleServerOf(options.domain, options.session, options.network)),
           show_(
               publisher_, scene_.scene, simulation_, rerun_.history(), {}, outbox_, recorder_,
-              [this](DeviceCapabilities& device) { return deviceNow(device); }, commands_,
+              [this](DeviceCapabilities& device) { return deviceNow(device); }, commands_, task_,
               options.stream_mbit_per_s * kMega / 8) {
         tellOfRecording(options.version);
         topics::ReplayOrder order;
@@ -166,6 +167,7 @@ class ReplayServer {
     SessionExport bone_export_;
     LessonBook lesson_;
     JournalKeeper keeper_;  // of nothing: a replay is not recorded
+    TaskWatch task_;
     AttemptKeeper attempts_;
     OrderLimits limits_;
     std::atomic<uint32_t> reset_orders_{0};

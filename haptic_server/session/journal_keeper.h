@@ -1,6 +1,6 @@
-// Tells the session's journal what the publisher thread knows: how the bone is, several times per second, what
-// viewers ordered, and attempts. Without a journal it does nothing. All members belong to the publisher thread,
-// or to whoever runs none beside it.
+// Tells the session's journal what the publisher thread knows: how the bone is, several times per second,
+// what viewers ordered, and attempts. Without a journal it does nothing. All members belong to the publisher
+// thread, or to whoever runs none beside it.
 #pragma once
 
 #include <optional>

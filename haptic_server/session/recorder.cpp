@@ -8,10 +8,12 @@
 
 namespace bonemill {
 
-Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded)
+Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded,
+                   std::optional<BreachWatch> breach)
     : ring_(ring),
       statistics_(period_ns, recorded),
       recorded_(recorded),
+      breach_(std::move(breach)),
       attempt_{.max_force = 0, .effects = EffectStatistics(recorded)},
       shown_attempt_(attempt_) {}
 
@@ -25,6 +27,7 @@ void Recorder::drain() {
     EventSum events;
     double removed = 0;
     const size_t known_changes = statistics_.device().kept().size();
+    const std::lock_guard technique_lock(technique_mutex_);
     takeUpAttempt();
     while (ring_.tryPop(record)) {
         any = true;
@@ -67,13 +70,24 @@ void Recorder::takeUpAttempt() {
     if (!asked_bone_order_) return;
     bone_order_ = *std::exchange(asked_bone_order_, std::nullopt);
     attempt_ = shown_attempt_;
+    if (make_technique_) technique_ = make_technique_();
+    if (breach_) breach_->reset();
 }
 
-void Recorder::addToAttempt(const TickRecord& record) noexcept {
+void Recorder::addToAttempt(const TickRecord& record) {
     if (record.bone_order < bone_order_) return;
     const double(&force)[3] = record.f_hand_W;
     attempt_.max_force = std::max(attempt_.max_force, std::hypot(force[0], force[1], force[2]));
     attempt_.effects.add(record.effects);
+    if (technique_) technique_->add(record);
+    if (!breach_) return;
+    breach_->add(record);
+    attempt_.breach = breach_->depth();
+}
+
+std::unique_ptr<Technique> Recorder::takeTechnique() {
+    const std::lock_guard lock(technique_mutex_);
+    return std::exchange(technique_, nullptr);
 }
 
 AttemptFigures Recorder::attempt() const {

@@ -9,9 +9,9 @@
 #include <map>
 #include <set>
 
+#include "common/config/scene_file.h"
 #include "common/mcap/mcap_bytes.h"
 #include "common/mcap/mcap_repair.h"
-#include "common/config/scene_file.h"
 #include "common/user_error.h"
 #include "haptic_server/bone/checkpoints.h"
 #include "haptic_server/journal/build_facts.h"
@@ -48,7 +48,8 @@ std::optional<journal::Manifest> manifestOf(const fs::path& path) {
         readJournal(path, [&](JournalTopic topic, const mcap::Message& message) {
             if (topic == JournalTopic::kManifest) {
                 manifest.emplace();
-                if (!manifest->ParseFromArray(message.data.data(), int(message.data.size()))) manifest.reset();
+                if (!manifest->ParseFromArray(message.data.data(), int(message.data.size())))
+                    manifest.reset();
             } else if (topic == JournalTopic::kBone) {
                 throw Enough{};
             }
@@ -94,7 +95,8 @@ std::optional<UnfinishedJournal> findUnfinished(const fs::path& folder, uint32_t
 std::string problemOf(const UnfinishedJournal& unfinished) {
     try {
         const LoadedScene scene = loadScene(unfinished.manifest.scene_path());
-        if (sceneHashOf(scene.scene) != unfinished.manifest.scene_hash()) return "its scene has changed since";
+        if (sceneHashOf(scene.scene) != unfinished.manifest.scene_hash())
+            return "its scene has changed since";
         for (const journal::File& file : unfinished.manifest.files())
             if (file.path() != unfinished.manifest.scene_path() && sha256Of(file.path()) != file.sha256())
                 return file.what() + " " + file.path() + " has changed since";
@@ -104,8 +106,8 @@ std::string problemOf(const UnfinishedJournal& unfinished) {
     return "";
 }
 
-// What the newest state and the checkpoints are made of: messages from the last KEY on, and those from the KEY
-// before each checkpoint that may still be there.
+// What the newest state and the checkpoints are made of: messages from the last KEY on, and those from the
+// KEY before each checkpoint that may still be there.
 struct ResumeReading::Raw {
     struct Run {
         std::vector<journal::Bone> bones;
@@ -144,18 +146,15 @@ struct ResumeReading::Raw {
         runs.back().bones.push_back(std::move(bone));
     }
     bool isWanted(const Run& run) const {
-        return !run.checkpoints.empty() &&
-               *run.checkpoints.rbegin() + Checkpoints::kMost > newest_checkpoint;
+        return !run.checkpoints.empty() && *run.checkpoints.rbegin() + Checkpoints::kMost > newest_checkpoint;
     }
 };
 
 ResumeReading::ResumeReading(UnfinishedJournal unfinished)
-    : unfinished_(std::move(unfinished)),
-      raw_(std::async(std::launch::async, [path = unfinished_.path] {
+    : unfinished_(std::move(unfinished)), raw_(std::async(std::launch::async, [path = unfinished_.path] {
           auto raw = std::make_unique<Raw>();
           const mcap::Reading reading = readJournal(
-              path,
-              [&raw](JournalTopic topic, const mcap::Message& message) { raw->take(topic, message); });
+              path, [&raw](JournalTopic topic, const mcap::Message& message) { raw->take(topic, message); });
           raw->lost_bytes = reading.lost_bytes;
           return raw;
       })) {}

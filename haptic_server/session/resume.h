@@ -1,5 +1,5 @@
-// Goes on from a session that was stopped before its end: its unfinished journal is found, and the newest bone is
-// taken from it. It is for normal threads, before the session runs.
+// Goes on from a session that was stopped before its end: its unfinished journal is found, and the newest
+// bone is taken from it. It is for normal threads, before the session runs.
 #pragma once
 
 #include <filesystem>

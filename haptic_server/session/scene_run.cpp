@@ -15,7 +15,9 @@
 #include "haptic_server/record/final_files.h"
 #include "haptic_server/session/session_journal.h"
 #include "haptic_server/session/shown_device.h"
+#include "haptic_server/session/shown_zones.h"
 #include "haptic_server/setup/coupling_text.h"
+#include "haptic_server/setup/make_technique.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_materials.h"
 #include "haptic_server/volume/import/nrrd_writer.h"
@@ -95,18 +97,21 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
       resumed_(std::move(resumed)),
       journal_keeper_(history_, *simulation_.bone),
       recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns,
-                recordedEffectsOf(loaded_.scene.effects())),
+                recordedEffectsOf(loaded_.scene.effects()), breachWatchOf(simulation_)),
       bone_export_(history_, *simulation_.bone, options.export_dir),
-      attempts_(parts.lesson, recorder_, history_, journal_keeper_, simulation_.bone->volume.voxelVolume(), loaded_.scene,
-                [this](bool begins) { parts_.link.announceAttempt(begins); }),
+      task_(simulation_.task, *simulation_.bone, history_),
+      attempts_(
+          parts.lesson, recorder_, history_, journal_keeper_, simulation_.bone->volume.voxelVolume(),
+          loaded_.scene, [this](bool begins) { parts_.link.announceAttempt(begins); }, &task_),
       commands_(loaded_.scene, *simulation_.bone, recorder_,
                 {history_, accuracy_, tools_, parts.stop_requested, bone_export_, io_.resetOrders(),
                  parts.lesson, attempts_, parts.limits, journal_keeper_},
                 options.instructor_only),
       show_(
           parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,
-          [this](DeviceCapabilities& device) { return io_.capabilities(device); }, commands_,
+          [this](DeviceCapabilities& device) { return io_.capabilities(device); }, commands_, task_,
           options.stream_mbit_per_s * kMega / 8) {
+    recorder_.measureTechnique(techniqueMaker(loaded_.scene, simulation_));
     for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
     for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     if (options_.is_recorded) journal_config_ = journalConfigOf(options_, loaded_, simulation_);
@@ -123,21 +128,28 @@ void SceneRun::beginWith(const ResumedSession& resumed) {
     spdlog::info("{}", resumed.text());
 }
 
-// The bone with which it begins is in the file before the loop runs; only then is it no longer wanted from the
-// journal of before.
+// The bone with which it begins is in the file before the loop runs; only then is it no longer wanted from
+// the journal of before.
 void SceneRun::startJournal() {
     if (!journal_config_) return;
     journal_config_->path = newJournalPath(options_.recording, options_.session, options_.scene);
     journal_config_->manifest.set_epoch(parts_.publisher.epoch());
     if (resumed_) *journal_config_->manifest.mutable_resumed_from() = resumed_->from;
-    journal_ = std::make_unique<Journal>(
-        *journal_config_, ScannedBone{history_.scanned(), simulation_.bone->lattice});
+    journal_ = std::make_unique<Journal>(*journal_config_,
+                                         ScannedBone{history_.scanned(), simulation_.bone->lattice});
     journal_keeper_.begin(journal_.get(), commands_.checkpoints());
     recorder_.keepJournal(journal_.get());
     spdlog::info("recording to {}", journal_->path().string());
     if (!resumed_ || options_.resumed_journal.empty()) return;
     journal_->flush();
-    if (journal_->problem().empty()) closeResumed(options_.resumed_journal);
+    if (!journal_->problem().empty()) return;
+    closing_ = std::async(std::launch::async, [path = options_.resumed_journal] {
+        try {
+            closeResumed(path);
+        } catch (const UserError& error) {
+            spdlog::warn("{}", error.what());
+        }
+    });
 }
 
 // Whatever happened: the tick thread must be able to end before it is joined.
@@ -229,7 +241,10 @@ void SceneRun::meshUntil(const std::stop_token& stop) {
     const auto markWhole = [&] {
         if (rounds.hasMeshedAll()) outbox_.markWhole(monotonicNowNs());
     };
+    const std::optional<ZonePaint> zones =
+        zonePaintOf(loaded_.scene, simulation_.task.get(), history_.scanned());
     loop(stop, MeshRounds::kPeriod, [&] {
+        rounds.setPaint(zones && task_.showsZones() ? &*zones : nullptr);
         for (bool is_more = true; is_more && !stop.stop_requested(); markWhole()) is_more = rounds.round(put);
     });
     endOnFailure([&] {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -96,18 +97,19 @@ class SceneRun {
     std::optional<ResumedSession> resumed_;
     std::optional<JournalConfig> journal_config_;  // until the journal begins
     std::unique_ptr<Journal> journal_;             // null: nothing is recorded
+    std::future<void> closing_;                    // the journal of before gets its end
     JournalKeeper journal_keeper_;
     Recorder recorder_;
     MeshOutbox outbox_;
     SessionExport bone_export_;
+    TaskWatch task_;
     AttemptKeeper attempts_;
     SessionCommands commands_;
     ShowSession show_;
     PublishFigures published_;  // publisher thread's until it is joined
     std::string device_;        // as told last
     size_t devices_told_ = 0;
-    bool has_told_of_implausible_ = false, has_told_of_early_ = false,
-         has_told_of_journal_ = false;
+    bool has_told_of_implausible_ = false, has_told_of_early_ = false, has_told_of_journal_ = false;
     int64_t first_tick_ns_ = 0;
     std::optional<PageFaults> warm_;  // of the tick thread, when it had run for some time
     RealtimeThread tick_thread_;

@@ -69,7 +69,8 @@ class Server {
     // The journal is read while the scene is.
     static Loaded loadFirst(const ServerOptions& options) {
         std::optional<ResumeReading> reading;
-        if (!options.resumed_journal.empty()) reading.emplace(*findUnfinished(options.recording, options.session));
+        if (!options.resumed_journal.empty())
+            reading.emplace(*findUnfinished(options.recording, options.session));
         Loaded loaded = load(options);
         if (reading) loaded.resumed = reading->take(*loaded.simulation.bone);
         if (!options.from.empty()) loaded.resumed = resumedAt(momentNameOf(options.from), loaded);
@@ -229,16 +230,17 @@ void chooseResumption(ServerOptions& options) {
     if (!options.is_recorded) return;
     const std::optional<UnfinishedJournal> unfinished = findUnfinished(options.recording, options.session);
     if (!unfinished) {
-        if (options.resumes) spdlog::info("there is no session {} to go on with: it begins anew", options.session);
+        if (options.resumes)
+            spdlog::info("there is no session {} to go on with: it begins anew", options.session);
         return;
     }
     const std::string scene = unfinished->manifest.scene_path(), file = unfinished->path.string();
     if (!options.resumes) {
-        spdlog::warn("session {} was stopped before its end: --resume goes on with its bone ({})", options.session,
-                     file);
+        spdlog::warn("session {} was stopped before its end: --resume goes on with its bone ({})",
+                     options.session, file);
     } else if (!options.scene.empty() && !isSameFile(options.scene, scene)) {
-        spdlog::warn("{} is of the scene {}, and does not go on in another: --scene {} --resume does", file, scene,
-                     scene);
+        spdlog::warn("{} is of the scene {}, and does not go on in another: --scene {} --resume does", file,
+                     scene, scene);
     } else if (const std::string problem = problemOf(*unfinished); !problem.empty()) {
         spdlog::warn("{} cannot go on: {}", file, problem);
     } else {

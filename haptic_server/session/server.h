@@ -21,7 +21,7 @@ struct ServerOptions {
     dds::NetworkOptions network;
     double seconds = 0;              // after the first tick; 0: until a signal or a shut_down command
     double stream_mbit_per_s = 200;  // of node meshes; nearest to the burr first
-    std::string accuracy;  // accuracy.json of accuracy-report; empty: beside the scene, if there is one
+    std::string accuracy;   // accuracy.json of accuracy-report; empty: beside the scene, if there is one
     std::string recording;  // folder of the journal that each scene of the session writes
     bool is_recorded = true;
     bool records_results = false;  // also what the ticks came to, which a replay finds again

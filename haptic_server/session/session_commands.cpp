@@ -38,7 +38,8 @@ SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bon
       voxel_mm3_(bone.volume.voxelVolume() * kPerCubicMillimetre),
       is_switchable_(scene.accuracy().switchable()),
       effect_of_gradient_law_(effectOfGradientLaw(scene.effects())),
-      only_instructors_(only_instructors) {}
+      only_instructors_(only_instructors),
+      is_exam_(scene.assessment().exam()) {}
 
 std::optional<std::string> SessionCommands::carryOut(const topics::Command& command) {
     if (const std::string refusal = refusalOf(command); !refusal.empty()) return refusal;
@@ -110,6 +111,8 @@ std::optional<std::string> SessionCommands::carryOutInReplay(const topics::Comma
 
 // The refusal is empty if the role allows the command.
 std::string SessionCommands::refusalOf(const topics::Command& command) const {
+    if (is_exam_ && command.role() != topics::Viewer::INSTRUCTOR)
+        return "refused: this scene is an examination; only instructors command it";
     if (only_instructors_ && command.role() != topics::Viewer::INSTRUCTOR)
         return "refused: only instructors command this session (--instructor-only)";
     return std::string(refusalOfRole(command.role(), command.action_case()));

@@ -76,6 +76,7 @@ class SessionCommands {
     bool is_switchable_;
     const char* effect_of_gradient_law_;  // null: none
     bool only_instructors_;
+    bool is_exam_;
 };
 
 }  // namespace bonemill

@@ -64,13 +64,15 @@ fs::path defaultRecordingFolder() {
 void requireRecordable(const ServerOptions& options) {
     if (!options.is_recorded) return;
     if (options.recording.empty())
-        throw UserError("there is no folder for the recording, for neither XDG_STATE_HOME nor HOME is set; name one "
-                        "with --recording, or refuse it with --no-recording");
+        throw UserError(
+            "there is no folder for the recording, for neither XDG_STATE_HOME nor HOME is set; name one "
+            "with --recording, or refuse it with --no-recording");
     std::error_code error;
     fs::create_directories(options.recording, error);
     if (error || access(options.recording.c_str(), W_OK | X_OK) != 0)
-        throw UserError("--recording " + options.recording +
-                        ": nothing can be written there; name another folder, or refuse it with --no-recording");
+        throw UserError(
+            "--recording " + options.recording +
+            ": nothing can be written there; name another folder, or refuse it with --no-recording");
 }
 
 fs::path newJournalPath(const fs::path& folder, uint32_t session, const fs::path& scene) {

@@ -1,5 +1,5 @@
-// Where the journal of a session goes, and what it says of itself at its start. It is for normal threads, before
-// the session runs.
+// Where the journal of a session goes, and what it says of itself at its start. It is for normal threads,
+// before the session runs.
 #pragma once
 
 #include <filesystem>

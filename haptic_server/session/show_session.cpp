@@ -14,6 +14,7 @@
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/session/order_text.h"
 #include "haptic_server/session/shown_device.h"
+#include "haptic_server/session/shown_zones.h"
 #include "haptic_server/setup/scene_materials.h"
 
 namespace bonemill {
@@ -76,6 +77,13 @@ Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
     return box;
 }
 
+// Viewers show materials by their colours only.
+const BoneProperties* shownProperties(const scene::Scene& scene, const Simulation& simulation) {
+    const bool has_colours =
+        std::ranges::any_of(scene.material(), [](const scene::Material& m) { return m.has_color(); });
+    return has_colours ? simulation.tick.effects.properties.get() : nullptr;
+}
+
 DensityScale scaleOf(const DensityMapping& mapping) {
     return {mapping.low, mapping.high, mapping.iso_value};
 }
@@ -95,6 +103,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     for (const SceneTool& tool : simulation.tools) info.add_tool_names(tool.name);
     fillCamera(scene.camera(), info.mutable_camera());
     describeToViewers(scene, info);
+    describeZones(scene, info);
     info.set_leaf_count(simulation.bone->lattice.leafCount());
     return info;
 }
@@ -115,7 +124,7 @@ std::future<std::vector<NodeMesh>> meshingStructures(const Simulation& simulatio
 
 ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                          const BoneHistory& history, const AccuracyFigures& figures, MeshOutbox& outbox,
-                         Recorder& recorder, ShownDevice device, SessionCommands& commands,
+                         Recorder& recorder, ShownDevice device, SessionCommands& commands, TaskWatch& task,
                          double bytes_per_s)
     : publisher_(publisher),
       scene_(scene),
@@ -129,11 +138,12 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
       recorder_(recorder),
       device_(std::move(device)),
       commands_(commands),
+      task_(task),
       figures_(figures),
       effects_(scene.effects()),
       material_names_(materialNamesOf(scene)),
       tools_(simulation.tools),
-      density_source_(*simulation.bone, history),
+      density_source_(*simulation.bone, history, shownProperties(scene, simulation)),
       density_scale_(scaleOf(simulation.mapping)),
       scene_info_(sceneInfo(scene, simulation)) {
     *scene_info_.mutable_densities() = densityGridOf(density_source_, density_scale_);
@@ -191,6 +201,7 @@ void ShowSession::round() {
     const int64_t now_ns = monotonicNowNs();
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
     commands_.attempts().round();
+    task_.round();
     if (const auto eye = publisher_.takeEye()) commands_.journal().noteEye(*eye);
     commands_.journal().round();
     carryOutCommands();
@@ -213,6 +224,7 @@ void ShowSession::finish(int64_t until_ns) {
 
 void ShowSession::endAttempt() {
     commands_.attempts().stop();
+    task_.finish();
 }
 
 void ShowSession::leaveAnswers() {
@@ -339,7 +351,8 @@ void ShowSession::publishStatus() {
     status.set_faults(health.faults);
     status.set_fault_text(faultNames(health.faults));
     commands_.describe(status);
-    effects_.describe(recorder_.attempt().effects, material_names_, status);
+    if (!scene_.assessment().exam()) effects_.describe(recorder_.attempt().effects, material_names_, status);
+    task_.describe(commands_.attempts().isRunning(), commands_.attempts().timeS(), status);
     const auto latest = recorder_.latest();
     status.set_device_stale(!latest || (latest->faults & kFaultStaleDevice));
     if (latest) {

@@ -58,6 +58,7 @@ struct TickRecord {
     uint32_t removed_voxels;  // voxels that fell below the iso-value in this tick
     uint32_t added_voxels;    // voxels that rose to the iso-value or above in this tick
     uint32_t buttons;         // Button bits
+    uint32_t tool;            // its place in the scene's list of tools, from 0
     bool waits_for_release;   // the bone was put back under a pedal that was down: it is not milled
     uint32_t faults;          // TickFault bits of this tick
     uint64_t bone_order;      // to put the bone back: the newest that is done (BoneHistory::finishedOrder())

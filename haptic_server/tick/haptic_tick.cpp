@@ -7,6 +7,7 @@
 #include "common/assert.h"
 #include "common/rt/rt_guard.h"
 #include "haptic_server/effects/make_effects.h"
+#include "haptic_server/tick/recorded_input.h"
 
 namespace bonemill {
 namespace {
@@ -185,7 +186,7 @@ bool HapticTick::tick(TickIo& io) noexcept {
     const double load = double(record.compute_ns) / double(input.deadline_ns - input.start_ns);
     capSamples(input, load, step);
     record.faults = faults;
-    record.input = inputOf(input);
+    record.input = recordedInput(input, decisions_);
     latched_faults_ |= faults;
     io.push(record);
     ++tick_;
@@ -359,22 +360,6 @@ Wrench HapticTick::inWorld(const Wrench& wrench_V) const noexcept {
     return wrench_V.rotatedBy(X_WV_.rotation);
 }
 
-TickInput HapticTick::inputOf(const DeviceInput& input) const noexcept {
-    TickInput out{};
-    copyTo(out.p_WT, input.X_WT_device.position);
-    copyTo(out.q_WT, wxyz(input.X_WT_device.rotation));
-    out.stale_factor = input.stale_factor;
-    out.placements = input.placements;
-    out.faults = input.faults;
-    out.periods = input.periods;
-    out.is_repeated = input.is_repeated;
-    out.is_stale = input.is_stale;
-    out.has_other_device = input.other_device != nullptr;
-    if (input.other_device) out.other_device = *input.other_device;
-    out.decisions = decisions_;
-    return out;
-}
-
 TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept {
     TickRecord record{};
     record.tick = tick_;
@@ -396,6 +381,7 @@ TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step)
     record.coupling_share = hand_coupling_.share();
     record.rotation_share = hand_coupling_.rotationShare();
     record.buttons = input.buttons;
+    record.tool = uint32_t(tool_);
     record.waits_for_release = waits_for_release_;
     record.device = input.device;
     record.bone_order = history_ ? history_->finishedOrder() : 0;

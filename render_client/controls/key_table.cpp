@@ -16,7 +16,7 @@ constexpr KeyBinding kKeys[] = {
     {"Shift+X", keyOf('X'), true, Action::kFlipX, "cut away the other side"},
     {"Shift+Y", keyOf('Y'), true, Action::kFlipY, "cut away the other side"},
     {"Shift+Z", keyOf('Z'), true, Action::kFlipZ, "cut away the other side"},
-    {"Shift+G", keyOf('G'), true, Action::kScanOnBone, "scan on cuts, milled, off"},
+    {"Shift+G", keyOf('G'), true, Action::kScanOnBone, "scan on cuts, milled, materials"},
     {"Shift+S", keyOf('S'), true, Action::kSlices, "slices through the scan"},
     {"T", keyOf('T'), false, Action::kTransparency, "transparent bone"},
     {"Shift+T", keyOf('T'), true, Action::kStructures, "structures: behind too, off"},

@@ -9,6 +9,7 @@
 #include "render_client/hud/effect_lines.h"
 #include "render_client/hud/figure_text.h"
 #include "render_client/hud/session_text.h"
+#include "render_client/hud/task_lines.h"
 
 namespace bonemill {
 namespace {
@@ -71,6 +72,10 @@ std::vector<HudRow> taskRows(const HudInput& input) {
     if (input.tool && input.tool->has_effects()) {
         const auto more = effectTaskRows(input.tool->effects(), info, input.events);
         rows.insert(rows.end(), more.begin(), more.end());
+    }
+    if (input.status && input.status->has_task()) {
+        const auto task = taskStateRows(input.status->task());
+        rows.insert(rows.end(), task.begin(), task.end());
     }
     return rows;
 }

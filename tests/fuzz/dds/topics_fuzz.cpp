@@ -195,11 +195,16 @@ TEST(TopicsFuzz, Status) {
     status.set_node_digest(0x0123456789abcdef);
     status.mutable_training()->set_least_distance_mm(0.5);
     status.mutable_training()->add_warnings("touched facial nerve");
+    status.mutable_task()->add_zones()->set_removed_mm3(3);
+    status.mutable_task()->add_gates()->set_text("held");
+    status.mutable_task()->set_score(0.5);
     fuzz(status.SerializeAsString(), [](Bytes bytes) {
         const auto parsed = parseStatus(bytes);
         return parsed && std::isfinite(parsed->rate_hz()) &&
                std::isfinite(parsed->training().least_distance_mm()) &&
-               parsed->training().warnings_size() <= 64;
+               parsed->training().warnings_size() <= 64 && parsed->task().zones_size() <= 32 &&
+               parsed->task().gates_size() <= 64 && parsed->task().score() >= 0 &&
+               parsed->task().score() <= 1;
     });
 }
 
