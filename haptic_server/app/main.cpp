@@ -207,7 +207,7 @@ int serve(int argc, char** argv) {
         session_command->add_subcommand("export", "write a recorded session as files for other programs");
     addExportOptions(*export_command, options.files);
     if (!parseCommandLine(app, argc, argv, "haptic_server")) return 0;
-    options.server.version = versionText();
+    options.server.version = options.replay.version = versionText();
     setUpLog("haptic_server", options.log_level);
     if (forget_command->parsed()) return forgetPerson(options.forget, std::cout);
     if (export_command->parsed()) {
