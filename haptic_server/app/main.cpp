@@ -96,6 +96,9 @@ void addSimulateOptions(CLI::App& app, SimulateOptions& simulate) {
 void addForgetOptions(CLI::App& app, ForgetOptions& forget) {
     app.add_option("pseudonym", forget.pseudonym, "whose data it is, as in the class table")->required();
     app.add_option("--in", forget.folder, "folder of the class table")->required()->type_name("DIR");
+    app.add_option("--recordings", forget.recordings,
+                   "folder of the recordings; default: that of the class table")
+        ->type_name("DIR");
 }
 
 void addReplayOptions(CLI::App& app, ReplayOptions& replay) {
