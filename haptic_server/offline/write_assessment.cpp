@@ -16,7 +16,7 @@ std::string writeAssessment(const AssessmentTarget& target, const LoadedScene& l
     attempt.number = target.number;
     attempt.journal = target.journal;
     attempt.scene_id = loaded.file.stem().string();
-    attempt.scene_title = loaded.scene.name();
+    attempt.scene_title = loaded.scene.has_title() ? loaded.scene.title() : loaded.scene.name();
     attempt.scene_hash = hexText(sceneHashOf(loaded.scene));
     attempt.start_unix_ns =
         std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();

@@ -16,7 +16,7 @@ struct AssessmentTarget {
     double duration_s = 0;
     uint32_t number = 1;
     int64_t start_unix_ns = 0;  // 0: now
-    std::string journal;        // the recording's file name; empty: none
+    std::string journal = {};   // the recording's file name; empty: none
 };
 
 // Returns the files' name without endings. What could not be written is noted in `files`.
