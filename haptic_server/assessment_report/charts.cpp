@@ -71,7 +71,7 @@ std::string frameOf(const Panel& panel, const std::string& title, const std::str
     out += textAt(panel.left + 3, panel.top + 9, title, "class='title'");
     out +=
         textAt(panel.left - 3, panel.top + 7, valueText(panel.y_max, unit), "class='tick' text-anchor='end'");
-    out += textAt(panel.left - 3, panel.top + panel.height, numberText(panel.y_min),
+    out += textAt(panel.left - 3, panel.top + panel.height, roundedText(panel.y_min),
                   "class='tick' text-anchor='end'");
     return out;
 }
@@ -167,7 +167,7 @@ std::string timeLineSvg(const Assessment& assessment, std::span<const Moment> ma
         top += kPanelHeight + kGap;
     };
     add("force", "Force in contact: mean, and largest (thin)", "N", "force", Of::kMean);
-    add("removed", "Removed per " + numberText(step / double(together)) + " s", "mm3", "removed", Of::kMean);
+    add("removed", "Removed per " + roundedText(step / double(together)) + " s", "mm3", "removed", Of::kMean);
     add("distance", "Least distance to a protected structure", "mm", "distance", Of::kLeast);
     add("temperature", "Hottest bone", "degC", "heat", Of::kLargest);
     const double bottom = top - kGap;
@@ -178,7 +178,7 @@ std::string timeLineSvg(const Assessment& assessment, std::span<const Moment> ma
 std::string scoreBarSvg(double score) {
     const double width = 100 * std::clamp(score, 0.0, 1.0);
     return svg(
-        100, 8, "score " + numberText(score),
+        100, 8, "score " + roundedText(score),
         "<rect class='frame' x='.5' y='.5' width='99' height='7'/><rect class='bar' x='.5' y='.5' width='" +
             coordinate(width * 0.99) + "' height='7'/>");
 }

@@ -63,7 +63,7 @@ std::string totalOf(const Assessment& assessment) {
     if (!assessment.total) return "";
     const Total& total = *assessment.total;
     return element("p",
-                   "Total " + element("b", numberText(100 * total.score) + " of 100") +
+                   "Total " + element("b", roundedText(100 * total.score) + " of 100") +
                        " with the teacher's weights, version " + std::to_string(total.weights_version) +
                        " (" + escaped(total.weights_hash) + ")",
                    "class='total'");
@@ -72,13 +72,13 @@ std::string totalOf(const Assessment& assessment) {
 std::string subScoresOf(const Assessment& assessment) {
     std::string rows;
     for (const SubScore& sub : assessment.sub_scores) {
-        const std::string limits = numberText(sub.worst) + " → " + valueText(sub.best, sub.figure.unit);
+        const std::string limits = roundedText(sub.worst) + " → " + valueText(sub.best, sub.figure.unit);
         rows += element(
             "tr", element("td", escaped(sub.label)) +
                       element("td", escaped(valueText(sub.figure.value, sub.figure.unit)), "class='n'") +
                       element("td", escaped(limits), "class='n'") +
                       element("td", scoreBarSvg(sub.score), "class='score'") +
-                      element("td", numberText(100 * sub.score), "class='n'"));
+                      element("td", roundedText(100 * sub.score), "class='n'"));
     }
     if (rows.empty()) return "";
     const std::string head = element(

@@ -64,7 +64,7 @@ std::string escaped(std::string_view text) {
     return out;
 }
 
-std::string numberText(double value) {
+std::string roundedText(double value) {
     if (!std::isfinite(value)) return "–";
     const double size = std::abs(value);
     char text[48];
@@ -85,7 +85,7 @@ std::string valueText(double value, std::string_view unit) {
     std::string_view written = unit;
     for (const auto& [plain, with_signs] : kWritten)
         if (unit == plain) written = with_signs;
-    const std::string number = numberText(value);
+    const std::string number = roundedText(value);
     if (written.empty()) return number;
     return number + (written == "°" ? "" : " ") + std::string(written);
 }

@@ -10,7 +10,7 @@ namespace bonemill {
 // character, becomes "?".
 std::string escaped(std::string_view text);
 // Three significant digits, without an exponent where that is short: 0.0123, 4.5, 120.
-std::string numberText(double value);
+std::string roundedText(double value);
 // The number with its unit as people write it: "4.5 mm³", "12 %", "48 °C".
 std::string valueText(double value, std::string_view unit);
 // 1:02.5 for 62.5 s.

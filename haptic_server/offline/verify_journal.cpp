@@ -92,10 +92,10 @@ class BonePass {
 };
 
 // Runs the ticks and compares.
-class Comparison {
+class BitComparison {
   public:
-    Comparison(Simulation& simulation, const RecordedEffects& recorded, const BonePass& bones,
-               JournalVerdict& verdict)
+    BitComparison(Simulation& simulation, const RecordedEffects& recorded, const BonePass& bones,
+                  JournalVerdict& verdict)
         : run_(simulation, bones.bones().targets(), bones.bones().beginning()),
           hash_(recorded),
           leaves_(bones.leaves()),
@@ -240,7 +240,7 @@ JournalVerdict verifyJournal(const std::filesystem::path& path, const std::strin
     Simulation simulation = makeSimulation(scene);
     BonePass bones(*simulation.bone);
     readJournal(path, [&](JournalTopic topic, const mcap::Message& message) { bones.take(topic, message); });
-    Comparison comparison(simulation, recordedEffectsOf(scene.scene.effects()), bones, verdict);
+    BitComparison comparison(simulation, recordedEffectsOf(scene.scene.effects()), bones, verdict);
     readJournal(path,
                 [&](JournalTopic topic, const mcap::Message& message) { comparison.take(topic, message); });
     return verdict;

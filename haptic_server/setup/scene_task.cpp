@@ -115,11 +115,14 @@ class TaskReader {
             ids = inside(message_.reference().shape(), "assessment.reference");
         else
             ids = goneIn(message_.reference().volume_path());
-        bool is_something = false;
-        forEachVoxel(
-            [&](const Eigen::Vector3i& v, size_t at) { is_something |= ids[at] && isScannedBone(v); });
-        if (!is_something)
-            refuseTask("assessment.reference", "takes no bone away: check where it lies, or what was saved");
+        int64_t gone = 0, left = 0;
+        forEachVoxel([&](const Eigen::Vector3i& v, size_t at) {
+            if (isScannedBone(v)) ++(ids[at] ? gone : left);
+        });
+        if (gone == 0 || left == 0)
+            refuseTask("assessment.reference",
+                       std::string(gone == 0 ? "takes no bone away" : "leaves no bone") +
+                           ": check where it lies; a file must hold the densities that --save-volume writes");
         task_->reference = std::make_shared<const VoxelIds>(scanned_.dims(), ids);
     }
 

@@ -18,13 +18,13 @@ TEST(ReportText, NothingInATextIsMarkup) {
 }
 
 TEST(ReportText, NumbersHaveThreeDigits) {
-    EXPECT_EQ(numberText(0), "0");
-    EXPECT_EQ(numberText(61.53), "61.5");
-    EXPECT_EQ(numberText(4.5), "4.5");
-    EXPECT_EQ(numberText(-0.01234), "-0.0123");
-    EXPECT_EQ(numberText(123456), "123456");
-    EXPECT_EQ(numberText(1.5e-5), "1.50e-05");
-    EXPECT_EQ(numberText(std::nan("")), "–");
+    EXPECT_EQ(roundedText(0), "0");
+    EXPECT_EQ(roundedText(61.53), "61.5");
+    EXPECT_EQ(roundedText(4.5), "4.5");
+    EXPECT_EQ(roundedText(-0.01234), "-0.0123");
+    EXPECT_EQ(roundedText(123456), "123456");
+    EXPECT_EQ(roundedText(1.5e-5), "1.50e-05");
+    EXPECT_EQ(roundedText(std::nan("")), "–");
     EXPECT_EQ(valueText(0.8, "mm3"), "0.8 mm³");
     EXPECT_EQ(valueText(30, "deg"), "30°");
     EXPECT_EQ(valueText(7, ""), "7");

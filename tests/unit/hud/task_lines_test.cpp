@@ -27,13 +27,13 @@ TEST(TaskLines, aTaskThatSaysNothingHasNoLines) {
 
 TEST(TaskLines, zonesOfARoleAreOneLine) {
     TaskState task;
-    addZone(task, scene::Task::TARGET, 10, 9);
+    addZone(task, scene::Task::TARGET, 10, 8);
     addZone(task, scene::Task::TARGET, 30, 0);
     addZone(task, scene::Task::CONTAINER_BOTTOM, 100, 2.5);
     addZone(task, scene::Task::CONTEXT, 100, 50);
     const std::vector<HudRow> rows = taskStateRows(task);
     ASSERT_EQ(rows.size(), 2u);
-    EXPECT_EQ(test::findRow(rows, "Target")->value, "23 %");  // 9 of 40, rounded up from 22.5
+    EXPECT_EQ(test::findRow(rows, "Target")->value, "20 %");  // 8 of 40
     EXPECT_EQ(test::findRow(rows, "Beyond, bottom")->value, "2.50 mm\u00b3");
 }
 
