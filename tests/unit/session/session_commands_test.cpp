@@ -73,7 +73,6 @@ class SessionCommandsTest : public testing::Test {
     std::atomic<bool> stop_requested_{false};
     SessionExport bone_export_;
     std::atomic<uint32_t> reset_orders_{0};
-    JournalKeeper journal_{ball_.history, ball_.bone};
     LessonBook lesson_{listed(), ClassTable("")};
     std::string told_;  // to the device
     JournalKeeper journal_{ball_.history, ball_.bone};  // that goes nowhere
