@@ -30,7 +30,8 @@ enum TickFault : uint32_t {
     kFaultImplausibleDevice = 1u << 12,  // what device_daemon says cannot be: it was refused
     kFaultEarlySamples = 1u << 13,       // samples come faster than the loop's rate: the tick was held back
     kFaultFewerSamples = 1u << 14,  // the contact is sampled less finely than asked for: there was no time
-    kFaultNotRecorded = 1u << 15,   // no tick's: the recording or the trace lacks something (disk full or slow)
+    kFaultNotRecorded =
+        1u << 15,  // no tick's: the recording or the trace lacks something (disk full or slow)
 };
 constexpr uint32_t kLastFault = kFaultNotRecorded;
 

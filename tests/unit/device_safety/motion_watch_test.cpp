@@ -91,8 +91,8 @@ TEST(MotionWatch, StopsWhatGivesTooMuchEnergy) {
     // A spring that gives back what it got does not add up.
     for (int i = 0; i < 20000; ++i) {
         const double t = i * kWatchDt;
-        ASSERT_EQ(watch.check(movingAt({0.3 * std::cos(20 * t), 0, 0}), {{-15 * std::sin(20 * t), 0, 0}, {0, 0, 0}},
-                              kWatchDt),
+        ASSERT_EQ(watch.check(movingAt({0.3 * std::cos(20 * t), 0, 0}),
+                              {{-15 * std::sin(20 * t), 0, 0}, {0, 0, 0}}, kWatchDt),
                   StopCause::kNone);
     }
 }

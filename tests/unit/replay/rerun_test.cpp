@@ -105,7 +105,8 @@ TEST_F(RerunTest, ATornRecordingIsReadUpToThere) {
     int partly = 0;
     uint64_t last = 0;
     for (int part = 1; part < 20; ++part) {
-        std::filesystem::copy_file(session_->journal, torn, std::filesystem::copy_options::overwrite_existing);
+        std::filesystem::copy_file(session_->journal, torn,
+                                   std::filesystem::copy_options::overwrite_existing);
         std::filesystem::resize_file(torn, whole * uint64_t(part) / 20);
         try {
             const Recording recording(torn);
