@@ -74,7 +74,7 @@ class SessionCommandsTest : public testing::Test {
     SessionExport bone_export_;
     std::atomic<uint32_t> reset_orders_{0};
     LessonBook lesson_{listed(), ClassTable("")};
-    std::string told_;  // to the device
+    std::string told_;                                  // to the device
     JournalKeeper journal_{ball_.history, ball_.bone};  // that goes nowhere
     AttemptKeeper attempts_;
     OrderLimits limits_;
