@@ -12,6 +12,7 @@
 #include "common/user_error.h"
 #include "haptic_server/accuracy_report/accuracy_report.h"
 #include "haptic_server/export/export_journal.h"
+#include "haptic_server/offline/assess_journal.h"
 #include "haptic_server/offline/describe_scene.h"
 #include "haptic_server/offline/simulate.h"
 #include "haptic_server/offline/verify_journal.h"
@@ -93,9 +94,17 @@ void addSimulateOptions(CLI::App& app, SimulateOptions& simulate) {
     addSaveOptions(app, simulate.save);
 }
 
+void addAssessOptions(CLI::App& app, AssessOptions& assess) {
+    app.add_option("journal", assess.journal, "the recorded session (.mcap)")->required();
+    app.add_option("--out", assess.out, "folder for results and reports")->required()->type_name("DIR");
+}
+
 void addForgetOptions(CLI::App& app, ForgetOptions& forget) {
     app.add_option("pseudonym", forget.pseudonym, "whose data it is, as in the class table")->required();
     app.add_option("--in", forget.folder, "folder of the class table")->required()->type_name("DIR");
+    app.add_option("--recordings", forget.recordings,
+                   "folder of the recordings; default: that of the class table")
+        ->type_name("DIR");
 }
 
 void addReplayOptions(CLI::App& app, ReplayOptions& replay) {
@@ -140,6 +149,7 @@ struct Options {
     SimulateOptions simulate;
     AccuracyReportOptions report;
     ForgetOptions forget;
+    AssessOptions assess;
     ReplayOptions replay;
     ExportOptions files;
     std::string journal;
@@ -200,6 +210,9 @@ int serve(int argc, char** argv) {
     CLI::App* const forget_command = session_command->add_subcommand(
         "forget", "delete what a class' folder holds of one person, and say what was deleted");
     addForgetOptions(*forget_command, options.forget);
+    CLI::App* const assess_command = session_command->add_subcommand(
+        "assess", "measure and judge the attempts of a recording anew (docs/assessment.md)");
+    addAssessOptions(*assess_command, options.assess);
     CLI::App* const verify_command =
         session_command->add_subcommand("verify", "run a recording again and compare every bit");
     verify_command->add_option("JOURNAL", options.journal, "recording (.mcap)")->required();
@@ -207,8 +220,9 @@ int serve(int argc, char** argv) {
         session_command->add_subcommand("export", "write a recorded session as files for other programs");
     addExportOptions(*export_command, options.files);
     if (!parseCommandLine(app, argc, argv, "haptic_server")) return 0;
-    options.server.version = versionText();
+    options.server.version = options.replay.version = versionText();
     setUpLog("haptic_server", options.log_level);
+    if (assess_command->parsed()) return assessJournal(options.assess, std::cout);
     if (forget_command->parsed()) return forgetPerson(options.forget, std::cout);
     if (export_command->parsed()) {
         exportJournal(options.files);

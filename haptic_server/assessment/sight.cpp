@@ -41,10 +41,9 @@ bool isHidden(const VoxelVolume& volume, const Eigen::Vector3d& p_eye_W, const E
     return false;
 }
 
-void Sight::addEye(double t_s, const Eigen::Vector3d& p_eye_W) noexcept {
+void Sight::setEye(const Eigen::Vector3d& p_eye_W) noexcept {
     if (!p_eye_W.allFinite()) return;
     p_eye_W_ = p_eye_W;
-    eye_s_ = t_s;
     has_eye_ = true;
 }
 
@@ -54,7 +53,7 @@ Sight::Found Sight::add(const TickStep& step) {
     if (!is_hidden_ || step.t() < next_s_ || pending_ <= 0) return {};
     next_s_ = step.t() + kEvery;
     const double removed = std::exchange(pending_, 0);
-    if (!has_eye_ || step.t() - eye_s_ > kStale) return {};
+    if (!has_eye_) return {};
     const Eigen::Vector3d to_eye = p_eye_W_ - step.p_W();
     if (const double norm = to_eye.norm(); norm > 0)
         view_angle_.add(std::acos(std::clamp(to_eye.dot(step.axis_W()) / norm, -1.0, 1.0)) / kDegree,

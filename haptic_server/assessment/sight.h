@@ -22,14 +22,13 @@ class Sight {
     // Tells whether the eye cannot see the burr, whose tool has this number.
     using IsHidden =
         std::function<bool(const Eigen::Vector3d& p_eye_W, const Eigen::Vector3d& p_burr_W, uint32_t tool)>;
-    static constexpr double kStale = 1;     // s: a place of the eye that is older is not known
     static constexpr double kEvery = 0.02;  // s: of what was removed meanwhile the last place counts for all
 
     // Without the test nothing is measured.
     explicit Sight(IsHidden is_hidden = {}) : is_hidden_(std::move(is_hidden)) {}
 
-    // The eye is here from this time on; times come in order with those of the ticks.
-    void addEye(double t_s, const Eigen::Vector3d& p_eye_W) noexcept;
+    // The eye is here from the next tick on, until it is somewhere else.
+    void setEye(const Eigen::Vector3d& p_eye_W) noexcept;
     // What was found out with this tick, m³.
     struct Found {
         double seen = 0, unseen = 0;
@@ -40,7 +39,7 @@ class Sight {
   private:
     IsHidden is_hidden_;
     Eigen::Vector3d p_eye_W_ = Eigen::Vector3d::Zero();
-    double eye_s_ = 0, next_s_ = 0;
+    double next_s_ = 0;
     bool has_eye_ = false;
     double pending_ = 0;                          // m³ not yet judged
     double removed_ = 0, seen_ = 0, unseen_ = 0;  // m³

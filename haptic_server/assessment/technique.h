@@ -30,8 +30,8 @@ class Technique {
     Technique& operator=(const Technique&) = delete;
 
     void add(const TickRecord& record);
-    // The trainee's eye is here from this time of the session on.
-    void addEye(double t_s, const Eigen::Vector3d& p_eye_W) noexcept { sight_.addEye(t_s, p_eye_W); }
+    // The trainee's eye is here from the next record on.
+    void setEye(const Eigen::Vector3d& p_eye_W) noexcept { sight_.setEye(p_eye_W); }
     // No record comes any more. Only then the figures are whole.
     void finish();
 

@@ -104,7 +104,7 @@ std::vector<double> thinned(std::span<const double> values, size_t together, Of 
     return out;
 }
 
-constexpr double kWidth = 700, kLeft = 58, kRight = 8, kPanelHeight = 58, kGap = 7, kTop = 14, kBottom = 16;
+constexpr double kWidth = 700, kLeft = 58, kRight = 8, kPanelHeight = 42, kGap = 6, kTop = 14, kBottom = 16;
 constexpr size_t kMostPoints = 640;
 
 std::string timeAxis(double seconds, double bottom) {
@@ -210,7 +210,7 @@ std::string attemptsSvg(std::span<const double> values, const std::string& unit,
     return svg(244, 90, "Attempts", content);
 }
 
-std::string envelopeSvg(const Assessment& assessment, const Comparison& comparison,
+std::string envelopeSvg(const Assessment& assessment, const ExpertComparison& comparison,
                         const std::string& column_id) {
     const SeriesTable* const table = findTable(assessment, "bucket");
     const Series* const column = table ? findColumn(*table, column_id) : nullptr;

@@ -26,7 +26,7 @@ std::string attemptsSvg(std::span<const double> values, const std::string& unit,
 
 // A column of the table "bucket" over the fifths of what was removed, and the band of the experts; empty if
 // either is not there.
-std::string envelopeSvg(const Assessment& assessment, const Comparison& comparison,
+std::string envelopeSvg(const Assessment& assessment, const ExpertComparison& comparison,
                         const std::string& column_id);
 
 }  // namespace bonemill

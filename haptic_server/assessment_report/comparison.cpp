@@ -49,12 +49,13 @@ Envelope envelopeOf(const Series& column, const std::vector<const AttemptResult*
 
 }  // namespace
 
-std::optional<Comparison> compareWith(std::span<const AttemptResult> experts, const AttemptResult& result) {
+std::optional<ExpertComparison> compareWith(std::span<const AttemptResult> experts,
+                                            const AttemptResult& result) {
     std::vector<const AttemptResult*> same_scene;
     for (const AttemptResult& expert : experts)
         if (expert.scene_hash == result.scene_hash) same_scene.push_back(&expert);
     if (same_scene.size() < kLeastExperts) return std::nullopt;
-    Comparison comparison;
+    ExpertComparison comparison;
     comparison.experts = same_scene.size();
     for (const Figure& figure : result.assessment.figures) {
         std::vector<double> values;

@@ -23,7 +23,7 @@ struct Envelope {
     std::string column_id;
     std::vector<double> low, high;  // NaN where experts have no such value
 };
-struct Comparison {
+struct ExpertComparison {
     size_t experts = 0;
     std::vector<ComparedFigure> figures;
     std::vector<Envelope> envelopes;
@@ -33,6 +33,7 @@ inline constexpr size_t kLeastExperts = 5;
 
 // Of the results of experts only those of the same scene count, and of them figures of the same version.
 // Nothing with fewer than kLeastExperts; a figure that fewer have, or that is the same for all, is left out.
-std::optional<Comparison> compareWith(std::span<const AttemptResult> experts, const AttemptResult& result);
+std::optional<ExpertComparison> compareWith(std::span<const AttemptResult> experts,
+                                            const AttemptResult& result);
 
 }  // namespace bonemill

@@ -163,7 +163,7 @@ std::string comparedOf(const AttemptResult& result, const ReportExtras& extras) 
                                                 element("div", out, "class='charts'"));
 }
 
-std::string zOf(const std::optional<Comparison>& comparison, const std::string& id) {
+std::string zOf(const std::optional<ExpertComparison>& comparison, const std::string& id) {
     if (!comparison) return "";
     const auto found = std::ranges::find(comparison->figures, id, &ComparedFigure::id);
     if (found == comparison->figures.end()) return element("td", "");
@@ -177,11 +177,12 @@ std::string figuresOf(const AttemptResult& result, const ReportExtras& extras) {
     size_t shown = 0;
     for (const Figure& figure : result.assessment.figures) {
         if (++shown > kMostShownFigures) break;
-        rows += element(
-            "tr", element("td", escaped(figure.label)) +
-                      element("td", escaped(valueText(figure.value, figure.unit)), "class='n'") +
-                      zOf(extras.comparison, figure.id) +
-                      element("td", escaped(figure.id) + "@" + std::to_string(figure.version), "class='id'"));
+        rows += element("tr", element("td", escaped(figure.label)) +
+                                  element("td", escaped(valueText(figure.value, figure.unit)), "class='n'") +
+                                  zOf(extras.comparison, figure.id) +
+                                  element("td", "@" + std::to_string(figure.version),
+                                          "class='id' title='" + escaped(figure.id) + "@" +
+                                              std::to_string(figure.version) + "'"));
     }
     const std::string z = extras.comparison ? " · z: standard deviations from the experts' mean" : "";
     return element("section",

@@ -18,9 +18,9 @@ struct ReportPicture {
 };
 
 struct ReportExtras {
-    std::vector<ReportPicture> pictures;   // of over- and under-cut, for instance
-    std::vector<AttemptResult> own;        // this person's in this scene, in order, this one the last
-    std::optional<Comparison> comparison;  // with experts
+    std::vector<ReportPicture> pictures;         // of over- and under-cut, for instance
+    std::vector<AttemptResult> own;              // this person's in this scene, in order, this one the last
+    std::optional<ExpertComparison> comparison;  // with experts
     double begin_s = 0;  // where the attempt begins in the session: moments count from there
 };
 

@@ -118,7 +118,8 @@ std::vector<journal::File> hashedFiles(const std::vector<NamedFile>& files) {
 
 std::string newJournalId() {
     std::array<unsigned char, 16> bytes{};
-    if (RAND_bytes(bytes.data(), int(bytes.size())) != 1) throw UserError("the system gives no random numbers");
+    if (RAND_bytes(bytes.data(), int(bytes.size())) != 1)
+        throw UserError("the system gives no random numbers");
     return hexOf(bytes);
 }
 

@@ -1,5 +1,5 @@
-// What a replay must have in common with the session for the same bits: the program, the machine's library, and
-// every file. It is for normal threads, at the start.
+// What a replay must have in common with the session for the same bits: the program, the machine's library,
+// and every file. It is for normal threads, at the start.
 #pragma once
 
 #include <filesystem>

@@ -66,9 +66,8 @@ std::string* poseColumn(journal::Inputs& inputs, size_t column) {
     return all[column];
 }
 const std::string& poseColumn(const journal::Inputs& inputs, size_t column) {
-    const std::array<const std::string*, kPoseColumns> all = {&inputs.px(), &inputs.py(), &inputs.pz(),
-                                                              &inputs.qx(), &inputs.qy(), &inputs.qz(),
-                                                              &inputs.qw()};
+    const std::array<const std::string*, kPoseColumns> all = {
+        &inputs.px(), &inputs.py(), &inputs.pz(), &inputs.qx(), &inputs.qy(), &inputs.qz(), &inputs.qw()};
     return *all[column];
 }
 
@@ -256,8 +255,8 @@ bool decodeDevices(const journal::Inputs& inputs, std::span<JournalTick> ticks) 
 }  // namespace
 
 JournalTick journalTickOf(const TickRecord& record, int64_t first_start_ns, uint16_t check) noexcept {
-    return {record.tick,   record.start_ns - first_start_ns, record.buttons, record.device,
-            record.input, check};
+    return {record.tick, record.start_ns - first_start_ns, record.buttons, record.device, record.input,
+            check};
 }
 
 void encodeInputs(std::span<const JournalTick> ticks, journal::Inputs& out) {

@@ -1,5 +1,5 @@
-// The input of many ticks as columns, some 40 bytes per tick when they are packed (proto/journal.proto, Inputs),
-// and back to the bit. It is for normal threads.
+// The input of many ticks as columns, some 40 bytes per tick when they are packed (proto/journal.proto,
+// Inputs), and back to the bit. It is for normal threads.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ inline constexpr size_t kMostTicksPerInputs = 1024;
 
 // The ticks are consecutive, and not more than that.
 void encodeInputs(std::span<const JournalTick> ticks, journal::Inputs& out);
-// Appends; false if that is no message of encodeInputs(): then nothing is appended. No tick has what cannot be:
-// a capability, a factor or a number of periods out of range.
+// Appends; false if that is no message of encodeInputs(): then nothing is appended. No tick has what cannot
+// be: a capability, a factor or a number of periods out of range.
 bool decodeInputs(const journal::Inputs& inputs, std::vector<JournalTick>& ticks);
 
 }  // namespace bonemill

@@ -181,14 +181,15 @@ bool Journal::isKeyDue(int64_t mono_ns) const noexcept {
 
 void Journal::writeBone(const Post& post) {
     const bool is_key = isKeyDue(post.mono_ns) && post.checkpoint == 0;
-    if (!has_key_ && !is_key) writeBone({.topic = post.topic,
-                                         .mono_ns = post.mono_ns,
-                                         .message = {},
-                                         .bone = std::make_shared<const BoneSnapshot>()});
-    std::vector<journal::Bone> messages = bones_.add(
-        *post.bone, is_key              ? journal::Bone::KEY
-                    : post.checkpoint != 0 ? journal::Bone::OTHER
-                                           : journal::Bone::CURRENT);
+    if (!has_key_ && !is_key)
+        writeBone({.topic = post.topic,
+                   .mono_ns = post.mono_ns,
+                   .message = {},
+                   .bone = std::make_shared<const BoneSnapshot>()});
+    std::vector<journal::Bone> messages =
+        bones_.add(*post.bone, is_key                 ? journal::Bone::KEY
+                               : post.checkpoint != 0 ? journal::Bone::OTHER
+                                                      : journal::Bone::CURRENT);
     const size_t bytes = bytesOf(messages);
     if (is_key) {
         has_key_ = true;

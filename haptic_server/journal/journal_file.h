@@ -1,7 +1,7 @@
-// A file that only grows, written by a thread of its own, so that nobody waits for the disk; another one has it
-// written through once per second, for the loss of power. What does not fit on the disk, or comes faster than
-// it takes, is left out from there to the end, so that what is there stays whole. As long as the file is open it
-// is locked (flock), so that others see that somebody writes to it.
+// A file that only grows, written by a thread of its own, so that nobody waits for the disk; another one has
+// it written through once per second, for the loss of power. What does not fit on the disk, or comes faster
+// than it takes, is left out from there to the end, so that what is there stays whole. As long as the file is
+// open it is locked (flock), so that others see that somebody writes to it.
 #pragma once
 
 #include <atomic>
@@ -20,7 +20,8 @@ class JournalFile {
     // As much waits for the disk at most.
     static constexpr size_t kMostWaiting = size_t(64) << 20;
 
-    // Makes the file, which must not be there yet, and its folders; only its user may read it. Throws UserError.
+    // Makes the file, which must not be there yet, and its folders; only its user may read it. Throws
+    // UserError.
     explicit JournalFile(const std::filesystem::path& path);
     ~JournalFile();
     JournalFile(const JournalFile&) = delete;

@@ -136,11 +136,10 @@ JournalContent readJournalContent(const std::filesystem::path& path, KeepInputs 
     JournalContent content;
     const std::string name = path.string();
     Keeper keeper(name, keep == KeepInputs::kYes, content);
-    const mcap::Reading reading =
-        readJournal(path, [&](JournalTopic topic, const mcap::Message& message) {
-            keeper.take(topic, message);
-            if (visit_also) visit_also(topic, message);
-        });
+    const mcap::Reading reading = readJournal(path, [&](JournalTopic topic, const mcap::Message& message) {
+        keeper.take(topic, message);
+        if (visit_also) visit_also(topic, message);
+    });
     if (!keeper.hasManifest())
         throw UserError("journal " + name + " holds nothing: its session was stopped as it began");
     content.problem = reading.problem;

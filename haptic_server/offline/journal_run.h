@@ -1,5 +1,5 @@
-// Runs the ticks of a journal again: the very tick of the live session, with what it took in and what was decided
-// for it then, so that the same build gives the same bits. It is for one normal thread.
+// Runs the ticks of a journal again: the very tick of the live session, with what it took in and what was
+// decided for it then, so that the same build gives the same bits. It is for one normal thread.
 #pragma once
 
 #include <cstdint>
@@ -48,8 +48,8 @@ class JournalBones {
 
 class JournalRun {
   public:
-    // References must outlive it; the simulation is the scene's, fresh, and its bone is milled. It begins with
-    // this bone (null: the scanned one).
+    // References must outlive it; the simulation is the scene's, fresh, and its bone is milled. It begins
+    // with this bone (null: the scanned one).
     JournalRun(Simulation& simulation, PutBackTargets targets,
                const std::shared_ptr<const BoneSnapshot>& beginning);
     ~JournalRun();

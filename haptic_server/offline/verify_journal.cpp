@@ -249,7 +249,9 @@ JournalVerdict verifyJournal(const std::filesystem::path& path, const std::strin
 std::string JournalVerdict::text() const {
     std::string text = fmt::format("{} ticks ({:.3f} s), {} hashes and {} states of the bone: ", ticks,
                                    seconds, hashes, bones);
-    if (is_same)
+    if (ticks == 0)
+        text += "nothing to compare";
+    else if (is_same)
         text += reasons.empty() ? "the same bits" : "approximate, though no hash differs";
     else
         text += fmt::format("{}differs from tick {} ({:.3f} s) on{}",

@@ -9,16 +9,18 @@
 
 namespace bonemill {
 
-void writeAssessment(const AssessmentTarget& target, const LoadedScene& loaded, const TaskRun::Result& result,
-                     FinalFiles& files) {
+std::string writeAssessment(const AssessmentTarget& target, const LoadedScene& loaded,
+                            const TaskRun::Result& result, FinalFiles& files) {
     AttemptResult attempt;
     attempt.pseudonym = target.pseudonym;
-    attempt.number = 1;
+    attempt.number = target.number;
+    attempt.journal = target.journal;
     attempt.scene_id = loaded.file.stem().string();
-    attempt.scene_title = loaded.scene.name();
+    attempt.scene_title = loaded.scene.has_title() ? loaded.scene.title() : loaded.scene.name();
     attempt.scene_hash = hexText(sceneHashOf(loaded.scene));
     attempt.start_unix_ns =
         std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+    if (target.start_unix_ns != 0) attempt.start_unix_ns = target.start_unix_ns;
     attempt.duration_s = target.duration_s;
     attempt.is_exam = loaded.scene.assessment().exam();
     attempt.assessment = result.assessment;
@@ -30,6 +32,7 @@ void writeAssessment(const AssessmentTarget& target, const LoadedScene& loaded, 
     } catch (const std::exception& error) {
         files.note(error.what());
     }
+    return fileStemOf(attempt);
 }
 
 }  // namespace bonemill

@@ -14,10 +14,13 @@ struct AssessmentTarget {
     std::string folder;
     std::string pseudonym;
     double duration_s = 0;
+    uint32_t number = 1;
+    int64_t start_unix_ns = 0;  // 0: now
+    std::string journal = {};   // the recording's file name; empty: none
 };
 
-// The attempt begins now. What could not be written is noted in `files`.
-void writeAssessment(const AssessmentTarget& target, const LoadedScene& loaded, const TaskRun::Result& result,
-                     FinalFiles& files);
+// Returns the files' name without endings. What could not be written is noted in `files`.
+std::string writeAssessment(const AssessmentTarget& target, const LoadedScene& loaded,
+                            const TaskRun::Result& result, FinalFiles& files);
 
 }  // namespace bonemill

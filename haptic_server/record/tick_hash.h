@@ -1,5 +1,5 @@
-// Makes digests of what the ticks of a session decided, one for each part of it, so that a replay that differs
-// says where. What the clock measured and what hangs on it is not in them. It is for normal threads.
+// Makes digests of what the ticks of a session decided, one for each part of it, so that a replay that
+// differs says where. What the clock measured and what hangs on it is not in them. It is for normal threads.
 #pragma once
 
 #include <array>

@@ -178,6 +178,7 @@ std::string Player::setSpeed(double speed) {
     {
         const std::lock_guard lock(mutex_);
         speed_ = speed;
+        event_.clear();
     }
     changed_.notify_all();
     return "done";

@@ -12,6 +12,7 @@
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/mesh/mesh_rounds.h"
+#include "haptic_server/offline/verify_journal.h"
 #include "haptic_server/replay/player.h"
 #include "haptic_server/session/show_session.h"
 #include "haptic_server/session/sole_server.h"
@@ -61,7 +62,7 @@ class ReplayServer {
               publisher_, scene_.scene, simulation_, rerun_.history(), {}, outbox_, recorder_,
               [this](DeviceCapabilities& device) { return deviceNow(device); }, commands_, task_,
               options.stream_mbit_per_s * kMega / 8) {
-        tellOfRecording();
+        tellOfRecording(options.version);
         topics::ReplayOrder order;
         order.set_speed(options.speed);
         player_.carryOut(order);
@@ -83,7 +84,7 @@ class ReplayServer {
     }
 
   private:
-    void tellOfRecording() const {
+    void tellOfRecording(const std::string& version) const {
         const JournalContent& content = recording_.content();
         spdlog::info("{:.1f} s of session {}, {} ticks, {} moments of the bone, {} events",
                      recording_.lengthS(), recording_.manifest().session(), recording_.ticks(),
@@ -93,6 +94,8 @@ class ReplayServer {
             spdlog::warn("the recording is incomplete from tick {} on: {}", content.incomplete_from,
                          content.incomplete);
         if (!bones_.problem.empty()) spdlog::warn("{}", bones_.problem);
+        for (const std::string& reason : reasonsAgainstSameBits(recording_.manifest(), scene_, version))
+            spdlog::warn("the replay may differ in the last bits: {}", reason);
         for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
     }
 

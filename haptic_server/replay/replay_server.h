@@ -18,6 +18,7 @@ struct ReplayOptions {
     bool is_paused = false;  // until a viewer lets it go on
     double stream_mbit_per_s = 200;
     bool instructor_only = false;
+    std::string version;  // that --version prints
 };
 
 // Runs until told to stop; returns the process' exit code. Throws UserError at start-up.

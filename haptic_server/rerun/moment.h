@@ -1,4 +1,5 @@
-// The bone of a recorded session at any moment, for who goes on from there. It is for normal threads, at the start.
+// The bone of a recorded session at any moment, for who goes on from there. It is for normal threads, at the
+// start.
 #pragma once
 
 #include <filesystem>
@@ -27,8 +28,8 @@ struct RecordedMoment {
 // Another bone like that of a fresh simulation of the scene.
 BoneModel scannedCopyOf(const Simulation& simulation, const LoadedScene& scene);
 
-// Runs the ticks up to there again, from the state of the bone before it. `simulation` is fresh, and stays so. Throws
-// UserError if the recording is of another scene, or ends before.
+// Runs the ticks up to there again, from the state of the bone before it. `simulation` is fresh, and stays
+// so. Throws UserError if the recording is of another scene, or ends before.
 RecordedMoment momentOf(const Recording& recording, const Simulation& simulation, const LoadedScene& scene,
                         double seconds);
 

@@ -130,6 +130,7 @@ std::optional<AttemptJudgement> AttemptKeeper::judgement(std::optional<double> b
     AttemptJudgement judgement;
     judgement.scene_hash = scene_hash_;
     judgement.begin_s = technique->beginS();
+    judgement.journal = journal_.fileName();
     if (const JudgedTask* const task = task_ ? task_->task() : nullptr) {
         judgement.is_exam = task->is_exam;
         judgement.is_told = !task->is_exam && task->feedback != TaskFeedback::kNever;

@@ -27,8 +27,9 @@ void forgetInTables(const ForgetOptions& options, Forgotten& forgotten) {
 }
 
 // A recording is one session's, which may have been several people's.
-void forgetRecordings(const fs::path& folder, Forgotten& forgotten) {
-    const std::vector<std::string> of_others = recordingsOfOthers(folder);
+void forgetRecordings(const ForgetOptions& options, Forgotten& forgotten) {
+    const fs::path folder = options.recordings.empty() ? options.folder : options.recordings;
+    const std::vector<std::string> of_others = recordingsOfOthers(options.folder);
     for (const std::string& name : forgotten.recordings) {
         const fs::path file = folder / fs::path(name).filename();
         std::error_code error;
@@ -51,9 +52,11 @@ int forgetPerson(const ForgetOptions& options, std::ostream& out) {
     if (options.pseudonym.empty()) throw UserError("forget: give the pseudonym of the person");
     if (!fs::is_directory(options.folder, error))
         throw UserError("--in " + options.folder + ": no such folder; give the one of the class table");
+    if (!options.recordings.empty() && !fs::is_directory(options.recordings, error))
+        throw UserError("--recordings " + options.recordings + ": no such folder");
     Forgotten forgotten = forgetResults(options.folder, options.pseudonym);
     forgetInTables(options, forgotten);
-    forgetRecordings(options.folder, forgotten);
+    forgetRecordings(options, forgotten);
     for (const std::string& what : forgotten.deleted) out << "deleted " << what << '\n';
     for (const std::string& problem : forgotten.problems) out << "not deleted: " << problem << '\n';
     if (forgotten.deleted.empty() && forgotten.problems.empty())

@@ -8,7 +8,8 @@ namespace bonemill {
 
 struct ForgetOptions {
     std::string pseudonym;
-    std::string folder;  // of the class table
+    std::string folder;      // of the class table
+    std::string recordings;  // folder of recordings; empty: that of the class table, too
 };
 
 // Takes the person's lines out of every class table in the folder, deletes results, reports and statements,

@@ -32,6 +32,8 @@ class JournalKeeper {
     void noteEye(const SeenEye& eye);
     void noteAttemptBegan(const std::string& trainee);
     void noteAttemptEnded(const topics::Attempt& attempt);
+    // Of the recording; empty if there is none.
+    std::string fileName() const { return journal_ ? journal_->path().filename().string() : ""; }
 
   private:
     void noteBone();

@@ -67,7 +67,11 @@ void Recorder::beginAttempt(uint64_t bone_order) {
 
 void Recorder::takeUpAttempt() {
     const std::lock_guard lock(mutex_);
-    if (!asked_bone_order_) return;
+    if (asked_bone_order_) beginAsked();
+    if (technique_ && p_eye_W_) technique_->setEye(*p_eye_W_);
+}
+
+void Recorder::beginAsked() {
     bone_order_ = *std::exchange(asked_bone_order_, std::nullopt);
     attempt_ = shown_attempt_;
     if (make_technique_) technique_ = make_technique_();
@@ -83,6 +87,11 @@ void Recorder::addToAttempt(const TickRecord& record) {
     if (!breach_) return;
     breach_->add(record);
     attempt_.breach = breach_->depth();
+}
+
+void Recorder::setEye(const Eigen::Vector3d& p_eye_W) {
+    const std::lock_guard lock(mutex_);
+    p_eye_W_ = p_eye_W;
 }
 
 std::unique_ptr<Technique> Recorder::takeTechnique() {

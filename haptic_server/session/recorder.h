@@ -75,6 +75,8 @@ class Recorder {
     // Any normal thread ends the measuring of the attempt, and gets what was measured; null if it has not
     // begun.
     std::unique_ptr<Technique> takeTechnique();
+    // Any normal thread tells where the trainee's eye is, whenever it moves.
+    void setEye(const Eigen::Vector3d& p_eye_W);
     // This is called before finish() and says what the tick thread's page faults were after its first second.
     void setPageFaults(const PageFaults& faults) { statistics_.setPageFaults(faults); }
     // The mesher thread says at its end how long the ticks' cuts waited for the publisher.
@@ -89,6 +91,7 @@ class Recorder {
   private:
     void addToWindow(const TickRecord& record);
     void takeUpAttempt();
+    void beginAsked();
     bool isIncomplete() const;
     void addToAttempt(const TickRecord& record);
 
@@ -112,7 +115,8 @@ class Recorder {
     double new_removed_ = 0;
     std::vector<DeviceChange> new_device_changes_;  // since takeDeviceChanges()
     LoopHealth health_;
-    AttemptFigures shown_attempt_;              // as of latest_
+    AttemptFigures shown_attempt_;  // as of latest_
+    std::optional<Eigen::Vector3d> p_eye_W_;
     std::optional<uint64_t> asked_bone_order_;  // by beginAttempt()
 };
 

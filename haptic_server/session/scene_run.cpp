@@ -142,7 +142,14 @@ void SceneRun::startJournal() {
     spdlog::info("recording to {}", journal_->path().string());
     if (!resumed_ || options_.resumed_journal.empty()) return;
     journal_->flush();
-    if (journal_->problem().empty()) closeResumed(options_.resumed_journal);
+    if (!journal_->problem().empty()) return;
+    closing_ = std::async(std::launch::async, [path = options_.resumed_journal] {
+        try {
+            closeResumed(path);
+        } catch (const UserError& error) {
+            spdlog::warn("{}", error.what());
+        }
+    });
 }
 
 // Whatever happened: the tick thread must be able to end before it is joined.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -96,6 +97,7 @@ class SceneRun {
     std::optional<ResumedSession> resumed_;
     std::optional<JournalConfig> journal_config_;  // until the journal begins
     std::unique_ptr<Journal> journal_;             // null: nothing is recorded
+    std::future<void> closing_;                    // the journal of before gets its end
     JournalKeeper journal_keeper_;
     Recorder recorder_;
     MeshOutbox outbox_;

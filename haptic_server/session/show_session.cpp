@@ -202,7 +202,10 @@ void ShowSession::round() {
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
     commands_.attempts().round();
     task_.round();
-    if (const auto eye = publisher_.takeEye()) commands_.journal().noteEye(*eye);
+    if (const auto eye = publisher_.takeEye()) {
+        commands_.journal().noteEye(*eye);
+        recorder_.setEye(eye->X_WC.position);
+    }
     commands_.journal().round();
     carryOutCommands();
     followTool();

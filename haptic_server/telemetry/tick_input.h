@@ -1,6 +1,6 @@
-// This is all that makes a tick what it is: what it took in, before anything of it was accepted or normalised,
-// and what the clock or other threads decided for it. Ticks that are given the same again give the same bits.
-// It is trivially copyable, a part of TickRecord.
+// This is all that makes a tick what it is: what it took in, before anything of it was accepted or
+// normalised, and what the clock or other threads decided for it. Ticks that are given the same again give
+// the same bits. It is trivially copyable, a part of TickRecord.
 #pragma once
 
 #include <cstdint>

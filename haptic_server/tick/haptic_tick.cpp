@@ -7,6 +7,7 @@
 #include "common/assert.h"
 #include "common/rt/rt_guard.h"
 #include "haptic_server/effects/make_effects.h"
+#include "haptic_server/tick/recorded_input.h"
 
 namespace bonemill {
 namespace {
@@ -185,7 +186,7 @@ bool HapticTick::tick(TickIo& io) noexcept {
     const double load = double(record.compute_ns) / double(input.deadline_ns - input.start_ns);
     capSamples(input, load, step);
     record.faults = faults;
-    record.input = inputOf(input);
+    record.input = recordedInput(input, decisions_);
     latched_faults_ |= faults;
     io.push(record);
     ++tick_;
@@ -357,22 +358,6 @@ MillingResult HapticTick::millWithEffects(uint32_t& faults) noexcept {
 
 Wrench HapticTick::inWorld(const Wrench& wrench_V) const noexcept {
     return wrench_V.rotatedBy(X_WV_.rotation);
-}
-
-TickInput HapticTick::inputOf(const DeviceInput& input) const noexcept {
-    TickInput out{};
-    copyTo(out.p_WT, input.X_WT_device.position);
-    copyTo(out.q_WT, wxyz(input.X_WT_device.rotation));
-    out.stale_factor = input.stale_factor;
-    out.placements = input.placements;
-    out.faults = input.faults;
-    out.periods = input.periods;
-    out.is_repeated = input.is_repeated;
-    out.is_stale = input.is_stale;
-    out.has_other_device = input.other_device != nullptr;
-    if (input.other_device) out.other_device = *input.other_device;
-    out.decisions = decisions_;
-    return out;
 }
 
 TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step) const noexcept {

@@ -71,7 +71,6 @@ class HapticTick {
     SpoStep moveAndFeel(const DeviceInput& input, uint32_t& faults) noexcept;
     MillingResult mill(uint32_t& faults) noexcept;
     void capSamples(const DeviceInput& input, double load, const SpoStep& step) noexcept;
-    TickInput inputOf(const DeviceInput& input) const noexcept;
     void keepWaiting(const SpoStep& step) noexcept;
     MillingResult millWithEffects(uint32_t& faults) noexcept;
     Wrench inWorld(const Wrench& wrench_V) const noexcept;
@@ -82,8 +81,8 @@ class HapticTick {
     BoneHistory* history_;
     const ToolSwitch& tools_;
     const AccuracySwitch& accuracy_;
-    size_t tool_;              // of tools_
-    TickDecisions decisions_;  // for the tick under way
+    size_t tool_;                // of tools_
+    TickDecisions decisions_;    // for the tick under way
     uint32_t most_samples_ = 0;  // in force; 0: no cap
     Thesis2012Model thesis_;
     GradientModel gradient_;

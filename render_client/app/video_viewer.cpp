@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 #include "render_client/app/scene_feed.h"
 #include "render_client/app/stop_signal.h"
@@ -53,7 +54,7 @@ class VideoViewer {
         uint64_t drawn = 0, frames = 0;
         while (frames < most && !isOver()) {
             feed_.update();
-            const uint64_t due = clock.due(now());
+            const uint64_t due = clock.due(now(), expected());
             if (due == 0) {
                 feed_.updateUntil(Clock::now() + kLook, stopRequested);
                 continue;
@@ -74,6 +75,7 @@ class VideoViewer {
 
   private:
     static constexpr std::chrono::milliseconds kLook{3};
+    static constexpr double kEndS = 1e-2;
 
     bool isReplay() { return feed_.subscriber().status() && feed_.subscriber().status()->has_replay(); }
 
@@ -84,7 +86,21 @@ class VideoViewer {
         return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
     }
 
-    bool isOver() { return stopRequested() || !feed_.subscriber().hasServer(); }
+    // Since the call before, at the replay's speed.
+    double expected() {
+        const Clock::time_point before = std::exchange(looked_, Clock::now());
+        const double passed_s = std::chrono::duration<double>(looked_ - before).count();
+        return isReplay() ? passed_s * feed_.subscriber().status()->replay().speed() : passed_s;
+    }
+
+    // A replay that has come to its end holds there.
+    bool isAtEnd() {
+        if (!isReplay()) return false;
+        const topics::Replay& replay = feed_.subscriber().status()->replay();
+        return !replay.is_playing() && now() >= replay.length_s() - kEndS;
+    }
+
+    bool isOver() { return stopRequested() || !feed_.subscriber().hasServer() || isAtEnd(); }
 
     const ClientOptions& options_;
     const VideoOptions& wish_;
@@ -92,6 +108,7 @@ class VideoViewer {
     OsmesaContext context_;
     RenderScene scene_;
     SceneFeed feed_;
+    Clock::time_point looked_ = Clock::now();
 };
 
 }  // namespace

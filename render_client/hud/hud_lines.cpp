@@ -82,8 +82,7 @@ std::vector<HudRow> taskRows(const HudInput& input) {
 
 std::string replayText(const topics::Status& status) {
     const topics::Replay& replay = status.replay();
-    const std::string text =
-        "replay, " + clockText(status.session_s()) + " of " + clockText(replay.length_s());
+    const std::string text = "replay, " + clockText(status.session_s());
     if (replay.is_seeking()) return text + ", seeks";
     if (!replay.is_playing()) return text + ", paused";
     return replay.speed() == 1 ? text : text + ", " + readableText(replay.speed(), " \u00d7");

@@ -13,12 +13,12 @@ class VideoClock {
     // A clock that leaps (a replay's: somebody seeks in it) goes on in the video as if it had not.
     VideoClock(double fps, bool may_leap) : fps_(fps), may_leap_(may_leap) {}
 
-    // The clock of what is shown stands at `now_s`: returns the number of frames that are due and have not
-    // been before, one at the first call.
-    uint64_t due(double now_s) {
+    // The clock of what is shown stands at `now_s`, and would have gone on by `expected_s` without a leap: returns
+    // the number of frames that are due and have not been before, one at the first call.
+    uint64_t due(double now_s, double expected_s = 0) {
         if (frames_ == 0) {
             start_s_ = now_s;
-        } else if (const double passed = now_s - last_s_; passed < 0 || (may_leap_ && passed > kLeapS)) {
+        } else if (const double passed = now_s - last_s_; passed < 0 || (may_leap_ && passed > expected_s + kLeapS)) {
             start_s_ += passed;
         }
         last_s_ = now_s;

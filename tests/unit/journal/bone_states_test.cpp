@@ -67,7 +67,7 @@ TEST_F(BoneStates, WhereNothingChangedNothingIsWritten) {
     ball_.groove(10e-3);
     EXPECT_FALSE(writer.add(*snapshot(), journal::Bone::KEY).empty());
     EXPECT_TRUE(writer.add(*snapshot(), journal::Bone::CURRENT).empty());
-    ball_.groove(12e-3);
+    ball_.groove(16e-3, 8e-3);
     const auto few = writer.add(*snapshot(), journal::Bone::CURRENT);
     const auto all = writer.add(*snapshot(), journal::Bone::KEY);
     EXPECT_LT(few.back().leaf_steps_size(), all.back().leaf_steps_size());

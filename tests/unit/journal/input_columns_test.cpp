@@ -74,9 +74,14 @@ TEST(InputColumns, GiveEveryTickBackToTheBit) {
 // A device may say anything; the tick refuses it, and so must its replay.
 TEST(InputColumns, GiveBackWhatIsNoPose) {
     auto ticks = ticksOf(test::recordedTicks(64));
-    const double odd[] = {std::numeric_limits<double>::quiet_NaN(), -0.0, 0.0,
-                          std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-                          std::numeric_limits<double>::denorm_min(), 1e300, -1e300};
+    const double odd[] = {std::numeric_limits<double>::quiet_NaN(),
+                          -0.0,
+                          0.0,
+                          std::numeric_limits<double>::infinity(),
+                          -std::numeric_limits<double>::infinity(),
+                          std::numeric_limits<double>::denorm_min(),
+                          1e300,
+                          -1e300};
     std::mt19937 random(7);
     for (JournalTick& tick : ticks) {
         tick.input.p_WT[random() % 3] = odd[random() % 8];

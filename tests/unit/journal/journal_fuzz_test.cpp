@@ -7,7 +7,6 @@
 #include "common/mcap/mcap_writer.h"
 #include "common/user_error.h"
 #include "haptic_server/journal/journal_reader.h"
-#include "haptic_server/journal/journal_schemas.h"
 #include "tests/support/mutated_bytes.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/journal/recorded_ticks.h"
@@ -42,7 +41,8 @@ TEST(JournalFuzz, AnyMessagesAreReadOrRefused) {
     int read = 0, refused = 0;
     for (int round = 0; round < 2000; ++round) {
         mcap::Writer writer(kJournalProfile, "hostile");
-        for (const JournalTopicName& topic : kJournalTopics) addTopic(topic, writer);
+        for (const JournalTopicName& topic : kJournalTopics)
+            writer.addChannel({uint16_t(topic.topic), 0, std::string(topic.name), "protobuf"});
         const auto bytes = [&](JournalTopic topic, uint64_t tick) {
             const std::string good = goodMessage(topic, tick);
             return random() % 6 == 0 ? test::mutated(good, random) : good;

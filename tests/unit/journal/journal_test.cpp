@@ -10,8 +10,7 @@
 #include "common/user_error.h"
 #include "haptic_server/journal/journal_reader.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/unit/bone/milled_ball.h"
-#include "tests/unit/journal/recorded_ticks.h"
+#include "tests/unit/journal/recorded_session.h"
 
 namespace bonemill {
 namespace {
@@ -32,28 +31,11 @@ class JournalTest : public testing::Test {
         return config;
     }
     ScannedBone scanned() const { return {ball_.history.scanned(), ball_.bone.lattice}; }
-    // A session of 2.5 s with a bone now and then, orders and an end.
-    std::vector<TickRecord> record(const JournalConfig& config, bool ends = true) {
+    std::vector<TickRecord> record(const JournalConfig& config) {
         Journal journal(config, scanned());
-        const auto records = test::recordedTicks(2500);
-        journal::PutBack put_back;
-        put_back.set_bone_order(1);
-        put_back.set_checkpoint(3);
-        for (const TickRecord& record : records) {
-            journal.add(record);
-            if (record.tick % 4 == 0) journal.round();
-            if (record.tick % 200 == 0) {
-                ball_.groove(4e-3 + double(record.tick) * 4e-6);
-                journal.putBone(ball_.history.snapshot(ball_.bone), 0);
-            }
-            if (record.tick == 900) {
-                journal.putCheckpoint(ball_.history.snapshot(ball_.bone), 3, 0.9);
-                journal.put(JournalTopic::kPutBack, put_back);
-            }
-        }
+        auto records = test::recordSession(journal, ball_);
         EXPECT_EQ(journal.problem(), "");
-        if (ends) journal.finish();
-        else journal.flush();
+        journal.finish();
         return records;
     }
 
@@ -65,8 +47,8 @@ TEST_F(JournalTest, TellsWhatTheSessionTold) {
     const auto records = record(config());
     BoneStateReader bones(scanned());
     int checkpoints = 0;
-    const JournalContent content =
-        readJournalContent(folder_ / "j.mcap", KeepInputs::kYes, [&](JournalTopic topic, const auto& message) {
+    const JournalContent content = readJournalContent(
+        folder_ / "j.mcap", KeepInputs::kYes, [&](JournalTopic topic, const auto& message) {
             if (topic != JournalTopic::kBone) return;
             journal::Bone bone;
             ASSERT_TRUE(bone.ParseFromArray(message.data.data(), int(message.data.size())));
@@ -131,8 +113,8 @@ TEST_F(JournalTest, LostTicksAreSaidFromWhichOnOn) {
     EXPECT_EQ(content.inputs.back().first_tick() + content.inputs.back().count(), 300u);
 }
 
-// What comes more is recorded for people; the input of the hand has a budget of 0.15 GB/h at 1 kHz, 41.6 bytes
-// per tick.
+// What comes more is recorded for people; the input of the hand has a budget of 0.15 GB/h at 1 kHz, 41.6
+// bytes per tick.
 TEST_F(JournalTest, ATicksInputIsSmall) {
     const auto size = [&](size_t ticks) {
         const std::string name = std::to_string(ticks);

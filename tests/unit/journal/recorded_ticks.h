@@ -27,7 +27,8 @@ inline std::vector<TickRecord> recordedTicks(size_t count, unsigned seed = 1) {
         for (int axis = 0; axis < 3; ++axis)
             input.p_WT[axis] = 0.01 * std::sin(t + axis) + 2e-6 * noise(random);
         const double turn = 0.3 * std::sin(2 * t) + 1e-5 * noise(random);
-        const double q[4] = {-std::cos(turn), std::sin(turn) * 0.6, std::sin(turn) * 0.8, 1e-3 * noise(random)};
+        const double q[4] = {-std::cos(turn), std::sin(turn) * 0.6, std::sin(turn) * 0.8,
+                             1e-3 * noise(random)};
         const double norm = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
         for (int part = 0; part < 4; ++part) input.q_WT[part] = q[part] / norm;
         input.stale_factor = n % 97 == 0 ? 0.25 : 1;
@@ -36,8 +37,8 @@ inline std::vector<TickRecord> recordedTicks(size_t count, unsigned seed = 1) {
         input.periods = n % 89 == 0 ? 3 : 1;
         input.is_repeated = n % 89 == 0;
         input.is_stale = n % 97 == 0;
-        input.decisions = {uint32_t(n / 200 % 2), uint32_t(n / 150 % 4), n % 400 > 350, n % 77 == 0,
-                           n > 500 ? 128u : 0u, n / 250};
+        input.decisions = {uint32_t(n / 200 % 2), uint32_t(n / 150 % 4), n % 400 > 350,
+                           n % 77 == 0,           n > 500 ? 128u : 0u,   n / 250};
         record.p_WT[0] = record.input.p_WT[0];
         record.f_hand_W[2] = std::sin(t);
         if (n == 3) {

@@ -34,6 +34,12 @@ TEST(VideoClock, AReplayMayBeSoughtInBothWays) {
     EXPECT_EQ(clock.due(400.2), 2u);
 }
 
+TEST(VideoClock, APictureThatTakesLongIsNoLeap) {
+    VideoClock clock(10, true);
+    EXPECT_EQ(clock.due(0), 1u);
+    EXPECT_EQ(clock.due(2, 2), 20u);
+}
+
 TEST(VideoClock, ALiveSessionThatIsDrawnLateLeapsNowhere) {
     VideoClock clock(10, false);
     EXPECT_EQ(clock.due(0), 1u);

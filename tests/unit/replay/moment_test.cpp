@@ -14,7 +14,8 @@ TEST(MomentName, IsAFileAndSeconds) {
     const MomentName name = momentNameOf("a/b@c.mcap@95.5");
     EXPECT_EQ(name.journal, "a/b@c.mcap");
     EXPECT_EQ(name.seconds, 95.5);
-    for (const char* text : {"", "a.mcap", "a.mcap@", "@5", "a.mcap@soon", "a.mcap@-1", "a.mcap@5s", "a.mcap@nan"})
+    for (const char* text :
+         {"", "a.mcap", "a.mcap@", "@5", "a.mcap@soon", "a.mcap@-1", "a.mcap@5s", "a.mcap@nan"})
         EXPECT_THROW(momentNameOf(text), UserError) << text;
 }
 

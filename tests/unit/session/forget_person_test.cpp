@@ -31,7 +31,7 @@ class ForgetPerson : public testing::Test {
     }
     int forget(const std::string& pseudonym) {
         out_.str("");
-        return forgetPerson({pseudonym, folder_ / "."}, out_);
+        return forgetPerson({pseudonym, folder_ / ".", ""}, out_);
     }
 
     const test::TemporaryFolder folder_;
@@ -73,8 +73,9 @@ TEST_F(ForgetPerson, ANameOfARecordingLeadsNowhereElse) {
 }
 
 TEST_F(ForgetPerson, AFolderThatIsNoneIsRefused) {
-    EXPECT_THROW(forgetPerson({"P07", folder_ / "nowhere"}, out_), UserError);
-    EXPECT_THROW(forgetPerson({"", folder_ / "."}, out_), UserError);
+    EXPECT_THROW(forgetPerson({"P07", folder_ / "nowhere", ""}, out_), UserError);
+    EXPECT_THROW(forgetPerson({"P07", folder_ / ".", folder_ / "nowhere"}, out_), UserError);
+    EXPECT_THROW(forgetPerson({"", folder_ / ".", ""}, out_), UserError);
 }
 
 }  // namespace
