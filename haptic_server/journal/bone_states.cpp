@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "haptic_server/bone/leaf_rows.h"
 
@@ -95,7 +96,9 @@ std::vector<journal::Bone> BoneStateWriter::add(const BoneSnapshot& state, journ
         if (!now.contains(leaf)) messages.addScanned(leaf);
     last_ = std::move(now);
     std::vector<journal::Bone> all = messages.take();
-    if (kind == journal::Bone::CURRENT && isNothing(all)) return {};
+    // After a checkpoint nobody knows yet that the bone is like it.
+    const bool was_current = std::exchange(is_current_, kind != journal::Bone::OTHER);
+    if (kind == journal::Bone::CURRENT && isNothing(all) && was_current) return {};
     for (journal::Bone& message : all) {
         message.set_tick(state.ticks);
         message.set_missing_voxels(state.missing_voxels);

@@ -23,13 +23,15 @@ class BoneStateWriter {
     explicit BoneStateWriter(const ScannedBone& scanned) : scanned_(scanned) {}
 
     // Returns the messages that lead there from the state before, of which all but the last go on; none if
-    // nothing differs, unless it is a KEY or a checkpoint. Of a checkpoint the caller fills in what it is.
+    // nothing differs, unless it is a KEY, a checkpoint, or the first after a checkpoint. Of a checkpoint the
+    // caller fills in what it is.
     std::vector<journal::Bone> add(const BoneSnapshot& state, journal::Bone::Kind kind);
 
   private:
     ScannedBone scanned_;
     using Leaves = std::map<LeafId, std::shared_ptr<const LeafCopy>>;
     Leaves last_;
+    bool is_current_ = true;  // last_ is the bone, and not only a checkpoint of it
 };
 
 class BoneStateReader {

@@ -49,12 +49,12 @@ class BonemillSession : public testing::Test {
             return std::distance(std::sregex_iterator(text.begin(), text.end(), pattern), {}) >= times;
         });
     }
-    // There is one folder of logs, as soon as the session has come so far.
+    // There is one folder of logs, beside that of recordings, as soon as the session has come so far.
     std::string logOf(const std::string& name) const {
         const std::filesystem::path logs = rig_.folder() / "logs/bonemill";
         if (!exists(logs)) return "";
         for (const auto& folder : std::filesystem::directory_iterator(logs))
-            return test::readFile(folder.path() / (name + ".log"));
+            if (const auto log = folder.path() / (name + ".log"); exists(log)) return test::readFile(log);
         return "";
     }
 

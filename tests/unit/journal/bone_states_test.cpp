@@ -73,6 +73,19 @@ TEST_F(BoneStates, WhereNothingChangedNothingIsWritten) {
     EXPECT_LT(few.back().leaf_steps_size(), all.back().leaf_steps_size());
 }
 
+// Else what was milled before a checkpoint would be lost if nothing is milled after it.
+TEST_F(BoneStates, AfterACheckpointTheBoneIsToldEvenIfItIsTheSame) {
+    BoneStateWriter writer(scanned());
+    writer.add(*snapshot(), journal::Bone::KEY);
+    ball_.groove(10e-3);
+    EXPECT_FALSE(writer.add(*snapshot(), journal::Bone::OTHER).empty());
+    const auto told = writer.add(*snapshot(), journal::Bone::CURRENT);
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told.back().kind(), journal::Bone::CURRENT);
+    EXPECT_EQ(told.back().leaf_steps_size(), 0);
+    EXPECT_TRUE(writer.add(*snapshot(), journal::Bone::CURRENT).empty());
+}
+
 TEST_F(BoneStates, NeedAKeyFirstAndAfterWhatCannotBe) {
     BoneStateWriter writer(scanned());
     BoneStateReader reader(scanned());
