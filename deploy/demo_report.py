@@ -39,6 +39,7 @@ FAULT_MEANING = {
     "stalled": "forces were out of balance, but no step towards balance was found in a tick: the tool stood still",
     "volume_full": "no memory for more changed bone: what would need it was not milled",
     "milling_cut_short": "more to mill than there is time for in a tick: the rest was milled later",
+    "not_recorded": "the recording or the trace lacks something: the disk was full or slow",
     "fewer_samples": "the contact was sampled less finely than asked for: more was too much for a tick",
     "coarser_shell": "fewer contact points than asked for: more were too many for a tick",
 }

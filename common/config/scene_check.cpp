@@ -7,6 +7,7 @@
 #include "common/config/field_unit.h"
 #include "common/config/material_check.h"
 #include "common/config/scene_tools.h"
+#include "common/config/task_check.h"
 #include "common/user_error.h"
 
 namespace bonemill {
@@ -202,6 +203,7 @@ void checkScene(const ParsedScene& parsed, const std::string& name) {
     const auto refuse = [&](const std::string& path, const std::string& why) { checker.refuse(path, why); };
     checkMaterials(parsed.scene, refuse);
     checkEffects(parsed.scene, refuse);
+    checkTask(parsed.scene, refuse);
 }
 
 }  // namespace bonemill

@@ -75,6 +75,7 @@ std::vector<NamedFile> filesOf(const LoadedScene& loaded) {
     add("volume.path", loaded.scene.volume().path());
     add("volume.label_path", loaded.scene.volume().label_path());
     for (const scene::Tool& tool : loaded.scene.tool()) add("tool.mesh_path", tool.mesh_path());
+    add("assessment.reference.volume_path", loaded.scene.assessment().reference().volume_path());
     return files;
 }
 

@@ -151,6 +151,14 @@ std::string DensityEncoder::change(std::span<const uint16_t> scanned, std::span<
     return out;
 }
 
+std::string DensityEncoder::materials(std::span<const uint8_t> materials) {
+    if (std::ranges::all_of(materials, [](uint8_t material) { return material == 0; })) return {};
+    plain_.assign(materials.begin(), materials.end());
+    std::string out;
+    compress(out);
+    return out;
+}
+
 DensityDecoder::DensityDecoder() : zstd_(std::make_unique<Zstd>()) {
     if (!zstd_->context) throw std::bad_alloc();
 }
@@ -203,6 +211,12 @@ std::optional<std::vector<uint16_t>> DensityDecoder::present(std::string_view by
         ++low;
     }
     return densities;
+}
+
+std::optional<std::vector<uint8_t>> DensityDecoder::materials(std::string_view bytes, size_t voxels) {
+    if (bytes.empty()) return std::vector<uint8_t>();
+    if (!decompress(bytes, voxels, voxels)) return {};
+    return plain_;
 }
 
 }  // namespace bonemill

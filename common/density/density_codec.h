@@ -4,7 +4,8 @@
 // Scanned: where all densities stand on a ladder of equal steps, as those of a scan in whole HU do, they are
 // coded as steps; one density beside the ladder may be among them (the import gives one to small pieces that
 // it removes). What the neighbours do not foretell goes through zstd, low bytes before high bytes. Change:
-// per voxel, whether it is as scanned, air or neither, and the densities of the last.
+// per voxel, whether it is as scanned, air or neither, and the densities of the last. Materials: a byte per
+// voxel through zstd.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +31,8 @@ class DensityEncoder {
     std::string scanned(std::span<const uint16_t> densities, int edge);
     // Both are of the same brick. It is empty if they are the same.
     std::string change(std::span<const uint16_t> scanned, std::span<const uint16_t> present);
+    // One number per voxel. It is empty if all are 0.
+    std::string materials(std::span<const uint8_t> materials);
 
   private:
     // Returns the number of densities beside the ladder that it found, 2 at most.
@@ -54,6 +57,8 @@ class DensityDecoder {
     std::optional<std::vector<uint16_t>> scanned(std::string_view bytes, int edge);
     // Returns the densities now.
     std::optional<std::vector<uint16_t>> present(std::string_view bytes, std::span<const uint16_t> scanned);
+    // Returns nothing where all are 0.
+    std::optional<std::vector<uint8_t>> materials(std::string_view bytes, size_t voxels);
 
   private:
     bool decompress(std::string_view bytes, size_t least, size_t most);

@@ -81,9 +81,16 @@ bool Certificate::isIssuedBy(const Certificate& authority) const {
     return is_issued;
 }
 
+std::time_t Certificate::validFrom() const {
+    return unixTimeOf(X509_get0_notBefore(x509_.get()));
+}
+
+std::time_t Certificate::validUntil() const {
+    return unixTimeOf(X509_get0_notAfter(x509_.get()));
+}
+
 void Certificate::requireValidAt(std::time_t now) const {
-    requireBetween(now, unixTimeOf(X509_get0_notBefore(x509_.get())),
-                   unixTimeOf(X509_get0_notAfter(x509_.get())), "the certificate of " + identity_.name);
+    requireBetween(now, validFrom(), validUntil(), "the certificate of " + identity_.name);
 }
 
 bool Certificate::hasKey(const std::filesystem::path& file) const {
@@ -108,13 +115,14 @@ std::string dayText(std::time_t time) {
     return text;
 }
 
-void requireBetween(std::time_t now, std::time_t first, std::time_t last, const std::string& what) {
+void requireBetween(std::time_t now, std::time_t first, std::time_t last, const std::string& what,
+                    const std::string& remedy) {
     if (now < first)
         throw UserError(what + " is not valid before " + dayText(first) + ", and this PC's clock says " +
                         dayText(now));
     if (now > last)
         throw UserError(what + " expired on " + dayText(last) + ", and this PC's clock says " + dayText(now) +
-                        ": make a new session (deploy/security/make-session)");
+                        ": " + remedy);
 }
 
 }  // namespace bonemill

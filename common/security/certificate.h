@@ -34,7 +34,10 @@ class Certificate {
     // For people and for permissions: "CN=Anna,OU=operator,O=bonemill-session-1".
     std::string subject() const;
     bool isIssuedBy(const Certificate& authority) const;
-    // Throws UserError if it was not yet, or is no longer, valid at that unix time.
+    // Unix times, s.
+    std::time_t validFrom() const;
+    std::time_t validUntil() const;
+    // Throws UserError if it, one of a session, was not yet, or is no longer, valid at that unix time.
     void requireValidAt(std::time_t now) const;
     // Returns whether the file holds the private key that belongs to this. Throws UserError if it holds no
     // key.
@@ -52,7 +55,11 @@ class Certificate {
 // Returns "2026-09-01 12:00 UTC".
 std::string dayText(std::time_t time);
 
-// Throws UserError unless `now` lies between both; `what` begins the message, as "the certificate of Anna".
-void requireBetween(std::time_t now, std::time_t first, std::time_t last, const std::string& what);
+inline constexpr char kMakeNewSession[] = "make a new session (deploy/security/make-session)";
+
+// Throws UserError unless `now` lies between both; `what` begins the message, as "the certificate of Anna",
+// and behind the end `remedy` says what to do.
+void requireBetween(std::time_t now, std::time_t first, std::time_t last, const std::string& what,
+                    const std::string& remedy = kMakeNewSession);
 
 }  // namespace bonemill

@@ -60,7 +60,7 @@ choose_viewer() {
 command_of() {
     case $1 in
         server)
-            words=("$bin/haptic_server" --scene "$scene" --session "$number" --until-device-leaves)
+            words=("$bin/haptic_server" --scene "$scene" --session "$number" --until-device-leaves --resume)
             mapfile -t -O "${#words[@]}" words < <(network_words)
             [[ $flags != *" --instructor-only "* ]] || words+=(--instructor-only)
             words+=("${extra[@]}") ;;

@@ -5,13 +5,20 @@
 
 #include "common/cli/command_line.h"
 #include "common/cli/number_range.h"
+#include "common/cli/version.h"
 #include "common/dds/network_cli.h"
 #include "common/log/log.h"
 #include "common/run_program.h"
 #include "common/user_error.h"
 #include "haptic_server/accuracy_report/accuracy_report.h"
+#include "haptic_server/export/export_journal.h"
+#include "haptic_server/offline/assess_journal.h"
 #include "haptic_server/offline/describe_scene.h"
 #include "haptic_server/offline/simulate.h"
+#include "haptic_server/offline/verify_journal.h"
+#include "haptic_server/replay/player.h"
+#include "haptic_server/replay/replay_server.h"
+#include "haptic_server/session/forget_person.h"
 #include "haptic_server/session/server.h"
 #include "haptic_server/volume/import/import_program.h"
 
@@ -33,6 +40,8 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
     app.add_option("--session", server.session, "session number: names the device link and the topics");
     app.add_option("--domain", server.domain, "DDS domain, 0 to 230");
     dds::addNetworkOptions(app, server.network);
+    app.add_option("--from", server.from,
+                   "go on from that moment of a recording: FILE.mcap@SECONDS (docs/replay.md)");
     app.add_option("--seconds", server.seconds,
                    "stop this long after the first tick; 0: run until SIGINT or SIGTERM")
         ->check(within(0, kMostSeconds));
@@ -43,6 +52,15 @@ void addServerOptions(CLI::App& app, ServerOptions& server) {
                    "node meshes take this much of the network at most, those nearest to the burr first")
         ->check(within(0.1, 10000))
         ->capture_default_str();
+    auto* const recording =
+        app.add_option("--recording", server.recording,
+                       "folder for what every session leaves of itself (docs/recording.md); default: "
+                       "$XDG_STATE_HOME/bonemill/recordings");
+    app.add_flag("!--no-recording", server.is_recorded, "leave no recording")->excludes(recording);
+    app.add_flag("--record-results", server.records_results,
+                 "record what the ticks came to as well, which a replay finds again");
+    app.add_flag("--resume", server.resumes,
+                 "go on with the bone of this session if it was stopped before its end; else begin anew");
     app.add_option("--trace", server.trace, "write one CSV line per tick");
     app.add_option("--report", server.report, "write the run's statistics as JSON");
     addSaveOptions(app, server.save);
@@ -66,7 +84,51 @@ void addSimulateOptions(CLI::App& app, SimulateOptions& simulate) {
     app.add_option("--tool", simulate.tool, "name of the scene's tool, or its number; default: the first")
         ->type_name("NAME|NUMBER");
     app.add_option("--trace", simulate.trace, "write one CSV line per tick");
+    app.add_option(
+        "--save-deviation", simulate.deviation,
+        "at the end: picture of what was cut too far and not far enough by the scene's task (.png)");
+    app.add_option(
+        "--assess", simulate.assess,
+        "at the end: results and report into this folder, as a session writes them beside the class table");
+    app.add_option("--pseudonym", simulate.pseudonym, "whose results they are")->capture_default_str();
     addSaveOptions(app, simulate.save);
+}
+
+void addAssessOptions(CLI::App& app, AssessOptions& assess) {
+    app.add_option("journal", assess.journal, "the recorded session (.mcap)")->required();
+    app.add_option("--out", assess.out, "folder for results and reports")->required()->type_name("DIR");
+}
+
+void addForgetOptions(CLI::App& app, ForgetOptions& forget) {
+    app.add_option("pseudonym", forget.pseudonym, "whose data it is, as in the class table")->required();
+    app.add_option("--in", forget.folder, "folder of the class table")->required()->type_name("DIR");
+    app.add_option("--recordings", forget.recordings,
+                   "folder of the recordings; default: that of the class table")
+        ->type_name("DIR");
+}
+
+void addReplayOptions(CLI::App& app, ReplayOptions& replay) {
+    app.add_option("journal", replay.journal, "the recorded session (.mcap)")->required();
+    app.add_option("--session", replay.session, "session number under which it is shown");
+    app.add_option("--domain", replay.domain, "DDS domain, 0 to 230");
+    dds::addNetworkOptions(app, replay.network);
+    app.add_option("--at", replay.at_s, "begin at this moment, s")->check(within(0, kMostSeconds));
+    app.add_option("--speed", replay.speed, "so many times as fast as it was")
+        ->check(within(Player::kSlowest, Player::kFastest))
+        ->capture_default_str();
+    app.add_flag("--paused", replay.is_paused, "wait until a viewer lets it go on");
+    app.add_option("--stream-mbit-per-s", replay.stream_mbit_per_s,
+                   "node meshes take this much of the network at most")
+        ->check(within(0.1, 10000))
+        ->capture_default_str();
+    app.add_flag("--instructor-only", replay.instructor_only, "only instructors lead the replay");
+}
+
+void addExportOptions(CLI::App& app, ExportOptions& files) {
+    app.add_option("journal", files.journal, "the recorded session (.mcap)")->required();
+    app.add_option("--h5", files.h5, "write everything as HDF5, with units (docs/replay.md)");
+    app.add_option("--csv", files.csv, "write one CSV line per tick, as --trace does");
+    app.add_option("--traj", files.traj, "write what went in, for simulate --trajectory");
 }
 
 void addReportOptions(CLI::App& app, AccuracyReportOptions& report) {
@@ -86,6 +148,11 @@ struct Options {
     ServerOptions server;
     SimulateOptions simulate;
     AccuracyReportOptions report;
+    ForgetOptions forget;
+    AssessOptions assess;
+    ReplayOptions replay;
+    ExportOptions files;
+    std::string journal;
 };
 
 int simulateInOrder(const SimulateOptions& options) {
@@ -95,9 +162,15 @@ int simulateInOrder(const SimulateOptions& options) {
     return result.problems.empty() ? 0 : 1;
 }
 
+int verifyInOrder(const std::string& journal) {
+    const JournalVerdict verdict = verifyJournal(journal, versionText());
+    std::cout << journal << ": " << verdict.text() << std::flush;
+    return verdict.isProven() ? 0 : 1;
+}
+
 int serveLive(const Options& options) {
     const bool has_folders = !options.server.scene_folders.empty();
-    if (options.server.scene.empty() && (!has_folders || options.describe))
+    if (options.server.scene.empty() && (!has_folders || options.describe) && options.server.from.empty())
         throw UserError("no scene given; use --scene FILE (see deploy/scenes)" +
                         std::string(options.describe ? "" : ", or --scenes FOLDER"));
     if (options.list_scenes) {
@@ -129,8 +202,34 @@ int serve(int argc, char** argv) {
         "accuracy-report",
         "measure errors and tick times of the accuracy settings in a scene, on this machine");
     addReportOptions(*report_command, options.report);
+    CLI::App* const replay_command =
+        app.add_subcommand("replay", "show a recorded session again, as a live one (docs/replay.md)");
+    addReplayOptions(*replay_command, options.replay);
+    CLI::App* const session_command =
+        app.add_subcommand("session", "what can be done with what sessions have left")->require_subcommand(1);
+    CLI::App* const forget_command = session_command->add_subcommand(
+        "forget", "delete what a class' folder holds of one person, and say what was deleted");
+    addForgetOptions(*forget_command, options.forget);
+    CLI::App* const assess_command = session_command->add_subcommand(
+        "assess", "measure and judge the attempts of a recording anew (docs/assessment.md)");
+    addAssessOptions(*assess_command, options.assess);
+    CLI::App* const verify_command =
+        session_command->add_subcommand("verify", "run a recording again and compare every bit");
+    verify_command->add_option("JOURNAL", options.journal, "recording (.mcap)")->required();
+    CLI::App* const export_command =
+        session_command->add_subcommand("export", "write a recorded session as files for other programs");
+    addExportOptions(*export_command, options.files);
     if (!parseCommandLine(app, argc, argv, "haptic_server")) return 0;
+    options.server.version = options.replay.version = versionText();
     setUpLog("haptic_server", options.log_level);
+    if (assess_command->parsed()) return assessJournal(options.assess, std::cout);
+    if (forget_command->parsed()) return forgetPerson(options.forget, std::cout);
+    if (export_command->parsed()) {
+        exportJournal(options.files);
+        return 0;
+    }
+    if (replay_command->parsed()) return runReplay(options.replay);
+    if (verify_command->parsed()) return verifyInOrder(options.journal);
     if (simulate_command->parsed()) return simulateInOrder(options.simulate);
     if (!report_command->parsed()) return serveLive(options);
     std::cout << accuracyReport(options.report, std::cerr) << std::flush;

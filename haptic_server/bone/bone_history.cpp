@@ -4,28 +4,14 @@
 #include <cstring>
 #include <thread>
 
+#include "haptic_server/bone/leaf_rows.h"
+
 namespace bonemill {
 namespace {
 
 constexpr int kVoxelsPerVersion = 4;  // a look at a leaf's version takes as long
 constexpr int kVoxelsLookedAtPerTick =
     32'768;  // eight leaves of 16³, some 30 µs; at least one leaf, however large
-
-IndexBox voxelsOf(const IndexBox& cells) noexcept {
-    return {cells.min, cells.max.array() + 1};
-}
-
-// A voxel has this place in a LeafCopy.
-size_t placeOf(const IndexBox& cells, const Eigen::Vector3i& voxel) noexcept {
-    const Eigen::Vector3i n = cells.max - cells.min + Eigen::Vector3i::Constant(2), at = voxel - cells.min;
-    return size_t(at.x()) + size_t(n.x()) * (size_t(at.y()) + size_t(n.y()) * size_t(at.z()));
-}
-
-// Calls visit(first voxel) for each row along x of the box.
-template <class Visit>
-void forEachRow(const IndexBox& voxels, Visit&& visit) noexcept {
-    forEachIndex({voxels.min, {voxels.min.x(), voxels.max.y(), voxels.max.z()}}, visit);
-}
 
 }  // namespace
 
@@ -62,26 +48,50 @@ std::shared_ptr<const BoneSnapshot> BoneHistory::snapshot(const BoneModel& bone)
         for (const auto& copy : last_snapshot_->leaves) copies[copy->leaf] = copy;
     copyChanged(bone, copies);
     auto snapshot = std::make_shared<BoneSnapshot>();
-    {
-        const Hold hold(*this);
-        copyChanged(bone, copies);
-        snapshot->missing_voxels = missingVoxels();
-    }
+    const Moment moment = copyWhole(bone, copies);
+    snapshot->missing_voxels = moment.missing_voxels;
+    snapshot->ticks = moment.ticks;
     for (auto& copy : copies)
         if (copy && !copy->densities.empty()) snapshot->leaves.push_back(std::move(copy));
     return last_snapshot_ = snapshot;
 }
 
-// Copies the leaves whose version is not the copied one, but for those that are written meanwhile.
-void BoneHistory::copyChanged(const BoneModel& bone, Copies& copies) const {
+// Is there while no tick writes.
+std::optional<BoneHistory::Moment> BoneHistory::moment() const noexcept {
+    const Moment moment{written_ticks_.load(), missingVoxels()};
+    if (is_writing_.load() || written_ticks_.load() != moment.ticks) return std::nullopt;
+    return moment;
+}
+
+// A look that finds no version but those of the copies says that the bone was as they are when it began:
+// versions only grow.
+BoneHistory::Moment BoneHistory::copyWhole(const BoneModel& bone, Copies& copies) {
+    constexpr int kLooks = 64;
+    for (int look = 0; look < kLooks; ++look) {
+        const std::optional<Moment> before = moment();
+        const bool is_as_copied = !copyChanged(bone, copies);
+        if (before && is_as_copied) return *before;
+        if (!before) std::this_thread::sleep_for(std::chrono::microseconds(20));
+    }
+    const Hold hold(*this);
+    copyChanged(bone, copies);
+    return {written_ticks_.load(), missingVoxels()};
+}
+
+// Copies the leaves whose version is not the copied one, but for those that are written meanwhile. False:
+// there were none.
+bool BoneHistory::copyChanged(const BoneModel& bone, Copies& copies) const {
+    bool is_any = false;
     for (LeafId leaf = 0; leaf < copies.size(); ++leaf) {
         const uint32_t version = bone.lattice.version(leaf);
-        if (version == 0 || version % 2 == 1) continue;
-        if (copies[leaf] && copies[leaf]->version == version) continue;
+        if (version == 0 || (copies[leaf] && copies[leaf]->version == version)) continue;
+        is_any = true;
+        if (version % 2 == 1) continue;
         auto copy = copyOf(bone, leaf, version);
         // The voxels were read with acquire, so this read cannot be older than they are.
         if (bone.lattice.version(leaf) == version) copies[leaf] = std::move(copy);
     }
+    return is_any;
 }
 
 std::shared_ptr<const LeafCopy> BoneHistory::copyOf(const BoneModel& bone, LeafId leaf,
@@ -129,8 +139,9 @@ uint64_t BoneHistory::restore(std::shared_ptr<const BoneSnapshot> snapshot) {
     return number;
 }
 
-bool BoneHistory::beginWrite() noexcept {
+bool BoneHistory::beginWrite(uint64_t tick) noexcept {
     is_writing_.store(true);
+    tick_ = tick;
     if (!is_held_.load()) return true;
     is_writing_.store(false);
     return false;
@@ -139,6 +150,7 @@ bool BoneHistory::beginWrite() noexcept {
 void BoneHistory::endWrite(uint32_t removed_voxels, uint32_t added_voxels) noexcept {
     missing_voxels_.store(missingVoxels() + int64_t(removed_voxels) - int64_t(added_voxels),
                           std::memory_order_relaxed);
+    written_ticks_.store(tick_ + 1);
     is_writing_.store(false);
 }
 
@@ -147,7 +159,16 @@ bool BoneHistory::takeUpNewestOrder() noexcept {
     order_ = next_order_.exchange(nullptr, std::memory_order_acquire);
     taken_up_.store(order_->number, std::memory_order_release);
     next_leaf_ = 0;
+    next_copy_ = 0;
     return is_restoring_ = true;
+}
+
+// Leaves are asked for in ascending order, as the target has them.
+bool BoneHistory::isInTarget(LeafId leaf) noexcept {
+    if (!order_->target) return false;
+    const auto& leaves = order_->target->leaves;
+    while (next_copy_ < leaves.size() && leaves[next_copy_]->leaf < leaf) ++next_copy_;
+    return next_copy_ < leaves.size() && leaves[next_copy_]->leaf == leaf;
 }
 
 void BoneHistory::finishOrder() noexcept {
@@ -160,9 +181,10 @@ bool BoneHistory::restoreSome(BoneModel& bone, bool& shell_is_complete) noexcept
     if (!takeUpNewestOrder()) return false;
     const int voxels_per_leaf = bone.lattice.leafCells().prod();
     for (int looked_at = 0; looked_at < kVoxelsLookedAtPerTick;) {
-        // A version of 0 means that nothing near the leaf was ever written.
+        // A version of 0 means that nothing near the leaf was ever written; only a snapshot of an earlier run
+        // of the session can differ there.
         for (; next_leaf_ < bone.lattice.leafCount() && bone.lattice.version(next_leaf_) == 0 &&
-               looked_at < kVoxelsLookedAtPerTick;
+               !isInTarget(next_leaf_) && looked_at < kVoxelsLookedAtPerTick;
              ++next_leaf_)
             looked_at += kVoxelsPerVersion;
         if (next_leaf_ == bone.lattice.leafCount()) {
@@ -178,6 +200,14 @@ bool BoneHistory::restoreSome(BoneModel& bone, bool& shell_is_complete) noexcept
 void BoneHistory::restoreAll(BoneModel& bone) noexcept {
     for (bool shell_is_complete = true; restoreSome(bone, shell_is_complete);) {
     }
+}
+
+void BoneHistory::startFrom(BoneModel& bone, std::shared_ptr<const BoneSnapshot> snapshot) {
+    restore(snapshot);
+    takeUpNewestOrder();
+    bool shell_is_complete = true;  // the first tick that mills there says if it is not
+    for (const auto& copy : snapshot->leaves) restoreLeaf(bone, copy->leaf, shell_is_complete);
+    finishOrder();
 }
 
 bool BoneHistory::restoreLeaf(BoneModel& bone, LeafId leaf, bool& shell_is_complete) noexcept {

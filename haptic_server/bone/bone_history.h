@@ -9,6 +9,7 @@
 #include <atomic>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "haptic_server/bone/bone_model.h"
@@ -34,11 +35,14 @@ class BoneHistory {
     // so it is not RT-safe.
     VoxelVolume volumeOf(const BoneSnapshot& snapshot, const LeafLattice& lattice) const;
 
-    // Keeper: takes the bone between two ticks, whole: what one tick mills is in it or not. Most is copied
-    // while milling goes on; for the leaves that changed meanwhile milling is held (the force goes on),
-    // for as long as it takes to copy them. While the bone is being put back, this is the snapshot to
-    // which it is.
+    // Keeper: takes the bone between two ticks, whole: what one tick mills is in it or not. It copies while
+    // milling goes on, until a look at all leaves finds none changed; if none does for long, milling is held
+    // (the force goes on) while the rest is copied. While the bone is being put back, this is the snapshot
+    // to which it is.
     std::shared_ptr<const BoneSnapshot> snapshot(const BoneModel& bone);
+    // Whoever runs no tick beside it, before the first: the bone, which is as scanned, becomes that of the
+    // snapshot, as if it had been put back to it.
+    void startFrom(BoneModel& bone, std::shared_ptr<const BoneSnapshot> snapshot);
     // Keeper: puts the bone back to this snapshot, or (null) to the scanned bone, instead of to what is on
     // its way, if anything is. Asked again for the one that is on its way, it goes on with that. Returns the
     // order's number, which grows with each: it is done once finishedOrder() is not below.
@@ -50,9 +54,9 @@ class BoneHistory {
     // Any: the number of the newest order to put the bone back that the tick is done with; 0: none.
     uint64_t finishedOrder() const noexcept { return finished_.load(std::memory_order_acquire); }
 
-    // Tick: opens the part of a tick that changes voxels. False means not now: a snapshot is being taken, and
-    // there must be no endWrite().
-    bool beginWrite() noexcept;
+    // Tick: opens the part of the tick of this number that changes voxels. False means not now: a snapshot is
+    // being taken, and there must be no endWrite().
+    bool beginWrite(uint64_t tick) noexcept;
     // Tick: ends that part, and tells what milling changed meanwhile.
     void endWrite(uint32_t removed_voxels, uint32_t added_voxels) noexcept;
     // Tick, within a write: looks at a bounded number of voxels and restores at most one changed leaf. False
@@ -74,9 +78,16 @@ class BoneHistory {
     };
     class Hold;
     using Copies = std::vector<std::shared_ptr<const LeafCopy>>;  // by leaf; null: never written
-    void copyChanged(const BoneModel& bone, Copies& copies) const;
+    struct Moment {                                               // between two ticks
+        uint64_t ticks;
+        int64_t missing_voxels;
+    };
+    std::optional<Moment> moment() const noexcept;
+    Moment copyWhole(const BoneModel& bone, Copies& copies);
+    bool copyChanged(const BoneModel& bone, Copies& copies) const;
     std::shared_ptr<const LeafCopy> copyOf(const BoneModel& bone, LeafId leaf, uint32_t version) const;
     bool takeUpNewestOrder() noexcept;
+    bool isInTarget(LeafId leaf) noexcept;
     void finishOrder() noexcept;
     bool restoreLeaf(BoneModel& bone, LeafId leaf, bool& shell_is_complete) noexcept;
     bool readRows(const BoneModel& bone, const IndexBox& cells, const Density* copy,
@@ -94,6 +105,8 @@ class BoneHistory {
     const Order* order_;  // the newest taken up
     bool is_restoring_ = false;
     LeafId next_leaf_ = 0;
+    size_t next_copy_ = 0;             // of the target's leaves, the first that is not behind next_leaf_
+    uint64_t tick_ = 0;                // whose write is open
     std::vector<Density> now_, then_;  // rows of a leaf
 
     // The newest order until the tick takes it, then null: each side exchanges, so that the keeper knows
@@ -108,6 +121,8 @@ class BoneHistory {
     // sees the other.
     std::atomic<bool> is_writing_{false}, is_held_{false};
     std::atomic<int64_t> missing_voxels_{0};  // written by the tick
+    // Counts the ticks up to the last that wrote, it included. The tick stores it before is_writing_ goes.
+    std::atomic<uint64_t> written_ticks_{0};
     std::atomic<bool> is_paused_{false};
 };
 

@@ -2,6 +2,7 @@
 // BoneHistory's keeper.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -29,6 +30,12 @@ class Checkpoints {
         kept_.push_back({++last_id_, session_s, history_.snapshot(bone_)});
         if (kept_.size() > kMost) kept_.pop_front();
         return last_id_;
+    }
+    // One that was saved before, in another run: it is the newest now.
+    void keep(Checkpoint checkpoint) {
+        last_id_ = std::max(last_id_, checkpoint.id);
+        kept_.push_back(std::move(checkpoint));
+        if (kept_.size() > kMost) kept_.pop_front();
     }
     // False means that there is none with this id (any more).
     bool restore(uint32_t id) {

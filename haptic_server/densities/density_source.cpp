@@ -41,6 +41,18 @@ std::vector<Density> DensitySource::scanned(uint32_t brick) const {
     return densities;
 }
 
+std::vector<MaterialId> DensitySource::materials(uint32_t brick) const {
+    if (!properties_) return {};
+    std::vector<MaterialId> materials(kVoxelsPerBrick, kNoMaterial);
+    const IndexBox voxels = voxelsOf(brick);
+    forEachIndex(voxels, [&](const Eigen::Vector3i& v) {
+        const Eigen::Vector3i at = v - voxels.min;
+        materials[size_t(at.x() + kBrickVoxels * (at.y() + kBrickVoxels * at.z()))] =
+            properties_->material(v);
+    });
+    return materials;
+}
+
 bool DensitySource::isAir(uint32_t brick) const {
     bool is_air = true;
     scanned_.forEachPart(voxelsOf(brick), [&](const IndexBox& part, size_t offset) {

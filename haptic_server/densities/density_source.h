@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "haptic_server/bone/bone_history.h"
+#include "haptic_server/volume/bone_properties.h"
 
 namespace bonemill {
 
@@ -18,16 +19,20 @@ class DensitySource {
   public:
     static constexpr int kBrickVoxels = 16;
 
-    // References, which must outlive this object.
-    DensitySource(const BoneModel& bone, const BoneHistory& history)
+    // References, which must outlive this object, as must the properties; null: nobody asks for materials.
+    DensitySource(const BoneModel& bone, const BoneHistory& history,
+                  const BoneProperties* properties = nullptr)
         : bone_(bone),
           scanned_(history.scanned()),
+          properties_(properties),
           bricks_((scanned_.dims().array() + (kBrickVoxels - 1)) / kBrickVoxels) {}
 
     const VolumeGeometry& geometry() const { return scanned_.geometry(); }
     uint32_t brickCount() const { return uint32_t(bricks_.prod()); }
 
     std::vector<Density> scanned(uint32_t brick) const;
+    // It is empty where nobody asks for materials.
+    std::vector<MaterialId> materials(uint32_t brick) const;
     // It has a bit per brick, the lowest of a byte first: scanned as air only.
     std::string airBits() const;
 
@@ -48,6 +53,7 @@ class DensitySource {
 
     const BoneModel& bone_;
     const VoxelVolume& scanned_;
+    const BoneProperties* properties_;
     Eigen::Vector3i bricks_;  // per axis
 };
 

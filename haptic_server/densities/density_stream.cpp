@@ -81,7 +81,10 @@ std::string DensityStream::messageOf(uint32_t brick, bool is_whole, int64_t now_
         message.set_revision(present->revision);
         message.set_change(encoder_.change(scanned, present->densities));
     }
-    if (is_whole) message.set_scanned(encoder_.scanned(scanned, DensitySource::kBrickVoxels));
+    if (is_whole) {
+        message.set_scanned(encoder_.scanned(scanned, DensitySource::kBrickVoxels));
+        message.set_materials(encoder_.materials(source_.materials(brick)));
+    }
     Brick& state = bricks_[brick];
     state.written = message.revision();
     state.written_ns = now_ns;

@@ -137,9 +137,18 @@ void LeafMesher::addVertex(const Eigen::Vector3i& local, int axis) {
     const OctahedralNormal packed = encodeNormal(normal);  // of any length
     vertices_.push_back(
         {uint16_t(position.x()), uint16_t(position.y()), uint16_t(position.z()), packed.u, packed.v});
-    if (!properties_) return;
-    const bool is_low_inside = density_[low] >= volume_.iso();
-    materials_.push_back(materialUnder(is_low_inside ? voxel : next, is_low_inside ? low : high, normal));
+    if (properties_ || paint_)
+        materials_.push_back(shownAt(density_[low] >= volume_.iso(), voxel, axis, low, normal));
+}
+
+uint8_t LeafMesher::shownAt(bool is_low_inside, const Eigen::Vector3i& low_voxel, int axis, size_t low,
+                            const Eigen::Vector3f& normal) const noexcept {
+    const Eigen::Vector3i high_voxel = low_voxel + Eigen::Vector3i::Unit(axis);
+    const Eigen::Vector3i& inside = is_low_inside ? low_voxel : high_voxel;
+    if (paint_)
+        if (const uint8_t zone = paint_->between(inside, is_low_inside ? high_voxel : low_voxel)) return zone;
+    return properties_ ? materialUnder(inside, is_low_inside ? low : low + stride_[axis], normal)
+                       : kNoMaterial;
 }
 
 // The voxels around the edge alone decide it, so that leaves agree. Outside the volume the original

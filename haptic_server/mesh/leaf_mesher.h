@@ -10,7 +10,8 @@
 //
 // With `properties` a vertex also says what the bone under it is made of: as the inside voxel of its edge, or
 // as the next one below the surface if that is bone, too, and was denser: a voxel that bone fills only partly
-// looks like something less dense.
+// looks like something less dense. A task's zones take its place where they have something to show
+// (zone_paint.h).
 //
 // It is not RT-safe (it allocates).
 #pragma once
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include "haptic_server/mesh/mesh_grid.h"
+#include "haptic_server/mesh/zone_paint.h"
 #include "haptic_server/volume/bone_properties.h"
 #include "haptic_server/volume/crossed_cells.h"
 #include "haptic_server/volume/marching_cubes_table.h"
@@ -35,6 +37,9 @@ class LeafMesher {
                int most_steps_per_cell = MeshGrid::kMostStepsPerCell,
                const BoneProperties* properties = nullptr);
 
+    // From now on vertices show these zones; null: none. It must outlive this object.
+    void setPaint(const ZonePaint* paint) noexcept { paint_ = paint; }
+
     // The revision is the leaf's version; the mesh is empty without surface. There is none if the voxels were
     // written while they were copied, which is the shorter part of the work.
     std::optional<NodeMesh> mesh(LeafId leaf);
@@ -47,6 +52,8 @@ class LeafMesher {
     void emitCell(int config, const Eigen::Vector3i& cell);
     uint32_t vertexOnEdge(const Eigen::Vector3i& local, int axis);
     void addVertex(const Eigen::Vector3i& local, int axis);
+    uint8_t shownAt(bool is_low_inside, const Eigen::Vector3i& low_voxel, int axis, size_t low,
+                    const Eigen::Vector3f& normal) const noexcept;
     MaterialId materialUnder(const Eigen::Vector3i& inside, size_t corner,
                              const Eigen::Vector3f& normal) const noexcept;
 
@@ -58,6 +65,7 @@ class LeafMesher {
     const VoxelVolume& volume_;
     const LeafLattice& lattice_;
     const BoneProperties* properties_;
+    const ZonePaint* paint_ = nullptr;
     MeshGrid grid_;
     const std::array<CubeTriangles, 256>& triangles_;
     CrossedCells crossed_;
@@ -68,7 +76,7 @@ class LeafMesher {
     std::vector<Density> density_;  // cells_ + 3 voxels per axis from local (-1, -1, -1) on, x fastest
     std::vector<PackedVertex> vertices_;
     std::vector<uint32_t> indices_;
-    std::vector<uint8_t> materials_;     // per vertex, with properties
+    std::vector<uint8_t> materials_;     // per vertex, with properties or zones
     std::vector<uint32_t> edge_vertex_;  // per corner and axis: vertex on the edge that starts there
 };
 

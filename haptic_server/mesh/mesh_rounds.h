@@ -34,6 +34,9 @@ class MeshRounds {
     // (CLOCK_MONOTONIC) at most. Then the sink has had the bone as it is.
     void finish(const Sink& sink, int64_t until_ns);
 
+    // As Mesher::setPaint(): what it changes comes with the rounds that follow.
+    void setPaint(const ZonePaint* paint) { mesher_.setPaint(paint); }
+
     bool hasMeshedAll() const noexcept { return mesher_.hasMeshedAll(); }
 
     // The time of each cut goes from the start of its tick until the sink had the meshes of all leaves that

@@ -5,7 +5,8 @@
 namespace bonemill {
 namespace {
 
-constexpr uint32_t kNeverMeshed = 1;  // odd: no version at rest equals it
+// They are odd: no version at rest equals them.
+constexpr uint32_t kNeverMeshed = 1, kPaintedAnew = 3;
 
 // Once the tick has written, there is its whole period before it writes again: mostly the second
 // try succeeds.
@@ -62,12 +63,29 @@ bool Mesher::catchUp(LeafId leaf, const Sink& sink) {
     return false;
 }
 
+void Mesher::setPaint(const ZonePaint* paint) {
+    if (paint == paint_) return;
+    ++repaints_;
+    leaf_mesher_.setPaint(paint);
+    const auto changes = [](const ZonePaint* painted, const IndexBox& voxels) {
+        return painted != nullptr && painted->mayPaint(voxels);
+    };
+    for (LeafId leaf = 0; leaf < lattice_.leafCount(); ++leaf) {
+        if (meshed_version_[leaf] == kNeverMeshed || !has_mesh_[leaf]) continue;
+        const IndexBox cells = lattice_.cellsOf(leaf);
+        const IndexBox voxels{cells.min, cells.max.array() + 1};
+        if (changes(paint, voxels) || changes(paint_, voxels)) meshed_version_[leaf] = kPaintedAnew;
+    }
+    paint_ = paint;
+}
+
 // False means that a write got in between: the leaf stays due.
 bool Mesher::tryMesh(LeafId leaf, const Sink& sink) {
     std::optional<NodeMesh> mesh = leaf_mesher_.mesh(leaf);
     if (!mesh) return false;
     if (meshed_version_[leaf] == kNeverMeshed) ++meshed_leaves_;
     meshed_version_[leaf] = mesh->revision;
+    mesh->revision += 2 * repaints_;
     const bool had_mesh = has_mesh_[leaf];
     has_mesh_[leaf] = !mesh->isEmpty();
     if (had_mesh || !mesh->isEmpty()) sink(std::move(*mesh));

@@ -38,6 +38,10 @@ class Mesher {
     // tick wrote them meanwhile and some are still due.
     bool catchUp(const IndexBox& leaves, const Sink& sink);
 
+    // Vertices show these zones from now on; null: none. It must outlive the mesher. Leaves that it may
+    // change are due again, with a newer revision. It looks at every voxel's zone.
+    void setPaint(const ZonePaint* paint);
+
     // Every leaf has been meshed at least once: the sink has seen the whole bone.
     bool hasMeshedAll() const noexcept { return meshed_leaves_ == meshed_version_.size(); }
 
@@ -50,7 +54,9 @@ class Mesher {
     std::vector<uint32_t> meshed_version_;
     size_t meshed_leaves_ = 0;    // leaves meshed at least once
     std::vector<bool> has_mesh_;  // what the sink was told last
-    LeafId next_leaf_ = 0;        // where the next pass starts, so that busy leaves do not starve the others
+    const ZonePaint* paint_ = nullptr;
+    uint32_t repaints_ = 0;  // each one makes revisions newer
+    LeafId next_leaf_ = 0;   // where the next pass starts, so that busy leaves do not starve the others
 };
 
 }  // namespace bonemill

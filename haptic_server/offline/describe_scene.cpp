@@ -8,6 +8,7 @@
 #include "common/config/scene_table.h"
 #include "common/units.h"
 #include "haptic_server/offline/describe_effects.h"
+#include "haptic_server/offline/describe_task.h"
 #include "haptic_server/offline/effect_cost.h"
 #include "haptic_server/offline/run_path.h"
 #include "haptic_server/record/tick_times.h"
@@ -115,6 +116,7 @@ std::string describeScene(const std::string& scene_file) {
         << bone.lattice.leafCells().transpose() << " cells, " << bone.lattice.levelCount() << " levels\n"
         << "point-shell: " << describeLevels(bone.shell) << '\n';
     describeTools(simulation, out);
+    describeTask(simulation, out);
     describeBudget(simulation, out);
     out << "with the scene's ARES: " << couplingText(simulation.tick, aresOf(loaded.scene)) << '\n';
     const std::vector<DeviceInput> path = pathOf(loaded.scene.simulated_operator(), simulation.tick.dt);

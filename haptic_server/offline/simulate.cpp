@@ -2,8 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -12,11 +12,13 @@
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/offline/run_path.h"
-#include "haptic_server/offline/state_hash.h"
+#include "haptic_server/offline/task_run.h"
+#include "haptic_server/offline/write_assessment.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/record/final_files.h"
 #include "haptic_server/record/hex_text.h"
 #include "haptic_server/record/run_statistics.h"
+#include "haptic_server/record/state_hash.h"
 #include "haptic_server/record/trace_writer.h"
 #include "haptic_server/record/trajectory_reader.h"
 #include "haptic_server/setup/scene_effects.h"
@@ -36,13 +38,25 @@ std::vector<DeviceInput> inputsOf(const std::vector<TrajectoryRow>& rows) {
         inputs[n].X_WT_device = rows[n].X_WT;
         inputs[n].buttons = rows[n].buttons;
         inputs[n].t_s = rows[n].t_s;
+        if (!rows[n].recorded) continue;
+        const TickInput& recorded = rows[n].recorded->input;
+        inputs[n].device = rows[n].recorded->device;
+        inputs[n].is_repeated = recorded.is_repeated;
+        inputs[n].is_stale = recorded.is_stale;
+        inputs[n].stale_factor = recorded.stale_factor;
+        inputs[n].placements = recorded.placements;
+        inputs[n].periods = recorded.periods;
+        inputs[n].faults = recorded.faults;
+        inputs[n].other_device = recorded.has_other_device ? &recorded.other_device : nullptr;
+        inputs[n].decisions = &recorded.decisions;
     }
     return inputs;
 }
 
-// One row is one tick: a file sampled at another rate would silently mean another speed.
+// One row is one tick: a file sampled at another rate would silently mean another speed. A recorded one says
+// how many periods each tick stands for.
 void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::string& file) {
-    for (size_t n = 1; n < rows.size(); ++n) {
+    for (size_t n = 1; n < rows.size() && !rows[n].recorded; ++n) {
         const double spacing = rows[n].t_s - rows[n - 1].t_s;
         if (std::abs(spacing / dt - 1) < kTickSpacingTolerance) continue;
         throw UserError(file + ":" + std::to_string(n + 2) + ": this row is " +
@@ -53,20 +67,22 @@ void checkSpacing(const std::vector<TrajectoryRow>& rows, double dt, const std::
     }
 }
 
-// Throws UserError where no row comes near the bone: then lengths are in another unit or frame, and nothing
-// is cut.
+// Throws UserError where half of the rows lie far from the bone: then lengths are in another unit or frame.
 void checkReach(const std::vector<TrajectoryRow>& rows, const VoxelVolume& volume, const std::string& file) {
     constexpr double kFar = 1;  // m
     const Eigen::Vector3d high_V = volume.spacing().cwiseProduct(volume.dims().cast<double>());
-    double nearest = std::numeric_limits<double>::infinity();
+    std::vector<double> distances;
     for (const TrajectoryRow& row : rows) {
         const Eigen::Vector3d p_V = volume.geometry().X_WV.inverse() * row.X_WT.position;
         const Eigen::Vector3d p_inside_V = p_V.cwiseMax(0).cwiseMin(high_V);
-        nearest = std::min(nearest, (p_V - p_inside_V).norm());
+        distances.push_back((p_V - p_inside_V).norm());
     }
-    if (nearest < kFar) return;
-    throw UserError("trajectory " + file + ": never comes nearer than " + std::to_string(nearest) +
-                    " m to the bone; px_m, py_m and pz_m are metres in the frame W, not millimetres");
+    const auto middle = distances.begin() + std::ptrdiff_t(distances.size() / 2);
+    std::ranges::nth_element(distances, middle);
+    if (*middle < kFar) return;
+    throw UserError(
+        "trajectory " + file + ": half of it is " + std::to_string(*middle) +
+        " m and more from the bone; px_m, py_m and pz_m are metres in the frame W, not millimetres");
 }
 
 nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
@@ -92,9 +108,19 @@ nlohmann::json totals(const RunStatistics& statistics, const StateHash& hash) {
             {"state_hash", hexText(hash.value())}};
 }
 
+// What a recording says of its ticks must be what this scene has.
+void checkDecisions(const std::vector<TrajectoryRow>& rows, size_t tools, const std::string& file) {
+    for (size_t n = 0; n < rows.size(); ++n)
+        if (rows[n].recorded && (rows[n].recorded->input.decisions.tool >= tools ||
+                                 rows[n].recorded->input.decisions.accuracy >= AccuracySwitch::count()))
+            throw UserError(file + ":" + std::to_string(n + 2) +
+                            ": the scene has no such tool or accuracy; is it the recorded scene?");
+}
+
 void requireApart(const SimulateOptions& options, const LoadedScene& loaded) {
     std::vector<NamedFile> written = filesOf(options.save), read = filesOf(loaded);
     written.push_back({"--trace", options.trace});
+    written.push_back({"--save-deviation", options.deviation});
     read.push_back({"--trajectory", options.trajectory});
     requireApart(written, read);
 }
@@ -109,6 +135,7 @@ SimulateResult simulate(const SimulateOptions& options) {
     const size_t tool = options.tool.empty() ? 0 : toolIndexOf(toolNamesOf(loaded.scene), options.tool);
     requireReplaceable(options.save);
     requireWritable(options.trace);
+    requireReplaceable(options.deviation);
     const RecordedEffects recorded = recordedEffectsOf(loaded.scene.effects());
     Simulation simulation = makeSimulation(loaded);
     for (const std::string& warning : simulation.warnings) spdlog::warn("{}", warning);
@@ -117,11 +144,18 @@ SimulateResult simulate(const SimulateOptions& options) {
     const MeshGrid grid(bone.volume, bone.lattice);
     const double volume_before = meshVolume(meshWholeBone(bone.volume, bone.lattice), grid);
     std::optional<VoxelVolume> before;
-    if (!options.save.difference.empty()) before = bone.volume.withoutSpareBricks();
+    if (!options.save.difference.empty() || simulation.task || !options.assess.empty())
+        before = bone.volume.withoutSpareBricks();
 
+    if (!options.deviation.empty() && !simulation.task)
+        throw UserError("--save-deviation: the scene has no task to compare with (assessment)");
+    TaskRun task(loaded.scene, simulation, !options.assess.empty());
     const ToolSwitch tools(simulation.spoTools(), tool);
     const AccuracySwitch accuracy(simulation.accuracy);
-    HapticTick tick(simulation.tick, {bone}, {tools, accuracy});
+    checkDecisions(rows, tools.count(), options.trajectory);
+    std::optional<BoneHistory> history;  // which a session's tick has
+    if (rows.front().recorded) history.emplace(bone);
+    HapticTick tick(simulation.tick, {bone, history ? &*history : nullptr}, {tools, accuracy});
     RunStatistics statistics(int64_t(std::llround(simulation.tick.dt * double(kNsPerSecond))), recorded);
     StateHash hash;
     std::optional<TraceWriter> trace;  // from here on nothing is refused that would cost the trace of before
@@ -130,6 +164,7 @@ SimulateResult simulate(const SimulateOptions& options) {
         hash.addRecord(record, recorded);
         statistics.add(record);
         if (trace) trace->write(record);
+        task.add(record);
     });
     hash.addVolume(bone.volume);
     FinalFiles files;
@@ -147,6 +182,15 @@ SimulateResult simulate(const SimulateOptions& options) {
     nlohmann::json json = totals(statistics, hash);
     for (const auto& [key, value] : statistics.effects().figures()) json[key] = value;
     if (recorded.any()) json["warnings"] = statistics.effects().warnings(materialNamesOf(loaded.scene));
+    if (simulation.task || !options.assess.empty()) {
+        const TaskRun::Result result = task.judgeBone(*before, bone.volume);
+        if (simulation.task) json["assessment"] = assessmentJson(result.assessment);
+        if (!options.assess.empty())
+            writeAssessment({options.assess, options.pseudonym, rows.back().t_s - rows.front().t_s}, loaded,
+                            result, files);
+        files.write(options.deviation,
+                    [&](const std::string& path) { writeBytes(path, result.picture.png); });
+    }
     json["scene"] = loaded.scene.name();
     json["tool"] = simulation.tools[tool].name;
     json["preset"] = settingsName(simulation.accuracy);

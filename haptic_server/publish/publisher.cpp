@@ -14,6 +14,7 @@ namespace {
 
 // A flood of commands must not keep the publisher thread from publishing.
 constexpr size_t kMaxCommandsPerCall = 1024;
+constexpr size_t kMaxViewersPerCall = 256;  // likewise of announcements
 
 int64_t unixTime_ns() {
     const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
@@ -44,6 +45,7 @@ topics::ToolState toolState(const TickRecord& record, uint64_t epoch) {
     topics::ToolState state;
     state.set_epoch(epoch);
     state.set_tick(record.tick);
+    state.set_session_s(record.t_s);
     state.set_stamp_ns(unixTime_ns());
     assign(state.mutable_p_wt_m(), record.p_WT);
     assign(state.mutable_q_wt(), record.q_WT);
@@ -74,7 +76,8 @@ Publisher::Publisher(const PublisherOptions& options)
       lesson_writer_(participant_),
       picture_writer_(participant_),
       remark_writer_(participant_),
-      command_reader_(participant_) {
+      command_reader_(participant_),
+      viewer_reader_(participant_) {
     if (options.secure.empty()) return;
     people_.emplace(options.secure);
     proven_senders_.emplace([this](const GuidPrefix& prefix) { return people_->find(prefix); });
@@ -230,6 +233,23 @@ bool Publisher::removeRemark(uint32_t place) {
     key.session = session_;
     key.place = place;
     return remark_writer_.dispose(key);
+}
+
+std::optional<SeenEye> Publisher::takeEye() {
+    const TraineeEye::Clock::time_point now = TraineeEye::Clock::now();
+    viewer_reader_.take(kMaxViewersPerCall,
+                        [&](const dds::ViewerSample& sample, const dds::SampleInfo& info) {
+                            if (!info.has_data || sample.session != session_) return;
+                            std::optional<topics::Viewer::Role> proven;
+                            if (people_) {
+                                const auto owner = viewer_reader_.ownerOf(info.writer);
+                                const auto identity = owner ? people_->find(*owner) : std::nullopt;
+                                proven = identity ? roleOfIdentity(identity->role) : topics::Viewer::VIEWER;
+                            }
+                            trainee_eye_.hear(dds::payloadOf(sample), sample.sender,
+                                              viewer_reader_.participantOf(info.writer), proven, now);
+                        });
+    return trainee_eye_.takeChanged(now);
 }
 
 std::vector<topics::Command> Publisher::takeCommands() {

@@ -22,6 +22,7 @@
 #include "common/rt/latency_histogram.h"
 #include "haptic_server/publish/command_inbox.h"
 #include "haptic_server/publish/proven_senders.h"
+#include "haptic_server/publish/trainee_eye.h"
 #include "haptic_server/telemetry/tick_record.h"
 #include "proto/topics.pb.h"
 
@@ -79,6 +80,8 @@ class Publisher {
     std::vector<topics::Command> takeCommands();
     // Says why it is believed who has sent it: "proven", "by its own word", "says gateway NAME".
     std::string proofOf(const topics::Command& command) const;
+    // Returns what the trainee sees, if that is known and has changed since the last call.
+    std::optional<SeenEye> takeEye();
     // Tells the sender, through Status at once, how the command ended: "done" or "refused: <why>".
     void acknowledge(const topics::Command& command, const std::string& result);
 
@@ -120,6 +123,7 @@ class Publisher {
     topics::Status status_;  // as last published
     CommandInbox inbox_{[this](uint64_t writer) { return command_reader_.isMatched(writer); }};
     uint64_t foreign_commands_ = 0;
+    TraineeEye trainee_eye_;
     std::optional<People> people_;                 // with security
     std::optional<ProvenSenders> proven_senders_;  // with security
 
@@ -133,6 +137,7 @@ class Publisher {
     dds::Writer<dds::ScenePictureSample> picture_writer_;
     dds::Writer<dds::RemarkSample> remark_writer_;
     dds::Reader<dds::CommandSample> command_reader_;
+    dds::Reader<dds::ViewerSample> viewer_reader_;
 };
 
 }  // namespace bonemill

@@ -39,6 +39,8 @@ const char* nameOf(uint32_t fault) {
             return "early_samples";
         case kFaultFewerSamples:
             return "fewer_samples";
+        case kFaultNotRecorded:
+            return "not_recorded";
     }
     return nullptr;
 }

@@ -14,6 +14,7 @@
 #include "common/require_file.h"
 #include "common/text_encoding.h"
 #include "common/user_error.h"
+#include "haptic_server/record/recorded_row.h"
 
 namespace bonemill {
 namespace {
@@ -85,6 +86,34 @@ class Reader {
             }
             position_[column] = size_t(found - cells_.begin());
         }
+        findRecordedColumns();
+    }
+
+    void findRecordedColumns() {
+        std::vector<std::string_view> names(kRecordedNumbers.begin(), kRecordedNumbers.end());
+        names.insert(names.end(), {kStaleFactorColumn, kDeviceColumn});
+        for (const std::string_view name : names) {
+            const auto found = std::find(cells_.begin(), cells_.end(), name);
+            if (found == cells_.end()) return recorded_.clear();
+            recorded_.push_back(size_t(found - cells_.begin()));
+        }
+    }
+
+    // The recorded columns come in the order of their names.
+    std::shared_ptr<const TrajectoryRow::Recorded> recordedRow() const {
+        auto row = std::make_shared<TrajectoryRow::Recorded>();
+        std::array<uint64_t, kRecordedNumbers.size()> numbers{};
+        for (size_t n = 0; n < numbers.size(); ++n)
+            if (!parseCell(cells_[recorded_[n]], numbers[n]))
+                fail(std::string(kRecordedNumbers[n]) + " is no whole number");
+        if (!takeNumbers(numbers, row->input, row->device)) fail("the recorded numbers are out of range");
+        double& factor = row->input.stale_factor;
+        if (!parseCell(cells_[recorded_[kRecordedNumbers.size()]], factor) || !(factor >= 0 && factor <= 1))
+            fail("stale_factor is not 0 to 1");
+        const std::string_view device = cells_[recorded_.back()];
+        row->input.has_other_device = !device.empty();
+        if (!device.empty() && !takeDevice(device, row->input.other_device)) fail("device is no device");
+        return row;
     }
 
     TrajectoryRow parseRow() {
@@ -95,9 +124,15 @@ class Reader {
         }
         TrajectoryRow row;
         row.t_s = number(kTime);
+        row.buttons = buttonMask();
+        if (!recorded_.empty()) {
+            row.recorded = recordedRow();
+            row.X_WT.position = {anyNumber(kPx), anyNumber(kPy), anyNumber(kPz)};
+            row.X_WT.rotation = {anyNumber(kQw), anyNumber(kQx), anyNumber(kQy), anyNumber(kQz)};
+            return row;
+        }
         row.X_WT.position = {number(kPx), number(kPy), number(kPz)};
         row.X_WT.rotation = rotation();
-        row.buttons = buttonMask();
         return row;
     }
 
@@ -107,14 +142,25 @@ class Reader {
             fail("quaternion qw,qx,qy,qz has norm " + std::to_string(q.norm()) +
                  ", it must be 1 within 0.001");
         }
-        return q.normalized();
+        return q;
     }
 
     template <class Number>
     bool parse(Column column, Number& value) const {
-        const std::string_view cell = cells_[position_[column]];
+        return parseCell(cells_[position_[column]], value);
+    }
+
+    template <class Number>
+    static bool parseCell(std::string_view cell, Number& value) {
         const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
         return error == std::errc() && end == cell.data() + cell.size();
+    }
+
+    // What a device said may be no finite number: the tick refuses it once more.
+    double anyNumber(Column column) const {
+        double value = 0.0;
+        if (!parse(column, value)) failAt(column, "a number");
+        return value;
     }
 
     [[noreturn]] void failAt(Column column, const char* expected) const {
@@ -141,6 +187,7 @@ class Reader {
     size_t header_size_ = 0;
     std::vector<std::string_view> cells_;
     std::array<size_t, kColumnCount> position_{};
+    std::vector<size_t> recorded_;  // positions; empty: there are none
 };
 
 }  // namespace

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "haptic_server/bone/bone_history.h"
+#include "haptic_server/session/journal_keeper.h"
 #include "haptic_server/session/lesson_book.h"
 #include "haptic_server/session/recorder.h"
 #include "haptic_server/session/shown_effects.h"
+#include "haptic_server/session/task_watch.h"
 
 namespace bonemill {
 
@@ -20,9 +22,11 @@ class AttemptKeeper {
     static constexpr double kShortest = 2;  // s
 
     // References must outlive this object. `tell_device` is told when an attempt begins (true) and when the
-    // one under way ends without another.
-    AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history, double voxel_volume,
-                  const scene::Scene& scene, std::function<void(bool begins)> tell_device = {});
+    // one under way ends without another. `task` (null: none) has each attempt judged, and may limit their
+    // number and time.
+    AttemptKeeper(LessonBook& book, Recorder& recorder, BoneHistory& history, JournalKeeper& journal,
+                  double voxel_volume, const scene::Scene& scene,
+                  std::function<void(bool begins)> tell_device = {}, TaskWatch* task = nullptr);
 
     // The answer is "done", or "refused: <why>". The bone goes back to the scan, and milling goes on. Where
     // an attempt that is recorded ends with the order, the answer comes with LessonBook::takeAnswers().
@@ -33,20 +37,29 @@ class AttemptKeeper {
     void stop();
     // The bone was put back by an order. Outside of an attempt figures count from there.
     void noteRestored();
-    // Counts the time, which rests while milling is paused: call at least some times per second.
+    // Counts the time, which rests while milling is paused: call at least some times per second. An attempt
+    // whose time is over ends.
     void round();
+    double timeS() const noexcept { return time_s_; }  // of the attempt under way, or the last one
+    bool isRunning() const { return book_.isAttemptRunning(); }
 
   private:
+    void countTime();
+    std::string limitProblem(const std::string& trainee) const;
     // Returns true if the order is answered when the attempt is in the class table.
     bool end(const std::optional<topics::Command>& order);
+    std::optional<AttemptJudgement> judgement(std::optional<double> breach);
 
     LessonBook& book_;
     Recorder& recorder_;
     BoneHistory& history_;
+    JournalKeeper& journal_;
     double voxel_mm3_;
     ShownEffects effects_;
     std::function<void(bool begins)> tell_device_;
+    TaskWatch* task_;
     std::vector<std::string> material_names_;
+    uint64_t scene_hash_;
     double time_s_ = 0;
     int64_t counted_ns_ = 0;  // CLOCK_MONOTONIC until which it is counted
 };

@@ -2,7 +2,7 @@
 // once.
 //
 // It belongs to one normal thread. Lines are whole or not there, whatever happens; a file that is there
-// already is only added to.
+// already is only added to, with the columns that it has.
 #pragma once
 
 #include <string>
@@ -18,8 +18,14 @@ class ClassTable {
     explicit ClassTable(std::string path);
 
     bool hasFile() const noexcept { return !path_.empty(); }
+    const std::string& path() const noexcept { return path_; }
     // Returns why the line is not there (disk full, among others), or "".
     std::string append(const topics::Attempt& attempt, const std::string& scene) const;
+
+    // Tells whether a class table lies there.
+    static bool isTable(const std::string& path);
+    // Takes all lines of this trainee out of it, and returns how many. Throws UserError.
+    static size_t forget(const std::string& path, const std::string& trainee);
 
   private:
     std::string path_;

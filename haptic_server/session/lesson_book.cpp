@@ -81,9 +81,17 @@ void LessonBook::answerLater(const topics::Command& command, const std::string& 
 
 std::vector<std::pair<topics::Command, std::string>> LessonBook::takeAnswers() {
     const std::lock_guard lock(mutex_);
-    for (const TableWriter::Written& written : table_.takeWritten())
-        answers_.emplace_back(written.order, answerTo(written.order, written.problem));
+    for (const TableWriter::Written& written : table_.takeWritten()) {
+        if (written.order) answers_.emplace_back(*written.order, answerTo(*written.order, written.problem));
+        if (written.verdict) takeVerdict(written.attempt, *written.verdict);
+    }
     return std::exchange(answers_, {});
+}
+
+void LessonBook::takeVerdict(uint32_t attempt, const topics::Verdict& verdict) {
+    for (topics::Attempt& kept : *lesson_.mutable_attempts())
+        if (kept.number() == attempt) *kept.mutable_verdict() = verdict;
+    has_changed_ = true;
 }
 
 // What Protobuf has parsed is UTF-8.
@@ -112,6 +120,15 @@ bool LessonBook::isAttemptRunning() const {
     return lesson_.is_running();
 }
 
+int LessonBook::attemptsOf(const std::string& trainee) const {
+    const std::lock_guard lock(mutex_);
+    const auto is_one = [&](const topics::Attempt& attempt) {
+        return attempt.trainee() == trainee && attempt.scene_id() == lesson_.scene_id();
+    };
+    return int(std::ranges::count_if(lesson_.attempts(), is_one)) +
+           (lesson_.is_running() && lesson_.trainee() == trainee ? 1 : 0);
+}
+
 void LessonBook::dropAttempt() {
     const std::lock_guard lock(mutex_);
     --attempts_begun_;
@@ -119,14 +136,15 @@ void LessonBook::dropAttempt() {
     has_changed_ = true;
 }
 
-void LessonBook::endAttempt(topics::Attempt attempt, const std::optional<topics::Command>& order) {
+void LessonBook::endAttempt(topics::Attempt attempt, const std::optional<topics::Command>& order,
+                            std::optional<AttemptJudgement> judgement) {
     const std::lock_guard lock(mutex_);
     lesson_.set_is_running(false);
     attempt.set_number(attempts_begun_);
     attempt.set_trainee(lesson_.trainee());
     attempt.set_scene_id(lesson_.scene_id());
     attempt.set_start_stamp_ns(lesson_.start_stamp_ns());
-    if (!table_.write(attempt, sceneTitle(lesson_, attempt.scene_id()), order)) {
+    if (!table_.write(attempt, sceneTitle(lesson_, attempt.scene_id()), order, std::move(judgement))) {
         const std::string problem = "too many lines wait for its disk, which hangs";
         spdlog::error("attempt {} is not in the class table: {}", attempts_begun_, problem);
         if (order) answers_.emplace_back(*order, answerTo(*order, problem));

@@ -51,13 +51,20 @@ class LessonBook {
     static std::string traineeProblem(const std::string& trainee);
     void beginAttempt(const std::string& trainee);
     bool isAttemptRunning() const;
+    // How many attempts this trainee has had at the scene in force, the one under way included; of those that
+    // the book still holds.
+    int attemptsOf(const std::string& trainee) const;
     // The attempt under way ends as if it had never begun.
     void dropAttempt();
     // Takes the attempt's figures; name, number, scene and start are filled in. It goes into the class table;
-    // `order` is answered with takeAnswers() when it is there, or with what kept it from there.
-    void endAttempt(topics::Attempt attempt, const std::optional<topics::Command>& order = {});
+    // `order` is answered with takeAnswers() when it is there, or with what kept it from there. Where there
+    // is a class table the attempt is judged, and its verdict shown when it is known.
+    void endAttempt(topics::Attempt attempt, const std::optional<topics::Command>& order = {},
+                    std::optional<AttemptJudgement> judgement = std::nullopt);
 
   private:
+    void takeVerdict(uint32_t attempt, const topics::Verdict& verdict);
+
     mutable std::mutex mutex_;
     const std::vector<ListedScene> scenes_;
     TableWriter table_;

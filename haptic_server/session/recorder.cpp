@@ -8,10 +8,12 @@
 
 namespace bonemill {
 
-Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded)
+Recorder::Recorder(SpscRing<TickRecord>& ring, int64_t period_ns, const RecordedEffects& recorded,
+                   std::optional<BreachWatch> breach)
     : ring_(ring),
       statistics_(period_ns, recorded),
       recorded_(recorded),
+      breach_(std::move(breach)),
       attempt_{.max_force = 0, .effects = EffectStatistics(recorded)},
       shown_attempt_(attempt_) {}
 
@@ -25,18 +27,23 @@ void Recorder::drain() {
     EventSum events;
     double removed = 0;
     const size_t known_changes = statistics_.device().kept().size();
+    const std::lock_guard technique_lock(technique_mutex_);
     takeUpAttempt();
     while (ring_.tryPop(record)) {
         any = true;
         statistics_.add(record);
-        if (trace_) trace_->write(record);
+        if (trace_ && !trace_->write(record)) is_trace_torn_ = true;
+        if (journal_) journal_->add(record);
         addToWindow(record);
         addToAttempt(record);
         events.add(record.effects);
         removed += record.removed;
     }
-    if (!any) return;
+    if (journal_) journal_->round();
+    const bool is_incomplete = isIncomplete();
     const std::lock_guard lock(mutex_);
+    if (is_incomplete) health_.faults |= kFaultNotRecorded;
+    if (!any) return;
     latest_ = record;
     new_events_.add(events);
     new_removed_ += removed;
@@ -44,8 +51,12 @@ void Recorder::drain() {
     new_device_changes_.insert(new_device_changes_.end(), changes.begin(), changes.end());
     health_.ticks = statistics_.ticks();
     health_.dropped_ticks = statistics_.droppedTicks();
-    health_.faults = statistics_.faults();
+    health_.faults = statistics_.faults() | (health_.faults & kFaultNotRecorded);
     if (!asked_bone_order_) shown_attempt_ = attempt_;
+}
+
+bool Recorder::isIncomplete() const {
+    return is_trace_torn_ || ring_.dropped() > 0 || (journal_ && !journal_->problem().empty());
 }
 
 void Recorder::beginAttempt(uint64_t bone_order) {
@@ -56,16 +67,36 @@ void Recorder::beginAttempt(uint64_t bone_order) {
 
 void Recorder::takeUpAttempt() {
     const std::lock_guard lock(mutex_);
-    if (!asked_bone_order_) return;
-    bone_order_ = *std::exchange(asked_bone_order_, std::nullopt);
-    attempt_ = shown_attempt_;
+    if (asked_bone_order_) beginAsked();
+    if (technique_ && p_eye_W_) technique_->setEye(*p_eye_W_);
 }
 
-void Recorder::addToAttempt(const TickRecord& record) noexcept {
+void Recorder::beginAsked() {
+    bone_order_ = *std::exchange(asked_bone_order_, std::nullopt);
+    attempt_ = shown_attempt_;
+    if (make_technique_) technique_ = make_technique_();
+    if (breach_) breach_->reset();
+}
+
+void Recorder::addToAttempt(const TickRecord& record) {
     if (record.bone_order < bone_order_) return;
     const double(&force)[3] = record.f_hand_W;
     attempt_.max_force = std::max(attempt_.max_force, std::hypot(force[0], force[1], force[2]));
     attempt_.effects.add(record.effects);
+    if (technique_) technique_->add(record);
+    if (!breach_) return;
+    breach_->add(record);
+    attempt_.breach = breach_->depth();
+}
+
+void Recorder::setEye(const Eigen::Vector3d& p_eye_W) {
+    const std::lock_guard lock(mutex_);
+    p_eye_W_ = p_eye_W;
+}
+
+std::unique_ptr<Technique> Recorder::takeTechnique() {
+    const std::lock_guard lock(technique_mutex_);
+    return std::exchange(technique_, nullptr);
 }
 
 AttemptFigures Recorder::attempt() const {
@@ -90,6 +121,7 @@ void Recorder::addToWindow(const TickRecord& record) {
 
 bool Recorder::finish() {
     drain();
+    if (journal_) journal_->finish();
     statistics_.setLostRecords(ring_.dropped());
     if (!trace_) return true;
     const bool is_written = trace_->close();

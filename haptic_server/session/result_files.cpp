@@ -67,6 +67,7 @@ ServerOptions ResultFiles::numbered(const std::string& scene, int number) const 
     options.scene = scene;
     options.scene_number = number;
     options.accuracy.clear();  // it was measured in the first one
+    options.resumed_journal.clear();
     for (std::string* path : std::array{&options.trace, &options.report, &options.save.volume,
                                         &options.save.mesh, &options.save.difference})
         *path = withNumber(*path, number);

@@ -15,7 +15,7 @@ struct RoleRule {
     bool may_operator, may_examiner;  // an instructor may everything, a viewer nothing
 };
 
-inline constexpr std::array<RoleRule, 14> kRoleRules{{
+inline constexpr std::array<RoleRule, 15> kRoleRules{{
     {topics::Command::kResetVolume, true, false},
     {topics::Command::kPauseMilling, true, true},
     {topics::Command::kSetAccuracy, true, false},
@@ -29,6 +29,7 @@ inline constexpr std::array<RoleRule, 14> kRoleRules{{
     {topics::Command::kStopAttempt, true, true},
     {topics::Command::kAddRemark, true, true},
     {topics::Command::kEraseRemark, true, true},
+    {topics::Command::kReplay, true, true},
     {topics::Command::kShutDown, false, false},
 }};
 

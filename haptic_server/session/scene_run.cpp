@@ -13,8 +13,11 @@
 #include "haptic_server/mesh/mesh_rounds.h"
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/record/final_files.h"
+#include "haptic_server/session/session_journal.h"
 #include "haptic_server/session/shown_device.h"
+#include "haptic_server/session/shown_zones.h"
 #include "haptic_server/setup/coupling_text.h"
+#include "haptic_server/setup/make_technique.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_materials.h"
 #include "haptic_server/volume/import/nrrd_writer.h"
@@ -79,7 +82,7 @@ LoadedScene loadSceneOf(const ServerOptions& options) {
 }
 
 SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation simulation,
-                   const ServerParts& parts)
+                   std::optional<ResumedSession> resumed, const ServerParts& parts)
     : options_(options),
       loaded_(std::move(loaded)),
       simulation_(std::move(simulation)),
@@ -91,19 +94,62 @@ SceneRun::SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation 
       cuts_(kRingCuts),
       io_(ioConfigOf(options, loaded_.scene.loop(), simulation_), parts.link, ring_, cuts_),
       tick_(simulation_.tick, {*simulation_.bone, &history_}, {tools_, accuracy_}),
+      resumed_(std::move(resumed)),
+      journal_keeper_(history_, *simulation_.bone),
       recorder_(ring_, ioConfigOf(options, loaded_.scene.loop(), simulation_).period_ns,
-                recordedEffectsOf(loaded_.scene.effects())),
+                recordedEffectsOf(loaded_.scene.effects()), breachWatchOf(simulation_)),
       bone_export_(history_, *simulation_.bone, options.export_dir),
-      attempts_(parts.lesson, recorder_, history_, simulation_.bone->volume.voxelVolume(), loaded_.scene,
-                [this](bool begins) { parts_.link.announceAttempt(begins); }),
+      task_(simulation_.task, *simulation_.bone, history_),
+      attempts_(
+          parts.lesson, recorder_, history_, journal_keeper_, simulation_.bone->volume.voxelVolume(),
+          loaded_.scene, [this](bool begins) { parts_.link.announceAttempt(begins); }, &task_),
       commands_(loaded_.scene, *simulation_.bone, recorder_,
                 {history_, accuracy_, tools_, parts.stop_requested, bone_export_, io_.resetOrders(),
-                 parts.lesson, attempts_, parts.limits},
+                 parts.lesson, attempts_, parts.limits, journal_keeper_},
                 options.instructor_only),
-      show_(parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,
-            io_, commands_, options.stream_mbit_per_s * kMega / 8) {
+      show_(
+          parts.publisher, loaded_.scene, simulation_, history_, figuresOf(options), outbox_, recorder_,
+          [this](DeviceCapabilities& device) { return io_.capabilities(device); }, commands_, task_,
+          options.stream_mbit_per_s * kMega / 8) {
+    recorder_.measureTechnique(techniqueMaker(loaded_.scene, simulation_));
     for (const std::string& remark : simulation_.remarks) spdlog::info("{}", remark);
     for (const std::string& warning : simulation_.warnings) spdlog::warn("{}", warning);
+    if (options_.is_recorded) journal_config_ = journalConfigOf(options_, loaded_, simulation_);
+    if (resumed_) beginWith(*resumed_);
+}
+
+void SceneRun::beginWith(const ResumedSession& resumed) {
+    if (!resumed.bone->leaves.empty()) history_.startFrom(*simulation_.bone, resumed.bone);
+    for (const ResumedSession::Checkpoint& saved : resumed.checkpoints)
+        commands_.checkpoints().keep({saved.id, saved.session_s, saved.state});
+    if (resumed.tool < tools_.count()) tools_.choose(resumed.tool);
+    const bool is_switchable = loaded_.scene.accuracy().switchable();
+    if (is_switchable && resumed.accuracy < AccuracySwitch::count()) accuracy_.choose(resumed.accuracy);
+    spdlog::info("{}", resumed.text());
+}
+
+// The bone with which it begins is in the file before the loop runs; only then is it no longer wanted from
+// the journal of before.
+void SceneRun::startJournal() {
+    if (!journal_config_) return;
+    journal_config_->path = newJournalPath(options_.recording, options_.session, options_.scene);
+    journal_config_->manifest.set_epoch(parts_.publisher.epoch());
+    if (resumed_) *journal_config_->manifest.mutable_resumed_from() = resumed_->from;
+    journal_ = std::make_unique<Journal>(*journal_config_,
+                                         ScannedBone{history_.scanned(), simulation_.bone->lattice});
+    journal_keeper_.begin(journal_.get(), commands_.checkpoints());
+    recorder_.keepJournal(journal_.get());
+    spdlog::info("recording to {}", journal_->path().string());
+    if (!resumed_ || options_.resumed_journal.empty()) return;
+    journal_->flush();
+    if (!journal_->problem().empty()) return;
+    closing_ = std::async(std::launch::async, [path = options_.resumed_journal] {
+        try {
+            closeResumed(path);
+        } catch (const UserError& error) {
+            spdlog::warn("{}", error.what());
+        }
+    });
 }
 
 // Whatever happened: the tick thread must be able to end before it is joined.
@@ -116,6 +162,7 @@ void SceneRun::start() {
     io_.beginScene(parts_.link.announceScene(file, sceneHashOf(loaded_.scene), parts_.publisher.epoch()));
     parts_.lesson.enterScene(options_.scene);
     show_.begin();
+    startJournal();
     startTick();
     recorder_.openTrace(options_.trace);  // only now: a refused start leaves the trace of before
     recorder_thread_ = std::jthread(
@@ -133,6 +180,7 @@ void SceneRun::end(bool is_shown) {
     publisher_thread_ = {};
     recorder_.drain();  // what an attempt counts is whole
     show_.endAttempt();
+    journal_keeper_.end();
     // No tick and no command comes any more: what was being put back is in the files and in the picture.
     history_.restoreAll(*simulation_.bone);
     if (is_shown) {
@@ -193,7 +241,10 @@ void SceneRun::meshUntil(const std::stop_token& stop) {
     const auto markWhole = [&] {
         if (rounds.hasMeshedAll()) outbox_.markWhole(monotonicNowNs());
     };
+    const std::optional<ZonePaint> zones =
+        zonePaintOf(loaded_.scene, simulation_.task.get(), history_.scanned());
     loop(stop, MeshRounds::kPeriod, [&] {
+        rounds.setPaint(zones && task_.showsZones() ? &*zones : nullptr);
         for (bool is_more = true; is_more && !stop.stop_requested(); markWhole()) is_more = rounds.round(put);
     });
     endOnFailure([&] {
@@ -243,6 +294,16 @@ void SceneRun::lookAfter() {
     }
     if (hasTicked()) countPageFaults();
     tellOfDevice();
+    tellOfJournal();
+}
+
+void SceneRun::tellOfJournal() {
+    if (!journal_ || has_told_of_journal_) return;
+    const std::string problem = journal_->problem();
+    if (problem.empty()) return;
+    has_told_of_journal_ = true;
+    spdlog::error("{}: the recording is incomplete from about tick {} on: {}", journal_->path().string(),
+                  journal_->ticks(), problem);
 }
 
 bool SceneRun::writeFiles() {
@@ -251,6 +312,8 @@ bool SceneRun::writeFiles() {
     show_.leaveAnswers();
     FinalFiles files;
     if (!recorder_.finish()) files.note(traceProblem());
+    if (journal_ && !journal_->problem().empty())
+        files.note(journal_->path().string() + ": the recording is incomplete: " + journal_->problem());
     tellOfDevice();
     const RunStatistics& statistics = recorder_.statistics();
     logClosing(statistics);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +16,8 @@
 #include "haptic_server/mesh/mesh_outbox.h"
 #include "haptic_server/publish/publisher.h"
 #include "haptic_server/session/device_link_io.h"
+#include "haptic_server/session/journal_keeper.h"
+#include "haptic_server/session/resume.h"
 #include "haptic_server/session/server.h"
 #include "haptic_server/session/show_session.h"
 #include "haptic_server/tick/haptic_tick.h"
@@ -37,9 +40,10 @@ LoadedScene loadSceneOf(const ServerOptions& options);
 
 class SceneRun {
   public:
-    // `options` are those of this scene: its file, and where its files go. Throws UserError.
+    // `options` are those of this scene: its file, and where its files go. With `resumed` it begins with that
+    // bone. Throws UserError.
     SceneRun(const ServerOptions& options, LoadedScene loaded, Simulation simulation,
-             const ServerParts& parts);
+             std::optional<ResumedSession> resumed, const ServerParts& parts);
     ~SceneRun();
     SceneRun(const SceneRun&) = delete;
     SceneRun& operator=(const SceneRun&) = delete;
@@ -63,6 +67,8 @@ class SceneRun {
     bool writeFiles();
 
   private:
+    void beginWith(const ResumedSession& resumed);
+    void startJournal();
     void startTick();
     template <class Work>
     void loop(const std::stop_token& stop, std::chrono::microseconds period, Work work);
@@ -74,6 +80,7 @@ class SceneRun {
     void tellOfCapabilities();
     void tellOfDevice();
     std::string traceProblem() const;
+    void tellOfJournal();
     void logDistrust() const;
 
     ServerOptions options_;
@@ -87,16 +94,22 @@ class SceneRun {
     SpscRing<Cut> cuts_;
     DeviceLinkIo io_;
     HapticTick tick_;
+    std::optional<ResumedSession> resumed_;
+    std::optional<JournalConfig> journal_config_;  // until the journal begins
+    std::unique_ptr<Journal> journal_;             // null: nothing is recorded
+    std::future<void> closing_;                    // the journal of before gets its end
+    JournalKeeper journal_keeper_;
     Recorder recorder_;
     MeshOutbox outbox_;
     SessionExport bone_export_;
+    TaskWatch task_;
     AttemptKeeper attempts_;
     SessionCommands commands_;
     ShowSession show_;
     PublishFigures published_;  // publisher thread's until it is joined
     std::string device_;        // as told last
     size_t devices_told_ = 0;
-    bool has_told_of_implausible_ = false, has_told_of_early_ = false;
+    bool has_told_of_implausible_ = false, has_told_of_early_ = false, has_told_of_journal_ = false;
     int64_t first_tick_ns_ = 0;
     std::optional<PageFaults> warm_;  // of the tick thread, when it had run for some time
     RealtimeThread tick_thread_;

@@ -12,40 +12,31 @@
 #include "common/rt/clock.h"
 #include "common/rt/stop_signals.h"
 #include "common/user_error.h"
-#include "haptic_server/publish/other_server.h"
+#include "haptic_server/journal/journal_reader.h"
+#include "haptic_server/rerun/moment.h"
 #include "haptic_server/session/lesson_book.h"
 #include "haptic_server/session/order_limits.h"
 #include "haptic_server/session/result_files.h"
+#include "haptic_server/session/resume.h"
 #include "haptic_server/session/scene_folder.h"
 #include "haptic_server/session/scene_run.h"
+#include "haptic_server/session/session_journal.h"
+#include "haptic_server/session/sole_server.h"
 
 namespace bonemill {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLookForOthers = 300ms, kLookForSecuredOthers = 1500ms;  // who must prove itself takes longer
 constexpr int64_t kLookEveryNs = 20 * kNsPerMillisecond;
 // A loop that waits for a device has no force; one that hangs must not keep the next scene away.
 constexpr int64_t kLongestFadeNs = kNsPerSecond;
-
-// Throws UserError if the session has a server: that is asked before this one shows anything.
-PublisherOptions publisherOptionsOf(const ServerOptions& options) {
-    const auto patience = options.network.secure.empty() ? kLookForOthers : kLookForSecuredOthers;
-    if (const auto other = findOtherServer(dds::Participant(options.domain), options.session, patience))
-        throw UserError(refusalText(*other, options.domain, options.session));
-    if (dds::isOpenToOthers(options.network))
-        spdlog::warn(
-            "anyone in this network can watch this session and command it; --secure closes it "
-            "(docs/security.md)");
-    return {
-        .domain = options.domain, .session = options.session, .epoch = 0, .secure = options.network.secure};
-}
 
 void requireFilesCanBeWritten(const ServerOptions& options) {
     requireWritable(options.trace);
     requireReplaceable(options.report);
     requireReplaceable(options.save);
+    requireRecordable(options);
 }
 
 // The process: it has one scene after the other.
@@ -68,21 +59,42 @@ class Server {
     struct Loaded {
         LoadedScene scene;
         Simulation simulation;
+        std::optional<ResumedSession> resumed = {};
     };
-    static Loaded loadFirst(const ServerOptions& options) {
+    static Loaded load(const ServerOptions& options) {
         LoadedScene scene = loadSceneOf(options);
         Simulation simulation = makeSimulation(scene);
         return {std::move(scene), std::move(simulation)};
+    }
+    // The journal is read while the scene is.
+    static Loaded loadFirst(const ServerOptions& options) {
+        std::optional<ResumeReading> reading;
+        if (!options.resumed_journal.empty())
+            reading.emplace(*findUnfinished(options.recording, options.session));
+        Loaded loaded = load(options);
+        if (reading) loaded.resumed = reading->take(*loaded.simulation.bone);
+        if (!options.from.empty()) loaded.resumed = resumedAt(momentNameOf(options.from), loaded);
+        return loaded;
+    }
+    static ResumedSession resumedAt(const MomentName& name, const Loaded& loaded) {
+        RecordedMoment moment =
+            momentOf(Recording(name.journal), loaded.simulation, loaded.scene, name.seconds);
+        ResumedSession resumed;
+        resumed.from = std::move(moment.from);
+        resumed.bone = std::move(moment.bone);
+        resumed.tool = moment.tool;
+        resumed.accuracy = moment.accuracy;
+        return resumed;
     }
 
     Server(const ServerOptions& options, std::vector<ListedScene> scenes, Loaded first)
         : options_(options),
           link_(DeviceLink::create(options.session, LinkSide::kServer)),
-          publisher_(publisherOptionsOf(options)),
+          publisher_(soleServerOf(options.domain, options.session, options.network)),
           results_(options, inputsOf(scenes, first.scene)),
           lesson_(std::move(scenes), ClassTable(options.class_table)),
           run_(std::make_unique<SceneRun>(results_.first(), std::move(first.scene),
-                                          std::move(first.simulation), parts())) {}
+                                          std::move(first.simulation), std::move(first.resumed), parts())) {}
 
     // Of all scenes that can be chosen.
     static std::vector<NamedFile> inputsOf(const std::vector<ListedScene>& scenes, const LoadedScene& first) {
@@ -129,9 +141,9 @@ class Server {
             next_options_ = results_.next(order_.file);
             loading_ = std::async(std::launch::async, [this, options = next_options_] {
                 requireFilesCanBeWritten(options);
-                Loaded loaded = loadFirst(options);
+                Loaded loaded = load(options);
                 return std::make_unique<SceneRun>(options, std::move(loaded.scene),
-                                                  std::move(loaded.simulation), parts());
+                                                  std::move(loaded.simulation), std::nullopt, parts());
             });
         } catch (const std::exception& error) {
             refuseChange(error.what());
@@ -213,13 +225,50 @@ std::vector<std::string> foldersOf(const ServerOptions& options) {
 
 }  // namespace
 
+// What was recorded last of this session has no end: the session goes on there, or the user learns how.
+void chooseResumption(ServerOptions& options) {
+    if (!options.is_recorded) return;
+    const std::optional<UnfinishedJournal> unfinished = findUnfinished(options.recording, options.session);
+    if (!unfinished) {
+        if (options.resumes)
+            spdlog::info("there is no session {} to go on with: it begins anew", options.session);
+        return;
+    }
+    const std::string scene = unfinished->manifest.scene_path(), file = unfinished->path.string();
+    if (!options.resumes) {
+        spdlog::warn("session {} was stopped before its end: --resume goes on with its bone ({})",
+                     options.session, file);
+    } else if (!options.scene.empty() && !isSameFile(options.scene, scene)) {
+        spdlog::warn("{} is of the scene {}, and does not go on in another: --scene {} --resume does", file,
+                     scene, scene);
+    } else if (const std::string problem = problemOf(*unfinished); !problem.empty()) {
+        spdlog::warn("{} cannot go on: {}", file, problem);
+    } else {
+        options.scene = scene;
+        options.resumed_journal = file;
+    }
+}
+
+// The recording's own scene, unless another file was named.
+void beginFrom(ServerOptions& options) {
+    if (options.resumes) throw UserError("--from and --resume: a session goes on from one moment only");
+    const MomentName name = momentNameOf(options.from);
+    if (options.scene.empty())
+        options.scene = readJournalContent(name.journal, KeepInputs::kNo).manifest.scene_path();
+}
+
 std::string listScenesOf(const ServerOptions& options) {
     return sceneTable(listScenes(foldersOf(options)));
 }
 
 int runServer(const ServerOptions& given) {
     ServerOptions options = given;
+    if (options.recording.empty()) options.recording = defaultRecordingFolder();
     requireFilesCanBeWritten(options);
+    if (!options.from.empty())
+        beginFrom(options);
+    else
+        chooseResumption(options);
     dds::setNetwork(options.network, dds::NetworkPart::kServer);
     if (options.class_table.empty() && std::filesystem::is_directory(options.export_dir))
         options.class_table = (std::filesystem::path(options.export_dir) / "class.csv").string();

@@ -21,8 +21,15 @@ struct ServerOptions {
     dds::NetworkOptions network;
     double seconds = 0;              // after the first tick; 0: until a signal or a shut_down command
     double stream_mbit_per_s = 200;  // of node meshes; nearest to the burr first
-    std::string accuracy;  // accuracy.json of accuracy-report; empty: beside the scene, if there is one
-    std::string trace;     // files to write; empty: none
+    std::string accuracy;   // accuracy.json of accuracy-report; empty: beside the scene, if there is one
+    std::string recording;  // folder of the journal that each scene of the session writes
+    bool is_recorded = true;
+    bool records_results = false;  // also what the ticks came to, which a replay finds again
+    bool resumes = false;          // goes on from the newest journal of the session without an end
+    std::string from;              // FILE.mcap@SECONDS: goes on from that moment of a recording; or empty
+    std::string resumed_journal;   // that is: set by runServer()
+    std::string version;           // that --version prints
+    std::string trace;             // files to write; empty: none
     std::string report;
     SavePaths save;
     std::string class_table;  // CSV, one line per attempt; empty: class.csv in export_dir, if there is one

@@ -38,14 +38,18 @@ SessionCommands::SessionCommands(const scene::Scene& scene, const BoneModel& bon
       voxel_mm3_(bone.volume.voxelVolume() * kPerCubicMillimetre),
       is_switchable_(scene.accuracy().switchable()),
       effect_of_gradient_law_(effectOfGradientLaw(scene.effects())),
-      only_instructors_(only_instructors) {}
+      only_instructors_(only_instructors),
+      is_exam_(scene.assessment().exam()) {}
 
 std::optional<std::string> SessionCommands::carryOut(const topics::Command& command) {
     if (const std::string refusal = refusalOf(command); !refusal.empty()) return refusal;
     if (asksForNothing(command)) return "refused: a command that is false asks for nothing; send true";
     if (std::string refusal = controls_.limits.refusalOf(command, monotonicNowNs()); !refusal.empty())
         return refusal;
+    if (controls_.replay) return carryOutInReplay(command);
     switch (command.action_case()) {
+        case topics::Command::kReplay:
+            return "refused: this is a live session, not a replay (docs/replay.md)";
         case topics::Command::kResetVolume:
             return restore(Checkpoints::kScannedBone);
         case topics::Command::kPauseMilling:
@@ -57,6 +61,7 @@ std::optional<std::string> SessionCommands::carryOut(const topics::Command& comm
             return selectTool(command.select_tool());
         case topics::Command::kSaveCheckpoint:
             checkpoints_.save(sessionS());
+            controls_.journal.noteCheckpoint(checkpoints_.kept().back());
             return "done";
         case topics::Command::kRestoreCheckpoint:
             return restore(command.restore_checkpoint());
@@ -83,8 +88,31 @@ std::optional<std::string> SessionCommands::carryOut(const topics::Command& comm
     }
 }
 
+// What a recording holds stays as it was.
+std::optional<std::string> SessionCommands::carryOutInReplay(const topics::Command& command) {
+    switch (command.action_case()) {
+        case topics::Command::kReplay:
+            return controls_.replay->carryOut(command.replay());
+        case topics::Command::kPauseMilling:
+            controls_.replay->play(!command.pause_milling());
+            return "done";
+        case topics::Command::kAddRemark:
+            return remarks_.add(command, sessionS());
+        case topics::Command::kEraseRemark:
+            return remarks_.erase(command.erase_remark());
+        case topics::Command::kShutDown:
+            controls_.stop_requested = true;
+            return "done";
+        default:
+            return "refused: this is a replay of a recorded session: it is led, not commanded "
+                   "(docs/replay.md)";
+    }
+}
+
 // The refusal is empty if the role allows the command.
 std::string SessionCommands::refusalOf(const topics::Command& command) const {
+    if (is_exam_ && command.role() != topics::Viewer::INSTRUCTOR)
+        return "refused: this scene is an examination; only instructors command it";
     if (only_instructors_ && command.role() != topics::Viewer::INSTRUCTOR)
         return "refused: only instructors command this session (--instructor-only)";
     return std::string(refusalOfRole(command.role(), command.action_case()));
@@ -111,6 +139,7 @@ std::string SessionCommands::selectTool(uint32_t index) {
 }
 
 std::string SessionCommands::restore(uint32_t checkpoint) {
+    controls_.journal.expectPutBack(checkpoint);
     if (checkpoints_.restore(checkpoint)) {
         controls_.attempts.noteRestored();
         return "done";
@@ -129,8 +158,15 @@ double SessionCommands::sessionS() const {
 
 void SessionCommands::describe(topics::Status& status) const {
     status.set_session_s(sessionS());
-    status.set_is_milling_paused(controls_.history.isMillingPaused());
-    status.set_bone_restores(controls_.history.newestOrder());
+    if (controls_.replay) {
+        const auto latest = recorder_.latest();
+        status.set_is_milling_paused(latest && latest->input.decisions.is_milling_paused);
+        status.set_bone_restores(controls_.history.finishedOrder());
+        controls_.replay->describe(*status.mutable_replay());
+    } else {
+        status.set_is_milling_paused(controls_.history.isMillingPaused());
+        status.set_bone_restores(controls_.history.newestOrder());
+    }
     status.set_removed_mm3(double(controls_.history.missingVoxels()) * voxel_mm3_);
     for (const Checkpoints::Checkpoint& kept : checkpoints_.kept()) {
         topics::Checkpoint* checkpoint = status.add_checkpoints();

@@ -9,10 +9,12 @@
 
 #include "haptic_server/bone/checkpoints.h"
 #include "haptic_server/session/attempt_keeper.h"
+#include "haptic_server/session/journal_keeper.h"
 #include "haptic_server/session/lesson_book.h"
 #include "haptic_server/session/order_limits.h"
 #include "haptic_server/session/recorder.h"
 #include "haptic_server/session/remark_book.h"
+#include "haptic_server/session/replay_orders.h"
 #include "haptic_server/session/session_export.h"
 #include "haptic_server/setup/scene_setup.h"
 #include "haptic_server/tick/accuracy_switch.h"
@@ -32,6 +34,8 @@ struct SessionControls {
     LessonBook& lesson;
     AttemptKeeper& attempts;
     OrderLimits& limits;
+    JournalKeeper& journal;
+    ReplayOrders* replay = nullptr;  // there where a recording is shown
 };
 
 class SessionCommands {
@@ -47,6 +51,8 @@ class SessionCommands {
     std::optional<std::string> takeResult() { return controls_.bone_export.takeResult(); }
     void waitForResult() { controls_.bone_export.wait(); }
     LessonBook& lesson() noexcept { return controls_.lesson; }
+    JournalKeeper& journal() noexcept { return controls_.journal; }
+    Checkpoints& checkpoints() noexcept { return checkpoints_; }
     AttemptKeeper& attempts() noexcept { return controls_.attempts; }
     RemarkBook& remarks() noexcept { return remarks_; }
     // Fills in the session clock, the pause, the checkpoints and what the bone has lost.
@@ -56,6 +62,7 @@ class SessionCommands {
 
   private:
     std::string refusalOf(const topics::Command& command) const;
+    std::optional<std::string> carryOutInReplay(const topics::Command& command);
     std::string setAccuracy(const std::string& name);
     std::string selectTool(uint32_t index);
     std::string restore(uint32_t checkpoint);
@@ -69,6 +76,7 @@ class SessionCommands {
     bool is_switchable_;
     const char* effect_of_gradient_law_;  // null: none
     bool only_instructors_;
+    bool is_exam_;
 };
 
 }  // namespace bonemill

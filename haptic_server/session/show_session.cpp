@@ -14,6 +14,7 @@
 #include "haptic_server/record/fault_names.h"
 #include "haptic_server/session/order_text.h"
 #include "haptic_server/session/shown_device.h"
+#include "haptic_server/session/shown_zones.h"
 #include "haptic_server/setup/scene_materials.h"
 
 namespace bonemill {
@@ -76,6 +77,13 @@ Eigen::AlignedBox3d boneBox(const BoneModel& bone) {
     return box;
 }
 
+// Viewers show materials by their colours only.
+const BoneProperties* shownProperties(const scene::Scene& scene, const Simulation& simulation) {
+    const bool has_colours =
+        std::ranges::any_of(scene.material(), [](const scene::Material& m) { return m.has_color(); });
+    return has_colours ? simulation.tick.effects.properties.get() : nullptr;
+}
+
 DensityScale scaleOf(const DensityMapping& mapping) {
     return {mapping.low, mapping.high, mapping.iso_value};
 }
@@ -95,6 +103,7 @@ topics::SceneInfo sceneInfo(const scene::Scene& scene, const Simulation& simulat
     for (const SceneTool& tool : simulation.tools) info.add_tool_names(tool.name);
     fillCamera(scene.camera(), info.mutable_camera());
     describeToViewers(scene, info);
+    describeZones(scene, info);
     info.set_leaf_count(simulation.bone->lattice.leafCount());
     return info;
 }
@@ -115,7 +124,7 @@ std::future<std::vector<NodeMesh>> meshingStructures(const Simulation& simulatio
 
 ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                          const BoneHistory& history, const AccuracyFigures& figures, MeshOutbox& outbox,
-                         Recorder& recorder, const DeviceLinkIo& device, SessionCommands& commands,
+                         Recorder& recorder, ShownDevice device, SessionCommands& commands, TaskWatch& task,
                          double bytes_per_s)
     : publisher_(publisher),
       scene_(scene),
@@ -127,13 +136,14 @@ ShowSession::ShowSession(Publisher& publisher, const scene::Scene& scene, const 
       warning_distance_(warningDistanceOf(scene.effects())),
       structures_(meshingStructures(simulation)),
       recorder_(recorder),
-      device_(device),
+      device_(std::move(device)),
       commands_(commands),
+      task_(task),
       figures_(figures),
       effects_(scene.effects()),
       material_names_(materialNamesOf(scene)),
       tools_(simulation.tools),
-      density_source_(*simulation.bone, history),
+      density_source_(*simulation.bone, history, shownProperties(scene, simulation)),
       density_scale_(scaleOf(simulation.mapping)),
       scene_info_(sceneInfo(scene, simulation)) {
     *scene_info_.mutable_densities() = densityGridOf(density_source_, density_scale_);
@@ -191,7 +201,14 @@ void ShowSession::round() {
     const int64_t now_ns = monotonicNowNs();
     if (now_ns - last_tool_state_ns_ > kToolStatePeriodNs) publishToolState(now_ns);
     commands_.attempts().round();
+    task_.round();
+    if (const auto eye = publisher_.takeEye()) {
+        commands_.journal().noteEye(*eye);
+        recorder_.setEye(eye->X_WC.position);
+    }
+    commands_.journal().round();
     carryOutCommands();
+    followTool();
     publishDensities();
     publishLesson();
     publishPictures();
@@ -210,6 +227,7 @@ void ShowSession::finish(int64_t until_ns) {
 
 void ShowSession::endAttempt() {
     commands_.attempts().stop();
+    task_.finish();
 }
 
 void ShowSession::leaveAnswers() {
@@ -277,11 +295,16 @@ void ShowSession::publishDensities() {
     density_budget_.spend(charged);
 }
 
+// In a replay it changes without a command.
+void ShowSession::followTool() {
+    if (commands_.tools().chosen() != scene_info_.tool_index()) publishSceneInfo();
+}
+
 // Who reads that a command is done finds what it did in the same status.
 void ShowSession::carryOutCommands() {
     for (const topics::Command& command : publisher_.takeCommands()) {
         const std::optional<std::string> result = commands_.carryOut(command);
-        if (commands_.tools().chosen() != scene_info_.tool_index()) publishSceneInfo();
+        followTool();
         publishRemarks();
         if (result)
             answer(command, *result);
@@ -295,6 +318,7 @@ void ShowSession::carryOutCommands() {
 void ShowSession::answer(const topics::Command& command, const std::string& result) {
     publishStatus();
     publisher_.acknowledge(command, result);
+    commands_.journal().noteOrder(command, result);
     log(command, result);
 }
 
@@ -330,12 +354,13 @@ void ShowSession::publishStatus() {
     status.set_faults(health.faults);
     status.set_fault_text(faultNames(health.faults));
     commands_.describe(status);
-    effects_.describe(recorder_.attempt().effects, material_names_, status);
+    if (!scene_.assessment().exam()) effects_.describe(recorder_.attempt().effects, material_names_, status);
+    task_.describe(commands_.attempts().isRunning(), commands_.attempts().timeS(), status);
     const auto latest = recorder_.latest();
     status.set_device_stale(!latest || (latest->faults & kFaultStaleDevice));
     if (latest) {
         DeviceCapabilities capabilities;
-        const bool is_known = device_.capabilities(capabilities);
+        const bool is_known = device_(capabilities);
         *status.mutable_device() = shownDevice(*latest, is_known ? &capabilities : nullptr);
     }
     publisher_.publishStatus(std::move(status));

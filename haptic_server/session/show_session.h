@@ -2,6 +2,7 @@
 // to the tick.
 #pragma once
 
+#include <functional>
 #include <future>
 #include <optional>
 
@@ -12,7 +13,6 @@
 #include "haptic_server/publish/byte_budget.h"
 #include "haptic_server/publish/publisher.h"
 #include "haptic_server/session/accuracy_figures.h"
-#include "haptic_server/session/device_link_io.h"
 #include "haptic_server/session/recorder.h"
 #include "haptic_server/session/session_commands.h"
 #include "haptic_server/session/shown_effects.h"
@@ -22,11 +22,14 @@ namespace bonemill {
 
 class ShowSession {
   public:
+    // Tells what the device can do; false says that none has told yet.
+    using ShownDevice = std::function<bool(DeviceCapabilities&)>;
+
     // Node meshes and densities take at most `bytes_per_s`, the latter a part of what the former leave.
     // References must outlive this object.
     ShowSession(Publisher& publisher, const scene::Scene& scene, const Simulation& simulation,
                 const BoneHistory& history, const AccuracyFigures& figures, MeshOutbox& outbox,
-                Recorder& recorder, const DeviceLinkIo& device, SessionCommands& commands,
+                Recorder& recorder, ShownDevice device, SessionCommands& commands, TaskWatch& task,
                 double bytes_per_s);
 
     // Publishes the scene, before the first round; the protected structures follow with some round().
@@ -56,6 +59,7 @@ class ShowSession {
     void publishPictures();
     void publishRemarks();
     void carryOutCommands();
+    void followTool();
     void answer(const topics::Command& command, const std::string& result);
     void log(const topics::Command& command, const std::string& result);
 
@@ -69,8 +73,9 @@ class ShowSession {
     double warning_distance_;                        // m, of structures
     std::future<std::vector<NodeMesh>> structures_;  // under way, on a thread of its own; then invalid
     Recorder& recorder_;
-    const DeviceLinkIo& device_;
+    ShownDevice device_;
     SessionCommands& commands_;
+    TaskWatch& task_;
     AccuracyFigures figures_;
     ShownEffects effects_;
     std::vector<std::string> material_names_;

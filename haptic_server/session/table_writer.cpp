@@ -16,7 +16,9 @@ struct TableWriter::Shared {
         topics::Attempt attempt;
         std::string scene;
         std::optional<topics::Command> order;
+        std::optional<AttemptJudgement> judgement;
     };
+    Written write(const Line& line);
     explicit Shared(ClassTable of) : table(std::move(of)) {}
     void work();
 
@@ -28,6 +30,20 @@ struct TableWriter::Shared {
     bool is_ending = false;
 };
 
+TableWriter::Written TableWriter::Shared::write(const Line& line) {
+    topics::Attempt attempt = line.attempt;
+    std::string files_problem;
+    if (line.judgement) files_problem = writeResults(*line.judgement, table.path(), line.scene, attempt);
+    if (!files_problem.empty())
+        spdlog::error("the results of attempt {} are not there: {}", attempt.number(), files_problem);
+    std::string problem = table.append(attempt, line.scene);
+    if (!problem.empty())
+        spdlog::error("attempt {} is not in the class table: {}", attempt.number(), problem);
+    Written written{line.order, attempt.number(), {}, problem.empty() ? files_problem : problem};
+    if (attempt.has_verdict() && line.judgement->is_told) written.verdict = attempt.verdict();
+    return written;
+}
+
 void TableWriter::Shared::work() {
     std::unique_lock lock(mutex);
     for (;;) {
@@ -35,12 +51,10 @@ void TableWriter::Shared::work() {
         if (waiting.empty()) return;
         const Line line = waiting.front();
         lock.unlock();
-        std::string problem = table.append(line.attempt, line.scene);
-        if (!problem.empty())
-            spdlog::error("attempt {} is not in the class table: {}", line.attempt.number(), problem);
+        Written result = write(line);
         lock.lock();
         waiting.pop_front();
-        if (line.order) written.push_back({*line.order, std::move(problem)});
+        written.push_back(std::move(result));
         has_changed.notify_all();
     }
 }
@@ -61,14 +75,15 @@ TableWriter::~TableWriter() {
 }
 
 bool TableWriter::write(const topics::Attempt& attempt, const std::string& scene,
-                        const std::optional<topics::Command>& order) {
+                        const std::optional<topics::Command>& order,
+                        std::optional<AttemptJudgement> judgement) {
     const std::lock_guard lock(shared_->mutex);
     if (!shared_->table.hasFile()) {
-        if (order) shared_->written.push_back({*order, ""});
+        if (order) shared_->written.push_back({order, attempt.number(), {}, ""});
         return true;
     }
     if (shared_->waiting.size() >= kMostWaiting) return false;
-    shared_->waiting.push_back({attempt, scene, order});
+    shared_->waiting.push_back({attempt, scene, order, std::move(judgement)});
     shared_->has_changed.notify_all();
     return true;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "haptic_server/session/attempt_results.h"
 #include "haptic_server/session/class_table.h"
 
 namespace bonemill {
@@ -21,17 +22,21 @@ class TableWriter {
     TableWriter(TableWriter&&) noexcept = default;
     TableWriter& operator=(TableWriter&&) = delete;
 
-    static constexpr int kLongestEnd_s = 3;
+    static constexpr int kLongestEnd_s = 5;
 
     // Any thread, at once. False: so many lines wait already that this one is left out. `scene` is the
-    // scene's title; `order` is the one that waits for the line, if there is one.
+    // scene's title; `order` is the one that waits for the line, if there is one. The attempt is judged
+    // first, if it is to be: its files come before its line, which is there without them, too.
     bool write(const topics::Attempt& attempt, const std::string& scene,
-               const std::optional<topics::Command>& order);
+               const std::optional<topics::Command>& order,
+               std::optional<AttemptJudgement> judgement = std::nullopt);
     struct Written {
-        topics::Command order;
-        std::string problem;  // why the line is not there, or ""
+        std::optional<topics::Command> order;
+        uint32_t attempt;                        // its number
+        std::optional<topics::Verdict> verdict;  // what may be told of it
+        std::string problem;                     // why the line, or the files, are not there, or ""
     };
-    // Any thread: how orders have ended since the last call.
+    // Any thread: what was written since the last call.
     std::vector<Written> takeWritten();
 
   private:

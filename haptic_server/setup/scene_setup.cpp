@@ -8,6 +8,8 @@
 #include "common/user_error.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_materials.h"
+#include "haptic_server/setup/scene_shapes.h"
+#include "haptic_server/setup/scene_task.h"
 #include "haptic_server/tick/hand_side.h"
 #include "haptic_server/tick/tick_budget.h"
 #include "haptic_server/volume/import/far_air.h"
@@ -21,26 +23,6 @@ constexpr int kDefaultLeafCells = 16;
 constexpr double kLongestDentalTool = 30e-3;  // m from the burr's centre to the shaft's end
 constexpr double kMostOverload =
     3;  // a shaft of half the burr's radius is common, and leans more than it pokes
-
-ToolShape shapeOf(const scene::Tool::Shape& shape) {
-    switch (shape.kind_case()) {
-        case scene::Tool::Shape::kCapsule:
-            return CapsuleShape{metresOf(shape.capsule().from_mm()), metresOf(shape.capsule().to_mm()),
-                                shape.capsule().radius_mm() * kMillimetre};
-        case scene::Tool::Shape::kCylinder:
-            return CylinderShape{metresOf(shape.cylinder().from_mm()), metresOf(shape.cylinder().to_mm()),
-                                 shape.cylinder().radius_mm() * kMillimetre,
-                                 shape.cylinder().edge_radius_mm() * kMillimetre};
-        case scene::Tool::Shape::kCone:
-            return ConeShape{metresOf(shape.cone().from_mm()), metresOf(shape.cone().to_mm()),
-                             shape.cone().from_radius_mm() * kMillimetre,
-                             shape.cone().to_radius_mm() * kMillimetre,
-                             shape.cone().edge_radius_mm() * kMillimetre};
-        default:
-            return SphereShape{metresOf(shape.sphere().center_mm()),
-                               shape.sphere().radius_mm() * kMillimetre};
-    }
-}
 
 DensityWindow windowOf(const scene::Volume& volume) {
     DensityWindow window;
@@ -228,6 +210,13 @@ std::vector<SpoTool> Simulation::spoTools() const {
     return all;
 }
 
+std::optional<BreachWatch> breachWatchOf(const Simulation& simulation) {
+    if (!simulation.task || !simulation.task->plan) return std::nullopt;
+    std::vector<BurrProbes> burrs;
+    for (const SceneTool& tool : simulation.tools) burrs.emplace_back(tool.burr);
+    return BreachWatch(simulation.bone->volume, *simulation.task->plan, std::move(burrs));
+}
+
 scene::Tool::Handpiece handpieceOf(const scene::Tool& tool, const TriangleSurface& surface) {
     if (tool.handpiece() != scene::Tool::AUTOMATIC) return tool.handpiece();
     if (!tool.mesh_path().empty()) return scene::Tool::NONE;
@@ -258,7 +247,7 @@ TickConfig tickConfigOf(const scene::Scene& scene) {
 
 ToolConfig toolConfigOf(const LoadedScene& loaded, const scene::Tool& tool) {
     ToolConfig config;
-    for (const scene::Tool::Shape& shape : tool.shape()) config.shapes.push_back(shapeOf(shape));
+    for (const scene::Tool::Shape& shape : tool.shape()) config.shapes.push_back(toolShapeOf(shape));
     if (tool.has_mesh_path()) config.mesh_path = resolvePath(loaded, tool.mesh_path());
     const Burr burr = burrOf(tool);
     config.burr_kind = burr.kind;
@@ -297,6 +286,7 @@ Simulation makeSimulation(const LoadedScene& loaded) {
     mapRawValues(simulation.tick.effects, loaded, simulation.mapping);
     addProperties(simulation, loaded, volume, material_ids);
     simulation.bone = std::make_unique<BoneModel>(std::move(volume), leaf_cells, shellConfigOf(scene));
+    simulation.task = judgedTaskOf(loaded, simulation.bone->volume, simulation.tick.effects.properties);
     warnOfLargeLeaves(simulation);
     fitToolsToBone(simulation, scene);
     return simulation;

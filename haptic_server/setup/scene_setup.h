@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/config/scene_file.h"
+#include "haptic_server/assessment/product/breach_watch.h"
 #include "haptic_server/bone/bone_model.h"
 #include "haptic_server/setup/scene_accuracy.h"
 #include "haptic_server/tick/tick_config.h"
@@ -30,17 +31,21 @@ struct Simulation {
     AccuracySettings accuracy;
     std::unique_ptr<BoneModel> bone;
     DensityMapping mapping;
-    std::vector<SceneTool> tools;       // at least one
-    bool lacks_patient_axes = false;    // RawVolume
-    Pose X_WD;                          // device base in the world
-    std::vector<std::string> remarks;   // for people: what was read or proposed
-    std::vector<std::string> warnings;  // what the user would better change in the scene
+    std::vector<SceneTool> tools;                      // at least one
+    std::shared_ptr<const JudgedTask> task = nullptr;  // null: the scene has none
+    bool lacks_patient_axes = false;                   // RawVolume
+    Pose X_WD;                                         // device base in the world
+    std::vector<std::string> remarks;                  // for people: what was read or proposed
+    std::vector<std::string> warnings;                 // what the user would better change in the scene
 
     // They are meant for ToolSwitch and point into `tools`.
     std::vector<SpoTool> spoTools() const;
     // It has the first tool and the scene's accuracy from beginning to end.
     FixedTickConfig fixedTick() const { return {tick, spoTools().front(), accuracy}; }
 };
+
+// Who follows the tool for its breach beside the planned line of the task; none without such a line.
+std::optional<BreachWatch> breachWatchOf(const Simulation& simulation);
 
 // Imports the volume, builds tree, shell and tools. Throws UserError.
 Simulation makeSimulation(const LoadedScene& loaded);

@@ -8,6 +8,7 @@
 #include "haptic_server/telemetry/cut.h"
 #include "haptic_server/telemetry/device_report.h"
 #include "haptic_server/telemetry/effect_record.h"
+#include "haptic_server/telemetry/tick_input.h"
 
 namespace bonemill {
 
@@ -29,8 +30,10 @@ enum TickFault : uint32_t {
     kFaultImplausibleDevice = 1u << 12,  // what device_daemon says cannot be: it was refused
     kFaultEarlySamples = 1u << 13,       // samples come faster than the loop's rate: the tick was held back
     kFaultFewerSamples = 1u << 14,  // the contact is sampled less finely than asked for: there was no time
+    kFaultNotRecorded =
+        1u << 15,  // no tick's: the recording or the trace lacks something (disk full or slow)
 };
-constexpr uint32_t kLastFault = kFaultFewerSamples;
+constexpr uint32_t kLastFault = kFaultNotRecorded;
 
 struct TickRecord {
     uint64_t tick;
@@ -56,12 +59,14 @@ struct TickRecord {
     uint32_t removed_voxels;  // voxels that fell below the iso-value in this tick
     uint32_t added_voxels;    // voxels that rose to the iso-value or above in this tick
     uint32_t buttons;         // Button bits
+    uint32_t tool;            // its place in the scene's list of tools, from 0
     bool waits_for_release;   // the bone was put back under a pedal that was down: it is not milled
     uint32_t faults;          // TickFault bits of this tick
     uint64_t bone_order;      // to put the bone back: the newest that is done (BoneHistory::finishedOrder())
     Cut cut;                  // the voxels milled in this tick
     EffectRecord effects;
     DeviceReport device;
+    TickInput input;
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 

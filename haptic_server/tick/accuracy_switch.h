@@ -20,11 +20,13 @@ class AccuracySwitch {
 
     static constexpr size_t choiceOf(Preset preset) noexcept { return 1 + size_t(preset); }
 
-    // Any thread may call both. Relaxed is enough, for the choices themselves never change.
+    // Any thread may call all of them. Relaxed is enough, for the choices themselves never change.
     void choose(size_t choice) noexcept { choice_.store(choice, std::memory_order_relaxed); }
-    const AccuracySettings& chosen() const noexcept {
-        return choices_[choice_.load(std::memory_order_relaxed)];
-    }
+    size_t choice() const noexcept { return choice_.load(std::memory_order_relaxed); }
+    const AccuracySettings& chosen() const noexcept { return choices_[choice()]; }
+    // All of them, by choice.
+    static constexpr size_t count() noexcept { return 1 + kPresetCount; }
+    const AccuracySettings& operator[](size_t choice) const noexcept { return choices_[choice]; }
 
   private:
     std::array<AccuracySettings, 1 + kPresetCount> choices_;

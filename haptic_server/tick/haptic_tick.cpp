@@ -7,6 +7,7 @@
 #include "common/assert.h"
 #include "common/rt/rt_guard.h"
 #include "haptic_server/effects/make_effects.h"
+#include "haptic_server/tick/recorded_input.h"
 
 namespace bonemill {
 namespace {
@@ -71,7 +72,7 @@ HapticTick::HapticTick(const TickConfig& config, const TickBone& bone, const Tic
 // A choice is taken up when its contact points are up to date; until then the old one stays in force.
 void HapticTick::chooseSettings(const SpoStep& step, uint32_t& faults) noexcept {
     PointShell& shell = bone_.shell;
-    AccuracySettings chosen = accuracy_.chosen();
+    AccuracySettings chosen = accuracy_[decisions_.accuracy];
     const int asked_for = chosen.shell_factor;
     chosen.shell_factor = affordable_.factor(shell, asked_for, settings_.shell_factor, step);
     if (chosen.shell_factor > asked_for) faults |= kFaultCoarserShell;
@@ -127,8 +128,21 @@ void HapticTick::keepAccount(const SpoStep& step, const DeviceInput& input) noex
         useCoupling();
 }
 
+// What other threads say is asked for once in a tick, so that the tick can be run again with the same.
+void HapticTick::decide(const DeviceInput& input) noexcept {
+    if (input.decisions) {
+        decisions_ = *input.decisions;
+        return;
+    }
+    decisions_.tool = uint32_t(tools_.chosen());
+    decisions_.accuracy = uint32_t(accuracy_.choice());
+    decisions_.is_milling_paused = history_ && history_->isMillingPaused();
+    decisions_.is_write_refused = false;
+    decisions_.bone_order = history_ ? history_->takenUpOrder() : 0;
+}
+
 void HapticTick::chooseTool() noexcept {
-    const size_t chosen = tools_.chosen();
+    const size_t chosen = decisions_.tool;
     if (chosen == tool_) return;
     tool_ = chosen;
     thesis_.setTool(tools_[tool_]);
@@ -144,6 +158,7 @@ bool HapticTick::tick(TickIo& io) noexcept {
     if (!io.read(input)) return false;
     const RtScope scope;
     uint32_t faults = input.faults | (input.is_stale ? kFaultStaleDevice : kFaultNone);
+    decide(input);
     if (input.other_device) adaptTo(*input.other_device);
     acceptPose(input, faults);
     chooseTool();
@@ -169,12 +184,23 @@ bool HapticTick::tick(TickIo& io) noexcept {
     record.compute_ns = end_ns - input.start_ns;
     if (end_ns > input.deadline_ns) faults |= kFaultOverrun;
     const double load = double(record.compute_ns) / double(input.deadline_ns - input.start_ns);
-    if (sample_cap_.after(load, step.candidates)) gradient_.setAffordableSamples(sample_cap_.most());
+    capSamples(input, load, step);
     record.faults = faults;
+    record.input = recordedInput(input, decisions_);
     latched_faults_ |= faults;
     io.push(record);
     ++tick_;
     return true;
+}
+
+// The clock decides that; a replay has it from then.
+void HapticTick::capSamples(const DeviceInput& input, double load, const SpoStep& step) noexcept {
+    if (!input.decisions) {
+        sample_cap_.after(load, step.candidates);
+        decisions_.most_samples = sample_cap_.most() < UINT32_MAX ? uint32_t(sample_cap_.most()) : 0;
+    }
+    if (decisions_.most_samples == std::exchange(most_samples_, decisions_.most_samples)) return;
+    gradient_.setAffordableSamples(most_samples_ == 0 ? SIZE_MAX : size_t(most_samples_));
 }
 
 void HapticTick::acceptPose(const DeviceInput& input, uint32_t& faults) noexcept {
@@ -258,7 +284,7 @@ void HapticTick::beginEffects(const DeviceInput& input) noexcept {
     start.dt = config_.dt * input.periods;
     start.periods = input.periods;
     start.may_mill = !place_.isLost() && !input.is_stale && input.device.isEngaged() && !waits_for_release_ &&
-                     !(history_ && history_->isMillingPaused());
+                     !decisions_.is_milling_paused;
     start.is_pedal_down = start.may_mill && remove && !add;
     start.is_add_wanted = start.may_mill && add && !remove;
     if (start.is_pedal_down != was_pedal_down_ || start.is_add_wanted != was_add_wanted_)
@@ -292,7 +318,10 @@ SpoStep HapticTick::moveAndFeel(const DeviceInput& input, uint32_t& faults) noex
 
 MillingResult HapticTick::mill(uint32_t& faults) noexcept {
     if (!history_) return millWithEffects(faults);
-    if (!history_->beginWrite()) return {};
+    if (decisions_.is_write_refused || !history_->beginWrite(tick_)) {
+        decisions_.is_write_refused = true;
+        return {};
+    }
     MillingResult milled;
     bool shell_is_complete = true;
     if (history_->restoreSome(bone_, shell_is_complete)) {
@@ -305,6 +334,7 @@ MillingResult HapticTick::mill(uint32_t& faults) noexcept {
         milled = millWithEffects(faults);
     }
     if (!shell_is_complete) faults |= kFaultShellOverflow;
+    decisions_.bone_order = history_->takenUpOrder();
     history_->endWrite(milled.removed_voxels, milled.added_voxels);
     return milled;
 }
@@ -351,6 +381,7 @@ TickRecord HapticTick::makeRecord(const DeviceInput& input, const SpoStep& step)
     record.coupling_share = hand_coupling_.share();
     record.rotation_share = hand_coupling_.rotationShare();
     record.buttons = input.buttons;
+    record.tool = uint32_t(tool_);
     record.waits_for_release = waits_for_release_;
     record.device = input.device;
     record.bone_order = history_ ? history_->finishedOrder() : 0;

@@ -62,6 +62,7 @@ class HapticTick {
     bool believe(const DeviceInput& input) noexcept;
     void placeTool() noexcept;
     bool isInBone(const Pose& X_VT, double radius) const noexcept;
+    void decide(const DeviceInput& input) noexcept;
     void chooseSettings(const SpoStep& step, uint32_t& faults) noexcept;
     void takeUp(const AccuracySettings& settings) noexcept;
     SpoModel* modelOf(ContactLaw law) noexcept;
@@ -69,6 +70,7 @@ class HapticTick {
     void beginEffects(const DeviceInput& input) noexcept;
     SpoStep moveAndFeel(const DeviceInput& input, uint32_t& faults) noexcept;
     MillingResult mill(uint32_t& faults) noexcept;
+    void capSamples(const DeviceInput& input, double load, const SpoStep& step) noexcept;
     void keepWaiting(const SpoStep& step) noexcept;
     MillingResult millWithEffects(uint32_t& faults) noexcept;
     Wrench inWorld(const Wrench& wrench_V) const noexcept;
@@ -79,7 +81,9 @@ class HapticTick {
     BoneHistory* history_;
     const ToolSwitch& tools_;
     const AccuracySwitch& accuracy_;
-    size_t tool_;  // of tools_
+    size_t tool_;                // of tools_
+    TickDecisions decisions_;    // for the tick under way
+    uint32_t most_samples_ = 0;  // in force; 0: no cap
     Thesis2012Model thesis_;
     GradientModel gradient_;
     ComparedLaws compared_;

@@ -26,6 +26,9 @@ struct DeviceInput {
     int64_t start_ns = 0;             // when this tick began, CLOCK_MONOTONIC
     int64_t deadline_ns = INT64_MAX;  // work that ends later is an overrun
     int64_t wakeup_latency_ns = 0;
+    // In a replay: what was decided for this tick when it ran first, instead of what others say now. It is
+    // good until the next read().
+    const TickDecisions* decisions = nullptr;
 };
 
 // A tick talks to this. Implementations are RT-safe: they make no allocation, lock or system call beyond the

@@ -1,10 +1,13 @@
 #include "render_client/app/connect_options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iostream>
+#include <span>
 
 #include "common/user_error.h"
 
@@ -69,8 +72,9 @@ std::optional<ConnectOptions> connectOptions(const RawConnect& raw) {
     options.target.fingerprint = raw.fingerprint;
     const char* const variable = std::getenv("BONEMILL_TOKEN");
     if (!options.token.empty()) {
-        std::cerr << "warning: other users of this PC can read the token on the command line; better: "
-                     "--token-file, or the variable BONEMILL_TOKEN\n";
+        std::cerr
+            << "warning: a token on the command line can be read by other users of this PC at the start, and "
+               "later in the shell's history; better: --token-file, or the variable BONEMILL_TOKEN\n";
     } else if (!raw.token_file.empty()) {
         options.token = firstLineOf(raw.token_file);
     } else if (variable && *variable) {
@@ -79,6 +83,13 @@ std::optional<ConnectOptions> connectOptions(const RawConnect& raw) {
         throw UserError("--connect: needs the token of an invitation, by --token-file or BONEMILL_TOKEN");
     }
     return options;
+}
+
+void hideTokens(int argc, char** argv) {
+    for (char* const argument : std::span(argv, size_t(argc))) {
+        char* const token = std::strstr(argument, "://") ? std::strchr(argument, '#') : nullptr;
+        if (token) std::fill(token + 1, token + std::strlen(token), 'x');
+    }
 }
 
 }  // namespace bonemill

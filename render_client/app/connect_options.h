@@ -31,5 +31,8 @@ void addConnectOptions(CLI::App& app, RawConnect& raw, const std::vector<CLI::Op
 // Returns nothing where no gateway is named. The token is the link's, the file's, or $BONEMILL_TOKEN. Throws
 // UserError.
 std::optional<ConnectOptions> connectOptions(const RawConnect& raw);
+// Crosses out the tokens of links in the command line, which other users of this PC can read; for when it was
+// parsed.
+void hideTokens(int argc, char** argv);
 
 }  // namespace bonemill

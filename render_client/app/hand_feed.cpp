@@ -151,6 +151,7 @@ void HandFeed::showHand(const SessionView& session, Clock::time_point now) {
     scene_.setHint(opacity > 0 ? std::optional(HudHint{hold.isHolding() ? hintRows() : startRows(), opacity})
                                : std::nullopt);
     scene_.setHelp(helpGroups(hold.isHolding()         ? HelpFor::kHolding
+                              : isReplay(session)      ? HelpFor::kReplay
                               : isHeldByMouse(session) ? HelpFor::kMayHold
                                                        : HelpFor::kLooking,
                               session.lesson != nullptr));

@@ -5,6 +5,7 @@
 #include "common/process_limits.h"
 #include "common/run_program.h"
 #include "render_client/app/connect_gateway.h"
+#include "render_client/app/connect_options.h"
 #include "render_client/app/list_sessions.h"
 #include "render_client/app/measure_viewer.h"
 #include "render_client/app/offscreen_viewer.h"
@@ -12,6 +13,7 @@
 #include "render_client/app/send_command.h"
 #include "render_client/app/serve_gateway.h"
 #include "render_client/app/stop_signal.h"
+#include "render_client/app/video_viewer.h"
 #include "render_client/app/window_viewer.h"
 
 namespace bonemill {
@@ -22,6 +24,7 @@ constexpr size_t kPictureBytes = size_t(1) << 30;
 
 int view(int argc, char** argv) {
     auto options = parseOptions(argc, argv);
+    hideTokens(argc, argv);
     if (!options) return 0;
     setUpLog("render_client", options->log_level);
     catchStopSignals();
@@ -34,6 +37,8 @@ int view(int argc, char** argv) {
     requireMemory(kPictureBytes, "the pictures");
     if (options->measure) {
         runMeasurement(*options);
+    } else if (options->offscreen && options->offscreen->video) {
+        runVideo(*options);
     } else if (options->offscreen) {
         runOffscreen(*options);
     } else {

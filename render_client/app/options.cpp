@@ -31,6 +31,7 @@ struct RawOptions {
     CLI::Option* name = nullptr;
     bool offscreen = false;
     OffscreenOptions offscreen_options;
+    VideoOptions video;
     uint32_t interval_ms = uint32_t(OffscreenOptions().interval.count());
     std::optional<uint32_t> timeout_s;
     std::optional<uint32_t> measure_s;
@@ -94,6 +95,10 @@ std::vector<CLI::Option*> addSessionOptions(CLI::App& app, RawOptions& raw, Clie
     raw.name =
         app.add_option("--name", options.subscriber.name, "What the others read in their list of viewers")
             ->capture_default_str();
+    app.add_flag(
+        "--trainee", options.subscriber.is_trainee,
+        "The trainee looks through this window: the recording takes what it sees (else, what the only "
+        "operator sees)");
     CLI::Option* const role =
         app.add_option(
                "--role", raw.role,
@@ -130,26 +135,54 @@ void addCameraOptions(CLI::App& app, RawOptions& raw) {
         ->type_name("X Y Z");
 }
 
+void addVideoOptions(CLI::App& app, VideoOptions& video, CLI::Option* offscreen) {
+    constexpr double kFewestFrames = 1, kMostFrames = 120;  // per second
+    auto* file = app.add_option("--video", video.path, "Write a video (.mp4) instead of PNG pictures")
+                     ->type_name("FILE")
+                     ->needs(offscreen);
+    app.add_option("--fps", video.fps, "Frames per second of the video")
+        ->check(within(kFewestFrames, kMostFrames))
+        ->capture_default_str()
+        ->needs(file);
+    app.add_option("--seconds", video.seconds, "The video is so long at most; 0: until the session ends")
+        ->check(within(0, kMostSeconds))
+        ->capture_default_str()
+        ->needs(file);
+}
+
 // Returns the option that switches the window off, for those that exclude it.
 CLI::Option* addOffscreenOptions(CLI::App& app, RawOptions& raw) {
-    auto* offscreen =
-        app.add_flag("--offscreen", raw.offscreen, "Write PNG pictures instead of opening a window");
+    auto* offscreen = app.add_flag("--offscreen", raw.offscreen,
+                                   "Write PNG pictures, or a video, instead of opening a window");
+    auto* out = app.add_option("--out", raw.offscreen_options.directory,
+                               "Folder for frame_0000.png, frame_0001.png, ...")
+                    ->needs(offscreen);
     app.add_option("--frames", raw.offscreen_options.frames, "How many pictures")
         ->check(CLI::Range(1u, 1000000u))
         ->capture_default_str()
-        ->needs(offscreen);
-    auto* out = app.add_option("--out", raw.offscreen_options.directory,
-                               "Folder for frame_0000.png, frame_0001.png, ...");
-    out->needs(offscreen);
-    offscreen->needs(out);
+        ->needs(out);
     app.add_option("--interval-ms", raw.interval_ms, "Time between pictures")
         ->check(CLI::Range(0u, 3600000u))
         ->capture_default_str()
-        ->needs(offscreen);
+        ->needs(out);
     app.add_flag("--wait-complete", raw.offscreen_options.wait_complete,
                  "Take the first picture when the whole model has arrived")
         ->needs(offscreen);
+    addVideoOptions(app, raw.video, offscreen);
     return offscreen;
+}
+
+// Throws UserError.
+void convertOffscreen(const RawOptions& raw, std::chrono::seconds timeout, ClientOptions& options) {
+    const bool has_video = !raw.video.path.empty();
+    if (has_video == !raw.offscreen_options.directory.empty())
+        throw UserError("--offscreen needs either --out FOLDER, for pictures, or --video FILE.mp4");
+    if (has_video && !options.sound_wav.empty())
+        throw UserError("--sound-wav goes with --out, not with --video");
+    options.offscreen = raw.offscreen_options;
+    options.offscreen->interval = std::chrono::milliseconds(raw.interval_ms);
+    options.offscreen->timeout = timeout;
+    if (has_video) options.offscreen->video = raw.video;
 }
 
 // Returns the options that say what to do instead of a window.
@@ -161,7 +194,8 @@ std::vector<CLI::Option*> addCommandOptions(CLI::App& app, RawOptions& raw, CLI:
                "No viewer: ask the server for \"reset\", \"pause\", \"resume\", \"tool NAME-or-number\", "
                "\"checkpoint\", \"restore NUMBER-or-last\", \"accuracy NAME\", \"export NAME\", "
                "\"reset-device\", \"scene ID\", \"start TRAINEE\", \"stop\", \"note TEXT\", "
-               "\"erase NUMBER-or-all\" or \"shutdown\", print what it answers and stop")
+               "\"erase NUMBER-or-all\" or \"shutdown\", of a replay \"seek SECONDS\", \"speed FACTOR\", "
+               "\"next\", \"previous\" or \"when X Y Z\", print what it answers and stop")
             ->check(commandProblem)
             ->type_name("TEXT")
             ->excludes(offscreen);
@@ -234,11 +268,7 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
         throw UserError("--timeout-s needs --offscreen, --command or --measure-s");
     const std::chrono::seconds timeout =
         raw.timeout_s ? std::chrono::seconds(*raw.timeout_s) : kDefaultTimeout;
-    if (raw.offscreen) {
-        options.offscreen = raw.offscreen_options;
-        options.offscreen->interval = std::chrono::milliseconds(raw.interval_ms);
-        options.offscreen->timeout = timeout;
-    }
+    if (raw.offscreen) convertOffscreen(raw, timeout, options);
     if (raw.measure_s) {
         options.measure = MeasureOptions{.time = std::chrono::seconds(*raw.measure_s),
                                          .is_in_window = raw.measures_in_window,
@@ -249,6 +279,10 @@ ClientOptions convert(const RawOptions& raw, ClientOptions options) {
     if (options.holds_tool && options.subscriber.role != topics::Viewer::OPERATOR &&
         options.subscriber.role != topics::Viewer::INSTRUCTOR)
         throw UserError("--hold-tool needs --role operator or instructor: a viewer only looks");
+    if (options.subscriber.is_trainee && (raw.offscreen || raw.measure_s || !raw.command.empty() ||
+                                          (options.subscriber.role != topics::Viewer::OPERATOR &&
+                                           options.subscriber.role != topics::Viewer::INSTRUCTOR)))
+        throw UserError("--trainee needs a window, and --role operator or instructor");
     if (!options.sound_wav.empty() && (!options.has_effects || raw.measure_s || !raw.command.empty()))
         throw UserError(
             "--sound-wav needs a viewer with effects: leave out --no-effects, --measure-s and --command");

@@ -21,12 +21,20 @@ namespace bonemill {
 // The program waits so long for a server or its whole model, unless it is told.
 inline constexpr std::chrono::seconds kDefaultTimeout{60};
 
+// A video instead of single pictures.
+struct VideoOptions {
+    std::filesystem::path path;  // .mp4
+    double fps = 30;
+    double seconds = 0;  // 0: until the session ends
+};
+
 struct OffscreenOptions {
     uint32_t frames = 1;
     std::filesystem::path directory;
     std::chrono::milliseconds interval{500};
     bool wait_complete = false;
-    std::chrono::seconds timeout = kDefaultTimeout;  // of wait_complete
+    std::chrono::seconds timeout = kDefaultTimeout;  // of wait_complete, and of a video for its server
+    std::optional<VideoOptions> video;
 };
 
 // Instead of a viewer, this is asked for, once there is a server.

@@ -44,7 +44,11 @@ int runSendCommand(const ClientOptions& options) {
     pollUntil(subscriber, Clock::time_point::max(),
               [&] { return !(outcomes = subscriber.takeOutcomes()).empty(); });
     if (outcomes.empty()) return 1;
-    std::cout << outcomeText(outcomes.front()) << std::endl;
+    std::cout << outcomeText(outcomes.front());
+    if (outcomes.front().command.has_replay() && outcomes.front().isDone() &&
+        !subscriber.status()->replay().event().empty())
+        std::cout << ": " << subscriber.status()->replay().event();
+    std::cout << std::endl;
     return outcomes.front().isDone() ? 0 : 1;
 }
 

@@ -79,8 +79,9 @@ std::vector<CLI::Option*> addViewOptions(CLI::App& app, RawView& raw) {
             ->type_name("FACTOR");
     auto* slices = app.add_flag("--slices", raw.slices, "Three slices through the scan beside the picture");
     auto* scan = app.add_option("--scan-on", raw.scan_on,
-                                "Where bone shows the scan's grey values: off, cuts, or milled (and cuts)")
-                     ->check(CLI::IsMember({"off", "cuts", "milled"}))
+                                "Where bone shows the scan's grey values: off, cuts, milled (and cuts); "
+                                "materials: cuts have the colours of the scene's materials")
+                     ->check(CLI::IsMember({"off", "cuts", "milled", "materials"}))
                      ->capture_default_str();
     auto* window = app.add_option("--grey-window", raw.grey_window,
                                   "Width and level of the grey values, as the scan has them (HU)")
@@ -112,9 +113,10 @@ ViewSettings viewSettings(const RawView& raw) {
     settings.has_depth_of_field = raw.has_depth_of_field;
     settings.quality = raw.quality == "quick" ? Quality::kQuick : Quality::kFull;
     settings.slices.are_shown = raw.slices;
-    settings.slices.ct = raw.scan_on == "off"      ? CtShown::kNowhere
-                         : raw.scan_on == "milled" ? CtShown::kOnCutsAndMilled
-                                                   : CtShown::kOnCuts;
+    settings.slices.ct = raw.scan_on == "off"         ? CtShown::kNowhere
+                         : raw.scan_on == "milled"    ? CtShown::kOnCutsAndMilled
+                         : raw.scan_on == "materials" ? CtShown::kMaterialsOnCuts
+                                                      : CtShown::kOnCuts;
     if (raw.grey_window.size() == 2)
         settings.slices.window =
             GreyWindow{std::max(raw.grey_window[0], kNarrowestWindow), raw.grey_window[1]};

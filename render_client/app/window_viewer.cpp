@@ -16,6 +16,7 @@
 #include "render_client/app/stop_signal.h"
 #include "render_client/controls/announce_clock.h"
 #include "render_client/controls/done_text.h"
+#include "render_client/controls/eye_watch.h"
 #include "render_client/controls/frame_rate.h"
 #include "render_client/controls/help_rows.h"
 #include "render_client/controls/viewer_controls.h"
@@ -231,10 +232,19 @@ class WindowViewer {
         if (wishes.reset_view) scene_.resetView();
         if (wishes.centre_at)
             if (const auto p_W = pick(*wishes.centre_at)) scene_.camera().target_W = *p_W;
+        if (wishes.removal_at) askForRemoval(*wishes.removal_at);
         if (wishes.notice) notices_.show(*wishes.notice);
         if (!wishes.asked.empty()) spdlog::info("asked: {}", wishes.asked);
         has_quit_ = has_quit_ || wishes.quit;
         if (wishes.session) chosen_ = wishes.session;
+    }
+
+    void askForRemoval(const PixelPoint& at) {
+        const auto p_W = pick(at);
+        if (!p_W) return notices_.show({"There is no bone under the mouse", HudTone::kWarning});
+        topics::Command command;
+        command.mutable_replay()->mutable_removal_at()->mutable_p_m()->Assign(p_W->begin(), p_W->end());
+        feed_.subscriber().sendCommand(command);
     }
 
     std::optional<Eigen::Vector3d> pick(const PixelPoint& at) { return scene_.pick(int(at.x), int(at.y)); }
@@ -251,9 +261,22 @@ class WindowViewer {
         const auto at = controls_.pointing();
         const bool is_holding = controls_.toolHold().isHolding();
         const bool is_news = std::exchange(was_holding_, is_holding) != is_holding;
-        if (!announce_clock_.isDue(Clock::now(), at.has_value()) && !is_news) return;
+        const Clock::time_point now = Clock::now();
+        const std::optional<Camera> seen = seenForRecording();
+        const bool has_moved = seen && eye_watch_.isDue(now, *seen);
+        if (!announce_clock_.isDue(now, at.has_value()) && !is_news && !has_moved) return;
         pointer_W_ = at ? pick(*at) : std::nullopt;
-        feed_.subscriber().announce(frame_rate_.perSecond(), pointer_W_, is_holding);
+        if (seen) eye_watch_.told(now, *seen);
+        feed_.subscriber().announce(frame_rate_.perSecond(), pointer_W_, is_holding,
+                                    seen ? std::optional(eyeOf(*seen)) : std::nullopt);
+    }
+
+    // Who operates, or was named as the trainee, is recorded with what it sees.
+    std::optional<Camera> seenForRecording() const {
+        const SubscriberOptions& self = options_.subscriber;
+        if (!self.is_trainee && self.role != topics::Viewer::OPERATOR) return std::nullopt;
+        if (!scene_.hasSceneInfo()) return std::nullopt;
+        return scene_.viewCamera();
     }
 
     // Returns the others, and the user while it points: the laser is seen where it is held, too.
@@ -308,6 +331,7 @@ class WindowViewer {
     Attendance attendance_;
     FrameRate frame_rate_;
     AnnounceClock announce_clock_;
+    EyeWatch eye_watch_;
     std::optional<Eigen::Vector3d> pointer_W_;  // where the user points, as announced last
     Clock::time_point last_picture_ = Clock::now();
     bool was_holding_ = false;  // as announced last

@@ -6,8 +6,12 @@
 namespace bonemill {
 namespace {
 
-// This is far over near: 24 bit of depth still resolve 1e-3 of the distance well.
-constexpr double kMaxDepthRatio = 5000;
+constexpr double kMaxDepthRatio = 5000;         // far over near
+constexpr double kDepthStep = 1.0 / (1 << 24);  // of the depth buffer
+// At the focus one step is so small a part of a pixel in a picture of so many lines: the occlusion takes
+// normals from differences of depth, and flat faces have stripes where steps are larger.
+constexpr double kStepOfPixel = 0.01;
+constexpr int kLines = 1000;
 constexpr double kNearestFar = 1e-3;     // m
 constexpr double kEyesApart = 1.0 / 30;  // of the distance to the focus: comfortable on a desk
 
@@ -52,7 +56,8 @@ Eigen::Matrix4f Camera::clipFromCamera(double aspect, const DepthRange& range) c
 DepthRange Camera::depthRange(const Eigen::Vector3d& center_W, double radius) const {
     const double depth = (center_W - eye_W).dot(forward_W());
     const double far = std::max(depth + radius, kNearestFar);
-    return {std::max(depth - radius, far / kMaxDepthRatio), far};
+    const double resolved = kDepthStep * focus * focus / (kStepOfPixel * metresPerPixel(kLines));
+    return {std::max(depth - radius, std::min(std::max(far / kMaxDepthRatio, resolved), far / 2)), far};
 }
 
 double Camera::metresPerPixel(int height) const {

@@ -28,8 +28,8 @@ struct Camera {
     Eigen::Matrix4f X_CW() const;
     Eigen::Matrix4f clipFromCamera(double aspect, const DepthRange& range) const;
 
-    // Returns the near and far planes that hold the sphere (W, m) as well as the resolution of
-    // the depth buffer allows.
+    // Returns the near and far planes that hold the sphere (W, m) as well as the resolution of the depth
+    // buffer allows, which has to do for what is at the focus: what is much nearer to the eye is not seen.
     DepthRange depthRange(const Eigen::Vector3d& center_W, double radius) const;
 
     // Returns the metres that one pixel spans at the focus, in a picture of this height (pixels).

@@ -31,8 +31,8 @@ struct GreyWindow {
     bool operator==(const GreyWindow&) const = default;
 };
 
-// This shows the scan's grey values instead of the bone's colour.
-enum class CtShown { kNowhere, kOnCuts, kOnCutsAndMilled };
+// This shows the scan's grey values instead of the bone's colour, or cuts in the colours of the materials.
+enum class CtShown { kNowhere, kOnCuts, kOnCutsAndMilled, kMaterialsOnCuts };
 
 struct SliceSettings {
     bool are_shown = false;  // the three panes
@@ -65,7 +65,7 @@ struct ViewSettings {
     bool showsScan() const {
         const bool is_cut = cuts[0].is_on || cuts[1].is_on || cuts[2].is_on;
         return slices.are_shown || slices.ct == CtShown::kOnCutsAndMilled ||
-               (slices.ct == CtShown::kOnCuts && is_cut);
+               (slices.ct != CtShown::kNowhere && is_cut);
     }
     bool show_force = true;
     bool show_handpiece = true;

@@ -46,6 +46,7 @@ void addKeys(const Bindings& bindings, std::vector<HudRow>& rows, Wanted&& is_wa
 
 bool isOfUse(const KeyBinding& binding, HelpFor whom, bool has_lesson) {
     const bool begins_hold = binding.action == Action::kHoldTool;
+    if (binding.is_of_replay) return whom == HelpFor::kReplay;
     if (binding.is_of_lesson) return has_lesson;
     return !binding.is_of_hold || whom == HelpFor::kHolding || (begins_hold && whom == HelpFor::kMayHold);
 }
@@ -65,6 +66,7 @@ std::vector<HelpGroup> helpGroups(HelpFor whom, bool has_lesson) {
     const std::span<const HudRow> mouse =
         whom == HelpFor::kHolding ? std::span<const HudRow>(kMouseWithTool) : std::span<const HudRow>(kMouse);
     std::vector<HelpGroup> groups{{"Mouse", {mouse.begin(), mouse.end()}}};
+    if (whom == HelpFor::kReplay) groups[0].rows.push_back({"Right click", "when was this removed?"});
     for (const auto& [group, title] : kGroups) {
         std::vector<HudRow> rows;
         addKeys(keyTable(), rows, [&, g = group](const KeyBinding& binding) {

@@ -8,8 +8,9 @@
 
 namespace bonemill {
 
-// The session's tool is none of the mouse's business, could be held by it, or is held by it.
-enum class HelpFor { kLooking, kMayHold, kHolding };
+// The session's tool is none of the mouse's business, could be held by it, is held by it, or is a
+// recording's.
+enum class HelpFor { kLooking, kMayHold, kHolding, kReplay };
 
 // Returns the mouse, then every key and sign of the table that is of use, by what they are for. Keys that do
 // the same are one row, parted by spaces. Those of a lesson are among them where the server gives one.

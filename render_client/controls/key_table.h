@@ -33,6 +33,13 @@ enum class Action {
     kEndoscope,
     kMicroscope,
     kPauseMilling,
+    kReplayBack,  // this and those below are of use in a replay
+    kReplayAhead,
+    kReplaySlower,
+    kReplayFaster,
+    kPreviousEvent,
+    kNextEvent,
+    kRemovalHere,
     kSaveCheckpoint,
     kLastCheckpoint,
     kNextTool,
@@ -86,6 +93,7 @@ struct KeyBinding {
     bool repeats = false;       // it acts again while the key is held
     bool is_of_hold = false;    // it is of use only where a mouse can hold the tool
     bool is_of_lesson = false;  // it is of use in a lesson
+    bool is_of_replay = false;  // it is of use in a replay only
 };
 
 // Signs such as [ and + are bound by the text they make: where they lie differs from layout to layout.

@@ -1,5 +1,7 @@
 #include "render_client/controls/session_view.h"
 
+#include <algorithm>
+
 #include "common/device_messages/device_messages.h"
 
 namespace bonemill {
@@ -11,7 +13,34 @@ CommandOrReason refuse(std::string why_not) {
 
 CommandOrReason pauseOrGoOn(const SessionView& session) {
     topics::Command command;
-    command.set_pause_milling(!(session.status && session.status->is_milling_paused()));
+    command.set_pause_milling(isReplay(session) ? session.status->replay().is_playing()
+                                                : !(session.status && session.status->is_milling_paused()));
+    return {command, ""};
+}
+
+// Each step of speed is a doubling, from where it stands.
+CommandOrReason orderReplay(Action action, const SessionView& session) {
+    constexpr double kStepS = 5, kSlowest = 0.125, kFastest = 16;
+    if (!isReplay(session)) return refuse("This is no replay of a recorded session");
+    topics::Command command;
+    topics::ReplayOrder& order = *command.mutable_replay();
+    const double now_s = session.status->session_s(), speed = session.status->replay().speed();
+    switch (action) {
+        case Action::kReplayBack:
+            order.set_seek_s(std::max(0.0, now_s - kStepS));
+            break;
+        case Action::kReplayAhead:
+            order.set_seek_s(now_s + kStepS);
+            break;
+        case Action::kReplaySlower:
+            order.set_speed(std::max(kSlowest, speed / 2));
+            break;
+        case Action::kReplayFaster:
+            order.set_speed(std::min(kFastest, speed * 2));
+            break;
+        default:
+            order.set_jump(action == Action::kPreviousEvent ? -1 : 1);
+    }
     return {command, ""};
 }
 
@@ -62,6 +91,10 @@ std::string whyNotCommand(const SessionView& session) {
     return "";
 }
 
+bool isReplay(const SessionView& session) {
+    return session.status && session.status->has_replay();
+}
+
 bool isHeldByMouse(const SessionView& session) {
     return session.status && session.status->has_device() &&
            session.status->device().kind() == uint32_t(DeviceKind::kPointer);
@@ -70,6 +103,7 @@ bool isHeldByMouse(const SessionView& session) {
 std::string whyNotHold(const SessionView& session) {
     const std::string why_not = whyNotCommand(session);
     if (!why_not.empty()) return why_not;
+    if (isReplay(session)) return "This is a replay: nobody holds its tool";
     if (session.role == topics::Viewer::EXAMINER) return "An examiner leaves the tool to others";
     for (const topics::Viewer& other : session.others)
         if (other.is_holding())
@@ -101,6 +135,14 @@ CommandOrReason commandOf(Action action, const SessionView& session) {
             break;
         case Action::kPauseMilling:
             asked = pauseOrGoOn(session);
+            break;
+        case Action::kReplayBack:
+        case Action::kReplayAhead:
+        case Action::kReplaySlower:
+        case Action::kReplayFaster:
+        case Action::kPreviousEvent:
+        case Action::kNextEvent:
+            asked = orderReplay(action, session);
             break;
         case Action::kSaveCheckpoint:
             command.set_save_checkpoint(true);

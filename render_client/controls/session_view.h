@@ -43,6 +43,9 @@ std::string whyNotHold(const SessionView& session);
 std::string whyNotPoint(const SessionView& session);
 std::string whyNotEndSession(const SessionView& session);
 
+// The session is a replay of a recorded one.
+bool isReplay(const SessionView& session);
+
 // The session's tool is held by a mouse (device_daemon --device pointer).
 bool isHeldByMouse(const SessionView& session);
 

@@ -26,7 +26,7 @@ StereoMode nextStereo(StereoMode mode) {
 }
 
 CtShown nextCt(CtShown shown) {
-    return CtShown((int(shown) + 1) % (int(CtShown::kOnCutsAndMilled) + 1));
+    return CtShown((int(shown) + 1) % (int(CtShown::kMaterialsOnCuts) + 1));
 }
 
 StructureMode nextMode(StructureMode mode) {

@@ -48,11 +48,16 @@ void ViewerControls::onButton(const MouseButtonEvent& event, const SessionView& 
     if (!event.is_down) {
         if (event.button != drag_button_) return;
         if (drag_ == Drag::kDraw) pen_.end();
+        const bool is_click =
+            std::hypot(event.at.x - pressed_at_.x, event.at.y - pressed_at_.y) <= kDoubleClickRadius;
+        if (drag_ == Drag::kPan && event.button == MouseButton::kRight && is_click && isReplay(session))
+            askForRemoval(event.at, session, wishes);
         drag_ = Drag::kNone;
         return;
     }
     if (drag_ != Drag::kNone) return;  // a second button does not disturb a drag
     drag_button_ = event.button;
+    pressed_at_ = event.at;
     const bool is_spare =
         hold_.isHolding() && event.button == MouseButton::kMiddle;  // the tool has the others
     const bool is_drawn = event.held.control ? event.held.shift : is_drawing_ && !event.held.shift;
@@ -97,6 +102,16 @@ void ViewerControls::onMove(const MouseMoveEvent& event, int picture_height) {
 void ViewerControls::passOver(const MouseMoveEvent& event) {
     mouse_ = event.to;
     hold_.passOver(event.to);
+}
+
+void ViewerControls::askForRemoval(const PixelPoint& at, const SessionView& session, Wishes& wishes) const {
+    std::string why_not = whyNotCommand(session);
+    if (why_not.empty() && !isReplay(session)) why_not = "This is no replay of a recorded session";
+    if (why_not.empty()) why_not = whyNoPlace();
+    if (why_not.empty())
+        wishes.removal_at = at;
+    else
+        wishes.notice = HudNotice{why_not, HudTone::kWarning};
 }
 
 void ViewerControls::switchHold(const SessionView& session, Wishes& wishes) {
@@ -169,6 +184,8 @@ void ViewerControls::act(Action action, const SessionView& session, Wishes& wish
             return switchDrawing(session, wishes);
         case Action::kNote:
             return writeNote(session, wishes);
+        case Action::kRemovalHere:
+            return askForRemoval(mouse_, session, wishes);
         case Action::kHoldTool:
             return switchHold(session, wishes);
         case Action::kTrainee:

@@ -36,6 +36,7 @@ struct Wishes {
     std::optional<PixelPoint> note_at;          // it belongs to the bone there
     std::optional<Eigen::Vector3d> note_place;  // which is this place (W): the owner's to say
     std::string asked;                          // a question was put to the user, for the log
+    std::optional<PixelPoint> removal_at;       // when was the bone there removed? (in a replay)
     std::optional<uint32_t> session;            // to be joined, of those that are offered
     bool quit = false;
 };
@@ -126,6 +127,7 @@ class ViewerControls {
     void switchDrawing(const SessionView& session, Wishes& wishes);
     void writeNote(const SessionView& session, Wishes& wishes);
     std::string whyNoPlace() const;
+    void askForRemoval(const PixelPoint& at, const SessionView& session, Wishes& wishes) const;
     void switchHold(const SessionView& session, Wishes& wishes);
 
     ViewSettings& settings_;
@@ -138,6 +140,7 @@ class ViewerControls {
     Drag drag_ = Drag::kNone;
     MouseButton drag_button_ = MouseButton::kLeft;
     PixelPoint mouse_;
+    PixelPoint pressed_at_;  // the button of the drag
     ToolHold hold_;
     PaneMouse pane_mouse_;
     std::optional<MouseButtonEvent> last_click_;

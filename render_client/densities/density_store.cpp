@@ -36,6 +36,7 @@ void DensityStore::put(uint32_t brick, DensityBrick contents) {
     BONEMILL_ASSERT(grid_ && brick < uint32_t(brickCount(*grid_)));
     BONEMILL_ASSERT(contents.scanned.size() == brickVoxels(*grid_));
     BONEMILL_ASSERT(contents.present.empty() || contents.present.size() == contents.scanned.size());
+    BONEMILL_ASSERT(contents.materials.empty() || contents.materials.size() == contents.scanned.size());
     ++changes_;
     bytes_ += bytesOf(contents);
     if (const auto held = bricks_.find(brick); held != bricks_.end()) {

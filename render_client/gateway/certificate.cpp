@@ -7,10 +7,11 @@
 #include <openssl/x509v3.h>
 #include <unistd.h>
 
-#include <cstdio>
+#include <array>
 #include <memory>
 
 #include "common/private_file.h"
+#include "common/security/certificate.h"
 #include "common/user_error.h"
 #include "render_client/secrets/secrets.h"
 
@@ -20,13 +21,8 @@ namespace {
 using KeyPtr = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
 using X509Ptr = std::unique_ptr<X509, decltype(&X509_free)>;
 using BioPtr = std::unique_ptr<BIO, decltype(&BIO_free)>;
-using FilePtr = std::unique_ptr<FILE, decltype(&std::fclose)>;
 
 constexpr long kLifetime_s = 3650L * 86400;
-
-[[noreturn]] void fail(const std::filesystem::path& file, const char* what) {
-    throw UserError(file.string() + ": " + what);
-}
 
 // What `write` writes into memory.
 template <class Write>
@@ -83,32 +79,36 @@ void make(const Certificate& place) {
                      pemOf([&](BIO* memory) { return PEM_write_bio_X509(memory, certificate.get()); }));
 }
 
-std::string fingerprintOf(const std::filesystem::path& file) {
-    const FilePtr stream(std::fopen(file.c_str(), "re"), std::fclose);
-    if (!stream) fail(file, "cannot be read");
-    const X509Ptr certificate(PEM_read_X509(stream.get(), nullptr, nullptr, nullptr), X509_free);
-    if (!certificate) fail(file, "is no certificate in PEM");
-    unsigned char* der = nullptr;
-    const int size = i2d_X509(certificate.get(), &der);
-    if (size <= 0) fail(file, "is no certificate in PEM");
-    const std::string fingerprint = sha256Hex({reinterpret_cast<const char*>(der), size_t(size)});
-    OPENSSL_free(der);
-    return fingerprint;
+std::string fingerprintOf(const bonemill::Certificate& certificate) {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
+    unsigned length = 0;
+    if (X509_digest(certificate.get(), EVP_sha256(), hash.data(), &length) != 1)
+        throw UserError("library: OpenSSL makes no fingerprint");
+    return hexOf({hash.data(), length});
+}
+
+// What is wrong here guests would be told, and could not mend.
+Certificate checked(Certificate place, std::time_t now, const std::string& remedy) {
+    const auto shown = bonemill::Certificate::read(place.certificate);
+    if (!shown.hasKey(place.key))
+        throw UserError(place.key.string() + ": is not the key of " + place.certificate.string() + "; " +
+                        remedy);
+    requireBetween(now, shown.validFrom(), shown.validUntil(), place.certificate.string(), remedy);
+    place.fingerprint = fingerprintOf(shown);
+    return place;
 }
 
 }  // namespace
 
-Certificate certificateOf(const std::filesystem::path& certificate, const std::filesystem::path& key) {
-    if (access(key.c_str(), R_OK) != 0) fail(key, "cannot be read");
-    return {certificate, key, fingerprintOf(certificate), false};
+Certificate certificateOf(const std::filesystem::path& certificate, const std::filesystem::path& key,
+                          std::time_t now) {
+    return checked({certificate, key, "", false}, now, "give the gateway another --certificate and --key");
 }
 
-Certificate selfMadeCertificate(const std::filesystem::path& folder) {
-    Certificate certificate{folder / "gateway-certificate.pem", folder / "gateway-key.pem", "", true};
-    if (!std::filesystem::exists(certificate.certificate) || !std::filesystem::exists(certificate.key))
-        make(certificate);
-    certificate.fingerprint = fingerprintOf(certificate.certificate);
-    return certificate;
+Certificate selfMadeCertificate(const std::filesystem::path& folder, std::time_t now) {
+    const Certificate place{folder / "gateway-certificate.pem", folder / "gateway-key.pem", "", true};
+    if (!std::filesystem::exists(place.certificate) || !std::filesystem::exists(place.key)) make(place);
+    return checked(place, now, "delete it, and the gateway makes another one");
 }
 
 }  // namespace bonemill::gateway

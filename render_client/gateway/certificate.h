@@ -1,6 +1,7 @@
 // The gateway's certificate: the user's, or one of its own making that is kept and used again. For start-up.
 #pragma once
 
+#include <ctime>
 #include <filesystem>
 #include <string>
 
@@ -13,10 +14,12 @@ struct Certificate {
     bool is_self_made = false;
 };
 
-// Throws UserError for files that are no certificate.
-Certificate certificateOf(const std::filesystem::path& certificate, const std::filesystem::path& key);
+// Throws UserError for files that are no certificate and its key, and for one that is not valid at that unix
+// time.
+Certificate certificateOf(const std::filesystem::path& certificate, const std::filesystem::path& key,
+                          std::time_t now = std::time(nullptr));
 // Returns the one in this folder, which is made (EC P-256, ten years) where there is none. The key is
-// readable for the user alone. Throws UserError.
-Certificate selfMadeCertificate(const std::filesystem::path& folder);
+// readable for the user alone. Throws UserError, likewise.
+Certificate selfMadeCertificate(const std::filesystem::path& folder, std::time_t now = std::time(nullptr));
 
 }  // namespace bonemill::gateway

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "common/units.h"
 #include "common/user_error.h"
@@ -72,11 +73,22 @@ void Gateway::rejoinIfDeaf(Clock::time_point now) {
     }
 }
 
+bool Gateway::findPlaceFor(const GuestOrigin& comer) {
+    Crowd crowd(comer);
+    std::vector<Guest*> unknown;
+    for (const auto& guest : guests_) {
+        if (!guest->isUnknown()) continue;
+        crowd.add(guest->origin());
+        unknown.push_back(guest.get());
+    }
+    if (crowd.hasPlace(kMostUnknown)) return true;
+    const auto leaver = crowd.whoMakesRoom(kMostUnknown);
+    if (leaver) unknown[*leaver]->makeRoom();
+    return leaver.has_value();
+}
+
 Guest* Gateway::come(const GuestOrigin& origin, Clock::time_point now) {
-    Crowd unknown(origin);
-    for (const auto& guest : guests_)
-        if (!guest->isAdmitted()) unknown.add(guest->origin());
-    if (!unknown.hasPlace(kMostUnknown)) return nullptr;
+    if (!findPlaceFor(origin)) return nullptr;
     Guest* const guest = guests_.emplace_back(std::make_unique<Guest>(hall_, origin, now)).get();
     const auto failures = failures_.find(origin);
     if (failures != failures_.end() && now - failures->second.since < kFailuresLast &&
@@ -141,7 +153,7 @@ void Gateway::step(Clock::time_point now) {
 
 void Gateway::lookAtList(Clock::time_point now) {
     looked_ = now;
-    if (list_.reread()) spdlog::info("{} invitations are in force", list_.size());
+    list_.reread();
     for (const auto& guest : guests_)
         if (!guest->isInvited(unixSeconds()))
             guest->refuse("This invitation has ended. Ask for a new one.", true);

@@ -29,7 +29,8 @@ class Gateway {
     // Throws UserError.
     explicit Gateway(const GatewayOptions& options);
 
-    // Somebody has connected from there; returns nullptr where there are too many. It stays until leave().
+    // Somebody has connected from there; returns nullptr where there are too many, and nobody makes room. It
+    // stays until leave().
     Guest* come(const GuestOrigin& origin, Clock::time_point now);
     void leave(Guest* guest);
     // Takes one whole frame of the guest.
@@ -45,6 +46,7 @@ class Gateway {
 
   private:
     size_t admittedCount() const;
+    bool findPlaceFor(const GuestOrigin& comer);
     void welcome(Guest& guest);
     void noteFailure(const GuestOrigin& origin, Clock::time_point now);
     void lookAtList(Clock::time_point now);

@@ -77,7 +77,8 @@ struct GatewayServer::Port {
     static int onHttp(lws* connection, lws_callback_reasons reason, void* user, void* data, size_t length);
     static int onGuest(lws* connection, lws_callback_reasons reason, void* user, void* data, size_t length);
     static void onTime(lws_sorted_usec_list_t* list);
-    bool hasPlace(const GuestOrigin& comer) const;
+    bool findPlaceFor(const GuestOrigin& comer);
+    GuestOrigin takeArrival(const lws* connection);
     int accept(int socket);
     void adoptRelayed();
     int open(lws* connection, GuestConnection& place);
@@ -89,7 +90,11 @@ struct GatewayServer::Port {
     Certificate certificate;
     StaticPages pages;
     Gateway gateway;
-    std::map<lws*, GuestOrigin> connections;  // before they are guests'
+    struct Arrival {
+        lws* connection;
+        GuestOrigin origin;
+    };
+    std::vector<Arrival> arrivals;  // before they are guests', the oldest first
     std::map<lws*, Guest*> guests;
     struct Timer {
         lws_sorted_usec_list_t list;  // first: libwebsockets gives it back
@@ -165,14 +170,14 @@ int GatewayServer::Port::onHttp(lws* connection, lws_callback_reasons reason, vo
         case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED: {
             char address[64] = "";
             lws_get_peer_simple(connection, address, sizeof address);
-            port.connections.emplace(connection, port.adopting.value_or(GuestOrigin{address}));
+            port.arrivals.push_back({connection, port.adopting.value_or(GuestOrigin{address})});
             return 0;
         }
         case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
             port.adoptRelayed();
             return 0;
         case LWS_CALLBACK_WSI_DESTROY:
-            port.connections.erase(connection);
+            port.takeArrival(connection);
             return 0;
         case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
             return -1;  // a WebSocket without our subprotocol
@@ -188,13 +193,27 @@ int GatewayServer::Port::onHttp(lws* connection, lws_callback_reasons reason, vo
 int GatewayServer::Port::accept(int socket) {
     char address[64] = "";
     lws_get_peer_simple_fd(socket, address, sizeof address);
-    return hasPlace({address}) ? 0 : 1;
+    return findPlaceFor({address}) ? 0 : 1;
 }
 
-bool GatewayServer::Port::hasPlace(const GuestOrigin& comer) const {
-    Crowd there(comer);
-    for (const auto& [connection, origin] : connections) there.add(origin);
-    return there.hasPlace(kMostConnections);
+bool GatewayServer::Port::findPlaceFor(const GuestOrigin& comer) {
+    Crowd crowd(comer);
+    for (const Arrival& arrival : arrivals) crowd.add(arrival.origin);
+    if (crowd.hasPlace(kMostConnections)) return true;
+    const auto leaver = crowd.whoMakesRoom(kMostConnections);
+    if (!leaver) return false;
+    kill(arrivals[*leaver].connection);
+    arrivals.erase(arrivals.begin() + std::ptrdiff_t(*leaver));
+    return true;
+}
+
+// Returns where it came from; it is no arrival any more.
+GuestOrigin GatewayServer::Port::takeArrival(const lws* connection) {
+    const auto arrival = std::ranges::find(arrivals, connection, &Arrival::connection);
+    if (arrival == arrivals.end()) return {};
+    GuestOrigin origin = std::move(arrival->origin);
+    arrivals.erase(arrival);
+    return origin;
 }
 
 // They are connections as any other from here on: libwebsockets speaks TLS with them, and tells of each
@@ -202,7 +221,7 @@ bool GatewayServer::Port::hasPlace(const GuestOrigin& comer) const {
 void GatewayServer::Port::adoptRelayed() {
     if (!relayed) return;
     for (RelayedGuests::Arrival& arrival : relayed->take()) {
-        if (!hasPlace(arrival.origin)) continue;
+        if (!findPlaceFor(arrival.origin)) continue;
         adopting = std::move(arrival.origin);
         lws_adopt_socket_vhost(vhost, arrival.line.release());
         adopting.reset();
@@ -231,8 +250,7 @@ int GatewayServer::Port::onGuest(lws* connection, lws_callback_reasons reason, v
 }
 
 int GatewayServer::Port::open(lws* connection, GuestConnection& place) {
-    const auto known = connections.extract(connection);
-    place.guest = gateway.come(known.empty() ? GuestOrigin{} : known.mapped(), Gateway::Clock::now());
+    place.guest = gateway.come(takeArrival(connection), Gateway::Clock::now());
     if (!place.guest) {
         kill(connection);
         return 0;

@@ -73,6 +73,12 @@ void Guest::refuse(std::string reason, bool is_final, Clock::time_point due) {
     reason_ = std::move(reason);
 }
 
+void Guest::makeRoom() {
+    has_made_room_ = is_ending_ = true;
+    refusal_.clear();
+    reason_ = "others were waiting";
+}
+
 void Guest::receive(std::string_view frame, Clock::time_point now) {
     if (is_ending_) return;
     if (!mayTalk(now)) return refuse("Too many messages.", false);

@@ -55,6 +55,10 @@ class Guest {
     // It ends with this, which the guest is told; `is_final` says that it need not try again.
     void refuse(std::string reason, bool is_final, Clock::time_point due = {});
     bool isAdmitted() const noexcept { return admission_ && stream_; }
+    // Ends at once and unsaid, for somebody else's sake.
+    void makeRoom();
+    // It has a place among those whose Hello was not heard, or not believed.
+    bool isUnknown() const noexcept { return !isAdmitted() && !has_made_room_; }
     // Of its seat; empty before it is admitted.
     const std::string& seat() const;
     bool isInvited(int64_t now_s) const;
@@ -84,6 +88,7 @@ class Guest {
     std::string reason_;
     Clock::time_point refusal_due_;
     bool is_ending_ = false;
+    bool has_made_room_ = false;
     bool has_failed_ = false;
     bool is_holding_ = false;
     topics::HandPointer last_hand_;

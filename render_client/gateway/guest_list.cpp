@@ -97,6 +97,7 @@ bool GuestList::reread() {
         spdlog::warn("{}: is no list of guests; the one before stays in force", file_.string());
         return false;
     }
+    spdlog::info("{} invitations are in force", size());
     return true;
 }
 
@@ -114,6 +115,7 @@ bool GuestList::isInvited(const std::string& token_sha256, int64_t now_s) const 
 }
 
 Admission GuestList::admit(const std::string& token, int64_t now_s) {
+    reread();
     const std::string hash = sha256Hex(token);
     const Seat* known = nullptr;
     for (const Seat& seat : seats_.seats())

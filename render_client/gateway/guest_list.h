@@ -35,10 +35,11 @@ class GuestList {
     // list.
     explicit GuestList(std::filesystem::path file);
 
-    // Looks whether the file is another one; returns true when it was read. A file that makes no sense is
-    // logged, and what was read before stays.
+    // Looks whether the file is another one; returns true when it was read, which is logged. So is a file
+    // that makes no sense: what was read before stays.
     bool reread();
-    // Somebody comes with an invitation's token, which takes a seat, or with the ticket of a seat.
+    // Somebody comes with an invitation's token, which takes a seat, or with the ticket of a seat. It looks
+    // at the file first.
     Admission admit(const std::string& token, int64_t now_s);
     // Whoever was admitted with this is still invited.
     bool isInvited(const std::string& token_sha256, int64_t now_s) const;

@@ -23,6 +23,12 @@ bool takesGzip(lws* connection) {
            std::strstr(value.data(), "gzip") != nullptr;
 }
 
+// Nobody here reads it, and it may never end.
+bool hasBody(lws* connection) {
+    return lws_hdr_total_length(connection, WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0 ||
+           lws_hdr_total_length(connection, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0;
+}
+
 class Headers {
   public:
     Headers(lws* connection, int status, const char* type, size_t length)
@@ -57,7 +63,7 @@ int beginAnswer(lws* connection, const StaticPages& pages, HttpAnswer& answer) {
     const bool is_get = lws_hdr_total_length(connection, WSI_TOKEN_GET_URI) > 0;
     const StaticFile& file = found ? *found : is_get ? kNotThere : kNotAllowed;
     const bool is_packed = !file.gzip.empty() && takesGzip(connection);
-    answer = {is_packed ? &file.gzip : &file.bytes, 0};
+    answer = {is_packed ? &file.gzip : &file.bytes, 0, hasBody(connection)};
     Headers headers(connection, found ? 200 : is_get ? 404 : 405, file.type, answer.bytes->size());
     headers.add("content-security-policy:", kContentPolicy);
     headers.add("x-content-type-options:", "nosniff");
@@ -67,6 +73,7 @@ int beginAnswer(lws* connection, const StaticPages& pages, HttpAnswer& answer) {
     headers.add("cache-control:", file.is_index ? "no-store" : "no-cache");
     headers.add("vary:", "accept-encoding");
     if (is_packed) headers.add("content-encoding:", "gzip");
+    if (answer.ends_connection) headers.add("connection:", "close");
     if (!headers.write()) return -1;
     lws_callback_on_writable(connection);
     return 0;
@@ -85,8 +92,8 @@ int continueAnswer(lws* connection, HttpAnswer& answer) {
         return -1;
     answer.sent += length;
     if (!is_last) return lws_callback_on_writable(connection) < 0 ? -1 : 0;
-    answer = {};
-    return lws_http_transaction_completed(connection) ? -1 : 0;
+    const bool ends = std::exchange(answer, {}).ends_connection;
+    return ends || lws_http_transaction_completed(connection) ? -1 : 0;
 }
 
 }  // namespace bonemill::gateway

@@ -11,6 +11,7 @@ namespace bonemill::gateway {
 struct HttpAnswer {
     const std::string* bytes;  // what is left of it begins at `sent`
     size_t sent;
+    bool ends_connection;
 };
 
 // Both return what the callback returns: other than 0 ends the connection.

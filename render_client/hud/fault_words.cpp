@@ -38,6 +38,8 @@ constexpr struct {
     {"early_samples", "The device is faster than the loop: a tick was held back.", HudTone::kPlain},
     {"fewer_samples", "A little less detail is felt: there was no time to sample the contact more finely.",
      HudTone::kPlain},
+    {"not_recorded", "Not all of the session is recorded: the server's disk is full or slow.",
+     HudTone::kAlarm},
 };
 
 FaultWords wordsOf(const std::string& name) {

@@ -9,6 +9,7 @@
 #include "render_client/hud/effect_lines.h"
 #include "render_client/hud/figure_text.h"
 #include "render_client/hud/session_text.h"
+#include "render_client/hud/task_lines.h"
 
 namespace bonemill {
 namespace {
@@ -66,15 +67,30 @@ std::vector<HudRow> taskRows(const HudInput& input) {
         rows.push_back(burrRow(*input.tool, input.status && input.status->is_milling_paused(), input.events));
     }
     if (input.status) rows.push_back(volumeRow(input.status->removed_mm3()));
+    if (input.status && !input.status->replay().event().empty())
+        rows.push_back({"Moment", input.status->replay().event(), HudTone::kGood});
     if (input.tool && input.tool->has_effects()) {
         const auto more = effectTaskRows(input.tool->effects(), info, input.events);
         rows.insert(rows.end(), more.begin(), more.end());
     }
+    if (input.status && input.status->has_task()) {
+        const auto task = taskStateRows(input.status->task());
+        rows.insert(rows.end(), task.begin(), task.end());
+    }
     return rows;
+}
+
+std::string replayText(const topics::Status& status) {
+    const topics::Replay& replay = status.replay();
+    const std::string text = "replay, " + clockText(status.session_s());
+    if (replay.is_seeking()) return text + ", seeks";
+    if (!replay.is_playing()) return text + ", paused";
+    return replay.speed() == 1 ? text : text + ", " + readableText(replay.speed(), " \u00d7");
 }
 
 std::string liveText(const HudInput& input) {
     if (!input.status) return "live";
+    if (input.status->has_replay()) return replayText(*input.status);
     return input.status->ticks() > 0 ? "live, " + clockText(input.status->session_s()) : "waits for a device";
 }
 

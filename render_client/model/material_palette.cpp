@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kGamma = 2.2;  // as toneMap() of the shaders
 constexpr GLsizei kMostColours = 256;
+const Eigen::Vector3f kPlainBone(0.755f, 0.63f, 0.46f);  // the middle of the bone shader's mottling
 
 Eigen::Vector4f linear(const scene::Color& color) {
     const auto channel = [](double value) { return float(std::pow(std::clamp(value, 0.0, 1.0), kGamma)); };
@@ -22,6 +23,14 @@ std::vector<Eigen::Vector4f> paletteOf(const topics::SceneInfo& info) {
     std::vector<Eigen::Vector4f> colours{Eigen::Vector4f::Zero()};
     for (const scene::Material& material : materials)
         colours.push_back(material.has_color() ? linear(material.color()) : Eigen::Vector4f::Zero());
+    return colours;
+}
+
+std::array<Eigen::Vector3f, 256> boneColoursOf(const std::vector<Eigen::Vector4f>& palette) {
+    std::array<Eigen::Vector3f, 256> colours;
+    colours.fill(kPlainBone);
+    for (size_t i = 0; i < std::min(palette.size(), colours.size()); ++i)
+        colours[i] = palette[i].head<3>() + (1 - palette[i].w()) * kPlainBone;
     return colours;
 }
 

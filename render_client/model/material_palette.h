@@ -4,6 +4,7 @@
 // It belongs to the thread of the context.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "proto/topics.pb.h"
@@ -15,6 +16,9 @@ namespace bonemill {
 // Returns, by material (0 is none), linear colour times alpha, and alpha; all 0 where it has no colour. The
 // list is empty where no material has one.
 std::vector<Eigen::Vector4f> paletteOf(const topics::SceneInfo& info);
+
+// Returns the linear colour of bone by material: of one without a colour that of plain bone.
+std::array<Eigen::Vector3f, 256> boneColoursOf(const std::vector<Eigen::Vector4f>& palette);
 
 class MaterialPalette {
   public:

@@ -37,12 +37,17 @@ Eigen::AlignedBox3f boxOfPlane(const SlicePlane& plane) {
     return boxOfPixels(plane, 0, 0, plane.width - 1, plane.height - 1);
 }
 
+bool haveSameColour(const SliceImage& a, const SliceImage& b, size_t pixel) {
+    if (a.colours.empty() || b.colours.empty()) return a.colours.empty() == b.colours.empty();
+    return std::equal(&a.colours[4 * pixel], &a.colours[4 * pixel] + 4, &b.colours[4 * pixel]);
+}
+
 Eigen::AlignedBox3f differenceBox(const SlicePlane& plane, const SliceImage& a, const SliceImage& b) {
     int x0 = plane.width, y0 = plane.height, x1 = -1, y1 = -1;
     size_t i = 0;
     for (int y = 0; y < plane.height; ++y)
         for (int x = 0; x < plane.width; ++x, ++i) {
-            if (a.present[i] == b.present[i] && a.state[i] == b.state[i]) continue;
+            if (a.present[i] == b.present[i] && a.state[i] == b.state[i] && haveSameColour(a, b, i)) continue;
             x0 = std::min(x0, x), x1 = std::max(x1, x);
             y0 = std::min(y0, y), y1 = std::max(y1, y);
         }
@@ -69,7 +74,7 @@ CtFaces::CtFaces(const GlApi& gl)
       cap_(gl, "cap with the scan", shaders::kFullScreenVertex,
            std::string("#define CT\n") + shaders::kCapFragment),
       nothing_(gl) {
-    SliceImage nothing{1, 1, {0}, {0}, {SliceState::kOutside}};
+    SliceImage nothing{1, 1, {0}, {0}, {SliceState::kOutside}, {}};
     Face face(gl);
     std::swap(face.texture, nothing_);
     face.image = nothing;
@@ -81,8 +86,13 @@ void CtFaces::upload(const Face& face) const {
     gl_.ActiveTexture(GL_TEXTURE0 + kFirstUnit);
     gl_.BindTexture(GL_TEXTURE_2D, face.texture.name());
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RG16, face.image.width, face.image.height, 0, GL_RG,
-                   GL_UNSIGNED_SHORT, texelsOf(face.image).data());
+    const SliceImage& image = face.image;
+    if (image.colours.empty())
+        gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RG16, image.width, image.height, 0, GL_RG, GL_UNSIGNED_SHORT,
+                       texelsOf(image).data());
+    else
+        gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16, image.width, image.height, 0, GL_RGBA, GL_UNSIGNED_SHORT,
+                       image.colours.data());
     for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
         gl_.TexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
     for (const GLenum direction : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
@@ -127,16 +137,19 @@ Eigen::AlignedBox3f CtFaces::setWindow(const DensityGrid& grid, const GreyWindow
 void CtFaces::setUniforms() const {
     constexpr const char* kMaps[] = {"ct_x", "ct_y", "ct_z"};
     constexpr const char* kMatrices[] = {"ct_from_model[0]", "ct_from_model[1]", "ct_from_model[2]"};
+    bool has_colours = false;  // all faces have them, or none has
     for (size_t axis = 0; axis < 3; ++axis) {
         const GLenum unit = kFirstUnit + GLenum(axis);
         gl_.ActiveTexture(GL_TEXTURE0 + unit);
         gl_.BindTexture(GL_TEXTURE_2D, faces_[axis] ? faces_[axis]->texture.name() : nothing_.name());
         cap_.set(kMaps[axis], int(unit));
+        has_colours |= faces_[axis] && !faces_[axis]->image.colours.empty();
         cap_.set(kMatrices[axis], faces_[axis] ? textureFromVolume(faces_[axis]->plane)
                                                : Eigen::Matrix4f(Eigen::Matrix4f::Zero()));
     }
     gl_.ActiveTexture(GL_TEXTURE0);
     cap_.set("grey_of_density", grey_of_density_);
+    cap_.set("shows_materials", has_colours ? 1 : 0);
 }
 
 }  // namespace bonemill

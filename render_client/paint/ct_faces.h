@@ -1,5 +1,5 @@
-// Shows the scan's grey values on the faces of cuts: of the bone as it is now, from one texture per cut, and
-// plain where nothing has arrived yet.
+// Shows the scan on the faces of cuts, from one texture per cut: grey values of the bone as it is now, or the
+// colours of its materials where an image has them. Faces are plain where nothing has arrived yet.
 //
 // It belongs to the thread of the context.
 #pragma once

@@ -18,6 +18,7 @@ constexpr float kShadowedThickness = 0.5f;
 constexpr double kFieldRadius = 0.48;    // of the shorter side of the picture
 constexpr double kBlur = 0.06;           // of the picture's height, one picture height away from the focus
 constexpr double kReach = 1.7;           // of the distance to the focus
+constexpr double kCastersGrow = 1.5;     // bone may be added
 constexpr double kSmallestScene = 1e-3;  // m, radius
 constexpr double kSmallestBone = 1e-4;   // m, radius
 
@@ -52,18 +53,22 @@ Eigen::Vector3d directionOf(LightRig light) {
     return {-0.55, 0.70, 0.62};
 }
 
-// The light's shadow map covers the sphere.
-KeyLight aimKeyLight(const Camera& camera, LightRig light, const Sphere& lit_W) {
+// The light's shadow map covers the first sphere, and along the light all of the second: what stands between
+// the light and what it covers casts a shadow, too.
+KeyLight aimKeyLight(const Camera& camera, LightRig light, const Sphere& lit_W, const Sphere& casters_W) {
     const Eigen::Vector3d key_C = directionOf(light).normalized();
     const double half_size = std::max(lit_W.radius, kSmallestBone);
+    const double half_depth =
+        std::max(half_size, (casters_W.center - lit_W.center).norm() + kCastersGrow * casters_W.radius);
     Eigen::Matrix3d R_LC;
     R_LC.row(2) = -key_C;  // depth grows away from the light
     R_LC.row(0) = Eigen::Vector3d::UnitY().cross(key_C).normalized();
     R_LC.row(1) = key_C.cross(Eigen::Vector3d(R_LC.row(0)));
     const Eigen::Vector3d center_C = camera.R_WC.transpose() * (lit_W.center - camera.eye_W);
+    const Eigen::Array3d scale(1 / half_size, 1 / half_size, 1 / half_depth);
     Eigen::Matrix4d shadow_from_camera = Eigen::Matrix4d::Identity();
-    shadow_from_camera.topLeftCorner<3, 3>() = R_LC / half_size;
-    shadow_from_camera.topRightCorner<3, 1>() = -(R_LC * center_C) / half_size;
+    shadow_from_camera.topLeftCorner<3, 3>() = R_LC.array().colwise() * scale;
+    shadow_from_camera.topRightCorner<3, 1>() = -(R_LC * center_C).array() * scale;
     return {key_C.cast<float>(), shadow_from_camera.cast<float>(),
             float(2 * half_size / RenderTargets::kShadowSize),
             light == LightRig::kEndoscope ? float(kReach * camera.focus) : 0};
@@ -155,8 +160,10 @@ Frame Frame::make(const FrameView& view, const Eigen::AlignedBox3f& tool_T, doub
     frame.cuts_C = transformed(view.cuts_W, X_CW);
 
     const double shown = kShownBeyondView * camera.focus * tangent * std::hypot(1.0, aspect);
-    frame.key =
-        aimKeyLight(camera, view.light, shown < bone.radius ? Sphere{camera.target_W(), shown} : bone);
+    Eigen::AlignedBox3d casters_W = boneIn(view);
+    if (showsTool(view, tool_T)) extendBy(casters_W, *view.X_WT, tool_T);
+    frame.key = aimKeyLight(camera, view.light, shown < bone.radius ? Sphere{camera.target_W(), shown} : bone,
+                            around(casters_W));
     if (frame.X_CT && !frame.has_shadow) frame.tool_shadow = shadowOf(view, *frame.X_CT, tool_T);
     return frame;
 }

@@ -261,7 +261,6 @@ void SceneRenderer::drawShadowMap(const Frame& frame, const FrameView& view, con
     gl_.Enable(GL_DEPTH_TEST);
     gl_.DepthFunc(GL_LESS);
     gl_.DepthMask(GL_TRUE);
-    gl_.Enable(GL_DEPTH_CLAMP);  // casters between the light and the map's near plane still cast
     gl_.Clear(GL_DEPTH_BUFFER_BIT);
     if (view.light != LightRig::kRoom) gl_.Enable(GL_CLIP_DISTANCE0 + kEyePlane);
     shadow_.use();
@@ -283,7 +282,6 @@ void SceneRenderer::drawShadowMap(const Frame& frame, const FrameView& view, con
         tool.draw();
     }
     gl_.Disable(GL_CLIP_DISTANCE0 + kEyePlane);
-    gl_.Disable(GL_DEPTH_CLAMP);
 }
 
 void SceneRenderer::drawSolids(const Frame& frame, const FrameView& view, const NodeStore& nodes,

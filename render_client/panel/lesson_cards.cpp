@@ -37,6 +37,14 @@ HudRow touchedRow(const topics::Attempt& attempt) {
                           : HudRow{"Touched", "no structures in this exercise"};
 }
 
+void addVerdict(const topics::Verdict& verdict, std::vector<HudRow>& rows) {
+    if (verdict.has_passed())
+        rows.push_back(verdict.passed() ? HudRow{"Task", "passed", HudTone::kGood}
+                                        : HudRow{"Task", "not passed", HudTone::kAlarm});
+    if (verdict.has_score_percent())
+        rows.push_back({"Score", readableText(verdict.score_percent(), " of 100")});
+}
+
 std::vector<HudRow> rowsOf(const topics::Attempt& attempt) {
     std::vector<HudRow> rows{{"Time", clockText(attempt.time_s())},
                              {"Removed", readableText(attempt.removed_mm3(), " mm\u00b3")},
@@ -45,6 +53,7 @@ std::vector<HudRow> rowsOf(const topics::Attempt& attempt) {
     topics::Training figures = attempt.training();
     figures.clear_warnings();
     for (HudRow& row : trainingRows(figures)) rows.push_back(std::move(row));
+    addVerdict(attempt.verdict(), rows);
     return rows;
 }
 

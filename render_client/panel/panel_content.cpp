@@ -31,6 +31,10 @@ void PanelContent::build() {
         if (isOpen("Tool in the mouse")) buildHold();
         gap();
     }
+    if (isReplay(session_)) {
+        if (isOpen("Replay")) buildReplay();
+        gap();
+    }
     if (session_.lesson && session_.lesson->scenes_size() > 0) {
         if (isOpen("Lesson")) buildLesson();
         gap();
@@ -45,7 +49,7 @@ void PanelContent::build() {
         if (isOpen("Effects")) buildEffects();
         gap();
     }
-    if (isOpen("Session")) buildSession();
+    if (isOpen("Session")) isReplay(session_) ? buildEnd() : buildSession();
     if (session_.status && session_.status->has_training()) {
         gap();
         if (isOpen("Training")) buildTraining();

@@ -67,6 +67,8 @@ class PanelContent {
     bool isRowClicked(const std::string& name);
     void buildAttempts(const topics::Lesson& lesson);
     void buildAttempt(const topics::Lesson& lesson, const topics::Attempt& attempt);
+    // This leads a replay (panel_replay.cpp).
+    void buildReplay();
     // These say how the session goes (panel_session.cpp).
     void buildSession();
     void buildCheckpoints();

@@ -148,12 +148,15 @@ void PanelContent::buildScan() {
     const CtShown ct = settings_.slices.ct;
     box("Slices", Action::kSlices, settings_.slices.are_shown,
         "Three slices through the scan at the burr, beside the picture");
-    if (box(withKey("Scan on cuts", Action::kScanOnBone), ct != CtShown::kNowhere,
-            "Cut faces show the scan's grey values"))
-        controls_.showScan(ct == CtShown::kNowhere ? CtShown::kOnCuts : CtShown::kNowhere);
+    const bool is_grey = ct == CtShown::kOnCuts || ct == CtShown::kOnCutsAndMilled;
+    if (box(withKey("Scan on cuts", Action::kScanOnBone), is_grey, "Cut faces show the scan's grey values"))
+        controls_.showScan(is_grey ? CtShown::kNowhere : CtShown::kOnCuts);
     ImGui::SameLine();
     if (box("Milled", ct == CtShown::kOnCutsAndMilled, "Milled bone shows what the scan measured there"))
         controls_.showScan(ct == CtShown::kOnCutsAndMilled ? CtShown::kOnCuts : CtShown::kOnCutsAndMilled);
+    const bool has_materials = ct == CtShown::kMaterialsOnCuts;
+    if (box("Materials on cuts", has_materials, "Cut faces have the colours of the scene's materials"))
+        controls_.showScan(has_materials ? CtShown::kOnCuts : CtShown::kMaterialsOnCuts);
 }
 
 void PanelContent::buildStereo() {

@@ -20,6 +20,11 @@ std::string millimetres(const char* axis, double metres) {
 
 }  // namespace
 
+void CtShow::setPalette(const std::vector<Eigen::Vector4f>& palette) {
+    bone_colours_ = boneColoursOf(palette);
+    face_slices_ = {};
+}
+
 Eigen::AlignedBox3f CtShow::update(const View& view, NodeStore& nodes) {
     width_ = view.width;
     height_ = view.height;
@@ -74,7 +79,7 @@ void CtShow::showNoGrid(const View& view) {
         Pane& pane = (*panes_)[axis];
         pane.axis = axis;
         pane.rect = rects[axis];
-        SliceImage nothing{pane.rect.width, pane.rect.height, {}, {}, {}};
+        SliceImage nothing{pane.rect.width, pane.rect.height, {}, {}, {}, {}};
         nothing.state.resize(size_t(pane.rect.width) * size_t(pane.rect.height), SliceState::kLoading);
         painter_->setPixels(axis, coloursOf(nothing, {}, {}), nothing.width, nothing.height);
     }
@@ -84,6 +89,8 @@ Eigen::AlignedBox3f CtShow::updateFaces(const View& view) {
     const bool wants_faces =
         view.settings.slices.ct != CtShown::kNowhere && store_.grid() && !view.bone_W.isEmpty();
     const CutPlanes cuts = cutPlanes(view.settings.cuts, view.bone_W);
+    const BoneColours* const colours =
+        view.settings.slices.ct == CtShown::kMaterialsOnCuts ? &bone_colours_ : nullptr;
     shows_faces_ = wants_faces && cuts.any();
     if (shows_faces_ && !faces_) faces_ = std::make_unique<CtFaces>(gl_);
     Eigen::AlignedBox3f changed;
@@ -99,8 +106,8 @@ Eigen::AlignedBox3f CtShow::updateFaces(const View& view) {
         const double position_W =
             view.bone_W.min()[i] + view.settings.cuts[axis].position * view.bone_W.sizes()[i];
         if (!slice) slice.emplace();
-        if (look(*slice,
-                 facePlane(*store_.grid(), view.X_WV, axis, position_W, view.bone_W, kMostFacePixels)))
+        if (look(*slice, facePlane(*store_.grid(), view.X_WV, axis, position_W, view.bone_W, kMostFacePixels),
+                 colours))
             changed.extend(faces_->set(axis, slice->plane, slice->image));
     }
     if (shows_faces_) changed.extend(faces_->setWindow(*store_.grid(), *window_));
@@ -114,13 +121,16 @@ void CtShow::updateMilled(const View& view, NodeStore& nodes) {
     milled_grey_ = greyOfDensity(*grid_, *window_).cast<float>();
 }
 
-bool CtShow::look(ShownSlice& slice, const SlicePlane& plane) {
-    if (slice.is_known && slice.plane == plane && slice.changes == store_.changes()) return false;
+bool CtShow::look(ShownSlice& slice, const SlicePlane& plane, const BoneColours* colours) {
+    const bool is_coloured = !slice.image.colours.empty();
+    if (slice.is_known && slice.plane == plane && slice.changes == store_.changes() &&
+        is_coloured == (colours != nullptr))
+        return false;
     if (!slice.is_known || slice.plane != plane) {
         slice.plane = plane;
         slice.bricks = bricksOf(*store_.grid(), plane);
     }
-    SliceImage image = sampler().image(plane);
+    SliceImage image = sampler().image(plane, colours);
     slice.changes = store_.changes();
     const bool is_new = !slice.is_known || image != slice.image;
     slice.image = std::move(image);

@@ -12,6 +12,7 @@
 #include "render_client/camera/cut_planes.h"
 #include "render_client/densities/density_store.h"
 #include "render_client/hud/pane_layout.h"
+#include "render_client/model/material_palette.h"
 #include "render_client/paint/ct_faces.h"
 #include "render_client/paint/slice_painter.h"
 #include "render_client/scene/milled_scan.h"
@@ -33,6 +34,9 @@ class CtShow {
     explicit CtShow(const GlApi& gl) : gl_(gl) {}
 
     DensityStore& store() { return store_; }
+
+    // As paletteOf() of the scene.
+    void setPalette(const std::vector<Eigen::Vector4f>& palette);
 
     struct View {
         const ViewSettings& settings;
@@ -63,7 +67,7 @@ class CtShow {
   private:
     // Returns true when the image is another one now.
     static bool isLoading(const std::optional<ShownSlice>& slice);
-    bool look(ShownSlice& slice, const SlicePlane& plane);
+    bool look(ShownSlice& slice, const SlicePlane& plane, const BoneColours* colours = nullptr);
     void updatePanes(const View& view);
     Eigen::AlignedBox3f updateFaces(const View& view);
     void updateMilled(const View& view, NodeStore& nodes);
@@ -75,6 +79,7 @@ class CtShow {
     DensityStore store_;
     std::optional<DensityGrid> grid_;        // of the last update
     std::optional<DensitySampler> sampler_;  // of this update
+    BoneColours bone_colours_ = boneColoursOf({});
     std::unique_ptr<SlicePainter> painter_;
     std::unique_ptr<CtFaces> faces_;
     bool shows_faces_ = false;

@@ -65,7 +65,10 @@ void RenderScene::setSceneInfo(const topics::SceneInfo& info) {
     structures_.setInfo(info);
     awaits_info_ = false;
     std::vector<Eigen::Vector4f> palette = paletteOf(info);
-    if (palette != palette_) renderer_.setPalette(palette);
+    if (palette != palette_) {
+        renderer_.setPalette(palette);
+        ct_.setPalette(palette);
+    }
     palette_ = std::move(palette);
     makeEffects(info);
 }

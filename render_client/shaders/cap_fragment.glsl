@@ -9,15 +9,17 @@ uniform float opacity;
 out vec4 colour;
 
 #ifdef CT
-uniform sampler2D ct_x, ct_y, ct_z;  // of the cut across W's x, y, z: density where it is known; whether it is
+uniform bool shows_materials;
+// Of the cut across W's x, y, z, as far as it is known: density and whether it is, or linear colour and whether it is.
+uniform sampler2D ct_x, ct_y, ct_z;
 uniform mat4 ct_from_model[3];       // to the textures' (u, v)
 uniform vec2 grey_of_density;        // factor, and what is added
 
-vec2 ctAt(int cut, vec3 p_M) {
+vec4 ctAt(int cut, vec3 p_M) {
     vec2 at = (ct_from_model[cut] * vec4(p_M, 1.0)).xy;
-    if (cut == 0) return textureLod(ct_x, at, 0.0).rg;
-    if (cut == 1) return textureLod(ct_y, at, 0.0).rg;
-    return textureLod(ct_z, at, 0.0).rg;
+    if (cut == 0) return textureLod(ct_x, at, 0.0);
+    if (cut == 1) return textureLod(ct_y, at, 0.0);
+    return textureLod(ct_z, at, 0.0);
 }
 #endif
 
@@ -39,6 +41,12 @@ void main() {
     float line = smoothstep(0.5 - soft, 0.5, abs(fract(across) - 0.5) + 0.10);
     albedo *= 1.0 - 0.16 * line * (1.0 - smoothstep(0.25, 0.6, soft));
 
+#ifdef CT
+    vec4 ct = ctAt(entry.cut, p_M);
+    if (shows_materials)
+        albedo = mix(albedo, ct.rgb / max(ct.a, 1e-3) * mix(0.88, 1.12, mottling), smoothstep(0.0, 0.5, ct.a));
+#endif
+
     float facing = max(dot(normal, key_direction), 0.0);
     float visible = keyVisibility(p_C, normal);
     vec3 light = kKeyColour * facing * mix(0.06, 1.0, visible)
@@ -48,9 +56,9 @@ void main() {
     colour = vec4(toneMap(albedo * light * falloff(p_C) * 0.56), opacity);
 #ifdef CT
     // Grey is as the window says, whatever the light; a shadow is hinted at.
-    vec2 ct = ctAt(entry.cut, p_M);
     float grey = clamp(ct.r / max(ct.g, 1e-3) * grey_of_density.x + grey_of_density.y, 0.0, 1.0);
-    colour.rgb = mix(colour.rgb, vec3(grey * mix(0.72, 1.0, visible)), smoothstep(0.0, 0.5, ct.g));
+    if (!shows_materials)
+        colour.rgb = mix(colour.rgb, vec3(grey * mix(0.72, 1.0, visible)), smoothstep(0.0, 0.5, ct.g));
 #endif
     gl_FragDepth = storedDepth(p_C);
 }

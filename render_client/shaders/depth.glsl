@@ -3,8 +3,7 @@ uniform vec2 near_far;  // m
 
 // What the depth map holds, in m before the eye.
 float depthOf(float stored) {
-    float z = stored * 2.0 - 1.0;
-    return 2.0 * near_far.x * near_far.y / (near_far.y + near_far.x - z * (near_far.y - near_far.x));
+    return near_far.x * near_far.y / (near_far.y - stored * (near_far.y - near_far.x));
 }
 
 // 1 where nothing was drawn, and beside the picture what lies at its edge.

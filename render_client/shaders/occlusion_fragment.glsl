@@ -20,14 +20,17 @@ void main() {
     float world_radius = picture_radius * 2.0 * tangents.y * -p.z;
     ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
     float turn = float((cell.x * 4 + cell.y * 5 + (cell.x & cell.y)) % 16) / 16.0 * 6.2831853;
-    float sum = 0.0;
-    for (int i = 0; i < kSamples; ++i) {
+    // The samples lie on a spiral; each direction is the one before, turned: sines of each would be dear.
+    const float kStep = 6.2831853 * 5.0 / float(kSamples);
+    mat2 turning = mat2(cos(kStep), sin(kStep), -sin(kStep), cos(kStep));
+    vec2 direction = vec2(cos(turn + 0.5 * kStep), sin(turn + 0.5 * kStep));
+    float sum = 0.0, per_squared = 1.0 / (world_radius * world_radius);
+    for (int i = 0; i < kSamples; ++i, direction = turning * direction) {
         float along = (float(i) + 0.5) / float(kSamples);
-        float angle = along * 6.2831853 * 5.0 + turn;
-        vec2 offset = vec2(cos(angle), sin(angle)) * along * picture_radius * size.y;
+        vec2 offset = direction * (along * picture_radius * size.y);
         vec3 v = positionOf(texel + ivec2(offset), size) - p;
         float squared = dot(v, v);
-        float falloff = max(1.0 - squared / (world_radius * world_radius), 0.0);
+        float falloff = max(1.0 - squared * per_squared, 0.0);
         float above = dot(v, normal) / (sqrt(squared) + 1e-9) - 0.08;
         sum += falloff * falloff * max(above, 0.0);
     }

@@ -10,7 +10,7 @@ namespace bonemill::shaders {
 // materials' colours; with `#define THICKNESS` the colour of its distance to the next structure.
 extern const char kMeshVertex[];
 extern const char kBoneFragment[];  // with `#define FILM`: blood and water lie on it
-extern const char kCapFragment[];   // the face of a cut; with `#define CT`: the scan's grey values on it
+extern const char kCapFragment[];   // the face of a cut; with `#define CT`: the scan on it
 
 // Protected structures, of meshes as bone has them.
 extern const char kStructureFragment[];

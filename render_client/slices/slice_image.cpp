@@ -8,6 +8,7 @@
 namespace bonemill {
 namespace {
 
+constexpr uint16_t kFull = 65535;
 constexpr double kOnVoxel = 1e-6;  // voxels: so near to a voxel its neighbour does not count
 
 }  // namespace
@@ -89,7 +90,25 @@ SampledDensity DensitySampler::atVoxel(const Eigen::Vector3d& voxel) const {
             uint16_t(std::lround(present / weights)), was_changed};
 }
 
-SliceImage DensitySampler::image(const SlicePlane& plane) const {
+// The densities there must be known.
+Eigen::Vector3f DensitySampler::colourAtVoxel(const Eigen::Vector3d& voxel,
+                                              const BoneColours& colours) const {
+    std::array<Corner, 8> corners;
+    const int n = cornersAround(voxel, corners);
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    float weights = 0;
+    for (int i = 0; i < n; ++i) {
+        const Corner& corner = corners[size_t(i)];
+        const DensityBrick& held = *brick(corner.brick);
+        const uint8_t material = held.materials.empty() ? uint8_t(0) : held.materials[corner.index];
+        const float weight = float(corner.weight) * (1.0f + held.scanned[corner.index]);
+        sum += weight * colours[material];
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+SliceImage DensitySampler::image(const SlicePlane& plane, const BoneColours* colours) const {
     SliceImage image;
     image.width = plane.width;
     image.height = plane.height;
@@ -97,16 +116,24 @@ SliceImage DensitySampler::image(const SlicePlane& plane) const {
     image.scanned.resize(pixels);
     image.present.resize(pixels);
     image.state.resize(pixels);
+    if (colours) image.colours.resize(4 * pixels);
     const Eigen::Vector3d right = plane.right_V.cwiseQuotient(grid_.spacing_m),
                           down = plane.down_V.cwiseQuotient(grid_.spacing_m),
                           corner = voxelAt(plane.corner_V);
     size_t pixel = 0;
     for (int row = 0; row < plane.height; ++row)
         for (int column = 0; column < plane.width; ++column, ++pixel) {
-            const SampledDensity sample = atVoxel(corner + column * right + row * down);
+            const Eigen::Vector3d voxel = corner + column * right + row * down;
+            const SampledDensity sample = atVoxel(voxel);
             image.state[pixel] = sample.state;
             image.scanned[pixel] = sample.scanned;
             image.present[pixel] = sample.present;
+            if (!colours || sample.state != SliceState::kHere) continue;
+            const Eigen::Vector3f colour = colourAtVoxel(voxel, *colours);
+            for (size_t channel = 0; channel < 3; ++channel)
+                image.colours[4 * pixel + channel] =
+                    uint16_t(std::lround(colour[Eigen::Index(channel)] * kFull));
+            image.colours[4 * pixel + 3] = kFull;
         }
     return image;
 }

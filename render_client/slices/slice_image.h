@@ -20,8 +20,14 @@ struct SliceImage {
     int width = 0, height = 0;
     std::vector<uint16_t> scanned, present;  // 0 where the state is not kHere
     std::vector<SliceState> state;
+    // Red, green, blue (linear) and 65535 per pixel, all 0 where the state is not kHere; empty where nobody
+    // asked for them.
+    std::vector<uint16_t> colours;
     bool operator==(const SliceImage&) const = default;
 };
+
+// Linear red, green and blue, 0 to 1, of bone by its material (DensityBrick::materials).
+using BoneColours = std::array<Eigen::Vector3f, 256>;
 
 struct SampledDensity {
     SliceState state = SliceState::kOutside;
@@ -36,7 +42,10 @@ class DensitySampler {
     explicit DensitySampler(const DensityStore& store);
 
     SampledDensity at(const Eigen::Vector3d& p_V) const { return atVoxel(voxelAt(p_V)); }
-    SliceImage image(const SlicePlane& plane) const;
+    // With `colours` it has those of the materials, which fade into each other between voxels; where voxels
+    // differ in density the denser one counts for more, since a voxel that bone fills only partly looks like
+    // something less dense.
+    SliceImage image(const SlicePlane& plane, const BoneColours* colours = nullptr) const;
 
   private:
     struct Corner {
@@ -52,6 +61,7 @@ class DensitySampler {
         return (p_V - grid_.origin_m).cwiseQuotient(grid_.spacing_m);
     }
     SampledDensity atVoxel(const Eigen::Vector3d& voxel) const;
+    Eigen::Vector3f colourAtVoxel(const Eigen::Vector3d& voxel, const BoneColours& colours) const;
     int cornersAround(const Eigen::Vector3d& voxel, std::array<Corner, 8>& corners) const;
     const DensityBrick* brick(uint32_t number) const;
 

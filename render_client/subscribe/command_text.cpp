@@ -1,6 +1,30 @@
 #include "render_client/subscribe/command_text.h"
 
+#include <cstdio>
+
 namespace bonemill {
+namespace {
+
+std::string replayText(const topics::ReplayOrder& order) {
+    char text[64] = "no order to the replay";
+    switch (order.order_case()) {
+        case topics::ReplayOrder::kSeekS:
+            std::snprintf(text, sizeof text, "go to %.2f s", order.seek_s());
+            break;
+        case topics::ReplayOrder::kSpeed:
+            std::snprintf(text, sizeof text, "speed %g", order.speed());
+            break;
+        case topics::ReplayOrder::kJump:
+            return order.jump() < 0 ? "event before" : "next event";
+        case topics::ReplayOrder::kRemovalAt:
+            return "when this was removed";
+        case topics::ReplayOrder::ORDER_NOT_SET:
+            break;
+    }
+    return text;
+}
+
+}  // namespace
 
 std::string commandText(const topics::Command& command) {
     switch (command.action_case()) {
@@ -35,6 +59,8 @@ std::string commandText(const topics::Command& command) {
         case topics::Command::kEraseRemark:
             return command.erase_remark() == 0 ? "erase all notes and strokes"
                                                : "erase " + std::to_string(command.erase_remark());
+        case topics::Command::kReplay:
+            return replayText(command.replay());
         case topics::Command::ACTION_NOT_SET:
             break;
     }

@@ -1,12 +1,16 @@
 #include "render_client/subscribe/command_words.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 #include "common/config/scene_tools.h"
+#include "common/units.h"
 #include "common/user_error.h"
 
 namespace bonemill {
@@ -29,6 +33,26 @@ std::optional<uint32_t> numberOf(const std::string& text) {
     uint32_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
+std::optional<double> realOf(const std::string& text) {
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool is_number = error == std::errc() && end == text.data() + text.size();
+    return is_number && std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+// "X Y Z" in mm; without a number each, nothing.
+std::optional<std::array<double, 3>> placeOf(const std::string& text) {
+    std::istringstream words(text);
+    std::array<double, 3> place{};
+    std::string word;
+    for (double& part : place) {
+        const auto number = words >> word ? realOf(word) : std::nullopt;
+        if (!number) return std::nullopt;
+        part = *number * kMillimetre;
+    }
+    return words >> word ? std::nullopt : std::optional(place);
 }
 
 uint32_t toolOf(const std::string& name, const topics::SceneInfo& scene) {
@@ -80,6 +104,22 @@ constexpr CommandWord kWords[] = {
      [](Command& c, const std::string& which, const Session&) {
          c.set_erase_remark(which == "all" ? 0 : *numberOf(which));
      }},
+    {"seek", "SECONDS",
+     [](Command& c, const std::string& when, const Session&) {
+         c.mutable_replay()->set_seek_s(*realOf(when));
+     }},
+    {"speed", "FACTOR",
+     [](Command& c, const std::string& speed, const Session&) {
+         c.mutable_replay()->set_speed(*realOf(speed));
+     }},
+    {"next", "", [](Command& c, const std::string&, const Session&) { c.mutable_replay()->set_jump(1); }},
+    {"previous", "",
+     [](Command& c, const std::string&, const Session&) { c.mutable_replay()->set_jump(-1); }},
+    {"when", "X Y Z",
+     [](Command& c, const std::string& place, const Session&) {
+         const std::array<double, 3> p_m = placeOf(place).value();
+         for (const double part : p_m) c.mutable_replay()->mutable_removal_at()->add_p_m(part);
+     }},
     {"shutdown", "", [](Command& c, const std::string&, const Session&) { c.set_shut_down(true); }},
 };
 
@@ -117,6 +157,9 @@ std::string commandProblem(const std::string& text) {
         return "'" + argument + "' is no checkpoint's number, nor last";
     if (action == "erase" && argument != "all" && numberOf(argument).value_or(0) == 0)
         return "'" + argument + "' is no number of a note or stroke, nor all";
+    if ((action == "seek" || action == "speed") && !realOf(argument))
+        return "'" + argument + "' is no number of " + (action == "seek" ? "seconds" : "times");
+    if (action == "when" && !placeOf(argument)) return "'" + argument + "' is no place: three numbers, in mm";
     return "";
 }
 

@@ -1,6 +1,6 @@
 // People write commands so: reset, pause, resume, tool NAME (or its number), checkpoint, restore N (or last),
 // accuracy NAME, export NAME, reset-device, scene ID, start TRAINEE, stop, note TEXT, erase N (or
-// all), shutdown.
+// all), shutdown; of a replay also seek SECONDS, speed FACTOR, next, previous, when X Y Z (mm, in W).
 #pragma once
 
 #include <string>

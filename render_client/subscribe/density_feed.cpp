@@ -60,13 +60,18 @@ void DensityFeed::take(DensityStore& store, const DensityRun& run,
 bool DensityFeed::apply(DensityStore& store, uint32_t brick, const topics::DensityBrick& message) {
     const DensityBrick* const held = store.find(brick);
     if (held ? message.revision() <= held->revision : message.scanned().empty()) return true;
-    DensityBrick next{{}, {}, message.revision()};
+    DensityBrick next;
+    next.revision = message.revision();
     if (held) {
         next.scanned = held->scanned;
+        next.materials = held->materials;
     } else {
         auto scanned = decoder_.scanned(message.scanned(), store.grid()->brick_edge);
         if (!scanned) return false;
+        auto materials = decoder_.materials(message.materials(), scanned->size());
+        if (!materials) return false;
         next.scanned = std::move(*scanned);
+        next.materials = std::move(*materials);
     }
     if (!message.change().empty()) {
         auto present = decoder_.present(message.change(), next.scanned);
@@ -95,7 +100,7 @@ topics::DensityWish DensityFeed::wishOf(DensityStore& store) {
     for (const uint32_t brick : by_importance) {
         if (store.find(brick)) continue;
         if (isAir(brick))
-            store.put(brick, {std::vector<uint16_t>(brickVoxels(*store.grid())), {}, 0});
+            store.put(brick, {std::vector<uint16_t>(brickVoxels(*store.grid())), {}, {}, 0});
         else if (wish.lacking_size() < kMostLackingSaid)
             wish.add_lacking(brick);
     }

@@ -23,6 +23,7 @@ constexpr double kLongestSession = 1e9;  // s
 constexpr int kMostCheckpoints = 64;
 constexpr int kMostTools = 64;  // far more than a scene may have
 constexpr int kMostWarnings = 64;
+constexpr int kMostShownZones = 32, kMostShownGates = 64;
 constexpr int kMostScenes = 64;
 constexpr size_t kMostPictureBytes = 64u << 10;
 constexpr int kMostAttempts = 256;
@@ -104,16 +105,30 @@ bool isUsable(const topics::Training& training) {
     return std::ranges::all_of(numbers, isSane) && training.warnings_size() <= kMostWarnings;
 }
 
+bool isUsable(const topics::Replay& replay) {
+    return isTime(replay.length_s()) && isTime(replay.known_s()) && isSane(replay.speed()) &&
+           replay.speed() >= 0;
+}
+
 bool isUsable(const topics::ToolState& state) {
     return isVector(state.p_wt_m()) && isQuaternion(state.q_wt()) && isVector(state.p_wt_device_m()) &&
            isQuaternion(state.q_wt_device()) && isVector(state.force_n()) && isVector(state.torque_nm()) &&
-           std::isfinite(state.max_penetration_m()) && isUsable(state.effects());
+           std::isfinite(state.max_penetration_m()) && isTime(state.session_s()) && isUsable(state.effects());
 }
 
 // States and causes of a later version are shown as unknown.
 bool isUsable(const topics::Device& device) {
     return isSane(device.max_force_n()) && device.max_force_n() >= 0 && isSane(device.max_torque_nmm()) &&
            device.max_torque_nmm() >= 0 && isSane(device.coupling_share()) && isSane(device.rotation_share());
+}
+
+bool isUsable(const topics::TaskState& task) {
+    const auto is_usable = [](const topics::TaskState::Zone& zone) {
+        return isSane(zone.bone_mm3()) && isSane(zone.removed_mm3());
+    };
+    return task.zones_size() <= kMostShownZones && task.gates_size() <= kMostShownGates &&
+           std::ranges::all_of(task.zones(), is_usable) && isSane(task.time_left_s()) && task.score() >= 0 &&
+           task.score() <= 1;
 }
 
 bool isUsable(const topics::Status& status) {
@@ -129,7 +144,7 @@ bool isUsable(const topics::Status& status) {
     };
     return isFinite(numbers) && isTime(status.session_s()) && status.checkpoints_size() <= kMostCheckpoints &&
            std::ranges::all_of(status.checkpoints(), is_usable) && isUsable(status.training()) &&
-           isUsable(status.device());
+           isUsable(status.device()) && isUsable(status.task()) && isUsable(status.replay());
 }
 
 bool isUsable(const topics::SceneChoice& scene) {
@@ -142,10 +157,15 @@ bool isUsable(const topics::ScenePicture& picture) {
            picture.png().size() <= kMostPictureBytes;
 }
 
+bool isUsable(const topics::Verdict& verdict) {
+    const double score = verdict.score_percent();
+    return verdict.failed_gates_size() <= kMostShownGates && score >= 0 && score <= 100;
+}
+
 bool isUsable(const topics::Attempt& attempt) {
     return isTime(attempt.time_s()) && isSane(attempt.removed_mm3()) && isSane(attempt.max_force_n()) &&
            attempt.max_force_n() >= 0 && isUsable(attempt.training()) &&
-           attempt.structures_touched_size() <= kMostStructures;
+           attempt.structures_touched_size() <= kMostStructures && isUsable(attempt.verdict());
 }
 
 bool isUsable(const topics::Lesson& lesson) {
@@ -218,6 +238,12 @@ void keepShownText(topics::Training& training) {
     training.set_nearest_structure(shownName(training.nearest_structure()));
 }
 
+void keepShownText(topics::TaskState& task) {
+    for (topics::TaskState::Zone& zone : *task.mutable_zones()) zone.set_name(shownName(zone.name()));
+    for (topics::TaskState::Gate& gate : *task.mutable_gates())
+        gate.set_text(shownText(gate.text(), kLongestText));
+}
+
 void keepShownText(topics::SceneChoice& scene) {
     scene.set_id(shownName(scene.id()));
     scene.set_title(shownName(scene.title()));
@@ -231,6 +257,10 @@ void keepShownText(topics::Attempt& attempt) {
     attempt.set_scene_id(shownName(attempt.scene_id()));
     if (attempt.has_training()) keepShownText(*attempt.mutable_training());
     for (std::string& name : *attempt.mutable_structures_touched()) name = shownName(name);
+    if (!attempt.has_verdict()) return;
+    topics::Verdict& verdict = *attempt.mutable_verdict();
+    for (std::string& gate : *verdict.mutable_failed_gates()) gate = shownText(gate, kLongestText);
+    verdict.set_results(shownText(verdict.results(), kLongestText));
 }
 
 template <class Message>
@@ -296,6 +326,9 @@ std::optional<topics::Status> parseStatus(std::span<const uint8_t> payload) {
         *text = shownText(*text, kLongestText);
     if (status->has_device()) status->mutable_device()->set_name(shownName(status->device().name()));
     if (status->has_training()) keepShownText(*status->mutable_training());
+    if (status->has_task()) keepShownText(*status->mutable_task());
+    if (status->has_replay())
+        status->mutable_replay()->set_event(shownText(status->replay().event(), kLongestText));
     return status;
 }
 

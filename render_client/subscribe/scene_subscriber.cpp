@@ -216,7 +216,7 @@ void SceneSubscriber::takeRemarks() {
 }
 
 void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W,
-                               bool is_holding) {
+                               bool is_holding, const std::optional<topics::Eye>& eye) {
     if (!link_) return;
     topics::Viewer viewer;
     viewer.set_sender(outbox_.sender());
@@ -225,6 +225,8 @@ void SceneSubscriber::announce(double frame_rate_hz, const std::optional<Eigen::
     viewer.set_frame_rate_hz(frame_rate_hz);
     viewer.set_is_complete(isComplete());
     viewer.set_is_holding(is_holding);
+    viewer.set_is_trainee(options_.is_trainee);
+    if (eye) *viewer.mutable_eye() = *eye;
     if (pointer_W) viewer.mutable_pointer_m()->Assign(pointer_W->begin(), pointer_W->end());
     const std::string bytes = viewer.SerializeAsString();
     dds::ViewerSample sample{};

@@ -32,6 +32,7 @@ struct SubscriberOptions {
     uint32_t session = 1;   // that of the server
     std::string name = {};  // of who watches, for the others' lists
     topics::Viewer::Role role = topics::Viewer::OPERATOR;
+    bool is_trainee = false;  // what this viewer sees is what the trainee sees
     // After so much silence it joins anew (DeafWatch).
     std::chrono::milliseconds rejoin_after = DeafWatch::kFirstSilence;
     // The gateway that the session is reached through; none: by DDS. Then name and role are the gateway's to
@@ -89,10 +90,10 @@ class SceneSubscriber {
     // after their turn came.
     std::vector<CommandOutcome> takeOutcomes() { return outbox_.takeOutcomes(); }
 
-    // Tells all others who is watching here, where it points (m), and whether its mouse holds the tool: once
-    // per second at least.
+    // Tells all others who is watching here, where it points (m), whether its mouse holds the tool, and what
+    // it sees, if that is for the recording: once per second at least.
     void announce(double frame_rate_hz, const std::optional<Eigen::Vector3d>& pointer_W,
-                  bool is_holding = false);
+                  bool is_holding = false, const std::optional<topics::Eye>& eye = std::nullopt);
     // Says where the mouse of this viewer wants the tool point: with every picture while it holds the tool.
     void wantTool(const Pose& X_WT, uint32_t buttons, uint32_t placements) {
         if (link_) link_->hand.want(X_WT, buttons, placements, epoch());

@@ -31,7 +31,8 @@ double threadTime_us() {
 
 struct Coded {
     size_t bricks = 0, bytes = 0, largest = 0;
-    double write_us = 0, read_us = 0;  // in all
+    size_t material_bytes = 0;         // beside `bytes`
+    double write_us = 0, read_us = 0;  // in all, materials left out
 };
 
 Coded codeScanned(const DensitySource& source, DensityEncoder& encoder, size_t& air) {
@@ -51,6 +52,7 @@ Coded codeScanned(const DensitySource& source, DensityEncoder& encoder, size_t& 
         coded.write_us += written - start;
         ++coded.bricks;
         coded.bytes += bytes.size();
+        coded.material_bytes += encoder.materials(source.materials(brick)).size();
         coded.largest = std::max(coded.largest, bytes.size());
     }
     return coded;
@@ -90,13 +92,13 @@ Coded codeChanges(const DensitySource& source, DensityEncoder& encoder) {
 
 void run(const DensitiesOptions& options) {
     Table table({"scene", "voxels", "of it MB", "bricks sent", "air", "coded MB", "of those bricks", "mean B",
-                 "largest B", "coding us", "decoding us", "changed", "mean B", "us"});
+                 "largest B", "materials B", "coding us", "decoding us", "changed", "mean B", "us"});
     nlohmann::json json;
     for (const std::string& file : options.scenes) {
         const LoadedScene loaded = loadScene(file);
         Simulation simulation = makeSimulation(loaded);
         BoneHistory history(*simulation.bone);
-        const DensitySource source(*simulation.bone, history);
+        const DensitySource source(*simulation.bone, history, simulation.tick.effects.properties.get());
         DensityEncoder encoder(uint16_t(
             std::lround(std::clamp(simulation.mapping.high - simulation.mapping.low, 1.0, 65535.0))));
         size_t air = 0;
@@ -113,13 +115,14 @@ void run(const DensitiesOptions& options) {
                    number(double(source.geometry().voxelCount()) * 2e-6), std::to_string(scanned.bricks),
                    std::to_string(air), number(double(scanned.bytes) * 1e-6),
                    number(double(scanned.bytes) / sent, 3), number(per(double(scanned.bytes), scanned)),
-                   std::to_string(scanned.largest), number(per(scanned.write_us, scanned), 3),
-                   number(per(scanned.read_us, scanned), 3), std::to_string(changes.bricks),
-                   number(per(double(changes.bytes), changes), 3),
+                   std::to_string(scanned.largest), number(per(double(scanned.material_bytes), scanned), 3),
+                   number(per(scanned.write_us, scanned), 3), number(per(scanned.read_us, scanned), 3),
+                   std::to_string(changes.bricks), number(per(double(changes.bytes), changes), 3),
                    number(per(changes.write_us, changes), 3)});
         json[loaded.scene.name()] = {{"bricks", scanned.bricks},
                                      {"air_bricks", air},
                                      {"bytes", scanned.bytes},
+                                     {"material_bytes", scanned.material_bytes},
                                      {"coding_us", per(scanned.write_us, scanned)},
                                      {"decoding_us", per(scanned.read_us, scanned)},
                                      {"changed_bricks", changes.bricks},

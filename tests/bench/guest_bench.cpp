@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/cli/command_line.h"
+#include "common/mesh/mesh_codec.h"
 #include "common/run_program.h"
 #include "common/units.h"
 #include "common/user_error.h"
@@ -69,34 +70,46 @@ class BenchGuest {
     bool isComplete() const { return wants_nodes_ > 0 && nodes_.size() == wants_nodes_; }
     bool isOut() const { return is_refused_ || socket_.hasEnded(); }
     uint64_t received() const { return received_; }
+    // Payloads of nodes, as DDS has them; and the frames that they came in, without what else is in these.
     uint64_t nodeBytes() const { return node_bytes_; }
+    uint64_t nodeFrameBytes() const { return node_frame_bytes_; }
+    uint64_t triangles() const { return triangles_; }
     uint64_t toolBytes() const { return tool_bytes_; }
     uint64_t frames() const { return frames_; }
 
   private:
     void take(const std::string& bytes) {
+        const uint64_t before = node_bytes_;
         received_ += bytes.size();
         ++frames_;
         gateway::ToGuest frame;
         if (!frame.ParseFromString(bytes)) throw UserError("the gateway sends what makes no sense");
         is_in_ = is_in_ || frame.has_welcome();
         is_refused_ = is_refused_ || frame.has_refusal();
+        size_t others = 0;  // bytes of this frame that are of no node
         for (const gateway::Sample& sample : frame.samples().samples()) {
             if (sample.topic() == gateway::Sample::STATUS && status_.ParseFromString(sample.payload()))
                 wants_nodes_ = status_.node_count();
             if (sample.topic() == gateway::Sample::TOOL_STATE) tool_bytes_ += sample.payload().size();
-            if (sample.topic() != gateway::Sample::NODE_MESH) continue;
+            if (sample.topic() != gateway::Sample::NODE_MESH) {
+                others += sample.ByteSizeLong();
+                continue;
+            }
             node_bytes_ += sample.payload().size();
+            if (const auto node = decodeNodeMesh(sample.payload(), uint32_t(sample.key())))
+                triangles_ += node->mesh.indices.size() / 3;
             if (sample.payload().empty()) {
                 nodes_.erase(sample.key());
             } else {
                 nodes_.insert(sample.key());
             }
         }
+        if (node_bytes_ != before) node_frame_bytes_ += bytes.size() - others;
     }
 
     connect::WebSocketClient socket_;
-    uint64_t received_ = 0, node_bytes_ = 0, tool_bytes_ = 0, frames_ = 0, wants_nodes_ = 0;
+    uint64_t received_ = 0, node_bytes_ = 0, node_frame_bytes_ = 0, triangles_ = 0, tool_bytes_ = 0,
+             frames_ = 0, wants_nodes_ = 0;
     std::unordered_set<uint64_t> nodes_;
     topics::Status status_;
     bool is_in_ = false, is_refused_ = false;
@@ -154,6 +167,10 @@ Guests comeIn(const BenchWish& wish) {
         stepAll(guests);
     std::cout << countOf(guests, &BenchGuest::isComplete) << " have the whole model after "
               << number(Seconds(GuestClock::now() - start).count()) << " s" << std::endl;
+    const BenchGuest& last = *guests.back();
+    std::cout << "the last one: " << last.triangles() << " triangles, per triangle "
+              << number(double(last.nodeFrameBytes()) / double(last.triangles())) << " bytes, as over DDS "
+              << number(double(last.nodeBytes()) / double(last.triangles())) << std::endl;
     return guests;
 }
 

@@ -175,6 +175,31 @@ TEST_F(CtPicture, MilledWallsShowWhatTheScanMeasured) {
     expectSeen(drawMilled(), "ct_milled");
 }
 
+TEST_F(CtPicture, CutsHaveTheColoursOfMaterials) {
+    const auto drawLayered = [&] {
+        topics::SceneInfo info = test::milledInfo();
+        test::addLayers(info);
+        scene_->setSceneInfo(info);
+        for (const NodeMesh& node : test::layeredBlock()) scene_->setNode(node);
+        scene_->setConnection(Connection::kLive);
+        cutOpen();
+        scene_->settings().cuts[2] = {true, 0.7, false};
+        return drawScanned();
+    };
+    scene_->settings().slices.ct = CtShown::kMaterialsOnCuts;
+    const Picture coloured = drawLayered();
+    EXPECT_EQ(test::goldenProblem(coloured, "ct_materials"), "");
+    scene_->settings().slices.ct = CtShown::kOnCuts;
+    const Picture grey = draw();
+    EXPECT_TRUE(test::compare(coloured, grey).isVisible());
+    scene_->settings().slices.ct = CtShown::kMaterialsOnCuts;
+    EXPECT_TRUE(draw() == coloured) << "there and back";
+    topics::SceneInfo plain = test::milledInfo();
+    plain.set_revision(2);
+    scene_->setSceneInfo(plain);
+    EXPECT_TRUE(test::compare(coloured, draw()).isVisible()) << "without colours cuts are of plain bone";
+}
+
 TEST_F(CtPicture, WhatIsNotShownIsNotWanted) {
     test::showMilledBlock(*scene_);
     DensityStore& store = scene_->densities();
@@ -259,6 +284,10 @@ TEST_F(CtPicture, QuickDrawingFollowsBricksAndWindow) {
     expectAnother("milled nodes in another window");
     scene_->settings().slices.ct = CtShown::kNowhere;
     expectAnother("plain");
+    scene_->settings().slices.ct = CtShown::kMaterialsOnCuts;
+    expectAnother("materials");
+    store.put(wanted[0], test::blockBrick(wanted[0], {}));
+    expectWhole("the same brick again");
     store.clear();
     scene_->settings().slices.ct = CtShown::kOnCuts;
     expectWhole("no scan");

@@ -28,6 +28,18 @@ topics::ToolState toolWithDamage(uint32_t events) {
     return tool;
 }
 
+// Every line that a task can have while it is done.
+void addTask(topics::TaskState& task) {
+    task.set_time_left_s(59);
+    for (uint32_t role = 0; role < 5; ++role) {
+        topics::TaskState::Zone& zone = *task.add_zones();
+        zone.set_role(role);
+        zone.set_bone_mm3(1000);
+        zone.set_removed_mm3(123);
+    }
+    task.add_gates()->set_state(topics::TaskState::Gate::BROKEN);
+}
+
 class FigureShare : public testing::Test {
   protected:
     FigureShare() : context_(kShareWidth, kShareHeight), scene_(context_.gl()) {
@@ -39,6 +51,7 @@ class FigureShare : public testing::Test {
         info_.add_materials()->set_name("facial nerve");
         status_ = test::makeStatus();
         status_.set_session_s(3723);
+        addTask(*status_.mutable_task());
         tool_ = toolWithDamage(0);
         for (int i = 0; i < 20; ++i)
             watchers_.push_back(

@@ -214,6 +214,19 @@ TEST_F(Golden, Materials) {
     EXPECT_EQ(test::goldenProblem(draw(), "materials"), "");
 }
 
+TEST_F(Golden, ZonesOfATask) {
+    topics::SceneInfo info = test::milledInfo();
+    for (const auto& [red, green, blue] :
+         {std::array{0.30, 0.72, 0.35}, {0.95, 0.85, 0.25}, {0.90, 0.35, 0.15}}) {
+        scene::Color& colour = *info.add_materials()->mutable_color();
+        colour.set_red(red), colour.set_green(green), colour.set_blue(blue);
+    }
+    scene_->setSceneInfo(info);
+    for (const NodeMesh& node : test::zonedBlock()) scene_->setNode(node);
+    EXPECT_EQ(test::goldenProblem(draw(), "zones"), "");
+    EXPECT_TRUE(test::compare(draw(), test::readGolden("plain")).isVisible());
+}
+
 // Without colours in the scene the same vertices are plain bone.
 TEST_F(Golden, MaterialsWithoutColoursArePlainBone) {
     topics::SceneInfo info = test::milledInfo();

@@ -27,14 +27,36 @@ inline const std::vector<NodeMesh>& milledBlock() {
     return nodes;
 }
 
-// It has a shell of one material around a core of another, and a lump without one on the right.
+// There is a shell of one material around a core of another, and a lump without one on the right.
+inline uint8_t blockMaterial(const Eigen::Vector3d& p) {
+    if (p.x() > kBlockCenter.x() + 0.0035) return 0;
+    return (p - kBlockCenter).norm() > kBlockRadius - 0.0011 ? 1 : 2;
+}
+
 inline const std::vector<NodeMesh>& layeredBlock() {
-    static const std::vector<NodeMesh> nodes =
-        meshBody(65, 2.5e-4, milledBlockDistance, [](const Eigen::Vector3d& p) {
-            const double radius = (p - kBlockCenter).norm();
-            if (p.x() > kBlockCenter.x() + 0.0035) return uint8_t(0);
-            return uint8_t(radius > kBlockRadius - 0.0011 ? 1 : 2);
+    static const std::vector<NodeMesh> nodes = meshBody(65, 2.5e-4, milledBlockDistance, blockMaterial);
+    return nodes;
+}
+
+// A task asked for a cavity that is deeper and narrower: what was to go and is left, and what is gone beyond
+// it.
+inline const std::vector<NodeMesh>& zonedBlock() {
+    static const std::vector<NodeMesh> nodes = [] {
+        const auto whole = [](const Eigen::Vector3d& p) { return (p - kBlockCenter).norm() - kBlockRadius; };
+        const VoxelVolume scanned = bodyVolumeOf(65, 2.5e-4, whole);
+        std::vector<uint8_t> zones;
+        forEachIndex({Eigen::Vector3i::Zero(), scanned.dims().array() - 1}, [&](const Eigen::Vector3i& v) {
+            const Eigen::Vector3d p = 2.5e-4 * v.cast<double>() - kCavityCenter;
+            const double off_axis = std::hypot(p.x(), p.z());
+            zones.push_back(off_axis < 0.0013 ? 1 : off_axis < 0.0018 ? 2 : 3);
         });
+        ZonePaint paint{.zones = std::make_shared<const VoxelIds>(scanned.dims(), zones),
+                        .scanned = &scanned};
+        paint.when_left[1] = 1;
+        paint.when_gone[2] = 2;
+        paint.when_gone[3] = 3;
+        return meshBody(65, 2.5e-4, milledBlockDistance, {}, &paint);
+    }();
     return nodes;
 }
 

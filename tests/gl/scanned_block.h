@@ -49,6 +49,7 @@ inline DensityBrick blockBrick(uint32_t number, const ScanParts& parts) {
                 const Eigen::Vector3d p = 2.5e-4 * (first + Eigen::Vector3i(i, j, k)).cast<double>();
                 brick.scanned.push_back(density(blockValue(p, parts)));
                 if (parts.is_milled) brick.present.push_back(density(blockValueNow(p, parts)));
+                brick.materials.push_back(blockMaterial(p));
             }
     brick.revision = 1;
     return brick;

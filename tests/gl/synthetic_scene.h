@@ -14,9 +14,8 @@ namespace bonemill::test {
 using DistanceFunction = std::function<double(const Eigen::Vector3d& p_V)>;   // m, negative inside
 using MaterialFunction = std::function<uint8_t(const Eigen::Vector3d& p_V)>;  // 1 + index in the scene's list
 
-// Makes the iso-surface of distance = 0 in a cube of `voxels` per side, cut into leaves of 16 cells.
-inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const DistanceFunction& distance,
-                                      const MaterialFunction& material = {}) {
+// The densities of a body in a cube of `voxels` per side.
+inline VoxelVolume bodyVolumeOf(int voxels, double spacing, const DistanceFunction& distance) {
     VolumeGeometry geometry;
     geometry.dims.setConstant(voxels);
     geometry.spacing.setConstant(spacing);
@@ -28,12 +27,21 @@ inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const Distance
                 const double steps = distance(spacing * Eigen::Vector3d(i, j, k)) / spacing;
                 volume.set(i, j, k, Density(std::lround(kIso - std::clamp(steps / 2, -1.0, 0.99) * 32767)));
             }
+    return volume;
+}
+
+// Makes the iso-surface of distance = 0, cut into leaves of 16 cells.
+inline std::vector<NodeMesh> meshBody(int voxels, double spacing, const DistanceFunction& distance,
+                                      const MaterialFunction& material = {},
+                                      const ZonePaint* paint = nullptr) {
+    const VoxelVolume volume = bodyVolumeOf(voxels, spacing, distance);
     const LeafLattice lattice(volume, Eigen::Vector3i::Constant(16));
     std::optional<BoneProperties> properties;
     if (material)
         properties.emplace(volume,
                            [&](const Eigen::Vector3i& v) { return material(spacing * v.cast<double>()); });
     LeafMesher mesher(volume, lattice, MeshGrid::kMostStepsPerCell, properties ? &*properties : nullptr);
+    mesher.setPaint(paint);
     std::vector<NodeMesh> nodes;
     for (LeafId leaf = 0; leaf < lattice.leafCount(); ++leaf) {
         NodeMesh mesh = mesher.mesh(leaf).value();

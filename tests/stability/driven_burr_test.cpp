@@ -39,7 +39,7 @@ struct Pit {
         hold(false);
     }
     void press(double force) {
-        if (hand.stiffness == 0) return loop.plant.setBias({{0.1 * force, 0, -force}, {}});
+        if (hand.stiffness == 0) return loop.plant.setBias({{0.1 * force, 0, -force}, {0, 0, 0}});
         loop.plant.setTarget(
             {start.position + Eigen::Vector3d(0.1 * force, 0, -force) / hand.stiffness, start.rotation});
     }

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "haptic_server/bone/bone_history.h"
+#include "haptic_server/volume/bone_properties.h"
 #include "tests/support/ct_brick.h"
 
 namespace bonemill::test {
@@ -41,6 +42,13 @@ struct ScannedBone {
         bone.lattice.endWrite(voxels);
     }
 };
+
+// The materials are 0 to 3, without any order.
+inline BoneProperties randomMaterials(const ScannedBone& scan) {
+    std::mt19937 random(8);
+    return BoneProperties(scan.history.scanned(),
+                          [&](const Eigen::Vector3i&) { return MaterialId(random() % 4); });
+}
 
 inline Eigen::Vector3i randomVoxel(const VoxelVolume& volume, std::mt19937& random) {
     const Eigen::Vector3i& n = volume.dims();

@@ -2,6 +2,8 @@
 
 const kRestMs = 220;  // a view that has not moved for so long rests
 const kTooSlowMs = 38, kFastMs = 22;  // from picture to picture
+const kPauseMs = 1000;  // between two moves
+const kPerSecondMs = 1000;
 // Of the pixels' rows and columns; few steps, for each of them is another canvas.
 const kShares = [1, 0.8, 0.65, 0.5];
 
@@ -9,6 +11,8 @@ export class Pace {
   private times: number[] = [];
   private movedAt = -1e9;
   private changedAt = -1e9;
+  private drawnAt = -1e9;  // what has come until then was seen
+  private wasMoving = false;
   private level = 0;  // of kShares
   private isSlow: boolean;
   private balance = 0;
@@ -27,10 +31,14 @@ export class Pace {
 
   // A picture is drawn now: with all that makes it good, or with so much of the pixels' rows and columns.
   next(now: number): { isFine: boolean; isMoving: boolean; share: number } {
-    const step = now - (this.times.at(-1) ?? -1e9), isMoving = now - this.movedAt < kRestMs;
-    this.times = [...this.times.filter((time) => now - time < 1000), now];
-    if (isMoving && step < 300) this.adapt(step);
-    const isFine = !this.isSlow || (!isMoving && now - this.changedAt >= kRestMs);
+    // What is new since the picture before goes on, however long that picture took.
+    const isNew = (at: number) => now - at < kRestMs || at > this.drawnAt;
+    const step = now - (this.times.at(-1) ?? -1e9), isMoving = isNew(this.movedAt);
+    if (isMoving && this.wasMoving && step < kPauseMs) this.adapt(step);
+    const isFine = !this.isSlow || (!isMoving && !isNew(this.changedAt));
+    this.times = [...this.times.filter((time) => now - time < kPerSecondMs), now];
+    this.wasMoving = isMoving;
+    this.drawnAt = Math.max(now, this.movedAt, this.changedAt);
     return { isFine, isMoving, share: isMoving && this.isSlow ? kShares[this.level] : 1 };
   }
 
@@ -41,7 +49,7 @@ export class Pace {
   }
 
   rate(now: number): number {
-    return this.times.filter((time) => now - time < 1000).length;
+    return this.times.filter((time) => now - time < kPerSecondMs).length;
   }
 
   private adapt(step: number): void {

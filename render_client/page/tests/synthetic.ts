@@ -32,10 +32,10 @@ export interface Surface {
   indices: number[];
 }
 
-export function nodeMesh(surface: Surface, revision = 1, material = 0): Uint8Array {
+export function nodeMesh(surface: Surface, revision = 1, material = 0, least_step = kStep): Uint8Array {
   const low = [0, 1, 2].map((i) => Math.min(...surface.points.map((p) => p[i]))) as V3;
   const span = Math.max(...surface.points.map((p) => Math.max(...p.map((x, i) => x - low[i]))));
-  const step = Math.max(kStep, span / 60000);
+  const step = Math.max(least_step, span / 60000);
   const vertices = new Uint8Array(8 * surface.points.length), view = new DataView(vertices.buffer);
   surface.points.forEach((p, v) => {
     p.forEach((x, i) => view.setUint16(8 * v + 2 * i, Math.round((x - low[i]) / step), true));

@@ -4,7 +4,6 @@ import { test } from 'node:test';
 import * as linear from '../src/math/linear';
 import { shownText, Malformed } from '../src/link/checks';
 import { CommandOutbox } from '../src/link/command_outbox';
-import { coarseIndices } from '../src/link/coarse_indices';
 import { decodeMaterials, decodeNode, decoderReady } from '../src/link/node_codec';
 import { NodeBook } from '../src/link/node_book';
 import * as payloads from '../src/link/payloads';
@@ -12,6 +11,7 @@ import { Placement } from '../src/link/place_node';
 import { kVertexBytes, Role, type CommandOrder, type StatusView } from '../src/shared/messages';
 import { clockText, readableText } from '../src/shared/format';
 import { OrderDesk, questionBefore, whyNot, whyNotHold } from '../src/orders';
+import { Pace } from '../src/pace';
 import { Session } from '../src/session';
 import { MillingSynth } from '../src/sound/milling_synth';
 import { thinned } from '../src/stroke_pen';
@@ -109,10 +109,10 @@ test('the newer epoch wins, then the newer revision, and there is an end to it',
   assert.equal(book.size, 0);
 });
 
-test('coarse triangles are fewer, of the same vertices, and leave the border', () => {
+test('coarse triangles are fewer, of the same vertices, and leave a border that lies in no plane', () => {
   const node = decodeNode(synthetic.boneNodes(200_000)[10].payload);
   const placed = new Placement([-0.01, -0.01, -0.01], [0.01, 0.01, 0.01]).place(1, node);
-  const coarse = coarseIndices(placed.vertices, placed.indices), used = new Set(coarse);
+  const coarse = placed.coarse, used = new Set(coarse);
   assert.ok(coarse.length < placed.indices.length / 2 && coarse.length > placed.indices.length / 20);
   const edges = (indices: Uint32Array) => {
     const all = new Set<string>();
@@ -122,6 +122,55 @@ test('coarse triangles are fewer, of the same vertices, and leave the border', (
   };
   assert.deepEqual(edges(coarse), edges(placed.indices));
   assert.ok([...used].every((v) => v < node.vertexCount));
+});
+
+// A wavy sheet that the plane x = 0 cuts into two nodes of two chunks, with vertices where a lattice has them.
+test('a moving view stays coarse, and becomes coarser, however long its pictures take', () => {
+  const pace = new Pace(true), shares: number[] = [];
+  let now = 10_000;
+  for (let i = 0; i < 20; ++i) {
+    pace.noteMove(now + 1);  // while the picture before was drawn
+    now += 400;
+    const { isFine, isMoving, share } = pace.next(now);
+    assert.ok(isMoving && !isFine, `picture ${i}`);
+    shares.push(share);
+  }
+  assert.ok(shares.at(-1)! < shares[0]);
+  now += pace.restsIn(now) + 5;
+  assert.ok(pace.next(now).isFine, 'a view at rest');
+  pace.noteChange(now + 1);
+  assert.ok(!pace.next(now + 400).isFine, 'milled since the picture before');
+  assert.ok(pace.next(now + 700).isFine);
+});
+
+test('two nodes have the same coarse border in the plane between them', () => {
+  const kVoxel = 1e-4, kSide = 40;
+  const half = (sign: number) => {
+    const points: [number, number, number][] = [], indices: number[] = [];
+    for (let i = 0; i <= kSide; ++i)
+      for (let j = 0; j <= kSide; ++j) {
+        const x = (sign * i * kVoxel) / 2, y = (j * kVoxel) / 2;
+        points.push([x, y, kVoxel * Math.round(64 * (20 + 3 * Math.sin(9000 * x + 4000 * y) + y / kVoxel / 3)) / 64]);
+      }
+    for (let i = 0; i < kSide; ++i)
+      for (let j = 0; j < kSide; ++j) {
+        const a = i * (kSide + 1) + j, b = a + kSide + 1;
+        indices.push(a, b, a + 1, a + 1, b, b + 1);
+      }
+    const node = decodeNode(synthetic.nodeMesh({ points, normals: points.map((): [number, number, number] => [0, 0, 1]), indices }, 1, 0, kVoxel / 256));
+    return new Placement([-2e-3, 0, 0], [2e-3, 2e-3, 4e-3]).place(sign + 1, node);
+  };
+  const borderOf = (sign: number, level: 'indices' | 'coarse') => {
+    const placed = half(sign), view = new DataView(placed.vertices.buffer);
+    const at = (v: number) => [0, 1, 2].map((i) => placed.origin[i] + placed.step * view.getUint16(v * kVertexBytes + 2 * i, true));
+    return { share: placed.coarse.length / placed.indices.length, chunk: placed.chunk,
+      points: [...new Set([...placed[level]].map(at).filter((p) => Math.abs(p[0]) < placed.step).map((p) => p.slice(1).map((x) => x.toFixed(7)).join(' ')))].sort() };
+  };
+  const left = borderOf(-1, 'coarse'), right = borderOf(1, 'coarse');
+  assert.notEqual(left.chunk, right.chunk);
+  assert.deepEqual(left.points, right.points);
+  assert.ok(left.points.length > 4 && left.points.length < borderOf(1, 'indices').points.length / 2);
+  assert.ok(left.share < 0.2, `${left.share} of the triangles are left`);
 });
 
 test('an order waits for its own answer, is repeated, and given up', () => {

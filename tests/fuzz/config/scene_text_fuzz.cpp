@@ -20,6 +20,14 @@ tool { shape { sphere { center_mm { x: 1 y: 2 z: 3 } radius_mm: 1.5 } } shape { 
 coupling { max_speed_mm_per_s: 500 static_damping: 0.5 }
 effects { time_removal { rate_density_per_s: 1e4 } spindle {} bone_dust {} }
 material { name: "enamel" from_value: 2000 label: 3 color { red: 0.9 } }
+assessment {
+  zone { name: "leeway" role: LEEWAY_SIDES shape { box { size_mm { x: 4 y: 4 z: 2 } q_WB { w: 1 } } } color { red: 1 } }
+  zone { name: "caries" role: TARGET material: "enamel" shape { cone { to_mm { z: 2 } } } }
+  reference { volume_path: "expert.nrrd" }
+  gate { figure: "zone.removed:caries" at_least: 90 label: "all of it" }
+  sub_score { figure: "overcut.p95" worst: 1 best: 0 weight: 2 }
+  time_limit_s: 300 most_attempts: 3 feedback: LIVE approach { z: -1 } plan { tip_mm { z: -5 } }
+}
 device { p_WD_mm { z: -20 } q_WD { w: 0.7071068 x: 0.7071068 } }
 simulated_operator {
   waypoint { time_s: 0 p_WT_mm { z: 5 } }
@@ -41,6 +49,9 @@ void load(const std::string& text, Tally& tally) {
         ASSERT_GE(parsed.scene.coupling().max_speed_mm_per_s(), 1.0);
         ASSERT_LE(parsed.scene.coupling().static_damping(), 0.99);
         ASSERT_FALSE(parsed.scene.volume().path().empty());
+        ASSERT_LE(parsed.scene.assessment().zone_size(), 32);
+        for (const auto& gate : parsed.scene.assessment().gate())
+            ASSERT_NE(gate.limit_case(), scene::Task::Gate::LIMIT_NOT_SET);
     } catch (const UserError& error) {
         ++tally.refused;
         ASSERT_TRUE(std::string(error.what()).starts_with("fuzz:")) << error.what();

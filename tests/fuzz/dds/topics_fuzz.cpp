@@ -11,6 +11,7 @@
 #include "common/mesh/mesh_codec.h"
 #include "device_daemon/pointer/hand_wish.h"
 #include "haptic_server/publish/command_inbox.h"
+#include "haptic_server/publish/trainee_eye.h"
 #include "render_client/subscribe/payloads.h"
 #include "tests/support/hand_pointer.h"
 #include "tests/support/mutated_bytes.h"
@@ -194,11 +195,16 @@ TEST(TopicsFuzz, Status) {
     status.set_node_digest(0x0123456789abcdef);
     status.mutable_training()->set_least_distance_mm(0.5);
     status.mutable_training()->add_warnings("touched facial nerve");
+    status.mutable_task()->add_zones()->set_removed_mm3(3);
+    status.mutable_task()->add_gates()->set_text("held");
+    status.mutable_task()->set_score(0.5);
     fuzz(status.SerializeAsString(), [](Bytes bytes) {
         const auto parsed = parseStatus(bytes);
         return parsed && std::isfinite(parsed->rate_hz()) &&
                std::isfinite(parsed->training().least_distance_mm()) &&
-               parsed->training().warnings_size() <= 64;
+               parsed->training().warnings_size() <= 64 && parsed->task().zones_size() <= 32 &&
+               parsed->task().gates_size() <= 64 && parsed->task().score() >= 0 &&
+               parsed->task().score() <= 1;
     });
 }
 
@@ -255,6 +261,27 @@ TEST(TopicsFuzz, Command) {
         const auto decision = inbox.receive(7, {1, 2}, bytes);
         EXPECT_TRUE(!decision.command || decision.command->action_case() != topics::Command::ACTION_NOT_SET);
         return decision.command.has_value();
+    });
+}
+
+TEST(TopicsFuzz, TraineesEye) {
+    topics::Viewer viewer;
+    viewer.set_sender(7);
+    viewer.set_name("Ann");
+    viewer.set_role(topics::Viewer::OPERATOR);
+    for (const double p : {0.1, 0.2, 0.3}) viewer.mutable_eye()->add_p_wc_m(p);
+    for (const double q : {0.5, 0.5, 0.5, 0.5}) viewer.mutable_eye()->add_q_wc(q);
+    viewer.mutable_eye()->set_field_of_view_rad(0.5);
+    TraineeEye eyes;
+    TraineeEye::Clock::time_point now;
+    fuzz(viewer.SerializeAsString(), [&](Bytes bytes) {
+        const bool is_accepted = eyes.hear(bytes, 7, 1, {}, now);
+        if (const auto seen = eyes.takeChanged(now)) {
+            EXPECT_TRUE(seen->X_WC.isFinite());
+            EXPECT_NEAR(seen->X_WC.rotation.norm(), 1, 1e-12);
+            EXPECT_GT(seen->field_of_view, 0);
+        }
+        return is_accepted;
     });
 }
 

@@ -18,13 +18,16 @@ TEST(DensityCodecFuzz, TakesAnyBytes) {
     const std::vector<uint16_t> scanned = test::ctBrick(kEdge, random);
     const std::string whole = encoder.scanned(scanned, kEdge);
     const std::string change = encoder.change(scanned, test::milledBrick(scanned, random));
+    const std::string materials = encoder.materials(std::vector<uint8_t>(scanned.begin(), scanned.end()));
     int refused = 0;
     for (int round = 0; round < kRounds; ++round) {
         const auto brick = decoder.scanned(test::mutated(whole, random), kEdge);
         const auto present = decoder.present(test::mutated(change, random), scanned);
         EXPECT_TRUE(!brick || brick->size() == scanned.size());
         EXPECT_TRUE(!present || present->size() == scanned.size());
-        refused += !brick + !present;
+        const auto made_of = decoder.materials(test::mutated(materials, random), scanned.size());
+        EXPECT_TRUE(!made_of || made_of->empty() || made_of->size() == scanned.size());
+        refused += !brick + !present + !made_of;
     }
     EXPECT_GT(refused, kRounds / 4);
     EXPECT_EQ(decoder.scanned(whole, kEdge), scanned) << "damage before it leaves no trace";

@@ -65,7 +65,8 @@ class RandomHand {
 // A busy machine has these; the rest would be the programs' own.
 bool isOfTheMachineOrTheHand(const std::string& fault) {
     static const std::set<std::string> known{"overrun",       "stale_device",      "motion_clamped",
-                                             "force_clamped", "milling_cut_short", "stalled"};
+                                             "force_clamped", "milling_cut_short", "stalled",
+                                             "fewer_samples"};
     return known.count(fault) > 0;
 }
 

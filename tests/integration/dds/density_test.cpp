@@ -23,7 +23,8 @@ constexpr DensityScale kCtScale{-200, 1800, 300};
 struct DensityServer {
     Publisher publisher{{.domain = testDomain(), .session = testSession(), .epoch = 0}};
     test::ScannedBone scan;
-    DensitySource source{scan.bone, scan.history};
+    BoneProperties properties = test::randomMaterials(scan);
+    DensitySource source{scan.bone, scan.history, &properties};
     DensityPublisher densities{publisher.participant(), testSession(), publisher.epoch(), source, kCtScale};
 
     DensityServer() {
@@ -60,6 +61,15 @@ void wantAll(DensityStore& store) {
     std::vector<uint32_t> all(size_t(brickCount(*store.grid())));
     std::iota(all.begin(), all.end(), 0u);
     store.want(all);
+}
+
+// Each brick that is here is made of what the volume says; air is not sent.
+bool hasMaterials(const DensityServer& server, const DensityStore& store) {
+    return std::ranges::all_of(store.wanted(), [&](uint32_t number) {
+        const std::vector<Density> scanned = server.source.scanned(number);
+        const bool is_air = std::ranges::all_of(scanned, [](Density density) { return density == 0; });
+        return is_air || store.find(number)->materials == server.source.materials(number);
+    });
 }
 
 bool hasWanted(const DensityStore& store) {
@@ -107,6 +117,8 @@ TEST(Densities, ComeExactlyAndAgainWhenTheyChange) {
     wantAll(late.store);
     ASSERT_TRUE(runUntil(server, {&client, &late}, [&] { return isExact(server, late.store); }))
         << "who comes late gets both";
+    EXPECT_TRUE(hasMaterials(server, client.store)) << "also of bricks that changed since";
+    EXPECT_TRUE(hasMaterials(server, late.store));
     EXPECT_EQ(client.subscriber.malformedSamples() + late.subscriber.malformedSamples(), 0u);
 }
 

@@ -5,7 +5,7 @@
 
 #include "common/units.h"
 #include "haptic_server/offline/run_path.h"
-#include "haptic_server/offline/state_hash.h"
+#include "haptic_server/record/state_hash.h"
 #include "haptic_server/setup/scene_setup.h"
 #include "tests/support/every_effect_scene.h"
 #include "tests/support/temporary_folder.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "common/config/scene_geometry.h"
 #include "common/units.h"
 #include "haptic_server/offline/run_path.h"
 #include "haptic_server/phantom/tooth_phantom.h"
@@ -15,6 +14,7 @@
 #include "haptic_server/volume/import/import_volume.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
+#include "tests/support/scene_path.h"
 
 namespace bonemill {
 namespace {
@@ -29,29 +29,6 @@ struct ShippedRun {
     double volume_change_mm3 = 0;  // of the surface
     bool is_closed = false;
 };
-
-Pose poseAt(const scene::SimulatedOperator& scenario, double t_s, uint32_t& buttons) {
-    int from = 0;
-    while (from + 2 < scenario.waypoint_size() && scenario.waypoint(from + 1).time_s() <= t_s) ++from;
-    const auto &a = scenario.waypoint(from), &b = scenario.waypoint(from + 1);
-    const double share = std::clamp((t_s - a.time_s()) / (b.time_s() - a.time_s()), 0.0, 1.0);
-    const Pose X_WA = poseOf(a), X_WB = poseOf(b);
-    buttons = (a.remove() ? kButtonRemove : 0u) | (a.add() ? kButtonAdd : 0u);
-    return {X_WA.position + share * (X_WB.position - X_WA.position),
-            X_WA.rotation.slerp(share, X_WB.rotation)};
-}
-
-std::vector<DeviceInput> pathOf(const scene::SimulatedOperator& scenario, double dt) {
-    std::vector<DeviceInput> path;
-    const double end_s = scenario.waypoint().rbegin()->time_s();
-    for (double t_s = 0; t_s < end_s; t_s = double(path.size()) * dt) {
-        DeviceInput input;
-        input.X_WT_device = poseAt(scenario, t_s, input.buttons);
-        input.t_s = t_s;
-        path.push_back(input);
-    }
-    return path;
-}
 
 // Scene and phantoms lie to each other as in the repository.
 class SceneRun : public testing::Test {
@@ -76,7 +53,7 @@ class SceneRun : public testing::Test {
         const double before = meshVolume(meshWholeBone(bone.volume, bone.lattice), grid);
         for (const TickRecord& record :
              runPath(simulation.fixedTick(), bone,
-                     pathOf(loaded.scene.simulated_operator(), simulation.tick.dt))) {
+                     test::scenePath(loaded.scene.simulated_operator(), simulation.tick.dt))) {
             result.removed_mm3 += record.removed * kPerCubicMillimetre;
             result.added_mm3 += record.added * kPerCubicMillimetre;
             result.faults |= record.faults;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "common/user_error.h"
+#include "render_client/tcp/listen.h"
 #include "tests/integration/gateway/gateway_guest.h"
 
 namespace bonemill::gateway {
@@ -142,14 +143,14 @@ TEST(HostileGuest, WhoGuessesIsSlowedDown) {
     EXPECT_FALSE(late.refusal->is_final());
 }
 
-// They come from an address of their own, as in life.
-std::vector<int> silentConnections(uint16_t port, int count) {
+// They come from so many addresses of their own, as in life.
+std::vector<int> silentConnections(uint16_t port, int count, uint32_t addresses = 1) {
     std::vector<int> sockets;
     for (int n = 0; n < count; ++n) {
         const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
         sockaddr_in from{}, to{};
         from.sin_family = to.sin_family = AF_INET;
-        from.sin_addr.s_addr = htonl(INADDR_LOOPBACK + 1);
+        from.sin_addr.s_addr = htonl(INADDR_LOOPBACK + 1 + uint32_t(n) % addresses);
         to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
         to.sin_port = htons(port);
         if (bind(socket, reinterpret_cast<sockaddr*>(&from), sizeof from) != 0 ||
@@ -173,19 +174,45 @@ TEST(HostileGuest, OneAddressDoesNotTakeThePlacesOfAllOthers) {
     EXPECT_EQ(open, Gateway::kMostUnknown.of_address);
 }
 
-TEST(HostileGuest, SilentConnectionsAreBoundedAndKeepNobodyOut) {
-    TestServer server(3);
-    const RunningGateway gateway(invitationOf("Anna", "VIEWER", "anna"));
-    const std::vector<int> silent = silentConnections(gateway.target().port, 400);
-    TestGuest anna(gateway, "anna", true);
-    EXPECT_TRUE(anna.pollUntil([&] { return anna.isComplete(); }));
+// Counts those that are still open, and closes all.
+int closeAll(const std::vector<int>& sockets) {
     int open = 0;
-    for (const int socket : silent) {
+    for (const int socket : sockets) {
         pollfd look{socket, POLLIN, 0};
         open += poll(&look, 1, 0) == 0;
+        close(socket);
     }
-    EXPECT_LE(open, 96) << "of one address";
-    for (const int socket : silent) close(socket);
+    return open;
+}
+
+TEST(HostileGuest, AThousandSilentConnectionsAreBoundedAndKeepNobodyOut) {
+    TestServer server(3);
+    const RunningGateway gateway(invitationOf("Anna", "VIEWER", "anna", 0, 2));
+    allowDescriptors(2000);
+    for (const auto& [addresses, most_open] : {std::pair(1u, 96), std::pair(10u, 256)}) {
+        const std::vector<int> silent = silentConnections(gateway.target().port, 1000, addresses);
+        TestGuest anna(gateway, "anna", true);
+        EXPECT_TRUE(anna.pollUntil([&] { return anna.isComplete(); }));
+        EXPECT_LE(closeAll(silent), most_open) << "of " << addresses;
+    }
+}
+
+TEST(HostileGuest, WhoSaysNoHelloMakesRoomForOthers) {
+    GatewayOptions options;
+    options.domain = testDomain();
+    options.session = testSession();
+    const test::TemporaryFolder folder;
+    options.guests = folder / "guests";
+    Gateway gateway(options);
+    const auto now = Gateway::Clock::now();
+    const auto come = [&](int address) { return gateway.come({"192.0.2." + std::to_string(address)}, now); };
+    Guest* const first = come(1);
+    for (size_t n = 1; n < Gateway::kMostUnknown.all; ++n) ASSERT_TRUE(come(int(1 + n % 4)));
+    EXPECT_FALSE(first->shouldClose(now));
+    EXPECT_EQ(come(1), nullptr) << "it has its share";
+    EXPECT_NE(come(9), nullptr);
+    EXPECT_TRUE(first->shouldClose(now));
+    EXPECT_TRUE(first->nextFrame(now).empty());
 }
 
 TEST(HostileGuest, WhoAcknowledgesNothingHarmsNobody) {

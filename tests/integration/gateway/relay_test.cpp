@@ -48,6 +48,8 @@ TEST(RelayedGateway, AGuestGetsTheWholeModelAndTheRelaySeesNothingOfIt) {
         EXPECT_EQ(heard.find(plain), std::string::npos) << plain;
         EXPECT_FALSE(RelayedGateway::hasSaid(gateway.relay(), plain)) << plain;
     }
+    for (const std::string& secret : {kRelayedToken, anna.welcome->ticket()})
+        EXPECT_FALSE(RelayedGateway::hasSaid(gateway.gatewayProgram(), secret)) << secret;
     EXPECT_TRUE(RelayedGateway::hasSaid(gateway.relay(), "a guest from 127.0.0.1"));
     EXPECT_TRUE(
         RelayedGateway::hasSaid(gateway.gatewayProgram(), "has come from 127.0.0.1 through the relay"));

@@ -57,7 +57,7 @@ class RelayedGateway {
             "render_client", "--serve", "0", "--via", "127.0.0.1:" + std::to_string(relay_port_),
             "--relay-secret", folder_ / secret, "--session", std::to_string(testSession()), "--domain",
             std::to_string(testDomain()), "--guests", folder_ / "guests", "--guests-at-once",
-            std::to_string(most_guests_)});
+            std::to_string(most_guests_), "--log-level", "debug"});
         own_port_ = portAtTheEndOf(printedAfter(*gateway_, ": https://"));
         fingerprint_ = printedAfter(*gateway_, "fingerprint (SHA-256): ");
     }

@@ -77,5 +77,23 @@ TEST(RemoteViewer, IsToldWhyItMayNotCome) {
     }
 }
 
+TEST(RemoteViewer, ItsTokenLeavesTheProcessList) {
+    const std::string token = "00112233445566778899aabbccddeeff";
+    TestServer server(3);  // which answers no order
+    const RunningGateway gateway(invitationOf("Anna", "OPERATOR", token));
+    test::Process viewer({"render_client", "--connect",
+                          "https://127.0.0.1:" + std::to_string(gateway.target().port) + "/#" + token,
+                          "--fingerprint", gateway.target().fingerprint, "--command", "pause"});
+    const auto command_line = [&] {
+        return test::readFile("/proc/" + std::to_string(viewer.pid()) + "/cmdline");
+    };
+    EXPECT_TRUE(test::waitFor([&] { return viewer.errSoFar().find("warning") != std::string::npos; }));
+    EXPECT_TRUE(test::waitFor(
+        [&] { return !viewer.isRunning() || command_line().find(token) == std::string::npos; }));
+    ASSERT_TRUE(viewer.isRunning()) << viewer.errSoFar();
+    EXPECT_NE(command_line().find("/#" + std::string(token.size(), 'x')), std::string::npos);
+    EXPECT_EQ(viewer.wait().err.find(token), std::string::npos);
+}
+
 }  // namespace
 }  // namespace bonemill::gateway

@@ -1,11 +1,14 @@
 // Writes what it should not: an order to end the session as instructor Anna, and a status of another server,
 // for some seconds; and reads what it can of the server's status. Prints one JSON line at the end.
-//   intruder --session N --domain D [--secure DIR [--plugins DIR]] [--sender N] [--seconds S]
-// With --plugins the plugins of DDS Security are those of that folder.
+//   intruder --session N --domain D [--secure DIR [--plugins DIR]] [--sender N] [--seconds S] [--days-back N]
+// With --plugins the plugins of DDS Security are those of that folder. With --days-back its clock is slow.
 #include <dds/dds.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <thread>
 
 #include "common/cli/command_line.h"
@@ -14,6 +17,26 @@
 #include "common/run_program.h"
 #include "common/security/security_folder.h"
 #include "proto/topics.pb.h"
+
+namespace {
+std::time_t clock_is_slow_s = 0;
+}
+
+// Who has an identity that has expired turns the clock back: these stand before the C library's, also for
+// OpenSSL and Cyclone.
+extern "C" {
+int clock_gettime(clockid_t clock, timespec* now) noexcept {
+    const long result = syscall(SYS_clock_gettime, clock, now);
+    if (result == 0 && clock == CLOCK_REALTIME) now->tv_sec -= clock_is_slow_s;
+    return int(result);
+}
+std::time_t time(std::time_t* place) noexcept {
+    timespec now{};
+    clock_gettime(CLOCK_REALTIME, &now);
+    if (place) *place = now.tv_sec;
+    return now.tv_sec;
+}
+}
 
 namespace {
 
@@ -116,7 +139,10 @@ int main(int argc, char** argv) {
         app.add_option("--plugins", intrusion.plugins);
         app.add_option("--sender", intrusion.sender);
         app.add_option("--seconds", intrusion.seconds);
+        std::time_t days_back = 0;
+        app.add_option("--days-back", days_back);
         if (!bonemill::parseCommandLine(app, argc, argv, "intruder")) return 0;
+        clock_is_slow_s = days_back * 86400;
         return intrude(intrusion);
     });
 }

@@ -1,6 +1,8 @@
 // A secured session: people do what their role may, and nobody else does anything.
 #include <signal.h>
 
+#include <ctime>
+#include <filesystem>
 #include <regex>
 
 #include "tests/integration/security/secured_slab.h"
@@ -84,6 +86,38 @@ TEST(SecuredSession, StrangersAndThoseWhoOnlyLookReadAndWriteNothingThatIsNotThe
     const std::string shown = viewer->outSoFar();
     EXPECT_TRUE(has(shown.substr(shown.rfind("{")), "\"complete\":true"))
         << "a forged status changes nothing";
+}
+
+std::string daysAgo(int days) {
+    const std::time_t then = std::time(nullptr) - days * 86400;
+    char text[16] = "";
+    std::strftime(text, sizeof text, "%Y-%m-%d", std::gmtime(&then));
+    return text;
+}
+
+// Programs of ours do not start with an identity that has expired; a thief's does, and turns its clock back.
+TEST(SecuredSession, WhoseIdentityHasExpiredStaysOutsideWhateverTheOwnClockSays) {
+    const SecuredSlab slab({"--from", daysAgo(100), "--days", "3650"});
+    const std::string session = std::filesystem::path(slab.folderOf("server")).parent_path();
+    const Finished made =
+        test::makeSession(session, {"--person", "Old:instructor", "--from", daysAgo(100), "--days", "30"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const auto server = slab.server(true);
+    const Finished late = slab.command("Old", {"--command", "pause"});
+    EXPECT_EQ(late.exit_code, 2);
+    EXPECT_TRUE(has(late.err, "the certificate of Old expired on " + daysAgo(70))) << late.err;
+    const auto slow = [&](const std::string& person, const std::string& sender) {
+        return slab.intruder(slab.folderOf(person),
+                             {"--plugins", kPlugins, "--days-back", "90", "--sender", sender});
+    };
+    const auto olgas = slow("Olga", "67"), thief = slow("Old", "66");
+    const auto olga = SecuredSlab::end(*olgas), old = SecuredSlab::end(*thief);
+    EXPECT_EQ(old["commands"], true) << "in its own eyes it may: " << old;
+    EXPECT_EQ(old["matched"], 0) << old;
+    EXPECT_EQ(old["read"], 0) << old;
+    EXPECT_GE(olga["matched"], 1) << "a slow clock alone keeps nobody outside: " << olga;
+    EXPECT_TRUE(server->isRunning());
+    EXPECT_FALSE(has(server->errSoFar(), "order of Old")) << server->errSoFar();
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ using Words = std::vector<std::string>;
 
 class SecuredSlab {
   public:
-    SecuredSlab() {
+    // `more` goes to make-session.
+    explicit SecuredSlab(const Words& more = {}) : people_(joined(more)) {
         EXPECT_EQ(run({"make_phantom", "body", "--kind", "slab", "--out", folder_ / "slab.nrrd"}).exit_code,
                   0);
         writeFile(folder_ / "scene.textproto",
@@ -64,9 +65,15 @@ class SecuredSlab {
     }
 
   private:
+    static Words joined(const Words& more) {
+        Words words{"--server", "--person",      "Anna:instructor", "--person",   "Olga:operator",
+                    "--person", "Otto:observer", "--person",        "Ed:examiner"};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    }
+
     TemporaryFolder folder_;
-    SecuredSession people_{{"--server", "--person", "Anna:instructor", "--person", "Olga:operator",
-                            "--person", "Otto:observer", "--person", "Ed:examiner"}};
+    SecuredSession people_;
     std::string domain_ = std::to_string(testDomain());
 };
 

@@ -143,6 +143,12 @@ TEST_F(FirstStart, ATrajectoryInMillimetres) {
     writeFile(folder_ / "mm.csv",
               kHeader + std::string("0,20,30,-40,1,0,0,0,0\n0.001,20,30,-40,1,0,0,0,0\n"));
     expectError(run(simulate("ball.textproto", "mm.csv")), 2, {"mm.csv", "53.", "metres", "millimetres"});
+    std::string across = kHeader;  // of a small bone around W's origin
+    for (int n = 0; n < 21; ++n)
+        across += "0.0" + std::string(n < 10 ? "0" : "") + std::to_string(n) + ",0,0," +
+                  std::to_string(n - 10) + ",1,0,0,0,0\n";
+    writeFile(folder_ / "mm.csv", across);
+    expectError(run(simulate("ball.textproto", "mm.csv")), 2, {"mm.csv", "metres", "millimetres"});
 }
 
 // Root may write everywhere, so it is somebody else who tries.

@@ -4,7 +4,7 @@
 #include <signal.h>
 
 #include "haptic_server/mesh/mesher.h"
-#include "haptic_server/offline/state_hash.h"
+#include "haptic_server/record/state_hash.h"
 #include "haptic_server/setup/scene_setup.h"
 #include "tests/integration/dds/client_probe.h"
 #include "tests/support/node_meshes.h"

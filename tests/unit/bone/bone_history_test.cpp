@@ -213,5 +213,17 @@ TEST(BoneHistory, ADroppedCheckpointIsStillReached) {
     EXPECT_EQ(ball.densities(), first);
 }
 
+// As of an earlier run of the session: nothing was ever written in this one.
+TEST(BoneHistory, ASnapshotOfAnotherRunIsRestoredWhereNothingWasMilled) {
+    test::MilledBall before, after;
+    before.groove(10e-3);
+    const auto snapshot = before.history.snapshot(before.bone);
+    ASSERT_FALSE(snapshot->leaves.empty());
+    after.history.restore(snapshot);
+    after.restoreAll();
+    EXPECT_EQ(after.densities(), before.densities());
+    EXPECT_EQ(after.history.missingVoxels(), before.history.missingVoxels());
+}
+
 }  // namespace
 }  // namespace bonemill

@@ -24,7 +24,7 @@ struct MilledBall {
     void groove(double y, double z = 11e-3, int direction = -1) {
         TimedMilling milling({.removal_rate = 1e9, .addition_rate = 1e9}, bone.volume, bone.lattice, 2e-3);
         for (int n = 0; n < 20; ++n) {
-            EXPECT_TRUE(history.beginWrite());
+            EXPECT_TRUE(history.beginWrite(0));
             const MillingResult milled = milling.apply(bone.volume, bone.lattice, bone.shell,
                                                        {3e-3 + n * 0.5e-3, y, z}, direction, 1e-3);
             history.endWrite(milled.removed_voxels, milled.added_voxels);
@@ -32,7 +32,7 @@ struct MilledBall {
     }
     // Does one tick's part. False means that nothing was on its way.
     bool restoreSome() {
-        EXPECT_TRUE(history.beginWrite());
+        EXPECT_TRUE(history.beginWrite(0));
         bool shell_is_complete = true;
         const bool is_restoring = history.restoreSome(bone, shell_is_complete);
         EXPECT_TRUE(shell_is_complete);

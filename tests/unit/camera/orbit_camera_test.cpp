@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "render_client/camera/microscope.h"
+
 namespace bonemill {
 namespace {
 
@@ -121,6 +123,23 @@ TEST(OrbitCamera, DepthRangeHoldsTheSphereOrStaysInFrontOfTheEye) {
     const DepthRange behind = camera.view().depthRange(camera.eye_W() + camera.towardsEye_W(), 0.1);
     EXPECT_GT(behind.near, 0);
     EXPECT_GT(behind.far, behind.near);
+}
+
+// The occlusion takes a face's slope from the depths of neighbouring pixels.
+TEST(OrbitCamera, DepthIsFineAtTheFocusWhateverStandsAroundTheEye) {
+    constexpr int kHeight = 800;
+    for (const double distance : {0.005, 0.034, 0.3, 5.0})
+        for (const double radius : {0.02, 0.2, 2.0})
+            for (const bool is_microscope : {false, true}) {
+                OrbitCamera orbit;
+                orbit.distance = distance;
+                const Camera camera = is_microscope ? microscopeCamera(orbit.view()) : orbit.view();
+                const DepthRange range = camera.depthRange(camera.eye_W, radius);
+                ASSERT_LT(range.near, range.far);
+                if (range.far < camera.focus) continue;
+                const double step = camera.focus * (camera.focus / range.near) * std::pow(2, -24);
+                EXPECT_LT(step, 0.02 * camera.metresPerPixel(kHeight)) << distance << ' ' << radius;
+            }
 }
 
 TEST(OrbitCamera, MetresPerPixelAgreesWithTheProjection) {

@@ -43,7 +43,7 @@ TEST(HelpRows, NameEveryKeyOfTheTableOnceWithItsMeaning) {
         EXPECT_EQ(meaningsOf(binding.label), std::vector{meaningOf(binding)}) << binding.label;
     };
     for (const KeyBinding& binding : keyTable())
-        if (!binding.is_of_lesson) expect_named(binding);
+        if (!binding.is_of_lesson && !binding.is_of_replay) expect_named(binding);
     for (const SignBinding& binding : signTable()) expect_named(binding);
 }
 
@@ -51,6 +51,11 @@ TEST(HelpRows, WhatHoldsTheToolIsThereOnlyWhereAMouseCanHoldIt) {
     for (const KeyBinding& binding : keyTable()) {
         if (binding.is_of_lesson) {
             EXPECT_TRUE(meaningsOf(binding.label).empty()) << binding.label << ": there is no lesson";
+            continue;
+        }
+        if (binding.is_of_replay) {
+            EXPECT_TRUE(meaningsOf(binding.label).empty()) << binding.label << ": it is live";
+            EXPECT_EQ(meaningsOf(binding.label, HelpFor::kReplay), std::vector{meaningOf(binding)});
             continue;
         }
         const bool begins = binding.action == Action::kHoldTool;

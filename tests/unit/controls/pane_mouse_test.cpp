@@ -113,6 +113,8 @@ TEST_F(PaneMouseTest, KeysSwitchPanesAndScan) {
     type('G');
     EXPECT_EQ(settings_.slices.ct, CtShown::kOnCutsAndMilled);
     type('G');
+    EXPECT_EQ(settings_.slices.ct, CtShown::kMaterialsOnCuts);
+    type('G');
     EXPECT_EQ(settings_.slices.ct, CtShown::kNowhere);
     type('G');
     EXPECT_EQ(settings_.slices.ct, CtShown::kOnCuts);

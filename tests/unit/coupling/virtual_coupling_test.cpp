@@ -75,13 +75,13 @@ TEST(Equilibrium, ClampsSpeedKeepingDirection) {
 
 TEST(Equilibrium, SaysNoToSingularAndNonFinite) {
     const CouplingConfig config;
-    EXPECT_FALSE(solveEquilibrium(config, {{1, 0, 0}, {}}, Matrix6d::Zero(), 1e-3).is_regular);
+    EXPECT_FALSE(solveEquilibrium(config, {{1, 0, 0}, {0, 0, 0}}, Matrix6d::Zero(), 1e-3).is_regular);
     Matrix6d m = couplingDerivative(config, kSpo, kDevice);
     m(2, 3) = std::numeric_limits<double>::quiet_NaN();
-    const EquilibriumStep solved = solveEquilibrium(config, {{1, 0, 0}, {}}, m, 1e-3);
+    const EquilibriumStep solved = solveEquilibrium(config, {{1, 0, 0}, {0, 0, 0}}, m, 1e-3);
     EXPECT_FALSE(solved.is_regular || solved.is_found);
     EXPECT_EQ(solved.step.norm(), 0);
-    const Wrench infinite{{std::numeric_limits<double>::infinity(), 0, 0}, {}};
+    const Wrench infinite{{std::numeric_limits<double>::infinity(), 0, 0}, {0, 0, 0}};
     EXPECT_FALSE(
         solveEquilibrium(config, infinite, couplingDerivative(config, kSpo, kDevice), 1e-3).is_regular);
 }

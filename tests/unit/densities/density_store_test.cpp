@@ -44,10 +44,11 @@ TEST(DensityStore, HasWhatArrived) {
     EXPECT_EQ(store.scannedAt({-1, 0, 0}), std::nullopt);
     DensityBrick milled = brickOf(100);
     milled.present.assign(64, 7);
+    milled.materials.assign(64, 3);
     store.put(5, milled);
     EXPECT_EQ(store.scannedAt({9, 4, 0}), 101);
     EXPECT_EQ(store.presentAt({9, 4, 0}), 7);
-    EXPECT_EQ(store.bytes(), 2 * kBrickBytes);
+    EXPECT_EQ(store.bytes(), 2 * kBrickBytes + 64);
 }
 
 TEST(DensityStore, LetsTheLeastRecentlyWantedGoFirst) {

@@ -64,6 +64,24 @@ TEST(DensityCodec, SpendsLittleOnWhatIsPlain) {
     EXPECT_LT(encoder.change(scanned, present).size(), 40u);
 }
 
+TEST(DensityCodec, GivesMaterialsBack) {
+    std::mt19937 random(5);
+    DensityEncoder encoder(test::kCtWindow);
+    DensityDecoder decoder;
+    std::vector<uint8_t> materials(kVoxels);
+    EXPECT_TRUE(encoder.materials(materials).empty()) << "none";
+    EXPECT_TRUE(encoder.materials({}).empty()) << "nobody asks";
+    EXPECT_EQ(decoder.materials("", kVoxels), std::vector<uint8_t>());
+    for (uint8_t& material : materials) material = uint8_t(random());
+    const std::string bytes = encoder.materials(materials);
+    EXPECT_EQ(decoder.materials(bytes, kVoxels), materials);
+    EXPECT_FALSE(decoder.materials(bytes, kVoxels - 1));
+    EXPECT_FALSE(decoder.materials(bytes, kVoxels + 1));
+    EXPECT_FALSE(decoder.materials(bytes.substr(1), kVoxels));
+    for (size_t n = 0; n < kVoxels; ++n) materials[n] = n % 256 < 100 ? 4 : 3;
+    EXPECT_LT(encoder.materials(materials).size(), 150u) << "layers cost little";
+}
+
 TEST(DensityCodec, RefusesWhatIsNoBrick) {
     std::mt19937 random(7);
     DensityEncoder encoder(test::kCtWindow);

@@ -55,7 +55,7 @@ TEST(MotionWatch, StopsAHandleThatFlies) {
 
 TEST(MotionWatch, ASpeedThatIsNoNumberBlindsThePowersWatchForNoLonger) {
     MotionWatch watch;
-    const Wrench given{{40, 0, 0}, {}};
+    const Wrench given{{40, 0, 0}, {0, 0, 0}};
     EXPECT_EQ(watch.check(movingAt({std::numeric_limits<double>::quiet_NaN(), 0, 0}), given, kWatchDt),
               StopCause::kNone);
     EXPECT_EQ(tripOf(watch, movingAt({0.9, 0, 0}), given).second, StopCause::kPower);
@@ -70,18 +70,18 @@ TEST(MotionWatch, OneFastSampleAloneIsNoise) {
 TEST(MotionWatch, StopsMotorsThatDriveTheHand) {
     MotionWatch watch({.max_power = 10});
     // 50 N at 0.5 m/s are 25 W: beyond 10 W after the time in which a filter of kPowerTime gets to 10/25.
-    const auto [time, cause] = tripOf(watch, movingAt({0.5, 0, 0}), {{50, 0, 0}, {}});
+    const auto [time, cause] = tripOf(watch, movingAt({0.5, 0, 0}), {{50, 0, 0}, {0, 0, 0}});
     EXPECT_EQ(cause, StopCause::kPower);
     EXPECT_NEAR(time, -MotionWatch::kPowerTime * std::log(1 - 10.0 / 25), 1.5e-3);
     watch.restart();
-    EXPECT_EQ(tripOf(watch, movingAt({-0.5, 0, 0}), {{50, 0, 0}, {}}).second,
+    EXPECT_EQ(tripOf(watch, movingAt({-0.5, 0, 0}), {{50, 0, 0}, {0, 0, 0}}).second,
               StopCause::kNone);  // the hand works
 }
 
 TEST(MotionWatch, StopsWhatGivesTooMuchEnergy) {
     MotionWatch watch({.max_power = 10, .max_energy = 3});
     // 8 W are within the power; the energy goes to 8 J with kEnergyTime.
-    const auto [time, cause] = tripOf(watch, movingAt({0.4, 0, 0}), {{20, 0, 0}, {}});
+    const auto [time, cause] = tripOf(watch, movingAt({0.4, 0, 0}), {{20, 0, 0}, {0, 0, 0}});
     EXPECT_EQ(cause, StopCause::kEnergy);
     EXPECT_NEAR(time, -MotionWatch::kEnergyTime * std::log(1 - 3.0 / 8), 5e-3);
     watch.restart();
@@ -91,8 +91,8 @@ TEST(MotionWatch, StopsWhatGivesTooMuchEnergy) {
     // A spring that gives back what it got does not add up.
     for (int i = 0; i < 20000; ++i) {
         const double t = i * kWatchDt;
-        ASSERT_EQ(watch.check(movingAt({0.3 * std::cos(20 * t), 0, 0}), {{-15 * std::sin(20 * t), 0, 0}, {}},
-                              kWatchDt),
+        ASSERT_EQ(watch.check(movingAt({0.3 * std::cos(20 * t), 0, 0}),
+                              {{-15 * std::sin(20 * t), 0, 0}, {0, 0, 0}}, kWatchDt),
                   StopCause::kNone);
     }
 }
@@ -101,7 +101,7 @@ TEST(MotionWatch, StopsMotorsThatDoNotDoWhatTheyAreTold) {
     MotionWatch watch({.max_force = 20});
     DeviceReading dead;
     dead.has_applied = true;
-    const auto [time, cause] = tripOf(watch, dead, {{0, 0, 10}, {}});
+    const auto [time, cause] = tripOf(watch, dead, {{0, 0, 10}, {0, 0, 0}});
     EXPECT_EQ(cause, StopCause::kForceMismatch);
     EXPECT_LT(time, 0.1);
     watch.restart();
@@ -117,13 +117,13 @@ TEST(MotionWatch, StopsMotorsThatDoNotDoWhatTheyAreTold) {
         applied += 0.3 * (Eigen::Vector3d(0, 0, late[(i + 1) % 3]) - applied);
         DeviceReading slow = dead;
         slow.applied_D.force = applied;
-        ASSERT_EQ(watch.check(slow, {{0, 0, late[i % 3]}, {}}, kWatchDt), StopCause::kNone) << i;
+        ASSERT_EQ(watch.check(slow, {{0, 0, late[i % 3]}, {0, 0, 0}}, kWatchDt), StopCause::kNone) << i;
     }
 }
 
 TEST(MotionWatch, AMismatchIsOneAgainstWhatTheDeviceItselfHasOrdered) {
     MotionWatch watch({.max_force = 20});
-    const Wrench given{{0, 0, 20}, {}};
+    const Wrench given{{0, 0, 20}, {0, 0, 0}};
     DeviceReading limited;  // its motors cannot give more than 8 N of it, and do
     limited.has_applied = true;
     limited.applied_share = 0.4;

@@ -94,7 +94,7 @@ TEST(SafetyStates, WithoutASwitchTheDeviceEngagesByItself) {
 }
 
 TEST(SafetyStates, EngageOnlyWhileTheWrenchIsSmall) {
-    const Wrench large[] = {{{0, 0, 1.01}, {}}, {{}, {0.021, 0, 0}}, {{NAN, 0, 0}, {}}};
+    const Wrench large[] = {{{0, 0, 1.01}, {0, 0, 0}}, {{0, 0, 0}, {0.021, 0, 0}}, {{NAN, 0, 0}, {0, 0, 0}}};
     for (const Wrench& wrench : large) {
         States s;
         s.in.commanded = wrench;

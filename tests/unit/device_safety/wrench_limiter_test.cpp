@@ -58,7 +58,7 @@ TEST(WrenchLimiter, NeverChangesFasterThanItsRates) {
         const double size = i % 3 ? 300 : 3;
         const Wrench wanted{size * Eigen::Vector3d(any(random), any(random), any(random)),
                             size / 50 * Eigen::Vector3d(any(random), any(random), any(random))};
-        const Wrench given = limiter.limit(i % 17 ? wanted : Wrench{{kNan, 0, 0}, {}}, 1, kDt);
+        const Wrench given = limiter.limit(i % 17 ? wanted : Wrench{{kNan, 0, 0}, {0, 0, 0}}, 1, kDt);
         EXPECT_LE((given.force - before.force).norm(), limits.max_force_rate * kDt * (1 + 1e-12));
         EXPECT_LE((given.torque - before.torque).norm(), limits.max_torque_rate * kDt * (1 + 1e-12));
         EXPECT_LE(given.force.norm(), limits.max_force * (1 + 1e-12));
@@ -78,7 +78,7 @@ TEST(WrenchLimiter, WhatIsNotFiniteGoesToZeroByTheRate) {
     for (const double bad : {kNan, kInfinity, -kInfinity}) {
         WrenchLimiter limiter;
         settled(limiter, {{0, 0, 20}, {0.1, 0, 0}});
-        const Wrench first = limiter.limit({{bad, 0, 0}, {}}, 1, kDt);
+        const Wrench first = limiter.limit({{bad, 0, 0}, {0, 0, 0}}, 1, kDt);
         EXPECT_NEAR(first.force.z(), 17, 1e-9);
         EXPECT_TRUE(limiter.events() & kWrenchNotFinite);
         EXPECT_EQ(settled(limiter, {{0, bad, 0}, {0, 0, bad}}).force, Eigen::Vector3d::Zero());
@@ -87,19 +87,19 @@ TEST(WrenchLimiter, WhatIsNotFiniteGoesToZeroByTheRate) {
 
 TEST(WrenchLimiter, FromFarBeyondTheNormsItComesBackAtOnce) {
     WrenchLimiter limiter;
-    settled(limiter, {{0, 0, 5000}, {}});
+    settled(limiter, {{0, 0, 5000}, {0, 0, 0}});
     const Wrench given = limiter.limit({}, 1, kDt);
     EXPECT_NEAR(given.force.z(), 50 - 3, 1e-9);
 }
 
 TEST(WrenchLimiter, TheFactorComesLastAndOddTimesChangeNothing) {
     WrenchLimiter limiter;
-    settled(limiter, {{0, 0, 20}, {}});
-    EXPECT_NEAR(limiter.limit({{0, 0, 20}, {}}, 0.25, kDt).force.z(), 5, 1e-12);
-    EXPECT_EQ(limiter.limit({{0, 0, 20}, {}}, 0, kDt).force, Eigen::Vector3d::Zero());
-    EXPECT_EQ(limiter.limit({{0, 0, 20}, {}}, kNan, kDt).force, Eigen::Vector3d::Zero());
+    settled(limiter, {{0, 0, 20}, {0, 0, 0}});
+    EXPECT_NEAR(limiter.limit({{0, 0, 20}, {0, 0, 0}}, 0.25, kDt).force.z(), 5, 1e-12);
+    EXPECT_EQ(limiter.limit({{0, 0, 20}, {0, 0, 0}}, 0, kDt).force, Eigen::Vector3d::Zero());
+    EXPECT_EQ(limiter.limit({{0, 0, 20}, {0, 0, 0}}, kNan, kDt).force, Eigen::Vector3d::Zero());
     for (const double dt : {0.0, -1.0, kNan})
-        EXPECT_NEAR(limiter.limit({{0, 0, -20}, {}}, 2, dt).force.z(), 20, 1e-12) << dt;
+        EXPECT_NEAR(limiter.limit({{0, 0, -20}, {0, 0, 0}}, 2, dt).force.z(), 20, 1e-12) << dt;
 }
 
 }  // namespace

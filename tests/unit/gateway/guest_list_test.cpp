@@ -44,8 +44,17 @@ TEST(GuestList, ATicketEndsWithItsInvitation) {
     EXPECT_FALSE(list.isInvited(anna.token_sha256, 100));
     EXPECT_NE(list.admit(anna.ticket, 100).refusal, "");
     test::writeFile(folder / "guests", "");
-    EXPECT_TRUE(list.reread());
     EXPECT_TRUE(list.admit(anna.ticket, 99).is_unknown);
+}
+
+// Whoever clicks a link at once must not be told that it is not valid, nor a withdrawn one still be good.
+TEST(GuestList, IsThatOfTheMomentWhenSomebodyComes) {
+    const test::TemporaryFolder folder;
+    GuestList list(folder / "guests");
+    test::writeFile(folder / "guests", listed("Anna", "secret", 0, 2));
+    EXPECT_EQ(list.admit("secret", 1).name, "Anna 1");
+    test::writeFile(folder / "guests", listed("Ottokar", "another", 0, 1));
+    EXPECT_TRUE(list.admit("secret", 1).is_unknown);
 }
 
 TEST(GuestList, AFileThatMakesNoSenseChangesNothing) {

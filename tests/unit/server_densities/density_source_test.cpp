@@ -40,6 +40,24 @@ TEST(DensitySource, GivesEveryVoxelOnce) {
     }
 }
 
+TEST(DensitySource, KnowsWhatVoxelsAreMadeOf) {
+    test::ScannedBone scan;
+    EXPECT_TRUE(DensitySource(scan.bone, scan.history).materials(20).empty()) << "nobody asks";
+    const BoneProperties properties = test::randomMaterials(scan);
+    const DensitySource source(scan.bone, scan.history, &properties);
+    scan.write({{20, 20, 20}, {30, 25, 36}}, 0);
+    for (const uint32_t brick : {17u, 21u, 35u}) {
+        const std::vector<MaterialId> materials = source.materials(brick);
+        ASSERT_EQ(materials.size(), size_t(kEdge * kEdge * kEdge));
+        size_t n = 0;
+        const Vector3i first = firstOf(brick);
+        forEachIndex({first, first.array() + (kEdge - 1)}, [&](const Vector3i& v) {
+            const bool is_inside = (v.array() < scan.bone.volume.dims().array()).all();
+            ASSERT_EQ(materials[n++], is_inside ? properties.material(v) : kNoMaterial) << v.transpose();
+        });
+    }
+}
+
 TEST(DensitySource, KnowsWhatWasScannedAsAir) {
     test::ScannedBone scan;
     const DensitySource source(scan.bone, scan.history);

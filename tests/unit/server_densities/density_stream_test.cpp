@@ -17,7 +17,8 @@ constexpr int64_t kMs = 1'000'000;
 // A server's stream, and what it wrote.
 struct StreamRig {
     test::ScannedBone scan;
-    DensitySource source{scan.bone, scan.history};
+    BoneProperties properties = test::randomMaterials(scan);
+    DensitySource source{scan.bone, scan.history, &properties};
     DensityStream stream{source, kRun, test::kCtWindow};
     int64_t now_ns = 1000 * kMs;
     std::vector<std::pair<uint32_t, topics::DensityBrick>> written;
@@ -72,6 +73,18 @@ TEST(DensityStream, WritesWhatIsLackingOnceAndInOrder) {
     rig.now_ns += DensityWishes::kSilence_ns;
     EXPECT_EQ(rig.run(10), 0u);
     EXPECT_FALSE(rig.stream.isWished(rig.now_ns));
+}
+
+TEST(DensityStream, SaysOnceWhatABrickIsMadeOf) {
+    StreamRig rig;
+    rig.wish(1, {17});
+    ASSERT_EQ(rig.run(40), 1u);
+    DensityDecoder decoder;
+    EXPECT_EQ(decoder.materials(rig.written[0].second.materials(), 4096), rig.source.materials(17));
+    rig.scan.write({{20, 20, 20}, {24, 22, 22}}, 0);
+    rig.wish(1, {}, {{17, 0}});
+    ASSERT_EQ(rig.run(100), 1u);
+    EXPECT_TRUE(rig.written[1].second.materials().empty());
 }
 
 TEST(DensityStream, WritesWhatChangedAgainButNotTooOften) {

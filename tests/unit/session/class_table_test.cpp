@@ -5,6 +5,8 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+
 #include "common/lesson/attempts_csv.h"
 #include "common/user_error.h"
 #include "tests/support/process.h"
@@ -37,7 +39,7 @@ class ClassTableTest : public testing::Test {
 const std::string kHeader = std::string(kAttemptsHeader) + "\n";
 const std::string kAnn =
     "3,2023-11-14T22:13:20Z,\"Ann\",\"Straight bore, molar\",61.5,12.25,4,0,none,,,,\"pulp; nerve, "
-    "left\",\"none\"\n";
+    "left\",\"none\",,\"\",,\"\"\n";
 
 TEST_F(ClassTableTest, EachAttemptIsAWholeLineBelowTheHeader) {
     const ClassTable table(path());
@@ -55,6 +57,35 @@ TEST_F(ClassTableTest, AnotherFileIsNotTouched) {
     ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
     EXPECT_THROW(ClassTable(folder_ / "pipe"), UserError);
     EXPECT_THROW(ClassTable("/dev/null"), UserError);
+}
+
+// An earlier release had no verdicts: its table keeps the columns that it has.
+TEST_F(ClassTableTest, ATableOfAnEarlierReleaseGoesOn) {
+    const std::string header = kHeader.substr(0, kHeader.find(",passed")) + "\n";
+    test::writeFile(path(), header);
+    EXPECT_EQ(ClassTable(path()).append(attemptOf("Ann"), "Straight bore, molar"), "");
+    EXPECT_EQ(content(), header + kAnn.substr(0, kAnn.size() - 9) + "\n");
+    test::writeFile(path(), kHeader.substr(0, kHeader.find(",scene")) + "\n");
+    EXPECT_THROW(ClassTable{path()}, UserError) << "fewer columns than there ever were";
+}
+
+TEST_F(ClassTableTest, APersonIsForgottenAndNobodyElse) {
+    const ClassTable table(path());
+    for (const char* name : {"P07", "P0", "P07", "=1+1", "say \"P07\", please", "P077"})
+        EXPECT_EQ(table.append(attemptOf(name), "P07"), "");
+    EXPECT_EQ(ClassTable::forget(path(), "P07"), 2u);
+    EXPECT_EQ(ClassTable::forget(path(), "P07"), 0u);
+    EXPECT_EQ(std::ranges::count(content(), '\n'), 5);
+    EXPECT_EQ(ClassTable::forget(path(), "=1+1"), 1u);
+    EXPECT_EQ(ClassTable::forget(path(), "say \"P07\", please"), 1u);
+    test::writeFile(path(), kHeader + "1,now,P9,scene,1\r\n2,now,P8,scene,1");  // as a spreadsheet writes it
+    EXPECT_EQ(ClassTable::forget(path(), "P9"), 1u);
+    EXPECT_EQ(ClassTable::forget(path(), "P8"), 1u);
+    EXPECT_EQ(content(), kHeader);
+    EXPECT_TRUE(ClassTable::isTable(path()));
+    test::writeFile(path(), "grades\n");
+    EXPECT_FALSE(ClassTable::isTable(path()));
+    EXPECT_THROW(ClassTable::forget(path(), "P9"), UserError);
 }
 
 TEST_F(ClassTableTest, ALineWithoutItsEndIsNotContinued) {

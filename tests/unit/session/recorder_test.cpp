@@ -86,6 +86,31 @@ TEST_F(RecorderTest, AnAttemptCountsFromWhereItsBoneIsPutBack) {
     EXPECT_EQ(recorder.attempt().effects.damaged(), 1);
 }
 
+// What is measured of an attempt begins with its bone and ends when it is taken.
+TEST_F(RecorderTest, AnAttemptIsMeasuredFromWhereItsBoneIsPutBack) {
+    Recorder recorder(ring_, kPeriodNs);
+    recorder.measureTechnique([] { return std::make_unique<Technique>(TechniqueScene{}); });
+    const auto push = [&](uint64_t bone_order) {
+        TickRecord record{};
+        record.t_s = 1e-3 * double(tick_);
+        record.tick = tick_++;
+        record.bone_order = bone_order;
+        ring_.tryPush(record);
+        recorder.drain();
+    };
+    push(0), push(0);
+    EXPECT_EQ(recorder.takeTechnique(), nullptr) << "there is no attempt";
+    recorder.beginAttempt(2);
+    push(1), push(2), push(2), push(2);
+    const std::unique_ptr<Technique> technique = recorder.takeTechnique();
+    ASSERT_NE(technique, nullptr);
+    push(2);
+    technique->finish();
+    EXPECT_DOUBLE_EQ(technique->beginS(), 3e-3);
+    EXPECT_NEAR(findFigure(technique->figures(), "time.session")->value, 2e-3, 1e-12);
+    EXPECT_EQ(recorder.takeTechnique(), nullptr);
+}
+
 TEST_F(RecorderTest, ATraceThatLacksTicksIsNotWhole) {
     Recorder recorder(ring_, kPeriodNs);
     recorder.openTrace(trace_);

@@ -23,6 +23,7 @@ const std::map<std::string, Rights> kRights{
     {"choose_scene", {false, true, true, true}},    {"start_attempt", {false, true, true, true}},
     {"stop_attempt", {false, true, true, true}},    {"add_remark", {false, true, true, true}},
     {"erase_remark", {false, true, true, true}},    {"shut_down", {false, false, true, false}},
+    {"replay", {false, true, true, true}},
 };
 
 TEST(RoleRules, EveryCommandHasARuleForEveryRole) {

@@ -16,7 +16,7 @@ class SessionCommandsTest : public testing::Test {
           accuracy_(presetSettings(Preset::kBalanced)),
           tools_(std::vector<SpoTool>{{&tool_, {.radius = 1e-3}, 5}}, 0),
           bone_export_(ball_.history, ball_.bone, ""),
-          attempts_(lesson_, recorder_, ball_.history, ball_.bone.volume.voxelVolume(), sceneOf(),
+          attempts_(lesson_, recorder_, ball_.history, journal_, ball_.bone.volume.voxelVolume(), sceneOf(),
                     [this](bool begins) { told_ += begins ? 'b' : 'e'; }),
           commands_(sceneOf(), ball_.bone, recorder_, controls(), false) {}
 
@@ -28,7 +28,7 @@ class SessionCommandsTest : public testing::Test {
     }
     SessionControls controls() {
         return {ball_.history, accuracy_, tools_,    stop_requested_, bone_export_,
-                reset_orders_, lesson_,   attempts_, limits_};
+                reset_orders_, lesson_,   attempts_, limits_,         journal_};
     }
     std::string order(topics::Command command, topics::Viewer::Role role = topics::Viewer::OPERATOR) {
         command.set_role(role);
@@ -74,7 +74,8 @@ class SessionCommandsTest : public testing::Test {
     SessionExport bone_export_;
     std::atomic<uint32_t> reset_orders_{0};
     LessonBook lesson_{listed(), ClassTable("")};
-    std::string told_;  // to the device
+    std::string told_;                                  // to the device
+    JournalKeeper journal_{ball_.history, ball_.bone};  // that goes nowhere
     AttemptKeeper attempts_;
     OrderLimits limits_;
     SessionCommands commands_;
@@ -344,6 +345,57 @@ TEST_F(SessionCommandsTest, OfAnUnknownNameOnly32PrintableCharactersAreRepeated)
     EXPECT_EQ(setAccuracy(std::string("a\n\x1b[2Jb\0c\x7f", 10)),
               std::string("refused: no preset is called 'a??[2Jb?c?'") + kPresets);
     EXPECT_EQ(setAccuracy("gr\xc3\xbcn"), std::string("refused: no preset is called 'gr??n'") + kPresets);
+}
+
+class FakeReplay final : public ReplayOrders {
+  public:
+    void play(bool goes_on) override { said_ += goes_on ? "play " : "hold "; }
+    std::string carryOut(const topics::ReplayOrder& order) override {
+        said_ += "seek " + std::to_string(int(order.seek_s())) + " ";
+        return "done";
+    }
+    void describe(topics::Replay& replay) const override { replay.set_length_s(60); }
+    std::string said_;
+};
+
+TEST_F(SessionCommandsTest, ALiveSessionIsNoReplay) {
+    topics::Command command;
+    command.mutable_replay()->set_seek_s(3);
+    EXPECT_EQ(order(command).substr(0, 7), "refused");
+    topics::Status status;
+    commands_.describe(status);
+    EXPECT_FALSE(status.has_replay());
+}
+
+TEST_F(SessionCommandsTest, AReplayIsLedAndItsBoneStaysAsItWas) {
+    FakeReplay replay;
+    SessionControls in_replay = controls();
+    in_replay.replay = &replay;
+    SessionCommands commands(sceneOf(), ball_.bone, recorder_, in_replay, false);
+    const auto tell = [&](topics::Command command, topics::Viewer::Role role = topics::Viewer::OPERATOR) {
+        command.set_role(role);
+        return commands.carryOut(command).value_or("nothing said").substr(0, 7);
+    };
+    topics::Command seek, pause, tool, reset, bone, shut_down;
+    seek.mutable_replay()->set_seek_s(3);
+    pause.set_pause_milling(true);
+    tool.set_select_tool(0);
+    reset.set_reset_volume(true);
+    bone.set_export_("name");
+    shut_down.set_shut_down(true);
+    EXPECT_EQ(tell(seek), "done");
+    EXPECT_EQ(tell(seek, topics::Viewer::VIEWER), "refused");
+    EXPECT_EQ(tell(pause), "done");
+    pause.set_pause_milling(false);
+    EXPECT_EQ(tell(pause), "done");
+    EXPECT_EQ(replay.said_, "seek 3 hold play ");
+    for (const topics::Command& command : {tool, reset, bone}) EXPECT_EQ(tell(command), "refused");
+    EXPECT_EQ(ball_.history.newestOrder(), 0u);
+    topics::Status status;
+    commands.describe(status);
+    EXPECT_EQ(status.replay().length_s(), 60);
+    EXPECT_EQ(tell(shut_down, topics::Viewer::INSTRUCTOR), "done");
+    EXPECT_TRUE(stop_requested_);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "haptic_server/offline/state_hash.h"
+#include "haptic_server/record/state_hash.h"
 #include "haptic_server/session/recorder.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_materials.h"

@@ -5,6 +5,9 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <filesystem>
+#include <stdexcept>
+
 #include "common/rt/clock.h"
 #include "tests/support/process.h"
 
@@ -32,7 +35,7 @@ TEST(TableWriter, AFileThatHangsKeepsNobodyWaiting) {
         written = writer.takeWritten();
         return !written.empty();
     }));
-    EXPECT_EQ(written.at(0).order.sequence(), 7u);
+    EXPECT_EQ(written.at(0).order->sequence(), 7u);
     EXPECT_EQ(written.at(0).problem, "");
 }
 
@@ -53,6 +56,74 @@ TEST(TableWriter, WhatCannotBeWrittenIsSaidAndTheEndWaitsForTheRest) {
         return !written.empty();
     }));
     EXPECT_NE(written.at(0).problem.find("other columns"), std::string::npos) << written.at(0).problem;
+}
+
+// Waits until the line with this attempt is written.
+TableWriter::Written writtenBy(TableWriter& writer, const std::optional<AttemptJudgement>& judgement) {
+    topics::Attempt attempt;
+    attempt.set_number(3);
+    attempt.set_trainee("P07");
+    attempt.set_scene_id("tooth_cavity");
+    attempt.set_start_stamp_ns(1'700'000'000'000'000'000);
+    attempt.set_time_s(61.5);
+    EXPECT_TRUE(writer.write(attempt, "Straight bore", {}, judgement));
+    std::vector<TableWriter::Written> written;
+    EXPECT_TRUE(test::waitFor([&] {
+        written = writer.takeWritten();
+        return !written.empty();
+    }));
+    return written.at(0);
+}
+
+AttemptJudgement failedJudgement() {
+    AttemptJudgement judgement;
+    judgement.judge = [] {
+        JudgedAttempt judged;
+        judged.assessment.figures = {{"force.max", 1, "Force", 6, "N"}};
+        judged.assessment.gates = {{"g", "The nerve is whole", "damage.volume:nerve", 0, true, false, "cut"},
+                                   {"h", "The target is gone", "target", 90, false, true, "gone"}};
+        judged.assessment.total = Total{0.47, 1, "0"};
+        return judged;
+    };
+    judgement.scene_hash = 0xabc;
+    return judgement;
+}
+
+TEST(TableWriter, AJudgedAttemptHasItsFilesBeforeItsLine) {
+    const test::TemporaryFolder folder;
+    const std::string path = folder / "class.csv";
+    TableWriter writer{ClassTable(path)};
+    const TableWriter::Written written = writtenBy(writer, failedJudgement());
+    EXPECT_EQ(written.problem, "");
+    ASSERT_TRUE(written.verdict);
+    EXPECT_FALSE(written.verdict->passed());
+    EXPECT_EQ(written.verdict->results(), "20231114T221320Z_P07_3");
+    const std::string table = test::readFile(path);
+    EXPECT_TRUE(table.ends_with(",no,\"The nerve is whole\",47,\"20231114T221320Z_P07_3\"\n")) << table;
+    for (const char* file : {"20231114T221320Z_P07_3.json", "20231114T221320Z_P07_3.html", "xapi.jsonl"})
+        EXPECT_TRUE(std::filesystem::exists(folder / ("results/" + std::string(file)))) << file;
+    EXPECT_NE(test::readFile(folder / "results/20231114T221320Z_P07_3.json").find("0000000000000abc"),
+              std::string::npos);
+}
+
+TEST(TableWriter, WhatTraineesMayNotKnowIsNotTold) {
+    const test::TemporaryFolder folder;
+    TableWriter writer{ClassTable(folder / "class.csv")};
+    AttemptJudgement judgement = failedJudgement();
+    judgement.is_told = false;
+    EXPECT_FALSE(writtenBy(writer, judgement).verdict);
+    EXPECT_NE(test::readFile(folder / "class.csv").find(",no,"), std::string::npos)
+        << "the teacher's table has it";
+}
+
+TEST(TableWriter, AnAttemptThatCannotBeJudgedHasItsLineAllTheSame) {
+    const test::TemporaryFolder folder;
+    TableWriter writer{ClassTable(folder / "class.csv")};
+    AttemptJudgement judgement;
+    judgement.judge = []() -> JudgedAttempt { throw std::runtime_error("no memory"); };
+    const TableWriter::Written written = writtenBy(writer, judgement);
+    EXPECT_EQ(written.problem, "no memory");
+    EXPECT_NE(test::readFile(folder / "class.csv").find("P07"), std::string::npos);
 }
 
 }  // namespace

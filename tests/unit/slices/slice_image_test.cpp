@@ -150,5 +150,45 @@ TEST(SliceImage, ABrickThatNothingChangedIsAsScanned) {
     EXPECT_FALSE(sample.was_changed);
 }
 
+// The denser of two neighbours says more: what bone fills only partly looks like something less dense.
+TEST(SliceImage, HasTheColoursOfMaterials) {
+    const SlicedVolume volume;
+    DensityStore store;
+    volume.putAll(store);
+    BoneColours colours;
+    colours.fill(Eigen::Vector3f::Constant(0.5f));
+    colours[1] = {1, 0, 0.25f};
+    colours[2] = {0, 1, 0.75f};
+    const Pose X_WV = test::turned({0.3, -0.2, 0.5});
+    const Eigen::AlignedBox3d box_W = scanBox(volume.grid, X_WV);
+    const SlicePlane plane = facePlane(volume.grid, X_WV, 1, box_W.center().y(), box_W, 40);
+    const SliceImage image = DensitySampler(store).image(plane, &colours);
+    const SliceImage without = DensitySampler(store).image(plane);
+    EXPECT_TRUE(without.colours.empty());
+    EXPECT_EQ(without.present, image.present);
+    ASSERT_EQ(image.colours.size(), 4 * image.state.size());
+    int here = 0;
+    for (size_t pixel = 0; pixel < image.state.size(); ++pixel) {
+        const uint16_t* const colour = &image.colours[4 * pixel];
+        if (image.state[pixel] != SliceState::kHere) {
+            EXPECT_EQ(colour[0] + colour[1] + colour[2] + colour[3], 0);
+            continue;
+        }
+        ++here;
+        const int column = int(pixel) % plane.width, row = int(pixel) / plane.width;
+        Vector3d sum = Vector3d::Zero();
+        double weights = 0;
+        volume.forEachCorner(plane.corner_V + column * plane.right_V + row * plane.down_V,
+                             [&](size_t voxel, double weight) {
+                                 weight *= 1.0 + volume.scanned[voxel];
+                                 sum += weight * colours[volume.materials[voxel]].cast<double>();
+                                 weights += weight;
+                             });
+        for (Eigen::Index c = 0; c < 3; ++c) EXPECT_NEAR(colour[c], 65535 * sum[c] / weights, 3);
+        EXPECT_EQ(colour[3], 65535);
+    }
+    EXPECT_GT(here, 200);
+}
+
 }  // namespace
 }  // namespace bonemill

@@ -12,12 +12,14 @@ namespace bonemill::test {
 struct SlicedVolume {
     DensityGrid grid{{37, 29, 23}, {4e-4, 5e-4, 7e-4}, {1e-3, -2e-3, 5e-4}, 8, -1000, 3000, 500};
     std::vector<uint16_t> scanned, present;
+    std::vector<uint8_t> materials;
 
     SlicedVolume() {
         std::mt19937 random(3);
         for (int n = 0; n < grid.voxels.prod(); ++n) {
             scanned.push_back(uint16_t(random()));
             present.push_back(random() % 3 == 0 ? uint16_t(random()) : scanned.back());
+            materials.push_back(uint8_t(scanned.back() % 3));
         }
     }
     size_t indexOf(const Eigen::Vector3i& v) const {
@@ -33,6 +35,7 @@ struct SlicedVolume {
                     const bool is_inside = (v.array() < grid.voxels.array()).all();
                     brick.scanned.push_back(is_inside ? scanned[indexOf(v)] : 0);
                     brick.present.push_back(is_inside ? present[indexOf(v)] : 0);
+                    brick.materials.push_back(is_inside ? materials[indexOf(v)] : uint8_t(0));
                 }
         return brick;
     }
@@ -42,10 +45,16 @@ struct SlicedVolume {
     }
     // Returns the trilinear density there (V), clamped to the outermost voxels.
     double at(const std::vector<uint16_t>& densities, const Eigen::Vector3d& p_V) const {
+        double sum = 0;
+        forEachCorner(p_V, [&](size_t voxel, double weight) { sum += weight * densities[voxel]; });
+        return sum;
+    }
+    // visit(voxel, weight) for the eight around that place (V), clamped to the outermost ones.
+    template <class Visit>
+    void forEachCorner(const Eigen::Vector3d& p_V, Visit&& visit) const {
         const Eigen::Vector3d last = (grid.voxels - Eigen::Vector3i::Ones()).cast<double>();
         const Eigen::Vector3d v =
             (p_V - grid.origin_m).cwiseQuotient(grid.spacing_m).cwiseMax(0).cwiseMin(last);
-        double sum = 0;
         for (int corner = 0; corner < 8; ++corner) {
             double weight = 1;
             Eigen::Vector3i voxel;
@@ -55,9 +64,8 @@ struct SlicedVolume {
                 voxel[axis] = std::min(int(low) + is_high, grid.voxels[axis] - 1);
                 weight *= is_high ? fraction : 1 - fraction;
             }
-            sum += weight * densities[indexOf(voxel)];
+            visit(indexOf(voxel), weight);
         }
-        return sum;
     }
 };
 

@@ -40,6 +40,21 @@ TEST_F(CommandWords, EachWordIsItsCommand) {
     EXPECT_EQ(of("export after lunch").export_(), "after lunch");
 }
 
+TEST_F(CommandWords, AReplayIsLedByWords) {
+    EXPECT_EQ(of("seek 12.5").replay().seek_s(), 12.5);
+    EXPECT_EQ(of("speed 0.25").replay().speed(), 0.25);
+    EXPECT_EQ(of("next").replay().jump(), 1);
+    EXPECT_EQ(of("previous").replay().jump(), -1);
+    const topics::Place place = of("when 1 -2.5  30").replay().removal_at();
+    ASSERT_EQ(place.p_m_size(), 3);
+    EXPECT_DOUBLE_EQ(place.p_m(0), 1e-3);
+    EXPECT_DOUBLE_EQ(place.p_m(1), -2.5e-3);
+    EXPECT_DOUBLE_EQ(place.p_m(2), 30e-3);
+    for (const char* text : {"seek", "seek soon", "seek 1 2", "seek nan", "speed inf", "next 2", "when 1 2",
+                             "when 1 2 3 4", "when a b c", "when 1 2 nan"})
+        EXPECT_NE(commandProblem(text), "") << text;
+}
+
 TEST_F(CommandWords, ToolsAndCheckpointsAreThoseOfTheSession) {
     EXPECT_EQ(of("tool fine").select_tool(), 1u);
     EXPECT_EQ(of("tool 2").select_tool(), 1u);

@@ -168,6 +168,36 @@ TEST(Payloads, EffectStateAndTrainingAreChecked) {
     EXPECT_FALSE(isAccepted(&parseStatus, status));
 }
 
+TEST(Payloads, HowTheTaskStandsIsChecked) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    topics::Status good;
+    good.set_epoch(1);
+    good.mutable_task()->add_zones()->set_name("box\n");
+    good.mutable_task()->mutable_zones(0)->set_removed_mm3(2);
+    good.mutable_task()->add_gates()->set_text("no\thole");
+    good.mutable_task()->set_time_left_s(-1);
+    good.mutable_task()->set_score(1);
+    const auto parsed = parseStatus(bytesOf(good.SerializeAsString()));
+    ASSERT_TRUE(parsed);
+    EXPECT_EQ(parsed->task().zones(0).name(), "box");
+    EXPECT_EQ(parsed->task().gates(0).text(), "nohole");
+    const auto accepts = [&](const auto& spoil) {
+        topics::Status status = good;
+        spoil(*status.mutable_task());
+        return isAccepted(&parseStatus, status);
+    };
+    EXPECT_FALSE(accepts([](topics::TaskState& task) { task.mutable_zones(0)->set_bone_mm3(kNan); }));
+    EXPECT_FALSE(accepts([](topics::TaskState& task) { task.mutable_zones(0)->set_removed_mm3(1e300); }));
+    EXPECT_FALSE(accepts([](topics::TaskState& task) { task.set_time_left_s(kNan); }));
+    EXPECT_FALSE(accepts([](topics::TaskState& task) { task.set_score(1.01); }));
+    EXPECT_FALSE(accepts([](topics::TaskState& task) {
+        for (int n = 0; n < 32; ++n) task.add_zones();
+    }));
+    EXPECT_FALSE(accepts([](topics::TaskState& task) {
+        for (int n = 0; n < 64; ++n) task.add_gates();
+    }));
+}
+
 TEST(Payloads, ADevicesNameIsCleanedAndItsFiguresAreChecked) {
     topics::Status status;
     status.set_epoch(1);
@@ -189,6 +219,27 @@ TEST(Payloads, ADevicesNameIsCleanedAndItsFiguresAreChecked) {
     }
     status.clear_device();
     EXPECT_FALSE(parseStatus(bytesOf(status.SerializeAsString()))->has_device());
+}
+
+TEST(Payloads, AReplaysFiguresAreCheckedAndItsWordsCleaned) {
+    topics::Status status;
+    status.set_epoch(1);
+    topics::Replay& replay = *status.mutable_replay();
+    replay.set_length_s(60);
+    replay.set_speed(2);
+    replay.set_event("cut\x01 " + std::string(5000, 'x'));
+    const auto parsed = parseStatus(bytesOf(status.SerializeAsString()));
+    ASSERT_TRUE(parsed);
+    EXPECT_LE(parsed->replay().event().size(), 512u);
+    EXPECT_EQ(parsed->replay().event().substr(0, 4), "cut ");
+    for (const double bad : {-1.0, 1e12, std::nan("")}) {
+        topics::Status other = status;
+        other.mutable_replay()->set_length_s(bad);
+        EXPECT_FALSE(isAccepted(&parseStatus, other)) << bad;
+        other = status;
+        other.mutable_replay()->set_speed(bad);
+        EXPECT_FALSE(isAccepted(&parseStatus, other)) << bad;
+    }
 }
 
 TEST(Payloads, StatusIsChecked) {
@@ -219,6 +270,7 @@ topics::Lesson validLesson() {
     attempt.set_time_s(12);
     attempt.mutable_training()->set_damaged_mm3(1);
     attempt.add_structures_touched("nerve\x1b[2J");
+    attempt.mutable_verdict()->add_failed_gates("dura\x1b[2J");
     return lesson;
 }
 
@@ -228,6 +280,7 @@ TEST(Payloads, LessonComesThroughWithTextsThatCanBeShown) {
     EXPECT_EQ(parsed->scenes(0).id(), "tooth_cavity");
     EXPECT_EQ(parsed->attempts(0).trainee(), "Ann" + std::string(61, 'n'));
     EXPECT_EQ(parsed->attempts(0).structures_touched(0), "nerve[2J");
+    EXPECT_EQ(parsed->attempts(0).verdict().failed_gates(0), "dura[2J");
 }
 
 TEST(Payloads, LessonIsChecked) {
@@ -245,6 +298,11 @@ TEST(Payloads, LessonIsChecked) {
         is_accepted([](topics::Lesson& l) { l.mutable_scenes(0)->mutable_picture()->push_back(0); }));
     EXPECT_FALSE(is_accepted([](topics::Lesson& l) { l.mutable_attempts(0)->set_time_s(-1); }));
     EXPECT_FALSE(is_accepted([](topics::Lesson& l) { l.mutable_attempts(0)->set_removed_mm3(kNan); }));
+    EXPECT_FALSE(is_accepted(
+        [](topics::Lesson& l) { l.mutable_attempts(0)->mutable_verdict()->set_score_percent(kNan); }));
+    EXPECT_FALSE(is_accepted([](topics::Lesson& l) {
+        for (int n = 0; n < 65; ++n) l.mutable_attempts(0)->mutable_verdict()->add_failed_gates("x");
+    }));
     EXPECT_FALSE(is_accepted([](topics::Lesson& l) { l.mutable_attempts(0)->set_max_force_n(1e9); }));
     EXPECT_FALSE(is_accepted(
         [](topics::Lesson& l) { l.mutable_attempts(0)->mutable_training()->set_max_temperature_c(kNan); }));

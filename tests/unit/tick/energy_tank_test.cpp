@@ -24,7 +24,7 @@ void swingOn(EnergyTank& tank, int late, int times) {
     for (int n = 0; n < times * period; ++n) {
         const double x = place(n), asked = place(n - late);
         tank.add({.X_VT_device = {{x, 0, 0}, Eigen::Quaterniond::Identity()},
-                  .wrench_hand_V = {{-kTankSpring * asked, 0, 0}, {}},
+                  .wrench_hand_V = {{-kTankSpring * asked, 0, 0}, {0, 0, 0}},
                   .stored = kTankSpring * x * x / 2});
     }
 }
@@ -64,7 +64,7 @@ TEST(EnergyTank, TheDevicesDampingPaysForIt) {
 
 TEST(EnergyTank, AForceThatOnlyTakesNeverEmptiesIt) {
     EnergyTank tank = tankOf(0);
-    for (int n = 0; n < 5000; ++n) tank.add({movedBy(1e-5 * n), {{-3, 0, 0}, {}}});
+    for (int n = 0; n < 5000; ++n) tank.add({movedBy(1e-5 * n), {{-3, 0, 0}, {0, 0, 0}}});
     EXPECT_EQ(tank.content(), EnergyTank::kRoom);
 }
 
@@ -85,7 +85,7 @@ TEST(EnergyTank, FillingForgetsWhatWasStored) {
 
 TEST(EnergyTank, FillingForgetsWhatWasFelt) {
     EnergyTank tank = tankOf(0, 3e-3);
-    for (int n = 0; n < 20; ++n) tank.add({{}, {{10, 0, 0}, {}}});
+    for (int n = 0; n < 20; ++n) tank.add({{}, {{10, 0, 0}, {0, 0, 0}}});
     tank.fill();
     for (int n = 0; n < 20; ++n) tank.add({movedBy(50e-6 * n)});
     EXPECT_EQ(tank.content(), EnergyTank::kRoom);
@@ -112,7 +112,7 @@ TEST(EnergyTank, WhatTheEffectsGiveWasNotMade) {
     for (const double share : {1.0, 0.5}) {
         EnergyTank tank = tankOf(0);
         for (int n = 0; n < 2000; ++n)
-            tank.add({movedBy(1e-5 * n), {{3, 0, 0}, {}}, 0, n > 0 ? share * 3e-5 : 0});
+            tank.add({movedBy(1e-5 * n), {{3, 0, 0}, {0, 0, 0}}, 0, n > 0 ? share * 3e-5 : 0});
         EXPECT_EQ(tank.isEmpty(), share < 1);
     }
 }

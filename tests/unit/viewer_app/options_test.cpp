@@ -169,6 +169,7 @@ TEST(Options, WhatIsShownOfTheScanAtTheStart) {
     EXPECT_EQ(all.ct, CtShown::kOnCutsAndMilled);
     EXPECT_EQ(all.window, (GreyWindow{2000, -500}));
     EXPECT_EQ(parse({"--scan-on", "off"})->settings.slices.ct, CtShown::kNowhere);
+    EXPECT_EQ(parse({"--scan-on", "materials"})->settings.slices.ct, CtShown::kMaterialsOnCuts);
     EXPECT_GT(parse({"--grey-window", "-5", "0"})->settings.slices.window->width, 0);
     EXPECT_THROW(parse({"--scan-on", "walls"}), UserError);
     EXPECT_THROW(parse({"--grey-window", "2000"}), UserError);

@@ -14,6 +14,9 @@ const kChunksAlong = 6;  // the longest side of the bone
 const kReach = 2;
 const kGrain = 0.045;  // size of the mottling over the bone's radius
 const kSteps = 65535;
+const kChunkSteps = kSteps / (1 + 2 * kReach);  // a whole number: all chunks count in one grid
+const kStepsPerVoxel = 256;  // of a node, as the server streams it
+const kCoarseVoxels = 2.5;  // a cell along a border between nodes
 
 export class Placement {
   private readonly cell: number;  // m, of a chunk
@@ -33,7 +36,9 @@ export class Placement {
     const cells = [0, 1, 2].map((i) => Math.floor(((low[i] + high[i]) / 2 - this.low[i]) / this.cell));
     const origin = cells.map((n, i) => this.low[i] + (n - kReach) * this.cell) as unknown as Vec3;
     const vertices = this.verticesOf(node, origin);
-    const { indices } = node, coarse = coarseIndices(vertices, indices);
+    const steps = cells.map((n) => (n - kReach) * kChunkSteps) as unknown as Vec3;
+    const cell = Math.max((kCoarseVoxels * kStepsPerVoxel * node.step[0]) / this.step, 1);
+    const { indices } = node, coarse = coarseIndices(vertices, indices, { origin: steps, cell });
     return { leaf, chunk: cells.join(' '), origin, step: this.step, low, high, vertices, indices, coarse };
   }
 

@@ -11,6 +11,7 @@ const kMaxElevation = 1.553;
 const kMinDistance = 5e-4, kMaxDistance = 100;  // m
 const kFitMargin = 1.06;
 const kMaxDepthRatio = 5000;
+const kDepthStep = 2 ** -24, kStepOfPixel = 0.01, kLines = 1000;  // as in camera.cpp
 const kNearestFar = 1e-3;  // m
 
 export interface Camera {
@@ -47,7 +48,8 @@ export function clipFromCamera(camera: Camera, aspect: number, { near, far }: De
 export function depthRange(camera: Camera, centre: Vec3, radius: number): DepthRange {
   const depth = -dot(sub(centre, camera.eye), camera.back);
   const far = Math.max(depth + radius, kNearestFar);
-  return { near: Math.max(depth - radius, far / kMaxDepthRatio), far };
+  const resolved = (kDepthStep * camera.focus * kLines) / (kStepOfPixel * 2 * halfTangent(camera));
+  return { near: Math.max(depth - radius, Math.min(Math.max(far / kMaxDepthRatio, resolved), far / 2)), far };
 }
 
 // The direction (W, not of unit length) through a place of the picture; both from -1 to 1, right and up.

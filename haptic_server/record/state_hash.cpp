@@ -1,4 +1,4 @@
-#include "haptic_server/offline/state_hash.h"
+#include "haptic_server/record/state_hash.h"
 
 #include <bit>
 #include <vector>

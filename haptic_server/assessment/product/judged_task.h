@@ -1,0 +1,73 @@
+// A task as a scene says it, in SI and frame V: what shall be gone, what must stay, and how that is judged.
+// It is made at the start (setup/scene_task.h) and never changes; any thread may read.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "haptic_server/assessment/product/zones.h"
+#include "haptic_server/volume/bone_properties.h"
+#include "haptic_server/volume/voxel_ids.h"
+
+namespace bonemill {
+
+// A protected structure is a material of the scan or a zone; the other id is 0.
+struct Structure {
+    std::string name;
+    MaterialId material = kNoMaterial;
+    ZoneId zone = kNoZone;
+};
+
+struct PlannedLine {
+    Eigen::Vector3d entry_V, tip_V;
+    double free;  // m behind the entry; so far the tool may stand out of the bone
+};
+
+struct GateRule {
+    std::string figure_id, label;  // an empty label: made from the figure's
+    double limit = 0;              // in the figure's unit
+    bool is_most = true;
+};
+
+struct ScoreRule {
+    std::string figure_id, label;
+    double worst = 0, best = 1, weight = 0;
+};
+
+enum class TaskFeedback : uint8_t { kNever, kAfterwards, kLive };
+
+struct JudgedTask {
+    std::vector<Zone> zones;
+    std::shared_ptr<const VoxelIds> map;               // never null
+    std::shared_ptr<const VoxelIds> reference;         // what shall be gone has a zone; null: all targets
+    std::shared_ptr<const BoneProperties> properties;  // null: there is no structure of a material
+    std::vector<Structure> structures;
+    std::optional<Eigen::Vector3d> approach_V;  // into the bone, of length 1
+    std::optional<PlannedLine> plan;
+    double skeletonised = 1e-3;  // m of bone over a structure
+
+    std::vector<GateRule> gates;
+    std::vector<ScoreRule> scores;
+    int weights_version = 1;
+    std::string weights_hash;  // as Total::weights_hash
+
+    double time_limit_s = 0;  // 0: none
+    int most_attempts = 0;    // 0: any number
+    bool is_exam = false;
+    TaskFeedback feedback = TaskFeedback::kAfterwards;
+
+    // Shall this voxel be gone?
+    bool isIdeal(const Eigen::Vector3i& voxel) const noexcept {
+        if (reference) return reference->at(voxel) != kNoZone;
+        const ZoneId id = map->at(voxel);
+        return id != kNoZone && zones[id - 1].role == ZoneRole::kTarget;
+    }
+    bool isOf(const Structure& structure, const Eigen::Vector3i& voxel) const noexcept {
+        return structure.zone != kNoZone ? map->at(voxel) == structure.zone
+                                         : properties->material(voxel) == structure.material;
+    }
+};
+
+}  // namespace bonemill

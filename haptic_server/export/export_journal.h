@@ -1,0 +1,21 @@
+// `haptic_server session export`: a recorded session as files for other programs. What its ticks came to is
+// had by running them again (docs/replay.md).
+#pragma once
+
+#include <string>
+
+namespace bonemill {
+
+struct ExportOptions {
+    std::string journal;
+    // Files to write; empty: none.
+    std::string h5;
+    std::string csv;   // as --trace of a session
+    std::string traj;  // what went in, for `simulate`
+};
+
+// Each file is whole or not there. Throws UserError: no journal, nothing to write, a file that cannot be
+// written.
+void exportJournal(const ExportOptions& options);
+
+}  // namespace bonemill

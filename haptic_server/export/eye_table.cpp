@@ -1,0 +1,44 @@
+#include "haptic_server/export/eye_table.h"
+
+#include <vector>
+
+namespace bonemill {
+namespace {
+
+struct Eyes {
+    std::vector<double> t_s, p_m, q_wxyz, field_of_view_rad;
+
+    void add(double at_s, const topics::Eye& eye) {
+        t_s.push_back(at_s);
+        p_m.insert(p_m.end(), eye.p_wc_m().begin(), eye.p_wc_m().end());
+        q_wxyz.insert(q_wxyz.end(), eye.q_wc().begin(), eye.q_wc().end());
+        field_of_view_rad.push_back(eye.field_of_view_rad());
+    }
+};
+
+}  // namespace
+
+void writeEyes(const Recording& recording, H5File& file) {
+    Eyes eyes;
+    readJournal(recording.path(), [&](JournalTopic topic, const mcap::Message& message) {
+        journal::Camera camera;
+        if (topic != JournalTopic::kCamera ||
+            !camera.ParseFromArray(message.data.data(), int(message.data.size())))
+            return;
+        const topics::Eye& eye = camera.eye();
+        if (eye.p_wc_m_size() == 3 && eye.q_wc_size() == 4 && camera.tick() < recording.ticks())
+            eyes.add(recording.secondsOf(camera.tick()), eye);
+    });
+    if (eyes.t_s.empty()) return;
+    const auto write = [&](const char* place, size_t width, const H5About& about,
+                           const std::vector<double>& values) {
+        file.addColumn(place, width, H5File::Number::kDouble, about).append(values);
+    };
+    write("/eye/t_s", 1, {"s", "since the session's first tick"}, eyes.t_s);
+    write("/eye/p_m", 3, {"m", "where the trainee's eye was, world frame W"}, eyes.p_m);
+    write("/eye/q_wxyz", 4, {"1", "the camera's axes (x right, y up, z towards the eye) to W, w, x, y, z"},
+          eyes.q_wxyz);
+    write("/eye/field_of_view_rad", 1, {"rad", "vertical angle of view"}, eyes.field_of_view_rad);
+}
+
+}  // namespace bonemill

@@ -1,0 +1,126 @@
+#include "haptic_server/journal/build_facts.h"
+
+#include <gnu/libc-version.h>
+#include <openssl/evp.h>
+#include <openssl/rand.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <span>
+
+#include "common/user_error.h"
+#include "haptic_server/kernels/kernels.h"
+
+namespace bonemill {
+namespace {
+
+std::string hexOf(std::span<const unsigned char> bytes) {
+    std::string text;
+    for (const unsigned char byte : bytes) {
+        text += "0123456789abcdef"[byte / 16];
+        text += "0123456789abcdef"[byte % 16];
+    }
+    return text;
+}
+
+class Sha256 {
+  public:
+    Sha256() { EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr); }
+    void add(const void* data, size_t size) { EVP_DigestUpdate(context_.get(), data, size); }
+    std::string hex() {
+        std::array<unsigned char, 32> digest{};
+        EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr);
+        return hexOf(digest);
+    }
+
+  private:
+    std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_{EVP_MD_CTX_new(), EVP_MD_CTX_free};
+};
+
+std::string fileSha256(const std::filesystem::path& path) {
+    const std::unique_ptr<std::FILE, decltype(&std::fclose)> file(std::fopen(path.c_str(), "rbe"),
+                                                                  std::fclose);
+    if (!file) throw UserError(path.string() + ": cannot be read (" + std::strerror(errno) + ")");
+    Sha256 hash;
+    std::vector<unsigned char> bytes(size_t(1) << 20);
+    while (const size_t count = std::fread(bytes.data(), 1, bytes.size(), file.get()))
+        hash.add(bytes.data(), count);
+    if (std::ferror(file.get())) throw UserError(path.string() + ": cannot be read to its end");
+    return hash.hex();
+}
+
+std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, error))
+        if (entry.is_regular_file(error)) files.push_back(entry.path());
+    std::ranges::sort(files);
+    return files;
+}
+
+uint64_t bytesIn(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(path, error)) {
+        const uintmax_t size = std::filesystem::file_size(path, error);
+        return error ? 0 : uint64_t(size);
+    }
+    uint64_t bytes = 0;
+    for (const auto& file : filesIn(path)) bytes += bytesIn(file);
+    return bytes;
+}
+
+}  // namespace
+
+journal::Build buildFacts(const std::string& version) {
+    journal::Build build;
+    build.set_version(version);
+    build.set_compiler(__VERSION__);
+    std::string library = std::string("glibc ") + gnu_get_libc_version();
+#if defined(__x86_64__)
+    library += __builtin_cpu_supports("fma") ? ", FMA" : ", no FMA";
+    library += __builtin_cpu_supports("avx2") ? ", AVX2" : ", no AVX2";
+#endif
+    if (const char* tunables = std::getenv("GLIBC_TUNABLES")) library += std::string(", ") + tunables;
+    build.set_library(library);
+    for (const CpuLevel level : kCpuLevels)
+        if (isSupported(level) && &kernelsOf(level) == &kernels()) build.set_kernels(cpuLevelName(level));
+    return build;
+}
+
+std::string sha256Of(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(path, error)) return fileSha256(path);
+    Sha256 hash;
+    for (const auto& file : filesIn(path)) {
+        const std::string line = file.lexically_relative(path).string() + '\n' +
+                                 std::to_string(bytesIn(file)) + '\n' + fileSha256(file) + '\n';
+        hash.add(line.data(), line.size());
+    }
+    return hash.hex();
+}
+
+std::vector<journal::File> hashedFiles(const std::vector<NamedFile>& files) {
+    std::vector<journal::File> hashed;
+    for (const NamedFile& file : files) {
+        journal::File& entry = hashed.emplace_back();
+        entry.set_what(file.name);
+        entry.set_path(std::filesystem::absolute(file.path).lexically_normal());
+        entry.set_bytes(bytesIn(file.path));
+        entry.set_sha256(sha256Of(file.path));
+    }
+    return hashed;
+}
+
+std::string newJournalId() {
+    std::array<unsigned char, 16> bytes{};
+    if (RAND_bytes(bytes.data(), int(bytes.size())) != 1)
+        throw UserError("the system gives no random numbers");
+    return hexOf(bytes);
+}
+
+}  // namespace bonemill

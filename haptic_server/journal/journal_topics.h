@@ -1,0 +1,52 @@
+// The topics of a journal, one for each type of message (proto/journal.proto, proto/foxglove.proto).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace bonemill {
+
+// Also the ids of channel and schema in the file, which start at 1.
+enum class JournalTopic : uint16_t {
+    kManifest = 1,
+    kInputs,
+    kStateHash,
+    kBone,
+    kOrder,
+    kPutBack,
+    kEvent,
+    kCamera,
+    kResults,
+    kTool,    // where the simulated tool is; for viewers of recordings, some 25 times per second
+    kHand,    // where the hand is, likewise
+    kWrench,  // on the hand, likewise
+};
+
+struct JournalTopicName {
+    JournalTopic topic;
+    std::string_view name;
+    std::string_view type;  // of its messages, with the package
+};
+
+inline constexpr std::array kJournalTopics = {
+    JournalTopicName{JournalTopic::kManifest, "/manifest", "bonemill.journal.Manifest"},
+    JournalTopicName{JournalTopic::kInputs, "/inputs", "bonemill.journal.Inputs"},
+    JournalTopicName{JournalTopic::kStateHash, "/state_hash", "bonemill.journal.StateHash"},
+    JournalTopicName{JournalTopic::kBone, "/bone", "bonemill.journal.Bone"},
+    JournalTopicName{JournalTopic::kOrder, "/orders", "bonemill.journal.Order"},
+    JournalTopicName{JournalTopic::kPutBack, "/put_back", "bonemill.journal.PutBack"},
+    JournalTopicName{JournalTopic::kEvent, "/events", "bonemill.journal.Event"},
+    JournalTopicName{JournalTopic::kCamera, "/cameras", "bonemill.journal.Camera"},
+    JournalTopicName{JournalTopic::kResults, "/results", "bonemill.journal.Results"},
+    JournalTopicName{JournalTopic::kTool, "/tool", "foxglove.PoseInFrame"},
+    JournalTopicName{JournalTopic::kHand, "/hand", "foxglove.PoseInFrame"},
+    JournalTopicName{JournalTopic::kWrench, "/wrench", "bonemill.journal.WrenchInFrame"},
+};
+
+// Of journal::Manifest.format.
+inline constexpr uint32_t kJournalFormat = 1;
+// The profile in the MCAP file's header: what tells a journal from other MCAP files.
+inline constexpr std::string_view kJournalProfile = "bonemill.journal";
+
+}  // namespace bonemill

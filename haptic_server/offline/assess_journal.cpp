@@ -1,0 +1,98 @@
+#include "haptic_server/offline/assess_journal.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "common/units.h"
+#include "common/user_error.h"
+#include "haptic_server/offline/task_run.h"
+#include "haptic_server/offline/write_assessment.h"
+#include "haptic_server/rerun/rerun.h"
+
+namespace bonemill {
+namespace {
+
+// Follows the attempts of a recording through its ticks.
+class JournalAssessment {
+  public:
+    JournalAssessment(const AssessOptions& options, std::ostream& said)
+        : options_(options),
+          said_(said),
+          recording_(options.journal),
+          loaded_(recording_.scene()),
+          simulation_(makeSimulation(loaded_)),
+          bones_(recording_.readBones(*simulation_.bone)),
+          rerun_(recording_, simulation_, bones_.checkpoints, *simulation_.bone, bones_.keyframes.front()) {}
+
+    int run() {
+        const auto& events = recording_.content().events;
+        if (std::ranges::none_of(events, &journal::Event::has_attempt_began))
+            throw UserError(options_.journal.string() +
+                            ": holds no attempt of a trainee; nothing can be assessed");
+        size_t next_event = 0;
+        while (!rerun_.isAtEnd()) {
+            const uint64_t tick = rerun_.next();
+            const TickRecord& record = rerun_.step();
+            if (attempt_ && record.bone_order >= attempt_->bone_order) attempt_->run.add(record);
+            for (; next_event < events.size() && events[next_event].tick() <= tick; ++next_event)
+                take(events[next_event], record);
+        }
+        if (attempt_) end(rerun_.next() - 1, std::nullopt);
+        for (const std::string& problem : files_.problems()) said_ << "error: " << problem << '\n';
+        return files_.problems().empty() ? 0 : 1;
+    }
+
+  private:
+    struct Attempt {
+        TaskRun run;
+        std::string trainee;
+        uint64_t bone_order;  // that puts the bone back for it
+        uint64_t begin;       // tick
+    };
+
+    // An attempt begins with an order to put the bone back, which no tick has taken up yet.
+    void take(const journal::Event& event, const TickRecord& record) {
+        if (event.has_attempt_ended() && attempt_) end(event.tick(), event.attempt_ended().time_s());
+        if (event.has_attempt_began())
+            attempt_.emplace(TaskRun(loaded_.scene, simulation_, true), event.attempt_began(),
+                             record.input.decisions.bone_order + 1, event.tick());
+    }
+
+    void end(uint64_t tick, std::optional<double> time_s) {
+        AssessmentTarget target;
+        target.folder = options_.out;
+        target.pseudonym = attempt_->trainee;
+        target.number = ++number_;
+        target.duration_s =
+            time_s.value_or(recording_.secondsOf(tick) - recording_.secondsOf(attempt_->begin));
+        target.start_unix_ns = recording_.manifest().start_stamp_ns() +
+                               int64_t(recording_.secondsOf(attempt_->begin) * double(kNsPerSecond));
+        target.journal = options_.journal.filename().string();
+        const size_t problems = files_.problems().size();
+        const TaskRun::Result result =
+            attempt_->run.judgeBone(rerun_.history().scanned(), simulation_.bone->volume);
+        const std::string stem = writeAssessment(target, loaded_, result, files_);
+        if (files_.problems().size() == problems)
+            said_ << "attempt " << number_ << " of " << target.pseudonym << ": results/" << stem << '\n';
+        attempt_.reset();
+    }
+
+    AssessOptions options_;
+    std::ostream& said_;
+    Recording recording_;
+    LoadedScene loaded_;
+    Simulation simulation_;
+    Recording::Bones bones_;
+    Rerun rerun_;
+    std::optional<Attempt> attempt_;
+    uint32_t number_ = 0;
+    FinalFiles files_;
+};
+
+}  // namespace
+
+int assessJournal(const AssessOptions& options, std::ostream& said) {
+    return JournalAssessment(options, said).run();
+}
+
+}  // namespace bonemill

@@ -1,0 +1,268 @@
+#include "haptic_server/offline/verify_journal.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <deque>
+#include <map>
+
+#include "common/config/scene_check.h"
+#include "common/config/scene_text.h"
+#include "common/rt/clock.h"
+#include "common/units.h"
+#include "common/user_error.h"
+#include "haptic_server/bone/leaf_rows.h"
+#include "haptic_server/journal/build_facts.h"
+#include "haptic_server/journal/journal_reader.h"
+#include "haptic_server/offline/journal_run.h"
+#include "haptic_server/record/tick_hash.h"
+#include "haptic_server/setup/scene_effects.h"
+#include "haptic_server/setup/scene_setup.h"
+
+namespace bonemill {
+namespace {
+
+template <class Message>
+Message parsed(const mcap::Message& bytes) {
+    Message message;
+    if (!message.ParseFromArray(bytes.data.data(), int(bytes.data.size())))
+        throw UserError("the journal has a message that makes no sense; it is damaged");
+    return message;
+}
+
+uint64_t hashOf(std::span<const Density> densities) noexcept {
+    StateHash hash;
+    hash.addBytes(densities.data(), densities.size_bytes());
+    return hash.value();
+}
+
+// Of the leaf in this bone, as its copies have it.
+uint64_t leafHash(const VoxelVolume& volume, const LeafLattice& lattice, LeafId leaf) {
+    const IndexBox cells = lattice.cellsOf(leaf), voxels = voxelsOf(cells);
+    const int count = voxels.max.x() - voxels.min.x() + 1;
+    std::vector<Density> densities(size_t(voxels.count()) + VoxelVolume::kReadSlack);
+    forEachRow(voxels, [&](const Eigen::Vector3i& first) {
+        volume.readRow(first, count, densities.data() + placeOf(cells, first));
+    });
+    return hashOf(std::span(densities).first(size_t(voxels.count())));
+}
+
+// What the leaves that changed were, after so many ticks.
+using LeafHashes = std::vector<std::pair<LeafId, uint64_t>>;
+
+// Reads the bones of a journal: to what orders put the bone back, and how its leaves were.
+class BonePass {
+  public:
+    explicit BonePass(const BoneModel& scanned)
+        : scanned_{scanned.volume, scanned.lattice}, bones_(scanned_) {}
+
+    void take(JournalTopic topic, const mcap::Message& message) {
+        if (topic == JournalTopic::kPutBack) bones_.add(parsed<journal::PutBack>(message));
+        if (topic == JournalTopic::kBone) takeBone(parsed<journal::Bone>(message));
+    }
+    const JournalBones& bones() const { return bones_; }
+    const std::multimap<uint64_t, LeafHashes>& leaves() const { return leaves_; }
+
+  private:
+    void takeBone(const journal::Bone& bone) {
+        if (!bones_.add(bone)) throw UserError("the journal has a bone that is not of its scene");
+        uint64_t leaf = 0;
+        for (const uint32_t step : bone.leaf_steps()) changed_.push_back(LeafId(leaf += step));
+        leaf = 0;
+        for (const uint32_t step : bone.as_scanned_steps()) changed_.push_back(LeafId(leaf += step));
+        if (bone.goes_on()) return;
+        if (bone.kind() != journal::Bone::OTHER) leaves_.emplace(bone.tick(), hashesOfChanged());
+        changed_.clear();
+    }
+    LeafHashes hashesOfChanged() const {
+        LeafHashes hashes;
+        for (const LeafId id : changed_) {
+            const auto voxels = size_t(voxelsOf(scanned_.lattice.cellsOf(id)).count());
+            const Density* const densities = bones_.newest()->densitiesOf(id);
+            hashes.emplace_back(id, densities ? hashOf({densities, voxels})
+                                              : leafHash(scanned_.volume, scanned_.lattice, id));
+        }
+        return hashes;
+    }
+
+    ScannedBone scanned_;
+    JournalBones bones_;
+    std::vector<LeafId> changed_;
+    std::multimap<uint64_t, LeafHashes> leaves_;
+};
+
+// Runs the ticks and compares.
+class BitComparison {
+  public:
+    BitComparison(Simulation& simulation, const RecordedEffects& recorded, const BonePass& bones,
+                  JournalVerdict& verdict)
+        : run_(simulation, bones.bones().targets(), bones.bones().beginning()),
+          hash_(recorded),
+          leaves_(bones.leaves()),
+          verdict_(verdict) {}
+
+    void take(JournalTopic topic, const mcap::Message& message) {
+        if (has_gap_) return;
+        if (topic == JournalTopic::kInputs) takeInputs(message);
+        if (topic == JournalTopic::kStateHash) takeHash(parsed<journal::StateHash>(message));
+        if (topic == JournalTopic::kTool)
+            poses_.emplace_back(message.time_ns, parsed<foxglove::PoseInFrame>(message));
+        if (topic == JournalTopic::kWrench)
+            wrenches_.emplace_back(message.time_ns, parsed<journal::WrenchInFrame>(message));
+    }
+
+  private:
+    void takeInputs(const mcap::Message& message) {
+        ticks_.clear();
+        if (!decodeInputs(parsed<journal::Inputs>(message), ticks_))
+            throw UserError("the journal has input that makes no sense; it is damaged");
+        has_gap_ = ticks_.front().tick != verdict_.ticks;
+        if (has_gap_) return;
+        const uint64_t stamp_ns = message.time_ns - uint64_t(ticks_.front().start_ns);
+        for (const JournalTick& tick : ticks_) {
+            compareBones();
+            const TickRecord& record = run_.run(tick);
+            hash_.add(record);
+            if (hash_.check() != tick.check) differ(tick.tick, "");
+            compareFigures(stamp_ns + uint64_t(tick.start_ns), record);
+            ++verdict_.ticks;
+            verdict_.seconds = record.t_s;
+        }
+        compareBones();
+    }
+
+    // All that are of this number of ticks.
+    void compareBones() {
+        const auto [first, last] = leaves_.equal_range(verdict_.ticks);
+        if (compared_bones_ == verdict_.ticks + 1) return;
+        compared_bones_ = verdict_.ticks + 1;
+        for (auto state = first; state != last; ++state) {
+            ++verdict_.bones;
+            for (const auto& [leaf, hash] : state->second)
+                if (leafHash(run_.bone().volume, run_.bone().lattice, leaf) != hash)
+                    differ(verdict_.ticks == 0 ? 0 : verdict_.ticks - 1, "the bone");
+        }
+    }
+
+    void takeHash(const journal::StateHash& hash) {
+        if (hash.ticks() != verdict_.ticks || hash.parts_size() != int(TickHash::kParts)) return;
+        ++verdict_.hashes;
+        const auto parts = hash_.parts();
+        for (size_t n = 0; n < parts.size(); ++n)
+            if (parts[n] != hash.parts(int(n)))
+                return differ(verdict_.ticks - 1, std::string(TickHash::kNames[n]));
+    }
+
+    void differ(uint64_t tick, const std::string& part) {
+        if (verdict_.is_same) verdict_.first_tick = tick;
+        verdict_.is_same = false;
+        if (verdict_.part.empty()) verdict_.part = part;
+    }
+
+    void compareFigures(uint64_t stamp_ns, const TickRecord& record) {
+        while (!poses_.empty() && poses_.front().first <= stamp_ns) {
+            const foxglove::Vector3& p = poses_.front().second.pose().position();
+            if (poses_.front().first == stamp_ns)
+                verdict_.position = std::max(verdict_.position, distance(p, record.p_WT));
+            poses_.pop_front();
+        }
+        while (!wrenches_.empty() && wrenches_.front().first <= stamp_ns) {
+            const foxglove::Vector3& f = wrenches_.front().second.force_n();
+            if (wrenches_.front().first == stamp_ns)
+                verdict_.force = std::max(verdict_.force, distance(f, record.f_hand_W));
+            wrenches_.pop_front();
+        }
+    }
+    static double distance(const foxglove::Vector3& a, const double (&b)[3]) {
+        return std::hypot(a.x() - b[0], a.y() - b[1], a.z() - b[2]);
+    }
+
+    JournalRun run_;
+    TickHash hash_;
+    const std::multimap<uint64_t, LeafHashes>& leaves_;
+    JournalVerdict& verdict_;
+    std::vector<JournalTick> ticks_;
+    std::deque<std::pair<uint64_t, foxglove::PoseInFrame>> poses_;
+    std::deque<std::pair<uint64_t, journal::WrenchInFrame>> wrenches_;
+    uint64_t compared_bones_ = 0;
+    bool has_gap_ = false;
+};
+
+std::string notWhole(const JournalContent& content) {
+    std::string text;
+    if (!content.incomplete.empty())
+        text += fmt::format("incomplete from tick {}: {}", content.incomplete_from, content.incomplete);
+    if (!content.problem.empty())
+        text += fmt::format("{}{} ({} bytes are lost)", text.empty() ? "" : "; ", content.problem,
+                            content.lost_bytes);
+    else if (!content.has_ended)
+        text += std::string(text.empty() ? "" : "; ") + "the session did not end in order";
+    return text;
+}
+
+}  // namespace
+
+LoadedScene sceneOfJournal(const journal::Manifest& manifest) {
+    const std::filesystem::path file = manifest.scene_path();
+    if (!file.is_absolute()) throw UserError("the journal does not say where its scene was; it is damaged");
+    const std::string name = "the scene in the journal, " + file.string();
+    ParsedScene parsed = parseSceneText(manifest.scene_text(), name);
+    checkScene(parsed, name);
+    return {std::move(parsed.scene), file.parent_path().lexically_normal(), file, std::move(parsed.lines)};
+}
+
+std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifest, const LoadedScene& scene,
+                                                const std::string& version) {
+    std::vector<std::string> reasons;
+    const journal::Build now = buildFacts(version);
+    const auto compare = [&](const char* what, const std::string& then, const std::string& here) {
+        if (then != here) reasons.push_back(fmt::format("{}: it was '{}', and is '{}'", what, then, here));
+    };
+    compare("the program", manifest.build().version(), now.version());
+    compare("its compiler", manifest.build().compiler(), now.compiler());
+    std::map<std::string, std::string> recorded;
+    for (const journal::File& file : manifest.files()) recorded[file.path()] = file.sha256();
+    for (const NamedFile& file : filesOf(scene)) {
+        if (file.path == scene.file) continue;  // its text is in the journal
+        const auto found = recorded.find(std::filesystem::absolute(file.path).lexically_normal());
+        if (found == recorded.end() || found->second != sha256Of(file.path))
+            reasons.push_back(fmt::format("{} {} is another file now", file.name, file.path.string()));
+    }
+    return reasons;
+}
+
+JournalVerdict verifyJournal(const std::filesystem::path& path, const std::string& version) {
+    JournalVerdict verdict;
+    const JournalContent content = readJournalContent(path, KeepInputs::kNo);
+    verdict.not_whole = notWhole(content);
+    const LoadedScene scene = sceneOfJournal(content.manifest);
+    verdict.reasons = reasonsAgainstSameBits(content.manifest, scene, version);
+    Simulation simulation = makeSimulation(scene);
+    BonePass bones(*simulation.bone);
+    readJournal(path, [&](JournalTopic topic, const mcap::Message& message) { bones.take(topic, message); });
+    BitComparison comparison(simulation, recordedEffectsOf(scene.scene.effects()), bones, verdict);
+    readJournal(path,
+                [&](JournalTopic topic, const mcap::Message& message) { comparison.take(topic, message); });
+    return verdict;
+}
+
+std::string JournalVerdict::text() const {
+    std::string text = fmt::format("{} ticks ({:.3f} s), {} hashes and {} states of the bone: ", ticks,
+                                   seconds, hashes, bones);
+    if (ticks == 0)
+        text += "nothing to compare";
+    else if (is_same)
+        text += reasons.empty() ? "the same bits" : "approximate, though no hash differs";
+    else
+        text += fmt::format("{}differs from tick {} ({:.3f} s) on{}",
+                            reasons.empty() ? "" : "approximate: ", first_tick,
+                            seconds * double(first_tick) / double(std::max<uint64_t>(1, ticks)),
+                            part.empty() ? "" : ", first in " + part);
+    text += fmt::format("\nlargest deviation: {:.3g} um of the tool, {:.3g} N on the hand",
+                        position / kMicrometre, force);
+    for (const std::string& reason : reasons) text += "\n" + reason;
+    if (!not_whole.empty()) text += "\nthe journal: " + not_whole;
+    return text + "\n";
+}
+
+}  // namespace bonemill

@@ -1,0 +1,41 @@
+// `haptic_server session verify` runs the ticks of a journal again and holds them against what it says of
+// them: hashes of every second, a check of every tick, the bone's states.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/config/scene_file.h"
+#include "proto/journal.pb.h"
+
+namespace bonemill {
+
+// The scene as the journal has its text, with the files that it names where they were. Throws UserError.
+LoadedScene sceneOfJournal(const journal::Manifest& manifest);
+// What keeps this program from promising the same bits: another build, another file. For people; empty:
+// nothing.
+std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifest, const LoadedScene& scene,
+                                                const std::string& version);
+
+struct JournalVerdict {
+    uint64_t ticks = 0, hashes = 0, bones = 0;  // that were held against each other
+    double seconds = 0;                         // of the session
+    bool is_same = true;
+    uint64_t first_tick = 0;  // that differs
+    std::string part;         // in which it differs, of TickHash::kNames or the bone; empty: not known
+    // The largest deviation of the simulated tool, and of the force on the hand, at 25 ticks of each second.
+    double position = 0;               // m
+    double force = 0;                  // N
+    std::vector<std::string> reasons;  // as above: then this is a comparison, no proof
+    std::string not_whole;             // what the journal lacks, for people; empty: nothing
+
+    bool isProven() const noexcept { return ticks > 0 && is_same && reasons.empty(); }
+    std::string text() const;  // for people: some lines
+};
+
+// `version` is what this program's --version prints. Throws UserError if it is no journal, or its scene
+// cannot be loaded.
+JournalVerdict verifyJournal(const std::filesystem::path& path, const std::string& version);
+
+}  // namespace bonemill

@@ -1,0 +1,27 @@
+// Shows a recorded session as a live one, to any number of viewers: `haptic_server replay` (docs/replay.md).
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/dds/network.h"
+
+namespace bonemill {
+
+struct ReplayOptions {
+    std::string journal;
+    uint32_t session = 1;
+    uint32_t domain = 0;
+    dds::NetworkOptions network;
+    double at_s = 0;  // begins there
+    double speed = 1;
+    bool is_paused = false;  // until a viewer lets it go on
+    double stream_mbit_per_s = 200;
+    bool instructor_only = false;
+    std::string version;  // that --version prints
+};
+
+// Runs until told to stop; returns the process' exit code. Throws UserError at start-up.
+int runReplay(const ReplayOptions& options);
+
+}  // namespace bonemill

@@ -1,0 +1,18 @@
+// The shapes of a task's zones: which voxels of a volume they hold. It is for start-up only.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "haptic_server/volume/index_box.h"
+#include "haptic_server/volume/raw_volume.h"
+#include "proto/scene.pb.h"
+
+namespace bonemill {
+
+// One byte per voxel of the volume, x fastest: 1 where its centre is inside one of the shapes. `place` names
+// them in messages. Throws UserError for a shape that is no solid.
+std::vector<uint8_t> voxelsInside(const google::protobuf::RepeatedPtrField<scene::Task::Shape>& shapes,
+                                  const VolumeGeometry& geometry, const std::string& place);
+
+}  // namespace bonemill

@@ -1,0 +1,88 @@
+// Who does the tasks of the shipped scenes well passes, and who does not fails by the name of the gate: the
+// scene's own hand, and hands that go astray.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "common/units.h"
+#include "haptic_server/offline/run_path.h"
+#include "haptic_server/offline/task_run.h"
+#include "tests/support/places.h"
+#include "tests/support/process.h"
+#include "tests/support/scene_path.h"
+
+namespace bonemill {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TaskGates : public testing::Test {
+  protected:
+    // Scene and phantoms lie to each other as in the repository.
+    TaskGates() {
+        fs::create_directory(folder_.path() / "deploy");
+        fs::copy(test::sourceDir() + "/deploy/scenes", folder_.path() / "deploy/scenes");
+    }
+    void makePhantom(const std::string& name) const {
+        const auto made = test::run({test::sourceDir() + "/deploy/make-phantoms", "--bin", test::binDir(),
+                                     "--out", folder_ / "build/data", name});
+        ASSERT_EQ(made.exit_code, 0) << made.err;
+    }
+    // `astray`: what is added to the hand's way while the pedal is down or the burr is in the bone, mm in W.
+    Assessment attempt(const std::string& name,
+                       const Eigen::Vector3d& astray_mm = Eigen::Vector3d::Zero()) const {
+        const LoadedScene loaded = loadScene(folder_ / ("deploy/scenes/" + name + ".textproto"));
+        Simulation simulation = makeSimulation(loaded);
+        const VoxelVolume scanned = simulation.bone->volume.withoutSpareBricks();
+        TaskRun task(loaded.scene, simulation);
+        std::vector<DeviceInput> path =
+            test::scenePath(loaded.scene.simulated_operator(), simulation.tick.dt);
+        for (DeviceInput& input : path) input.X_WT_device.position += astray_mm * kMillimetre;
+        for (const TickRecord& record : runPath(simulation.fixedTick(), *simulation.bone, path))
+            task.add(record);
+        return task.judgeBone(scanned, simulation.bone->volume).assessment;
+    }
+    static std::vector<std::string> broken(const Assessment& assessment) {
+        std::vector<std::string> all;
+        for (const GateResult& gate : assessment.gates)
+            if (!gate.is_passed) all.push_back(gate.figure_id);
+        return all;
+    }
+    static void expectPassed(const Assessment& assessment) {
+        EXPECT_GE(assessment.gates.size(), 3u);
+        for (const GateResult& gate : assessment.gates) EXPECT_TRUE(gate.is_passed) << gate.text;
+        ASSERT_TRUE(assessment.total);
+        EXPECT_GT(assessment.total->score, 0.3);
+    }
+
+    test::TemporaryFolder folder_;
+};
+
+TEST_F(TaskGates, TheHandsOfTheToothScenesPass) {
+    makePhantom("tooth");
+    for (const char* name : {"tooth_corridor", "tooth_cavity", "tooth_caries"}) {
+        SCOPED_TRACE(name);
+        expectPassed(attempt(name));
+    }
+}
+
+TEST_F(TaskGates, WhoDrillsIntoThePulpFailsByIt) {
+    makePhantom("tooth");
+    const Assessment deep = attempt("tooth_caries", {0, 0, -1.8});
+    EXPECT_FALSE(deep.hasPassed());
+    const auto names = broken(deep);
+    EXPECT_NE(std::ranges::find(names, "structure.lost_volume:pulp"), names.end());
+}
+
+TEST_F(TaskGates, ThePediclesHandPassesAndOneThatBreaksIntoTheCanalFailsByTheBreach) {
+    makePhantom("vertebra");
+    expectPassed(attempt("pedicle"));
+    const Assessment medial = attempt("pedicle", {-5.5, 0, 0});
+    EXPECT_FALSE(medial.hasPassed());
+    const auto names = broken(medial);
+    EXPECT_NE(std::ranges::find(names, "breach.grade"), names.end());
+    EXPECT_GE(findFigure(medial.figures, "breach.depth")->value, 2);
+}
+
+}  // namespace
+}  // namespace bonemill

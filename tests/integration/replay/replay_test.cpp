@@ -1,0 +1,148 @@
+// A recorded session is replayed by the program, and seen and led by viewers.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <filesystem>
+
+#include "render_client/subscribe/scene_subscriber.h"
+#include "tests/support/dds_session.h"
+#include "tests/support/process.h"
+#include "tests/support/recorded_session.h"
+
+namespace bonemill {
+namespace {
+
+using test::Process;
+
+class Replay : public testing::Test {
+  protected:
+    Replay() : session_(test::recordSession(folder_.path())) {}
+
+    std::vector<std::string> server(const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments{"haptic_server", "replay", session_.journal};
+        return with(std::move(arguments), more);
+    }
+    std::vector<std::string> client(const std::vector<std::string>& more) const {
+        return with({"render_client"}, more);
+    }
+    std::string command(const std::string& text) const {
+        const test::Finished finished = test::run(client({"--command", text}));
+        return std::to_string(finished.exit_code) + " " + finished.out;
+    }
+
+    test::TemporaryFolder folder_;
+    test::RecordedSession session_;
+
+  private:
+    static std::vector<std::string> with(std::vector<std::string> arguments,
+                                         const std::vector<std::string>& more) {
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        arguments.insert(arguments.end(), {"--session", std::to_string(testSession()), "--domain",
+                                           std::to_string(testDomain())});
+        return arguments;
+    }
+};
+
+// What a viewer sees of it.
+class Watcher {
+  public:
+    bool sees(const std::function<bool(const SceneSubscriber&)>& condition) {
+        return test::waitFor([&] {
+            subscriber_.poll();
+            return condition(subscriber_);
+        });
+    }
+    bool standsAt(double seconds) {
+        return sees([&](const SceneSubscriber& s) {
+            return s.toolState() && s.status() && s.status()->has_replay() &&
+                   !s.status()->replay().is_seeking() &&
+                   std::abs(s.toolState()->session_s() - seconds) < 2e-3;
+        });
+    }
+    const topics::Status& status() const { return *subscriber_.status(); }
+    uint64_t digest() const { return subscriber_.digest().value(); }
+
+  private:
+    SceneSubscriber subscriber_{
+        SubscriberOptions{.domain = testDomain(), .session = testSession(), .name = "w"}};
+};
+
+TEST_F(Replay, IsALiveSessionToItsViewersAndGoesWhereItIsLed) {
+    Process server(this->server({"--paused"}));
+    Watcher watcher;
+    ASSERT_TRUE(watcher.standsAt(0)) << server.errSoFar();
+    ASSERT_TRUE(watcher.sees(
+        [](const SceneSubscriber& s) { return s.isComplete() && !s.status()->is_model_partial(); }));
+    const uint64_t scanned = watcher.digest();
+    EXPECT_FALSE(watcher.status().replay().is_playing());
+    EXPECT_NEAR(watcher.status().replay().length_s(), 2.999, 1e-3);
+    EXPECT_EQ(watcher.status().removed_mm3(), 0);
+
+    EXPECT_EQ(command("seek 1.7"), "0 go to 1.70 s: done\n");
+    ASSERT_TRUE(watcher.standsAt(1.7));
+    const double voxel_mm3 = 0.25 * 0.25 * 0.25,
+                 removed_mm3 = double(session_.missing_voxels[1700]) * voxel_mm3;
+    ASSERT_TRUE(watcher.sees([&](const SceneSubscriber& s) {
+        return std::abs(s.status()->removed_mm3() - removed_mm3) < 0.02 * removed_mm3 && s.isComplete() &&
+               s.digest().value() != scanned;
+    }));
+    EXPECT_EQ(command("seek 0"), "0 go to 0.00 s: done\n");
+    EXPECT_TRUE(watcher.sees([&](const SceneSubscriber& s) {
+        return s.isComplete() && s.digest().value() == scanned;
+    })) << "the same bone, to the last vertex";
+
+    ASSERT_TRUE(watcher.sees([](const SceneSubscriber& s) { return s.status()->replay().known_s() > 2.99; }));
+    EXPECT_EQ(command("next").substr(0, 20), "0 next event: done: ") << "what happened is said";
+    EXPECT_EQ(command("speed 16"), "0 speed 16: done\n");
+    EXPECT_EQ(command("resume"), "0 go on milling: done\n");
+    ASSERT_TRUE(watcher.sees([](const SceneSubscriber& s) {
+        return s.toolState()->session_s() > 2.99 && !s.status()->replay().is_playing();
+    }));
+    EXPECT_EQ(command("reset").substr(0, 1), "1") << "a recording stays as it was";
+    EXPECT_EQ(command("tool 2").substr(0, 1), "1");
+    server.signal(SIGTERM);
+    EXPECT_EQ(server.wait().exit_code, 0) << server.errSoFar();
+}
+
+TEST_F(Replay, AViewerOnlyLooksAndAVideoIsMadeOfIt) {
+    Process server(this->server({"--speed", "0.5"}));
+    const test::Finished refused = test::run(client({"--role", "viewer", "--command", "seek 1"}));
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_NE(refused.out.find("refused"), std::string::npos) << refused.out << refused.err;
+    const test::Finished video =
+        test::run(client({"--offscreen", "--video", folder_ / "v.mp4", "--fps", "10", "--seconds", "0.5",
+                          "--size", "160x120", "--wait-complete"}));
+    EXPECT_EQ(video.exit_code, 0) << video.err;
+    EXPECT_NE(video.out.find("\"frames\":5,"), std::string::npos) << video.out;
+    EXPECT_GT(std::filesystem::file_size(folder_ / "v.mp4"), 1000u);
+}
+
+TEST_F(Replay, WhatCannotBeReplayedIsRefusedInOneLine) {
+    for (const auto& [file, word] :
+         {std::pair<std::string, std::string>{folder_ / "missing.mcap", "missing.mcap"},
+          {session_.scene, "no journal"}}) {
+        const test::Finished finished =
+            test::run({"haptic_server", "replay", file, "--session", std::to_string(testSession())});
+        EXPECT_EQ(finished.exit_code, 2);
+        EXPECT_NE(finished.err.find(word), std::string::npos) << finished.err;
+    }
+    std::filesystem::remove(folder_ / "slab.nrrd");
+    const test::Finished finished = test::run(server());
+    EXPECT_EQ(finished.exit_code, 2);
+    EXPECT_NE(finished.err.find("slab.nrrd"), std::string::npos) << finished.err;
+}
+
+TEST_F(Replay, FilesAreExportedByTheProgram) {
+    const test::Finished finished =
+        test::run({"haptic_server", "session", "export", session_.journal, "--h5", folder_ / "s.h5", "--csv",
+                   folder_ / "s.csv", "--traj", folder_ / "t.csv"});
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    for (const char* name : {"s.h5", "s.csv", "t.csv"})
+        EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
+    const test::Finished nothing = test::run({"haptic_server", "session", "export", session_.journal});
+    EXPECT_EQ(nothing.exit_code, 2);
+    EXPECT_NE(nothing.err.find("--h5"), std::string::npos) << nothing.err;
+}
+
+}  // namespace
+}  // namespace bonemill

@@ -1,0 +1,82 @@
+#include "haptic_server/session/forget_person.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "common/user_error.h"
+#include "haptic_server/assessment_report/result_folder.h"
+#include "haptic_server/session/class_table.h"
+#include "tests/support/process.h"
+
+namespace bonemill {
+namespace {
+
+class ForgetPerson : public testing::Test {
+  protected:
+    // An attempt with its line, its results and the recording that it is in.
+    void attempt(const std::string& pseudonym, uint32_t number, const std::string& journal) {
+        topics::Attempt line;
+        line.set_number(number);
+        line.set_trainee(pseudonym);
+        ASSERT_EQ(ClassTable(folder_ / "class.csv").append(line, "scene"), "");
+        AttemptResult result;
+        result.pseudonym = pseudonym;
+        result.number = number;
+        result.start_unix_ns = 1'700'000'000'000'000'000;
+        result.journal = journal;
+        ResultFolder(folder_ / ".").write(result, {}, 0);
+        test::writeFile(folder_ / journal, "recording");
+    }
+    int forget(const std::string& pseudonym) {
+        out_.str("");
+        return forgetPerson({pseudonym, folder_ / ".", ""}, out_);
+    }
+
+    const test::TemporaryFolder folder_;
+    std::ostringstream out_;
+};
+
+TEST_F(ForgetPerson, AllOfThemIsDeletedAndSaid) {
+    attempt("P07", 1, "a.mcap");
+    attempt("P08", 2, "b.mcap");
+    EXPECT_EQ(forget("P07"), 0);
+    for (const char* what :
+         {"class.csv: 1 lines", "_P07_1.json", "_P07_1.html", "xapi.jsonl: 1 statements", "a.mcap"})
+        EXPECT_NE(out_.str().find(what), std::string::npos) << what << out_.str();
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a.mcap"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "b.mcap"));
+    EXPECT_EQ(forget("P07"), 0);
+    EXPECT_EQ(out_.str().rfind("there is nothing of 'P07'", 0), 0u) << out_.str();
+}
+
+TEST_F(ForgetPerson, ARecordingOfSeveralPeopleIsLeftAndSaid) {
+    attempt("P07", 1, "a.mcap");
+    attempt("P08", 2, "a.mcap");
+    EXPECT_EQ(forget("P07"), 1);
+    EXPECT_NE(out_.str().find("a.mcap: holds other people's attempts"), std::string::npos) << out_.str();
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "a.mcap"));
+    EXPECT_EQ(forget("P08"), 0) << out_.str();
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a.mcap"));
+}
+
+TEST_F(ForgetPerson, ANameOfARecordingLeadsNowhereElse) {
+    const test::TemporaryFolder elsewhere;
+    test::writeFile(elsewhere / "x.mcap", "somebody's");
+    AttemptResult result;
+    result.pseudonym = "P07";
+    result.journal = elsewhere / "x.mcap";
+    ResultFolder(folder_ / ".").write(result, {}, 0);
+    EXPECT_EQ(forget("P07"), 0);
+    EXPECT_TRUE(std::filesystem::exists(elsewhere / "x.mcap"));
+}
+
+TEST_F(ForgetPerson, AFolderThatIsNoneIsRefused) {
+    EXPECT_THROW(forgetPerson({"P07", folder_ / "nowhere", ""}, out_), UserError);
+    EXPECT_THROW(forgetPerson({"P07", folder_ / ".", folder_ / "nowhere"}, out_), UserError);
+    EXPECT_THROW(forgetPerson({"", folder_ / ".", ""}, out_), UserError);
+}
+
+}  // namespace
+}  // namespace bonemill
