@@ -66,16 +66,23 @@ std::vector<HudRow> taskRows(const HudInput& input) {
         rows.push_back({"Force", lengthText({force.data(), size_t(force.size())}, 1, " N")});
         rows.push_back(burrRow(*input.tool, input.status && input.status->is_milling_paused(), input.events));
     }
-    if (input.status) rows.push_back(volumeRow(input.status->removed_mm3()));
+    const topics::TaskState* const task =
+        input.status && input.status->has_task() ? &input.status->task() : nullptr;
+    // With all figures there is room for one line of it, instead of what is removed in all.
+    const bool is_summary = task && input.show_details;
+    if (is_summary)
+        rows.push_back(taskSummaryRow(*task));
+    else if (input.status)
+        rows.push_back(volumeRow(input.status->removed_mm3()));
     if (input.status && !input.status->replay().event().empty())
         rows.push_back({"Moment", input.status->replay().event(), HudTone::kGood});
     if (input.tool && input.tool->has_effects()) {
         const auto more = effectTaskRows(input.tool->effects(), info, input.events);
         rows.insert(rows.end(), more.begin(), more.end());
     }
-    if (input.status && input.status->has_task()) {
-        const auto task = taskStateRows(input.status->task());
-        rows.insert(rows.end(), task.begin(), task.end());
+    if (task && !is_summary) {
+        const auto more = taskStateRows(*task);
+        rows.insert(rows.end(), more.begin(), more.end());
     }
     return rows;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "render_client/hud/figure_text.h"
 #include "render_client/hud/session_text.h"
@@ -24,7 +25,8 @@ constexpr RoleRow kRoleRows[] = {{scene::Task::TARGET, "Target", true},
                                  {scene::Task::CONTAINER_SIDES, "Beyond, sides", false},
                                  {scene::Task::CONTAINER_BOTTOM, "Beyond, bottom", false}};
 
-void addZoneRow(const topics::TaskState& task, const RoleRow& row, std::vector<HudRow>& rows) {
+// What is gone of all zones of a role; empty if there are none.
+std::string goneText(const topics::TaskState& task, const RoleRow& row) {
     double removed = 0, bone = 0;
     bool is_there = false;
     for (const topics::TaskState::Zone& zone : task.zones()) {
@@ -33,11 +35,13 @@ void addZoneRow(const topics::TaskState& task, const RoleRow& row, std::vector<H
         removed += zone.removed_mm3();
         bone += zone.bone_mm3();
     }
-    if (!is_there) return;
-    if (row.in_percent)
-        rows.push_back({row.label, figureText(bone > 0 ? 100 * removed / bone : 0, 0, " %")});
-    else
-        rows.push_back({row.label, readableText(removed, " mm\u00b3")});
+    if (!is_there) return {};
+    if (row.in_percent) return figureText(bone > 0 ? 100 * removed / bone : 0, 0, " %");
+    return readableText(removed, " mm\u00b3");
+}
+
+void addZoneRow(const topics::TaskState& task, const RoleRow& row, std::vector<HudRow>& rows) {
+    if (std::string gone = goneText(task, row); !gone.empty()) rows.push_back({row.label, std::move(gone)});
 }
 
 int countOf(const topics::TaskState& task, topics::TaskState::Gate::State state) {
@@ -67,12 +71,23 @@ void addResultRows(const topics::TaskState& task, std::vector<HudRow>& rows) {
         rows.push_back({"and " + std::to_string(broken - kMostGateRows) + " more", "", HudTone::kAlarm});
 }
 
+std::string timeLeftText(const topics::TaskState& task) {
+    return clockText(std::max(0.0, task.time_left_s()));
+}
+
 }  // namespace
+
+HudRow taskSummaryRow(const topics::TaskState& task) {
+    const bool is_broken = countOf(task, topics::TaskState::Gate::BROKEN) > 0;
+    std::string text = task.is_result() ? (is_broken ? "failed" : "passed") : goneText(task, kRoleRows[0]);
+    if (task.has_time_left_s()) text += (text.empty() ? "" : ", ") + timeLeftText(task);
+    return {"Task", text, is_broken ? HudTone::kAlarm : HudTone::kPlain};
+}
 
 std::vector<HudRow> taskStateRows(const topics::TaskState& task) {
     std::vector<HudRow> rows;
     if (task.has_time_left_s())
-        rows.push_back({"Time left", clockText(std::max(0.0, task.time_left_s())),
+        rows.push_back({"Time left", timeLeftText(task),
                         task.time_left_s() < kLittleTime ? HudTone::kWarning : HudTone::kPlain});
     for (const RoleRow& row : kRoleRows) addZoneRow(task, row, rows);
     if (task.gates_size() > 0 && task.is_result())

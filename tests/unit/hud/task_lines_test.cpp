@@ -37,6 +37,21 @@ TEST(TaskLines, zonesOfARoleAreOneLine) {
     EXPECT_EQ(test::findRow(rows, "Beyond, bottom")->value, "2.50 mm\u00b3");
 }
 
+TEST(TaskLines, oneLineTellsWhatIsGoneOfTheTargetOrWhatCameOfIt) {
+    TaskState task;
+    EXPECT_EQ(taskSummaryRow(task).value, "");
+    addZone(task, scene::Task::TARGET, 200, 50);
+    addGate(task, TaskState::Gate::HELD, "");
+    task.set_time_left_s(61);
+    EXPECT_EQ(taskSummaryRow(task).value, "25 %, 0:01:01");
+    EXPECT_EQ(taskSummaryRow(task).tone, HudTone::kPlain);
+    task.mutable_gates(0)->set_state(TaskState::Gate::BROKEN);
+    task.set_is_result(true);
+    task.clear_time_left_s();
+    EXPECT_EQ(taskSummaryRow(task).value, "failed");
+    EXPECT_EQ(taskSummaryRow(task).tone, HudTone::kAlarm);
+}
+
 TEST(TaskLines, littleTimeWarnsAndNeverFallsBelowNothing) {
     TaskState task;
     task.set_time_left_s(120);

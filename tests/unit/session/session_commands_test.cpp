@@ -63,6 +63,11 @@ class SessionCommandsTest : public testing::Test {
         command.set_set_accuracy(name);
         return commands_.carryOut(command).value_or("nothing said");
     }
+    topics::Status told() {
+        topics::Status status;
+        commands_.describe(status);
+        return status;
+    }
 
     test::MilledBall ball_;
     SpscRing<TickRecord> ring_;
@@ -180,11 +185,7 @@ TEST_F(SessionCommandsTest, AnAttemptThatWasBegunByMistakeIsNotRecorded) {
 }
 
 TEST_F(SessionCommandsTest, WhatViewersRememberOfTheBoneIsOfTheBoneThatWasPutBackLast) {
-    const auto restores = [this] {
-        topics::Status status;
-        commands_.describe(status);
-        return status.bone_restores();
-    };
+    const auto restores = [this] { return told().bone_restores(); };
     EXPECT_EQ(restores(), 0u);
     EXPECT_EQ(order(startOf("Ann")), "done");
     EXPECT_EQ(restores(), 1u);
@@ -312,9 +313,7 @@ TEST_F(SessionCommandsTest, WhatIsFalseIsRefusedAndNotDone) {
     }
     EXPECT_FALSE(stop_requested_);
     EXPECT_EQ(reset_orders_, 0u);
-    topics::Status status;
-    commands_.describe(status);
-    EXPECT_EQ(status.checkpoints_size(), 0);
+    EXPECT_EQ(told().checkpoints_size(), 0);
     topics::Command command;
     command.set_role(topics::Viewer::INSTRUCTOR);
     command.set_save_checkpoint(true);
@@ -362,9 +361,7 @@ TEST_F(SessionCommandsTest, ALiveSessionIsNoReplay) {
     topics::Command command;
     command.mutable_replay()->set_seek_s(3);
     EXPECT_EQ(order(command).substr(0, 7), "refused");
-    topics::Status status;
-    commands_.describe(status);
-    EXPECT_FALSE(status.has_replay());
+    EXPECT_FALSE(told().has_replay());
 }
 
 TEST_F(SessionCommandsTest, AReplayIsLedAndItsBoneStaysAsItWas) {
