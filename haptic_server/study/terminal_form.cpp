@@ -55,6 +55,26 @@ void ask(const Place& place, size_t number, size_t count, std::ostream& out) {
     out << "> " << std::flush;
 }
 
+// Takes a line as the answer, or says why it cannot.
+bool take(const Item& item, const std::string& line, Answers& answers, std::ostream& out) {
+    if (line == "-") {
+        forget(answers, item.id);
+        answers.left_out.push_back(item.id);
+        return true;
+    }
+    const std::variant<Answer, std::string> given = answerOf(item, line);
+    if (const Answer* answer = std::get_if<Answer>(&given); answer && !line.empty()) {
+        forget(answers, item.id);
+        answers.values.emplace(item.id, *answer);
+        return true;
+    }
+    if (line.empty())
+        out << "An answer, please; a line with - leaves the question out.\n";
+    else
+        out << "Please " << std::get<std::string>(given) << ".\n";
+    return false;
+}
+
 }  // namespace
 
 bool fillInTerminal(const Form& form, Answers& answers, std::istream& in, std::ostream& out,
@@ -80,18 +100,7 @@ bool fillInTerminal(const Form& form, Answers& answers, std::istream& in, std::o
             out << "That line is too long.\n";
         } else if (line == "<") {
             at -= at > 0 ? 1 : 0;
-        } else if (line == "-") {
-            forget(answers, place.item->id);
-            answers.left_out.push_back(place.item->id);
-            save(answers);
-            ++at;
-        } else if (const auto given = answerOf(*place.item, line); line.empty() || given.index() == 1) {
-            out << (line.empty() ? "An answer, please; a line with - leaves the question out."
-                                 : "Please " + std::get<std::string>(given) + ".")
-                << "\n";
-        } else {
-            forget(answers, place.item->id);
-            answers.values.emplace(place.item->id, std::get<Answer>(given));
+        } else if (take(*place.item, line, answers, out)) {
             save(answers);
             ++at;
         }

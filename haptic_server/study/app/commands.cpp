@@ -44,8 +44,10 @@ std::string formLines(const StudyFolder& folder, const Participant& person, cons
         const bool is_before =
             std::count(folder.protocol().forms_before.begin(), folder.protocol().forms_before.end(), id) > 0;
         const std::string when = session.period > 0 ? "" : is_before ? " (before all)" : " (after all)";
-        text += "     " + id + when + ": " + std::to_string(given) + " of " + std::to_string(all) +
-                " questions\n";
+        text += "     ";
+        text += id;
+        text += when;
+        text += ": " + std::to_string(given) + " of " + std::to_string(all) + " questions\n";
     }
     return text;
 }
