@@ -57,8 +57,10 @@ struct H5File::Handles {
     std::deque<Column> columns;
 };
 
-// HDF5's own words are for programmers.
+// HDF5's own words are for programmers. What it cannot write it would try again at the program's end, and
+// crash; all is closed without that.
 H5File::H5File(const std::string& path) : path_(path), handles_(std::make_unique<Handles>()) {
+    H5dont_atexit();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     handles_->file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     if (handles_->file < 0)

@@ -7,6 +7,8 @@
 #include <signal.h>
 
 #include <cstdlib>
+#include <memory>
+#include <optional>
 #include <random>
 #include <thread>
 

@@ -72,7 +72,7 @@ TEST_F(SoftWalls, EachKindPushesBackInside) {
     EXPECT_LT(at({{0, 0, end - 1e-3}, identity}).wrench_D.force.z(), -1);
     EXPECT_GT(at({{0, 0, -end + 1e-3}, identity}).wrench_D.force.z(), 1);
     EXPECT_GT(at({{-0.103, 0, 0}, identity}).wrench_D.force.x(), 1);  // lean
-    const Pose turned{{}, expRotation({0, 0, kMaxTurn - 0.02})};
+    const Pose turned{{0, 0, 0}, expRotation({0, 0, kMaxTurn - 0.02})};
     EXPECT_LT(at(turned).wrench_D.torque.z(), -0.05);
 }
 
