@@ -224,7 +224,7 @@ TEST(AresKinematics, SlackWidensStrokeAndLean) {
 TEST(AresKinematics, ReportsATurnThatIsTooFar) {
     const AresKinematics kinematics;
     for (const double sign : {-1.0, 1.0}) {
-        const auto turned = [&](double angle) { return Pose{{}, expRotation({0, 0, sign * angle})}; };
+        const auto turned = [&](double angle) { return Pose{{0, 0, 0}, expRotation({0, 0, sign * angle})}; };
         EXPECT_FALSE(kinematics.workspaceFaults(turned(kMaxTurn - 1e-3)) & kWorkspaceTurn);
         EXPECT_TRUE(kinematics.workspaceFaults(turned(kMaxTurn + 1e-3)) & kWorkspaceTurn);
     }
