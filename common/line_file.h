@@ -69,7 +69,7 @@ class LineFile {
     static constexpr int kLockTries = kLongestWait_s * 1'000'000 / kLockPauseUs;
 
     void openFile() {
-        file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC, 0600);
+        file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC | O_NOFOLLOW, 0600);
         if (file_ < 0) fail(std::strerror(errno));
         struct stat status {};
         if (fstat(file_, &status) == 0 && S_ISREG(status.st_mode)) return;

@@ -19,9 +19,10 @@ Reading repair(const std::filesystem::path& path) {
     index.addBytes(reading.missing);
     std::error_code error;
     std::filesystem::resize_file(path, reading.index.size(), error);
+    if (error) throw UserError(path.string() + ": cannot be shortened: " + error.message());
     std::ofstream output(path, std::ios::binary | std::ios::app);
     output << reading.missing << index.ending() << std::flush;
-    if (error || !output) throw UserError(path.string() + ": cannot be written; is the disk full?");
+    if (!output) throw UserError(path.string() + ": cannot be written; is the disk full?");
     return reading;
 }
 

@@ -168,6 +168,11 @@ int verifyInOrder(const std::string& journal) {
     return verdict.isProven() ? 0 : 1;
 }
 
+// What a session leaves says who did what: it is its user's alone.
+void keepFilesPrivate() {
+    umask(S_IRWXG | S_IRWXO);
+}
+
 int serveLive(const Options& options) {
     const bool has_folders = !options.server.scene_folders.empty();
     if (options.server.scene.empty() && (!has_folders || options.describe) && options.server.from.empty())
@@ -178,7 +183,7 @@ int serveLive(const Options& options) {
         return 0;
     }
     if (!options.describe) {
-        umask(S_IRWXG | S_IRWXO);  // what a session leaves says who did what: it is its user's alone
+        keepFilesPrivate();
         return runServer(options.server);
     }
     std::cout << describeScene(options.server.scene);
@@ -222,6 +227,7 @@ int serve(int argc, char** argv) {
     if (!parseCommandLine(app, argc, argv, "haptic_server")) return 0;
     options.server.version = options.replay.version = versionText();
     setUpLog("haptic_server", options.log_level);
+    if (session_command->parsed()) keepFilesPrivate();
     if (assess_command->parsed()) return assessJournal(options.assess, std::cout);
     if (forget_command->parsed()) return forgetPerson(options.forget, std::cout);
     if (export_command->parsed()) {

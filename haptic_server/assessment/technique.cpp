@@ -112,9 +112,9 @@ namespace {
 
 std::vector<Series> columnsOf(const std::vector<StepSums>& rows, const TechniqueScene& scene) {
     std::vector<Series> columns;
-    const auto add = [&](const char* id, const char* label, const char* unit, auto valueOf) {
+    const auto add = [&](const char* id, const char* label, const char* unit, auto value_of) {
         Series column{id, label, unit, {}};
-        for (const StepSums& row : rows) column.values.push_back(valueOf(row));
+        for (const StepSums& row : rows) column.values.push_back(value_of(row));
         columns.push_back(std::move(column));
     };
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

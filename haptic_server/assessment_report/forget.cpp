@@ -22,7 +22,7 @@ void eachResult(const fs::path& class_folder,
         std::error_code error;
         std::vector<fs::path> files;
         for (const fs::directory_entry& entry : fs::directory_iterator(part, error))
-            if (entry.path().extension() == ".json") files.push_back(entry.path());
+            if (entry.path().extension() == ".json" && entry.is_regular_file()) files.push_back(entry.path());
         std::ranges::sort(files);
         for (const fs::path& file : files) {
             try {

@@ -202,7 +202,7 @@ void BoneHistory::restoreAll(BoneModel& bone) noexcept {
     }
 }
 
-void BoneHistory::startFrom(BoneModel& bone, std::shared_ptr<const BoneSnapshot> snapshot) {
+void BoneHistory::startFrom(BoneModel& bone, const std::shared_ptr<const BoneSnapshot>& snapshot) {
     restore(snapshot);
     takeUpNewestOrder();
     bool shell_is_complete = true;  // the first tick that mills there says if it is not

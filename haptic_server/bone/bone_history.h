@@ -42,7 +42,7 @@ class BoneHistory {
     std::shared_ptr<const BoneSnapshot> snapshot(const BoneModel& bone);
     // Whoever runs no tick beside it, before the first: the bone, which is as scanned, becomes that of the
     // snapshot, as if it had been put back to it.
-    void startFrom(BoneModel& bone, std::shared_ptr<const BoneSnapshot> snapshot);
+    void startFrom(BoneModel& bone, const std::shared_ptr<const BoneSnapshot>& snapshot);
     // Keeper: puts the bone back to this snapshot, or (null) to the scanned bone, instead of to what is on
     // its way, if anything is. Asked again for the one that is on its way, it goes on with that. Returns the
     // order's number, which grows with each: it is done once finishedOrder() is not below.

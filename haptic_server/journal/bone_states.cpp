@@ -145,8 +145,9 @@ bool BoneStateReader::take(const journal::Bone& bone) {
         leaves_[LeafId(leaf)] = std::move(copy);
     }
     uint64_t scanned = 0;
-    for (const uint32_t step : bone.as_scanned_steps()) {
-        scanned += step;
+    for (int n = 0; n < bone.as_scanned_steps_size(); ++n) {
+        if (n > 0 && bone.as_scanned_steps(n) == 0) return false;
+        scanned += bone.as_scanned_steps(n);
         if (scanned >= count) return false;
         leaves_.erase(LeafId(scanned));
     }

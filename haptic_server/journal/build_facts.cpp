@@ -13,6 +13,7 @@
 #include <memory>
 #include <span>
 
+#include "common/require_file.h"
 #include "common/user_error.h"
 #include "haptic_server/kernels/kernels.h"
 
@@ -42,7 +43,9 @@ class Sha256 {
     std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_{EVP_MD_CTX_new(), EVP_MD_CTX_free};
 };
 
+// A pipe or a device would never end.
 std::string fileSha256(const std::filesystem::path& path) {
+    requireFile(path);
     const std::unique_ptr<std::FILE, decltype(&std::fclose)> file(std::fopen(path.c_str(), "rbe"),
                                                                   std::fclose);
     if (!file) throw UserError(path.string() + ": cannot be read (" + std::strerror(errno) + ")");

@@ -113,9 +113,10 @@ bool JournalFile::write(const std::string& bytes) {
 }
 
 void JournalFile::fail(const std::string& why) {
+    const bool is_torn =
+        ftruncate(file_, off_t(size_)) != 0;  // it may take long, and others wait for the lock
     const std::lock_guard lock(mutex_);
-    problem_ = why;
-    if (ftruncate(file_, off_t(size_)) != 0) problem_ += ", and its end is torn";
+    problem_ = why + (is_torn ? ", and its end is torn" : "");
 }
 
 void JournalFile::syncUntilFinished(const std::stop_token& stop) {

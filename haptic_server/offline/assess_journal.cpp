@@ -35,7 +35,7 @@ class JournalAssessment {
             const TickRecord& record = rerun_.step();
             if (attempt_ && record.bone_order >= attempt_->bone_order) attempt_->run.add(record);
             for (; next_event < events.size() && events[next_event].tick() <= tick; ++next_event)
-                take(events[next_event], record);
+                take(events[next_event]);
         }
         if (attempt_) end(rerun_.next() - 1, std::nullopt);
         for (const std::string& problem : files_.problems()) said_ << "error: " << problem << '\n';
@@ -51,11 +51,11 @@ class JournalAssessment {
     };
 
     // An attempt begins with an order to put the bone back, which no tick has taken up yet.
-    void take(const journal::Event& event, const TickRecord& record) {
+    void take(const journal::Event& event) {
         if (event.has_attempt_ended() && attempt_) end(event.tick(), event.attempt_ended().time_s());
         if (event.has_attempt_began())
-            attempt_.emplace(TaskRun(loaded_.scene, simulation_, true), event.attempt_began(),
-                             record.input.decisions.bone_order + 1, event.tick());
+            attempt_.emplace(Attempt{TaskRun(loaded_.scene, simulation_, true), event.attempt_began(),
+                                     event.bone_order(), event.tick()});
     }
 
     void end(uint64_t tick, std::optional<double> time_s) {

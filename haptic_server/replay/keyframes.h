@@ -52,8 +52,7 @@ class Keyframes {
             if (bone)
                 for (const auto& leaf : bone->leaves) leaves.push_back(leaf.get());
         std::ranges::sort(leaves);
-        const auto repeated = std::ranges::unique(leaves);
-        leaves.erase(repeated.begin(), repeated.end());
+        leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
         size_t bytes = 0;
         for (const LeafCopy* leaf : leaves) bytes += leaf->densities.size() * sizeof(Density);
         return bytes;

@@ -49,12 +49,13 @@ std::optional<std::string> AttemptKeeper::start(const topics::Command& order) {
     const bool is_answered_later = book_.isAttemptRunning() && end(order);
     if (task_) task_->beginAttempt();
     journal_.expectPutBack(Checkpoints::kScannedBone);
-    recorder_.beginAttempt(history_.restore());
+    const uint64_t bone_order = history_.restore();
+    recorder_.beginAttempt(bone_order);
     history_.pauseMilling(false);
     time_s_ = 0;
     counted_ns_ = monotonicNowNs();
     book_.beginAttempt(trainee);
-    journal_.noteAttemptBegan(trainee);
+    journal_.noteAttemptBegan(trainee, bone_order);
     if (tell_device_) tell_device_(true);
     if (is_answered_later) return std::nullopt;
     return "done";

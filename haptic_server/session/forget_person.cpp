@@ -33,8 +33,12 @@ void forgetRecordings(const ForgetOptions& options, Forgotten& forgotten) {
     for (const std::string& name : forgotten.recordings) {
         const fs::path file = folder / fs::path(name).filename();
         std::error_code error;
-        if (!fs::is_regular_file(file, error)) continue;
-        if (std::ranges::find(of_others, name) != of_others.end())
+        // A result may have been made by anybody, and name anything.
+        if (file.extension() != ".mcap" || !fs::is_regular_file(fs::symlink_status(file, error))) continue;
+        const auto isThis = [&](const std::string& other) {
+            return fs::path(other).filename() == file.filename();
+        };
+        if (std::ranges::any_of(of_others, isThis))
             forgotten.problems.push_back(
                 file.string() +
                 ": holds other people's attempts, too; it is left, decide what to do with it");

@@ -66,11 +66,12 @@ void JournalKeeper::noteEye(const SeenEye& eye) {
     journal_->put(JournalTopic::kCamera, camera);
 }
 
-void JournalKeeper::noteAttemptBegan(const std::string& trainee) {
+void JournalKeeper::noteAttemptBegan(const std::string& trainee, uint64_t bone_order) {
     if (!journal_) return;
     journal::Event event;
     event.set_tick(journal_->ticks());
     event.set_attempt_began(trainee);
+    event.set_bone_order(bone_order);
     journal_->put(JournalTopic::kEvent, event);
 }
 

@@ -30,7 +30,8 @@ class JournalKeeper {
     void noteOrder(const topics::Command& command, const std::string& result);
     // What the trainee sees now.
     void noteEye(const SeenEye& eye);
-    void noteAttemptBegan(const std::string& trainee);
+    // It begins when this order to put the bone back is done.
+    void noteAttemptBegan(const std::string& trainee, uint64_t bone_order);
     void noteAttemptEnded(const topics::Attempt& attempt);
     // Of the recording; empty if there is none.
     std::string fileName() const { return journal_ ? journal_->path().filename().string() : ""; }

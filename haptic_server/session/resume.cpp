@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -133,17 +134,22 @@ struct ResumeReading::Raw {
             takeBone(std::move(bone));
     }
     void takeBone(journal::Bone bone) {
-        if (bone.kind() == journal::Bone::KEY) {
-            std::erase_if(runs, [this](const Run& run) { return !isWanted(run); });
-            runs.emplace_back();
-        }
+        if (bone.kind() == journal::Bone::KEY) runs.emplace_back();
         if (runs.empty()) return;
         if (bone.checkpoint() != 0) {
             runs.back().checkpoints.insert(bone.checkpoint());
             newest_checkpoint = std::max(newest_checkpoint, bone.checkpoint());
         }
-        if (bone.kind() != journal::Bone::OTHER) bone_order = bone.bone_order();
+        const bool is_whole = !bone.goes_on() && bone.kind() != journal::Bone::OTHER;
+        if (is_whole) bone_order = bone.bone_order();
         runs.back().bones.push_back(std::move(bone));
+        if (is_whole) dropRunsBeforeTheLast();
+    }
+    // A KEY of which only a part is there replaces nothing.
+    void dropRunsBeforeTheLast() {
+        const auto last = std::prev(runs.end());
+        runs.erase(std::remove_if(runs.begin(), last, [this](const Run& run) { return !isWanted(run); }),
+                   last);
     }
     bool isWanted(const Run& run) const {
         return !run.checkpoints.empty() && *run.checkpoints.rbegin() + Checkpoints::kMost > newest_checkpoint;
@@ -179,9 +185,12 @@ ResumedSession ResumeReading::take(const BoneModel& bone_as_scanned) {
             tick = bone.tick();
         }
     while (checkpoints.size() > Checkpoints::kMost) checkpoints.erase(checkpoints.begin());
-    // The bone was on its way there.
-    if (!raw->put_backs.empty() && raw->put_backs.rbegin()->first > raw->bone_order) {
-        const uint32_t target = raw->put_backs.rbegin()->second;
+    // The bone was on its way there: only what a tick took up counts, for orders may be refused or merged.
+    const auto& orders = raw->last_inputs.bone_order().values();
+    const uint64_t taken_up = orders.empty() ? 0 : *orders.rbegin();
+    const auto put_back = raw->put_backs.find(taken_up);
+    if (taken_up > raw->bone_order && put_back != raw->put_backs.end()) {
+        const uint32_t target = put_back->second;
         const auto found = checkpoints.find(target);
         if (target == 0) out.bone = std::make_shared<const BoneSnapshot>();
         if (target != 0 && found != checkpoints.end()) out.bone = found->second.state;
@@ -207,8 +216,12 @@ std::string ResumedSession::text() const {
            " checkpoints; " + std::to_string(lost_bytes) + " bytes at its end are lost";
 }
 
+// It stays as old as it is: the newest of a session is the one that was written last.
 void closeResumed(const fs::path& path) {
+    std::error_code error;
+    const fs::file_time_type time = fs::last_write_time(path, error);
     mcap::repair(path);
+    if (!error) fs::last_write_time(path, time, error);
 }
 
 }  // namespace bonemill

@@ -69,8 +69,11 @@ class Server {
     // The journal is read while the scene is.
     static Loaded loadFirst(const ServerOptions& options) {
         std::optional<ResumeReading> reading;
-        if (!options.resumed_journal.empty())
-            reading.emplace(*findUnfinished(options.recording, options.session));
+        if (!options.resumed_journal.empty()) {
+            auto unfinished = findUnfinished(options.recording, options.session);
+            if (!unfinished) throw UserError(options.resumed_journal + ": is no longer there to go on with");
+            reading.emplace(std::move(*unfinished));
+        }
         Loaded loaded = load(options);
         if (reading) loaded.resumed = reading->take(*loaded.simulation.bone);
         if (!options.from.empty()) loaded.resumed = resumedAt(momentNameOf(options.from), loaded);

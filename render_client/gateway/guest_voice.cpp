@@ -26,6 +26,7 @@ void GuestVoice::announce(const Speaker& speaker, topics::Viewer viewer) {
     viewer.set_link(speaker.link);
     if (speaker.role != topics::Viewer::INSTRUCTOR) viewer.clear_pointer_m();
     if (!mayHold(speaker.role)) viewer.clear_is_holding();
+    viewer.clear_eye(), viewer.clear_is_trainee();  // the trainee is in the building
     if (mouth_) say(mouth_->viewers, session_, viewer);
 }
 
