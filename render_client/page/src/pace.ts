@@ -1,7 +1,7 @@
 // How fast pictures come, and how coarse they have to be while the view moves so that they come fast enough.
 
 const kRestMs = 220;  // a view that has not moved for so long rests
-const kTooSlowMs = 38, kFastMs = 22;  // from picture to picture
+const kTooSlowMs = 32, kFastMs = 22;  // from picture to picture
 const kPauseMs = 1000;  // between two moves
 const kPerSecondMs = 1000;
 // Of the pixels' rows and columns; few steps, for each of them is another canvas.

@@ -8,6 +8,7 @@ import type { Page } from 'playwright-core';
 import { startChromium } from './chromium';
 import { startStandIn } from './stand_in';
 import { boneNodes, dented } from './synthetic';
+import { picturesPerSecond } from './turning';
 
 const kInstructor = 2;
 const [page_dir, pictures = mkdtempSync(join(tmpdir(), 'page_')), triangles = '20000'] = process.argv.slice(2);
@@ -50,26 +51,6 @@ const ordered = async (action: string) => {
   }
   throw new Error(`no command ${action} came`);
 };
-
-// Pictures per second while the view turns.
-async function measure(page: Page): Promise<number> {
-  return page.evaluate(async () => {
-    const canvas = document.getElementById('picture')!;
-    const press = (type: string, x: number, y: number) =>
-      canvas.dispatchEvent(new PointerEvent(type, { pointerId: 1, pointerType: 'mouse', button: 0, buttons: 1, clientX: x, clientY: y, bubbles: true }));
-    canvas.setPointerCapture = () => undefined;
-    press('pointerdown', 400, 360);
-    const start = performance.now();
-    let pictures = 0, pixel = 0;
-    while (performance.now() - start < 4000) {
-      press('pointermove', 400 + ++pixel, 360);
-      await new Promise((done) => requestAnimationFrame(done));
-      if (performance.now() - start > 1000) ++pictures;
-    }
-    press('pointerup', 400 + pixel, 360);
-    return pictures / 3;
-  });
-}
 
 // Where bone is milled only a part of the picture is drawn anew: it is the picture that is drawn whole.
 async function milled(page: Page): Promise<void> {
@@ -128,7 +109,7 @@ async function desktop(): Promise<void> {
   await page.screenshot({ path: join(pictures, 'endoscope.png') });
   await page.keyboard.press('e');
   await milled(page);
-  console.log(`pictures per second while the view turns: ${(await measure(page)).toFixed(1)}`);
+  console.log(`pictures per second while the view turns: ${(await picturesPerSecond(page, 3)).toFixed(1)}`);
   stand_in.cut();
   await has(page, 'banner', 'Away for');
   await page.screenshot({ path: join(pictures, 'away.png') });

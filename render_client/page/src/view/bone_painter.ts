@@ -123,7 +123,10 @@ export class BonePainter {
       gl.depthFunc(gl.LESS);
       gl.disable(gl.STENCIL_TEST);
     } else {
+      // Bone that is whole and coarse shows no inside, and what faces away costs as much as what is seen.
+      if (this.level === 'coarse') gl.enable(gl.CULL_FACE);
       this.drawSurface(frame, 1, 0, kInsideSolid);
+      gl.disable(gl.CULL_FACE);
     }
     if (view.structureMode === 'behind') this.drawStructures(frame, view, true);
     if (view.structureMode !== 'off') this.drawStructures(frame, view, false);
