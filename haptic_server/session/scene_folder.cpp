@@ -45,12 +45,13 @@ std::string pictureOf(const fs::path& file) {
     return bytes.rfind(kBegin, 0) == 0 ? bytes : "";
 }
 
-// Says what the scene names and is not there, or nothing.
+// Says what the scene names and is not there, or nothing. Everybody in the session reads it: folders of this PC are
+// nobody else's business.
 std::string missingOf(const LoadedScene& loaded) {
     for (const NamedFile& file : filesOf(loaded)) {
         std::error_code error;
         if (!fs::exists(file.path, error))
-            return file.name + " " + file.path.string() + ": no such file or folder";
+            return file.name + " " + file.path.filename().string() + ": no such file or folder";
     }
     return "";
 }
@@ -72,6 +73,13 @@ void describe(const fs::path& file, ListedScene& listed) {
     choice.set_problem(missingOf(loaded));
 }
 
+std::string withoutFolder(std::string text, const fs::path& file) {
+    const std::string folder = (file.parent_path() / "").string();
+    for (size_t at = text.find(folder); !folder.empty() && at != std::string::npos; at = text.find(folder, at))
+        text.erase(at, folder.size());
+    return text;
+}
+
 ListedScene listed(const fs::path& file) {
     ListedScene scene{.choice = {}, .file = file.string()};
     scene.files = {{"the scene file", file},
@@ -83,7 +91,7 @@ ListedScene listed(const fs::path& file) {
     try {
         describe(file, scene);
     } catch (const std::exception& error) {
-        scene.choice.set_problem(error.what());
+        scene.choice.set_problem(withoutFolder(error.what(), file));
     }
     return scene;
 }

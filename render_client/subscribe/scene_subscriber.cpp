@@ -35,7 +35,7 @@ void addCounts(const topics::EffectState& before, topics::EffectState& now) {
 
 SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
     : options_(options),
-      deaf_watch_(options.rejoin_after),
+      hearing_(options.rejoin_after),
       outbox_(randomSender()),
       link_(std::make_unique<SessionLink>(options.domain, options.remote.get(), options.session,
                                           outbox_.sender(), options.role, next_wish_)) {}
@@ -43,6 +43,7 @@ SceneSubscriber::SceneSubscriber(const SubscriberOptions& options)
 SceneModel::Changes SceneSubscriber::poll(size_t max_nodes) {
     noteTime();
     if (link_) takeAll(max_nodes);
+    noteNothingToHear();
     rejoinIfDeaf();
     return model_.takeChanges(SceneModel::Clock::now());
 }
@@ -273,7 +274,9 @@ bool SceneSubscriber::accept(uint64_t epoch, const Inlet<Sample>& reader, uint64
     if (choice_.judge(message, isServerAlive(), now) != ServerChoice::Verdict::kOurs) return false;
     if (!was_ours || epoch != model_.epoch()) beginRun();
     last_heard_ = now;
-    deaf_watch_.hear(now);
+    hearing_.hear(Hearing::kServer, now);
+    if (std::is_same_v<Sample, dds::ToolStateSample>) hearing_.hear(Hearing::kTool, now);
+    if (std::is_same_v<Sample, dds::NodeMeshSample>) hearing_.hear(Hearing::kNodes, now);
     return true;
 }
 
@@ -306,7 +309,7 @@ void SceneSubscriber::readAnewIfDue() {
 
 // Gateways are reached anew by themselves.
 void SceneSubscriber::rejoinIfDeaf() {
-    if (options_.remote || !deaf_watch_.isDue(DeafWatch::Clock::now())) return;
+    if (options_.remote || !hearing_.isDue(Hearing::Clock::now())) return;
     ++rejoinings_;
     if (link_) next_wish_ = link_->hand.nextWish();
     link_.reset();  // before the new one, or Cyclone would go on with what it has of this domain
@@ -327,8 +330,17 @@ void SceneSubscriber::join() {
 }
 
 void SceneSubscriber::noteTime() {
-    const auto slept = deaf_watch_.pass(DeafWatch::Clock::now());
+    const auto slept = hearing_.pass(Hearing::Clock::now());
     if (last_heard_) *last_heard_ += slept;
+}
+
+// No server, no tick since the tool was heard, no node that is missing.
+void SceneSubscriber::noteNothingToHear() {
+    const auto now = Hearing::Clock::now();
+    const bool is_alive = link_ && isServerAlive() && status_;
+    const uint64_t heard_ticks = tool_state_ ? tool_state_->tick() + 1 : 0;
+    if (!is_alive || status_->ticks() <= heard_ticks) hearing_.hear(Hearing::kTool, now);
+    if (!is_alive || isComplete()) hearing_.hear(Hearing::kNodes, now);
 }
 
 bool SceneSubscriber::isServerAlive() const {

@@ -17,7 +17,7 @@
 
 #include "proto/topics.pb.h"
 #include "render_client/subscribe/command_outbox.h"
-#include "render_client/subscribe/deaf_watch.h"
+#include "render_client/subscribe/hearing.h"
 #include "render_client/subscribe/payloads.h"
 #include "render_client/subscribe/scene_model.h"
 #include "render_client/subscribe/server_choice.h"
@@ -33,7 +33,7 @@ struct SubscriberOptions {
     std::string name = {};  // of who watches, for the others' lists
     topics::Viewer::Role role = topics::Viewer::OPERATOR;
     bool is_trainee = false;  // what this viewer sees is what the trainee sees
-    // After so much silence it joins anew (DeafWatch).
+    // After so much silence it joins anew (Hearing).
     std::chrono::milliseconds rejoin_after = DeafWatch::kFirstSilence;
     // The gateway that the session is reached through; none: by DDS. Then name and role are the gateway's to
     // say.
@@ -112,8 +112,8 @@ class SceneSubscriber {
     uint64_t epoch() const noexcept { return model_.epoch(); }
     const NodeDigest& digest() const noexcept { return model_.digest(); }
     uint64_t malformedSamples() const noexcept { return malformed_count_; }
-    // While no server is heard it joins the domain anew, with a fresh participant: a reader that became deaf
-    // hears again. Returns how often it did.
+    // While it misses what a server tells without a pause it joins the domain anew, with a fresh participant:
+    // a reader that became deaf hears again. Returns how often it did.
     uint64_t rejoinings() const noexcept { return rejoinings_; }
 
   private:
@@ -133,6 +133,7 @@ class SceneSubscriber {
     bool accept(uint64_t epoch, const Inlet<Sample>& reader, uint64_t writer);
     void beginRun();
     void noteTime();
+    void noteNothingToHear();
     bool isServerAlive() const;
     void readAnewIfDue();
     void rejoinIfDeaf();
@@ -162,7 +163,7 @@ class SceneSubscriber {
     ViewerList viewers_;
     ServerNumbers server_numbers_;
     std::optional<std::chrono::steady_clock::time_point> read_anew_;
-    DeafWatch deaf_watch_;
+    Hearing hearing_;
     uint64_t rejoinings_ = 0;
     uint32_t next_wish_ = 1;  // HandSpeaker
     uint64_t malformed_count_ = 0;

@@ -225,6 +225,40 @@ TEST(Deafness, AViewerThatHearsNothingJoinsAnew) {
     EXPECT_EQ(viewer.rejoinings(), rejoinings) << "a server is heard";
 }
 
+// Returns how often a viewer joins anew while a server tells this status, another tick each time, for a
+// second.
+uint64_t rejoiningsWhile(topics::Status status, bool tells_tool) {
+    using std::chrono::milliseconds;
+    Publisher server({.domain = testDomain(), .session = testSession()});
+    SceneSubscriber viewer(
+        {.domain = testDomain(), .session = testSession(), .rejoin_after = milliseconds(200)});
+    TickRecord record{};
+    record.q_WT[0] = record.q_WT_device[0] = 1;
+    const auto poll = [&] {
+        viewer.poll();
+        viewer.waitForData(milliseconds(10));
+    };
+    const auto tell = [&] {
+        status.set_ticks(++record.tick);
+        server.publishStatus(status);
+        if (tells_tool) server.publishToolState(record, {});
+    };
+    for (int n = 0; n < 1000 && !viewer.hasServer(); ++n) tell(), poll();
+    EXPECT_TRUE(viewer.hasServer());
+    const uint64_t before = viewer.rejoinings();
+    const auto end = std::chrono::steady_clock::now() + milliseconds(1000);
+    while (std::chrono::steady_clock::now() < end) tell(), poll();
+    return viewer.rejoinings() - before;
+}
+
+TEST(Deafness, AViewerThatMissesWhatTheServerGoesOnTellingJoinsAnew) {
+    topics::Status partial;
+    partial.set_is_model_partial(true);
+    EXPECT_EQ(rejoiningsWhile({}, true), 0u) << "nothing is missing";
+    EXPECT_GE(rejoiningsWhile({}, false), 1u) << "it ticks, and no tool is heard";
+    EXPECT_GE(rejoiningsWhile(partial, true), 1u) << "a node is missing, and none comes";
+}
+
 TEST(OtherServer, IsFoundBySessionAndOnlyWhileItLives) {
     using std::chrono::milliseconds;
     const dds::Participant late(testDomain());

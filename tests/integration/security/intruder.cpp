@@ -1,7 +1,10 @@
 // Writes what it should not: an order to end the session as instructor Anna, and a status of another server,
 // for some seconds; and reads what it can of the server's status. Prints one JSON line at the end.
 //   intruder --session N --domain D [--secure DIR [--plugins DIR]] [--sender N] [--seconds S] [--days-back N]
+//            [--senders N]
 // With --plugins the plugins of DDS Security are those of that folder. With --days-back its clock is slow.
+// With --senders it does nothing but to invent so many, who order and show themselves once each, 5000 of them
+// per second.
 #include <dds/dds.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -49,6 +52,7 @@ struct Intrusion {
     std::string secure, plugins;
     uint64_t sender = 66;
     double seconds = 3;
+    uint64_t senders = 0;
 };
 
 dds_entity_t participantOf(const Intrusion& intrusion) {
@@ -127,6 +131,32 @@ int intrude(const Intrusion& intrusion) {
     return 0;
 }
 
+int invent(const Intrusion& intrusion) {
+    const dds_entity_t participant = participantOf(intrusion);
+    const dds_entity_t commands = writerOf<dds::CommandSample>(participant);
+    const dds_entity_t viewers = writerOf<dds::ViewerSample>(participant);
+    std::this_thread::sleep_for(std::chrono::seconds(1));  // until they have found each other
+    for (uint64_t n = 0; n < intrusion.senders; ++n) {
+        const uint64_t sender = intrusion.sender + n;
+        topics::Command command;
+        command.set_sender(sender);
+        command.set_sequence(1);
+        command.set_pause_milling(false);
+        topics::Viewer viewer;
+        viewer.set_name("Viewer " + std::to_string(n));
+        write(commands, dds::CommandSample{intrusion.session, sender, {}}, command.SerializeAsString());
+        write(viewers, dds::ViewerSample{intrusion.session, sender, {}}, viewer.SerializeAsString());
+        // Else Cyclone keeps all of them here.
+        dds::CommandSample gone{intrusion.session, sender, {}};
+        dds_unregister_instance(commands, &gone);
+        dds::ViewerSample left{intrusion.session, sender, {}};
+        dds_unregister_instance(viewers, &left);
+        if (n % 50 == 49) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    std::printf("{\"senders\":%llu}\n", static_cast<unsigned long long>(intrusion.senders));
+    return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -139,10 +169,11 @@ int main(int argc, char** argv) {
         app.add_option("--plugins", intrusion.plugins);
         app.add_option("--sender", intrusion.sender);
         app.add_option("--seconds", intrusion.seconds);
+        app.add_option("--senders", intrusion.senders);
         std::time_t days_back = 0;
         app.add_option("--days-back", days_back);
         if (!bonemill::parseCommandLine(app, argc, argv, "intruder")) return 0;
         clock_is_slow_s = days_back * 86400;
-        return intrude(intrusion);
+        return intrusion.senders > 0 ? invent(intrusion) : intrude(intrusion);
     });
 }

@@ -106,6 +106,15 @@ TEST(GuestList, TheScriptInvitesAndWithdraws) {
     EXPECT_FALSE(list.isInvited(anna.token_sha256, 1));
 }
 
+TEST(GuestList, WhoIsInvitedAtTheSameTimeAsOthersStays) {
+    const test::TemporaryFolder folder;
+    const std::string script = "for n in 1 2 3 4 5 6 7 8; do '" + test::sourceDir() +
+                               "/deploy/security/invite' --guests '" + (folder / "guests") +
+                               "' --name N$n --role observer --gateway https://lab:8443 & done; wait";
+    ASSERT_EQ(test::run({"/bin/bash", "-c", script}).exit_code, 0);
+    EXPECT_EQ(GuestList(folder / "guests").size(), 8);
+}
+
 TEST(GuestFrames, OnlyAHelloMayBeLong) {
     FromGuest hello, wish;
     hello.mutable_hello()->set_token("t");

@@ -55,6 +55,8 @@ TEST_F(SceneFolder, ABrokenSceneIsListedWithItsProblem) {
     EXPECT_EQ(scenes[1].choice.problem(), "");
     EXPECT_EQ(scenes[1].choice.picture(), "") << "it is too large";
     EXPECT_NE(scenes[2].choice.problem().find("lost.nrrd: no such file"), std::string::npos);
+    for (const auto& scene : scenes)
+        EXPECT_EQ(scene.choice.problem().find(folder_ / ""), std::string::npos) << "folders of this PC";
     EXPECT_NE(sceneTable(scenes).find("cannot be chosen"), std::string::npos);
 }
 
