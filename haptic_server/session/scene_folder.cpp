@@ -45,8 +45,8 @@ std::string pictureOf(const fs::path& file) {
     return bytes.rfind(kBegin, 0) == 0 ? bytes : "";
 }
 
-// Says what the scene names and is not there, or nothing. Everybody in the session reads it: folders of this PC are
-// nobody else's business.
+// Says what the scene names and is not there, or nothing. Everybody in the session reads it: folders of this
+// PC are nobody else's business.
 std::string missingOf(const LoadedScene& loaded) {
     for (const NamedFile& file : filesOf(loaded)) {
         std::error_code error;
@@ -75,7 +75,8 @@ void describe(const fs::path& file, ListedScene& listed) {
 
 std::string withoutFolder(std::string text, const fs::path& file) {
     const std::string folder = (file.parent_path() / "").string();
-    for (size_t at = text.find(folder); !folder.empty() && at != std::string::npos; at = text.find(folder, at))
+    for (size_t at = text.find(folder); !folder.empty() && at != std::string::npos;
+         at = text.find(folder, at))
         text.erase(at, folder.size());
     return text;
 }

@@ -1,5 +1,5 @@
-// What a living server tells without a pause: its status, the tool while it ticks, nodes while some are missing. Each has
-// a reader of its own, and each reader may become deaf by itself. For one thread.
+// What a living server tells without a pause: its status, the tool while it ticks, nodes while some are
+// missing. Each has a reader of its own, and each reader may become deaf by itself. For one thread.
 #pragma once
 
 #include <algorithm>
