@@ -37,6 +37,9 @@ class Checkpoints {
         kept_.push_back(std::move(checkpoint));
         if (kept_.size() > kMost) kept_.pop_front();
     }
+    bool has(uint32_t id) const {
+        return id == kScannedBone || std::ranges::find(kept_, id, &Checkpoint::id) != kept_.end();
+    }
     // False means that there is none with this id (any more).
     bool restore(uint32_t id) {
         if (id == kScannedBone) {

@@ -26,11 +26,6 @@ class Keeper {
 
     void take(JournalTopic topic, const mcap::Message& message) {
         if (!has_manifest_ && topic != JournalTopic::kManifest) fail("does not begin with what it is of");
-        const bool is_kept = topic != JournalTopic::kBone && topic != JournalTopic::kResults &&
-                             topic != JournalTopic::kCamera && topic < JournalTopic::kTool &&
-                             (keeps_inputs_ || topic != JournalTopic::kInputs);
-        if (is_kept) kept_ += message.data.size();
-        if (kept_ > kMostKept) fail("holds more than can be kept in memory");
         if (!takeMessage(topic, message)) fail("has a message that makes no sense");
     }
     bool hasManifest() const { return has_manifest_; }
@@ -40,9 +35,17 @@ class Keeper {
         throw UserError("journal " + name_ + " " + what + "; it is damaged, or no journal of bonemill");
     }
 
+    // Empty parts take no bytes in the file, and some in memory.
+    template <class Message>
+    bool keep(const mcap::Message& bytes, Message& message) {
+        if (!parse(bytes, message)) return false;
+        kept_ += message.SpaceUsedLong();
+        if (kept_ > kMostKept) fail("holds more than can be kept in memory");
+        return true;
+    }
     template <class Message>
     bool add(const mcap::Message& bytes, std::vector<Message>& all) {
-        return parse(bytes, all.emplace_back());
+        return keep(bytes, all.emplace_back());
     }
 
     bool takeMessage(JournalTopic topic, const mcap::Message& message) {
@@ -65,7 +68,7 @@ class Keeper {
     }
 
     bool takeManifest(const mcap::Message& message) {
-        if (has_manifest_ || !parse(message, content_.manifest)) return false;
+        if (has_manifest_ || !keep(message, content_.manifest)) return false;
         if (content_.manifest.format() > kJournalFormat)
             throw UserError("journal " + name_ + " is of a newer bonemill (format " +
                             std::to_string(content_.manifest.format()) + "); update this one");
@@ -75,7 +78,8 @@ class Keeper {
 
     bool takeInputs(const mcap::Message& message) {
         journal::Inputs inputs;
-        if (!parse(message, inputs) || inputs.count() == 0 || inputs.count() > kMostTicksPerInputs)
+        if (!(keeps_inputs_ ? keep(message, inputs) : parse(message, inputs)) || inputs.count() == 0 ||
+            inputs.count() > kMostTicksPerInputs)
             return false;
         if (inputs.first_tick() == content_.ticks) content_.ticks += inputs.count();
         if (keeps_inputs_) content_.inputs.push_back(std::move(inputs));
@@ -84,7 +88,7 @@ class Keeper {
 
     bool takePutBack(const mcap::Message& message) {
         journal::PutBack put_back;
-        if (!parse(message, put_back)) return false;
+        if (!keep(message, put_back)) return false;
         content_.put_backs[put_back.bone_order()] = put_back.checkpoint();
         return true;
     }

@@ -5,17 +5,19 @@
 #include <cmath>
 #include <deque>
 #include <map>
+#include <utility>
 
-#include "common/config/scene_check.h"
-#include "common/config/scene_text.h"
+#include "common/printable_line.h"
 #include "common/rt/clock.h"
 #include "common/units.h"
 #include "common/user_error.h"
 #include "haptic_server/bone/leaf_rows.h"
+#include "haptic_server/journal/bone_states.h"
 #include "haptic_server/journal/build_facts.h"
 #include "haptic_server/journal/journal_reader.h"
-#include "haptic_server/offline/journal_run.h"
 #include "haptic_server/record/tick_hash.h"
+#include "haptic_server/rerun/recorded_scene.h"
+#include "haptic_server/rerun/rerun.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_setup.h"
 
@@ -50,22 +52,20 @@ uint64_t leafHash(const VoxelVolume& volume, const LeafLattice& lattice, LeafId 
 // What the leaves that changed were, after so many ticks.
 using LeafHashes = std::vector<std::pair<LeafId, uint64_t>>;
 
-// Reads the bones of a journal: to what orders put the bone back, and how its leaves were.
+// Reads the bones of a journal: how the leaves were that changed.
 class BonePass {
   public:
     explicit BonePass(const BoneModel& scanned)
-        : scanned_{scanned.volume, scanned.lattice}, bones_(scanned_) {}
+        : scanned_{scanned.volume, scanned.lattice}, states_(scanned_) {}
 
     void take(JournalTopic topic, const mcap::Message& message) {
-        if (topic == JournalTopic::kPutBack) bones_.add(parsed<journal::PutBack>(message));
         if (topic == JournalTopic::kBone) takeBone(parsed<journal::Bone>(message));
     }
-    const JournalBones& bones() const { return bones_; }
     const std::multimap<uint64_t, LeafHashes>& leaves() const { return leaves_; }
 
   private:
     void takeBone(const journal::Bone& bone) {
-        if (!bones_.add(bone)) throw UserError("the journal has a bone that is not of its scene");
+        if (!states_.add(bone)) throw UserError("the journal has a bone that is not of its scene");
         uint64_t leaf = 0;
         for (const uint32_t step : bone.leaf_steps()) changed_.push_back(LeafId(leaf += step));
         leaf = 0;
@@ -78,7 +78,7 @@ class BonePass {
         LeafHashes hashes;
         for (const LeafId id : changed_) {
             const auto voxels = size_t(voxelsOf(scanned_.lattice.cellsOf(id)).count());
-            const Density* const densities = bones_.newest()->densitiesOf(id);
+            const Density* const densities = states_.state()->densitiesOf(id);
             hashes.emplace_back(id, densities ? hashOf({densities, voxels})
                                               : leafHash(scanned_.volume, scanned_.lattice, id));
         }
@@ -86,7 +86,7 @@ class BonePass {
     }
 
     ScannedBone scanned_;
-    JournalBones bones_;
+    BoneStateReader states_;
     std::vector<LeafId> changed_;
     std::multimap<uint64_t, LeafHashes> leaves_;
 };
@@ -94,12 +94,9 @@ class BonePass {
 // Runs the ticks and compares.
 class BitComparison {
   public:
-    BitComparison(Simulation& simulation, const RecordedEffects& recorded, const BonePass& bones,
-                  JournalVerdict& verdict)
-        : run_(simulation, bones.bones().targets(), bones.bones().beginning()),
-          hash_(recorded),
-          leaves_(bones.leaves()),
-          verdict_(verdict) {}
+    BitComparison(Rerun& rerun, const BoneModel& bone, const RecordedEffects& recorded,
+                  const BonePass& states, JournalVerdict& verdict)
+        : rerun_(rerun), bone_(bone), hash_(recorded), leaves_(states.leaves()), verdict_(verdict) {}
 
     void take(JournalTopic topic, const mcap::Message& message) {
         if (has_gap_) return;
@@ -116,12 +113,12 @@ class BitComparison {
         ticks_.clear();
         if (!decodeInputs(parsed<journal::Inputs>(message), ticks_))
             throw UserError("the journal has input that makes no sense; it is damaged");
-        has_gap_ = ticks_.front().tick != verdict_.ticks;
+        has_gap_ = ticks_.front().tick != rerun_.next() || ticks_.back().tick >= rerun_.end();
         if (has_gap_) return;
         const uint64_t stamp_ns = message.time_ns - uint64_t(ticks_.front().start_ns);
         for (const JournalTick& tick : ticks_) {
             compareBones();
-            const TickRecord& record = run_.run(tick);
+            const TickRecord& record = rerun_.step();
             hash_.add(record);
             if (hash_.check() != tick.check) differ(tick.tick, "");
             compareFigures(stamp_ns + uint64_t(tick.start_ns), record);
@@ -139,7 +136,7 @@ class BitComparison {
         for (auto state = first; state != last; ++state) {
             ++verdict_.bones;
             for (const auto& [leaf, hash] : state->second)
-                if (leafHash(run_.bone().volume, run_.bone().lattice, leaf) != hash)
+                if (leafHash(bone_.volume, bone_.lattice, leaf) != hash)
                     differ(verdict_.ticks == 0 ? 0 : verdict_.ticks - 1, "the bone");
         }
     }
@@ -177,7 +174,8 @@ class BitComparison {
         return std::hypot(a.x() - b[0], a.y() - b[1], a.z() - b[2]);
     }
 
-    JournalRun run_;
+    Rerun& rerun_;
+    const BoneModel& bone_;
     TickHash hash_;
     const std::multimap<uint64_t, LeafHashes>& leaves_;
     JournalVerdict& verdict_;
@@ -191,7 +189,8 @@ class BitComparison {
 std::string notWhole(const JournalContent& content) {
     std::string text;
     if (!content.incomplete.empty())
-        text += fmt::format("incomplete from tick {}: {}", content.incomplete_from, content.incomplete);
+        text += fmt::format("incomplete from tick {}: {}", content.incomplete_from,
+                            printableLine(content.incomplete));
     if (!content.problem.empty())
         text += fmt::format("{}{} ({} bytes are lost)", text.empty() ? "" : "; ", content.problem,
                             content.lost_bytes);
@@ -202,15 +201,6 @@ std::string notWhole(const JournalContent& content) {
 
 }  // namespace
 
-LoadedScene sceneOfJournal(const journal::Manifest& manifest) {
-    const std::filesystem::path file = manifest.scene_path();
-    if (!file.is_absolute()) throw UserError("the journal does not say where its scene was; it is damaged");
-    const std::string name = "the scene in the journal, " + file.string();
-    ParsedScene parsed = parseSceneText(manifest.scene_text(), name);
-    checkScene(parsed, name);
-    return {std::move(parsed.scene), file.parent_path().lexically_normal(), file, std::move(parsed.lines)};
-}
-
 std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifest, const LoadedScene& scene,
                                                 const std::string& version) {
     std::vector<std::string> reasons;
@@ -220,27 +210,23 @@ std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifes
     };
     compare("the program", manifest.build().version(), now.version());
     compare("its compiler", manifest.build().compiler(), now.compiler());
-    std::map<std::string, std::string> recorded;
-    for (const journal::File& file : manifest.files()) recorded[file.path()] = file.sha256();
-    for (const NamedFile& file : filesOf(scene)) {
-        if (file.path == scene.file) continue;  // its text is in the journal
-        const auto found = recorded.find(std::filesystem::absolute(file.path).lexically_normal());
-        if (found == recorded.end() || found->second != sha256Of(file.path))
-            reasons.push_back(fmt::format("{} {} is another file now", file.name, file.path.string()));
-    }
+    for (std::string& changed : changedFiles(manifest, scene)) reasons.push_back(std::move(changed));
     return reasons;
 }
 
 JournalVerdict verifyJournal(const std::filesystem::path& path, const std::string& version) {
     JournalVerdict verdict;
-    const JournalContent content = readJournalContent(path, KeepInputs::kNo);
-    verdict.not_whole = notWhole(content);
-    const LoadedScene scene = sceneOfJournal(content.manifest);
-    verdict.reasons = reasonsAgainstSameBits(content.manifest, scene, version);
+    const Recording recording(path);
+    verdict.not_whole = notWhole(recording.content());
+    const LoadedScene scene = recordedScene(recording.manifest(), path.string());
+    verdict.reasons = reasonsAgainstSameBits(recording.manifest(), scene, version);
     Simulation simulation = makeSimulation(scene);
-    BonePass bones(*simulation.bone);
-    readJournal(path, [&](JournalTopic topic, const mcap::Message& message) { bones.take(topic, message); });
-    BitComparison comparison(simulation, recordedEffectsOf(scene.scene.effects()), bones, verdict);
+    BonePass states(*simulation.bone);
+    readJournal(path, [&](JournalTopic topic, const mcap::Message& message) { states.take(topic, message); });
+    const Recording::Bones bones = recording.readBones(*simulation.bone);
+    Rerun rerun(recording, simulation, bones.checkpoints, *simulation.bone, bones.keyframes.front());
+    BitComparison comparison(rerun, *simulation.bone, recordedEffectsOf(scene.scene.effects()), states,
+                             verdict);
     readJournal(path,
                 [&](JournalTopic topic, const mcap::Message& message) { comparison.take(topic, message); });
     return verdict;

@@ -4,24 +4,25 @@
 #include <cmath>
 #include <utility>
 
+#include "common/printable_line.h"
 #include "haptic_server/record/device_history.h"
 #include "haptic_server/rerun/recording.h"
 #include "haptic_server/session/order_text.h"
-#include "haptic_server/session/repeated_text.h"
 
 namespace bonemill {
 namespace {
 
 constexpr double kPauseS = 0.5;
+constexpr size_t kMostText = 2000;  // of one tick
 
 std::string textOf(const journal::Event& event) {
     switch (event.what_case()) {
         case journal::Event::kAttemptBegan:
-            return "attempt of " + event.attempt_began() + " begins";
+            return "attempt of " + printableLine(event.attempt_began()) + " begins";
         case journal::Event::kAttemptEnded:
-            return "attempt of " + event.attempt_ended().trainee() + " ends";
+            return "attempt of " + printableLine(event.attempt_ended().trainee()) + " ends";
         case journal::Event::kIncomplete:
-            return "the recording lacks something from here on: " + event.incomplete().why();
+            return "the recording lacks something from here on: " + printableLine(event.incomplete().why());
         case journal::Event::kEnd:
             return "the session ends";
         default:
@@ -31,8 +32,8 @@ std::string textOf(const journal::Event& event) {
 
 std::string textOf(const journal::Order& order) {
     const std::string who =
-        order.command().name().empty() ? "order" : "order of " + repeatedText(order.command().name());
-    return who + ": " + orderText(order.command()) + ": " + order.result();
+        order.command().name().empty() ? "order" : "order of " + printableLine(order.command().name());
+    return who + ": " + orderText(order.command()) + ": " + printableLine(order.result());
 }
 
 }  // namespace
@@ -53,6 +54,7 @@ ReplayEvents::ReplayEvents(const Recording& recording)
 void ReplayEvents::add(uint64_t tick, const std::string& text) {
     const std::lock_guard lock(mutex_);
     std::string& there = events_[tick];
+    if (there.size() + text.size() > kMostText) return;
     there += (there.empty() ? "" : "; ") + text;
 }
 

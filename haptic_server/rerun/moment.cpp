@@ -1,10 +1,12 @@
 #include "haptic_server/rerun/moment.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 
 #include "common/user_error.h"
+#include "haptic_server/journal/build_facts.h"
 #include "haptic_server/rerun/rerun.h"
 #include "haptic_server/setup/scene_accuracy.h"
 
@@ -22,6 +24,20 @@ void requireSameScene(const Recording& recording, const LoadedScene& scene) {
     throw UserError(recording.path().string() + ": is a session of the scene '" +
                     recording.manifest().scene_name() + "' as it was then, which " + scene.file.string() +
                     " is not");
+}
+
+// Whoever goes on mills this PC's files, wherever they lay then: by name and hash they are the session's.
+void requireSameVolume(const Recording& recording, const LoadedScene& scene) {
+    for (const NamedFile& read : filesOf(scene)) {
+        if (read.path == scene.file) continue;
+        const std::string hash = sha256Of(read.path);
+        const auto is_same = [&](const journal::File& file) {
+            return file.what() == read.name && file.sha256() == hash;
+        };
+        if (std::ranges::none_of(recording.manifest().files(), is_same))
+            throw UserError(recording.path().string() + ": " + read.name + " " + read.path.string() +
+                            " is not the one that the session milled");
+    }
 }
 
 std::string secondsText(double seconds) {
@@ -55,12 +71,14 @@ BoneModel scannedCopyOf(const Simulation& simulation, const LoadedScene& scene) 
 RecordedMoment momentOf(const Recording& recording, const Simulation& simulation, const LoadedScene& scene,
                         double seconds) {
     requireSameScene(recording, scene);
+    requireSameVolume(recording, scene);
     if (seconds > recording.lengthS())
         throw UserError(recording.path().string() + ": ends after " + secondsText(recording.lengthS()) +
                         ", before " + secondsText(seconds));
     const uint64_t tick = recording.tickAt(seconds);
     BoneModel bone = scannedCopyOf(simulation, scene);
     const Recording::Bones bones = recording.readBones(bone);
+    if (!bones.problem.empty()) throw UserError(recording.path().string() + ": " + bones.problem);
     Rerun rerun(recording, simulation, bones.checkpoints, bone, bones.keyframes.front());
     if (const Keyframe& from = keyframeBefore(bones.keyframes, tick); from.tick > 0) rerun.startAt(from);
     TickDecisions decisions;

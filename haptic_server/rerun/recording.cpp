@@ -4,10 +4,10 @@
 #include <cmath>
 #include <iterator>
 
-#include "common/config/scene_check.h"
 #include "common/rt/clock.h"
 #include "common/user_error.h"
 #include "haptic_server/journal/bone_states.h"
+#include "haptic_server/rerun/recorded_scene.h"
 
 namespace bonemill {
 namespace {
@@ -29,7 +29,7 @@ Recording::Recording(const std::filesystem::path& path)
     for (; blocks < content_.inputs.size() && isNext(content_.inputs[blocks], ticks); ++blocks) {
         first_starts_ns_.push_back(ticks.front().start_ns);
         content_.ticks += ticks.size();
-        for (const JournalTick& tick : ticks) noteDevice(tick);
+        for (const JournalTick& tick : ticks) noteTick(tick);
     }
     if (blocks < content_.inputs.size() && content_.problem.empty())
         content_.problem = "its ticks are damaged from tick " + std::to_string(content_.ticks) + " on";
@@ -44,7 +44,12 @@ bool Recording::isNext(const journal::Inputs& inputs, std::vector<JournalTick>& 
     return first_starts_ns_.empty() || ticks.front().start_ns >= first_starts_ns_.back();
 }
 
-void Recording::noteDevice(const JournalTick& tick) {
+void Recording::noteTick(const JournalTick& tick) {
+    const uint64_t order = tick.input.decisions.bone_order;
+    // A session that goes on begins with the order that was newest before.
+    const bool is_new = tick.tick == 0 ? content_.put_backs.contains(order) : order != newest_order_;
+    if (is_new) orders_taken_.emplace(order, tick.tick);
+    newest_order_ = order;
     if (tick.input.has_other_device) devices_[tick.tick] = tick.input.other_device;
     if (!isSame(tick.device, device_)) device_changes_[tick.tick] = tick.device;
     device_ = tick.device;
@@ -84,11 +89,26 @@ const DeviceCapabilities* Recording::deviceBefore(uint64_t tick) const {
 }
 
 LoadedScene Recording::scene() const {
-    const std::filesystem::path file = manifest().scene_path();
-    ParsedScene parsed = parseSceneText(manifest().scene_text(), file.string());
-    checkScene(parsed, file.string());
-    return {std::move(parsed.scene), std::filesystem::absolute(file).parent_path().lexically_normal(), file,
-            std::move(parsed.lines)};
+    LoadedScene scene = recordedScene(manifest(), path_.string());
+    const std::vector<std::string> changed = changedFiles(manifest(), scene);
+    if (!changed.empty())
+        throw UserError(path_.string() + ": " + changed.front() +
+                        "; put the one that was milled there again, as `session verify` would want it, too");
+    return scene;
+}
+
+// Throws for an order whose bone is not there: what came after it would be milled from another one.
+void Recording::requireTargets(const Bones& bones) const {
+    for (const auto& [order, tick] : orders_taken_) {
+        const auto target = content_.put_backs.find(order);
+        const std::string what =
+            path_.string() + ": its tick " + std::to_string(tick) + " puts the bone back to ";
+        if (target == content_.put_backs.end())
+            throw UserError(what + "what the journal does not say; it is damaged");
+        if (target->second != 0 && !bones.checkpoints.contains(target->second))
+            throw UserError(what + "checkpoint " + std::to_string(target->second) +
+                            ", which is not in the journal; it is damaged");
+    }
 }
 
 Recording::Bones Recording::readBones(const BoneModel& bone) const {
@@ -118,6 +138,7 @@ Recording::Bones Recording::readBones(const BoneModel& bone) const {
             ": the session went on from another one, and the bone that it began with is not in it");
     if (unusable > 0)
         bones.problem = std::to_string(unusable) + " states of the bone are not this scan's, or damaged";
+    requireTargets(bones);
     return bones;
 }
 

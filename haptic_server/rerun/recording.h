@@ -46,8 +46,8 @@ class Recording {
     // Ticks whose device differs in state from the tick before, and what it was then.
     const std::map<uint64_t, DeviceReport>& deviceChanges() const noexcept { return device_changes_; }
 
-    // Of the session's beginning on: the scene whose text the journal has, its paths as of the file that it
-    // came from. Throws UserError.
+    // Of the session's beginning on. Throws UserError, also if a file that it reads is another one now:
+    // nothing of this PC is read that the session did not read.
     LoadedScene scene() const;
 
     struct Bones {
@@ -56,19 +56,22 @@ class Recording {
         std::string problem;  // for people, if some of them cannot be used; else empty
     };
     // Reads the file once more. `bone` is the scanned one of the scene. Throws UserError if the session began
-    // with another bone than the scanned one, and that is not there.
+    // with another bone than the scanned one, or put it back to one, and that is not there.
     Bones readBones(const BoneModel& bone) const;
 
   private:
     bool isNext(const journal::Inputs& inputs, std::vector<JournalTick>& ticks) const;
-    void noteDevice(const JournalTick& tick);
+    void noteTick(const JournalTick& tick);
+    void requireTargets(const Bones& bones) const;
 
     std::filesystem::path path_;
     JournalContent content_;
     std::vector<int64_t> first_starts_ns_;            // of the blocks' first ticks
     std::map<uint64_t, DeviceCapabilities> devices_;  // by the first tick that had it
     std::map<uint64_t, DeviceReport> device_changes_;
-    DeviceReport device_;  // of the tick that was noted last
+    std::map<uint64_t, uint64_t> orders_taken_;  // to put the bone back: the ticks that took them up
+    DeviceReport device_;                        // of the tick that was noted last
+    uint64_t newest_order_ = 0;                  // of that tick
 };
 
 // Goes through the ticks of a recording, in any order, fastest one by one. It is for one thread.

@@ -84,6 +84,7 @@ void Rerun::choose(const TickDecisions& decisions) {
 void Rerun::putBack(const TickDecisions& decisions) {
     if (decisions.bone_order == bone_order_) return;
     bone_order_ = decisions.bone_order;
+    // Both are there: Recording::readBones() has seen to it.
     const auto order = recording_.content().put_backs.find(bone_order_);
     if (order == recording_.content().put_backs.end()) return;
     const auto checkpoint = checkpoints_.find(order->second);

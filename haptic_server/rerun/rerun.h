@@ -26,9 +26,10 @@ class Rerun {
     // The bone becomes that of the keyframe, whose tick is the next one.
     void startAt(const Keyframe& keyframe);
 
-    // The tick that step() runs; recording.ticks() at the end.
+    // The tick that step() runs; end() at the end.
     uint64_t next() const noexcept { return next_; }
-    bool isAtEnd() const noexcept { return next_ == recording_.ticks(); }
+    uint64_t end() const noexcept { return recording_.ticks(); }
+    bool isAtEnd() const noexcept { return next_ == end(); }
     // Runs the next tick, which there is. The record is good until the next call; its start_ns is now.
     const TickRecord& step();
     // An order of the recording has put the bone back, or has begun to, in the last step.

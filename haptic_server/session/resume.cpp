@@ -63,6 +63,24 @@ std::optional<journal::Manifest> manifestOf(const fs::path& path) {
     return std::nullopt;
 }
 
+// Whether nothing was milled in it, and no other session gave it a bone to begin with.
+bool isEmpty(const fs::path& path) {
+    bool is_empty = true;
+    try {
+        readJournal(path, [&](JournalTopic topic, const mcap::Message& message) {
+            journal::Manifest manifest;
+            const bool goes_on = topic == JournalTopic::kManifest &&
+                                 manifest.ParseFromArray(message.data.data(), int(message.data.size())) &&
+                                 manifest.has_resumed_from();
+            is_empty = topic != JournalTopic::kInputs && !goes_on;
+            if (!is_empty) throw Enough{};
+        });
+    } catch (const Enough&) {
+    } catch (const UserError&) {
+    }
+    return is_empty;
+}
+
 // Journals of the session, the newest first: their names end with when they began.
 std::vector<fs::path> journalsOf(const fs::path& folder, uint32_t session) {
     std::vector<std::pair<fs::file_time_type, fs::path>> found;
@@ -85,6 +103,7 @@ std::vector<fs::path> journalsOf(const fs::path& folder, uint32_t session) {
 
 std::optional<UnfinishedJournal> findUnfinished(const fs::path& folder, uint32_t session) {
     for (const fs::path& path : journalsOf(folder, session)) {
+        if (hasEnd(path) && isEmpty(path)) continue;
         if (hasEnd(path)) return std::nullopt;
         if (isWritten(path)) return std::nullopt;
         std::optional<journal::Manifest> manifest = manifestOf(path);

@@ -20,8 +20,9 @@ struct UnfinishedJournal {
     journal::Manifest manifest;
 };
 
-// The newest journal of this session in the folder that has no end, and that nobody writes to. One that was
-// stopped before it held anything gives way to the one before. Whatever else is there is passed over.
+// The newest journal of this session in the folder, if it has no end and nobody writes to it. One that was
+// stopped or ended before it held anything gives way to the one before. Whatever else is there is passed
+// over.
 std::optional<UnfinishedJournal> findUnfinished(const std::filesystem::path& folder, uint32_t session);
 // Why it cannot go on, for people: its scene, or a file of it, is another one now. Empty if it can.
 std::string problemOf(const UnfinishedJournal& unfinished);

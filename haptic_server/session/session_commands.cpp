@@ -139,8 +139,9 @@ std::string SessionCommands::selectTool(uint32_t index) {
 }
 
 std::string SessionCommands::restore(uint32_t checkpoint) {
-    controls_.journal.expectPutBack(checkpoint);
-    if (checkpoints_.restore(checkpoint)) {
+    if (checkpoints_.has(checkpoint)) {
+        controls_.journal.expectPutBack(checkpoint);
+        checkpoints_.restore(checkpoint);
         controls_.attempts.noteRestored();
         return "done";
     }

@@ -8,6 +8,7 @@
 #include "common/config/scene_file.h"
 #include "common/rt/clock.h"
 #include "haptic_server/bone/checkpoints.h"
+#include "haptic_server/journal/build_facts.h"
 #include "haptic_server/journal/journal.h"
 #include "haptic_server/record/state_hash.h"
 #include "haptic_server/setup/scene_effects.h"
@@ -106,6 +107,7 @@ journal::Manifest manifestOf(const LoadedScene& loaded, const Simulation& simula
     manifest.set_scene_hash(sceneHashOf(loaded.scene));
     manifest.set_rate_hz(loaded.scene.loop().rate_hz());
     for (const SceneTool& tool : simulation.tools) manifest.add_tool_names(tool.name);
+    for (journal::File& file : hashedFiles(filesOf(loaded))) *manifest.add_files() = std::move(file);
     return manifest;
 }
 
