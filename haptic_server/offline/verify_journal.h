@@ -23,10 +23,10 @@ struct JournalVerdict {
     uint64_t first_tick = 0;  // that differs
     std::string part;         // in which it differs, of TickHash::kNames or the bone; empty: not known
     // The largest deviation of the simulated tool, and of the force on the hand, at 25 ticks of each second.
-    double position = 0;  // m
-    double force = 0;     // N
+    double position = 0;               // m
+    double force = 0;                  // N
     std::vector<std::string> reasons;  // as above: then this is a comparison, no proof
-    std::string not_whole;  // what the journal lacks, for people; empty: nothing
+    std::string not_whole;             // what the journal lacks, for people; empty: nothing
 
     bool isProven() const noexcept { return ticks > 0 && is_same && reasons.empty(); }
     std::string text() const;  // for people: some lines
