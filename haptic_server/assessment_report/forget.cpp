@@ -73,30 +73,18 @@ void forgetStatements(const fs::path& path, const std::string& pseudonym, Forgot
     }
 }
 
-void addOnce(std::vector<std::string>& names, const std::string& name) {
-    if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
-}
-
 }  // namespace
 
 Forgotten forgetResults(const fs::path& class_folder, const std::string& pseudonym) {
     Forgotten forgotten;
     eachResult(class_folder, [&](const fs::path& file, const AttemptResult& result) {
         if (result.pseudonym != pseudonym) return;
-        addOnce(forgotten.recordings, result.journal);
         fs::path report = file;
         deleteFile(report.replace_extension(".html"), forgotten);
         deleteFile(file, forgotten);
     });
     forgetStatements(ResultFolder(class_folder).statements(), pseudonym, forgotten);
     return forgotten;
-}
-
-std::vector<std::string> recordingsOfOthers(const fs::path& class_folder) {
-    std::vector<std::string> names;
-    eachResult(class_folder,
-               [&](const fs::path&, const AttemptResult& result) { addOnce(names, result.journal); });
-    return names;
 }
 
 }  // namespace bonemill

@@ -8,15 +8,12 @@
 namespace bonemill {
 
 struct Forgotten {
-    std::vector<std::string> deleted;     // one line for people per file or entry
-    std::vector<std::string> recordings;  // file names that the deleted results named, each once
-    std::vector<std::string> problems;    // what could not be deleted, with its reason
+    std::vector<std::string> deleted;   // one line for people per file or entry
+    std::vector<std::string> problems;  // what could not be deleted, with its reason
 };
 
 // Results, reports and statements of this pseudonym in the folders `results` and `experts` of a class'
 // folder, whatever the files' names are.
 Forgotten forgetResults(const std::filesystem::path& class_folder, const std::string& pseudonym);
-// The file names of recordings that results which are left name.
-std::vector<std::string> recordingsOfOthers(const std::filesystem::path& class_folder);
 
 }  // namespace bonemill

@@ -1,6 +1,8 @@
 #include "haptic_server/assessment_report/result_folder.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdio>
 #include <ctime>
 #include <fstream>
 
@@ -23,11 +25,24 @@ std::string utc(const AttemptResult& result, const char* format) {
     return text;
 }
 
+// Two people's names are two: what a file's name cannot say is told by a sum of all of it (FNV-1a).
 std::string inFileName(const std::string& pseudonym) {
     std::string name;
-    for (const char c : pseudonym)
+    uint32_t sum = 2166136261u;
+    for (const char c : pseudonym) {
         name += (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ? c : '_';
-    return name;
+        sum = (sum ^ uint8_t(c)) * 16777619u;
+    }
+    char text[10];
+    std::snprintf(text, sizeof text, "-%08x", sum);
+    return name == pseudonym ? name : name + text;
+}
+
+// Somebody may have put a link there, to have another file written over.
+void requireNoLink(const fs::path& path) {
+    std::error_code error;
+    if (fs::is_symlink(fs::symlink_status(path, error)))
+        throw UserError(path.string() + ": is a link; results are not written through one, take it away");
 }
 
 }  // namespace
@@ -55,7 +70,12 @@ std::string readBounded(const fs::path& file, size_t most) {
 void ResultFolder::write(const AttemptResult& result, std::vector<ReportPicture> pictures,
                          double begin_s) const {
     const fs::path stem = results() / fileStemOf(result);
-    const auto with = [&](const char* ending) { return fs::path(stem.string() + ending); };
+    const auto with = [&](const char* ending) {
+        fs::path file(stem.string() + ending);
+        requireNoLink(file);
+        return file;
+    };
+    requireNoLink(results());
     writePrivateFile(with(".json"), resultJson(result));
     ReportExtras extras;
     extras.pictures = std::move(pictures);

@@ -10,6 +10,8 @@ namespace bonemill {
 namespace {
 
 using Json = nlohmann::ordered_json;
+// Objects of the other kind take a time that is quadratic in their keys, which anybody may have written.
+using ReadJson = nlohmann::json;
 
 constexpr int kFormat = 1;
 constexpr size_t kMostEntries = 20'000;  // of any list
@@ -54,58 +56,58 @@ Json tableJson(const SeriesTable& table) {
         {"id", table.id}, {"index", seriesJson(table.index)}, {"columns", listOf(table.columns, seriesJson)}};
 }
 
-double numberOf(const Json& json, const char* key) {
+double numberOf(const ReadJson& json, const char* key) {
     const double value = json.at(key).get<double>();
     if (!std::isfinite(value)) throw std::range_error(std::string(key) + " is not finite");
     return value;
 }
 
-const Json& boundedList(const Json& json, const char* key) {
-    const Json& list = json.at(key);
+const ReadJson& boundedList(const ReadJson& json, const char* key) {
+    const ReadJson& list = json.at(key);
     if (!list.is_array() || list.size() > kMostEntries)
         throw std::length_error(std::string(key) + " is no list, or too long");
     return list;
 }
 
-Figure readFigure(const Json& json) {
+Figure readFigure(const ReadJson& json) {
     return {json.at("id").get<std::string>(), json.at("version").get<int>(),
             json.at("label").get<std::string>(), numberOf(json, "value"), json.at("unit").get<std::string>()};
 }
 
 // JSON has no NaN: null stands for it.
-Series readSeries(const Json& json) {
+Series readSeries(const ReadJson& json) {
     Series series{json.at("id").get<std::string>(),
                   json.at("label").get<std::string>(),
                   json.at("unit").get<std::string>(),
                   {}};
-    for (const Json& value : boundedList(json, "values"))
+    for (const ReadJson& value : boundedList(json, "values"))
         series.values.push_back(value.is_null() ? std::numeric_limits<double>::quiet_NaN()
                                                 : value.get<double>());
     return series;
 }
 
-GateResult readGate(const Json& json) {
+GateResult readGate(const ReadJson& json) {
     return {json.at("id").get<std::string>(),     json.at("label").get<std::string>(),
             json.at("figure").get<std::string>(), numberOf(json, "limit"),
             json.at("is_most").get<bool>(),       json.at("is_passed").get<bool>(),
             json.at("text").get<std::string>()};
 }
 
-SubScore readSubScore(const Json& json) {
+SubScore readSubScore(const ReadJson& json) {
     return {json.at("id").get<std::string>(), json.at("label").get<std::string>(),
             readFigure(json.at("figure")),    numberOf(json, "worst"),
             numberOf(json, "best"),           numberOf(json, "score"),
             numberOf(json, "weight")};
 }
 
-Moment readMoment(const Json& json) {
+Moment readMoment(const ReadJson& json) {
     return {numberOf(json, "t_s"), json.at("kind").get<std::string>(), json.at("text").get<std::string>(),
             numberOf(json, "severity")};
 }
 
-SeriesTable readTable(const Json& json) {
+SeriesTable readTable(const ReadJson& json) {
     SeriesTable table{json.at("id").get<std::string>(), readSeries(json.at("index")), {}};
-    for (const Json& column : boundedList(json, "columns")) {
+    for (const ReadJson& column : boundedList(json, "columns")) {
         table.columns.push_back(readSeries(column));
         if (table.columns.back().values.size() != table.index.values.size())
             throw std::length_error("columns of different length");
@@ -113,22 +115,24 @@ SeriesTable readTable(const Json& json) {
     return table;
 }
 
-Assessment readAssessment(const Json& json) {
+Assessment readAssessment(const ReadJson& json) {
     Assessment assessment;
-    for (const Json& gate : boundedList(json, "gates")) assessment.gates.push_back(readGate(gate));
-    for (const Json& figure : boundedList(json, "figures")) assessment.figures.push_back(readFigure(figure));
-    for (const Json& sub : boundedList(json, "sub_scores"))
+    for (const ReadJson& gate : boundedList(json, "gates")) assessment.gates.push_back(readGate(gate));
+    for (const ReadJson& figure : boundedList(json, "figures"))
+        assessment.figures.push_back(readFigure(figure));
+    for (const ReadJson& sub : boundedList(json, "sub_scores"))
         assessment.sub_scores.push_back(readSubScore(sub));
     if (json.contains("total"))
         assessment.total =
             Total{numberOf(json.at("total"), "score"), json.at("total").at("weights_version").get<int>(),
                   json.at("total").at("weights_hash").get<std::string>()};
-    for (const Json& table : boundedList(json, "series")) assessment.series.push_back(readTable(table));
-    for (const Json& moment : boundedList(json, "moments")) assessment.moments.push_back(readMoment(moment));
+    for (const ReadJson& table : boundedList(json, "series")) assessment.series.push_back(readTable(table));
+    for (const ReadJson& moment : boundedList(json, "moments"))
+        assessment.moments.push_back(readMoment(moment));
     return assessment;
 }
 
-AttemptResult readResult(const Json& json) {
+AttemptResult readResult(const ReadJson& json) {
     if (json.at("bonemill_result").get<int>() != kFormat) throw std::range_error("another format");
     AttemptResult result;
     result.pseudonym = json.at("pseudonym").get<std::string>();
@@ -174,7 +178,7 @@ std::string resultJson(const AttemptResult& result) {
 AttemptResult parseResult(const std::string& text, const std::string& file) {
     try {
         if (text.size() > kLargestResult) throw std::length_error("too large");
-        return readResult(Json::parse(text));
+        return readResult(ReadJson::parse(text));
     } catch (const std::exception& error) {
         throw UserError(file + ": is no result of an attempt (" + error.what() + ")");
     }

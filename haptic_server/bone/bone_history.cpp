@@ -43,17 +43,16 @@ std::shared_ptr<const BoneSnapshot> BoneHistory::snapshot(const BoneModel& bone)
         const auto& target = orders_.back()->target;
         return target ? target : std::make_shared<const BoneSnapshot>();
     }
-    Copies copies(bone.lattice.leafCount());
-    if (last_snapshot_)
-        for (const auto& copy : last_snapshot_->leaves) copies[copy->leaf] = copy;
+    Copies& copies = last_copies_;
+    copies.resize(bone.lattice.leafCount());
     copyChanged(bone, copies);
     auto snapshot = std::make_shared<BoneSnapshot>();
     const Moment moment = copyWhole(bone, copies);
     snapshot->missing_voxels = moment.missing_voxels;
     snapshot->ticks = moment.ticks;
-    for (auto& copy : copies)
-        if (copy && !copy->densities.empty()) snapshot->leaves.push_back(std::move(copy));
-    return last_snapshot_ = snapshot;
+    for (const auto& copy : copies)
+        if (copy && !copy->densities.empty()) snapshot->leaves.push_back(copy);
+    return snapshot;
 }
 
 // Is there while no tick writes.

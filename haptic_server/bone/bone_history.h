@@ -99,7 +99,7 @@ class BoneHistory {
     // The keeper has these. The tick may look at three orders at most: the one it is known to have taken up,
     // one that it has taken up since, and the newest.
     std::deque<std::unique_ptr<const Order>> orders_;
-    std::shared_ptr<const BoneSnapshot> last_snapshot_;
+    Copies last_copies_;  // of the newest snapshot, also of leaves that are as scanned again
 
     // The tick has these.
     const Order* order_;  // the newest taken up

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "haptic_server/rerun/recorded_eyes.h"
+
 namespace bonemill {
 namespace {
 
@@ -20,15 +22,8 @@ struct Eyes {
 
 void writeEyes(const Recording& recording, H5File& file) {
     Eyes eyes;
-    readJournal(recording.path(), [&](JournalTopic topic, const mcap::Message& message) {
-        journal::Camera camera;
-        if (topic != JournalTopic::kCamera ||
-            !camera.ParseFromArray(message.data.data(), int(message.data.size())))
-            return;
-        const topics::Eye& eye = camera.eye();
-        if (eye.p_wc_m_size() == 3 && eye.q_wc_size() == 4 && camera.tick() < recording.ticks())
-            eyes.add(recording.secondsOf(camera.tick()), eye);
-    });
+    for (const RecordedEye& seen : recordedEyes(recording))
+        eyes.add(recording.secondsOf(seen.tick), seen.eye);
     if (eyes.t_s.empty()) return;
     const auto write = [&](const char* place, size_t width, const H5About& about,
                            const std::vector<double>& values) {

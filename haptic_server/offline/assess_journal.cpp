@@ -7,6 +7,7 @@
 #include "common/user_error.h"
 #include "haptic_server/offline/task_run.h"
 #include "haptic_server/offline/write_assessment.h"
+#include "haptic_server/rerun/recorded_eyes.h"
 #include "haptic_server/rerun/rerun.h"
 
 namespace bonemill {
@@ -22,6 +23,7 @@ class JournalAssessment {
           loaded_(recording_.scene()),
           simulation_(makeSimulation(loaded_)),
           bones_(recording_.readBones(*simulation_.bone)),
+          eyes_(recordedEyes(recording_)),
           rerun_(recording_, simulation_, bones_.checkpoints, *simulation_.bone, bones_.keyframes.front()) {}
 
     int run() {
@@ -32,6 +34,7 @@ class JournalAssessment {
         size_t next_event = 0;
         while (!rerun_.isAtEnd()) {
             const uint64_t tick = rerun_.next();
+            look(tick);
             const TickRecord& record = rerun_.step();
             if (attempt_ && record.bone_order >= attempt_->bone_order) attempt_->run.add(record);
             for (; next_event < events.size() && events[next_event].tick() <= tick; ++next_event)
@@ -50,12 +53,24 @@ class JournalAssessment {
         uint64_t begin;       // tick
     };
 
+    // Who looks on from elsewhere tells of it some times per second; meanwhile the eye is where it was.
+    void look(uint64_t tick) {
+        const size_t before = next_eye_;
+        while (next_eye_ < eyes_.size() && eyes_[next_eye_].tick <= tick) ++next_eye_;
+        if (attempt_ && next_eye_ > before) tellEye();
+    }
+    void tellEye() {
+        if (next_eye_ > 0) attempt_->run.setEye(Eigen::Vector3d(eyes_[next_eye_ - 1].eye.p_wc_m().data()));
+    }
+
     // An attempt begins with an order to put the bone back, which no tick has taken up yet.
     void take(const journal::Event& event) {
         if (event.has_attempt_ended() && attempt_) end(event.tick(), event.attempt_ended().time_s());
-        if (event.has_attempt_began())
+        if (event.has_attempt_began()) {
             attempt_.emplace(Attempt{TaskRun(loaded_.scene, simulation_, true), event.attempt_began(),
                                      event.bone_order(), event.tick()});
+            tellEye();
+        }
     }
 
     void end(uint64_t tick, std::optional<double> time_s) {
@@ -83,8 +98,10 @@ class JournalAssessment {
     LoadedScene loaded_;
     Simulation simulation_;
     Recording::Bones bones_;
+    std::vector<RecordedEye> eyes_;
     Rerun rerun_;
     std::optional<Attempt> attempt_;
+    size_t next_eye_ = 0;
     uint32_t number_ = 0;
     FinalFiles files_;
 };

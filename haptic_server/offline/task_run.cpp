@@ -22,6 +22,10 @@ void TaskRun::add(const TickRecord& record) {
     if (breach_) breach_->add(record);
 }
 
+void TaskRun::setEye(const Eigen::Vector3d& p_eye_W) {
+    if (technique_) technique_->setEye(p_eye_W);
+}
+
 TaskRun::Result TaskRun::judgeBone(const VoxelVolume& scanned, const VoxelVolume& now) {
     technique_->finish();
     if (!task_) return {technique_->assessment(), {}, technique_->beginS()};

@@ -19,6 +19,8 @@ class TaskRun {
     TaskRun(const scene::Scene& scene, const Simulation& simulation, bool wanted = false);
 
     void add(const TickRecord& record);
+    // The trainee's eye is here from the next record on.
+    void setEye(const Eigen::Vector3d& p_eye_W);
     struct Result {
         Assessment assessment;
         DeviationPicture picture;

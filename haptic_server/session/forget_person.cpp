@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
+#include <vector>
 
 #include "common/user_error.h"
 #include "haptic_server/assessment_report/forget.h"
+#include "haptic_server/journal/journal_reader.h"
 #include "haptic_server/session/class_table.h"
 
 namespace bonemill {
@@ -26,26 +29,42 @@ void forgetInTables(const ForgetOptions& options, Forgotten& forgotten) {
     }
 }
 
-// A recording is one session's, which may have been several people's.
+std::set<std::string> traineesOf(const fs::path& journal) {
+    std::set<std::string> trainees;
+    for (const journal::Event& event : readJournalContent(journal, KeepInputs::kNo).events)
+        if (event.has_attempt_began()) trainees.insert(event.attempt_began());
+    return trainees;
+}
+
+void forgetRecording(const fs::path& file, const std::string& pseudonym, Forgotten& forgotten) {
+    const std::set<std::string> trainees = traineesOf(file);
+    if (!trainees.contains(pseudonym)) return;
+    std::error_code error;
+    if (trainees.size() > 1)
+        forgotten.problems.push_back(
+            file.string() + ": holds other people's attempts, too; it is left, decide what to do with it");
+    else if (fs::remove(file, error))
+        forgotten.deleted.push_back(file.string());
+    else
+        forgotten.problems.push_back(file.string() + ": cannot be deleted: " + error.message());
+}
+
+// A recording is one session's, which may have been several people's. It says itself whose it is, also where
+// a session was killed before there was a result.
 void forgetRecordings(const ForgetOptions& options, Forgotten& forgotten) {
-    const fs::path folder = options.recordings.empty() ? options.folder : options.recordings;
-    const std::vector<std::string> of_others = recordingsOfOthers(options.folder);
-    for (const std::string& name : forgotten.recordings) {
-        const fs::path file = folder / fs::path(name).filename();
-        std::error_code error;
-        // A result may have been made by anybody, and name anything.
-        if (file.extension() != ".mcap" || !fs::is_regular_file(fs::symlink_status(file, error))) continue;
-        const auto isThis = [&](const std::string& other) {
-            return fs::path(other).filename() == file.filename();
-        };
-        if (std::ranges::any_of(of_others, isThis))
-            forgotten.problems.push_back(
-                file.string() +
-                ": holds other people's attempts, too; it is left, decide what to do with it");
-        else if (fs::remove(file, error))
-            forgotten.deleted.push_back(file.string());
-        else
-            forgotten.problems.push_back(file.string() + ": cannot be deleted: " + error.message());
+    std::error_code error;
+    std::vector<fs::path> files;
+    const std::string& folder = options.recordings.empty() ? options.folder : options.recordings;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+        if (entry.path().extension() == ".mcap" && fs::is_regular_file(entry.symlink_status(error)))
+            files.push_back(entry.path());
+    std::ranges::sort(files);
+    for (const fs::path& file : files) {
+        try {
+            forgetRecording(file, options.pseudonym, forgotten);
+        } catch (const UserError& problem) {
+            forgotten.problems.push_back(file.string() + ": whose it is cannot be read: " + problem.what());
+        }
     }
 }
 

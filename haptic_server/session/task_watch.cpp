@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "common/rt/clock.h"
 #include "common/units.h"
@@ -62,9 +63,10 @@ void TaskWatch::beginAttempt() {
 
 std::shared_future<TaskWatch::Result> TaskWatch::endAttempt(std::optional<double> breach, Figures technique) {
     if (!task_) return {};
-    finish();
     judging_ = std::async(std::launch::async, [this, breach, technique = std::move(technique),
-                                               snapshot = history_.snapshot(bone_)]() mutable {
+                                               snapshot = history_.snapshot(bone_),
+                                               before = std::exchange(judging_, {})]() mutable {
+        if (before.valid()) before.wait();  // one after the other: each takes a core
         Result result;
         try {
             const VoxelVolume now = history_.volumeOf(*snapshot, bone_.lattice);
@@ -73,8 +75,10 @@ std::shared_future<TaskWatch::Result> TaskWatch::endAttempt(std::optional<double
             technique.insert(technique.end(), product.figures.begin(), product.figures.end());
             result.assessment = judge(*task_, std::move(technique));
             result.picture = std::move(product.picture);
+            logResult(result.assessment);
         } catch (const std::exception& error) {
             result.problem = error.what();
+            spdlog::error("the attempt could not be judged: {}", result.problem);
         }
         return result;
     });
@@ -84,17 +88,8 @@ std::shared_future<TaskWatch::Result> TaskWatch::endAttempt(std::optional<double
 
 void TaskWatch::finish() {
     if (!judging_.valid()) return;
-    takeUp(judging_.get());
+    if (const Result& result = judging_.get(); result.problem.empty()) last_ = result.assessment;
     judging_ = {};
-}
-
-void TaskWatch::takeUp(const Result& result) {
-    if (result.problem.empty()) {
-        logResult(result.assessment);
-        last_ = result.assessment;
-    } else {
-        spdlog::error("the attempt could not be judged: {}", result.problem);
-    }
 }
 
 // Of what is counted all along.

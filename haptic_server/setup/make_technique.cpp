@@ -11,7 +11,8 @@ namespace bonemill {
 TechniqueScene techniqueSceneOf(const scene::Scene& scene) {
     return {.recorded = recordedEffectsOf(scene.effects()),
             .materials = materialNamesOf(scene),
-            .tools = toolNamesOf(scene)};
+            .tools = toolNamesOf(scene),
+            .force_limit = scene.assessment().force_limit_n()};
 }
 
 // Bone that the burr touches hides nothing: the line of sight ends before it.

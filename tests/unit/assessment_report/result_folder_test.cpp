@@ -36,9 +36,28 @@ TEST_F(ResultFolderTest, AnAttemptLeavesItsFilesForItsUserAlone) {
 
 TEST_F(ResultFolderTest, ANameIsNoPath) {
     AttemptResult result = test::typicalResult("../../etc/pass wd");
-    EXPECT_EQ(fileStemOf(result), "20261118T113640Z_______etc_pass_wd_3");
+    EXPECT_TRUE(fileStemOf(result).starts_with("20261118T113640Z_______etc_pass_wd-")) << fileStemOf(result);
     results_.write(result, {}, 0);
     EXPECT_EQ(ResultFolder::read(results_.results(), result.scene_hash, result.pseudonym).size(), 1);
+}
+
+TEST_F(ResultFolderTest, NoTwoPeopleHaveTheSameFile) {
+    EXPECT_NE(fileStemOf(test::typicalResult("P\u00e4")), fileStemOf(test::typicalResult("P\u00f6")));
+    EXPECT_NE(fileStemOf(test::typicalResult("P_1")), fileStemOf(test::typicalResult("P 1")));
+}
+
+TEST_F(ResultFolderTest, NothingIsWrittenThroughALink) {
+    const test::TemporaryFolder elsewhere;
+    const std::string stem = fileStemOf(test::typicalResult());
+    test::writeFile(elsewhere / "file", "somebody's");
+    std::filesystem::create_directories(results_.results());
+    std::filesystem::create_symlink(elsewhere / "file", results_.results() / (stem + ".json"));
+    EXPECT_THROW(results_.write(test::typicalResult(), {}, 0), UserError);
+    EXPECT_EQ(test::readFile(elsewhere / "file"), "somebody's");
+    std::filesystem::remove_all(results_.results());
+    std::filesystem::create_directory_symlink(elsewhere.path(), results_.results());
+    EXPECT_THROW(results_.write(test::typicalResult(), {}, 0), UserError);
+    EXPECT_FALSE(std::filesystem::exists(elsewhere / (stem + ".json")));
 }
 
 TEST_F(ResultFolderTest, TheReportShowsThisPersonsAttemptsInThisScene) {

@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <sstream>
+#include <vector>
 
 #include "common/user_error.h"
 #include "haptic_server/assessment_report/result_folder.h"
 #include "haptic_server/session/class_table.h"
 #include "tests/support/process.h"
+#include "tests/support/rewritten_journal.h"
 
 namespace bonemill {
 namespace {
@@ -27,7 +30,19 @@ class ForgetPerson : public testing::Test {
         result.start_unix_ns = 1'700'000'000'000'000'000;
         result.journal = journal;
         ResultFolder(folder_ / ".").write(result, {}, 0);
-        test::writeFile(folder_ / journal, "recording");
+        record(journal, pseudonym);
+    }
+    // An attempt more in a recording.
+    void record(const std::string& name, const std::string& pseudonym) {
+        journal::Manifest manifest;
+        manifest.set_format(kJournalFormat);
+        manifest.set_rate_hz(1000);
+        journal::Event event;
+        event.set_attempt_began(pseudonym);
+        auto& messages = recordings_[name];
+        if (messages.empty()) messages.push_back({JournalTopic::kManifest, 1, manifest.SerializeAsString()});
+        messages.push_back({JournalTopic::kEvent, 2, event.SerializeAsString()});
+        test::writeJournal(folder_ / name, messages, true);
     }
     int forget(const std::string& pseudonym) {
         out_.str("");
@@ -35,6 +50,7 @@ class ForgetPerson : public testing::Test {
     }
 
     const test::TemporaryFolder folder_;
+    std::map<std::string, std::vector<test::JournalMessage>> recordings_;
     std::ostringstream out_;
 };
 
@@ -57,19 +73,24 @@ TEST_F(ForgetPerson, ARecordingOfSeveralPeopleIsLeftAndSaid) {
     EXPECT_EQ(forget("P07"), 1);
     EXPECT_NE(out_.str().find("a.mcap: holds other people's attempts"), std::string::npos) << out_.str();
     EXPECT_TRUE(std::filesystem::exists(folder_ / "a.mcap"));
-    EXPECT_EQ(forget("P08"), 0) << out_.str();
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "a.mcap"));
+    EXPECT_EQ(forget("P08"), 1) << "P07's attempt is still in it";
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "a.mcap"));
 }
 
-TEST_F(ForgetPerson, ANameOfARecordingLeadsNowhereElse) {
+TEST_F(ForgetPerson, ARecordingWithoutAResultIsFoundAndALinkIsNotFollowed) {
     const test::TemporaryFolder elsewhere;
-    test::writeFile(elsewhere / "x.mcap", "somebody's");
-    AttemptResult result;
-    result.pseudonym = "P07";
-    result.journal = elsewhere / "x.mcap";
-    ResultFolder(folder_ / ".").write(result, {}, 0);
-    EXPECT_EQ(forget("P07"), 0);
+    record("killed.mcap", "P07");
+    std::filesystem::copy(folder_ / "killed.mcap", elsewhere / "x.mcap");
+    std::filesystem::create_symlink(elsewhere / "x.mcap", folder_ / "link.mcap");
+    EXPECT_EQ(forget("P07"), 0) << out_.str();
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "killed.mcap"));
     EXPECT_TRUE(std::filesystem::exists(elsewhere / "x.mcap"));
+}
+
+TEST_F(ForgetPerson, WhoseARecordingIsMayNotBeReadable) {
+    test::writeFile(folder_ / "a.mcap", "damaged");
+    EXPECT_EQ(forget("P07"), 1);
+    EXPECT_NE(out_.str().find("a.mcap: whose it is cannot be read"), std::string::npos) << out_.str();
 }
 
 TEST_F(ForgetPerson, AFolderThatIsNoneIsRefused) {
