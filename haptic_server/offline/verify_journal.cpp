@@ -14,9 +14,9 @@
 #include "haptic_server/bone/leaf_rows.h"
 #include "haptic_server/journal/bone_states.h"
 #include "haptic_server/journal/build_facts.h"
+#include "haptic_server/journal/journal_chain.h"
 #include "haptic_server/journal/journal_reader.h"
 #include "haptic_server/record/tick_hash.h"
-#include "haptic_server/rerun/recorded_scene.h"
 #include "haptic_server/rerun/rerun.h"
 #include "haptic_server/setup/scene_effects.h"
 #include "haptic_server/setup/scene_setup.h"
@@ -201,7 +201,7 @@ std::string notWhole(const JournalContent& content) {
 
 }  // namespace
 
-std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifest, const LoadedScene& scene,
+std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifest,
                                                 const std::string& version) {
     std::vector<std::string> reasons;
     const journal::Build now = buildFacts(version);
@@ -210,7 +210,6 @@ std::vector<std::string> reasonsAgainstSameBits(const journal::Manifest& manifes
     };
     compare("the program", manifest.build().version(), now.version());
     compare("its compiler", manifest.build().compiler(), now.compiler());
-    for (std::string& changed : changedFiles(manifest, scene)) reasons.push_back(std::move(changed));
     return reasons;
 }
 
@@ -218,11 +217,17 @@ JournalVerdict verifyJournal(const std::filesystem::path& path, const std::strin
     JournalVerdict verdict;
     const Recording recording(path);
     verdict.not_whole = notWhole(recording.content());
-    const LoadedScene scene = recordedScene(recording.manifest(), path.string());
-    verdict.reasons = reasonsAgainstSameBits(recording.manifest(), scene, version);
+    const LoadedScene scene = recording.scene();
+    verdict.reasons = reasonsAgainstSameBits(recording.manifest(), version);
     Simulation simulation = makeSimulation(scene);
     BonePass states(*simulation.bone);
-    readJournal(path, [&](JournalTopic topic, const mcap::Message& message) { states.take(topic, message); });
+    ChainCheck chain;
+    readJournal(path, [&](JournalTopic topic, const mcap::Message& message) {
+        states.take(topic, message);
+        chain.take(topic, message);
+    });
+    verdict.is_chain_broken = chain.isBroken();
+    verdict.chain = chain.text();
     const Recording::Bones bones = recording.readBones(*simulation.bone);
     Rerun rerun(recording, simulation, bones.checkpoints, *simulation.bone, bones.keyframes.front());
     BitComparison comparison(rerun, *simulation.bone, recordedEffectsOf(scene.scene.effects()), states,
@@ -247,6 +252,7 @@ std::string JournalVerdict::text() const {
     text += fmt::format("\nlargest deviation: {:.3g} um of the tool, {:.3g} N on the hand",
                         position / kMicrometre, force);
     for (const std::string& reason : reasons) text += "\n" + reason;
+    text += "\nthe chain: " + chain;
     if (!not_whole.empty()) text += "\nthe journal: " + not_whole;
     return text + "\n";
 }

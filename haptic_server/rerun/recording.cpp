@@ -93,7 +93,7 @@ LoadedScene Recording::scene() const {
     const std::vector<std::string> changed = changedFiles(manifest(), scene);
     if (!changed.empty())
         throw UserError(path_.string() + ": " + changed.front() +
-                        "; put the one that was milled there again, as `session verify` would want it, too");
+                        "; put the one that was milled there again");
     return scene;
 }
 
