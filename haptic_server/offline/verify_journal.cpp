@@ -24,6 +24,10 @@
 namespace bonemill {
 namespace {
 
+// Hostile files could unpack to far more than they are: so many leaves are compared, and so many poses wait
+// for their tick.
+constexpr size_t kMostLeafHashes = size_t(1) << 27, kMostWaitingPoses = 100'000;
+
 template <class Message>
 Message parsed(const mcap::Message& bytes) {
     Message message;
@@ -70,6 +74,8 @@ class BonePass {
         for (const uint32_t step : bone.leaf_steps()) changed_.push_back(LeafId(leaf += step));
         leaf = 0;
         for (const uint32_t step : bone.as_scanned_steps()) changed_.push_back(LeafId(leaf += step));
+        if ((leaf_count_ += size_t(bone.leaf_steps_size() + bone.as_scanned_steps_size())) > kMostLeafHashes)
+            throw UserError("the journal has more leaves of bone than can be compared; it is damaged");
         if (bone.goes_on()) return;
         if (bone.kind() != journal::Bone::OTHER) leaves_.emplace(bone.tick(), hashesOfChanged());
         changed_.clear();
@@ -88,6 +94,7 @@ class BonePass {
     ScannedBone scanned_;
     BoneStateReader states_;
     std::vector<LeafId> changed_;
+    size_t leaf_count_ = 0;
     std::multimap<uint64_t, LeafHashes> leaves_;
 };
 
@@ -106,6 +113,8 @@ class BitComparison {
             poses_.emplace_back(message.time_ns, parsed<foxglove::PoseInFrame>(message));
         if (topic == JournalTopic::kWrench)
             wrenches_.emplace_back(message.time_ns, parsed<journal::WrenchInFrame>(message));
+        if (poses_.size() > kMostWaitingPoses) poses_.pop_front();
+        if (wrenches_.size() > kMostWaitingPoses) wrenches_.pop_front();
     }
 
   private:

@@ -30,8 +30,8 @@ class Rerun {
     uint64_t next() const noexcept { return next_; }
     uint64_t end() const noexcept { return recording_.ticks(); }
     bool isAtEnd() const noexcept { return next_ == end(); }
-    // Runs the next tick, which there is. The record is good until the next call; its start_ns is now, and its
-    // bone_order is the recording's.
+    // Runs the next tick, which there is. The record is good until the next call; its start_ns is now, and
+    // its bone_order is the recording's.
     const TickRecord& step();
     // An order of the recording has put the bone back, or has begun to, in the last step.
     bool isBonePutBack() const noexcept { return is_put_back_; }
